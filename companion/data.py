@@ -1,0 +1,113 @@
+"""What the companion's steps hand to each other: SI units, radians, world ENU (W), UTC nanoseconds.
+
+W is the autopilot's local frame turned to ENU: its origin is the autopilot's GPS_GLOBAL_ORIGIN.
+Arrays are float64 and are never written in place. Unknown is None.
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from link.messages import Quaternion, Vector3
+
+Array = NDArray[np.float64]
+
+
+class Quantity(Enum):
+    """What a measurement measures, each with the frame of its value."""
+
+    POSITION = "position"  # of the antenna in W, m (3)
+    VELOCITY = "velocity"  # of the antenna in W, m/s (3)
+    HEADING = "heading"  # yaw of V about W's z, rad (1)
+    YAW_RATE = "yaw_rate"  # rad/s (1)
+    PAD = "pad"  # the pad's centre in W as seen from the drone, m (3)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Measurement:
+    """A value `(n,)` with covariance `(n, n)`, taken at `t_ns`."""
+
+    t_ns: int
+    quantity: Quantity
+    value: Array
+    covariance: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class VehicleEstimate:
+    """The vehicle's reference point (its antenna) at `t_ns`.
+
+    Attributes:
+        position_enu_m: (3,) in W.
+        velocity_enu_m_s: (3,) in W.
+        acceleration_enu_m_s2: (3,) in W.
+        covariance: (9, 9) of position, velocity, acceleration, in that order.
+        yaw_rad: heading of V about W's z, None while it cannot be told (at rest, never measured).
+        yaw_rate_rad_s: None likewise.
+    """
+
+    t_ns: int
+    position_enu_m: Array
+    velocity_enu_m_s: Array
+    acceleration_enu_m_s2: Array
+    covariance: Array
+    yaw_rad: float | None
+    yaw_rate_rad_s: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Forecast:
+    """The vehicle's reference point at `t_ns` and at later instants.
+
+    Attributes:
+        offset_s: (n,) seconds after `t_ns`.
+        position_enu_m: (n, 3).
+        velocity_enu_m_s: (n, 3).
+        acceleration_enu_m_s2: (n, 3).
+        yaw_rad: (n,), None while the heading is unknown.
+        position_std_m: (n, 3) standard deviation.
+    """
+
+    t_ns: int
+    offset_s: Array
+    position_enu_m: Array
+    velocity_enu_m_s: Array
+    acceleration_enu_m_s2: Array
+    yaw_rad: Array | None
+    position_std_m: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OwnState:
+    """The drone as its autopilot reports it; `t_ns` is when it was so."""
+
+    t_ns: int
+    position_enu_m: Vector3
+    velocity_enu_m_s: Vector3
+    orientation_wxyz: Quaternion
+    angular_velocity_flu_rad_s: Vector3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setpoint:
+    """What the autopilot is to follow from `t_ns` on; None leaves a group out."""
+
+    t_ns: int
+    position_enu_m: Vector3
+    velocity_enu_m_s: Vector3 | None
+    acceleration_enu_m_s2: Vector3 | None
+    yaw_rad: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlightLimits:
+    """What the planner may ask of the drone; each a magnitude."""
+
+    speed_max_m_s: float
+    climb_max_m_s: float
+    descent_max_m_s: float
+    acceleration_max_m_s2: float
+    vertical_acceleration_max_m_s2: float
+    jerk_max_m_s3: float

@@ -1,0 +1,26 @@
+"""The one interface of all estimators of the ground vehicle.
+
+An estimator is a pair of pure functions over its own immutable memory. Measurements are fused at the time
+they were taken, whatever order they arrive in; the present and the future are predictions from there.
+"""
+
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+from companion.data import Array, Forecast, Measurement, VehicleEstimate
+
+
+class Estimator(Protocol):
+    """What the companion asks of an estimator; the memory is None until the first fix."""
+
+    def fuse(self, memory: Any, measurements: Sequence[Measurement]) -> Any:  # noqa: ANN401 (each estimator has its own memory)
+        """Return the memory after `measurements`; late ones are fused at their own time, outliers are gated."""
+
+    def estimate(self, memory: Any, t_ns: int) -> VehicleEstimate | None:  # noqa: ANN401 (as above)
+        """Return the vehicle at `t_ns`, or None before the first fix."""
+
+    def forecast(self, memory: Any, t_ns: int, offset_s: Array) -> Forecast | None:  # noqa: ANN401 (as above)
+        """Return the vehicle at `t_ns + offset_s`, `offset_s` (n,), or None before the first fix."""
+
+    def newest_fix_ns(self, memory: Any) -> int | None:  # noqa: ANN401 (as above)
+        """Return the time at which the newest accepted position was taken."""

@@ -1,0 +1,1 @@
+"""From a forecast of the deck to the trajectory that meets it."""

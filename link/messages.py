@@ -1,0 +1,139 @@
+"""What travels between the programs over Zenoh, as plain data in SI units, radians, ENU and FLU.
+
+Frames: W is the world (ENU about the datum), B the drone's body and V the vehicle's body (both FLU).
+Quaternions are Hamilton, order wxyz. `t_ns` is the UTC instant of measurement in nanoseconds.
+The wire forms (ROS 2 messages in CDR, JSON) live in `link.cdr` and `link.json_payloads`.
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+
+Vector3 = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+Matrix3 = tuple[float, float, float, float, float, float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fix:
+    """A GNSS position of the vehicle's antenna; `altitude_m` is above the WGS 84 ellipsoid.
+
+    `covariance_enu_m2` is row-major 3x3, None when the receiver does not state one.
+    """
+
+    t_ns: int
+    latitude_rad: float
+    longitude_rad: float
+    altitude_m: float
+    covariance_enu_m2: Matrix3 | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FixVelocity:
+    """The vehicle's velocity in ENU and, where known, its yaw rate."""
+
+    t_ns: int
+    velocity_enu_m_s: Vector3
+    velocity_covariance_enu_m2_s2: Matrix3 | None = None
+    yaw_rate_rad_s: float | None = None
+    yaw_rate_variance_rad2_s2: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VehicleImu:
+    """The vehicle's attitude (`q_WV`), angular velocity and specific force, each None when not measured."""
+
+    t_ns: int
+    orientation_wxyz: Quaternion | None = None
+    orientation_covariance_rad2: Matrix3 | None = None
+    angular_velocity_flu_rad_s: Vector3 | None = None
+    angular_velocity_covariance_rad2_s2: Matrix3 | None = None
+    specific_force_flu_m_s2: Vector3 | None = None
+    specific_force_covariance_m2_s4: Matrix3 | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PadSighting:
+    """The pad's centre in the drone's body frame B (`base_link`), as a detector saw it at `t_ns`."""
+
+    t_ns: int
+    position_flu_m: Vector3
+    orientation_wxyz: Quaternion
+    position_covariance_m2: Matrix3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BodyTruth:
+    """True pose and motion of a body in the simulation: pose in W, velocities in the body frame."""
+
+    t_ns: int
+    position_enu_m: Vector3
+    orientation_wxyz: Quaternion
+    velocity_flu_m_s: Vector3
+    angular_velocity_flu_rad_s: Vector3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RotorTruth:
+    """True rotor speeds of the simulated drone."""
+
+    t_ns: int
+    speed_rad_s: tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlannedPose:
+    """One point of a planned path."""
+
+    t_ns: int
+    position_enu_m: Vector3
+    yaw_rad: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plan:
+    """The path that the companion intends to fly, first point first."""
+
+    t_ns: int
+    poses: tuple[PlannedPose, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PadGeometry:
+    """The landing pad on the vehicle; `antenna_to_pad_m` leads from the GNSS antenna to the pad's centre in V."""
+
+    size_m: tuple[float, float]
+    height_m: float
+    antenna_to_pad_m: Vector3
+
+
+class Command(Enum):
+    """What an operator may ask of the companion."""
+
+    START = "start"
+    ABORT = "abort"
+    HOLD = "hold"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CommandReply:
+    """Whether a command was accepted, and if not, why."""
+
+    accepted: bool
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LandingStatus:
+    """What the companion tells the world about the landing; None where it does not know."""
+
+    stamp_ns: int
+    phase: str
+    reason: str
+    relative_position_enu_m: Vector3 | None
+    relative_velocity_enu_m_s: Vector3 | None
+    height_above_pad_m: float | None
+    time_to_contact_s: float | None
+    mavlink_bad_bytes: int
+    zenoh_bad_payloads: int
+    armed: bool
+    fix_age_s: float | None

@@ -1,0 +1,1 @@
+"""Experiments: vehicles on roads, runs, scores and reports."""

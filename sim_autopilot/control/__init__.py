@@ -1,0 +1,1 @@
+"""Flight controllers: from setpoints to rotor commands."""

@@ -1,0 +1,86 @@
+"""What the simulated autopilot's steps hand to each other: SI units, radians, world ENU (W), body FLU (B).
+
+Arrays are float64 and are never written in place. Quaternions are Hamilton, order wxyz, w >= 0.
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Surface(Enum):
+    """What the drone touches."""
+
+    NONE = 0
+    GROUND = 1
+    DECK = 2  # the vehicle's roof, pad included
+    SIDE = 3  # the vehicle's flank
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PlantState:
+    """The drone's body at `t_ns`.
+
+    Attributes:
+        position_enu_m: (3,) centre of mass.
+        orientation_wxyz: (4,) q_WB.
+        velocity_enu_m_s: (3,).
+        angular_velocity_flu_rad_s: (3,) w_WB in B.
+        rotor_speed_rad_s: (4,).
+        specific_force_flu_m_s2: (3,) what an accelerometer at the centre of mass feels.
+        surface: what it touched during the last step.
+    """
+
+    t_ns: int
+    position_enu_m: Array
+    orientation_wxyz: Array
+    velocity_enu_m_s: Array
+    angular_velocity_flu_rad_s: Array
+    rotor_speed_rad_s: Array
+    specific_force_flu_m_s2: Array
+    surface: Surface
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Deck:
+    """The vehicle under the drone at `t_ns`, a box whose top face is the roof.
+
+    Attributes:
+        position_enu_m: (3,) the point on the road under the middle of the body, p_WV.
+        orientation_wxyz: (4,) q_WV.
+        velocity_enu_m_s: (3,).
+        angular_velocity_enu_rad_s: (3,) in W.
+        roof_size_m: length (x of V) and width (y of V) of the body.
+        roof_height_m: of the roof above `position_enu_m`, along z of V; 0 is a pad on the road.
+    """
+
+    t_ns: int
+    position_enu_m: Array
+    orientation_wxyz: Array
+    velocity_enu_m_s: Array
+    angular_velocity_enu_rad_s: Array
+    roof_size_m: tuple[float, float]
+    roof_height_m: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Reference:
+    """What the flight controller is to follow; a None group is free (no feedback, no feed-forward).
+
+    Attributes:
+        position_enu_m: (3,); a None here with a velocity given flies the velocity.
+        velocity_enu_m_s: (3,) feed-forward with a position, else the target.
+        acceleration_enu_m_s2: (3,) feed-forward.
+        yaw_rad: None holds the present heading.
+        yaw_rate_rad_s: None is zero.
+    """
+
+    position_enu_m: Array | None
+    velocity_enu_m_s: Array | None
+    acceleration_enu_m_s2: Array | None
+    yaw_rad: float | None
+    yaw_rate_rad_s: float | None = None

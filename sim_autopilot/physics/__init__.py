@@ -1,0 +1,1 @@
+"""The quadrotor, its rotors, the air and what it stands on."""
