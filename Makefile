@@ -1,0 +1,39 @@
+# make setup|demo|test|check: each makes .venv from requirements.lock when it is missing or stale.
+PYTHON ?= python3
+BIN := .venv/bin
+SPEED ?= 1
+SCENARIO ?= straight_5
+SEED ?= 1
+
+.PHONY: setup demo test check lock clean
+
+setup: .venv/.complete
+
+.venv/.complete: requirements.lock pyproject.toml
+	rm -rf .venv
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	touch $@
+
+demo: .venv/.complete
+	$(BIN)/scenarios run $(SCENARIO) --speed $(SPEED) --seed $(SEED)
+
+check: .venv/.complete
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/pytest -q -m "not slow"
+
+test: .venv/.complete
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/pytest -q
+
+# Needs uv; the lock carries hashes and names no package index.
+lock:
+	uv pip compile pyproject.toml --group dev --generate-hashes --no-emit-index-url --no-header --universal --python-version 3.11 -o requirements.lock
+
+clean:
+	rm -rf .venv runs .mypy_cache .ruff_cache .pytest_cache
