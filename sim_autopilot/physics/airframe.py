@@ -1,0 +1,54 @@
+"""The quadrotor's constants: "+" layout, rotors 1 and 2 on the body x axis, 3 and 4 on y (Ghribi 2022, Table 1 and eq. 5)."""
+
+from dataclasses import dataclass
+
+GRAVITY_M_S2 = 9.81
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Airframe:
+    """A "+" quadrotor; the defaults are the report's, without lag, limits or drag.
+
+    Attributes:
+        mass_kg: of everything that flies.
+        inertia_kg_m2: principal moments about x, y, z of B.
+        arm_m: from the centre of mass to each rotor.
+        thrust_coefficient_n_s2: thrust over rotor speed squared.
+        torque_coefficient_n_m_s2: drag torque over rotor speed squared.
+        rotor_radius_m: of one propeller (10 inches), for the ground effect and the reach of the blades.
+        motor_time_constant_s: first-order lag of the rotor speed; None is no lag.
+        thrust_to_weight: of all rotors at full speed; None is no limit, on either side.
+        drag_n_s_m: linear drag on airspeed, equal in all directions.
+    """
+
+    mass_kg: float = 1.507
+    inertia_kg_m2: tuple[float, float, float] = (0.035, 0.046, 0.0977)
+    arm_m: float = 0.215
+    thrust_coefficient_n_s2: float = 6.7e-6
+    torque_coefficient_n_m_s2: float = 3.12e-7
+    rotor_radius_m: float = 0.127
+    motor_time_constant_s: float | None = None
+    thrust_to_weight: float | None = None
+    drag_n_s_m: float = 0.0
+
+    @property
+    def weight_n(self) -> float:
+        """The thrust that hovers."""
+        return self.mass_kg * GRAVITY_M_S2
+
+    @property
+    def hover_speed_rad_s(self) -> float:
+        """The rotor speed that hovers."""
+        return float((self.weight_n / (4.0 * self.thrust_coefficient_n_s2)) ** 0.5)
+
+    @property
+    def takes_wrench_directly(self) -> bool:
+        """Whether thrust and torques act at once and unbounded, as in the report."""
+        return self.motor_time_constant_s is None and self.thrust_to_weight is None
+
+
+REPORT_AIRFRAME = Airframe()
+"""The report's: its plant input is [T, L, M, N] itself."""
+
+BENCHMARK_AIRFRAME = Airframe(motor_time_constant_s=0.05, thrust_to_weight=2.0, drag_n_s_m=0.25)
+"""The report's body with the motors and the drag that its own simulation lacked."""
