@@ -1,10 +1,27 @@
 """The simulated drone under its flight controller: one pure function from a reference to a new state."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+import numpy as np
+from numpy.typing import NDArray
+
+from sim_autopilot.control.geometric import MOTOR_POLE_RAD_S, geometric_gains
 from sim_autopilot.control.kinds import ControllerKind, Envelope
-from sim_autopilot.data import Array, Deck, PlantState, Reference
+from sim_autopilot.control.lqr import feedforward_gains, report_gains
+from sim_autopilot.control.parameters import REFERENCE_SIZE, control_record, reference_vector
+from sim_autopilot.data import Array, Deck, PlantState, Reference, Surface
+from sim_autopilot.kernel import BODY_END, FORCE_END, MEMORY_START, PLANT_SIZE, SPEED_END, SURFACE, advance
 from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, Airframe
+from sim_autopilot.physics.contact import DECK_SIZE
+from sim_autopilot.physics.parameters import body_record
+from sim_autopilot.physics.rotation import quaternion_from_yaw
+
+INTEGRATION_STEP_S = 0.001
+OBSERVER_POLE_RAD_S = 4.0
+"""Of the disturbance observer, below the position loop's poles: wind and drag change slower than a manoeuvre."""
+SURFACES = tuple(Surface)
+NO_REFERENCE: Array = np.zeros(REFERENCE_SIZE)
+NO_DECK: Array = np.array([0.0] * 3 + [1.0] + [0.0] * (DECK_SIZE - 4))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -17,7 +34,8 @@ class PlantConfig:
         envelope: what it keeps to.
         friction_coefficient: Coulomb's, of gear on roof and ground.
         ground_effect: whether thrust grows near a surface.
-        control_period_s: of the flight controller.
+        control_period_s: of the flight controller, a multiple of 1 ms.
+        records: the same for the kernels, derived: airframe and controller.
     """
 
     airframe: Airframe = BENCHMARK_AIRFRAME
@@ -26,6 +44,23 @@ class PlantConfig:
     friction_coefficient: float = 0.8
     ground_effect: bool = True
     control_period_s: float = 0.005
+    records: tuple[NDArray[np.void], NDArray[np.void]] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Derive the kernels' records."""
+        _whole(self.control_period_s, INTEGRATION_STEP_S, "control_period_s")
+        body = body_record(self.airframe, self.friction_coefficient, ground_effect=self.ground_effect)
+        linear = self.controller is ControllerKind.LQR_FEEDFORWARD
+        control = control_record(
+            self.controller,
+            feedforward_gains(self.airframe) if linear else geometric_gains(),
+            report_gains(self.airframe),
+            self.envelope,
+            period_s=self.control_period_s,
+            observer_rad_s=OBSERVER_POLE_RAD_S,
+            motor_lead=_motor_lead(self.airframe),
+        )
+        object.__setattr__(self, "records", (body, control))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -41,9 +76,40 @@ class PlantMemory:
     internals: Array
 
 
+def _motor_lead(airframe: Airframe) -> float:
+    lag_s = airframe.motor_time_constant_s
+    return 0.0 if lag_s is None else max(0.0, lag_s * MOTOR_POLE_RAD_S - 1.0)
+
+
+def _whole(duration_s: float, part_s: float, name: str) -> int:
+    count = round(duration_s / part_s)
+    if count < 1 or abs(count * part_s - duration_s) > 1e-9:
+        msg = f"{name} is {duration_s} s, which is not a multiple of {part_s} s"
+        raise ValueError(msg)
+    return count
+
+
 def initial_plant(config: PlantConfig, t_ns: int, position_enu_m: Array, yaw_rad: float) -> PlantMemory:
-    """Return a drone at rest, level, motors stopped."""
-    raise NotImplementedError
+    """Return a drone at rest, level, motors stopped.
+
+    Args:
+        config: of the plant.
+        t_ns: time of the state.
+        position_enu_m: (3,) of the centre of mass; `GEAR_HEIGHT_M` above a surface it stands on it.
+        yaw_rad: heading about z.
+    """
+    del config
+    state = PlantState(
+        t_ns=t_ns,
+        position_enu_m=np.array(position_enu_m, dtype=np.float64),
+        orientation_wxyz=quaternion_from_yaw(yaw_rad),
+        velocity_enu_m_s=np.zeros(3),
+        angular_velocity_flu_rad_s=np.zeros(3),
+        rotor_speed_rad_s=np.zeros(4),
+        specific_force_flu_m_s2=np.zeros(3),
+        surface=Surface.NONE,
+    )
+    return PlantMemory(state=state, internals=np.zeros(PLANT_SIZE - MEMORY_START))
 
 
 def fly(
@@ -54,5 +120,72 @@ def fly(
     config: PlantConfig,
     duration_s: float,
 ) -> PlantMemory:
-    """Return the plant `duration_s` later (a multiple of the control period); a None reference stops the motors."""
-    raise NotImplementedError
+    """Return the plant `duration_s` later.
+
+    Args:
+        memory: the plant now.
+        reference: at the plant's time; its velocity, acceleration and heading rate carry it on. None stops the motors.
+        deck: the vehicle, at any time near the plant's; its velocities carry it on. None is no vehicle.
+        wind_enu_m_s: (3,) air over ground.
+        config: of the plant.
+        duration_s: a multiple of the control period.
+
+    Raises:
+        ValueError: if `duration_s` is no such multiple.
+    """
+    periods = _whole(duration_s, config.control_period_s, "duration_s")
+    body, control = config.records
+    plant = _plant_vector(memory)
+    advance(
+        plant,
+        reference is not None,
+        NO_REFERENCE if reference is None else reference_vector(reference),
+        NO_DECK if deck is None else _deck_vector(deck, memory.state.t_ns),
+        wind_enu_m_s,
+        control,
+        body,
+        periods,
+        round(config.control_period_s / INTEGRATION_STEP_S),
+    )
+    return _plant_memory(plant, memory.state.t_ns + round(duration_s * 1e9))
+
+
+def _plant_vector(memory: PlantMemory) -> Array:
+    state = memory.state
+    plant = np.empty(PLANT_SIZE)
+    plant[0:3] = state.position_enu_m
+    plant[3:7] = state.orientation_wxyz
+    plant[7:10] = state.velocity_enu_m_s
+    plant[10:13] = state.angular_velocity_flu_rad_s
+    plant[BODY_END:SPEED_END] = state.rotor_speed_rad_s
+    plant[SURFACE] = state.surface.value
+    plant[MEMORY_START:] = memory.internals
+    return plant
+
+
+def _deck_vector(deck: Deck, t_ns: int) -> Array:
+    vector = np.empty(DECK_SIZE)
+    vector[0:3] = deck.position_enu_m
+    vector[3:7] = deck.orientation_wxyz
+    vector[7:10] = deck.velocity_enu_m_s
+    vector[10:13] = deck.angular_velocity_enu_rad_s
+    vector[13] = 0.5 * deck.roof_size_m[0]
+    vector[14] = 0.5 * deck.roof_size_m[1]
+    vector[15] = deck.roof_height_m
+    vector[16] = 1.0
+    vector[17] = (t_ns - deck.t_ns) * 1e-9
+    return vector
+
+
+def _plant_memory(plant: Array, t_ns: int) -> PlantMemory:
+    state = PlantState(
+        t_ns=t_ns,
+        position_enu_m=plant[0:3],
+        orientation_wxyz=plant[3:7],
+        velocity_enu_m_s=plant[7:10],
+        angular_velocity_flu_rad_s=plant[10:13],
+        rotor_speed_rad_s=plant[BODY_END:SPEED_END],
+        specific_force_flu_m_s2=plant[SPEED_END:FORCE_END],
+        surface=SURFACES[int(plant[SURFACE])],
+    )
+    return PlantMemory(state=state, internals=plant[MEMORY_START:])

@@ -1,0 +1,76 @@
+"""One period of the flight controller: from the drone's state and a reference to what the motors are told."""
+
+from sim_autopilot.control.geometric import fill_geometric_wrench
+from sim_autopilot.control.lqr import GOAL, fill_feedforward_wrench, fill_report_wrench
+from sim_autopilot.control.outer_loop import bound_force, fill_acceleration, observe, turn_heading
+from sim_autopilot.control.parameters import HEADING, RUNNING, VELOCITY
+from sim_autopilot.data import Array
+from sim_autopilot.physics.compiled import kernel
+from sim_autopilot.physics.parameters import Record
+from sim_autopilot.physics.rotation import euler_angles
+from sim_autopilot.physics.rotors import fill_commands, fill_thrusts
+
+LQR = 0
+LQR_FEEDFORWARD = 1
+
+
+@kernel
+def start(y: Array, rotation: Array, control: Record, memory: Array) -> None:
+    """Start the controller from where the drone is, without a bump."""
+    memory[:] = 0.0
+    memory[RUNNING] = 1.0
+    memory[HEADING] = euler_angles(rotation)[2]
+    offset = 7
+    if control["kind"] == LQR:
+        memory[GOAL] = memory[HEADING]
+        offset = 0
+    for i in range(3):
+        memory[VELOCITY + i] = y[offset + i]
+
+
+@kernel
+def fill_control(
+    y: Array, rotation: Array, speed: Array, memory: Array, reference: Array, touching: bool, control: Record,
+    body: Record, scratch: Array, out: Array,
+) -> None:  # fmt: skip
+    """Write the wanted [T, L, M, N] (4,) and bring `memory` (12,) on by one period.
+
+    Args:
+        y: (13,) state.
+        rotation: (9,) R_WB.
+        speed: (4,) rotor speeds, rad/s.
+        memory: (12,) of the controller, changed.
+        reference: (15,).
+        touching: whether the drone touches anything.
+        control: the controller's record.
+        body: the airframe's record.
+        scratch: (18,) overwritten.
+        out: (4,) N and N m.
+    """
+    if memory[RUNNING] == 0.0:
+        start(y, rotation, control, memory)
+    if control["kind"] == LQR:
+        fill_report_wrench(y, rotation, memory, reference, control, body, scratch[0:12], out)
+        return
+    force, wanted = scratch[0:3], scratch[3:12]
+    observe(y, rotation, speed, memory, touching, control, body)
+    heading_rate = turn_heading(memory, reference, control)
+    fill_acceleration(y, memory, reference, control, wanted[0:3], force)
+    bound_force(force, control, body)
+    if control["kind"] == LQR_FEEDFORWARD:
+        fill_feedforward_wrench(y, rotation, force, memory, heading_rate, control, body, out)
+    else:
+        fill_geometric_wrench(y, rotation, force, memory, heading_rate, control, body, wanted, out)
+
+
+@kernel
+def fill_motor_command(
+    wrench: Array, speed: Array, control: Record, body: Record, thrust: Array, out: Array
+) -> None:
+    """Write what the motors are told (4,): rotor speeds, or `wrench` itself where it acts directly (then `speed` follows)."""
+    fill_thrusts(wrench, body, thrust)
+    if body["direct"] == 1:
+        fill_commands(thrust, speed, 0.0, body, speed)
+        out[:] = wrench
+    else:
+        fill_commands(thrust, speed, control["motor_lead"], body, out)

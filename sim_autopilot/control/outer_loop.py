@@ -1,0 +1,146 @@
+"""From a reference to the specific force that the rotors shall give: shared by the controllers with feed-forward.
+
+`a = a_ref + kv (v_ref + c(p_ref - p) - v) - d`, with c the correction velocity: kp / kv times the error, never faster
+than can still be braked (`sqrt(2 b (e - b / 2k^2))` beyond e = b / k^2) nor than the envelope allows. d is the disturbance
+(wind, drag, wrong mass) seen by an observer of the velocity with both poles at -w_o: `v^' = a_model + d + 2 w_o (v - v^)`,
+`d' = w_o^2 (v - v^)`, a_model from the present attitude and rotor speeds. It is the integral action: without a disturbance
+it is exactly zero whatever the reference does, so it neither overshoots nor winds up against a limit.
+"""
+
+import math
+
+from sim_autopilot.control.parameters import (
+    DISTURBANCE,
+    HAS_ACCELERATION,
+    HAS_POSITION,
+    HAS_VELOCITY,
+    HAS_YAW,
+    HEADING,
+    VELOCITY,
+    YAW,
+    YAW_RATE,
+)
+from sim_autopilot.data import Array
+from sim_autopilot.physics.airframe import GRAVITY_M_S2
+from sim_autopilot.physics.compiled import kernel
+from sim_autopilot.physics.parameters import Record
+from sim_autopilot.physics.rotation import wrapped
+
+DISTURBANCE_MAX_M_S2 = 8.0
+"""More than the drag at 40 m/s of airspeed (6.6 m/s2)."""
+SINKING_FORCE_G = 0.1
+CLIMBING_FORCE_PART = 0.85
+FORCE_PART = 0.95
+"""Bounds of the vertical and of the whole specific force, in g and in parts of the thrust-to-weight ratio: the rest turns."""
+
+
+@kernel
+def extrapolate(reference: Array, elapsed_s: float, out: Array) -> None:
+    """Write `reference` (15,) as its own velocity, acceleration and heading rate carry it on for `elapsed_s`."""
+    out[:] = reference
+    for i in range(3):
+        out[i] += reference[3 + i] * elapsed_s + 0.5 * reference[6 + i] * elapsed_s * elapsed_s
+        out[3 + i] += reference[6 + i] * elapsed_s
+    out[YAW] += reference[YAW_RATE] * elapsed_s
+
+
+@kernel
+def turn_heading(memory: Array, reference: Array, control: Record) -> float:
+    """Bring the commanded heading in `memory` nearer to the reference's, and return the rate applied, rad/s."""
+    period = control["period_s"]
+    wanted = reference[YAW_RATE] * period
+    if reference[HAS_YAW] > 0.0:
+        wanted = wrapped(reference[YAW] - memory[HEADING])
+    most = control["yaw_rate_max_rad_s"] * period
+    step = min(most, max(-most, wanted))
+    memory[HEADING] = wrapped(memory[HEADING] + step)
+    return float(step / period)
+
+
+@kernel
+def observe(
+    y: Array, rotation: Array, speed: Array, memory: Array, touching: bool, control: Record, body: Record
+) -> None:
+    """Bring the observed velocity and disturbance in `memory` up to date; on a surface the disturbance is held."""
+    period = control["period_s"]
+    pole = control["observer_rad_s"]
+    thrust = 0.0
+    for i in range(4):
+        thrust += body["thrust_coefficient_n_s2"] * speed[i] * speed[i]
+    for i in range(3):
+        innovation = y[7 + i] - memory[VELOCITY + i]
+        if touching:
+            memory[VELOCITY + i] = y[7 + i]
+            continue
+        modelled = rotation[3 * i + 2] * thrust / body["mass_kg"] - (GRAVITY_M_S2 if i == 2 else 0.0)
+        disturbance = memory[DISTURBANCE + i]
+        memory[VELOCITY + i] += period * (modelled + disturbance + 2.0 * pole * innovation)
+        disturbance += period * pole * pole * innovation
+        memory[DISTURBANCE + i] = min(DISTURBANCE_MAX_M_S2, max(-DISTURBANCE_MAX_M_S2, disturbance))
+
+
+@kernel
+def approach_speed(distance_m: float, slope_per_s: float, braking_m_s2: float) -> float:
+    """Return the speed at which a point `distance_m` away is approached."""
+    linear = braking_m_s2 / (slope_per_s * slope_per_s)
+    if distance_m <= linear:
+        return slope_per_s * distance_m
+    return math.sqrt(2.0 * braking_m_s2 * (distance_m - 0.5 * linear))
+
+
+@kernel
+def fill_velocity_command(y: Array, reference: Array, control: Record, out: Array) -> None:
+    """Write the velocity (3,) in W to fly: feed-forward and correction, inside the envelope."""
+    out[:] = reference[3:6]
+    if reference[HAS_POSITION] > 0.0:
+        slope = control["position_gain"][0] / control["velocity_gain"][0]
+        ex = reference[0] - y[0]
+        ey = reference[1] - y[1]
+        ez = reference[2] - y[2]
+        distance = math.sqrt(ex * ex + ey * ey)
+        if distance > 0.0:
+            speed = approach_speed(distance, slope, control["braking_m_s2"])
+            out[0] += speed * ex / distance
+            out[1] += speed * ey / distance
+        slope = control["position_gain"][2] / control["velocity_gain"][2]
+        out[2] += math.copysign(approach_speed(abs(ez), slope, control["braking_m_s2"]), ez)
+    size = math.sqrt(out[0] * out[0] + out[1] * out[1])
+    if size > control["speed_max_m_s"]:
+        out[0] *= control["speed_max_m_s"] / size
+        out[1] *= control["speed_max_m_s"] / size
+    out[2] = min(control["climb_max_m_s"], max(-control["descent_max_m_s"], out[2]))
+
+
+@kernel
+def fill_acceleration(y: Array, memory: Array, reference: Array, control: Record, velocity: Array, out: Array) -> None:
+    """Write the acceleration (3,) in W that follows `reference`; `velocity` (3,) is scratch."""
+    for i in range(3):
+        out[i] = (reference[6 + i] if reference[HAS_ACCELERATION] > 0.0 else 0.0) - memory[DISTURBANCE + i]
+    if reference[HAS_POSITION] + reference[HAS_VELOCITY] == 0.0:
+        return
+    fill_velocity_command(y, reference, control, velocity)
+    cosine = math.cos(memory[HEADING])
+    sine = math.sin(memory[HEADING])
+    dx = velocity[0] - y[7]
+    dy = velocity[1] - y[8]
+    ahead = control["velocity_gain"][0] * (cosine * dx + sine * dy)
+    left = control["velocity_gain"][1] * (cosine * dy - sine * dx)
+    out[0] += cosine * ahead - sine * left
+    out[1] += sine * ahead + cosine * left
+    out[2] += control["velocity_gain"][2] * (velocity[2] - y[9])
+
+
+@kernel
+def bound_force(acceleration: Array, control: Record, body: Record) -> None:
+    """Turn an acceleration (3,) into a specific force that the rotors can give, height before place, in place."""
+    most = 4.0 * body["thrust_max_n"] / body["mass_kg"]
+    up = acceleration[2] + GRAVITY_M_S2
+    up = min(CLIMBING_FORCE_PART * most, max(SINKING_FORCE_G * GRAVITY_M_S2, up))
+    acceleration[2] = up
+    along = math.tan(control["tilt_max_rad"]) * up
+    if most < math.inf:
+        along = min(along, math.sqrt((FORCE_PART * most) ** 2 - up * up))
+    size = math.sqrt(acceleration[0] ** 2 + acceleration[1] ** 2)
+    if size > along:
+        acceleration[0] *= along / size
+        acceleration[1] *= along / size

@@ -1,0 +1,112 @@
+"""What the controller kernels read and remember: one record of gains and limits, one vector of memory.
+
+Memory (12,): whether it is running; heading it commands, rad; velocity as the observer has it, m/s (3);
+disturbance, m/s2 (3); integrals of the position and heading errors (4). `lqr` keeps in the second to fifth its heading
+and position at the start, in the sixth the heading it goes to.
+Reference (15,): position, velocity, acceleration (3 each), heading, heading rate, then 1 or 0 for each of position,
+velocity, acceleration and heading given.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim_autopilot.control.kinds import ControllerKind, Envelope
+from sim_autopilot.data import Array, Reference
+
+RUNNING = 0
+HEADING = 1
+VELOCITY = 2
+DISTURBANCE = 5
+INTEGRAL = 8
+MEMORY_SIZE = 12
+
+YAW, YAW_RATE, HAS_POSITION, HAS_VELOCITY, HAS_ACCELERATION, HAS_YAW = 9, 10, 11, 12, 13, 14
+REFERENCE_SIZE = 15
+
+KIND_CODES = {ControllerKind.LQR: 0, ControllerKind.LQR_FEEDFORWARD: 1, ControllerKind.GEOMETRIC: 2}
+
+CONTROL = np.dtype(
+    [
+        ("kind", "i8"),
+        ("period_s", "f8"),
+        ("position_gain", "f8", (3,)),
+        ("velocity_gain", "f8", (3,)),
+        ("attitude_gain", "f8", (3,)),
+        ("rate_gain", "f8", (3,)),
+        ("lqr_state", "f8", (4, 12)),
+        ("lqr_integral", "f8", (4, 4)),
+        ("observer_rad_s", "f8"),
+        ("motor_lead", "f8"),
+        ("speed_max_m_s", "f8"),
+        ("climb_max_m_s", "f8"),
+        ("descent_max_m_s", "f8"),
+        ("braking_m_s2", "f8"),
+        ("tilt_max_rad", "f8"),
+        ("yaw_rate_max_rad_s", "f8"),
+    ]
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CascadeGains:
+    """Of acceleration on position (1/s2) and velocity (1/s), of angular acceleration on attitude (1/s2) and rate (1/s).
+
+    Position and velocity are along x, y of the heading and z; attitude and rate about x, y, z of B.
+    """
+
+    position: tuple[float, float, float]
+    velocity: tuple[float, float, float]
+    attitude: tuple[float, float, float]
+    rate: tuple[float, float, float]
+
+
+def control_record(
+    kind: ControllerKind,
+    gains: CascadeGains,
+    lqr: tuple[Array, Array],
+    envelope: Envelope,
+    *,
+    period_s: float,
+    observer_rad_s: float,
+    motor_lead: float,
+) -> NDArray[np.void]:
+    """Return the record (1,) of a controller; `lqr` holds K (4, 12) and Ki (4, 4) of the published one."""
+    record = np.zeros(1, dtype=CONTROL)
+    record["kind"] = KIND_CODES[kind]
+    record["period_s"] = period_s
+    record["position_gain"] = gains.position
+    record["velocity_gain"] = gains.velocity
+    record["attitude_gain"] = gains.attitude
+    record["rate_gain"] = gains.rate
+    record["lqr_state"], record["lqr_integral"] = lqr
+    record["observer_rad_s"] = observer_rad_s
+    record["motor_lead"] = motor_lead
+    record["speed_max_m_s"] = envelope.speed_max_m_s
+    record["climb_max_m_s"] = envelope.climb_max_m_s
+    record["descent_max_m_s"] = envelope.descent_max_m_s
+    record["braking_m_s2"] = envelope.braking_m_s2
+    record["tilt_max_rad"] = envelope.tilt_max_rad
+    record["yaw_rate_max_rad_s"] = envelope.yaw_rate_max_rad_s
+    return record
+
+
+def reference_vector(reference: Reference) -> Array:
+    """Return `reference` as the vector (15,) of the module's text."""
+    vector = np.zeros(REFERENCE_SIZE)
+    if reference.position_enu_m is not None:
+        vector[0:3] = reference.position_enu_m
+        vector[HAS_POSITION] = 1.0
+    if reference.velocity_enu_m_s is not None:
+        vector[3:6] = reference.velocity_enu_m_s
+        vector[HAS_VELOCITY] = 1.0
+    if reference.acceleration_enu_m_s2 is not None:
+        vector[6:9] = reference.acceleration_enu_m_s2
+        vector[HAS_ACCELERATION] = 1.0
+    if reference.yaw_rad is not None:
+        vector[YAW] = reference.yaw_rad
+        vector[HAS_YAW] = 1.0
+    if reference.yaw_rate_rad_s is not None:
+        vector[YAW_RATE] = reference.yaw_rate_rad_s
+    return vector
