@@ -1,0 +1,175 @@
+"""Messages to bytes and back: frames are found here, their contents are pymavlink's business.
+
+Framing is not left to pymavlink: after a wrong checksum it throws away as many bytes as the broken frame claimed to
+have, good frames included. Here the search goes on at the next byte.
+"""
+
+import re
+import struct
+from collections import Counter
+
+from link.mavlink.dialect import Message, mavlink
+from link.mavlink.sequence import SequenceTracker
+from link.mavlink.statistics import CodecStatistics
+
+_MARKER_V1 = mavlink.PROTOCOL_MARKER_V1
+_MARKER_V2 = mavlink.PROTOCOL_MARKER_V2
+_SIGNED = mavlink.MAVLINK_IFLAG_SIGNED
+_MARKER = re.compile(b"[\xfd\xfe]")
+_HEAD_SIZE = 3  # marker, payload length, incompatibility flags: enough to know a frame's length
+_OVERHEAD_V1 = mavlink.HEADER_LEN_V1 + 2
+_OVERHEAD_V2 = mavlink.HEADER_LEN_V2 + 2
+_NOT_A_FRAME = 0
+
+
+def _frame_size(head: bytes | bytearray, start: int) -> int:
+    """Length in bytes of the frame that starts at `start`, 0 when its flags are not ones that we know."""
+    length = head[start + 1]
+    if head[start] == _MARKER_V1:
+        return int(length + _OVERHEAD_V1)
+    flags = head[start + 2]
+    if flags & ~_SIGNED:
+        return _NOT_A_FRAME
+    return int(length + _OVERHEAD_V2 + (mavlink.MAVLINK_SIGNATURE_BLOCK_LEN if flags else 0))
+
+
+def _header(frame: bytearray) -> tuple[int, int, int, int]:
+    """Sequence number, system, component and message id of a frame."""
+    if frame[0] == _MARKER_V1:
+        return frame[2], frame[3], frame[4], frame[5]
+    return frame[4], frame[5], frame[6], frame[7] | frame[8] << 8 | frame[9] << 16
+
+
+class MavlinkCodec:
+    """One end's encoder and decoder; any bytes may come in, and none of them raises.
+
+    Args:
+        system_id: of the sender of what is encoded.
+        component_id: likewise.
+        records_input: keep each frame received for `take_input`, unknown ones included.
+    """
+
+    def __init__(self, system_id: int, component_id: int, *, records_input: bool = False) -> None:
+        self._pymavlink = mavlink.MAVLink(None, srcSystem=system_id, srcComponent=component_id)
+        self._buffer = bytearray()
+        self._records_input = records_input
+        self._input: list[bytes] = []
+        self._sequences: dict[tuple[int, int], SequenceTracker] = {}
+        self._unknown: Counter[int] = Counter()
+        self._bytes_received = self._messages_received = 0
+        self._bytes_sent = self._messages_sent = 0
+        self._bad_bytes = self._bad_frames = 0
+
+    @property
+    def statistics(self) -> CodecStatistics:
+        """The counters as they stand."""
+        sequences = self._sequences.values()
+        return CodecStatistics(
+            bytes_received=self._bytes_received,
+            messages_received=self._messages_received,
+            messages_sent=self._messages_sent,
+            bytes_sent=self._bytes_sent,
+            bad_frames=self._bad_frames,
+            bad_bytes=self._bad_bytes,
+            unknown_messages=self._unknown.total(),
+            unknown_ids=tuple(sorted(self._unknown.items())),
+            lost_messages=sum(one.lost for one in sequences),
+            late_messages=sum(one.late for one in sequences),
+            doubled_messages=sum(one.doubled for one in sequences),
+        )
+
+    def encode(self, message: Message) -> bytes:
+        """Packs a message into one MAVLink 2 frame with the next sequence number.
+
+        Args:
+            message: any of the dialect's messages.
+
+        Returns:
+            The frame.
+
+        Raises:
+            ValueError: A field does not fit its type.
+        """
+        try:
+            frame: bytes = message.pack(self._pymavlink)
+        except (struct.error, TypeError, OverflowError) as error:
+            raise ValueError(f"{message.get_type()} cannot be packed: {error}") from error
+        self._pymavlink.seq = (self._pymavlink.seq + 1) % 256
+        self._messages_sent += 1
+        self._bytes_sent += len(frame)
+        return frame
+
+    def decode(self, data: bytes) -> list[Message]:
+        """Takes bytes as they come and gives the messages completed by them.
+
+        Frames may be cut anywhere. Bad bytes and unknown messages are counted and dropped.
+
+        Args:
+            data: what was received since the last call.
+
+        Returns:
+            Known messages, in their order of arrival.
+        """
+        self._bytes_received += len(data)
+        buffer = self._buffer
+        buffer += data
+        messages: list[Message] = []
+        start = 0
+        while (start := self._next_marker(start)) + _HEAD_SIZE <= len(buffer):
+            size = _frame_size(buffer, start)
+            if start + size > len(buffer):
+                break
+            start += self._take(start, size, messages)
+        del buffer[:start]
+        return messages
+
+    def take_input(self) -> list[bytes]:
+        """Gives the frames received since the last call, for a recording; empty unless `records_input`."""
+        frames, self._input = self._input, []
+        return frames
+
+    def _next_marker(self, start: int) -> int:
+        """The next place where a frame may start, or the end; what lies before it is bad."""
+        buffer = self._buffer
+        if start < len(buffer) and buffer[start] == _MARKER_V2:  # the usual case needs no search
+            return start
+        found = _MARKER.search(buffer, start)
+        end = len(buffer) if found is None else found.start()
+        self._bad_bytes += end - start
+        return end
+
+    def _take(self, start: int, size: int, messages: list[Message]) -> int:
+        """Decodes the frame at `start`; returns how many bytes it used up."""
+        frame = self._buffer[start : start + size]
+        if size == _NOT_A_FRAME:
+            return self._skip()
+        sequence, system, component, message_id = _header(frame)
+        if message_id not in mavlink.mavlink_map:
+            if not self._ends_at_frame(start + size):
+                return self._skip()
+            self._unknown[message_id] += 1
+        else:
+            try:
+                messages.append(self._pymavlink.decode(frame))
+            except mavlink.MAVError:
+                return self._skip()
+            self._messages_received += 1
+        self._note(sequence, system, component, frame)
+        return size
+
+    def _note(self, sequence: int, system: int, component: int, frame: bytearray) -> None:
+        tracker = self._sequences.get((system, component))
+        if tracker is None:
+            tracker = self._sequences[system, component] = SequenceTracker()
+        tracker.see(sequence)
+        if self._records_input:
+            self._input.append(bytes(frame))
+
+    def _ends_at_frame(self, end: int) -> bool:
+        """Whether a frame of an unknown message, whose checksum cannot be told, is followed by a frame or nothing."""
+        return end == len(self._buffer) or self._buffer[end] in (_MARKER_V1, _MARKER_V2)
+
+    def _skip(self) -> int:
+        self._bad_frames += 1
+        self._bad_bytes += 1
+        return 1

@@ -1,0 +1,55 @@
+"""Counters of a MAVLink link, as snapshots."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CodecStatistics:
+    """What a codec has seen so far.
+
+    Attributes:
+        bytes_received: all of them, good or bad.
+        messages_received: known messages with a right checksum.
+        messages_sent: frames encoded.
+        bytes_sent: in those frames.
+        bad_frames: places where a frame seemed to start and did not hold.
+        bad_bytes: bytes that belonged to no frame.
+        unknown_messages: frames whose message id the dialect does not know.
+        unknown_ids: message ids of these, each with its count, ascending.
+        lost_messages: gaps in the senders' sequence numbers.
+        late_messages: messages that filled a gap after all.
+        doubled_messages: messages that came more than once.
+    """
+
+    bytes_received: int
+    messages_received: int
+    messages_sent: int
+    bytes_sent: int
+    bad_frames: int
+    bad_bytes: int
+    unknown_messages: int
+    unknown_ids: tuple[tuple[int, int], ...]
+    lost_messages: int
+    late_messages: int
+    doubled_messages: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SessionStatistics:
+    """What a session has seen so far.
+
+    Attributes:
+        codec: the counters of its codec.
+        filtered_messages: messages that were from, or for, somebody else.
+        commands_retried: command frames sent again.
+        commands_timed_out: commands never answered.
+        parameters_retried: parameter requests sent again.
+        round_trips: TIMESYNC answers used.
+    """
+
+    codec: CodecStatistics
+    filtered_messages: int
+    commands_retried: int
+    commands_timed_out: int
+    parameters_retried: int
+    round_trips: int

@@ -1,0 +1,52 @@
+"""Recordings that ground stations read: before each frame, the time in microseconds as 8 bytes, big-endian."""
+
+import struct
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from link.errors import UserError
+
+_TIME = struct.Struct(">Q")
+
+
+class TlogWriter:
+    """Writes frames of both directions to a file.
+
+    Args:
+        path: of the file, replaced when it exists.
+
+    Raises:
+        UserError: The file cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        try:
+            self._file = path.open("wb")
+        except OSError as error:
+            raise UserError(f"{path}: cannot be written ({error.strerror}); choose another place") from error
+
+    def write(self, frame: bytes, t_ns_utc: int) -> None:
+        """Appends one frame.
+
+        Args:
+            frame: one whole MAVLink frame.
+            t_ns_utc: when it was sent or received.
+        """
+        self._file.write(_TIME.pack(t_ns_utc // 1000) + frame)
+
+    def flush(self) -> None:
+        """Hands what was written so far to the operating system."""
+        self._file.flush()
+
+    def close(self) -> None:
+        """Ends the recording."""
+        self._file.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()

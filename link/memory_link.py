@@ -1,0 +1,109 @@
+"""A lossy channel in one direction without I/O: the same seed and calls give the same packets at the same times."""
+
+import heapq
+from collections.abc import Sequence
+
+import numpy as np
+
+_NS_PER_S = 1e9
+
+
+class MemoryLink:
+    """Holds packets until their time has come, and loses, doubles, spoils or overtakes some of them.
+
+    Args:
+        seed: of all that is random.
+        delay_s: mean time from `put` to `take`.
+        jitter_s: the delay is uniform within plus or minus this about its mean, never below zero.
+        loss: probability that a packet is lost.
+        duplication: probability that a packet comes twice, each copy with its own delay.
+        corruption: probability that one bit of a packet is flipped.
+        reorder: whether a packet with a shorter delay overtakes one put before it.
+        outages_ns: spans from start to end, during which whatever is put is lost.
+
+    Raises:
+        ValueError: A probability is outside 0 to 1 or a time is negative.
+    """
+
+    def __init__(
+        self,
+        *,
+        seed: int,
+        delay_s: float = 0.0,
+        jitter_s: float = 0.0,
+        loss: float = 0.0,
+        duplication: float = 0.0,
+        corruption: float = 0.0,
+        reorder: bool = True,
+        outages_ns: Sequence[tuple[int, int]] = (),
+    ) -> None:
+        _check(delay_s=delay_s, jitter_s=jitter_s, loss=loss, duplication=duplication, corruption=corruption)
+        self._random = np.random.default_rng(seed)
+        self._delay_ns = round(delay_s * _NS_PER_S)
+        self._jitter_ns = round(jitter_s * _NS_PER_S)
+        self._loss = loss
+        self._duplication = duplication
+        self._corruption = corruption
+        self._reorder = reorder
+        self._outages_ns = tuple(outages_ns)
+        self._last_due_ns: int | None = None
+        self._packets_put = 0
+        self._waiting: list[tuple[int, int, bytes]] = []
+
+    def put(self, data: bytes, t_ns: int) -> None:
+        """Sends a packet.
+
+        Args:
+            data: the packet.
+            t_ns: now.
+        """
+        # A fixed number of draws for each packet keeps the rest of a run the same when one probability changes.
+        lose, double, delay, second_delay, spoil, place = self._random.random(6).tolist()
+        if lose < self._loss or any(start <= t_ns < end for start, end in self._outages_ns):
+            return
+        if spoil < self._corruption and data:
+            data = _with_flipped_bit(data, int(place * len(data) * 8))
+        self._push(data, t_ns, delay)
+        if double < self._duplication:
+            self._push(data, t_ns, second_delay)
+
+    def take(self, t_ns: int) -> list[bytes]:
+        """Receives the packets that have come by now.
+
+        Args:
+            t_ns: now.
+
+        Returns:
+            Packets in their order of arrival.
+        """
+        packets = []
+        while self._waiting and self._waiting[0][0] <= t_ns:
+            packets.append(heapq.heappop(self._waiting)[2])
+        return packets
+
+    def next_due_ns(self) -> int | None:
+        """Tells when the next packet arrives, None when there is none on its way."""
+        return self._waiting[0][0] if self._waiting else None
+
+    def _push(self, data: bytes, t_ns: int, draw: float) -> None:
+        due_ns = t_ns + max(0, self._delay_ns + round(self._jitter_ns * (2.0 * draw - 1.0)))
+        if not self._reorder:
+            due_ns = max(due_ns, self._last_due_ns or due_ns)
+            self._last_due_ns = due_ns
+        heapq.heappush(self._waiting, (due_ns, self._packets_put, data))
+        self._packets_put += 1
+
+
+def _with_flipped_bit(data: bytes, bit: int) -> bytes:
+    spoiled = bytearray(data)
+    spoiled[bit // 8] ^= 1 << bit % 8
+    return bytes(spoiled)
+
+
+def _check(*, delay_s: float, jitter_s: float, **probabilities: float) -> None:
+    for name, value in {"delay_s": delay_s, "jitter_s": jitter_s}.items():
+        if not value >= 0.0:
+            raise ValueError(f"{name} must not be negative, is {value}")
+    for name, value in probabilities.items():
+        if not 0.0 <= value <= 1.0:
+            raise ValueError(f"{name} must be within 0 and 1, is {value}")
