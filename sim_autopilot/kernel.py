@@ -7,7 +7,7 @@ from sim_autopilot.data import Array
 from sim_autopilot.physics.compiled import kernel
 from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotation import fill_matrix
-from sim_autopilot.physics.step import advance_body, fill_specific_force, is_near, workspace
+from sim_autopilot.physics.step import advance_body, fill_specific_force, nearness, workspace
 
 BODY_END = 13
 SPEED_END = 17
@@ -65,5 +65,5 @@ def advance(
             elapsed_s = start_s + step * step_s
             touched = max(touched, advance_body(y, speed, command, anchors, deck, wind, body, elapsed_s, step_s, work))
         plant[SURFACE] = max(plant[SURFACE], touched)
-    near = is_near(y, deck, periods * control["period_s"])
+    near = nearness(y, deck, periods * control["period_s"])
     fill_specific_force(y, wind, anchors, body, near, work, plant[SPEED_END:FORCE_END])

@@ -22,7 +22,7 @@ from sim_autopilot.physics.parameters import Record
 
 MOTOR_POLE_RAD_S = 60.0
 """Of the overdriven motors: twelve control periods of 5 ms in its time constant's circle, 2 pi / 60 s."""
-PLACE_POLE_RAD_S = 4.8
+PLACE_POLE_RAD_S = 5.2
 HEADING_POLE_RAD_S = 4.0
 """The yaw torque of propellers' drag is small: 7 rad/s2 at most, reached by an error of 25 degrees."""
 

@@ -62,10 +62,10 @@ def report_gains(airframe: Airframe) -> tuple[Array, Array]:
     return gain[:, :12], -gain[:, 12:]
 
 
-POSITION_SCALE_M = 0.4
+POSITION_SCALE_M = 0.25
 VELOCITY_SCALE_M_S = 1.0
-ANGLE_SCALE_RAD = 0.5
-ANGULAR_VELOCITY_SCALE_RAD_S = 2.0
+ANGLE_SCALE_RAD = 1.0
+ANGULAR_VELOCITY_SCALE_RAD_S = 4.0
 """Deviations that cost as much as the whole input: Bryson's rule, with the torque of half the hover thrust and half the weight."""
 
 

@@ -28,6 +28,11 @@ from sim_autopilot.physics.rotation import wrapped
 
 DISTURBANCE_MAX_M_S2 = 8.0
 """More than the drag at 40 m/s of airspeed (6.6 m/s2)."""
+CORRECTION_MAX_M_S2 = 5.0
+"""Horizontal, 27 degrees of tilt: the benchmark's motors turn the airframe so far in 0.25 s."""
+HEADING_SLOPE_PER_S = 4.0
+HEADING_BRAKING_RAD_S2 = 2.5
+"""How the commanded heading nears its goal; the propellers' drag gives 7 rad/s2 in hover."""
 SINKING_FORCE_G = 0.1
 CLIMBING_FORCE_PART = 0.85
 FORCE_PART = 0.95
@@ -45,16 +50,24 @@ def extrapolate(reference: Array, elapsed_s: float, out: Array) -> None:
 
 
 @kernel
+def approach_speed(distance: float, slope_per_s: float, braking: float) -> float:
+    """Return the speed at which a goal `distance` away is approached, along a line or about an axis (m or rad)."""
+    linear = braking / (slope_per_s * slope_per_s)
+    if distance <= linear:
+        return slope_per_s * distance
+    return math.sqrt(2.0 * braking * (distance - 0.5 * linear))
+
+
+@kernel
 def turn_heading(memory: Array, reference: Array, control: Record) -> float:
     """Bring the commanded heading in `memory` nearer to the reference's, and return the rate applied, rad/s."""
-    period = control["period_s"]
-    wanted = reference[YAW_RATE] * period
+    rate = reference[YAW_RATE]
     if reference[HAS_YAW] > 0.0:
-        wanted = wrapped(reference[YAW] - memory[HEADING])
-    most = control["yaw_rate_max_rad_s"] * period
-    step = min(most, max(-most, wanted))
-    memory[HEADING] = wrapped(memory[HEADING] + step)
-    return float(step / period)
+        error = wrapped(reference[YAW] - memory[HEADING])
+        rate += math.copysign(approach_speed(abs(error), HEADING_SLOPE_PER_S, HEADING_BRAKING_RAD_S2), error)
+    rate = min(control["yaw_rate_max_rad_s"], max(-control["yaw_rate_max_rad_s"], rate))
+    memory[HEADING] = wrapped(memory[HEADING] + rate * control["period_s"])
+    return float(rate)
 
 
 @kernel
@@ -77,15 +90,6 @@ def observe(
         memory[VELOCITY + i] += period * (modelled + disturbance + 2.0 * pole * innovation)
         disturbance += period * pole * pole * innovation
         memory[DISTURBANCE + i] = min(DISTURBANCE_MAX_M_S2, max(-DISTURBANCE_MAX_M_S2, disturbance))
-
-
-@kernel
-def approach_speed(distance_m: float, slope_per_s: float, braking_m_s2: float) -> float:
-    """Return the speed at which a point `distance_m` away is approached."""
-    linear = braking_m_s2 / (slope_per_s * slope_per_s)
-    if distance_m <= linear:
-        return slope_per_s * distance_m
-    return math.sqrt(2.0 * braking_m_s2 * (distance_m - 0.5 * linear))
 
 
 @kernel
@@ -125,6 +129,10 @@ def fill_acceleration(y: Array, memory: Array, reference: Array, control: Record
     dy = velocity[1] - y[8]
     ahead = control["velocity_gain"][0] * (cosine * dx + sine * dy)
     left = control["velocity_gain"][1] * (cosine * dy - sine * dx)
+    size = math.sqrt(ahead * ahead + left * left)
+    if size > CORRECTION_MAX_M_S2:
+        ahead *= CORRECTION_MAX_M_S2 / size
+        left *= CORRECTION_MAX_M_S2 / size
     out[0] += cosine * ahead - sine * left
     out[1] += sine * ahead + cosine * left
     out[2] += control["velocity_gain"][2] * (velocity[2] - y[9])

@@ -3,6 +3,8 @@
 Ground effect and the choice whether anything is near are held over the step; the vehicle moves on within it.
 """
 
+import math
+
 import numpy as np
 
 from sim_autopilot.data import Array
@@ -14,8 +16,11 @@ from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotation import fill_matrix
 from sim_autopilot.physics.rotors import fill_lagged, fill_wrench
 
-NEAR_M = 1.4
-"""A centre of mass farther than this from every surface neither touches it nor feels its ground effect (8 R = 1.02 m)."""
+TOUCH_M = 0.45
+"""A centre of mass farther than this from every surface touches none: the reach of the blades and a step at 100 m/s."""
+GROUND_EFFECT_M = 1.4
+"""Nor does it feel a surface farther away than this (8 R = 1.02 m below a rotor)."""
+FAR, IN_GROUND_EFFECT, IN_TOUCH = 0, 1, 2
 Workspace = tuple[Array, Array, Array, Array, Array, Array, Array]
 
 
@@ -34,18 +39,27 @@ def workspace() -> Workspace:
 
 
 @kernel
-def is_near(y: Array, deck: Array, elapsed_s: float) -> bool:
-    """Return whether the ground or the vehicle may act on the drone."""
-    if y[2] < NEAR_M:
-        return True
-    if deck[16] <= 0.0:
-        return False
+def height_over_roof(y: Array, deck: Array, elapsed_s: float) -> float:
+    """Return the height of the drone's centre over the plane of the roof, m; without end beside the vehicle or without one."""
     ahead = elapsed_s + deck[17]
     dx = y[0] - deck[0] - deck[7] * ahead
     dy = y[1] - deck[1] - deck[8] * ahead
     dz = y[2] - deck[2] - deck[9] * ahead
-    reach = NEAR_M + np.sqrt(deck[13] ** 2 + deck[14] ** 2 + deck[15] ** 2)
-    return bool(dx * dx + dy * dy + dz * dz < reach * reach)
+    reach = TOUCH_M + math.sqrt(deck[13] ** 2 + deck[14] ** 2 + deck[15] ** 2) + GROUND_EFFECT_M
+    if deck[16] <= 0.0 or dx * dx + dy * dy + dz * dz > reach * reach:
+        return math.inf
+    qw, qx, qy, qz = deck[3], deck[4], deck[5], deck[6]
+    up = 2.0 * (qx * qz + qw * qy) * dx + 2.0 * (qy * qz - qw * qx) * dy + (1.0 - 2.0 * (qx * qx + qy * qy)) * dz
+    return float(up - deck[15])
+
+
+@kernel
+def nearness(y: Array, deck: Array, elapsed_s: float) -> int:
+    """Return whether a surface may touch the drone, only lift it, or is too far for both."""
+    height = min(y[2], height_over_roof(y, deck, elapsed_s))
+    if height < TOUCH_M:
+        return IN_TOUCH
+    return IN_GROUND_EFFECT if height < GROUND_EFFECT_M else FAR
 
 
 @kernel
@@ -58,14 +72,14 @@ def fill_thrust_wrench(speed: Array, gain: Array, body: Record, thrust: Array, o
 
 @kernel
 def fill_rate(
-    y: Array, stage: int, wind: Array, anchors: Array, body: Record, near: bool, work: Workspace, out: Array
+    y: Array, stage: int, wind: Array, anchors: Array, body: Record, near: int, work: Workspace, out: Array
 ) -> int:
     """Write dy/dt at `stage` (0 start, 1 middle, 2 end of the step), leave the loads in `work`, return the surface touched."""
     _, _, frames, wrenches, rotation, loads, scratch = work
     fill_matrix(y[3:7], rotation)
     fill_flight_forces(y, rotation, wrenches[stage], wind, body, loads[0], loads[1])
     surface = 0
-    if near:
+    if near == IN_TOUCH:
         surface = add_contact(y, rotation, frames[stage], anchors, body, scratch, loads[0], loads[1])
     fill_derivative(y, loads[0], loads[1], body, out)
     return surface
@@ -73,7 +87,7 @@ def fill_rate(
 
 @kernel
 def prepare(
-    y: Array, speed: Array, command: Array, deck: Array, wind: Array, body: Record, near: bool, elapsed_s: float,
+    y: Array, speed: Array, command: Array, deck: Array, wind: Array, body: Record, near: int, elapsed_s: float,
     step_s: float, work: Workspace,
 ) -> None:  # fmt: skip
     """Fill the frames and the wrenches of the three stages, and bring `speed` (4,) to the end of the step.
@@ -83,7 +97,7 @@ def prepare(
     _, _, frames, wrenches, rotation, _, scratch = work
     gain, thrust, later = scratch[12:16], scratch[16:20], scratch[20:24]
     gain[:] = 1.0
-    if near:
+    if near != FAR:
         for i in range(3):
             fill_frame(deck, elapsed_s + 0.5 * i * step_s, scratch[0:4], frames[i])
         if body["ground_effect"] == 1:
@@ -119,7 +133,7 @@ def advance_body(
         work: of `workspace`.
     """
     stage_state, rates, frames, _, rotation, _, scratch = work
-    near = is_near(y, deck, elapsed_s)
+    near = nearness(y, deck, elapsed_s)
     prepare(y, speed, command, deck, wind, body, near, elapsed_s, step_s, work)
     surface = fill_rate(y, 0, wind, anchors, body, near, work, rates[0])
     for i in range(1, 4):
@@ -130,7 +144,7 @@ def advance_body(
     for j in range(STATE_SIZE):
         y[j] += step_s / 6.0 * (rates[0, j] + 2.0 * rates[1, j] + 2.0 * rates[2, j] + rates[3, j])
     normalise(y)
-    if near:
+    if near == IN_TOUCH:
         fill_matrix(y[3:7], rotation)
         update_anchors(y, rotation, frames[2], anchors, body, scratch[0:9])
     return surface
@@ -138,7 +152,7 @@ def advance_body(
 
 @kernel
 def fill_specific_force(
-    y: Array, wind: Array, anchors: Array, body: Record, near: bool, work: Workspace, out: Array
+    y: Array, wind: Array, anchors: Array, body: Record, near: int, work: Workspace, out: Array
 ) -> None:
     """Write what an accelerometer feels (3,) in B at the end of the step just made."""
     _, rates, _, _, rotation, loads, _ = work
