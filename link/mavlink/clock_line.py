@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 _NS_PER_S = 1e9
+_RATE_MIN = 1e-3  # of y in x: a clock that stands still has no inverse
 
 
 class ClockPair(NamedTuple):
@@ -39,7 +40,7 @@ class ClockLine:
     def x_ns(self, y_ns: int) -> int:
         """The reading of x when y reads `y_ns`."""
         since_reference_ns = y_ns - self.reference_ns - self.offset_ns
-        return self.reference_ns + round(since_reference_ns / (1.0 + self.drift))
+        return self.reference_ns + round(since_reference_ns / max(1.0 + self.drift, _RATE_MIN))
 
     def std_ns(self, x_ns: int) -> float:
         """Standard deviation of `y_ns(x_ns)`, which grows away from the pairs."""

@@ -1,0 +1,255 @@
+"""The companion's side of MAVLink as a machine without I/O: bytes and time in, events and bytes out.
+
+The owner calls `receive` with what came, `poll` at least every 20 ms or so, and sends what `take_output` gives. Local
+time must not run backwards; it may be off from UTC by any amount.
+"""
+
+from collections.abc import Sequence
+
+from link.mavlink.clock_map import ClockMap
+from link.mavlink.codec import MavlinkCodec
+from link.mavlink.commands import CommandParams, CommandSender, command_params
+from link.mavlink.dialect import Message, mavlink
+from link.mavlink.events import AutopilotRestarted, CommandTimedOut, Event, MessageReceived
+from link.mavlink.heartbeat import AUTOPILOT_COMPONENT_ID, companion_heartbeat
+from link.mavlink.parameter_reader import ParameterReader
+from link.mavlink.peer import Address, Peer, RestartWatch
+from link.mavlink.session_config import SessionConfig, duration_ns
+from link.mavlink.statistics import SessionStatistics
+from link.mavlink.streams import StreamRequests
+from link.mavlink.timer import Timer
+from link.mavlink.timesync import ClockSync, boot_time_ns
+
+_BY_NAME = -1  # param_index of a PARAM_REQUEST_READ that goes by name
+_DEFAULT_CONFIG = SessionConfig()
+
+
+class MavlinkSession:
+    """One conversation with one autopilot.
+
+    Args:
+        system_id: our own, the vehicle's.
+        component_id: our own, 191 for an onboard computer.
+        target_system_id: of the autopilot; None takes the first that is heard.
+        config: periods and patience.
+    """
+
+    def __init__(
+        self,
+        system_id: int,
+        component_id: int = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER,
+        target_system_id: int | None = None,
+        config: SessionConfig = _DEFAULT_CONFIG,
+    ) -> None:
+        self._config = config
+        self._codec = MavlinkCodec(system_id, component_id, records_input=config.records_input)
+        self._peer = Peer(Address(system_id, component_id), target_system_id, config)
+        self._restarts = RestartWatch(config)
+        self._clock_sync = ClockSync(config)
+        self._commands = CommandSender(self._send_command, config)
+        self._streams = StreamRequests(self._command_stream, config)
+        self._parameters = ParameterReader(self._send_parameter_request, config)
+        self._heartbeat = Timer(duration_ns(config.heartbeat_period_s))
+        self._filtered = 0
+        self._output: list[bytes] = []
+
+    @property
+    def clock(self) -> ClockMap:
+        """What is known now of local, boot and UTC time."""
+        return self._clock_sync.clock
+
+    @property
+    def link_up(self) -> bool:
+        """Whether the autopilot was found and is heard."""
+        return self._peer.is_up
+
+    @property
+    def target_system_id(self) -> int | None:
+        """The autopilot's system id, None while it is unknown."""
+        return self._peer.target_system_id
+
+    @property
+    def autopilot(self) -> int | None:
+        """MAV_AUTOPILOT of its heartbeat, None before the first one."""
+        return self._peer.autopilot
+
+    @property
+    def statistics(self) -> SessionStatistics:
+        """The counters as they stand."""
+        return SessionStatistics(
+            codec=self._codec.statistics,
+            filtered_messages=self._filtered,
+            commands_retried=self._commands.retried,
+            commands_timed_out=self._commands.timed_out,
+            parameters_retried=self._parameters.retried,
+            round_trips=self._clock_sync.round_trips,
+        )
+
+    def receive(self, data: bytes, t_ns: int) -> list[Event]:
+        """Takes what came from the transport; no bytes whatever make it raise.
+
+        Args:
+            data: bytes as they came.
+            t_ns: local time now.
+
+        Returns:
+            What they mean, in order.
+        """
+        events: list[Event] = []
+        for message in self._codec.decode(data):
+            if self._peer.accepts(message):
+                events += self._peer.heard(message, t_ns)
+                events += self._restarted(message, t_ns)
+                events.append(MessageReceived(message, t_ns))
+                events += self._handle(message, t_ns)
+            else:
+                self._filtered += 1
+        return events
+
+    def poll(self, t_ns: int) -> list[Event]:
+        """Does what is due: heartbeat, clock questions, everything that has to be sent again, and looking for silence.
+
+        Args:
+            t_ns: local time now.
+
+        Returns:
+            What has run out of time.
+        """
+        events: list[Event] = [*self._peer.poll(t_ns)]
+        if self._heartbeat.is_due(t_ns):
+            self.send(companion_heartbeat())
+        if self._peer.is_up and (question := self._clock_sync.poll(t_ns)) is not None:
+            self.send(question)
+        events += self._without_streams(self._commands.poll(t_ns))
+        self._streams.poll(t_ns)
+        events += self._parameters.poll(t_ns)
+        return events
+
+    def send(self, message: Message) -> None:
+        """Sends a message once.
+
+        Args:
+            message: with its target fields filled in, where it has any.
+
+        Raises:
+            ValueError: A field does not fit its type.
+        """
+        self._output.append(self._codec.encode(message))
+
+    def command(self, command_id: int, params: Sequence[float], t_ns: int, *, attempts: int | None = None) -> int:
+        """Sends a command to the autopilot, and again until it is acknowledged.
+
+        A further command with the same id waits until this one is answered or has timed out.
+
+        Args:
+            command_id: MAV_CMD.
+            params: up to seven, the rest is 0; NaN is MAVLink's "not given".
+            t_ns: local time now.
+            attempts: how often it is sent at most, by default as configured.
+
+        Returns:
+            The ticket that its events carry.
+
+        Raises:
+            ValueError: There are too many parameters, or one is infinite.
+        """
+        attempts_max = attempts or self._config.command_attempts
+        return self._commands.submit(command_id, command_params(params), attempts_max, t_ns)
+
+    def request_interval(self, message_id: int, rate_hz: float, t_ns: int) -> None:
+        """Asks for a message at a rate until it is granted, and again after a restart or when it stays away.
+
+        Args:
+            message_id: which.
+            rate_hz: how often, 0 for never.
+            t_ns: local time now.
+
+        Raises:
+            ValueError: The rate is negative or not finite.
+        """
+        self._streams.request(message_id, rate_hz, t_ns)
+
+    def request_message(self, message_id: int, t_ns: int) -> int:
+        """Asks for a message once.
+
+        Args:
+            message_id: which.
+            t_ns: local time now.
+
+        Returns:
+            The ticket of the command.
+        """
+        return self.command(mavlink.MAV_CMD_REQUEST_MESSAGE, (float(message_id),), t_ns)
+
+    def read_parameter(self, name: str, t_ns: int) -> None:
+        """Asks for a parameter; ParameterRead or ParameterMissing follows.
+
+        Args:
+            name: of the parameter.
+            t_ns: local time now.
+
+        Raises:
+            ValueError: No parameter can have this name.
+        """
+        self._parameters.read(name, t_ns)
+
+    def take_output(self) -> list[bytes]:
+        """Gives what is to be sent, one frame each, once."""
+        output, self._output = self._output, []
+        return output
+
+    def take_input(self) -> list[bytes]:
+        """Gives the frames received since the last call, all senders', for a recording; see `records_input`."""
+        return self._codec.take_input()
+
+    def _handle(self, message: Message, t_ns: int) -> list[Event]:
+        message_id = message.get_msgId()
+        self._streams.seen(message_id, t_ns)
+        if message_id == mavlink.MAVLINK_MSG_ID_TIMESYNC:
+            answer = self._clock_sync.timesync(message, t_ns)
+            if answer is not None:
+                self.send(answer)
+        elif message_id == mavlink.MAVLINK_MSG_ID_SYSTEM_TIME:
+            self._clock_sync.system_time(message)
+        elif message_id == mavlink.MAVLINK_MSG_ID_COMMAND_ACK:
+            event = self._commands.acknowledged(message, t_ns)
+            self._streams.acknowledged(event)
+            return [event]
+        elif message_id == mavlink.MAVLINK_MSG_ID_PARAM_VALUE and self._peer.autopilot is not None:
+            return [*self._parameters.received(message, self._peer.autopilot, t_ns)]
+        return []
+
+    def _restarted(self, message: Message, t_ns: int) -> list[Event]:
+        boot_ns = boot_time_ns(message)
+        restart = self._restarts.see(boot_ns, t_ns) if boot_ns else None
+        return [] if restart is None else [restart, *self._start_over(restart)]
+
+    def _start_over(self, restart: AutopilotRestarted) -> list[Event]:
+        self._clock_sync.start_over()
+        events = self._without_streams(self._commands.drop_all(restart.t_ns))
+        self._streams.start_over(restart.t_ns)
+        self._parameters.start_over(restart.t_ns)
+        return events
+
+    def _without_streams(self, timed_out: list[CommandTimedOut]) -> list[Event]:
+        """The commands that their owner hears of; streams see to their own."""
+        return [event for event in timed_out if not self._streams.timed_out(event)]
+
+    def _command_stream(self, command: int, params: CommandParams, t_ns: int) -> int:
+        return self._commands.submit(command, params, self._config.interval_attempts, t_ns)
+
+    def _send_command(self, command: int, params: CommandParams, confirmation: int) -> None:
+        target = self._peer.target_system_id
+        if target is not None:
+            self.send(
+                mavlink.MAVLink_command_long_message(target, AUTOPILOT_COMPONENT_ID, command, confirmation, *params)
+            )
+
+    def _send_parameter_request(self, name: str) -> None:
+        target = self._peer.target_system_id
+        if target is not None:
+            self.send(
+                mavlink.MAVLink_param_request_read_message(
+                    target, AUTOPILOT_COMPONENT_ID, name.encode("ascii"), _BY_NAME
+                )
+            )

@@ -1,0 +1,73 @@
+"""Asks the autopilot what time it is, answers when it asks, and keeps the clock map.
+
+Source: MAVLink time synchronization protocol v2, https://mavlink.io/en/services/timesync.html.
+"""
+
+from link.mavlink.clock_map import UNIX_TIME_MIN_NS, ClockMap, RoundTrip, with_round_trip, with_system_time
+from link.mavlink.dialect import Message, mavlink
+from link.mavlink.session_config import SessionConfig, duration_ns
+from link.mavlink.timer import Timer
+
+_ASKED_MAX = 64  # questions under way; older ones are lost
+
+
+def boot_time_ns(message: Message) -> int:
+    """The time since boot that a message tells, 0 when it does not."""
+    if message.get_msgId() == mavlink.MAVLINK_MSG_ID_TIMESYNC:
+        return int(message.tc1) if _is_boot_time(message.tc1) else 0
+    return int(getattr(message, "time_boot_ms", 0)) * 1_000_000
+
+
+def _is_boot_time(tc1_ns: int) -> bool:
+    """Whether a TIMESYNC answer is a time since boot, not a date or a question: the protocol allows all three."""
+    return 0 < tc1_ns < UNIX_TIME_MIN_NS
+
+
+class ClockSync:
+    """The exchange of times with the autopilot.
+
+    Args:
+        config: how often to ask.
+    """
+
+    def __init__(self, config: SessionConfig) -> None:
+        self.clock = ClockMap()
+        self.round_trips = 0
+        self._config = config
+        self._timer = Timer(duration_ns(config.timesync_fast_period_s))
+        self._fast_left = config.timesync_fast_count
+        self._asked_ns: dict[int, None] = {}
+
+    def poll(self, t_ns: int) -> Message | None:
+        """The next question, when it is time for one."""
+        if not self._timer.is_due(t_ns):
+            return None
+        self._fast_left -= 1
+        if self._fast_left == 0:
+            self._timer.period_ns = duration_ns(self._config.timesync_period_s)
+        self._asked_ns[t_ns] = None
+        if len(self._asked_ns) > _ASKED_MAX:
+            del self._asked_ns[next(iter(self._asked_ns))]
+        return mavlink.MAVLink_timesync_message(tc1=0, ts1=t_ns)
+
+    def timesync(self, message: Message, t_ns: int) -> Message | None:
+        """Takes a TIMESYNC: an answer to us is learned from, a question gets the answer returned here."""
+        if message.tc1 == 0:
+            return mavlink.MAVLink_timesync_message(tc1=max(t_ns, 1), ts1=message.ts1)  # 0 would be a question
+        if message.ts1 in self._asked_ns and _is_boot_time(message.tc1):
+            del self._asked_ns[message.ts1]
+            self.round_trips += 1
+            self.clock = with_round_trip(self.clock, RoundTrip(message.ts1, t_ns, message.tc1), self._config.clock)
+        return None
+
+    def system_time(self, message: Message) -> None:
+        """Takes a SYSTEM_TIME."""
+        boot_ns = message.time_boot_ms * 1_000_000
+        self.clock = with_system_time(self.clock, boot_ns, message.time_unix_usec * 1000, self._config.clock)
+
+    def start_over(self) -> None:
+        """Forgets everything, as after a restart; answers to earlier questions count no more."""
+        self.clock = ClockMap()
+        self._asked_ns.clear()
+        self._fast_left = self._config.timesync_fast_count
+        self._timer = Timer(duration_ns(self._config.timesync_fast_period_s))
