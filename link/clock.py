@@ -1,0 +1,123 @@
+"""The clocks that loops run on: the system's, the simulator's own, and one that follows the simulator's ticks.
+
+All give UTC in nanoseconds and never go back. Numerics do not see clocks; they get `t_ns` as an argument.
+"""
+
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+NANOSECONDS_PER_SECOND = 1_000_000_000
+
+MonotonicNs = Callable[[], int]
+
+EXTRAPOLATION_MAX_S = 0.05
+"""How far in wall time a `SimulatedClock` runs on without a tick; a few periods of a 100 Hz clock."""
+
+_RATE_WINDOW_NS = 500_000_000
+_RATE_SPAN_MIN_NS = 20_000_000  # ticks that were queued arrive at once and tell no rate
+_RATE_MIN = 0.05
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClockTick:
+    """What `{ns}/clock` carries: the simulator's UTC time in nanoseconds."""
+
+    t_ns: int
+
+
+class Clock(Protocol):
+    """A source of UTC time that may run faster or slower than the wall."""
+
+    def now_ns(self) -> int:
+        """Return the present UTC time in nanoseconds."""
+
+    def wall_s(self, duration_s: float) -> float:
+        """Return how many seconds of wall time `duration_s` of this clock take."""
+
+
+class ScaledClock:
+    """The simulator's own clock: `epoch_ns` at construction, from then on `speed` times as fast as the wall."""
+
+    def __init__(self, *, speed: float, epoch_ns: int, monotonic_ns: MonotonicNs = time.monotonic_ns) -> None:
+        if not 0.0 < speed < float("inf"):
+            raise ValueError(f"speed must be finite and above 0, got {speed}")
+        self._speed = speed
+        self._epoch_ns = epoch_ns
+        self._monotonic_ns = monotonic_ns
+        self._start_ns = monotonic_ns()
+
+    def now_ns(self) -> int:
+        """Return the present UTC time in nanoseconds."""
+        return self._epoch_ns + round(self._speed * (self._monotonic_ns() - self._start_ns))
+
+    def wall_s(self, duration_s: float) -> float:
+        """Return how many seconds of wall time `duration_s` of this clock take."""
+        return duration_s / self._speed
+
+
+class SystemClock(ScaledClock):
+    """The computer's UTC, read once at construction and carried on by the monotonic clock.
+
+    A step of the system time (NTP, an operator) therefore does not reach a flight under way.
+    """
+
+    def __init__(
+        self, *, utc_ns: Callable[[], int] = time.time_ns, monotonic_ns: MonotonicNs = time.monotonic_ns
+    ) -> None:
+        super().__init__(speed=1.0, epoch_ns=utc_ns(), monotonic_ns=monotonic_ns)
+
+
+class SimulatedClock:
+    """The simulator's time as its ticks tell it, run on between them at the rate measured over the last ticks.
+
+    It never goes back: when it has run ahead of the simulator it stands until the simulator has caught up.
+    Without ticks it stops `EXTRAPOLATION_MAX_S` of wall time after the last one. For use from one thread.
+    """
+
+    def __init__(self, *, monotonic_ns: MonotonicNs = time.monotonic_ns) -> None:
+        self._monotonic_ns = monotonic_ns
+        self._ticks: deque[tuple[int, int]] = deque()  # (wall, simulated), ns, oldest first
+        self._shown_ns = 0
+
+    @property
+    def ready(self) -> bool:
+        """Whether a tick has come, so that the time is known."""
+        return bool(self._ticks)
+
+    @property
+    def rate(self) -> float:
+        """Simulated seconds per wall second over the last ticks; 1 until they tell."""
+        if not self._ticks:
+            return 1.0
+        (wall_first_ns, first_ns), (wall_last_ns, last_ns) = self._ticks[0], self._ticks[-1]
+        span_ns = wall_last_ns - wall_first_ns
+        return (last_ns - first_ns) / span_ns if span_ns >= _RATE_SPAN_MIN_NS else 1.0
+
+    def tick(self, t_ns: int) -> None:
+        """Take the simulator's time `t_ns`, which was just received; an older one than the last is ignored."""
+        wall_ns = self._monotonic_ns()
+        if self._ticks and t_ns < self._ticks[-1][1]:
+            return
+        self._ticks.append((wall_ns, t_ns))
+        while len(self._ticks) > 2 and wall_ns - self._ticks[0][0] > _RATE_WINDOW_NS:
+            self._ticks.popleft()
+
+    def now_ns(self) -> int:
+        """Return the present simulated UTC time in nanoseconds.
+
+        Raises:
+            RuntimeError: Before the first tick.
+        """
+        if not self._ticks:
+            raise RuntimeError("the simulated clock has not ticked yet")
+        wall_ns, t_ns = self._ticks[-1]
+        age_ns = min(self._monotonic_ns() - wall_ns, round(EXTRAPOLATION_MAX_S * NANOSECONDS_PER_SECOND))
+        self._shown_ns = max(self._shown_ns, t_ns + round(self.rate * age_ns))
+        return self._shown_ns
+
+    def wall_s(self, duration_s: float) -> float:
+        """Return how many seconds of wall time `duration_s` take at the measured rate, a standstill taken as 0.05x."""
+        return duration_s / max(self.rate, _RATE_MIN)

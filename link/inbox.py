@@ -1,0 +1,89 @@
+"""Where samples wait between the thread that receives them and the loop that takes them."""
+
+import select
+import socket
+import threading
+from collections import deque
+from typing import NamedTuple
+
+
+class Sample(NamedTuple):
+    """A payload, the key that it came by and when it was received, on the session's receive clock."""
+
+    key: str
+    payload: bytes
+    received_ns: int
+
+
+class WakeUp:
+    """Lets any thread wake a loop that sleeps in `wait`, or in `select` on `fileno()` beside its other sockets."""
+
+    def __init__(self) -> None:
+        self._reader, self._writer = socket.socketpair()
+        self._reader.setblocking(False)
+        self._writer.setblocking(False)
+        self._lock = threading.Lock()
+        self._is_set = False
+        self._is_closed = False
+
+    def fileno(self) -> int:
+        """Return the descriptor that is readable from `set` until `clear`."""
+        return self._reader.fileno()
+
+    def set(self) -> None:
+        """Wake the loop, or keep it from falling asleep."""
+        with self._lock:
+            if not (self._is_set or self._is_closed):
+                self._writer.send(b"\0")
+                self._is_set = True
+
+    def clear(self) -> None:
+        """Let the loop sleep again; to be called before it looks for what has come."""
+        with self._lock:
+            if self._is_set:
+                self._reader.recv(1)
+                self._is_set = False
+
+    def wait(self, timeout_s: float) -> bool:
+        """Sleep until woken or for `timeout_s`, clear, and return whether it was woken."""
+        woken = bool(select.select([self._reader], [], [], max(timeout_s, 0.0))[0])
+        self.clear()
+        return woken
+
+    def close(self) -> None:
+        """Release the descriptors; `set` has no effect from then on."""
+        with self._lock:
+            self._is_closed = True
+            self._is_set = False
+            self._reader.close()
+            self._writer.close()
+
+
+class Inbox:
+    """A bounded queue of samples that drops the oldest when it is full, and counts what it dropped."""
+
+    def __init__(self, *, capacity: int, wake_up: WakeUp) -> None:
+        self._samples: deque[Sample] = deque(maxlen=capacity)
+        self._capacity = capacity
+        self._wake_up = wake_up
+        self._lock = threading.Lock()
+        self._dropped = 0
+
+    @property
+    def dropped(self) -> int:
+        """How many samples were dropped because nobody took them in time."""
+        return self._dropped
+
+    def put(self, sample: Sample) -> None:
+        """Append a sample; for the receiving thread."""
+        with self._lock:
+            self._dropped += len(self._samples) == self._capacity
+            self._samples.append(sample)
+        self._wake_up.set()
+
+    def take(self) -> list[Sample]:
+        """Return all samples that wait, oldest first, without blocking."""
+        with self._lock:
+            samples = list(self._samples)
+            self._samples.clear()
+        return samples

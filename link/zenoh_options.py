@@ -1,0 +1,59 @@
+"""How a program meets others over Zenoh, and the checks that turn a mistyped endpoint into one clear line."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from link.errors import UserError
+
+DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
+
+MODES = ("peer", "client", "router")
+
+_INTERNET_PROTOCOLS = ("tcp", "udp", "tls", "quic", "ws")
+_OTHER_PROTOCOLS = ("serial", "unixsock-stream", "unixpipe", "vsock")
+_INTERNET_ADDRESS = re.compile(r"(?P<host>\[[0-9A-Fa-f:.%\w]+\]|[^\s:/\[\]]+):(?P<port>[0-9]{1,5})(?P<rest>[?#].*)?")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ZenohOptions:
+    """What a user may say about the Zenoh session; the fields are the command line's options.
+
+    Attributes:
+        mode: `peer`, `client` or `router`; None is the configuration file's, else peer.
+        connect: endpoints to connect to, tried again for ever.
+        listen: endpoints to listen on; empty is the configuration file's, else a free port on loopback.
+        multicast_scouting: whether to look for others by multicast; None is the file's, else no.
+        config_file: a Zenoh configuration in JSON5, for what has no option here (TLS, access control).
+
+    Raises:
+        UserError: If the mode or an endpoint is not one.
+    """
+
+    mode: str | None = None
+    connect: tuple[str, ...] = ()
+    listen: tuple[str, ...] = ()
+    multicast_scouting: bool | None = None
+    config_file: Path | None = None
+
+    def __post_init__(self) -> None:
+        """Check the mode and the endpoints."""
+        if self.mode is not None and self.mode not in MODES:
+            raise UserError(f"--mode {self.mode!r} does not exist: choose {', '.join(MODES)}")
+        for endpoint in self.connect:
+            _check_endpoint("--connect", endpoint, port_min=1)
+        for endpoint in self.listen:
+            _check_endpoint("--listen", endpoint, port_min=0)
+
+
+def _check_endpoint(option: str, endpoint: str, *, port_min: int) -> None:
+    protocol, slash, address = endpoint.partition("/")
+    if protocol in _OTHER_PROTOCOLS and address:
+        return
+    if not slash or protocol not in _INTERNET_PROTOCOLS:
+        raise UserError(f"{option} {endpoint!r} is no endpoint: write it as {DEFAULT_ENDPOINT}")
+    match = _INTERNET_ADDRESS.fullmatch(address)
+    if match is None or not port_min <= int(match["port"]) <= 65535:
+        raise UserError(
+            f"{option} {endpoint!r} needs a host and a port from {port_min} to 65535: write it as {DEFAULT_ENDPOINT}"
+        )
