@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim_autopilot.control.geometric import MOTOR_POLE_RAD_S, geometric_gains
-from sim_autopilot.control.kinds import ControllerKind, Envelope
+from sim_autopilot.control.kinds import DEFAULT_ENVELOPE, ControllerKind, Envelope
 from sim_autopilot.control.lqr import feedforward_gains, report_gains
 from sim_autopilot.control.parameters import REFERENCE_SIZE, control_record, reference_vector
 from sim_autopilot.data import Array, Deck, PlantState, Reference, Surface
@@ -40,7 +40,7 @@ class PlantConfig:
 
     airframe: Airframe = BENCHMARK_AIRFRAME
     controller: ControllerKind = ControllerKind.GEOMETRIC
-    envelope: Envelope = Envelope()
+    envelope: Envelope = DEFAULT_ENVELOPE
     friction_coefficient: float = 0.8
     ground_effect: bool = True
     control_period_s: float = 0.005
@@ -112,7 +112,7 @@ def initial_plant(config: PlantConfig, t_ns: int, position_enu_m: Array, yaw_rad
     return PlantMemory(state=state, internals=np.zeros(PLANT_SIZE - MEMORY_START))
 
 
-def fly(
+def fly(  # noqa: PLR0917 (read as a sentence: who, where to, over what, in which air)
     memory: PlantMemory,
     reference: Reference | None,
     deck: Deck | None,

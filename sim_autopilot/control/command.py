@@ -1,5 +1,8 @@
 """One period of the flight controller: from the drone's state and a reference to what the motors are told."""
 
+# ruff: noqa: PLR0917
+# Compiled functions take no keyword-only arguments.
+
 from sim_autopilot.control.geometric import fill_geometric_wrench
 from sim_autopilot.control.lqr import GOAL, fill_feedforward_wrench, fill_report_wrench
 from sim_autopilot.control.outer_loop import bound_force, fill_acceleration, observe, turn_heading
@@ -64,10 +67,8 @@ def fill_control(
 
 
 @kernel
-def fill_motor_command(
-    wrench: Array, speed: Array, control: Record, body: Record, thrust: Array, out: Array
-) -> None:
-    """Write what the motors are told (4,): rotor speeds, or `wrench` itself where it acts directly (then `speed` follows)."""
+def fill_motor_command(wrench: Array, speed: Array, control: Record, body: Record, thrust: Array, out: Array) -> None:
+    """Write what the motors are told (4,): rotor speeds, or `wrench` itself where it acts at once (`speed` follows)."""
     fill_thrusts(wrench, body, thrust)
     if body["direct"] == 1:
         fill_commands(thrust, speed, 0.0, body, speed)

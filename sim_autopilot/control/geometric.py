@@ -11,6 +11,9 @@ set the response (5.8 / pole: the 2 % settling time of a double pole), the three
 beyond. Vertically `s^3 + c s^2 + c kv s + c kp`: the same double pole and one at the rest of the sum.
 """
 
+# ruff: noqa: PLR0917
+# Compiled functions take no keyword-only arguments.
+
 import math
 
 import numpy as np
@@ -68,7 +71,11 @@ def fill_geometric_wrench(
     fill_wanted_attitude(force, memory[HEADING], wanted)
     out[0] = body["mass_kg"] * (force[0] * rotation[2] + force[1] * rotation[5] + force[2] * rotation[8])
     wx, wy, wz = y[10], y[11], y[12]
-    gyro = (wy * wz * (inertia[2] - inertia[1]), wz * wx * (inertia[0] - inertia[2]), wx * wy * (inertia[1] - inertia[0]))
+    gyro = (
+        wy * wz * (inertia[2] - inertia[1]),
+        wz * wx * (inertia[0] - inertia[2]),
+        wx * wy * (inertia[1] - inertia[0]),
+    )
     for i in range(3):
         # component i of (R_d'R - R'R_d)^v is the entry (k, j) of that matrix, i j k in cyclic order
         j, k = (i + 1) % 3, (i + 2) % 3

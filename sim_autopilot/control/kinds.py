@@ -32,3 +32,6 @@ class Envelope:
     braking_m_s2: float = 3.0
     tilt_max_rad: float = radians(45.0)
     yaw_rate_max_rad_s: float = radians(60.0)
+
+
+DEFAULT_ENVELOPE = Envelope()

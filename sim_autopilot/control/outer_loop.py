@@ -1,11 +1,17 @@
 """From a reference to the specific force that the rotors shall give: shared by the controllers with feed-forward.
 
-`a = a_ref + kv (v_ref + c(p_ref - p) - v) - d`, with c the correction velocity: kp / kv times the error, never faster
-than can still be braked (`sqrt(2 b (e - b / 2k^2))` beyond e = b / k^2) nor than the envelope allows. d is the disturbance
-(wind, drag, wrong mass) seen by an observer of the velocity with both poles at -w_o: `v^' = a_model + d + 2 w_o (v - v^)`,
-`d' = w_o^2 (v - v^)`, a_model from the present attitude and rotor speeds. It is the integral action: without a disturbance
-it is exactly zero whatever the reference does, so it neither overshoots nor winds up against a limit.
+`a = a_ref + kv (v_ref + c(p_ref - p) - v) - d`, with c the correction velocity: k = kp / kv times the error, never
+faster than can still be braked (`sqrt(2 b (e - b / 2k^2))` beyond e = b / k^2) nor than the envelope allows. The whole
+correction is bounded, so that a step asks for no more tilt than the torques can follow.
+
+d is the disturbance (wind, drag, wrong mass) seen by an observer of the velocity with both poles at -w_o:
+`v^' = a_model + d + 2 w_o (v - v^)`, `d' = w_o^2 (v - v^)`, a_model from the present attitude and rotor speeds. It is
+the integral action: without a disturbance it is zero whatever the reference does, so it neither overshoots nor winds up
+against a limit.
 """
+
+# ruff: noqa: PLR0917
+# Compiled functions take no keyword-only arguments.
 
 import math
 
@@ -36,7 +42,7 @@ HEADING_BRAKING_RAD_S2 = 2.5
 SINKING_FORCE_G = 0.1
 CLIMBING_FORCE_PART = 0.85
 FORCE_PART = 0.95
-"""Bounds of the vertical and of the whole specific force, in g and in parts of the thrust-to-weight ratio: the rest turns."""
+"""Bounds of the vertical and of the whole specific force, in g and in parts of what the rotors can: the rest turns."""
 
 
 @kernel

@@ -1,4 +1,7 @@
-"""The quadrotor's constants: "+" layout, rotors 1 and 2 on the body x axis, 3 and 4 on y (Ghribi 2022, Table 1 and eq. 5)."""
+"""The quadrotor's constants: "+" layout, rotors 1 and 2 on the body x axis, 3 and 4 on y.
+
+Source: Ghribi, Polytechnique Montréal, 2022, Table 1 and eq. 5; the coefficients are of its reference simulation.
+"""
 
 from dataclasses import dataclass
 

@@ -1,23 +1,33 @@
 """How a numeric function becomes machine code: deterministic, no fast-math, kept on disk between runs."""
 
-from collections.abc import Callable
+import hashlib
+from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import ParamSpec, Protocol, TypeVar, cast
 
 from numba import njit
 
 P = ParamSpec("P")
-R_co = TypeVar("R_co", covariant=True)
+R = TypeVar("R")
 
 
-class Kernel(Protocol[P, R_co]):
+class Kernel(Protocol[P, R]):
     """A compiled function beside the Python that it came from."""
 
-    py_func: Callable[P, R_co]
+    py_func: Callable[P, R]
 
-    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R_co:
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """Run the machine code."""
 
 
-def kernel(function: Callable[P, R_co]) -> Kernel[P, R_co]:
+def kernel(function: Callable[P, R]) -> Kernel[P, R]:
     """Compile `function` at its first call."""
-    return cast("Kernel[P, R_co]", njit(cache=True, fastmath=False, error_model="numpy")(function))
+    return cast("Kernel[P, R]", njit(cache=True, fastmath=False, error_model="numpy")(function))
+
+
+def source_digest(folders: Iterable[Path]) -> int:
+    """Return a number that changes with any source in `folders`, or with any of their names."""
+    digest = hashlib.sha256()
+    for path in sorted(path for folder in folders for path in folder.glob("*.py")):
+        digest.update(path.name.encode() + path.read_bytes())
+    return int.from_bytes(digest.digest()[:6], "big")

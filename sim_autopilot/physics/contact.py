@@ -2,13 +2,16 @@
 
 Eight points of B touch: four feet and the four outer edges of the rotor discs. A point inside a surface by depth d, with
 d' its rate, is pushed out by `max(0, k d + c d')`: contacts never pull. Friction on a top face is a spring and damper
-from an anchor on that face, bounded by mu times the normal force; at the bound the anchor is dragged along (Cundall and
-Strack 1979), so a drone at rest stays where it is. On a flank friction is viscous below the bound.
+from an anchor on that face, bounded by mu times the normal force; at the bound the anchor is dragged along (Cundall
+and Strack 1979), so a drone at rest stays where it is. On a flank friction is viscous below the bound.
 Surfaces are frames (22,): origin 0:3, R_WV 3:12, velocity 12:15, angular velocity in W 15:18, half length, half width,
 height, presence. The ground is such a frame without end, at z = 0, but under the vehicle only the vehicle counts.
 
 With four feet of 2000 N/m the drone sinks 1.8 mm at rest and swings at 73 rad/s; 55 N s/m a foot is critical damping.
 """
+
+# ruff: noqa: PLR0917
+# Compiled functions take no keyword-only arguments.
 
 import math
 
@@ -49,7 +52,9 @@ GROUND = Surface.GROUND.value
 DECK = Surface.DECK.value
 SIDE = Surface.SIDE.value
 
-DECK_SIZE = 18  # position 3, orientation 4, velocity 3, angular velocity 3, half length, half width, height, presence, age
+DECK_SIZE = (
+    18  # position 3, orientation 4, velocity 3, angular velocity 3, half length, half width, height, presence, age
+)
 FRAME_SIZE = 22
 GROUND_FRAME: Array = np.array([0.0] * 3 + [1.0, 0, 0, 0, 1.0, 0, 0, 0, 1.0] + [0.0] * 6 + [np.inf, np.inf, 0.0, 1.0])
 
@@ -70,27 +75,36 @@ def fill_frame(deck: Array, elapsed_s: float, turned: Array, out: Array) -> None
 
 @kernel
 def localise(y: Array, rotation: Array, point: Array, frame: Array, out: Array) -> None:
-    """Write into `out` (9,) a body point's position and velocity in `frame`, both in its axes, and its arm from B in W."""
-    ax = y[11] * point[2] - y[12] * point[1]
-    ay = y[12] * point[0] - y[10] * point[2]
-    az = y[10] * point[1] - y[11] * point[0]
+    """Write into `out` (9,) where a body point is: 0:3 in `frame`, in its axes; 6:9 its arm from B in W."""
     for i in range(3):
         out[6 + i] = rotation[3 * i] * point[0] + rotation[3 * i + 1] * point[1] + rotation[3 * i + 2] * point[2]
     dx = y[0] + out[6] - frame[0]
     dy = y[1] + out[7] - frame[1]
     dz = y[2] + out[8] - frame[2]
-    ux = y[7] + rotation[0] * ax + rotation[1] * ay + rotation[2] * az - frame[12] - frame[16] * dz + frame[17] * dy
-    uy = y[8] + rotation[3] * ax + rotation[4] * ay + rotation[5] * az - frame[13] - frame[17] * dx + frame[15] * dz
-    uz = y[9] + rotation[6] * ax + rotation[7] * ay + rotation[8] * az - frame[14] - frame[15] * dy + frame[16] * dx
     for i in range(3):
         out[i] = frame[3 + i] * dx + frame[6 + i] * dy + frame[9 + i] * dz
+
+
+@kernel
+def add_motion(y: Array, rotation: Array, frame: Array, out: Array) -> None:
+    """Write into 3:6 of `out` (9,), as `localise` left it, the point's velocity against `frame`, in its axes."""
+    dx = y[0] + out[6] - frame[0]
+    dy = y[1] + out[7] - frame[1]
+    dz = y[2] + out[8] - frame[2]
+    wx = rotation[0] * y[10] + rotation[1] * y[11] + rotation[2] * y[12]
+    wy = rotation[3] * y[10] + rotation[4] * y[11] + rotation[5] * y[12]
+    wz = rotation[6] * y[10] + rotation[7] * y[11] + rotation[8] * y[12]
+    ux = y[7] + wy * out[8] - wz * out[7] - frame[12] - frame[16] * dz + frame[17] * dy
+    uy = y[8] + wz * out[6] - wx * out[8] - frame[13] - frame[17] * dx + frame[15] * dz
+    uz = y[9] + wx * out[7] - wy * out[6] - frame[14] - frame[15] * dy + frame[16] * dx
+    for i in range(3):
         out[3 + i] = frame[3 + i] * ux + frame[6 + i] * uy + frame[9 + i] * uz
 
 
 @kernel
 def over(local: Array, frame: Array) -> bool:
     """Return whether a point (local coordinates first) is over or under a frame's top face."""
-    return frame[21] > 0.0 and abs(local[0]) < frame[18] and abs(local[1]) < frame[19]
+    return bool(frame[21] > 0.0 and abs(local[0]) < frame[18] and abs(local[1]) < frame[19])
 
 
 @kernel
@@ -109,7 +123,7 @@ def touched_axis(local: Array, frame: Array) -> int:
 @kernel
 def top_normal_force(local: Array, frame: Array) -> float:
     """Return the force, N, that pushes a point up from a top face."""
-    return max(0.0, STIFFNESS_N_M * (frame[20] - local[2]) - DAMPING_N_S_M * local[5])
+    return float(max(0.0, STIFFNESS_N_M * (frame[20] - local[2]) - DAMPING_N_S_M * local[5]))
 
 
 @kernel
@@ -143,24 +157,20 @@ def fill_flank_force(local: Array, frame: Array, axis: int, mu: float, out: Arra
 
 
 @kernel
-def point_contact(
-    y: Array, rotation: Array, i: int, frame: Array, anchor: Array, mu: float, local: Array, push: Array
-) -> int:
-    """Write the force (3,) on point `i` in the axes of what it touches into `push`, and return that surface's code."""
-    localise(y, rotation, CONTACT_POINTS_FLU_M[i], frame, local)
-    if over(local, frame):
-        axis = touched_axis(local, frame)
-        if axis == 2:
-            fill_top_force(local, frame, anchor, DECK, mu, push)
-            return DECK
-        if axis >= 0:
-            fill_flank_force(local, frame, axis, mu, push)
-            return SIDE
-        return NO_SURFACE
+def touched_surface(y: Array, rotation: Array, i: int, frame: Array, local: Array) -> int:
+    """Return the code of the surface that point `i` is in, and leave where and how it moves there in `local` (9,)."""
+    if frame[21] > 0.0:
+        localise(y, rotation, CONTACT_POINTS_FLU_M[i], frame, local)
+        if over(local, frame):
+            axis = touched_axis(local, frame)
+            if axis < 0:
+                return NO_SURFACE
+            add_motion(y, rotation, frame, local)
+            return DECK if axis == 2 else SIDE
     localise(y, rotation, CONTACT_POINTS_FLU_M[i], GROUND_FRAME, local)
     if local[2] >= 0.0:
         return NO_SURFACE
-    fill_top_force(local, GROUND_FRAME, anchor, GROUND, mu, push)
+    add_motion(y, rotation, GROUND_FRAME, local)
     return GROUND
 
 
@@ -181,13 +191,18 @@ def add_contact(
         torque: (3,) N m.
     """
     local, push, f = scratch[0:9], scratch[9:12], scratch[12:15]
+    mu = body["friction_coefficient"]
     touched = NO_SURFACE
     for i in range(CONTACT_POINTS_FLU_M.shape[0]):
-        surface = point_contact(y, rotation, i, frame, anchors[i], body["friction_coefficient"], local, push)
+        surface = touched_surface(y, rotation, i, frame, local)
         if surface == NO_SURFACE:
             continue
         touched = max(touched, surface)
         axes = GROUND_FRAME if surface == GROUND else frame
+        if surface == SIDE:
+            fill_flank_force(local, frame, touched_axis(local, frame), mu, push)
+        else:
+            fill_top_force(local, axes, anchors[i], surface, mu, push)
         for j in range(3):
             f[j] = axes[3 + 3 * j] * push[0] + axes[4 + 3 * j] * push[1] + axes[5 + 3 * j] * push[2]
             force[j] += f[j]
@@ -216,17 +231,11 @@ def drag_anchor(local: Array, frame: Array, surface: int, mu: float, anchor: Arr
 @kernel
 def update_anchors(y: Array, rotation: Array, frame: Array, anchors: Array, body: Record, local: Array) -> None:
     """Move the anchors (8, 3) after a step; points in the air or on a flank lose theirs. `local` (9,) is scratch."""
-    mu = body["friction_coefficient"]
     for i in range(CONTACT_POINTS_FLU_M.shape[0]):
-        localise(y, rotation, CONTACT_POINTS_FLU_M[i], frame, local)
-        if over(local, frame):
-            if touched_axis(local, frame) == 2:
-                drag_anchor(local, frame, DECK, mu, anchors[i])
-            else:
-                anchors[i, 2] = NO_SURFACE
-            continue
-        localise(y, rotation, CONTACT_POINTS_FLU_M[i], GROUND_FRAME, local)
-        if local[2] < 0.0:
-            drag_anchor(local, GROUND_FRAME, GROUND, mu, anchors[i])
+        surface = touched_surface(y, rotation, i, frame, local)
+        if surface == DECK:
+            drag_anchor(local, frame, DECK, body["friction_coefficient"], anchors[i])
+        elif surface == GROUND:
+            drag_anchor(local, GROUND_FRAME, GROUND, body["friction_coefficient"], anchors[i])
         else:
             anchors[i, 2] = NO_SURFACE

@@ -1,9 +1,12 @@
 """Thrust gained over a surface, rotor by rotor: `1 / (1 - (R / 4z)^2 / (1 + (V / vi)^2))`.
 
 R is the rotor's radius, z its height above the surface, V the airspeed, vi the induced velocity in hover
-`sqrt(T / (2 rho A))`. Source: Cheeseman and Bennett, ARC R&M 3021 (1955), eqs. 1 and 9. The formula holds from z = R / 2,
-so below that the gain stays what it is there (4/3 in hover); above 8 R it is under 0.1 % and left out.
+`sqrt(T / (2 rho A))`. Source: Cheeseman and Bennett, ARC R&M 3021 (1955). The formula holds from z = R / 2, so below
+that the gain stays what it is there (4/3 in hover); above 8 R it is under 0.1 % and left out.
 """
+
+# ruff: noqa: PLR0917
+# Compiled functions take no keyword-only arguments.
 
 import math
 
@@ -40,7 +43,7 @@ def induced_velocity(body: Record) -> float:
 def fill_gains(
     y: Array, rotation: Array, frame: Array, wind: Array, body: Record, local: Array, point: Array, out: Array
 ) -> None:
-    """Write the gain of each rotor (4,), over the roof, over the ground or beside both; `local`, `point` are scratch."""
+    """Write the gain of each rotor (4,), over the roof or over the ground; `local` (9,), `point` (3,) are scratch."""
     airspeed = math.sqrt((y[7] - wind[0]) ** 2 + (y[8] - wind[1]) ** 2 + (y[9] - wind[2]) ** 2)
     induced = induced_velocity(body)
     point[2] = 0.0

@@ -51,7 +51,7 @@ def fill_thrusts(wrench: Array, body: Record, out: Array) -> None:
 
 @kernel
 def fill_commands(thrust: Array, speed: Array, lead: float, body: Record, out: Array) -> None:
-    """Write the speeds (4,) rad/s to command for wanted thrusts (4,), overdriven by `lead` times the speed still missing."""
+    """Write the speeds (4,) rad/s to command for wanted thrusts (4,), plus `lead` times the speed still missing."""
     kt = body["thrust_coefficient_n_s2"]
     speed_max = math.sqrt(body["thrust_max_n"] / kt)
     for i in range(4):

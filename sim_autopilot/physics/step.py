@@ -1,7 +1,10 @@
-"""One integration step of the drone: classical Runge-Kutta for the body, the exact lag for the rotors, contacts in each stage.
+"""One integration step: classical Runge-Kutta for the body, the exact lag for the rotors, contacts in each stage.
 
 Ground effect and the choice whether anything is near are held over the step; the vehicle moves on within it.
 """
+
+# ruff: noqa: PLR0917
+# Compiled functions take no keyword-only arguments.
 
 import math
 
@@ -40,7 +43,7 @@ def workspace() -> Workspace:
 
 @kernel
 def height_over_roof(y: Array, deck: Array, elapsed_s: float) -> float:
-    """Return the height of the drone's centre over the plane of the roof, m; without end beside the vehicle or without one."""
+    """Return the height of the drone's centre over the plane of the roof, m; infinite away from a vehicle."""
     ahead = elapsed_s + deck[17]
     dx = y[0] - deck[0] - deck[7] * ahead
     dy = y[1] - deck[1] - deck[8] * ahead
@@ -74,7 +77,7 @@ def fill_thrust_wrench(speed: Array, gain: Array, body: Record, thrust: Array, o
 def fill_rate(
     y: Array, stage: int, wind: Array, anchors: Array, body: Record, near: int, work: Workspace, out: Array
 ) -> int:
-    """Write dy/dt at `stage` (0 start, 1 middle, 2 end of the step), leave the loads in `work`, return the surface touched."""
+    """Write dy/dt at `stage` (0 start, 1 middle, 2 end of the step), leave loads in `work`, return what is touched."""
     _, _, frames, wrenches, rotation, loads, scratch = work
     fill_matrix(y[3:7], rotation)
     fill_flight_forces(y, rotation, wrenches[stage], wind, body, loads[0], loads[1])
@@ -114,6 +117,29 @@ def prepare(
 
 
 @kernel
+def runge_kutta(
+    y: Array, speed: Array, command: Array, anchors: Array, deck: Array, wind: Array, body: Record, near: int,
+    elapsed_s: float, step_s: float, work: Workspace,
+) -> int:  # fmt: skip
+    """Do what `advance_body` says, knowing how near the surfaces are."""
+    stage_state, rates, frames, _, rotation, _, scratch = work
+    prepare(y, speed, command, deck, wind, body, near, elapsed_s, step_s, work)
+    surface = fill_rate(y, 0, wind, anchors, body, near, work, rates[0])
+    for i in range(1, 4):
+        part = step_s if i == 3 else 0.5 * step_s
+        for j in range(STATE_SIZE):
+            stage_state[j] = y[j] + part * rates[i - 1, j]
+        surface = max(surface, fill_rate(stage_state, (i + 1) // 2, wind, anchors, body, near, work, rates[i]))
+    for j in range(STATE_SIZE):
+        y[j] += step_s / 6.0 * (rates[0, j] + 2.0 * rates[1, j] + 2.0 * rates[2, j] + rates[3, j])
+    normalise(y)
+    if near == IN_TOUCH:
+        fill_matrix(y[3:7], rotation)
+        update_anchors(y, rotation, frames[2], anchors, body, scratch[0:9])
+    return surface
+
+
+@kernel
 def advance_body(
     y: Array, speed: Array, command: Array, anchors: Array, deck: Array, wind: Array, body: Record, elapsed_s: float,
     step_s: float, work: Workspace,
@@ -132,22 +158,11 @@ def advance_body(
         step_s: to advance.
         work: of `workspace`.
     """
-    stage_state, rates, frames, _, rotation, _, scratch = work
     near = nearness(y, deck, elapsed_s)
-    prepare(y, speed, command, deck, wind, body, near, elapsed_s, step_s, work)
-    surface = fill_rate(y, 0, wind, anchors, body, near, work, rates[0])
-    for i in range(1, 4):
-        part = step_s if i == 3 else 0.5 * step_s
-        for j in range(STATE_SIZE):
-            stage_state[j] = y[j] + part * rates[i - 1, j]
-        surface = max(surface, fill_rate(stage_state, (i + 1) // 2, wind, anchors, body, near, work, rates[i]))
-    for j in range(STATE_SIZE):
-        y[j] += step_s / 6.0 * (rates[0, j] + 2.0 * rates[1, j] + 2.0 * rates[2, j] + rates[3, j])
-    normalise(y)
-    if near == IN_TOUCH:
-        fill_matrix(y[3:7], rotation)
-        update_anchors(y, rotation, frames[2], anchors, body, scratch[0:9])
-    return surface
+    if near == FAR:
+        # the same call with a constant, which lets the compiler leave everything about surfaces out
+        return runge_kutta(y, speed, command, anchors, deck, wind, body, FAR, elapsed_s, step_s, work)
+    return runge_kutta(y, speed, command, anchors, deck, wind, body, near, elapsed_s, step_s, work)
 
 
 @kernel
