@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 Message = Fix | FixVelocity | VehicleImu | PadSighting | BodyTruth | RotorTruth | Plan | ClockTick
 __all__ = ["ROS_TYPES", "Message", "PayloadError", "decode", "encode", "encoding_of"]
 
-M = TypeVar("M", Fix, FixVelocity, VehicleImu, PadSighting, BodyTruth, RotorTruth, Plan, ClockTick)
+M = TypeVar("M", bound=Message)
 
-ROS_TYPES: dict[type[Message], str] = {
+ROS_TYPES: dict[type[object], str] = {
     Fix: "sensor_msgs/msg/NavSatFix",
     FixVelocity: "geometry_msgs/msg/TwistWithCovarianceStamped",
     VehicleImu: "sensor_msgs/msg/Imu",

@@ -16,7 +16,7 @@ __all__ = ["JSON_ENCODING", "LANDING_STATUS_SCHEMA", "PayloadError", "decode", "
 JSON_ENCODING = "application/json"
 
 Message = PadGeometry | Command | CommandReply | LandingStatus
-M = TypeVar("M", PadGeometry, Command, CommandReply, LandingStatus)
+M = TypeVar("M", bound=Message)
 
 Coordinates = tuple[float, float, float]
 Count = Annotated[int, Field(ge=0)]
@@ -72,7 +72,7 @@ LANDING_STATUS_SCHEMA = {
 }
 """The JSON schema of `{ns}/{drone}/landing/status`."""
 
-_MODELS: dict[type[Message], type[_Report]] = {
+_MODELS: dict[type[object], type[_Report]] = {
     PadGeometry: _PadGeometry,
     Command: _Command,
     CommandReply: _CommandReply,
@@ -105,7 +105,10 @@ def decode(message_type: type[M], payload: bytes) -> M:
     except ValidationError as error:
         raise _payload_error(error) from error
     fields = {name: getattr(model, name) for name in type(model).model_fields}
-    return fields["command"] if message_type is Command else message_type(**fields)
+    message = fields["command"] if message_type is Command else message_type(**fields)
+    if not isinstance(message, message_type):
+        raise TypeError(f"the model of {message_type.__name__} gave a {type(message).__name__}")
+    return message
 
 
 def _payload_error(error: ValidationError) -> PayloadError:
