@@ -93,7 +93,7 @@ class PlanResult:
 class Guidance(Protocol):
     """What the companion asks of a guidance law; the memory is None at the first call."""
 
-    def plan(self, memory: Any, request: PlanRequest) -> tuple[Any, PlanResult]:  # noqa: ANN401 (each law has its own)
+    def plan(self, memory: Any, request: PlanRequest) -> tuple[Any, PlanResult]:
         """Return the memory and the plan for `request`.
 
         Raises:

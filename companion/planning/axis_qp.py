@@ -1,0 +1,156 @@
+"""The quadratic programme of one axis: track a reference over the horizon inside bounds.
+
+Variables: the jerk of each block, then one slack >= 0 each for speed, acceleration and, where there is a
+floor, height. Minimise half of the integral of `e'Qe + r (u - u_ref)^2`, `e` the error of [p, v, a], plus `e'Pe` at
+the horizon's end with P of the infinite-horizon problem (algebraic Riccati equation), plus an exact penalty on the
+slacks. The jerk's bounds are hard, all others soft: with finite numbers the programme is always feasible.
+All matrices are built once; a solve only makes vectors.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import solve_continuous_are
+
+from companion.data import Array
+from companion.planning.condensed import AxisModel
+from companion.planning.config import MpcConfig
+from companion.planning.qp import QpSolution, QpSolver
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class AxisBounds:
+    """Bounds at the nodes (n,) or, for acceleration and jerk, at the ends of and within the m blocks (m,)."""
+
+    velocity_min_m_s: Array
+    velocity_max_m_s: Array
+    acceleration_min_m_s2: Array
+    acceleration_max_m_s2: Array
+    jerk_max_m_s3: Array
+    floor_m: Array | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class AxisReference:
+    """What is tracked: position, velocity and acceleration at the nodes (n,), jerk in the blocks (m,)."""
+
+    position_m: Array
+    velocity_m_s: Array
+    acceleration_m_s2: Array
+    jerk_m_s3: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class AxisProblem:
+    """The constant matrices of the programme.
+
+    Attributes:
+        model: the predictions behind them.
+        H: (q, q) Hessian over the m moves and the slacks.
+        A: (c, q) constraint matrix, rows as `bounds_of` orders them.
+        from_state: (m, 3) gradient with respect to the moves per state.
+        from_reference: (m, 3 n) the same per position, velocity and acceleration reference.
+        move_weight: (m,) the same per jerk reference.
+        slack_gradient: (q - m,) the penalty's slope.
+        has_floor: whether there is a floor.
+    """
+
+    model: AxisModel
+    H: Array
+    A: Array
+    from_state: Array
+    from_reference: Array
+    move_weight: Array
+    slack_gradient: Array
+    has_floor: bool
+
+    def gradient(self, x: Array, reference: AxisReference) -> Array:
+        """Return the linear term (q,) for the state `x` (3,) and a reference."""
+        wanted = np.concatenate((reference.position_m, reference.velocity_m_s, reference.acceleration_m_s2))
+        moves = self.from_state @ x - self.from_reference @ wanted - self.move_weight * reference.jerk_m_s3
+        return np.concatenate((moves, self.slack_gradient))
+
+    def bounds_of(self, x: Array, bounds: AxisBounds) -> tuple[Array, Array]:
+        """Return the lower and upper bounds (c,): of moves, slacks, velocity, acceleration and the floor."""
+        free_v = self.model.free_v @ x
+        free_a = np.full(len(self.model.move_s), x[2])
+        slacks = np.zeros_like(self.slack_gradient)
+        lower = [-bounds.jerk_max_m_s3, slacks, bounds.velocity_min_m_s - free_v, np.full_like(free_v, -np.inf)]
+        upper = [bounds.jerk_max_m_s3, slacks + np.inf, np.full_like(free_v, np.inf), bounds.velocity_max_m_s - free_v]
+        lower += [bounds.acceleration_min_m_s2 - free_a, np.full_like(free_a, -np.inf)]
+        upper += [np.full_like(free_a, np.inf), bounds.acceleration_max_m_s2 - free_a]
+        if self.has_floor and bounds.floor_m is not None:
+            lower.append(bounds.floor_m - self.model.free_p @ x)
+            upper.append(np.full_like(free_v, np.inf))
+        return np.concatenate(lower), np.concatenate(upper)
+
+    def solve(self, solver: QpSolver, x: Array, reference: AxisReference, bounds: AxisBounds) -> QpSolution:
+        """Return the moves (m,) and slacks that are best from the state `x` (3,)."""
+        lower, upper = self.bounds_of(x, bounds)
+        return solver.solve(self.H, self.gradient(x, reference), self.A, lower, upper, None)
+
+
+def make_axis_problem(model: AxisModel, config: MpcConfig, *, has_floor: bool) -> AxisProblem:
+    """Return the constant matrices for `model` with the weights of `config`."""
+    moves, nodes = len(model.move_s), len(model.node_s)
+    slacks = 3 if has_floor else 2
+    forced = np.concatenate((model.forced_p, model.forced_v, model.forced_a))
+    free = np.concatenate((model.free_p, model.free_v, model.free_a))
+    weight = _cost_of_states(model, config)
+    move_weight = config.jerk_weight * model.move_s
+    H = np.zeros((moves + slacks, moves + slacks))
+    H[:moves, :moves] = forced.T @ weight @ forced + np.diag(move_weight)
+    H[moves:, moves:] = config.slack_weight * np.eye(slacks)
+    return AxisProblem(
+        model=model,
+        H=0.5 * (H + H.T),
+        A=_constraints(model, moves, nodes, slacks),
+        from_state=forced.T @ weight @ free,
+        from_reference=forced.T @ weight,
+        move_weight=move_weight,
+        slack_gradient=np.full(slacks, config.slack_weight),
+        has_floor=has_floor,
+    )
+
+
+def _cost_of_states(model: AxisModel, config: MpcConfig) -> Array:
+    """Return the (3 n, 3 n) weight of all node states: trapezoidal running cost and the terminal one."""
+    nodes = len(model.node_s)
+    step = np.diff(model.node_s, prepend=0.0)
+    span = 0.5 * (step + np.append(step[1:], 0.0))
+    running = (config.position_weight, config.velocity_weight, config.acceleration_weight)
+    weight = np.diag(np.concatenate([q * span for q in running]))
+    last = np.array([nodes - 1, 2 * nodes - 1, 3 * nodes - 1])
+    weight[np.ix_(last, last)] += terminal_cost(config)
+    return weight
+
+
+def terminal_cost(config: MpcConfig) -> Array:
+    """Return P (3, 3) of the infinite-horizon cost of an error of [p, v, a] without bounds."""
+    drift = np.diag([1.0, 1.0], k=1)
+    jerk = np.array([[0.0], [0.0], [1.0]])
+    weights = np.diag([config.position_weight, config.velocity_weight, config.acceleration_weight])
+    cost: Array = solve_continuous_are(drift, jerk, weights, np.array([[config.jerk_weight]]))
+    return cost
+
+
+def _constraints(model: AxisModel, moves: int, nodes: int, slacks: int) -> Array:
+    """Return A: each soft bound is widened by its slack, velocity's the first, then acceleration's, then height's."""
+
+    def widened(rows: Array, slack: int, sign: float) -> Array:
+        columns = np.zeros((len(rows), slacks))
+        columns[:, slack] = sign
+        return np.hstack((rows, columns))
+
+    ends = model.forced_a[model.block_end]
+    blocks = [
+        np.eye(moves, moves + slacks),
+        np.hstack((np.zeros((slacks, moves)), np.eye(slacks))),
+        widened(model.forced_v, 0, 1.0),
+        widened(model.forced_v, 0, -1.0),
+        widened(ends, 1, 1.0),
+        widened(ends, 1, -1.0),
+    ]
+    if slacks > 2:
+        blocks.append(widened(model.forced_p[:nodes], 2, 1.0))
+    return np.ascontiguousarray(np.vstack(blocks))

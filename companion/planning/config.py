@@ -1,0 +1,96 @@
+"""Numbers of the guidance laws, each with its unit in its name and where it comes from."""
+
+from enum import Enum
+from typing import Annotated
+
+from pydantic import Field
+
+from link.toml_config import StrictModel
+
+Positive = Annotated[float, Field(gt=0.0, le=1e6)]
+NotNegative = Annotated[float, Field(ge=0.0, le=1e6)]
+Fraction = Annotated[float, Field(gt=0.0, lt=1.0)]
+
+
+class GuidanceKind(Enum):
+    """Which guidance law plans."""
+
+    MPC = "mpc"  # preview of the target, limits, time-optimal intercept
+    MPC_REPORT = "mpc_report"  # the source report's
+    PN = "pn"  # proportional navigation after Borowczyk et al. 2017
+
+
+class SolverKind(Enum):
+    """Which QP solver."""
+
+    DAQP = "daqp"  # dual active set: exact, 13 us for 14 variables and 74 constraints
+    OSQP = "osqp"  # operator splitting, polished
+
+
+class ReportReading(Enum):
+    """Which reading of the source report's MPC; its text and its reference simulation differ."""
+
+    REFERENCE_SIMULATION = "reference_simulation"  # 10 and 2 steps, weights squared, input change weighed
+    STATED = "stated"  # 1 s and 0.2 s, weights as printed, input weighed
+
+
+class MpcConfig(StrictModel):
+    """The default law; the weights were chosen by measurement, see docs/planning.md."""
+
+    solver: SolverKind = SolverKind.DAQP
+    moves_s: tuple[Positive, ...] = (
+        0.02,
+        0.04,
+        0.06,
+        0.08,
+        0.1,
+        0.14,
+        0.18,
+        0.22,
+        0.28,
+        0.34,
+        0.4,
+        0.5,
+        0.64,
+    )  # blocks
+    node_spacing_max_s: Positive = 0.16  # longer blocks are split for costs and bounds
+    position_weight: Positive = 1.0  # 1/m^2, the scale of all weights
+    velocity_weight: NotNegative = 0.2  # s^2/m^2
+    acceleration_weight: NotNegative = 0.01  # s^4/m^2
+    jerk_weight: Positive = 0.001  # s^6/m^2; bandwidth (position / jerk weight)^(1/6) = 3.2 rad/s
+    slack_weight: Positive = 1e3  # exact penalty on the largest excess over a soft limit
+    intercept_fraction: Fraction = 0.85  # of the acceleration limit that intercepts are planned with
+    lateral_fraction: Fraction = 0.35  # of the acceleration and jerk limits kept for the minor horizontal axis
+    lateral_speed_fraction: Fraction = 0.1  # of the speed limit kept for it on top of the target's speed along it
+    axes_time_s: Positive = 1.0  # a relative speed turns the major axis like the distance it covers in this time
+
+
+class ReportMpcConfig(StrictModel):
+    """The source report's law, equations 12 to 14, and its reference simulation."""
+
+    reading: ReportReading = ReportReading.REFERENCE_SIMULATION
+    velocity_factor: Positive = 1.2  # without it the reference never caught up
+
+
+class PnConfig(StrictModel):
+    """Proportional navigation far away and proportional-derivative control near.
+
+    Source: Borowczyk et al. 2017, "Autonomous Landing of a Quadcopter on a High-Speed Ground Vehicle".
+    """
+
+    navigation_gain: Positive = 3.0  # the paper's lambda; 3 minimises the effort on a straight target
+    closing_gain_1_s2: Positive = 1.0  # of the distance, along the line of sight
+    closing_damping_1_s: Positive = 2.0  # of the closing speed; critical damping
+    near_gain_1_s2: Positive = 4.0  # of the position error, near
+    near_damping_1_s: Positive = 4.0  # of the velocity error, near; critical damping
+    near_distance_m: Positive = 5.0  # at which it changes to near; back again at 1.5 times that
+    far_hysteresis: Annotated[float, Field(gt=1.0, le=10.0)] = 1.5
+
+
+class GuidanceConfig(StrictModel):
+    """The guidance law and the numbers of all of them."""
+
+    kind: GuidanceKind = GuidanceKind.MPC
+    mpc: MpcConfig = MpcConfig()
+    mpc_report: ReportMpcConfig = ReportMpcConfig()
+    pn: PnConfig = PnConfig()

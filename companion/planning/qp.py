@@ -1,0 +1,152 @@
+"""The one interface to quadratic programmes, and its two solvers: OSQP and DAQP.
+
+Minimise `x'Hx/2 + f'x` subject to `lower <= Ax <= upper`. Solving is a pure function of its arguments: no
+solver state survives a call, so the same problem gives the same bits in any order.
+"""
+
+import importlib
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from companion.data import Array
+from companion.planning.config import SolverKind
+from companion.planning.guidance import PlanStatus
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class QpSolution:
+    """A solver's answer; `x` (n,) is None unless the status is SOLVED."""
+
+    status: PlanStatus
+    x: Array | None
+    iterations: int
+
+
+class QpSolver(Protocol):
+    """What the planners ask of a solver."""
+
+    def solve(self, H: Array, f: Array, A: Array, lower: Array, upper: Array, warm_start: Array | None) -> QpSolution:
+        """Return the minimiser of one problem.
+
+        Args:
+            H: (n, n) symmetric positive definite.
+            f: (n,).
+            A: (m, n).
+            lower: (m,), -inf where there is no bound.
+            upper: (m,), +inf where there is no bound.
+            warm_start: (n,) guess of the minimiser, or None.
+        """
+
+
+DAQP_STATUS = {
+    2: PlanStatus.SOLVED_INACCURATE,  # soft optimal: a constraint was relaxed
+    1: PlanStatus.SOLVED,
+    -1: PlanStatus.INFEASIBLE,
+    -2: PlanStatus.FAILED,  # cycling
+    -3: PlanStatus.FAILED,  # unbounded
+    -4: PlanStatus.FAILED,  # iteration limit
+    -5: PlanStatus.FAILED,  # not convex
+    -6: PlanStatus.FAILED,  # overdetermined initial working set
+    -7: PlanStatus.FAILED,  # time limit
+}
+"""DAQP's exit flags, see its documentation's page "parameters"; unknown ones count as FAILED."""
+
+OSQP_STATUS = {
+    "OSQP_SOLVED": PlanStatus.SOLVED,
+    "OSQP_SOLVED_INACCURATE": PlanStatus.SOLVED_INACCURATE,
+    "OSQP_PRIMAL_INFEASIBLE": PlanStatus.INFEASIBLE,
+    "OSQP_PRIMAL_INFEASIBLE_INACCURATE": PlanStatus.INFEASIBLE,
+    "OSQP_DUAL_INFEASIBLE": PlanStatus.FAILED,
+    "OSQP_DUAL_INFEASIBLE_INACCURATE": PlanStatus.FAILED,
+    "OSQP_MAX_ITER_REACHED": PlanStatus.FAILED,
+    "OSQP_TIME_LIMIT_REACHED": PlanStatus.FAILED,
+    "OSQP_NON_CVX": PlanStatus.FAILED,
+    "OSQP_SIGINT": PlanStatus.FAILED,
+    "OSQP_UNSOLVED": PlanStatus.FAILED,
+}
+"""All of OSQP's statuses; unknown ones count as FAILED."""
+
+
+def refusal(H: Array, f: Array, A: Array, lower: Array, upper: Array) -> QpSolution | None:
+    """Return the answer to a problem that no solver may see, or None.
+
+    DAQP calls problems with NaN or with crossed bounds solved.
+    """
+    numbers = float(f.sum()) + float(H.sum()) + float(A.sum())
+    if not (np.isfinite(numbers) and (lower < np.inf).all() and (upper > -np.inf).all()):
+        return QpSolution(status=PlanStatus.FAILED, x=None, iterations=0)
+    if not (lower <= upper).all():
+        return QpSolution(status=PlanStatus.INFEASIBLE, x=None, iterations=0)
+    return None
+
+
+class DaqpSolver:
+    """DAQP, a dual active-set method (Arnstrom, Bemporad, Axehill 2022)."""
+
+    def __init__(self) -> None:
+        self._daqp: Any = importlib.import_module("daqp")
+
+    def solve(self, H: Array, f: Array, A: Array, lower: Array, upper: Array, warm_start: Array | None) -> QpSolution:
+        """Return the minimiser; the meaning of the arguments is the interface's."""
+        refused = refusal(H, f, A, lower, upper)
+        if refused is not None:
+            return refused
+        sense = np.zeros(len(lower), dtype=np.int32)
+        x, _, flag, info = self._daqp.solve(H, f, A, upper, lower, sense, primal_start=warm_start)
+        return _solution(DAQP_STATUS.get(flag, PlanStatus.FAILED), x, int(info["iterations"]))
+
+
+class OsqpSolver:
+    """OSQP, an operator-splitting method (Stellato et al. 2020), with its polishing step."""
+
+    TOLERANCE = 1e-8
+    ITERATIONS_MAX = 20000
+
+    def __init__(self) -> None:
+        self._osqp: Any = importlib.import_module("osqp")
+        self._sparse: Any = importlib.import_module("scipy.sparse")
+
+    def solve(self, H: Array, f: Array, A: Array, lower: Array, upper: Array, warm_start: Array | None) -> QpSolution:
+        """Return the minimiser; the meaning of the arguments is the interface's."""
+        refused = refusal(H, f, A, lower, upper)
+        if refused is not None:
+            return refused
+        problem = self._osqp.OSQP()
+        problem.setup(
+            self._sparse.csc_matrix(np.triu(H)),
+            f,
+            self._sparse.csc_matrix(A),
+            lower,
+            upper,
+            verbose=False,
+            eps_abs=self.TOLERANCE,
+            eps_rel=self.TOLERANCE,
+            max_iter=self.ITERATIONS_MAX,
+            polishing=True,
+            adaptive_rho=True,
+        )
+        if warm_start is not None:
+            problem.warm_start(x=warm_start)
+        result = problem.solve(raise_error=False)
+        name = self._osqp.SolverStatus(result.info.status_val).name
+        return _solution(OSQP_STATUS.get(name, PlanStatus.FAILED), result.x, int(result.info.iter))
+
+
+def _solution(status: PlanStatus, x: Array, iterations: int) -> QpSolution:
+    """Return a solution whose `x` is there only if it may be used."""
+    if status is not PlanStatus.SOLVED:
+        return QpSolution(status=status, x=None, iterations=iterations)
+    if not np.isfinite(x).all():
+        return QpSolution(status=PlanStatus.FAILED, x=None, iterations=iterations)
+    return QpSolution(status=status, x=np.asarray(x, dtype=np.float64), iterations=iterations)
+
+
+def make_solver(kind: SolverKind) -> QpSolver:
+    """Return a solver; its library is imported only now."""
+    match kind:
+        case SolverKind.DAQP:
+            return DaqpSolver()
+        case SolverKind.OSQP:
+            return OsqpSolver()
