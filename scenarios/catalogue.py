@@ -1,0 +1,151 @@
+"""The scenarios by name: TOML files in `scenarios/catalogue`, one per track, and presets of what goes with it.
+
+A name is a track and its speed rounded down (`straight_5`), perhaps with presets (`straight_5+sensors=nominal`).
+A file of one's own has the same keys; `base` names a scenario to start from. A section is a preset's name, or a
+table of values, in which `preset` names what the values change.
+"""
+
+import difflib
+import math
+import tomllib
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any
+
+from link.errors import UserError
+from link.toml_config import merged, validated
+from scenarios.config import Scenario
+
+Table = dict[str, Any]
+_DEFAULT_PRESETS = {"sensors": "rtk", "wind": "calm", "link": "ideal", "vehicle": "car"}
+_PLAIN_OPTIONS = ("firmware", "airframe")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Entry:
+    """A scenario of the catalogue in one line."""
+
+    name: str
+    description: str
+
+
+def list_scenarios() -> list[Entry]:
+    """Return the catalogue's scenarios in the order of their names."""
+    return [Entry(name=name, description=table["description"]) for name, table in sorted(_scenarios().items())]
+
+
+def list_presets(section: str) -> list[str]:
+    """Return the names of the presets of `section`: sensors, wind, link or vehicle."""
+    return sorted(_presets(section))
+
+
+def load_scenario(name_or_path: str) -> Scenario:
+    """Return the scenario called `name_or_path`, or the one in that TOML file.
+
+    Raises:
+        UserError: no such scenario, preset or file, or a file that does not fit.
+    """
+    name, *options = name_or_path.split("+")
+    if name.endswith(".toml"):
+        name, options = name_or_path, []
+        table = {"name": Path(name).stem} | _file_table(Path(name))
+    else:
+        table = _named(name) | {"name": name_or_path}
+    for option in options:
+        table |= _option(option, name_or_path)
+    return validated(Scenario, _resolved(table, name_or_path), source=name_or_path)
+
+
+def _option(option: str, whole: str) -> Table:
+    section, equals, preset = option.partition("=")
+    if not equals or section not in {*_DEFAULT_PRESETS, *_PLAIN_OPTIONS}:
+        raise UserError(
+            f"{whole}: '{option}' is none of {', '.join((*_DEFAULT_PRESETS, *_PLAIN_OPTIONS))} with =PRESET"
+        )
+    return {section: preset}
+
+
+def _named(name: str) -> Table:
+    """Return the catalogue's table called `name`."""
+    try:
+        return _scenarios()[name]
+    except KeyError:
+        raise _unknown("scenario", name, list(_scenarios()), "; `scenarios list` shows all") from None
+
+
+def _unknown(what: str, name: str, known: list[str], hint: str = "") -> UserError:
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
+    return UserError(f"no {what} is called '{name}', the nearest is '{near[0]}'{hint}")
+
+
+@cache
+def _scenarios() -> dict[str, Table]:
+    """Return every scenario of the catalogue as its unresolved table, by name."""
+    tables = {
+        file.name.removesuffix(".toml"): _read(file) for file in _folder().iterdir() if file.name.endswith(".toml")
+    }
+    found: dict[str, Table] = {}
+    for track, table in tables.items():
+        whole = merged(tables[table["base"]], table) if "base" in table else table
+        found |= _at_speeds(track, {key: value for key, value in whole.items() if key != "base"})
+    return found
+
+
+def _at_speeds(track: str, table: Table) -> dict[str, Table]:
+    """Return the scenarios of one track, one for each of its speeds."""
+    speeds_m_s = table.pop("speeds_m_s", None)
+    if speeds_m_s is None:
+        return {track: table}
+    return {
+        f"{track}_{math.floor(speed_m_s)}": merged(
+            table,
+            {"description": f"{table['description']}, {speed_m_s:g} m/s", "track": {"speed_m_s": speed_m_s}},
+        )
+        for speed_m_s in speeds_m_s
+    }
+
+
+def _file_table(path: Path) -> Table:
+    """Return the table of a user's file, laid over its base."""
+    try:
+        table = _read(path)
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read ({error.strerror})") from None
+    except tomllib.TOMLDecodeError as error:
+        raise UserError(f"{path}: not valid TOML ({error})") from None
+    base = table.pop("base", None)
+    return table if base is None else merged(_named(str(base)), table)
+
+
+def _resolved(table: Table, source: str) -> Table:
+    """Return `table` with the presets' values in place of their names."""
+    return table | {section: _section(section, table.get(section), source) for section in _DEFAULT_PRESETS}
+
+
+def _section(section: str, value: object, source: str) -> Table:
+    if value is None:
+        value = _DEFAULT_PRESETS[section]
+    values = dict(value) if isinstance(value, dict) else {"preset": value}
+    preset = values.pop("preset", None)
+    if preset is None:
+        return values
+    presets = _presets(section)
+    if preset not in presets:
+        raise _unknown(f"preset of {section} ({source})", str(preset), list(presets))
+    return merged(presets[preset], values)
+
+
+@cache
+def _presets(section: str) -> dict[str, Table]:
+    return _read(_folder() / "presets" / f"{section}.toml")
+
+
+def _folder() -> Traversable:
+    return resources.files("scenarios") / "catalogue"
+
+
+def _read(file: Traversable | Path) -> Table:
+    return tomllib.loads(file.read_text(encoding="utf-8"))

@@ -1,0 +1,155 @@
+"""A scenario: everything about an experiment but its seed, validated once, each number with its unit.
+
+Presets and tracks live as TOML in `scenarios/catalogue`; the numbers of the sensor presets are the benchmark's.
+"""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from link.messages import PadGeometry, Vector3
+from link.toml_config import StrictModel
+from scenarios.track_config import NotNegative, Positive, TrackConfig
+
+Share = Annotated[float, Field(ge=0.0, le=1.0)]
+
+
+class DelayConfig(StrictModel):
+    """How late and how often samples arrive; a jitter beyond the period puts them out of order."""
+
+    rate_hz: Annotated[float, Field(gt=0.0, le=1000.0)]
+    delay_s: NotNegative = 0.0
+    jitter_s: NotNegative = 0.0  # evenly, to either side of the delay
+    loss: Share = 0.0
+
+
+class FixConfig(DelayConfig):
+    """A GNSS receiver's position: white noise and a first-order Gauss-Markov bias on each axis."""
+
+    white_m: NotNegative
+    bias_m: NotNegative = 0.0  # standard deviation
+    bias_tau_s: Positive = 60.0
+
+
+class VelocityConfig(DelayConfig):
+    """A GNSS receiver's velocity."""
+
+    white_m_s: NotNegative
+
+
+class ImuConfig(DelayConfig):
+    """Heading and yaw rate; a plain compass errs slowly, hence the Gauss-Markov part."""
+
+    heading_white_rad: NotNegative
+    heading_bias_rad: NotNegative = 0.0
+    heading_bias_tau_s: Positive = 60.0
+    yaw_rate_white_rad_s: NotNegative
+
+
+class PatternConfig(DelayConfig):
+    """A detector of the landing pattern, in a camera that looks down from the drone's centre."""
+
+    range_share: NotNegative = 0.01  # standard deviation on each axis, as a share of the range
+    white_m: NotNegative = 0.01  # and what comes on top
+    white_rad: NotNegative = 0.02  # on each axis of the pad's attitude
+    range_min_m: NotNegative = 0.3
+    range_max_m: Positive = 12.0
+    half_field_of_view_rad: Annotated[float, Field(gt=0.0, lt=1.5708)] = 0.6981  # 40 degrees
+    dropout_share_range: tuple[Share, Share] = (0.0, 0.0)  # drawn for each seed: of the time without sightings
+    dropout_mean_s: Positive = 0.5  # length of one dropout
+
+
+class ClockConfig(StrictModel):
+    """The vehicle's clock against the drone's; offset and drift are drawn evenly, to either side, for each seed."""
+
+    offset_max_s: Annotated[float, Field(ge=0.0, le=10.0)] = 0.0
+    drift_max: Annotated[float, Field(ge=0.0, le=1e-2)] = 0.0
+
+
+class OwnStateConfig(StrictModel):
+    """How well the autopilot knows its own state; all zero is the truth."""
+
+    position_white_m: NotNegative = 0.0
+    velocity_white_m_s: NotNegative = 0.0
+    origin_step_range_m: tuple[NotNegative, NotNegative] = (0.0, 0.0)  # one step of its origin in flight, drawn
+
+
+class SensorsConfig(StrictModel):
+    """The sensors on the vehicle and for the vehicle; None where there is none."""
+
+    fix: FixConfig
+    velocity: VelocityConfig | None = None
+    imu: ImuConfig | None = None
+    pattern: PatternConfig | None = None
+    frame_offset_m: NotNegative = 0.0  # between the two receivers' frames, horizontal, in a drawn direction
+    clock: ClockConfig = ClockConfig()
+    own_state: OwnStateConfig = OwnStateConfig()
+
+
+class WindConfig(StrictModel):
+    """Mean wind from a direction (drawn for each seed where None) and its turbulence (MIL-F-8785C)."""
+
+    mean_m_s: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0
+    from_rad: float | None = None  # mathematical angle, from East counter-clockwise, that the wind blows from
+    turbulence: Literal["none", "light", "moderate", "severe"] = "none"
+    gust_m_s: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0  # of one 1-cosine gust
+
+
+class ChannelConfig(StrictModel):
+    """One direction of a link."""
+
+    delay_s: NotNegative = 0.0
+    jitter_s: NotNegative = 0.0
+    loss: Share = 0.0
+    outage_range_s: tuple[NotNegative, NotNegative] = (0.0, 0.0)  # length of one outage, drawn
+
+
+class LinkConfig(StrictModel):
+    """The two links of the companion."""
+
+    mavlink: ChannelConfig = ChannelConfig()
+    zenoh: ChannelConfig = ChannelConfig()
+
+
+class VehicleConfig(StrictModel):
+    """The vehicle's body and the pad in the middle of its roof; V begins on the road under the body's middle."""
+
+    length_m: Positive = 4.2
+    width_m: Positive = 1.8
+    roof_height_m: NotNegative = 1.5  # MBZIRC 2017
+    pad_size_m: tuple[Positive, Positive] = (1.5, 1.5)  # MBZIRC 2017
+    antenna_flu_m: Vector3 = (-1.2, 0.5, 1.6)
+
+    @property
+    def pad(self) -> PadGeometry:
+        """The pad as the vehicle tells it."""
+        x_m, y_m, z_m = self.antenna_flu_m
+        lever_m = (-x_m, -y_m, self.roof_height_m - z_m)
+        return PadGeometry(size_m=self.pad_size_m, height_m=self.roof_height_m, antenna_to_pad_m=lever_m)
+
+
+class DatumConfig(StrictModel):
+    """The origin of W on the WGS 84 ellipsoid; by default on the Tempelhofer Feld, a former airfield in Berlin."""
+
+    latitude_deg: Annotated[float, Field(ge=-90.0, le=90.0)] = 52.4733
+    longitude_deg: Annotated[float, Field(ge=-180.0, le=180.0)] = 13.4017
+    altitude_m: Annotated[float, Field(ge=-500.0, le=9000.0)] = 89.0
+
+
+class Scenario(StrictModel):
+    """One experiment; a seed makes it a run."""
+
+    name: str
+    description: str
+    track: TrackConfig
+    sensors: SensorsConfig
+    wind: WindConfig = WindConfig()
+    link: LinkConfig = LinkConfig()
+    vehicle: VehicleConfig = VehicleConfig()
+    airframe: Literal["report", "benchmark"] = "benchmark"
+    firmware: Literal["px4", "ardupilot"] = "px4"
+    datum: DatumConfig = DatumConfig()
+    drone_start_enu_m: Vector3 = (0.0, 0.0, 0.0)  # of the point on the road that it stands on
+    waiting_point_enu_m: Vector3 = (0.0, 0.0, 5.0)  # 5 m above the road; source report, section "Task"
+    fence_radius_m: Positive = 3000.0  # horizontal, about the datum
+    time_limit_s: Positive = 120.0

@@ -1,0 +1,173 @@
+"""Roads as chains of pieces of constant curvature, evaluated in closed form at any arc length.
+
+State of a point on a road: position x, y (m, W), heading (rad, counter-clockwise from East), curvature (1/m,
+positive to the left). Arc length `s_m` is horizontal and starts at the road's first point. A straight line is a
+piece of zero curvature, a circle's arc one piece, any smooth curve many short ones.
+"""
+
+import math
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+Point = tuple[float, float]
+_STRAIGHT_PER_M = 1e-9  # below this curvature the chord and the arc agree to double precision
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Piece:
+    """A stretch of constant curvature that starts at `s_m` in `x_m`, `y_m` with `heading_rad`."""
+
+    s_m: float
+    x_m: float
+    y_m: float
+    heading_rad: float
+    curvature_per_m: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RoadPoint:
+    """Where the road is and how it bends; the height is `grade` integrated, with its two derivatives by arc length."""
+
+    x_m: float
+    y_m: float
+    z_m: float
+    heading_rad: float
+    curvature_per_m: float
+    grade: float
+    grade_change_per_m: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Slope:
+    """A grade (height per horizontal length) that sets in linearly over `transition_m` from `start_s_m` on."""
+
+    grade: float = 0.0
+    start_s_m: float = 0.0
+    transition_m: float = 10.0
+
+    def at(self, s_m: float) -> tuple[float, float, float]:
+        """Return height (m), grade and change of grade (1/m) at arc length `s_m`."""
+        along_m = s_m - self.start_s_m
+        if along_m <= 0.0 or self.grade == 0.0:
+            return 0.0, 0.0, 0.0
+        if along_m < self.transition_m:
+            change_per_m = self.grade / self.transition_m
+            return 0.5 * change_per_m * along_m**2, change_per_m * along_m, change_per_m
+        return self.grade * (along_m - 0.5 * self.transition_m), self.grade, 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Road:
+    """A road of `length_m`; a closed one repeats from `loop_s_m`, an open one goes on straight behind its end.
+
+    Attributes:
+        pieces: in the order of travel.
+        starts_m: the pieces' arc lengths, for the search.
+        length_m: arc length at the end.
+        loop_s_m: where a closed road's loop begins; None for an open road.
+        slope: its height.
+    """
+
+    pieces: tuple[Piece, ...]
+    starts_m: tuple[float, ...]
+    length_m: float
+    loop_s_m: float | None = None
+    slope: Slope = Slope()
+
+    def at(self, s_m: float) -> RoadPoint:
+        """Return the road at arc length `s_m` (m)."""
+        on_plan_m = s_m
+        if self.loop_s_m is not None and s_m > self.length_m:
+            on_plan_m = self.loop_s_m + (s_m - self.loop_s_m) % (self.length_m - self.loop_s_m)
+        piece = self.pieces[max(0, bisect_right(self.starts_m, on_plan_m) - 1)]
+        if on_plan_m > self.length_m:
+            end_x_m, end_y_m, heading_rad = advance(piece, self.length_m - piece.s_m)
+            piece = Piece(s_m=self.length_m, x_m=end_x_m, y_m=end_y_m, heading_rad=heading_rad, curvature_per_m=0.0)
+        x_m, y_m, heading_rad = advance(piece, on_plan_m - piece.s_m)
+        z_m, grade, grade_change_per_m = self.slope.at(s_m)
+        return RoadPoint(
+            x_m=x_m,
+            y_m=y_m,
+            z_m=z_m,
+            heading_rad=heading_rad,
+            curvature_per_m=piece.curvature_per_m,
+            grade=grade,
+            grade_change_per_m=grade_change_per_m,
+        )
+
+
+def advance(piece: Piece, length_m: float) -> tuple[float, float, float]:
+    """Return x, y (m) and heading (rad) `length_m` behind the start of `piece`."""
+    curvature_per_m = piece.curvature_per_m
+    if abs(curvature_per_m) < _STRAIGHT_PER_M:
+        return (
+            piece.x_m + length_m * math.cos(piece.heading_rad),
+            piece.y_m + length_m * math.sin(piece.heading_rad),
+            piece.heading_rad,
+        )
+    heading_rad = piece.heading_rad + curvature_per_m * length_m
+    return (
+        piece.x_m + (math.sin(heading_rad) - math.sin(piece.heading_rad)) / curvature_per_m,
+        piece.y_m - (math.cos(heading_rad) - math.cos(piece.heading_rad)) / curvature_per_m,
+        heading_rad,
+    )
+
+
+def road_of(
+    stretches: Sequence[tuple[float, float]],
+    *,
+    start_m: Point = (0.0, 0.0),
+    heading_rad: float = 0.0,
+    loop_from: int | None = None,
+    slope: Slope | None = None,
+) -> Road:
+    """Return the smooth road made of `stretches`.
+
+    Args:
+        stretches: (length in m, curvature in 1/m) of each piece.
+        start_m: x, y of the first point in W.
+        heading_rad: direction of travel there.
+        loop_from: index of the piece that follows the last one again on a closed road; None for an open road.
+        slope: its height, None for a flat road.
+
+    Raises:
+        ValueError: no stretch, or one without length.
+    """
+    if not stretches or any(length_m <= 0.0 for length_m, _ in stretches):
+        raise ValueError(f"a road needs stretches of positive length, not {list(stretches)}")
+    pieces: list[Piece] = []
+    s_m, (x_m, y_m), direction_rad = 0.0, start_m, heading_rad
+    for length_m, curvature_per_m in stretches:
+        piece = Piece(s_m=s_m, x_m=x_m, y_m=y_m, heading_rad=direction_rad, curvature_per_m=curvature_per_m)
+        pieces.append(piece)
+        x_m, y_m, direction_rad = advance(piece, length_m)
+        s_m += length_m
+    return Road(
+        pieces=tuple(pieces),
+        starts_m=tuple(piece.s_m for piece in pieces),
+        length_m=s_m,
+        loop_s_m=None if loop_from is None else pieces[loop_from].s_m,
+        slope=slope or Slope(),
+    )
+
+
+def polyline(waypoints_m: Sequence[Point]) -> Road:
+    """Return the road of straight lines through `waypoints_m`; its heading jumps at the corners.
+
+    Raises:
+        ValueError: fewer than two waypoints, or two equal neighbours.
+    """
+    pieces: list[Piece] = []
+    s_m = 0.0
+    for (x_m, y_m), (next_x_m, next_y_m) in pairwise(waypoints_m):
+        heading_rad = math.atan2(next_y_m - y_m, next_x_m - x_m)
+        pieces.append(Piece(s_m=s_m, x_m=x_m, y_m=y_m, heading_rad=heading_rad, curvature_per_m=0.0))
+        length_m = math.hypot(next_x_m - x_m, next_y_m - y_m)
+        if length_m == 0.0:
+            raise ValueError(f"waypoint ({x_m}, {y_m}) m is there twice")
+        s_m += length_m
+    if not pieces:
+        raise ValueError(f"a road needs two waypoints, not {list(waypoints_m)}")
+    return Road(pieces=tuple(pieces), starts_m=tuple(piece.s_m for piece in pieces), length_m=s_m)

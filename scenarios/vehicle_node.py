@@ -1,0 +1,96 @@
+"""The simulated vehicle with its sensors, without I/O: time and the drone's truth in, Zenoh payloads out.
+
+The `ground-vehicle` program, the one-process world and the lockstep campaigns all step this one node.
+"""
+
+import math
+from dataclasses import dataclass
+
+from link.cdr import encode, encoding_of
+from link.geodesy import Datum
+from link.keys import Keys
+from link.messages import BodyTruth, Fix, FixVelocity, PadGeometry, PadSighting, VehicleImu
+from scenarios.config import DatumConfig, Scenario
+from scenarios.noise import named_rng
+from scenarios.sensors import Mounting, SensorSuite
+from scenarios.tracks import course_of
+from scenarios.vehicle import VehicleInputs, VehicleMemory, VehiclePlan, VehicleState, vehicle_step, vehicle_truth
+
+TRUTH_PERIOD_NS = 10_000_000  # 100 Hz, what the score asks for
+STEP_PERIOD_NS = 10_000_000  # the fastest sensor of the catalogue takes 100 samples a second
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Publication:
+    """A payload, the key it goes to and its encoding."""
+
+    key: str
+    payload: bytes
+    encoding: str
+
+
+class VehicleNode:
+    """The vehicle of a scenario and a seed.
+
+    Attributes:
+        pad: what the `pad` queryable tells.
+        plan: what the vehicle does.
+        memory: what has happened to it.
+        state: where it is, None before the first step.
+    """
+
+    def __init__(self, scenario: Scenario, seed: int, keys: Keys) -> None:
+        self.pad: PadGeometry = scenario.vehicle.pad
+        self.plan = plan_of(scenario, seed)
+        self.memory = VehicleMemory()
+        self.state: VehicleState | None = None
+        mounting = Mounting(antenna_flu_m=scenario.vehicle.antenna_flu_m, pad_height_m=scenario.vehicle.roof_height_m)
+        self._sensors = SensorSuite(scenario.sensors, seed, mounting=mounting, datum=datum_of(scenario.datum))
+        self._keys = {
+            Fix: keys.fix,
+            FixVelocity: keys.fix_velocity,
+            VehicleImu: keys.imu,
+            PadSighting: keys.pad_pose,
+            BodyTruth: keys.vehicle_truth,
+        }
+        self._encodings = {kind: encoding_of(kind) for kind in self._keys}
+        self._truth_due_ns = 0
+
+    def step(self, t_ns: int, drone: BodyTruth | None) -> list[Publication]:
+        """Return what is to be published at `t_ns`, truth first; a time that has not advanced yields nothing.
+
+        Args:
+            t_ns: the present; every 10 ms does for all sensors of the catalogue.
+            drone: the newest truth of the drone, None before there is one.
+        """
+        if self.state is not None and t_ns <= self.state.t_ns:
+            return []
+        self.memory, self.state = vehicle_step(self.memory, VehicleInputs(t_ns=t_ns, drone=drone), self.plan)
+        publications = [self._published(sample) for sample in self._sensors.step(t_ns, self.state, drone)]
+        if t_ns < self._truth_due_ns:
+            return publications
+        self._truth_due_ns = max(self._truth_due_ns + TRUTH_PERIOD_NS, t_ns + 1)
+        return [self._published(vehicle_truth(self.state)), *publications]
+
+    def _published(self, message: Fix | FixVelocity | VehicleImu | PadSighting | BodyTruth) -> Publication:
+        kind = type(message)
+        return Publication(key=self._keys[kind], payload=encode(message), encoding=self._encodings[kind])
+
+
+def plan_of(scenario: Scenario, seed: int) -> VehiclePlan:
+    """Return what the vehicle of `scenario` does with `seed`."""
+    return VehiclePlan(
+        course=course_of(scenario.track, named_rng(seed, "track")),
+        departure=scenario.track.departure,
+        waiting_point_enu_m=scenario.waiting_point_enu_m,
+        roof_height_m=scenario.vehicle.roof_height_m,
+    )
+
+
+def datum_of(config: DatumConfig) -> Datum:
+    """Return the origin of W."""
+    return Datum(
+        latitude_rad=math.radians(config.latitude_deg),
+        longitude_rad=math.radians(config.longitude_deg),
+        altitude_m=config.altitude_m,
+    )
