@@ -1,0 +1,190 @@
+from hypothesis import given
+from hypothesis import strategies as st
+
+from link.mavlink.codec import MavlinkCodec
+from link.mavlink.dialect import Message, mavlink
+from link.mavlink.events import (
+    AutopilotRestarted,
+    CommandTimedOut,
+    LinkFound,
+    LinkLost,
+    LinkRegained,
+    MessageReceived,
+)
+from link.mavlink.session import MavlinkSession
+from link.mavlink.session_config import SessionConfig
+from tests.link.mavlink.fake_autopilot import BOOTED_NS, MS, START_NS, UTC_AHEAD_NS, FakeAutopilot, Pair, S, of_kind
+
+POSITION_ID = mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED
+
+
+def pair(drift: float = 0.0) -> Pair:
+    return Pair(session=MavlinkSession(1), autopilot=FakeAutopilot(drift=drift))
+
+
+def heartbeat(kind: int, autopilot: int) -> Message:
+    return mavlink.MAVLink_heartbeat_message(kind, autopilot, 0, 0, 4, 3)
+
+
+def ack(target_system: int, target_component: int) -> Message:
+    return mavlink.MAVLink_command_ack_message(400, 0, 0, 0, target_system, target_component)
+
+
+def test_our_heartbeat_goes_out_once_a_second_as_an_onboard_controller() -> None:
+    run = pair()
+    run.run(10.0)
+    beats = run.autopilot.of_type("HEARTBEAT")
+    assert len(beats) == 10
+    assert {(one.type, one.autopilot, one.get_srcSystem(), one.get_srcComponent()) for one in beats} == {
+        (18, 8, 1, 191)
+    }
+
+
+def test_the_first_autopilot_heartbeat_is_adopted_once() -> None:
+    run = pair()
+    (found,) = of_kind(run.run(5.0), LinkFound)
+    assert (found.system_id, found.component_id, found.autopilot, found.vehicle_type) == (1, 1, 12, 2)
+    assert run.session.link_up
+
+
+def test_ground_stations_and_companions_are_not_adopted() -> None:
+    session = MavlinkSession(1)
+    for sender, message in (
+        (MavlinkCodec(255, 190), heartbeat(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID)),
+        (MavlinkCodec(1, 154), heartbeat(mavlink.MAV_TYPE_GIMBAL, mavlink.MAV_AUTOPILOT_PX4)),
+        (MavlinkCodec(2, 1), heartbeat(mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_INVALID)),
+    ):
+        assert session.receive(sender.encode(message), START_NS) == []
+    assert session.statistics.filtered_messages == 3
+
+
+def test_only_the_chosen_system_is_heard() -> None:
+    session = MavlinkSession(4, target_system_id=4)
+    beat = heartbeat(mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4)
+    assert session.receive(MavlinkCodec(1, 1).encode(beat), START_NS) == []
+    assert len(of_kind(session.receive(MavlinkCodec(4, 1).encode(beat), START_NS), LinkFound)) == 1
+
+
+def test_messages_for_others_are_filtered_and_broadcasts_are_not() -> None:
+    session, sender = MavlinkSession(1, target_system_id=1), MavlinkCodec(1, 1)
+    heard = {
+        target: bool(session.receive(sender.encode(ack(*target)), START_NS))
+        for target in ((1, 191), (0, 0), (1, 0), (255, 190), (1, 154))
+    }
+    assert heard == {(1, 191): True, (0, 0): True, (1, 0): True, (255, 190): False, (1, 154): False}
+
+
+def test_silence_of_three_seconds_is_a_lost_link_and_its_end_a_regained_one() -> None:
+    run = pair()
+    run.run(5.0)
+    run.autopilot.mute = True
+    (lost,) = of_kind(run.run(10.0), LinkLost)
+    assert 3 * S < lost.t_ns - lost.last_heard_ns <= 3 * S + 5 * MS
+    assert not run.session.link_up
+    run.autopilot.mute = False
+    (regained,) = of_kind(run.run(2.0), LinkRegained)
+    assert 9 * S < regained.silence_ns < 12 * S
+    assert run.session.link_up
+
+
+def test_clocks_of_a_running_link_map_to_utc_within_2_ms_at_any_drift() -> None:
+    for drift in (-0.025, 0.025):
+        run = pair(drift)
+        run.run(8.0)
+        clock = run.session.clock
+        true_utc_ns = run.t_ns + UTC_AHEAD_NS
+        assert abs(clock.local_to_utc_ns(run.t_ns) - true_utc_ns) < 2 * MS
+        assert abs((clock.boot_to_utc_ns(run.autopilot.boot_ns(run.t_ns)) or 0) - true_utc_ns) < 2 * MS
+
+
+def test_questions_for_the_time_come_quickly_at_first() -> None:
+    run = pair()
+    run.run(1.95)
+    first = len(run.autopilot.of_type("TIMESYNC"))
+    run.run(10.0)
+    assert first == 20
+    assert len(run.autopilot.of_type("TIMESYNC")) - first == 20
+
+
+def test_the_autopilots_question_for_the_time_is_answered() -> None:
+    run = pair()
+    run.run(1.0)
+    run.autopilot.send(mavlink.MAVLink_timesync_message(tc1=0, ts1=123_456))
+    run.run(0.1)
+    (answer,) = (one for one in run.autopilot.of_type("TIMESYNC") if one.ts1 == 123_456)
+    assert abs(answer.tc1 - run.t_ns) < S
+
+
+def test_a_restart_is_noticed_and_streams_and_clock_are_set_up_anew() -> None:
+    run = pair()
+    run.session.request_interval(POSITION_ID, 50.0, run.t_ns)
+    run.run(4.0)
+    run.autopilot.restart(run.t_ns)
+    restarted_ns = run.t_ns
+    events = run.run(6.0)
+    (restart,) = of_kind(events, AutopilotRestarted)
+    assert restart.t_ns - restarted_ns < 3 * S
+    assert restart.boot_before_ns > BOOTED_NS > restart.boot_now_ns
+    assert run.autopilot.intervals_ns == {POSITION_ID: 20 * MS}
+    assert abs((run.session.clock.local_to_boot_ns(run.t_ns) or 0) - run.autopilot.boot_ns(run.t_ns)) < 2 * MS
+
+
+def test_a_command_under_way_does_not_outlive_a_restart() -> None:
+    run = pair()
+    run.autopilot.results[400] = ()
+    run.session.request_interval(POSITION_ID, 50.0, run.t_ns)
+    run.run(4.0)
+    run.autopilot.restart(run.t_ns)
+    ticket = run.session.command(400, (1.0,), run.t_ns, attempts=100)
+    events = run.run(4.0)
+    assert [one.ticket for one in of_kind(events, CommandTimedOut)] == [ticket]
+    assert of_kind(events, CommandTimedOut)[0].t_ns == of_kind(events, AutopilotRestarted)[0].t_ns
+
+
+def test_a_few_late_messages_are_no_restart() -> None:
+    session, sender = MavlinkSession(1, target_system_id=1), MavlinkCodec(1, 1)
+    events = []
+    for boot_ms in (60_000, 58_000, 58_100, 60_050, 57_900, 60_100):
+        message = mavlink.MAVLink_local_position_ned_message(boot_ms, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        events += session.receive(sender.encode(message), START_NS)
+    assert [type(one) for one in events] == [MessageReceived] * 6
+
+
+def test_input_is_recorded_for_all_senders_when_asked_for() -> None:
+    session = MavlinkSession(1, config=SessionConfig(records_input=True))
+    frame = MavlinkCodec(255, 190).encode(heartbeat(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID))
+    session.receive(frame, START_NS)
+    assert session.take_input() == [frame]
+
+
+@given(st.lists(st.binary(max_size=300), max_size=6), st.integers(0, 2**31))
+def test_random_and_spoiled_bytes_never_raise(chunks: list[bytes], place: int) -> None:
+    run = pair()
+    run.run(0.5)
+    stream = bytearray(b"".join(run.autopilot.codec.encode(run.autopilot.message(n, run.t_ns)) for n in (0, 2, 31, 32)))
+    stream[place % len(stream)] ^= 1 << place % 8
+    for data in (*chunks, bytes(stream)):
+        run.session.receive(data, run.t_ns)
+        run.session.poll(run.t_ns)
+    assert run.session.statistics.codec.bytes_received > len(stream)
+
+
+@given(
+    st.sampled_from(["timesync", "system_time", "command_ack", "param_value"]),
+    st.integers(0, 2**63 - 1),
+    st.integers(0, 2**31 - 1),
+)
+def test_senseless_values_in_right_frames_never_raise(kind: str, long: int, short: int) -> None:
+    run = pair()
+    run.run(0.5)
+    message = {
+        "timesync": lambda: mavlink.MAVLink_timesync_message(tc1=long, ts1=run.t_ns),
+        "system_time": lambda: mavlink.MAVLink_system_time_message(long, short),
+        "command_ack": lambda: mavlink.MAVLink_command_ack_message(short % 65536, short % 256),
+        "param_value": lambda: mavlink.MAVLink_param_value_message(b"X", float("nan"), short % 256, 1, 0),
+    }[kind]()
+    run.session.read_parameter("X", run.t_ns)
+    events = run.session.receive(run.autopilot.codec.encode(message), run.t_ns)
+    assert [one.message.get_type() for one in of_kind(events, MessageReceived)] == [kind.upper()]
+    utc_ns = run.session.clock.local_to_utc_ns(run.t_ns)
+    assert isinstance(run.session.clock.utc_to_local_ns(utc_ns), int)

@@ -1,0 +1,42 @@
+import struct
+from pathlib import Path
+
+import pytest
+from pymavlink import mavutil
+
+from link.errors import UserError
+from link.mavlink.codec import MavlinkCodec
+from link.mavlink.dialect import mavlink
+from link.mavlink.tlog import TlogWriter
+
+T_NS = 1_795_220_114_620_015_999
+
+
+def test_a_recording_is_read_back_by_mavutil_in_both_directions(tmp_path: Path) -> None:
+    path = tmp_path / "run.tlog"
+    autopilot, companion = MavlinkCodec(1, 1), MavlinkCodec(1, 191)
+    with TlogWriter(path) as tlog:
+        for k in range(5):
+            beat = mavlink.MAVLink_heartbeat_message(2, 12, 0, k, 4, 3)
+            tlog.write(autopilot.encode(beat), T_NS + 2 * k * 1_000_000)
+            tlog.write(companion.encode(mavlink.MAVLink_timesync_message(0, k + 1)), T_NS + (2 * k + 1) * 1_000_000)
+    log = mavutil.mavlink_connection(str(path))
+    read = [log.recv_msg() for _ in range(10)]
+    assert log.recv_msg() is None
+    log.close()
+    assert [one.get_srcComponent() for one in read] == [1, 191] * 5
+    assert [one.custom_mode for one in read[::2]] == list(range(5))
+    for k, message in enumerate(read):
+        assert message._timestamp == pytest.approx((T_NS // 1000 + 1000 * k) / 1e6, abs=1e-6)  # noqa: SLF001
+
+
+def test_times_are_whole_microseconds_big_endian_before_the_frame(tmp_path: Path) -> None:
+    path = tmp_path / "run.tlog"
+    with TlogWriter(path) as tlog:
+        tlog.write(b"frame", T_NS)
+    assert path.read_bytes() == struct.pack(">Q", 1_795_220_114_620_015) + b"frame"
+
+
+def test_a_place_that_cannot_be_written_is_one_clear_line(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match=r"no/run\.tlog: cannot be written"):
+        TlogWriter(tmp_path / "no" / "run.tlog")
