@@ -1,0 +1,1 @@
+"""The autopilot firmwares that can be stood in for, each as data."""

@@ -1,0 +1,18 @@
+"""Changing the mode: the table is asked, and a new mode begins where the drone is."""
+
+from dataclasses import replace
+
+from sim_autopilot.flight import begin
+from sim_autopilot.memory import AutopilotMemory
+from sim_autopilot.modes import Event, react
+
+
+def change_mode(memory: AutopilotMemory, event: Event) -> AutopilotMemory:
+    """Return the memory after `event`; a mode that goes on keeps what it remembers."""
+    modes = react(memory.modes, event)
+    if modes == memory.modes:
+        return memory
+    if modes.mode is memory.modes.mode:
+        return replace(memory, modes=modes)
+    flight = begin(modes.mode, memory.now, memory.home_enu_m, memory.settings)
+    return replace(memory, modes=modes, flight=flight)

@@ -1,0 +1,82 @@
+"""The autopilot's parameters: a fixed list with ranges, values that can be set, and their way over MAVLink."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from link.mavlink.dialect import Message, mavlink
+from link.mavlink.parameters import NAME_LENGTH_MAX, parameter_on_wire, parameter_value
+
+Values = Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameter:
+    """A parameter of the firmware, in the firmware's own unit; an `int` default makes it an integer."""
+
+    name: str
+    default: float | int
+    lowest: float
+    highest: float
+
+    @property
+    def is_integer(self) -> bool:
+        """Whether it travels as a 32-bit integer."""
+        return isinstance(self.default, int)
+
+    @property
+    def mavlink_type(self) -> int:
+        """Its MAV_PARAM_TYPE."""
+        return int(mavlink.MAV_PARAM_TYPE_INT32 if self.is_integer else mavlink.MAV_PARAM_TYPE_REAL32)
+
+
+def default_values(parameters: tuple[Parameter, ...], overrides: Values) -> Values:
+    """Return every parameter's value: its default, or what `overrides` says.
+
+    Raises:
+        ValueError: an override names no parameter or is out of its range.
+    """
+    values = {p.name: float(p.default) for p in parameters}
+    by_name = {p.name: p for p in parameters}
+    for name, value in overrides.items():
+        if name not in by_name:
+            raise ValueError(f"no parameter {name}; there are {', '.join(values)}")
+        parameter = by_name[name]
+        if not _is_allowed(parameter, value):
+            raise ValueError(f"{name} = {value} is not between {parameter.lowest} and {parameter.highest}")
+        values[name] = float(value)
+    return values
+
+
+def parameter_message(parameters: tuple[Parameter, ...], index: int, values: Values, autopilot_id: int) -> Message:
+    """Return the PARAM_VALUE of the parameter at `index`, encoded as the MAV_AUTOPILOT `autopilot_id` does it."""
+    parameter = parameters[index]
+    kind = parameter.mavlink_type
+    wire = parameter_on_wire(values[parameter.name], kind, autopilot_id)
+    return mavlink.MAVLink_param_value_message(parameter.name.encode(), wire, kind, len(parameters), index)
+
+
+def find_index(parameters: tuple[Parameter, ...], name: str, index: int = -1) -> int | None:
+    """Return where a parameter is, by `index` or, where that is -1, by `name`; None for one that does not exist."""
+    if index >= 0:
+        return index if index < len(parameters) else None
+    wanted = name[:NAME_LENGTH_MAX]
+    return next((i for i, parameter in enumerate(parameters) if parameter.name == wanted), None)
+
+
+def values_after_set(
+    parameters: tuple[Parameter, ...], index: int, values: Values, message: Message, autopilot_id: int
+) -> Values:
+    """Return the values after a PARAM_SET; one of the wrong type, not finite or out of range changes nothing."""
+    parameter = parameters[index]
+    if message.param_type != parameter.mavlink_type:
+        return values
+    value = parameter_value(message, autopilot_id)
+    if value is None or not _is_allowed(parameter, value):
+        return values
+    return {**values, parameter.name: float(value)}
+
+
+def _is_allowed(parameter: Parameter, value: float) -> bool:
+    fits = not parameter.is_integer or float(value).is_integer()
+    return math.isfinite(value) and fits and parameter.lowest <= value <= parameter.highest

@@ -1,0 +1,56 @@
+"""The drone as plain numbers at one instant: what handlers and telemetry read, so that arrays are unpacked once."""
+
+from dataclasses import dataclass
+from math import hypot
+
+from link.frames import yaw_of
+from link.messages import Quaternion, Vector3
+from sim_autopilot.data import PlantState, Surface
+from sim_autopilot.physics.airframe import Airframe
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Snapshot:
+    """The drone at `t_ns`, `boot_ns` after the autopilot's start; W is ENU about the datum, B is FLU.
+
+    `thrust_share` is the rotors' thrust over the weight.
+    """
+
+    t_ns: int
+    boot_ns: int
+    position_enu_m: Vector3
+    velocity_enu_m_s: Vector3
+    orientation_wxyz: Quaternion
+    angular_velocity_flu_rad_s: Vector3
+    specific_force_flu_m_s2: Vector3
+    yaw_rad: float
+    thrust_share: float
+    touching: bool
+
+    @property
+    def speed_m_s(self) -> float:
+        """Horizontal speed over ground."""
+        return hypot(self.velocity_enu_m_s[0], self.velocity_enu_m_s[1])
+
+
+def take_snapshot(state: PlantState, airframe: Airframe, boot_ns: int) -> Snapshot:
+    """Return `state` as plain numbers."""
+    px, py, pz = state.position_enu_m.tolist()
+    vx, vy, vz = state.velocity_enu_m_s.tolist()
+    w, x, y, z = state.orientation_wxyz.tolist()
+    p, q, r = state.angular_velocity_flu_rad_s.tolist()
+    fx, fy, fz = state.specific_force_flu_m_s2.tolist()
+    a, b, c, d = state.rotor_speed_rad_s.tolist()
+    thrust_n = airframe.thrust_coefficient_n_s2 * (a * a + b * b + c * c + d * d)
+    return Snapshot(
+        t_ns=state.t_ns,
+        boot_ns=boot_ns,
+        position_enu_m=(px, py, pz),
+        velocity_enu_m_s=(vx, vy, vz),
+        orientation_wxyz=(w, x, y, z),
+        angular_velocity_flu_rad_s=(p, q, r),
+        specific_force_flu_m_s2=(fx, fy, fz),
+        yaw_rad=yaw_of((w, x, y, z)),
+        thrust_share=thrust_n / airframe.weight_n,
+        touching=state.surface is not Surface.NONE,
+    )

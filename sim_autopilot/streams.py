@@ -1,0 +1,61 @@
+"""Which messages are due: each stream has an interval, kept exactly on average on the step's time grid."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+_NS_PER_S = 1_000_000_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stream:
+    """A message that can be sent unasked: `rate_hz` by default (0 is off), from `from_s` after boot on."""
+
+    message_id: int
+    rate_hz: float = 0.0
+    from_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Streams:
+    """The streams that run, by message id, in nanoseconds since boot; the mappings are never written in place."""
+
+    interval_ns: Mapping[int, int]
+    next_ns: Mapping[int, int]
+
+
+def default_streams(streams: Iterable[Stream]) -> Streams:
+    """Return the streams as they are at boot."""
+    running = [stream for stream in streams if stream.rate_hz > 0.0]
+    return Streams(
+        interval_ns={stream.message_id: round(_NS_PER_S / stream.rate_hz) for stream in running},
+        next_ns={stream.message_id: 0 for stream in running},
+    )
+
+
+def with_interval(streams: Streams, message_id: int, interval_ns: int | None, boot_ns: int) -> Streams:
+    """Return the streams with `message_id` every `interval_ns` from now on, or stopped where that is None."""
+    intervals, following = dict(streams.interval_ns), dict(streams.next_ns)
+    if interval_ns is None:
+        intervals.pop(message_id, None)
+        following.pop(message_id, None)
+    else:
+        intervals[message_id] = interval_ns
+        following[message_id] = boot_ns
+    return Streams(interval_ns=intervals, next_ns=following)
+
+
+def due_messages(streams: Streams, boot_ns: int) -> tuple[Streams, list[int]]:
+    """Return the ids whose time has come by `boot_ns`, each at most once, and the streams with their next times.
+
+    A next time follows from the last one, not from now, so an interval that is no multiple of the step is kept on
+    average; after a stall longer than an interval the missed messages are not made up for.
+    """
+    due = [message_id for message_id, next_ns in streams.next_ns.items() if next_ns <= boot_ns]
+    if not due:
+        return streams, due
+    following = dict(streams.next_ns)
+    for message_id in due:
+        interval_ns = streams.interval_ns[message_id]
+        next_ns = following[message_id] + interval_ns
+        following[message_id] = next_ns if next_ns > boot_ns - interval_ns else boot_ns + interval_ns
+    return Streams(interval_ns=streams.interval_ns, next_ns=following), due
