@@ -1,0 +1,109 @@
+"""The estimators' numbers, each with its unit in its name and where it comes from.
+
+"Measured" stands for: chosen by the root mean square error over the benchmark's tracks with its `nominal` and
+`degraded` sensors, as `tests/companion/estimation/driving.py` simulates them.
+"""
+
+from enum import Enum
+from typing import Annotated
+
+from pydantic import Field
+
+from link.toml_config import StrictModel
+
+Positive = Annotated[float, Field(gt=0.0, le=1e4)]
+NotNegative = Annotated[float, Field(ge=0.0, le=1e4)]
+
+
+class EstimatorKind(Enum):
+    """Which estimator of the ground vehicle is used."""
+
+    LKF_REPORT = "lkf_report"  # the source report's linear filter with its own numbers
+    LKF = "lkf"  # the same model with white jerk, velocity and the sensors' own covariances
+    UKF = "ukf"  # car-like, after Baca et al. 2019
+    IMM = "imm"  # two interacting turning models, with the offset between the receivers' frames
+
+
+class BufferConfig(StrictModel):
+    """How late a measurement may come and when it is an outlier."""
+
+    keep_s: Positive = 1.5  # three times the slowest link of the benchmark (300 ms + 200 ms)
+    gate_probability: Annotated[float, Field(gt=0.5, lt=1.0)] | None = 0.999999  # None gates nothing
+    recover_after_s: Positive = 0.5  # of nothing but rejections of one quantity
+    late_in_a_row_max: Annotated[int, Field(ge=1, le=10_000)] = 20  # then the clock is taken to have jumped
+
+
+class LkfConfig(StrictModel):
+    """The linear filter with constant acceleration per axis."""
+
+    jerk_psd_m2_s5: Positive = 6.0  # white jerk, per horizontal axis; measured
+    vertical_jerk_psd_m2_s5: Positive = 1.0  # measured
+    initial_speed_std_m_s: Positive = 15.0  # a vehicle met at any speed of the benchmark
+    initial_acceleration_std_m_s2: Positive = 3.0
+
+
+class LkfReportConfig(StrictModel):
+    """The source report's numbers, "Ground vehicle and its estimate"."""
+
+    step_s: Positive = 0.01
+    step_variance: Positive = 0.01  # of every state, per step; m^2, m^2/s^2, m^2/s^4
+    fix_variance_m2: Positive = 0.01
+    initial_variance: Positive = 10.0
+
+
+class UkfConfig(StrictModel):
+    """The car-like filter."""
+
+    jerk_psd_m2_s5: Positive = 5.0  # along the track; measured
+    lateral_acceleration_psd_m2_s5: Positive = 3.0  # drives the curvature, by v^2; measured
+    curvature_speed_min_m_s: Positive = 3.0  # below it the curvature's noise grows no further
+    heading_psd_rad2_s: NotNegative = 1e-4  # side slip, scaled by speed; 0.6 degrees in 1 s
+    vertical_acceleration_psd_m2_s3: Positive = 0.3  # measured
+    acceleration_decay_s: Positive = 3.0  # of the mean in predictions; measured
+    heading_known_speed_m_s: Positive = 1.0  # from which the course is taken for the heading
+    curvature_std_rad_m: Positive = 0.1  # at the start; a car's tightest turn is some 0.2
+
+
+class ImmModeConfig(StrictModel):
+    """The noise of one of the interacting models."""
+
+    jerk_psd_m2_s5: Positive
+    lateral_acceleration_psd_m2_s5: Positive  # drives the curvature, by v^2
+    dwell_s: Positive  # mean time until the vehicle leaves this mode
+
+
+class ImmConfig(StrictModel):
+    """Two turning models, one for steady driving and one for manoeuvres."""
+
+    # measured: quiet enough for 0.1 m after 1 s of steady driving, wide enough for a brake of 6 m/s^2 from one fix on
+    steady: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=0.05, lateral_acceleration_psd_m2_s5=0.7, dwell_s=6.0)
+    manoeuvre: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=12.0, lateral_acceleration_psd_m2_s5=20.0, dwell_s=1.0)
+    side_jerk_psd_m2_s5: Positive = 0.005  # across the track, apart from turning; measured
+    acceleration_decay_s: Positive = 3.0  # measured
+    curvature_speed_min_m_s: Positive = 3.0  # below it the curvature's noise grows no further
+    heading_psd_rad2_s: Positive = 1e-4  # side slip; 0.6 degrees in 1 s
+    course_std_rad: Positive = 0.3  # side slip of 3 degrees that lasts 5 s, as white noise at 10 Hz
+    course_speed_min_m_s: Positive = 1.0
+    heading_known_std_rad: Positive = 0.5  # worse than this the heading is not told
+    curvature_std_rad_m: Positive = 0.1  # at the start; a car's tightest turn is some 0.2
+    climb_psd_m2_s3: Positive = 0.01  # of the road's grade; measured
+    heave_std_m: Positive = 0.04  # benchmark: `rough_road` heaves 0.1 m at 0.5 to 1 Hz, the others not at all
+    heave_frequency_hz: Positive = 0.75
+    heave_damping: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.3
+    initial_speed_std_m_s: Positive = 15.0
+    initial_acceleration_std_m_s2: Positive = 3.0
+    frame_offset_std_m: NotNegative = 1.0  # between the two receivers' frames; benchmark: 0.5 and 1.2 m
+    frame_offset_walk_m2_s: NotNegative = 1e-5
+    fix_white_std_max_m: Positive = 0.3  # what a fix states beyond this is slow (Gauss-Markov) error; benchmark
+    fix_bias_time_s: Positive = 60.0  # its time constant; benchmark
+
+
+class EstimatorConfig(StrictModel):
+    """Everything that can be set about the estimator."""
+
+    kind: EstimatorKind = EstimatorKind.IMM
+    buffer: BufferConfig = BufferConfig()
+    lkf: LkfConfig = LkfConfig()
+    lkf_report: LkfReportConfig = LkfReportConfig()
+    ukf: UkfConfig = UkfConfig()
+    imm: ImmConfig = ImmConfig()

@@ -1,0 +1,250 @@
+"""The default estimator: two interacting turning models with the offset between the two receivers' frames.
+
+State, motion and units are in `imm_kernels`, the interaction in `imm_mixing`. The vehicle's fixes are in the frame of
+its own receiver; sightings of the pad are in the drone's. Their difference is three states with a slow random walk,
+so that the estimate is right in the drone's frame, and stays right when the sightings end. What a receiver states as
+its error beyond some decimetres is slow (Gauss-Markov) rather than white, and is let into that walk.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import assert_never
+
+import numpy as np
+from numpy.typing import NDArray
+
+from companion.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
+from companion.estimation import imm_kernels as kernels
+from companion.estimation import imm_mixing as mixing
+from companion.estimation.config import ImmConfig, ImmModeConfig
+from companion.estimation.delay_buffer import Update
+from companion.estimation.gaussian import wrapped
+from link.messages import Vector3
+
+KINDS = {
+    Quantity.POSITION: kernels.POSITION,
+    Quantity.VELOCITY: kernels.VELOCITY,
+    Quantity.HEADING: kernels.HEADING,
+    Quantity.YAW_RATE: kernels.YAW_RATE,
+    Quantity.PAD: kernels.PAD,
+}
+UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
+PLACE = np.array([0, 1, 8])  # indices of the position
+MOVES = np.array([2, 3, 4, 5, 9, 11])  # of what a velocity tells about
+OFFSET = np.array([12, 13, 14])
+CURVATURE, HEADING = 6, 7
+CLIMB_STD_M_S = 1.0  # at the start: a grade of 5 % at 20 m/s
+
+IndexArray = NDArray[np.intp]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ImmState:
+    """Both modes and the slow part of the fixes' variance."""
+
+    modes: mixing.Modes
+    fix_bias_variance_m2: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ImmModel:
+    """The filter as a model for the delay buffer.
+
+    Attributes:
+        config: its numbers.
+        antenna_to_pad_m: lever arm in V, for sightings of the pad.
+    """
+
+    config: ImmConfig
+    antenna_to_pad_m: Vector3 = (0.0, 0.0, 0.0)
+
+    def start(self, fix: Measurement) -> ImmState:
+        """Return the state after a first position: anything may be true of the rest."""
+        white, bias_variance = self._split(fix.covariance)
+        mean = np.zeros(kernels.SIZE)
+        mean[PLACE] = fix.value
+        covariance = np.diag(self._prior_variances())
+        covariance[np.ix_(PLACE, PLACE)] = white
+        offset = (self.config.frame_offset_std_m**2 + bias_variance) * np.eye(3)
+        covariances = _with_common_step(np.stack([covariance, covariance]), offset)
+        modes = (np.stack([mean, mean]), covariances, self._dwell_s() / self._dwell_s().sum())
+        return ImmState(modes=modes, fix_bias_variance_m2=bias_variance)
+
+    def predict(self, state: ImmState, dt_s: float) -> ImmState:
+        """Return the state `dt_s` later."""
+        motion, noises = self._motion(), self._noises(state)
+        return replace(state, modes=mixing.predict_modes(state.modes, dt_s, noises, self._dwell_s(), motion))
+
+    def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState]:
+        """Return the state after any quantity."""
+        R, bias_variance = measurement.covariance, state.fix_bias_variance_m2
+        if measurement.quantity is Quantity.POSITION:
+            R, bias_variance = self._split(R)
+        known = self._heading_known(state)
+        if measurement.quantity is Quantity.PAD and not known:
+            R = R + np.diag([1.0, 1.0, 0.0]) * math.hypot(*self.antenna_to_pad_m[:2]) ** 2
+        reading = (KINDS[measurement.quantity], _own(measurement.value), _own(R))
+        modes, nis, gate_nis = mixing.update_modes(state.modes, reading, np.array(self.antenna_to_pad_m), known)
+        if measurement.quantity in (Quantity.POSITION, Quantity.VELOCITY):
+            modes = self._aligned(modes)
+        updated = ImmState(modes=modes, fix_bias_variance_m2=bias_variance)
+        return Update(state=updated, nis=nis, gate_nis=gate_nis, dof=len(measurement.value))
+
+    def recover(self, state: ImmState, measurement: Measurement) -> ImmState:
+        """Open what `measurement` contradicts.
+
+        A sighting that contradicts everything means that the drone's frame has stepped: place and offset move
+        together. A fix that does is the receiver's step if the place is known from sightings, else a new start.
+        """
+        match measurement.quantity:
+            case Quantity.PAD:
+                step = self._step_size(state, measurement) ** 2 * np.eye(3)
+                means, covariances, weights = state.modes
+                return replace(state, modes=(means, _with_common_step(covariances, step), weights))
+            case Quantity.POSITION:
+                step_m = self._step_size(state, measurement)
+                if self._placed_by_sightings(state):
+                    return _opened(state, OFFSET, np.full(3, step_m**2))
+                return self._restarted(state, measurement)
+            case Quantity.VELOCITY:
+                return _opened(state, MOVES, self._prior_variances()[MOVES])
+            case Quantity.HEADING:
+                return _opened(state, np.array([HEADING]), np.array([UNKNOWN_HEADING_VARIANCE]))
+            case Quantity.YAW_RATE:
+                return _opened(state, np.array([CURVATURE]), np.array([self.config.curvature_std_rad_m**2]))
+            case _:
+                assert_never(measurement.quantity)
+
+    def describe(self, state: ImmState, t_ns: int) -> VehicleEstimate:
+        """Return the mixture of both modes."""
+        x, P = mixing.combine(*state.modes)
+        G = mixing.kinematics_jacobian(x, self._motion()[1:3])
+        kinematics = mixing.kinematics(x[None], self._motion()[1:3])[0]
+        covariance = G @ P @ G.T
+        known = self._heading_known(state)
+        return VehicleEstimate(
+            t_ns=t_ns,
+            position_enu_m=kinematics[:3],
+            velocity_enu_m_s=kinematics[3:6],
+            acceleration_enu_m_s2=kinematics[6:],
+            covariance=0.5 * (covariance + covariance.T),
+            yaw_rad=wrapped(float(x[HEADING])) if known else None,
+            yaw_rate_rad_s=float(x[CURVATURE] * math.hypot(x[2], x[3])) if known else None,
+        )
+
+    def forecast(self, state: ImmState, t_ns: int, offset_s: Array) -> Forecast:
+        """Return the future along the present curvature, with an acceleration that fades and stops at standstill."""
+        x, P = mixing.combine(*state.modes)
+        motion, noise = self._motion(), state.modes[2] @ self._noises(state)
+        means, variances = mixing.horizon(x, P, _own(offset_s), noise, motion)
+        kinematics = mixing.kinematics(means, motion[1:3])
+        return Forecast(
+            t_ns=t_ns,
+            offset_s=offset_s,
+            position_enu_m=kinematics[:, :3],
+            velocity_enu_m_s=kinematics[:, 3:6],
+            acceleration_enu_m_s2=kinematics[:, 6:],
+            yaw_rad=means[:, HEADING].copy() if self._heading_known(state) else None,
+            position_std_m=np.sqrt(variances),
+        )
+
+    def _split(self, fix_covariance: Array) -> tuple[Array, float]:
+        """A fix's covariance as its white part (3, 3) and the variance of the slow rest, m^2."""
+        stated = float(fix_covariance.diagonal().max())
+        white = min(stated, self.config.fix_white_std_max_m**2)
+        return fix_covariance * (white / stated), stated - white
+
+    def _noises(self, state: ImmState) -> Array:
+        """Both modes' noise, (2, 8), as `imm_kernels.process_noise` takes it."""
+        walk = self.config.frame_offset_walk_m2_s + 2.0 * state.fix_bias_variance_m2 / self.config.fix_bias_time_s
+        return np.array([self._noise(mode, walk) for mode in (self.config.steady, self.config.manoeuvre)])
+
+    def _noise(self, mode: ImmModeConfig, walk_m2_s: float) -> tuple[float, ...]:
+        return (
+            mode.jerk_psd_m2_s5,
+            self.config.side_jerk_psd_m2_s5,
+            mode.lateral_acceleration_psd_m2_s5,
+            self.config.curvature_speed_min_m_s,
+            self.config.heading_psd_rad2_s,
+            self.config.climb_psd_m2_s3,
+            walk_m2_s,
+            walk_m2_s,
+        )
+
+    def _dwell_s(self) -> Array:
+        return np.array([self.config.steady.dwell_s, self.config.manoeuvre.dwell_s])
+
+    def _motion(self) -> Array:
+        """What `imm_mixing` calls motion, (4,)."""
+        config = self.config
+        heave = (2.0 * math.pi * config.heave_frequency_hz, config.heave_damping, config.heave_std_m)
+        return np.array([config.acceleration_decay_s, *heave])
+
+    def _prior_variances(self) -> Array:
+        """Of every state but position and offset, (15,)."""
+        config = self.config
+        speed, acceleration = config.initial_speed_std_m_s**2, config.initial_acceleration_std_m_s2**2
+        heave = config.heave_std_m**2
+        heave_rate = heave * float(self._motion()[1]) ** 2
+        curvature = config.curvature_std_rad_m**2
+        moving = [speed, speed, acceleration, acceleration, curvature, UNKNOWN_HEADING_VARIANCE]
+        return np.array([0.0, 0.0, *moving, 0.0, CLIMB_STD_M_S**2, heave, heave_rate, 0.0, 0.0, 0.0])
+
+    def _aligned(self, modes: mixing.Modes) -> mixing.Modes:
+        config = self.config
+        means, covariances = mixing.align_modes(
+            modes[0],
+            modes[1],
+            config.course_speed_min_m_s,
+            config.course_std_rad**2,
+            config.heading_known_std_rad**2,
+        )
+        return means, covariances, modes[2]
+
+    def _heading_known(self, state: ImmState) -> bool:
+        _, covariances, weights = state.modes
+        variance = float(weights @ covariances[:, HEADING, HEADING])
+        return variance < self.config.heading_known_std_rad**2
+
+    def _step_size(self, state: ImmState, measurement: Measurement) -> float:
+        """How far, m, a measured place is from the expected one; at least the prior of the offset."""
+        kind, lever = KINDS[measurement.quantity], np.array(self.antenna_to_pad_m)
+        means, _, weights = state.modes
+        expected, _ = kernels.observe(kind, weights @ means, lever, False)
+        return max(float(np.linalg.norm(measurement.value - expected)), self.config.frame_offset_std_m)
+
+    def _placed_by_sightings(self, state: ImmState) -> bool:
+        """Whether the place is known better than the fixes alone could tell it in the drone's frame."""
+        _, covariances, weights = state.modes
+        variance = float(weights @ covariances[:, 0, 0])
+        return variance < 0.25 * (self.config.frame_offset_std_m**2 + state.fix_bias_variance_m2)
+
+    def _restarted(self, state: ImmState, fix: Measurement) -> ImmState:
+        """A new start at `fix` that keeps the offset and the heading."""
+        x, P = mixing.combine(*state.modes)
+        means, covariances, weights = self.start(fix).modes
+        means[:, PLACE] += x[OFFSET]
+        means[:, OFFSET] = x[OFFSET]
+        means[:, HEADING], covariances[:, HEADING, HEADING] = x[HEADING], P[HEADING, HEADING]
+        return replace(state, modes=(means, covariances, weights))
+
+
+def _own(array: Array) -> Array:
+    """A plain copy: kernels are compiled anew for read-only or strided arrays, which takes seconds."""
+    return np.array(array, dtype=np.float64, order="C")
+
+
+def _opened(state: ImmState, indices: IndexArray, variances: Array) -> ImmState:
+    means, covariances, weights = state.modes
+    opened = covariances.copy()
+    opened[:, indices, indices] += variances
+    return replace(state, modes=(means, opened, weights))
+
+
+def _with_common_step(covariances: Array, step: Array) -> Array:
+    """Add `step` (3, 3), m^2, to position and offset as one unknown that moves both."""
+    moved = covariances.copy()
+    for rows in (PLACE, OFFSET):
+        for columns in (PLACE, OFFSET):
+            moved[:, rows[:, None], columns] += step
+    return moved

@@ -1,0 +1,200 @@
+"""Compiled arithmetic of the turning model: one step of motion, what the sensors see of it, and the Kalman update.
+
+State `x` (15,) of the antenna in W:
+  0:2  p   horizontal position, m
+  2:4  v   horizontal velocity, m/s
+  4:6  b   what changes the velocity apart from turning, m/s^2; decays with time constant tau
+  6    k   curvature of the track, rad/m, left positive
+  7    psi heading of V, rad, not wrapped
+  8:10     height of the road, m, and its rate, m/s
+  10:12 h  heave about the road, m, and its rate, m/s: a damped oscillator
+  12:15 o  what the vehicle's receiver must be corrected by to be in the drone's frame, m
+With `w = k |v|` and J the turn by +90 degrees: `dp = v, dv = w J v + b, db = w J b - b/tau, dpsi = w`. At constant
+`w` this has a closed form: in a frame that turns with the vehicle, `v` relaxes along `b` and nothing else happens.
+At rest `w` is zero, so a standing vehicle cannot turn. Braking ends at standstill.
+Source: constant turn rate models in Bar-Shalom, Li and Kirubarajan 2001, 11.7; curvature after Baca et al. 2019.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from companion.data import Array
+
+SIZE = 15
+MOTION = 8  # leading states that the non-linear motion touches
+POSITION, VELOCITY, HEADING, YAW_RATE, PAD, COURSE = range(6)
+
+
+@njit(cache=True)
+def standstill_s(v: Array, b: Array, tau_s: float, dt_s: float) -> float:
+    """Return when, within `dt_s`, braking has used up the speed; a negative time if it does not."""
+    speed2 = v[0] * v[0] + v[1] * v[1]
+    braking = -(v[0] * b[0] + v[1] * b[1])
+    relaxed = tau_s * (1.0 - math.exp(-dt_s / tau_s))
+    if braking <= 0.0 or braking * relaxed < speed2:
+        return -1.0
+    return -tau_s * math.log(max(1.0 - speed2 / (braking * tau_s), 1e-12))
+
+
+@njit(cache=True)
+def advance(x: Array, dt_s: float, tau_s: float, heave: Array) -> tuple[Array, Array]:
+    """Return the state `dt_s` later and its Jacobian `(15, 15)`.
+
+    Args:
+        x: state (15,).
+        dt_s: step, short against a turn (0.1 s).
+        tau_s: time constant of `b`.
+        heave: transition (2, 2) of the heave over `dt_s`.
+    """
+    vx, vy, bx, by = x[2], x[3], x[4], x[5]
+    speed = math.hypot(vx, vy)
+    ux, uy = (vx / speed, vy / speed) if speed > 1e-6 else (0.0, 0.0)
+    decay = math.exp(-dt_s / tau_s)
+    t1 = tau_s * (1.0 - decay)
+    t2 = tau_s * (dt_s - t1)
+    speed_mid = max(speed + 0.5 * dt_s * (ux * bx + uy * by), 0.0)
+    turn = x[6] * speed_mid * dt_s
+    c, s = math.cos(turn), math.sin(turn)
+    half = math.sin(0.5 * turn) / (0.5 * turn) if abs(turn) > 1e-6 else 1.0
+    ch, sh = half * math.cos(0.5 * turn), half * math.sin(0.5 * turn)
+
+    y = x.copy()
+    wx, wy = vx + bx * t1, vy + by * t1
+    mx, my = vx * dt_s + bx * t2, vy * dt_s + by * t2
+    y[0] = x[0] + ch * mx - sh * my
+    y[1] = x[1] + sh * mx + ch * my
+    y[2], y[3] = c * wx - s * wy, s * wx + c * wy
+    y[4], y[5] = decay * (c * bx - s * by), decay * (s * bx + c * by)
+    y[7] = x[7] + turn
+    y[8] = x[8] + x[9] * dt_s
+    y[10] = heave[0, 0] * x[10] + heave[0, 1] * x[11]
+    y[11] = heave[1, 0] * x[10] + heave[1, 1] * x[11]
+
+    F = np.eye(SIZE)
+    F[0, 2], F[0, 3], F[1, 2], F[1, 3] = ch * dt_s, -sh * dt_s, sh * dt_s, ch * dt_s
+    F[0, 4], F[0, 5], F[1, 4], F[1, 5] = ch * t2, -sh * t2, sh * t2, ch * t2
+    F[2, 2], F[2, 3], F[3, 2], F[3, 3] = c, -s, s, c
+    F[2, 4], F[2, 5], F[3, 4], F[3, 5] = c * t1, -s * t1, s * t1, c * t1
+    F[4, 4], F[4, 5], F[5, 4], F[5, 5] = decay * c, -decay * s, decay * s, decay * c
+    d_turn = np.array([-0.5 * (y[1] - x[1]), 0.5 * (y[0] - x[0]), -y[3], y[2], -y[5], y[4]])
+    by_speed = x[6] * dt_s
+    for i in range(6):
+        F[i, 2] += d_turn[i] * by_speed * ux
+        F[i, 3] += d_turn[i] * by_speed * uy
+        F[i, 6] = d_turn[i] * speed_mid * dt_s
+    F[7, 2], F[7, 3], F[7, 6] = by_speed * ux, by_speed * uy, speed_mid * dt_s
+    F[8, 9] = dt_s
+    F[10:12, 10:12] = heave
+
+    stop_s = standstill_s(x[2:4], x[4:6], tau_s, dt_s)
+    if stop_s >= 0.0:
+        stop_t2 = tau_s * (stop_s - tau_s * (1.0 - math.exp(-stop_s / tau_s)))
+        along = speed * stop_s + (ux * bx + uy * by) * stop_t2
+        y[0], y[1] = x[0] + along * ux, x[1] + along * uy
+        y[2:6] = 0.0
+        y[7] = x[7] + x[6] * along
+    return y, F
+
+
+@njit(cache=True)
+def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array) -> Array:
+    """Return Q `(15, 15)` over `dt_s`.
+
+    Args:
+        x: state (15,), whose velocity says what is along and what is across.
+        dt_s: step.
+        noise: (8,) jerk along and across the track, m^2/s^5; lateral acceleration, m^2/s^5; lowest speed for the
+            curvature, m/s; heading, rad^2/s; climb, m^2/s^3; frame offset, horizontal and vertical, m^2/s.
+        heave_noise: (2, 2) of the heave over `dt_s`.
+    """
+    Q = np.zeros((SIZE, SIZE))
+    speed = math.hypot(x[2], x[3])
+    share = min(speed / noise[3], 1.0)  # a standing vehicle has no known "along"
+    ux, uy = (x[2] / speed, x[3] / speed) if speed > 1e-6 else (1.0, 0.0)
+    across = noise[1] * share + noise[0] * (1.0 - share)
+    qxx = noise[0] * ux * ux + across * uy * uy
+    qyy = noise[0] * uy * uy + across * ux * ux
+    qxy = (noise[0] - across) * ux * uy
+    d = dt_s
+    white_jerk = ((d**5 / 20, d**4 / 8, d**3 / 6), (d**4 / 8, d**3 / 3, d**2 / 2), (d**3 / 6, d**2 / 2, d))
+    for i in range(3):
+        for j in range(3):
+            g = white_jerk[i][j]
+            Q[2 * i, 2 * j], Q[2 * i + 1, 2 * j + 1] = g * qxx, g * qyy
+            Q[2 * i, 2 * j + 1], Q[2 * i + 1, 2 * j] = g * qxy, g * qxy
+    floor = max(speed, noise[3])
+    Q[6, 6] = noise[2] / floor**4 * d
+    Q[7, 7] = noise[4] * d
+    Q[8, 8], Q[8, 9], Q[9, 8], Q[9, 9] = noise[5] * d**3 / 3, noise[5] * d**2 / 2, noise[5] * d**2 / 2, noise[5] * d
+    Q[10:12, 10:12] = heave_noise
+    Q[12, 12], Q[13, 13], Q[14, 14] = noise[6] * d, noise[6] * d, noise[7] * d
+    return Q
+
+
+@njit(cache=True)
+def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Array, Array]:
+    """Return what a sensor reads at `x`, `(m,)`, and its Jacobian `(m, 15)`.
+
+    Args:
+        kind: POSITION, VELOCITY, HEADING, YAW_RATE, PAD, or COURSE (the course minus the heading).
+        x: state (15,).
+        lever: (3,) from the antenna to the pad in V, m.
+        sees_heading: whether a pad sighting may correct the heading.
+    """
+    speed = math.hypot(x[2], x[3])
+    m = 1 if kind in (HEADING, YAW_RATE, COURSE) else 3
+    z, H = np.zeros(m), np.zeros((m, SIZE))
+    if kind in (POSITION, PAD):
+        z[0], z[1], z[2] = x[0], x[1], x[8] + x[10]
+        H[0, 0], H[1, 1], H[2, 8], H[2, 10] = 1.0, 1.0, 1.0, 1.0
+    if kind == POSITION:
+        z -= x[12:15]
+        H[0, 12], H[1, 13], H[2, 14] = -1.0, -1.0, -1.0
+    elif kind == PAD:
+        c, s = math.cos(x[7]), math.sin(x[7])
+        arm_x, arm_y = c * lever[0] - s * lever[1], s * lever[0] + c * lever[1]
+        z[0] += arm_x
+        z[1] += arm_y
+        z[2] += lever[2]
+        if sees_heading:
+            H[0, 7], H[1, 7] = -arm_y, arm_x
+    elif kind == VELOCITY:
+        z[0], z[1], z[2] = x[2], x[3], x[9] + x[11]
+        H[0, 2], H[1, 3], H[2, 9], H[2, 11] = 1.0, 1.0, 1.0, 1.0
+    elif kind == HEADING:
+        z[0], H[0, 7] = x[7], 1.0
+    elif kind == YAW_RATE:
+        z[0], H[0, 6] = x[6] * speed, speed
+        if speed > 1e-6:
+            H[0, 2], H[0, 3] = x[6] * x[2] / speed, x[6] * x[3] / speed
+    elif kind == COURSE:
+        z[0], H[0, 7] = math.atan2(x[3], x[2]) - x[7], -1.0
+        H[0, 2], H[0, 3] = -x[3] / speed**2, x[2] / speed**2
+    return z, H
+
+
+@njit(cache=True)
+def correct(x: Array, P: Array, residual: Array, H: Array, R: Array) -> tuple[Array, Array, float, float]:
+    """Return mean, covariance (Joseph's form), NIS and log-likelihood after a measurement.
+
+    Args:
+        x: mean (n,).
+        P: covariance (n, n).
+        residual: measured minus expected (m,).
+        H: Jacobian (m, n).
+        R: covariance of the measurement (m, m).
+    """
+    PHt = P @ H.T
+    S = H @ PHt + R
+    inverse = np.linalg.inv(S)
+    K = PHt @ inverse
+    nis = 0.0
+    for i in range(len(residual)):
+        for j in range(len(residual)):
+            nis += residual[i] * inverse[i, j] * residual[j]
+    keep = np.eye(len(x)) - K @ H
+    joseph = keep @ P @ keep.T + K @ R @ K.T
+    log_likelihood = -0.5 * (nis + math.log(np.linalg.det(S)) + len(residual) * math.log(2.0 * math.pi))
+    return x + K @ residual, 0.5 * (joseph + joseph.T), nis, log_likelihood

@@ -1,0 +1,196 @@
+"""Compiled steps of two interacting turning models that differ in their noise only (Blom and Bar-Shalom 1988).
+
+`Modes` are means (2, 15), covariances (2, 15, 15) and probabilities (2,). Between measurements the vehicle may change
+from one mode to the other as a continuous Markov chain with the given mean dwell times. `motion` (4,) is the time
+constant of the acceleration, s, and the heave's angular frequency, rad/s, damping and standard deviation, m.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from companion.data import Array
+from companion.estimation.imm_kernels import COURSE, HEADING, SIZE, advance, correct, observe, process_noise
+
+Modes = tuple[Array, Array, Array]
+
+WEIGHT_MIN = 1e-12  # a mode that rounding has ruled out could never come back
+STEP_MAX_S = 0.1  # 0.04 rad in the tightest of the benchmark's curves
+
+
+@njit(cache=True)
+def heave_step(dt_s: float, frequency_rad_s: float, damping: float, std_m: float) -> tuple[Array, Array]:
+    """Return transition and noise, each (2, 2), of a damped oscillator driven by white noise to a steady `std_m`."""
+    damped = frequency_rad_s * math.sqrt(1.0 - damping**2)
+    fade = math.exp(-damping * frequency_rad_s * dt_s)
+    c, s = math.cos(damped * dt_s), math.sin(damped * dt_s)
+    ratio = damping * frequency_rad_s / damped
+    A = fade * np.array([[c + ratio * s, s / damped], [-(frequency_rad_s**2) / damped * s, c - ratio * s]])
+    steady = np.diag(np.array([std_m**2, (std_m * frequency_rad_s) ** 2]))
+    return A, steady - A @ steady @ A.T
+
+
+@njit(cache=True)
+def switching(dwell_s: Array, dt_s: float) -> Array:
+    """Return the probabilities `(2, 2)` of having gone from row to column after `dt_s`."""
+    mixed = 1.0 - math.exp(-dt_s * (1.0 / dwell_s[0] + 1.0 / dwell_s[1]))
+    long_run = dwell_s / dwell_s.sum()
+    return mixed * np.stack((long_run, long_run)) + (1.0 - mixed) * np.eye(2)
+
+
+@njit(cache=True)
+def combine(means: Array, covariances: Array, weights: Array) -> tuple[Array, Array]:
+    """Return mean and covariance of the mixture."""
+    mean = weights[0] * means[0] + weights[1] * means[1]
+    between = means[0] - means[1]
+    spread = weights[0] * weights[1] * np.outer(between, between)
+    return mean, weights[0] * covariances[0] + weights[1] * covariances[1] + spread
+
+
+@njit(cache=True)
+def mix(modes: Modes, changes: Array) -> Modes:
+    """Return the filter after the modes may have changed with probabilities `changes` (2, 2)."""
+    means, covariances, weights = modes
+    after = weights @ changes
+    mixed_means, mixed_covariances = np.empty_like(means), np.empty_like(covariances)
+    for j in range(2):
+        share = weights * changes[:, j] / after[j]
+        mixed_means[j], mixed_covariances[j] = combine(means, covariances, share)
+    return mixed_means, mixed_covariances, after
+
+
+@njit(cache=True)
+def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple[Array, Array]:
+    """Return mean and covariance of one mode `dt_s` later, in equal steps.
+
+    Args:
+        x: mean (15,).
+        P: covariance (15, 15).
+        dt_s: time to pass.
+        noise: (8,) as `process_noise` takes it.
+        motion: (4,), see the module.
+    """
+    steps = max(math.ceil(dt_s / STEP_MAX_S - 1e-9), 1)
+    step_s = dt_s / steps
+    heave, heave_noise = heave_step(step_s, motion[1], motion[2], motion[3])
+    for _ in range(steps):
+        Q = process_noise(x, step_s, noise, heave_noise)
+        x, F = advance(x, step_s, motion[0], heave)
+        P = F @ P @ F.T + Q
+    return x, 0.5 * (P + P.T)
+
+
+@njit(cache=True)
+def predict_modes(modes: Modes, dt_s: float, noises: Array, dwell_s: Array, motion: Array) -> Modes:
+    """Return the filter `dt_s` later; `noises` (2, 8), `dwell_s` (2,)."""
+    means, covariances, weights = mix(modes, switching(dwell_s, dt_s))
+    for j in range(2):
+        means[j], covariances[j] = glide(means[j], covariances[j], dt_s, noises[j], motion)
+    return means, covariances, weights
+
+
+@njit(cache=True)
+def residual_of(kind: int, value: Array, expected: Array) -> Array:
+    """Return measured minus expected, the short way round for angles."""
+    residual = value - expected
+    if kind in (HEADING, COURSE):
+        residual[0] = (residual[0] + math.pi) % (2.0 * math.pi) - math.pi
+    return residual
+
+
+@njit(cache=True)
+def update_modes(
+    modes: Modes, reading: tuple[int, Array, Array], lever: Array, sees_heading: bool
+) -> tuple[Modes, float, float]:
+    """Return the filter after a measurement, the mixture's NIS, and the smaller of the modes' NIS.
+
+    The mixture's NIS tells consistency; an outlier is what even the mode with the wider noise does not expect.
+
+    Args:
+        modes: the filter.
+        reading: kind as `observe` takes it, value (m,), covariance (m, m).
+        lever: (3,) from the antenna to the pad in V, m.
+        sees_heading: whether a pad sighting may correct the heading.
+    """
+    means, covariances, weights = modes
+    kind, value, R = reading
+    m = len(value)
+    xs, Ps = np.empty_like(means), np.empty_like(covariances)
+    fits, nis = np.empty(2), np.empty(2)
+    residuals, spreads = np.empty((2, m)), np.empty((2, m, m))
+    for j in range(2):
+        expected, H = observe(kind, means[j], lever, sees_heading)
+        residuals[j] = residual_of(kind, value, expected)
+        spreads[j] = H @ covariances[j] @ H.T + R
+        xs[j], Ps[j], nis[j], fits[j] = correct(means[j], covariances[j], residuals[j], H, R)
+    likelihood = np.maximum(weights, WEIGHT_MIN) * np.exp(fits - fits.max())
+    after = likelihood / likelihood.sum()
+    residual, spread = combine(residuals, spreads, weights)
+    mixture_nis = residual @ np.linalg.inv(spread) @ residual
+    return (xs, Ps, after), float(mixture_nis), float(nis.min())
+
+
+@njit(cache=True)
+def align_modes(
+    means: Array, covariances: Array, speed_min_m_s: float, course_variance: float, known_variance: float
+) -> tuple[Array, Array]:
+    """Return the modes after the rule that a driving vehicle heads where it goes.
+
+    Nothing is learnt while it is slow, while the course itself is vague, or when it drives backwards.
+    """
+    xs, Ps = means.copy(), covariances.copy()
+    lever, zero = np.zeros(3), np.zeros(1)
+    for j in range(2):
+        x, P = means[j], covariances[j]
+        speed = math.hypot(x[2], x[3])
+        if speed < speed_min_m_s or P[2, 2] + P[3, 3] > (0.3 * speed) ** 2:
+            continue
+        known = P[7, 7] < known_variance
+        expected, H = observe(COURSE, x, lever, False)
+        residual = residual_of(COURSE, zero, expected)
+        if known and abs(residual[0]) > 1.0:
+            continue
+        R = np.array([[course_variance if known else min(course_variance, 0.01)]])
+        xs[j], Ps[j], _, _ = correct(x, P, residual, H, R)
+    return xs, Ps
+
+
+def kinematics(states: Array, heave: Array) -> Array:
+    """Return position, velocity and acceleration in W, `(n, 9)`, of `states` (n, 15); `heave` is `motion[1:3]`."""
+    x, y, vx, vy, bx, by, curvature, _, z, climb, up, up_rate, _, _, _ = states.T
+    turn_rate = curvature * np.hypot(vx, vy)
+    lift = -(heave[0] ** 2) * up - 2.0 * heave[1] * heave[0] * up_rate
+    return np.column_stack([x, y, z + up, vx, vy, climb + up_rate, bx - turn_rate * vy, by + turn_rate * vx, lift])
+
+
+@njit(cache=True)
+def kinematics_jacobian(x: Array, heave: Array) -> Array:
+    """Return the Jacobian `(9, 15)` of position, velocity and acceleration; `heave` is `motion[1:3]`."""
+    speed = math.hypot(x[2], x[3])
+    ux, uy = (x[2] / speed, x[3] / speed) if speed > 1e-6 else (0.0, 0.0)
+    k = x[6]
+    G = np.zeros((9, SIZE))
+    G[0, 0], G[1, 1], G[2, 8], G[2, 10] = 1.0, 1.0, 1.0, 1.0
+    G[3, 2], G[4, 3], G[5, 9], G[5, 11] = 1.0, 1.0, 1.0, 1.0
+    G[6, 4], G[6, 6], G[6, 2], G[6, 3] = 1.0, -speed * x[3], -k * ux * x[3], -k * (uy * x[3] + speed)
+    G[7, 5], G[7, 6], G[7, 2], G[7, 3] = 1.0, speed * x[2], k * (ux * x[2] + speed), k * uy * x[2]
+    G[8, 10], G[8, 11] = -(heave[0] ** 2), -2.0 * heave[1] * heave[0]
+    return G
+
+
+@njit(cache=True)
+def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) -> tuple[Array, Array]:
+    """Return the means `(n, 15)` and the position variances `(n, 3)` at `offset_s` (n,), not falling."""
+    n = len(offset_s)
+    means, variances = np.empty((n, SIZE)), np.empty((n, 3))
+    passed_s = 0.0
+    for i in range(n):
+        ahead_s = offset_s[i] - passed_s
+        if ahead_s > 0.0:
+            x, P = glide(x, P, ahead_s, noise, motion)
+            passed_s = offset_s[i]
+        means[i] = x
+        variances[i, 0], variances[i, 1] = P[0, 0], P[1, 1]
+        variances[i, 2] = P[8, 8] + P[10, 10] + 2.0 * P[8, 10]
+    return means, variances
