@@ -53,8 +53,7 @@ class WakeUp:
     def close(self) -> None:
         """Release the descriptors; `set` has no effect from then on."""
         with self._lock:
-            self._is_closed = True
-            self._is_set = False
+            self._is_closed, self._is_set = True, False
             self._reader.close()
             self._writer.close()
 
