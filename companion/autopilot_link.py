@@ -1,0 +1,137 @@
+"""The companion's conversation with the autopilot: streams, origin and parameters asked for, messages read."""
+
+from dataclasses import replace
+
+from companion.autopilot_state import AutopilotState, heard
+from companion.autopilots.choice import driver_for
+from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver
+from companion.data import FlightLimits, Setpoint
+from link.mavlink.dialect import mavlink
+from link.mavlink.events import (
+    AutopilotRestarted,
+    CommandAcknowledged,
+    Event,
+    LinkFound,
+    LinkLost,
+    LinkRegained,
+    MessageReceived,
+    ParameterRead,
+)
+from link.mavlink.session import MavlinkSession
+
+_STREAMS_HZ = {
+    mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: 50.0,
+    mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED: 50.0,
+    mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: 10.0,
+    mavlink.MAVLINK_MSG_ID_CURRENT_MODE: 20.0,
+    mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: 2.0,
+    mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: 1.0,
+}
+_ASK_ORIGIN_NS = 1_000_000_000
+_ASK_KNOWN_ORIGIN_NS = 5_000_000_000
+_TEXT_SIZE = 50  # of a STATUSTEXT
+
+
+class AutopilotLink:
+    """The MAVLink session of a companion, without I/O.
+
+    Args:
+        session: to the autopilot.
+    """
+
+    def __init__(self, session: MavlinkSession) -> None:
+        self.session = session
+        self.state = AutopilotState()
+        self.driver: Driver | None = None
+        self._acknowledgements: list[tuple[int, int]] = []
+        self._origin_asked_ns: int | None = None
+
+    def receive(self, data: bytes, local_ns: int) -> None:
+        """Take bytes of the transport.
+
+        Raises:
+            UserError: the autopilot is of a kind that cannot be flown.
+        """
+        self._take(self.session.receive(data, local_ns), local_ns)
+
+    def poll(self, local_ns: int) -> None:
+        """Do what is due by now."""
+        self._take(self.session.poll(local_ns), local_ns)
+        self._ask_for_origin(local_ns)
+
+    def take_acknowledgements(self) -> tuple[tuple[int, int], ...]:
+        """Return (command, MAV_RESULT) received since the last call."""
+        taken, self._acknowledgements = tuple(self._acknowledgements), []
+        return taken
+
+    def take_texts(self) -> tuple[str, ...]:
+        """Return the autopilot's texts since the last call."""
+        texts, self.state = self.state.texts, replace(self.state, texts=())
+        return texts
+
+    def limits(self, wanted: FlightLimits) -> FlightLimits:
+        """Return `wanted` cut to the autopilot's own limits, as far as they are known."""
+        return wanted if self.driver is None else self.driver.limits(wanted, self.state.parameters)
+
+    def send_setpoint(self, setpoint: Setpoint, local_ns: int) -> None:
+        """Send a setpoint for the flight."""
+        target = self.session.target_system_id
+        if self.driver is None or target is None:
+            return
+        boot_ns = self.session.clock.local_to_boot_ns(local_ns) or 0
+        self.session.send(self.driver.setpoint_message(setpoint, boot_ns // 1_000_000, target))
+
+    def send_commands(self, commands: tuple[AutopilotCommand, ...], local_ns: int) -> None:
+        """Send commands; their acknowledgements come back by `take_acknowledgements`."""
+        for command in commands:
+            self.session.command(command.command, command.parameters, local_ns, attempts=1)
+
+    def send_text(self, text: str) -> None:
+        """Tell the pilot; what is longer than a STATUSTEXT is cut."""
+        cut = f"Decklander {text}".encode("ascii", "replace")[:_TEXT_SIZE]
+        self.session.send(mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_INFO, cut))
+
+    def _take(self, events: list[Event], local_ns: int) -> None:
+        for event in events:
+            match event:
+                case MessageReceived() if self.driver is not None:
+                    self.state = heard(self.state, event.message, self.session.clock, self.driver)
+                case LinkFound():
+                    self.driver = driver_for(event.autopilot, event.vehicle_type)
+                    self._ask_for_streams(self.driver, local_ns)
+                case LinkLost():
+                    self._set_link(up=False)
+                case LinkRegained():
+                    self._set_link(up=True)
+                case AutopilotRestarted():
+                    parameters = self.state.parameters
+                    view = AutopilotView(link_up=True, armed=False, in_control=False, failsafe=False)
+                    view = replace(view, origin_count=self.state.view.origin_count + 1)
+                    self.state = AutopilotState(view=view, parameters=parameters)
+                    self._origin_asked_ns = None
+                case CommandAcknowledged():
+                    self._acknowledgements.append((event.command, event.result))
+                case ParameterRead():
+                    self.state = replace(
+                        self.state, parameters={**self.state.parameters, event.name: float(event.value)}
+                    )
+                case _:
+                    pass
+
+    def _set_link(self, *, up: bool) -> None:
+        self.state = replace(self.state, view=replace(self.state.view, link_up=up))
+
+    def _ask_for_streams(self, driver: Driver, local_ns: int) -> None:
+        for message_id, rate_hz in _STREAMS_HZ.items():
+            self.session.request_interval(message_id, rate_hz, local_ns)
+        for name in driver.limit_parameters:
+            self.session.read_parameter(name, local_ns)
+
+    def _ask_for_origin(self, local_ns: int) -> None:
+        """Ask until it is known, and from time to time after, since it can be moved."""
+        if self.driver is None or not self.session.link_up:
+            return
+        period_ns = _ASK_ORIGIN_NS if self.state.view.origin is None else _ASK_KNOWN_ORIGIN_NS
+        if self._origin_asked_ns is None or local_ns - self._origin_asked_ns >= period_ns:
+            self._origin_asked_ns = local_ns
+            self.session.request_message(mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN, local_ns)

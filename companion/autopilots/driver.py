@@ -1,0 +1,99 @@
+"""What every autopilot driver offers: reading its mode, getting it to follow setpoints, arming, disarming.
+
+A driver is pure: it turns what the companion wants and what the autopilot says into commands to send.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+from companion.data import FlightLimits, Setpoint
+from link.geodesy import Datum
+from link.mavlink.dialect import Message
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AutopilotView:
+    """The autopilot as its messages tell; None where it has not said yet."""
+
+    link_up: bool
+    armed: bool
+    in_control: bool  # it is in the mode in which it follows the companion's setpoints
+    failsafe: bool
+    landed: bool | None = None
+    origin: Datum | None = None
+    origin_count: int = 0  # how often the origin was set or moved
+
+
+NO_AUTOPILOT = AutopilotView(link_up=False, armed=False, in_control=False, failsafe=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Desire:
+    """What the companion wants of the autopilot; None leaves it as it is.
+
+    Attributes:
+        control: follow the setpoints.
+        armed: motors on or off.
+        force_disarm: the evidence of a touchdown is complete, so a refused disarm may be forced.
+        release: leave the companion's control into a hover of its own.
+    """
+
+    control: bool | None = None
+    armed: bool | None = None
+    force_disarm: bool = False
+    release: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AutopilotCommand:
+    """A COMMAND_LONG to be sent and acknowledged."""
+
+    command: int
+    parameters: tuple[float, float, float, float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriverMemory:
+    """When the driver last asked for what, and what was refused."""
+
+    streaming_since_ns: int | None = None
+    asked_ns: Mapping[int, int] | None = None
+    disarm_refusals: int = 0
+
+
+class Driver(Protocol):
+    """One kind of autopilot."""
+
+    @property
+    def name(self) -> str:
+        """What users call it."""
+
+    @property
+    def autopilot_id(self) -> int:
+        """MAV_AUTOPILOT of its heartbeat."""
+
+    @property
+    def limit_parameters(self) -> tuple[str, ...]:
+        """Parameters that bound the flight."""
+
+    def is_in_control(self, base_mode: int, custom_mode: int) -> bool:
+        """Return whether these heartbeat fields mean that it follows setpoints."""
+
+    def act(
+        self, memory: DriverMemory, view: AutopilotView, desire: Desire, t_ns: int
+    ) -> tuple[DriverMemory, tuple[AutopilotCommand, ...]]:
+        """Return the commands that bring the autopilot nearer to `desire`, none while an earlier one is pending."""
+
+    def acknowledged(self, memory: DriverMemory, command: int, result: int) -> DriverMemory:
+        """Return the memory after the autopilot answered `command` with MAV_RESULT `result`."""
+
+    def setpoint_message(self, setpoint: Setpoint, boot_ms: int, target_system: int) -> Message:
+        """Return the MAVLink message for `setpoint`.
+
+        Raises:
+            ValueError: a value of the setpoint is not finite.
+        """
+
+    def limits(self, wanted: FlightLimits, parameters: Mapping[str, float]) -> FlightLimits:
+        """Return `wanted` cut to what the autopilot's own parameters allow."""

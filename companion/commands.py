@@ -1,0 +1,30 @@
+"""Answers to an operator's commands: what is accepted in which phase, and why not."""
+
+from companion.phases import Event, Phase, next_phase
+from companion.situation import Situation
+from link.messages import Command, CommandReply
+
+_EVENTS = {Command.START: Event.START, Command.ABORT: Event.ABORT, Command.HOLD: Event.HOLD}
+
+
+def answer(command: Command, phase: Phase, situation: Situation) -> tuple[Event | None, CommandReply]:
+    """Return the event that the command amounts to, None when it is refused, and the reply."""
+    event = _EVENTS[command]
+    if next_phase(phase, event) is phase:
+        return None, CommandReply(accepted=False, reason=f"nothing to {command.value} in phase {phase.value}")
+    missing = _missing_for_start(situation) if command is Command.START else None
+    if missing is not None:
+        return None, CommandReply(accepted=False, reason=missing)
+    return event, CommandReply(accepted=True, reason="")
+
+
+def _missing_for_start(situation: Situation) -> str | None:
+    if not situation.autopilot.link_up:
+        return "no autopilot is connected"
+    if situation.autopilot.origin is None:
+        return "the autopilot has no origin yet"
+    if situation.drone is None:
+        return "the autopilot reports no local position yet"
+    if situation.autopilot.failsafe:
+        return "the autopilot is in failsafe"
+    return None

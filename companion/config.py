@@ -1,0 +1,115 @@
+"""The companion's configuration: one TOML file, validated once, every value with its unit and source."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from companion.data import FlightLimits
+from companion.estimation.config import EstimatorConfig
+from companion.planning.config import GuidanceConfig
+from link.toml_config import StrictModel
+
+Positive = Annotated[float, Field(gt=0.0, le=1e4)]
+NotNegative = Annotated[float, Field(ge=0.0, le=1e4)]
+
+
+class LimitsConfig(StrictModel):
+    """What the planner may ask at most; the autopilot's own parameters can only lower it.
+
+    The acceleration leaves half of a 45 degree tilt (9.8 m/s^2) to drag, wind and feedback.
+    """
+
+    speed_max_m_s: Positive = 25.0
+    climb_max_m_s: Positive = 3.0  # PX4 MPC_Z_VEL_MAX_UP
+    descent_max_m_s: Positive = 1.5  # PX4 MPC_Z_VEL_MAX_DN
+    acceleration_max_m_s2: Positive = 5.0
+    vertical_acceleration_max_m_s2: Positive = 3.0
+    jerk_max_m_s3: Positive = 20.0
+
+    def flight_limits(self) -> FlightLimits:
+        """Return the same numbers as the planner takes them."""
+        return FlightLimits(**self.model_dump())
+
+
+class TakeoffConfig(StrictModel):
+    """The climb to the waiting point and the wait."""
+
+    waiting_height_m: Positive = 5.0  # above where it took off; source report, section "Task"
+    reached_distance_m: Positive = 0.5
+    refused_after_s: Positive = 30.0  # PX4 is armable 2.7 to 4.8 s after its start, ArduCopter 41.5 s
+    time_limit_s: Positive = 60.0
+
+
+class ChaseConfig(StrictModel):
+    """When the chase begins and when it is close enough."""
+
+    height_m: Positive = 3.5  # above the pad, until the drone is over it; 5 m over a road under a roof of 1.5 m
+    start_acceleration_m_s2: Positive = 3.5  # share of the limit that the rendezvous is planned with
+    passing_distance_m: Positive = 15.0  # a vehicle that passes farther away than this is not chased
+    parked_speed_m_s: Positive = 0.3  # slower than this is standing
+    parked_wait_s: NotNegative = 7.0  # a vehicle that stands may be about to depart
+    time_limit_s: Positive = 60.0
+
+
+class DescentConfig(StrictModel):
+    """Alignment over the pad, the cone and the sink rate."""
+
+    align_height_m: Positive = 1.5  # above the pad
+    align_distance_m: Positive = 1.5  # horizontal, at which alignment begins
+    aligned_distance_m: Positive = 0.25
+    aligned_speed_m_s: Positive = 0.5
+    aligned_hold_s: NotNegative = 0.2
+    align_time_limit_s: Positive = 30.0
+    descent_rate_max_m_s: Positive = 1.2
+    descent_gain_hz: Positive = 1.0  # sink rate per metre of height left
+    touchdown_sink_rate_m_s: Positive = 0.45  # S2 asks for 0.7 at most
+    press_depth_m: Positive = 0.5  # how far below the pad the setpoint goes on, so that contact is firm
+    cone_radius_at_pad_m: Positive = 0.3
+    cone_slope: NotNegative = 0.35  # metres of radius per metre of height
+    commit_height_m: Positive = 0.35  # below this it lands rather than aborts
+    time_limit_s: Positive = 30.0
+
+
+class TouchdownConfig(StrictModel):
+    """The signs of a contact and the switching off of the motors."""
+
+    gear_height_m: NotNegative = 0.12  # from the feet to the point whose position the autopilot reports
+    height_max_m: Positive = 0.35  # estimated height over the pad at which a contact is believed
+    blocked_depth_m: Positive = 0.10  # how far the setpoint has sunk below the drone
+    blocked_speed_m_s: Positive = 0.2  # relative vertical speed that counts as standing
+    hold_s: NotNegative = 0.15
+    lost_height_m: Positive = 0.6  # higher than this after a contact is a bounce or a slide
+
+
+class AbortConfig(StrictModel):
+    """The abort tests and the climb after one."""
+
+    fix_age_max_s: Positive = 1.0
+    position_std_max_m: Positive = 1.5
+    tracking_error_max_m: Positive = 2.5  # of the drone behind its setpoint
+    tracking_hold_s: NotNegative = 1.0
+    cone_hold_s: NotNegative = 0.3
+    alive_lost_hold_s: NotNegative = 0.5
+    height_m: Positive = 5.0  # above the pad, or above where the abort began without a vehicle
+    time_limit_s: Positive = 10.0
+    retries_max: Annotated[int, Field(ge=0, le=20)] = 3
+
+
+class CompanionConfig(StrictModel):
+    """Everything that can be set about the companion."""
+
+    step_rate_hz: Annotated[float, Field(ge=10.0, le=200.0)] = 50.0
+    status_rate_hz: Annotated[float, Field(ge=0.5, le=50.0)] = 10.0
+    setpoint_lead_s: Annotated[float, Field(ge=0.0, le=0.5)] = (
+        0.03  # half a period of holding plus the way to the motors
+    )
+    yaw_rate_max_rad_s: Positive = 0.8  # ArduCopter slews at 60 degrees a second
+    position_only: bool = False  # leave velocity and acceleration out of the setpoints, as the source report does
+    limits: LimitsConfig = LimitsConfig()
+    takeoff: TakeoffConfig = TakeoffConfig()
+    chase: ChaseConfig = ChaseConfig()
+    descent: DescentConfig = DescentConfig()
+    touchdown: TouchdownConfig = TouchdownConfig()
+    abort: AbortConfig = AbortConfig()
+    estimator: EstimatorConfig = EstimatorConfig()
+    guidance: GuidanceConfig = GuidanceConfig()

@@ -1,0 +1,223 @@
+"""The companion without I/O: bytes and payloads in, bytes and payloads out, on any clock.
+
+The wire loop, the lockstep campaigns and the tests all run this one.
+"""
+
+from dataclasses import dataclass, replace
+
+from companion.autopilot_link import AutopilotLink
+from companion.data import Measurement
+from companion.estimation.factory import make_estimator
+from companion.step import companion_step
+from companion.step_data import StepInputs, StepMemory, StepOutputs, System
+from companion.vehicle_inputs import fix_measurement, imu_measurements, sighting_measurement, velocity_measurements
+from link import cdr, json_payloads
+from link.keys import Keys
+from link.mavlink.session import MavlinkSession
+from link.messages import (
+    Command,
+    CommandReply,
+    Fix,
+    FixVelocity,
+    PadGeometry,
+    PadSighting,
+    Plan,
+    PlannedPose,
+    VehicleImu,
+)
+from link.payload_checks import PayloadError
+
+_EARLY = 0.75  # of a period: a new state of the drone starts the next step from here on
+_LATE = 2.0  # periods without a new state after which the step is made without one
+_PLAN_EVERY = 2  # statuses
+_PLAN_POINTS = 2  # every so many points of the plan are published
+
+
+@dataclass(frozen=True, slots=True)
+class Publication:
+    """What is to be put on Zenoh."""
+
+    key: str
+    payload: bytes
+    encoding: str
+
+
+class CompanionNode:
+    """A companion.
+
+    Args:
+        system: configuration, estimator and guidance law.
+        keys: of the Zenoh contract.
+        session: to the autopilot.
+        dry_run: send neither setpoints nor commands.
+    """
+
+    def __init__(self, system: System, keys: Keys, session: MavlinkSession, *, dry_run: bool = False) -> None:
+        self.autopilot = AutopilotLink(session)
+        self._dry_run = dry_run
+        self.memory = StepMemory()
+        self.outputs: StepOutputs | None = None
+        self.bad_payloads = 0
+        self._system = system
+        self._keys = keys
+        self._measurements: list[Measurement] = []
+        self._pad: PadGeometry | None = None
+        self._vehicle_alive: bool | None = None
+        self._command: Command | None = None
+        self._replies: list[CommandReply] = []
+        self._publications: list[Publication] = []
+        self._stepped_ns: int | None = None
+        self._stepped_own_ns: int | None = None
+        self._t_ns = 0
+        self._status_ns = 0
+        self._statuses = 0
+
+    @property
+    def pad_known(self) -> bool:
+        """Whether the vehicle has described its pad."""
+        return self._pad is not None
+
+    def receive_mavlink(self, data: bytes, local_ns: int) -> None:
+        """Take bytes of the autopilot's link.
+
+        Raises:
+            UserError: the autopilot is of a kind that cannot be flown.
+        """
+        self.autopilot.receive(data, local_ns)
+
+    def receive_sample(self, key: str, payload: bytes) -> None:
+        """Take a Zenoh sample; what cannot be decoded is counted and dropped."""
+        try:
+            self._measurements += self._decoded(key, payload)
+        except PayloadError:
+            self.bad_payloads += 1
+
+    def receive_pad(self, pad: PadGeometry) -> None:
+        """Take the vehicle's description of its pad; the estimator needs the lever arm for sightings of the pad."""
+        self._pad = pad
+        estimator = make_estimator(self._system.config.estimator, pad.antenna_to_pad_m)
+        self._system = replace(self._system, estimator=estimator)
+
+    def is_ready_to_start(self) -> bool:
+        """Return whether a start would be accepted now."""
+        state = self.autopilot.state
+        return state.view.link_up and state.view.origin is not None and state.own is not None
+
+    def receive_liveliness(self, *, alive: bool) -> None:
+        """Take the state of the vehicle's liveliness token; one that never was is not lost."""
+        if alive or self._vehicle_alive is not None:
+            self._vehicle_alive = alive
+
+    def request(self, command: Command) -> None:
+        """Take an operator's command; its reply follows the next step."""
+        self._command = command
+
+    def poll(self, local_ns: int) -> bool:
+        """Do what is due; return whether a step was made."""
+        self.autopilot.poll(local_ns)
+        if not self._is_due(local_ns):
+            return False
+        self._step(local_ns)
+        return True
+
+    def take_frames(self) -> list[bytes]:
+        """Return the MAVLink frames to be sent, once."""
+        return self.autopilot.session.take_output()
+
+    def take_publications(self) -> list[Publication]:
+        """Return what is to be put on Zenoh, once."""
+        taken, self._publications = self._publications, []
+        return taken
+
+    def take_replies(self) -> list[CommandReply]:
+        """Return the replies to operators' commands, once, in their order."""
+        taken, self._replies = self._replies, []
+        return taken
+
+    def _decoded(self, key: str, payload: bytes) -> tuple[Measurement, ...]:
+        keys, state = self._keys, self.autopilot.state
+        if key == keys.fix:
+            fix = cdr.decode(Fix, payload)
+            return () if state.view.origin is None else (fix_measurement(fix, state.view.origin),)
+        if key == keys.fix_velocity:
+            return velocity_measurements(cdr.decode(FixVelocity, payload))
+        if key == keys.imu:
+            return imu_measurements(cdr.decode(VehicleImu, payload))
+        if key == keys.pad_pose:
+            sighting = cdr.decode(PadSighting, payload)
+            own_then = state.own_at(sighting.t_ns)
+            return () if own_then is None else (sighting_measurement(sighting, own_then),)
+        return ()
+
+    def _is_due(self, local_ns: int) -> bool:
+        """A step follows each new state of the drone, at the step rate, and does not wait for it for ever."""
+        if self._stepped_ns is None:
+            return True
+        own = self.autopilot.state.own
+        periods = (local_ns - self._stepped_ns) * 1e-9 * self._system.config.step_rate_hz
+        is_new = own is not None and own.t_ns != self._stepped_own_ns
+        return periods >= (_EARLY if is_new else _LATE)
+
+    def _step(self, local_ns: int) -> None:
+        state = self.autopilot.state
+        # The map to UTC is refined all the time; the step's own time never goes back with it.
+        self._t_ns = max(self._t_ns + 1, self.autopilot.session.clock.local_to_utc_ns(local_ns))
+        inputs = StepInputs(
+            t_ns=self._t_ns,
+            limits=self.autopilot.limits(self._system.config.limits.flight_limits()),
+            own=state.own,
+            autopilot=state.view,
+            driver=self.autopilot.driver,
+            acknowledgements=self.autopilot.take_acknowledgements(),
+            measurements=tuple(self._measurements),
+            vehicle_alive=self._vehicle_alive,
+            pad=self._pad,
+            command=self._command,
+        )
+        self._measurements, self._command = [], None
+        self._stepped_ns, self._stepped_own_ns = local_ns, None if state.own is None else state.own.t_ns
+        self.memory, self.outputs = companion_step(self.memory, inputs, self._system)
+        self._send(self.outputs, local_ns)
+
+    def _send(self, outputs: StepOutputs, local_ns: int) -> None:
+        if not self._dry_run:
+            if outputs.setpoint is not None:
+                self.autopilot.send_setpoint(outputs.setpoint, local_ns)
+            self.autopilot.send_commands(outputs.commands, local_ns)
+        if outputs.text is not None:
+            self.autopilot.send_text(outputs.text)
+        if outputs.reply is not None:
+            self._replies.append(outputs.reply)
+        period_ns = 1e9 / self._system.config.status_rate_hz
+        if outputs.text is not None or self._t_ns - self._status_ns >= period_ns:
+            self._publish(outputs)
+
+    def _publish(self, outputs: StepOutputs) -> None:
+        self._status_ns = self._t_ns
+        self._statuses += 1
+        status = replace(
+            outputs.status,
+            mavlink_bad_bytes=self.autopilot.session.statistics.codec.bad_bytes,
+            zenoh_bad_payloads=self.bad_payloads,
+        )
+        self._publications.append(
+            Publication(self._keys.landing_status, json_payloads.encode(status), "application/json")
+        )
+        if outputs.plan is not None and self._statuses % _PLAN_EVERY == 0:
+            plan = self._plan(outputs)
+            self._publications.append(Publication(self._keys.landing_plan, cdr.encode(plan), cdr.encoding_of(Plan)))
+
+    def _plan(self, outputs: StepOutputs) -> Plan:
+        if outputs.plan is None:
+            return Plan(t_ns=self._t_ns, poses=())
+        trajectory = outputs.plan.trajectory
+        points = zip(trajectory.offset_s[::_PLAN_POINTS], trajectory.position_enu_m[::_PLAN_POINTS], strict=True)
+        poses = tuple(
+            PlannedPose(
+                t_ns=self._t_ns + int(offset_s * 1e9),
+                position_enu_m=(float(x), float(y), float(z)),
+                yaw_rad=self.memory.yaw_setpoint_rad,
+            )
+            for offset_s, (x, y, z) in points
+        )
+        return Plan(t_ns=self._t_ns, poses=poses)

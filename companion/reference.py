@@ -1,0 +1,96 @@
+"""The virtual model that the setpoints follow: its history, how well the drone follows it, and the correction.
+
+An autopilot follows a moving setpoint with a lag of its own (0.4 m with PX4 at 5 m/s). The lag shows as a
+lasting difference between the model and the drone at the same instant; its horizontal part is learnt slowly
+and added to the setpoints.
+"""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from companion.data import Array, OwnState, Setpoint
+from companion.planning.guidance import ReferenceState
+
+_HISTORY_S = 0.6  # longer than any telemetry is late
+_CORRECTION_GAIN_HZ = 0.5  # slower than the autopilot's own position loop (about 1 rad/s) by a factor of two
+_CORRECTION_MAX_M = 1.5
+_LEARNING_ERROR_MAX_M = 1.0  # a larger difference is a transient, not a lag
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Tracking:
+    """The model's recent past and the correction.
+
+    Attributes:
+        past: (t_ns, position (3,) in W), oldest first.
+        error_m: distance of the drone from the model at the time of the drone's newest report.
+        correction_enu_m: (3,) added to the setpoints' position.
+        compared_ns: time of the newest report that was compared.
+    """
+
+    past: tuple[tuple[int, Array], ...] = ()
+    error_m: float = 0.0
+    correction_enu_m: Array = field(default_factory=lambda: np.zeros(3))
+    compared_ns: int = 0
+
+
+def remember(tracking: Tracking, t_ns: int, reference: ReferenceState) -> Tracking:
+    """Return the tracking with the model's position at `t_ns` added."""
+    kept = tuple(entry for entry in tracking.past if (t_ns - entry[0]) * 1e-9 <= _HISTORY_S)
+    return replace(tracking, past=(*kept, (t_ns, reference.position_enu_m)))
+
+
+def compare(tracking: Tracking, own: OwnState, *, learn: bool) -> Tracking:
+    """Return the tracking after comparing the drone's report with the model at the same instant.
+
+    Args:
+        tracking: so far.
+        own: the drone's newest report.
+        learn: whether the lag is learnt from it.
+    """
+    if own.t_ns <= tracking.compared_ns or len(tracking.past) < 2 or own.t_ns < tracking.past[0][0]:
+        return tracking
+    difference = _position_at(tracking, own.t_ns) - np.array(own.position_enu_m)
+    error_m = float(np.linalg.norm(difference))
+    since_s = (own.t_ns - tracking.compared_ns) * 1e-9 if tracking.compared_ns else 0.0
+    tracking = replace(tracking, error_m=error_m, compared_ns=own.t_ns)
+    if not learn or error_m > _LEARNING_ERROR_MAX_M:
+        return tracking
+    step = _CORRECTION_GAIN_HZ * min(since_s, _HISTORY_S) * difference * np.array([1.0, 1.0, 0.0])
+    correction = tracking.correction_enu_m + step
+    length_m = float(np.linalg.norm(correction))
+    if length_m > _CORRECTION_MAX_M:
+        correction = correction * (_CORRECTION_MAX_M / length_m)
+    return replace(tracking, correction_enu_m=correction)
+
+
+def _position_at(tracking: Tracking, t_ns: int) -> Array:
+    later = tracking.past[-1]
+    for entry in reversed(tracking.past):
+        if entry[0] <= t_ns:
+            if entry is later:
+                return entry[1]
+            share = (t_ns - entry[0]) / (later[0] - entry[0])
+            return np.asarray(entry[1] + share * (later[1] - entry[1]))
+        later = entry
+    return later[1]
+
+
+def setpoint_ahead(
+    reference: ReferenceState, correction_enu_m: Array, lead_s: float, t_ns: int, yaw_rad: float, *, position_only: bool
+) -> Setpoint:
+    """Return the setpoint for `lead_s` after `t_ns`, when half of its holding time has passed."""
+    velocity = reference.velocity_enu_m_s + reference.acceleration_enu_m_s2 * lead_s
+    position = reference.position_enu_m + reference.velocity_enu_m_s * lead_s + correction_enu_m
+    position = position + 0.5 * reference.acceleration_enu_m_s2 * lead_s**2
+    px, py, pz = position.tolist()
+    vx, vy, vz = velocity.tolist()
+    ax, ay, az = reference.acceleration_enu_m_s2.tolist()
+    return Setpoint(
+        t_ns=t_ns + int(lead_s * 1e9),
+        position_enu_m=(px, py, pz),
+        velocity_enu_m_s=None if position_only else (vx, vy, vz),
+        acceleration_enu_m_s2=None if position_only else (ax, ay, az),
+        yaw_rad=yaw_rad,
+    )

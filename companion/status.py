@@ -1,0 +1,36 @@
+"""The landing's status for the world, from a step's memory and facts."""
+
+from companion.config import CompanionConfig, DescentConfig
+from companion.phases import Phase
+from companion.situation import Approach, Situation, approach, vector3
+from companion.step_data import StepMemory
+from link.messages import LandingStatus
+
+_TIMED_PHASES = frozenset({Phase.ALIGN, Phase.DESCEND})
+
+
+def landing_status(memory: StepMemory, situation: Situation, config: CompanionConfig) -> LandingStatus:
+    """Return the status; the counters of bad bytes are filled in by whoever counts them."""
+    relative = approach(situation)
+    timed = memory.phase in _TIMED_PHASES and relative is not None
+    return LandingStatus(
+        stamp_ns=situation.t_ns,
+        phase=memory.phase.value,
+        reason=memory.reason,
+        relative_position_enu_m=vector3(situation.relative_position_enu_m),
+        relative_velocity_enu_m_s=vector3(situation.relative_velocity_enu_m_s),
+        height_above_pad_m=None if relative is None else relative.height_m,
+        time_to_contact_s=_time_to_contact_s(relative, config.descent) if timed and relative is not None else None,
+        mavlink_bad_bytes=0,
+        zenoh_bad_payloads=0,
+        armed=situation.autopilot.armed,
+        fix_age_s=situation.fix_age_s,
+    )
+
+
+def _time_to_contact_s(relative: Approach, descent: DescentConfig) -> float:
+    """Return how long the sink profile takes from the present height."""
+    slow_m = descent.touchdown_sink_rate_m_s / descent.descent_gain_hz
+    fast_m = max(relative.height_m - slow_m, 0.0)
+    mean_m_s = 0.5 * (descent.descent_rate_max_m_s + descent.touchdown_sink_rate_m_s)
+    return fast_m / mean_m_s + max(min(relative.height_m, slow_m), 0.0) / descent.touchdown_sink_rate_m_s

@@ -1,0 +1,248 @@
+"""One step of the companion: estimate the vehicle, decide, plan, and say what the autopilot should do.
+
+Pure: the same memory, inputs and system give the same result, in flight, in simulation and in replay.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from companion.autopilots.driver import AutopilotCommand, Desire
+from companion.commands import answer
+from companion.config import CompanionConfig
+from companion.data import OwnState
+from companion.decisions import Progress, decide, update_held
+from companion.pad import PadPath, pad_path
+from companion.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
+from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
+from companion.reference import Tracking, compare, remember, setpoint_ahead
+from companion.situation import Situation, approach, drone_now
+from companion.status import landing_status
+from companion.step_data import StepInputs, StepMemory, StepOutputs, System
+from companion.targets import HORIZON_OFFSETS_S, Aim, hover_aim, pad_aim, stopping_point
+from link.frames import wrap_angle, yaw_of
+from link.messages import CommandReply
+
+_STEP_MAX_S = 0.1  # a longer pause does not let the virtual model jump
+_ABORT_DECELERATION_M_S2 = 2.0
+
+
+def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tuple[StepMemory, StepOutputs]:
+    """Return the memory after this step and what is to be sent.
+
+    Args:
+        memory: of the step before; `StepMemory()` at the start.
+        inputs: what has been received since then.
+        system: configuration, estimator and guidance law.
+    """
+    memory = _estimate(memory, inputs, system)
+    situation = _situation(memory, inputs, system)
+    before = memory.phase
+    memory, reply = _transitions(memory, situation, inputs, system.config)
+    memory, plan = _fly(memory, situation, inputs, system)
+    memory, commands = _drive(memory, situation, inputs, system.config)
+    situation = replace(situation, reference=memory.reference)
+    setpoint = None
+    if memory.reference is not None:
+        setpoint = setpoint_ahead(
+            memory.reference,
+            memory.tracking.correction_enu_m,
+            system.config.setpoint_lead_s,
+            inputs.t_ns,
+            memory.yaw_setpoint_rad,
+            position_only=system.config.position_only,
+        )
+    outputs = StepOutputs(
+        setpoint=setpoint,
+        commands=commands,
+        text=f"{memory.phase.value}: {memory.reason}" if memory.phase is not before else None,
+        reply=reply,
+        status=landing_status(memory, situation, system.config),
+        plan=plan,
+    )
+    return memory, outputs
+
+
+def _estimate(memory: StepMemory, inputs: StepInputs, system: System) -> StepMemory:
+    """Fuse what the vehicle sent; when the local frame has moved, everything in it starts anew."""
+    if inputs.autopilot.origin_count != memory.origin_count:
+        memory = replace(memory, estimator=None, origin_count=inputs.autopilot.origin_count)
+    if inputs.measurements:
+        memory = replace(memory, estimator=system.estimator.fuse(memory.estimator, inputs.measurements))
+    if inputs.own is not None and memory.reference is not None:
+        learn = memory.phase in LANDING_PHASES
+        memory = replace(memory, tracking=compare(memory.tracking, inputs.own, learn=learn))
+    return memory
+
+
+def _situation(memory: StepMemory, inputs: StepInputs, system: System) -> Situation:
+    forecast = system.estimator.forecast(memory.estimator, inputs.t_ns, HORIZON_OFFSETS_S)
+    newest_ns = system.estimator.newest_fix_ns(memory.estimator)
+    return Situation(
+        t_ns=inputs.t_ns,
+        autopilot=inputs.autopilot,
+        drone=drone_now(inputs.own, inputs.t_ns, _own_yaw_rad(inputs.own)),
+        pad=None if forecast is None else pad_path(forecast, inputs.pad),
+        feet_offset_m=system.config.touchdown.gear_height_m,
+        fix_age_s=None if newest_ns is None else (inputs.t_ns - newest_ns) * 1e-9,
+        vehicle_alive=inputs.vehicle_alive,
+        reference=memory.reference,
+        tracking_error_m=memory.tracking.error_m,
+        waiting_point_enu_m=memory.waiting_point_enu_m,
+    )
+
+
+def _own_yaw_rad(own: OwnState | None) -> float:
+    return 0.0 if own is None else yaw_of(own.orientation_wxyz)
+
+
+def _transitions(
+    memory: StepMemory, situation: Situation, inputs: StepInputs, config: CompanionConfig
+) -> tuple[StepMemory, CommandReply | None]:
+    """Take the operator's command, then the event of this step."""
+    reply = None
+    if inputs.command is not None:
+        event, reply = answer(inputs.command, memory.phase, situation)
+        if event is not None:
+            memory = _enter(memory, event, f"commanded: {inputs.command.value}", situation, config)
+    progress = Progress(
+        phase=memory.phase,
+        since_ns=memory.phase_since_ns,
+        retries=memory.retries,
+        was_in_control=memory.was_in_control,
+    )
+    held = update_held(memory.held, progress, situation, approach(situation), config)
+    memory = replace(memory, held=held)
+    decision = decide(progress, situation, held, config)
+    if decision is not None:
+        memory = _enter(memory, *decision, situation, config)
+    in_control = memory.was_in_control or (inputs.autopilot.in_control and inputs.autopilot.armed)
+    return replace(memory, was_in_control=in_control and memory.phase in FLYING_PHASES), reply
+
+
+def _enter(memory: StepMemory, event: Event, reason: str, situation: Situation, config: CompanionConfig) -> StepMemory:
+    """Return the memory in the phase that `event` leads to, with what that phase needs at its beginning."""
+    phase = next_phase(memory.phase, event)
+    if phase is memory.phase:
+        return memory
+    retries = memory.retries + 1 if event is Event.CLEAR else memory.retries
+    memory = replace(memory, phase=phase, phase_since_ns=situation.t_ns, reason=reason, held={}, retries=retries)
+    if phase is Phase.TAKEOFF:
+        return _begin_flight(memory, situation, config)
+    if phase not in FLYING_PHASES:
+        return replace(memory, reference=None, tracking=Tracking())
+    if phase in (Phase.HOLD, Phase.ABORT) and memory.reference is not None:
+        return replace(memory, anchor_enu_m=stopping_point(memory.reference, _ABORT_DECELERATION_M_S2))
+    return memory
+
+
+def _begin_flight(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
+    """Start the virtual model where the drone is, and place the waiting point above it."""
+    if situation.drone is None:
+        return replace(memory, phase=Phase.IDLE, reason="the drone's position is not known")
+    position, zero = situation.drone.position_enu_m, np.zeros(3)
+    airborne = situation.autopilot.armed and situation.autopilot.landed is False
+    climb_m = 0.0 if airborne else config.takeoff.waiting_height_m
+    return replace(
+        memory,
+        retries=0,
+        was_in_control=False,
+        reference=ReferenceState(position_enu_m=position, velocity_enu_m_s=zero, acceleration_enu_m_s2=zero),
+        reference_ns=situation.t_ns,
+        tracking=Tracking(),
+        guidance=None,
+        anchor_enu_m=position,
+        waiting_point_enu_m=position + np.array([0.0, 0.0, climb_m]),
+        yaw_setpoint_rad=situation.drone.yaw_rad,
+    )
+
+
+def _aim(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Aim:
+    """Return where the present phase wants the drone."""
+    reference, pad = memory.reference, situation.pad
+    if reference is None or memory.anchor_enu_m is None or memory.waiting_point_enu_m is None:
+        raise ValueError(f"phase {memory.phase.value} flies without a reference")
+    match memory.phase:
+        case Phase.CHASE | Phase.ALIGN | Phase.DESCEND | Phase.TOUCHDOWN if pad is not None:
+            return pad_aim(memory.phase, pad, reference, situation.feet_offset_m, config)
+        case Phase.ABORT if pad is not None and _is_fresh(situation, config):
+            return pad_aim(memory.phase, pad, reference, situation.feet_offset_m, config)
+        case Phase.ABORT:
+            return hover_aim(memory.anchor_enu_m + np.array([0.0, 0.0, config.abort.height_m]))
+        case Phase.TAKEOFF if not (situation.autopilot.armed and situation.autopilot.in_control):
+            return hover_aim(memory.anchor_enu_m)
+        case Phase.HOLD:
+            return hover_aim(memory.anchor_enu_m)
+        case _:
+            return hover_aim(memory.waiting_point_enu_m)
+
+
+def _is_fresh(situation: Situation, config: CompanionConfig) -> bool:
+    return situation.fix_age_s is not None and situation.fix_age_s <= config.abort.fix_age_max_s
+
+
+def _fly(
+    memory: StepMemory, situation: Situation, inputs: StepInputs, system: System
+) -> tuple[StepMemory, PlanResult | None]:
+    """Advance the virtual model by one plan."""
+    if memory.reference is None or memory.phase not in FLYING_PHASES:
+        return memory, None
+    dt_s = (inputs.t_ns - memory.reference_ns) * 1e-9
+    if dt_s <= 0.0:
+        return memory, None
+    aim = _aim(memory, situation, system.config)
+    request = PlanRequest(
+        state=memory.reference,
+        target=aim.target,
+        limits=inputs.limits,
+        floor_enu_m=aim.floor_enu_m,
+        dt_s=min(dt_s, _STEP_MAX_S),
+    )
+    guidance, plan = system.guidance.plan(memory.guidance, request)
+    memory = replace(
+        memory,
+        guidance=guidance,
+        reference=plan.next_state,
+        reference_ns=inputs.t_ns,
+        tracking=remember(memory.tracking, inputs.t_ns, plan.next_state),
+        yaw_setpoint_rad=_slewed_yaw_rad(memory, situation.pad, dt_s, system.config),
+    )
+    return memory, plan
+
+
+def _slewed_yaw_rad(memory: StepMemory, pad: PadPath | None, dt_s: float, config: CompanionConfig) -> float:
+    """Turn towards the vehicle's heading while it is followed, at a bounded rate."""
+    follows = memory.phase in LANDING_PHASES or memory.phase is Phase.TOUCHDOWN
+    if not follows or pad is None or pad.yaw_rad is None:
+        return memory.yaw_setpoint_rad
+    turn_max_rad = config.yaw_rate_max_rad_s * min(dt_s, _STEP_MAX_S)
+    turn_rad = wrap_angle(pad.yaw_rad - memory.yaw_setpoint_rad)
+    return wrap_angle(memory.yaw_setpoint_rad + min(max(turn_rad, -turn_max_rad), turn_max_rad))
+
+
+def _drive(
+    memory: StepMemory, situation: Situation, inputs: StepInputs, config: CompanionConfig
+) -> tuple[StepMemory, tuple[AutopilotCommand, ...]]:
+    """Return the memory and the commands that bring the autopilot to what the phase needs."""
+    if inputs.driver is None:
+        return memory, ()
+    driver_memory = memory.driver
+    for command, result in inputs.acknowledgements:
+        driver_memory = inputs.driver.acknowledged(driver_memory, command, result)
+    desire = _desire(memory, situation, config)
+    driver_memory, commands = inputs.driver.act(driver_memory, inputs.autopilot, desire, inputs.t_ns)
+    return replace(memory, driver=driver_memory), commands
+
+
+def _desire(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Desire:
+    match memory.phase:
+        case Phase.TAKEOFF:
+            return Desire(control=True, armed=True)
+        case Phase.TOUCHDOWN:
+            relative = approach(situation)
+            low = relative is not None and relative.height_m < config.descent.commit_height_m
+            return Desire(control=True, armed=False, force_disarm=low)
+        case Phase.IDLE | Phase.SECURED | Phase.PILOT:
+            return Desire()
+        case _:
+            return Desire(control=None if memory.was_in_control else True)

@@ -1,0 +1,115 @@
+"""What goes into a companion step, what comes out, and what it remembers in between."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, AutopilotView, Driver, DriverMemory
+from companion.config import CompanionConfig
+from companion.data import Array, FlightLimits, Measurement, OwnState, Setpoint
+from companion.estimation.estimator import Estimator
+from companion.phases import Phase
+from companion.planning.guidance import Guidance, PlanResult, ReferenceState
+from companion.reference import Tracking
+from link.messages import Command, CommandReply, LandingStatus, PadGeometry
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class System:
+    """The parts that a companion is made of; none of them changes during a flight."""
+
+    config: CompanionConfig
+    estimator: Estimator
+    guidance: Guidance
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class StepInputs:
+    """What a step is told.
+
+    Attributes:
+        t_ns: now, UTC.
+        own: the drone's newest report, None before the first.
+        autopilot: as its messages tell.
+        driver: of the connected autopilot, None while none is connected.
+        limits: of the flight, from the configuration and the autopilot's parameters.
+        acknowledgements: (command, MAV_RESULT) received since the last step.
+        measurements: of the vehicle, received since the last step.
+        vehicle_alive: its liveliness token; None when it never showed one.
+        pad: the vehicle's own description of its pad.
+        command: an operator's wish.
+    """
+
+    t_ns: int
+    limits: FlightLimits
+    own: OwnState | None = None
+    autopilot: AutopilotView = NO_AUTOPILOT
+    driver: Driver | None = None
+    acknowledgements: tuple[tuple[int, int], ...] = ()
+    measurements: tuple[Measurement, ...] = ()
+    vehicle_alive: bool | None = None
+    pad: PadGeometry | None = None
+    command: Command | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class StepOutputs:
+    """What a step wants done.
+
+    Attributes:
+        setpoint: to be sent; None while the companion flies nothing.
+        commands: to be sent and acknowledged.
+        text: for the pilot, None when there is nothing new.
+        reply: to the operator's command, None when there was none.
+        status: for the world.
+        plan: of this step, None while nothing is flown.
+    """
+
+    setpoint: Setpoint | None
+    commands: tuple[AutopilotCommand, ...]
+    text: str | None
+    reply: CommandReply | None
+    status: LandingStatus
+    plan: PlanResult | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class StepMemory:
+    """What a step hands to the next.
+
+    Attributes:
+        phase: of the landing.
+        phase_since_ns: when it began.
+        reason: why it began.
+        retries: landings aborted since the start.
+        was_in_control: the autopilot has followed the companion since the start.
+        estimator: the estimator's own memory.
+        guidance: the guidance law's own memory.
+        driver: the driver's memory.
+        reference: the virtual model, None while nothing is flown.
+        reference_ns: the model's time.
+        tracking: how the drone follows it.
+        held: since when each test has been true.
+        waiting_point_enu_m: (3,) in W.
+        anchor_enu_m: (3,) where a hover phase stays.
+        yaw_setpoint_rad: last one sent.
+        origin_count: of the frame that the estimate is in.
+    """
+
+    phase: Phase = Phase.IDLE
+    phase_since_ns: int = 0
+    reason: str = "waiting for a start"
+    retries: int = 0
+    was_in_control: bool = False
+    estimator: Any = None
+    guidance: Any = None
+    driver: DriverMemory = field(default_factory=DriverMemory)
+    reference: ReferenceState | None = None
+    reference_ns: int = 0
+    tracking: Tracking = field(default_factory=Tracking)
+    held: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
+    waiting_point_enu_m: Array | None = None
+    anchor_enu_m: Array | None = None
+    yaw_setpoint_rad: float = 0.0
+    origin_count: int = 0

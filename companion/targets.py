@@ -1,0 +1,128 @@
+"""Where each phase wants the drone over the horizon, and how low it may go; pure numerics in W.
+
+All heights of the drone are of the point whose position the autopilot reports; `feet_offset_m` below it are
+its feet, which stand on the pad after the landing.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from companion.config import CompanionConfig, DescentConfig
+from companion.data import Array
+from companion.pad import PadPath
+from companion.phases import Phase
+from companion.planning.guidance import ReferenceState, Target
+
+HORIZON_OFFSETS_S: Array = np.arange(0.0, 4.01, 0.2)
+NO_FLOOR_M = -1e4
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Aim:
+    """What the planner is given: the target and the lowest height (n,) at its offsets."""
+
+    target: Target
+    floor_enu_m: Array
+
+
+def hover_aim(point_enu_m: Array) -> Aim:
+    """Return the aim that stays at `point_enu_m` (3,)."""
+    n = len(HORIZON_OFFSETS_S)
+    zeros = np.zeros((n, 3))
+    target = Target(
+        offset_s=HORIZON_OFFSETS_S,
+        position_enu_m=np.tile(point_enu_m, (n, 1)),
+        velocity_enu_m_s=zeros,
+        acceleration_enu_m_s2=zeros,
+    )
+    return Aim(target=target, floor_enu_m=np.full(n, NO_FLOOR_M))
+
+
+def stopping_point(reference: ReferenceState, deceleration_m_s2: float) -> Array:
+    """Return (3,) where the virtual model comes to rest when it brakes evenly."""
+    velocity = reference.velocity_enu_m_s
+    speed_m_s = float(np.linalg.norm(velocity))
+    return np.asarray(reference.position_enu_m + velocity * speed_m_s / (2.0 * deceleration_m_s2))
+
+
+def pad_aim(
+    phase: Phase, pad: PadPath, reference: ReferenceState, feet_offset_m: float, config: CompanionConfig
+) -> Aim:
+    """Return the aim that follows the pad as `phase` (chase, align, descend, touchdown or abort) asks."""
+    height_now_m = float(reference.position_enu_m[2] - pad.position_enu_m[0, 2]) - feet_offset_m
+    height, sink = _height_profile(phase, height_now_m, pad, reference, config)
+    position = pad.position_enu_m.copy()
+    position[:, 2] += feet_offset_m + height
+    velocity = pad.velocity_enu_m_s.copy()
+    velocity[:, 2] -= sink
+    target = Target(
+        offset_s=pad.offset_s,
+        position_enu_m=position,
+        velocity_enu_m_s=velocity,
+        acceleration_enu_m_s2=pad.acceleration_enu_m_s2,
+    )
+    floor = pad.position_enu_m[:, 2] + feet_offset_m + _clearance_m(phase, config)
+    return Aim(target=target, floor_enu_m=floor)
+
+
+def _height_profile(
+    phase: Phase, height_now_m: float, pad: PadPath, reference: ReferenceState, config: CompanionConfig
+) -> tuple[Array, Array]:
+    """Return the wanted height over the pad (n,) and the sink rate against it (n,)."""
+    n = len(pad.offset_s)
+    match phase:
+        case Phase.DESCEND | Phase.TOUCHDOWN:
+            return sink_profile(height_now_m, pad.offset_s, config.descent)
+        case Phase.ABORT:
+            height_m = config.abort.height_m
+        case Phase.ALIGN:
+            height_m = config.descent.align_height_m
+        case _:
+            height_m = _chase_height_m(pad, reference, config)
+    return np.full(n, height_m), np.zeros(n)
+
+
+def _chase_height_m(pad: PadPath, reference: ReferenceState, config: CompanionConfig) -> float:
+    """Come down towards the height of alignment as the horizontal distance closes, two metres for each."""
+    distance_m = float(np.hypot(*(reference.position_enu_m[:2] - pad.position_enu_m[0, :2])))
+    beyond_m = max(distance_m - config.descent.align_distance_m, 0.0)
+    return min(config.descent.align_height_m + 0.5 * beyond_m, config.chase.height_m)
+
+
+def sink_profile(height_now_m: float, offset_s: Array, config: DescentConfig) -> tuple[Array, Array]:
+    """Return height over the pad (n,) and sink rate (n,) of a descent that slows down to the touchdown rate.
+
+    The sink rate is proportional to the height, between the touchdown rate and the largest one; below the pad
+    it goes on at the touchdown rate to the press depth, where it ends.
+    """
+    fast_m_s, slow_m_s, gain_hz = config.descent_rate_max_m_s, config.touchdown_sink_rate_m_s, config.descent_gain_hz
+    # Three stretches one after the other: at the largest rate, slowing down exponentially, at the touchdown rate.
+    slowing_from_m = min(height_now_m, fast_m_s / gain_hz)
+    fast_s = max(height_now_m - slowing_from_m, 0.0) / fast_m_s
+    slow_from_m = min(slowing_from_m, slow_m_s / gain_hz)
+    slowing_s = math.log(slowing_from_m / slow_from_m) / gain_hz if slowing_from_m > slow_from_m else 0.0
+    slow_s = max(slow_from_m + config.press_depth_m, 0.0) / slow_m_s
+    in_slowing_s = np.clip(offset_s - fast_s, 0.0, slowing_s)
+    in_slow_s = np.clip(offset_s - fast_s - slowing_s, 0.0, slow_s)
+    height = (
+        height_now_m
+        - fast_m_s * np.minimum(offset_s, fast_s)
+        - slowing_from_m * (1.0 - np.exp(-gain_hz * in_slowing_s))
+        - slow_m_s * in_slow_s
+    )
+    ended = offset_s >= fast_s + slowing_s + slow_s
+    rate = np.where(ended, 0.0, np.clip(gain_hz * height, slow_m_s, fast_m_s))
+    return height, rate
+
+
+def _clearance_m(phase: Phase, config: CompanionConfig) -> float:
+    """Return how far the feet stay above the pad: nothing where it is to be touched."""
+    match phase:
+        case Phase.DESCEND | Phase.TOUCHDOWN:
+            return NO_FLOOR_M
+        case Phase.ALIGN:
+            return 0.6 * config.descent.align_height_m
+        case _:
+            return 0.8 * config.descent.align_height_m

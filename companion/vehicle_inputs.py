@@ -1,0 +1,85 @@
+"""From the vehicle's messages to measurements in the drone's local frame W."""
+
+import numpy as np
+
+from companion.data import Array, Measurement, OwnState, Quantity
+from link.frames import rotate, yaw_of
+from link.geodesy import Datum, enu_from_geodetic
+from link.messages import Fix, FixVelocity, Matrix3, PadSighting, VehicleImu
+
+# Taken when a message states no covariance: plain GNSS and a low-cost attitude sensor.
+_POSITION_STD_M = 1.5
+_VELOCITY_STD_M_S = 0.3
+_HEADING_STD_RAD = 0.1
+_YAW_RATE_STD_RAD_S = 0.02
+
+
+def _matrix(covariance: Matrix3 | None, std: float) -> Array:
+    if covariance is None:
+        return np.eye(3) * std**2
+    return np.array(covariance).reshape(3, 3)
+
+
+def fix_measurement(fix: Fix, origin: Datum) -> Measurement:
+    """Return the antenna's position in W, whose origin is the autopilot's."""
+    position = enu_from_geodetic(origin, fix.latitude_rad, fix.longitude_rad, fix.altitude_m)
+    return Measurement(
+        t_ns=fix.t_ns,
+        quantity=Quantity.POSITION,
+        value=np.array(position),
+        covariance=_matrix(fix.covariance_enu_m2, _POSITION_STD_M),
+    )
+
+
+def velocity_measurements(message: FixVelocity) -> tuple[Measurement, ...]:
+    """Return the velocity and, where the message has it, the yaw rate."""
+    velocity = Measurement(
+        t_ns=message.t_ns,
+        quantity=Quantity.VELOCITY,
+        value=np.array(message.velocity_enu_m_s),
+        covariance=_matrix(message.velocity_covariance_enu_m2_s2, _VELOCITY_STD_M_S),
+    )
+    if message.yaw_rate_rad_s is None:
+        return (velocity,)
+    return (velocity, _yaw_rate(message.t_ns, message.yaw_rate_rad_s, message.yaw_rate_variance_rad2_s2))
+
+
+def imu_measurements(message: VehicleImu) -> tuple[Measurement, ...]:
+    """Return the heading and the yaw rate, as far as the message has them."""
+    found: list[Measurement] = []
+    if message.orientation_wxyz is not None:
+        covariance = message.orientation_covariance_rad2
+        variance = _HEADING_STD_RAD**2 if covariance is None else covariance[8]
+        found.append(_scalar(message.t_ns, Quantity.HEADING, yaw_of(message.orientation_wxyz), variance))
+    if message.angular_velocity_flu_rad_s is not None:
+        rate_covariance = message.angular_velocity_covariance_rad2_s2
+        rate_variance = None if rate_covariance is None else rate_covariance[8]
+        found.append(_yaw_rate(message.t_ns, message.angular_velocity_flu_rad_s[2], rate_variance))
+    return tuple(found)
+
+
+def sighting_measurement(sighting: PadSighting, own_then: OwnState) -> Measurement:
+    """Return the pad's centre in W.
+
+    Args:
+        sighting: in the drone's body frame at its stamp.
+        own_then: the drone at that stamp.
+    """
+    offset = rotate(own_then.orientation_wxyz, sighting.position_flu_m)
+    turn = np.column_stack(
+        [rotate(own_then.orientation_wxyz, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))]
+    )
+    return Measurement(
+        t_ns=sighting.t_ns,
+        quantity=Quantity.PAD,
+        value=np.array(own_then.position_enu_m) + np.array(offset),
+        covariance=turn @ np.array(sighting.position_covariance_m2).reshape(3, 3) @ turn.T,
+    )
+
+
+def _yaw_rate(t_ns: int, rate_rad_s: float, variance: float | None) -> Measurement:
+    return _scalar(t_ns, Quantity.YAW_RATE, rate_rad_s, _YAW_RATE_STD_RAD_S**2 if variance is None else variance)
+
+
+def _scalar(t_ns: int, quantity: Quantity, value: float, variance: float) -> Measurement:
+    return Measurement(t_ns=t_ns, quantity=quantity, value=np.array([value]), covariance=np.array([[variance]]))

@@ -1,0 +1,54 @@
+"""The links of a lockstep run: MAVLink down and up, and Zenoh, each with seeded delay and loss."""
+
+from dataclasses import dataclass
+
+from link.memory_link import MemoryLink
+from scenarios.config import ChannelConfig, LinkConfig
+from scenarios.noise import named_rng
+
+_SEPARATOR = b"\0"
+
+
+class KeyedLink:
+    """A memory link for payloads with their keys."""
+
+    def __init__(self, link: MemoryLink) -> None:
+        self._link = link
+
+    def put(self, key: str, payload: bytes, t_ns: int) -> None:
+        """Send a payload."""
+        self._link.put(key.encode() + _SEPARATOR + payload, t_ns)
+
+    def take(self, t_ns: int) -> list[tuple[str, bytes]]:
+        """Return what has arrived, with the keys."""
+        packets = (packet.partition(_SEPARATOR) for packet in self._link.take(t_ns))
+        return [(key.decode(), payload) for key, _, payload in packets]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Channels:
+    """The three directions that matter.
+
+    Attributes:
+        down: from the autopilot to the companion.
+        up: from the companion to the autopilot.
+        zenoh: from the vehicle to the companion.
+    """
+
+    down: MemoryLink
+    up: MemoryLink
+    zenoh: KeyedLink
+
+
+def channels_of(link: LinkConfig, seed: int) -> Channels:
+    """Return fresh channels for a run."""
+    return Channels(
+        down=_channel(link.mavlink, seed, "mavlink down"),
+        up=_channel(link.mavlink, seed, "mavlink up"),
+        zenoh=KeyedLink(_channel(link.zenoh, seed, "zenoh")),
+    )
+
+
+def _channel(config: ChannelConfig, seed: int, name: str) -> MemoryLink:
+    rng = named_rng(seed, name)
+    return MemoryLink(seed=int(rng.integers(2**31)), delay_s=config.delay_s, jitter_s=config.jitter_s, loss=config.loss)

@@ -1,0 +1,93 @@
+"""A whole run in one process on a simulated clock: the wire run's programs, meeting in the same bytes.
+
+Same scenario, seed and configuration: the same bytes, so the same result.
+"""
+
+from collections.abc import Sequence
+
+from companion.build import build_node
+from companion.config import CompanionConfig
+from companion.node import CompanionNode
+from link.keys import Keys
+from link.memory_link import MemoryLink
+from link.messages import Command
+from scenarios.channels import Channels, channels_of
+from scenarios.config import Scenario
+from scenarios.recording import EndWatch, Recording
+from scenarios.simulation import Simulation, SimulationOutputs
+
+START_NS = 1_767_225_600_000_000_000
+"""UTC at the beginning of every lockstep run: 2026-01-01."""
+
+_COMPANION_LOCAL_NS = 1_700_000_000_000_000_000  # its own clock is no part of any result
+
+
+class Lockstep:
+    """A run that is advanced step by step.
+
+    Args:
+        scenario: what is flown.
+        seed: of everything random.
+        config: of the companion.
+    """
+
+    def __init__(self, scenario: Scenario, seed: int, config: CompanionConfig) -> None:
+        keys = Keys()
+        self.recording = Recording()
+        self.simulation = Simulation(scenario, seed, keys, START_NS, instant=True)
+        self.companion = build_node(config, keys)
+        self.companion.receive_pad(self.simulation.vehicle.pad)
+        self._channels: Channels = channels_of(scenario.link, seed)
+        self._heard = frozenset({keys.fix, keys.fix_velocity, keys.imu, keys.pad_pose})
+        self._watch = EndWatch(scenario.time_limit_s)
+        self._started = False
+
+    def run(self) -> str:
+        """Run to the end and return why it ended."""
+        while (reason := self._watch.reason(self.recording)) is None:
+            self.step()
+        return reason
+
+    def step(self) -> None:
+        """Advance by one step of the simulation."""
+        outputs = self.simulation.step()
+        t_ns = self.simulation.t_ns
+        self._record(outputs)
+        if outputs.mavlink:
+            self._channels.down.put(outputs.mavlink, t_ns)
+        for publication in outputs.publications:
+            if publication.key in self._heard:
+                self._channels.zenoh.put(publication.key, publication.payload, t_ns)
+        self._advance_companion(t_ns)
+
+    def _advance_companion(self, t_ns: int) -> None:
+        node, local_ns = self.companion, t_ns - START_NS + _COMPANION_LOCAL_NS
+        for data in self._channels.down.take(t_ns):
+            node.receive_mavlink(data, local_ns)
+        for key, payload in self._channels.zenoh.take(t_ns):
+            node.receive_sample(key, payload)
+        self._start(node)
+        if node.poll(local_ns) and node.outputs is not None:
+            self.recording.add(node.outputs.status)
+        node.take_publications()
+        node.take_replies()
+        self._send(node.take_frames(), t_ns)
+
+    def _start(self, node: CompanionNode) -> None:
+        if not self._started and node.is_ready_to_start():
+            node.request(Command.START)
+            self._started = True
+
+    def _send(self, frames: Sequence[bytes], t_ns: int) -> None:
+        up: MemoryLink = self._channels.up
+        for frame in frames:
+            up.put(frame, t_ns)
+        for data in up.take(t_ns):
+            answer = self.simulation.receive(data)
+            if answer:
+                self._channels.down.put(answer, t_ns)
+
+    def _record(self, outputs: SimulationOutputs) -> None:
+        self.recording.add(outputs.drone)
+        self.recording.add(outputs.vehicle, is_drone=False)
+        self.recording.add(outputs.rotors)

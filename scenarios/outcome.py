@@ -1,0 +1,56 @@
+"""From a recording to the run's result, as `result.json` has it: only what scenario and seed decide."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from scenarios.config import Scenario
+from scenarios.drone import mean_wind_enu_m_s, plant_config
+from scenarios.recording import Recording
+from scenarios.score import Score, ScoreRules, Tier, score
+from scenarios.touch import Box
+
+_DIGITS = 6  # a micrometre, a microsecond
+LANDED = frozenset({Tier.S1, Tier.S2, Tier.S3})
+
+
+def score_rules(scenario: Scenario, seed: int) -> ScoreRules:
+    """Return what the scenario's score depends on."""
+    body = scenario.vehicle
+    airframe = plant_config(scenario).airframe
+    return ScoreRules(
+        box=Box(
+            roof_size_m=(body.length_m, body.width_m), roof_height_m=body.roof_height_m, pad_size_m=body.pad_size_m
+        ),
+        waiting_point_enu_m=scenario.waiting_point_enu_m,
+        mass_kg=airframe.mass_kg,
+        drag_n_s_m=airframe.drag_n_s_m,
+        wind_mean_enu_m_s=mean_wind_enu_m_s(scenario, seed),
+        fence_radius_m=scenario.fence_radius_m,
+        report_rule=body.roof_height_m == 0.0,
+    )
+
+
+def scored(scenario: Scenario, seed: int, recording: Recording) -> Score:
+    """Return the score of a recording, on truth."""
+    return score(recording.drone, recording.vehicle, recording.rotors, score_rules(scenario, seed))
+
+
+def result_table(scenario: Scenario, seed: int, recording: Recording, ended: str) -> dict[str, Any]:
+    """Return the result as a table of plain values."""
+    table = scored(scenario, seed, recording).to_json()
+    start_ns = recording.drone[0].t_ns
+    times = {key: table.pop(key) for key in ("start_t_ns", "contact_t_ns")}
+    relative = {key.removesuffix("_t_ns") + "_s": _since_s(value, start_ns) for key, value in times.items()}
+    phases = {phase: round(t_s, 3) for phase, t_s in recording.phase_times_s().items()}
+    rounded = {key: round(value, _DIGITS) if isinstance(value, float) else value for key, value in table.items()}
+    return {"scenario": scenario.name, "seed": seed, **rounded, **relative, "ended": ended, "phases_s": phases}
+
+
+def _since_s(value: Any, start_ns: int) -> float | None:
+    return None if value is None else round((value - start_ns) * 1e-9, _DIGITS)
+
+
+def write_json(path: Path, table: dict[str, Any]) -> None:
+    """Write `table` with a fixed order and form."""
+    path.write_text(json.dumps(table, indent=2, allow_nan=False) + "\n", encoding="utf-8")

@@ -1,0 +1,109 @@
+"""The programs of a run as processes: started together, watched, and none of them left behind."""
+
+import ctypes
+import signal
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from link.errors import UserError
+
+_INTERRUPT_WAIT_S = 5.0
+_PR_SET_PDEATHSIG = 1  # prctl(2), Linux
+_TAIL_LINES = 3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Program:
+    """A program of the run.
+
+    Attributes:
+        name: of its log file, and in messages.
+        module: run by this interpreter with `-m`.
+        arguments: of its command line.
+    """
+
+    name: str
+    module: str
+    arguments: Sequence[str]
+
+
+class ProcessGroup:
+    """Programs that live as long as the `with` block.
+
+    Each writes its output to `<folder>/<name>.log`. On leaving the block each gets an interrupt, as from Ctrl-C,
+    and is killed if it has not ended within five seconds. Should this process be killed, the kernel ends them.
+    """
+
+    def __init__(self, programs: Sequence[Program], folder: Path) -> None:
+        self._programs = programs
+        self._folder = folder
+        self._processes: dict[str, subprocess.Popen[bytes]] = {}
+
+    def __enter__(self) -> Self:
+        try:
+            for program in self._programs:
+                self._start(program)
+        except BaseException:
+            self._stop()
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._stop()
+
+    @property
+    def process_ids(self) -> dict[str, int]:
+        """The process id of each program, by name."""
+        return {name: process.pid for name, process in self._processes.items()}
+
+    def check(self) -> None:
+        """Raise when a program has ended by itself.
+
+        Raises:
+            UserError: with the program's name, exit code and last words.
+        """
+        for name, process in self._processes.items():
+            code = process.poll()
+            if code is not None:
+                raise UserError(f"{name} ended with exit code {code}: {self._last_words(name)}")
+
+    def _start(self, program: Program) -> None:
+        with self._log(program.name).open("wb") as log:
+            self._processes[program.name] = subprocess.Popen(
+                [sys.executable, "-m", program.module, *program.arguments],
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                preexec_fn=_die_with_parent,  # noqa: PLW1509 (one prctl call; no thread has been started yet)
+            )
+
+    def _stop(self) -> None:
+        for process in self._processes.values():
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+        for process in self._processes.values():
+            try:
+                process.wait(timeout=_INTERRUPT_WAIT_S)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+    def _log(self, name: str) -> Path:
+        return self._folder / f"{name}.log"
+
+    def _last_words(self, name: str) -> str:
+        lines = self._log(name).read_text(encoding="utf-8", errors="replace").splitlines()
+        return " | ".join(line.strip() for line in lines[-_TAIL_LINES:] if line.strip()) or "it said nothing"
+
+
+def _die_with_parent() -> None:
+    """Let the kernel kill this process when its parent ends, however that ends."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)

@@ -1,0 +1,94 @@
+"""What a run leaves for the score: truth and the companion's status, and when there is nothing more to wait for."""
+
+from dataclasses import dataclass, field
+
+from companion.phases import FLYING_PHASES, Phase
+from link.messages import BodyTruth, LandingStatus, RotorTruth
+
+_AFTER_MOTORS_OFF_NS = 2_500_000_000  # the score looks at the drone 2 s after
+_AFTER_GIVING_UP_NS = 5_000_000_000  # for a drone that aborts to be seen airborne and stable
+_GIVEN_UP = frozenset({Phase.HOLD.value, Phase.PILOT.value})
+_FLYING = frozenset(phase.value for phase in FLYING_PHASES)
+_NS_PER_S = 1e9
+
+
+@dataclass(slots=True)
+class Recording:
+    """Samples in the order of their times.
+
+    Attributes:
+        drone: its truth.
+        vehicle: its truth.
+        rotors: of the drone.
+        statuses: of the companion, as published.
+    """
+
+    drone: list[BodyTruth] = field(default_factory=list)
+    vehicle: list[BodyTruth] = field(default_factory=list)
+    rotors: list[RotorTruth] = field(default_factory=list)
+    statuses: list[LandingStatus] = field(default_factory=list)
+
+    def add(self, sample: BodyTruth | RotorTruth | LandingStatus, *, is_drone: bool = True) -> None:
+        """Append a sample; one that is not newer than the last of its kind is a repetition and is left out."""
+        match sample:
+            case BodyTruth():
+                truths = self.drone if is_drone else self.vehicle
+                if not truths or sample.t_ns > truths[-1].t_ns:
+                    truths.append(sample)
+            case RotorTruth():
+                if not self.rotors or sample.t_ns > self.rotors[-1].t_ns:
+                    self.rotors.append(sample)
+            case LandingStatus():
+                self.statuses.append(sample)
+
+    @property
+    def elapsed_s(self) -> float:
+        """Simulated time since the drone's first sample."""
+        return (self.drone[-1].t_ns - self.drone[0].t_ns) / _NS_PER_S if self.drone else 0.0
+
+    @property
+    def status(self) -> LandingStatus | None:
+        """The newest one."""
+        return self.statuses[-1] if self.statuses else None
+
+    def phase_times_s(self) -> dict[str, float]:
+        """Return when each phase was first seen, in seconds since the drone's first sample."""
+        times: dict[str, float] = {}
+        for status in self.statuses:
+            # Before the clocks are mapped a status bears the companion's own time.
+            if status.stamp_ns >= self.drone[0].t_ns:
+                times.setdefault(status.phase, (status.stamp_ns - self.drone[0].t_ns) / _NS_PER_S)
+        return times
+
+
+class EndWatch:
+    """Tells when a run is over.
+
+    Args:
+        time_limit_s: simulated time after which it ends in any case.
+    """
+
+    def __init__(self, time_limit_s: float) -> None:
+        self._time_limit_s = time_limit_s
+        self._has_flown = False
+        self._over_ns: int | None = None
+        self._over_phase = ""
+
+    def reason(self, recording: Recording) -> str | None:
+        """Return why the run is over, None while it goes on."""
+        status = recording.status
+        if status is not None and recording.drone:
+            self._watch(status.phase, recording.drone[-1].t_ns)
+            wait_ns = _AFTER_GIVING_UP_NS if self._over_phase in _GIVEN_UP else _AFTER_MOTORS_OFF_NS
+            if self._over_ns is not None and recording.drone[-1].t_ns - self._over_ns >= wait_ns:
+                return self._over_phase
+        return "time limit" if recording.elapsed_s >= self._time_limit_s else None
+
+    def _watch(self, phase: str, t_ns: int) -> None:
+        self._has_flown = self._has_flown or phase in _FLYING
+        is_over = self._has_flown and (phase not in _FLYING or phase in _GIVEN_UP)
+        if not is_over:
+            self._over_ns = None
+        elif self._over_ns is None or phase != self._over_phase:
+            self._over_ns = t_ns
+        self._over_phase = phase

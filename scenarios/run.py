@@ -1,0 +1,182 @@
+"""A run over the wire: three programs as processes, real UDP and real Zenoh, watched and scored."""
+
+import os
+import socket
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from link import cdr, json_payloads
+from link.errors import UserError
+from link.keys import Keys
+from link.messages import BodyTruth, LandingStatus, RotorTruth
+from link.payload_checks import PayloadError
+from link.toml_config import dump_toml
+from link.zenoh_session import Inbox, ZenohOptions, ZenohSession, open_session
+from scenarios.config import Scenario
+from scenarios.outcome import result_table, write_json
+from scenarios.processes import ProcessGroup, Program
+from scenarios.recording import EndWatch, Recording
+
+_POLL_S = 0.02
+_PROGRESS_S = 0.2
+_FIRST_TRUTH_S = 60.0  # of wall time; the first start after an installation compiles the physics
+
+Progress = Callable[[Recording, float], None]
+"""Called a few times a second with what is recorded so far and the real-time factor."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunOptions:
+    """How a run is made.
+
+    Attributes:
+        seed: of everything random.
+        speed: simulated seconds per wall second.
+        folder: to be made for the run.
+        companion_config: TOML file for the companion, None for its defaults.
+    """
+
+    seed: int
+    speed: float
+    folder: Path
+    companion_config: Path | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunOutcome:
+    """What came of a run: the content of `result.json` and `timing.json`."""
+
+    result: dict[str, Any]
+    timing: dict[str, Any]
+
+
+def run_folder(parent: Path, name: str) -> Path:
+    """Make the folder of a run and let `latest` beside it point there."""
+    stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S.%f")[:-3]
+    folder = parent / f"{stamp}-{name}"
+    try:
+        folder.mkdir(parents=True)
+        link = parent / f".latest-{os.getpid()}"
+        link.symlink_to(folder.name)
+        link.replace(parent / "latest")
+    except OSError as error:
+        raise UserError(f"{folder}: cannot be made ({error.strerror}); choose another --out") from None
+    return folder
+
+
+def run_over_wire(scenario: Scenario, options: RunOptions, progress: Progress) -> RunOutcome:
+    """Run a scenario to its end, score it on truth and write the run's folder.
+
+    Raises:
+        UserError: a program could not start or ended by itself.
+    """
+    options.folder.joinpath("scenario.toml").write_text(dump_toml(scenario), encoding="utf-8")
+    keys = Keys()
+    endpoint = f"tcp/127.0.0.1:{_free_port(socket.SOCK_STREAM)}"
+    recording = Recording()
+    # The processes first: starting one is not safe once Zenoh's threads run.
+    with (
+        ProcessGroup(_programs(options, endpoint), options.folder) as processes,
+        open_session(ZenohOptions(connect=(endpoint,))) as zenoh,
+    ):
+        watcher = _Watcher(zenoh, keys, recording)
+        ended, factor = _watch(watcher, processes, scenario, recording, progress)
+    result = result_table(scenario, options.seed, recording, ended)
+    timing = {"real_time_factor": round(factor, 4), "speed": options.speed, **_companion_timing(options.folder)}
+    write_json(options.folder / "result.json", result)
+    write_json(options.folder / "timing.json", timing)
+    return RunOutcome(result=result, timing=timing)
+
+
+def _programs(options: RunOptions, endpoint: str) -> list[Program]:
+    scenario_file = str(options.folder / "scenario.toml")
+    port = _free_port(socket.SOCK_DGRAM)
+    seed = str(options.seed)
+    companion = ["--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint, "--use-sim-time", "--start"]
+    companion += ["--tlog", str(options.folder / "flight.tlog"), "--timing", str(options.folder / "companion.json")]
+    if options.companion_config is not None:
+        companion += ["--config", str(options.companion_config)]
+    vehicle = ["--scenario", scenario_file, "--seed", seed, "-l", endpoint, "--use-sim-time"]
+    drone = ["--scenario", scenario_file, "--seed", seed, "--mavlink", f"udpout:127.0.0.1:{port}", "-e", endpoint]
+    drone += ["--speed", str(options.speed)]
+    return [
+        Program(name="ground-vehicle", module="scenarios.ground_vehicle", arguments=vehicle),
+        Program(name="sim-autopilot", module="scenarios.sim_drone", arguments=drone),
+        Program(name="companion", module="companion", arguments=companion),
+    ]
+
+
+def _free_port(kind: socket.SocketKind) -> int:
+    with socket.socket(socket.AF_INET, kind) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+class _Watcher:
+    """Takes truth and status off Zenoh into the recording."""
+
+    def __init__(self, zenoh: ZenohSession, keys: Keys, recording: Recording) -> None:
+        self._recording = recording
+        self._drone = zenoh.subscribe(keys.drone_truth, capacity=20_000)
+        self._vehicle = zenoh.subscribe(keys.vehicle_truth, capacity=20_000)
+        self._rotors = zenoh.subscribe(keys.drone_rotors, capacity=20_000)
+        self._status = zenoh.subscribe(keys.landing_status)
+
+    def take(self) -> None:
+        """Take what has come; a status that cannot be read is left out."""
+        for sample in self._drone.take():
+            self._recording.add(cdr.decode(BodyTruth, sample.payload))
+        for sample in self._vehicle.take():
+            self._recording.add(cdr.decode(BodyTruth, sample.payload), is_drone=False)
+        for sample in self._rotors.take():
+            self._recording.add(cdr.decode(RotorTruth, sample.payload))
+        self._take_statuses(self._status)
+
+    def _take_statuses(self, inbox: Inbox) -> None:
+        for sample in inbox.take():
+            try:
+                self._recording.add(json_payloads.decode(LandingStatus, sample.payload))
+            except PayloadError:
+                continue
+
+
+def _watch(
+    watcher: _Watcher, processes: ProcessGroup, scenario: Scenario, recording: Recording, progress: Progress
+) -> tuple[str, float]:
+    """Return why the run ended and its real-time factor."""
+    end = EndWatch(scenario.time_limit_s)
+    began_s = time.monotonic()
+    first: tuple[float, float] | None = None
+    shown_s = 0.0
+    factor = 0.0
+    while (reason := end.reason(recording)) is None:
+        time.sleep(_POLL_S)
+        processes.check()
+        watcher.take()
+        now_s = time.monotonic()
+        if not recording.drone and now_s - began_s > _FIRST_TRUTH_S:
+            raise UserError(f"no truth of the drone within {_FIRST_TRUTH_S:g} s: see the logs in the run's folder")
+        if recording.drone and first is None:
+            first = (now_s, recording.elapsed_s)
+        if first is not None and now_s > first[0]:
+            factor = (recording.elapsed_s - first[1]) / (now_s - first[0])
+        if now_s - shown_s >= _PROGRESS_S:
+            shown_s = now_s
+            progress(recording, factor)
+    progress(recording, factor)
+    return reason, factor
+
+
+def _companion_timing(folder: Path) -> dict[str, Any]:
+    import json  # noqa: PLC0415
+
+    path = folder / "companion.json"
+    if not path.exists():
+        return {}
+    table: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    path.unlink()
+    return {"companion": table}

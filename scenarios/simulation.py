@@ -1,0 +1,82 @@
+"""The simulated side of a run in one process, without I/O: the vehicle, the air and the autopilot with its drone.
+
+`scenarios world` puts sockets around it, a lockstep run puts it beside a companion.
+"""
+
+from dataclasses import dataclass
+
+from link.keys import Keys
+from link.messages import BodyTruth, RotorTruth
+from link.publication import Publication
+from scenarios.config import Scenario
+from scenarios.drone import autopilot_config, wind_model
+from scenarios.vehicle import vehicle_deck, vehicle_truth
+from scenarios.vehicle_node import VehicleNode
+from sim_autopilot.node import STEP_NS, AutopilotNode
+from sim_autopilot.truth import drone_truth, rotor_truth
+
+__all__ = ["STEP_NS", "Simulation", "SimulationOutputs"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimulationOutputs:
+    """What one step of the simulated side brings.
+
+    Attributes:
+        mavlink: bytes of the autopilot.
+        publications: of the vehicle and its sensors.
+        drone: its truth at the end of the step.
+        rotors: likewise.
+        vehicle: likewise.
+    """
+
+    mavlink: bytes
+    publications: list[Publication]
+    drone: BodyTruth
+    rotors: RotorTruth
+    vehicle: BodyTruth
+
+
+class Simulation:
+    """The world of a scenario and a seed.
+
+    Args:
+        scenario: what is flown.
+        seed: of everything random.
+        keys: of the Zenoh contract.
+        start_ns: UTC at its beginning.
+        instant: the autopilot is ready at once.
+    """
+
+    def __init__(self, scenario: Scenario, seed: int, keys: Keys, start_ns: int, *, instant: bool = False) -> None:
+        self.vehicle = VehicleNode(scenario, seed, keys)
+        self.autopilot = AutopilotNode(autopilot_config(scenario, instant=instant), start_ns)
+        self._body = scenario.vehicle
+        self._wind = wind_model(scenario, seed)
+        self._drone = drone_truth(self.autopilot.state)
+
+    @property
+    def t_ns(self) -> int:
+        """UTC now."""
+        return self.autopilot.state.t_ns
+
+    def receive(self, data: bytes) -> bytes:
+        """Take bytes of a MAVLink link and return what is answered at once."""
+        return self.autopilot.receive(data, self.t_ns)
+
+    def step(self) -> SimulationOutputs:
+        """Advance by `STEP_NS`."""
+        publications = self.vehicle.step(self.autopilot.next_ns, self._drone)
+        state = self.vehicle.state
+        if state is None:
+            raise ValueError("the vehicle has made no step")
+        wind_enu_m_s = self._wind.advance(STEP_NS * 1e-9, self.autopilot.state)
+        mavlink = self.autopilot.step(vehicle_deck(state, self._body), wind_enu_m_s)
+        self._drone = drone_truth(self.autopilot.state)
+        return SimulationOutputs(
+            mavlink=mavlink,
+            publications=publications,
+            drone=self._drone,
+            rotors=rotor_truth(self.autopilot.state),
+            vehicle=vehicle_truth(state),
+        )

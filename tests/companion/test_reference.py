@@ -1,0 +1,77 @@
+"""The virtual model's tracking: lag is learnt, transients are not, the correction stays bounded."""
+
+import numpy as np
+
+from companion.data import OwnState
+from companion.planning.guidance import ReferenceState
+from companion.reference import Tracking, compare, remember, setpoint_ahead
+
+STEP_NS = 20_000_000
+
+
+def _state(t_s: float, speed_m_s: float) -> ReferenceState:
+    return ReferenceState(
+        position_enu_m=np.array([speed_m_s * t_s, 0.3, 4.0]),
+        velocity_enu_m_s=np.array([speed_m_s, 0.0, 0.0]),
+        acceleration_enu_m_s2=np.zeros(3),
+    )
+
+
+def _own(t_ns: int, x: float) -> OwnState:
+    return OwnState(
+        t_ns=t_ns,
+        position_enu_m=(x, 0.3, 4.0),
+        velocity_enu_m_s=(5.0, 0.0, 0.0),
+        orientation_wxyz=(1.0, 0.0, 0.0, 0.0),
+        angular_velocity_flu_rad_s=(0.0, 0.0, 0.0),
+    )
+
+
+def _fly_with_lag(lag_m: float, steps: int, *, learn: bool = True) -> Tracking:
+    """The drone stays `lag_m` behind where its setpoint is, correction included, and reports 40 ms late."""
+    tracking = Tracking()
+    for i in range(1, steps):
+        t_ns = i * STEP_NS
+        tracking = remember(tracking, t_ns, _state(t_ns * 1e-9, 5.0))
+        reported_ns = t_ns - 2 * STEP_NS - 7_000_000
+        if reported_ns > 0:
+            x = 5.0 * reported_ns * 1e-9 - lag_m + float(tracking.correction_enu_m[0])
+            tracking = compare(tracking, _own(reported_ns, x), learn=learn)
+    return tracking
+
+
+def test_lasting_lag_is_learnt() -> None:
+    tracking = _fly_with_lag(0.4, 1000)
+    np.testing.assert_allclose(tracking.correction_enu_m, [0.4, 0.0, 0.0], atol=0.01)
+    assert tracking.error_m < 0.01
+
+
+def test_nothing_is_learnt_unless_asked() -> None:
+    tracking = _fly_with_lag(0.4, 200, learn=False)
+    assert not np.any(tracking.correction_enu_m)
+    np.testing.assert_allclose(tracking.error_m, 0.4, atol=1e-6)
+
+
+def test_transient_is_not_learnt() -> None:
+    assert not np.any(_fly_with_lag(3.0, 200).correction_enu_m)
+
+
+def test_correction_stays_bounded() -> None:
+    tracking = Tracking()
+    for i in range(1, 2000):
+        tracking = remember(tracking, i * STEP_NS, _state(i * STEP_NS * 1e-9, 5.0))
+        x = 5.0 * (i - 1) * STEP_NS * 1e-9 - 0.9
+        tracking = compare(tracking, _own((i - 1) * STEP_NS, x), learn=True)
+    assert np.linalg.norm(tracking.correction_enu_m) <= 1.5 + 1e-9
+
+
+def test_setpoint_ahead_is_the_closed_form_of_constant_acceleration() -> None:
+    reference = ReferenceState(
+        position_enu_m=np.array([1.0, 2.0, 3.0]),
+        velocity_enu_m_s=np.array([4.0, 0.0, -1.0]),
+        acceleration_enu_m_s2=np.array([2.0, 1.0, 0.0]),
+    )
+    setpoint = setpoint_ahead(reference, np.array([0.1, 0.0, 0.0]), 0.05, 0, 0.3, position_only=False)
+    np.testing.assert_allclose(setpoint.position_enu_m, [1.0 + 0.2 + 0.0025 + 0.1, 2.0 + 0.00125, 3.0 - 0.05])
+    np.testing.assert_allclose(setpoint.velocity_enu_m_s, [4.1, 0.05, -1.0])
+    assert setpoint.t_ns == 50_000_000
