@@ -4,12 +4,12 @@ The `ground-vehicle` program, the one-process world and the lockstep campaigns a
 """
 
 import math
-from dataclasses import dataclass
 
 from link.cdr import encode, encoding_of
 from link.geodesy import Datum
 from link.keys import Keys
 from link.messages import BodyTruth, Fix, FixVelocity, PadGeometry, PadSighting, VehicleImu
+from link.publication import Publication
 from scenarios.config import DatumConfig, Scenario
 from scenarios.noise import named_rng
 from scenarios.sensors import Mounting, SensorSuite
@@ -18,15 +18,6 @@ from scenarios.vehicle import VehicleInputs, VehicleMemory, VehiclePlan, Vehicle
 
 TRUTH_PERIOD_NS = 10_000_000  # 100 Hz, what the score asks for
 STEP_PERIOD_NS = 10_000_000  # the fastest sensor of the catalogue takes 100 samples a second
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Publication:
-    """A payload, the key it goes to and its encoding."""
-
-    key: str
-    payload: bytes
-    encoding: str
 
 
 class VehicleNode:
@@ -94,3 +85,10 @@ def datum_of(config: DatumConfig) -> Datum:
         longitude_rad=math.radians(config.longitude_deg),
         altitude_m=config.altitude_m,
     )
+
+
+def departing_at_once(scenario: Scenario) -> Scenario:
+    """Return `scenario` with a vehicle that does not wait for the drone."""
+    departure = scenario.track.departure.model_copy(update={"wait_for_drone": False})
+    track = scenario.track.model_copy(update={"departure": departure})
+    return scenario.model_copy(update={"track": track})
