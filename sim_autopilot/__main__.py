@@ -1,0 +1,121 @@
+"""The `sim-autopilot` command."""
+
+import signal
+import sys
+from pathlib import Path
+from types import FrameType
+from typing import Annotated, Any
+
+import typer
+
+from link.cli import (
+    ConnectOption,
+    DroneOption,
+    ListenOption,
+    ModeOption,
+    MulticastOption,
+    NamespaceOption,
+    VehicleOption,
+    ZenohConfigOption,
+    make_app,
+    run_app,
+)
+
+_PORT = 14540  # PX4's first companion; one more for each further instance
+
+app = make_app("Simulate a quadrotor under an autopilot that speaks MAVLink.")
+
+
+@app.callback(invoke_without_command=True)
+def sim_autopilot(
+    mavlink: Annotated[
+        str | None,
+        typer.Option(
+            "--mavlink",
+            metavar="DEVICE",
+            help="udpout:HOST:PORT, udpin:HOST:PORT, tcp:HOST:PORT, tcpin:HOST:PORT or /dev/ttyX,BAUD "
+            f"[default: udpout:127.0.0.1:{_PORT} + instance].",
+        ),
+    ] = None,
+    firmware: Annotated[str | None, typer.Option("--firmware", metavar="NAME", help="px4 [default: px4].")] = None,
+    instance: Annotated[
+        int | None, typer.Option("--instance", min=0, max=249, help="Number of the drone; system id - 1 [default: 0].")
+    ] = None,
+    speed: Annotated[
+        float, typer.Option("--speed", min=0.0, max=1000.0, help="Simulated seconds a second; 0: as fast as it can.")
+    ] = 1.0,
+    instant: Annotated[
+        bool | None, typer.Option("--instant", help="Be ready to arm at once.", show_default=False)
+    ] = None,
+    datum: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option("--datum", metavar="LAT LON ALT", help="Origin of the world, degrees and metres."),
+    ] = None,
+    wind: Annotated[float | None, typer.Option("--wind", metavar="MEAN_M_S", help="Mean wind [default: 0].")] = None,
+    turbulence: Annotated[
+        str | None, typer.Option("--turbulence", metavar="SEVERITY", help="none, light, moderate or severe.")
+    ] = None,
+    seed: Annotated[int | None, typer.Option("--seed", min=0, help="Of the wind [default: 1].")] = None,
+    config: Annotated[Path | None, typer.Option("--config", metavar="FILE", help="Configuration in TOML.")] = None,
+    print_config: Annotated[bool, typer.Option("--print-config", help="Print the configuration and end.")] = False,
+    namespace: NamespaceOption = "decklander",
+    vehicle: VehicleOption = "vehicle",
+    drone: DroneOption = "drone",
+    mode: ModeOption = None,
+    connect: ConnectOption = None,
+    listen: ListenOption = None,
+    multicast: MulticastOption = None,
+    zenoh_config: ZenohConfigOption = None,
+) -> None:
+    """Simulate a quadrotor under an autopilot that speaks MAVLink."""
+    from link.toml_config import dump_toml, load_config  # noqa: PLC0415 (numerics are slow to load, --help is quick)
+    from sim_autopilot.config import SimAutopilotConfig, autopilot_config  # noqa: PLC0415
+
+    given = _given(firmware=firmware, instance=instance, instant=instant, seed=seed)
+    given |= {"wind": _given(mean_m_s=wind, turbulence=turbulence), "datum": _datum(datum)}
+    settings = load_config(config, SimAutopilotConfig, given)
+    autopilot = autopilot_config(settings)
+    if print_config:
+        sys.stdout.write(dump_toml(settings))
+        return
+    from link.keys import Keys  # noqa: PLC0415
+    from link.zenoh_session import DEFAULT_ENDPOINT, ZenohOptions  # noqa: PLC0415
+    from sim_autopilot.run import RunOptions, run  # noqa: PLC0415
+
+    nothing_said = not (connect or listen or zenoh_config or multicast)
+    zenoh = ZenohOptions(
+        mode=mode,
+        connect=(DEFAULT_ENDPOINT,) if nothing_said else tuple(connect or ()),
+        listen=tuple(listen or ()),
+        multicast_scouting=multicast,
+        config_file=zenoh_config,
+    )
+    device = mavlink or f"udpout:127.0.0.1:{_PORT + settings.instance}"
+    options = RunOptions(device=device, speed=speed, keys=Keys(namespace, vehicle, drone), zenoh=zenoh)
+    signal.signal(signal.SIGTERM, _interrupt)
+    run(settings, autopilot, options)
+
+
+def _given(**options: Any) -> dict[str, Any]:
+    """What was given on the command line, which goes over the file."""
+    return {name: value for name, value in options.items() if value is not None}
+
+
+def _datum(datum: tuple[float, float, float] | None) -> dict[str, float]:
+    if datum is None:
+        return {}
+    return dict(zip(("latitude_deg", "longitude_deg", "altitude_m"), datum, strict=True))
+
+
+def _interrupt(_signal: int, _frame: FrameType | None) -> None:
+    """End on SIGTERM as on Ctrl-C, with everything closed."""
+    raise KeyboardInterrupt
+
+
+def main() -> None:
+    """Run the command."""
+    sys.exit(run_app("sim-autopilot", app))
+
+
+if __name__ == "__main__":
+    main()

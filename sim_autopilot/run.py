@@ -1,0 +1,52 @@
+"""Opens what the wire loop needs, says when it is ready, and closes it again."""
+
+import sys
+import time
+from dataclasses import dataclass
+
+import numpy as np
+import structlog
+
+from link.keys import Keys
+from link.mavlink.transports import open_transport
+from link.zenoh_session import ZenohOptions, open_session
+from sim_autopilot.config import SimAutopilotConfig, wind_model
+from sim_autopilot.loop import Links, WireLoop
+from sim_autopilot.memory import AutopilotConfig
+from sim_autopilot.node import STEP_NS, AutopilotNode
+from sim_autopilot.vehicle_view import VehicleView
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunOptions:
+    """How to run.
+
+    Attributes:
+        device: of the MAVLink link.
+        speed: simulated seconds a wall second, 0 for as many as it can.
+        keys: of the Zenoh contract.
+        zenoh: how to meet others.
+    """
+
+    device: str
+    speed: float
+    keys: Keys
+    zenoh: ZenohOptions
+
+
+def run(settings: SimAutopilotConfig, autopilot: AutopilotConfig, options: RunOptions) -> None:
+    """Run the simulated autopilot until interrupted.
+
+    Raises:
+        UserError: a device or a Zenoh endpoint cannot be opened.
+    """
+    log = structlog.wrap_logger(structlog.PrintLogger(sys.stderr))
+    with open_transport(options.device) as transport, open_session(options.zenoh) as zenoh:
+        AutopilotNode(autopilot, 0).step(None, np.zeros(3))  # loads the compiled kernels before time starts to count
+        node = AutopilotNode(autopilot, time.time_ns() // STEP_NS * STEP_NS)
+        body = settings.vehicle
+        vehicle = VehicleView(zenoh, options.keys, (body.length_m, body.width_m), body.roof_height_m)
+        links = Links(keys=options.keys, transport=transport, zenoh=zenoh)
+        loop = WireLoop(node, links, vehicle, wind_model(settings), speed=options.speed)
+        log.info("ready", mavlink=options.device, firmware=settings.firmware, speed=options.speed)
+        loop.run()
