@@ -53,6 +53,13 @@ def test_demo_publishes_truth_at_100_hz_and_its_receiver_at_10_hz() -> None:
     assert counts == {KEYS.vehicle_truth: 1000, KEYS.fix: 100, KEYS.fix_velocity: 100}
 
 
+def test_leaving_out_the_truth_changes_nothing_else() -> None:
+    scenario = load_scenario("circle_5+sensors=nominal")
+    with_truth = published(VehicleNode(scenario, 1, KEYS), 4.0)
+    without = published(VehicleNode(scenario, 1, KEYS, publishes_truth=False), 4.0)
+    assert without == [publication for publication in with_truth if publication.key != KEYS.vehicle_truth]
+
+
 def test_nominal_sensors_publish_on_every_key_of_the_contract() -> None:
     publications = published(VehicleNode(load_scenario("straight_5+sensors=nominal"), 1, KEYS), 12.0)
     kinds = {KEYS.imu: VehicleImu, KEYS.pad_pose: PadSighting, KEYS.fix: Fix, KEYS.fix_velocity: FixVelocity}
