@@ -1,21 +1,30 @@
 """Configuration in TOML: read once, checked against a model, printed back; mistakes name the file and the key."""
 
 import difflib
+import json
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from link.errors import UserError
 
+Location = tuple[int | str, ...]
+
+_BOUNDS = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most"}
+
 
 class StrictModel(BaseModel):
-    """A table of a configuration: no unknown keys, no infinite numbers, never changed after it was read."""
+    """A table of a configuration: no unknown keys, no infinite numbers, never changed after it was read.
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
+    Nothing is converted: neither a text nor true is a number. A whole number is a number.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False, validate_default=True)
 
 
 Model = TypeVar("Model", bound=StrictModel)
@@ -27,13 +36,15 @@ def load_config(path: Path | None, model: type[Model], overrides: Mapping[str, A
     Args:
         path: of the TOML file; None is an empty one.
         model: what it must fit.
-        overrides: laid over the file's values, table by table.
+        overrides: laid over the file's values, table by table; from the command line.
 
     Raises:
         UserError: the file cannot be read, is no TOML, or a key or value does not fit.
     """
     table = {} if path is None else _read(path)
-    return validated(model, merged(table, overrides or {}), source="the defaults" if path is None else str(path))
+    above = overrides or {}
+    source = "the defaults" if path is None else str(path)
+    return _checked(model, merged(table, above), lambda location: "command line" if _is_in(location, above) else source)
 
 
 def validated(model: type[Model], table: Mapping[str, Any], *, source: str) -> Model:
@@ -42,17 +53,15 @@ def validated(model: type[Model], table: Mapping[str, Any], *, source: str) -> M
     Raises:
         UserError: with `source`, the first key that does not fit, its value and what would.
     """
-    try:
-        return model.model_validate(dict(table))
-    except ValidationError as error:
-        details = error.errors(include_url=False)
-        raise UserError(_sentence(details[0], model, source, len(details) - 1)) from None
+    return _checked(model, table, lambda _: source)
 
 
 def merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
-    """Return `below` with the values of `above` laid over it, table by table."""
+    """Return `below` with the values of `above` laid over it, table by table; None leaves what is below."""
     both = dict(below)
     for key, value in above.items():
+        if value is None:
+            continue
         under = both.get(key)
         tables = isinstance(under, Mapping) and isinstance(value, Mapping)
         both[key] = merged(under, value) if tables else value  # type: ignore[arg-type]  # both are mappings here
@@ -77,31 +86,81 @@ def _read(path: Path) -> dict[str, Any]:
         raise UserError(f"{path}: not valid TOML ({error})") from None
 
 
+def _checked(model: type[Model], table: Mapping[str, Any], source_of: Callable[[Location], str]) -> Model:
+    try:
+        # as JSON, whose arrays and texts a strict model takes for tuples and enumerations
+        return model.model_validate_json(json.dumps(table, default=str))
+    except ValidationError as error:
+        # an unknown key goes first: misspelt, it is why another one is missing
+        details = sorted(error.errors(include_url=False), key=lambda one: one["type"] != "extra_forbidden")
+        raise UserError(_sentence(details[0], model, source_of(details[0]["loc"]), len(details) - 1)) from None
+
+
+def _is_in(location: Location, table: Mapping[str, Any]) -> bool:
+    """Return whether the value at `location` comes from `table`."""
+    node: Any = table
+    for part in location:
+        if not isinstance(node, Mapping):
+            return True  # within a value that was given whole, such as a list
+        if node.get(str(part)) is None:
+            return False
+        node = node[str(part)]
+    return True
+
+
 def _sentence(details: ErrorDetails, model: type[BaseModel], source: str, further: int) -> str:
     """Return one line that names the file, the key, the value and what would fit."""
     location = details["loc"]
     key = ".".join(str(part) for part in location)
+    fields = _fields_beside(location, model)
     if details["type"] == "extra_forbidden":
-        text = f"{source}: unknown key '{key}'{_nearest(location, model)}"
+        text = f"{source}: unknown key '{key}'{_nearest(str(location[-1]), list(fields))}"
     elif details["type"] == "missing":
         text = f"{source}: key '{key}' is missing"
     else:
-        text = f"{source}: {key} = {details['input']!r} does not fit: {_lowered(details['msg'])}"
-    return f"{text} ({further} more like this)" if further else text
+        field = fields.get(str(location[-1])) if location else None
+        expected = (_range_of(field) if field is not None else "") or _lowered(details["msg"])
+        text = f"{source}: {key} = {json.dumps(details['input'], default=str)} does not fit: {expected}"
+    return f"{' '.join(text.split())} ({further} more like this)" if further else " ".join(text.split())
 
 
 def _lowered(message: str) -> str:
     return message[:1].lower() + message[1:]
 
 
-def _nearest(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
-    """Return a hint to the nearest valid key of the same table, or all of them when none is near."""
-    table: Any = model
-    for part in location[:-1]:
-        field = getattr(table, "model_fields", {}).get(part)
-        table = None if field is None else field.annotation
-    names = list(getattr(table, "model_fields", {}))
-    near = difflib.get_close_matches(str(location[-1]), names, n=1)
+def _range_of(field: FieldInfo) -> str:
+    """Return the range of a number in words, empty if it has none."""
+    bounds = [
+        f"{word} {getattr(limit, name)}"
+        for name, word in _BOUNDS.items()
+        for limit in field.metadata
+        if getattr(limit, name, None) is not None
+    ]
+    kind = "a whole number" if field.annotation is int else "a number"
+    return f"it must be {kind} {' and '.join(bounds)}" if bounds and field.annotation in {int, float} else ""
+
+
+def _nearest(name: str, known: list[str]) -> str:
+    """Return a hint to the nearest of the `known` names, or all of them when none is near."""
+    near = difflib.get_close_matches(name, known, n=1)
     if near:
         return f", did you mean '{near[0]}'?"
-    return f"; valid are {', '.join(names)}" if names else ""
+    return f"; valid are {', '.join(known)}" if known else ""
+
+
+def _fields_beside(location: Location, model: type[BaseModel]) -> Mapping[str, FieldInfo]:
+    """Return the fields of the table that the last part of `location` is in."""
+    fields: Mapping[str, FieldInfo] = model.model_fields
+    for part in location[:-1]:
+        if isinstance(part, str):
+            field = fields.get(part)
+            below = [] if field is None else list(_models_in(field.annotation))
+            fields = below[0].model_fields if below else {}
+    return fields
+
+
+def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for argument in get_args(annotation):
+        yield from _models_in(argument)

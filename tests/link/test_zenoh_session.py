@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import socket
 import subprocess
 import sys
@@ -127,6 +128,28 @@ def test_liveliness_notices_a_killed_process(endpoint: str) -> None:
         finally:
             vehicle.kill()
         until(companion, lambda: not watched.alive)
+
+
+@pytest.mark.slow
+def test_a_peer_that_hangs_does_not_stall_the_sender(endpoint: str) -> None:
+    code = (
+        "import threading; from link.zenoh_session import *; "
+        f"s = open_session(ZenohOptions(connect=({endpoint!r},))); s.subscribe('ns/x'); s.declare_alive('ns/dashboard'); "
+        "threading.Event().wait()"
+    )
+    with listener(endpoint) as sender, subprocess.Popen([sys.executable, "-c", code]) as dashboard:
+        watched = sender.watch_alive("ns/dashboard")
+        longest_s = 0.0
+        try:
+            until(sender, lambda: watched.alive)
+            dashboard.send_signal(signal.SIGSTOP)
+            for _ in range(20_000):
+                started_s = time.perf_counter()
+                sender.publish("ns/x", bytes(700), JSON)
+                longest_s = max(longest_s, time.perf_counter() - started_s)
+        finally:
+            dashboard.kill()
+        assert 0.1 < longest_s < 2.0  # it was waited for, for about 0.2 s; the library's own limit is 5 s
 
 
 def test_query_is_answered(pair: tuple[ZenohSession, ZenohSession]) -> None:
