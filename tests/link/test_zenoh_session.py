@@ -134,7 +134,8 @@ def test_liveliness_notices_a_killed_process(endpoint: str) -> None:
 def test_a_peer_that_hangs_does_not_stall_the_sender(endpoint: str) -> None:
     code = (
         "import threading; from link.zenoh_session import *; "
-        f"s = open_session(ZenohOptions(connect=({endpoint!r},))); s.subscribe('ns/x'); s.declare_alive('ns/dashboard'); "
+        f"s = open_session(ZenohOptions(connect=({endpoint!r},))); s.subscribe('ns/x'); "
+        "s.declare_alive('ns/dashboard'); "
         "threading.Event().wait()"
     )
     with listener(endpoint) as sender, subprocess.Popen([sys.executable, "-c", code]) as dashboard:
