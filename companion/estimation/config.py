@@ -28,7 +28,8 @@ class BufferConfig(StrictModel):
     """How late a measurement may come and when it is an outlier."""
 
     keep_s: Positive = 1.5  # three times the slowest link of the benchmark (300 ms + 200 ms)
-    gate_probability: Annotated[float, Field(gt=0.5, lt=1.0)] | None = 0.999999  # None gates nothing
+    # wide, 58 for three components: an emergency brake is no outlier; None gates nothing
+    gate_probability: Annotated[float, Field(gt=0.5, lt=1.0)] | None = 0.999999999999
     recover_after_s: Positive = 0.5  # of nothing but rejections of one quantity
     late_in_a_row_max: Annotated[int, Field(ge=1, le=10_000)] = 20  # then the clock is taken to have jumped
 
@@ -77,7 +78,7 @@ class ImmConfig(StrictModel):
 
     # measured: quiet enough for 0.1 m after 1 s of steady driving, wide enough for a brake of 6 m/s^2 from one fix on
     steady: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=0.05, lateral_acceleration_psd_m2_s5=0.7, dwell_s=6.0)
-    manoeuvre: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=12.0, lateral_acceleration_psd_m2_s5=20.0, dwell_s=1.0)
+    manoeuvre: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=30.0, lateral_acceleration_psd_m2_s5=20.0, dwell_s=1.0)
     side_jerk_psd_m2_s5: Positive = 0.005  # across the track, apart from turning; measured
     acceleration_decay_s: Positive = 3.0  # measured
     curvature_speed_min_m_s: Positive = 3.0  # below it the curvature's noise grows no further

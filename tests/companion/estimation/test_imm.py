@@ -17,6 +17,7 @@ from tests.companion.estimation.driving import (
     Sensors,
     brake,
     circle,
+    drive,
     figure_eight,
     pad_centre,
     stop_and_go,
@@ -151,6 +152,15 @@ def test_braking_is_in_the_forecast_soon_after_it_began() -> None:
     done = ride(estimator(IMM, SAME_FRAME), truth, NOMINAL, 111, from_s=10.3, until_s=12.5)
     unaware = 0.5 * 6.0
     assert np.linalg.norm(done.ahead_errors(truth, 1.0), axis=1).max() < 0.3 * unaware
+
+
+@pytest.mark.parametrize("deceleration_m_s2", [6.0, 9.0])
+@pytest.mark.parametrize("seed", [120, 121, 122, 123])
+def test_emergency_brake_is_not_taken_for_outliers(deceleration_m_s2: float, seed: int) -> None:
+    truth = drive(13.0, lambda t: float(np.clip(15.0 - deceleration_m_s2 * (t - 10.02), 0.0, 15.0)), lambda _: 0.0)
+    chosen = estimator(IMM)
+    done = ride(chosen, truth, NOMINAL, seed, from_s=9.0)
+    assert chosen.health(done.memory).gated == 0
 
 
 @pytest.mark.parametrize(("length_s", "bound_m"), [(1.0, 0.15), (2.0, 0.4), (3.0, 0.9)])
