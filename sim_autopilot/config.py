@@ -79,7 +79,7 @@ class SimAutopilotConfig(StrictModel):
     drone: DroneConfig = DroneConfig()
     wind: WindConfig = WindConfig()
     vehicle: VehicleConfig = VehicleConfig()
-    parameters: dict[str, float] = {}  # firmware parameters that differ from their defaults
+    parameters: dict[str, float] = Field(default_factory=dict)  # firmware parameters that differ from their defaults
 
 
 def autopilot_config(config: SimAutopilotConfig) -> AutopilotConfig:

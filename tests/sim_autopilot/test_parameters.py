@@ -1,0 +1,111 @@
+from math import nan, radians
+
+import pytest
+
+from link.mavlink.dialect import Message, mavlink
+from link.mavlink.parameters import parameter_on_wire, parameter_value
+from sim_autopilot.firmware.px4 import PX4
+from sim_autopilot.parameters import default_values
+from tests.sim_autopilot.pilot import Pilot, px4
+
+REAL, INTEGER = mavlink.MAV_PARAM_TYPE_REAL32, mavlink.MAV_PARAM_TYPE_INT32
+
+
+def set_parameter(name: str, value: float, kind: int) -> Message:
+    wire = parameter_on_wire(value, kind, mavlink.MAV_AUTOPILOT_PX4)
+    return mavlink.MAVLink_param_set_message(1, 1, name.encode(), wire, kind)
+
+
+def values(pilot: Pilot) -> dict[str, float | int | None]:
+    return {m.param_id: parameter_value(m, mavlink.MAV_AUTOPILOT_PX4) for m in pilot.all("PARAM_VALUE")}
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("MPC_XY_VEL_MAX", 12.0),
+        ("MPC_Z_VEL_MAX_UP", 3.0),
+        ("MPC_Z_VEL_MAX_DN", 1.5),
+        ("MPC_TILTMAX_AIR", 45.0),
+        ("COM_OF_LOSS_T", 1.0),
+        ("COM_OBL_RC_ACT", 0),
+        ("MIS_TAKEOFF_ALT", 2.5),
+        ("COM_DISARM_LAND", 2.0),
+        ("LNDMC_XY_VEL_MAX", 1.5),
+    ],
+)
+def test_a_default_is_px4s(name: str, value: float) -> None:
+    pilot = Pilot()
+    pilot.step(mavlink.MAVLink_param_request_read_message(1, 1, name.encode(), -1))
+    assert values(pilot) == {name: value}
+
+
+def test_a_list_brings_every_parameter_once_in_order() -> None:
+    pilot = Pilot()
+    pilot.step(mavlink.MAVLink_param_request_list_message(1, 1))
+    pilot.run(1.0)
+    sent = pilot.all("PARAM_VALUE")
+    assert [message.param_index for message in sent] == list(range(len(PX4.parameters)))
+    assert {message.param_count for message in sent} == {len(PX4.parameters)}
+
+
+def test_every_parameter_changes_how_it_flies() -> None:
+    defaults = default_values(PX4.parameters, {})
+    unchanged = PX4.settings(defaults)
+    for parameter in PX4.parameters:
+        other = 5 if parameter.is_integer else parameter.lowest + 0.37 * (parameter.highest - parameter.lowest)
+        assert PX4.settings({**defaults, parameter.name: other}) != unchanged, parameter.name
+
+
+def test_a_set_parameter_acts_at_once_and_is_answered() -> None:
+    pilot = Pilot()
+    pilot.step(set_parameter("MPC_XY_VEL_MAX", 17.5, REAL), set_parameter("MPC_TILTMAX_AIR", 33.0, REAL))
+    assert values(pilot) == {"MPC_XY_VEL_MAX": 17.5, "MPC_TILTMAX_AIR": 33.0}
+    envelope = pilot.node.memory.plant_config.envelope
+    assert envelope.speed_max_m_s == 17.5
+    assert envelope.tilt_max_rad == pytest.approx(radians(33.0))
+
+
+def test_an_integer_travels_bytewise() -> None:
+    pilot = Pilot()
+    pilot.step(set_parameter("COM_OBL_RC_ACT", 4, INTEGER))
+    assert values(pilot) == {"COM_OBL_RC_ACT": 4}
+    assert pilot.last("PARAM_VALUE").param_value == pytest.approx(4 * 2.0**-149)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "kind"),
+    [
+        ("MPC_XY_VEL_MAX", nan, REAL),
+        ("MPC_XY_VEL_MAX", -1.0, REAL),
+        ("MPC_XY_VEL_MAX", 1e9, REAL),
+        ("MPC_XY_VEL_MAX", 5, INTEGER),
+        ("COM_OBL_RC_ACT", 3.0, REAL),
+        ("COM_OBL_RC_ACT", 99, INTEGER),
+    ],
+)
+def test_a_value_that_cannot_be_leaves_the_parameter_and_tells_its_value(name: str, value: float, kind: int) -> None:
+    pilot = Pilot()
+    before = pilot.node.memory.values[name]
+    pilot.step(set_parameter(name, value, kind))
+    assert values(pilot) == {name: before}
+    assert pilot.node.memory.values[name] == before
+
+
+def test_an_unknown_parameter_is_not_answered() -> None:
+    pilot = Pilot()
+    pilot.step(
+        mavlink.MAVLink_param_request_read_message(1, 1, b"NO_SUCH_NAME", -1),
+        mavlink.MAVLink_param_request_read_message(1, 1, b"", 5000),
+        set_parameter("NO_SUCH_NAME", 1.0, REAL),
+        mavlink.MAVLink_param_request_read_message(2, 1, b"MPC_XY_VEL_MAX", -1),
+    )
+    assert not pilot.all("PARAM_VALUE")
+
+
+def test_the_configuration_sets_parameters_and_refuses_wrong_ones() -> None:
+    assert Pilot(px4(parameters={"COM_OF_LOSS_T": 0.5})).node.memory.settings.setpoint_loss_s == 0.5
+    with pytest.raises(ValueError, match="no parameter COM_OF_LOST_T"):
+        Pilot(px4(parameters={"COM_OF_LOST_T": 0.5}))
+    with pytest.raises(ValueError, match=r"COM_OF_LOSS_T = -1\.0 is not between"):
+        Pilot(px4(parameters={"COM_OF_LOSS_T": -1.0}))

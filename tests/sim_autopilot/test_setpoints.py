@@ -1,0 +1,100 @@
+from math import inf, nan, pi
+
+import numpy as np
+import pytest
+
+from link.mavlink.dialect import Message, mavlink
+from sim_autopilot.data import Reference
+from sim_autopilot.setpoints import (
+    NO_SETPOINTS,
+    are_fresh,
+    are_streaming,
+    reference_from_message,
+    with_setpoint,
+)
+
+FRAMES = frozenset({mavlink.MAV_FRAME_LOCAL_NED, mavlink.MAV_FRAME_BODY_NED})
+ORIGIN = (100.0, 200.0, 30.0)
+YAW_RAD = 0.7
+
+
+def message(mask: int, frame: int = mavlink.MAV_FRAME_LOCAL_NED, **fields: float) -> Message:
+    values = {"x": 1.0, "y": 2.0, "z": -3.0, "vx": 4.0, "vy": 5.0, "vz": -6.0, "afx": 0.7, "afy": 0.8, "afz": -0.9}
+    values |= {"yaw": 0.3, "yaw_rate": 0.2} | fields
+    return mavlink.MAVLink_set_position_target_local_ned_message(0, 1, 1, frame, mask, **values)
+
+
+def understood(mask: int, frame: int = mavlink.MAV_FRAME_LOCAL_NED, **fields: float) -> Reference | None:
+    return reference_from_message(message(mask, frame, **fields), FRAMES, ORIGIN, YAW_RAD)
+
+
+def test_all_groups_turn_from_ned_about_the_origin_to_enu() -> None:
+    reference = understood(0)
+    assert reference is not None
+    assert np.allclose(reference.position_enu_m, (102.0, 201.0, 33.0))
+    assert np.allclose(reference.velocity_enu_m_s, (5.0, 4.0, 6.0))
+    assert np.allclose(reference.acceleration_enu_m_s2, (0.8, 0.7, 0.9))
+    assert reference.yaw_rad == pytest.approx(pi / 2.0 - 0.3)
+    assert reference.yaw_rate_rad_s == -0.2
+
+
+def test_masked_groups_are_left_out_even_when_they_hold_no_numbers() -> None:
+    reference = understood(0b1101_1100_0111, x=nan, y=inf, z=nan, afx=nan, yaw=nan, yaw_rate=nan)
+    assert reference is not None
+    assert reference.position_enu_m is None
+    assert reference.acceleration_enu_m_s2 is None
+    assert reference.yaw_rad is None
+    assert reference.yaw_rate_rad_s is None
+
+
+@pytest.mark.parametrize("bit", range(9))
+def test_a_group_of_which_a_part_is_masked_drops_the_setpoint(bit: int) -> None:
+    assert understood(1 << bit) is None
+
+
+@pytest.mark.parametrize("name", ["x", "y", "z", "vx", "vy", "vz", "afx", "afy", "afz", "yaw", "yaw_rate"])
+@pytest.mark.parametrize("value", [nan, inf, -inf])
+def test_a_used_field_that_is_not_finite_drops_the_setpoint(name: str, value: float) -> None:
+    assert understood(0, **{name: value}) is None
+
+
+@pytest.mark.parametrize("frame", [frame for frame in range(22) if frame not in FRAMES])
+def test_other_frames_are_dropped(frame: int) -> None:
+    assert understood(0, frame) is None
+
+
+def test_a_force_setpoint_is_dropped() -> None:
+    assert understood(0b10_0000_0000) is None
+
+
+def test_a_setpoint_without_any_group_is_dropped() -> None:
+    assert understood(0b1_1111_1111) is None
+
+
+def test_the_body_frame_turns_velocity_by_the_heading_and_leaves_position_out() -> None:
+    forward = understood(0, mavlink.MAV_FRAME_BODY_NED, vx=2.0, vy=0.0)
+    assert forward is not None
+    assert forward.position_enu_m is None
+    assert np.allclose(forward.velocity_enu_m_s, (2.0 * np.cos(YAW_RAD), 2.0 * np.sin(YAW_RAD), 6.0))
+    right = understood(0, mavlink.MAV_FRAME_BODY_NED, vx=0.0, vy=2.0)
+    assert right is not None
+    assert np.allclose(right.velocity_enu_m_s, (2.0 * np.sin(YAW_RAD), -2.0 * np.cos(YAW_RAD), 6.0))
+
+
+def test_setpoints_are_fresh_until_the_loss_time_is_over() -> None:
+    reference = understood(0)
+    assert reference is not None
+    setpoints = with_setpoint(NO_SETPOINTS, reference, 5_000_000_000, 1.0)
+    assert are_fresh(setpoints, 6_000_000_000, 1.0)
+    assert not are_fresh(setpoints, 6_010_000_000, 1.0)
+    assert not are_fresh(NO_SETPOINTS, 0, 1.0)
+
+
+def test_a_stream_counts_from_its_first_setpoint_after_a_gap() -> None:
+    reference = understood(0)
+    assert reference is not None
+    setpoints = with_setpoint(NO_SETPOINTS, reference, 0, 1.0)
+    for boot_ns in (50_000_000, 100_000_000, 3_000_000_000, 3_100_000_000):
+        setpoints = with_setpoint(setpoints, reference, boot_ns, 1.0)
+    assert not are_streaming(setpoints, 3_100_000_000, 1.0, 0.2)
+    assert are_streaming(setpoints, 3_200_000_000, 1.0, 0.2)
