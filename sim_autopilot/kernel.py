@@ -9,7 +9,7 @@ from sim_autopilot.control.command import fill_control, fill_motor_command
 from sim_autopilot.control.outer_loop import extrapolate
 from sim_autopilot.control.parameters import RUNNING
 from sim_autopilot.data import Array
-from sim_autopilot.physics.compiled import Kernel, kernel, source_digest
+from sim_autopilot.physics.compiled import Kernel, kept_kernel, source_digest
 from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotation import fill_matrix
 from sim_autopilot.physics.step import advance_body, fill_specific_force, nearness, workspace
@@ -30,7 +30,7 @@ SOURCES = source_digest(Path(__file__).parent / folder for folder in ("physics",
 def _compiled(sources: int) -> Kernel[..., int]:
     """Return `advance` with a cache entry for each digest: numba's own key knows only the file of the function."""
 
-    @kernel
+    @kept_kernel
     def advance(
         plant: Array, flying: bool, reference: Array, deck: Array, wind: Array, control_record: Record,
         body_record: Record, periods: int, steps: int,

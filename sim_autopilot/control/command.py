@@ -59,7 +59,7 @@ def fill_control(
     observe(y, rotation, speed, memory, touching, control, body)
     heading_rate = turn_heading(memory, reference, control)
     fill_acceleration(y, memory, reference, control, wanted[0:3], force)
-    bound_force(force, control, body)
+    bound_force(force, touching, control, body)
     if control["kind"] == LQR_FEEDFORWARD:
         fill_feedforward_wrench(y, rotation, force, memory, heading_rate, control, body, out)
     else:

@@ -1,6 +1,6 @@
 """Tracking on SE(3): the thrust axis and the heading as one rotation (Lee, Leok, McClamroch, CDC 2010, eqs. 10-16).
 
-The outer loop's specific force f gives the wanted attitude R_d (its z along f, its x above the heading), then
+The outer loop's specific force f gives the wanted attitude R_d, its z along f, its yaw (ZYX) the heading; then
 `T = m f . R e3` and `torque = I (-kR eR - kw (w - w_d)) + w x I w`, `eR = (R_d'R - R'R_d)^v / 2`.
 
 The gains are placed poles, not tuned ones. Along a horizontal axis, near hover, position follows from torque through
@@ -48,17 +48,18 @@ def geometric_gains() -> CascadeGains:
 
 @kernel
 def fill_wanted_attitude(force: Array, heading_rad: float, out: Array) -> None:
-    """Write R_d (9,) whose z axis is along `force` (3,) and whose x axis is above the heading."""
+    """Write R_d (9,) whose z axis is along `force` (3,) and whose yaw (ZYX) is the heading."""
     size = math.sqrt(force[0] ** 2 + force[1] ** 2 + force[2] ** 2)
     zx, zy, zz = force[0] / size, force[1] / size, force[2] / size
     cosine = math.cos(heading_rad)
     sine = math.sin(heading_rad)
-    yx, yy, yz = -zz * sine, zz * cosine, zx * sine - zy * cosine
-    across = math.sqrt(yx * yx + yy * yy + yz * yz)
-    yx, yy, yz = yx / across, yy / across, yz / across
-    out[0], out[1], out[2] = yy * zz - yz * zy, yx, zx
-    out[3], out[4], out[5] = yz * zx - yx * zz, yy, zy
-    out[6], out[7], out[8] = yx * zy - yy * zx, yz, zz
+    # x = (left of the heading) x z: in the vertical plane of the heading, whatever the tilt
+    xx, xy, xz = zz * cosine, zz * sine, -zx * cosine - zy * sine
+    level = math.sqrt(xx * xx + xy * xy + xz * xz)
+    xx, xy, xz = xx / level, xy / level, xz / level
+    out[0], out[1], out[2] = xx, zy * xz - zz * xy, zx
+    out[3], out[4], out[5] = xy, zz * xx - zx * xz, zy
+    out[6], out[7], out[8] = xz, zx * xy - zy * xx, zz
 
 
 @kernel

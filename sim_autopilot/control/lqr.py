@@ -71,9 +71,9 @@ ANGLE_SCALE_RAD = 1.0
 ANGULAR_VELOCITY_SCALE_RAD_S = 4.0
 HEADING_SCALE_RAD = 0.25
 HEADING_RATE_SCALE_RAD_S = 1.0
-"""Bryson's rule: each of these deviations costs as much as the whole input: half the weight; as torque one
-rotor of a pair stopped, and in yaw half the thrust moved from one pair to the other. From a search over 0.1 to 0.4 m and
-0.3 to 1.5 m/s: with motors of 60 rad/s a unit step along x settles in 1.14 s and overshoots by 0.1 % in linear theory."""
+"""Bryson's rule: each of these deviations costs as much as the whole input: half the weight; as torque one rotor of a
+pair stopped, and in yaw half the thrust moved from one pair to the other. From a search over 0.1 to 0.4 m and 0.3 to
+1.5 m/s: with motors of 60 rad/s a unit step along x settles in 1.14 s and overshoots by 0.1 % in linear theory."""
 
 
 def feedforward_gains(airframe: Airframe) -> CascadeGains:

@@ -145,8 +145,11 @@ def fill_acceleration(y: Array, memory: Array, reference: Array, control: Record
 
 
 @kernel
-def bound_force(acceleration: Array, control: Record, body: Record) -> None:
-    """Turn an acceleration (3,) into a specific force that the rotors can give, height before place, in place."""
+def bound_force(acceleration: Array, touching: bool, control: Record, body: Record) -> None:
+    """Turn an acceleration (3,) into a specific force that the rotors can give, height before place, in place.
+
+    Standing on something, and not about to leave it, the drone keeps level: leaning would only tip it over.
+    """
     most = 4.0 * body["thrust_max_n"] / body["mass_kg"]
     up = acceleration[2] + GRAVITY_M_S2
     up = min(CLIMBING_FORCE_PART * most, max(SINKING_FORCE_G * GRAVITY_M_S2, up))
@@ -154,6 +157,8 @@ def bound_force(acceleration: Array, control: Record, body: Record) -> None:
     along = math.tan(control["tilt_max_rad"]) * up
     if most < math.inf:
         along = min(along, math.sqrt((FORCE_PART * most) ** 2 - up * up))
+    if touching and up < GRAVITY_M_S2:
+        along = 0.0
     size = math.sqrt(acceleration[0] ** 2 + acceleration[1] ** 2)
     if size > along:
         acceleration[0] *= along / size

@@ -21,7 +21,15 @@ class Kernel(Protocol[P, R]):
 
 
 def kernel(function: Callable[P, R]) -> Kernel[P, R]:
-    """Compile `function` at its first call."""
+    """Compile `function` into whatever compiled function calls it.
+
+    Not kept on disk by itself: numba would go on using it after a change in another file that it calls.
+    """
+    return cast("Kernel[P, R]", njit(fastmath=False, error_model="numpy")(function))
+
+
+def kept_kernel(function: Callable[P, R]) -> Kernel[P, R]:
+    """Compile `function` at its first call, with all that it calls, and keep that on disk."""
     return cast("Kernel[P, R]", njit(cache=True, fastmath=False, error_model="numpy")(function))
 
 

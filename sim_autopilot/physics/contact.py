@@ -1,9 +1,9 @@
 """Gear and blades against the ground and a moving box: spring and damper along the normal, Coulomb friction across.
 
-Eight points of B touch: four feet and the four outer edges of the rotor discs. A point inside a surface by depth d, with
-d' its rate, is pushed out by `max(0, k d + c d')`: contacts never pull. Friction on a top face is a spring and damper
-from an anchor on that face, bounded by mu times the normal force; at the bound the anchor is dragged along (Cundall
-and Strack 1979), so a drone at rest stays where it is. On a flank friction is viscous below the bound.
+Eight points of B touch: four feet and the four outer edges of the rotor discs. A point inside a surface by depth d,
+with d' its rate, is pushed out by `max(0, k d + c d')`: contacts never pull. Friction on a top face is a spring and
+damper from an anchor on that face, bounded by mu times the normal force; at the bound the anchor is dragged along
+(Cundall and Strack 1979), so a drone at rest stays where it is. On a flank friction is viscous below the bound.
 Surfaces are frames (22,): origin 0:3, R_WV 3:12, velocity 12:15, angular velocity in W 15:18, half length, half width,
 height, presence. The ground is such a frame without end, at z = 0, but under the vehicle only the vehicle counts.
 

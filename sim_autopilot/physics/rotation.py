@@ -51,5 +51,6 @@ def wrapped(angle_rad: float) -> float:
 
 def quaternion_from_yaw(yaw_rad: float) -> Array:
     """Return q (4,), w >= 0, of a turn about z."""
-    half = 0.5 * float(wrapped(yaw_rad))
-    return np.array([math.cos(half), 0.0, 0.0, math.sin(half)])
+    half = 0.5 * yaw_rad
+    sign = math.copysign(1.0, math.cos(half))
+    return np.array([sign * math.cos(half), 0.0, 0.0, sign * math.sin(half)])

@@ -34,7 +34,7 @@ def fill_thrusts(wrench: Array, body: Record, out: Array) -> None:
     top = body["thrust_max_n"]
     roll = min(top, max(-top, wrench[1] / body["arm_m"]))
     pitch = min(top, max(-top, wrench[2] / body["arm_m"]))
-    lean = 2.0 * max(abs(roll), abs(pitch))
+    lean = abs(roll) + abs(pitch)
     total = max(lean, min(wrench[0], 4.0 * top - lean))
     half = 0.5 * total
     turn_min = 2.0 * max(abs(pitch) - half, half - (2.0 * top - abs(roll)))

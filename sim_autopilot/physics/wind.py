@@ -1,9 +1,9 @@
 """Wind in W, m/s: a mean, Dryden turbulence of MIL-F-8785C at low altitude, and a gust.
 
-With T = L / V, V the airspeed: along the mean wind `sigma_u sqrt(2 T) / (1 + T s)`, across it and vertically
-`sigma sqrt(T) (1 + sqrt(3) T s) / (1 + T s)^2`, driven by white noise of unit intensity; the standard's spectra
-`sigma^2 2L/pi / (1 + (L W)^2)` and `sigma^2 L/pi (1 + 3 (L W)^2) / (1 + (L W)^2)^2` over W = w / V. In time counted in T
-these have no parameter left, so they are advanced exactly whatever the airspeed does, and start in their steady state.
+With T = L / V, V the airspeed: `sigma_u sqrt(2 T) / (1 + T s)` along the mean wind, across it and vertically
+`sigma sqrt(T) (1 + sqrt(3) T s) / (1 + T s)^2`, driven by white noise of unit intensity. They have the spectra of the
+standard, `sigma^2 2L/pi / (1 + (L W)^2)` and `sigma^2 L/pi (1 + 3 (L W)^2) / (1 + (L W)^2)^2` over W = w / V. In time
+counted in T no parameter is left: they advance exactly whatever the airspeed does, and start in their steady state.
 Below 1000 ft: `sigma_w = 0.1 W20`, `sigma_u = sigma_v = sigma_w / (0.177 + 0.000823 h)^0.4`, `L_w = h`,
 `L_u = L_v = h / (0.177 + 0.000823 h)^1.2`, h in feet; W20 15, 30, 45 knots (sections 3.7.2.1 and 3.7.3.4).
 """
