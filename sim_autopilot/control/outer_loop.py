@@ -35,7 +35,8 @@ from sim_autopilot.physics.rotation import wrapped
 DISTURBANCE_MAX_M_S2 = 8.0
 """More than the drag at 40 m/s of airspeed (6.6 m/s2)."""
 CORRECTION_MAX_M_S2 = 5.0
-"""Horizontal, 27 degrees of tilt: the benchmark's motors turn the airframe so far in 0.25 s."""
+"""Horizontal, 27 degrees of tilt: the benchmark's motors turn the airframe so far in 0.25 s. Vertical, half the weight:
+the rotors keep enough thrust to turn it."""
 HEADING_SLOPE_PER_S = 4.0
 HEADING_BRAKING_RAD_S2 = 2.5
 """How the commanded heading nears its goal; the propellers' drag gives 7 rad/s2 in hover."""
@@ -141,7 +142,8 @@ def fill_acceleration(y: Array, memory: Array, reference: Array, control: Record
         left *= CORRECTION_MAX_M_S2 / size
     out[0] += cosine * ahead - sine * left
     out[1] += sine * ahead + cosine * left
-    out[2] += control["velocity_gain"][2] * (velocity[2] - y[9])
+    rising = control["velocity_gain"][2] * (velocity[2] - y[9])
+    out[2] += min(CORRECTION_MAX_M_S2, max(-CORRECTION_MAX_M_S2, rising))
 
 
 @kernel

@@ -142,6 +142,13 @@ def test_velocity_alone_is_flown_without_lasting_error() -> None:
     np.testing.assert_allclose(flight.velocity_m_s[-1], [6.0, -2.0, 0.5], atol=0.01)
 
 
+def test_sudden_velocity_aside_and_down_does_not_overshoot_the_descent_limit() -> None:
+    config = PlantConfig(envelope=Envelope(speed_max_m_s=4.0, descent_max_m_s=1.5))
+    flight = flown(config, hovering(config, (0, 0, 40)), lambda _: going(None, (9.0, 0.0, -4.0)), 5.0)
+    assert flight.velocity_m_s[:, 2].min() > -1.5 * 1.15
+    assert flight.velocity_m_s[:, 0].max() < 4.0 * 1.1
+
+
 def test_no_heading_keeps_the_present_one() -> None:
     flight = flown(CONFIG, hovering(CONFIG, START, yaw=0.9), lambda _: going((5, 3, 20), yaw=None), 6.0)
     np.testing.assert_allclose(flight.yaw_rad, 0.9, atol=0.1)
