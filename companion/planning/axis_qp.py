@@ -31,16 +31,6 @@ class AxisBounds:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class AxisReference:
-    """What is tracked: position, velocity and acceleration at the nodes (n,), jerk in the blocks (m,)."""
-
-    position_m: Array
-    velocity_m_s: Array
-    acceleration_m_s2: Array
-    jerk_m_s3: Array
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class AxisProblem:
     """The constant matrices of the programme.
 
@@ -52,7 +42,6 @@ class AxisProblem:
         from_reference: (m, 3 n) the same per position, velocity and acceleration reference.
         move_weight: (m,) the same per jerk reference.
         slack_gradient: (q - m,) the penalty's slope.
-        has_floor: whether there is a floor.
     """
 
     model: AxisModel
@@ -62,32 +51,34 @@ class AxisProblem:
     from_reference: Array
     move_weight: Array
     slack_gradient: Array
-    has_floor: bool
 
-    def gradient(self, x: Array, reference: AxisReference) -> Array:
-        """Return the linear term (q,) for the state `x` (3,) and a reference."""
-        wanted = np.concatenate((reference.position_m, reference.velocity_m_s, reference.acceleration_m_s2))
-        moves = self.from_state @ x - self.from_reference @ wanted - self.move_weight * reference.jerk_m_s3
+    def gradient(self, x: Array, reference: Array, jerk_m_s3: Array) -> Array:
+        """Return the linear term (q,) for the state `x` (3,), a reference (3, n) of p, v, a, and one (m,) of jerk."""
+        moves = self.from_state @ x - self.from_reference @ reference.ravel() - self.move_weight * jerk_m_s3
         return np.concatenate((moves, self.slack_gradient))
 
     def bounds_of(self, x: Array, bounds: AxisBounds) -> tuple[Array, Array]:
         """Return the lower and upper bounds (c,): of moves, slacks, velocity, acceleration and the floor."""
         free_v = self.model.free_v @ x
-        free_a = np.full(len(self.model.move_s), x[2])
-        slacks = np.zeros_like(self.slack_gradient)
-        lower = [-bounds.jerk_max_m_s3, slacks, bounds.velocity_min_m_s - free_v, np.full_like(free_v, -np.inf)]
-        upper = [bounds.jerk_max_m_s3, slacks + np.inf, np.full_like(free_v, np.inf), bounds.velocity_max_m_s - free_v]
-        lower += [bounds.acceleration_min_m_s2 - free_a, np.full_like(free_a, -np.inf)]
-        upper += [np.full_like(free_a, np.inf), bounds.acceleration_max_m_s2 - free_a]
-        if self.has_floor and bounds.floor_m is not None:
-            lower.append(bounds.floor_m - self.model.free_p @ x)
-            upper.append(np.full_like(free_v, np.inf))
-        return np.concatenate(lower), np.concatenate(upper)
+        lower, upper = np.full(len(self.A), -np.inf), np.full(len(self.A), np.inf)
+        moves, slacks, nodes = len(self.model.move_s), len(self.slack_gradient), len(free_v)
+        velocity = moves + slacks
+        acceleration = velocity + 2 * nodes
+        lower[:moves] = -bounds.jerk_max_m_s3
+        upper[:moves] = bounds.jerk_max_m_s3
+        lower[moves:velocity] = 0.0
+        lower[velocity : velocity + nodes] = bounds.velocity_min_m_s - free_v
+        upper[velocity + nodes : acceleration] = bounds.velocity_max_m_s - free_v
+        lower[acceleration : acceleration + moves] = bounds.acceleration_min_m_s2 - x[2]
+        upper[acceleration + moves : acceleration + 2 * moves] = bounds.acceleration_max_m_s2 - x[2]
+        if bounds.floor_m is not None:
+            lower[acceleration + 2 * moves :] = bounds.floor_m - self.model.free_p @ x
+        return lower, upper
 
-    def solve(self, solver: QpSolver, x: Array, reference: AxisReference, bounds: AxisBounds) -> QpSolution:
+    def solve(self, solver: QpSolver, x: Array, reference: Array, jerk_m_s3: Array, bounds: AxisBounds) -> QpSolution:
         """Return the moves (m,) and slacks that are best from the state `x` (3,)."""
         lower, upper = self.bounds_of(x, bounds)
-        return solver.solve(self.H, self.gradient(x, reference), self.A, lower, upper, None)
+        return solver.solve(self.H, self.gradient(x, reference, jerk_m_s3), self.A, lower, upper, None)
 
 
 def make_axis_problem(model: AxisModel, config: MpcConfig, *, has_floor: bool) -> AxisProblem:
@@ -109,7 +100,6 @@ def make_axis_problem(model: AxisModel, config: MpcConfig, *, has_floor: bool) -
         from_reference=forced.T @ weight,
         move_weight=move_weight,
         slack_gradient=np.full(slacks, config.slack_weight),
-        has_floor=has_floor,
     )
 
 
@@ -142,7 +132,7 @@ def _constraints(model: AxisModel, moves: int, nodes: int, slacks: int) -> Array
         columns[:, slack] = sign
         return np.hstack((rows, columns))
 
-    ends = model.forced_a[model.block_end]
+    ends = model.forced_a[model.end_node[1:] - 1]
     blocks = [
         np.eye(moves, moves + slacks),
         np.hstack((np.zeros((slacks, moves)), np.eye(slacks))),

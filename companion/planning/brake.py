@@ -5,11 +5,13 @@ velocity to match is the target's horizontally; vertically it is the target's if
 that a drone without a plan does not sink onto a deck. Without a finite target it is rest.
 """
 
+import math
+
 import numpy as np
 
 from companion.data import Array, FlightLimits
 from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Target, Trajectory
-from companion.planning.intercept import Intercept, plan_intercept
+from companion.planning.intercept import fastest_way, way_at
 
 HORIZON_S = 3.0
 STEP_S = 0.1
@@ -47,34 +49,14 @@ def wanted_velocity(target: Target) -> Array:
 
 def _motion(state: ReferenceState, wanted: Array, limits: FlightLimits, t_s: Array) -> tuple[Array, Array, Array]:
     """Return position, velocity and acceleration (n, 3) at `t_s`; each horizontal axis gets 1/sqrt(2) of a norm."""
-    share = np.array([np.sqrt(0.5), np.sqrt(0.5), 1.0])
-    bound = share * np.array([limits.acceleration_max_m_s2] * 2 + [limits.vertical_acceleration_max_m_s2])
-    jerk = share * limits.jerk_max_m_s3
-    way = plan_intercept(state.velocity_enu_m_s - wanted, state.acceleration_enu_m_s2, jerk, -bound, bound)
-    error, acceleration, _ = way.at(t_s)
-    velocity = wanted[:, None] + error
-    position = state.position_enu_m[:, None] + wanted[:, None] * t_s + _integral(way, t_s)
-    return position.T, velocity.T, acceleration.T
-
-
-def _integral(way: Intercept, t_s: Array) -> Array:
-    """Return the integral over time of the relative position of `way`, (k, n): three cubics and a rest at zero."""
-    first, cruise, last = way.first_s[:, None], way.cruise_s[:, None], way.last_s[:, None]
-    start, middle = way.rate_m_s[:, None], way.cruise_m_s[:, None]
-    gain = (middle - start) / np.maximum(first, 1e-12)
-    slow = -middle / np.maximum(last, 1e-12)
-    in_first = np.minimum(t_s, first)
-    in_cruise = np.clip(t_s - first, 0.0, cruise)
-    in_last = np.clip(t_s - (first + cruise), 0.0, last)
-    at_cruise = way.error_m[:, None] + start * first + gain * first**2 / 2.0
-    at_last = at_cruise + middle * cruise
-    return (
-        way.error_m[:, None] * in_first
-        + start * in_first**2 / 2.0
-        + gain * in_first**3 / 6.0
-        + at_cruise * in_cruise
-        + middle * in_cruise**2 / 2.0
-        + at_last * in_last
-        + middle * in_last**2 / 2.0
-        + slow * in_last**3 / 6.0
-    )
+    path = np.empty((3, t_s.size, 3))
+    for axis, share in enumerate((math.sqrt(0.5), math.sqrt(0.5), 1.0)):
+        bound = limits.vertical_acceleration_max_m_s2 if axis == 2 else share * limits.acceleration_max_m_s2
+        error, push = state.velocity_enu_m_s[axis] - wanted[axis], state.acceleration_enu_m_s2[axis]
+        way = fastest_way(error, push, share * limits.jerk_max_m_s3, -bound, bound)
+        for i, t in enumerate(t_s):
+            covered, rate, acceleration, _ = way_at(error, push, way, t)
+            path[0, i, axis] = state.position_enu_m[axis] + wanted[axis] * t + covered
+            path[1, i, axis] = wanted[axis] + rate
+            path[2, i, axis] = acceleration
+    return path[0], path[1], path[2]

@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from companion.data import Array
 
@@ -21,7 +22,8 @@ class AxisModel:
     Attributes:
         move_s: (m,) durations of the blocks.
         node_s: (n,) times of the nodes, the last the horizon.
-        block_end: (m,) indices of the nodes at which blocks end.
+        end_s: (m,) times of the ends of the blocks.
+        end_node: (m + 1,) their places, and that of now, among now and the nodes.
         free_p: (n, 3).
         free_v: (n, 3).
         free_a: (n, 3).
@@ -32,7 +34,8 @@ class AxisModel:
 
     move_s: Array
     node_s: Array
-    block_end: "np.ndarray[tuple[int], np.dtype[np.intp]]"
+    end_s: Array
+    end_node: NDArray[np.intp]
     free_p: Array
     free_v: Array
     free_a: Array
@@ -52,7 +55,8 @@ def make_axis_model(move_s: Array, node_spacing_max_s: float) -> AxisModel:
     return AxisModel(
         move_s=np.asarray(move_s, dtype=np.float64),
         node_s=node_s,
-        block_end=np.cumsum(parts) - 1,
+        end_s=ends,
+        end_node=np.cumsum([0, *parts]),
         free_p=free_p,
         free_v=free_v,
         free_a=free_a,

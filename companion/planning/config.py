@@ -35,7 +35,7 @@ class ReportReading(Enum):
 
 
 class MpcConfig(StrictModel):
-    """The default law; the weights were chosen by measurement, see docs/planning.md."""
+    """The default law; the weights were chosen by measurement of overshoot, time and noise."""
 
     solver: SolverKind = SolverKind.DAQP
     moves_s: tuple[Positive, ...] = (
@@ -55,13 +55,13 @@ class MpcConfig(StrictModel):
     )  # blocks
     node_spacing_max_s: Positive = 0.16  # longer blocks are split for costs and bounds
     position_weight: Positive = 1.0  # 1/m^2, the scale of all weights
-    velocity_weight: NotNegative = 0.2  # s^2/m^2
-    acceleration_weight: NotNegative = 0.01  # s^4/m^2
-    jerk_weight: Positive = 0.001  # s^6/m^2; bandwidth (position / jerk weight)^(1/6) = 3.2 rad/s
+    velocity_weight: NotNegative = 0.3  # s^2/m^2
+    acceleration_weight: NotNegative = 0.005  # s^4/m^2
+    jerk_weight: Positive = 0.0003  # s^6/m^2; bandwidth (position / jerk weight)^(1/6) = 3.9 rad/s
     slack_weight: Positive = 1e3  # exact penalty on the largest excess over a soft limit
-    intercept_fraction: Fraction = 0.85  # of the acceleration limit that intercepts are planned with
-    lateral_fraction: Fraction = 0.35  # of the acceleration and jerk limits kept for the minor horizontal axis
-    lateral_speed_fraction: Fraction = 0.1  # of the speed limit kept for it on top of the target's speed along it
+    intercept_fraction: Fraction = 0.92  # of the acceleration limit that intercepts are planned with
+    intercept_time_min_s: Positive = 1.4  # shorter ways are slowed down to this: the law is linear near the target
+    lateral_speed_fraction: Fraction = 0.01  # of the speed limit kept for the minor axis beside the target's speed
     axes_time_s: Positive = 1.0  # a relative speed turns the major axis like the distance it covers in this time
 
 

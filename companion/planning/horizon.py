@@ -1,7 +1,8 @@
 """One plan's problem in turned axes: the state and the references relative to the target's position now.
 
-Axis 0 is the major horizontal axis, where most of the motion is needed, axis 1 the minor one, axis 2 is up.
-Each norm limit is split: the major axis gets what is left of it beside a share for the minor one.
+Axis 0 is the major horizontal axis, where most of the motion is needed, axis 1 the minor one, axis 2 is up. The
+acceleration norm is split at the angle at which the sum of the times that the two horizontal axes need to the target
+is least.
 """
 
 import math
@@ -13,14 +14,8 @@ from companion.data import Array, FlightLimits
 from companion.planning.condensed import AxisModel
 from companion.planning.config import MpcConfig
 from companion.planning.guidance import PlanRequest
-from companion.planning.intercept import plan_intercept
+from companion.planning.intercept import approach
 from companion.planning.resample import make_resampler
-
-RATE_RESERVE = 0.05
-"""Share of a speed limit that an intercept may use even when the target leaves less."""
-
-ACCELERATION_RESERVE = 0.3
-"""Share of an acceleration limit that an intercept may use even when the target's own acceleration leaves less."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -31,72 +26,64 @@ class Horizon:
         origin_enu_m: (3,) the target's position now.
         turn: (3, 3) from W to the turned axes.
         state: (3, 3) position, velocity, acceleration (rows) per axis (columns).
-        position_m: (3, n) reference per axis and node.
-        velocity_m_s: (3, n).
-        acceleration_m_s2: (3, n).
+        reference: (3, 3, n) position, velocity, acceleration; axis; node.
         jerk_m_s3: (3, m) the target's mean jerk in each block.
+        target_velocity_m_s: (3, n + 1) the target's own velocity, now and at the nodes.
+        target_acceleration_m_s2: (3, m + 1) the target's own acceleration, now and at the ends of the blocks.
         floor_m: (n,) relative to the origin.
-        speed_major_m_s: the major axis's share of the speed limit.
-        acceleration_major_m_s2: its share of the acceleration limit.
+        split_rad: the angle at which the acceleration norm is split.
+        minor_push_m_s2: what the minor axis accelerates with beside the target's own acceleration.
     """
 
     origin_enu_m: Array
     turn: Array
     state: Array
-    position_m: Array
-    velocity_m_s: Array
-    acceleration_m_s2: Array
+    reference: Array
     jerk_m_s3: Array
+    target_velocity_m_s: Array
+    target_acceleration_m_s2: Array
     floor_m: Array
-    speed_major_m_s: float
-    acceleration_major_m_s2: float
+    split_rad: float
+    minor_push_m_s2: float
 
 
-def make_horizon(request: PlanRequest, model: AxisModel, nodes_s: tuple[float, ...], config: MpcConfig) -> Horizon:
-    """Return the problem of `request`; `nodes_s` are 0 and the nodes of `model`."""
-    resampler = make_resampler(tuple(request.target.offset_s.tolist()), nodes_s)
+def make_horizon(request: PlanRequest, model: AxisModel, nodes_s: Array, config: MpcConfig) -> Horizon:
+    """Return the problem of `request`; `nodes_s` (n + 1,) are 0 and the nodes of `model`."""
+    resampler = make_resampler(tuple(request.target.offset_s.tolist()), tuple(nodes_s.tolist()))
     position, velocity, acceleration = resampler.apply(request.target)
-    origin = position[0]
-    state = request.state
-    error, rate = state.position_enu_m - origin, state.velocity_enu_m_s - velocity[0]
-    turn = turn_to_major(error, rate, config.axes_time_s)
-    target_p, target_v, target_a = turn @ (position - origin).T, turn @ velocity.T, turn @ acceleration.T
-    limits = request.limits
-    speed_minor = abs(float(target_v[1, 0])) + config.lateral_speed_fraction * limits.speed_max_m_s
-    push_minor = max(config.lateral_fraction * limits.acceleration_max_m_s2, float(np.abs(target_a[1]).max()))
-    speed_major, push_major = (
-        left_of(limits.speed_max_m_s, speed_minor),
-        left_of(limits.acceleration_max_m_s2, push_minor),
-    )
-    push = np.array([push_major, min(push_minor, push_major), limits.vertical_acceleration_max_m_s2])
-    upward = np.array([speed_major, left_of(limits.speed_max_m_s, abs(float(target_v[0, 0]))), limits.climb_max_m_s])
-    downward = np.array([upward[0], upward[1], limits.descent_max_m_s])
-    way = plan_intercept(
-        turn @ error,
-        turn @ rate,
-        np.maximum(config.intercept_fraction * push - np.abs(target_a[:, 0]), ACCELERATION_RESERVE * push),
-        -np.maximum(downward + target_v[:, 0], RATE_RESERVE * downward),
-        np.maximum(upward - target_v[:, 0], RATE_RESERVE * upward),
-    )
-    way_p, way_v, way_a = way.at(model.node_s)
-    ends = np.concatenate((target_a[:, :1], target_a[:, 1:][:, model.block_end]), axis=1)
+    origin, state = position[0], request.state
+    turn = turn_to_major(state.position_enu_m - origin, state.velocity_enu_m_s - velocity[0], config.axes_time_s)
+    x = np.array((state.position_enu_m - origin, state.velocity_enu_m_s, state.acceleration_enu_m_s2)) @ turn.T
+    target = turn @ np.array((position - origin, velocity, acceleration)).transpose(0, 2, 1)
+    limits = limit_array(request.limits)
+    fraction, time_min_s = config.intercept_fraction, config.intercept_time_min_s
+    split, push, reference = approach(x[:2], nodes_s, target, limits, fraction, time_min_s)
+    ends = target[2][:, model.end_node]
     return Horizon(
         origin_enu_m=origin,
         turn=turn,
-        state=np.stack((error, state.velocity_enu_m_s, state.acceleration_enu_m_s2)) @ turn.T,
-        position_m=target_p[:, 1:] + way_p,
-        velocity_m_s=target_v[:, 1:] + way_v,
-        acceleration_m_s2=target_a[:, 1:] + way_a,
-        jerk_m_s3=np.diff(ends, axis=1) / model.move_s,
+        state=x,
+        reference=reference,
+        jerk_m_s3=(ends[:, 1:] - ends[:, :-1]) / model.move_s,
+        target_velocity_m_s=target[1],
+        target_acceleration_m_s2=ends,
         floor_m=(resampler.linear @ request.floor_enu_m)[1:] - origin[2],
-        speed_major_m_s=speed_major,
-        acceleration_major_m_s2=push_major,
+        split_rad=split,
+        minor_push_m_s2=float(push[1]),
     )
 
 
-def left_of(norm: float, used: float) -> float:
-    """Return what one axis may use of a norm limit beside `used` on the other; never less than a fifth."""
-    return max(math.sqrt(max(norm * norm - used * used, 0.0)), 0.2 * norm)
+def limit_array(limits: FlightLimits) -> Array:
+    """Return speed, climb, descent, horizontal and vertical acceleration limits (5,)."""
+    return np.array(
+        (
+            limits.speed_max_m_s,
+            limits.climb_max_m_s,
+            limits.descent_max_m_s,
+            limits.acceleration_max_m_s2,
+            limits.vertical_acceleration_max_m_s2,
+        )
+    )
 
 
 def turn_to_major(error_m: Array, rate_m_s: Array, time_s: float) -> Array:
@@ -108,4 +95,4 @@ def turn_to_major(error_m: Array, rate_m_s: Array, time_s: float) -> Array:
     wx, wy = time_s * float(rate_m_s[0]), time_s * float(rate_m_s[1])
     angle = 0.5 * math.atan2(2.0 * (ex * ey + wx * wy), ex * ex - ey * ey + wx * wx - wy * wy)
     c, s = math.cos(angle), math.sin(angle)
-    return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    return np.array(((c, s, 0.0), (-s, c, 0.0), (0.0, 0.0, 1.0)))

@@ -1,91 +1,172 @@
-"""The fastest way from a relative position and velocity to rest, under a speed and an acceleration limit.
+"""The fastest way from a relative position and velocity to rest, and the approach to a moving target made of it.
 
-State `[e, w]` per axis: relative position m and velocity m/s; the acceleration is +a, 0 or -a. Source: the
-time-optimal control of the double integrator, e.g. Bryson and Ho 1975, section 3.9, with a bound on w.
+One axis has the state `[e, w]`, relative position m and velocity m/s; its acceleration is +a, then 0 at the speed
+limit, then -a. Source: the time-optimal control of the double integrator, Bryson and Ho 1975, section 3.9, with a
+bound on w. All functions are compiled; they live in one file, which is what the compiler's cache goes by.
 """
 
-from dataclasses import dataclass
+# ruff: noqa: PLR0917
+# Compiled functions take no keyword-only arguments.
+
+import math
 
 import numpy as np
+from numba import njit
 
 from companion.data import Array
 
-_TINY = 1e-12
+TINY = 1e-12
+
+RATE_RESERVE = 0.05
+"""Share of a speed limit that an approach may use even when the target leaves less."""
+
+PUSH_RESERVE = 0.3
+"""Share of an acceleration limit that an approach may use even when the target's own acceleration leaves less."""
+
+TARGET_PUSH_SHARE = 0.5
+"""Share of the target's own acceleration that is taken off: it helps one phase of an approach and hinders another.
+
+Of 0.5 and 1 measured over twelve joins of circles with r = 16.5 and 20 m at 4 to 8 m/s: 93 against 105 s in total.
+"""
+
+SPLITS = 8
+SPLIT_MIN_RAD = 0.2
+SPLIT_MAX_RAD = 1.3
+"""Angles at which the split of the acceleration norm is tried: the minor axis gets its sine, the major its cosine."""
+
+SPLIT_SOFTNESS_S = 0.2
+"""Splits whose summed times of both axes differ by less than this are mixed, so that the split does not jump."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Intercept:
-    """Three phases per axis, arrays (k,): constant acceleration, cruise, braking to rest at the origin.
-
-    Attributes:
-        error_m: relative position at the start.
-        rate_m_s: relative velocity at the start.
-        cruise_m_s: relative velocity between first and last phase.
-        first_s: duration of the first phase.
-        cruise_s: duration of the cruise.
-        last_s: duration of the last phase.
-    """
-
-    error_m: Array
-    rate_m_s: Array
-    cruise_m_s: Array
-    first_s: Array
-    cruise_s: Array
-    last_s: Array
-
-    @property
-    def duration_s(self) -> Array:
-        """Time until rest at the origin, (k,)."""
-        return self.first_s + self.cruise_s + self.last_s
-
-    def at(self, t_s: Array) -> tuple[Array, Array, Array]:
-        """Return relative position, velocity and acceleration (k, n) at `t_s` (n,) >= 0."""
-        first, cruise, last = self.first_s[:, None], self.cruise_s[:, None], self.last_s[:, None]
-        start, middle = self.rate_m_s[:, None], self.cruise_m_s[:, None]
-        gain = (middle - start) / np.maximum(first, _TINY)
-        brake = -middle / np.maximum(last, _TINY)
-        in_first = np.minimum(t_s, first)
-        in_cruise = np.clip(t_s - first, 0.0, cruise)
-        in_last = np.clip(t_s - (first + cruise), 0.0, last)
-        position = (
-            self.error_m[:, None]
-            + (start + 0.5 * gain * in_first) * in_first
-            + middle * in_cruise
-            + (middle + 0.5 * brake * in_last) * in_last
-        )
-        velocity = start + gain * in_first + brake * in_last
-        braking = (t_s >= first + cruise) & (t_s < first + cruise + last)
-        acceleration = gain * (t_s < first) + brake * braking
-        return position, velocity, acceleration
-
-
-def plan_intercept(
-    error_m: Array, rate_m_s: Array, acceleration_m_s2: Array, rate_min_m_s: Array, rate_max_m_s: Array
-) -> Intercept:
-    """Return the time-optimal way to rest at the origin.
+@njit(cache=True)
+def fastest_way(
+    error: float, rate: float, push: float, slowest: float, fastest: float
+) -> tuple[float, float, float, float]:
+    """Return the velocity of the cruise and the durations of first phase, cruise and braking to rest at zero.
 
     Args:
-        error_m: (k,) relative position.
-        rate_m_s: (k,) relative velocity, allowed to start outside its bounds.
-        acceleration_m_s2: (k,) magnitude, > 0.
-        rate_min_m_s: (k,) < 0.
-        rate_max_m_s: (k,) > 0.
+        error: relative position.
+        rate: relative velocity, allowed to start outside its bounds.
+        push: magnitude of the acceleration, > 0.
+        slowest: lower bound of the relative velocity, < 0.
+        fastest: upper bound, > 0.
     """
-    stop = error_m + rate_m_s * np.abs(rate_m_s) / (2.0 * acceleration_m_s2)
-    way = np.where(stop > 0.0, -1.0, 1.0)
-    ahead = -way * error_m
-    speed = way * rate_m_s
-    bound = np.where(way > 0.0, rate_max_m_s, -rate_min_m_s)
-    peak = np.sqrt(np.maximum(acceleration_m_s2 * ahead + 0.5 * speed**2, 0.0))
-    cruise = np.minimum(peak, bound)
-    first_s = np.abs(cruise - speed) / acceleration_m_s2
-    last_s = cruise / acceleration_m_s2
-    covered = 0.5 * (speed + cruise) * first_s + 0.5 * cruise * last_s
-    return Intercept(
-        error_m=error_m,
-        rate_m_s=rate_m_s,
-        cruise_m_s=way * cruise,
-        first_s=first_s,
-        cruise_s=np.where(peak > bound, np.maximum(ahead - covered, 0.0) / np.maximum(cruise, _TINY), 0.0),
-        last_s=last_s,
-    )
+    way = -1.0 if error + rate * abs(rate) / (2.0 * push) > 0.0 else 1.0
+    ahead, speed = -way * error, way * rate
+    bound = fastest if way > 0.0 else -slowest
+    peak = math.sqrt(max(push * ahead + 0.5 * speed * speed, 0.0))
+    cruise = min(peak, bound)
+    first_s, last_s = abs(cruise - speed) / push, cruise / push
+    cruise_s = 0.0
+    if peak > bound:
+        covered = 0.5 * (speed + cruise) * first_s + 0.5 * cruise * last_s
+        cruise_s = max(ahead - covered, 0.0) / cruise
+    return way * cruise, first_s, cruise_s, last_s
+
+
+@njit(cache=True)
+def way_at(
+    error: float, rate: float, way: tuple[float, float, float, float], t_s: float
+) -> tuple[float, float, float, float]:
+    """Return the integral of the position since the start, position, velocity and acceleration at `t_s` >= 0."""
+    cruise, first_s, cruise_s, last_s = way
+    sums = 0.0
+    for span, change in ((first_s, cruise - rate), (cruise_s, 0.0), (last_s, -cruise)):
+        dt = min(t_s, span)
+        push = change / max(span, TINY)
+        sums += (error + (rate / 2.0 + push * dt / 6.0) * dt) * dt
+        error += (rate + 0.5 * push * dt) * dt
+        rate += push * dt
+        t_s -= dt
+        if t_s <= 0.0 and dt < span:
+            return sums, error, rate, push
+    return sums, error, rate, 0.0
+
+
+@njit(cache=True)
+def usable(push: float, target_push: float, fraction: float) -> float:
+    """Return what an approach may use of an acceleration limit beside the target's own acceleration."""
+    return max(fraction * push - TARGET_PUSH_SHARE * abs(target_push), PUSH_RESERVE * push)
+
+
+@njit(cache=True)
+def left_of(norm: float, used: float) -> float:
+    """Return what one axis may use of a norm limit beside `used` on the other; never less than a fifth."""
+    return math.sqrt(max(norm * norm - used * used, 0.04 * norm * norm))
+
+
+@njit(cache=True)
+def rate_bounds(target_v: Array, limits: Array) -> tuple[Array, Array]:
+    """Return the bounds (3,) of the velocity relative to a target's for `limits` as `limit_array` has them."""
+    slowest, fastest = np.empty(3), np.empty(3)
+    for axis in range(3):
+        up = limits[1] if axis == 2 else left_of(limits[0], target_v[1 - axis])
+        down = limits[2] if axis == 2 else up
+        fastest[axis] = max(up - target_v[axis], RATE_RESERVE * up)
+        slowest[axis] = -max(down + target_v[axis], RATE_RESERVE * down)
+    return slowest, fastest
+
+
+@njit(cache=True)
+def split_norm(error: Array, rate: Array, target_v: Array, target_a: Array, limits: Array, fraction: float) -> float:
+    """Return the angle that splits the acceleration norm with the least sum of the times of both axes."""
+    slowest, fastest = rate_bounds(target_v, limits)
+    angles = np.linspace(SPLIT_MIN_RAD, SPLIT_MAX_RAD, SPLITS)
+    times = np.zeros(SPLITS)
+    for i in range(SPLITS):
+        for axis in range(2):
+            share = limits[3] * (math.cos(angles[i]) if axis == 0 else math.sin(angles[i]))
+            push = usable(share, target_a[axis], fraction)
+            way = fastest_way(error[axis], rate[axis], push, slowest[axis], fastest[axis])
+            times[i] += way[1] + way[2] + way[3]
+    weights = np.exp((times.min() - times) / SPLIT_SOFTNESS_S)
+    return float((weights * angles).sum() / weights.sum())
+
+
+@njit(cache=True)
+def approach_push(error: float, rate: float, push: float, push_max: float, time_min_s: float) -> float:
+    """Return the acceleration of the approach on one axis.
+
+    Near the target it shrinks with the error, such that no way is much shorter than `time_min_s`: the law becomes
+    linear and does not chatter. When closing in it is at least what brakes to rest at the target, up to `push_max`.
+    """
+    gentle = 4.0 * abs(error) / time_min_s**2 + (1.0 + math.sqrt(2.0)) * abs(rate) / time_min_s
+    chosen = min(push, max(gentle, 1e-9))
+    if error * rate < 0.0:
+        chosen = max(chosen, min(rate * rate / max(2.0 * abs(error), 1e-9), push_max))
+    return chosen
+
+
+@njit(cache=True)
+def approach(
+    x: Array, node_s: Array, target: Array, limits: Array, fraction: float, time_min_s: float
+) -> tuple[float, Array, Array]:
+    """Return how the target is approached from the state `x`, in the frame that moves with the target.
+
+    Args:
+        x: (2, 3) position and velocity per axis: major, minor, up.
+        node_s: (n,) rising from 0.
+        target: (3, 3, n) position, velocity, acceleration; axis; node.
+        limits: (5,) as `limit_array` has them.
+        fraction: of the acceleration limit that the approach is planned with.
+        time_min_s: ways shorter than this are slowed down, see `approach_push`.
+
+    Returns:
+        the split of the acceleration norm, rad; the acceleration (3,) of the way; and the reference (3, 3, n - 1),
+        ordered as `target`, at the nodes after now.
+    """
+    error, rate = x[0] - target[0, :, 0], x[1] - target[1, :, 0]
+    split = split_norm(error, rate, target[1, :, 0], target[2, :, 0], limits, fraction)
+    slowest, fastest = rate_bounds(target[1, :, 0], limits)
+    reference, pushes = target[:, :, 1:].copy(), np.empty(3)
+    for axis in range(3):
+        share = limits[4] if axis == 2 else limits[3] * (math.cos(split) if axis == 0 else math.sin(split))
+        push = usable(share, target[2, axis, 0], fraction)
+        pushes[axis] = approach_push(error[axis], rate[axis], push, share, time_min_s)
+        way = fastest_way(error[axis], rate[axis], pushes[axis], slowest[axis], fastest[axis])
+        for node in range(1, len(node_s)):
+            _, p, v, a = way_at(error[axis], rate[axis], way, node_s[node])
+            reference[0, axis, node - 1] += p
+            reference[1, axis, node - 1] += v
+            reference[2, axis, node - 1] += a
+    return split, pushes, reference

@@ -1,13 +1,14 @@
 """The source report's trajectory planner (Ghribi 2022, equations 12 to 14), as its two readings have it.
 
-Per axis `[p, v, a]`, input jerk, forward Euler at 0.01 s: `p+ = p + v h, v+ = v + a h, a+ = a + u h`. The target's state
-now is held over the horizon, its velocity multiplied by a factor. Cost: half the sum over the prediction of the
+Per axis `[p, v, a]`, input jerk, forward Euler at 0.01 s: `p+ = p + v h, v+ = v + a h, a+ = a + u h`. The target's
+state now is held over the horizon, its velocity multiplied by a factor. Cost: half the sum over the prediction of the
 weighed squares of the errors of p, v and a, plus the weighed square of the input (reading STATED) or of its change
 (REFERENCE_SIMULATION, the input itself is free). After the control horizon the last input is held. z >= 0 is soft
 with an exact penalty, since the input reaches the height only after three steps. Flight limits and the request's
 floor are not part of this law.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,10 +66,11 @@ NUMBERS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ReportMemory:
-    """The virtual model's last state and the jerk (3,) last applied."""
+    """The virtual model's last state, the jerk (3,) last applied, and the time it is behind."""
 
     state: ReferenceState
     jerk_m_s3: Array
+    behind_s: float
 
 
 class ReportMpc:
@@ -84,19 +86,14 @@ class ReportMpc:
         self._A = _constraints(self._numbers, self._forced)
 
     def plan(self, memory: ReportMemory | None, request: PlanRequest) -> tuple[ReportMemory, PlanResult]:
-        """Return the memory and the plan; `dt_s` is one or several of the law's own steps of 0.01 s.
-
-        Raises:
-            ValueError: if `dt_s` is not a multiple of the step.
-        """
+        """Return the memory and the plan; the virtual model takes whole steps of 0.01 s, the rest waits."""
         request = with_finite_state(None if memory is None else memory.state, request)
-        steps = round(request.dt_s / STEP_S)
-        if steps < 1 or abs(steps * STEP_S - request.dt_s) > 1e-9:
-            raise ValueError(f"the report's planner steps by {STEP_S} s, not by {request.dt_s} s")
         if not has_finite_target(request):
             return _fallback(request, PlanStatus.FAILED, 0)
         state, jerk = _rows(request.state), np.zeros(3) if memory is None else memory.jerk_m_s3
-        iterations, excess, trajectory = 0, 0.0, []
+        due_s = request.dt_s + (0.0 if memory is None else memory.behind_s)
+        steps = math.floor(due_s / STEP_S + 1e-6)
+        iterations, excess, trajectory = 0, 0.0, [_still(request.state)]
         for target in _targets(request, steps):
             solutions = [self._solve(axis, state[:, axis], target[:, axis], float(jerk[axis])) for axis in range(3)]
             iterations += sum(solution.iterations for solution in solutions)
@@ -111,12 +108,12 @@ class ReportMpc:
             state = EULER @ state + np.outer([0.0, 0.0, STEP_S], jerk)
         result = PlanResult(
             next_state=_reference_state(state),
-            trajectory=trajectory[0],
+            trajectory=trajectory[min(1, steps)],
             status=PlanStatus.SOLVED,
             limit_excess=excess,
             iterations=iterations,
         )
-        return ReportMemory(state=result.next_state, jerk_m_s3=jerk), result
+        return ReportMemory(state=result.next_state, jerk_m_s3=jerk, behind_s=due_s - steps * STEP_S), result
 
     def _solve(self, axis: int, x: Array, target: Array, jerk_m_s3: float) -> QpSolution:
         """Return moves and slack of one axis from the state `x` (3,) to the held `target` (3,)."""
@@ -135,7 +132,7 @@ class ReportMpc:
         nodes = (self._free @ state + self._forced @ moves).reshape(3, self._numbers.prediction_steps, 3)
         path = np.concatenate((state[:, None, :], nodes), axis=1)
         return Trajectory(
-            offset_s=STEP_S * np.arange(self._numbers.prediction_steps + 1),
+            offset_s=np.arange(self._numbers.prediction_steps + 1, dtype=np.float64) * STEP_S,
             position_enu_m=path[0],
             velocity_enu_m_s=path[1],
             acceleration_enu_m_s2=path[2],
@@ -190,6 +187,14 @@ def _reference_state(rows: Array) -> ReferenceState:
     return ReferenceState(position_enu_m=rows[0], velocity_enu_m_s=rows[1], acceleration_enu_m_s2=rows[2])
 
 
+def _still(state: ReferenceState) -> Trajectory:
+    """Return the trajectory of a call in which no step is due."""
+    rows = _rows(state)[:, None, :]
+    return Trajectory(
+        offset_s=np.zeros(1), position_enu_m=rows[0], velocity_enu_m_s=rows[1], acceleration_enu_m_s2=rows[2]
+    )
+
+
 def _targets(request: PlanRequest, steps: int) -> Array:
     """Return the target's position, velocity, acceleration (steps, 3, 3) at the law's own instants."""
     instants = tuple(STEP_S * step for step in range(steps))
@@ -200,4 +205,4 @@ def _targets(request: PlanRequest, steps: int) -> Array:
 def _fallback(request: PlanRequest, status: PlanStatus, iterations: int) -> tuple[ReportMemory, PlanResult]:
     """Return the braking, after which the input starts from zero."""
     result = brake(request, status, iterations)
-    return ReportMemory(state=result.next_state, jerk_m_s3=np.zeros(3)), result
+    return ReportMemory(state=result.next_state, jerk_m_s3=np.zeros(3), behind_s=0.0), result

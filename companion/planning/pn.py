@@ -52,7 +52,7 @@ class ProportionalNavigation:
         result = PlanResult(
             next_state=next_state,
             trajectory=Trajectory(
-                offset_s=STEP_S * np.arange(STEPS + 1),
+                offset_s=np.arange(STEPS + 1, dtype=np.float64) * STEP_S,
                 position_enu_m=np.array([state.position_enu_m for state in path]),
                 velocity_enu_m_s=np.array([state.velocity_enu_m_s for state in path]),
                 acceleration_enu_m_s2=np.array([state.acceleration_enu_m_s2 for state in path]),

@@ -4,7 +4,11 @@ Minimise `x'Hx/2 + f'x` subject to `lower <= Ax <= upper`. Solving is a pure fun
 solver state survives a call, so the same problem gives the same bits in any order.
 """
 
+# ruff: noqa: PLR0917
+# H, f, A, lower, upper is the order in which a programme is written.
+
 import importlib
+import math
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -74,12 +78,12 @@ def refusal(H: Array, f: Array, A: Array, lower: Array, upper: Array) -> QpSolut
 
     DAQP calls problems with NaN or with crossed bounds solved.
     """
-    numbers = float(f.sum()) + float(H.sum()) + float(A.sum())
-    if not (np.isfinite(numbers) and (lower < np.inf).all() and (upper > -np.inf).all()):
+    if not math.isfinite(float(f.sum() + H.sum() + A.sum())):
         return QpSolution(status=PlanStatus.FAILED, x=None, iterations=0)
-    if not (lower <= upper).all():
-        return QpSolution(status=PlanStatus.INFEASIBLE, x=None, iterations=0)
-    return None
+    if (lower <= upper).all():
+        return None
+    has_nan = bool(np.isnan(lower).any() or np.isnan(upper).any())
+    return QpSolution(status=PlanStatus.FAILED if has_nan else PlanStatus.INFEASIBLE, x=None, iterations=0)
 
 
 class DaqpSolver:

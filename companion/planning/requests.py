@@ -1,8 +1,7 @@
 """Checks of what a guidance law is asked, the same for all laws."""
 
+import math
 from dataclasses import replace
-
-import numpy as np
 
 from companion.planning.guidance import PlanRequest, ReferenceState
 
@@ -25,11 +24,11 @@ def with_finite_state(last: ReferenceState | None, request: PlanRequest) -> Plan
 def is_finite_state(state: ReferenceState) -> bool:
     """Return whether all nine numbers are finite."""
     total = state.position_enu_m.sum() + state.velocity_enu_m_s.sum() + state.acceleration_enu_m_s2.sum()
-    return bool(np.isfinite(total))
+    return math.isfinite(total)
 
 
 def has_finite_target(request: PlanRequest) -> bool:
     """Return whether target and floor are finite throughout."""
     target = request.target
     total = target.position_enu_m.sum() + target.velocity_enu_m_s.sum() + target.acceleration_enu_m_s2.sum()
-    return bool(np.isfinite(total + request.floor_enu_m.sum() + target.offset_s.sum()))
+    return math.isfinite(total + request.floor_enu_m.sum() + target.offset_s.sum())
