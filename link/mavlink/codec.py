@@ -20,6 +20,7 @@ _HEAD_SIZE = 3  # marker, payload length, incompatibility flags: enough to know 
 _OVERHEAD_V1 = mavlink.HEADER_LEN_V1 + 2
 _OVERHEAD_V2 = mavlink.HEADER_LEN_V2 + 2
 _NOT_A_FRAME = 0
+_UNKNOWN_IDS_MAX = 64  # counted apart; noise would make up thousands
 
 
 def _frame_size(head: bytes | bytearray, start: int) -> int:
@@ -56,6 +57,7 @@ class MavlinkCodec:
         self._input: list[bytes] = []
         self._sequences: dict[tuple[int, int], SequenceTracker] = {}
         self._unknown: Counter[int] = Counter()
+        self._unknown_messages = 0
         self._bytes_received = self._messages_received = 0
         self._bytes_sent = self._messages_sent = 0
         self._bad_bytes = self._bad_frames = 0
@@ -71,7 +73,7 @@ class MavlinkCodec:
             bytes_sent=self._bytes_sent,
             bad_frames=self._bad_frames,
             bad_bytes=self._bad_bytes,
-            unknown_messages=self._unknown.total(),
+            unknown_messages=self._unknown_messages,
             unknown_ids=tuple(sorted(self._unknown.items())),
             lost_messages=sum(one.lost for one in sequences),
             late_messages=sum(one.late for one in sequences),
@@ -147,23 +149,27 @@ class MavlinkCodec:
         if message_id not in mavlink.mavlink_map:
             if not self._ends_at_frame(start + size):
                 return self._skip()
-            self._unknown[message_id] += 1
+            self._count_unknown(message_id)
         else:
             try:
                 messages.append(self._pymavlink.decode(frame))
             except mavlink.MAVError:
                 return self._skip()
             self._messages_received += 1
-        self._note(sequence, system, component, frame)
-        return size
-
-    def _note(self, sequence: int, system: int, component: int, frame: bytearray) -> None:
+            if (system, component) not in self._sequences:
+                self._sequences[system, component] = SequenceTracker()
+        # An unknown message has no checksum to prove its sender, so it introduces none.
         tracker = self._sequences.get((system, component))
-        if tracker is None:
-            tracker = self._sequences[system, component] = SequenceTracker()
-        tracker.see(sequence)
+        if tracker is not None:
+            tracker.see(sequence)
         if self._records_input:
             self._input.append(bytes(frame))
+        return size
+
+    def _count_unknown(self, message_id: int) -> None:
+        self._unknown_messages += 1
+        if message_id in self._unknown or len(self._unknown) < _UNKNOWN_IDS_MAX:
+            self._unknown[message_id] += 1
 
     def _ends_at_frame(self, end: int) -> bool:
         """Whether a frame of an unknown message, whose checksum cannot be told, is followed by a frame or nothing."""

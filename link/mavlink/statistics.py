@@ -15,7 +15,7 @@ class CodecStatistics:
         bad_frames: places where a frame seemed to start and did not hold.
         bad_bytes: bytes that belonged to no frame.
         unknown_messages: frames whose message id the dialect does not know.
-        unknown_ids: message ids of these, each with its count, ascending.
+        unknown_ids: the first 64 message ids of these, each with its count, ascending.
         lost_messages: gaps in the senders' sequence numbers.
         late_messages: messages that filled a gap after all.
         doubled_messages: messages that came more than once.

@@ -82,6 +82,22 @@ def test_a_spoiled_frame_does_not_take_its_neighbours_along() -> None:
     assert boot_times(MavlinkCodec(1, 191).decode(data)) == [0, 1, 3, 4]
 
 
+def test_noise_that_looks_like_an_unknown_frame_does_not_swallow_what_follows() -> None:
+    noise = unknown_frame(1)[:12]  # claims 39 bytes, which end within the frames behind it
+    codec = MavlinkCodec(1, 191)
+    assert boot_times(codec.decode(noise + b"".join(frames(5)))) == list(range(5))
+    assert codec.statistics.unknown_messages == 0
+
+
+def test_noise_counts_no_more_than_64_unknown_ids_apart_and_no_strange_senders() -> None:
+    codec = MavlinkCodec(1, 191)
+    for number in range(100):
+        codec.decode(bytes([0xFD, 1, 0, 0, number * 37 % 256, number, 1, number, 0xFF, 0x7F, 5, 0, 0]))
+    assert codec.statistics.unknown_messages == 100
+    assert len(codec.statistics.unknown_ids) == 64
+    assert codec.statistics.lost_messages == 0
+
+
 def test_unknown_messages_are_counted_and_are_no_gap() -> None:
     sent = frames(4)
     codec = MavlinkCodec(1, 191)

@@ -13,6 +13,7 @@ from link.mavlink.events import (
 )
 from link.mavlink.session import MavlinkSession
 from link.mavlink.session_config import SessionConfig
+from link.mavlink.timesync import ClockSync
 from tests.link.mavlink.fake_autopilot import BOOTED_NS, MS, START_NS, UTC_AHEAD_NS, FakeAutopilot, Pair, S, of_kind
 
 POSITION_ID = mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED
@@ -113,6 +114,22 @@ def test_the_autopilots_question_for_the_time_is_answered() -> None:
     run.run(0.1)
     (answer,) = (one for one in run.autopilot.of_type("TIMESYNC") if one.ts1 == 123_456)
     assert abs(answer.tc1 - run.t_ns) < S
+
+
+def test_answers_to_questions_from_before_a_restart_are_not_learned_from() -> None:
+    sync = ClockSync(SessionConfig())
+    question = sync.poll(START_NS)
+    assert question is not None
+    sync.start_over()
+    sync.timesync(mavlink.MAVLink_timesync_message(tc1=BOOTED_NS, ts1=question.ts1), START_NS + MS)
+    assert sync.clock.local_to_boot is None
+
+
+def test_an_answer_in_unix_time_is_no_boot_time() -> None:
+    sync = ClockSync(SessionConfig())
+    sync.poll(START_NS)
+    sync.timesync(mavlink.MAVLink_timesync_message(tc1=START_NS, ts1=START_NS), START_NS + MS)
+    assert sync.clock.local_to_boot is None
 
 
 def test_a_restart_is_noticed_and_streams_and_clock_are_set_up_anew() -> None:
