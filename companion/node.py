@@ -3,7 +3,7 @@
 The wire loop, the lockstep campaigns and the tests all run this one.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from companion.autopilot_link import AutopilotLink
 from companion.data import Measurement
@@ -26,20 +26,12 @@ from link.messages import (
     VehicleImu,
 )
 from link.payload_checks import PayloadError
+from link.publication import Publication
 
 _EARLY = 0.75  # of a period: a new state of the drone starts the next step from here on
 _LATE = 2.0  # periods without a new state after which the step is made without one
 _PLAN_EVERY = 2  # statuses
 _PLAN_POINTS = 2  # every so many points of the plan are published
-
-
-@dataclass(frozen=True, slots=True)
-class Publication:
-    """What is to be put on Zenoh."""
-
-    key: str
-    payload: bytes
-    encoding: str
 
 
 class CompanionNode:

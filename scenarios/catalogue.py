@@ -20,8 +20,8 @@ from link.toml_config import merged, validated
 from scenarios.config import Scenario
 
 Table = dict[str, Any]
-_DEFAULT_PRESETS = {"sensors": "rtk", "wind": "calm", "link": "ideal", "vehicle": "car"}
-_PLAIN_OPTIONS = ("firmware", "airframe")
+_DEFAULT_PRESETS = {"sensors": "rtk", "wind": "calm", "link": "ideal", "vehicle": "car", "system": "default"}
+_PLAIN_OPTIONS = ("firmware",)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,9 +7,11 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from companion.config import CompanionConfig
 from link.messages import PadGeometry, Vector3
 from link.toml_config import StrictModel
 from scenarios.track_config import NotNegative, Positive, TrackConfig
+from sim_autopilot.config import DatumConfig, DroneConfig
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
@@ -128,12 +130,15 @@ class VehicleConfig(StrictModel):
         return PadGeometry(size_m=self.pad_size_m, height_m=self.roof_height_m, antenna_to_pad_m=lever_m)
 
 
-class DatumConfig(StrictModel):
-    """The origin of W on the WGS 84 ellipsoid; by default on the Tempelhofer Feld, a former airfield in Berlin."""
+class SystemConfig(StrictModel):
+    """What flies: the companion's configuration and the drone's.
 
-    latitude_deg: Annotated[float, Field(ge=-90.0, le=90.0)] = 52.4733
-    longitude_deg: Annotated[float, Field(ge=-180.0, le=180.0)] = 13.4017
-    altitude_m: Annotated[float, Field(ge=-500.0, le=9000.0)] = 89.0
+    A scenario that is faster than the firmware's own speed limit raises it by `parameters`.
+    """
+
+    companion: CompanionConfig = CompanionConfig()
+    drone: DroneConfig = DroneConfig()
+    parameters: dict[str, float] = Field(default_factory=dict)  # of the firmware, that differ from its defaults
 
 
 class Scenario(StrictModel):
@@ -146,8 +151,8 @@ class Scenario(StrictModel):
     wind: WindConfig = WindConfig()
     link: LinkConfig = LinkConfig()
     vehicle: VehicleConfig = VehicleConfig()
-    airframe: Literal["report", "benchmark"] = "benchmark"
-    firmware: Literal["px4", "ardupilot"] = "px4"
+    system: SystemConfig = SystemConfig()
+    firmware: Literal["px4"] = "px4"
     datum: DatumConfig = DatumConfig()
     drone_start_enu_m: Vector3 = (0.0, 0.0, 0.0)  # of the point on the road that it stands on
     waiting_point_enu_m: Vector3 = (0.0, 0.0, 5.0)  # 5 m above the road; source report, section "Task"

@@ -1,62 +1,46 @@
-"""The simulated drone of a scenario: its autopilot's configuration and the air that it flies in."""
+"""The simulated drone of a scenario: the configuration that `sim-autopilot` takes, and the wind that it draws."""
 
 import math
-
-import numpy as np
 
 from link.messages import Vector3
 from scenarios.config import Scenario
 from scenarios.noise import named_rng
-from scenarios.vehicle_node import datum_of
-from sim_autopilot.data import Array, PlantState
-from sim_autopilot.firmware.px4 import PX4
-from sim_autopilot.memory import AutopilotConfig
-from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, REPORT_AIRFRAME
-from sim_autopilot.physics.contact import GEAR_HEIGHT_M
-from sim_autopilot.plant import PlantConfig
-
-_AIRFRAMES = {"report": REPORT_AIRFRAME, "benchmark": BENCHMARK_AIRFRAME}
-_FIRMWARES = {"px4": PX4}
+from sim_autopilot.config import SimAutopilotConfig, StartConfig, VehicleConfig, WindConfig
 
 
-def plant_config(scenario: Scenario) -> PlantConfig:
-    """Return the drone of `scenario` and its flight controller."""
-    return PlantConfig(airframe=_AIRFRAMES[scenario.airframe])
+def sim_autopilot_config(scenario: Scenario, seed: int, *, instant: bool) -> SimAutopilotConfig:
+    """Return what the scenario's simulated autopilot is started with.
 
-
-def autopilot_config(scenario: Scenario, *, instant: bool) -> AutopilotConfig:
-    """Return the autopilot of `scenario`, its drone standing at the scenario's start."""
-    x_m, y_m, z_m = scenario.drone_start_enu_m
-    return AutopilotConfig(
-        firmware=_FIRMWARES[scenario.firmware],
-        datum=datum_of(scenario.datum),
-        plant=plant_config(scenario),
+    Args:
+        scenario: what is flown.
+        seed: of the wind.
+        instant: ready at once, without the seconds that a boot takes.
+    """
+    body = scenario.vehicle
+    return SimAutopilotConfig(
+        firmware=scenario.firmware,
         instant=instant,
-        position_enu_m=(x_m, y_m, z_m + GEAR_HEIGHT_M),
-        yaw_rad=0.0,
+        seed=seed,
+        datum=scenario.datum,
+        start=StartConfig(position_enu_m=scenario.drone_start_enu_m),
+        drone=scenario.system.drone,
+        wind=WindConfig(
+            mean_m_s=scenario.wind.mean_m_s,
+            from_rad=_wind_from_rad(scenario, seed),
+            turbulence=scenario.wind.turbulence,
+        ),
+        vehicle=VehicleConfig(length_m=body.length_m, width_m=body.width_m, roof_height_m=body.roof_height_m),
+        parameters=scenario.system.parameters,
     )
-
-
-class Air:
-    """Mean wind from a direction drawn for each seed."""
-
-    def __init__(self, mean_enu_m_s: Array) -> None:
-        self._mean_enu_m_s = mean_enu_m_s
-
-    def advance(self, dt_s: float, state: PlantState) -> Array:
-        """Return the wind (3,) in W."""
-        return self._mean_enu_m_s
 
 
 def mean_wind_enu_m_s(scenario: Scenario, seed: int) -> Vector3:
     """Return the mean wind of `scenario` with `seed`."""
-    from_rad = scenario.wind.from_rad
-    if from_rad is None:
-        from_rad = float(named_rng(seed, "wind").uniform(-math.pi, math.pi))
-    mean_m_s = scenario.wind.mean_m_s
+    from_rad, mean_m_s = _wind_from_rad(scenario, seed), scenario.wind.mean_m_s
     return (-mean_m_s * math.cos(from_rad), -mean_m_s * math.sin(from_rad), 0.0)
 
 
-def wind_model(scenario: Scenario, seed: int) -> Air:
-    """Return the air of `scenario` with `seed`."""
-    return Air(np.array(mean_wind_enu_m_s(scenario, seed)))
+def _wind_from_rad(scenario: Scenario, seed: int) -> float:
+    if scenario.wind.from_rad is not None:
+        return scenario.wind.from_rad
+    return float(named_rng(seed, "wind").uniform(-math.pi, math.pi))

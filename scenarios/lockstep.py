@@ -28,14 +28,14 @@ class Lockstep:
     Args:
         scenario: what is flown.
         seed: of everything random.
-        config: of the companion.
+        config: of the companion, None for the scenario's own.
     """
 
-    def __init__(self, scenario: Scenario, seed: int, config: CompanionConfig) -> None:
+    def __init__(self, scenario: Scenario, seed: int, config: CompanionConfig | None = None) -> None:
         keys = Keys()
         self.recording = Recording()
-        self.simulation = Simulation(scenario, seed, keys, START_NS, instant=True)
-        self.companion = build_node(config, keys)
+        self.simulation = Simulation(scenario, seed, keys, START_NS, instant=True, publishes_truth=False)
+        self.companion = build_node(scenario.system.companion if config is None else config, keys)
         self.companion.receive_pad(self.simulation.vehicle.pad)
         self._channels: Channels = channels_of(scenario.link, seed)
         self._heard = frozenset({keys.fix, keys.fix_velocity, keys.imu, keys.pad_pose})

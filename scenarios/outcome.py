@@ -5,35 +5,19 @@ from pathlib import Path
 from typing import Any
 
 from scenarios.config import Scenario
-from scenarios.drone import mean_wind_enu_m_s, plant_config
+from scenarios.drone import mean_wind_enu_m_s
 from scenarios.recording import Recording
-from scenarios.score import Score, ScoreRules, Tier, score
-from scenarios.touch import Box
+from scenarios.score import Score, Tier, score
+from scenarios.touchdown import rules_of
 
 _DIGITS = 6  # a micrometre, a microsecond
 LANDED = frozenset({Tier.S1, Tier.S2, Tier.S3})
 
 
-def score_rules(scenario: Scenario, seed: int) -> ScoreRules:
-    """Return what the scenario's score depends on."""
-    body = scenario.vehicle
-    airframe = plant_config(scenario).airframe
-    return ScoreRules(
-        box=Box(
-            roof_size_m=(body.length_m, body.width_m), roof_height_m=body.roof_height_m, pad_size_m=body.pad_size_m
-        ),
-        waiting_point_enu_m=scenario.waiting_point_enu_m,
-        mass_kg=airframe.mass_kg,
-        drag_n_s_m=airframe.drag_n_s_m,
-        wind_mean_enu_m_s=mean_wind_enu_m_s(scenario, seed),
-        fence_radius_m=scenario.fence_radius_m,
-        report_rule=body.roof_height_m == 0.0,
-    )
-
-
 def scored(scenario: Scenario, seed: int, recording: Recording) -> Score:
     """Return the score of a recording, on truth."""
-    return score(recording.drone, recording.vehicle, recording.rotors, score_rules(scenario, seed))
+    rules = rules_of(scenario, wind_mean_enu_m_s=mean_wind_enu_m_s(scenario, seed))
+    return score(recording.drone, recording.vehicle, recording.rotors, rules)
 
 
 def result_table(scenario: Scenario, seed: int, recording: Recording, ended: str) -> dict[str, Any]:

@@ -1,6 +1,5 @@
 """The programs of a run as processes: started together, watched, and none of them left behind."""
 
-import ctypes
 import signal
 import subprocess
 import sys
@@ -13,7 +12,6 @@ from typing import Self
 from link.errors import UserError
 
 _INTERRUPT_WAIT_S = 5.0
-_PR_SET_PDEATHSIG = 1  # prctl(2), Linux
 _TAIL_LINES = 3
 
 
@@ -77,11 +75,10 @@ class ProcessGroup:
     def _start(self, program: Program) -> None:
         with self._log(program.name).open("wb") as log:
             self._processes[program.name] = subprocess.Popen(
-                [sys.executable, "-m", program.module, *program.arguments],
+                [sys.executable, "-m", "scenarios.launch", program.module, *program.arguments],
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=subprocess.STDOUT,
-                preexec_fn=_die_with_parent,  # noqa: PLW1509 (one prctl call; no thread has been started yet)
             )
 
     def _stop(self) -> None:
@@ -101,9 +98,3 @@ class ProcessGroup:
     def _last_words(self, name: str) -> str:
         lines = self._log(name).read_text(encoding="utf-8", errors="replace").splitlines()
         return " | ".join(line.strip() for line in lines[-_TAIL_LINES:] if line.strip()) or "it said nothing"
-
-
-def _die_with_parent() -> None:
-    """Let the kernel kill this process when its parent ends, however that ends."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)

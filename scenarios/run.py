@@ -1,5 +1,6 @@
 """A run over the wire: three programs as processes, real UDP and real Zenoh, watched and scored."""
 
+import json
 import os
 import socket
 import time
@@ -17,11 +18,14 @@ from link.payload_checks import PayloadError
 from link.toml_config import dump_toml
 from link.zenoh_session import Inbox, ZenohOptions, ZenohSession, open_session
 from scenarios.config import Scenario
+from scenarios.drone import sim_autopilot_config
+from scenarios.lockstep import Lockstep
 from scenarios.outcome import result_table, write_json
 from scenarios.processes import ProcessGroup, Program
 from scenarios.recording import EndWatch, Recording
 
 _POLL_S = 0.02
+_COMPANION_TIMING = "companion.json"
 _PROGRESS_S = 0.2
 _FIRST_TRUTH_S = 60.0  # of wall time; the first start after an installation compiles the physics
 
@@ -37,13 +41,11 @@ class RunOptions:
         seed: of everything random.
         speed: simulated seconds per wall second.
         folder: to be made for the run.
-        companion_config: TOML file for the companion, None for its defaults.
     """
 
     seed: int
     speed: float
     folder: Path
-    companion_config: Path | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,40 +76,48 @@ def run_over_wire(scenario: Scenario, options: RunOptions, progress: Progress) -
     Raises:
         UserError: a program could not start or ended by itself.
     """
-    options.folder.joinpath("scenario.toml").write_text(dump_toml(scenario), encoding="utf-8")
     keys = Keys()
     endpoint = f"tcp/127.0.0.1:{_free_port(socket.SOCK_STREAM)}"
     recording = Recording()
-    # The processes first: starting one is not safe once Zenoh's threads run.
     with (
-        ProcessGroup(_programs(options, endpoint), options.folder) as processes,
         open_session(ZenohOptions(connect=(endpoint,))) as zenoh,
+        ProcessGroup(_programs(scenario, options, endpoint), options.folder) as processes,
     ):
         watcher = _Watcher(zenoh, keys, recording)
         ended, factor = _watch(watcher, processes, scenario, recording, progress)
     result = result_table(scenario, options.seed, recording, ended)
     timing = {"real_time_factor": round(factor, 4), "speed": options.speed, **_companion_timing(options.folder)}
-    write_json(options.folder / "result.json", result)
-    write_json(options.folder / "timing.json", timing)
-    return RunOutcome(result=result, timing=timing)
+    return _written(options.folder, result, timing)
 
 
-def _programs(options: RunOptions, endpoint: str) -> list[Program]:
-    scenario_file = str(options.folder / "scenario.toml")
+def _programs(scenario: Scenario, options: RunOptions, endpoint: str) -> list[Program]:
+    """Write each program's configuration into the folder and return how they are started."""
+    folder = options.folder
+    drone = sim_autopilot_config(scenario, options.seed, instant=False)
+    for name, config in (("scenario", scenario), ("sim-autopilot", drone), ("companion", scenario.system.companion)):
+        folder.joinpath(f"{name}.toml").write_text(dump_toml(config), encoding="utf-8")
     port = _free_port(socket.SOCK_DGRAM)
-    seed = str(options.seed)
-    companion = ["--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint, "--use-sim-time", "--start"]
-    companion += ["--tlog", str(options.folder / "flight.tlog"), "--timing", str(options.folder / "companion.json")]
-    if options.companion_config is not None:
-        companion += ["--config", str(options.companion_config)]
-    vehicle = ["--scenario", scenario_file, "--seed", seed, "-l", endpoint, "--use-sim-time"]
-    drone = ["--scenario", scenario_file, "--seed", seed, "--mavlink", f"udpout:127.0.0.1:{port}", "-e", endpoint]
-    drone += ["--speed", str(options.speed)]
-    return [
-        Program(name="ground-vehicle", module="scenarios.ground_vehicle", arguments=vehicle),
-        Program(name="sim-autopilot", module="scenarios.sim_drone", arguments=drone),
-        Program(name="companion", module="companion", arguments=companion),
-    ]
+    arguments = {
+        "ground-vehicle": [
+            *("--scenario", str(folder / "scenario.toml"), "--seed", str(options.seed)),
+            *("--use-sim-time", "-l", endpoint),
+        ],
+        "sim-autopilot": [
+            *("--config", str(folder / "sim-autopilot.toml"), "--speed", str(options.speed)),
+            *("--mavlink", f"udpout:127.0.0.1:{port}", "-e", endpoint),
+        ],
+        "companion": [
+            *("--config", str(folder / "companion.toml"), "--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint),
+            *("--use-sim-time", "--start", "--tlog", str(folder / "flight.tlog")),
+            *("--timing", str(folder / _COMPANION_TIMING)),
+        ],
+    }
+    modules = {
+        "ground-vehicle": "scenarios.ground_vehicle",
+        "sim-autopilot": "sim_autopilot",
+        "companion": "companion",
+    }
+    return [Program(name=name, module=modules[name], arguments=words) for name, words in arguments.items()]
 
 
 def _free_port(kind: socket.SocketKind) -> int:
@@ -172,11 +182,28 @@ def _watch(
 
 
 def _companion_timing(folder: Path) -> dict[str, Any]:
-    import json  # noqa: PLC0415
-
-    path = folder / "companion.json"
+    path = folder / _COMPANION_TIMING
     if not path.exists():
         return {}
     table: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     path.unlink()
     return {"companion": table}
+
+
+def run_in_lockstep(scenario: Scenario, options: RunOptions, progress: Progress) -> RunOutcome:
+    """Run a scenario in this process on a simulated clock, score it on truth and write the run's folder."""
+    options.folder.joinpath("scenario.toml").write_text(dump_toml(scenario), encoding="utf-8")
+    lockstep = Lockstep(scenario, options.seed)
+    began_s = time.monotonic()
+    ended = lockstep.run()
+    factor = lockstep.recording.elapsed_s / (time.monotonic() - began_s)
+    progress(lockstep.recording, factor)
+    result = result_table(scenario, options.seed, lockstep.recording, ended)
+    timing = {"real_time_factor": round(factor, 4)}
+    return _written(options.folder, result, timing)
+
+
+def _written(folder: Path, result: dict[str, Any], timing: dict[str, Any]) -> RunOutcome:
+    write_json(folder / "result.json", result)
+    write_json(folder / "timing.json", timing)
+    return RunOutcome(result=result, timing=timing)

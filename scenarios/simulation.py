@@ -5,13 +5,16 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from link.keys import Keys
 from link.messages import BodyTruth, RotorTruth
 from link.publication import Publication
 from scenarios.config import Scenario
-from scenarios.drone import autopilot_config, wind_model
+from scenarios.drone import sim_autopilot_config
 from scenarios.vehicle import vehicle_deck, vehicle_truth
 from scenarios.vehicle_node import VehicleNode
+from sim_autopilot.config import autopilot_config, wind_model
 from sim_autopilot.node import STEP_NS, AutopilotNode
 from sim_autopilot.truth import drone_truth, rotor_truth
 
@@ -46,13 +49,25 @@ class Simulation:
         keys: of the Zenoh contract.
         start_ns: UTC at its beginning.
         instant: the autopilot is ready at once.
+        publishes_truth: the vehicle's truth is among the publications.
     """
 
-    def __init__(self, scenario: Scenario, seed: int, keys: Keys, start_ns: int, *, instant: bool = False) -> None:
-        self.vehicle = VehicleNode(scenario, seed, keys)
-        self.autopilot = AutopilotNode(autopilot_config(scenario, instant=instant), start_ns)
+    def __init__(
+        self,
+        scenario: Scenario,
+        seed: int,
+        keys: Keys,
+        start_ns: int,
+        *,
+        instant: bool = False,
+        publishes_truth: bool = True,
+    ) -> None:
+        self.vehicle = VehicleNode(scenario, seed, keys, publishes_truth=publishes_truth)
+        settings = sim_autopilot_config(scenario, seed, instant=instant)
+        self.autopilot = AutopilotNode(autopilot_config(settings), start_ns)
         self._body = scenario.vehicle
-        self._wind = wind_model(scenario, seed)
+        self._wind = wind_model(settings)
+        self._wind_enu_m_s = np.zeros(3)
         self._drone = drone_truth(self.autopilot.state)
 
     @property
@@ -70,8 +85,9 @@ class Simulation:
         state = self.vehicle.state
         if state is None:
             raise ValueError("the vehicle has made no step")
-        wind_enu_m_s = self._wind.advance(STEP_NS * 1e-9, self.autopilot.state)
-        mavlink = self.autopilot.step(vehicle_deck(state, self._body), wind_enu_m_s)
+        airspeed_m_s = float(np.linalg.norm(self.autopilot.state.velocity_enu_m_s - self._wind_enu_m_s))
+        self._wind_enu_m_s = self._wind.advance(STEP_NS * 1e-9, airspeed_m_s)
+        mavlink = self.autopilot.step(vehicle_deck(state, self._body), self._wind_enu_m_s)
         self._drone = drone_truth(self.autopilot.state)
         return SimulationOutputs(
             mavlink=mavlink,

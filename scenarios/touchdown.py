@@ -48,7 +48,7 @@ class ScoreRules:
 def rules_of(scenario: Scenario, *, wind_mean_enu_m_s: Vector3 = (0.0, 0.0, 0.0)) -> ScoreRules:
     """Return the rules of `scenario`; S0 is a tier where the pad lies on the road, as in the report."""
     vehicle = scenario.vehicle
-    airframe = REPORT_AIRFRAME if scenario.airframe == "report" else BENCHMARK_AIRFRAME
+    airframe = REPORT_AIRFRAME if scenario.system.drone.airframe == "report" else BENCHMARK_AIRFRAME
     return ScoreRules(
         box=Box(
             roof_size_m=(vehicle.length_m, vehicle.width_m),

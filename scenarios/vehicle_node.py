@@ -10,11 +10,12 @@ from link.geodesy import Datum
 from link.keys import Keys
 from link.messages import BodyTruth, Fix, FixVelocity, PadGeometry, PadSighting, VehicleImu
 from link.publication import Publication
-from scenarios.config import DatumConfig, Scenario
+from scenarios.config import Scenario
 from scenarios.noise import named_rng
 from scenarios.sensors import Mounting, SensorSuite
 from scenarios.tracks import course_of
 from scenarios.vehicle import VehicleInputs, VehicleMemory, VehiclePlan, VehicleState, vehicle_step, vehicle_truth
+from sim_autopilot.config import DatumConfig
 
 TRUTH_PERIOD_NS = 10_000_000  # 100 Hz, what the score asks for
 STEP_PERIOD_NS = 10_000_000  # the fastest sensor of the catalogue takes 100 samples a second

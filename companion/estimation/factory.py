@@ -9,9 +9,6 @@ from companion.data import Measurement, Quantity
 from companion.estimation.buffered import BufferedEstimator
 from companion.estimation.config import EstimatorConfig, EstimatorKind
 from companion.estimation.imm import ImmModel
-from companion.estimation.lkf import LkfModel
-from companion.estimation.lkf_noise import ReportNoise, WhiteJerkNoise
-from companion.estimation.ukf import UkfModel
 from link.messages import Vector3
 
 AnyEstimator = BufferedEstimator[Any]  # each has its own memory, which only it reads
@@ -53,15 +50,24 @@ def _warm_up(kind: EstimatorKind) -> None:
 
 def _make(config: EstimatorConfig, antenna_to_pad_m: Vector3, kind: EstimatorKind) -> AnyEstimator:
     match kind:
-        case EstimatorKind.LKF_REPORT:
-            ungated = config.buffer.model_copy(update={"gate_probability": None})
-            return BufferedEstimator(model=LkfModel(noise=ReportNoise(config=config.lkf_report)), config=ungated)
-        case EstimatorKind.LKF:
-            return BufferedEstimator(model=LkfModel(noise=WhiteJerkNoise(config=config.lkf)), config=config.buffer)
+        case EstimatorKind.LKF_REPORT | EstimatorKind.LKF:
+            return _linear(config, kind)
         case EstimatorKind.UKF:
+            from companion.estimation.ukf import UkfModel  # noqa: PLC0415 (as in `_linear`)
+
             return BufferedEstimator(model=UkfModel(config=config.ukf, point_config=config.lkf), config=config.buffer)
         case EstimatorKind.IMM:
             model = ImmModel(config=config.imm, antenna_to_pad_m=antenna_to_pad_m)
             return BufferedEstimator(model=model, config=config.buffer)
         case _:
             assert_never(kind)
+
+
+def _linear(config: EstimatorConfig, kind: EstimatorKind) -> AnyEstimator:
+    from companion.estimation.lkf import LkfModel  # noqa: PLC0415 (filterpy costs 0.4 s and 60 MB to load)
+    from companion.estimation.lkf_noise import ReportNoise, WhiteJerkNoise  # noqa: PLC0415
+
+    if kind is EstimatorKind.LKF_REPORT:
+        ungated = config.buffer.model_copy(update={"gate_probability": None})
+        return BufferedEstimator(model=LkfModel(noise=ReportNoise(config=config.lkf_report)), config=ungated)
+    return BufferedEstimator(model=LkfModel(noise=WhiteJerkNoise(config=config.lkf)), config=config.buffer)

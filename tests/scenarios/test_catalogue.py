@@ -79,11 +79,11 @@ def test_every_preset_fits_every_kind_of_track(section: str) -> None:
 
 
 def test_presets_in_a_name_replace_their_sections() -> None:
-    scenario = load_scenario("circle_5+sensors=degraded+wind=moderate+link=nominal+firmware=ardupilot")
+    scenario = load_scenario("circle_5+sensors=degraded+wind=moderate+link=nominal+firmware=px4")
     assert scenario.sensors.frame_offset_m == 1.2
     assert (scenario.wind.mean_m_s, scenario.wind.turbulence) == (10.0, "moderate")
     assert scenario.link.zenoh.delay_s == 0.03
-    assert scenario.firmware == "ardupilot"
+    assert scenario.firmware == "px4"
 
 
 @pytest.mark.parametrize(

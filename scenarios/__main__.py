@@ -1,0 +1,115 @@
+"""The `scenarios` command."""
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from link.cli import make_app, run_app
+from link.errors import UserError
+
+app = make_app("Experiments: run landings, score them on ground truth, and report.")
+
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
+SeedOption = Annotated[int, typer.Option("--seed", min=0, help="Of everything random.")]
+NameArgument = Annotated[str, typer.Argument(metavar="NAME|FILE", help="Scenario; `scenarios list` shows them.")]
+
+
+@app.command("list")
+def list_command(*, as_json: JsonOption = False) -> None:
+    """List the scenarios."""
+    import json  # noqa: PLC0415 (only what a command needs is loaded)
+
+    from scenarios.catalogue import list_scenarios  # noqa: PLC0415
+
+    entries = list_scenarios()
+    if as_json:
+        rows = [{"name": entry.name, "description": entry.description} for entry in entries]
+        sys.stdout.write(json.dumps({"scenarios": rows}, indent=2) + "\n")
+        return
+    width = max(len(entry.name) for entry in entries)
+    for entry in entries:
+        sys.stdout.write(f"{entry.name:{width}}  {entry.description}\n")
+
+
+@app.command("run")
+def run_command(
+    name: NameArgument,
+    *,
+    seed: SeedOption = 1,
+    speed: Annotated[float, typer.Option("--speed", min=0.1, max=50.0, help="Simulated seconds a second.")] = 1.0,
+    lockstep: Annotated[bool, typer.Option("--lockstep", help="In one process on a simulated clock.")] = False,
+    firmware: Annotated[str | None, typer.Option("--firmware", metavar="NAME", help="px4.")] = None,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the run's folder is made.")] = Path("runs"),
+    as_json: JsonOption = False,
+) -> int:
+    """Run a landing and score it on ground truth; exit code 1 when it does not land."""
+    from scenarios.catalogue import load_scenario  # noqa: PLC0415
+    from scenarios.report_line import Reporter  # noqa: PLC0415
+    from scenarios.run import RunOptions, run_folder, run_in_lockstep, run_over_wire  # noqa: PLC0415
+
+    scenario = load_scenario(name if firmware is None else f"{name}+firmware={firmware}")
+    folder = run_folder(out, scenario.name)
+    options = RunOptions(seed=seed, speed=speed, folder=folder)
+    with Reporter(scenario, folder, as_json=as_json) as reporter:
+        run = run_in_lockstep if lockstep else run_over_wire
+        outcome = run(scenario, options, reporter.progress)
+    return reporter.conclude(outcome)
+
+
+@app.command("world")
+def world_command(
+    name: NameArgument,
+    *,
+    seed: SeedOption = 1,
+    speed: Annotated[float, typer.Option("--speed", min=0.1, max=50.0, help="Simulated seconds a second.")] = 1.0,
+    mavlink: Annotated[
+        str, typer.Option("--mavlink", metavar="DEVICE", help="Where the companion listens.")
+    ] = "udpout:127.0.0.1:14540",
+    listen: Annotated[str | None, typer.Option("-l", "--listen", metavar="ENDPOINT", help="Zenoh endpoint.")] = None,
+) -> None:
+    """Run the simulated side of a scenario, the autopilot with the vehicle in it, in one process."""
+    from link.keys import Keys  # noqa: PLC0415
+    from link.mavlink.transports import open_transport  # noqa: PLC0415
+    from link.zenoh_session import DEFAULT_ENDPOINT, ZenohOptions, open_session  # noqa: PLC0415
+    from scenarios.catalogue import load_scenario  # noqa: PLC0415
+    from scenarios.world import WorldLoop  # noqa: PLC0415
+
+    scenario = load_scenario(name)
+    options = ZenohOptions(listen=(listen or DEFAULT_ENDPOINT,))
+    with open_transport(mavlink) as transport, open_session(options) as zenoh:
+        WorldLoop(scenario, seed, Keys(), transport, zenoh, speed=speed).run()
+
+
+@app.command("command")
+def command_command(
+    command: Annotated[str, typer.Argument(metavar="start|abort|hold", help="What the companion is asked for.")],
+    *,
+    connect: Annotated[str | None, typer.Option("-e", "--connect", metavar="ENDPOINT", help="Zenoh endpoint.")] = None,
+    namespace: Annotated[str, typer.Option("--ns", help="Namespace of all Zenoh keys.")] = "decklander",
+    drone: Annotated[str, typer.Option("--drone", help="Name of the drone.")] = "drone",
+) -> int:
+    """Send a command to the companion; exit code 1 when it is refused."""
+    from link.keys import Keys  # noqa: PLC0415
+    from link.messages import Command  # noqa: PLC0415
+    from link.zenoh_session import DEFAULT_ENDPOINT  # noqa: PLC0415
+    from scenarios.operator_command import send_command  # noqa: PLC0415
+
+    try:
+        wanted = Command(command)
+    except ValueError:
+        known = ", ".join(one.value for one in Command)
+        raise UserError(f"command '{command}' does not exist: give one of {known}") from None
+    reply = send_command(wanted, Keys(namespace, "vehicle", drone), connect or DEFAULT_ENDPOINT)
+    sys.stdout.write("accepted\n" if reply.accepted else f"refused: {reply.reason}\n")
+    return 0 if reply.accepted else 1
+
+
+def main() -> None:
+    """Run the command."""
+    sys.exit(run_app("scenarios", app))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,29 @@
+"""Sending an operator's command to the companion over Zenoh."""
+
+import time
+
+from link import json_payloads
+from link.errors import UserError
+from link.keys import Keys
+from link.messages import Command, CommandReply
+from link.zenoh_session import ZenohOptions, open_session
+
+_MEETING_S = 5.0  # until the companion is found
+_ANSWER_S = 3.0
+_TRY_AGAIN_S = 0.1
+
+
+def send_command(command: Command, keys: Keys, endpoint: str) -> CommandReply:
+    """Return the companion's answer.
+
+    Raises:
+        UserError: no companion answers.
+    """
+    with open_session(ZenohOptions(connect=(endpoint,))) as zenoh:
+        deadline_s = time.monotonic() + _MEETING_S
+        while time.monotonic() < deadline_s:
+            answers = zenoh.query(keys.landing_command, json_payloads.encode(command), _ANSWER_S)
+            if answers:
+                return json_payloads.decode(CommandReply, answers[0])
+            time.sleep(_TRY_AGAIN_S)
+    raise UserError(f"no companion answers on {keys.landing_command} at {endpoint}: start it, or check --drone and -e")
