@@ -35,8 +35,11 @@ from sim_autopilot.physics.rotation import wrapped
 DISTURBANCE_MAX_M_S2 = 8.0
 """More than the drag at 40 m/s of airspeed (6.6 m/s2)."""
 CORRECTION_MAX_M_S2 = 5.0
-"""Horizontal, 27 degrees of tilt: the benchmark's motors turn the airframe so far in 0.25 s. Vertical, half the weight:
-the rotors keep enough thrust to turn it."""
+"""Horizontal, 27 degrees of tilt: the benchmark's motors turn the airframe so far in 0.25 s."""
+VERTICAL_CORRECTION_MAX_M_S2 = 3.0
+"""Leaves the rotors the thrust to turn with, also while sinking."""
+VERTICAL_BRAKING_M_S2 = 2.0
+"""Less than that, so that braking can still be corrected."""
 HEADING_SLOPE_PER_S = 4.0
 HEADING_BRAKING_RAD_S2 = 2.5
 """How the commanded heading nears its goal; the propellers' drag gives 7 rad/s2 in hover."""
@@ -114,7 +117,7 @@ def fill_velocity_command(y: Array, reference: Array, control: Record, out: Arra
             out[0] += speed * ex / distance
             out[1] += speed * ey / distance
         slope = control["position_gain"][2] / control["velocity_gain"][2]
-        out[2] += math.copysign(approach_speed(abs(ez), slope, control["braking_m_s2"]), ez)
+        out[2] += math.copysign(approach_speed(abs(ez), slope, VERTICAL_BRAKING_M_S2), ez)
     size = math.sqrt(out[0] * out[0] + out[1] * out[1])
     if size > control["speed_max_m_s"]:
         out[0] *= control["speed_max_m_s"] / size
@@ -143,7 +146,7 @@ def fill_acceleration(y: Array, memory: Array, reference: Array, control: Record
     out[0] += cosine * ahead - sine * left
     out[1] += sine * ahead + cosine * left
     rising = control["velocity_gain"][2] * (velocity[2] - y[9])
-    out[2] += min(CORRECTION_MAX_M_S2, max(-CORRECTION_MAX_M_S2, rising))
+    out[2] += min(VERTICAL_CORRECTION_MAX_M_S2, max(-VERTICAL_CORRECTION_MAX_M_S2, rising))
 
 
 @kernel

@@ -142,6 +142,14 @@ def test_velocity_alone_is_flown_without_lasting_error() -> None:
     np.testing.assert_allclose(flight.velocity_m_s[-1], [6.0, -2.0, 0.5], atol=0.01)
 
 
+@pytest.mark.parametrize(("start_m", "goal_m"), [(60.0, 20.0), (20.0, 60.0)])
+def test_forty_metres_of_height_are_flown_without_overshoot(start_m: float, goal_m: float) -> None:
+    flight = flown(CONFIG, hovering(CONFIG, (0, 0, start_m)), lambda _: holding((0, 0, goal_m)), 20.0)
+    beyond = (flight.position_m[:, 2] - goal_m) * math.copysign(1.0, goal_m - start_m)
+    assert beyond.max() < 0.05
+    assert flight.position_m[-1, 2] == pytest.approx(goal_m, abs=1e-3)
+
+
 def test_sudden_velocity_aside_and_down_does_not_overshoot_the_descent_limit() -> None:
     config = PlantConfig(envelope=Envelope(speed_max_m_s=4.0, descent_max_m_s=1.5))
     flight = flown(config, hovering(config, (0, 0, 40)), lambda _: going(None, (9.0, 0.0, -4.0)), 5.0)
