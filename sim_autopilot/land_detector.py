@@ -14,8 +14,6 @@ _LANDED_AFTER_S = 1.5
 """How long the signs must hold; measured from contact to ON_GROUND."""
 _THRUST_SHARE_MAX = 0.9
 """Of the weight: with more the drone hovers."""
-_LIFTED_M = 0.1
-"""Above where the climb began: the drone has left the ground."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,11 +42,6 @@ def detect_landing(landing: Landing, now: Snapshot, reference: Reference | None,
     if (now.boot_ns - since_ns) * 1e-9 < _LANDED_AFTER_S:
         return Landing(landed=False, signs_ns=since_ns)
     return Landing(landed=True, landed_ns=now.boot_ns)
-
-
-def has_lifted(now: Snapshot, base_m: float) -> bool:
-    """Return whether a drone that climbs from `base_m` has left the ground."""
-    return now.position_enu_m[2] > base_m + _LIFTED_M
 
 
 def _shows_signs(now: Snapshot, reference: Reference | None, settings: FlightSettings) -> bool:

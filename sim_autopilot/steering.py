@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from sim_autopilot.climb import Climb, asks_for_takeoff, ramped
+from sim_autopilot.climb import Climb, asks_for_takeoff, has_lifted, is_idle, ramped
 from sim_autopilot.data import Reference
 from sim_autopilot.flight import ModeFlight, next_reference
 from sim_autopilot.land_detector import IN_AIR, Landing
@@ -34,13 +34,25 @@ def steer(memory: AutopilotMemory, config: AutopilotConfig, elapsed_s: float) ->
         elapsed_s=elapsed_s,
     )
     climb = _lift_off(memory, config, wanted, memory.armed_ns) if memory.landing.landed else memory.climb
-    if climb is None or wanted is None:
-        on_ground = memory.landing.landed
-        return Steering(flight=flight, climb=None, landing=memory.landing, following=None if on_ground else wanted)
-    slowed = _ramped(memory, wanted, climb)
+    if climb is not None and wanted is not None:
+        return _climbing(memory, flight, climb, wanted)
+    following = None if memory.landing.landed else wanted
+    return Steering(flight=flight, climb=None, landing=memory.landing, following=following)
+
+
+def _climbing(memory: AutopilotMemory, flight: ModeFlight, climb: Climb, wanted: Reference) -> Steering:
+    settings = memory.settings
+    rate_m_s = settings.climb_max_m_s
+    if memory.modes.mode is Mode.TAKEOFF:
+        rate_m_s = min(rate_m_s, settings.takeoff_climb_m_s)
+    elapsed_s, ramp_s = (memory.now.boot_ns - climb.start_ns) * 1e-9, settings.takeoff_ramp_s
+    landing = IN_AIR if has_lifted(elapsed_s, ramp_s) else memory.landing
+    if is_idle(elapsed_s, rate_m_s, ramp_s):
+        return Steering(flight=flight, climb=climb, landing=landing, following=None)
+    slowed = ramped(wanted, climb, elapsed_s, rate_m_s, ramp_s)
     if slowed is None:
         return Steering(flight=flight, climb=None, landing=IN_AIR, following=wanted)
-    return Steering(flight=flight, climb=climb, landing=memory.landing, following=slowed)
+    return Steering(flight=flight, climb=climb, landing=landing, following=slowed)
 
 
 def _lift_off(
@@ -54,12 +66,3 @@ def _lift_off(
     if memory.climb is not None or not spooled or not asks_for_takeoff(wanted, height_m):
         return memory.climb
     return Climb(start_ns=boot_ns, base_m=height_m)
-
-
-def _ramped(memory: AutopilotMemory, wanted: Reference, climb: Climb) -> Reference | None:
-    settings = memory.settings
-    rate_m_s = settings.climb_max_m_s
-    if memory.modes.mode is Mode.TAKEOFF:
-        rate_m_s = min(rate_m_s, settings.takeoff_climb_m_s)
-    elapsed_s = (memory.now.boot_ns - climb.start_ns) * 1e-9
-    return ramped(wanted, climb, elapsed_s, rate_m_s, settings.takeoff_ramp_s)

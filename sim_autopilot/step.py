@@ -10,7 +10,7 @@ from sim_autopilot.arming import disarm, should_disarm
 from sim_autopilot.chart import near
 from sim_autopilot.flight import is_takeoff_complete
 from sim_autopilot.incoming import take
-from sim_autopilot.land_detector import IN_AIR, detect_landing, has_lifted
+from sim_autopilot.land_detector import detect_landing
 from sim_autopilot.memory import AutopilotConfig, AutopilotInputs, AutopilotMemory, AutopilotOutputs
 from sim_autopilot.mode_change import change_mode
 from sim_autopilot.modes import Event, Mode
@@ -89,13 +89,12 @@ def _advance(
 
 
 def _after_flight(memory: AutopilotMemory) -> AutopilotMemory:
-    """Look after lift-off, landing and the end of a take-off."""
+    """Look after a landing and the end of a take-off."""
     if memory.armed_ns is None:
         return memory
     landing, now = memory.landing, memory.now
-    if landing.landed:
-        lifted = memory.climb is not None and has_lifted(now, memory.climb.base_m)
-        return replace(memory, landing=IN_AIR) if lifted else memory
+    if landing.landed or memory.climb is not None:
+        return memory
     landing = detect_landing(landing, now, memory.following, memory.settings)
     if landing != memory.landing:
         memory = replace(memory, landing=landing)

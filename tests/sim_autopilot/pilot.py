@@ -84,9 +84,8 @@ class Pilot:
         """(3,) true, ENU."""
         return self.node.state.position_enu_m
 
-    @property
-    def armed(self) -> bool:
-        """As the last heartbeat would tell."""
+    def is_armed(self) -> bool:
+        """Whether the motors are on."""
         return self.node.memory.armed_ns is not None
 
     def step(self, *messages: Message) -> list[Message]:

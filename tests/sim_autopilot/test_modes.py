@@ -48,4 +48,4 @@ def test_a_mode_asked_for_in_a_failsafe_is_not_taken_back_by_setpoints() -> None
 
 
 def test_every_mode_can_be_reached() -> None:
-    assert {target for target in TRANSITIONS.values()} == set(Mode)
+    assert set(TRANSITIONS.values()) == set(Mode)

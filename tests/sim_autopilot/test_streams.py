@@ -1,3 +1,4 @@
+import itertools
 from fractions import Fraction
 
 import pytest
@@ -38,7 +39,7 @@ def test_gaps_differ_from_the_interval_by_less_than_a_step(interval_ns: int) -> 
     for step in range(500):
         streams, due = due_messages(streams, step * STEP_NS)
         sent_ns += [step * STEP_NS] * len(due)
-    gaps = [later - earlier for earlier, later in zip(sent_ns, sent_ns[1:], strict=False)]
+    gaps = [later - earlier for earlier, later in itertools.pairwise(sent_ns)]
     assert all(abs(gap - interval_ns) < STEP_NS for gap in gaps)
 
 
