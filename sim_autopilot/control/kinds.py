@@ -21,7 +21,7 @@ class Envelope:
         speed_max_m_s: horizontal velocity, feed-forward and correction together.
         climb_max_m_s: upwards.
         descent_max_m_s: downwards.
-        braking_m_s2: deceleration with which a far position is approached.
+        braking_m_s2: horizontal deceleration with which a far position is approached.
         tilt_max_rad: of the thrust axis from the vertical.
         yaw_rate_max_rad_s: of the commanded heading.
     """
