@@ -5,7 +5,7 @@ from math import hypot
 
 from link.frames import yaw_of
 from link.messages import Quaternion, Vector3
-from sim_autopilot.data import PlantState, Surface
+from sim_autopilot.data import PlantState
 from sim_autopilot.physics.airframe import Airframe
 
 
@@ -25,7 +25,6 @@ class Snapshot:
     specific_force_flu_m_s2: Vector3
     yaw_rad: float
     thrust_share: float
-    touching: bool
 
     @property
     def speed_m_s(self) -> float:
@@ -52,5 +51,4 @@ def take_snapshot(state: PlantState, airframe: Airframe, boot_ns: int) -> Snapsh
         specific_force_flu_m_s2=(fx, fy, fz),
         yaw_rad=yaw_of((w, x, y, z)),
         thrust_share=thrust_n / airframe.weight_n,
-        touching=state.surface is not Surface.NONE,
     )
