@@ -139,7 +139,7 @@ def approach_push(error: float, rate: float, push: float, push_max: float, time_
 
 @njit(cache=True)
 def approach(
-    x: Array, node_s: Array, target: Array, limits: Array, fraction: float, time_min_s: float
+    x: Array, node_s: Array, target: Array, floor: Array, limits: Array, fraction: float, time_min_s: float
 ) -> tuple[float, Array, Array]:
     """Return how the target is approached from the state `x`, in the frame that moves with the target.
 
@@ -147,6 +147,7 @@ def approach(
         x: (2, 3) position and velocity per axis: major, minor, up.
         node_s: (n,) rising from 0.
         target: (3, 3, n) position, velocity, acceleration; axis; node.
+        floor: (n,) the lowest height; the reference does not go below.
         limits: (5,) as `limit_array` has them.
         fraction: of the acceleration limit that the approach is planned with.
         time_min_s: ways shorter than this are slowed down, see `approach_push`.
@@ -169,4 +170,9 @@ def approach(
             reference[0, axis, node - 1] += p
             reference[1, axis, node - 1] += v
             reference[2, axis, node - 1] += a
+    for node in range(1, len(node_s)):
+        if reference[0, 2, node - 1] < floor[node]:
+            reference[0, 2, node - 1] = floor[node]
+            reference[1, 2, node - 1] = (floor[node] - floor[node - 1]) / (node_s[node] - node_s[node - 1])
+            reference[2, 2, node - 1] = 0.0
     return split, pushes, reference

@@ -81,9 +81,9 @@ class Mpc:
         v_now, a_now = abs(float(horizon.state[1, 1])), abs(float(horizon.state[2, 1]))
         major_share, minor_share = math.cos(horizon.split_rad), math.sin(horizon.split_rad)
         target = np.abs(horizon.target_velocity_m_s[1])
-        slowing = 0.5 * minor_share * limits.acceleration_max_m_s2 * np.maximum(self._model.node_s - 0.2, 0.0)
-        excess = np.maximum(v_now - target[0] - slowing, self._config.lateral_speed_fraction * limits.speed_max_m_s)
         push = np.abs(horizon.target_acceleration_m_s2[1, 1:]) + MINOR_PUSH_FACTOR * horizon.minor_push_m_s2
+        slowing = 0.5 * float(push.min()) * np.maximum(self._model.node_s - 0.2, 0.0)
+        excess = np.maximum(v_now - target[0] - slowing, self._config.lateral_speed_fraction * limits.speed_max_m_s)
         easing = a_now - 0.5 * minor_share * limits.jerk_max_m_s3 * self._model.end_s
         return (
             _left(limits.speed_max_m_s, target[1:] + excess),

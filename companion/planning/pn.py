@@ -22,7 +22,10 @@ STEPS = 20
 """Step and length of the published trajectory, which is the law run on against the target."""
 
 PULL_UP_1_S = 2.0
-"""Rate at which speeds approach their limits, and heights the floor."""
+"""Rate at which speeds approach their limits."""
+
+FLOOR_1_S = PULL_UP_1_S / 4.0
+"""Rate at which heights approach the floor: critically damped with the rate of the speeds."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -112,7 +115,7 @@ def advance(state: ReferenceState, wanted: Array, limits: FlightLimits, floor_m:
     velocity, old = state.velocity_enu_m_s, state.acceleration_enu_m_s2
     push = np.empty(3)
     push[:2] = _short(_slowed(wanted[:2], velocity[:2], limits.speed_max_m_s), limits.acceleration_max_m_s2)
-    sink_max = min(limits.descent_max_m_s, PULL_UP_1_S * (float(state.position_enu_m[2]) - floor_m))
+    sink_max = min(limits.descent_max_m_s, FLOOR_1_S * (float(state.position_enu_m[2]) - floor_m))
     lowest, highest = PULL_UP_1_S * (-sink_max - velocity[2]), PULL_UP_1_S * (limits.climb_max_m_s - velocity[2])
     bound = limits.vertical_acceleration_max_m_s2
     push[2] = min(max(min(max(wanted[2], lowest), highest), -bound), bound)

@@ -1,0 +1,95 @@
+import numpy as np
+import pytest
+
+from companion.data import Array, FlightLimits
+from companion.planning.config import MpcConfig
+from companion.planning.mpc import Mpc
+from tests.companion.planning.cases import LIMITS, circle, fly, norm, state_at, straight
+
+MPC = Mpc(MpcConfig())
+NORM_TOLERANCE = 1.02
+"""A speed norm may be broken by 2 % while the axes turn and the jerk limit is low."""
+
+
+def random_limits(rng: np.random.Generator) -> FlightLimits:
+    return FlightLimits(
+        speed_max_m_s=rng.uniform(8.0, 25.0),
+        climb_max_m_s=rng.uniform(1.5, 4.0),
+        descent_max_m_s=rng.uniform(1.0, 3.0),
+        acceleration_max_m_s2=rng.uniform(3.0, 7.0),
+        vertical_acceleration_max_m_s2=rng.uniform(2.0, 4.0),
+        jerk_max_m_s3=rng.uniform(10.0, 40.0),
+    )
+
+
+def rises(values: Array) -> bool:
+    """Whether a sequence rises anywhere after its maximum."""
+    return bool((np.diff(values[values.argmax() :]) > 1e-6).any())
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_random_chases_keep_all_limits_at_every_tick(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    limits = random_limits(rng)
+    v_max = limits.speed_max_m_s
+    start, velocity = rng.uniform(-60.0, 60.0, 2), rng.uniform(-0.6, 0.6, 2) * v_max
+    motion = straight((*start.tolist(), 3.0), (*velocity.tolist(), 0.0))
+    if seed % 2:
+        motion = circle(rng.uniform(15.0, 30.0), rng.uniform(3.0, min(8.0, 0.8 * v_max)))
+    flight = fly(MPC, motion, state_at((0.0, 0.0, 5.0)), 8.0, limits)
+    assert norm(flight.velocity).max() <= NORM_TOLERANCE * v_max
+    assert norm(flight.acceleration).max() <= 1.001 * limits.acceleration_max_m_s2
+    assert norm(flight.jerk).max() <= 1.0001 * limits.jerk_max_m_s3
+    assert np.abs(flight.jerk[:, 2]).max() <= 1.0001 * limits.jerk_max_m_s3
+    assert flight.velocity[:, 2].max() <= limits.climb_max_m_s + 1e-4
+    assert -flight.velocity[:, 2].min() <= limits.descent_max_m_s + 1e-4
+    assert np.abs(flight.acceleration[:, 2]).max() <= limits.vertical_acceleration_max_m_s2 + 1e-4
+
+
+@pytest.mark.parametrize(
+    ("velocity", "acceleration"),
+    [
+        ((28.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+        ((20.0, 19.0, -4.0), (0.0, 0.0, 0.0)),
+        ((19.0, 0.0, 5.0), (8.0, 0.0, 0.0)),
+        ((15.0, -15.0, 0.0), (5.0, -5.0, -4.0)),
+    ],
+)
+def test_a_state_outside_the_limits_comes_back_without_turning_round(
+    velocity: tuple[float, float, float], acceleration: tuple[float, float, float]
+) -> None:
+    state = state_at((0.0, 0.0, 5.0), velocity, acceleration)
+    flight = fly(MPC, straight((0.0, 0.0, 2.0), (10.0, 0.0, 0.0)), state, 6.0)
+    assert not rises(np.maximum(norm(flight.velocity) - LIMITS.speed_max_m_s, 0.0))
+    assert not rises(np.maximum(norm(flight.acceleration) - LIMITS.acceleration_max_m_s2, 0.0))
+    assert not rises(np.maximum(flight.velocity[:, 2] - LIMITS.climb_max_m_s, 0.0))
+    assert not rises(np.maximum(-flight.velocity[:, 2] - LIMITS.descent_max_m_s, 0.0))
+    assert norm(flight.velocity)[-1] <= LIMITS.speed_max_m_s + 1e-3
+
+
+def test_a_target_below_the_floor_is_followed_on_the_floor() -> None:
+    flight = fly(MPC, straight((0.0, 0.0, -3.0), (5.0, 0.0, 0.0)), state_at((0.0, 0.0, 5.0)), 8.0, floor_m=1.0)
+    assert flight.position[:, 2].min() > 1.0 - 1e-4
+    assert flight.position[-1, 2] == pytest.approx(1.0, abs=1e-3)
+
+
+def test_a_start_below_the_floor_climbs_to_it() -> None:
+    flight = fly(MPC, straight((0.0, 0.0, -3.0), (5.0, 0.0, 0.0)), state_at((0.0, 0.0, -2.0)), 6.0, floor_m=1.0)
+    assert not rises(np.maximum(1.0 - flight.position[:, 2], 0.0))
+    assert flight.position[-1, 2] == pytest.approx(1.0, abs=1e-3)
+
+
+def test_a_target_faster_than_the_limit_is_chased_at_the_limit() -> None:
+    flight = fly(MPC, straight((5.0, 0.0, 2.0), (23.0, 0.0, 0.0)), state_at((0.0, 0.0, 5.0)), 10.0)
+    assert norm(flight.velocity)[-1] == pytest.approx(LIMITS.speed_max_m_s, rel=1e-3)
+
+
+def test_a_kept_plan_reports_no_excess() -> None:
+    flight = fly(MPC, straight((20.0, 5.0, 2.0), (3.0, 4.0, 0.0)), state_at((0.0, 0.0, 5.0)), 4.0)
+    assert max(result.limit_excess for result in flight.results) < 1e-9
+
+
+def test_a_start_that_must_break_the_floor_reports_the_excess() -> None:
+    state = state_at((0.0, 0.0, 2.0), (0.0, 0.0, -4.0))
+    flight = fly(MPC, straight((0.0, 0.0, -3.0), (0.0, 0.0, 0.0)), state, 1.0, floor_m=1.0)
+    assert max(result.limit_excess for result in flight.results) > 0.0
