@@ -24,7 +24,7 @@ class SolverKind(Enum):
     """Which QP solver."""
 
     DAQP = "daqp"  # dual active set: exact, 13 us for 14 variables and 74 constraints
-    OSQP = "osqp"  # operator splitting, polished
+    OSQP = "osqp"  # operator splitting, polished: 1 ms for the same
 
 
 class ReportReading(Enum):

@@ -103,9 +103,13 @@ class DaqpSolver:
 
 
 class OsqpSolver:
-    """OSQP, an operator-splitting method (Stellato et al. 2020), with its polishing step."""
+    """OSQP, an operator-splitting method (Stellato et al. 2020), with its polishing step.
 
-    TOLERANCE = 1e-8
+    It is given the problem in `y = L'x`, `H = LL'`, with rows of length 1, in which its convergence does not suffer from
+    the conditioning of H.
+    """
+
+    TOLERANCE = 1e-6
     ITERATIONS_MAX = 20000
 
     def __init__(self) -> None:
@@ -117,30 +121,37 @@ class OsqpSolver:
         refused = refusal(H, f, A, lower, upper)
         if refused is not None:
             return refused
+        try:
+            L = np.linalg.cholesky(H)
+        except np.linalg.LinAlgError:
+            return QpSolution(status=PlanStatus.FAILED, x=None, iterations=0)
+        rows = np.linalg.solve(L, A.T).T
+        length = np.maximum(np.linalg.norm(rows, axis=1), 1e-12)
         problem = self._osqp.OSQP()
         problem.setup(
-            self._sparse.csc_matrix(np.triu(H)),
-            f,
-            self._sparse.csc_matrix(A),
-            lower,
-            upper,
+            self._sparse.eye(len(f), format="csc"),
+            np.linalg.solve(L, f),
+            self._sparse.csc_matrix(rows / length[:, None]),
+            lower / length,
+            upper / length,
             verbose=False,
             eps_abs=self.TOLERANCE,
             eps_rel=self.TOLERANCE,
             max_iter=self.ITERATIONS_MAX,
             polishing=True,
-            adaptive_rho=True,
+            scaling=0,
         )
         if warm_start is not None:
-            problem.warm_start(x=warm_start)
+            problem.warm_start(x=L.T @ warm_start)
         result = problem.solve(raise_error=False)
-        name = self._osqp.SolverStatus(result.info.status_val).name
-        return _solution(OSQP_STATUS.get(name, PlanStatus.FAILED), result.x, int(result.info.iter))
+        status = OSQP_STATUS.get(self._osqp.SolverStatus(result.info.status_val).name, PlanStatus.FAILED)
+        x = np.linalg.solve(L.T, result.x) if status is PlanStatus.SOLVED else None
+        return _solution(status, x, int(result.info.iter))
 
 
-def _solution(status: PlanStatus, x: Array, iterations: int) -> QpSolution:
+def _solution(status: PlanStatus, x: Array | None, iterations: int) -> QpSolution:
     """Return a solution whose `x` is there only if it may be used."""
-    if status is not PlanStatus.SOLVED:
+    if status is not PlanStatus.SOLVED or x is None:
         return QpSolution(status=status, x=None, iterations=iterations)
     if not np.isfinite(x).all():
         return QpSolution(status=PlanStatus.FAILED, x=None, iterations=iterations)

@@ -53,9 +53,7 @@ def test_the_programme_costs_what_a_rollout_costs() -> None:
         error = rolled_out(model, x, moves) - reference.T
         weights = np.array([config.position_weight, config.velocity_weight, config.acceleration_weight])
         running = (error**2) @ weights
-        integral = (
-            trapezoid(running, model.node_s) + running[0] * model.node_s[0] / 2.0
-        )  # the part from now is fixed
+        integral = trapezoid(running, model.node_s) + running[0] * model.node_s[0] / 2.0  # the part from now is fixed
         effort = config.jerk_weight * ((moves - jerk) ** 2) @ model.move_s
         return float(0.5 * (integral + effort + error[-1] @ terminal_cost(config) @ error[-1]))
 

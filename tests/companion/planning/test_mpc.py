@@ -78,6 +78,12 @@ def test_both_solvers_plan_the_same() -> None:
     np.testing.assert_allclose(stacked(other.plan(None, request)[1]), stacked(MPC.plan(None, request)[1]), atol=2e-3)
 
 
+def test_osqp_solves_every_plan_of_a_chase_at_its_limits() -> None:
+    other = Mpc(MpcConfig(solver=SolverKind.OSQP))
+    wanted = fly(MPC, MEETING, START, 2.0)
+    np.testing.assert_allclose(fly(other, MEETING, START, 2.0).position, wanted.position, atol=1e-4)
+
+
 def test_a_plan_depends_on_its_arguments_only() -> None:
     first = plan(START, MEETING)
     plan(state_at((0.0, 0.0, 0.0)), circle(16.5, 7.0))

@@ -70,8 +70,9 @@ def test_nan_anywhere_fails_and_gives_no_x(solver: QpSolver, broken: int) -> Non
     assert (solution.status, solution.x) == (PlanStatus.FAILED, None)
 
 
-def test_a_hessian_that_is_not_convex_fails() -> None:
-    solution = DaqpSolver().solve(-np.eye(1), np.zeros(1), np.eye(1), -np.ones(1), np.ones(1), None)
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_hessian_that_is_not_convex_fails(solver: QpSolver) -> None:
+    solution = solver.solve(-np.eye(1), np.zeros(1), np.eye(1), -np.ones(1), np.ones(1), None)
     assert (solution.status, solution.x) == (PlanStatus.FAILED, None)
 
 
