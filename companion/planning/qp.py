@@ -105,7 +105,7 @@ class DaqpSolver:
 class OsqpSolver:
     """OSQP, an operator-splitting method (Stellato et al. 2020), with its polishing step.
 
-    It is given the problem in `y = L'x`, `H = LL'`, with rows of length 1, in which its convergence does not suffer from
+    It is given the problem in `y = L'x`, `H = LL'`, with rows of length 1: there its convergence does not suffer from
     the conditioning of H.
     """
 
