@@ -10,6 +10,7 @@ from link.mavlink.dialect import mavlink
 from link.mavlink.events import (
     AutopilotRestarted,
     CommandAcknowledged,
+    CommandTimedOut,
     Event,
     LinkFound,
     LinkLost,
@@ -44,6 +45,7 @@ class AutopilotLink:
         self.state = AutopilotState()
         self.driver: Driver | None = None
         self._acknowledgements: list[tuple[int, int]] = []
+        self._unanswered: dict[int, int] = {}
         self._origin_asked_ns: int | None = None
 
     def receive(self, data: bytes, local_ns: int) -> None:
@@ -82,9 +84,15 @@ class AutopilotLink:
         self.session.send(self.driver.setpoint_message(setpoint, boot_ns // 1_000_000, target))
 
     def send_commands(self, commands: tuple[AutopilotCommand, ...], local_ns: int) -> None:
-        """Send commands; their acknowledgements come back by `take_acknowledgements`."""
+        """Send commands; their acknowledgements come back by `take_acknowledgements`.
+
+        One that would have to wait for the answer to an earlier one of its kind is left out: sent later, it could
+        meet another situation, as a disarm that is meant for the pad and arrives after a bounce.
+        """
         for command in commands:
-            self.session.command(command.command, command.parameters, local_ns, attempts=1)
+            if command.command not in self._unanswered:
+                ticket = self.session.command(command.command, command.parameters, local_ns, attempts=1)
+                self._unanswered[command.command] = ticket
 
     def send_text(self, text: str) -> None:
         """Tell the pilot; what is longer than a STATUSTEXT is cut."""
@@ -110,13 +118,21 @@ class AutopilotLink:
                     self.state = AutopilotState(view=view, parameters=parameters)
                     self._origin_asked_ns = None
                 case CommandAcknowledged():
+                    if event.result != mavlink.MAV_RESULT_IN_PROGRESS:
+                        self._answered(event.command, event.ticket)
                     self._acknowledgements.append((event.command, event.result))
+                case CommandTimedOut():
+                    self._answered(event.command, event.ticket)
                 case ParameterRead():
                     self.state = replace(
                         self.state, parameters={**self.state.parameters, event.name: float(event.value)}
                     )
                 case _:
                     pass
+
+    def _answered(self, command: int, ticket: int | None) -> None:
+        if self._unanswered.get(command) == ticket:
+            self._unanswered.pop(command, None)
 
     def _set_link(self, *, up: bool) -> None:
         self.state = replace(self.state, view=replace(self.state.view, link_up=up))

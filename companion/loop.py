@@ -95,18 +95,19 @@ class CommandDesk:
         try:
             return json_payloads.encode(reply.result(timeout=_REPLY_WAIT_S))
         except TimeoutError:
+            reply.cancel()  # what was answered by a refusal must not be done later
             return json_payloads.encode(CommandReply(accepted=False, reason="the companion made no step in time"))
 
     def pass_on(self, node: CompanionNode) -> None:
         """Give the oldest command to the node, one at a time."""
-        if self._asked:
-            return
-        try:
-            command, reply = self._waiting.get_nowait()
-        except queue.Empty:
-            return
-        node.request(command)
-        self._asked.append(reply)
+        while not self._asked:
+            try:
+                command, reply = self._waiting.get_nowait()
+            except queue.Empty:
+                return
+            if reply.set_running_or_notify_cancel():
+                node.request(command)
+                self._asked.append(reply)
 
     def answer(self, replies: list[CommandReply]) -> None:
         """Give the replies to whom they belong, in order."""
@@ -226,9 +227,10 @@ class _Loop:
         self._record(frames, local_ns)
 
     def _record(self, frames: list[bytes], local_ns: int) -> None:
-        if self._tlog is not None:
+        if self._tlog is not None and frames:
+            utc_ns = self._node.autopilot.session.clock.local_to_utc_ns(local_ns)
             for frame in frames:
-                self._tlog.write(frame, local_ns)
+                self._tlog.write(frame, utc_ns)
 
     def _after_step(self) -> None:
         """Publish, reply, log; and see to what is still missing."""

@@ -41,10 +41,14 @@ def hover_aim(point_enu_m: Array) -> Aim:
 
 
 def stopping_point(reference: ReferenceState, deceleration_m_s2: float) -> Array:
-    """Return (3,) where the virtual model comes to rest when it brakes evenly."""
+    """Return (3,) where the virtual model comes to rest when it brakes evenly, horizontally and vertically apart.
+
+    Along the velocity as a whole a fast flight with a little sink would end metres lower.
+    """
     velocity = reference.velocity_enu_m_s
-    speed_m_s = float(np.linalg.norm(velocity))
-    return np.asarray(reference.position_enu_m + velocity * speed_m_s / (2.0 * deceleration_m_s2))
+    horizontal_m_s, vertical_m_s = float(np.hypot(velocity[0], velocity[1])), abs(float(velocity[2]))
+    speed = np.array([horizontal_m_s, horizontal_m_s, vertical_m_s])
+    return np.asarray(reference.position_enu_m + velocity * speed / (2.0 * deceleration_m_s2))
 
 
 def pad_aim(
