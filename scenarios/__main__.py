@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from link.cli import make_app, run_app
+from link.cli import DroneOption, NamespaceOption, VehicleOption, make_app, run_app
 from link.errors import UserError
 
 app = make_app("Experiments: run landings, score them on ground truth, and report.")
@@ -68,6 +68,9 @@ def world_command(
         str, typer.Option("--mavlink", metavar="DEVICE", help="Where the companion listens.")
     ] = "udpout:127.0.0.1:14540",
     listen: Annotated[str | None, typer.Option("-l", "--listen", metavar="ENDPOINT", help="Zenoh endpoint.")] = None,
+    namespace: NamespaceOption = "decklander",
+    vehicle: VehicleOption = "vehicle",
+    drone: DroneOption = "drone",
 ) -> None:
     """Run the simulated side of a scenario, the autopilot with the vehicle in it, in one process."""
     from link.keys import Keys  # noqa: PLC0415
@@ -77,9 +80,10 @@ def world_command(
     from scenarios.world import WorldLoop  # noqa: PLC0415
 
     scenario = load_scenario(name)
+    keys = Keys(namespace, vehicle, drone)
     options = ZenohOptions(listen=(listen or DEFAULT_ENDPOINT,))
     with open_transport(mavlink) as transport, open_session(options) as zenoh:
-        WorldLoop(scenario, seed, Keys(), transport, zenoh, speed=speed).run()
+        WorldLoop(scenario, seed, keys, transport, zenoh, speed=speed).run()
 
 
 @app.command("command")
@@ -87,8 +91,8 @@ def command_command(
     command: Annotated[str, typer.Argument(metavar="start|abort|hold", help="What the companion is asked for.")],
     *,
     connect: Annotated[str | None, typer.Option("-e", "--connect", metavar="ENDPOINT", help="Zenoh endpoint.")] = None,
-    namespace: Annotated[str, typer.Option("--ns", help="Namespace of all Zenoh keys.")] = "decklander",
-    drone: Annotated[str, typer.Option("--drone", help="Name of the drone.")] = "drone",
+    namespace: NamespaceOption = "decklander",
+    drone: DroneOption = "drone",
 ) -> int:
     """Send a command to the companion; exit code 1 when it is refused."""
     from link.keys import Keys  # noqa: PLC0415

@@ -1,5 +1,6 @@
 """The programs of a run as processes: started together, watched, and none of them left behind."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -70,12 +71,12 @@ class ProcessGroup:
         for name, process in self._processes.items():
             code = process.poll()
             if code is not None:
-                raise UserError(f"{name} ended with exit code {code}: {self._last_words(name)}")
+                raise UserError(f"{name} {_ending(code)}: {self._last_words(name)}; see {self._log(name)}")
 
     def _start(self, program: Program) -> None:
         with self._log(program.name).open("wb") as log:
             self._processes[program.name] = subprocess.Popen(
-                [sys.executable, "-m", "scenarios.launch", program.module, *program.arguments],
+                [sys.executable, "-m", "scenarios.launch", str(os.getpid()), program.module, *program.arguments],
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=subprocess.STDOUT,
@@ -98,3 +99,7 @@ class ProcessGroup:
     def _last_words(self, name: str) -> str:
         lines = self._log(name).read_text(encoding="utf-8", errors="replace").splitlines()
         return " | ".join(line.strip() for line in lines[-_TAIL_LINES:] if line.strip()) or "it said nothing"
+
+
+def _ending(code: int) -> str:
+    return f"ended with exit code {code}" if code >= 0 else f"was ended by {signal.Signals(-code).name}"

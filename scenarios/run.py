@@ -10,19 +10,17 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from link import cdr, json_payloads
 from link.errors import UserError
 from link.keys import Keys
-from link.messages import BodyTruth, LandingStatus, RotorTruth
-from link.payload_checks import PayloadError
 from link.toml_config import dump_toml
-from link.zenoh_session import Inbox, ZenohOptions, ZenohSession, open_session
+from link.zenoh_session import ZenohOptions, open_session
 from scenarios.config import Scenario
 from scenarios.drone import sim_autopilot_config
 from scenarios.lockstep import Lockstep
 from scenarios.outcome import result_table, write_json
 from scenarios.processes import ProcessGroup, Program
 from scenarios.recording import EndWatch, Recording
+from scenarios.watcher import Watcher
 
 _POLL_S = 0.02
 _COMPANION_TIMING = "companion.json"
@@ -83,7 +81,7 @@ def run_over_wire(scenario: Scenario, options: RunOptions, progress: Progress) -
         open_session(ZenohOptions(connect=(endpoint,))) as zenoh,
         ProcessGroup(_programs(scenario, options, endpoint), options.folder) as processes,
     ):
-        watcher = _Watcher(zenoh, keys, recording)
+        watcher = Watcher(zenoh, keys, recording)
         ended, factor = _watch(watcher, processes, scenario, recording, progress)
     result = result_table(scenario, options.seed, recording, ended)
     timing = {"real_time_factor": round(factor, 4), "speed": options.speed, **_companion_timing(options.folder)}
@@ -126,36 +124,8 @@ def _free_port(kind: socket.SocketKind) -> int:
         return int(probe.getsockname()[1])
 
 
-class _Watcher:
-    """Takes truth and status off Zenoh into the recording."""
-
-    def __init__(self, zenoh: ZenohSession, keys: Keys, recording: Recording) -> None:
-        self._recording = recording
-        self._drone = zenoh.subscribe(keys.drone_truth, capacity=20_000)
-        self._vehicle = zenoh.subscribe(keys.vehicle_truth, capacity=20_000)
-        self._rotors = zenoh.subscribe(keys.drone_rotors, capacity=20_000)
-        self._status = zenoh.subscribe(keys.landing_status)
-
-    def take(self) -> None:
-        """Take what has come; a status that cannot be read is left out."""
-        for sample in self._drone.take():
-            self._recording.add(cdr.decode(BodyTruth, sample.payload))
-        for sample in self._vehicle.take():
-            self._recording.add(cdr.decode(BodyTruth, sample.payload), is_drone=False)
-        for sample in self._rotors.take():
-            self._recording.add(cdr.decode(RotorTruth, sample.payload))
-        self._take_statuses(self._status)
-
-    def _take_statuses(self, inbox: Inbox) -> None:
-        for sample in inbox.take():
-            try:
-                self._recording.add(json_payloads.decode(LandingStatus, sample.payload))
-            except PayloadError:
-                continue
-
-
 def _watch(
-    watcher: _Watcher, processes: ProcessGroup, scenario: Scenario, recording: Recording, progress: Progress
+    watcher: Watcher, processes: ProcessGroup, scenario: Scenario, recording: Recording, progress: Progress
 ) -> tuple[str, float]:
     """Return why the run ended and its real-time factor."""
     end = EndWatch(scenario.time_limit_s)
@@ -187,7 +157,8 @@ def _companion_timing(folder: Path) -> dict[str, Any]:
         return {}
     table: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     path.unlink()
-    return {"companion": table}
+    step_ms = {name: table.pop(f"state_to_setpoint_{name}_ms") for name in ("median", "p99", "max")}
+    return {"step_ms": {"companion": step_ms}, "companion": table}
 
 
 def run_in_lockstep(scenario: Scenario, options: RunOptions, progress: Progress) -> RunOutcome:
