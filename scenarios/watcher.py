@@ -1,0 +1,59 @@
+"""Listens to a run: truth and the companion's status, off Zenoh into a recording."""
+
+from typing import TypeVar
+
+from link import cdr, json_payloads
+from link.keys import Keys
+from link.messages import BodyTruth, LandingStatus, RotorTruth
+from link.payload_checks import PayloadError
+from link.zenoh_session import ZenohSession
+from scenarios.recording import Recording
+
+_CAPACITY = 20_000  # 200 s of truth at real time, should the watcher be held up
+
+T = TypeVar("T", BodyTruth, RotorTruth)
+
+
+class Watcher:
+    """Takes truth and status off Zenoh into the recording.
+
+    Args:
+        zenoh: an open session.
+        keys: of the Zenoh contract.
+        recording: to be filled.
+
+    Attributes:
+        recording: as filled so far.
+        bad_payloads: how many could not be read; they are left out.
+    """
+
+    def __init__(self, zenoh: ZenohSession, keys: Keys, recording: Recording) -> None:
+        self.recording = recording
+        self.bad_payloads = 0
+        self._drone = zenoh.subscribe(keys.drone_truth, capacity=_CAPACITY)
+        self._vehicle = zenoh.subscribe(keys.vehicle_truth, capacity=_CAPACITY)
+        self._rotors = zenoh.subscribe(keys.drone_rotors, capacity=_CAPACITY)
+        self._status = zenoh.subscribe(keys.landing_status)
+
+    def take(self) -> None:
+        """Take what has come."""
+        for sample in self._drone.take():
+            self._add(BodyTruth, sample.payload)
+        for sample in self._vehicle.take():
+            self._add(BodyTruth, sample.payload, is_drone=False)
+        for sample in self._rotors.take():
+            self._add(RotorTruth, sample.payload)
+        for sample in self._status.take():
+            self._add_status(sample.payload)
+
+    def _add(self, kind: type[T], payload: bytes, *, is_drone: bool = True) -> None:
+        try:
+            self.recording.add(cdr.decode(kind, payload), is_drone=is_drone)
+        except PayloadError:
+            self.bad_payloads += 1
+
+    def _add_status(self, payload: bytes) -> None:
+        try:
+            self.recording.add(json_payloads.decode(LandingStatus, payload))
+        except PayloadError:
+            self.bad_payloads += 1
