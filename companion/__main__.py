@@ -1,6 +1,7 @@
 """The `companion` command."""
 
 import json
+import os
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -19,6 +20,7 @@ from link.cli import (
     make_app,
     run_app,
 )
+from link.errors import UserError
 
 app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.")
 
@@ -75,6 +77,8 @@ def companion(
 
     keys = Keys(namespace, vehicle, drone)
     node = build_node(settings, keys, system_id=system_id, dry_run=dry_run, records_input=tlog is not None)
+    if timing is not None:
+        _check_writable(timing)
     options = LoopOptions(device=mavlink, timeout_s=timeout, start=start, use_sim_time=use_sim_time, tlog=tlog)
     nothing_said = not (connect or listen or zenoh_config or multicast)
     zenoh_options = ZenohOptions(
@@ -88,6 +92,12 @@ def companion(
         timings = run(node, Links(keys=keys, transport=transport, zenoh=zenoh), options)
     if timing is not None:
         timing.write_text(json.dumps(timings.summary(), indent=2) + "\n", encoding="utf-8")
+
+
+def _check_writable(path: Path) -> None:
+    """Find out before the flight, not after it."""
+    if path.is_dir() or not os.access(path.parent, os.W_OK):
+        raise UserError(f"{path}: cannot be written; choose another place")
 
 
 def main() -> None:

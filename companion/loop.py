@@ -1,7 +1,6 @@
 """The wire loop of the companion: sockets and clocks around the node, nothing else."""
 
 import queue
-import resource
 import signal
 import time
 from collections import deque
@@ -11,6 +10,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import psutil  # type: ignore[import-untyped]  # it has no annotations
 import structlog
 
 from companion.node import CompanionNode
@@ -73,7 +73,7 @@ class Timings:
             "state_to_setpoint_p99_ms": quantile_ms(0.99),
             "state_to_setpoint_max_ms": quantile_ms(1.0),
             "cpu_share": round((time.process_time() - self.started_cpu_s) / wall_s, 4),
-            "memory_mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0, 1),
+            "memory_mb": round(psutil.Process().memory_info().rss / 1e6, 1),
         }
 
 
@@ -156,6 +156,7 @@ class _Loop:
         self._start_pending = options.start
         self._fix_seen = False
         self._pads: Inbox | None = None
+        self._link_was_up: bool | None = None
 
     def run(self) -> Timings:
         """Run until a signal comes."""
@@ -176,7 +177,7 @@ class _Loop:
         if self._ticks is None:
             return SystemClock()
         clock = SimulatedClock()
-        self._wait_for(lambda: self._tick(clock), f"no simulated clock on {self._keys.clock}: start the simulation")
+        self._wait_for(lambda: self._tick(clock), f"no simulated clock on {self._keys.clock}")
         return clock
 
     def _tick(self, clock: SimulatedClock) -> bool:
@@ -192,7 +193,9 @@ class _Loop:
         started_s = time.monotonic()
         while not is_there() and not self._stopping:
             if self._options.timeout_s and time.monotonic() - started_s > self._options.timeout_s:
-                raise UserError(message)
+                raise UserError(
+                    f"{message} within {self._options.timeout_s:g} s: start the simulation, or check --ns and -e"
+                )
             time.sleep(0.01)
 
     def _turn(self, clock: Clock) -> None:
@@ -242,9 +245,19 @@ class _Loop:
             self._log.info(outputs.status.phase, reason=outputs.status.reason)
         for text in self._node.autopilot.take_texts():
             self._log.info("autopilot", text=text)
+        self._say_link()
         self._ask_for_pad()
         self._start_by_itself()
         self._check_time_out()
+
+    def _say_link(self) -> None:
+        """Say when the autopilot is found, lost and found again."""
+        is_up = self._node.autopilot.session.link_up
+        if is_up and not self._link_was_up:
+            self._log.info("autopilot found" if self._link_was_up is None else "autopilot found again")
+        elif self._link_was_up and not is_up:
+            self._log.warning("autopilot lost")
+        self._link_was_up = is_up if is_up or self._link_was_up is not None else None
 
     def _ask_for_pad(self) -> None:
         """Ask the vehicle for its pad until it has answered."""
