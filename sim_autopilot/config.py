@@ -48,6 +48,7 @@ class DroneConfig(StrictModel):
     controller: Literal["lqr", "lqr_feedforward", "geometric"] = "geometric"
     friction_coefficient: Annotated[float, Field(ge=0.0, le=2.0)] = 0.8  # rubber on painted metal
     ground_effect: bool = True
+    solid: bool = True  # False: a flying drone passes through ground and vehicle; the report's simulation has neither
     endurance_s: Positive = 1200.0
 
 
@@ -106,6 +107,7 @@ def autopilot_config(config: SimAutopilotConfig) -> AutopilotConfig:
             controller=ControllerKind(config.drone.controller),
             friction_coefficient=config.drone.friction_coefficient,
             ground_effect=config.drone.ground_effect,
+            solid=config.drone.solid,
         ),
         system_id=config.instance + 1,
         instant=config.instant,

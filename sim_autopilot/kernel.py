@@ -12,7 +12,7 @@ from sim_autopilot.data import Array
 from sim_autopilot.physics.compiled import Kernel, kept_kernel, source_digest
 from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotation import fill_matrix
-from sim_autopilot.physics.step import advance_body, fill_specific_force, nearness, workspace
+from sim_autopilot.physics.step import FAR, advance_body, fill_specific_force, nearness, workspace
 
 BODY_END = 13
 SPEED_END = 17
@@ -62,6 +62,7 @@ def _compiled(sources: int) -> Kernel[..., int]:
         step_s = control["period_s"] / steps
         touched = plant[SURFACE]
         plant[SURFACE] = 0.0
+        solid = body["solid"] == 1 or not flying
         if not flying:
             memory[RUNNING] = 0.0
             command[:] = 0.0
@@ -78,10 +79,10 @@ def _compiled(sources: int) -> Kernel[..., int]:
             for step in range(steps):
                 elapsed_s = start_s + step * step_s
                 touched = max(
-                    touched, advance_body(y, speed, command, anchors, deck, wind, body, elapsed_s, step_s, work)
+                    touched, advance_body(y, speed, command, anchors, deck, wind, body, solid, elapsed_s, step_s, work)
                 )
             plant[SURFACE] = max(plant[SURFACE], touched)
-        near = nearness(y, deck, periods * control["period_s"])
+        near = nearness(y, deck, periods * control["period_s"]) if solid else FAR
         fill_specific_force(y, wind, anchors, body, near, work, plant[SPEED_END:FORCE_END])
         return sources
 

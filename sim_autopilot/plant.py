@@ -34,6 +34,7 @@ class PlantConfig:
         envelope: what it keeps to.
         friction_coefficient: Coulomb's, of gear on roof and ground.
         ground_effect: whether thrust grows near a surface.
+        solid: whether a drone whose motors run can touch ground and vehicle.
         control_period_s: of the flight controller, a multiple of 1 ms.
         records: the same for the kernels, derived: airframe and controller.
     """
@@ -43,13 +44,14 @@ class PlantConfig:
     envelope: Envelope = DEFAULT_ENVELOPE
     friction_coefficient: float = 0.8
     ground_effect: bool = True
+    solid: bool = True
     control_period_s: float = 0.005
     records: tuple[NDArray[np.void], NDArray[np.void]] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Derive the kernels' records."""
         _whole(self.control_period_s, INTEGRATION_STEP_S, "control_period_s")
-        body = body_record(self.airframe, self.friction_coefficient, ground_effect=self.ground_effect)
+        body = body_record(self.airframe, self.friction_coefficient, ground_effect=self.ground_effect, solid=self.solid)
         linear = self.controller is ControllerKind.LQR_FEEDFORWARD
         control = control_record(
             self.controller,

@@ -25,11 +25,14 @@ BODY = np.dtype(
         ("direct", "i8"),  # 1: thrust and torques act at once, unbounded
         ("friction_coefficient", "f8"),
         ("ground_effect", "i8"),
+        ("solid", "i8"),  # 0: with its motors running the drone passes through everything
     ]
 )
 
 
-def body_record(airframe: Airframe, friction_coefficient: float, *, ground_effect: bool) -> NDArray[np.void]:
+def body_record(
+    airframe: Airframe, friction_coefficient: float, *, ground_effect: bool, solid: bool = True
+) -> NDArray[np.void]:
     """Return the record (1,) of an airframe and of what it stands on."""
     limit = airframe.thrust_to_weight
     record = np.zeros(1, dtype=BODY)
@@ -45,4 +48,5 @@ def body_record(airframe: Airframe, friction_coefficient: float, *, ground_effec
     record["direct"] = airframe.takes_wrench_directly
     record["friction_coefficient"] = friction_coefficient
     record["ground_effect"] = ground_effect
+    record["solid"] = solid
     return record

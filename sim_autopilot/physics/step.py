@@ -141,8 +141,8 @@ def runge_kutta(
 
 @kernel
 def advance_body(
-    y: Array, speed: Array, command: Array, anchors: Array, deck: Array, wind: Array, body: Record, elapsed_s: float,
-    step_s: float, work: Workspace,
+    y: Array, speed: Array, command: Array, anchors: Array, deck: Array, wind: Array, body: Record, solid: bool,
+    elapsed_s: float, step_s: float, work: Workspace,
 ) -> int:  # fmt: skip
     """Advance state (13,), rotor speeds (4,) and anchors (8, 3) in place by one step, and return the surface touched.
 
@@ -154,11 +154,12 @@ def advance_body(
         deck: (18,) the vehicle at the start of the call.
         wind: (3,) m/s in W.
         body: the airframe's record.
+        solid: whether ground and vehicle are there to be touched.
         elapsed_s: since the start of the call.
         step_s: to advance.
         work: of `workspace`.
     """
-    near = nearness(y, deck, elapsed_s)
+    near = nearness(y, deck, elapsed_s) if solid else FAR
     if near == FAR:
         # the same call with a constant, which lets the compiler leave everything about surfaces out
         return runge_kutta(y, speed, command, anchors, deck, wind, body, FAR, elapsed_s, step_s, work)

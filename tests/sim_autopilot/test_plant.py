@@ -201,3 +201,19 @@ def test_pressing_on_the_ground_neither_tips_over_nor_winds_up() -> None:
     flight = flown(CONFIG, pressed.end, lambda _: holding((0, 0, 3.0)), 6.0)
     assert flight.position_m[:, 2].max() < 3.1
     np.testing.assert_allclose(flight.position_m[-1], [0, 0, 3.0], atol=0.02)
+
+
+def test_without_solid_surfaces_a_flying_drone_passes_through_a_roof_and_the_ground() -> None:
+    config = PlantConfig(airframe=REPORT_AIRFRAME, controller=ControllerKind.LQR, ground_effect=False, solid=False)
+    flight = flown(
+        config, hovering(config, (0, 0, 3.0)), lambda _: holding((0.0, 0.0, -1.0)), 6.0, deck_at=driving(height_m=1.5)
+    )
+    assert flight.position_m[-1] == pytest.approx([0.0, 0.0, -1.0], abs=0.01)
+    assert set(flight.surface) == {Surface.NONE}
+
+
+def test_without_solid_surfaces_a_drone_stands_on_the_ground_until_its_motors_run() -> None:
+    config = PlantConfig(solid=False)
+    flight = flown(config, at_rest(config, (0, 0, GEAR_HEIGHT_M)), lambda _: None, 2.0)
+    assert flight.position_m[-1, 2] == pytest.approx(GEAR_HEIGHT_M, abs=0.01)
+    assert flight.surface[-1] is Surface.GROUND
