@@ -29,6 +29,7 @@ class FixConfig(DelayConfig):
     """A GNSS receiver's position: white noise and a first-order Gauss-Markov bias on each axis."""
 
     white_m: NotNegative
+    white_shared: bool = False  # one draw for the three axes of a sample
     bias_m: NotNegative = 0.0  # standard deviation
     bias_tau_s: Positive = 60.0
 

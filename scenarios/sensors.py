@@ -10,6 +10,8 @@ import heapq
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from link.frames import canonical, conjugate, multiply, quaternion_from_yaw, rotate
 from link.geodesy import Datum, geodetic_from_enu
 from link.messages import BodyTruth, Fix, FixVelocity, Matrix3, PadSighting, Quaternion, Vector3, VehicleImu
@@ -71,7 +73,7 @@ class _FixSensor:
         self.schedule = _Schedule(config, seed, "fix")
         self._rng = named_rng(seed, "fix")
         self._bias = GaussMarkov(named_rng(seed, "fix bias"), std=config.bias_m, tau_s=config.bias_tau_s)
-        self._white_m = config.white_m
+        self._config = config
         self._covariance = _diagonal(max(_STATED_STD_MIN_M, math.hypot(config.white_m, config.bias_m)) ** 2)
         self._mounting = mounting
         self._offset_enu_m = offset_enu_m
@@ -79,7 +81,7 @@ class _FixSensor:
 
     def sample(self, stamp_ns: int, vehicle: VehicleState, elapsed_s: float) -> Fix:
         lever_m = rotate(vehicle.orientation_wxyz, self._mounting.antenna_flu_m)
-        errors_m = (self._offset_enu_m, self._bias.step(elapsed_s), normal3(self._rng, self._white_m))
+        errors_m = (self._offset_enu_m, self._bias.step(elapsed_s), white_error_m(self._config, self._rng))
         position_enu_m = _sum(vehicle.position_enu_m, lever_m, *errors_m)
         latitude_rad, longitude_rad, altitude_m = geodetic_from_enu(self._datum, position_enu_m)
         return Fix(
@@ -89,6 +91,14 @@ class _FixSensor:
             altitude_m=altitude_m,
             covariance_enu_m2=self._covariance,
         )
+
+
+def white_error_m(config: FixConfig, rng: np.random.Generator) -> Vector3:
+    """Return the white part of a fix's error."""
+    if not config.white_shared:
+        return normal3(rng, config.white_m)
+    error_m = float(rng.normal(0.0, config.white_m))
+    return error_m, error_m, error_m
 
 
 class _VelocitySensor:

@@ -77,6 +77,15 @@ def test_report_fix_errs_by_its_white_noise_on_each_axis() -> None:
     assert abs(correlation) < 0.05
 
 
+def test_shared_white_noise_is_one_draw_for_the_three_axes() -> None:
+    config = SensorsConfig(fix=FixConfig(rate_hz=100.0, white_m=0.1, white_shared=True))
+    samples = of_kind(sampled(config, 20.0), Fix)
+    errors_m = np.array([position_of(fix) for fix in samples]) - np.array([12.0, -7.0, 0.5])
+    assert np.ptp(errors_m, axis=1).max() < 1e-6
+    assert errors_m[:, 0].std() == pytest.approx(0.1, rel=0.06)
+    assert abs(np.corrcoef(errors_m[1:, 0], errors_m[:-1, 0])[0, 1]) < 0.06
+
+
 def test_fix_is_where_the_antenna_is() -> None:
     config = SensorsConfig(fix=FixConfig(rate_hz=10.0, white_m=0.0))
     turned = sampled(config, 0.2, mounting=ON_ROOF, vehicle=lambda t_ns: vehicle_at(t_ns, yaw_rad=0.5 * math.pi))
