@@ -6,7 +6,7 @@ from companion.autopilot_state import AutopilotState, heard
 from companion.autopilots.choice import driver_for
 from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver
 from companion.data import FlightLimits, Setpoint
-from link.mavlink.dialect import mavlink
+from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import (
     AutopilotRestarted,
     CommandAcknowledged,
@@ -21,13 +21,13 @@ from link.mavlink.events import (
 from link.mavlink.session import MavlinkSession
 
 _STREAMS_HZ = {
-    mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: 50.0,
-    mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED: 50.0,
     mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: 10.0,
     mavlink.MAVLINK_MSG_ID_CURRENT_MODE: 20.0,
     mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: 2.0,
+    mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: 1.0,  # tells the geoid's height
     mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: 1.0,
 }
+_MOTION_IDS = (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED)
 _ASK_ORIGIN_NS = 1_000_000_000
 _ASK_KNOWN_ORIGIN_NS = 5_000_000_000
 _TEXT_SIZE = 50  # of a STATUSTEXT
@@ -38,12 +38,15 @@ class AutopilotLink:
 
     Args:
         session: to the autopilot.
+        motion_rate_hz: of the drone's position and attitude.
     """
 
-    def __init__(self, session: MavlinkSession) -> None:
+    def __init__(self, session: MavlinkSession, motion_rate_hz: float = 50.0) -> None:
         self.session = session
+        self._motion_rate_hz = motion_rate_hz
         self.state = AutopilotState()
         self.driver: Driver | None = None
+        self.bad_setpoints = 0
         self._acknowledgements: list[tuple[int, int]] = []
         self._unanswered: dict[int, int] = {}
         self._origin_asked_ns: int | None = None
@@ -76,12 +79,17 @@ class AutopilotLink:
         return wanted if self.driver is None else self.driver.limits(wanted, self.state.parameters)
 
     def send_setpoint(self, setpoint: Setpoint, local_ns: int) -> None:
-        """Send a setpoint for the flight."""
+        """Send a setpoint for the flight; one that the message cannot hold is counted and left out."""
         target = self.session.target_system_id
         if self.driver is None or target is None:
             return
         boot_ns = self.session.clock.local_to_boot_ns(local_ns) or 0
-        self.session.send(self.driver.setpoint_message(setpoint, boot_ns // 1_000_000, target))
+        try:
+            message = self.driver.setpoint_message(setpoint, boot_ns // 1_000_000, target)
+        except ValueError:
+            self.bad_setpoints += 1
+            return
+        self.session.send(message)
 
     def send_commands(self, commands: tuple[AutopilotCommand, ...], local_ns: int) -> None:
         """Send commands; their acknowledgements come back by `take_acknowledgements`.
@@ -103,20 +111,14 @@ class AutopilotLink:
         for event in events:
             match event:
                 case MessageReceived() if self.driver is not None:
-                    self.state = heard(self.state, event.message, self.session.clock, self.driver)
+                    self._hear(event.message, self.driver)
                 case LinkFound():
                     self.driver = driver_for(event.autopilot, event.vehicle_type)
                     self._ask_for_streams(self.driver, local_ns)
-                case LinkLost():
-                    self._set_link(up=False)
-                case LinkRegained():
-                    self._set_link(up=True)
+                case LinkLost() | LinkRegained():
+                    self._set_link(up=isinstance(event, LinkRegained))
                 case AutopilotRestarted():
-                    parameters = self.state.parameters
-                    view = AutopilotView(link_up=True, armed=False, in_control=False, failsafe=False)
-                    view = replace(view, origin_count=self.state.view.origin_count + 1)
-                    self.state = AutopilotState(view=view, parameters=parameters)
-                    self._origin_asked_ns = None
+                    self._start_over()
                 case CommandAcknowledged():
                     if event.result != mavlink.MAV_RESULT_IN_PROGRESS:
                         self._answered(event.command, event.ticket)
@@ -130,6 +132,20 @@ class AutopilotLink:
                 case _:
                     pass
 
+    def _hear(self, message: Message, driver: Driver) -> None:
+        shift = self.state.view.frame_shift_enu_m
+        self.state = heard(self.state, message, self.session.clock, driver)
+        if self.state.view.frame_shift_enu_m != shift:
+            self._origin_asked_ns = None  # it has probably moved, too
+
+    def _start_over(self) -> None:
+        """Forget what the autopilot told before its restart, except for its parameters."""
+        view = AutopilotView(link_up=True, armed=False, in_control=False, failsafe=False)
+        old = self.state.view
+        view = replace(view, origin_count=old.origin_count + 1, frame_shift_enu_m=old.frame_shift_enu_m)
+        self.state = AutopilotState(view=view, parameters=self.state.parameters)
+        self._origin_asked_ns = None
+
     def _answered(self, command: int, ticket: int | None) -> None:
         if self._unanswered.get(command) == ticket:
             self._unanswered.pop(command, None)
@@ -138,7 +154,8 @@ class AutopilotLink:
         self.state = replace(self.state, view=replace(self.state.view, link_up=up))
 
     def _ask_for_streams(self, driver: Driver, local_ns: int) -> None:
-        for message_id, rate_hz in _STREAMS_HZ.items():
+        motion_hz = dict.fromkeys(_MOTION_IDS, self._motion_rate_hz)
+        for message_id, rate_hz in (motion_hz | _STREAMS_HZ).items():
             self.session.request_interval(message_id, rate_hz, local_ns)
         for name in driver.limit_parameters:
             self.session.read_parameter(name, local_ns)

@@ -1,21 +1,28 @@
 """The autopilot's messages folded into what the companion's step wants to know of it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import isfinite, radians
+from math import hypot, isfinite, radians
 from types import MappingProxyType
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotView, Driver
 from companion.data import OwnState
-from link.frames import enu_from_ned, flu_from_frd, normalized, quaternion_enu_flu_from_ned_frd
+from link.frames import enu_from_ned, flu_from_frd, multiply, normalized, quaternion_enu_flu_from_ned_frd
 from link.geodesy import Datum
 from link.mavlink.clock_map import ClockMap
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Quaternion, Vector3
 
 _HISTORY_NS = 1_000_000_000  # sightings of the pad arrive less late than this
+_AHEAD_NS = 100_000_000  # how far a report is carried beyond the newest one
 _ORIGIN_MOVED_RAD = 1e-8  # 6 cm; the field's resolution is 1e-7 degrees, 1 cm
 _ORIGIN_MOVED_M = 0.05
+_POSITION_MAX_M = 1e6  # farther from the origin no local frame is meant
+_SPEED_MAX_M_S = 1e3
+_JUMP_MIN_M = 1.5  # of the drone's own position between two reports: its local frame has moved
+_MANOEUVRE_M_S2 = 10.0  # what flying can add to it
+_GEOID_MAX_M = 120.0  # it lies between -107 and 86 m (EGM96)
+_GEOID_STEP_M = 1.0  # a smaller change of the geoid's height along a flight is left alone
 _LATITUDE_MAX_1E7 = 90 * 10**7
 _LONGITUDE_MAX_1E7 = 180 * 10**7
 _FAILSAFE_STATES = (mavlink.MAV_STATE_CRITICAL, mavlink.MAV_STATE_EMERGENCY)
@@ -30,6 +37,8 @@ class AutopilotState:
         history: the drone's states of the last second, oldest first.
         orientation_wxyz: q_WB of the newest attitude.
         angular_velocity_flu_rad_s: with it.
+        origin_msl: the origin with its altitude above mean sea level, as it is sent.
+        geoid_height_m: of mean sea level above the ellipsoid, 0 until the autopilot's receiver tells it.
         parameters: those read, by name.
         texts: STATUSTEXT not yet taken.
     """
@@ -38,6 +47,8 @@ class AutopilotState:
     history: tuple[OwnState, ...] = ()
     orientation_wxyz: Quaternion | None = None
     angular_velocity_flu_rad_s: Vector3 = (0.0, 0.0, 0.0)
+    origin_msl: Datum | None = None
+    geoid_height_m: float = 0.0
     parameters: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     texts: tuple[str, ...] = ()
 
@@ -47,10 +58,24 @@ class AutopilotState:
         return self.history[-1] if self.history else None
 
     def own_at(self, t_ns: int) -> OwnState | None:
-        """The state nearest to `t_ns`, None when the history does not reach there."""
-        if not self.history or t_ns < self.history[0].t_ns - _HISTORY_NS // 10:
+        """The state at `t_ns`: the nearest report carried there by its own rates; None beyond what they span."""
+        if not self.history or t_ns < self.history[0].t_ns or t_ns > self.history[-1].t_ns + _AHEAD_NS:
             return None
-        return min(self.history, key=lambda own: abs(own.t_ns - t_ns))
+        return carried(min(self.history, key=lambda own: abs(own.t_ns - t_ns)), t_ns)
+
+
+def carried(own: OwnState, t_ns: int) -> OwnState:
+    """Return the drone at `t_ns`, carried from a report at its velocity and angular velocity."""
+    dt_s = (t_ns - own.t_ns) * 1e-9
+    (x, y, z), (vx, vy, vz) = own.position_enu_m, own.velocity_enu_m_s
+    p, q, r = own.angular_velocity_flu_rad_s
+    turn = normalized((1.0, 0.5 * p * dt_s, 0.5 * q * dt_s, 0.5 * r * dt_s))
+    return replace(
+        own,
+        t_ns=t_ns,
+        position_enu_m=(x + vx * dt_s, y + vy * dt_s, z + vz * dt_s),
+        orientation_wxyz=multiply(own.orientation_wxyz, turn),
+    )
 
 
 def heard(state: AutopilotState, message: Message, clock: ClockMap, driver: Driver) -> AutopilotState:
@@ -69,6 +94,8 @@ def heard(state: AutopilotState, message: Message, clock: ClockMap, driver: Driv
             state = replace(state, view=replace(state.view, landed=_landed(message.landed_state)))
         case "GPS_GLOBAL_ORIGIN":
             state = _origin(state, message)
+        case "GPS_RAW_INT":
+            state = _geoid(state, message)
         case "STATUSTEXT":
             state = replace(state, texts=(*state.texts, f"{message.text}"))
         case _:
@@ -79,9 +106,7 @@ def heard(state: AutopilotState, message: Message, clock: ClockMap, driver: Driv
 def _position(state: AutopilotState, message: Message, clock: ClockMap) -> AutopilotState:
     t_ns = clock.boot_to_utc_ns(message.time_boot_ms * 1_000_000)
     values = (message.x, message.y, message.z, message.vx, message.vy, message.vz)
-    if t_ns is None or state.orientation_wxyz is None or not all(map(isfinite, values)):
-        return state
-    if state.history and t_ns <= state.history[-1].t_ns:
+    if t_ns is None or state.orientation_wxyz is None or not _is_plausible(values[:3], values[3:]):
         return state
     own = OwnState(
         t_ns=t_ns,
@@ -90,8 +115,35 @@ def _position(state: AutopilotState, message: Message, clock: ClockMap) -> Autop
         orientation_wxyz=state.orientation_wxyz,
         angular_velocity_flu_rad_s=state.angular_velocity_flu_rad_s,
     )
+    if state.history and t_ns <= state.history[-1].t_ns:
+        if state.history[-1].t_ns - t_ns <= _HISTORY_NS:
+            return state
+        state = replace(state, history=())  # not late: the clock was set back
+    return _reported(state, own)
+
+
+def _reported(state: AutopilotState, own: OwnState) -> AutopilotState:
+    """Add the drone's newest report to the history; one that flying cannot explain begins a new one."""
+    t_ns = own.t_ns
     kept = tuple(old for old in state.history if t_ns - old.t_ns <= _HISTORY_NS)
-    return replace(state, history=(*kept, own))
+    jump = _jump(kept[-1], own) if kept else None
+    if jump is None:
+        return replace(state, history=(*kept, own))
+    (x, y, z), (dx, dy, dz) = state.view.frame_shift_enu_m, jump
+    return replace(state, history=(own,), view=replace(state.view, frame_shift_enu_m=(x + dx, y + dy, z + dz)))
+
+
+def _is_plausible(position_m: Sequence[float], velocity_m_s: Sequence[float]) -> bool:
+    """Whether all are numbers that a flight can have; NaN is none."""
+    return all(abs(p) < _POSITION_MAX_M for p in position_m) and all(abs(v) < _SPEED_MAX_M_S for v in velocity_m_s)
+
+
+def _jump(before: OwnState, own: OwnState) -> Vector3 | None:
+    """Return by how much the local frame moved under the drone, None when flying explains the difference."""
+    expected = carried(before, own.t_ns).position_enu_m
+    dx, dy, dz = (now - then for now, then in zip(own.position_enu_m, expected, strict=True))
+    duration_s = (own.t_ns - before.t_ns) * 1e-9
+    return (dx, dy, dz) if hypot(dx, dy, dz) > _JUMP_MIN_M + 0.5 * _MANOEUVRE_M_S2 * duration_s**2 else None
 
 
 def _attitude(state: AutopilotState, message: Message) -> AutopilotState:
@@ -121,7 +173,7 @@ def _landed(landed_state: int) -> bool | None:
 
 
 def _origin(state: AutopilotState, message: Message) -> AutopilotState:
-    """Take the origin; a moved one is counted, since everything in the local frame has then moved."""
+    """Take the origin, whose altitude MAVLink has above mean sea level."""
     if abs(message.latitude) > _LATITUDE_MAX_1E7 or abs(message.longitude) > _LONGITUDE_MAX_1E7:
         return state
     origin = Datum(
@@ -129,6 +181,24 @@ def _origin(state: AutopilotState, message: Message) -> AutopilotState:
         longitude_rad=radians(message.longitude * 1e-7),
         altitude_m=message.altitude * 1e-3,
     )
+    return _placed(replace(state, origin_msl=origin))
+
+
+def _geoid(state: AutopilotState, message: Message) -> AutopilotState:
+    """Take the height of mean sea level above the ellipsoid, which the vehicle's fixes refer to."""
+    if message.fix_type < mavlink.GPS_FIX_TYPE_3D_FIX or message.alt_ellipsoid == 0:
+        return state
+    height_m = (message.alt_ellipsoid - message.alt) * 1e-3
+    if abs(height_m - state.geoid_height_m) < _GEOID_STEP_M or abs(height_m) > _GEOID_MAX_M:
+        return state
+    return _placed(replace(state, geoid_height_m=height_m))
+
+
+def _placed(state: AutopilotState) -> AutopilotState:
+    """Put the origin above the ellipsoid; a moved one is counted, since the local frame has then moved."""
+    if state.origin_msl is None:
+        return state
+    origin = replace(state.origin_msl, altitude_m=state.origin_msl.altitude_m + state.geoid_height_m)
     known = state.view.origin
     if known is not None and (
         abs(origin.latitude_rad - known.latitude_rad) < _ORIGIN_MOVED_RAD
@@ -136,5 +206,6 @@ def _origin(state: AutopilotState, message: Message) -> AutopilotState:
         and abs(origin.altitude_m - known.altitude_m) < _ORIGIN_MOVED_M
     ):
         return state
+    # The newest report stays, for the next one tells by how much the drone's own position jumps with the origin.
     view = replace(state.view, origin=origin, origin_count=state.view.origin_count + 1)
-    return replace(state, view=view, history=())
+    return replace(state, view=view, history=state.history[-1:])

@@ -8,8 +8,12 @@ _EVENTS = {Command.START: Event.START, Command.ABORT: Event.ABORT, Command.HOLD:
 
 
 def answer(command: Command, phase: Phase, situation: Situation) -> tuple[Event | None, CommandReply]:
-    """Return the event that the command amounts to, None when it is refused, and the reply."""
+    """Return the event that the command amounts to, None when it changes no phase, and the reply."""
     event = _EVENTS[command]
+    if phase is Phase.TAKEOFF and command is not Command.START and not situation.autopilot.armed:
+        event = Event.CALLED_OFF  # on the ground there is nothing to hold
+    if phase is Phase.ABORT and command is not Command.START:
+        return None, CommandReply(accepted=True, reason="")  # the climb goes on, but to no retry
     if next_phase(phase, event) is phase:
         return None, CommandReply(accepted=False, reason=f"nothing to {command.value} in phase {phase.value}")
     missing = _missing_for_start(situation) if command is Command.START else None

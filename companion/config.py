@@ -1,5 +1,6 @@
 """The companion's configuration: one TOML file, validated once, every value with its unit and source."""
 
+from enum import Enum
 from typing import Annotated
 
 from pydantic import Field
@@ -11,6 +12,13 @@ from link.toml_config import StrictModel
 
 Positive = Annotated[float, Field(gt=0.0, le=1e4)]
 NotNegative = Annotated[float, Field(ge=0.0, le=1e4)]
+
+
+class LandingStyle(Enum):
+    """The way from the waiting point onto the pad."""
+
+    STAGED = "staged"  # chase above the vehicle, align, descend inside the cone, switch off
+    DIRECT = "direct"  # the pad's centre is the target from the start, contact or not; the source report
 
 
 class LimitsConfig(StrictModel):
@@ -75,9 +83,12 @@ class TouchdownConfig(StrictModel):
 
     gear_height_m: NotNegative = 0.12  # from the feet to the point whose position the autopilot reports
     height_max_m: Positive = 0.35  # estimated height over the pad at which a contact is believed
-    blocked_depth_m: Positive = 0.10  # how far the setpoint has sunk below the drone
+    blocked_depth_m: Positive = 0.06  # how far the setpoint has sunk below the drone
     blocked_speed_m_s: Positive = 0.2  # relative vertical speed that counts as standing
-    hold_s: NotNegative = 0.15
+    hold_s: NotNegative = 0.1
+    level_height_m: NotNegative = 0.18  # below this the drone turns less than the deck, to touch down level
+    level_acceleration_m_s2: Positive = 1.9  # 11 degrees; S1 allows 15 over trim
+    press_acceleration_m_s2: Annotated[float, Field(ge=0.0, le=9.0)] = 5.0  # half of the weight rests on the gear
     lost_height_m: Positive = 0.6  # higher than this after a contact is a bounce or a slide
 
 
@@ -85,11 +96,15 @@ class AbortConfig(StrictModel):
     """The abort tests and the climb after one."""
 
     fix_age_max_s: Positive = 1.0
+    own_age_max_s: Positive = 0.5  # of the drone's own report; 25 of them in a row are missing then
     position_std_max_m: Positive = 1.5
     tracking_error_max_m: Positive = 2.5  # of the drone behind its setpoint
     tracking_hold_s: NotNegative = 1.0
     cone_hold_s: NotNegative = 0.3
-    alive_lost_hold_s: NotNegative = 0.5
+    near_height_m: Positive = 1.0  # below this the relative speed is watched
+    near_speed_max_m_s: Positive = 0.8  # S1 asks for 1.0 at contact
+    near_speed_hold_s: NotNegative = 0.06
+    alive_lost_fix_age_max_s: NotNegative = 0.5  # in place of `fix_age_max_s` once the vehicle's token is lost
     height_m: Positive = 5.0  # above the pad, or above where the abort began without a vehicle
     time_limit_s: Positive = 10.0
     retries_max: Annotated[int, Field(ge=0, le=20)] = 3
@@ -105,6 +120,9 @@ class CompanionConfig(StrictModel):
     )
     yaw_rate_max_rad_s: Positive = 0.8  # ArduCopter slews at 60 degrees a second
     position_only: bool = False  # leave velocity and acceleration out of the setpoints, as the source report does
+    corrects_lag: bool = True  # learn how far the autopilot trails its setpoints, and lead by it
+    follows_heading: bool = True  # turn with the vehicle; False keeps the heading of the start
+    landing: LandingStyle = LandingStyle.STAGED
     limits: LimitsConfig = LimitsConfig()
     takeoff: TakeoffConfig = TakeoffConfig()
     chase: ChaseConfig = ChaseConfig()

@@ -8,9 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from companion.config import CompanionConfig
+from companion.config import CompanionConfig, LandingStyle
 from companion.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase
 from companion.situation import Approach, Situation, approach
+from companion.targets import chase_floor_m
+
+CONTACT = "contact"
 
 Decision = tuple[Event, str]
 Held = Mapping[str, int]
@@ -24,7 +27,9 @@ class Progress:
     phase: Phase
     since_ns: int
     retries: int
-    was_in_control: bool  # the autopilot has followed the companion since the start
+    may_retry: bool  # no operator has broken the landing off
+    was_in_control: bool  # the autopilot's mode has been the companion's since the start
+    was_armed: bool  # and its motors were armed in that mode
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +43,7 @@ class Test:
 
 
 def _fix_too_old(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
-    return s.fix_age_s is None or s.fix_age_s > c.abort.fix_age_max_s
+    return s.pad is None or s.fix_age_s is None or s.fix_age_s > c.abort.fix_age_max_s
 
 
 def _estimate_uncertain(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
@@ -46,7 +51,16 @@ def _estimate_uncertain(s: Situation, _: Approach | None, c: CompanionConfig) ->
 
 
 def _token_lost(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
-    return s.vehicle_alive is False and _fix_too_old(s, None, c)
+    silent = s.fix_age_s is None or s.fix_age_s > c.abort.alive_lost_fix_age_max_s
+    return s.vehicle_alive is False and silent
+
+
+def _own_unknown(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
+    return s.drone is None
+
+
+def _not_placed(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
+    return s.pad is not None and not s.pad.placed
 
 
 def _not_followed(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
@@ -59,7 +73,16 @@ def cone_radius_m(height_m: float, config: CompanionConfig) -> float:
 
 
 def _outside_cone(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
-    return a is not None and a.height_m > c.descent.commit_height_m and a.distance_m > cone_radius_m(a.height_m, c)
+    return a is not None and a.distance_m > cone_radius_m(a.height_m, c)
+
+
+def is_over_pad(a: Approach, c: CompanionConfig) -> bool:
+    """Return whether the drone is so near the pad's centre that what it touches is the pad."""
+    return a.distance_m < 2.0 * c.descent.cone_radius_at_pad_m
+
+
+def _too_fast_near_pad(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
+    return a is not None and a.height_m < c.abort.near_height_m and a.speed_m_s > c.abort.near_speed_max_m_s
 
 
 def _missed_pad(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
@@ -69,19 +92,32 @@ def _missed_pad(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
 ABORT_TESTS = (
     Test("vehicle data too old", LANDING_PHASES, _fix_too_old, lambda _: 0.0),
     Test("vehicle position too uncertain", LANDING_PHASES, _estimate_uncertain, lambda c: c.abort.cone_hold_s),
-    Test("vehicle's link lost", LANDING_PHASES, _token_lost, lambda c: c.abort.alive_lost_hold_s),
+    Test("vehicle's link lost", LANDING_PHASES, _token_lost, lambda _: 0.0),
+    Test("own position too old", LANDING_PHASES, _own_unknown, lambda _: 0.0),
+    Test("vehicle heading unknown", frozenset({Phase.DESCEND}), _not_placed, lambda _: 0.0),
     Test("setpoint not followed", LANDING_PHASES, _not_followed, lambda c: c.abort.tracking_hold_s),
     Test("outside the descent cone", frozenset({Phase.DESCEND}), _outside_cone, lambda c: c.abort.cone_hold_s),
+    Test(
+        "too fast against the pad", frozenset({Phase.DESCEND}), _too_fast_near_pad, lambda c: c.abort.near_speed_hold_s
+    ),
     Test("below the pad without contact", frozenset({Phase.DESCEND}), _missed_pad, lambda _: 0.0),
 )
 
 
-def _aligned(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
-    return a is not None and a.distance_m < c.descent.aligned_distance_m and a.speed_m_s < c.descent.aligned_speed_m_s
+def _aligned(s: Situation, a: Approach | None, c: CompanionConfig) -> bool:
+    if a is None or _not_placed(s, a, c):
+        return False
+    return a.distance_m < c.descent.aligned_distance_m and a.speed_m_s < c.descent.aligned_speed_m_s
+
+
+def _is_low(s: Situation, config: CompanionConfig) -> bool:
+    """Whether the drone hovers too low to fly over the pad, so that a chase would run into the vehicle's side."""
+    relative = approach(s)
+    return relative is None or relative.height_m < chase_floor_m(config)
 
 
 def _stands_nearby(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
-    if s.drone is None or s.pad is None or _fix_too_old(s, None, c):
+    if s.drone is None or s.pad is None or not s.pad.placed or _fix_too_old(s, None, c) or _is_low(s, c):
         return False
     ahead = s.drone.position_enu_m[:2] - s.pad.position_enu_m[0, :2]
     speed_m_s = float(np.hypot(*s.pad.velocity_enu_m_s[0, :2]))
@@ -96,6 +132,8 @@ def in_contact(s: Situation, a: Approach | None, c: CompanionConfig) -> bool:
     """
     if a is None or s.reference is None or s.drone is None or a.height_m > c.touchdown.height_max_m:
         return False
+    if not is_over_pad(a, c):
+        return False
     sunk_m = float(s.drone.position_enu_m[2] - s.reference.position_enu_m[2])
     blocked = sunk_m > c.touchdown.blocked_depth_m and abs(a.climb_m_s) < c.touchdown.blocked_speed_m_s
     return blocked or s.autopilot.landed is True
@@ -108,7 +146,7 @@ ENTRY_TESTS = (
         Test("vehicle stands", frozenset({Phase.WAITING}), _stands_nearby, lambda c: c.chase.parked_wait_s),
     ),
     (Event.ALIGNED, Test("aligned", frozenset({Phase.ALIGN}), _aligned, lambda c: c.descent.aligned_hold_s)),
-    (Event.CONTACT, Test("contact", frozenset({Phase.DESCEND}), in_contact, lambda c: c.touchdown.hold_s)),
+    (Event.CONTACT, Test(CONTACT, frozenset({Phase.DESCEND}), in_contact, lambda c: c.touchdown.hold_s)),
 )
 
 
@@ -155,29 +193,43 @@ def _is_committed(situation: Situation, config: CompanionConfig) -> bool:
     relative = approach(situation)
     return (
         relative is not None
+        and not _not_placed(situation, relative, config)
         and -config.descent.press_depth_m < relative.height_m < config.descent.commit_height_m
-        and relative.distance_m < 2.0 * config.descent.cone_radius_at_pad_m
+        and is_over_pad(relative, config)
+        and relative.speed_m_s < config.abort.near_speed_max_m_s
     )
 
 
+def is_on_pad(situation: Situation, config: CompanionConfig) -> bool:
+    """Return whether the drone's estimated place is that of a drone standing on the pad: motors may be forced off."""
+    relative = approach(situation)
+    if relative is None or _not_placed(situation, relative, config) or _missed_pad(situation, relative, config):
+        return False
+    return relative.height_m < config.descent.commit_height_m and is_over_pad(relative, config)
+
+
 def _control_taken(progress: Progress, s: Situation) -> Decision | None:
-    if progress.phase not in FLYING_PHASES or not progress.was_in_control:
+    # A silent link says nothing about who is in command; the autopilot's own failsafe acts.
+    if progress.phase not in FLYING_PHASES or not progress.was_in_control or not s.autopilot.link_up:
         return None
-    if not s.autopilot.link_up:
-        return None  # says nothing about who is in command; the autopilot's own failsafe acts
     if s.autopilot.failsafe:
         return Event.PILOT_TOOK_OVER, "autopilot failsafe"
-    if not s.autopilot.in_control and s.autopilot.armed:
+    if progress.phase is Phase.TOUCHDOWN and not s.autopilot.armed:
+        return None  # as wanted; a mode that changes with it is not the pilot's
+    if not s.autopilot.in_control:
         return Event.PILOT_TOOK_OVER, "mode changed by the pilot"
-    if not s.autopilot.armed and progress.phase is not Phase.TOUCHDOWN:
+    if progress.was_armed and not s.autopilot.armed:
         return Event.PILOT_TOOK_OVER, "disarmed"
     return None
 
 
 def _time_limit(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
     in_phase_s = (s.t_ns - progress.since_ns) * 1e-9
-    if progress.phase is Phase.TAKEOFF and not s.autopilot.armed and in_phase_s > config.takeoff.refused_after_s:
-        return Event.REFUSED, "the autopilot did not arm in time"
+    if progress.phase is Phase.TAKEOFF and in_phase_s > config.takeoff.refused_after_s:
+        if not progress.was_in_control:
+            return Event.REFUSED, "the autopilot did not give control in time"
+        if not s.autopilot.armed:
+            return Event.REFUSED, "the autopilot did not arm in time"
     limits_s = {
         Phase.TAKEOFF: config.takeoff.time_limit_s,
         Phase.CHASE: config.chase.time_limit_s,
@@ -186,6 +238,8 @@ def _time_limit(progress: Progress, s: Situation, config: CompanionConfig) -> De
     }
     limit_s = limits_s.get(progress.phase)
     if limit_s is not None and in_phase_s > limit_s:
+        if progress.phase is Phase.ALIGN and _not_placed(s, None, config):
+            return Event.TIME_LIMIT, "vehicle heading unknown"
         return Event.TIME_LIMIT, f"{progress.phase.value} took longer than {limit_s:g} s"
     return None
 
@@ -207,7 +261,7 @@ def _advance(progress: Progress, s: Situation, config: CompanionConfig) -> Decis
 
 
 def _at_waiting_point(s: Situation, config: CompanionConfig) -> Decision | None:
-    if s.drone is None or s.waiting_point_enu_m is None or not s.autopilot.armed:
+    if s.drone is None or s.waiting_point_enu_m is None or not (s.autopilot.armed and s.autopilot.in_control):
         return None
     distance_m = float(np.linalg.norm(s.drone.position_enu_m - s.waiting_point_enu_m))
     if distance_m > config.takeoff.reached_distance_m:
@@ -221,7 +275,7 @@ def vehicle_passes(s: Situation, config: CompanionConfig) -> Decision | None:
     A moving vehicle is chased from the moment at which a drone that accelerates evenly to the vehicle's speed
     v meets it: v / (2 a) before it passes.
     """
-    if s.drone is None or s.pad is None or _fix_too_old(s, None, config):
+    if s.drone is None or s.pad is None or _fix_too_old(s, None, config) or _is_low(s, config):
         return None
     velocity = s.pad.velocity_enu_m_s[0, :2]
     ahead = s.drone.position_enu_m[:2] - s.pad.position_enu_m[0, :2]
@@ -238,7 +292,7 @@ def vehicle_passes(s: Situation, config: CompanionConfig) -> Decision | None:
 
 def _over_pad(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
     relative = approach(s)
-    if relative is None:
+    if relative is None or config.landing is LandingStyle.DIRECT:
         return None
     near_m = config.descent.align_distance_m
     if progress.phase is Phase.CHASE and relative.distance_m < near_m:
@@ -264,6 +318,19 @@ def _climbed(progress: Progress, s: Situation, config: CompanionConfig) -> Decis
     high = relative is not None and relative.height_m > 0.8 * config.abort.height_m
     if not (fresh and high) and in_phase_s < config.abort.time_limit_s:
         return None
-    if fresh and progress.retries < config.abort.retries_max:
+    why_not = _no_retry(progress, s, config)
+    if why_not is None:
         return Event.CLEAR, f"retry {progress.retries + 1} of {config.abort.retries_max}"
-    return Event.CLEAR_TO_HOLD, "no retry left" if fresh else "no vehicle data"
+    return Event.CLEAR_TO_HOLD, why_not
+
+
+def _no_retry(progress: Progress, s: Situation, config: CompanionConfig) -> str | None:
+    if not progress.may_retry:
+        return "broken off by the operator"
+    if _fix_too_old(s, None, config):
+        return "no vehicle data"
+    if s.drone is None:
+        return "own position too old"
+    if _not_placed(s, None, config):
+        return "vehicle heading unknown"
+    return "no retry left" if progress.retries >= config.abort.retries_max else None

@@ -5,9 +5,12 @@ The wire loop, the lockstep campaigns and the tests all run this one.
 
 from dataclasses import replace
 
+import numpy as np
+
 from companion.autopilot_link import AutopilotLink
 from companion.data import Measurement
 from companion.estimation.factory import make_estimator
+from companion.shifts import at_other_time
 from companion.step import companion_step
 from companion.step_data import StepInputs, StepMemory, StepOutputs, System
 from companion.vehicle_inputs import fix_measurement, imu_measurements, sighting_measurement, velocity_measurements
@@ -28,8 +31,12 @@ from link.messages import (
 from link.payload_checks import PayloadError
 from link.publication import Publication
 
+_MOTION_RATE_MIN_HZ = 50.0
 _EARLY = 0.75  # of a period: a new state of the drone starts the next step from here on
 _LATE = 2.0  # periods without a new state after which the step is made without one
+_CLOCK_SET_NS = 200_000_000  # more than the map to UTC is ever refined by at once
+_FUTURE_MAX_NS = 500_000_000  # a stamp farther ahead comes from a clock that is wrong
+_VALUE_MAX = 1e8  # of a measurement, more than any on earth; covariances by its square
 _PLAN_EVERY = 2  # statuses
 _PLAN_POINTS = 2  # every so many points of the plan are published
 
@@ -45,7 +52,7 @@ class CompanionNode:
     """
 
     def __init__(self, system: System, keys: Keys, session: MavlinkSession, *, dry_run: bool = False) -> None:
-        self.autopilot = AutopilotLink(session)
+        self.autopilot = AutopilotLink(session, motion_rate_hz=max(system.config.step_rate_hz, _MOTION_RATE_MIN_HZ))
         self._dry_run = dry_run
         self.memory = StepMemory()
         self.outputs: StepOutputs | None = None
@@ -80,7 +87,10 @@ class CompanionNode:
     def receive_sample(self, key: str, payload: bytes) -> None:
         """Take a Zenoh sample; what cannot be decoded is counted and dropped."""
         try:
-            self._measurements += self._decoded(key, payload)
+            measurements = self._decoded(key, payload)
+            for measurement in measurements:
+                self._check(measurement)
+            self._measurements += measurements
         except PayloadError:
             self.bad_payloads += 1
 
@@ -141,6 +151,20 @@ class CompanionNode:
             return () if own_then is None else (sighting_measurement(sighting, own_then),)
         return ()
 
+    def _check(self, measurement: Measurement) -> None:
+        """Check what no filter recovers from.
+
+        Raises:
+            PayloadError: the stamp lies in the future, or a number is absurd.
+        """
+        if measurement.t_ns > self._t_ns + _FUTURE_MAX_NS:
+            raise PayloadError(f"the stamp lies {(measurement.t_ns - self._t_ns) * 1e-9:.1f} s in the future")
+        within = np.all(np.abs(measurement.value) < _VALUE_MAX) and np.all(
+            np.abs(measurement.covariance) < _VALUE_MAX**2
+        )
+        if not within:
+            raise PayloadError(f"the {measurement.quantity.value} {measurement.value} is absurd")
+
     def _is_due(self, local_ns: int) -> bool:
         """A step follows each new state of the drone, at the step rate, and does not wait for it for ever."""
         if self._stepped_ns is None:
@@ -152,8 +176,7 @@ class CompanionNode:
 
     def _step(self, local_ns: int) -> None:
         state = self.autopilot.state
-        # The map to UTC is refined all the time; the step's own time never goes back with it.
-        self._t_ns = max(self._t_ns + 1, self.autopilot.session.clock.local_to_utc_ns(local_ns))
+        self._set_time(local_ns)
         inputs = StepInputs(
             t_ns=self._t_ns,
             limits=self.autopilot.limits(self._system.config.limits.flight_limits()),
@@ -170,6 +193,21 @@ class CompanionNode:
         self._stepped_ns, self._stepped_own_ns = local_ns, None if state.own is None else state.own.t_ns
         self.memory, self.outputs = companion_step(self.memory, inputs, self._system)
         self._send(self.outputs, local_ns)
+
+    def _set_time(self, local_ns: int) -> None:
+        """Take the time of this step.
+
+        The map to UTC is refined all the time, and the step's own time never goes back with it. Where UTC is set,
+        or becomes known, all times of the memory are set with it: the flight goes on as if nothing had happened.
+        """
+        utc_ns = self.autopilot.session.clock.local_to_utc_ns(local_ns)
+        if self._stepped_ns is not None:
+            set_by_ns = utc_ns - (self._t_ns + local_ns - self._stepped_ns)
+            if abs(set_by_ns) > _CLOCK_SET_NS:
+                self.memory = at_other_time(self.memory, set_by_ns)
+                self._t_ns += set_by_ns
+                self._status_ns += set_by_ns
+        self._t_ns = max(self._t_ns + 1, utc_ns)
 
     def _send(self, outputs: StepOutputs, local_ns: int) -> None:
         if not self._dry_run:

@@ -19,6 +19,7 @@ class PadPath:
         acceleration_enu_m_s2: (n, 3).
         yaw_rad: heading of the vehicle now, None when unknown.
         position_std_m: (n, 3).
+        placed: whether the pad's place is known; False while a lever arm points in an unknown direction.
     """
 
     offset_s: Array
@@ -27,13 +28,15 @@ class PadPath:
     acceleration_enu_m_s2: Array
     yaw_rad: float | None
     position_std_m: Array
+    placed: bool = True
 
 
 def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
     """Return where the pad will be.
 
     The lever arm from the antenna turns with the vehicle's heading. With an unknown heading its horizontal
-    part cannot be placed and is left out; without a pad geometry the antenna is taken for the pad's centre.
+    part is left out and the pad is not placed: it can be followed, but not landed on. Without a pad geometry the
+    antenna is taken for the pad's centre.
 
     Args:
         forecast: of the antenna, its first offset 0.
@@ -42,7 +45,8 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
     lever_x_m, lever_y_m, lever_z_m = pad.antenna_to_pad_m if pad is not None else (0.0, 0.0, 0.0)
     position = forecast.position_enu_m + np.array([0.0, 0.0, lever_z_m])
     velocity = forecast.velocity_enu_m_s
-    if forecast.yaw_rad is not None and (lever_x_m or lever_y_m):
+    is_beside = bool(lever_x_m or lever_y_m)
+    if forecast.yaw_rad is not None and is_beside:
         yaw = np.unwrap(forecast.yaw_rad)
         cos, sin = np.cos(yaw), np.sin(yaw)
         lever = np.column_stack([cos * lever_x_m - sin * lever_y_m, sin * lever_x_m + cos * lever_y_m])
@@ -56,4 +60,5 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
         acceleration_enu_m_s2=forecast.acceleration_enu_m_s2,
         yaw_rad=None if forecast.yaw_rad is None else float(forecast.yaw_rad[0]),
         position_std_m=forecast.position_std_m,
+        placed=forecast.yaw_rad is not None or not is_beside,
     )

@@ -41,6 +41,7 @@ class Event(Enum):
     CLEAR = "clear"  # the abort climb is complete and a retry is left
     CLEAR_TO_HOLD = "clear to hold"  # the abort climb is complete, no retry is left or no vehicle is there
     REFUSED = "refused"  # the autopilot did not arm or give control in time
+    CALLED_OFF = "called off"  # an operator's hold or abort before the motors were armed
     TIME_LIMIT = "time limit"
     PILOT_TOOK_OVER = "pilot took over"
 
@@ -70,6 +71,7 @@ TRANSITIONS: dict[tuple[Phase, Event], Phase] = {
     (Phase.TAKEOFF, Event.AT_WAITING_POINT): Phase.WAITING,
     (Phase.TAKEOFF, Event.TIME_LIMIT): Phase.HOLD,
     (Phase.TAKEOFF, Event.REFUSED): Phase.IDLE,
+    (Phase.TAKEOFF, Event.CALLED_OFF): Phase.IDLE,
     (Phase.WAITING, Event.VEHICLE_PASSES): Phase.CHASE,
     (Phase.CHASE, Event.OVER_PAD): Phase.ALIGN,
     (Phase.ALIGN, Event.ALIGNED): Phase.DESCEND,

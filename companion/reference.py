@@ -77,18 +77,31 @@ def _position_at(tracking: Tracking, t_ns: int) -> Array:
     return later[1]
 
 
-def setpoint_ahead(
-    reference: ReferenceState, correction_enu_m: Array, lead_s: float, t_ns: int, yaw_rad: float, *, position_only: bool
+def pressing(reference: ReferenceState, acceleration_m_s2: float) -> ReferenceState:
+    """Return the model with a downward acceleration, so that the thrust drops and the gear holds on to the pad."""
+    acceleration = np.array([*reference.acceleration_enu_m_s2[:2], -acceleration_m_s2])
+    return replace(reference, acceleration_enu_m_s2=acceleration)
+
+
+def carried(reference: ReferenceState, duration_s: float) -> ReferenceState:
+    """Return the model `duration_s` later (or, negative, earlier) at its present acceleration."""
+    velocity, acceleration = reference.velocity_enu_m_s, reference.acceleration_enu_m_s2
+    return replace(
+        reference,
+        position_enu_m=reference.position_enu_m + (velocity + 0.5 * acceleration * duration_s) * duration_s,
+        velocity_enu_m_s=velocity + acceleration * duration_s,
+    )
+
+
+def setpoint_at(
+    reference: ReferenceState, correction_enu_m: Array, t_ns: int, yaw_rad: float, *, position_only: bool
 ) -> Setpoint:
-    """Return the setpoint for `lead_s` after `t_ns`, when half of its holding time has passed."""
-    velocity = reference.velocity_enu_m_s + reference.acceleration_enu_m_s2 * lead_s
-    position = reference.position_enu_m + reference.velocity_enu_m_s * lead_s + correction_enu_m
-    position = position + 0.5 * reference.acceleration_enu_m_s2 * lead_s**2
-    px, py, pz = position.tolist()
-    vx, vy, vz = velocity.tolist()
+    """Return the setpoint that asks for `reference`, corrected, at `t_ns`."""
+    px, py, pz = (reference.position_enu_m + correction_enu_m).tolist()
+    vx, vy, vz = reference.velocity_enu_m_s.tolist()
     ax, ay, az = reference.acceleration_enu_m_s2.tolist()
     return Setpoint(
-        t_ns=t_ns + int(lead_s * 1e9),
+        t_ns=t_ns,
         position_enu_m=(px, py, pz),
         velocity_enu_m_s=None if position_only else (vx, vy, vz),
         acceleration_enu_m_s2=None if position_only else (ax, ay, az),

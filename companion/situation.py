@@ -96,11 +96,13 @@ def approach(situation: Situation) -> Approach | None:
     )
 
 
-def drone_now(own: OwnState | None, t_ns: int, yaw_rad: float) -> Drone | None:
-    """Return the drone at `t_ns`, carried forward at its reported velocity."""
+def drone_now(own: OwnState | None, t_ns: int, yaw_rad: float, age_max_s: float) -> Drone | None:
+    """Return the drone at `t_ns`, carried forward at its reported velocity; None when the report is too old."""
     if own is None:
         return None
     age_s = (t_ns - own.t_ns) * 1e-9
+    if abs(age_s) > age_max_s:
+        return None
     velocity = np.array(own.velocity_enu_m_s)
     position = np.array(own.position_enu_m) + velocity * age_s
     return Drone(position_enu_m=position, velocity_enu_m_s=velocity, yaw_rad=yaw_rad, age_s=age_s)

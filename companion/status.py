@@ -6,6 +6,7 @@ from companion.situation import Approach, Situation, approach, vector3
 from companion.step_data import StepMemory
 from link.messages import LandingStatus
 
+_WAITING_FOR_PAD = frozenset({Phase.WAITING, Phase.CHASE, Phase.ALIGN})
 _TIMED_PHASES = frozenset({Phase.ALIGN, Phase.DESCEND})
 
 
@@ -16,7 +17,7 @@ def landing_status(memory: StepMemory, situation: Situation, config: CompanionCo
     return LandingStatus(
         stamp_ns=situation.t_ns,
         phase=memory.phase.value,
-        reason=memory.reason,
+        reason=_reason(memory, situation),
         relative_position_enu_m=vector3(situation.relative_position_enu_m),
         relative_velocity_enu_m_s=vector3(situation.relative_velocity_enu_m_s),
         height_above_pad_m=None if relative is None else relative.height_m,
@@ -26,6 +27,13 @@ def landing_status(memory: StepMemory, situation: Situation, config: CompanionCo
         armed=situation.autopilot.armed,
         fix_age_s=situation.fix_age_s,
     )
+
+
+def _reason(memory: StepMemory, situation: Situation) -> str:
+    """Return what the landing waits for, or why its phase began."""
+    if memory.phase in _WAITING_FOR_PAD and situation.pad is not None and not situation.pad.placed:
+        return "vehicle heading unknown"
+    return memory.reason
 
 
 def _time_to_contact_s(relative: Approach, descent: DescentConfig) -> float:

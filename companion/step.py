@@ -10,18 +10,19 @@ import numpy as np
 from companion.autopilots.driver import AutopilotCommand, Desire
 from companion.commands import answer
 from companion.config import CompanionConfig
-from companion.data import OwnState
-from companion.decisions import Progress, decide, update_held
+from companion.data import FlightLimits, Forecast, OwnState, Setpoint
+from companion.decisions import CONTACT, Progress, decide, is_on_pad, update_held
 from companion.pad import PadPath, pad_path
 from companion.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
 from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
-from companion.reference import Tracking, compare, remember, setpoint_ahead
+from companion.reference import Tracking, carried, compare, pressing, remember, setpoint_at
+from companion.shifts import in_present_frame
 from companion.situation import Situation, approach, drone_now
 from companion.status import landing_status
 from companion.step_data import StepInputs, StepMemory, StepOutputs, System
 from companion.targets import HORIZON_OFFSETS_S, Aim, hover_aim, pad_aim, stopping_point
 from link.frames import wrap_angle, yaw_of
-from link.messages import CommandReply
+from link.messages import Command, CommandReply
 
 _STEP_MAX_S = 0.1  # a longer pause does not let the virtual model jump
 _ABORT_DECELERATION_M_S2 = 2.0
@@ -36,24 +37,15 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
         system: configuration, estimator and guidance law.
     """
     memory = _estimate(memory, inputs, system)
-    situation = _situation(memory, inputs, system)
+    memory, forecast = _forecast(memory, inputs, system)
+    situation = _situation(memory, forecast, inputs, system)
     before = memory.phase
     memory, reply = _transitions(memory, situation, inputs, system.config)
     memory, plan = _fly(memory, situation, inputs, system)
     memory, commands = _drive(memory, situation, inputs, system.config)
     situation = replace(situation, reference=memory.reference)
-    setpoint = None
-    if memory.reference is not None:
-        setpoint = setpoint_ahead(
-            memory.reference,
-            memory.tracking.correction_enu_m,
-            system.config.setpoint_lead_s,
-            inputs.t_ns,
-            memory.yaw_setpoint_rad,
-            position_only=system.config.position_only,
-        )
     outputs = StepOutputs(
-        setpoint=setpoint,
+        setpoint=_setpoint(memory, inputs.t_ns, system.config),
         commands=commands,
         text=f"{memory.phase.value}: {memory.reason}" if memory.phase is not before else None,
         reply=reply,
@@ -63,25 +55,51 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
     return memory, outputs
 
 
+def _setpoint(memory: StepMemory, t_ns: int, config: CompanionConfig) -> Setpoint | None:
+    """Return what the autopilot is to follow now, None while nothing is flown."""
+    reference = memory.reference
+    if reference is None:
+        return None
+    if memory.phase is Phase.TOUCHDOWN or CONTACT in memory.held:
+        reference = pressing(reference, config.touchdown.press_acceleration_m_s2)
+    sent_ns = t_ns + round(config.setpoint_lead_s * 1e9)
+    return setpoint_at(
+        carried(reference, (sent_ns - memory.reference_ns) * 1e-9),
+        memory.tracking.correction_enu_m,
+        sent_ns,
+        memory.yaw_setpoint_rad,
+        position_only=config.position_only,
+    )
+
+
 def _estimate(memory: StepMemory, inputs: StepInputs, system: System) -> StepMemory:
     """Fuse what the vehicle sent; when the local frame has moved, everything in it starts anew."""
-    if inputs.autopilot.origin_count != memory.origin_count:
-        memory = replace(memory, estimator=None, origin_count=inputs.autopilot.origin_count)
+    memory = in_present_frame(memory, inputs.autopilot)
     if inputs.measurements:
         memory = replace(memory, estimator=system.estimator.fuse(memory.estimator, inputs.measurements))
     if inputs.own is not None and memory.reference is not None:
-        learn = memory.phase in LANDING_PHASES
+        learn = system.config.corrects_lag and memory.phase in LANDING_PHASES
         memory = replace(memory, tracking=compare(memory.tracking, inputs.own, learn=learn))
     return memory
 
 
-def _situation(memory: StepMemory, inputs: StepInputs, system: System) -> Situation:
+def _forecast(memory: StepMemory, inputs: StepInputs, system: System) -> tuple[StepMemory, Forecast | None]:
+    """Return the vehicle over the horizon; an estimate that is not finite is given up and starts anew."""
     forecast = system.estimator.forecast(memory.estimator, inputs.t_ns, HORIZON_OFFSETS_S)
+    if forecast is None or all(
+        np.isfinite(values).all()
+        for values in (forecast.position_enu_m, forecast.velocity_enu_m_s, forecast.acceleration_enu_m_s2)
+    ):
+        return memory, forecast
+    return replace(memory, estimator=None), None
+
+
+def _situation(memory: StepMemory, forecast: Forecast | None, inputs: StepInputs, system: System) -> Situation:
     newest_ns = system.estimator.newest_fix_ns(memory.estimator)
     return Situation(
         t_ns=inputs.t_ns,
         autopilot=inputs.autopilot,
-        drone=drone_now(inputs.own, inputs.t_ns, _own_yaw_rad(inputs.own)),
+        drone=drone_now(inputs.own, inputs.t_ns, _own_yaw_rad(inputs.own), system.config.abort.own_age_max_s),
         pad=None if forecast is None else pad_path(forecast, inputs.pad),
         feet_offset_m=system.config.touchdown.gear_height_m,
         fix_age_s=None if newest_ns is None else (inputs.t_ns - newest_ns) * 1e-9,
@@ -105,19 +123,25 @@ def _transitions(
         event, reply = answer(inputs.command, memory.phase, situation)
         if event is not None:
             memory = _enter(memory, event, f"commanded: {inputs.command.value}", situation, config)
+        if reply.accepted:
+            memory = replace(memory, may_retry=inputs.command is Command.START)
     progress = Progress(
         phase=memory.phase,
         since_ns=memory.phase_since_ns,
         retries=memory.retries,
+        may_retry=memory.may_retry,
         was_in_control=memory.was_in_control,
+        was_armed=memory.was_armed,
     )
     held = update_held(memory.held, progress, situation, approach(situation), config)
     memory = replace(memory, held=held)
     decision = decide(progress, situation, held, config)
     if decision is not None:
         memory = _enter(memory, *decision, situation, config)
-    in_control = memory.was_in_control or (inputs.autopilot.in_control and inputs.autopilot.armed)
-    return replace(memory, was_in_control=in_control and memory.phase in FLYING_PHASES), reply
+    flies, view = memory.phase in FLYING_PHASES, inputs.autopilot
+    in_control = flies and (memory.was_in_control or view.in_control)
+    armed = in_control and (memory.was_armed or (view.in_control and view.armed))
+    return replace(memory, was_in_control=in_control, was_armed=armed), reply
 
 
 def _enter(memory: StepMemory, event: Event, reason: str, situation: Situation, config: CompanionConfig) -> StepMemory:
@@ -126,6 +150,7 @@ def _enter(memory: StepMemory, event: Event, reason: str, situation: Situation, 
     if phase is memory.phase:
         return memory
     retries = memory.retries + 1 if event is Event.CLEAR else memory.retries
+    retries = 0 if event is Event.START else retries
     memory = replace(memory, phase=phase, phase_since_ns=situation.t_ns, reason=reason, held={}, retries=retries)
     if phase is Phase.TAKEOFF:
         return _begin_flight(memory, situation, config)
@@ -145,8 +170,8 @@ def _begin_flight(memory: StepMemory, situation: Situation, config: CompanionCon
     climb_m = 0.0 if airborne else config.takeoff.waiting_height_m
     return replace(
         memory,
-        retries=0,
         was_in_control=False,
+        was_armed=False,
         reference=ReferenceState(position_enu_m=position, velocity_enu_m_s=zero, acceleration_enu_m_s2=zero),
         reference_ns=situation.t_ns,
         tracking=Tracking(),
@@ -184,38 +209,50 @@ def _is_fresh(situation: Situation, config: CompanionConfig) -> bool:
 def _fly(
     memory: StepMemory, situation: Situation, inputs: StepInputs, system: System
 ) -> tuple[StepMemory, PlanResult | None]:
-    """Advance the virtual model by one plan."""
+    """Plan from the virtual model now to where it is at the next step, one period from now."""
     if memory.reference is None or memory.phase not in FLYING_PHASES:
         return memory, None
-    dt_s = (inputs.t_ns - memory.reference_ns) * 1e-9
-    if dt_s <= 0.0:
-        return memory, None
+    # The last plan led to `reference_ns`; this step may come a little earlier or later than that.
+    off_s = (inputs.t_ns - memory.reference_ns) * 1e-9
+    reference = carried(memory.reference, max(min(off_s, _STEP_MAX_S), -_STEP_MAX_S))
+    memory = replace(memory, reference=reference)
+    period_s = 1.0 / system.config.step_rate_hz
     aim = _aim(memory, situation, system.config)
     request = PlanRequest(
-        state=memory.reference,
+        state=reference,
         target=aim.target,
-        limits=inputs.limits,
+        limits=_limits(memory, situation, inputs.limits, system.config),
         floor_enu_m=aim.floor_enu_m,
-        dt_s=min(dt_s, _STEP_MAX_S),
+        dt_s=period_s,
     )
     guidance, plan = system.guidance.plan(memory.guidance, request)
+    reference_ns = inputs.t_ns + round(period_s * 1e9)
     memory = replace(
         memory,
         guidance=guidance,
         reference=plan.next_state,
-        reference_ns=inputs.t_ns,
-        tracking=remember(memory.tracking, inputs.t_ns, plan.next_state),
-        yaw_setpoint_rad=_slewed_yaw_rad(memory, situation.pad, dt_s, system.config),
+        reference_ns=reference_ns,
+        tracking=remember(memory.tracking, reference_ns, plan.next_state),
+        yaw_setpoint_rad=_slewed_yaw_rad(memory, situation.pad, period_s, system.config),
     )
     return memory, plan
+
+
+def _limits(memory: StepMemory, situation: Situation, limits: FlightLimits, config: CompanionConfig) -> FlightLimits:
+    """Return the limits of this step: just above the pad the drone turns less than the deck, to touch down level."""
+    relative = approach(situation)
+    if memory.phase is not Phase.DESCEND or relative is None or relative.height_m > config.touchdown.level_height_m:
+        return limits
+    level_m_s2 = min(config.touchdown.level_acceleration_m_s2, limits.acceleration_max_m_s2)
+    return replace(limits, acceleration_max_m_s2=level_m_s2)
 
 
 def _slewed_yaw_rad(memory: StepMemory, pad: PadPath | None, dt_s: float, config: CompanionConfig) -> float:
     """Turn towards the vehicle's heading while it is followed, at a bounded rate."""
     follows = memory.phase in LANDING_PHASES or memory.phase is Phase.TOUCHDOWN
-    if not follows or pad is None or pad.yaw_rad is None:
+    if not (follows and config.follows_heading) or pad is None or pad.yaw_rad is None:
         return memory.yaw_setpoint_rad
-    turn_max_rad = config.yaw_rate_max_rad_s * min(dt_s, _STEP_MAX_S)
+    turn_max_rad = config.yaw_rate_max_rad_s * dt_s
     turn_rad = wrap_angle(pad.yaw_rad - memory.yaw_setpoint_rad)
     return wrap_angle(memory.yaw_setpoint_rad + min(max(turn_rad, -turn_max_rad), turn_max_rad))
 
@@ -239,10 +276,6 @@ def _desire(memory: StepMemory, situation: Situation, config: CompanionConfig) -
         case Phase.TAKEOFF:
             return Desire(control=True, armed=True)
         case Phase.TOUCHDOWN:
-            relative = approach(situation)
-            low = relative is not None and relative.height_m < config.descent.commit_height_m
-            return Desire(control=True, armed=False, force_disarm=low)
-        case Phase.IDLE | Phase.SECURED | Phase.PILOT:
-            return Desire()
+            return Desire(armed=False, force_disarm=is_on_pad(situation, config))
         case _:
-            return Desire(control=None if memory.was_in_control else True)
+            return Desire()  # control that was had and is lost is not taken back

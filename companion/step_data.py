@@ -12,7 +12,7 @@ from companion.estimation.estimator import Estimator
 from companion.phases import Phase
 from companion.planning.guidance import Guidance, PlanResult, ReferenceState
 from companion.reference import Tracking
-from link.messages import Command, CommandReply, LandingStatus, PadGeometry
+from link.messages import Command, CommandReply, LandingStatus, PadGeometry, Vector3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -83,7 +83,9 @@ class StepMemory:
         phase_since_ns: when it began.
         reason: why it began.
         retries: landings aborted since the start.
-        was_in_control: the autopilot has followed the companion since the start.
+        may_retry: no operator has broken the landing off since the start.
+        was_in_control: the autopilot's mode has been the companion's since the start.
+        was_armed: and its motors were armed in that mode.
         estimator: the estimator's own memory.
         guidance: the guidance law's own memory.
         driver: the driver's memory.
@@ -95,13 +97,16 @@ class StepMemory:
         anchor_enu_m: (3,) where a hover phase stays.
         yaw_setpoint_rad: last one sent.
         origin_count: of the frame that the estimate is in.
+        frame_shift_enu_m: likewise.
     """
 
     phase: Phase = Phase.IDLE
     phase_since_ns: int = 0
     reason: str = "waiting for a start"
     retries: int = 0
+    may_retry: bool = True
     was_in_control: bool = False
+    was_armed: bool = False
     estimator: Any = None
     guidance: Any = None
     driver: DriverMemory = field(default_factory=DriverMemory)
@@ -113,3 +118,4 @@ class StepMemory:
     anchor_enu_m: Array | None = None
     yaw_setpoint_rad: float = 0.0
     origin_count: int = 0
+    frame_shift_enu_m: Vector3 = (0.0, 0.0, 0.0)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from companion.config import CompanionConfig, DescentConfig
+from companion.config import CompanionConfig, DescentConfig, LandingStyle
 from companion.data import Array
 from companion.pad import PadPath
 from companion.phases import Phase
@@ -83,6 +83,8 @@ def _height_profile(
             height_m = config.abort.height_m
         case Phase.ALIGN:
             height_m = config.descent.align_height_m
+        case _ if config.landing is LandingStyle.DIRECT:
+            height_m = 0.0
         case _:
             height_m = _chase_height_m(pad, reference, config)
     return np.full(n, height_m), np.zeros(n)
@@ -126,7 +128,14 @@ def _clearance_m(phase: Phase, config: CompanionConfig) -> float:
     match phase:
         case Phase.DESCEND | Phase.TOUCHDOWN:
             return NO_FLOOR_M
+        case Phase.CHASE if config.landing is LandingStyle.DIRECT:
+            return NO_FLOOR_M
         case Phase.ALIGN:
             return 0.6 * config.descent.align_height_m
         case _:
-            return 0.8 * config.descent.align_height_m
+            return chase_floor_m(config)
+
+
+def chase_floor_m(config: CompanionConfig) -> float:
+    """Return how far the feet stay above the pad before the alignment."""
+    return 0.8 * config.descent.align_height_m

@@ -10,6 +10,7 @@ from typing import Protocol
 from companion.data import FlightLimits, Setpoint
 from link.geodesy import Datum
 from link.mavlink.dialect import Message
+from link.messages import Vector3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,8 +22,9 @@ class AutopilotView:
     in_control: bool  # it is in the mode in which it follows the companion's setpoints
     failsafe: bool
     landed: bool | None = None
-    origin: Datum | None = None
+    origin: Datum | None = None  # above the ellipsoid
     origin_count: int = 0  # how often the origin was set or moved
+    frame_shift_enu_m: Vector3 = (0.0, 0.0, 0.0)  # sum of the jumps of the drone's own position
 
 
 NO_AUTOPILOT = AutopilotView(link_up=False, armed=False, in_control=False, failsafe=False)
@@ -58,7 +60,8 @@ class DriverMemory:
     """When the driver last asked for what, and what was refused."""
 
     streaming_since_ns: int | None = None
-    asked_ns: Mapping[int, int] | None = None
+    asked_ns: Mapping[AutopilotCommand, int] | None = None
+    disarm_asked: bool = False
     disarm_refusals: int = 0
 
 

@@ -46,7 +46,7 @@ class Px4Driver:
             memory = replace(memory, streaming_since_ns=t_ns)
         if desire.armed is False and view.armed:
             return self._disarm(memory, desire, t_ns)
-        memory = replace(memory, disarm_refusals=0)
+        memory = replace(memory, disarm_asked=False, disarm_refusals=0)
         if desire.release and view.in_control:
             return _ask(memory, _set_mode(_MAIN_MODE_AUTO, _SUB_MODE_LOITER), t_ns, _ASK_AGAIN_S)
         if desire.control and not view.in_control and _streamed_s(memory, t_ns) >= _STREAM_FIRST_S:
@@ -60,12 +60,12 @@ class Px4Driver:
     ) -> tuple[DriverMemory, tuple[AutopilotCommand, ...]]:
         """Ask plainly; once that was refused, and only with the evidence complete, force it."""
         force = desire.force_disarm and memory.disarm_refusals > 0
-        return _ask(memory, _arm(armed=False, force=force), t_ns, _DISARM_AGAIN_S)
+        return _ask(replace(memory, disarm_asked=True), _arm(armed=False, force=force), t_ns, _DISARM_AGAIN_S)
 
     def acknowledged(self, memory: DriverMemory, command: int, result: int) -> DriverMemory:
-        """Count refused disarms."""
+        """Count refused disarms; an answer to an earlier arming is none."""
         refused = result not in (mavlink.MAV_RESULT_ACCEPTED, mavlink.MAV_RESULT_IN_PROGRESS)
-        if command == mavlink.MAV_CMD_COMPONENT_ARM_DISARM and refused:
+        if command == mavlink.MAV_CMD_COMPONENT_ARM_DISARM and refused and memory.disarm_asked:
             return replace(memory, disarm_refusals=memory.disarm_refusals + 1)
         return memory
 
@@ -92,12 +92,12 @@ def _streamed_s(memory: DriverMemory, t_ns: int) -> float:
 def _ask(
     memory: DriverMemory, command: AutopilotCommand, t_ns: int, again_s: float
 ) -> tuple[DriverMemory, tuple[AutopilotCommand, ...]]:
-    """Return `command`, unless the same one was sent less than `again_s` ago."""
+    """Return `command`, unless the same one, parameters included, was sent less than `again_s` ago."""
     asked = dict(memory.asked_ns or {})
-    last_ns = asked.get(command.command)
+    last_ns = asked.get(command)
     if last_ns is not None and (t_ns - last_ns) * 1e-9 < again_s:
         return memory, ()
-    asked[command.command] = t_ns
+    asked[command] = t_ns
     return replace(memory, asked_ns=asked), (command,)
 
 

@@ -1,7 +1,5 @@
 """SET_POSITION_TARGET_LOCAL_NED from a setpoint in ENU; shared by all drivers."""
 
-import math
-
 from companion.data import Setpoint
 from link.frames import ned_from_enu, yaw_ned_from_enu
 from link.mavlink.dialect import Message, mavlink
@@ -10,6 +8,7 @@ _IGNORE_VELOCITY = 0b0000_0000_0011_1000
 _IGNORE_ACCELERATION = 0b0000_0001_1100_0000
 _IGNORE_YAW_RATE = 0b0000_1000_0000_0000
 _ZERO = (0.0, 0.0, 0.0)
+_VALUE_MAX = 1e7  # more than any place or motion; single precision holds it
 
 
 def local_ned_setpoint(setpoint: Setpoint, boot_ms: int, target_system: int) -> Message:
@@ -21,7 +20,7 @@ def local_ned_setpoint(setpoint: Setpoint, boot_ms: int, target_system: int) -> 
         target_system: the autopilot's system id.
 
     Raises:
-        ValueError: a value is not finite.
+        ValueError: a value is not finite, or absurd.
 
     Source: MAVLink common, POSITION_TARGET_TYPEMASK.
     """
@@ -33,8 +32,8 @@ def local_ned_setpoint(setpoint: Setpoint, boot_ms: int, target_system: int) -> 
     acceleration = ned_from_enu(setpoint.acceleration_enu_m_s2 or _ZERO)
     yaw_rad = yaw_ned_from_enu(setpoint.yaw_rad)
     values = (*position, *velocity, *acceleration, yaw_rad)
-    if not all(map(math.isfinite, values)):
-        raise ValueError(f"setpoint is not finite: {setpoint}")
+    if not all(abs(value) < _VALUE_MAX for value in values):
+        raise ValueError(f"setpoint is not finite or absurd: {setpoint}")
     return mavlink.MAVLink_set_position_target_local_ned_message(
         boot_ms & 0xFFFFFFFF,
         target_system,

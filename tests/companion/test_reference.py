@@ -4,7 +4,7 @@ import numpy as np
 
 from companion.data import OwnState
 from companion.planning.guidance import ReferenceState
-from companion.reference import Tracking, compare, remember, setpoint_ahead
+from companion.reference import Tracking, carried, compare, remember, setpoint_at
 
 STEP_NS = 20_000_000
 
@@ -65,13 +65,20 @@ def test_correction_stays_bounded() -> None:
     assert np.linalg.norm(tracking.correction_enu_m) <= 1.5 + 1e-9
 
 
-def test_setpoint_ahead_is_the_closed_form_of_constant_acceleration() -> None:
+def test_carried_is_the_closed_form_of_constant_acceleration() -> None:
     reference = ReferenceState(
         position_enu_m=np.array([1.0, 2.0, 3.0]),
         velocity_enu_m_s=np.array([4.0, 0.0, -1.0]),
         acceleration_enu_m_s2=np.array([2.0, 1.0, 0.0]),
     )
-    setpoint = setpoint_ahead(reference, np.array([0.1, 0.0, 0.0]), 0.05, 0, 0.3, position_only=False)
-    np.testing.assert_allclose(setpoint.position_enu_m, [1.0 + 0.2 + 0.0025 + 0.1, 2.0 + 0.00125, 3.0 - 0.05])
-    np.testing.assert_allclose(setpoint.velocity_enu_m_s, [4.1, 0.05, -1.0])
-    assert setpoint.t_ns == 50_000_000
+    later = carried(reference, 0.05)
+    np.testing.assert_allclose(later.position_enu_m, [1.0 + 0.2 + 0.0025, 2.0 + 0.00125, 3.0 - 0.05])
+    np.testing.assert_allclose(later.velocity_enu_m_s, [4.1, 0.05, -1.0])
+    np.testing.assert_allclose(carried(later, -0.05).position_enu_m, reference.position_enu_m, atol=1e-12)
+
+
+def test_setpoint_is_the_model_with_the_correction() -> None:
+    setpoint = setpoint_at(_state(2.0, 5.0), np.array([0.1, 0.0, 0.0]), 50_000_000, 0.3, position_only=False)
+    np.testing.assert_allclose(setpoint.position_enu_m, [10.1, 0.3, 4.0])
+    assert setpoint.velocity_enu_m_s == (5.0, 0.0, 0.0)
+    assert setpoint_at(_state(2.0, 5.0), np.zeros(3), 0, 0.3, position_only=True).velocity_enu_m_s is None
