@@ -1,0 +1,36 @@
+"""The landing over real UDP and real Zenoh, by the README's two programs and by its four."""
+
+import pytest
+
+from scenarios.outcome import LANDED
+from tests.integration.observer import observer
+from tests.integration.programs import Programs, free_endpoint, free_udp_port
+
+pytestmark = pytest.mark.slow
+
+SPEED = "5"
+
+
+def test_two_programs_land_with_the_companion_started_first() -> None:
+    port, endpoint = free_udp_port(), free_endpoint()
+    listening = ("--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint)
+    speaking = ("--mavlink", f"udpout:127.0.0.1:{port}", "-l", endpoint)
+    with Programs() as programs:
+        companion = programs.start("companion", *listening, "--start", "--use-sim-time")
+        with observer(endpoint) as bystander:
+            programs.start("scenarios", "world", "straight_5", "--speed", SPEED, *speaking)
+            assert bystander.wait_for_end().tier in LANDED
+        assert companion.runs
+
+
+def test_four_programs_land_on_command_with_the_companion_started_last() -> None:
+    port, endpoint = free_udp_port(), free_endpoint()
+    with Programs() as programs, observer(endpoint) as bystander:
+        programs.start("ground-vehicle", "--scenario", "straight_5", "--use-sim-time", "-l", endpoint)
+        programs.start("sim-autopilot", "--mavlink", f"udpout:127.0.0.1:{port}", "-e", endpoint, "--speed", SPEED)
+        bystander.wait_for_time(1.0)
+        programs.start("companion", "--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint, "--use-sim-time")
+        bystander.wait_for_relative_position()
+        operator = programs.start("scenarios", "command", "start", "-e", endpoint)
+        assert (operator.wait(), operator.out.all) == (0, ["accepted"])
+        assert bystander.wait_for_end().tier in LANDED

@@ -1,0 +1,54 @@
+"""A partner is killed without a word: the simulator before and in the flight, the vehicle in the chase."""
+
+import pytest
+
+from companion.phases import Phase
+from tests.integration.observer import Observer, observer
+from tests.integration.programs import Programs, free_endpoint, free_udp_port
+
+pytestmark = pytest.mark.slow
+
+
+def start_again(programs: Programs, bystander: Observer, endpoint: str) -> None:
+    """Command a start once the companion knows where everything is, and see the drone rise."""
+    bystander.wait_for_relative_position()
+    operator = programs.start("scenarios", "command", "start", "-e", endpoint)
+    assert (operator.wait(), operator.out.all) == (0, ["accepted"])
+    bystander.wait_for_phase(Phase.TAKEOFF)
+    bystander.wait_for_height(1.0)
+
+
+@pytest.mark.parametrize("in_flight", [False, True])
+def test_the_companion_outlives_a_killed_simulator_and_flies_with_the_next_one(*, in_flight: bool) -> None:
+    port, endpoint = free_udp_port(), free_endpoint()
+    world = ("world", "straight_5", "--mavlink", f"udpout:127.0.0.1:{port}", "-l", endpoint)
+    with Programs() as programs, observer(endpoint) as bystander:
+        companion = programs.start("companion", "--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint)
+        first = programs.start("scenarios", *world)
+        companion.out.wait_for("autopilot found")
+        if in_flight:
+            start_again(programs, bystander, endpoint)
+        first.kill()
+        companion.out.wait_for("autopilot lost")
+        bystander.forget()
+        programs.start("scenarios", *world)
+        companion.out.wait_for("autopilot found again")
+        start_again(programs, bystander, endpoint)
+        assert companion.runs
+
+
+def test_the_drone_climbs_away_when_the_vehicle_is_killed_in_the_chase() -> None:
+    port, endpoint = free_udp_port(), free_endpoint()
+    with Programs() as programs, observer(endpoint) as bystander:
+        vehicle = programs.start("ground-vehicle", "--scenario", "straight_5", "--use-sim-time", "-l", endpoint)
+        programs.start("sim-autopilot", "--mavlink", f"udpout:127.0.0.1:{port}", "-e", endpoint, "--speed", "4")
+        programs.start("companion", "--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint, "--use-sim-time", "--start")
+        bystander.wait_for_phase(Phase.CHASE, Phase.ALIGN)
+        vehicle.kill()
+        bystander.wait_for_phase(Phase.ABORT)
+        assert bystander.recording.statuses[-1].reason in {"vehicle data too old", "vehicle's link lost"}
+        aborted_at_m, first = bystander.height_m, len(bystander.recording.drone)
+        bystander.wait_for_phase(Phase.HOLD)
+        heights_m = [truth.position_enu_m[2] for truth in bystander.recording.drone[first:]]
+        assert min(heights_m) > aborted_at_m - 0.5  # what it still sinks while it brakes
+        assert heights_m[-1] > aborted_at_m + 2.0
