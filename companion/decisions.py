@@ -273,7 +273,7 @@ def vehicle_passes(s: Situation, config: CompanionConfig) -> Decision | None:
     """Return the event that starts the chase.
 
     A moving vehicle is chased from the moment at which a drone that accelerates evenly to the vehicle's speed
-    v meets it: v / (2 a) before it passes.
+    v meets it: v / (2 a) before it passes. One that is past by more than the passing distance is let go.
     """
     if s.drone is None or s.pad is None or _fix_too_old(s, None, config) or _is_low(s, config):
         return None
@@ -285,7 +285,7 @@ def vehicle_passes(s: Situation, config: CompanionConfig) -> Decision | None:
     to_go_m = float(ahead @ velocity) / speed_m_s
     beside_m = abs(float(ahead[0] * velocity[1] - ahead[1] * velocity[0])) / speed_m_s
     lead_m = speed_m_s**2 / (2.0 * config.chase.start_acceleration_m_s2)
-    if beside_m > config.chase.passing_distance_m or to_go_m > lead_m:
+    if beside_m > config.chase.passing_distance_m or not -config.chase.passing_distance_m < to_go_m < lead_m:
         return None
     return Event.VEHICLE_PASSES, f"vehicle passes at {speed_m_s:.1f} m/s"
 
