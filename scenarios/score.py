@@ -65,12 +65,19 @@ class Score:
     slid_m: float | None
     motors_off_s: float | None
 
+    @property
+    def s2_quality(self) -> bool:
+        """Whether it landed, secured or not, with a contact within the limits of S2."""
+        landed = self.tier in {Tier.S1, Tier.S2, Tier.S3}
+        return landed and self.touchdown is not None and not _beyond(self.touchdown, _S2_LIMITS)
+
     def to_json(self) -> dict[str, float | int | str | bool | None]:
         """Return the score as one flat table."""
         empty = dict.fromkeys(Touchdown.__dataclass_fields__)
         own = {
             "tier": self.tier.value,
             "reason": self.reason,
+            "s2_quality": self.s2_quality,
             "start_t_ns": self.start_t_ns,
             "time_to_contact_s": self.time_to_contact_s,
             "time_to_s0_s": self.time_to_s0_s,

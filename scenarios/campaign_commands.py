@@ -1,0 +1,130 @@
+"""The commands about campaigns: `campaign`, `table` and `compare`."""
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from link.errors import UserError
+
+if TYPE_CHECKING:
+    from scenarios.campaign import Where
+    from scenarios.campaign_folder import Plan
+    from scenarios.landing_task import Row
+
+_ERRORS_SHOWN = 5
+
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
+FolderArgument = Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="Folder of a campaign.")]
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands to `app`."""
+    app.command("campaign")(campaign_command)
+    app.command("table")(table_command)
+    app.command("compare")(compare_command)
+
+
+def campaign_command(
+    cells: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="CELL...", help="Scenarios, such as straight_5+sensors=nominal+wind=moderate."),
+    ] = None,
+    *,
+    seeds: Annotated[int, typer.Option("--seeds", min=1, metavar="N", help="Landings of each cell.")] = 100,
+    first_seed: Annotated[int, typer.Option("--first-seed", min=0, metavar="N", help="The others follow.")] = 1,
+    workers: Annotated[
+        int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option("--scheduler", metavar="tcp://HOST:8786", help="Of an existing Dask cluster.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="The campaign's folder [default: in runs].")
+    ] = None,
+    resume: Annotated[
+        Path | None, typer.Option("--resume", metavar="DIR", help="Go on with what is missing or failed there.")
+    ] = None,
+    config: Annotated[
+        Path | None, typer.Option("--config", metavar="FILE", help="The companion's configuration for all cells.")
+    ] = None,
+    as_json: JsonOption = False,
+) -> int:
+    """Fly each cell with many seeds and print the summary; exit code 1 when a landing raised an error."""
+    from scenarios.campaign import Where, check_same_versions, make_plan  # noqa: PLC0415 (numerics are slow to load)
+    from scenarios.campaign_folder import create_folder, read_plan  # noqa: PLC0415
+
+    where = Where(workers=workers, scheduler=scheduler)
+    if workers is not None and scheduler is not None:
+        raise UserError("--workers is about local processes: leave it out with --scheduler")
+    if resume is not None:
+        if cells or config or out:
+            raise UserError(f"{resume} says what is flown: leave out cells, --config and --out with --resume")
+        plan = read_plan(resume)
+        check_same_versions(plan)
+        return _fly(resume, plan, where, as_json=as_json)
+    if not cells:
+        raise UserError("no cell is given; `scenarios list` shows the scenarios")
+    plan = make_plan(cells, first_seed=first_seed, seeds=seeds, config=config)
+    return _fly(create_folder(out, plan), plan, where, as_json=as_json)
+
+
+def table_command(folder: FolderArgument, *, as_json: JsonOption = False) -> None:
+    """Print a campaign's summary again."""
+    from scenarios.campaign_folder import read_landings  # noqa: PLC0415 (numerics are slow to load)
+
+    _print_summary(read_landings(folder), as_json=as_json)
+
+
+def compare_command(first: FolderArgument, second: FolderArgument, *, as_json: JsonOption = False) -> None:
+    """Compare two campaigns on the same cells and seeds."""
+    from scenarios.campaign_tables import print_comparison  # noqa: PLC0415 (numerics are slow to load)
+    from scenarios.compare import compare_campaigns  # noqa: PLC0415
+
+    comparison = compare_campaigns(first, second)
+    if as_json:
+        _print_json(comparison)
+    else:
+        print_comparison(comparison, sys.stdout)
+
+
+def _fly(folder: Path, plan: "Plan", where: "Where", *, as_json: bool) -> int:
+    from scenarios.campaign import fly_campaign  # noqa: PLC0415 (numerics are slow to load)
+    from scenarios.campaign_progress import CampaignProgress  # noqa: PLC0415
+
+    _note(f"campaign in {folder}")
+    try:
+        with CampaignProgress() as progress:
+            rows = fly_campaign(folder, plan, where, progress.update)
+    except KeyboardInterrupt:
+        _note(f"what is done is kept; go on with: scenarios campaign --resume {folder}")
+        raise
+    _print_summary(rows, as_json=as_json)
+    failed = [row for row in rows if row["error"] is not None]
+    for row in failed[:_ERRORS_SHOWN]:
+        _note(f"{row['cell']}, seed {row['seed']}: {row['error']}")
+    if len(failed) > _ERRORS_SHOWN:
+        _note(f"{len(failed) - _ERRORS_SHOWN} further errors; all are in {folder / 'landings.parquet'}")
+    return 1 if failed else 0
+
+
+def _print_summary(rows: Sequence["Row"], *, as_json: bool) -> None:
+    from scenarios.campaign_tables import print_summary  # noqa: PLC0415 (numerics are slow to load)
+    from scenarios.summary import summarize  # noqa: PLC0415
+
+    summary = summarize(rows)
+    if as_json:
+        _print_json(summary)
+    else:
+        print_summary(summary, sys.stdout)
+
+
+def _print_json(table: Mapping[str, Any]) -> None:
+    sys.stdout.write(json.dumps(table, indent=2, allow_nan=False) + "\n")
+
+
+def _note(text: str) -> None:
+    sys.stderr.write(f"{text}\n")

@@ -1,0 +1,118 @@
+"""One landing of a campaign as a task that any process can do, and its result as one flat row."""
+
+import time
+import traceback
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from threading import Lock
+from typing import Any
+
+from companion.phases import LANDING_PHASES, Phase
+from link.errors import UserError
+from scenarios.config import Scenario
+from scenarios.lockstep import Lockstep
+from scenarios.outcome import result_table
+from scenarios.recording import Recording
+from scenarios.versions import sources
+
+Row = dict[str, Any]
+"""A landing's result by column: plain values, None where there is none; `error` tells why there is no result."""
+
+_LANDING = frozenset(phase.value for phase in LANDING_PHASES)
+_ONE_AT_A_TIME = Lock()  # threads of one process would only share its interpreter
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Task:
+    """A landing to be flown: the cell's scenario with this seed."""
+
+    cell: str
+    seed: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Flown:
+    """A landing's row, and how long it took to compute, which is no part of the result."""
+
+    row: Row
+    wall_s: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Flights:
+    """The job of a campaign's processes.
+
+    Attributes:
+        scenarios: by cell.
+        sources: of the project, as `scenarios.versions` has them; a process with others refuses.
+    """
+
+    scenarios: Mapping[str, Scenario]
+    sources: str
+
+    def __call__(self, task: Task) -> Flown:
+        """Return what came of a task; one that raises is a row with its error.
+
+        Raises:
+            UserError: this process has other sources.
+        """
+        if sources() != self.sources:
+            raise UserError("a worker has other sources than this program: install the same on all, or start again")
+        with _ONE_AT_A_TIME:
+            began_s = time.perf_counter()
+            try:
+                row = fly(task, self.scenarios[task.cell])
+            except Exception as error:  # noqa: BLE001 (one landing's fault must not end a campaign, and is reported)
+                row = failed(task, _where(error))
+            return Flown(row=row, wall_s=time.perf_counter() - began_s)
+
+    def only(self, cell: str) -> "Flights":
+        """Return the job for tasks of one cell."""
+        return Flights(scenarios={cell: self.scenarios[cell]}, sources=self.sources)
+
+
+def fly(task: Task, scenario: Scenario) -> Row:
+    """Fly a landing in lockstep and return its row."""
+    lockstep = Lockstep(scenario, task.seed)
+    ended = lockstep.run()
+    return row_of(task, result_table(scenario, task.seed, lockstep.recording, ended), lockstep.recording)
+
+
+def row_of(task: Task, table: Mapping[str, Any], recording: Recording) -> Row:
+    """Return a run's result as a row: the table without its nesting, and how often it waved off.
+
+    Args:
+        task: whose result it is; the cell stands for the table's scenario.
+        table: as `result.json` has it.
+        recording: of the run.
+    """
+    values = {name: value for name, value in table.items() if name not in {"scenario", "seed", "phases_s"}}
+    times_s = table["phases_s"]
+    phases = {f"phase_{phase.name.lower()}_s": times_s.get(phase.value) for phase in Phase}
+    return _head(task) | values | wave_offs([status.phase for status in recording.statuses]) | phases
+
+
+def failed(task: Task, error: str) -> Row:
+    """Return the row of a task that has no result."""
+    return _head(task) | {"error": error}
+
+
+def wave_offs(phases: Sequence[str]) -> dict[str, int]:
+    """Return how often, in a run's phases, an approach was broken off, and how often another one followed."""
+    steps = list(pairwise(phases))
+    return {
+        "aborts": sum(after == Phase.ABORT.value != before for before, after in steps),
+        "retries": sum(before == Phase.ABORT.value and after in _LANDING for before, after in steps),
+    }
+
+
+def _head(task: Task) -> Row:
+    return {"cell": task.cell, "seed": task.seed, "error": None}
+
+
+def _where(error: Exception) -> str:
+    """Return an error in one line with the place that raised it, the same on every machine."""
+    last = traceback.extract_tb(error.__traceback__)[-1]
+    file = last.filename.replace("\\", "/").rsplit("/", 1)[-1]
+    return " ".join(f"{type(error).__name__}: {error} ({file}, {last.name})".split())

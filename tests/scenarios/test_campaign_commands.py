@@ -1,0 +1,122 @@
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from scenarios.campaign import make_plan
+from scenarios.campaign_folder import create_folder, open_journal
+from scenarios.landing_task import Flown, Row
+from scenarios.summary import MEASURES
+from tests.scenarios.campaigns import scenarios, short_cell
+
+
+def campaign(folder: Path, *, errors_m: tuple[float, ...], config: Path | None = None) -> Path:
+    """Return the folder of a campaign with results of its own making."""
+    plan = make_plan(["straight_5"], first_seed=1, seeds=len(errors_m), config=config)
+    create_folder(folder, plan)
+    with open_journal(folder) as journal:
+        for task, error_m in zip(plan.tasks(), errors_m, strict=True):
+            row: Row = {"cell": task.cell, "seed": task.seed, "error": None, "tier": "S3", "s2_quality": True}
+            journal.add(Flown(row=row | dict.fromkeys(MEASURES, error_m), wall_s=2.0))
+        journal.write_results()
+    return folder
+
+
+def refusal(capsys: pytest.CaptureFixture[str], *args: object) -> str:
+    assert scenarios(*args) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err.count("\n") == 1
+    return printed.err
+
+
+def test_table_prints_a_campaign_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = campaign(tmp_path / "a", errors_m=(0.1, 0.3))
+    assert scenarios("table", folder) == 0
+    assert "straight_5" in capsys.readouterr().out
+    assert scenarios("table", folder, "--json") == 0
+    (cell,) = json.loads(capsys.readouterr().out)["cells"]
+    assert cell["tiers"]["S3"] == cell["seeds"] == 2
+    assert cell["horizontal_error_m"] == {"median": 0.2, "p95": 0.29}
+
+
+def test_compare_pairs_two_campaigns_and_tells_what_differs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    config = tmp_path / "companion.toml"
+    config.write_text("[guidance]\nkind = 'pn'\n", encoding="utf-8")
+    first = campaign(tmp_path / "a", errors_m=(0.1, 0.3))
+    second = campaign(tmp_path / "b", errors_m=(0.2, 0.6), config=config)
+    assert scenarios("compare", first, second, "--json") == 0
+    comparison = json.loads(capsys.readouterr().out)
+    assert comparison["cells"][0]["horizontal_error_m"]["difference"] == 0.2
+    changed = {difference["key"]: difference["b"] for difference in comparison["differences"]}
+    assert changed == {"scenarios.straight_5.system.companion.guidance.kind": "pn"}
+    assert scenarios("compare", first, second) == 0
+    assert "companion.guidance.kind: mpc | pn" in capsys.readouterr().out
+
+
+def test_config_takes_the_place_of_the_scenarios_own(tmp_path: Path) -> None:
+    config = tmp_path / "companion.toml"
+    config.write_text("[descent]\nalign_height_m = 1.25\n", encoding="utf-8")
+    plan = make_plan(["straight_5", "circle_5"], first_seed=1, seeds=1, config=config)
+    heights_m = [scenario.system.companion.descent.align_height_m for scenario in plan.scenarios.values()]
+    assert heights_m == [1.25, 1.25]
+
+
+def test_campaign_refuses_a_cell_that_does_not_exist(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "no scenario is called 'strait_5'" in refusal(capsys, "campaign", "strait_5")
+
+
+def test_campaign_refuses_a_cell_twice(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "'straight_5' is given twice" in refusal(capsys, "campaign", "straight_5", "straight_5")
+
+
+def test_campaign_refuses_to_fly_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "no cell is given" in refusal(capsys, "campaign")
+
+
+def test_campaign_refuses_a_folder_in_use(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = campaign(tmp_path / "a", errors_m=(0.1,))
+    assert "not empty" in refusal(capsys, "campaign", short_cell(tmp_path), "--out", folder)
+
+
+def test_campaign_refuses_cells_beside_resume(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = campaign(tmp_path / "a", errors_m=(0.1,))
+    assert "leave out cells" in refusal(capsys, "campaign", "straight_5", "--resume", folder)
+
+
+def test_campaign_refuses_workers_beside_a_scheduler(capsys: pytest.CaptureFixture[str]) -> None:
+    words = "straight_5", "--workers", 2, "--scheduler", "tcp://127.0.0.1:8786"
+    assert "local processes" in refusal(capsys, "campaign", *words)
+
+
+def test_resuming_with_other_sources_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = campaign(tmp_path / "a", errors_m=(0.1,))
+    file = folder / "campaign.json"
+    table = json.loads(file.read_text(encoding="utf-8"))
+    table["versions"]["sources"] = "0123456789ab"
+    file.write_text(json.dumps(table), encoding="utf-8")
+    assert "begun with another version of sources" in refusal(capsys, "campaign", "--resume", folder)
+
+
+@pytest.mark.parametrize("command", ["table", "campaign --resume"])
+def test_folder_without_a_campaign_is_named(command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert f"{tmp_path / 'campaign.json'}: cannot be read" in refusal(capsys, *command.split(), tmp_path)
+
+
+def test_plan_that_was_changed_by_hand_is_checked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = campaign(tmp_path / "a", errors_m=(0.1,))
+    file = folder / "campaign.json"
+    file.write_text(file.read_text(encoding="utf-8").replace('"seeds": 1', '"seeds": 0'), encoding="utf-8")
+    assert "seeds = 0 does not fit" in refusal(capsys, "table", folder)
+
+
+def test_campaign_without_results_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    create_folder(tmp_path / "a", make_plan(["straight_5"], first_seed=1, seeds=1, config=None))
+    assert "landings.parquet: cannot be read" in refusal(capsys, "table", tmp_path / "a")
+
+
+def test_commands_load_no_numerics() -> None:
+    code = "import sys, tests.scenarios.campaigns; sys.exit('numpy' in sys.modules or 'polars' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
