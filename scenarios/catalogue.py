@@ -140,7 +140,16 @@ def _section(section: str, value: object, source: str) -> Table:
 
 @cache
 def _presets(section: str) -> dict[str, Table]:
-    return _read(_folder() / "presets" / f"{section}.toml")
+    tables = _read(_folder() / "presets" / f"{section}.toml")
+    return {name: _on_base(table, tables) for name, table in tables.items()}
+
+
+def _on_base(table: Table, tables: Table) -> Table:
+    """Return `table` laid over the one that its `base` names."""
+    if "base" not in table:
+        return table
+    own = {key: value for key, value in table.items() if key != "base"}
+    return merged(_on_base(tables[table["base"]], tables), own)
 
 
 def _folder() -> Traversable:

@@ -149,3 +149,14 @@ def test_file_that_does_not_fit_is_one_line_that_names_the_key(tmp_path: Path, t
     assert "\n" not in message
     for word in words:
         assert word in message
+
+
+def test_preset_on_another_one_differs_in_its_own_values_only() -> None:
+    boosted = load_scenario("report_1+system=report").system
+    plain = load_scenario("report_1+system=report_unboosted").system
+    guidance = boosted.companion.guidance
+    assert guidance.mpc_report.velocity_factor == 1.2
+    assert plain.companion.guidance.mpc_report.velocity_factor == 1.0
+    same = guidance.model_copy(update={"mpc_report": guidance.mpc_report.model_copy(update={"velocity_factor": 1.0})})
+    assert plain.companion == boosted.companion.model_copy(update={"guidance": same})
+    assert plain.drone == boosted.drone
