@@ -1,0 +1,160 @@
+"""Who is in command and when a landing is broken off: whole flights of the step."""
+
+from dataclasses import replace
+
+import pytest
+
+from companion.phases import Phase
+from link.messages import Command
+from tests.companion.world import (
+    CONFIG,
+    DISARM,
+    FLYING,
+    IMPATIENT,
+    LANDING,
+    SET_MODE,
+    Flight,
+    reached,
+)
+
+BY_VALUE = [phase for phase in FLYING if phase not in (Phase.ABORT, Phase.HOLD)]
+
+
+@pytest.mark.parametrize("phase", FLYING)
+def test_pilots_mode_change_stops_setpoints_in_the_same_step_and_for_good(phase: Phase) -> None:
+    flight = reached(phase)
+    assert flight.view.in_control
+    flight.view = replace(flight.view, in_control=False)
+    commands = len(flight.commands)
+    first = flight.step()
+    assert first.setpoint is None
+    assert flight.phase is Phase.PILOT
+    assert first.text is not None
+    flight.run(1.0)
+    flight.view = replace(flight.view, in_control=True)
+    assert all(outputs.setpoint is None for outputs in flight.run(5.0))
+    assert len(flight.commands) == commands
+    assert flight.phase is Phase.PILOT
+
+
+def test_pilots_mode_change_before_the_motors_turn_counts_as_well() -> None:
+    flight = Flight(refuses=frozenset({DISARM}))
+    flight.start_and_reach(Phase.TAKEOFF)
+    flight.run(1.5)
+    assert flight.view.in_control
+    flight.view = replace(flight.view, in_control=False)
+    flight.step()
+    modes = len(flight.told(SET_MODE))
+    flight.run(10.0)
+    assert flight.phase is Phase.PILOT
+    assert len(flight.told(SET_MODE)) == modes
+    assert not flight.view.armed
+
+
+@pytest.mark.parametrize("phase", BY_VALUE)
+def test_failsafe_ends_the_companions_flight(phase: Phase) -> None:
+    flight = reached(phase)
+    flight.view = replace(flight.view, failsafe=True)
+    assert flight.step().setpoint is None
+    assert flight.phase is Phase.PILOT
+    assert flight.memory.reason == "autopilot failsafe"
+
+
+def test_autopilot_that_never_gives_control_is_given_up() -> None:
+    flight = Flight(config=IMPATIENT, refuses=frozenset({SET_MODE}))
+    flight.start_and_reach(Phase.TAKEOFF)
+    flight.run(IMPATIENT.takeoff.refused_after_s + 1.0)
+    assert flight.phase is Phase.IDLE
+    assert flight.memory.reason == "the autopilot did not give control in time"
+    asked = len(flight.commands)
+    flight.run(5.0)
+    assert len(flight.commands) == asked
+
+
+def test_airborne_drone_whose_control_is_refused_does_not_wait_for_it_for_ever() -> None:
+    flight = Flight(config=IMPATIENT, refuses=frozenset({SET_MODE}))
+    flight.view = replace(flight.view, armed=True, landed=False)
+    flight.start_and_reach(Phase.TAKEOFF)
+    flight.run(IMPATIENT.takeoff.refused_after_s + 1.0)
+    assert flight.phase is Phase.IDLE
+
+
+def test_hold_before_the_motors_turn_ends_in_idle() -> None:
+    for command in (Command.HOLD, Command.ABORT):
+        flight = Flight()
+        flight.start_and_reach(Phase.TAKEOFF)
+        outputs = flight.step(command)
+        assert outputs.setpoint is None
+        assert flight.phase is Phase.IDLE
+        flight.run(3.0)
+        assert flight.commands == []
+
+
+@pytest.mark.parametrize("phase", LANDING)
+@pytest.mark.parametrize("command", [Command.ABORT, Command.HOLD])
+def test_operators_abort_climbs_and_ends_in_a_hold_without_retry(phase: Phase, command: Command) -> None:
+    flight = reached(phase)
+    reply = flight.step(command).reply
+    assert reply is not None
+    assert reply.accepted
+    flight.run_until(Phase.HOLD)
+    assert flight.history[-2:] == [Phase.ABORT, Phase.HOLD]
+    assert flight.memory.reason == "broken off by the operator"
+
+
+def test_operator_can_end_the_retries_during_the_climb() -> None:
+    flight = reached(Phase.ALIGN)
+    flight.alive, flight.sends_fixes = False, False
+    flight.run_until(Phase.ABORT)
+    flight.sends_fixes = True
+    reply = flight.step(Command.HOLD).reply
+    assert reply is not None
+    assert reply.accepted
+    flight.run_until(Phase.HOLD)
+    assert Phase.CHASE not in flight.history[-2:]
+
+
+def test_abort_is_refused_with_the_reason_while_the_motors_are_switched_off() -> None:
+    flight = reached(Phase.TOUCHDOWN)
+    reply = flight.step(Command.ABORT).reply
+    assert reply is not None
+    assert not reply.accepted
+    assert reply.reason == "nothing to abort in phase touchdown"
+
+
+@pytest.mark.parametrize("phase", LANDING)
+def test_vehicle_that_falls_silent_is_left_upwards_and_held_off(phase: Phase) -> None:
+    flight = reached(phase)
+    flight.sends_fixes = False
+    flight.run_until(Phase.ABORT, limit_s=CONFIG.abort.fix_age_max_s + 0.1)
+    assert flight.memory.reason == "vehicle data too old"
+    height_m = flight.own.position_enu_m[2]
+    flight.run_until(Phase.HOLD, limit_s=CONFIG.abort.time_limit_s + 0.1)
+    assert flight.memory.reason == "no vehicle data"
+    assert flight.own.position_enu_m[2] > height_m + 0.8 * CONFIG.abort.height_m
+
+
+@pytest.mark.parametrize("phase", LANDING)
+def test_drone_that_does_not_know_where_it_is_aborts(phase: Phase) -> None:
+    flight = reached(phase)
+    flight.own_is_silent = True
+    flight.run_until(Phase.ABORT, limit_s=CONFIG.abort.own_age_max_s + 0.1)
+    assert flight.memory.reason == "own position too old"
+    flight.run_until(Phase.HOLD, limit_s=CONFIG.abort.time_limit_s + 0.1)
+    assert not [one for one in flight.told(DISARM) if one[2] == 0.0]
+
+
+@pytest.mark.parametrize("phase", BY_VALUE)
+def test_silent_link_is_not_taken_for_a_pilot(phase: Phase) -> None:
+    flight = reached(phase)
+    flight.view = replace(flight.view, link_up=False, in_control=False)
+    flight.step()
+    assert flight.phase is not Phase.PILOT
+
+
+@pytest.mark.parametrize("phase", [Phase.WAITING, Phase.CHASE, Phase.DESCEND])
+def test_motors_that_stop_in_the_air_end_the_companions_flight(phase: Phase) -> None:
+    flight = reached(phase)
+    flight.view = replace(flight.view, armed=False)
+    assert flight.step().setpoint is None
+    assert flight.phase is Phase.PILOT

@@ -1,0 +1,235 @@
+"""A vehicle that is known exactly, an autopilot that follows exactly, and a companion's step between them."""
+
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import dataclass, field, replace
+from functools import cache
+
+import numpy as np
+
+from companion.autopilots.driver import AutopilotView
+from companion.autopilots.px4 import Px4Driver
+from companion.config import CompanionConfig
+from companion.data import Array, Forecast, Measurement, OwnState, Quantity, VehicleEstimate
+from companion.phases import FLYING_PHASES, LANDING_PHASES, Phase
+from companion.planning.kinds import make_guidance
+from companion.step import companion_step
+from companion.step_data import StepInputs, StepMemory, StepOutputs, System
+from link.frames import quaternion_from_yaw
+from link.geodesy import Datum
+from link.mavlink.dialect import mavlink
+from link.messages import Command, PadGeometry, Vector3
+
+CONFIG = CompanionConfig()
+IMPATIENT = CONFIG.model_copy(
+    update={
+        "takeoff": CONFIG.takeoff.model_copy(update={"refused_after_s": 3.0}),
+        "chase": CONFIG.chase.model_copy(update={"parked_wait_s": 2.0}),
+        "descent": CONFIG.descent.model_copy(update={"align_time_limit_s": 4.0}),
+    }
+)
+START_NS = 1_795_000_000_000_000_000
+STEP_NS = 20_000_000
+ORIGIN = Datum(latitude_rad=0.83, longitude_rad=0.14, altitude_m=400.0)
+PAD_HEIGHT_M = 1.5
+GEAR_M = CONFIG.touchdown.gear_height_m
+FLYING = sorted(FLYING_PHASES, key=lambda one: one.value)
+LANDING = sorted(LANDING_PHASES, key=lambda one: one.value)
+DISARM, SET_MODE = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, mavlink.MAV_CMD_DO_SET_MODE
+
+
+@dataclass(frozen=True)
+class KnownVehicle:
+    """An estimator that knows: straight on at an even speed; the memory is the time of the newest fix."""
+
+    start_enu_m: Vector3
+    velocity_enu_m_s: Vector3
+    yaw_rad: float | None = 0.3
+    std_m: float = 0.05
+
+    def fuse(self, memory: int | None, measurements: Sequence[Measurement]) -> int:
+        return max(memory or 0, *(measurement.t_ns for measurement in measurements))
+
+    def estimate(self, _memory: int | None, _t_ns: int) -> VehicleEstimate | None:
+        return None
+
+    def at(self, t_ns: int) -> Array:
+        return np.array(self.start_enu_m) + np.array(self.velocity_enu_m_s) * (t_ns - START_NS) * 1e-9
+
+    def forecast(self, memory: int | None, t_ns: int, offset_s: Array) -> Forecast | None:
+        if memory is None:
+            return None
+        n = len(offset_s)
+        velocity = np.tile(self.velocity_enu_m_s, (n, 1))
+        return Forecast(
+            t_ns=t_ns,
+            offset_s=offset_s,
+            position_enu_m=self.at(t_ns) + velocity * offset_s[:, None],
+            velocity_enu_m_s=velocity,
+            acceleration_enu_m_s2=np.zeros((n, 3)),
+            yaw_rad=None if self.yaw_rad is None else np.full(n, self.yaw_rad),
+            position_std_m=np.full((n, 3), self.std_m),
+        )
+
+    def newest_fix_ns(self, memory: int | None) -> int | None:
+        return memory
+
+
+def fix(t_ns: int) -> Measurement:
+    """A position; `KnownVehicle` looks at its time only."""
+    return Measurement(t_ns=t_ns, quantity=Quantity.POSITION, value=np.zeros(3), covariance=np.eye(3))
+
+
+def own_state(t_ns: int, position_enu_m: Vector3, velocity_enu_m_s: Vector3 = (0.0, 0.0, 0.0)) -> OwnState:
+    return OwnState(
+        t_ns=t_ns,
+        position_enu_m=position_enu_m,
+        velocity_enu_m_s=velocity_enu_m_s,
+        orientation_wxyz=quaternion_from_yaw(0.2),
+        angular_velocity_flu_rad_s=(0.0, 0.0, 0.0),
+    )
+
+
+@dataclass
+class Flight:
+    """The drone is where the last setpoint wanted it, but never below the pad; commands are obeyed unless refused."""
+
+    vehicle: KnownVehicle = field(default_factory=lambda: KnownVehicle((-20.0, 0.4, PAD_HEIGHT_M), (4.0, 0.0, 0.0)))
+    config: CompanionConfig = CONFIG
+    pad: PadGeometry | None = None
+    refuses: frozenset[int] = frozenset()
+    refuses_plain_disarm: bool = False
+    sends_fixes: bool = True
+    own_is_silent: bool = False
+    alive: bool | None = True
+
+    def __post_init__(self) -> None:
+        self.memory = StepMemory()
+        self.t_ns = START_NS
+        self.view = AutopilotView(
+            link_up=True, armed=False, in_control=False, failsafe=False, landed=True, origin=ORIGIN, origin_count=1
+        )
+        self.own = own_state(START_NS, (0.0, 0.0, GEAR_M))
+        self.history: list[Phase] = []
+        self.commands: list[tuple[Phase, int, float, float]] = []
+        self.outputs: StepOutputs | None = None
+        self.acknowledgements: list[tuple[int, int]] = []
+        self.guidance = make_guidance(self.config.guidance.kind, self.config.guidance)
+
+    @property
+    def phase(self) -> Phase:
+        return self.memory.phase
+
+    def copy(self) -> "Flight":
+        other = copy(self)
+        other.history, other.commands = list(self.history), list(self.commands)
+        return other
+
+    @property
+    def system(self) -> System:
+        return System(config=self.config, estimator=self.vehicle, guidance=self.guidance)
+
+    def inputs(self, command: Command | None = None) -> StepInputs:
+        return StepInputs(
+            t_ns=self.t_ns,
+            limits=self.config.limits.flight_limits(),
+            own=self.own,
+            autopilot=self.view,
+            driver=Px4Driver(),
+            acknowledgements=tuple(self.acknowledgements),
+            measurements=(fix(self.t_ns),) if self.sends_fixes else (),
+            vehicle_alive=self.alive,
+            pad=self.pad,
+            command=command,
+        )
+
+    def step(self, command: Command | None = None) -> StepOutputs:
+        """Make a step and let the autopilot follow it."""
+        inputs = self.inputs(command)
+        self.acknowledgements = []
+        self.memory, outputs = companion_step(self.memory, inputs, self.system)
+        self.outputs = outputs
+        if not self.history or self.history[-1] is not self.phase:
+            self.history.append(self.phase)
+        self._obey(outputs)
+        self._fly(outputs)
+        self.t_ns += STEP_NS
+        return outputs
+
+    def run(self, duration_s: float) -> list[StepOutputs]:
+        return [self.step() for _ in range(round(duration_s * 1e9 / STEP_NS))]
+
+    def run_until(self, *phases: Phase, limit_s: float = 90.0) -> None:
+        for _ in range(round(limit_s * 1e9 / STEP_NS)):
+            if self.phase in phases:
+                return
+            self.step()
+        raise AssertionError(f"{phases} not reached in {limit_s} s: {self.history}, {self.memory.reason}")
+
+    def start_and_reach(self, phase: Phase) -> None:
+        self.run(0.1)
+        self.step(Command.START)
+        self.run_until(phase)
+
+    def told(self, command: int) -> list[tuple[Phase, int, float, float]]:
+        """The commands of a kind: phase, command, first and second parameter."""
+        return [one for one in self.commands if one[1] == command]
+
+    def _obey(self, outputs: StepOutputs) -> None:
+        for command in outputs.commands:
+            first, second = command.parameters[:2]
+            self.commands.append((self.phase, command.command, first, second))
+            is_disarm = command.command == DISARM and first == 0.0
+            if command.command in self.refuses or (is_disarm and self.refuses_plain_disarm and second == 0.0):
+                self.acknowledgements.append((command.command, mavlink.MAV_RESULT_TEMPORARILY_REJECTED))
+                continue
+            self.acknowledgements.append((command.command, mavlink.MAV_RESULT_ACCEPTED))
+            if command.command == SET_MODE:
+                self.view = replace(self.view, in_control=True)
+            else:
+                self.view = replace(self.view, armed=first == 1.0)
+
+    def _fly(self, outputs: StepOutputs) -> None:
+        t_ns = self.t_ns + STEP_NS
+        if self.own_is_silent:
+            return
+        setpoint = outputs.setpoint
+        if setpoint is None or setpoint.velocity_enu_m_s is None or not (self.view.armed and self.view.in_control):
+            self.own = replace(self.own, t_ns=t_ns, velocity_enu_m_s=(0.0, 0.0, 0.0))
+            return
+        ahead_s = (t_ns - setpoint.t_ns) * 1e-9
+        position = np.array(setpoint.position_enu_m) + np.array(setpoint.velocity_enu_m_s) * ahead_s
+        velocity = np.array(setpoint.velocity_enu_m_s)
+        deck = self.vehicle.at(t_ns)
+        if float(np.hypot(*(position - deck)[:2])) < 1.0 and position[2] < deck[2] + GEAR_M:
+            position[2], velocity[2] = deck[2] + GEAR_M, 0.0
+        x, y, z = position.tolist()
+        vx, vy, vz = velocity.tolist()
+        self.own = own_state(t_ns, (x, y, z), (vx, vy, vz))
+        self.view = replace(self.view, landed=False)
+
+
+def reached(phase: Phase) -> Flight:
+    """A flight that has just come into `phase`; plain disarms are refused, as on a deck that moves."""
+    return kept(phase).copy()
+
+
+@cache
+def kept(phase: Phase) -> Flight:
+    """The same, to be looked at only."""
+    flight = Flight()
+    flight.refuses_plain_disarm = True
+    match phase:
+        case Phase.ABORT:
+            flight.start_and_reach(Phase.CHASE)
+            flight.step(Command.ABORT)
+        case Phase.HOLD:
+            flight.start_and_reach(Phase.WAITING)
+            flight.step(Command.HOLD)
+        case Phase.TAKEOFF:
+            flight.start_and_reach(Phase.TAKEOFF)
+            flight.run(1.0)  # the mode is granted and the motors turn
+        case _:
+            flight.start_and_reach(phase)
+    assert flight.phase is phase
+    return flight
