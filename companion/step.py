@@ -151,7 +151,9 @@ def _enter(memory: StepMemory, event: Event, reason: str, situation: Situation, 
         return memory
     retries = memory.retries + 1 if event is Event.CLEAR else memory.retries
     retries = 0 if event is Event.START else retries
-    memory = replace(memory, phase=phase, phase_since_ns=situation.t_ns, reason=reason, held={}, retries=retries)
+    # What makes an approach unsafe goes on from one of its phases to the next, and so does the time it has held.
+    held = memory.held if {memory.phase, phase} <= LANDING_PHASES else {}
+    memory = replace(memory, phase=phase, phase_since_ns=situation.t_ns, reason=reason, held=held, retries=retries)
     if phase is Phase.TAKEOFF:
         return _begin_flight(memory, situation, config)
     if phase not in FLYING_PHASES:

@@ -158,3 +158,28 @@ def test_motors_that_stop_in_the_air_end_the_companions_flight(phase: Phase) -> 
     flight.view = replace(flight.view, armed=False)
     assert flight.step().setpoint is None
     assert flight.phase is Phase.PILOT
+
+
+def test_hold_time_of_an_abort_goes_on_through_the_phases_of_an_approach() -> None:
+    flight = reached(Phase.CHASE)
+    since_ns = flight.t_ns
+    flight.vehicle = replace(flight.vehicle, std_m=CONFIG.abort.position_std_max_m + 0.1)
+    aligned_ns = since_ns + round(0.5 * CONFIG.abort.cone_hold_s * 1e9)
+    while flight.phase in (Phase.CHASE, Phase.ALIGN, Phase.DESCEND):
+        if flight.t_ns > aligned_ns:
+            flight.vehicle = replace(flight.vehicle, start_enu_m=_below(flight))
+        flight.step()
+    assert Phase.ALIGN in flight.history
+    assert flight.memory.reason == "vehicle position too uncertain"
+    assert flight.memory.phase_since_ns - since_ns < (CONFIG.abort.cone_hold_s + 0.05) * 1e9
+
+
+def _below(flight: Flight) -> tuple[float, float, float]:
+    """Where the vehicle started if it is now 1 m beside the drone."""
+    x, y, z = flight.vehicle.start_enu_m
+    now = flight.vehicle.at(flight.t_ns)
+    return (
+        x + flight.own.position_enu_m[0] + 1.0 - float(now[0]),
+        y + flight.own.position_enu_m[1] - float(now[1]),
+        z,
+    )

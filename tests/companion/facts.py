@@ -1,0 +1,94 @@
+"""Situations and progress for the tests of decisions: a drone, a pad, and what each test of a phase looks at."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from companion.autopilots.driver import AutopilotView
+from companion.config import CompanionConfig
+from companion.decisions import Progress
+from companion.pad import PadPath
+from companion.phases import Phase
+from companion.planning.guidance import ReferenceState
+from companion.situation import Drone, Situation
+from link.geodesy import Datum
+from link.messages import Vector3
+
+CONFIG = CompanionConfig()
+NOW_NS = 1_795_000_000_000_000_000
+PAD_ENU_M = np.array([3.0, -2.0, 1.5])
+GEAR_M = CONFIG.touchdown.gear_height_m
+FLIES = AutopilotView(
+    link_up=True,
+    armed=True,
+    in_control=True,
+    failsafe=False,
+    landed=False,
+    origin=Datum(latitude_rad=0.8, longitude_rad=0.1, altitude_m=100.0),
+)
+
+
+def pad_at(velocity_enu_m_s: Vector3 = (4.0, 1.0, 0.0), *, std_m: float = 0.05, placed: bool = True) -> PadPath:
+    offsets = np.arange(0.0, 1.0, 0.2)
+    velocity = np.tile(velocity_enu_m_s, (len(offsets), 1))
+    return PadPath(
+        offset_s=offsets,
+        position_enu_m=PAD_ENU_M + velocity * offsets[:, None],
+        velocity_enu_m_s=velocity,
+        acceleration_enu_m_s2=np.zeros_like(velocity),
+        yaw_rad=0.2,
+        position_std_m=np.full_like(velocity, std_m),
+        placed=placed,
+    )
+
+
+def drone_at(
+    height_m: float, beside_m: float = 0.0, relative_velocity_enu_m_s: Vector3 = (0.0, 0.0, 0.0), *, pad: PadPath
+) -> Drone:
+    """A drone whose feet are `height_m` above the pad and `beside_m` east of its centre."""
+    return Drone(
+        position_enu_m=pad.position_enu_m[0] + np.array([beside_m, 0.0, height_m + GEAR_M]),
+        velocity_enu_m_s=pad.velocity_enu_m_s[0] + np.array(relative_velocity_enu_m_s),
+        yaw_rad=0.1,
+        age_s=0.02,
+    )
+
+
+def reference_at(height_m: float) -> ReferenceState:
+    return ReferenceState(
+        position_enu_m=PAD_ENU_M + np.array([0.0, 0.0, height_m + GEAR_M]),
+        velocity_enu_m_s=np.zeros(3),
+        acceleration_enu_m_s2=np.zeros(3),
+    )
+
+
+def situation(height_m: float = 1.5, beside_m: float = 0.0, pad: PadPath | None = None) -> Situation:
+    """Everything in order: the drone above the pad, fresh data, the autopilot in control."""
+    pad = pad_at() if pad is None else pad
+    return Situation(
+        t_ns=NOW_NS,
+        autopilot=FLIES,
+        drone=drone_at(height_m, beside_m, pad=pad),
+        pad=pad,
+        feet_offset_m=GEAR_M,
+        fix_age_s=0.1,
+        vehicle_alive=True,
+        reference=reference_at(height_m),
+        tracking_error_m=0.05,
+        waiting_point_enu_m=np.array([0.0, 0.0, 5.0]),
+    )
+
+
+def progress(phase: Phase, in_phase_s: float = 1.0) -> Progress:
+    return Progress(
+        phase=phase,
+        since_ns=NOW_NS - round(in_phase_s * 1e9),
+        retries=0,
+        may_retry=True,
+        was_in_control=True,
+        was_armed=True,
+    )
+
+
+def later(facts: Situation, by_ns: int) -> Situation:
+    return replace(facts, t_ns=facts.t_ns + by_ns)

@@ -1,0 +1,248 @@
+"""The tests of the phases: each fires after its hold time and not before, and in the order of their weight."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from companion.decisions import (
+    ABORT_TESTS,
+    ENTRY_TESTS,
+    Decision,
+    cone_radius_m,
+    decide,
+    update_held,
+    vehicle_passes,
+)
+from companion.decisions import Test as Condition
+from companion.phases import Event, Phase
+from companion.situation import Situation, approach
+from link.messages import Vector3
+from tests.companion.facts import CONFIG, NOW_NS, drone_at, later, pad_at, progress, reference_at, situation
+from tests.companion.world import FLYING, LANDING
+
+TICK_NS = 20_000_000
+OVER_PAD_M = 2.0 * CONFIG.descent.cone_radius_at_pad_m
+HIGH_M = CONFIG.descent.align_height_m
+LOW_M = 0.5 * CONFIG.descent.commit_height_m
+
+# What makes each abort test true, everything else being in order; in the descent, above the commit height.
+UNSAFE: dict[str, Situation] = {
+    "vehicle data too old": replace(situation(), fix_age_s=CONFIG.abort.fix_age_max_s + 0.01),
+    "vehicle position too uncertain": situation(pad=pad_at(std_m=CONFIG.abort.position_std_max_m + 0.01)),
+    "vehicle's link lost": replace(
+        situation(), vehicle_alive=False, fix_age_s=CONFIG.abort.alive_lost_fix_age_max_s + 0.01
+    ),
+    "own position too old": replace(situation(), drone=None),
+    "vehicle heading unknown": situation(pad=pad_at(placed=False)),
+    "setpoint not followed": replace(situation(), tracking_error_m=CONFIG.abort.tracking_error_max_m + 0.01),
+    "outside the descent cone": situation(beside_m=cone_radius_m(HIGH_M, CONFIG) + 0.01),
+    "too fast against the pad": replace(
+        situation(),
+        drone=drone_at(
+            0.9 * CONFIG.abort.near_height_m, 0.0, (CONFIG.abort.near_speed_max_m_s + 0.01, 0.0, 0.0), pad=pad_at()
+        ),
+    ),
+    "below the pad without contact": situation(-CONFIG.descent.press_depth_m - CONFIG.touchdown.height_max_m - 0.01),
+}
+# Below the commit height these still count: without them nobody knows where the pad is.
+BLIND = {"own position too old", "vehicle heading unknown", "below the pad without contact"}
+# These cannot be true of a drone that is committed: it is over the pad and hardly moves against it.
+UNFIT = {"outside the descent cone", "too fast against the pad"}
+CASES = [(test, phase) for test in ABORT_TESTS for phase in Phase if phase in test.phases]
+
+
+def _first_decision(phase: Phase, facts: Situation, limit_s: float) -> tuple[Decision | None, int]:
+    """Return the first decision on facts that stay as they are, and after how many ticks it came."""
+    held: dict[str, int] = {}
+    ticks = 0
+    for ticks in range(round(limit_s * 1e9 / TICK_NS) + 1):
+        now = later(facts, ticks * TICK_NS)
+        held = update_held(held, progress(phase, 0.0), now, approach(now), CONFIG)
+        decision = decide(progress(phase, 0.0), now, held, CONFIG)
+        if decision is not None:
+            return decision, ticks
+    return None, ticks
+
+
+def _before_the_next_phase(facts: Situation, phase: Phase) -> Situation:
+    """The same with the drone beside the pad, so that an approach goes on from `phase` by nothing but an abort."""
+    beside_m = {Phase.CHASE: 2.0, Phase.ALIGN: 0.5}.get(phase, 0.0) * CONFIG.descent.align_distance_m
+    if facts.drone is None:
+        return facts
+    place = facts.drone.position_enu_m + np.array([beside_m, 0.0, 0.0])
+    return replace(facts, drone=replace(facts.drone, position_enu_m=place))
+
+
+def test_every_abort_test_is_tried_here() -> None:
+    assert {test.reason for test in ABORT_TESTS} == set(UNSAFE)
+
+
+@pytest.mark.parametrize(("test", "phase"), CASES)
+def test_abort_fires_exactly_after_its_hold_time(test: Condition, phase: Phase) -> None:
+    hold_s = test.hold_s(CONFIG)
+    decision, ticks = _first_decision(phase, _before_the_next_phase(UNSAFE[test.reason], phase), hold_s + 1.0)
+    assert decision == (Event.UNSAFE, test.reason)
+    assert ticks == math.ceil(hold_s * 1e9 / TICK_NS - 1e-9)
+
+
+@pytest.mark.parametrize(("test", "phase"), [(test, phase) for test, phase in CASES if test.hold_s(CONFIG) > 0.0])
+def test_condition_that_breaks_off_for_one_step_begins_anew(test: Condition, phase: Phase) -> None:
+    hold_ticks = math.ceil(test.hold_s(CONFIG) * 1e9 / TICK_NS - 1e-9)
+    held: dict[str, int] = {}
+    for ticks in range(4 * hold_ticks):
+        is_break = ticks % hold_ticks == hold_ticks - 1
+        now = later(situation() if is_break else UNSAFE[test.reason], ticks * TICK_NS)
+        held = update_held(held, progress(phase, 0.0), now, approach(now), CONFIG)
+        decision = decide(progress(phase, 0.0), now, held, CONFIG)
+        assert decision is None or decision[0] is not Event.UNSAFE
+
+
+@pytest.mark.parametrize("phase", LANDING)
+def test_nothing_aborts_while_all_is_well(phase: Phase) -> None:
+    decision, _ = _first_decision(phase, situation(), 3.0)
+    assert decision is None or decision[0] not in {Event.UNSAFE, Event.TIME_LIMIT}
+
+
+@pytest.mark.parametrize("reason", sorted(set(UNSAFE) - BLIND - UNFIT))
+def test_below_the_commit_height_it_lands_rather_than_aborts(reason: str) -> None:
+    unsafe = UNSAFE[reason]
+    assert unsafe.pad is not None
+    speed: Vector3 = (0.9 * CONFIG.abort.near_speed_max_m_s, 0.0, -0.4)
+    low = replace(unsafe, drone=drone_at(LOW_M, 0.1, speed, pad=unsafe.pad), reference=reference_at(LOW_M))
+    decision, _ = _first_decision(Phase.DESCEND, low, 3.0)
+    assert decision is None
+
+
+@pytest.mark.parametrize("reason", sorted(BLIND))
+def test_below_the_commit_height_it_does_not_land_where_nobody_knows_the_pad_to_be(reason: str) -> None:
+    decision, _ = _first_decision(Phase.DESCEND, UNSAFE[reason], 3.0)
+    assert decision == (Event.UNSAFE, reason)
+
+
+def test_drone_beside_the_pad_below_the_commit_height_aborts_and_is_not_taken_for_landed() -> None:
+    beside = situation(0.0, OVER_PAD_M + 0.05)
+    beside = replace(beside, autopilot=replace(beside.autopilot, landed=True), reference=reference_at(-0.4))
+    decision, _ = _first_decision(Phase.DESCEND, beside, 3.0)
+    assert decision == (Event.UNSAFE, "outside the descent cone")
+
+
+@pytest.mark.parametrize(("event", "test"), ENTRY_TESTS)
+def test_landing_goes_on_exactly_after_the_hold_time(event: Event, test: Condition) -> None:
+    (phase,) = test.phases
+    match event:
+        case Event.VEHICLE_PASSES:
+            facts = situation(3.0, 2.0, pad=pad_at((0.0, 0.0, 0.0)))
+        case Event.ALIGNED:
+            facts = situation()
+        case _:
+            facts = replace(situation(0.0), reference=reference_at(-CONFIG.touchdown.blocked_depth_m - 0.01))
+    hold_s = test.hold_s(CONFIG)
+    decision, ticks = _first_decision(phase, facts, hold_s + 1.0)
+    assert decision == (event, test.reason)
+    assert ticks == math.ceil(hold_s * 1e9 / TICK_NS - 1e-9)
+
+
+def test_vehicle_that_stands_is_not_taken_for_one_that_passes() -> None:
+    standing = situation(3.0, 2.0, pad=pad_at((0.2, 0.0, 0.0)))
+    assert vehicle_passes(standing, CONFIG) is None
+    decision, _ = _first_decision(Phase.WAITING, standing, CONFIG.chase.parked_wait_s - 0.1)
+    assert decision is None
+
+
+def test_vehicle_that_stands_far_away_is_not_chased() -> None:
+    far = situation(3.0, CONFIG.chase.passing_distance_m + 0.1, pad=pad_at((0.0, 0.0, 0.0)))
+    decision, _ = _first_decision(Phase.WAITING, far, 2.0 * CONFIG.chase.parked_wait_s)
+    assert decision is None
+
+
+@given(
+    speed_m_s=st.floats(0.5, 20.0),
+    course_rad=st.floats(-math.pi, math.pi),
+    beside_m=st.floats(-0.9, 0.9),
+    height_m=st.floats(HIGH_M, 10.0),
+)
+@settings(max_examples=100, deadline=None)
+def test_chase_starts_when_even_acceleration_meets_the_vehicle(
+    speed_m_s: float, course_rad: float, beside_m: float, height_m: float
+) -> None:
+    # A drone that accelerates at a from rest has v after v / a and covered v^2 / (2 a); the vehicle covered v^2 / a.
+    lead_m = speed_m_s**2 / (2.0 * CONFIG.chase.start_acceleration_m_s2)
+    along = np.array([math.cos(course_rad), math.sin(course_rad), 0.0])
+    across = np.array([-along[1], along[0], 0.0])
+    velocity = (speed_m_s * along).tolist()
+    pad = pad_at((velocity[0], velocity[1], 0.0))
+    drone = drone_at(height_m, pad=pad)
+
+    def passes(to_go_m: float) -> bool:
+        offset = to_go_m * along + beside_m * CONFIG.chase.passing_distance_m * across
+        there = replace(drone, position_enu_m=drone.position_enu_m + offset)
+        return vehicle_passes(replace(situation(pad=pad), drone=there), CONFIG) is not None
+
+    assert not passes(lead_m + 0.05)
+    assert passes(lead_m - 0.05)
+    assert passes(0.0)
+    assert not passes(-CONFIG.chase.passing_distance_m - 0.05)
+
+
+def test_vehicle_that_passes_too_far_beside_is_not_chased() -> None:
+    pad = pad_at((5.0, 0.0, 0.0))
+    drone = drone_at(3.0, pad=pad)
+    far_m = CONFIG.chase.passing_distance_m + 0.1
+    beside = replace(drone, position_enu_m=drone.position_enu_m + np.array([0.0, far_m, 0.0]))
+    assert vehicle_passes(replace(situation(pad=pad), drone=beside), CONFIG) is None
+
+
+def test_drone_below_the_roof_does_not_begin_a_chase() -> None:
+    assert vehicle_passes(situation(0.5), CONFIG) is None
+    assert vehicle_passes(situation(HIGH_M), CONFIG) is not None
+
+
+@pytest.mark.parametrize(
+    ("phase", "limit_s"),
+    [
+        (Phase.CHASE, CONFIG.chase.time_limit_s),
+        (Phase.ALIGN, CONFIG.descent.align_time_limit_s),
+        (Phase.DESCEND, CONFIG.descent.time_limit_s),
+        (Phase.TAKEOFF, CONFIG.takeoff.time_limit_s),
+    ],
+)
+def test_time_limit_is_kept(phase: Phase, limit_s: float) -> None:
+    facts = situation(HIGH_M, 0.3)
+    assert decide(progress(phase, limit_s - 0.01), facts, {}, CONFIG) is None or phase is Phase.CHASE
+    late = decide(progress(phase, limit_s + 0.01), facts, {}, CONFIG)
+    assert late is not None
+    assert late[0] is Event.TIME_LIMIT
+
+
+@given(
+    phase=st.sampled_from(FLYING),
+    reason=st.sampled_from(sorted(UNSAFE)),
+    in_phase_s=st.floats(0.0, 100.0),
+)
+def test_pilot_comes_before_everything(phase: Phase, reason: str, in_phase_s: float) -> None:
+    facts = UNSAFE[reason]
+    facts = replace(facts, autopilot=replace(facts.autopilot, in_control=False))
+    held = {test.reason: NOW_NS - 10**12 for test in ABORT_TESTS}
+    decision = decide(progress(phase, in_phase_s), facts, held, CONFIG)
+    assert decision == (Event.PILOT_TOOK_OVER, "mode changed by the pilot")
+
+
+def test_retries_are_counted_down_to_a_hold() -> None:
+    high = situation(CONFIG.abort.height_m)
+    for retries in range(CONFIG.abort.retries_max):
+        decision = decide(replace(progress(Phase.ABORT), retries=retries), high, {}, CONFIG)
+        assert decision == (Event.CLEAR, f"retry {retries + 1} of {CONFIG.abort.retries_max}")
+    last = replace(progress(Phase.ABORT), retries=CONFIG.abort.retries_max)
+    assert decide(last, high, {}, CONFIG) == (Event.CLEAR_TO_HOLD, "no retry left")
+
+
+def test_bounce_is_seen_above_its_height_only() -> None:
+    facts = situation(CONFIG.touchdown.lost_height_m - 0.01)
+    assert decide(progress(Phase.TOUCHDOWN), facts, {}, CONFIG) is None
+    decision = decide(progress(Phase.TOUCHDOWN), situation(CONFIG.touchdown.lost_height_m + 0.01), {}, CONFIG)
+    assert decision is not None
+    assert decision[0] is Event.CONTACT_LOST
