@@ -1,0 +1,65 @@
+"""Answers to operators over every pair of command and phase."""
+
+import itertools
+from dataclasses import replace
+
+import pytest
+
+from companion.commands import answer
+from companion.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
+from link.messages import Command
+from tests.companion.facts import situation
+
+PAIRS = list(itertools.product(Command, Phase))
+STARTABLE = {Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD}
+
+
+@pytest.mark.parametrize(("command", "phase"), PAIRS)
+def test_accepted_command_changes_the_phase_or_is_said_during_the_climb(command: Command, phase: Phase) -> None:
+    event, reply = answer(command, phase, situation())
+    if event is not None:
+        assert reply.accepted
+        assert next_phase(phase, event) is not phase
+    elif reply.accepted:
+        assert phase is Phase.ABORT
+    else:
+        assert reply.reason
+
+
+@pytest.mark.parametrize("phase", Phase)
+def test_start_is_accepted_where_a_landing_can_begin_only(phase: Phase) -> None:
+    _, reply = answer(Command.START, phase, situation())
+    assert reply.accepted == (phase in STARTABLE)
+
+
+@pytest.mark.parametrize("phase", Phase)
+@pytest.mark.parametrize("command", [Command.ABORT, Command.HOLD])
+def test_landing_can_be_broken_off_until_contact(phase: Phase, command: Command) -> None:
+    _, reply = answer(command, phase, situation())
+    breakable = LANDING_PHASES | {Phase.TAKEOFF, Phase.WAITING, Phase.ABORT}
+    assert reply.accepted == (phase in breakable)
+    assert phase in FLYING_PHASES or not reply.accepted
+
+
+@pytest.mark.parametrize("command", [Command.ABORT, Command.HOLD])
+def test_take_off_is_called_off_before_the_motors_turn_and_held_after(command: Command) -> None:
+    facts = situation()
+    on_the_ground = replace(facts, autopilot=replace(facts.autopilot, armed=False))
+    assert answer(command, Phase.TAKEOFF, on_the_ground)[0] is Event.CALLED_OFF
+    event, _ = answer(command, Phase.TAKEOFF, facts)
+    assert event is not None
+    assert next_phase(Phase.TAKEOFF, event) is Phase.HOLD
+
+
+def test_start_says_what_is_missing() -> None:
+    facts = situation()
+    view = facts.autopilot
+    for missing, reason in (
+        (replace(facts, autopilot=replace(view, link_up=False)), "no autopilot is connected"),
+        (replace(facts, autopilot=replace(view, origin=None)), "the autopilot has no origin yet"),
+        (replace(facts, drone=None), "the autopilot reports no local position yet"),
+        (replace(facts, autopilot=replace(view, failsafe=True)), "the autopilot is in failsafe"),
+    ):
+        event, reply = answer(Command.START, Phase.IDLE, missing)
+        assert event is None
+        assert reply.reason == reason
