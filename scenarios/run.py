@@ -25,6 +25,7 @@ from scenarios.watcher import Watcher
 _POLL_S = 0.02
 _COMPANION_TIMING = "companion.json"
 _PROGRESS_S = 0.2
+_SETTLING_S = 1.0  # of wall time after the first truth, not counted in the real-time factor
 _FIRST_TRUTH_S = 60.0  # of wall time; the first start after an installation compiles the physics
 
 Progress = Callable[[Recording, float], None]
@@ -78,7 +79,8 @@ def run_over_wire(scenario: Scenario, options: RunOptions, progress: Progress) -
     endpoint = f"tcp/127.0.0.1:{_free_port(socket.SOCK_STREAM)}"
     recording = Recording()
     with (
-        open_session(ZenohOptions(connect=(endpoint,))) as zenoh,
+        # The watcher listens and the programs come to it, so that it misses nothing while they start.
+        open_session(ZenohOptions(listen=(endpoint,))) as zenoh,
         ProcessGroup(_programs(scenario, options, endpoint), options.folder) as processes,
     ):
         watcher = Watcher(zenoh, keys, recording)
@@ -98,7 +100,7 @@ def _programs(scenario: Scenario, options: RunOptions, endpoint: str) -> list[Pr
     arguments = {
         "ground-vehicle": [
             *("--scenario", str(folder / "scenario.toml"), "--seed", str(options.seed)),
-            *("--use-sim-time", "-l", endpoint),
+            *("--use-sim-time", "-e", endpoint),
         ],
         "sim-autopilot": [
             *("--config", str(folder / "sim-autopilot.toml"), "--speed", str(options.speed)),
@@ -124,31 +126,44 @@ def _free_port(kind: socket.SocketKind) -> int:
         return int(probe.getsockname()[1])
 
 
+class _Pace:
+    """Simulated seconds per wall second, once a simulator that starts late has caught up."""
+
+    def __init__(self) -> None:
+        self._seen_s: float | None = None
+        self._from = (0.0, 0.0)
+        self.factor = 0.0
+
+    def update(self, now_s: float, elapsed_s: float) -> None:
+        """Take the wall time and the simulated time since the first sample."""
+        if self._seen_s is None:
+            self._seen_s, self._from = now_s, (now_s, elapsed_s)
+        elif self._from[0] == self._seen_s and now_s - self._seen_s >= _SETTLING_S:
+            self._from = (now_s, elapsed_s)
+        if now_s > self._from[0]:
+            self.factor = (elapsed_s - self._from[1]) / (now_s - self._from[0])
+
+
 def _watch(
     watcher: Watcher, processes: ProcessGroup, scenario: Scenario, recording: Recording, progress: Progress
 ) -> tuple[str, float]:
     """Return why the run ended and its real-time factor."""
-    end = EndWatch(scenario.time_limit_s)
-    began_s = time.monotonic()
-    first: tuple[float, float] | None = None
-    shown_s = 0.0
-    factor = 0.0
+    end, pace = EndWatch(scenario.time_limit_s), _Pace()
+    began_s, shown_s = time.monotonic(), 0.0
     while (reason := end.reason(recording)) is None:
         time.sleep(_POLL_S)
         processes.check()
         watcher.take()
         now_s = time.monotonic()
-        if not recording.drone and now_s - began_s > _FIRST_TRUTH_S:
+        if recording.drone:
+            pace.update(now_s, recording.elapsed_s)
+        elif now_s - began_s > _FIRST_TRUTH_S:
             raise UserError(f"no truth of the drone within {_FIRST_TRUTH_S:g} s: see the logs in the run's folder")
-        if recording.drone and first is None:
-            first = (now_s, recording.elapsed_s)
-        if first is not None and now_s > first[0]:
-            factor = (recording.elapsed_s - first[1]) / (now_s - first[0])
         if now_s - shown_s >= _PROGRESS_S:
             shown_s = now_s
-            progress(recording, factor)
-    progress(recording, factor)
-    return reason, factor
+            progress(recording, pace.factor)
+    progress(recording, pace.factor)
+    return reason, pace.factor
 
 
 def _companion_timing(folder: Path) -> dict[str, Any]:

@@ -1,0 +1,107 @@
+"""`scenarios run` from outside: its programs, its files, how it ends, and that nothing stays behind."""
+
+import json
+import signal
+from pathlib import Path
+from typing import Any
+
+import psutil  # type: ignore[import-untyped]  # it has no annotations
+import pytest
+
+from tests.integration.programs import Program, Programs, all_end, until
+
+pytestmark = pytest.mark.slow
+
+NAMES = ("ground-vehicle", "sim-autopilot", "companion")
+
+
+def start_run(programs: Programs, out: Path, *arguments: str, scenario: str = "straight_5") -> Program:
+    return programs.start("scenarios", "run", scenario, "--out", str(out), *arguments)
+
+
+def started_children(run: Program) -> list[psutil.Process]:
+    """Return the three programs of a run as soon as there are three."""
+
+    def are_there() -> bool:
+        assert run.runs, run.err.all
+        return len(run.children()) == len(NAMES)
+
+    until(are_there, "three programs")
+    return run.children()
+
+
+def read(folder: Path, name: str) -> dict[str, Any]:
+    table: dict[str, Any] = json.loads((folder / name).read_text(encoding="utf-8"))
+    return table
+
+
+def test_two_runs_at_once_both_land_and_leave_their_folders(tmp_path: Path) -> None:
+    seeds = (1, 2)
+    with Programs() as programs:
+        runs = [start_run(programs, tmp_path, "--speed", "3", "--seed", str(seed), "--json") for seed in seeds]
+        codes = [run.wait() for run in runs]
+        printed = [json.loads("\n".join(run.out.all)) for run in runs]
+    assert codes == [0, 0], [table["reason"] for table in printed]
+    assert [table["seed"] for table in printed] == list(seeds)
+    folders = [Path(table["folder"]) for table in printed]
+    assert (tmp_path / "latest").resolve() in {folder.resolve() for folder in folders}
+    for folder, table in zip(folders, printed, strict=True):
+        result, timing = read(folder, "result.json"), read(folder, "timing.json")
+        assert result.items() <= table.items()
+        assert timing == table["timing"]
+        assert {path.name for path in folder.iterdir()} == {
+            *("result.json", "timing.json", "scenario.toml", "flight.tlog"),
+            *("companion.toml", "sim-autopilot.toml", *(f"{name}.log" for name in NAMES)),
+        }
+        assert (folder / "flight.tlog").stat().st_size > 100_000
+
+
+def test_a_run_that_ends_by_its_time_limit_has_its_result_and_its_timing(tmp_path: Path) -> None:
+    short = tmp_path / "short.toml"
+    short.write_text('base = "straight_5"\ntime_limit_s = 9.0\n', encoding="utf-8")
+    with Programs() as programs:
+        run = start_run(programs, tmp_path, "--speed", "3", scenario=str(short))
+        assert run.wait() == 1
+    folder = (tmp_path / "latest").resolve()
+    assert read(folder, "result.json")["ended"] == "time limit"
+    timing = read(folder, "timing.json")
+    assert timing["real_time_factor"] == pytest.approx(3.0, rel=0.2)
+    step_ms = timing["step_ms"]["companion"]
+    assert 0.0 < step_ms["median"] <= step_ms["p99"] <= step_ms["max"]
+
+
+def test_an_interrupted_run_ends_its_programs(tmp_path: Path) -> None:
+    with Programs() as programs:
+        run = start_run(programs, tmp_path, "--speed", "3")
+        run.out.wait_for("takeoff")
+        children = started_children(run)
+        run.send(signal.SIGINT)
+        assert run.wait() == 130
+        assert run.err.all == []
+        assert not [child for child in children if child.is_running()]
+
+
+@pytest.mark.parametrize("flies", [False, True])
+def test_a_killed_run_leaves_no_program(tmp_path: Path, *, flies: bool) -> None:
+    with Programs() as programs:
+        run = start_run(programs, tmp_path, "--speed", "3")
+        if flies:
+            run.out.wait_for("takeoff")
+        children = started_children(run)
+        run.send(signal.SIGKILL)
+        assert all_end(children)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_program_that_dies_ends_the_run_with_one_line_that_names_it(tmp_path: Path, name: str) -> None:
+    with Programs() as programs:
+        run = start_run(programs, tmp_path, "--speed", "3")
+        run.out.wait_for("takeoff")
+        children = started_children(run)
+        victim = next(child for child in children if f"{name}.log" in Path(f"/proc/{child.pid}/fd/1").readlink().name)
+        victim.kill()
+        assert run.wait() == 2
+        assert len(run.err.all) == 1, run.err.all
+        assert run.err.all[0].startswith(f"scenarios: {name} was ended by SIGKILL: ")
+        assert str((tmp_path / "latest").resolve().name) in run.err.all[0]
+        assert all_end(children)
