@@ -8,6 +8,7 @@ import typer
 
 from link.cli import DroneOption, NamespaceOption, VehicleOption, make_app, run_app
 from link.errors import UserError
+from scenarios import campaign_commands, report_commands
 
 app = make_app("Experiments: run landings, score them on ground truth, and report.")
 
@@ -108,6 +109,10 @@ def command_command(
     reply = send_command(wanted, Keys(namespace, "vehicle", drone), connect or DEFAULT_ENDPOINT)
     sys.stdout.write("accepted\n" if reply.accepted else f"refused: {reply.reason}\n")
     return 0 if reply.accepted else 1
+
+
+campaign_commands.register(app)
+report_commands.register(app)
 
 
 def main() -> None:

@@ -22,9 +22,8 @@ FolderArgument = Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="Folder
 
 
 def register(app: typer.Typer) -> None:
-    """Add the commands to `app`."""
+    """Add `campaign` and `compare` to `app`; `table` is also about the report, and in `scenarios.report_commands`."""
     app.command("campaign")(campaign_command)
-    app.command("table")(table_command)
     app.command("compare")(compare_command)
 
 

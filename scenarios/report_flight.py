@@ -23,6 +23,7 @@ from scenarios.recording import EndWatch
 from scenarios.report_cases import LANDED_M, STANDS_S, Place
 from scenarios.score import Score
 from scenarios.sensors import white_error_m
+from scenarios.touch import Flags
 from scenarios.track_config import WaypointsTrack
 from scenarios.truth_log import Array
 
@@ -57,7 +58,7 @@ class ReportFlight:
     score: Score | None
 
     @property
-    def counts(self) -> "np.ndarray[Any, np.dtype[np.bool_]]":
+    def counts(self) -> Flags:
         """(n,) whether a landing counts at each instant."""
         return np.asarray((self.t_s >= STANDS_S) & (self.t_s <= self.road_end_s))
 

@@ -2,16 +2,17 @@
 
 import statistics
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import closing
 from typing import Any, TextIO
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
+from rich.progress import track
 from rich.table import Table
 
 from link.errors import UserError
-from scenarios.pool import run_tasks
+from scenarios.pool import core_count, run_tasks
 from scenarios.report_cases import CASES, OVERSHOOT, SETTLING_S, PublishedCase
 from scenarios.report_flight import ReportTask, fly_row
 from scenarios.step_responses import step_rows
@@ -21,24 +22,28 @@ SYSTEMS = ("report", "report_unboosted", "default")
 _PLAIN_WIDTH = 1000  # nothing is wrapped where a program may read it
 
 
-def report_tasks(seeds: int) -> list[ReportTask]:
-    """Return every case with every system and seed; the seeds count from 1."""
-    return [
-        ReportTask(scenario=case.scenario, system=system, seed=seed)
-        for case in CASES
-        for system in SYSTEMS
-        for seed in range(1, seeds + 1)
-    ]
+def fly_report(seeds: int, workers: int | None) -> dict[str, Any]:
+    """Fly every case with every system and the seeds 1 to `seeds`, and return the tables.
 
-
-def flown_rows(tasks: Sequence[ReportTask], workers: int) -> Iterator[Row]:
-    """Yield the row of each task as it is ready.
+    Args:
+        seeds: of each case.
+        workers: number of processes, None for one a core.
 
     Raises:
         UserError: a task ends its process time and again.
     """
-    with closing(run_tasks(fly_row, tasks, workers=workers, lost=_lost)) as rows:
-        yield from rows
+    tasks = [
+        ReportTask(scenario=case.scenario, system=system, seed=seed)
+        for seed in range(1, seeds + 1)
+        for case in CASES
+        for system in SYSTEMS
+    ]
+    console = Console(stderr=True)
+    with closing(run_tasks(fly_row, tasks, workers=workers or core_count(), lost=_lost)) as rows:
+        flown = track(
+            rows, "flights", total=len(tasks), console=console, transient=True, disable=not console.is_terminal
+        )
+        return report_table(list(flown))
 
 
 def _lost(task: ReportTask, why: str) -> Row:

@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from link.cli import make_app, run_app
-from scenarios.campaign_commands import register
+from scenarios import campaign_commands, report_commands
 
 app = make_app("Campaigns.")
-register(app)
+campaign_commands.register(app)
+report_commands.register(app)
 
 _SHORT = 'base = "straight_5"\nsensors = "nominal"\nwind = "moderate"\n'
 
