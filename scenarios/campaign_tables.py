@@ -15,8 +15,8 @@ _DEG = 180.0 / math.pi
 _UNITS = {
     "horizontal_error_m": ("error", "m", 1.0, 3),
     "relative_speed_m_s": ("speed", "m/s", 1.0, 2),
-    "sink_rate_m_s": ("sink rate", "m/s", 1.0, 2),
-    "tilt_over_trim_rad": ("tilt over trim", "deg", _DEG, 1),
+    "sink_rate_m_s": ("sink", "m/s", 1.0, 2),
+    "tilt_over_trim_rad": ("tilt", "deg", _DEG, 1),
     "time_to_contact_s": ("time", "s", 1.0, 1),
 }
 """Of each measure: heading, unit shown, factor to it, digits."""
@@ -26,18 +26,19 @@ Column = tuple[str, Callable[[Cell], str]]
 
 
 def print_summary(summary: Mapping[str, Any], out: TextIO) -> None:
-    """Print a campaign's summary: what was reached, and the contacts."""
+    """Print a campaign's summary: what was reached, the shares, and the contacts."""
     cells: Sequence[Cell] = summary["cells"]
     reached: list[Column] = [("seeds", lambda cell: str(cell["seeds"])), *(_tier_column(tier) for tier in Tier)]
-    reached += [(heading, _share_of(name)) for name, heading in _SHARES.items()]
     reached += [(name, _count_of(name)) for name in ("aborts", "retries")]
     if any(cell["errors"] for cell in cells):
         reached.append(("errors", _count_of("errors")))
     console = _console(out)
-    _print(console, "Landings (shares with 95 % intervals)", reached, cells)
+    _print(console, "Landings", reached, cells)
+    shares = [(f"{heading} [%]", _share_of(name)) for name, heading in _SHARES.items()]
+    _print(console, "Shares (95 % intervals)", shares, cells)
     contact: list[Column] = [("contacts", _count_of("contacts"))]
     contact += [(f"{_UNITS[name][0]} [{_UNITS[name][1]}]", _measure_of(name)) for name in _UNITS]
-    _print(console, "At contact (median, 95th percentile)", contact, cells)
+    _print(console, "At contact (median, 95th percentile; tilt over trim)", contact, cells)
 
 
 def print_comparison(comparison: Mapping[str, Any], out: TextIO) -> None:
@@ -69,7 +70,7 @@ def _print(console: Console, title: str, columns: Sequence[Column], cells: Seque
     table = Table(title=title, title_justify="left", box=SIMPLE_HEAD if framed else None, pad_edge=framed)
     table.add_column("cell", overflow="fold")
     for heading, _ in columns:
-        table.add_column(heading.replace("[", "\\["), justify="right")
+        table.add_column(heading.replace("[", "\\["), justify="right", no_wrap=True)
     for cell in cells:
         table.add_row(cell["cell"], *(text(cell) for _, text in columns))
     console.print(table)
@@ -86,7 +87,7 @@ def _count_of(name: str) -> Callable[[Cell], str]:
 def _share_of(name: str) -> Callable[[Cell], str]:
     def text(cell: Cell) -> str:
         share = cell[name]
-        return f"{share['share']:.1%} ({share['low']:.1%} to {share['high']:.1%})"
+        return f"{100.0 * share['share']:.1f} ({100.0 * share['low']:.1f} to {100.0 * share['high']:.1f})"
 
     return text
 
