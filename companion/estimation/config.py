@@ -30,7 +30,7 @@ class BufferConfig(StrictModel):
     keep_s: Positive = 1.5  # three times the slowest link of the benchmark (300 ms + 200 ms)
     # wide, 58 for three components: an emergency brake is no outlier; None gates nothing
     gate_probability: Annotated[float, Field(gt=0.5, lt=1.0)] | None = 0.999999999999
-    recover_after_s: Positive = 0.5  # of nothing but rejections of one quantity
+    recover_after_s: Positive = 0.15  # of nothing but rejections of one quantity; the second fix at 10 Hz
     late_in_a_row_max: Annotated[int, Field(ge=1, le=10_000)] = 20  # then the clock is taken to have jumped
 
 
@@ -76,9 +76,10 @@ class ImmModeConfig(StrictModel):
 class ImmConfig(StrictModel):
     """Two turning models, one for steady driving and one for manoeuvres."""
 
-    # measured: quiet enough for 0.1 m after 1 s of steady driving, wide enough for a brake of 6 m/s^2 from one fix on
+    # Steady: measured, quiet enough for 0.1 m after 1 s. Manoeuvre: a brake of 6 m/s^2 that is there within one period
+    # of a 10 Hz receiver is a jerk of density 6^2 / 0.1 s, and each such change is soon over.
     steady: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=0.05, lateral_acceleration_psd_m2_s5=0.7, dwell_s=6.0)
-    manoeuvre: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=30.0, lateral_acceleration_psd_m2_s5=20.0, dwell_s=1.0)
+    manoeuvre: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=300.0, lateral_acceleration_psd_m2_s5=20.0, dwell_s=0.4)
     side_jerk_psd_m2_s5: Positive = 0.005  # across the track, apart from turning; measured
     acceleration_decay_s: Positive = 3.0  # measured
     curvature_speed_min_m_s: Positive = 3.0  # below it the curvature's noise grows no further

@@ -13,14 +13,14 @@ from companion.data import Array, Forecast, Measurement, VehicleEstimate
 class Estimator(Protocol):
     """What the companion asks of an estimator; the memory is None until the first fix."""
 
-    def fuse(self, memory: Any, measurements: Sequence[Measurement]) -> Any:  # noqa: ANN401 (each estimator has its own memory)
+    def fuse(self, memory: Any, measurements: Sequence[Measurement]) -> Any:
         """Return the memory after `measurements`; late ones are fused at their own time, outliers are gated."""
 
-    def estimate(self, memory: Any, t_ns: int) -> VehicleEstimate | None:  # noqa: ANN401 (as above)
+    def estimate(self, memory: Any, t_ns: int) -> VehicleEstimate | None:
         """Return the vehicle at `t_ns`, or None before the first fix."""
 
-    def forecast(self, memory: Any, t_ns: int, offset_s: Array) -> Forecast | None:  # noqa: ANN401 (as above)
+    def forecast(self, memory: Any, t_ns: int, offset_s: Array) -> Forecast | None:
         """Return the vehicle at `t_ns + offset_s`, `offset_s` (n,), or None before the first fix."""
 
-    def newest_fix_ns(self, memory: Any) -> int | None:  # noqa: ANN401 (as above)
+    def newest_fix_ns(self, memory: Any) -> int | None:
         """Return the time at which the newest accepted position was taken."""
