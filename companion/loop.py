@@ -184,7 +184,7 @@ class _Loop:
         if self._ticks is not None:
             for sample in self._ticks.take():
                 try:
-                    clock.tick(cdr.decode(ClockTick, sample.payload).t_ns)
+                    self._node.bad_payloads += not clock.tick(cdr.decode(ClockTick, sample.payload).t_ns)
                 except PayloadError:
                     self._node.bad_payloads += 1
         return clock.ready

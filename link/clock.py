@@ -19,6 +19,8 @@ EXTRAPOLATION_MAX_S = 0.05
 _RATE_WINDOW_NS = 500_000_000
 _RATE_SPAN_MIN_NS = 20_000_000  # ticks that were queued arrive at once and tell no rate
 _RATE_MIN = 0.05
+_TICK_GAP_MAX_NS = 5_000_000_000  # a simulator at 50 times real time that is held up for 0.1 s
+_STRAYS_CONFIRM = 5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,6 +28,32 @@ class ClockTick:
     """What `{ns}/clock` carries: the simulator's UTC time in nanoseconds."""
 
     t_ns: int
+
+
+class TickFilter:
+    """Tells the simulator's ticks from strays: a tick far from the last one counts when others go on from there.
+
+    So a broken payload does not move the time, and a simulator that is started anew does.
+    """
+
+    def __init__(self) -> None:
+        self._last_ns: int | None = None
+        self._stray_ns = 0
+        self._strays = 0
+
+    def accepts(self, t_ns: int) -> bool:
+        """Return whether to believe the tick `t_ns`."""
+        if self._last_ns is not None and not _follows(t_ns, self._last_ns):
+            self._strays = self._strays + 1 if self._strays and _follows(t_ns, self._stray_ns) else 1
+            self._stray_ns = t_ns
+            if self._strays < _STRAYS_CONFIRM:
+                return False
+        self._last_ns, self._strays = t_ns, 0
+        return True
+
+
+def _follows(t_ns: int, before_ns: int) -> bool:
+    return abs(t_ns - before_ns) <= _TICK_GAP_MAX_NS
 
 
 class Clock(Protocol):
@@ -73,13 +101,16 @@ class SystemClock(ScaledClock):
 class SimulatedClock:
     """The simulator's time as its ticks tell it, run on between them at the rate measured over the last ticks.
 
-    It never goes back: when it has run ahead of the simulator it stands until the simulator has caught up.
+    It never goes back: when it has run ahead of the simulator it stands until the simulator has caught up, and when
+    the simulator is started anew, at whatever time, it runs on from where it was; it is no UTC from then on.
     Without ticks it stops `EXTRAPOLATION_MAX_S` of wall time after the last one. For use from one thread.
     """
 
     def __init__(self, *, monotonic_ns: MonotonicNs = time.monotonic_ns) -> None:
         self._monotonic_ns = monotonic_ns
-        self._ticks: deque[tuple[int, int]] = deque()  # (wall, simulated), ns, oldest first
+        self._filter = TickFilter()
+        self._ticks: deque[tuple[int, int]] = deque()  # (wall, shown), ns, oldest first
+        self._ahead_ns = 0  # of the simulator
         self._shown_ns = 0
 
     @property
@@ -96,14 +127,24 @@ class SimulatedClock:
         span_ns = wall_last_ns - wall_first_ns
         return (last_ns - first_ns) / span_ns if span_ns >= _RATE_SPAN_MIN_NS else 1.0
 
-    def tick(self, t_ns: int) -> None:
-        """Take the simulator's time `t_ns`, which was just received; an older one than the last is ignored."""
+    def tick(self, t_ns: int) -> bool:
+        """Take the simulator's time `t_ns`, which was just received, and return whether it is believed.
+
+        A believed one that is older than the last changes nothing.
+        """
+        if not self._filter.accepts(t_ns):
+            return False
         wall_ns = self._monotonic_ns()
-        if self._ticks and t_ns < self._ticks[-1][1]:
-            return
-        self._ticks.append((wall_ns, t_ns))
+        if self._ticks and not _follows(t_ns + self._ahead_ns, self._ticks[-1][1]):
+            self._ahead_ns = self._shown_ns - t_ns
+            self._ticks.clear()
+        shown_ns = t_ns + self._ahead_ns
+        if self._ticks and shown_ns < self._ticks[-1][1]:
+            return True
+        self._ticks.append((wall_ns, shown_ns))
         while len(self._ticks) > 2 and wall_ns - self._ticks[0][0] > _RATE_WINDOW_NS:
             self._ticks.popleft()
+        return True
 
     def now_ns(self) -> int:
         """Return the present simulated UTC time in nanoseconds.

@@ -7,7 +7,7 @@ from typing import TypeVar
 import structlog
 
 from link import cdr, json_payloads
-from link.clock import Clock, ClockTick, SystemClock
+from link.clock import Clock, ClockTick, SystemClock, TickFilter
 from link.errors import UserError
 from link.keys import Keys
 from link.messages import BodyTruth
@@ -77,11 +77,11 @@ class VehicleLoop:
             due_ns = max(due_ns + STEP_PERIOD_NS, now_ns)
 
     def _run_on_ticks(self, ticks: Inbox) -> None:
-        started_s, ticked = time.monotonic(), False
+        started_s, ticked, believed = time.monotonic(), False, TickFilter()
         while not self._stopping:
             for sample in ticks.take():
                 tick = self._decoded(ClockTick, sample.payload)
-                if tick is not None:
+                if tick is not None and believed.accepts(tick.t_ns):
                     ticked = True
                     self._step(tick.t_ns)
             if not ticked and self._timeout_s and time.monotonic() - started_s > self._timeout_s:

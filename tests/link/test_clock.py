@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from link.clock import EXTRAPOLATION_MAX_S, ScaledClock, SimulatedClock, SystemClock
+from link.clock import EXTRAPOLATION_MAX_S, ScaledClock, SimulatedClock, SystemClock, TickFilter
 
 MS = 1_000_000
 S = 1_000_000_000
@@ -123,3 +123,28 @@ def test_simulated_clock_never_goes_back(steps: list[tuple[int, int]]) -> None:
         clock.tick(simulated_ns)
         assert clock.now_ns() >= shown_ns
         shown_ns = clock.now_ns()
+
+
+def test_a_stray_tick_is_not_believed_and_does_not_disturb_the_others() -> None:
+    ticks = TickFilter()
+    taken = [t_s for t_s in (100, 101, 9_000, 102, 2, 103, 104) if ticks.accepts(t_s * S)]
+    assert taken == [100, 101, 102, 103, 104]
+
+
+@pytest.mark.parametrize("start_s", [3, 5_000])
+def test_a_simulator_that_starts_anew_is_believed_after_a_few_ticks(start_s: int) -> None:
+    ticks = TickFilter()
+    assert ticks.accepts(100 * S)
+    believed = [ticks.accepts(start_s * S + tick * 10_000_000) for tick in range(8)]
+    assert believed == [False] * 4 + [True] * 4
+
+
+def test_simulated_clock_runs_on_when_the_simulator_is_started_anew_in_the_past() -> None:
+    wall = Wall()
+    clock = SimulatedClock(monotonic_ns=wall)
+    clock.tick(EPOCH_NS)
+    before_ns = clock.now_ns()
+    for tick in range(100):
+        wall.ns += 10 * MS
+        clock.tick(EPOCH_NS - 60 * S + tick * 40 * MS)
+    assert before_ns + 3.7 * S < clock.now_ns() < before_ns + 4.0 * S
