@@ -37,7 +37,7 @@ class Observer:
         names, seen = {phase.value for phase in phases}, len(self.recording.statuses)
 
         def is_there() -> bool:
-            self._hear()
+            self.hear()
             return any(status.phase in names for status in self.recording.statuses[seen:])
 
         until(is_there, f"phase {names}, last was {self.recording.status}")
@@ -47,7 +47,7 @@ class Observer:
         seen = len(self.recording.statuses)
 
         def is_there() -> bool:
-            self._hear()
+            self.hear()
             return len(self.recording.statuses) > seen
 
         until(is_there, "a status")
@@ -57,7 +57,7 @@ class Observer:
         seen = len(self.recording.statuses)
 
         def is_known() -> bool:
-            self._hear()
+            self.hear()
             return any(status.relative_position_enu_m is not None for status in self.recording.statuses[seen:])
 
         until(is_known, f"a relative position, last was {self.recording.status}")
@@ -66,7 +66,7 @@ class Observer:
         """Wait until the drone, on truth, is at least so high."""
 
         def is_high() -> bool:
-            self._hear()
+            self.hear()
             return bool(self.recording.drone) and self.height_m >= height_m
 
         until(is_high, f"a height of {height_m} m")
@@ -76,7 +76,7 @@ class Observer:
         until_s = self.recording.elapsed_s + duration_s
 
         def has_passed() -> bool:
-            self._hear()
+            self.hear()
             return self.recording.elapsed_s >= until_s
 
         until(has_passed, f"{duration_s} s of truth")
@@ -86,7 +86,7 @@ class Observer:
         end = EndWatch(SCENARIO.time_limit_s)
 
         def is_over() -> bool:
-            self._hear()
+            self.hear()
             return end.reason(self.recording) is not None
 
         until(is_over, f"the end of the run, last was {self.recording.status}")
@@ -97,7 +97,8 @@ class Observer:
         """Of the drone now, above the road, on truth."""
         return self.recording.drone[-1].position_enu_m[2]
 
-    def _hear(self) -> None:
+    def hear(self) -> None:
+        """Wait a little and take what has come."""
         self.zenoh.wake_up.wait(0.05)
         self._watcher.take()
 

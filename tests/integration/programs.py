@@ -51,6 +51,11 @@ class Lines:
         """Wait for the end of the pipe."""
         self._reader.join()
 
+    def finished(self, timeout_s: float) -> bool:
+        """Return whether the pipe ends within `timeout_s`."""
+        self._reader.join(timeout_s)
+        return not self._reader.is_alive()
+
     def _read(self, pipe: IO[str]) -> None:
         with pipe:
             for line in pipe:
