@@ -86,12 +86,15 @@ def _estimate(memory: StepMemory, inputs: StepInputs, system: System) -> StepMem
 def _forecast(memory: StepMemory, inputs: StepInputs, system: System) -> tuple[StepMemory, Forecast | None]:
     """Return the vehicle over the horizon; an estimate that is not finite is given up and starts anew."""
     forecast = system.estimator.forecast(memory.estimator, inputs.t_ns, HORIZON_OFFSETS_S)
-    if forecast is None or all(
-        np.isfinite(values).all()
-        for values in (forecast.position_enu_m, forecast.velocity_enu_m_s, forecast.acceleration_enu_m_s2)
-    ):
+    if forecast is None or _is_finite(forecast):
         return memory, forecast
     return replace(memory, estimator=None), None
+
+
+def _is_finite(forecast: Forecast) -> bool:
+    arrays = [forecast.position_enu_m, forecast.velocity_enu_m_s, forecast.acceleration_enu_m_s2]
+    arrays += [forecast.position_std_m, *([] if forecast.yaw_rad is None else [forecast.yaw_rad])]
+    return all(bool(np.isfinite(values).all()) for values in arrays)
 
 
 def _situation(memory: StepMemory, forecast: Forecast | None, inputs: StepInputs, system: System) -> Situation:

@@ -1,11 +1,14 @@
 """From the vehicle's messages to measurements in the drone's local frame W."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from companion.data import Array, Measurement, OwnState, Quantity
 from link.frames import rotate, yaw_of
 from link.geodesy import Datum, enu_from_geodetic
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, VehicleImu
+from link.payload_checks import PayloadError
 
 # Taken when a message states no covariance: plain GNSS and a low-cost attitude sensor.
 _POSITION_STD_M = 1.5
@@ -13,11 +16,46 @@ _VELOCITY_STD_M_S = 0.3
 _HEADING_STD_RAD = 0.1
 _YAW_RATE_STD_RAD_S = 0.02
 
+# No sensor is better than this; a smaller stated variance (0 for one axis is not rare) is a singular one to a filter.
+_STD_MIN = {
+    Quantity.POSITION: 0.005,
+    Quantity.VELOCITY: 0.01,
+    Quantity.HEADING: 0.002,
+    Quantity.YAW_RATE: 0.001,
+    Quantity.PAD: 0.002,
+}
+_STD_MAX = 1e4  # says nothing at all
+# Beyond these a message is wrong, or of a vehicle that nobody lands on.
+_VALUE_MAX = {
+    Quantity.POSITION: 1e5,
+    Quantity.VELOCITY: 100.0,
+    Quantity.HEADING: 10.0,
+    Quantity.YAW_RATE: 10.0,
+    Quantity.PAD: 1e5,
+}
+
 
 def _matrix(covariance: Matrix3 | None, std: float) -> Array:
     if covariance is None:
         return np.eye(3) * std**2
     return np.array(covariance).reshape(3, 3)
+
+
+def plausible(measurement: Measurement) -> Measurement:
+    """Return the measurement as a filter can take it: its variance not below what sensors can do.
+
+    Raises:
+        PayloadError: a number is absurd.
+    """
+    quantity, covariance = measurement.quantity, measurement.covariance
+    if not np.all(np.abs(measurement.value) < _VALUE_MAX[quantity]):
+        raise PayloadError(f"the {quantity.value} {measurement.value.tolist()} is absurd")
+    if not np.all(np.abs(covariance) < _STD_MAX**2):
+        raise PayloadError(f"the covariance {covariance.tolist()} of the {quantity.value} is absurd")
+    least = _STD_MIN[quantity] ** 2
+    if float(np.linalg.eigvalsh(covariance)[0]) >= least:
+        return measurement
+    return replace(measurement, covariance=covariance + least * np.eye(len(covariance)))
 
 
 def fix_measurement(fix: Fix, origin: Datum) -> Measurement:

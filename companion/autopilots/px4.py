@@ -21,6 +21,7 @@ _STREAM_FIRST_S = 0.5  # 0.3 s of setpoints were seen to suffice before OFFBOARD
 _ASK_AGAIN_S = 1.0  # the heartbeat that confirms a mode may be a second late
 _DISARM_AGAIN_S = 0.2
 _GRAVITY_M_S2 = 9.81
+_TILT_MAX_DEG = 45.0  # taken while MPC_TILTMAX_AIR is unknown: its default
 _TILT_SHARE = 0.7  # of the tilt limit left to planned acceleration; the rest is for drag and wind
 
 
@@ -75,14 +76,20 @@ class Px4Driver:
 
     def limits(self, wanted: FlightLimits, parameters: Mapping[str, float]) -> FlightLimits:
         """Return `wanted` cut to PX4's speed, climb, descent and tilt limits."""
-        tilt_rad = math.radians(parameters.get("MPC_TILTMAX_AIR", 45.0))
+        tilt_rad = math.radians(min(_stated(parameters, "MPC_TILTMAX_AIR"), _TILT_MAX_DEG))
         return replace(
             wanted,
-            speed_max_m_s=min(wanted.speed_max_m_s, parameters.get("MPC_XY_VEL_MAX", math.inf)),
-            climb_max_m_s=min(wanted.climb_max_m_s, parameters.get("MPC_Z_VEL_MAX_UP", math.inf)),
-            descent_max_m_s=min(wanted.descent_max_m_s, parameters.get("MPC_Z_VEL_MAX_DN", math.inf)),
+            speed_max_m_s=min(wanted.speed_max_m_s, _stated(parameters, "MPC_XY_VEL_MAX")),
+            climb_max_m_s=min(wanted.climb_max_m_s, _stated(parameters, "MPC_Z_VEL_MAX_UP")),
+            descent_max_m_s=min(wanted.descent_max_m_s, _stated(parameters, "MPC_Z_VEL_MAX_DN")),
             acceleration_max_m_s2=min(wanted.acceleration_max_m_s2, _TILT_SHARE * _GRAVITY_M_S2 * math.tan(tilt_rad)),
         )
+
+
+def _stated(parameters: Mapping[str, float], name: str) -> float:
+    """Return a parameter, infinity where it is unknown or says what cannot be meant."""
+    value = parameters.get(name, math.inf)
+    return value if value > 0.0 else math.inf
 
 
 def _streamed_s(memory: DriverMemory, t_ns: int) -> float:

@@ -15,12 +15,12 @@ def test_every_pair_leads_to_the_listed_phase_or_stays(phase: Phase, event: Even
     assert next_phase(phase, event) is (phase if listed is None else listed)
 
 
-@pytest.mark.parametrize("phase", sorted(FLYING_PHASES, key=lambda phase: phase.value))
+@pytest.mark.parametrize("phase", [phase for phase in Phase if phase in FLYING_PHASES])
 def test_pilot_gets_command_from_every_flying_phase(phase: Phase) -> None:
     assert next_phase(phase, Event.PILOT_TOOK_OVER) is Phase.PILOT
 
 
-@pytest.mark.parametrize("phase", sorted(LANDING_PHASES, key=lambda phase: phase.value))
+@pytest.mark.parametrize("phase", [phase for phase in Phase if phase in LANDING_PHASES])
 @pytest.mark.parametrize("event", [Event.UNSAFE, Event.ABORT, Event.TIME_LIMIT, Event.HOLD])
 def test_every_landing_phase_can_be_broken_off(phase: Phase, event: Event) -> None:
     assert next_phase(phase, event) is Phase.ABORT

@@ -1,6 +1,7 @@
 """Vehicle messages as measurements in W: values, covariances and what stands in when none is stated."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,10 +10,17 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from companion.data import Quantity
-from companion.vehicle_inputs import fix_measurement, imu_measurements, sighting_measurement, velocity_measurements
+from companion.vehicle_inputs import (
+    fix_measurement,
+    imu_measurements,
+    plausible,
+    sighting_measurement,
+    velocity_measurements,
+)
 from link.frames import quaternion_from_roll_pitch_yaw
 from link.geodesy import geodetic_from_enu
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, Vector3, VehicleImu
+from link.payload_checks import PayloadError
 from tests.companion.world import ORIGIN, START_NS, own_state
 
 COVARIANCE: Matrix3 = (0.04, 0.01, 0.0, 0.01, 0.09, 0.0, 0.0, 0.0, 0.25)
@@ -91,3 +99,25 @@ def test_sighting_is_turned_into_the_world_with_its_covariance() -> None:
     np.testing.assert_allclose(measurement.value, turn @ [0.3, -0.2, -2.5] + [4.0, 5.0, 6.0], atol=1e-12)
     np.testing.assert_allclose(measurement.covariance, turn @ np.reshape(COVARIANCE, (3, 3)) @ turn.T, atol=1e-12)
     assert math.isclose(np.trace(measurement.covariance), sum(COVARIANCE[::4]))
+
+
+@pytest.mark.parametrize("variances", [(0.0, 0.0, 0.0), (0.1, 0.1, 0.0), (1e-30, 1.0, 1.0)])
+def test_covariance_that_is_singular_is_widened_to_what_sensors_can_do(variances: Vector3) -> None:
+    fix = fix_measurement(Fix(t_ns=1, latitude_rad=0.83, longitude_rad=0.14, altitude_m=1.0), ORIGIN)
+    widened = plausible(replace(fix, covariance=np.diag(variances)))
+    assert np.linalg.eigvalsh(widened.covariance)[0] >= 0.005**2
+    assert np.all(widened.covariance >= np.diag(variances))
+
+
+def test_covariance_in_order_is_left_alone() -> None:
+    fix = fix_measurement(Fix(t_ns=1, latitude_rad=0.83, longitude_rad=0.14, altitude_m=1.0), ORIGIN)
+    assert plausible(fix) is fix
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, 1e6, -1e300])
+def test_absurd_number_is_refused(bad: float) -> None:
+    fix = fix_measurement(Fix(t_ns=1, latitude_rad=0.83, longitude_rad=0.14, altitude_m=1.0), ORIGIN)
+    with pytest.raises(PayloadError, match="absurd"):
+        plausible(replace(fix, value=np.array([0.0, bad, 0.0])))
+    with pytest.raises(PayloadError, match="absurd"):
+        plausible(replace(fix, covariance=np.diag([1.0, abs(bad) * 1e3, 1.0])))
