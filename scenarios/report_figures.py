@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -19,14 +20,13 @@ from scenarios.report_cases import LANDED_M, STANDS_S, Place
 from scenarios.report_flight import ReportFlight, ReportTask, fly
 from scenarios.step_responses import AIRFRAMES, AXES, Curve, flown_curve, linear_curve
 from scenarios.touch import Flags
-from scenarios.track_config import WaypointsTrack
+from scenarios.tracks import course_of
 from sim_autopilot.control.kinds import ControllerKind
 
 SEED = 1
 _DPI = 150
 _DARK, _LIGHT = "0.0", "0.55"  # grey levels: nothing is told by colour alone
 _ROADS = (("report_1", "Road 1: straight"), ("report_3", "Road 2: curved"))
-_ROAD_WIDTH_M = 1.5
 _BOXES = {
     "report_1": ((-0.5, 6.0), (-1.0, 1.0)),
     "report_2": ((0.0, 50.0), (-1.0, 1.0)),
@@ -96,11 +96,11 @@ def _roads_figure() -> Figure:
     """Figure 6: the roads, x upwards."""
     figure = Figure(figsize=(7.0, 3.6), layout="constrained")
     for axes, (scenario, title) in zip(figure.subplots(1, 2), _ROADS, strict=True):
-        track = load_scenario(scenario).track
-        if isinstance(track, WaypointsTrack):
-            x_m, y_m = zip(*track.waypoints_m, strict=True)
-            axes.plot(y_m, x_m, color="0.8", linewidth=8, solid_capstyle="butt")
-            axes.plot(y_m, x_m, color=_DARK, linestyle="--", linewidth=1)
+        road = course_of(load_scenario(scenario).track, np.random.default_rng(SEED)).road
+        points = [road.at(s_m) for s_m in np.linspace(0.0, road.length_m, 200).tolist()]
+        x_m, y_m = [point.x_m for point in points], [point.y_m for point in points]
+        axes.plot(y_m, x_m, color="0.8", linewidth=8, solid_capstyle="butt")
+        axes.plot(y_m, x_m, color=_DARK, linestyle="--", linewidth=1)
         axes.set_title(title, fontsize="medium")
         axes.set_xlabel("y [m]")
         axes.set_ylabel("x [m]")

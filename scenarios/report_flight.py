@@ -5,8 +5,6 @@ report's simulation tests it, from one noisy measurement of the vehicle, 100 tim
 """
 
 from dataclasses import dataclass
-from itertools import pairwise
-from math import dist
 from typing import Any
 
 import numpy as np
@@ -18,13 +16,13 @@ from scenarios.config import Scenario
 from scenarios.lockstep import Lockstep
 from scenarios.noise import named_rng
 from scenarios.outcome import scored
-from scenarios.profiles import waypoint_steps
 from scenarios.recording import EndWatch
 from scenarios.report_cases import LANDED_M, STANDS_S, Place
 from scenarios.score import Score
 from scenarios.sensors import white_error_m
 from scenarios.touch import Flags
 from scenarios.track_config import WaypointsTrack
+from scenarios.tracks import Course
 from scenarios.truth_log import Array
 
 
@@ -84,8 +82,10 @@ def fly(task: ReportTask) -> ReportFlight:
         UserError: no such scenario or preset, or not one of waypoints.
     """
     scenario = load_scenario(f"{task.scenario}+system={task.system}")
-    drive_s = _drive_s(scenario)
+    if not isinstance(scenario.track, WaypointsTrack):
+        raise UserError(f"{task.scenario} does not drive along waypoints, as the report's scenarios do")
     lockstep, watch = Lockstep(scenario, task.seed), EndWatch(scenario.time_limit_s)
+    drive_s = _drive_s(lockstep.simulation.vehicle.plan.course)
     direct = scenario.system.companion.landing is LandingStyle.DIRECT
     while watch.reason(lockstep.recording) is None:
         lockstep.step()
@@ -95,13 +95,9 @@ def fly(task: ReportTask) -> ReportFlight:
     return _flight(lockstep, scenario, task.seed, drive_s, scored_too=not direct)
 
 
-def _drive_s(scenario: Scenario) -> float:
-    """Return how long the vehicle drives from its first waypoint to its last."""
-    track = scenario.track
-    if not isinstance(track, WaypointsTrack):
-        raise UserError(f"{scenario.name} does not drive along waypoints, as the report's scenarios do")
-    distances_m = [dist(a, b) for a, b in pairwise(track.waypoints_m)]
-    return sum(duration_s for duration_s, _ in waypoint_steps(distances_m, track.speeds_m_s))
+def _drive_s(course: Course) -> float:
+    """Return how long the vehicle drives to its last waypoint: until its braking, after which it stands."""
+    return course.profile.starts_s[-2]
 
 
 def _flight(lockstep: Lockstep, scenario: Scenario, seed: int, drive_s: float, *, scored_too: bool) -> ReportFlight:

@@ -33,12 +33,13 @@ class StaticTrack(StrictModel):
 
 
 class WaypointsTrack(StrictModel):
-    """Straight lines between waypoints, with constant acceleration from each to the next (the report's)."""
+    """Waypoints, with constant acceleration from each to the next (the report's)."""
 
     kind: Literal["waypoints"]
     departure: Departure = Departure(departs_s=5.0)  # the report's vehicle stands for 5 s
     waypoints_m: Annotated[tuple[Waypoint, ...], Field(min_length=2)]
     speeds_m_s: Annotated[tuple[NotNegative, ...], Field(min_length=2)]
+    smooth: bool = False  # on a curve through the waypoints instead of straight lines
     braking_m_s2: Positive = 3.0  # behind the last waypoint
 
     @model_validator(mode="after")

@@ -13,6 +13,7 @@ from typing import assert_never
 
 import numpy as np
 
+from scenarios.curved_roads import curve_through
 from scenarios.profiles import Profile, cruise_steps, profile_of, waypoint_steps
 from scenarios.roads import Piece, Point, Road, Slope, advance, polyline, road_of
 from scenarios.track_config import (
@@ -165,10 +166,13 @@ def _figure_eight(track: FigureEightTrack) -> Steps:
 
 def _waypoints_course(track: WaypointsTrack) -> Course:
     """Return the report's course; behind the last waypoint the vehicle brakes to a stop, straight on."""
-    distances_m = [math.dist(a, b) for a, b in pairwise(track.waypoints_m)]
+    if track.smooth:
+        road, distances_m = curve_through(track.waypoints_m)
+    else:
+        road, distances_m = polyline(track.waypoints_m), [math.dist(a, b) for a, b in pairwise(track.waypoints_m)]
     braking_s = track.speeds_m_s[-1] / track.braking_m_s2
     steps = [*waypoint_steps(distances_m, track.speeds_m_s), (braking_s, -track.braking_m_s2)]
-    return Course(road=polyline(track.waypoints_m), profile=profile_of(steps, speed_m_s=track.speeds_m_s[0]))
+    return Course(road=road, profile=profile_of(steps, speed_m_s=track.speeds_m_s[0]))
 
 
 def _stop_and_go_course(track: StopAndGoTrack) -> Course:
