@@ -40,6 +40,7 @@ _EARLY = 0.75  # of a period: a new state of the drone starts the next step from
 _LATE = 2.0  # periods without a new state after which the step is made without one
 _CLOCK_SET_NS = 200_000_000  # more than the map to UTC is ever refined by at once
 _FUTURE_MAX_NS = 500_000_000  # a stamp farther ahead comes from a clock that is wrong
+_LEVER_MAX_M = 50.0  # no vehicle is larger
 _PLAN_EVERY = 2  # statuses
 _PLAN_POINTS = 2  # every so many points of the plan are published
 
@@ -99,6 +100,9 @@ class CompanionNode:
 
     def receive_pad(self, pad: PadGeometry) -> None:
         """Take the vehicle's description of its pad; the estimator needs the lever arm for sightings of the pad."""
+        if not all(abs(part_m) < _LEVER_MAX_M for part_m in pad.antenna_to_pad_m):
+            self.bad_payloads += 1
+            return
         self._pad = pad
         estimator = make_estimator(self._system.config.estimator, pad.antenna_to_pad_m)
         self._system = replace(self._system, estimator=estimator)
