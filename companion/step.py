@@ -240,7 +240,17 @@ def _fly(
         tracking=remember(memory.tracking, reference_ns, plan.next_state),
         yaw_setpoint_rad=_slewed_yaw_rad(memory, situation.pad, period_s, system.config),
     )
-    return memory, plan
+    return _anchored(memory, situation, system.config), plan
+
+
+def _anchored(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
+    """Take the place to stop along while an abort follows the vehicle, for when the vehicle falls silent."""
+    if memory.phase is not Phase.ABORT or memory.reference is None or memory.anchor_enu_m is None:
+        return memory
+    if situation.pad is None or not _is_fresh(situation, config):
+        return memory
+    x, y, _ = stopping_point(memory.reference, _ABORT_DECELERATION_M_S2)
+    return replace(memory, anchor_enu_m=np.array([x, y, memory.anchor_enu_m[2]]))
 
 
 def _limits(memory: StepMemory, situation: Situation, limits: FlightLimits, config: CompanionConfig) -> FlightLimits:

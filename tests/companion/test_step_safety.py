@@ -144,6 +144,16 @@ def test_drone_that_does_not_know_where_it_is_aborts(phase: Phase) -> None:
     assert not [one for one in flight.told(DISARM) if one[2] == 0.0]
 
 
+def test_vehicle_that_falls_silent_during_the_climb_does_not_make_the_drone_turn_back() -> None:
+    flight = reached(Phase.ALIGN)
+    flight.step(Command.ABORT)
+    flight.run(1.0)
+    flight.sends_fixes = False
+    while flight.phase is Phase.ABORT:
+        assert flight.step().setpoint is not None
+        assert flight.own.velocity_enu_m_s[0] > -0.1
+
+
 @pytest.mark.parametrize("phase", BY_VALUE)
 def test_silent_link_is_not_taken_for_a_pilot(phase: Phase) -> None:
     flight = reached(phase)

@@ -1,0 +1,114 @@
+"""The conversation with the autopilot: no command is ever late, and a restart begins anew."""
+
+import math
+
+from companion.autopilot_link import AutopilotLink
+from companion.autopilots.driver import AutopilotCommand
+from companion.data import Setpoint
+from link.mavlink.dialect import mavlink
+from link.mavlink.session import MavlinkSession
+from tests.companion.peer import FakePx4
+from tests.link.mavlink.fake_autopilot import MS, START_NS
+
+DISARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
+PLAIN = AutopilotCommand(command=DISARM, parameters=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+FORCED = AutopilotCommand(command=DISARM, parameters=(0.0, 21196.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+RETRY_S = 0.5
+
+
+class Talk:
+    """A link and a PX4 that exchange bytes every 5 ms."""
+
+    def __init__(self, autopilot: FakePx4) -> None:
+        self.link, self.autopilot, self.t_ns = AutopilotLink(MavlinkSession(1)), autopilot, START_NS
+        self.run(1.5)
+
+    def run(self, duration_s: float) -> None:
+        for _ in range(round(duration_s * 200)):
+            self.t_ns += 5 * MS
+            self.autopilot.tick(self.t_ns)
+            for data in self.autopilot.take_output():
+                self.link.receive(data, self.t_ns)
+            self.link.poll(self.t_ns)
+            for frame in self.link.session.take_output():
+                self.autopilot.receive(frame, self.t_ns)
+
+    def is_armed(self) -> bool:
+        return self.link.state.view.armed
+
+    def is_up(self) -> bool:
+        return self.link.state.view.link_up
+
+    def disarms(self) -> list[float]:
+        return [message.param2 for message in self.autopilot.commands(DISARM)]
+
+
+def test_unanswered_disarm_leaves_no_others_behind_it_for_a_later_situation() -> None:
+    talk = Talk(FakePx4(results={DISARM: ()}))
+    talk.link.send_commands((PLAIN,), talk.t_ns)
+    for _ in range(4):
+        talk.run(0.1)
+        talk.link.send_commands((FORCED,), talk.t_ns)
+    talk.run(5.0 * RETRY_S)
+    assert talk.disarms() == [0.0]
+
+
+def test_next_disarm_goes_out_once_the_first_has_run_out_of_time() -> None:
+    talk = Talk(FakePx4(results={DISARM: ()}))
+    talk.link.send_commands((PLAIN,), talk.t_ns)
+    talk.run(RETRY_S + 0.1)
+    talk.link.send_commands((PLAIN,), talk.t_ns)
+    talk.run(0.1)
+    assert talk.disarms() == [0.0, 0.0]
+
+
+def test_answer_frees_the_way_and_is_told_once() -> None:
+    talk = Talk(FakePx4(results={DISARM: (mavlink.MAV_RESULT_TEMPORARILY_REJECTED,)}))
+    talk.link.take_acknowledgements()
+    talk.link.send_commands((PLAIN,), talk.t_ns)
+    talk.run(0.1)
+    assert talk.link.take_acknowledgements() == ((DISARM, mavlink.MAV_RESULT_TEMPORARILY_REJECTED),)
+    assert talk.link.take_acknowledgements() == ()
+    talk.link.send_commands((FORCED,), talk.t_ns)
+    talk.run(0.1)
+    assert talk.disarms() == [0.0, 21196.0]
+
+
+def test_setpoint_that_is_not_finite_is_counted_and_not_sent() -> None:
+    talk = Talk(FakePx4())
+    for bad in (math.nan, math.inf, 1e39):
+        setpoint = Setpoint(
+            t_ns=talk.t_ns,
+            position_enu_m=(0.0, bad, 1.0),
+            velocity_enu_m_s=None,
+            acceleration_enu_m_s2=None,
+            yaw_rad=0.0,
+        )
+        talk.link.send_setpoint(setpoint, talk.t_ns)
+    talk.run(0.1)
+    assert talk.link.bad_setpoints == 3
+    assert not talk.autopilot.setpoints()
+
+
+def test_restarted_autopilot_is_taken_for_disarmed_and_its_old_places_are_forgotten() -> None:
+    talk = Talk(FakePx4(armed=True))
+    talk.run(1.0)
+    count = talk.link.state.view.origin_count
+    assert talk.is_armed()
+    talk.autopilot.armed = False
+    talk.autopilot.restart(talk.t_ns)
+    talk.run(4.0)
+    assert not talk.is_armed()
+    assert talk.link.state.view.origin_count > count
+    assert talk.link.state.own is not None
+
+
+def test_silent_autopilot_is_said_to_be_lost_and_found_again() -> None:
+    talk = Talk(FakePx4())
+    assert talk.is_up()
+    talk.autopilot.mute = True
+    talk.run(4.0)
+    assert not talk.is_up()
+    talk.autopilot.mute = False
+    talk.run(1.5)
+    assert talk.is_up()
