@@ -69,17 +69,14 @@ def companion(
     if print_config:
         sys.stdout.write(dump_toml(settings))
         return
-    from companion.build import build_node  # noqa: PLC0415
-    from companion.loop import Links, LoopOptions, run  # noqa: PLC0415
     from link.keys import Keys  # noqa: PLC0415
-    from link.mavlink.transports import open_transport  # noqa: PLC0415
-    from link.zenoh_session import DEFAULT_ENDPOINT, ZenohOptions, open_session  # noqa: PLC0415
+    from link.mavlink.device import parse_device  # noqa: PLC0415
+    from link.zenoh_options import DEFAULT_ENDPOINT, ZenohOptions  # noqa: PLC0415
 
     keys = Keys(namespace, vehicle, drone)
-    node = build_node(settings, keys, system_id=system_id, dry_run=dry_run, records_input=tlog is not None)
+    parse_device(mavlink)  # a mistake is told before the numerics are loaded
     if timing is not None:
         _check_writable(timing)
-    options = LoopOptions(device=mavlink, timeout_s=timeout, start=start, use_sim_time=use_sim_time, tlog=tlog)
     nothing_said = not (connect or listen or zenoh_config or multicast)
     zenoh_options = ZenohOptions(
         mode=mode,
@@ -88,6 +85,13 @@ def companion(
         multicast_scouting=multicast,
         config_file=zenoh_config,
     )
+    from companion.build import build_node  # noqa: PLC0415
+    from companion.loop import Links, LoopOptions, run  # noqa: PLC0415
+    from link.mavlink.transports import open_transport  # noqa: PLC0415
+    from link.zenoh_session import open_session  # noqa: PLC0415
+
+    node = build_node(settings, keys, system_id=system_id, dry_run=dry_run, records_input=tlog is not None)
+    options = LoopOptions(device=mavlink, timeout_s=timeout, start=start, use_sim_time=use_sim_time, tlog=tlog)
     with open_transport(mavlink) as transport, open_session(zenoh_options) as zenoh:
         timings = run(node, Links(keys=keys, transport=transport, zenoh=zenoh), options)
     if timing is not None:

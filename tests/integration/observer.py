@@ -100,6 +100,10 @@ class Observer:
     def hear(self) -> None:
         """Wait a little and take what has come."""
         self.zenoh.wake_up.wait(0.05)
+        self.listen()
+
+    def listen(self) -> None:
+        """Take what has come, without waiting."""
         self._watcher.take()
 
 

@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from types import TracebackType
 from typing import IO, Self
 
@@ -67,10 +68,12 @@ class Lines:
 class Program:
     """One of the four programs; both its outputs are read."""
 
-    def __init__(self, name: str, arguments: Sequence[str]) -> None:
+    def __init__(self, name: str, arguments: Sequence[str], folder: Path | None) -> None:
         # by the launcher, so that nothing is left behind even when the tests themselves are killed
         command = [sys.executable, "-m", "scenarios.launch", str(os.getpid()), MODULES[name], *arguments]
-        self._process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self._process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=folder
+        )
         assert self._process.stdout is not None
         assert self._process.stderr is not None
         self.out = Lines(self._process.stdout)
@@ -112,9 +115,14 @@ class Program:
 
 
 class Programs:
-    """Starts programs; each is killed, by its own id, at the end of the `with` block."""
+    """Starts programs; each is killed, by its own id, at the end of the `with` block.
 
-    def __init__(self) -> None:
+    Args:
+        folder: that they run in, None for the present one.
+    """
+
+    def __init__(self, folder: Path | None = None) -> None:
+        self._folder = folder
         self._programs: list[Program] = []
 
     def __enter__(self) -> Self:
@@ -127,7 +135,7 @@ class Programs:
             program.kill()
 
     def start(self, name: str, *arguments: str) -> Program:
-        program = Program(name, arguments)
+        program = Program(name, arguments, self._folder)
         self._programs.append(program)
         return program
 

@@ -67,7 +67,8 @@ def test_garbage_on_the_port_and_on_every_key_is_counted_and_the_landing_succeed
             bystander, thrower = Observer(zenoh, KEYS), Thrower(zenoh, transport)
             bystander.wait_for_status()
             while not run.out.finished(0.02):
-                thrower.throw()
+                for _ in range(4):
+                    thrower.throw()
                 bystander.hear()
         assert run.wait() == 0, (run.err.all, run.out.all)
     last = bystander.recording.statuses[-1]

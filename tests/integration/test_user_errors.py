@@ -1,0 +1,120 @@
+"""A user's mistake ends each program with exit code 2 and one line that names it and what to change."""
+
+import socket
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.integration.programs import MODULES, Programs
+
+pytestmark = pytest.mark.slow
+
+FREE = "--mavlink udpin:127.0.0.1:0"
+
+FILES = {
+    "key.toml": "[descent]\nalign_distnce_m = 1.0\n",
+    "range.toml": "[abort]\nfix_age_max_s = -1.0\n",
+    "kind.toml": '[guidance]\nkind = "mpcc"\n',
+    "not.toml": "= 3\n",
+    "wind.toml": "[wind]\nmean_mps = 2.0\n",
+    "parameter.toml": "[parameters]\nMPC_XY_VEL_MAXX = 2.0\n",
+    "scenario.toml": 'base = "straight_5"\ntime_limits_s = 20.0\n',
+    "base.toml": 'base = "strait_5"\n',
+    "zenoh.json5": "{ mode: ",
+}
+
+MISTAKES = [
+    # devices
+    ("companion", "--mavlink udpn:127.0.0.1:14540", ["udpn:127.0.0.1:14540", "did you mean udpin:127.0.0.1:14540?"]),
+    ("companion", "--mavlink udpin:127.0.0.1:99999", ["99999", "from 1 to 65535"]),
+    ("companion", "--mavlink udpin:no-such.invalid:14540", ["no-such.invalid", "write its address"]),
+    ("companion", "--mavlink /dev/ttyNONE,57600", ["/dev/ttyNONE", "plugged in"]),
+    ("companion", "--mavlink udpin:127.0.0.1:{udp}", ["port {udp} is in use", "choose another port"]),
+    ("sim-autopilot", "--mavlink udpot:127.0.0.1:14540", ["did you mean udpout:127.0.0.1:14540?"]),
+    ("sim-autopilot", "--mavlink udpin:127.0.0.1:{udp}", ["port {udp} is in use", "choose another port"]),
+    ("scenarios", "world straight_5 --mavlink foo", ["'foo'", "udpin:HOST:PORT, udpout:HOST:PORT"]),
+    # endpoints and names on Zenoh
+    ("companion", f"{FREE} -e tpc/127.0.0.1:7447", ["--connect 'tpc/127.0.0.1:7447'", "tcp/127.0.0.1:7447"]),
+    ("companion", f"{FREE} -m pear", ["--mode 'pear'", "peer, client, router"]),
+    ("companion", f"{FREE} --zenoh-config none.json5", ["none.json5", "no such file"]),
+    ("companion", f"{FREE} --zenoh-config zenoh.json5", ["zenoh.json5", "1:9"]),
+    ("companion", f"{FREE} --ns a*b", ["--ns 'a*b'", "use letters"]),
+    ("companion", f"{FREE} --vehicle one --drone one", ["'one'", "different names"]),
+    ("ground-vehicle", "--scenario straight_5 -l tcp/127.0.0.1:{tcp}", ["{tcp}", "in use", "choose another port"]),
+    ("sim-autopilot", "-l tcp/127.0.0.1:{tcp}", ["{tcp}", "in use", "choose another port"]),
+    ("scenarios", "world straight_5 -l tcp/127.0.0.1:{tcp}", ["{tcp}", "in use", "choose another port"]),
+    ("scenarios", "command start -e tcp:127.0.0.1:1", ["'tcp:127.0.0.1:1'", "write it as tcp/127.0.0.1:7447"]),
+    # scenarios
+    ("ground-vehicle", "", ["--scenario", "scenarios list"]),
+    ("ground-vehicle", "--scenario strait_5", ["'strait_5'", "'straight_5'", "scenarios list"]),
+    ("ground-vehicle", "--scenario straight_5+sensors=rtkk", ["'rtkk'", "'rtk'"]),
+    ("scenarios", "run strait_5", ["'strait_5'", "'straight_5'"]),
+    ("scenarios", "run straight_5+wnd=calm", ["'wnd=calm'", "wind"]),
+    ("scenarios", "run none.toml", ["none.toml", "cannot be read"]),
+    ("scenarios", "run scenario.toml", ["scenario.toml", "'time_limits_s'", "'time_limit_s'"]),
+    ("scenarios", "run base.toml", ["'strait_5'", "'straight_5'"]),
+    ("scenarios", "world strait_5", ["'strait_5'", "'straight_5'"]),
+    # configurations
+    ("companion", "--config none.toml", ["none.toml", "cannot be read"]),
+    ("companion", "--config not.toml", ["not.toml", "line 1"]),
+    ("companion", "--config key.toml", ["key.toml", "'descent.align_distnce_m'", "'align_distance_m'"]),
+    ("companion", "--config range.toml", ["range.toml", "abort.fix_age_max_s = -1.0", "above 0"]),
+    ("companion", "--config kind.toml", ["kind.toml", "guidance.kind", '"mpcc"', "'mpc'"]),
+    ("sim-autopilot", "--config wind.toml", ["wind.toml", "'wind.mean_mps'", "'mean_m_s'"]),
+    ("sim-autopilot", "--config parameter.toml", ["MPC_XY_VEL_MAXX", "MPC_XY_VEL_MAX"]),
+    # options and values
+    ("companion", "--stat", ["--stat", "--start"]),
+    ("companion", "--timeout -1", ["--timeout", "0"]),
+    ("companion", "--system-id 256", ["--system-id", "255"]),
+    ("companion", f"{FREE} --tlog none/flight.tlog", ["none/flight.tlog", "choose another place"]),
+    ("companion", f"{FREE} --timing none/timing.json", ["none/timing.json", "choose another place"]),
+    ("sim-autopilot", "--firmware px5", ["firmware", '"px5"', "px4"]),
+    ("sim-autopilot", "--speed -1", ["--speed", "0"]),
+    ("sim-autopilot", "--turbulence strong", ['"strong"', "'none', 'light', 'moderate' or 'severe'"]),
+    ("sim-autopilot", "--datum 100 0 0", ["latitude_deg = 100.0", "at most 90"]),
+    ("ground-vehicle", "--scenario straight_5 --seed -1", ["--seed", "0"]),
+    ("scenarios", "rn", ["'rn'", "'run'"]),
+    ("scenarios", "run", ["NAME|FILE"]),
+    ("scenarios", "run straight_5 --speed 0", ["--speed", "0.1"]),
+    ("scenarios", "run straight_5 --firmware px5", ['"px5"', "'px4'"]),
+    ("scenarios", "run straight_5 --out key.toml", ["key.toml", "--out"]),
+    ("scenarios", "command strt", ["'strt'", "start, abort, hold"]),
+]
+
+
+@pytest.fixture(scope="module")
+def places(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
+    """Give a folder with files and ports that are in use."""
+    folder = tmp_path_factory.mktemp("mistakes")
+    for name, text in FILES.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    with socket.socket() as tcp, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp:
+        for used in (tcp, udp):
+            used.bind(("127.0.0.1", 0))
+        tcp.listen()
+        yield {"folder": str(folder), "tcp": str(tcp.getsockname()[1]), "udp": str(udp.getsockname()[1])}
+
+
+@pytest.mark.parametrize(("name", "line", "words"), MISTAKES, ids=[f"{name} {line}" for name, line, _ in MISTAKES])
+def test_a_mistake_is_one_line_that_names_it_and_exit_code_2(
+    places: dict[str, str], name: str, line: str, words: list[str]
+) -> None:
+    with Programs(Path(places["folder"])) as programs:
+        program = programs.start(name, *line.format(**places).split())
+        code = program.wait()
+    assert (code, program.out.all) == (2, [])
+    assert len(program.err.all) == 1, program.err.all
+    said = program.err.all[0]
+    assert said.startswith(f"{name}: ")
+    for word in words:
+        assert word.format(**places) in said
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_each_program_has_its_help_as_a_module(name: str) -> None:
+    with Programs() as programs:
+        program = programs.start(name, "--help")
+        assert program.wait() == 0
+    assert program.err.all == []
+    assert program.out.all[0].startswith(f"Usage: {name} ")
