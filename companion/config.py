@@ -55,6 +55,9 @@ class ChaseConfig(StrictModel):
     start_acceleration_m_s2: Positive = 3.5  # share of the limit that the rendezvous is planned with
     passing_distance_m: Positive = 15.0  # a vehicle that passes farther away than this is not chased
     parked_speed_m_s: Positive = 0.3  # slower than this is standing
+    driving_hold_s: NotNegative = (
+        0.5  # faster than that for so long is driving: estimates from fixes of 0.1 m jump for 0.3 s
+    )
     parked_wait_s: NotNegative = 7.0  # a vehicle that stands may be about to depart
     time_limit_s: Positive = 60.0
 

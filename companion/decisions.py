@@ -124,6 +124,10 @@ def _stands_nearby(s: Situation, _: Approach | None, c: CompanionConfig) -> bool
     return speed_m_s < c.chase.parked_speed_m_s and float(np.hypot(*ahead)) < c.chase.passing_distance_m
 
 
+def _drives(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    return s.pad is not None and float(np.hypot(*s.pad.velocity_enu_m_s[0, :2])) >= c.chase.parked_speed_m_s
+
+
 def in_contact(s: Situation, a: Approach | None, c: CompanionConfig) -> bool:
     """Return whether the signs of a contact agree.
 
@@ -150,11 +154,15 @@ ENTRY_TESTS = (
 )
 
 
+DRIVES = Test("vehicle drives", frozenset({Phase.WAITING}), _drives, lambda c: c.chase.driving_hold_s)
+"""Without this no vehicle is taken to pass."""
+
+
 def update_held(
     held: Held, progress: Progress, situation: Situation, relative: Approach | None, config: CompanionConfig
 ) -> dict[str, int]:
     """Return since when each test of this phase has been true."""
-    tests = (*ABORT_TESTS, *(test for _, test in ENTRY_TESTS))
+    tests = (*ABORT_TESTS, *(test for _, test in ENTRY_TESTS), DRIVES)
     return {
         test.reason: held.get(test.reason, situation.t_ns)
         for test in tests
@@ -186,6 +194,8 @@ def decide(progress: Progress, situation: Situation, held: Held, config: Compani
     for event, test in ENTRY_TESTS:
         if _holds(test, held, situation.t_ns, config):
             return event, test.reason
+    if progress.phase is Phase.WAITING and not _holds(DRIVES, held, situation.t_ns, config):
+        return None
     return _advance(progress, situation, config)
 
 

@@ -153,6 +153,17 @@ def test_vehicle_that_stands_is_not_taken_for_one_that_passes() -> None:
     assert decision is None
 
 
+def test_vehicle_is_chased_once_it_has_driven_for_the_hold_time_and_not_for_a_jump_of_its_estimate() -> None:
+    passing = situation(HIGH_M, 2.0, pad=pad_at((4.0, 1.0, 0.0)))
+    hold_s = CONFIG.chase.driving_hold_s
+    jumped, _ = _first_decision(Phase.WAITING, passing, hold_s - 2.0 * TICK_NS * 1e-9)
+    assert jumped is None
+    decision, ticks = _first_decision(Phase.WAITING, passing, hold_s + 1.0)
+    assert decision is not None
+    assert decision[0] is Event.VEHICLE_PASSES
+    assert ticks == math.ceil(hold_s * 1e9 / TICK_NS - 1e-9)
+
+
 def test_vehicle_that_stands_far_away_is_not_chased() -> None:
     far = situation(3.0, CONFIG.chase.passing_distance_m + 0.1, pad=pad_at((0.0, 0.0, 0.0)))
     decision, _ = _first_decision(Phase.WAITING, far, 2.0 * CONFIG.chase.parked_wait_s)
