@@ -8,7 +8,7 @@ import typer
 
 from link.cli import DroneOption, NamespaceOption, VehicleOption, make_app, run_app
 from link.errors import UserError
-from scenarios import campaign_commands, report_commands
+from scenarios import bench_commands, campaign_commands, report_commands
 
 app = make_app("Experiments: run landings, score them on ground truth, and report.")
 
@@ -112,6 +112,7 @@ def command_command(
 
 
 campaign_commands.register(app)
+bench_commands.register(app)
 report_commands.register(app)
 
 

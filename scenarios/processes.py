@@ -2,6 +2,7 @@
 
 import os
 import signal
+import socket
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -11,6 +12,14 @@ from types import TracebackType
 from typing import Self
 
 from link.errors import UserError
+
+MODULES = {
+    "companion": "companion",
+    "sim-autopilot": "sim_autopilot",
+    "ground-vehicle": "scenarios.ground_vehicle",
+    "scenarios": "scenarios",
+}
+"""The module of each program, for `python -m`."""
 
 _INTERRUPT_WAIT_S = 5.0
 _TAIL_LINES = 3
@@ -99,6 +108,22 @@ class ProcessGroup:
     def _last_words(self, name: str) -> str:
         lines = self._log(name).read_text(encoding="utf-8", errors="replace").splitlines()
         return " | ".join(line.strip() for line in lines[-_TAIL_LINES:] if line.strip()) or "it said nothing"
+
+
+def free_udp_port() -> int:
+    """Return a UDP port of loopback that is free now."""
+    return _free_port(socket.SOCK_DGRAM)
+
+
+def free_tcp_endpoint() -> str:
+    """Return a Zenoh endpoint on loopback whose port is free now."""
+    return f"tcp/127.0.0.1:{_free_port(socket.SOCK_STREAM)}"
+
+
+def _free_port(kind: socket.SocketKind) -> int:
+    with socket.socket(socket.AF_INET, kind) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
 
 
 def _ending(code: int) -> str:

@@ -2,7 +2,6 @@
 
 import json
 import os
-import socket
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,8 +17,9 @@ from scenarios.config import Scenario
 from scenarios.drone import sim_autopilot_config
 from scenarios.lockstep import Lockstep
 from scenarios.outcome import result_table, write_json
-from scenarios.processes import ProcessGroup, Program
+from scenarios.processes import MODULES, ProcessGroup, Program, free_tcp_endpoint, free_udp_port
 from scenarios.recording import EndWatch, Recording
+from scenarios.stopwatch import quantiles_ms, timed_steps
 from scenarios.watcher import Watcher
 
 _POLL_S = 0.02
@@ -76,7 +76,7 @@ def run_over_wire(scenario: Scenario, options: RunOptions, progress: Progress) -
         UserError: a program could not start or ended by itself.
     """
     keys = Keys()
-    endpoint = f"tcp/127.0.0.1:{_free_port(socket.SOCK_STREAM)}"
+    endpoint = free_tcp_endpoint()
     recording = Recording()
     with (
         # The watcher listens and the programs come to it, so that it misses nothing while they start.
@@ -96,7 +96,7 @@ def _programs(scenario: Scenario, options: RunOptions, endpoint: str) -> list[Pr
     drone = sim_autopilot_config(scenario, options.seed, instant=False)
     for name, config in (("scenario", scenario), ("sim-autopilot", drone), ("companion", scenario.system.companion)):
         folder.joinpath(f"{name}.toml").write_text(dump_toml(config), encoding="utf-8")
-    port = _free_port(socket.SOCK_DGRAM)
+    port = free_udp_port()
     arguments = {
         "ground-vehicle": [
             *("--scenario", str(folder / "scenario.toml"), "--seed", str(options.seed)),
@@ -112,18 +112,7 @@ def _programs(scenario: Scenario, options: RunOptions, endpoint: str) -> list[Pr
             *("--timing", str(folder / _COMPANION_TIMING)),
         ],
     }
-    modules = {
-        "ground-vehicle": "scenarios.ground_vehicle",
-        "sim-autopilot": "sim_autopilot",
-        "companion": "companion",
-    }
-    return [Program(name=name, module=modules[name], arguments=words) for name, words in arguments.items()]
-
-
-def _free_port(kind: socket.SocketKind) -> int:
-    with socket.socket(socket.AF_INET, kind) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+    return [Program(name=name, module=MODULES[name], arguments=words) for name, words in arguments.items()]
 
 
 class _Pace:
@@ -180,12 +169,14 @@ def run_in_lockstep(scenario: Scenario, options: RunOptions, progress: Progress)
     """Run a scenario in this process on a simulated clock, score it on truth and write the run's folder."""
     options.folder.joinpath("scenario.toml").write_text(dump_toml(scenario), encoding="utf-8")
     lockstep = Lockstep(scenario, options.seed)
-    began_s = time.monotonic()
-    ended = lockstep.run()
-    factor = lockstep.recording.elapsed_s / (time.monotonic() - began_s)
+    with timed_steps() as durations_s:
+        began_s = time.monotonic()
+        ended = lockstep.run()
+        factor = lockstep.recording.elapsed_s / (time.monotonic() - began_s)
     progress(lockstep.recording, factor)
     result = result_table(scenario, options.seed, lockstep.recording, ended)
-    timing = {"real_time_factor": round(factor, 4)}
+    step_ms = {name: quantiles_ms(durations) for name, durations in durations_s.items()}
+    timing = {"real_time_factor": round(factor, 4), "step_ms": step_ms}
     return _written(options.folder, result, timing)
 
 

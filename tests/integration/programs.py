@@ -4,7 +4,6 @@ import os
 import queue
 import re
 import signal
-import socket
 import subprocess
 import sys
 import threading
@@ -16,15 +15,10 @@ from typing import IO, Self
 
 import psutil  # type: ignore[import-untyped]  # it has no annotations
 
+from scenarios.processes import MODULES
+
 DEADLINE_S = 90.0
 """Wall time for anything to happen; a loaded machine with two cores needs a tenth of it."""
-
-MODULES = {
-    "companion": "companion",
-    "sim-autopilot": "sim_autopilot",
-    "ground-vehicle": "scenarios.ground_vehicle",
-    "scenarios": "scenarios",
-}
 
 
 class Lines:
@@ -158,17 +152,3 @@ def until(condition: Callable[[], bool], what: str) -> None:
     end_s = time.monotonic() + DEADLINE_S
     while not condition():
         assert time.monotonic() < end_s, f"the deadline has passed: {what}"
-
-
-def free_udp_port() -> int:
-    return _free_port(socket.SOCK_DGRAM)
-
-
-def free_endpoint() -> str:
-    return f"tcp/127.0.0.1:{_free_port(socket.SOCK_STREAM)}"
-
-
-def _free_port(kind: socket.SocketKind) -> int:
-    with socket.socket(socket.AF_INET, kind) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])

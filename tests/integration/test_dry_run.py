@@ -6,8 +6,9 @@ from companion.phases import Phase
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.transports import open_transport
+from scenarios.processes import free_tcp_endpoint, free_udp_port
 from tests.integration.observer import observer
-from tests.integration.programs import Programs, free_endpoint, free_udp_port, until
+from tests.integration.programs import Programs, until
 
 pytestmark = pytest.mark.slow
 
@@ -16,7 +17,7 @@ ASKING = {mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAV_CMD_REQUEST_MESSAGE}
 
 
 def test_a_dry_run_goes_through_the_phases_but_sends_no_setpoint_and_no_command_to_fly() -> None:
-    world_port, companion_port, endpoint = free_udp_port(), free_udp_port(), free_endpoint()
+    world_port, companion_port, endpoint = free_udp_port(), free_udp_port(), free_tcp_endpoint()
     said: list[Message] = []
     codec = MavlinkCodec(1, mavlink.MAV_COMP_ID_AUTOPILOT1)
     with (

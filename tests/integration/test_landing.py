@@ -3,8 +3,9 @@
 import pytest
 
 from scenarios.outcome import LANDED
+from scenarios.processes import free_tcp_endpoint, free_udp_port
 from tests.integration.observer import observer
-from tests.integration.programs import Programs, free_endpoint, free_udp_port
+from tests.integration.programs import Programs
 
 pytestmark = pytest.mark.slow
 
@@ -12,7 +13,7 @@ SPEED = "5"
 
 
 def test_two_programs_land_with_the_companion_started_first() -> None:
-    port, endpoint = free_udp_port(), free_endpoint()
+    port, endpoint = free_udp_port(), free_tcp_endpoint()
     listening = ("--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint)
     speaking = ("--mavlink", f"udpout:127.0.0.1:{port}", "-l", endpoint)
     with Programs() as programs:
@@ -24,7 +25,7 @@ def test_two_programs_land_with_the_companion_started_first() -> None:
 
 
 def test_four_programs_land_on_command_with_the_companion_started_last() -> None:
-    port, endpoint = free_udp_port(), free_endpoint()
+    port, endpoint = free_udp_port(), free_tcp_endpoint()
     with Programs() as programs, observer(endpoint) as bystander:
         programs.start("ground-vehicle", "--scenario", "straight_5", "--use-sim-time", "-l", endpoint)
         programs.start("sim-autopilot", "--mavlink", f"udpout:127.0.0.1:{port}", "-e", endpoint, "--speed", SPEED)

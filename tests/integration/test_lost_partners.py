@@ -3,8 +3,9 @@
 import pytest
 
 from companion.phases import Phase
+from scenarios.processes import free_tcp_endpoint, free_udp_port
 from tests.integration.observer import Observer, observer
-from tests.integration.programs import Programs, free_endpoint, free_udp_port
+from tests.integration.programs import Programs
 
 pytestmark = pytest.mark.slow
 
@@ -20,7 +21,7 @@ def start_again(programs: Programs, bystander: Observer, endpoint: str) -> None:
 
 @pytest.mark.parametrize("in_flight", [False, True])
 def test_the_companion_outlives_a_killed_simulator_and_flies_with_the_next_one(*, in_flight: bool) -> None:
-    port, endpoint = free_udp_port(), free_endpoint()
+    port, endpoint = free_udp_port(), free_tcp_endpoint()
     world = ("world", "straight_5", "--mavlink", f"udpout:127.0.0.1:{port}", "-l", endpoint)
     with Programs() as programs, observer(endpoint) as bystander:
         companion = programs.start("companion", "--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint)
@@ -38,7 +39,7 @@ def test_the_companion_outlives_a_killed_simulator_and_flies_with_the_next_one(*
 
 
 def test_the_drone_climbs_away_when_the_vehicle_is_killed_in_the_chase() -> None:
-    port, endpoint = free_udp_port(), free_endpoint()
+    port, endpoint = free_udp_port(), free_tcp_endpoint()
     with Programs() as programs, observer(endpoint) as bystander:
         vehicle = programs.start("ground-vehicle", "--scenario", "straight_5", "--use-sim-time", "-l", endpoint)
         programs.start("sim-autopilot", "--mavlink", f"udpout:127.0.0.1:{port}", "-e", endpoint, "--speed", "4")

@@ -5,7 +5,8 @@ import pytest
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
 from link.mavlink.transports import open_transport
-from tests.integration.programs import Program, Programs, free_endpoint, free_udp_port, until
+from scenarios.processes import free_tcp_endpoint, free_udp_port
+from tests.integration.programs import Program, Programs, until
 
 pytestmark = pytest.mark.slow
 
@@ -35,7 +36,7 @@ def test_no_simulated_clock_names_its_key() -> None:
 
 
 def test_no_vehicle_fix_names_its_key() -> None:
-    port, endpoint = free_udp_port(), free_endpoint()
+    port, endpoint = free_udp_port(), free_tcp_endpoint()
     with Programs() as programs:
         companion = ("--mavlink", f"udpin:127.0.0.1:{port}", "-l", endpoint, "--vehicle", "car", "--timeout", "3")
         watched = programs.start("companion", *companion, "--start")

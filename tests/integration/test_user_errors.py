@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.integration.programs import MODULES, Programs
+from scenarios.processes import MODULES
+from tests.integration.programs import Programs
 
 pytestmark = pytest.mark.slow
 
