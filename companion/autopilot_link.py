@@ -39,10 +39,14 @@ class AutopilotLink:
     Args:
         session: to the autopilot.
         motion_rate_hz: of the drone's position and attitude.
+        stops_unused_streams: ask the autopilot not to send what the companion does not read.
     """
 
-    def __init__(self, session: MavlinkSession, motion_rate_hz: float = 50.0) -> None:
+    def __init__(
+        self, session: MavlinkSession, motion_rate_hz: float = 50.0, *, stops_unused_streams: bool = True
+    ) -> None:
         self.session = session
+        self._stops_unused = stops_unused_streams
         self._motion_rate_hz = motion_rate_hz
         self.state = AutopilotState()
         self.driver: Driver | None = None
@@ -155,7 +159,8 @@ class AutopilotLink:
 
     def _ask_for_streams(self, driver: Driver, local_ns: int) -> None:
         motion_hz = dict.fromkeys(_MOTION_IDS, self._motion_rate_hz)
-        for message_id, rate_hz in (motion_hz | _STREAMS_HZ).items():
+        unused_hz = dict.fromkeys(driver.unused_streams if self._stops_unused else (), 0.0)
+        for message_id, rate_hz in (motion_hz | _STREAMS_HZ | unused_hz).items():
             self.session.request_interval(message_id, rate_hz, local_ns)
         for name in driver.limit_parameters:
             self.session.read_parameter(name, local_ns)

@@ -117,6 +117,7 @@ class CompanionConfig(StrictModel):
     """Everything that can be set about the companion."""
 
     step_rate_hz: Annotated[float, Field(ge=10.0, le=200.0)] = 50.0
+    stops_unused_streams: bool = True  # on the companion's own link; false where others listen on it, too
     status_rate_hz: Annotated[float, Field(ge=0.5, le=50.0)] = 10.0
     setpoint_lead_s: Annotated[float, Field(ge=0.0, le=0.5)] = (
         0.03  # half a period of holding plus the way to the motors

@@ -56,7 +56,11 @@ class CompanionNode:
     """
 
     def __init__(self, system: System, keys: Keys, session: MavlinkSession, *, dry_run: bool = False) -> None:
-        self.autopilot = AutopilotLink(session, motion_rate_hz=max(system.config.step_rate_hz, _MOTION_RATE_MIN_HZ))
+        self.autopilot = AutopilotLink(
+            session,
+            motion_rate_hz=max(system.config.step_rate_hz, _MOTION_RATE_MIN_HZ),
+            stops_unused_streams=system.config.stops_unused_streams,
+        )
         self._dry_run = dry_run
         self.memory = StepMemory()
         self.outputs: StepOutputs | None = None
@@ -89,13 +93,16 @@ class CompanionNode:
         self.autopilot.receive(data, local_ns)
 
     def receive_sample(self, key: str, payload: bytes) -> None:
-        """Take a Zenoh sample; what cannot be decoded is counted and dropped."""
+        """Take a Zenoh sample; what cannot be decoded, is absurd or comes from the future is counted and dropped."""
         try:
             measurements = [plausible(measurement) for measurement in self._decoded(key, payload)]
-            for measurement in measurements:
-                self._check_stamp(measurement.t_ns)
-            self._measurements += measurements
         except PayloadError:
+            self.bad_payloads += 1
+            return
+        newest_ns = self._t_ns + _FUTURE_MAX_NS
+        self._measurements += [measurement for measurement in measurements if measurement.t_ns <= newest_ns]
+        # Before UTC is known a stamp ahead of the companion's own clock says nothing about who is wrong.
+        if self.autopilot.session.clock.is_utc_known and any(one.t_ns > newest_ns for one in measurements):
             self.bad_payloads += 1
 
     def receive_pad(self, pad: PadGeometry) -> None:
@@ -157,15 +164,6 @@ class CompanionNode:
             own_then = state.own_at(sighting.t_ns)
             return () if own_then is None else (sighting_measurement(sighting, own_then),)
         return ()
-
-    def _check_stamp(self, t_ns: int) -> None:
-        """Check that a measurement is not from the future, which no filter comes back from.
-
-        Raises:
-            PayloadError: it is.
-        """
-        if t_ns > self._t_ns + _FUTURE_MAX_NS:
-            raise PayloadError(f"the stamp lies {(t_ns - self._t_ns) * 1e-9:.1f} s in the future")
 
     def _is_due(self, local_ns: int) -> bool:
         """A step follows each new state of the drone, at the step rate, and does not wait for it for ever."""

@@ -20,7 +20,7 @@ from companion.shifts import in_present_frame
 from companion.situation import Situation, approach, drone_now
 from companion.status import landing_status
 from companion.step_data import StepInputs, StepMemory, StepOutputs, System
-from companion.targets import HORIZON_OFFSETS_S, Aim, hover_aim, pad_aim, stopping_point
+from companion.targets import HORIZON_OFFSETS_S, Aim, hover_aim, is_at_rest, pad_aim, stopping_point
 from link.frames import wrap_angle, yaw_of
 from link.messages import Command, CommandReply
 
@@ -223,6 +223,8 @@ def _fly(
     memory = replace(memory, reference=reference)
     period_s = 1.0 / system.config.step_rate_hz
     aim = _aim(memory, situation, system.config)
+    if is_at_rest(reference, aim):
+        return _resting(memory, inputs.t_ns + round(period_s * 1e9)), None
     request = PlanRequest(
         state=reference,
         target=aim.target,
@@ -241,6 +243,14 @@ def _fly(
         yaw_setpoint_rad=_slewed_yaw_rad(memory, situation.pad, period_s, system.config),
     )
     return _anchored(memory, situation, system.config), plan
+
+
+def _resting(memory: StepMemory, reference_ns: int) -> StepMemory:
+    """Let the virtual model stay where it is, for there is nothing to plan."""
+    if memory.reference is None:
+        return memory
+    tracking = remember(memory.tracking, reference_ns, memory.reference)
+    return replace(memory, reference_ns=reference_ns, tracking=tracking)
 
 
 def _anchored(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:

@@ -17,6 +17,8 @@ from companion.planning.guidance import ReferenceState, Target
 
 HORIZON_OFFSETS_S: Array = np.arange(0.0, 4.01, 0.2)
 NO_FLOOR_M = -1e4
+_REST_M = 0.005
+_REST_MOTION = 0.01  # m/s and m/s^2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -25,6 +27,7 @@ class Aim:
 
     target: Target
     floor_enu_m: Array
+    is_hover: bool = False
 
 
 def hover_aim(point_enu_m: Array) -> Aim:
@@ -37,7 +40,16 @@ def hover_aim(point_enu_m: Array) -> Aim:
         velocity_enu_m_s=zeros,
         acceleration_enu_m_s2=zeros,
     )
-    return Aim(target=target, floor_enu_m=np.full(n, NO_FLOOR_M))
+    return Aim(target=target, floor_enu_m=np.full(n, NO_FLOOR_M), is_hover=True)
+
+
+def is_at_rest(reference: ReferenceState, aim: Aim) -> bool:
+    """Return whether the virtual model hovers where the aim wants it for the whole horizon."""
+    if not aim.is_hover:
+        return False
+    off = np.abs(reference.position_enu_m - aim.target.position_enu_m[0]).max()
+    moving = np.abs(reference.velocity_enu_m_s).max() + np.abs(reference.acceleration_enu_m_s2).max()
+    return bool(off < _REST_M and moving < _REST_MOTION)
 
 
 def stopping_point(reference: ReferenceState, deceleration_m_s2: float) -> Array:

@@ -80,6 +80,10 @@ class Driver(Protocol):
     def limit_parameters(self) -> tuple[str, ...]:
         """Parameters that bound the flight."""
 
+    @property
+    def unused_streams(self) -> tuple[int, ...]:
+        """Messages that it sends unasked on a companion's link and that the companion does not read."""
+
     def is_in_control(self, base_mode: int, custom_mode: int) -> bool:
         """Return whether these heartbeat fields mean that it follows setpoints."""
 

@@ -31,6 +31,15 @@ class Px4Driver:
     name = "px4"
     autopilot_id: int = mavlink.MAV_AUTOPILOT_PX4
     limit_parameters = ("MPC_XY_VEL_MAX", "MPC_Z_VEL_MAX_UP", "MPC_Z_VEL_MAX_DN", "MPC_TILTMAX_AIR")
+    # 310 messages a second of PX4's default set for an onboard computer
+    unused_streams = (
+        mavlink.MAVLINK_MSG_ID_ATTITUDE,
+        mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT,
+        mavlink.MAVLINK_MSG_ID_HIGHRES_IMU,
+        mavlink.MAVLINK_MSG_ID_ODOMETRY,
+        mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED,
+        mavlink.MAVLINK_MSG_ID_VFR_HUD,
+    )
 
     def is_in_control(self, base_mode: int, custom_mode: int) -> bool:
         """Return whether the mode is OFFBOARD."""
