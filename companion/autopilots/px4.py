@@ -22,6 +22,7 @@ _ASK_AGAIN_S = 1.0  # the heartbeat that confirms a mode may be a second late
 _DISARM_AGAIN_S = 0.2
 _GRAVITY_M_S2 = 9.81
 _TILT_MAX_DEG = 45.0  # taken while MPC_TILTMAX_AIR is unknown: its default
+_STATED_MIN = 0.1  # m/s or degrees; a limit below this cannot be flown with
 _TILT_SHARE = 0.7  # of the tilt limit left to planned acceleration; the rest is for drag and wind
 
 
@@ -98,7 +99,7 @@ class Px4Driver:
 def _stated(parameters: Mapping[str, float], name: str) -> float:
     """Return a parameter, infinity where it is unknown or says what cannot be meant."""
     value = parameters.get(name, math.inf)
-    return value if value > 0.0 else math.inf
+    return value if value >= _STATED_MIN else math.inf
 
 
 def _streamed_s(memory: DriverMemory, t_ns: int) -> float:

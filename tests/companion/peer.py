@@ -83,6 +83,7 @@ class FakePx4(FakeAutopilot):
 
     def obey(self, message: Message) -> None:
         super().obey(message)
+        self.intervals_ns = {one: period_ns for one, period_ns in self.intervals_ns.items() if period_ns > 0}
         if self.results.get(message.command, (0,)) != (0,):
             return
         match message.command:
