@@ -119,7 +119,11 @@ def test_below_the_commit_height_it_lands_rather_than_aborts(reason: str) -> Non
 
 @pytest.mark.parametrize("reason", sorted(BLIND))
 def test_below_the_commit_height_it_does_not_land_where_nobody_knows_the_pad_to_be(reason: str) -> None:
-    decision, _ = _first_decision(Phase.DESCEND, UNSAFE[reason], 3.0)
+    blind = UNSAFE[reason]
+    relative = approach(blind)
+    if blind.pad is not None and relative is not None and relative.height_m > LOW_M:
+        blind = replace(blind, drone=drone_at(LOW_M, 0.1, (0.0, 0.0, -0.4), pad=blind.pad))
+    decision, _ = _first_decision(Phase.DESCEND, blind, 3.0)
     assert decision == (Event.UNSAFE, reason)
 
 
