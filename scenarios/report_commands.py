@@ -28,17 +28,22 @@ def report_or_campaign_table(
     workers: Annotated[
         int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
     ] = None,
+    markdown: Annotated[
+        bool, typer.Option("--markdown", help="Print the report's tables as docs/report.md has them.")
+    ] = (False),
     as_json: JsonOption = False,
 ) -> None:
     """Print the report's outcomes, published against measured; or a campaign's summary again."""
     if what != _REPORT:
         table_command(Path(what), as_json=as_json)
         return
-    from scenarios.report_table import fly_report, print_report  # noqa: PLC0415 (numerics are slow to load)
+    from scenarios.report_table import fly_report, print_report, write_markdown  # noqa: PLC0415 (numerics are slow to load)
 
     table = fly_report(seeds, workers)
     if as_json:
         sys.stdout.write(json.dumps(table, indent=2, allow_nan=False) + "\n")
+    elif markdown:
+        write_markdown(table, sys.stdout)
     else:
         print_report(table, sys.stdout)
 

@@ -96,23 +96,32 @@ def _spread(values: Sequence[float]) -> dict[str, float] | None:
     return {"median": statistics.median(values), "min": min(values), "max": max(values)}
 
 
+_LANDING_HEADINGS = ("scenario", "published", "system", "by the noisy test", "at s", "x m", "y m", "on truth", "at s",
+                     "closest m", "tiers")  # fmt: skip
+_STEP_HEADINGS = ("loop", "airframe", "axis", "published s", "settling s", "overshoot %")
+
+
 def print_report(table: Mapping[str, Any], out: TextIO) -> None:
     """Print both tables: framed on a terminal, plain columns elsewhere."""
     framed = out.isatty()
     console = Console(file=out, highlight=False, width=None if framed else _PLAIN_WIDTH, no_color=not framed)
-    _print(
-        console,
-        "Landings within 0.7 m before the road ends: median (smallest to largest) over the seeds",
-        ("scenario", "published", "system", "by the noisy test", "at s", "x m", "y m", "on truth", "at s", "closest m",
-         "tiers of the benchmark"),
-        [_landing_cells(cell) for cell in table["landings"]],
-    )  # fmt: skip
-    _print(
-        console,
-        f"Unit steps: settling time to 2 % and overshoot (published overshoot: {OVERSHOOT})",
-        ("loop", "airframe", "axis", "published s", "settling s", "overshoot %"),
-        [_step_cells(row) for row in table["step_responses"]],
+    title = "Landings within 0.7 m before the road ends: median (smallest to largest) over the seeds"
+    _print(console, title, _LANDING_HEADINGS, [_landing_cells(cell) for cell in table["landings"]])
+    title = f"Unit steps: settling time to 2 % and overshoot (published overshoot: {OVERSHOOT})"
+    _print(console, title, _STEP_HEADINGS, [_step_cells(row) for row in table["step_responses"]])
+
+
+def write_markdown(table: Mapping[str, Any], out: TextIO) -> None:
+    """Write both tables as Markdown has them, one after the other."""
+    parts = (
+        (_LANDING_HEADINGS, [_landing_cells(cell) for cell in table["landings"]]),
+        (_STEP_HEADINGS, [_step_cells(row) for row in table["step_responses"]]),
     )
+    lines = [
+        "\n".join(f"| {' | '.join(cells)} |" for cells in (headings, ["---"] * len(headings), *rows))
+        for headings, rows in parts
+    ]
+    out.write("\n\n".join(lines) + "\n")
 
 
 def _print(console: Console, title: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> None:

@@ -4,6 +4,7 @@ Steps of 1 m along x, y, z and of 0.1 rad of heading, from hover at heading zero
 """
 
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -94,7 +95,8 @@ def _outputs(memory: PlantMemory) -> Array:
     return np.append(memory.state.position_enu_m, yaw_rad)
 
 
-def step_rows() -> list[dict[str, float | str | None]]:
+@cache
+def step_rows() -> tuple[dict[str, float | str | None], ...]:
     """Return settling time and overshoot of each loop along each axis."""
     rows: list[dict[str, float | str | None]] = []
     for name, controller, airframe in LOOPS:
@@ -110,4 +112,4 @@ def step_rows() -> list[dict[str, float | str | None]]:
                     "overshoot": response.overshoot,
                 }
             )
-    return rows
+    return tuple(rows)

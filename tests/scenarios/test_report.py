@@ -13,7 +13,7 @@ from scenarios.outcome import LANDED, scored
 from scenarios.report_cases import CASES, STANDS_S
 from scenarios.report_figures import draw_report
 from scenarios.report_flight import ReportFlight, ReportTask, fly, row_of
-from scenarios.report_table import print_report, report_table
+from scenarios.report_table import print_report, report_table, write_markdown
 from scenarios.step_responses import step_rows
 from tests.scenarios.recomputation import outcome, shared_noise
 
@@ -145,6 +145,15 @@ def test_printed_table_has_a_line_for_each_case_and_each_response() -> None:
     assert sum(
         line.split()[0] in {"lqr", "lqr,", "lqr_feedforward", "geometric"} for line in lines if line.strip()
     ) == len(table["step_responses"])
+
+
+def test_markdown_has_the_same_number_of_cells_in_every_line_of_a_table() -> None:
+    rows = [row_of(ReportTask(scenario="report_2", system="report", seed=1), straight_flight([0.5], t_s=[6.0]))]
+    out = io.StringIO()
+    write_markdown(report_table(rows), out)
+    landings, steps = out.getvalue().rstrip().split("\n\n")
+    assert {line.count("|") for line in landings.splitlines()} == {12}
+    assert {line.count("|") for line in steps.splitlines()} == {7}
 
 
 def test_linear_step_responses_are_the_published_ones() -> None:
