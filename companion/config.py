@@ -27,7 +27,7 @@ class LimitsConfig(StrictModel):
     The acceleration leaves half of a 45 degree tilt (9.8 m/s^2) to drag, wind and feedback.
     """
 
-    speed_max_m_s: Positive = 25.0
+    speed_max_m_s: Positive = 30.0  # of the benchmark's airframe
     climb_max_m_s: Positive = 3.0  # PX4 MPC_Z_VEL_MAX_UP
     descent_max_m_s: Positive = 1.5  # PX4 MPC_Z_VEL_MAX_DN
     acceleration_max_m_s2: Positive = 5.0
@@ -89,9 +89,11 @@ class TouchdownConfig(StrictModel):
     blocked_depth_m: Positive = 0.06  # how far the setpoint has sunk below the drone
     blocked_speed_m_s: Positive = 0.2  # relative vertical speed that counts as standing
     hold_s: NotNegative = 0.1
-    level_height_m: NotNegative = 0.18  # below this the drone turns less than the deck, to touch down level
-    level_acceleration_m_s2: Positive = 1.9  # 11 degrees; S1 allows 15 over trim
-    press_acceleration_m_s2: Annotated[float, Field(ge=0.0, le=9.0)] = 5.0  # half of the weight rests on the gear
+    level_height_m: NotNegative = 0.14  # below this the drone turns less than the deck, to touch down level
+    level_acceleration_m_s2: Positive = 1.6  # 9 degrees; S2 allows 10 over trim
+    # Downwards, while the signs of a contact hold, and once they are believed: nearly the whole weight on the gear.
+    try_acceleration_m_s2: Annotated[float, Field(ge=0.0, le=9.0)] = 5.0
+    press_acceleration_m_s2: Annotated[float, Field(ge=0.0, le=9.0)] = 9.0
     lost_height_m: Positive = 0.6  # higher than this after a contact is a bounce or a slide
 
 

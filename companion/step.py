@@ -60,8 +60,10 @@ def _setpoint(memory: StepMemory, t_ns: int, config: CompanionConfig) -> Setpoin
     reference = memory.reference
     if reference is None:
         return None
-    if memory.phase is Phase.TOUCHDOWN or CONTACT in memory.held:
+    if memory.phase is Phase.TOUCHDOWN:
         reference = pressing(reference, config.touchdown.press_acceleration_m_s2)
+    elif CONTACT in memory.held:
+        reference = pressing(reference, config.touchdown.try_acceleration_m_s2)
     sent_ns = t_ns + round(config.setpoint_lead_s * 1e9)
     return setpoint_at(
         carried(reference, (sent_ns - memory.reference_ns) * 1e-9),
