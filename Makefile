@@ -5,7 +5,7 @@ SPEED ?= 1
 SCENARIO ?= straight_5
 SEED ?= 1
 
-.PHONY: setup demo test check lock clean
+.PHONY: setup demo test check lint lock clean
 
 setup: .venv/.complete
 
@@ -19,17 +19,18 @@ setup: .venv/.complete
 demo: .venv/.complete
 	$(BIN)/scenarios run $(SCENARIO) --speed $(SPEED) --seed $(SEED)
 
-check: .venv/.complete
-	$(BIN)/ruff format --check .
-	$(BIN)/ruff check .
-	$(BIN)/mypy
-	$(BIN)/pytest -q -m "not slow"
+check: lint
+	$(BIN)/pytest -q -n 2 -m "not slow"
 
-test: .venv/.complete
+# What starts processes and keeps time runs by itself, after the rest.
+test: lint
+	$(BIN)/pytest -q -n 2 -m "not slow"
+	$(BIN)/pytest -q -m slow
+
+lint: .venv/.complete
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
-	$(BIN)/pytest -q
 
 # Needs uv; the lock carries hashes and names no package index.
 lock:

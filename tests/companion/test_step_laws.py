@@ -40,6 +40,7 @@ views = st.builds(
 )
 
 
+@pytest.mark.slow
 @given(views=st.lists(views, min_size=1, max_size=8), command=st.sampled_from([None, Command.ABORT, Command.HOLD]))
 @settings(max_examples=60, deadline=None)
 def test_nothing_is_commanded_nor_flown_before_a_start(views: list[AutopilotView], command: Command | None) -> None:
@@ -72,6 +73,7 @@ def test_disarm_is_forced_only_after_a_refusal() -> None:
     command=st.sampled_from([None, *Command]),
     in_control=st.booleans(),
 )
+@pytest.mark.slow
 @settings(max_examples=400, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_disarm_is_forced_only_on_the_pad_and_after_a_refusal(  # noqa: PLR0917 (drawn by name)
     phase: Phase,
@@ -161,6 +163,7 @@ places = st.tuples(numbers, numbers, numbers)
     reports=st.lists(st.tuples(places, places, st.integers(-(10**12), 10**12)), min_size=1, max_size=4),
     step_ns=st.sampled_from([1, STEP_NS, 10**9, 10**12]),
 )
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_setpoints_are_finite_whatever_the_drone_reports(
     phase: Phase, reports: list[tuple[tuple[float, float, float], tuple[float, float, float], int]], step_ns: int

@@ -68,6 +68,7 @@ def test_median_difference_is_the_bootstrap_of_scipy() -> None:
     assert found.high == pytest.approx(expected.high, abs=5e-4)
 
 
+@pytest.mark.slow
 def test_median_difference_covers_the_truth_nineteen_times_in_twenty() -> None:
     rng = np.random.default_rng(11)
     covered = 0

@@ -138,6 +138,7 @@ def test_waypoint_steps_reach_the_speed_at_the_distance() -> None:
     assert (profile.at(5.0).s_m, profile.at(5.0).speed_m_s) == pytest.approx((16.0, 7.0))
 
 
+@pytest.mark.slow
 def test_random_acceleration_across_has_the_variance_and_the_memory_of_its_process() -> None:
     track = RandomTrack(kind="random", speed_m_s=7.0, road_s=400.0)
     variance, lagged, count = 0.0, 0.0, 8
