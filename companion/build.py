@@ -1,13 +1,42 @@
 """A companion from its configuration."""
 
+import numpy as np
+
 from companion.config import CompanionConfig
 from companion.estimation.factory import make_estimator
 from companion.node import CompanionNode
+from companion.planning.guidance import PlanRequest, ReferenceState, Target
 from companion.planning.kinds import make_guidance
 from companion.step_data import System
 from link.keys import Keys
 from link.mavlink.session import MavlinkSession
 from link.mavlink.session_config import SessionConfig
+
+
+def warm_up(system: System) -> None:
+    """Let everything that is compiled at its first use be compiled now: no step of a flight may wait for it.
+
+    The estimators see to their own kernels when they are made.
+    """
+    offset_s = np.arange(0.0, 4.01, 0.2)
+    ahead = np.column_stack([30.0 + 8.0 * offset_s, 2.0 * offset_s, np.full_like(offset_s, 2.0)])
+    zero = np.zeros(3)
+    memory, state = None, ReferenceState(position_enu_m=zero, velocity_enu_m_s=zero, acceleration_enu_m_s2=zero)
+    for position in (ahead, ahead - ahead[0]):
+        target = Target(
+            offset_s=offset_s,
+            position_enu_m=position,
+            velocity_enu_m_s=np.tile([8.0, 2.0, 0.0], (len(offset_s), 1)),
+            acceleration_enu_m_s2=np.zeros((len(offset_s), 3)),
+        )
+        request = PlanRequest(
+            state=state,
+            target=target,
+            limits=system.config.limits.flight_limits(),
+            floor_enu_m=np.zeros_like(offset_s),
+            dt_s=1.0 / system.config.step_rate_hz,
+        )
+        memory, _ = system.guidance.plan(memory, request)
 
 
 def build_node(
@@ -32,5 +61,6 @@ def build_node(
         estimator=make_estimator(config.estimator),
         guidance=make_guidance(config.guidance.kind, config.guidance),
     )
+    warm_up(system)
     session = MavlinkSession(system_id, config=SessionConfig(records_input=records_input))
     return CompanionNode(system, keys, session, dry_run=dry_run)
