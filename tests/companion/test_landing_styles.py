@@ -1,0 +1,64 @@
+"""The report's ways: straight at the pad's centre, without learning the lag, at the heading of the start."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from companion.config import CompanionConfig, LandingStyle
+from companion.phases import Phase
+from companion.step_data import StepOutputs
+from link.frames import yaw_of
+from tests.companion.world import CONFIG, PAD_HEIGHT_M, Flight
+
+DIRECT = CONFIG.model_copy(update={"landing": LandingStyle.DIRECT})
+
+
+class TrailingFlight(Flight):
+    """The drone is 0.3 m behind its setpoint."""
+
+    def _fly(self, outputs: StepOutputs) -> None:
+        super()._fly(outputs)
+        x, y, z = self.own.position_enu_m
+        self.own = replace(self.own, position_enu_m=(x - 0.3, y, z))
+
+
+def test_direct_landing_chases_the_pads_centre_and_nothing_else() -> None:
+    flight = Flight(config=DIRECT)
+    flight.start_and_reach(Phase.CHASE)
+    flight.run(12.0)
+    assert flight.phase is Phase.CHASE
+    assert flight.memory.reference is not None
+    wanted = flight.vehicle.at(flight.memory.reference_ns) + np.array([0.0, 0.0, DIRECT.touchdown.gear_height_m])
+    assert flight.memory.reference.position_enu_m == pytest.approx(wanted, abs=0.05)
+
+
+def test_staged_chase_keeps_above_the_pad() -> None:
+    flight = Flight()
+    flight.start_and_reach(Phase.CHASE)
+    while flight.phase is Phase.CHASE:
+        flight.step()
+        assert flight.memory.reference is not None
+        assert flight.memory.reference.position_enu_m[2] > PAD_HEIGHT_M + 1.0
+
+
+@pytest.mark.parametrize(("corrects_lag", "learnt_m"), [(True, 0.3), (False, 0.0)])
+def test_lag_behind_the_setpoint_is_learnt_only_where_wanted(corrects_lag: bool, learnt_m: float) -> None:
+    flight = TrailingFlight(config=DIRECT.model_copy(update={"corrects_lag": corrects_lag}))
+    flight.start_and_reach(Phase.CHASE)
+    before = flight.memory.tracking.correction_enu_m.copy()
+    flight.run(1.0)
+    learnt = flight.memory.tracking.correction_enu_m - before
+    assert bool(np.any(learnt != 0.0)) is corrects_lag
+    assert 0.0 <= learnt[0] <= learnt_m + 1e-9
+
+
+@pytest.mark.parametrize("follows", [True, False])
+def test_heading_of_the_vehicle_is_followed_only_where_wanted(follows: bool) -> None:
+    config: CompanionConfig = DIRECT.model_copy(update={"follows_heading": follows})
+    flight = Flight(config=config)
+    start_rad = yaw_of(flight.own.orientation_wxyz)
+    flight.start_and_reach(Phase.CHASE)
+    flight.run(4.0)
+    wanted_rad = flight.vehicle.yaw_rad if follows else start_rad
+    assert flight.memory.yaw_setpoint_rad == pytest.approx(wanted_rad)
