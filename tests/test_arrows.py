@@ -1,0 +1,58 @@
+"""The one direction of imports between the packages, and the one home of each library."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+MAY_IMPORT = {
+    "link": {"link"},
+    "companion": {"companion", "link"},
+    "sim_autopilot": {"sim_autopilot", "link"},
+    "scenarios": {"scenarios", "companion", "sim_autopilot", "link"},
+}
+HOMES = {
+    "zenoh": {"link/zenoh_session.py"},
+    "pymavlink": {"link/mavlink/dialect.py", "link/mavlink/codec.py"},
+    "rosbags": {"link/cdr.py", "link/ros_fields.py", "link/ros_motion.py", "link/ros_sensors.py"},
+    "osqp": {"companion/planning/qp.py"},
+    "daqp": {"companion/planning/qp.py"},
+    "filterpy": {"companion/estimation/lkf.py", "companion/estimation/ukf.py"},
+    "polars": {"scenarios/landings_file.py"},
+    "distributed": {"scenarios/dask_pool.py"},
+}
+
+
+def sources(package: str) -> list[Path]:
+    """The Python files of a package."""
+    return sorted((ROOT / package).rglob("*.py"))
+
+
+def imported(path: Path) -> set[str]:
+    """The top-level names that a file imports, wherever in it."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module is not None:
+            names.add(node.module.split(".")[0])
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith("import_module"):
+            names |= {str(ast.literal_eval(argument)).split(".")[0] for argument in node.args}
+    return names
+
+
+@pytest.mark.parametrize("package", sorted(MAY_IMPORT))
+def test_package_imports_only_what_its_arrows_allow(package: str) -> None:
+    forbidden = set(MAY_IMPORT) - MAY_IMPORT[package] | {"tests"}
+    wrong = {str(path.relative_to(ROOT)): found for path in sources(package) if (found := imported(path) & forbidden)}
+    assert wrong == {}
+
+
+@pytest.mark.parametrize("library", sorted(HOMES))
+def test_library_has_one_home(library: str) -> None:
+    users = {
+        str(path.relative_to(ROOT)) for package in MAY_IMPORT for path in sources(package) if library in imported(path)
+    }
+    assert users
+    assert users <= HOMES[library]
