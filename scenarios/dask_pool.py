@@ -1,7 +1,9 @@
 """A campaign's tasks on an existing Dask cluster; the only file that imports `distributed`."""
 
+import socket
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
+from urllib.parse import urlsplit
 
 from link.errors import UserError
 from scenarios.landing_task import Flights, Flown, Task, failed
@@ -9,6 +11,7 @@ from scenarios.landing_task import Flights, Flown, Task, failed
 if TYPE_CHECKING:
     from distributed import Future
 
+_SCHEMES = ("tcp", "tls")
 _CONNECT_S = 10.0
 _FIRST_WORKER_S = 30.0
 
@@ -31,6 +34,7 @@ def fly_on_dask(address: str, flights: Flights, tasks: Sequence[Task]) -> Iterat
         from distributed import Client, as_completed  # noqa: PLC0415 (an optional dependency)
     except ImportError:
         raise UserError("--scheduler needs Dask: install decklander[dask], here and on its workers") from None
+    _check_listens(address)
     try:
         client = Client(address, timeout=_CONNECT_S, set_as_default=False)
     except (OSError, ValueError) as error:
@@ -47,6 +51,25 @@ def fly_on_dask(address: str, flights: Flights, tasks: Sequence[Task]) -> Iterat
                 yield _flown(future, futures.pop(future))
         finally:
             client.cancel(list(futures))
+
+
+def _check_listens(address: str) -> None:
+    """Knock at the address: Dask's own client starts threads first, and is slow to give up.
+
+    Raises:
+        UserError: it is no address, or nobody listens there.
+    """
+    try:
+        parts = urlsplit(address)
+        host, port = parts.hostname, parts.port
+    except ValueError:
+        host = port = None
+    if host is None or port is None or parts.scheme not in _SCHEMES:
+        raise UserError(f"no Dask scheduler answers at {address}, which is no address: write it as tcp://HOST:8786")
+    try:
+        socket.create_connection((host, port), timeout=_CONNECT_S).close()
+    except OSError as error:
+        raise UserError(f"no Dask scheduler answers at {address} ({error or type(error).__name__})") from None
 
 
 def _flown(future: "Future[Flown]", task: Task) -> Flown:
