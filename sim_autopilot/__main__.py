@@ -9,6 +9,8 @@ from typing import Annotated, Any
 import typer
 
 from link.cli import (
+    EXIT_INTERRUPTED,
+    EXIT_OK,
     ConnectOption,
     DroneOption,
     ListenOption,
@@ -66,7 +68,7 @@ def sim_autopilot(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
-) -> None:
+) -> int:
     """Simulate a quadrotor under an autopilot that speaks MAVLink."""
     from link.toml_config import dump_toml, load_config  # noqa: PLC0415 (numerics are slow to load, --help is quick)
     from sim_autopilot.config import SimAutopilotConfig, autopilot_config  # noqa: PLC0415
@@ -77,7 +79,7 @@ def sim_autopilot(
     autopilot = autopilot_config(settings)
     if print_config:
         sys.stdout.write(dump_toml(settings))
-        return
+        return EXIT_OK
     from link.keys import Keys  # noqa: PLC0415
     from link.zenoh_session import DEFAULT_ENDPOINT, ZenohOptions  # noqa: PLC0415
     from sim_autopilot.run import RunOptions, run  # noqa: PLC0415
@@ -94,6 +96,7 @@ def sim_autopilot(
     options = RunOptions(device=device, speed=speed, keys=Keys(namespace, vehicle, drone), zenoh=zenoh)
     signal.signal(signal.SIGTERM, _interrupt)
     run(settings, autopilot, options)
+    return EXIT_INTERRUPTED
 
 
 def _given(**options: Any) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """The wire loop of the simulated autopilot: sockets and the clock around the node, nothing else."""
 
+import signal
 import time
 from dataclasses import dataclass
 
@@ -51,14 +52,20 @@ class WireLoop:
         self._wind = wind
         self._wind_enu_m_s = np.zeros(3)
         self._speed = speed
+        self._stopping = False
         self._clock = self._new_clock()
         self._encodings = {kind: cdr.encoding_of(kind) for kind in (ClockTick, BodyTruth, RotorTruth)}
 
     def run(self) -> None:
-        """Run until interrupted."""
-        while True:
+        """Run until a signal asks for the end; a step under way is finished first."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self._stop)
+        while not self._stopping:
             self._listen()
             self.step()
+
+    def _stop(self, *_: object) -> None:
+        self._stopping = True
 
     def step(self) -> None:
         """Advance by one step and tell everybody."""
