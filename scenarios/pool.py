@@ -10,7 +10,7 @@ from collections import Counter, deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from multiprocessing import get_context
+from multiprocessing import get_context, resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
 from types import TracebackType
@@ -190,6 +190,7 @@ def _start(job: Callable[[Task], Result]) -> _Worker[Task]:
 @contextmanager
 def _for_children() -> Iterator[None]:
     """Let processes started within not see Ctrl-C, which is the parent's to handle, and calculate on one thread."""
+    resource_tracker.ensure_running()  # or starting it, with the first process, would lift the mask below
     before = {name: os.environ.get(name) for name in _ONE_THREAD}
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     os.environ.update(dict.fromkeys(_ONE_THREAD, "1"))
