@@ -1,11 +1,11 @@
-# make setup|demo|test|check: each makes .venv from requirements.lock when it is missing or stale.
+# make setup|demo|test|check|docs: each makes .venv from requirements.lock when it is missing or stale.
 PYTHON ?= python3
 BIN := .venv/bin
 SPEED ?= 1
 SCENARIO ?= straight_5
 SEED ?= 1
 
-.PHONY: setup demo test check lint lock clean
+.PHONY: setup demo test check docs lint lock clean
 
 setup: .venv/.complete
 
@@ -24,9 +24,13 @@ check: lint
 	$(BIN)/pytest -q -n 2 -m "not slow"
 
 # What starts processes and keeps time runs by itself, after the rest.
-test: lint
+test: lint docs
 	$(BIN)/pytest -q -n 2 -m "not slow"
 	$(BIN)/pytest -q -m slow
+
+# The manual, in build/manual/index.html; needs no network. A warning, such as a broken link, fails it.
+docs: .venv/.complete
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict --config-file docs/manual/mkdocs.yml
 
 lint: .venv/.complete
 	$(BIN)/ruff format --check .
@@ -35,7 +39,7 @@ lint: .venv/.complete
 
 # Needs uv; the lock carries hashes and names no package index.
 lock:
-	uv pip compile pyproject.toml --group dev --generate-hashes --no-emit-index-url --no-header --universal --python-version 3.11 -o requirements.lock
+	uv pip compile pyproject.toml --group dev --all-extras --generate-hashes --no-emit-index-url --no-header --universal --python-version 3.11 -o requirements.lock
 
 clean:
-	rm -rf .venv runs .mypy_cache .ruff_cache .pytest_cache
+	rm -rf .venv runs build .mypy_cache .ruff_cache .pytest_cache
