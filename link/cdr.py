@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from link.ros_fields import Conversion
 
 Message = Fix | FixVelocity | VehicleImu | PadSighting | BodyTruth | RotorTruth | Plan | ClockTick
-__all__ = ["ROS_TYPES", "Message", "PayloadError", "decode", "encode", "encoding_of"]
+__all__ = ["ROS_TYPES", "Message", "PayloadError", "decode", "encode", "encoding_of", "typestore"]
 
 M = TypeVar("M", bound=Message)
 
@@ -48,7 +48,7 @@ def encode(message: Message) -> bytes:
     """
     message_type = type(message)
     ros_message = _conversions()[message_type].to_ros(message)
-    return bytes(_typestore().serialize_cdr(ros_message, ROS_TYPES[message_type], little_endian=True))
+    return bytes(typestore().serialize_cdr(ros_message, ROS_TYPES[message_type], little_endian=True))
 
 
 def decode(message_type: type[M], payload: bytes) -> M:
@@ -60,7 +60,7 @@ def decode(message_type: type[M], payload: bytes) -> M:
     from rosbags.serde import SerdeError  # noqa: PLC0415 (with the type library, see above)
 
     try:
-        ros_message = _typestore().deserialize_cdr(payload, ROS_TYPES[message_type])
+        ros_message = typestore().deserialize_cdr(payload, ROS_TYPES[message_type])
     except SerdeError as error:
         raise PayloadError(f"not a {ROS_TYPES[message_type]}: {error}") from error
     message = _conversions()[message_type].from_ros(ros_message)
@@ -70,7 +70,8 @@ def decode(message_type: type[M], payload: bytes) -> M:
 
 
 @cache
-def _typestore() -> "Typestore":
+def typestore() -> "Typestore":
+    """Return the library's own store of ROS 2 types."""
     from rosbags.typesys import Stores, get_typestore  # noqa: PLC0415 (0.1 s, not wanted by --help)
 
     return get_typestore(Stores.ROS2_HUMBLE)

@@ -90,6 +90,10 @@ class Keys:
         """The drone's true rotor speeds, simulation only, `link.messages.RotorTruth`."""
         return f"{self.namespace}/{self.drone}/truth/rotors"
 
+    def record(self, name: str) -> str:
+        """Return the topic of what the companion alone knows: in recordings, some of it for views on Zenoh, too."""
+        return f"{self.namespace}/{self.drone}/companion/{name}"
+
     @property
     def clock(self) -> str:
         """The simulator's time, simulation only, `link.clock.ClockTick`."""

@@ -1,11 +1,13 @@
 """A lossy channel in one direction without I/O: the same seed and calls give the same packets at the same times."""
 
 import heapq
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 _NS_PER_S = 1e9
+_DRAWS = 6  # for each packet
+_BLOCK = 256  # packets whose draws are made at once
 
 
 class MemoryLink:
@@ -38,7 +40,7 @@ class MemoryLink:
         outages_ns: Sequence[tuple[int, int]] = (),
     ) -> None:
         _check(delay_s=delay_s, jitter_s=jitter_s, loss=loss, duplication=duplication, corruption=corruption)
-        self._random = np.random.default_rng(seed)
+        self._draws = _draws(np.random.default_rng(seed))
         self._delay_ns = round(delay_s * _NS_PER_S)
         self._jitter_ns = round(jitter_s * _NS_PER_S)
         self._loss = loss
@@ -58,7 +60,7 @@ class MemoryLink:
             t_ns: now.
         """
         # A fixed number of draws for each packet keeps the rest of a run the same when one probability changes.
-        lose, double, delay, second_delay, spoil, place = self._random.random(6).tolist()
+        lose, double, delay, second_delay, spoil, place = next(self._draws)
         if lose < self._loss or any(start <= t_ns < end for start, end in self._outages_ns):
             return
         if spoil < self._corruption and data:
@@ -92,6 +94,12 @@ class MemoryLink:
             self._last_due_ns = due_ns
         heapq.heappush(self._waiting, (due_ns, self._packets_put, data))
         self._packets_put += 1
+
+
+def _draws(random: np.random.Generator) -> Iterator[list[float]]:
+    """Yield what decides about one packet after another."""
+    while True:
+        yield from random.random((_BLOCK, _DRAWS)).tolist()
 
 
 def _with_flipped_bit(data: bytes, bit: int) -> bytes:

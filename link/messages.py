@@ -29,11 +29,15 @@ class Fix:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FixVelocity:
-    """The vehicle's velocity in ENU and, where known, its yaw rate."""
+    """The vehicle's velocity in ENU and, where known, its yaw rate.
+
+    Without `is_vertical_measured` the third component, and what a covariance says of it, mean nothing.
+    """
 
     t_ns: int
     velocity_enu_m_s: Vector3
     velocity_covariance_enu_m2_s2: Matrix3 | None = None
+    is_vertical_measured: bool = True
     yaw_rate_rad_s: float | None = None
     yaw_rate_variance_rad2_s2: float | None = None
 

@@ -5,7 +5,8 @@ Conventions, where ROS leaves a choice:
 - Imu: -1 in a covariance's first element says that the quantity is not measured (sensor_msgs/Imu). An all-zero
   quaternion, which drivers without attitude leave behind, says the same.
 - TwistWithCovarianceStamped: -1 as the variance of an angular rate says that it is not measured (as GNSS drivers
-  do, about x); both the one about x and the one about z are read so and written so. A zero variance is unknown.
+  do, about x); both the one about x and the one about z are read so and written so. The same mark on the
+  variance of the vertical velocity says that only the horizontal one is measured. A zero variance is unknown.
 - NavSatFix with STATUS_NO_FIX is no position and is refused.
 - frame_id: `map` is the ENU world, `base_link` the body in FLU, `gnss` the antenna.
 """
@@ -37,7 +38,8 @@ from link.ros_fields import (
 )
 
 _NOT_MEASURED = -1.0
-_ROLL_RATE_VARIANCE, _YAW_RATE_VARIANCE = 21, 35  # diagonal elements of a row-major 6x6
+_VERTICAL_VARIANCE, _ROLL_RATE_VARIANCE, _YAW_RATE_VARIANCE = 14, 21, 35  # diagonal elements of a row-major 6x6
+_VERTICAL_COVARIANCES = [2, 8, 12, 13, 14]  # of the vertical velocity with the three, in the same
 
 
 def _fix_to_ros(fix: Fix) -> ros.sensor_msgs__msg__NavSatFix:
@@ -84,6 +86,9 @@ def _fix_velocity_to_ros(message: FixVelocity) -> ros.geometry_msgs__msg__TwistW
     variance = message.yaw_rate_variance_rad2_s2 or 0.0
     check_finite("yaw rate", (yaw_rate, variance))
     covariance[_YAW_RATE_VARIANCE] = variance
+    if not message.is_vertical_measured:
+        covariance[_VERTICAL_COVARIANCES] = 0.0
+        covariance[_VERTICAL_VARIANCE] = _NOT_MEASURED
     if message.yaw_rate_rad_s is None:
         covariance[_ROLL_RATE_VARIANCE] = covariance[_YAW_RATE_VARIANCE] = _NOT_MEASURED
     twist = ros.geometry_msgs__msg__Twist(
@@ -100,6 +105,10 @@ def _fix_velocity_from_ros(message: ros.geometry_msgs__msg__TwistWithCovarianceS
     if covariance[0] < 0.0:
         raise PayloadError("the velocity is marked as not measured")
     velocity = from_xyz("velocity", message.twist.twist.linear)
+    is_vertical_measured = not covariance[_VERTICAL_VARIANCE] < 0.0
+    if not is_vertical_measured:
+        covariance = covariance.copy()
+        covariance[_VERTICAL_COVARIANCES] = 0.0
     measured = not (covariance[_ROLL_RATE_VARIANCE] < 0.0 or covariance[_YAW_RATE_VARIANCE] < 0.0)
     yaw_rate, variance = message.twist.twist.angular.z, float(covariance[_YAW_RATE_VARIANCE])
     if measured:
@@ -108,6 +117,7 @@ def _fix_velocity_from_ros(message: ros.geometry_msgs__msg__TwistWithCovarianceS
         t_ns=t_ns,
         velocity_enu_m_s=velocity,
         velocity_covariance_enu_m2_s2=from_block_6x6("velocity covariance", covariance),
+        is_vertical_measured=is_vertical_measured,
         yaw_rate_rad_s=yaw_rate if measured else None,
         yaw_rate_variance_rad2_s2=variance if measured and variance > 0.0 else None,
     )

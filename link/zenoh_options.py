@@ -1,6 +1,7 @@
 """How a program meets others over Zenoh, and the checks that turn a mistyped endpoint into one clear line."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -44,6 +45,28 @@ class ZenohOptions:
             _check_endpoint("--connect", endpoint, port_min=1)
         for endpoint in self.listen:
             _check_endpoint("--listen", endpoint, port_min=0)
+
+
+def zenoh_options(
+    mode: str | None,
+    connect: Sequence[str] | None,
+    listen: Sequence[str] | None,
+    multicast: bool | None,
+    config_file: Path | None,
+) -> ZenohOptions:
+    """Return the options of a command line; one that says nothing connects to the default endpoint.
+
+    Raises:
+        UserError: If the mode or an endpoint is not one.
+    """
+    nothing_said = not (connect or listen or config_file or multicast)
+    return ZenohOptions(
+        mode=mode,
+        connect=(DEFAULT_ENDPOINT,) if nothing_said else tuple(connect or ()),
+        listen=tuple(listen or ()),
+        multicast_scouting=multicast,
+        config_file=config_file,
+    )
 
 
 def _check_endpoint(option: str, endpoint: str, *, port_min: int) -> None:

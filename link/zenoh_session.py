@@ -78,13 +78,12 @@ class ZenohSession:
 
     def publish(self, key: str, payload: bytes, encoding: str) -> None:
         """Send `payload` to whoever subscribes to `key`; `encoding` as of `link.cdr.encoding_of`."""
-        publisher = self._publishers.get((key, encoding))
-        if publisher is None:
-            publisher = self._session.declare_publisher(
-                key, encoding=zenoh.Encoding(encoding), congestion_control=zenoh.CongestionControl.BLOCK
-            )
-            self._publishers[key, encoding] = publisher
-        publisher.put(payload)
+        self._publisher(key, encoding).put(payload)
+
+    def is_heard(self, key: str, encoding: str) -> bool:
+        """Return whether anybody subscribes to `key` now; `encoding` as it is published there."""
+        status: object = self._publisher(key, encoding).matching_status  # its stub calls it a plain truth value
+        return bool(getattr(status, "matching", status))
 
     def subscribe(self, key: str, *, capacity: int = INBOX_CAPACITY) -> Inbox:
         """Return the inbox of all that is published on `key`, which may hold wildcards."""
@@ -143,6 +142,15 @@ class ZenohSession:
 
         self._session.get(key, receive, payload=payload, timeout=timeout_s, target=zenoh.QueryTarget.ALL)
         return inbox
+
+    def _publisher(self, key: str, encoding: str) -> zenoh.Publisher:
+        publisher = self._publishers.get((key, encoding))
+        if publisher is None:
+            publisher = self._session.declare_publisher(
+                key, encoding=zenoh.Encoding(encoding), congestion_control=zenoh.CongestionControl.BLOCK
+            )
+            self._publishers[key, encoding] = publisher
+        return publisher
 
     def close(self) -> None:
         """Leave the network; a second call does nothing."""

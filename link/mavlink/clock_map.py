@@ -71,12 +71,21 @@ class RoundTrip(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClockMap:
-    """What is known of the three clocks; empty as constructed."""
+    """What is known of the three clocks; empty as constructed.
+
+    Attributes:
+        round_trips: those that the maps are made of.
+        system_times: likewise.
+        local_to_boot: None before the first round trip.
+        boot_to_utc: None before the first SYSTEM_TIME.
+        one_way_s: how long a message is under way: half the median round trip, 0 while there was none.
+    """
 
     round_trips: tuple[RoundTrip, ...] = ()
     system_times: tuple[ClockPair, ...] = ()
     local_to_boot: ClockLine | None = None
     boot_to_utc: ClockLine | None = None
+    one_way_s: float = 0.0
 
     @property
     def is_utc_known(self) -> bool:
@@ -141,7 +150,13 @@ def with_round_trip(clock: ClockMap, trip: RoundTrip, config: ClockConfig = DEFA
         trips = ()
     oldest_ns = trip.middle_ns - config.window_ns
     trips = (*(one for one in trips if one.middle_ns >= oldest_ns), trip)[-config.pairs_max :]
-    return replace(clock, round_trips=trips, local_to_boot=_fit(_pairs(trips, config), line, config))
+    durations_ns = sorted(one.duration_ns for one in trips)
+    return replace(
+        clock,
+        round_trips=trips,
+        local_to_boot=_fit(_pairs(trips, config), line, config),
+        one_way_s=0.5e-9 * durations_ns[len(durations_ns) // 2],
+    )
 
 
 def with_system_time(

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from link.errors import UserError
 
 FORMS = "udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT, tcpin:HOST:PORT or /dev/ttyX,BAUD"
-_NETWORK = re.compile(r"(?P<kind>[a-z]+):(?P<host>\[[^]]+]|[^:]*):(?P<port>[^:]*)", re.IGNORECASE)
+_NETWORK = re.compile(
+    r"(?P<kind>[a-z]+):(?P<host>\[[^]]+]|[^:]*):(?P<port>[^:]*)(:(?P<own_port>[^:]*))?", re.IGNORECASE
+)
 _LISTENERS = ("udpin", "tcpin")
 _KINDS = (*_LISTENERS, "udpout", "tcp")
 _PORT_MAX = 65535
@@ -18,15 +20,20 @@ _OTHER_NAMES = {"udp": "udpin", "udpserver": "udpin", "udpclient": "udpout", "tc
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NetworkDevice:
-    """A socket: `kind` is one of udpin, udpout, tcp, tcpin."""
+    """A socket: `kind` is one of udpin, udpout, tcp, tcpin.
+
+    A udpout with `own_port` sends from that port and also hears and answers others who speak to it.
+    """
 
     kind: str
     host: str
     port: int
+    own_port: int | None = None
 
     def __str__(self) -> str:
         host = f"[{self.host}]" if ":" in self.host else self.host
-        return f"{self.kind}:{host}:{self.port}"
+        own_port = "" if self.own_port is None else f":{self.own_port}"
+        return f"{self.kind}:{host}:{self.port}{own_port}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,7 +67,15 @@ def parse_device(device: str) -> NetworkDevice | SerialDevice:
     kind, host = match["kind"].lower(), match["host"].strip("[]")
     if kind not in _KINDS or not host:
         raise UserError(f"device {device!r} has no known form; {_hint(device)}")
-    return NetworkDevice(kind=kind, host=host, port=_port(device, kind, match["port"]))
+    own_port = match["own_port"]
+    if own_port is not None and kind != "udpout":
+        raise UserError(f"device {device!r} has no known form; only udpout takes a port of its own")
+    return NetworkDevice(
+        kind=kind,
+        host=host,
+        port=_port(device, kind, match["port"]),
+        own_port=None if own_port is None else _port(device, "udpin", own_port),
+    )
 
 
 def _serial(device: str) -> SerialDevice:

@@ -63,6 +63,28 @@ def parameter_on_wire(value: float, parameter_type: int, autopilot: int) -> floa
         raise ValueError(f"{value} does not fit parameter type {parameter_type}: {error}") from error
 
 
+def parameter_set_message(name: str, value: float, parameter_type: int, autopilot: int, target_system: int) -> Message:
+    """Gives the PARAM_SET that writes a parameter.
+
+    Args:
+        name: of the parameter.
+        value: for it.
+        parameter_type: MAV_PARAM_TYPE that the autopilot gave it.
+        autopilot: MAV_AUTOPILOT of the autopilot.
+        target_system: its system id.
+
+    Returns:
+        The message.
+
+    Raises:
+        ValueError: The value does not fit the type.
+    """
+    wire = parameter_on_wire(value, parameter_type, autopilot)
+    return mavlink.MAVLink_param_set_message(
+        target_system, mavlink.MAV_COMP_ID_AUTOPILOT1, name.encode("ascii"), wire, parameter_type
+    )
+
+
 def _value_bytes(message: Message) -> bytes:
     """The four bytes of `param_value`, the payload's first field."""
     frame = bytes(message.get_msgbuf())

@@ -15,6 +15,7 @@ from link.mavlink.heartbeat import AUTOPILOT_COMPONENT_ID, companion_heartbeat
 from link.mavlink.parameter_reader import ParameterReader
 from link.mavlink.peer import Address, Peer, RestartWatch
 from link.mavlink.session_config import SessionConfig, duration_ns
+from link.mavlink.signing import Signing
 from link.mavlink.statistics import SessionStatistics
 from link.mavlink.streams import StreamRequests
 from link.mavlink.timer import Timer
@@ -32,6 +33,7 @@ class MavlinkSession:
         component_id: our own, 191 for an onboard computer.
         target_system_id: of the autopilot; None takes the first that is heard.
         config: periods and patience.
+        signing: signs what is sent and refuses what is not signed rightly; None for a link without a key.
     """
 
     def __init__(
@@ -40,9 +42,11 @@ class MavlinkSession:
         component_id: int = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER,
         target_system_id: int | None = None,
         config: SessionConfig = _DEFAULT_CONFIG,
+        signing: Signing | None = None,
     ) -> None:
         self._config = config
-        self._codec = MavlinkCodec(system_id, component_id, records_input=config.records_input)
+        self._signing = signing
+        self._codec = MavlinkCodec(system_id, component_id, records_input=config.records_input, signing=signing)
         self._peer = Peer(Address(system_id, component_id), target_system_id, config)
         self._restarts = RestartWatch(config)
         self._clock_sync = ClockSync(config)
@@ -115,6 +119,8 @@ class MavlinkSession:
         Returns:
             What has run out of time.
         """
+        if self._signing is not None:
+            self._signing.advance(t_ns)
         events: list[Event] = [*self._peer.poll(t_ns)]
         if self._heartbeat.is_due(t_ns):
             self.send(companion_heartbeat())

@@ -16,6 +16,7 @@ class CodecStatistics:
         bad_bytes: bytes that belonged to no frame.
         unknown_messages: frames whose message id the dialect does not know.
         unknown_ids: the first 64 message ids of these, each with its count, ascending.
+        refused_messages: without a right signature where one is required.
         lost_messages: gaps in the senders' sequence numbers.
         late_messages: messages that filled a gap after all.
         doubled_messages: messages that came more than once.
@@ -29,6 +30,7 @@ class CodecStatistics:
     bad_bytes: int
     unknown_messages: int
     unknown_ids: tuple[tuple[int, int], ...]
+    refused_messages: int
     lost_messages: int
     late_messages: int
     doubled_messages: int

@@ -29,6 +29,14 @@ class _Stream:
     state: _State
     ticket: int
     since_ns: int  # of the state, or of the last message
+    patience_ns: int
+
+    @property
+    def is_awaited(self) -> bool:
+        """Whether a message, or another try, is to be expected: one that is to stay away is no loss."""
+        if self.state is _State.GRANTED:
+            return self.interval_us != _OFF_US
+        return self.state is _State.POSTPONED
 
 
 class StreamRequests:
@@ -86,7 +94,7 @@ class StreamRequests:
     def poll(self, t_ns: int) -> None:
         """Asks again for streams that stay away or were refused for the time being."""
         for message_id, stream in self._streams.items():
-            if self._is_missing(stream, t_ns):
+            if t_ns - stream.since_ns > stream.patience_ns and stream.is_awaited:
                 self._ask(message_id, stream.interval_us, t_ns)
 
     def start_over(self, t_ns: int) -> None:
@@ -98,14 +106,9 @@ class StreamRequests:
     def _ask(self, message_id: int, interval_us: float, t_ns: int) -> None:
         params = (float(message_id), interval_us, 0.0, 0.0, 0.0, 0.0, 0.0)
         ticket = self._command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, params, t_ns)
-        self._streams[message_id] = _Stream(interval_us, _State.ASKED, ticket, t_ns)
+        patience_ns = max(self._silent_ns, round(_PERIODS_SILENT * interval_us * 1000))
+        self._streams[message_id] = _Stream(interval_us, _State.ASKED, ticket, t_ns, patience_ns)
         self._by_ticket[ticket] = message_id
-
-    def _is_missing(self, stream: _Stream, t_ns: int) -> bool:
-        patience_ns = max(self._silent_ns, round(_PERIODS_SILENT * stream.interval_us * 1000))
-        if stream.state is _State.GRANTED and stream.interval_us == _OFF_US:
-            return False
-        return stream.state in (_State.GRANTED, _State.POSTPONED) and t_ns - stream.since_ns > patience_ns
 
 
 def _state_by_result(result: int) -> _State:

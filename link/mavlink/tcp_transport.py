@@ -1,83 +1,18 @@
-"""TCP: `tcp` is a client that connects again whenever it has to, `tcpin` a server for one client at a time."""
+"""TCP: `tcp` is a client that connects again whenever it has to, `tcpin` a server for several clients."""
 
-import contextlib
 import select
 import socket
 import time
 
 from link.mavlink.device import NetworkDevice
-from link.mavlink.transport import CHUNK_BYTES, DRAIN_BYTES_MAX, Transport, bind, resolve, wait_readable
+from link.mavlink.tcp_connection import TcpConnection
+from link.mavlink.transport import PeerBytes, Transport, bind, resolve, wait_readable
 
 _RECONNECT_S = 0.5
-_UNSENT_BYTES_MAX = 65536  # more than a second of setpoints; to a peer that reads so late they are no use
+_CLIENTS_MAX = 16
 
 
-class _TcpTransport(Transport):
-    """A connection that may come and go."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._connection: socket.socket | None = None
-        self._unsent = bytearray()
-
-    @property
-    def is_connected(self) -> bool:
-        """Whether there is somebody at the other end."""
-        return self._connection is not None
-
-    def send(self, data: bytes) -> None:
-        """Sends bytes if there is somebody to send them to."""
-        if self._connection is None or len(self._unsent) + len(data) > _UNSENT_BYTES_MAX:
-            self._dropped += 1
-            self._flush()
-            return
-        self._unsent += data
-        self._flush()
-
-    def close(self) -> None:
-        """Gives the device back."""
-        if self._connection is not None:
-            self._connection.close()
-        self._connection = None
-        self._unsent.clear()
-
-    def _adopt(self, connection: socket.socket) -> None:
-        connection.setblocking(False)
-        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        self._connection = connection
-
-    def _flush(self) -> None:
-        """Sends what the other end takes, and keeps the rest, since a frame must not be cut off."""
-        if self._connection is None or not self._unsent:
-            return
-        try:
-            del self._unsent[: self._connection.send(self._unsent)]
-        except BlockingIOError:
-            return
-        except OSError:
-            self._lose()
-
-    def _read(self, connection: socket.socket) -> bytes:
-        received = bytearray()
-        while len(received) < DRAIN_BYTES_MAX:
-            try:
-                data = connection.recv(CHUNK_BYTES)
-            except BlockingIOError:
-                break
-            except OSError:
-                data = b""
-            if not data:
-                self._lose()
-                break
-            received += data
-        return bytes(received)
-
-    def _lose(self) -> None:
-        self._errors += 1
-        _TcpTransport.close(self)
-
-
-class TcpClientTransport(_TcpTransport):
+class TcpClientTransport(Transport):
     """Connects to a server, and again after each loss.
 
     Raises:
@@ -87,19 +22,33 @@ class TcpClientTransport(_TcpTransport):
     def __init__(self, device: NetworkDevice) -> None:
         super().__init__()
         self._family, self._address = resolve(device, socket.SOCK_STREAM)
+        self._connection: TcpConnection | None = None
         self._attempt: socket.socket | None = None
         self._next_attempt_s = 0.0
         self._connect(0.0)
+
+    @property
+    def is_connected(self) -> bool:
+        """Whether there is somebody at the other end."""
+        return self._connection is not None
+
+    def send(self, data: bytes) -> None:
+        """Sends bytes if there is somebody to send them to."""
+        if self._connection is None or not self._connection.send(data):
+            self._dropped += 1
+        self._check()
 
     def receive(self, timeout_s: float) -> bytes:
         """Waits for bytes and takes all that are there."""
         if self._connection is None:
             self._connect(timeout_s)
             return b""
-        self._flush()
-        if self._connection is None or not wait_readable(self._connection.fileno(), timeout_s):
+        self._connection.flush()
+        if self._connection.is_open and not wait_readable(self._connection.fileno(), timeout_s):
             return b""
-        return self._read(self._connection)
+        data = self._connection.read()
+        self._check()
+        return data
 
     def fileno(self) -> int:
         """The descriptor to wait on for input, -1 while there is none."""
@@ -107,9 +56,17 @@ class TcpClientTransport(_TcpTransport):
 
     def close(self) -> None:
         """Gives the device back."""
-        super().close()
+        if self._connection is not None:
+            self._connection.close()
+        self._connection = None
         self._abandon()
         self._next_attempt_s = float("inf")
+
+    def _check(self) -> None:
+        """Takes note of a loss."""
+        if self._connection is not None and not self._connection.is_open:
+            self._errors += 1
+            self._connection = None
 
     def _connect(self, timeout_s: float) -> None:
         """Goes on with connecting, for the given time at most."""
@@ -131,7 +88,7 @@ class TcpClientTransport(_TcpTransport):
             self._abandon()
             return
         self._attempt = None
-        self._adopt(attempt)
+        self._connection = TcpConnection(attempt)
 
     def _abandon(self) -> None:
         if self._attempt is not None:
@@ -139,8 +96,8 @@ class TcpClientTransport(_TcpTransport):
         self._attempt = None
 
 
-class TcpServerTransport(_TcpTransport):
-    """Serves one client at a time; the next one waits until the first is gone.
+class TcpServerTransport(Transport):
+    """Serves clients, each of which gets everything that is sent.
 
     Raises:
         UserError: The host is unknown or the port in use.
@@ -154,29 +111,73 @@ class TcpServerTransport(_TcpTransport):
         self._listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         self._listener.setblocking(False)
         bind(self._listener, address, device)
-        self._listener.listen(1)
+        self._listener.listen(_CLIENTS_MAX)
+        self._waiting = select.epoll()  # one descriptor that is readable when any of them is
+        self._waiting.register(self._listener, select.EPOLLIN)
+        self._clients: dict[int, TcpConnection] = {}  # by the order in which they came
+        self._met = 0
 
     @property
     def port(self) -> int:
         """Our own port."""
         return int(self._listener.getsockname()[1])
 
+    @property
+    def is_connected(self) -> bool:
+        """Whether there is a client."""
+        return bool(self._clients)
+
+    def send(self, data: bytes) -> None:
+        """Sends bytes to every client, if there is one."""
+        if not self._clients:
+            self._dropped += 1
+        for client in self._clients.values():
+            self._dropped += not client.send(data)
+        self._let_go()
+
     def receive(self, timeout_s: float) -> bytes:
         """Waits for bytes and takes all that are there."""
-        self._flush()
+        return b"".join(data for _, data in self.receive_by_peer(timeout_s))
+
+    def receive_by_peer(self, timeout_s: float) -> list[PeerBytes]:
+        """Waits for bytes and takes all that are there, each client's apart."""
+        for client in self._clients.values():
+            client.flush()
+        self._let_go()
         if self.fileno() < 0 or not wait_readable(self.fileno(), timeout_s):
-            return b""
-        if self._connection is not None:
-            return self._read(self._connection)
-        with contextlib.suppress(OSError):  # the client has gone again before it was served
-            self._adopt(self._listener.accept()[0])
-        return b""
+            return []
+        received = [PeerBytes(number, data) for number, client in self._clients.items() if (data := client.read())]
+        self._let_go()
+        self._accept()
+        return received
 
     def fileno(self) -> int:
-        """The descriptor to wait on for input, -1 while there is none."""
-        return self._listener.fileno() if self._connection is None else self._connection.fileno()
+        """The descriptor to wait on for input, -1 when closed."""
+        return -1 if self._waiting.closed else self._waiting.fileno()
 
     def close(self) -> None:
         """Gives the device back."""
-        super().close()
+        for client in self._clients.values():
+            client.close()
+        self._clients.clear()
+        self._waiting.close()
         self._listener.close()
+
+    def _accept(self) -> None:
+        try:
+            connected = self._listener.accept()[0]
+        except OSError:  # nobody new, or gone again before it was served
+            return
+        if len(self._clients) == _CLIENTS_MAX:
+            connected.close()
+            return
+        self._clients[self._met] = TcpConnection(connected)
+        self._met += 1
+        self._waiting.register(connected, select.EPOLLIN)
+
+    def _let_go(self) -> None:
+        """Forgets those that have gone; epoll forgets a closed socket by itself."""
+        gone = [number for number, client in self._clients.items() if not client.is_open]
+        for number in gone:
+            self._errors += 1
+            del self._clients[number]

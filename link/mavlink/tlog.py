@@ -1,12 +1,15 @@
 """Recordings that ground stations read: before each frame, the time in microseconds as 8 bytes, big-endian."""
 
 import struct
+from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import NamedTuple, Self
 
 from link.errors import UserError
+from link.mavlink.codec import NOT_A_FRAME, frame_size
 
+_HEAD_BYTES = 3  # of a frame, that tell its length
 _TIME = struct.Struct(">Q")
 
 
@@ -50,3 +53,64 @@ class TlogWriter:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+class TlogFrames(NamedTuple):
+    """Frames that were sent or received at the same time."""
+
+    frames: list[bytes]
+    t_ns_utc: int
+
+
+class TlogSink:
+    """A recorder's sink that writes a recording of frames.
+
+    Args:
+        path: of the file, replaced when it exists.
+
+    Raises:
+        UserError: The file cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._writer = TlogWriter(path)
+
+    def write(self, record: TlogFrames) -> None:
+        """Writes frames.
+
+        Raises:
+            OSError: They are not written.
+        """
+        for frame in record.frames:
+            self._writer.write(frame, record.t_ns_utc)
+
+    def close(self) -> None:
+        """Ends the recording.
+
+        Raises:
+            OSError: Its end is missing.
+        """
+        self._writer.close()
+
+
+def frames_of(recording: bytes) -> Iterator[tuple[int, bytes]]:
+    """Gives the frames of a recording in order.
+
+    Args:
+        recording: the content of its file; what is cut off at its end is left out.
+
+    Yields:
+        UTC in ns, to the microsecond, and one frame.
+
+    Raises:
+        ValueError: It is no such recording from some byte on.
+    """
+    start = 0
+    while start + _TIME.size + _HEAD_BYTES <= len(recording):
+        (t_us,) = _TIME.unpack_from(recording, start)
+        start += _TIME.size
+        size = frame_size(recording, start)
+        if size == NOT_A_FRAME:
+            raise ValueError(f"no frame at byte {start} of the recording")
+        yield t_us * 1000, recording[start : start + size]
+        start += size

@@ -7,7 +7,7 @@ import socket
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Self
+from typing import NamedTuple, Self
 
 from link.errors import UserError
 from link.mavlink.device import NetworkDevice
@@ -27,6 +27,13 @@ class TransportStatistics:
 
     errors: int
     dropped: int
+
+
+class PeerBytes(NamedTuple):
+    """Bytes from one of a transport's peers; `peer` numbers them in the order in which they were met."""
+
+    peer: int
+    data: bytes
 
 
 class Transport(ABC):
@@ -52,9 +59,21 @@ class Transport(ABC):
             What came, empty when nothing did.
         """
 
+    def receive_by_peer(self, timeout_s: float) -> list[PeerBytes]:
+        """Waits for bytes like `receive`, and tells which came from whom: each peer's are a stream of their own.
+
+        Args:
+            timeout_s: how long to wait at most, 0 for not at all.
+
+        Returns:
+            What came, in order.
+        """
+        data = self.receive(timeout_s)
+        return [PeerBytes(0, data)] if data else []
+
     @abstractmethod
     def send(self, data: bytes) -> None:
-        """Sends bytes if there is somebody to send them to, without waiting.
+        """Sends bytes to every peer, if there is one, without waiting.
 
         Args:
             data: whole frames.

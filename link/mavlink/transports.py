@@ -7,7 +7,7 @@ from link.mavlink.device import SerialDevice, parse_device
 from link.mavlink.serial_transport import SerialTransport
 from link.mavlink.tcp_transport import TcpClientTransport, TcpServerTransport
 from link.mavlink.transport import Transport
-from link.mavlink.udp_transport import UdpInTransport, UdpOutTransport
+from link.mavlink.udp_transport import UdpBoundTransport, UdpInTransport, UdpOutTransport
 
 __all__ = ["Transport", "open_transport"]
 
@@ -16,7 +16,8 @@ def open_transport(device: str) -> Transport:
     """Opens a device.
 
     Args:
-        device: `udpin:HOST:PORT`, `udpout:HOST:PORT`, `tcp:HOST:PORT`, `tcpin:HOST:PORT` or `/dev/ttyX,BAUD`.
+        device: `udpin:HOST:PORT`, `udpout:HOST:PORT`, `udpout:HOST:PORT:OWN_PORT`, `tcp:HOST:PORT`, `tcpin:HOST:PORT`
+            or `/dev/ttyX,BAUD`.
 
     Returns:
         The open transport; a TCP client may not be connected yet, and goes on trying.
@@ -27,6 +28,8 @@ def open_transport(device: str) -> Transport:
     parsed = parse_device(device)
     if isinstance(parsed, SerialDevice):
         return SerialTransport(parsed)
+    if parsed.own_port is not None:
+        return UdpBoundTransport(parsed)
     return _NETWORK_TRANSPORTS[parsed.kind](parsed)
 
 

@@ -166,6 +166,16 @@ def test_velocity_is_read_by_the_other_library() -> None:
     assert other.twist.covariance[35] == 0.04
 
 
+def test_a_vertical_velocity_that_is_not_measured_is_marked_both_ways() -> None:
+    flat = replace(FIX_VELOCITY, velocity_covariance_enu_m2_s2=None, is_vertical_measured=False)
+    other = ros.TwistWithCovarianceStamped.deserialize(encode(flat))
+    assert other.twist.covariance[14] == -1.0
+    assert decode(FixVelocity, other.serialize()) == flat
+    known = decode(FixVelocity, encode(replace(FIX_VELOCITY, is_vertical_measured=False)))
+    assert known.velocity_covariance_enu_m2_s2 == (1.0, 0.1, 0.0, 0.1, 2.0, 0.0, 0.0, 0.0, 0.0)
+    assert not known.is_vertical_measured
+
+
 def test_imu_is_read_by_the_other_library() -> None:
     assert ros.Imu.deserialize(encode(IMU)) == imu(header=replace(HEADER, frame_id="base_link"))
 

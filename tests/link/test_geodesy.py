@@ -2,11 +2,13 @@
 
 from math import cos, degrees, pi, radians, sin, sqrt
 
+import pymap3d
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from link.geodesy import Datum, enu_from_geodetic, geodetic_from_enu
+from link.messages import Vector3
 
 # WGS 84 defining parameters: NIMA TR8350.2, table 3.1
 SEMI_MAJOR_AXIS_M = 6378137.0
@@ -28,6 +30,23 @@ def test_position_returns_through_geodetic_coordinates(east_m: float, north_m: f
     latitude_rad, longitude_rad, altitude_m = geodetic_from_enu(ZERMATT, (east_m, north_m, up_m))
     back = enu_from_geodetic(ZERMATT, latitude_rad, longitude_rad, altitude_m)
     assert back == pytest.approx((east_m, north_m, up_m), abs=1e-5)
+
+
+@given(
+    st.floats(-90.0, 90.0),
+    st.floats(-180.0, 180.0),
+    st.tuples(DISTANCES, DISTANCES, st.floats(-500.0, 5000.0)),
+)
+def test_conversions_are_those_of_pymap3d(latitude_deg: float, longitude_deg: float, position: Vector3) -> None:
+    datum = Datum(latitude_rad=radians(latitude_deg), longitude_rad=radians(longitude_deg), altitude_m=250.0)
+    latitude, longitude, altitude_m = geodetic_from_enu(datum, position)
+    place = (degrees(latitude), degrees(longitude), altitude_m)
+    theirs = pymap3d.enu2geodetic(*position, latitude_deg, longitude_deg, 250.0)
+    apart = pymap3d.geodetic2enu(*place, *theirs)
+    assert max(map(abs, map(float, apart))) < 1e-6
+    again = pymap3d.geodetic2enu(*place, latitude_deg, longitude_deg, 250.0)
+    ours = enu_from_geodetic(datum, radians(place[0]), radians(place[1]), altitude_m)
+    assert ours == pytest.approx(tuple(map(float, again)), abs=1e-6)
 
 
 def test_small_steps_follow_the_radii_of_curvature() -> None:

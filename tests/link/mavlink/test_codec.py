@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import common
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 
-UNKNOWN_ID = 410  # EVENT, which PX4 sends and pymavlink does not know
+UNKNOWN_ID = 60_999  # in no dialect
 
 
 def position(number: int) -> Message:

@@ -7,7 +7,8 @@ from pymavlink import mavutil
 from link.errors import UserError
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
-from link.mavlink.tlog import TlogWriter
+from link.mavlink.heartbeat import companion_heartbeat
+from link.mavlink.tlog import TlogWriter, frames_of
 
 T_NS = 1_795_220_114_620_015_999
 
@@ -40,3 +41,19 @@ def test_times_are_whole_microseconds_big_endian_before_the_frame(tmp_path: Path
 def test_a_place_that_cannot_be_written_is_one_clear_line(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"no/run\.tlog: cannot be written"):
         TlogWriter(tmp_path / "no" / "run.tlog")
+
+
+def test_frames_are_read_as_they_were_written_and_a_cut_end_is_left_out(tmp_path: Path) -> None:
+    path = tmp_path / "run.tlog"
+    frames = [MavlinkCodec(1, 191).encode(companion_heartbeat()), MavlinkCodec(7, 1).encode(companion_heartbeat())]
+    with TlogWriter(path) as tlog:
+        for k, frame in enumerate(frames):
+            tlog.write(frame, T_NS + 1000 * k)
+    whole = path.read_bytes()
+    whole_us = T_NS // 1000 * 1000
+    assert list(frames_of(whole + whole[:9])) == [(whole_us, frames[0]), (whole_us + 1000, frames[1])]
+
+
+def test_what_is_no_recording_is_refused_with_the_place() -> None:
+    with pytest.raises(ValueError, match="no frame at byte 8"):
+        list(frames_of(bytes(8) + b"\xfd\x03\x7f" + bytes(20)))

@@ -14,7 +14,7 @@ from link.mavlink.session import MavlinkSession
 from link.mavlink.tcp_transport import TcpClientTransport, TcpServerTransport
 from link.mavlink.transport import Transport
 from link.mavlink.transports import open_transport
-from link.mavlink.udp_transport import UdpInTransport
+from link.mavlink.udp_transport import UdpInTransport, UdpPeers
 
 DEADLINE_S = 10.0
 
@@ -79,7 +79,7 @@ def test_udp_carries_both_ways_and_takes_all_that_is_there() -> None:
         assert received(speaker, 6) == b"answer"
 
 
-def test_udpin_answers_whoever_spoke_last() -> None:
+def test_udpin_answers_everybody_who_has_spoken() -> None:
     with (
         udp_in() as listener,
         open_transport(f"udpout:127.0.0.1:{listener.port}") as first,
@@ -89,8 +89,60 @@ def test_udpin_answers_whoever_spoke_last() -> None:
             speaker.send(b"here")
             received(listener, 4)
         listener.send(b"you")
-        assert received(second, 3) == b"you"
-        assert first.receive(0.0) == b""
+        assert received(first, 3) == received(second, 3) == b"you"
+
+
+def test_a_silent_udp_peer_is_forgotten_but_never_the_last_one() -> None:
+    peers = UdpPeers()
+    assert [peers.heard(address, 0.0) for address in ("a", "b")] == [0, 1]
+    assert peers.heard("b", 20.0) == 1
+    peers.forget_silent(31.0)
+    assert peers.addresses == ["b"]
+    peers.forget_silent(1e9)
+    assert peers.addresses == ["b"]
+
+
+def test_more_udp_peers_than_can_be_served_push_out_the_most_silent() -> None:
+    peers = UdpPeers()
+    for number in range(1000):
+        assert peers.heard(number, float(number)) == number
+    assert peers.addresses == list(range(984, 1000))
+
+
+def test_udpout_with_a_port_of_its_own_speaks_first_and_hears_others_there() -> None:
+    own_port = closed_port(socket.SOCK_DGRAM)
+    with (
+        udp_in() as listener,
+        open_transport(f"udpout:127.0.0.1:{listener.port}:{own_port}") as speaker,
+        open_transport(f"udpout:127.0.0.1:{own_port}") as other,
+    ):
+        speaker.send(b"hello")
+        assert received(listener, 5) == b"hello"
+        for client in (listener, other):
+            client.send(b"here")
+            received(speaker, 4)
+        speaker.send(b"you")
+        assert received(listener, 3) == received(other, 3) == b"you"
+        assert listener.receive(0.0) == b""
+
+
+def test_bytes_of_several_peers_are_told_apart() -> None:
+    with tcp_in() as server, tcp_out(server.port) as first, tcp_out(server.port) as second:
+        connect(first, server)
+        connect(second, server)
+        first.send(b"one")
+        second.send(b"two")
+        got: dict[int, bytes] = {}
+
+        def is_all_there() -> bool:
+            for peer, data in server.receive_by_peer(0.05):
+                got[peer] = got.get(peer, b"") + data
+            return sum(map(len, got.values())) == 6
+
+        until(is_all_there)
+        assert sorted(got.values()) == [b"one", b"two"]
+        server.send(b"both")
+        assert received(first, 4) == received(second, 4) == b"both"
 
 
 def test_udpin_keeps_still_until_somebody_has_spoken() -> None:
@@ -177,6 +229,16 @@ def test_a_tcp_client_waits_for_a_server_that_is_not_there_yet() -> None:
     with tcp_out(closed_port(socket.SOCK_STREAM)) as client:
         until(lambda: client.receive(0.01) == b"" and client.statistics.errors > 0)
         assert client.fileno() == -1
+
+
+def test_a_tcp_server_goes_on_with_the_others_when_a_client_has_gone() -> None:
+    with tcp_in() as server, tcp_out(server.port) as stays:
+        connect(stays, server)
+        with tcp_out(server.port) as goes:
+            connect(goes, server)
+        until(lambda: server.receive(0.01) == b"" and server.statistics.errors > 0)
+        server.send(b"still here")
+        assert received(stays, 10) == b"still here"
 
 
 def test_a_tcp_server_takes_the_next_client_when_the_first_is_gone() -> None:

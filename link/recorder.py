@@ -1,0 +1,153 @@
+"""Recording beside a loop: records go into a bounded queue and a thread of its own writes them.
+
+A slow or full disk costs records, which are counted, and never time of the loop's.
+"""
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any, Protocol
+
+_CAPACITY = 20_000  # half a minute of everything that a companion records
+_LOOK_S = 0.02  # between two looks for records: waking a thread at each would cost the loop more than all else here
+_PAUSE_S = 20e-6  # after each record, so that the loop never waits for the interpreter longer than for one
+_CLOSE_WAIT_S = 5.0
+_UNWRITABLE = (OSError, ValueError)  # the disk's fault, or of a message that holds what must not be written
+
+
+class RecordsLost(OSError):  # noqa: N818 (it is what has happened to them)
+    """A write that failed and took earlier records with it.
+
+    Attributes:
+        count: of records, the one that was to be written among them.
+    """
+
+    def __init__(self, count: int, cause: OSError) -> None:
+        super().__init__(cause.errno, cause.strerror)
+        self.count = count
+
+
+class Sink(Protocol):
+    """Where records end up; used from one thread."""
+
+    def write(self, record: Any) -> None:
+        """Write one record.
+
+        Raises:
+            OSError: it is not written.
+            ValueError: it cannot be written.
+        """
+
+    def close(self) -> None:
+        """Complete what was written.
+
+        Raises:
+            OSError: it is not complete.
+        """
+
+
+class Recorder(Protocol):
+    """What a loop records into."""
+
+    @property
+    def dropped(self) -> int:
+        """How many records were not written."""
+
+    def put(self, record: Any) -> None:
+        """Take one record; never raises and never waits for a disk."""
+
+    def close(self) -> None:
+        """Write what is left, as far as it can be written soon."""
+
+
+class BackgroundRecorder:
+    """Writes into a sink from a thread of its own.
+
+    Args:
+        sink: used by that thread only.
+        capacity: records that wait at most; further ones are dropped.
+        pause: gives the interpreter away after each record.
+    """
+
+    def __init__(self, sink: Sink, *, capacity: int = _CAPACITY, pause: Callable[[float], None] = time.sleep) -> None:
+        self._sink = sink
+        self._capacity = capacity
+        self._pause = pause
+        self._waiting: deque[Any] = deque()
+        self._closing = threading.Event()
+        self._dropped_full = 0
+        self._dropped_failed = 0
+        self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
+        self._thread.start()
+
+    @property
+    def dropped(self) -> int:
+        """How many records were not written."""
+        return self._dropped_full + self._dropped_failed
+
+    @property
+    def waiting(self) -> int:
+        """How many records are yet to be written."""
+        return len(self._waiting)
+
+    def put(self, record: Any) -> None:
+        """Take one record."""
+        if len(self._waiting) < self._capacity:
+            self._waiting.append(record)
+        else:
+            self._dropped_full += 1
+
+    def close(self) -> None:
+        """Write what is left; a disk that takes longer than five seconds is not waited for."""
+        self._closing.set()
+        self._thread.join(_CLOSE_WAIT_S)
+
+    def _run(self) -> None:
+        is_last = False
+        while not is_last:
+            is_last = self._closing.wait(_LOOK_S)
+            self._write_waiting()
+        try:
+            self._sink.close()
+        except _UNWRITABLE as error:
+            self._dropped_failed += _lost(error)
+
+    def _write_waiting(self) -> None:
+        while self._waiting:
+            try:
+                self._sink.write(self._waiting.popleft())
+            except _UNWRITABLE as error:
+                self._dropped_failed += _lost(error)
+            self._pause(_PAUSE_S)
+
+
+class DirectRecorder:
+    """Writes into a sink at once: for runs on a simulated clock, whose recordings are the same for the same seed."""
+
+    def __init__(self, sink: Sink) -> None:
+        self._sink = sink
+        self._dropped = 0
+
+    @property
+    def dropped(self) -> int:
+        """How many records were not written."""
+        return self._dropped
+
+    def put(self, record: Any) -> None:
+        """Write one record."""
+        try:
+            self._sink.write(record)
+        except _UNWRITABLE as error:
+            self._dropped += _lost(error)
+
+    def close(self) -> None:
+        """Complete the recording."""
+        try:
+            self._sink.close()
+        except _UNWRITABLE as error:
+            self._dropped += _lost(error)
+
+
+def _lost(error: Exception) -> int:
+    return error.count if isinstance(error, RecordsLost) else 1

@@ -1,0 +1,30 @@
+"""A landing's status as rows of words, for whatever shows it to people."""
+
+import math
+
+from link.messages import LandingStatus, Vector3
+
+Row = tuple[str, str]
+
+
+def status_rows(status: LandingStatus | None) -> list[Row]:
+    """Return names and values, all of the same names whatever is known; unknown is a dash."""
+    position = None if status is None else status.relative_position_enu_m
+    velocity = None if status is None else status.relative_velocity_enu_m_s
+    return [
+        ("height above the pad", number(None if position is None else position[2], "m")),
+        ("distance from its centre", number(None if position is None else math.hypot(*position[:2]), "m")),
+        ("east, north, up", _vector(position, "m")),
+        ("relative velocity", _vector(velocity, "m/s")),
+        ("time to touchdown", number(None if status is None else status.time_to_contact_s, "s")),
+        ("age of the last fix", number(None if status is None else status.fix_age_s, "s")),
+    ]
+
+
+def number(value: float | None, unit: str) -> str:
+    """Return a value with its unit, a dash for an unknown one."""
+    return "-" if value is None else f"{value:.2f} {unit}"
+
+
+def _vector(vector: Vector3 | None, unit: str) -> str:
+    return "-" if vector is None else ", ".join(f"{part:+.2f}" for part in vector) + f" {unit}"

@@ -1,0 +1,56 @@
+"""Changed copies of records are what `dataclasses.replace` makes of them."""
+
+import dataclasses
+from dataclasses import dataclass
+from typing import Any
+
+import pytest
+
+from companion.step_data import StepMemory
+from link.messages import BodyTruth
+from link.records import replace
+
+TRUTH = BodyTruth(
+    t_ns=7,
+    position_enu_m=(1.0, 2.0, 3.0),
+    orientation_wxyz=(1.0, 0.0, 0.0, 0.0),
+    velocity_flu_m_s=(0.1, 0.2, 0.3),
+    angular_velocity_flu_rad_s=(0.0, 0.0, 0.5),
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Checked:
+    width_m: float
+    height_m: float
+
+    def __post_init__(self) -> None:
+        if self.width_m < 0.0:
+            raise ValueError("negative")
+
+
+def test_copy_is_that_of_the_standard_library_and_the_original_stays() -> None:
+    before = dataclasses.asdict(TRUTH)
+    assert replace(TRUTH, t_ns=8, position_enu_m=(4.0, 5.0, 6.0)) == dataclasses.replace(
+        TRUTH, t_ns=8, position_enu_m=(4.0, 5.0, 6.0)
+    )
+    assert dataclasses.asdict(TRUTH) == before
+
+
+def test_fields_that_are_not_changed_are_handed_on_as_they_are() -> None:
+    memory = StepMemory()
+    changed = replace(memory, reason="else")
+    for field in dataclasses.fields(memory):
+        assert field.name == "reason" or getattr(changed, field.name) is getattr(memory, field.name)
+    assert changed.reason == "else"
+
+
+def test_unknown_field_is_refused() -> None:
+    unknown: dict[str, Any] = {"speed": 1.0}
+    with pytest.raises(TypeError, match="BodyTruth has no field 'speed'"):
+        replace(TRUTH, **unknown)
+
+
+def test_record_that_is_checked_when_it_is_made_is_refused() -> None:
+    with pytest.raises(TypeError, match=r"dataclasses\.replace"):
+        replace(Checked(width_m=1.0, height_m=2.0), width_m=-1.0)
