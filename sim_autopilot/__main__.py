@@ -23,23 +23,23 @@ from link.cli import (
     run_app,
 )
 
-_PORT = 14540  # PX4's first companion; one more for each further instance
-
 app = make_app("Simulate a quadrotor under an autopilot that speaks MAVLink.")
 
 
 @app.callback(invoke_without_command=True)
 def sim_autopilot(
     mavlink: Annotated[
-        str | None,
+        list[str] | None,
         typer.Option(
             "--mavlink",
             metavar="DEVICE",
-            help="udpout:HOST:PORT, udpin:HOST:PORT, tcp:HOST:PORT, tcpin:HOST:PORT or /dev/ttyX,BAUD "
-            f"[default: udpout:127.0.0.1:{_PORT} + instance].",
+            help="A link, and again for more: udpout:HOST:PORT[:OWN_PORT], udpin:HOST:PORT, tcp:HOST:PORT, "
+            "tcpin:HOST:PORT or /dev/ttyX,BAUD [default: those of the firmware's own simulator].",
         ),
     ] = None,
-    firmware: Annotated[str | None, typer.Option("--firmware", metavar="NAME", help="px4 [default: px4].")] = None,
+    firmware: Annotated[
+        str | None, typer.Option("--firmware", metavar="NAME", help="px4 or ardupilot [default: px4].")
+    ] = None,
     instance: Annotated[
         int | None, typer.Option("--instance", min=0, max=249, help="Number of the drone; system id - 1 [default: 0].")
     ] = None,
@@ -71,11 +71,13 @@ def sim_autopilot(
 ) -> int:
     """Simulate a quadrotor under an autopilot that speaks MAVLink."""
     from link.toml_config import dump_toml, load_config  # noqa: PLC0415 (numerics are slow to load, --help is quick)
-    from sim_autopilot.config import SimAutopilotConfig, autopilot_config  # noqa: PLC0415
+    from sim_autopilot.config import SimAutopilotConfig, autopilot_config, with_default_links  # noqa: PLC0415
 
     given = _given(firmware=firmware, instance=instance, instant=instant, seed=seed)
+    if mavlink:
+        given["links"] = [{"device": device} for device in mavlink]
     given |= {"wind": _given(mean_m_s=wind, turbulence=turbulence), "datum": _datum(datum)}
-    settings = load_config(config, SimAutopilotConfig, given)
+    settings = with_default_links(load_config(config, SimAutopilotConfig, given))
     autopilot = autopilot_config(settings)
     if print_config:
         sys.stdout.write(dump_toml(settings))
@@ -92,8 +94,8 @@ def sim_autopilot(
         multicast_scouting=multicast,
         config_file=zenoh_config,
     )
-    device = mavlink or f"udpout:127.0.0.1:{_PORT + settings.instance}"
-    options = RunOptions(device=device, speed=speed, keys=Keys(namespace, vehicle, drone), zenoh=zenoh)
+    devices = tuple(link.device for link in settings.links)
+    options = RunOptions(devices=devices, speed=speed, keys=Keys(namespace, vehicle, drone), zenoh=zenoh)
     signal.signal(signal.SIGTERM, _interrupt)
     run(settings, autopilot, options)
     return EXIT_INTERRUPTED

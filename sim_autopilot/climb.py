@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sim_autopilot.data import Array, Reference
+from sim_autopilot.physics.airframe import GRAVITY_M_S2
 
 _RISE_ASKED_M = 0.1
 """A position setpoint this much above the drone asks for a take-off."""
@@ -30,8 +31,10 @@ def asks_for_takeoff(reference: Reference | None, height_m: float) -> bool:
     """Return whether a drone that stands at `height_m` is to leave the ground."""
     if reference is None:
         return False
-    if reference.position_enu_m is not None:
-        return bool(reference.position_enu_m[2] > height_m + _RISE_ASKED_M)
+    if reference.attitude is not None:
+        return reference.attitude.thrust_m_s2 > GRAVITY_M_S2
+    if reference.height_m is not None:
+        return reference.height_m > height_m + _RISE_ASKED_M
     if reference.velocity_enu_m_s is not None:
         return bool(reference.velocity_enu_m_s[2] > 0.0)
     return reference.acceleration_enu_m_s2 is not None and bool(reference.acceleration_enu_m_s2[2] > 0.0)
@@ -64,7 +67,7 @@ def ramped(
     rising_s = max(0.0, elapsed_s - _weight_s(rate_max_m_s, ramp_s))
     rate_m_s = (rate_max_m_s + _RATE_FROM_M_S) / ramp_s * rising_s
     height_m = climb.base_m + 0.5 * rate_m_s * rising_s
-    if reference.position_enu_m is None:
+    if reference.position_enu_m is None or reference.height_m is None:
         velocity = reference.velocity_enu_m_s
         if velocity is None or velocity[2] <= rate_m_s:
             return None

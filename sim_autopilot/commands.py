@@ -3,99 +3,58 @@
 Source: MAVLink command protocol, https://mavlink.io/en/services/command.html; results as PX4 was seen to give them.
 """
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from math import isfinite
+from collections.abc import Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.arming import arm, arming_obstacle, disarm, may_fly_setpoints
+from sim_autopilot.arming import arm, arming_obstacle, disarm
+from sim_autopilot.events import tell
+from sim_autopilot.failures import injected
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, Later
-from sim_autopilot.mode_change import change_mode
-from sim_autopilot.modes import ASK_FOR, Mode
-from sim_autopilot.streams import Stream, with_interval
-from sim_autopilot.telemetry import build_message
+from sim_autopilot.missions_step import mission_current, mission_items, set_current
+from sim_autopilot.mode_request import loiter, mode_command, try_mode
+from sim_autopilot.modes import Mode
+from sim_autopilot.place_commands import (
+    change_altitude,
+    change_speed,
+    circle,
+    go_there,
+    set_home,
+    take_off,
+)
+from sim_autopilot.requests import ACCEPTED, DENIED, UNSUPPORTED, Answer, Handler, Request
+from sim_autopilot.stream_commands import get_interval, request_message, request_version, set_interval
 
-ACCEPTED = int(mavlink.MAV_RESULT_ACCEPTED)
-UNSUPPORTED = int(mavlink.MAV_RESULT_UNSUPPORTED)
 _FORCE = 21196
 _SECOND_ANSWER_NS = 20_000_000
 """A command is obeyed at the beginning of its step: one step later than its own acknowledgement, 10 ms."""
-_DEFAULT_RATE = 0
-_STOP = -1
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Request:
-    """A command, who sent it, and its seven parameters; one that is not finite counts as not given."""
-
-    command: int
-    parameters: tuple[float, ...]
-    system: int
-    component: int
-
-    def number(self, position: int) -> int | None:
-        """Return parameter `position` (1 to 7) as a whole number, None where it is not finite."""
-        value = self.parameters[position - 1]
-        return round(value) if isfinite(value) else None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Answer:
-    """What a command leads to: the result, and what is sent besides the acknowledgement."""
-
-    memory: AutopilotMemory
-    result: int
-    messages: tuple[Message, ...] = ()
-    text: str | None = None
-
-
-Handler = Callable[[AutopilotMemory, Request, AutopilotConfig], Answer]
-
-
-def request_from_message(message: Message) -> Request:
-    """Return what a COMMAND_LONG or COMMAND_INT asks."""
-    last = (message.x, message.y, message.z) if message.get_type() == "COMMAND_INT" else _long_tail(message)
-    return Request(
-        command=message.command,
-        parameters=(message.param1, message.param2, message.param3, message.param4, *last),
-        system=message.get_srcSystem(),
-        component=message.get_srcComponent(),
-    )
-
-
-def is_for_us(message: Message, config: AutopilotConfig) -> bool:
-    """Return whether a command concerns this autopilot; others are not answered at all."""
-    if message.target_system != config.system_id:
-        return False
-    ours = (mavlink.MAV_COMP_ID_AUTOPILOT1, mavlink.MAV_COMP_ID_ALL)
-    return config.firmware.answers_other_components or message.target_component in ours
+_NOTHING = 0
 
 
 def obey(
     memory: AutopilotMemory, request: Request, config: AutopilotConfig
 ) -> tuple[AutopilotMemory, tuple[Message, ...]]:
     """Return the memory after a command, and the messages that answer it."""
-    handler = _HANDLERS.get(request.command)
+    firmware = config.firmware
+    handler = None if request.command in firmware.plain_answers else _HANDLERS.get(request.command)
     if handler is None:
-        return memory, (_acknowledgement(request, UNSUPPORTED),)
+        result = firmware.plain_answers.get(request.command, UNSUPPORTED)
+        return memory, () if result is None else (acknowledgement(request, result),)
     answer = handler(memory, request, config)
-    texts = (_status_text(answer.text),) if answer.text and memory.ground_station else ()
-    return answer.memory, (_acknowledgement(request, answer.result), *answer.messages, *texts)
+    severity = config.firmware.texts.severity
+    telling = tell(answer.memory, answer.text, severity, config) if answer.text else None
+    told = () if answer.result is None else (acknowledgement(request, answer.result),)
+    if telling is None:
+        return answer.memory, (*told, *answer.messages)
+    return telling.memory, (*told, *answer.messages, *telling.messages)
 
 
-def _acknowledgement(request: Request, result: int) -> Message:
+def acknowledgement(request: Request, result: int) -> Message:
+    """Return the COMMAND_ACK of a command."""
     return mavlink.MAVLink_command_ack_message(
         request.command, result, 0, 0, target_system=request.system, target_component=request.component
     )
-
-
-def _status_text(text: str) -> Message:
-    return mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_WARNING, text.encode()[:50])
-
-
-def _long_tail(message: Message) -> tuple[float, float, float]:
-    return (message.param5, message.param6, message.param7)
 
 
 def _arm_disarm(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
@@ -104,104 +63,115 @@ def _arm_disarm(memory: AutopilotMemory, request: Request, config: AutopilotConf
         obstacle = None if forced or memory.armed_ns is not None else arming_obstacle(memory, config)
         if obstacle is not None:
             refused = config.firmware.results.arm_refused
-            return Answer(memory=memory, result=refused, text=f"Arming refused: {obstacle}")
+            return Answer(memory=memory, result=refused, text=obstacle)
         return Answer(memory=arm(memory), result=ACCEPTED)
     if wanted != 0:
         return Answer(memory=memory, result=UNSUPPORTED)
     if memory.armed_ns is not None and not memory.landing.landed and not forced:
         refused = config.firmware.results.disarm_in_the_air
-        return Answer(memory=memory, result=refused, text="Disarming refused: not landed")
+        return Answer(memory=memory, result=refused, text=config.firmware.texts.disarm_refused)
     return Answer(memory=disarm(memory), result=ACCEPTED)
 
 
 def _set_mode(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
     wanted = (request.number(2), request.number(3))
-    mode = next((mode for mode, code in config.firmware.modes.items() if code.request == wanted), None)
+    modes = config.firmware.modes
+    mode = next((mode for mode, code in modes.items() if code.request == wanted[: len(code.request)]), None)
     if mode is None:
-        return Answer(memory=memory, result=ACCEPTED)
-    memory, result = _try_mode(memory, mode, config)
+        return Answer(memory=memory, result=config.firmware.results.no_such_mode)
+    memory, result = try_mode(memory, mode, config)
     if not config.firmware.mode_answered_twice:
         return Answer(memory=memory, result=result)
-    second = Later(boot_ns=memory.now.boot_ns + _SECOND_ANSWER_NS, message=_acknowledgement(request, result))
+    second = Later(boot_ns=memory.now.boot_ns + _SECOND_ANSWER_NS, message=acknowledgement(request, result))
     return Answer(memory=replace(memory, later=(*memory.later, second)), result=ACCEPTED)
 
 
-def _try_mode(memory: AutopilotMemory, mode: Mode, config: AutopilotConfig) -> tuple[AutopilotMemory, int]:
-    if mode is Mode.OFFBOARD and not may_fly_setpoints(memory, config):
-        return memory, config.firmware.results.mode_refused
-    return change_mode(memory, ASK_FOR[mode]), ACCEPTED
+def _inject_failure(memory: AutopilotMemory, request: Request, _config: AutopilotConfig) -> Answer:
+    if not memory.settings.takes_failures:
+        return Answer(memory=memory, result=UNSUPPORTED)
+    unit, kind, instance = request.number(1), request.number(2), request.number(3)
+    services = memory.services
+    failures = injected(services.failures, unit or 0, -1 if kind is None else kind, instance or 0)
+    if failures is None:
+        return Answer(memory=memory, result=None)
+    return Answer(memory=replace(memory, services=replace(services, failures=failures)), result=ACCEPTED)
 
 
-def _mode_command(mode: Mode) -> Handler:
-    def handle(memory: AutopilotMemory, _request: Request, config: AutopilotConfig) -> Answer:
-        memory, result = _try_mode(memory, mode, config)
-        return Answer(memory=memory, result=result)
+def _start_mission(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
+    if not mission_items(memory) and config.firmware.missions.arms_to_start:
+        return Answer(memory=memory, result=DENIED)
+    refused = config.firmware.results.mode_refused
+    first = request.number(1)
+    if first is not None and first > 0:
+        sent = set_current(memory, first)
+        if sent is None:
+            return Answer(memory=memory, result=DENIED)
+        memory = sent
+    started, result = try_mode(memory, Mode.MISSION, config)
+    if result != ACCEPTED or started.armed_ns is not None or not config.firmware.missions.arms_to_start:
+        return Answer(memory=started, result=result)
+    if arming_obstacle(started, config) is not None:
+        return Answer(memory=memory, result=refused)
+    return Answer(memory=arm(started), result=ACCEPTED)
 
-    return handle
+
+def _set_mission_current(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
+    index = request.number(1)
+    sent = None if index is None else set_current(memory, index)
+    if sent is None:
+        return Answer(memory=memory, result=DENIED)
+    return Answer(memory=sent, result=ACCEPTED, messages=(mission_current(sent, config),))
 
 
-def _take_off(memory: AutopilotMemory, _request: Request, config: AutopilotConfig) -> Answer:
-    if memory.armed_ns is None:
-        return Answer(memory=memory, result=ACCEPTED)
-    memory, result = _try_mode(memory, Mode.TAKEOFF, config)
+def _pause_or_continue(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
+    wanted = {0: Mode.HOLD, 1: Mode.MISSION}.get(request.number(1) or 0)
+    if wanted is None:
+        return Answer(memory=memory, result=DENIED)
+    memory, result = try_mode(memory, wanted, config)
     return Answer(memory=memory, result=result)
 
 
-def _set_interval(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
-    stream, interval_us = _stream(request.number(1), config), request.number(2)
-    if stream is None or interval_us is None or interval_us < _STOP:
-        return Answer(memory=memory, result=config.firmware.results.no_such_stream)
-    boot_ns = memory.now.boot_ns
-    streams = with_interval(memory.streams, stream.message_id, _interval_ns(stream, interval_us, config), boot_ns)
-    return Answer(memory=replace(memory, streams=streams), result=ACCEPTED)
+def _reboot(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
+    """Refuse to reboot or to shut down: what stands in for an autopilot ends when its process is told to."""
+    result = ACCEPTED if request.number(1) == _NOTHING else config.firmware.results.reboot_refused
+    return Answer(memory=memory, result=result)
 
 
-def _interval_ns(stream: Stream, interval_us: int, config: AutopilotConfig) -> int | None:
-    if interval_us == _STOP or (interval_us == _DEFAULT_RATE and stream.rate_hz <= 0.0):
-        return None
-    if interval_us == _DEFAULT_RATE:
-        return round(1e9 / stream.rate_hz)
-    return max(interval_us * 1000, round(1e9 / config.firmware.stream_rate_max_hz))
+def _terminate(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
+    """Stop the motors wherever the drone is; a real PX4 lets nobody arm after that, here a new flight is possible."""
+    if request.number(1) != 1:
+        return Answer(memory=memory, result=config.firmware.results.reboot_refused)
+    return Answer(memory=disarm(memory), result=ACCEPTED)
 
 
-def _get_interval(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
-    stream = _stream(request.number(1), config)
-    if stream is None:
-        return Answer(memory=memory, result=config.firmware.results.no_such_stream)
-    interval_ns = memory.streams.interval_ns.get(stream.message_id)
-    interval_us = _STOP if interval_ns is None else min(interval_ns // 1000, 2**31 - 1)
-    message = mavlink.MAVLink_message_interval_message(stream.message_id, interval_us)
-    return Answer(memory=memory, result=ACCEPTED, messages=(message,))
-
-
-def _request_message(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
-    stream = _stream(request.number(1), config)
-    if stream is None:
-        return Answer(memory=memory, result=config.firmware.results.no_such_message)
-    message = build_message(stream, memory, config)
-    return Answer(memory=memory, result=ACCEPTED, messages=() if message is None else (message,))
-
-
-def _request_version(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
-    version = replace(request, parameters=(float(mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION),))
-    return _request_message(memory, version, config)
-
-
-def _stream(message_id: int | None, config: AutopilotConfig) -> Stream | None:
-    return None if message_id is None else config.firmware.streams.get(message_id)
+def _tell_home(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
+    number = float(mavlink.MAVLINK_MSG_ID_HOME_POSITION)
+    return request_message(memory, replace(request, parameters=(number,)), config)
 
 
 _HANDLERS: Mapping[int, Handler] = MappingProxyType(
     {
         mavlink.MAV_CMD_COMPONENT_ARM_DISARM: _arm_disarm,
         mavlink.MAV_CMD_DO_SET_MODE: _set_mode,
-        mavlink.MAV_CMD_NAV_TAKEOFF: _take_off,
-        mavlink.MAV_CMD_NAV_LAND: _mode_command(Mode.LAND),
-        mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: _mode_command(Mode.RTL),
-        mavlink.MAV_CMD_NAV_LOITER_UNLIM: _mode_command(Mode.HOLD),
-        mavlink.MAV_CMD_SET_MESSAGE_INTERVAL: _set_interval,
-        mavlink.MAV_CMD_GET_MESSAGE_INTERVAL: _get_interval,
-        mavlink.MAV_CMD_REQUEST_MESSAGE: _request_message,
-        mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: _request_version,
+        mavlink.MAV_CMD_NAV_TAKEOFF: take_off,
+        mavlink.MAV_CMD_NAV_LAND: mode_command(Mode.LAND),
+        mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: mode_command(Mode.RTL),
+        mavlink.MAV_CMD_NAV_LOITER_UNLIM: loiter,
+        mavlink.MAV_CMD_INJECT_FAILURE: _inject_failure,
+        mavlink.MAV_CMD_DO_REPOSITION: go_there,
+        mavlink.MAV_CMD_DO_CHANGE_SPEED: change_speed,
+        mavlink.MAV_CMD_DO_CHANGE_ALTITUDE: change_altitude,
+        mavlink.MAV_CMD_DO_ORBIT: circle,
+        mavlink.MAV_CMD_DO_SET_HOME: set_home,
+        mavlink.MAV_CMD_GET_HOME_POSITION: _tell_home,
+        mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN: _reboot,
+        mavlink.MAV_CMD_DO_FLIGHTTERMINATION: _terminate,
+        mavlink.MAV_CMD_MISSION_START: _start_mission,
+        mavlink.MAV_CMD_DO_SET_MISSION_CURRENT: _set_mission_current,
+        mavlink.MAV_CMD_DO_PAUSE_CONTINUE: _pause_or_continue,
+        mavlink.MAV_CMD_SET_MESSAGE_INTERVAL: set_interval,
+        mavlink.MAV_CMD_GET_MESSAGE_INTERVAL: get_interval,
+        mavlink.MAV_CMD_REQUEST_MESSAGE: request_message,
+        mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: request_version,
     }
 )

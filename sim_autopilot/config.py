@@ -11,19 +11,22 @@ from link.geodesy import Datum
 from link.messages import Vector3
 from link.toml_config import StrictModel
 from sim_autopilot.control.kinds import ControllerKind
+from sim_autopilot.firmware.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.px4 import PX4
+from sim_autopilot.link_profiles import default_links, link_profile
 from sim_autopilot.memory import AutopilotConfig
+from sim_autopilot.own_state import OwnStateModel
 from sim_autopilot.parameters import default_values
-from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, REPORT_AIRFRAME
+from sim_autopilot.physics.airframe import ARDUCOPTER_AIRFRAME, BENCHMARK_AIRFRAME, REPORT_AIRFRAME
 from sim_autopilot.physics.contact import GEAR_HEIGHT_M
-from sim_autopilot.physics.wind import Turbulence, WindModel
+from sim_autopilot.physics.wind import Gust, Turbulence, WindModel
 from sim_autopilot.plant import PlantConfig
 
 Positive = Annotated[float, Field(gt=0.0, le=1e4)]
 NotNegative = Annotated[float, Field(ge=0.0, le=1e4)]
 
-_FIRMWARES = {"px4": PX4}
-_AIRFRAMES = {"report": REPORT_AIRFRAME, "benchmark": BENCHMARK_AIRFRAME}
+_FIRMWARES = {"px4": PX4, "ardupilot": ARDUPILOT}
+_AIRFRAMES = {"report": REPORT_AIRFRAME, "benchmark": BENCHMARK_AIRFRAME, "arducopter": ARDUCOPTER_AIRFRAME}
 
 
 class DatumConfig(StrictModel):
@@ -44,7 +47,7 @@ class StartConfig(StrictModel):
 class DroneConfig(StrictModel):
     """The drone and its flight controller."""
 
-    airframe: Literal["report", "benchmark"] = "benchmark"
+    airframe: Literal["report", "benchmark", "arducopter"] = "benchmark"
     controller: Literal["lqr", "lqr_feedforward", "geometric"] = "geometric"
     friction_coefficient: Annotated[float, Field(ge=0.0, le=2.0)] = 0.8  # rubber on painted metal
     ground_effect: bool = True
@@ -53,11 +56,26 @@ class DroneConfig(StrictModel):
 
 
 class WindConfig(StrictModel):
-    """Mean wind and turbulence (MIL-F-8785C, low altitude)."""
+    """Mean wind, turbulence and a discrete gust (MIL-F-8785C, low altitude)."""
 
     mean_m_s: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0
     from_rad: Annotated[float, Field(ge=-pi, le=pi)] | None = None  # from East counter-clockwise; None: by the seed
     turbulence: Literal["none", "light", "moderate", "severe"] = "none"
+    gust_m_s: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0  # its peak; 0 is none
+    gust_from_rad: Annotated[float, Field(ge=-pi, le=pi)] = 0.0  # from East counter-clockwise
+    gust_start_s: NotNegative = 0.0  # since boot
+    gust_duration_s: Positive = 3.0
+
+
+class OwnStateConfig(StrictModel):
+    """How well the autopilot knows its own state; all zero is the truth."""
+
+    position_std_m: NotNegative = 0.0  # on each axis
+    velocity_std_m_s: NotNegative = 0.0  # likewise
+    position_time_s: Positive = 10.0  # of both errors' memory; sim_autopilot/own_state.py says why
+    velocity_time_s: Positive = 2.0
+    origin_step_enu_m: Vector3 | None = None  # how far the local frame's origin moves in flight
+    origin_step_s: NotNegative = 0.0  # since boot, when it does
 
 
 class VehicleConfig(StrictModel):
@@ -68,18 +86,27 @@ class VehicleConfig(StrictModel):
     roof_height_m: NotNegative = 1.5  # until the vehicle tells its pad's height; MBZIRC 2017
 
 
+class LinkConfig(StrictModel):
+    """A MAVLink link."""
+
+    device: str  # udpout:HOST:PORT, udpout:HOST:PORT:OWN_PORT, udpin:HOST:PORT, tcp:, tcpin: or /dev/ttyX,BAUD
+    streams: Literal["onboard", "ground"] = "onboard"  # what it sends unasked, where the firmware makes a difference
+
+
 class SimAutopilotConfig(StrictModel):
     """Everything that can be set about the simulated autopilot."""
 
-    firmware: Literal["px4"] = "px4"
-    instance: Annotated[int, Field(ge=0, le=249)] = 0  # system id - 1, and added to the default port
+    firmware: Literal["px4", "ardupilot"] = "px4"
+    instance: Annotated[int, Field(ge=0, le=249)] = 0  # system id - 1; shifts the default ports
     instant: bool = False  # ready at once, without the seconds that a boot takes
-    seed: Annotated[int, Field(ge=0)] = 1  # of the wind
+    seed: Annotated[int, Field(ge=0)] = 1  # of the wind and the own state's errors
     datum: DatumConfig = DatumConfig()
     start: StartConfig = StartConfig()
     drone: DroneConfig = DroneConfig()
     wind: WindConfig = WindConfig()
+    own_state: OwnStateConfig = OwnStateConfig()
     vehicle: VehicleConfig = VehicleConfig()
+    links: tuple[LinkConfig, ...] = ()  # empty: those of the firmware's own simulator, one link within `scenarios`
     parameters: dict[str, float] = Field(default_factory=dict)  # firmware parameters that differ from their defaults
 
 
@@ -94,6 +121,7 @@ def autopilot_config(config: SimAutopilotConfig) -> AutopilotConfig:
         default_values(firmware.parameters, config.parameters)
     except ValueError as error:
         raise UserError(f"parameters: {error}") from None
+    ground_rates_hz = link_profile(firmware.autopilot_id).ground_rates_hz
     x, y, z = config.start.position_enu_m
     return AutopilotConfig(
         firmware=firmware,
@@ -115,12 +143,36 @@ def autopilot_config(config: SimAutopilotConfig) -> AutopilotConfig:
         yaw_rad=config.start.yaw_rad,
         parameters=config.parameters,
         endurance_s=config.drone.endurance_s,
+        links=tuple(ground_rates_hz if link.streams == "ground" else None for link in config.links) or (None,),
+        own_state=OwnStateModel(seed=config.seed, **config.own_state.model_dump()),
     )
+
+
+def with_default_links(config: SimAutopilotConfig) -> SimAutopilotConfig:
+    """Return `config` with the links of the firmware's own simulator where it names none."""
+    if config.links:
+        return config
+    defaults = default_links(_FIRMWARES[config.firmware].autopilot_id, config.instance)
+    links = tuple(LinkConfig(device=one.device, streams="ground" if one.is_ground else "onboard") for one in defaults)
+    return config.model_copy(update={"links": links})
 
 
 def wind_model(config: SimAutopilotConfig) -> WindModel:
     """Return the air, which blows towards where it does not come from."""
-    from_rad = config.wind.from_rad
+    wind = config.wind
+    from_rad = wind.from_rad
     if from_rad is None:
         from_rad = float(np.random.default_rng(config.seed).uniform(-pi, pi))
-    return WindModel(config.seed, config.wind.mean_m_s, from_rad + pi, Turbulence[config.wind.turbulence.upper()])
+    turbulence = Turbulence[wind.turbulence.upper()]
+    return WindModel(config.seed, wind.mean_m_s, from_rad + pi, turbulence, gust=_gust(wind))
+
+
+def _gust(wind: WindConfig) -> Gust | None:
+    if wind.gust_m_s == 0.0:
+        return None
+    return Gust(
+        peak_m_s=wind.gust_m_s,
+        direction_rad=wind.gust_from_rad + pi,
+        start_s=wind.gust_start_s,
+        duration_s=wind.gust_duration_s,
+    )

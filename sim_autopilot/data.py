@@ -68,6 +68,21 @@ class Deck:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class AttitudeTarget:
+    """An attitude to turn to, or turn rates alone, and the thrust.
+
+    Attributes:
+        orientation_wxyz: (4,) q_WB; None follows the rates alone.
+        rates_flu_rad_s: (3,) w_WB in B.
+        thrust_m_s2: along z of B, over the mass.
+    """
+
+    orientation_wxyz: Array | None
+    rates_flu_rad_s: Array
+    thrust_m_s2: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Reference:
     """What the flight controller is to follow; a None group is free (no feedback, no feed-forward).
 
@@ -77,6 +92,9 @@ class Reference:
         acceleration_enu_m_s2: (3,) feed-forward.
         yaw_rad: None holds the present heading.
         yaw_rate_rad_s: None is zero.
+        attitude: in place of everything above.
+        free_position: axes of W on which the position is nobody's wish, and follows the drone.
+        free_velocity: likewise of the velocity.
     """
 
     position_enu_m: Array | None
@@ -84,3 +102,11 @@ class Reference:
     acceleration_enu_m_s2: Array | None
     yaw_rad: float | None
     yaw_rate_rad_s: float | None = None
+    attitude: AttitudeTarget | None = None
+    free_position: tuple[bool, bool, bool] = (False, False, False)
+    free_velocity: tuple[bool, bool, bool] = (False, False, False)
+
+    @property
+    def height_m(self) -> float | None:
+        """The height in W that is asked for, None where none is."""
+        return None if self.position_enu_m is None or self.free_position[2] else float(self.position_enu_m[2])

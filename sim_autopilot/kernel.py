@@ -19,9 +19,9 @@ SPEED_END = 17
 FORCE_END = 20
 SURFACE = 20
 MEMORY_START = 21
-MEMORY_END = 33
-PLANT_SIZE = 57
-"""Plant vector: state 13, rotor speeds 4, specific force 3, surface 1, controller memory 12, friction anchors 8 x 3."""
+MEMORY_END = 36
+PLANT_SIZE = 60
+"""Plant vector: state 13, rotor speeds 4, specific force 3, surface 1, controller memory 15, friction anchors 8 x 3."""
 
 
 SOURCES = source_digest(Path(__file__).parent / folder for folder in ("physics", "control"))
@@ -32,15 +32,16 @@ def _compiled(sources: int) -> Kernel[..., int]:
 
     @kept_kernel
     def advance(
-        plant: Array, flying: bool, reference: Array, deck: Array, wind: Array, control_record: Record,
-        body_record: Record, periods: int, steps: int,
+        plant: Array, flying: bool, reference: Array, own_error: Array, deck: Array, wind: Array,
+        control_record: Record, body_record: Record, periods: int, steps: int,
     ) -> int:  # fmt: skip
-        """Advance the plant vector (57,) in place.
+        """Advance the plant vector (60,) in place.
 
         Args:
-            plant: (57,) changed.
+            plant: (60,) changed.
             flying: whether the motors run; `reference` counts only then.
-            reference: (15,) at the start of the call.
+            reference: (25,) at the start of the call.
+            own_error: (6,) of the position and velocity in W that the controller believes in.
             deck: (18,) the vehicle at the start of the call.
             wind: (3,) m/s in W.
             control_record: (1,) the controller's.
@@ -58,7 +59,7 @@ def _compiled(sources: int) -> Kernel[..., int]:
         work = workspace()
         rotation, scratch = work[4], work[6]
         wrench, command = work[3][0], work[3][1].copy()
-        target = reference.copy()
+        target, believed = reference.copy(), y.copy()
         step_s = control["period_s"] / steps
         touched = plant[SURFACE]
         plant[SURFACE] = 0.0
@@ -71,7 +72,10 @@ def _compiled(sources: int) -> Kernel[..., int]:
             if flying:
                 fill_matrix(y[3:7], rotation)
                 extrapolate(reference, start_s, target)
-                fill_control(y, rotation, speed, memory, target, touched > 0.0, control, body, scratch, wrench)
+                believed[:] = y
+                believed[0:3] += own_error[0:3]
+                believed[7:10] += own_error[3:6]
+                fill_control(believed, rotation, speed, memory, target, touched > 0.0, control, body, scratch, wrench)
                 fill_motor_command(wrench, speed, control, body, scratch[0:4], command)
             elif body["direct"] == 1:
                 speed[:] = 0.0

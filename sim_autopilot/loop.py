@@ -1,7 +1,9 @@
 """The wire loop of the simulated autopilot: sockets and the clock around the node, nothing else."""
 
+import select
 import signal
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +14,7 @@ from link.keys import Keys
 from link.mavlink.transports import Transport
 from link.messages import BodyTruth, RotorTruth
 from link.zenoh_session import ZenohSession
-from sim_autopilot.node import STEP_NS, AutopilotNode
+from sim_autopilot.node import AutopilotNode
 from sim_autopilot.physics.wind import WindModel
 from sim_autopilot.truth import drone_truth, rotor_truth
 from sim_autopilot.vehicle_view import VehicleView
@@ -25,10 +27,10 @@ _YIELD_S = 0.0001
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Links:
-    """What the loop talks over."""
+    """What the loop talks over; the transports are those of the node's links, in their order."""
 
     keys: Keys
-    transport: Transport
+    transports: Sequence[Transport]
     zenoh: ZenohSession
 
 
@@ -72,10 +74,8 @@ class WireLoop:
         node = self._node
         deck = self._vehicle.deck(node.next_ns)
         airspeed_m_s = float(np.linalg.norm(node.state.velocity_enu_m_s - self._wind_enu_m_s))
-        self._wind_enu_m_s = self._wind.advance(STEP_NS * 1e-9, airspeed_m_s)
-        data = node.step(deck, self._wind_enu_m_s)
-        if data:
-            self._links.transport.send(data)
+        self._wind_enu_m_s = self._wind.advance(node.step_ns * 1e-9, airspeed_m_s)
+        self._send(node.step(deck, self._wind_enu_m_s))
         self._publish()
 
     def _listen(self) -> None:
@@ -90,12 +90,17 @@ class WireLoop:
             self._clock = self._new_clock()
 
     def _take(self, timeout_s: float) -> None:
-        data = self._links.transport.receive(timeout_s)
-        if not data:
-            return
-        answer = self._node.receive(data, self._now_ns())
-        if answer:
-            self._links.transport.send(answer)
+        """Wait for bytes on any link, and take what is there on each."""
+        descriptors = [one for transport in self._links.transports if (one := transport.fileno()) >= 0]
+        select.select(descriptors, [], [], timeout_s)
+        for link, transport in enumerate(self._links.transports):
+            for peer, data in transport.receive_by_peer(0.0):
+                self._send(self._node.receive(data, self._now_ns(), link, peer))
+
+    def _send(self, output: Sequence[bytes]) -> None:
+        for transport, data in zip(self._links.transports, output, strict=True):
+            if data:
+                transport.send(data)
 
     def _now_ns(self) -> int:
         """The present between the last step and the next."""

@@ -1,5 +1,6 @@
 """What the autopilot's step is told once, what it remembers, what comes in and what goes out."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import pi
 
@@ -13,10 +14,13 @@ from sim_autopilot.climb import Climb
 from sim_autopilot.data import Array, Deck, PlantState, Reference
 from sim_autopilot.firmware.firmware import Firmware
 from sim_autopilot.flight import ModeFlight, begin
+from sim_autopilot.guided import Guided, begin_guided
 from sim_autopilot.land_detector import Landing
 from sim_autopilot.modes import Modes
+from sim_autopilot.own_state import NO_ERROR, OwnStateModel
 from sim_autopilot.parameters import Values, default_values
 from sim_autopilot.plant import PlantConfig, PlantMemory, initial_plant
+from sim_autopilot.services import Services
 from sim_autopilot.setpoints import NO_SETPOINTS, Setpoints
 from sim_autopilot.settings import FlightSettings
 from sim_autopilot.snapshot import Snapshot, take_snapshot
@@ -37,6 +41,9 @@ class AutopilotConfig:
         yaw_rad: its heading there.
         parameters: values that differ from the firmware's defaults.
         endurance_s: of motors running on one battery.
+        own_state: how well it knows where it is.
+        links: of each MAVLink link the rates at which it streams by default, in Hz by message id; None for the
+            firmware's own.
     """
 
     firmware: Firmware
@@ -48,6 +55,8 @@ class AutopilotConfig:
     yaw_rad: float = pi / 2.0
     parameters: Values = field(default_factory=dict)
     endurance_s: float = 1200.0
+    own_state: OwnStateModel = field(default_factory=OwnStateModel)
+    links: tuple[Mapping[int, float] | None, ...] = (None,)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,8 +69,17 @@ class Origin:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LinkMemory:
+    """What belongs to one MAVLink link; see the attributes of the same names in `AutopilotMemory`."""
+
+    streams: Streams
+    listing: int | None = None
+    ground_station: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Later:
-    """A message to be sent at `boot_ns`."""
+    """A message to be sent at `boot_ns`, on the links on which its target is."""
 
     boot_ns: int
     message: Message
@@ -74,12 +92,13 @@ class AutopilotMemory:
     Attributes:
         start_ns: UTC at boot.
         plant: the drone.
-        now: the same as plain numbers.
+        now: the same as the autopilot believes it to be, in plain numbers.
         plant_config: with the envelope that the parameters set.
         values: of the parameters.
         settings: what these amount to.
         modes: flown and intended.
         flight: what the mode remembers.
+        guided: what ArduCopter's GUIDED remembers.
         climb: the lift-off under way.
         armed_ns: when the motors were started, in ns since boot; None with the motors off.
         landing: of the land detector.
@@ -90,10 +109,13 @@ class AutopilotMemory:
         chart: for geodetic coordinates.
         later: messages to be sent.
         listing: index of the next parameter of a list under way.
-        ground_station: whether one was heard, which is who gets texts.
-        motors_ran_s: in earlier flights.
+        ground_station: whether one was heard, or anybody at all where everybody counts: who gets texts.
+        link: number of the link at hand, whose are streams, listing and ground_station.
+        links: the same of every link, as it was when that was last at hand.
         following: what the flight controller was last told.
         deck: the vehicle, for the range finder.
+        wind_enu_m_s: the air, for WIND_COV.
+        services: of missions, battery, fence and the like.
     """
 
     start_ns: int
@@ -104,6 +126,7 @@ class AutopilotMemory:
     settings: FlightSettings
     modes: Modes
     flight: ModeFlight
+    guided: Guided
     climb: Climb | None
     armed_ns: int | None
     landing: Landing
@@ -115,9 +138,12 @@ class AutopilotMemory:
     later: tuple[Later, ...]
     listing: int | None
     ground_station: bool
-    motors_ran_s: float
+    link: int
+    links: tuple[LinkMemory, ...]
     following: Reference | None
     deck: Deck | None
+    wind_enu_m_s: Vector3
+    services: Services
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -127,21 +153,32 @@ class AutopilotInputs:
     Attributes:
         t_ns: 10 ms after the last one.
         messages: received since then, decoded.
+        links: the number of the link of each of them; empty when all came on the first.
         deck: the vehicle at its own time, None without one.
         wind_enu_m_s: (3,).
+        own_error: (6,) m and m/s in W, of the autopilot's estimate of its position and velocity.
     """
 
     t_ns: int
     messages: tuple[Message, ...]
     deck: Deck | None
     wind_enu_m_s: Array
+    own_error: Array = field(default_factory=lambda: NO_ERROR)
+    links: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class AutopilotOutputs:
-    """What the autopilot sends, and the truth."""
+    """What the autopilot sends, and the truth.
+
+    Attributes:
+        messages: to be sent, in order.
+        links: the number of the link of each of them, None for wherever its target is, everywhere without a target.
+        state: the drone as it truly is.
+    """
 
     messages: tuple[Message, ...]
+    links: tuple[int | None, ...]
     state: PlantState
 
 
@@ -152,10 +189,11 @@ def initial_memory(config: AutopilotConfig, start_ns: int) -> AutopilotMemory:
         ValueError: a parameter of `config` does not exist or is out of range.
     """
     firmware = config.firmware
-    values = default_values(firmware.parameters, config.parameters)
+    values = default_values(firmware.parameters, {firmware.system_id_parameter: config.system_id, **config.parameters})
     settings = firmware.settings(values)
     plant = initial_plant(config.plant, start_ns, np.array(config.position_enu_m), config.yaw_rad)
     now = take_snapshot(plant.state, config.plant.airframe, 0)
+    links = tuple(LinkMemory(streams=default_streams(firmware.streams.values(), rates)) for rates in config.links)
     return AutopilotMemory(
         start_ns=start_ns,
         plant=plant,
@@ -165,20 +203,62 @@ def initial_memory(config: AutopilotConfig, start_ns: int) -> AutopilotMemory:
         settings=settings,
         modes=Modes(mode=firmware.boot_mode, intended=firmware.boot_mode),
         flight=begin(firmware.boot_mode, now, now.position_enu_m, settings),
+        guided=begin_guided(now),
         climb=None,
         armed_ns=None,
         landing=Landing(),
         setpoints=NO_SETPOINTS,
-        streams=default_streams(firmware.streams.values()),
+        streams=links[0].streams,
         origin=Origin(datum=config.datum),
         home_enu_m=now.position_enu_m,
         chart=chart_at(config.datum, now.position_enu_m),
         later=(),
         listing=None,
         ground_station=False,
-        motors_ran_s=0.0,
+        link=0,
+        links=links,
         following=None,
         deck=None,
+        wind_enu_m_s=(0.0, 0.0, 0.0),
+        services=Services(),
+    )
+
+
+def has_passed(config: AutopilotConfig, memory: AutopilotMemory, since_boot_s: float) -> bool:
+    """Return whether so much time has passed since boot, or need not."""
+    return config.instant or memory.now.boot_ns * 1e-9 >= since_boot_s
+
+
+def at_link(memory: AutopilotMemory, link: int) -> AutopilotMemory:
+    """Return `memory` with link number `link` at hand."""
+    if link == memory.link:
+        return memory
+    links = list(memory.links)
+    links[memory.link] = LinkMemory(
+        streams=memory.streams, listing=memory.listing, ground_station=memory.ground_station
+    )
+    there = links[link]
+    return replace(
+        memory,
+        link=link,
+        links=tuple(links),
+        streams=there.streams,
+        listing=there.listing,
+        ground_station=there.ground_station,
+    )
+
+
+def link_streams(memory: AutopilotMemory) -> tuple[Streams, ...]:
+    """Return the streams of every link."""
+    return tuple(memory.streams if link == memory.link else there.streams for link, there in enumerate(memory.links))
+
+
+def text_links(memory: AutopilotMemory) -> tuple[int, ...]:
+    """Return the links that get texts."""
+    return tuple(
+        link
+        for link, there in enumerate(memory.links)
+        if (memory.ground_station if link == memory.link else there.ground_station)
     )
 
 
@@ -189,7 +269,8 @@ def limited(plant: PlantConfig, settings: FlightSettings) -> PlantConfig:
         speed_max_m_s=settings.speed_max_m_s,
         climb_max_m_s=settings.climb_max_m_s,
         descent_max_m_s=settings.descent_max_m_s,
+        braking_m_s2=settings.braking_m_s2,
         tilt_max_rad=settings.tilt_max_rad,
         yaw_rate_max_rad_s=settings.yaw_rate_max_rad_s,
     )
-    return replace(plant, envelope=envelope)
+    return replace(plant, envelope=envelope, gains=settings.gains)

@@ -1,5 +1,6 @@
 """The autopilot's parameters: a fixed list with ranges, values that can be set, and their way over MAVLink."""
 
+import difflib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,25 +10,36 @@ from link.mavlink.parameters import NAME_LENGTH_MAX, parameter_on_wire, paramete
 
 Values = Mapping[str, float]
 
+_NO_INDEX = 65535
+INTEGER_MAX = {
+    mavlink.MAV_PARAM_TYPE_INT8: 2**7 - 1,
+    mavlink.MAV_PARAM_TYPE_INT16: 2**15 - 1,
+    mavlink.MAV_PARAM_TYPE_INT32: 2**31 - 1,
+}
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parameter:
-    """A parameter of the firmware, in the firmware's own unit; an `int` default makes it an integer."""
+    """A parameter of the firmware, in the firmware's own unit; an `int` default makes it an integer.
+
+    `integer_type` is its MAV_PARAM_TYPE then.
+    """
 
     name: str
     default: float | int
     lowest: float
     highest: float
+    integer_type: int = mavlink.MAV_PARAM_TYPE_INT32
 
     @property
     def is_integer(self) -> bool:
-        """Whether it travels as a 32-bit integer."""
+        """Whether it is a whole number."""
         return isinstance(self.default, int)
 
     @property
     def mavlink_type(self) -> int:
         """Its MAV_PARAM_TYPE."""
-        return int(mavlink.MAV_PARAM_TYPE_INT32 if self.is_integer else mavlink.MAV_PARAM_TYPE_REAL32)
+        return int(self.integer_type if self.is_integer else mavlink.MAV_PARAM_TYPE_REAL32)
 
 
 def default_values(parameters: tuple[Parameter, ...], overrides: Values) -> Values:
@@ -40,7 +52,8 @@ def default_values(parameters: tuple[Parameter, ...], overrides: Values) -> Valu
     by_name = {p.name: p for p in parameters}
     for name, value in overrides.items():
         if name not in by_name:
-            raise ValueError(f"no parameter {name}; there are {', '.join(values)}")
+            near = difflib.get_close_matches(name, values, 5) or ["no name like it"]
+            raise ValueError(f"no parameter {name}; there is {', '.join(near)}")
         parameter = by_name[name]
         if not _is_allowed(parameter, value):
             raise ValueError(f"{name} = {value} is not between {parameter.lowest} and {parameter.highest}")
@@ -48,12 +61,18 @@ def default_values(parameters: tuple[Parameter, ...], overrides: Values) -> Valu
     return values
 
 
-def parameter_message(parameters: tuple[Parameter, ...], index: int, values: Values, autopilot_id: int) -> Message:
-    """Return the PARAM_VALUE of the parameter at `index`, encoded as the MAV_AUTOPILOT `autopilot_id` does it."""
+def parameter_message(
+    parameters: tuple[Parameter, ...], index: int, values: Values, autopilot_id: int, *, tells_index: bool = True
+) -> Message:
+    """Return the PARAM_VALUE of the parameter at `index`, encoded as the MAV_AUTOPILOT `autopilot_id` does it.
+
+    Without `tells_index` it stands alone, outside of any list.
+    """
     parameter = parameters[index]
     kind = parameter.mavlink_type
     wire = parameter_on_wire(values[parameter.name], kind, autopilot_id)
-    return mavlink.MAVLink_param_value_message(parameter.name.encode(), wire, kind, len(parameters), index)
+    told = index if tells_index else _NO_INDEX
+    return mavlink.MAVLink_param_value_message(parameter.name.encode(), wire, kind, len(parameters), told)
 
 
 def find_index(parameters: tuple[Parameter, ...], name: str, index: int = -1) -> int | None:
@@ -65,16 +84,40 @@ def find_index(parameters: tuple[Parameter, ...], name: str, index: int = -1) ->
 
 
 def values_after_set(
-    parameters: tuple[Parameter, ...], index: int, values: Values, message: Message, autopilot_id: int
+    parameters: tuple[Parameter, ...],
+    index: int,
+    values: Values,
+    message: Message,
+    autopilot_id: int,
+    *,
+    lenient: bool = False,
 ) -> Values:
-    """Return the values after a PARAM_SET; one of the wrong type, not finite or out of range changes nothing."""
+    """Return the values after a PARAM_SET; one that is not finite or out of range changes nothing.
+
+    A `lenient` autopilot takes any finite number, whatever type was named, rounds it for an integer, and knows no
+    ranges but the integer's own, to which it clips.
+    """
     parameter = parameters[index]
-    if message.param_type != parameter.mavlink_type:
-        return values
+    if lenient:
+        return _values_after_lenient_set(parameter, values, float(message.param_value))
     value = parameter_value(message, autopilot_id)
     if value is None or not _is_allowed(parameter, value):
         return values
     return {**values, parameter.name: float(value)}
+
+
+def is_type_right(parameter: Parameter, message: Message) -> bool:
+    """Return whether a PARAM_SET names the parameter's own type."""
+    return bool(message.param_type == parameter.mavlink_type)
+
+
+def _values_after_lenient_set(parameter: Parameter, values: Values, value: float) -> Values:
+    if not math.isfinite(value):
+        return values
+    if parameter.is_integer:
+        most = INTEGER_MAX[parameter.mavlink_type]
+        value = float(max(-most - 1, min(most, round(value))))
+    return {**values, parameter.name: value}
 
 
 def _is_allowed(parameter: Parameter, value: float) -> bool:

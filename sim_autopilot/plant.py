@@ -1,17 +1,25 @@
 """The simulated drone under its flight controller: one pure function from a reference to a new state."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from math import atan2, hypot, inf
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim_autopilot.control.geometric import MOTOR_POLE_RAD_S, geometric_gains
-from sim_autopilot.control.kinds import DEFAULT_ENVELOPE, ControllerKind, Envelope
+from sim_autopilot.control.kinds import DEFAULT_ENVELOPE, ControllerKind, Envelope, PositionGains
 from sim_autopilot.control.lqr import feedforward_gains, report_gains
-from sim_autopilot.control.parameters import REFERENCE_SIZE, control_record, reference_vector
+from sim_autopilot.control.parameters import (
+    DISTURBANCE,
+    REFERENCE_SIZE,
+    CascadeGains,
+    control_record,
+    reference_vector,
+)
 from sim_autopilot.data import Array, Deck, PlantState, Reference, Surface
 from sim_autopilot.kernel import BODY_END, FORCE_END, MEMORY_START, PLANT_SIZE, SPEED_END, SURFACE, advance
-from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, Airframe
+from sim_autopilot.own_state import NO_ERROR
+from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, GRAVITY_M_S2, Airframe
 from sim_autopilot.physics.contact import DECK_SIZE
 from sim_autopilot.physics.parameters import body_record
 from sim_autopilot.physics.rotation import quaternion_from_yaw
@@ -19,6 +27,9 @@ from sim_autopilot.physics.rotation import quaternion_from_yaw
 INTEGRATION_STEP_S = 0.001
 OBSERVER_POLE_RAD_S = 4.0
 """Of the disturbance observer, below the position loop's poles: wind and drag change slower than a manoeuvre."""
+_SLOWEST_RAD_S = 0.05
+TILT_BRAKING_PART = 0.4
+"""Of the torque that there is: the rest is for the motors' lag and for errors."""
 SURFACES = tuple(Surface)
 NO_REFERENCE: Array = np.zeros(REFERENCE_SIZE)
 NO_DECK: Array = np.array([0.0] * 3 + [1.0] + [0.0] * (DECK_SIZE - 4))
@@ -36,6 +47,7 @@ class PlantConfig:
         ground_effect: whether thrust grows near a surface.
         solid: whether a drone whose motors run can touch ground and vehicle.
         control_period_s: of the flight controller, a multiple of 1 ms.
+        gains: of position and velocity in place of the controller's own.
         records: the same for the kernels, derived: airframe and controller.
     """
 
@@ -46,6 +58,7 @@ class PlantConfig:
     ground_effect: bool = True
     solid: bool = True
     control_period_s: float = 0.005
+    gains: PositionGains | None = None
     records: tuple[NDArray[np.void], NDArray[np.void]] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -53,14 +66,16 @@ class PlantConfig:
         _whole(self.control_period_s, INTEGRATION_STEP_S, "control_period_s")
         body = body_record(self.airframe, self.friction_coefficient, ground_effect=self.ground_effect, solid=self.solid)
         linear = self.controller is ControllerKind.LQR_FEEDFORWARD
+        gains = feedforward_gains(self.airframe) if linear else geometric_gains()
         control = control_record(
             self.controller,
-            feedforward_gains(self.airframe) if linear else geometric_gains(),
+            gains if self.gains is None else _with_gains(gains, self.gains),
             report_gains(self.airframe),
             self.envelope,
             period_s=self.control_period_s,
-            observer_rad_s=OBSERVER_POLE_RAD_S,
+            observer_rad_s=OBSERVER_POLE_RAD_S if self.gains is None else _observer_pole(self.gains),
             motor_lead=_motor_lead(self.airframe),
+            tilt_braking_rad_s2=_tilt_braking_rad_s2(self.airframe),
         )
         object.__setattr__(self, "records", (body, control))
 
@@ -78,9 +93,43 @@ class PlantMemory:
     internals: Array
 
 
+def _with_gains(own: CascadeGains, given: PositionGains) -> CascadeGains:
+    level, vertical = given.velocity_per_s, given.vertical_velocity_per_s
+    along, up = given.position_per_s * level, given.vertical_position_per_s * vertical
+    return replace(own, position=(along, along, up), velocity=(level, level, vertical))
+
+
+def _observer_pole(gains: PositionGains) -> float:
+    """The pole with which the observer lags behind a growing disturbance as an integrator of the velocity would.
+
+    A ramp of slope r leaves `2 r / w_o` uncompensated by the observer, and needs a velocity error of `r / ki`, which
+    the velocity gain turns into `kv r / ki`.
+    """
+    return max(_SLOWEST_RAD_S, 2.0 * gains.integral_per_s2 / gains.velocity_per_s)
+
+
+def asked_tilt_rad(memory: PlantMemory, reference: Reference | None) -> float:
+    """Return how far the drone would lean to follow the reference's acceleration against the observed disturbance."""
+    if reference is None:
+        return 0.0
+    east, north, _ = memory.internals[DISTURBANCE : DISTURBANCE + 3].tolist()
+    if reference.acceleration_enu_m_s2 is not None:
+        east -= float(reference.acceleration_enu_m_s2[0])
+        north -= float(reference.acceleration_enu_m_s2[1])
+    return atan2(hypot(east, north), GRAVITY_M_S2)
+
+
 def _motor_lead(airframe: Airframe) -> float:
     lag_s = airframe.motor_time_constant_s
     return 0.0 if lag_s is None else max(0.0, lag_s * MOTOR_POLE_RAD_S - 1.0)
+
+
+def _tilt_braking_rad_s2(airframe: Airframe) -> float:
+    """Return what a turn is braked with: a share of what two rotors, one full and one stopped, can."""
+    if airframe.thrust_to_weight is None:
+        return inf
+    thrust_n = airframe.thrust_to_weight * airframe.weight_n / 4.0
+    return TILT_BRAKING_PART * thrust_n * airframe.arm_m / max(airframe.inertia_kg_m2[:2])
 
 
 def _whole(duration_s: float, part_s: float, name: str) -> int:
@@ -121,6 +170,7 @@ def fly(  # noqa: PLR0917 (read as a sentence: who, where to, over what, in whic
     wind_enu_m_s: Array,
     config: PlantConfig,
     duration_s: float,
+    own_error: Array = NO_ERROR,
 ) -> PlantMemory:
     """Return the plant `duration_s` later.
 
@@ -131,6 +181,7 @@ def fly(  # noqa: PLR0917 (read as a sentence: who, where to, over what, in whic
         wind_enu_m_s: (3,) air over ground.
         config: of the plant.
         duration_s: a multiple of the control period.
+        own_error: (6,) m and m/s in W by which the position and velocity that it flies by are wrong.
 
     Raises:
         ValueError: if `duration_s` is no such multiple.
@@ -142,6 +193,7 @@ def fly(  # noqa: PLR0917 (read as a sentence: who, where to, over what, in whic
         plant,
         reference is not None,
         NO_REFERENCE if reference is None else reference_vector(reference),
+        own_error,
         NO_DECK if deck is None else _deck_vector(deck, memory.state.t_ns),
         wind_enu_m_s,
         control,

@@ -2,6 +2,8 @@
 
 import sys
 import time
+from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,13 +24,13 @@ class RunOptions:
     """How to run.
 
     Attributes:
-        device: of the MAVLink link.
+        devices: of the MAVLink links.
         speed: simulated seconds a wall second, 0 for as many as it can.
         keys: of the Zenoh contract.
         zenoh: how to meet others.
     """
 
-    device: str
+    devices: Sequence[str]
     speed: float
     keys: Keys
     zenoh: ZenohOptions
@@ -41,12 +43,14 @@ def run(settings: SimAutopilotConfig, autopilot: AutopilotConfig, options: RunOp
         UserError: a device or a Zenoh endpoint cannot be opened.
     """
     log = structlog.wrap_logger(structlog.PrintLogger(sys.stderr))
-    with open_transport(options.device) as transport, open_session(options.zenoh) as zenoh:
+    with ExitStack() as stack:
+        transports = [stack.enter_context(open_transport(device)) for device in options.devices]
+        zenoh = stack.enter_context(open_session(options.zenoh))
         AutopilotNode(autopilot, 0).step(None, np.zeros(3))  # loads the compiled kernels before time starts to count
         node = AutopilotNode(autopilot, time.time_ns() // STEP_NS * STEP_NS)
         body = settings.vehicle
         vehicle = VehicleView(zenoh, options.keys, (body.length_m, body.width_m), body.roof_height_m)
-        links = Links(keys=options.keys, transport=transport, zenoh=zenoh)
+        links = Links(keys=options.keys, transports=transports, zenoh=zenoh)
         loop = WireLoop(node, links, vehicle, wind_model(settings), speed=options.speed)
-        log.info("ready", mavlink=options.device, firmware=settings.firmware, speed=options.speed)
+        log.info("ready", mavlink=" ".join(options.devices), firmware=settings.firmware, speed=options.speed)
         loop.run()

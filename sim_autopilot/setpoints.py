@@ -1,7 +1,7 @@
 """Setpoints from the companion: what SET_POSITION_TARGET_LOCAL_NED asks for, and whether the stream of them is alive.
 
-A setpoint is held as it came, never extrapolated. One that cannot be understood is dropped whole: masks take each of
-position, velocity and acceleration all or not at all, and every value used must be finite.
+A setpoint is held as it came, never extrapolated. One that cannot be understood is dropped whole: its mask must be one
+that is flown (`partial_setpoints`), and every value used must be finite.
 """
 
 from dataclasses import dataclass
@@ -12,6 +12,7 @@ import numpy as np
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
 from sim_autopilot.data import Array, Reference
+from sim_autopilot.partial_setpoints import Axes, given_by
 
 _POSITION = 0b0000_0000_0000_0111
 _VELOCITY = 0b0000_0000_0011_1000
@@ -19,7 +20,6 @@ _ACCELERATION = 0b0000_0001_1100_0000
 _FORCE = 0b0000_0010_0000_0000
 _YAW = 0b0000_0100_0000_0000
 _YAW_RATE = 0b0000_1000_0000_0000
-_GROUPS = (_POSITION, _VELOCITY, _ACCELERATION)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -46,24 +46,26 @@ def reference_from_message(
         yaw_rad: the drone's present heading, for MAV_FRAME_BODY_NED.
     """
     mask, frame = message.type_mask, message.coordinate_frame
-    if frame not in frames or mask & _FORCE or any(mask & group not in (0, group) for group in _GROUPS):
+    if frame not in frames or mask & _FORCE:
         return None
     body = frame == mavlink.MAV_FRAME_BODY_NED
     if body:
-        mask |= _POSITION
-    if mask & (_POSITION | _VELOCITY | _ACCELERATION) == _POSITION | _VELOCITY | _ACCELERATION:
-        return None
-    if not all(map(isfinite, _values_used(message, mask))):
+        mask |= _POSITION | sum(group for group in (_VELOCITY, _ACCELERATION) if mask & group)
+    given = given_by(mask)
+    if given is None or not all(map(isfinite, _values_used(message, mask))):
         return None
     position = velocity = acceleration = None
-    if not mask & _POSITION:
+    if any(given.position):
         east, north, up = origin_enu_m
-        position = np.array((east + message.y, north + message.x, up - message.z))
-    if not mask & _VELOCITY:
-        velocity = _enu(message.vx, message.vy, message.vz, body, yaw_rad)
-    if not mask & _ACCELERATION:
-        acceleration = _enu(message.afx, message.afy, message.afz, body, yaw_rad)
+        x, y, z = _known((message.x, message.y, message.z), given.position)
+        position = np.array((east + y, north + x, up - z))
+    if any(given.velocity):
+        velocity = _enu(*_known((message.vx, message.vy, message.vz), given.velocity), body, yaw_rad)
+    if any(given.acceleration):
+        acceleration = _enu(*_known((message.afx, message.afy, message.afz), given.acceleration), body, yaw_rad)
     return Reference(
+        free_position=given.free_position,
+        free_velocity=given.free_velocity,
         position_enu_m=position,
         velocity_enu_m_s=velocity,
         acceleration_enu_m_s2=acceleration,
@@ -89,18 +91,20 @@ def are_streaming(setpoints: Setpoints, boot_ns: int, loss_s: float, stream_s: f
 
 
 def _values_used(message: Message, mask: int) -> list[float]:
-    used: list[float] = []
-    if not mask & _POSITION:
-        used += (message.x, message.y, message.z)
-    if not mask & _VELOCITY:
-        used += (message.vx, message.vy, message.vz)
-    if not mask & _ACCELERATION:
-        used += (message.afx, message.afy, message.afz)
+    velocity, acceleration = (message.vx, message.vy, message.vz), (message.afx, message.afy, message.afz)
+    values = (message.x, message.y, message.z, *velocity, *acceleration)
+    used = [value for bit, value in enumerate(values) if not mask >> bit & 1]
     if not mask & _YAW:
         used.append(message.yaw)
     if not mask & _YAW_RATE:
         used.append(message.yaw_rate)
     return used
+
+
+def _known(vector: Vector3, given: Axes) -> Vector3:
+    """The vector with zeros where nothing is given."""
+    x, y, z = (value if one else 0.0 for value, one in zip(vector, given, strict=True))
+    return x, y, z
 
 
 def _enu(x: float, y: float, z: float, body: bool, yaw_rad: float) -> Array:

@@ -1,11 +1,12 @@
-"""The drone as plain numbers at one instant: what handlers and telemetry read, so that arrays are unpacked once."""
+"""The drone as its autopilot believes it to be at one instant, as plain numbers, so that arrays are unpacked once."""
 
 from dataclasses import dataclass
 from math import hypot
 
 from link.frames import yaw_of
 from link.messages import Quaternion, Vector3
-from sim_autopilot.data import PlantState
+from sim_autopilot.data import Array, PlantState
+from sim_autopilot.own_state import NO_ERROR
 from sim_autopilot.physics.airframe import Airframe
 
 
@@ -32,10 +33,10 @@ class Snapshot:
         return hypot(self.velocity_enu_m_s[0], self.velocity_enu_m_s[1])
 
 
-def take_snapshot(state: PlantState, airframe: Airframe, boot_ns: int) -> Snapshot:
-    """Return `state` as plain numbers."""
-    px, py, pz = state.position_enu_m.tolist()
-    vx, vy, vz = state.velocity_enu_m_s.tolist()
+def take_snapshot(state: PlantState, airframe: Airframe, boot_ns: int, own_error: Array = NO_ERROR) -> Snapshot:
+    """Return `state` as plain numbers with the estimate's error (6,) in position, m, and velocity, m/s."""
+    px, py, pz = (state.position_enu_m + own_error[:3]).tolist()
+    vx, vy, vz = (state.velocity_enu_m_s + own_error[3:]).tolist()
     w, x, y, z = state.orientation_wxyz.tolist()
     p, q, r = state.angular_velocity_flu_rad_s.tolist()
     fx, fy, fz = state.specific_force_flu_m_s2.tolist()

@@ -8,11 +8,15 @@ _NS_PER_S = 1_000_000_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stream:
-    """A message that can be sent unasked: `rate_hz` by default (0 is off), from `from_s` after boot on."""
+    """A message that can be sent unasked: `rate_hz` by default (0 is off), from `from_s` after boot on.
+
+    A `fixed` one keeps its rate: another one is refused.
+    """
 
     message_id: int
     rate_hz: float = 0.0
     from_s: float = 0.0
+    fixed: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,13 +27,24 @@ class Streams:
     next_ns: Mapping[int, int]
 
 
-def default_streams(streams: Iterable[Stream]) -> Streams:
-    """Return the streams as they are at boot."""
-    running = [stream for stream in streams if stream.rate_hz > 0.0]
+def default_streams(streams: Iterable[Stream], rates_hz: Mapping[int, float] | None = None) -> Streams:
+    """Return the streams as they are at boot.
+
+    Args:
+        streams: that there are.
+        rates_hz: of a link that has rates of its own, by message id; None for the streams' own.
+    """
+    rates = {one.message_id: one.rate_hz if rates_hz is None else rates_hz.get(one.message_id, 0.0) for one in streams}
+    running = {message_id: rate_hz for message_id, rate_hz in rates.items() if rate_hz > 0.0}
     return Streams(
-        interval_ns={stream.message_id: round(_NS_PER_S / stream.rate_hz) for stream in running},
-        next_ns={stream.message_id: 0 for stream in running},
+        interval_ns={message_id: round(_NS_PER_S / rate_hz) for message_id, rate_hz in running.items()},
+        next_ns=dict.fromkeys(running, 0),
     )
+
+
+def shortest_interval_ns(streams: Streams) -> int | None:
+    """Return the interval of the fastest stream, None when none runs."""
+    return min(streams.interval_ns.values(), default=None)
 
 
 def with_interval(streams: Streams, message_id: int, interval_ns: int | None, boot_ns: int) -> Streams:

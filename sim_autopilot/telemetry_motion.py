@@ -27,6 +27,8 @@ _RANGE_MAX_CM = 10000
 _POSITION_VARIANCE_M2 = 1e-4
 _VELOCITY_VARIANCE_M2_S2 = 1e-4
 _ANGLE_VARIANCE_RAD2 = 1e-6
+_RECEIVER_ACCURACY = (900, 1780, 400, 572958)
+"""Horizontal and vertical, mm, of speed, mm/s, and of course, 1e-5 deg: as PX4's simulated receiver says."""
 _DIAGONAL = (0, 6, 11, 15, 18, 20)  # of a 6x6 matrix's upper triangle, row by row
 
 
@@ -109,20 +111,9 @@ def position_target(memory: AutopilotMemory, _config: AutopilotConfig) -> Messag
     )
 
 
-def highres_imu(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
-    """Return HIGHRES_IMU with accelerometer and gyroscope; it has no magnetometer and no barometer."""
-    now = memory.now
-    force = frd_from_flu(now.specific_force_flu_m_s2)
-    rates = frd_from_flu(now.angular_velocity_flu_rad_s)
-    updated = mavlink.HIGHRES_IMU_UPDATED_XACC * 0b111111
-    return mavlink.MAVLink_highres_imu_message(
-        now.boot_ns // 1000, *force, *rates, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 15.0, updated
-    )
-
-
 def distance_sensor(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     """Return DISTANCE_SENSOR: how far the ground or the roof is below the centre of mass."""
-    distance_cm = round(100.0 * max(0.0, _height_over_surface_m(memory)))
+    distance_cm = round(100.0 * max(0.0, height_over_surface_m(memory)))
     return mavlink.MAVLink_distance_sensor_message(
         boot_ms(memory),
         0,
@@ -135,14 +126,15 @@ def distance_sensor(memory: AutopilotMemory, _config: AutopilotConfig) -> Messag
     )
 
 
-def _height_over_surface_m(memory: AutopilotMemory) -> float:
-    now, deck = memory.now, memory.deck
-    height_m = now.position_enu_m[2]
+def height_over_surface_m(memory: AutopilotMemory) -> float:
+    """Return how far the ground or the roof is below the centre of mass."""
+    state, deck = memory.plant.state, memory.deck  # it measures, so what the autopilot believes does not matter
+    height_m = float(state.position_enu_m[2])
     if deck is None:
         return height_m
-    age_s = (now.t_ns - deck.t_ns) * 1e-9
-    at = deck.position_enu_m + age_s * deck.velocity_enu_m_s
-    apart = (now.position_enu_m[0] - at[0], now.position_enu_m[1] - at[1], height_m - at[2])
+    age_s = (state.t_ns - deck.t_ns) * 1e-9
+    away = state.position_enu_m - deck.position_enu_m - age_s * deck.velocity_enu_m_s
+    apart = (float(away[0]), float(away[1]), float(away[2]))
     x, y, z = rotate(conjugate(deck.orientation_wxyz), apart)
     length_m, width_m = deck.roof_size_m
     over = abs(x) <= 0.5 * length_m and abs(y) <= 0.5 * width_m and z >= deck.roof_height_m
@@ -163,7 +155,7 @@ def vfr_hud(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
 def global_position_int(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     """Return GLOBAL_POSITION_INT."""
     now = memory.now
-    latitude, longitude, altitude = _wire_place(geodetic(memory.chart, now.position_enu_m))
+    latitude, longitude, altitude = wire_place(geodetic(memory.chart, now.position_enu_m))
     above_home_mm = round(1000.0 * (now.position_enu_m[2] - memory.home_enu_m[2]))
     velocity = (_int16(100.0 * v) for v in ned_from_enu(now.velocity_enu_m_s))
     heading = round(100.0 * degrees(_heading_rad(now))) % 36000
@@ -176,33 +168,36 @@ def gps_raw_int(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return GPS_RAW_INT: no fix before the receiver has one."""
     now = memory.now
     has_fix = config.instant or now.boot_ns * 1e-9 >= config.firmware.readiness.fix_s
-    fix = mavlink.GPS_FIX_TYPE_3D_FIX if has_fix else mavlink.GPS_FIX_TYPE_NO_FIX
-    place = _wire_place(geodetic(memory.chart, now.position_enu_m))
+    fix = config.firmware.fix_type if has_fix else mavlink.GPS_FIX_TYPE_NO_FIX
+    place = wire_place(geodetic(memory.chart, now.position_enu_m))
     north, east, _ = ned_from_enu(now.velocity_enu_m_s)
     speed = min(65534, round(100.0 * hypot(north, east)))
     course = round(100.0 * degrees(yaw_ned_from_enu(_course_rad(now)))) % 36000
-    return mavlink.MAVLink_gps_raw_int_message(now.boot_ns // 1000, fix, *place, 70, 110, speed, course, 10)
+    return mavlink.MAVLink_gps_raw_int_message(
+        now.boot_ns // 1000, fix, *place, 70, 110, speed, course, 10, place[2], *_RECEIVER_ACCURACY
+    )
 
 
 def gps_global_origin(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     """Return GPS_GLOBAL_ORIGIN, about which LOCAL_POSITION_NED is."""
     now = memory.now
     datum = memory.origin.datum
-    place = _wire_place((datum.latitude_rad, datum.longitude_rad, datum.altitude_m))
+    place = wire_place((datum.latitude_rad, datum.longitude_rad, datum.altitude_m))
     return mavlink.MAVLink_gps_global_origin_message(*place, now.boot_ns // 1000)
 
 
 def home_position(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return HOME_POSITION: where it was armed."""
     now = memory.now
-    place = _wire_place(geodetic_from_enu(config.datum, memory.home_enu_m))
+    place = wire_place(geodetic_from_enu(config.datum, memory.home_enu_m))
     local = _local_ned(memory, memory.home_enu_m)
     return mavlink.MAVLink_home_position_message(
         *place, *local, (1.0, 0.0, 0.0, 0.0), 0.0, 0.0, 0.0, now.boot_ns // 1000
     )
 
 
-def _wire_place(place: Vector3) -> tuple[int, int, int]:
+def wire_place(place: Vector3) -> tuple[int, int, int]:
+    """Return latitude, longitude (rad) and altitude (m) as the integers of the wire."""
     latitude, longitude, altitude_m = place
     return round(degrees(latitude) * 1e7), round(degrees(longitude) * 1e7), round(altitude_m * 1000.0)
 

@@ -1,14 +1,20 @@
 """Messages about the autopilot's condition: mode, health, battery, clock, landed state."""
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.arming import is_ready
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.failsafes_step import charge_of
+from sim_autopilot.guided import is_rising
+from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
 from sim_autopilot.modes import Mode
 
-_FULL_MV = 16200
-_EMPTY_MV = 14000
 _UNKNOWN_MV = 65535
+_TEXT_BYTES = 50
 _MAVLINK_VERSION = 3
+_CHARGE_STATES = (
+    mavlink.MAV_BATTERY_CHARGE_STATE_OK,
+    mavlink.MAV_BATTERY_CHARGE_STATE_LOW,
+    mavlink.MAV_BATTERY_CHARGE_STATE_CRITICAL,
+    mavlink.MAV_BATTERY_CHARGE_STATE_EMERGENCY,
+)
 
 
 def boot_ms(memory: AutopilotMemory) -> int:
@@ -31,48 +37,60 @@ def heartbeat(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
 
 
 def _system_status(memory: AutopilotMemory, config: AutopilotConfig) -> int:
+    statuses = config.firmware.statuses
     if memory.armed_ns is not None:
-        return int(mavlink.MAV_STATE_CRITICAL if memory.modes.failsafe else mavlink.MAV_STATE_ACTIVE)
-    return int(mavlink.MAV_STATE_STANDBY if is_ready(config, memory.now.boot_ns) else mavlink.MAV_STATE_UNINIT)
+        if memory.modes.failsafe:
+            return statuses.failsafe
+        return statuses.armed if memory.landing.landed else statuses.flying
+    return statuses.standby if has_passed(config, memory, config.firmware.readiness.booted_s) else statuses.booting
 
 
 def sys_status(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return SYS_STATUS, whose health says whether it can arm."""
-    sensors = config.firmware.sensors
-    health = sensors.health | (sensors.arming_health if is_ready(config, memory.now.boot_ns) else 0)
-    charge = _charge(memory, config)
+    sensors, readiness = config.firmware.sensors, config.firmware.readiness
+    control = sensors.control if memory.armed_ns is not None else 0
+    health = sensors.health | control
+    health |= sensors.fix_health if has_passed(config, memory, readiness.fix_s) else 0
+    health |= sensors.arming_health if has_passed(config, memory, sensors.arming_s) else 0
+    charge = charge_of(memory, config)
     return mavlink.MAVLink_sys_status_message(
-        sensors.present, sensors.enabled, health, 200, _millivolts(charge), -1, _percent(charge), 0, 0, 0, 0, 0, 0
+        sensors.present,
+        sensors.enabled | control,
+        health,
+        200,
+        _millivolts(charge, memory),
+        -1,
+        _percent(charge),
+        0,
+        0,
+        0,
+        0,
+        0,
+        0,
     )
 
 
 def battery_status(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return BATTERY_STATUS of a battery that the running motors empty evenly."""
-    charge = _charge(memory, config)
+    charge = charge_of(memory, config)
     return mavlink.MAVLink_battery_status_message(
         0,
         mavlink.MAV_BATTERY_FUNCTION_ALL,
         mavlink.MAV_BATTERY_TYPE_LIPO,
         32767,
-        (_millivolts(charge), *(_UNKNOWN_MV,) * 9),
+        (_millivolts(charge, memory), *(_UNKNOWN_MV,) * 9),
         -1,
         -1,
         -1,
         _percent(charge),
         0,
-        mavlink.MAV_BATTERY_CHARGE_STATE_OK,
+        _CHARGE_STATES[memory.services.watch.level],
     )
 
 
-def _charge(memory: AutopilotMemory, config: AutopilotConfig) -> float:
-    ran_s = memory.motors_ran_s
-    if memory.armed_ns is not None:
-        ran_s += (memory.now.boot_ns - memory.armed_ns) * 1e-9
-    return max(0.0, 1.0 - ran_s / config.endurance_s)
-
-
-def _millivolts(charge: float) -> int:
-    return round(_EMPTY_MV + charge * (_FULL_MV - _EMPTY_MV))
+def _millivolts(charge: float, memory: AutopilotMemory) -> int:
+    empty_v, full_v = memory.settings.battery_v
+    return round(1000.0 * (empty_v + charge * (full_v - empty_v)))
 
 
 def _percent(charge: float) -> int:
@@ -82,6 +100,23 @@ def _percent(charge: float) -> int:
 def system_time(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     """Return SYSTEM_TIME: UTC beside the boot clock."""
     return mavlink.MAVLink_system_time_message(memory.now.t_ns // 1000, boot_ms(memory))
+
+
+def status_text(severity: int, text: str) -> Message:
+    """Return a STATUSTEXT; what is longer than 50 bytes is cut off."""
+    return mavlink.MAVLink_statustext_message(severity, text.encode()[:_TEXT_BYTES])
+
+
+def status_texts(severity: int, text: str, number: int) -> tuple[Message, ...]:
+    """Return the STATUSTEXTs of a text; a long one comes in pieces that `number`, not 0, holds together."""
+    encoded = text.encode()
+    if len(encoded) <= _TEXT_BYTES:
+        return (status_text(severity, text),)
+    pieces = range(0, len(encoded), _TEXT_BYTES)
+    return tuple(
+        mavlink.MAVLink_statustext_message(severity, encoded[begin : begin + _TEXT_BYTES], number, place)
+        for place, begin in enumerate(pieces)
+    )
 
 
 def timesync_question(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
@@ -94,15 +129,22 @@ def timesync_answer(question: Message, boot_ns: int) -> Message:
     return mavlink.MAVLink_timesync_message(max(boot_ns, 1), question.ts1)
 
 
-def extended_sys_state(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
+def ping_answer(question: Message) -> Message:
+    """Return the answer to a PING that was for everybody."""
+    return mavlink.MAVLink_ping_message(
+        question.time_usec, question.seq, question.get_srcSystem(), question.get_srcComponent()
+    )
+
+
+def extended_sys_state(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return EXTENDED_SYS_STATE."""
-    return mavlink.MAVLink_extended_sys_state_message(mavlink.MAV_VTOL_STATE_UNDEFINED, _landed_state(memory))
+    return mavlink.MAVLink_extended_sys_state_message(config.firmware.vtol_state, _landed_state(memory))
 
 
 def _landed_state(memory: AutopilotMemory) -> int:
     if memory.landing.landed:
         return int(mavlink.MAV_LANDED_STATE_ON_GROUND)
-    if memory.modes.mode is Mode.TAKEOFF:
+    if memory.modes.mode is Mode.TAKEOFF or (memory.modes.mode is Mode.OFFBOARD and is_rising(memory.guided)):
         return int(mavlink.MAV_LANDED_STATE_TAKEOFF)
     if memory.modes.mode is Mode.LAND:
         return int(mavlink.MAV_LANDED_STATE_LANDING)

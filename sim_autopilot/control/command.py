@@ -3,10 +3,11 @@
 # ruff: noqa: PLR0917
 # Compiled functions take no keyword-only arguments.
 
+from sim_autopilot.control.attitude import fill_attitude_wrench
 from sim_autopilot.control.geometric import fill_geometric_wrench
 from sim_autopilot.control.lqr import GOAL, fill_feedforward_wrench, fill_report_wrench
-from sim_autopilot.control.outer_loop import bound_force, fill_acceleration, observe, turn_heading
-from sim_autopilot.control.parameters import HEADING, RUNNING, VELOCITY
+from sim_autopilot.control.outer_loop import bound_force, fill_acceleration, observe, steady, turn_heading
+from sim_autopilot.control.parameters import HAS_RATES, HEADING, RUNNING, VELOCITY
 from sim_autopilot.data import Array
 from sim_autopilot.physics.compiled import kernel
 from sim_autopilot.physics.parameters import Record
@@ -36,26 +37,31 @@ def fill_control(
     y: Array, rotation: Array, speed: Array, memory: Array, reference: Array, touching: bool, control: Record,
     body: Record, scratch: Array, out: Array,
 ) -> None:  # fmt: skip
-    """Write the wanted [T, L, M, N] (4,) and bring `memory` (12,) on by one period.
+    """Write the wanted [T, L, M, N] (4,) and bring `memory` (15,) on by one period.
 
     Args:
         y: (13,) state.
         rotation: (9,) R_WB.
         speed: (4,) rotor speeds, rad/s.
-        memory: (12,) of the controller, changed.
-        reference: (15,).
+        memory: (15,) of the controller, changed.
+        reference: (25,).
         touching: whether the drone touches anything.
         control: the controller's record.
         body: the airframe's record.
         scratch: (18,) overwritten.
         out: (4,) N and N m.
     """
+    if reference[HAS_RATES] > 0.0:
+        memory[RUNNING] = 0.0
+        fill_attitude_wrench(y, rotation, reference, control, body, scratch[3:12], out)
+        return
     if memory[RUNNING] == 0.0:
         start(y, rotation, control, memory)
     if control["kind"] == LQR:
         fill_report_wrench(y, rotation, memory, reference, control, body, scratch[0:12], out)
         return
     force, wanted = scratch[0:3], scratch[3:12]
+    steady(memory, reference, control)
     observe(y, rotation, speed, memory, touching, control, body)
     heading_rate = turn_heading(memory, reference, control)
     fill_acceleration(y, memory, reference, control, wanted[0:3], force)

@@ -18,6 +18,7 @@ import math
 
 import numpy as np
 
+from sim_autopilot.control.outer_loop import approach_speed
 from sim_autopilot.control.parameters import HEADING, CascadeGains
 from sim_autopilot.data import Array
 from sim_autopilot.physics.compiled import kernel
@@ -83,5 +84,13 @@ def fill_geometric_wrench(
         error = 0.0
         for row in (0, 3, 6):
             error += 0.5 * (wanted[row + k] * rotation[row + j] - rotation[row + k] * wanted[row + j])
+        out[1 + i] = error
+    tilt = math.sqrt(out[1] ** 2 + out[2] ** 2)
+    slope = control["attitude_gain"][0] / control["rate_gain"][0]
+    braked = 1.0
+    if tilt > 0.0:
+        braked = approach_speed(tilt, slope, control["tilt_braking_rad_s2"]) / (slope * tilt)
+    for i in range(3):
+        turn = control["attitude_gain"][i] * out[1 + i] * (braked if i < 2 else 1.0)
         rate = y[10 + i] - heading_rate_rad_s * rotation[6 + i]
-        out[1 + i] = inertia[i] * (-control["attitude_gain"][i] * error - control["rate_gain"][i] * rate) + gyro[i]
+        out[1 + i] = inertia[i] * (-turn - control["rate_gain"][i] * rate) + gyro[i]

@@ -35,3 +35,14 @@ class Envelope:
 
 
 DEFAULT_ENVELOPE = Envelope()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PositionGains:
+    """Velocity per position error, acceleration per velocity error and per its integral; then the vertical ones."""
+
+    position_per_s: float
+    velocity_per_s: float
+    integral_per_s2: float
+    vertical_position_per_s: float
+    vertical_velocity_per_s: float

@@ -22,6 +22,7 @@ from sim_autopilot.control.parameters import (
     HAS_VELOCITY,
     HAS_YAW,
     HEADING,
+    PLACE,
     VELOCITY,
     YAW,
     YAW_RATE,
@@ -43,6 +44,11 @@ VERTICAL_BRAKING_M_S2 = 2.0
 HEADING_SLOPE_PER_S = 4.0
 HEADING_BRAKING_RAD_S2 = 2.5
 """How the commanded heading nears its goal; the propellers' drag gives 7 rad/s2 in hover."""
+STEADYING_S = 0.4
+"""Time constant with which a moving setpoint's place is followed beside its velocity."""
+JITTER_S = 0.15
+"""By how much a setpoint may be late, beside the others of its stream, and still belong to it."""
+TINY = 1e-12
 SINKING_FORCE_G = 0.1
 CLIMBING_FORCE_PART = 0.85
 FORCE_PART = 0.95
@@ -51,12 +57,35 @@ FORCE_PART = 0.95
 
 @kernel
 def extrapolate(reference: Array, elapsed_s: float, out: Array) -> None:
-    """Write `reference` (15,) as its own velocity, acceleration and heading rate carry it on for `elapsed_s`."""
+    """Write `reference` (25,) as its own velocity, acceleration and heading rate carry it on for `elapsed_s`."""
     out[:] = reference
     for i in range(3):
         out[i] += reference[3 + i] * elapsed_s + 0.5 * reference[6 + i] * elapsed_s * elapsed_s
         out[3 + i] += reference[6 + i] * elapsed_s
     out[YAW] += reference[YAW_RATE] * elapsed_s
+
+
+@kernel
+def steady(memory: Array, reference: Array, control: Record) -> None:
+    """Replace the position in `reference` by the one in `memory`, which moves with its velocity and is drawn to it.
+
+    A setpoint that moves comes with the jitter of its link: half a metre at 5 m/s and 0.1 s. Followed at once with
+    this loop's gains, it would swing the thrust about faster than the rotors can. What is farther off than jitter
+    explains is another place, and followed at once.
+    """
+    if reference[HAS_POSITION] + reference[HAS_VELOCITY] < 2.0:
+        return
+    period = control["period_s"]
+    off = 0.0
+    speed = 0.0
+    for i in range(3):
+        memory[PLACE + i] += period * reference[3 + i]
+        off += (reference[i] - memory[PLACE + i]) ** 2
+        speed += reference[3 + i] ** 2
+    kept = min(1.0 - period / STEADYING_S, JITTER_S * math.sqrt(speed / max(off, TINY)))
+    for i in range(3):
+        memory[PLACE + i] = reference[i] + kept * (memory[PLACE + i] - reference[i])
+        reference[i] = memory[PLACE + i]
 
 
 @kernel

@@ -1,10 +1,11 @@
 """What the controller kernels read and remember: one record of gains and limits, one vector of memory.
 
-Memory (12,): whether it is running; heading it commands, rad; velocity as the observer has it, m/s (3);
-disturbance, m/s2 (3); integrals of the position and heading errors (4). `lqr` keeps in the second to fifth its heading
-and position at the start, in the sixth the heading it goes to.
-Reference (15,): position, velocity, acceleration (3 each), heading, heading rate, then 1 or 0 for each of position,
-velocity, acceleration and heading given.
+Memory (15,): whether it is running; heading it commands, rad; velocity as the observer has it, m/s (3);
+disturbance, m/s2 (3); integrals of the position and heading errors (4); position that is followed, m (3). `lqr`
+keeps in the second to fifth its heading and position at the start, in the sixth the heading it goes to.
+Reference (25,): position, velocity, acceleration (3 each), heading, heading rate, then 1 or 0 for each of position,
+velocity, acceleration and heading given; whether an attitude is given, whether turn rates are, thrust over mass,
+quaternion (4), rates (3).
 """
 
 from dataclasses import dataclass
@@ -13,17 +14,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim_autopilot.control.kinds import ControllerKind, Envelope
-from sim_autopilot.data import Array, Reference
+from sim_autopilot.data import Array, AttitudeTarget, Reference
 
 RUNNING = 0
 HEADING = 1
 VELOCITY = 2
 DISTURBANCE = 5
 INTEGRAL = 8
-MEMORY_SIZE = 12
+PLACE = 12
+MEMORY_SIZE = 15
 
 YAW, YAW_RATE, HAS_POSITION, HAS_VELOCITY, HAS_ACCELERATION, HAS_YAW = 9, 10, 11, 12, 13, 14
-REFERENCE_SIZE = 15
+HAS_ATTITUDE, HAS_RATES, THRUST, ATTITUDE, RATE = 15, 16, 17, 18, 22
+REFERENCE_SIZE = 25
 
 KIND_CODES = {ControllerKind.LQR: 0, ControllerKind.LQR_FEEDFORWARD: 1, ControllerKind.GEOMETRIC: 2}
 
@@ -45,6 +48,7 @@ CONTROL = np.dtype(
         ("braking_m_s2", "f8"),
         ("tilt_max_rad", "f8"),
         ("yaw_rate_max_rad_s", "f8"),
+        ("tilt_braking_rad_s2", "f8"),
     ]
 )
 
@@ -71,6 +75,7 @@ def control_record(
     period_s: float,
     observer_rad_s: float,
     motor_lead: float,
+    tilt_braking_rad_s2: float,
 ) -> NDArray[np.void]:
     """Return the record (1,) of a controller; `lqr` holds K (4, 12) and Ki (4, 4) of the published one."""
     record = np.zeros(1, dtype=CONTROL)
@@ -88,12 +93,13 @@ def control_record(
     record["descent_max_m_s"] = envelope.descent_max_m_s
     record["braking_m_s2"] = envelope.braking_m_s2
     record["tilt_max_rad"] = envelope.tilt_max_rad
+    record["tilt_braking_rad_s2"] = tilt_braking_rad_s2
     record["yaw_rate_max_rad_s"] = envelope.yaw_rate_max_rad_s
     return record
 
 
 def reference_vector(reference: Reference) -> Array:
-    """Return `reference` as the vector (15,) of the module's text."""
+    """Return `reference` as the vector (25,) of the module's text."""
     vector = np.zeros(REFERENCE_SIZE)
     if reference.position_enu_m is not None:
         vector[0:3] = reference.position_enu_m
@@ -109,4 +115,15 @@ def reference_vector(reference: Reference) -> Array:
         vector[HAS_YAW] = 1.0
     if reference.yaw_rate_rad_s is not None:
         vector[YAW_RATE] = reference.yaw_rate_rad_s
+    if reference.attitude is not None:
+        _fill_attitude(vector, reference.attitude)
     return vector
+
+
+def _fill_attitude(vector: Array, target: AttitudeTarget) -> None:
+    vector[HAS_RATES] = 1.0
+    vector[THRUST] = target.thrust_m_s2
+    vector[RATE : RATE + 3] = target.rates_flu_rad_s
+    if target.orientation_wxyz is not None:
+        vector[ATTITUDE : ATTITUDE + 4] = target.orientation_wxyz
+        vector[HAS_ATTITUDE] = 1.0

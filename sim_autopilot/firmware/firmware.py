@@ -1,8 +1,9 @@
 """Everything in which one firmware differs from another, as data."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from sim_autopilot.missions import PX4_MISSIONS, MissionRules
 from sim_autopilot.modes import Mode
 from sim_autopilot.parameters import Parameter, Values
 from sim_autopilot.settings import FlightSettings
@@ -16,42 +17,119 @@ class ModeCode:
     Attributes:
         base_mode: MAV_MODE_FLAGs of the heartbeat, without the armed one.
         custom_mode: of the heartbeat.
-        request: parameters 2 and 3 of the MAV_CMD_DO_SET_MODE that asks for it.
+        request: parameter 2, and 3 where it counts, of the MAV_CMD_DO_SET_MODE that asks for it.
+        name: in texts.
     """
 
     base_mode: int
     custom_mode: int
-    request: tuple[int, int]
+    request: tuple[int, ...]
+    name: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Results:
-    """The MAV_RESULTs of refusals."""
+    """The MAV_RESULTs of refusals; a reboot is refused since the process has an operator of its own."""
 
     arm_refused: int
+    reboot_refused: int
     disarm_in_the_air: int
     mode_refused: int
+    no_such_mode: int
     no_such_message: int
     no_such_stream: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Readiness:
-    """When after boot things begin to work."""
+    """When after boot things begin to work: the processor, GPS, origin and home, arming."""
 
+    booted_s: float
     fix_s: float
     position_s: float
     arming_s: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Statuses:
+    """MAV_STATE of the heartbeat: while booting, unarmed, armed on the ground, in the air, in a failsafe."""
+
+    booting: int
+    standby: int
+    armed: int
+    flying: int
+    failsafe: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Text:
+    """What a STATUSTEXT says."""
+
+    severity: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EventCode:
+    """An EVENT: its name, its log levels (internal in the upper four bits) and its packed arguments."""
+
+    name: str
+    levels: int
+    arguments: bytes = b""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Texts:
+    """What is said when.
+
+    Attributes:
+        everybody: whether they go to whoever speaks, or only to ground stations.
+        severity: of refusals.
+        boot: (seconds since boot, text) of the start-up.
+        not_ready: (until so many seconds since boot, text) of an arming refused.
+        unarmable: the mode's name goes in for `{}`.
+        no_setpoints: arming in OFFBOARD without setpoints.
+        disarm_refused: in the air; None says nothing.
+        armed: None says nothing.
+        disarmed: None says nothing.
+        battery: by the level that the battery has come to, 1 is low.
+        failsafe: that a failsafe has begun; empty says nothing.
+    """
+
+    everybody: bool
+    severity: int
+    boot: tuple[tuple[float, Text], ...]
+    not_ready: tuple[tuple[float, str], ...]
+    unarmable: str
+    no_setpoints: str
+    disarm_refused: str | None
+    armed: Text | None
+    disarmed: Text | None
+    battery: Mapping[int, str] = field(default_factory=dict)
+    failsafe: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SensorFlags:
-    """The SYS_STATUS bit masks: sensors present, enabled, healthy, and the health bit that says it can arm."""
+    """The SYS_STATUS bit masks: sensors present, enabled, healthy.
+
+    Attributes:
+        present: all of them.
+        enabled: likewise.
+        health: of those that work from the start.
+        fix_health: added with a GPS fix.
+        arming_health: added once it says that it can arm, `arming_s` after boot.
+        arming_s: which is not when it does.
+        control: added to enabled and health while it flies by position.
+    """
 
     present: int
     enabled: int
     health: int
+    fix_health: int = 0
     arming_health: int
+    arming_s: float
+    control: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,18 +144,39 @@ class Firmware:
         modes: codes of the modes it has.
         boot_mode: in which it starts.
         unarmable_modes: in which it refuses to arm.
+        loiter_mode: which MAV_CMD_NAV_LOITER_UNLIM asks for.
+        statuses: of the heartbeat.
+        fix_type: GPS_FIX_TYPE, once there is a fix.
+        texts: of STATUSTEXT.
+        vtol_state: of EXTENDED_SYS_STATE.
         streams: every message that it can send, by id, with default rates.
+        stream_groups: message ids by the MAV_DATA_STREAM that starts them.
+        contact_streams: message ids that begin only when somebody has spoken.
         stream_rate_max_hz: that a SET_MESSAGE_INTERVAL gets at most.
         readiness: after boot.
         results: of refusals.
         sensors: of SYS_STATUS.
-        parameters: in index order.
+        parameters: in index order; what the flight does not obey is kept and answered all the same.
+        system_id_parameter: the name of the one that holds the MAVLink system.
+        lenient_parameters: whether a PARAM_SET is taken whatever its type and range.
         settings: the flight settings that parameter values amount to.
         setpoint_frames: MAV_FRAMEs of setpoints it takes.
-        setpoint_stream_s: how long setpoints must have come before they may fly.
+        setpoint_stream_s: how long setpoints must have come before they may fly; None asks for none.
+        guided: whether OFFBOARD is ArduCopter's GUIDED: setpoints move a shaped path, and never time out of the mode.
+        keeps_origin: whether the origin, once there, moves no more.
+        announces_home: whether it tells the origin and home when home moves.
         takes_off_by_setpoint: whether a setpoint above lifts it off the ground.
         mode_answered_twice: whether DO_SET_MODE is accepted at once, and answered for good a step later.
         answers_other_components: whether it answers commands for another component of its system.
+        leaves_landing_modes: whether it goes back, when the motors stop, to the last mode asked for that lets arm.
+        tells_modes: whether a change of mode sends a heartbeat at once.
+        set_mode_answered_as: the MAV_CMD that the COMMAND_ACK to a SET_MODE names; None answers nothing.
+        tells_indices: whether a parameter that was asked for or set by name is answered with its index.
+        plain_answers: the MAV_RESULT of commands that change nothing here, None for no answer, by MAV_CMD.
+        missions: of the mission protocol.
+        events: that it sends besides texts, by their text.
+        lists_modes: whether it sends AVAILABLE_MODES.
+        reposition_mode: in which a DO_REPOSITION is flown.
     """
 
     name: str
@@ -87,15 +186,36 @@ class Firmware:
     modes: Mapping[Mode, ModeCode]
     boot_mode: Mode
     unarmable_modes: frozenset[Mode]
+    loiter_mode: Mode
+    statuses: Statuses
+    fix_type: int
+    texts: Texts
+    vtol_state: int
     streams: Mapping[int, Stream]
+    stream_groups: Mapping[int, tuple[int, ...]]
+    contact_streams: frozenset[int]
     stream_rate_max_hz: float
     readiness: Readiness
     results: Results
     sensors: SensorFlags
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[Parameter, ...] = field(repr=False)  # hundreds
+    system_id_parameter: str
+    lenient_parameters: bool
     settings: Callable[[Values], FlightSettings]
     setpoint_frames: frozenset[int]
-    setpoint_stream_s: float
+    setpoint_stream_s: float | None
+    guided: bool
+    keeps_origin: bool
+    announces_home: bool
     takes_off_by_setpoint: bool
     mode_answered_twice: bool
     answers_other_components: bool
+    leaves_landing_modes: bool
+    tells_modes: bool
+    set_mode_answered_as: int | None
+    tells_indices: bool
+    plain_answers: Mapping[int, int | None]
+    missions: MissionRules = PX4_MISSIONS
+    events: Mapping[str, EventCode] = field(default_factory=dict)
+    lists_modes: bool = False
+    reposition_mode: Mode = Mode.HOLD

@@ -1,4 +1,4 @@
-"""The rigid body in flight (report, eqs. 2-4), with linear drag on airspeed.
+"""The rigid body in flight (report, eqs. 2-4), with linear and quadratic drag on airspeed.
 
 State `y` (13,): p_WB m, q_WB wxyz, v_WB m/s, w_WB_B rad/s. World ENU, body FLU.
 `m dv = m g + f`, `dq = q * [0, w] / 2`, `I dw = -w x I w + torque`; f is every force but gravity, in W.
@@ -41,7 +41,8 @@ def fill_flight_forces(
     y: Array, rotation: Array, wrench: Array, wind: Array, body: Record, force: Array, torque: Array
 ) -> None:
     """Write the force (3,) in W and the torque (3,) in B of `wrench` [T, L, M, N] and of drag."""
-    drag = body["drag_n_s_m"]
+    u, v, w = y[7] - wind[0], y[8] - wind[1], y[9] - wind[2]
+    drag = body["drag_n_s_m"] + body["drag_n_s2_m2"] * math.sqrt(u * u + v * v + w * w)
     for i in range(3):
         force[i] = rotation[3 * i + 2] * wrench[0] - drag * (y[7 + i] - wind[i])
         torque[i] = wrench[1 + i]

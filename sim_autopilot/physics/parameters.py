@@ -22,6 +22,7 @@ BODY = np.dtype(
         ("motor_time_constant_s", "f8"),  # 0 is no lag
         ("thrust_max_n", "f8"),  # of one rotor; infinite is no limit
         ("drag_n_s_m", "f8"),
+        ("drag_n_s2_m2", "f8"),
         ("direct", "i8"),  # 1: thrust and torques act at once, unbounded
         ("friction_coefficient", "f8"),
         ("ground_effect", "i8"),
@@ -45,6 +46,7 @@ def body_record(
     record["motor_time_constant_s"] = airframe.motor_time_constant_s or 0.0
     record["thrust_max_n"] = math.inf if limit is None else limit * airframe.weight_n / 4.0
     record["drag_n_s_m"] = airframe.drag_n_s_m
+    record["drag_n_s2_m2"] = airframe.drag_n_s2_m2
     record["direct"] = airframe.takes_wrench_directly
     record["friction_coefficient"] = friction_coefficient
     record["ground_effect"] = ground_effect

@@ -6,6 +6,8 @@ standard, `sigma^2 2L/pi / (1 + (L W)^2)` and `sigma^2 L/pi (1 + 3 (L W)^2) / (1
 counted in T no parameter is left: they advance exactly whatever the airspeed does, and start in their steady state.
 Below 1000 ft: `sigma_w = 0.1 W20`, `sigma_u = sigma_v = sigma_w / (0.177 + 0.000823 h)^0.4`, `L_w = h`,
 `L_u = L_v = h / (0.177 + 0.000823 h)^1.2`, h in feet; W20 15, 30, 45 knots (sections 3.7.2.1 and 3.7.3.4).
+The standard's discrete gust rises as `V_m / 2 (1 - cos(pi x / d_m))` over the way d_m through the air and may be used
+"in multiples" (section 3.7.2.3, and MIL-HDBK-1797 likewise): here it is one up and one down, with x = V t.
 """
 
 import math
@@ -70,7 +72,7 @@ def dryden(turbulence: Turbulence, height_m: float = HEIGHT_M) -> Dryden:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gust:
-    """A gust that comes and goes as 1 - cos, blowing horizontally.
+    """A gust that comes and goes as 1 - cos, blowing horizontally: two of the standard's, d_m = V duration / 2.
 
     Attributes:
         peak_m_s: at the middle.
@@ -97,24 +99,26 @@ def first_order_step(state: float, elapsed: float, noise: float) -> float:
 
 
 def second_order_step(state: tuple[float, float], elapsed: float, noise: tuple[float, float]) -> tuple[float, float]:
-    """Return the states of `1 / (s + 1)` and `1 / (s + 1)^2` under one white noise, `elapsed` time constants later.
-
-    Their joint noise over a step has the covariance `int e^-2s [1 s; s s^2] ds`, here as its Cholesky factor.
-    """
+    """Return the states of `1 / (s + 1)` and `1 / (s + 1)^2` under one white noise, `elapsed` time constants later."""
     first, second = state
     remaining = math.exp(-elapsed)
-    square = remaining * remaining
+    along, across, rest = second_order_noise(elapsed)
+    return (
+        remaining * first + along * noise[0],
+        remaining * (second + elapsed * first) + across * noise[0] + rest * noise[1],
+    )
+
+
+def second_order_noise(elapsed: float) -> tuple[float, float, float]:
+    """Return the Cholesky factor, row by row, of both states' joint noise `int e^-2s [1 s; s s^2] ds` over a step."""
+    square = math.exp(-2.0 * elapsed)
     q11 = 0.5 * (1.0 - square)
     q12 = 0.25 - square * (0.5 * elapsed + 0.25)
     q22 = 0.25 - square * (0.5 * elapsed * elapsed + 0.5 * elapsed + 0.25)
     along = math.sqrt(q11)
     across = q12 / along
     # max: for a tiny step the difference drowns in rounding
-    rest = math.sqrt(max(0.0, q22 - across * across))
-    return (
-        remaining * first + along * noise[0],
-        remaining * (second + elapsed * first) + across * noise[0] + rest * noise[1],
-    )
+    return along, across, math.sqrt(max(0.0, q22 - across * across))
 
 
 def second_order_output(state: tuple[float, float]) -> float:

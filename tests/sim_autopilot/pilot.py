@@ -93,7 +93,7 @@ class Pilot:
         data = b"".join(map(self._codec.encode, messages))
         t_ns = self.node.state.t_ns
         deck = None if self._deck is None else self._deck(t_ns)
-        replies = self._codec.decode(self.node.receive(data, t_ns) + self.node.step(deck, STILL_AIR))
+        replies = self._codec.decode(b"".join(self.node.receive(data, t_ns) + self.node.step(deck, STILL_AIR)))
         self.received += [(self.t_s, reply) for reply in replies]
         return replies
 

@@ -3,6 +3,7 @@ from math import nan
 import pytest
 
 from link.mavlink.dialect import Message, mavlink
+from link.mavlink.event_ids import event_id
 from sim_autopilot.firmware.px4 import PX4
 from tests.sim_autopilot.pilot import (
     HOLD,
@@ -34,7 +35,13 @@ def setpoints_for(pilot: Pilot, duration_s: float) -> None:
 
 
 def test_an_unknown_command_is_unsupported() -> None:
-    assert Pilot().acknowledged(command(mavlink.MAV_CMD_DO_SET_ROI)) == [UNSUPPORTED]
+    assert Pilot().acknowledged(command(mavlink.MAV_CMD_DO_FOLLOW)) == [UNSUPPORTED]
+
+
+def test_commands_about_what_it_has_not_are_answered_as_px4_does() -> None:
+    pilot = Pilot()
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_SET_ROI_LOCATION)) == [ACCEPTED]
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_GRIPPER)) == []
 
 
 @pytest.mark.parametrize(("system", "component"), [(2, 1), (255, 1), (0, 1), (1, 2), (1, 191)])
@@ -81,10 +88,10 @@ def test_offboard_is_entered_after_three_tenths_of_a_second_of_setpoints() -> No
     assert pilot.custom_mode() == OFFBOARD
 
 
-def test_one_setpoint_is_no_stream() -> None:
+def test_one_fresh_setpoint_is_enough_for_offboard() -> None:
     pilot = Pilot()
     pilot.step(setpoint((0.0, 0.0, -5.0)))
-    assert pilot.acknowledged(set_mode(6)) == [ACCEPTED, REJECTED]
+    assert pilot.acknowledged(set_mode(6)) == [ACCEPTED, ACCEPTED]
 
 
 def test_offboard_is_refused_once_the_setpoints_are_stale() -> None:
@@ -149,12 +156,23 @@ def test_it_disarms_on_the_ground() -> None:
     assert not pilot.is_armed()
 
 
-def test_a_takeoff_while_disarmed_is_accepted_and_nothing_happens() -> None:
+def test_the_heartbeat_stays_at_one_hertz_whatever_is_asked_for() -> None:
+    pilot = Pilot()
+    heartbeat = mavlink.MAVLINK_MSG_ID_HEARTBEAT
+    assert pilot.acknowledged(command(SET_INTERVAL, heartbeat, 50_000.0)) == [4]
+    pilot.received.clear()
+    pilot.run(5.0)
+    assert len(pilot.all("HEARTBEAT")) == 5
+
+
+def test_a_takeoff_while_disarmed_is_accepted_and_begins_with_arming() -> None:
     pilot = Pilot()
     assert pilot.acknowledged(command(mavlink.MAV_CMD_NAV_TAKEOFF)) == [ACCEPTED]
     pilot.run(5.0)
-    assert pilot.custom_mode() == HOLD
     assert pilot.position[2] < 0.13
+    assert pilot.acknowledged(arm()) == [ACCEPTED]
+    pilot.run_until(lambda: pilot.custom_mode() == HOLD, 10.0)
+    assert pilot.position[2] == pytest.approx(2.5, abs=0.5)  # MIS_TAKEOFF_ALT
 
 
 @pytest.mark.parametrize("wanted_hz", [1.0, 7.0, 20.0, 30.0, 50.0, 100.0])
@@ -210,7 +228,7 @@ def test_the_interval_can_be_asked_for() -> None:
     assert (answer.message_id, answer.interval_us) == (30, 10_000)
 
 
-@pytest.mark.parametrize("message_id", PX4.streams)
+@pytest.mark.parametrize("message_id", sorted(PX4.streams.keys() - {mavlink.MAVLINK_MSG_ID_RC_CHANNELS}))
 def test_every_message_it_knows_can_be_requested(message_id: int) -> None:
     pilot = Pilot()
     pilot.take_off(1.0)
@@ -231,4 +249,36 @@ def test_it_says_why_it_does_not_arm_only_where_a_ground_station_listens() -> No
     deaf, heard = Pilot(px4(instant=False)), Pilot(px4(instant=False))
     heard.step(mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, 8, 0, 0, 4, 3))
     assert not refused(deaf)
-    assert [text.text for text in refused(heard)] == ["Arming refused: not ready"]
+    pieces = refused(heard)
+    assert "".join(text.text for text in pieces) == "Arming denied: Resolve system health failures first"
+    assert [(text.id, text.chunk_seq) for text in pieces] == [(1, 0), (1, 1)]
+
+
+def test_a_companion_is_told_by_event_why_it_does_not_arm() -> None:
+    pilot = Pilot(px4(instant=False))
+    pilot.acknowledged(arm())
+    pilot.acknowledged(arm())
+    told = pilot.all("EVENT")
+    assert [event.id for event in told] == [event_id("commander_arm_denied_resolve_failures")] * 2
+    assert [event.sequence for event in told] == [0, 1]
+    assert {event.log_levels & 0x0F for event in told} == {mavlink.MAV_SEVERITY_CRITICAL}
+
+
+def test_modes_are_listed_all_or_one_by_one() -> None:
+    pilot = Pilot()
+    assert pilot.acknowledged(command(REQUEST, 435.0, 0.0)) == [ACCEPTED]
+    listed = pilot.all("AVAILABLE_MODES")
+    assert [mode.mode_index for mode in listed] == list(range(1, listed[0].number_modes + 1))
+    assert {mode.custom_mode for mode in listed} == {code.custom_mode for code in PX4.modes.values()}
+    pilot.received.clear()
+    assert pilot.acknowledged(command(REQUEST, 435.0, 3.0)) == [ACCEPTED]
+    assert [mode.standard_mode for mode in pilot.all("AVAILABLE_MODES")] == [mavlink.MAV_STANDARD_MODE_POSITION_HOLD]
+    assert pilot.acknowledged(command(REQUEST, 435.0, 99.0)) == [DENIED]
+
+
+def test_a_manual_mode_arms_only_with_sticks() -> None:
+    pilot = Pilot()
+    pilot.acknowledged(set_mode(3))
+    assert pilot.acknowledged(arm()) == [mavlink.MAV_RESULT_TEMPORARILY_REJECTED]
+    pilot.step(mavlink.MAVLink_manual_control_message(1, 0, 0, 500, 0, 0))
+    assert pilot.acknowledged(arm()) == [ACCEPTED]

@@ -39,7 +39,7 @@ def test_a_configuration_reaches_the_autopilot(tmp_path: Path) -> None:
 
 def test_an_unknown_firmware_parameter_is_one_clear_line(tmp_path: Path) -> None:
     config = loaded(tmp_path, "[parameters]\nMPC_XY_VEL = 20.0\n")
-    with pytest.raises(UserError, match="parameters: no parameter MPC_XY_VEL; there are COM_DISARM_LAND"):
+    with pytest.raises(UserError, match="parameters: no parameter MPC_XY_VEL; there is MPC_XY_VEL_MAX"):
         autopilot_config(config)
 
 

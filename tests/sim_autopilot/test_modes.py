@@ -1,6 +1,6 @@
 import pytest
 
-from sim_autopilot.modes import ASK_FOR, FAILSAFES, TRANSITIONS, Event, Mode, Modes, react
+from sim_autopilot.modes import ASK_FOR, FAILSAFES, LATCHED, TRANSITIONS, Event, Mode, Modes, react
 
 
 def expected(mode: Mode, event: Event) -> Mode:
@@ -11,7 +11,13 @@ def expected(mode: Mode, event: Event) -> Mode:
     if event is Event.TAKEOFF_COMPLETE:
         return Mode.HOLD if mode is Mode.TAKEOFF else mode
     if event is Event.SETPOINTS_BACK:
-        return mode if mode is Mode.TAKEOFF else Mode.OFFBOARD
+        return Mode.OFFBOARD if mode in FAILSAFES.values() else mode
+    if event in LATCHED:
+        ladder = [Mode.HOLD, Mode.BRAKE, Mode.SMART_RTL, Mode.RTL, Mode.LAND]
+        lowest = ladder.index(LATCHED[event])
+        return mode if mode in ladder[lowest:] else ladder[lowest]
+    if event not in FAILSAFES:
+        return mode  # FAILSAFE_TERMINATE stops the motors instead
     return FAILSAFES[event] if mode is Mode.OFFBOARD else mode
 
 
@@ -24,9 +30,18 @@ def test_every_mode_and_event_leads_where_px4_goes(mode: Mode, event: Event) -> 
 
 @pytest.mark.parametrize("mode", Mode)
 @pytest.mark.parametrize("event", Event)
-def test_only_lost_setpoints_part_the_mode_from_the_intended_one(mode: Mode, event: Event) -> None:
+def test_only_failsafes_part_the_mode_from_the_intended_one(mode: Mode, event: Event) -> None:
     after = react(Modes(mode=mode, intended=mode), event)
-    assert after.failsafe == (event in FAILSAFES and mode is Mode.OFFBOARD)
+    acts = event in FAILSAFES and mode is Mode.OFFBOARD
+    assert after.failsafe == (acts or (event in LATCHED and (mode, event) in TRANSITIONS))
+    assert after.intended is (after.mode if not after.failsafe else mode)
+
+
+@pytest.mark.parametrize("event", LATCHED)
+def test_setpoints_do_not_end_a_latched_failsafe_and_the_operator_does(event: Event) -> None:
+    failed = react(Modes(mode=Mode.OFFBOARD, intended=Mode.OFFBOARD), event)
+    assert react(failed, Event.SETPOINTS_BACK) == failed
+    assert react(failed, Event.ASK_HOLD) == Modes(mode=Mode.HOLD, intended=Mode.HOLD)
 
 
 @pytest.mark.parametrize("lost", FAILSAFES)

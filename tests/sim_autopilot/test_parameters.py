@@ -4,8 +4,10 @@ import pytest
 
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.parameters import parameter_on_wire, parameter_value
-from sim_autopilot.firmware.px4 import PX4
+from sim_autopilot.firmware.ardupilot import ARDUPILOT
+from sim_autopilot.firmware.px4 import OBEYED, PX4
 from sim_autopilot.parameters import default_values
+from tests.sim_autopilot.copter import ardupilot
 from tests.sim_autopilot.pilot import Pilot, px4
 
 REAL, INTEGER = mavlink.MAV_PARAM_TYPE_REAL32, mavlink.MAV_PARAM_TYPE_INT32
@@ -52,8 +54,10 @@ def test_a_list_brings_every_parameter_once_in_order() -> None:
 def test_every_parameter_changes_how_it_flies() -> None:
     defaults = default_values(PX4.parameters, {})
     unchanged = PX4.settings(defaults)
-    for parameter in PX4.parameters:
-        other = 5 if parameter.is_integer else parameter.lowest + 0.37 * (parameter.highest - parameter.lowest)
+    for parameter in OBEYED:
+        other = parameter.lowest + 0.37 * (parameter.highest - parameter.lowest)
+        if parameter.is_integer:
+            other = parameter.highest if parameter.highest != parameter.default else parameter.lowest
         assert PX4.settings({**defaults, parameter.name: other}) != unchanged, parameter.name
 
 
@@ -79,8 +83,6 @@ def test_an_integer_travels_bytewise() -> None:
         ("MPC_XY_VEL_MAX", nan, REAL),
         ("MPC_XY_VEL_MAX", -1.0, REAL),
         ("MPC_XY_VEL_MAX", 1e9, REAL),
-        ("MPC_XY_VEL_MAX", 5, INTEGER),
-        ("COM_OBL_RC_ACT", 3.0, REAL),
         ("COM_OBL_RC_ACT", 99, INTEGER),
     ],
 )
@@ -90,6 +92,27 @@ def test_a_value_that_cannot_be_leaves_the_parameter_and_tells_its_value(name: s
     pilot.step(set_parameter(name, value, kind))
     assert values(pilot) == {name: before}
     assert pilot.node.memory.values[name] == before
+
+
+def test_a_set_of_another_type_than_the_parameters_is_not_answered() -> None:
+    pilot = Pilot()
+    pilot.step(set_parameter("MPC_XY_VEL_MAX", 5, INTEGER), set_parameter("COM_OBL_RC_ACT", 3.0, REAL))
+    assert not pilot.all("PARAM_VALUE")
+
+
+def test_a_parameter_that_nothing_obeys_is_kept_all_the_same() -> None:
+    pilot = Pilot(px4(system_id=3))
+    read = mavlink.MAVLink_param_request_read_message(3, 1, b"MAV_SYS_ID", -1)
+    stored = mavlink.MAVLink_param_set_message(3, 1, b"BAT1_N_CELLS", parameter_on_wire(-1, INTEGER, 12), INTEGER)
+    pilot.step(read, stored)
+    assert values(pilot) == {"MAV_SYS_ID": 3, "BAT1_N_CELLS": -1}
+
+
+def test_a_list_comes_within_two_seconds() -> None:
+    pilot = Pilot(ardupilot())
+    pilot.step(mavlink.MAVLink_param_request_list_message(1, 1))
+    pilot.run(2.0)
+    assert len(pilot.all("PARAM_VALUE")) == len(ARDUPILOT.parameters) > 1000
 
 
 def test_an_unknown_parameter_is_not_answered() -> None:

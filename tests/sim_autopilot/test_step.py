@@ -255,7 +255,20 @@ def test_landing_ends_on_the_ground_disarmed_two_seconds_after_it_was_detected()
     to_disarmed_s = pilot.run_until(lambda: not pilot.is_armed(), 5.0)
     assert to_landed_s == pytest.approx(1.5, abs=0.5)  # measured on PX4
     assert to_disarmed_s == pytest.approx(2.0, abs=0.05)  # COM_DISARM_LAND
-    assert pilot.custom_mode() == LAND
+    assert pilot.custom_mode() == OFFBOARD  # asked for last of the modes that let arm
+
+
+def test_a_landing_from_hold_leaves_a_mode_that_arms_and_land_itself_does_not() -> None:
+    pilot = Pilot()
+    pilot.take_off(3.0)
+    pilot.step(set_mode(4, 3))
+    pilot.step(set_mode(4, 6))
+    pilot.run_until(lambda: not pilot.is_armed(), 20.0)
+    assert pilot.custom_mode() == HOLD
+    pilot.acknowledged(set_mode(4, 6))
+    assert pilot.acknowledged(arm()) == [1]
+    pilot.acknowledged(set_mode(4, 3))
+    assert pilot.acknowledged(arm()) == [0]
 
 
 @pytest.mark.slow

@@ -185,7 +185,7 @@ def timesync(tc1: int, ts1: int) -> bytes:
 
 
 def answers(node: AutopilotNode, data: bytes, t_ns: int) -> list[Message]:
-    return MavlinkCodec(1, 191).decode(node.receive(data, t_ns))
+    return MavlinkCodec(1, 191).decode(node.receive(data, t_ns)[0])
 
 
 def test_a_question_for_the_time_is_answered_at_once_with_the_boot_clock() -> None:

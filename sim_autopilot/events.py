@@ -1,0 +1,53 @@
+"""PX4's events: what is also said as text to ground stations goes to everybody as EVENT.
+
+Source: MAVLink events interface; names, levels and arguments: PX4's source.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from link.mavlink.dialect import Message, mavlink
+from link.mavlink.event_ids import event_id
+from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.telemetry_status import boot_ms, status_texts
+
+_EVENT = 410
+_ARGUMENTS = 40
+_EVERYBODY = 0
+_SEQUENCES = (1 << 16) - 1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Telling:
+    """Messages about something that happened, and the memory that has counted its event."""
+
+    memory: AutopilotMemory
+    messages: tuple[Message, ...]
+
+
+def tell(memory: AutopilotMemory, text: str, severity: int, config: AutopilotConfig) -> Telling:
+    """Return how `text` is said: as an event where the firmware has one for it, and as text where somebody reads it."""
+    said = status_texts(severity, text, memory.services.events + 1) if memory.ground_station else ()
+    code = config.firmware.events.get(text)
+    if code is None:
+        return Telling(memory=memory, messages=said)
+    services = memory.services
+    event = _event(code.name, code.levels, code.arguments, services.events, boot_ms(memory))
+    counted = replace(memory, services=replace(services, events=(services.events + 1) % _SEQUENCES))
+    return Telling(memory=counted, messages=(event, *said))
+
+
+def failsafe_texts(
+    before: AutopilotMemory, memory: AutopilotMemory, texts: Mapping[int, str], entered: str
+) -> list[str]:
+    """Return what is said about a battery that has become worse and about a failsafe that has begun."""
+    level, armed = memory.services.watch.level, memory.armed_ns is not None
+    said = [texts[level]] if level > before.services.watch.level and level in texts else []
+    begins = armed and memory.modes.failsafe and memory.modes.mode is not before.modes.mode
+    return [*said, entered] if begins and entered else said
+
+
+def _event(name: str, levels: int, arguments: bytes, sequence: int, now_ms: int) -> Message:
+    padded = list(arguments.ljust(_ARGUMENTS, b"\0"))
+    kind = mavlink.mavlink_map[_EVENT]
+    return kind(_EVERYBODY, _EVERYBODY, event_id(name), now_ms, sequence, levels, padded)

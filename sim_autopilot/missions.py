@@ -1,0 +1,197 @@
+"""What is uploaded: items of missions, fences and rally points, and which of them a firmware takes.
+
+Source: MAVLink mission protocol, https://mavlink.io/en/services/mission.html; commands as PX4 and ArduCopter take them.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import isfinite, radians
+from types import MappingProxyType
+
+from link.geodesy import Datum, enu_from_geodetic
+from link.mavlink.dialect import Message, mavlink
+from link.messages import Vector3
+
+_DEGREES_TO_WIRE = 1e7
+_ABOVE_SEA = frozenset({mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT})
+_ABOVE_HOME = frozenset({mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT})
+_FRAMES = _ABOVE_SEA | _ABOVE_HOME | {mavlink.MAV_FRAME_MISSION}
+
+MISSION, FENCE, RALLY = (
+    int(kind)
+    for kind in (mavlink.MAV_MISSION_TYPE_MISSION, mavlink.MAV_MISSION_TYPE_FENCE, mavlink.MAV_MISSION_TYPE_RALLY)
+)
+
+_FLOWN = (
+    mavlink.MAV_CMD_NAV_WAYPOINT,
+    mavlink.MAV_CMD_NAV_LOITER_UNLIM,
+    mavlink.MAV_CMD_NAV_LOITER_TIME,
+    mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH,
+    mavlink.MAV_CMD_NAV_LAND,
+    mavlink.MAV_CMD_NAV_TAKEOFF,
+    mavlink.MAV_CMD_NAV_DELAY,
+)
+_DONE_AT_ONCE = (
+    mavlink.MAV_CMD_DO_JUMP,
+    mavlink.MAV_CMD_DO_CHANGE_SPEED,
+    mavlink.MAV_CMD_DO_SET_HOME,
+    mavlink.MAV_CMD_DO_SET_SERVO,
+    mavlink.MAV_CMD_DO_LAND_START,
+    mavlink.MAV_CMD_DO_SET_ROI_LOCATION,
+    mavlink.MAV_CMD_DO_SET_ROI_NONE,
+    mavlink.MAV_CMD_DO_SET_ROI,
+    mavlink.MAV_CMD_DO_DIGICAM_CONTROL,
+    mavlink.MAV_CMD_DO_MOUNT_CONFIGURE,
+    mavlink.MAV_CMD_DO_MOUNT_CONTROL,
+    mavlink.MAV_CMD_DO_SET_CAM_TRIGG_DIST,
+    mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW,
+    mavlink.MAV_CMD_DO_GIMBAL_MANAGER_CONFIGURE,
+    mavlink.MAV_CMD_DO_GRIPPER,
+    mavlink.MAV_CMD_IMAGE_START_CAPTURE,
+    mavlink.MAV_CMD_IMAGE_STOP_CAPTURE,
+    mavlink.MAV_CMD_VIDEO_START_CAPTURE,
+    mavlink.MAV_CMD_VIDEO_STOP_CAPTURE,
+    mavlink.MAV_CMD_SET_CAMERA_MODE,
+    mavlink.MAV_CMD_SET_CAMERA_ZOOM,
+    mavlink.MAV_CMD_SET_CAMERA_FOCUS,
+)
+_FENCE_ITEMS = (
+    mavlink.MAV_CMD_NAV_FENCE_RETURN_POINT,
+    mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION,
+    mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION,
+    mavlink.MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION,
+    mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION,
+)
+_COMMANDS: Mapping[int, frozenset[int]] = MappingProxyType(
+    {
+        MISSION: frozenset((*_FLOWN, *_DONE_AT_ONCE)),
+        FENCE: frozenset(_FENCE_ITEMS),
+        RALLY: frozenset({int(mavlink.MAV_CMD_NAV_RALLY_POINT)}),
+    }
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MissionRules:
+    """In what the firmwares differ.
+
+    Attributes:
+        counts_max: most items, by MAV_MISSION_TYPE; a type that is not here is not supported.
+        home_first: whether item 0 is home, whatever is uploaded there, and is not flown.
+        one_at_a_time: whether a transfer that is not finished keeps others out until it times out.
+        retry_s: after which a missing item is asked for again.
+        timeout_s: of silence after which a transfer is given up.
+        timeout_answered: whether the end by time-out is told, as cancelled.
+        wrong_sequence: MAV_MISSION_RESULT of an item out of turn; None asks for the right one again.
+        arms_to_start: whether MISSION_START arms.
+        waits_for_mission: whether its mode can be chosen on the ground before there is a mission.
+    """
+
+    counts_max: Mapping[int, int] = field(
+        default_factory=lambda: MappingProxyType({MISSION: 500, FENCE: 64, RALLY: 64})
+    )
+    home_first: bool = False
+    one_at_a_time: bool = True
+    retry_s: float = 0.25
+    timeout_s: float = 5.0
+    timeout_answered: bool = False
+    wrong_sequence: int | None = None
+    arms_to_start: bool = True
+    waits_for_mission: bool = True
+
+
+PX4_MISSIONS = MissionRules()
+ARDUCOPTER_MISSIONS = MissionRules(
+    counts_max=MappingProxyType({MISSION: 724, FENCE: 84, RALLY: 26}),
+    home_first=True,
+    one_at_a_time=False,
+    retry_s=1.0,
+    timeout_s=8.0,
+    timeout_answered=True,
+    wrong_sequence=int(mavlink.MAV_MISSION_INVALID_SEQUENCE),
+    arms_to_start=False,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Item:
+    """One item as it travels; `x` and `y` are the integers of MISSION_ITEM_INT."""
+
+    frame: int
+    command: int
+    autocontinue: int
+    parameters: tuple[float, float, float, float]
+    x: int
+    y: int
+    z: float
+
+    def number(self, position: int, otherwise: float = 0.0) -> float:
+        """Return parameter `position` (1 to 4), `otherwise` where it is not finite."""
+        value = self.parameters[position - 1]
+        return value if isfinite(value) else otherwise
+
+    @property
+    def has_place(self) -> bool:
+        """Whether it says where."""
+        return self.frame != mavlink.MAV_FRAME_MISSION and (self.x, self.y) != (0, 0)
+
+
+Plans = Mapping[int, tuple[Item, ...]]
+NO_PLANS: Plans = MappingProxyType({MISSION: (), FENCE: (), RALLY: ()})
+
+
+def item_from_message(message: Message) -> Item:
+    """Return the item of a MISSION_ITEM_INT, or of the MISSION_ITEM that older clients send.
+
+    Raises:
+        ValueError: a place that is not finite.
+    """
+    x, y = message.x, message.y
+    if message.get_msgId() == mavlink.MAVLINK_MSG_ID_MISSION_ITEM:
+        if not (isfinite(x) and isfinite(y)):
+            raise ValueError(f"the place {x}, {y} is not finite")
+        scale = 1.0 if message.frame == mavlink.MAV_FRAME_MISSION else _DEGREES_TO_WIRE
+        x, y = round(x * scale), round(y * scale)
+    return Item(
+        frame=message.frame,
+        command=message.command,
+        autocontinue=message.autocontinue,
+        parameters=(message.param1, message.param2, message.param3, message.param4),
+        x=x,
+        y=y,
+        z=message.z,
+    )
+
+
+def result_of(item: Item, kind: int) -> int:
+    """Return the MAV_MISSION_RESULT that an item of a plan of type `kind` deserves."""
+    if item.command not in _COMMANDS[kind]:
+        return int(mavlink.MAV_MISSION_UNSUPPORTED)
+    if item.frame not in _FRAMES:
+        return int(mavlink.MAV_MISSION_UNSUPPORTED_FRAME)
+    if abs(item.x) > 90 * _DEGREES_TO_WIRE and item.frame != mavlink.MAV_FRAME_MISSION:
+        return int(mavlink.MAV_MISSION_INVALID_PARAM5_X)
+    if abs(item.y) > 180 * _DEGREES_TO_WIRE and item.frame != mavlink.MAV_FRAME_MISSION:
+        return int(mavlink.MAV_MISSION_INVALID_PARAM6_Y)
+    if not isfinite(item.z) and kind == MISSION and item.frame != mavlink.MAV_FRAME_MISSION:
+        return int(mavlink.MAV_MISSION_INVALID_PARAM7)
+    return int(mavlink.MAV_MISSION_ACCEPTED)
+
+
+def item_message(item: Item, index: int, kind: int, target: tuple[int, int], *, current: bool, whole: bool) -> Message:
+    """Return the MISSION_ITEM_INT at `index` for `target` (system, component), a MISSION_ITEM where not `whole`."""
+    head = (*target, index, item.frame, item.command, int(current), item.autocontinue, *item.parameters)
+    if whole:
+        return mavlink.MAVLink_mission_item_int_message(*head, item.x, item.y, item.z, kind)
+    scale = 1.0 if item.frame == mavlink.MAV_FRAME_MISSION else _DEGREES_TO_WIRE
+    return mavlink.MAVLink_mission_item_message(*head, item.x / scale, item.y / scale, item.z, kind)
+
+
+def place_of(item: Item, datum: Datum, home_enu_m: Vector3) -> Vector3:
+    """Return where an item that says where is, in W (ENU about `datum`, m)."""
+    latitude_rad, longitude_rad = radians(item.x / _DEGREES_TO_WIRE), radians(item.y / _DEGREES_TO_WIRE)
+    altitude_m = item.z if isfinite(item.z) else 0.0
+    if item.frame in _ABOVE_SEA:
+        return enu_from_geodetic(datum, latitude_rad, longitude_rad, altitude_m)
+    east, north, _ = enu_from_geodetic(datum, latitude_rad, longitude_rad, datum.altitude_m)
+    return (east, north, home_enu_m[2] + altitude_m)

@@ -1,0 +1,122 @@
+"""The mission service in the autopilot's step: its messages, its time-outs and its flight."""
+
+from dataclasses import replace
+
+from link.mavlink.dialect import Message, mavlink
+from sim_autopilot.fence import fence_of
+from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.mission_flight import Progress, Stage, Surroundings, fly_mission, resumed, set_to
+from sim_autopilot.mission_transfer import Arrival, take_mission_message, transfer_passes
+from sim_autopilot.missions import FENCE, MISSION, Item
+from sim_autopilot.mode_change import change_mode
+from sim_autopilot.modes import Event, Mode
+
+_NO_ITEMS = 65535
+"""What MISSION_CURRENT tells as the total of no mission; its modes follow."""
+_ACTIVE, _SUSPENDED = 1, 2
+
+Result = tuple[AutopilotMemory, tuple[Message, ...]]
+
+
+def mission_items(memory: AutopilotMemory) -> tuple[Item, ...]:
+    """Return the items of the mission that the autopilot holds."""
+    return memory.services.library.plans[MISSION]
+
+
+def take_plan(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
+    """Return the memory after a message of the mission protocol meant for this autopilot, and the answers."""
+    services = memory.services
+    arrival = Arrival(
+        message=message,
+        boot_ns=memory.now.boot_ns,
+        rules=config.firmware.missions,
+        current=services.mission.index,
+    )
+    library, answers = take_mission_message(services.library, arrival)
+    changed = library.changed != services.library.changed
+    progress = Progress(index=first_index(config)) if changed else services.mission
+    fence = services.fence
+    if library.plans[FENCE] is not services.library.plans[FENCE]:
+        fence = fence_of(library.plans[FENCE], config.datum)
+    memory = replace(memory, services=replace(services, library=library, mission=progress, fence=fence))
+    return memory, (*answers, mission_current(memory, config)) if changed else answers
+
+
+def first_index(config: AutopilotConfig) -> int:
+    """Return where a mission begins."""
+    return 1 if config.firmware.missions.home_first else 0
+
+
+def set_current(memory: AutopilotMemory, index: int) -> AutopilotMemory | None:
+    """Return the memory with item `index` made current, None where there is no such item."""
+    if not 0 <= index < len(mission_items(memory)):
+        return None
+    return _with_progress(memory, set_to(memory.services.mission, index))
+
+
+def pass_transfer(memory: AutopilotMemory, config: AutopilotConfig) -> Result:
+    """Return the memory now, with what a transfer under way asks for again or gives up."""
+    services = memory.services
+    if services.library.transfer is None:
+        return memory, ()
+    library, messages = transfer_passes(services.library, memory.now.boot_ns, config.firmware.missions)
+    if library is services.library:
+        return memory, ()
+    return replace(memory, services=replace(services, library=library)), messages
+
+
+def begin_mission(memory: AutopilotMemory, config: AutopilotConfig) -> AutopilotMemory:
+    """Return the memory of a mission mode that begins: a finished mission from the start, another where it was."""
+    progress = resumed(memory.services.mission)
+    if progress.stage is Stage.FINISHED:
+        progress = Progress(index=first_index(config))
+    return _with_progress(memory, progress)
+
+
+def advance_mission(memory: AutopilotMemory, config: AutopilotConfig) -> Result:
+    """Return the memory with the mission flown one step on, and what is told about it."""
+    if memory.modes.mode is not Mode.MISSION or memory.armed_ns is None:
+        return memory, ()
+    around = Surroundings(
+        datum=config.datum,
+        home_enu_m=memory.home_enu_m,
+        settings=memory.settings,
+        now=memory.now,
+        landed=memory.landing.landed,
+    )
+    before = memory.services.mission
+    step = fly_mission(before, mission_items(memory), memory.flight, around)
+    memory = _with_progress(replace(memory, flight=step.flight), step.progress)
+    messages = tuple(mavlink.MAVLink_mission_item_reached_message(index) for index in step.reached)
+    if (step.progress.index, step.progress.stage is Stage.FINISHED) != (before.index, before.stage is Stage.FINISHED):
+        messages = (*messages, mission_current(memory, config))
+    if step.returns:
+        memory = change_mode(memory, Event.ASK_RTL)
+    return memory, messages
+
+
+def mission_current(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
+    """Return MISSION_CURRENT."""
+    count, progress = len(mission_items(memory)), memory.services.mission
+    return mavlink.MAVLink_mission_current_message(
+        progress.index,
+        count or _NO_ITEMS,
+        _state(memory, count),
+        _ACTIVE if memory.modes.mode is Mode.MISSION else _SUSPENDED,
+    )
+
+
+def _state(memory: AutopilotMemory, count: int) -> int:
+    progress = memory.services.mission
+    if count == 0:
+        return int(mavlink.MISSION_STATE_NO_MISSION)
+    if progress.stage is Stage.FINISHED:
+        return int(mavlink.MISSION_STATE_COMPLETE)
+    if not progress.started:
+        return int(mavlink.MISSION_STATE_NOT_STARTED)
+    flying = memory.modes.mode is Mode.MISSION and memory.armed_ns is not None
+    return int(mavlink.MISSION_STATE_ACTIVE if flying else mavlink.MISSION_STATE_PAUSED)
+
+
+def _with_progress(memory: AutopilotMemory, progress: Progress) -> AutopilotMemory:
+    return replace(memory, services=replace(memory.services, mission=progress))

@@ -1,0 +1,36 @@
+"""What the autopilot's MAVLink services remember, each in its own part."""
+
+from dataclasses import dataclass
+
+from sim_autopilot.failsafes import NOTHING_NOTICED, Watch
+from sim_autopilot.failures import NO_FAILURES, Failures
+from sim_autopilot.fence import Fence
+from sim_autopilot.manual import Sticks
+from sim_autopilot.mission_flight import NO_PROGRESS, Progress
+from sim_autopilot.mission_transfer import NO_LIBRARY, Library
+from sim_autopilot.precision_landing import Target
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Services:
+    """The services' memories.
+
+    Attributes:
+        library: plans, and the transfer of one under way.
+        mission: how far it is flown.
+        sticks: the pilot's, None before the first.
+        fence: of the plan, in W.
+        watch: of the failsafes.
+        failures: injected.
+        events: how many were told, as the 16 bits on the wire count them.
+        target: of a precision landing, None before the first sighting.
+    """
+
+    library: Library = NO_LIBRARY
+    mission: Progress = NO_PROGRESS
+    sticks: Sticks | None = None
+    fence: Fence = ()
+    watch: Watch = NOTHING_NOTICED
+    failures: Failures = NO_FAILURES
+    events: int = 0
+    target: Target | None = None
