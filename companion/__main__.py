@@ -3,11 +3,14 @@
 import json
 import os
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from companion.autopilots.kinds import AutopilotKind
+from companion.check_command import DeviceOption, SystemIdOption, check
 from link.cli import (
     ConnectOption,
     DroneOption,
@@ -23,16 +26,13 @@ from link.cli import (
 from link.errors import UserError
 
 app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.")
+app.command("check")(check)
 
 
 @app.callback(invoke_without_command=True)
 def companion(
-    mavlink: Annotated[
-        str,
-        typer.Option(
-            "--mavlink", metavar="DEVICE", help="udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT or /dev/ttyX,BAUD."
-        ),
-    ] = "udpin:127.0.0.1:14540",
+    context: typer.Context,
+    mavlink: DeviceOption = "udpin:127.0.0.1:14540",
     config: Annotated[Path | None, typer.Option("--config", metavar="FILE", help="Configuration in TOML.")] = None,
     print_config: Annotated[bool, typer.Option("--print-config", help="Print the configuration and end.")] = False,
     start: Annotated[
@@ -45,10 +45,18 @@ def companion(
     use_sim_time: Annotated[
         bool, typer.Option("--use-sim-time", help="Follow the simulation's clock on Zenoh.")
     ] = False,
-    system_id: Annotated[
-        int, typer.Option("--system-id", min=1, max=255, help="MAVLink system id of the vehicle.")
-    ] = 1,
+    autopilot: Annotated[
+        AutopilotKind | None, typer.Option("--autopilot", help="In place of the configuration's kind of autopilot.")
+    ] = None,
+    system_id: SystemIdOption = 1,
+    signing_key: Annotated[
+        Path | None,
+        typer.Option("--signing-key", metavar="FILE", help="Sign MAVLink with this key: 32 bytes or 64 hex digits."),
+    ] = None,
     tlog: Annotated[Path | None, typer.Option("--tlog", metavar="FILE", help="Record MAVLink into this file.")] = None,
+    record: Annotated[
+        Path | None, typer.Option("--record", metavar="DIR", help="Record everything into this folder, as MCAP.")
+    ] = None,
     timing: Annotated[
         Path | None, typer.Option("--timing", metavar="FILE", help="Write step times here at the end.")
     ] = None,
@@ -62,37 +70,55 @@ def companion(
     zenoh_config: ZenohConfigOption = None,
 ) -> None:
     """Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot."""
+    if context.invoked_subcommand is not None:
+        return
     from companion.config import CompanionConfig  # noqa: PLC0415 (numerics are slow to load, --help is quick)
     from link.toml_config import dump_toml, load_config  # noqa: PLC0415
 
     settings = load_config(config, CompanionConfig)
+    if autopilot is not None:
+        settings = settings.model_copy(update={"autopilot": autopilot})
     if print_config:
         sys.stdout.write(dump_toml(settings))
         return
     from link.keys import Keys  # noqa: PLC0415
     from link.mavlink.device import parse_device  # noqa: PLC0415
-    from link.zenoh_options import DEFAULT_ENDPOINT, ZenohOptions  # noqa: PLC0415
+    from link.mavlink.signing import read_key  # noqa: PLC0415
+    from link.zenoh_options import zenoh_options  # noqa: PLC0415
 
     keys = Keys(namespace, vehicle, drone)
     parse_device(mavlink)  # a mistake is told before the numerics are loaded
+    key = None if signing_key is None else read_key(signing_key)
     if timing is not None:
         _check_writable(timing)
-    nothing_said = not (connect or listen or zenoh_config or multicast)
-    zenoh_options = ZenohOptions(
-        mode=mode,
-        connect=(DEFAULT_ENDPOINT,) if nothing_said else tuple(connect or ()),
-        listen=tuple(listen or ()),
-        multicast_scouting=multicast,
-        config_file=zenoh_config,
-    )
+    endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config)
     from companion.build import build_node  # noqa: PLC0415
-    from companion.loop import Links, LoopOptions, run  # noqa: PLC0415
+    from companion.loop import run  # noqa: PLC0415
+    from companion.loop_options import Links, LoopOptions  # noqa: PLC0415
     from link.mavlink.transports import open_transport  # noqa: PLC0415
+    from link.recorder import BackgroundRecorder  # noqa: PLC0415
     from link.zenoh_session import open_session  # noqa: PLC0415
 
-    node = build_node(settings, keys, system_id=system_id, dry_run=dry_run, records_input=tlog is not None)
-    options = LoopOptions(device=mavlink, timeout_s=timeout, start=start, use_sim_time=use_sim_time, tlog=tlog)
-    with open_transport(mavlink) as transport, open_session(zenoh_options) as zenoh:
+    folder = record or (Path(settings.recording.folder) if settings.recording.folder else None)
+    with ExitStack() as stack:
+        recorder: BackgroundRecorder | None = None
+        if folder is not None:
+            from companion.record_folder import recording_sink  # noqa: PLC0415 (its libraries take memory)
+
+            recorder = BackgroundRecorder(recording_sink(folder, settings, keys, system_id=system_id, dry_run=dry_run))
+            stack.callback(recorder.close)
+        node = build_node(
+            settings,
+            keys,
+            system_id=system_id,
+            dry_run=dry_run,
+            records_input=tlog is not None,
+            recorder=recorder,
+            signing_key=key,
+        )
+        options = LoopOptions(device=mavlink, timeout_s=timeout, start=start, use_sim_time=use_sim_time, tlog=tlog)
+        transport = stack.enter_context(open_transport(mavlink))
+        zenoh = stack.enter_context(open_session(endpoints))
         timings = run(node, Links(keys=keys, transport=transport, zenoh=zenoh), options)
     if timing is not None:
         timing.write_text(json.dumps(timings.summary(), indent=2) + "\n", encoding="utf-8")

@@ -1,10 +1,12 @@
 """The companion's conversation with the autopilot: streams, origin and parameters asked for, messages read."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from companion.autopilot_state import AutopilotState, heard
 from companion.autopilots.choice import driver_for
 from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver
+from companion.autopilots.kinds import AutopilotKind
 from companion.data import FlightLimits, Setpoint
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import (
@@ -18,19 +20,23 @@ from link.mavlink.events import (
     MessageReceived,
     ParameterRead,
 )
+from link.mavlink.parameters import parameter_value
 from link.mavlink.session import MavlinkSession
 
 _STREAMS_HZ = {
     mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: 10.0,
-    mavlink.MAVLINK_MSG_ID_CURRENT_MODE: 20.0,
     mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: 2.0,
     mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: 1.0,  # tells the geoid's height
     mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: 1.0,
+    mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: 20.0,
 }
 _MOTION_IDS = (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED)
 _ASK_ORIGIN_NS = 1_000_000_000
 _ASK_KNOWN_ORIGIN_NS = 5_000_000_000
 _TEXT_SIZE = 50  # of a STATUSTEXT
+_LimitsAsked = tuple[FlightLimits, Driver, Mapping[str, float]]
+_WAITED_SHARE = 0.9  # of the autopilot's time-out; the rest is for the way there and back
+_WAITED_MIN_S = 0.5  # a shorter time-out cannot be told from a late message
 
 
 class AutopilotLink:
@@ -40,12 +46,19 @@ class AutopilotLink:
         session: to the autopilot.
         motion_rate_hz: of the drone's position and attitude.
         stops_unused_streams: ask the autopilot not to send what the companion does not read.
+        kind: of the autopilot.
     """
 
     def __init__(
-        self, session: MavlinkSession, motion_rate_hz: float = 50.0, *, stops_unused_streams: bool = True
+        self,
+        session: MavlinkSession,
+        motion_rate_hz: float = 50.0,
+        *,
+        stops_unused_streams: bool = True,
+        kind: AutopilotKind = AutopilotKind.AUTO,
     ) -> None:
         self.session = session
+        self._kind = kind
         self._stops_unused = stops_unused_streams
         self._motion_rate_hz = motion_rate_hz
         self.state = AutopilotState()
@@ -54,6 +67,9 @@ class AutopilotLink:
         self._acknowledgements: list[tuple[int, int]] = []
         self._unanswered: dict[int, int] = {}
         self._origin_asked_ns: int | None = None
+        self._limits: tuple[_LimitsAsked, FlightLimits] | None = None
+        self._heard_ns: int | None = None
+        self._polled_ns: int | None = None
 
     def receive(self, data: bytes, local_ns: int) -> None:
         """Take bytes of the transport.
@@ -66,6 +82,9 @@ class AutopilotLink:
     def poll(self, local_ns: int) -> None:
         """Do what is due by now."""
         self._take(self.session.poll(local_ns), local_ns)
+        if self._is_out_of_touch(local_ns):
+            self._set_link(up=False)  # until a heartbeat says what the autopilot does now
+        self._polled_ns = local_ns
         self._ask_for_origin(local_ns)
 
     def take_acknowledgements(self) -> tuple[tuple[int, int], ...]:
@@ -80,7 +99,12 @@ class AutopilotLink:
 
     def limits(self, wanted: FlightLimits) -> FlightLimits:
         """Return `wanted` cut to the autopilot's own limits, as far as they are known."""
-        return wanted if self.driver is None else self.driver.limits(wanted, self.state.parameters)
+        if self.driver is None:
+            return wanted
+        asked = (wanted, self.driver, self.state.parameters)
+        if self._limits is None or any(now is not then for now, then in zip(asked, self._limits[0], strict=True)):
+            self._limits = (asked, self.driver.limits(wanted, self.state.parameters))
+        return self._limits[1]
 
     def send_setpoint(self, setpoint: Setpoint, local_ns: int) -> None:
         """Send a setpoint for the flight; one that the message cannot hold is counted and left out."""
@@ -115,9 +139,10 @@ class AutopilotLink:
         for event in events:
             match event:
                 case MessageReceived() if self.driver is not None:
+                    self._heard_ns = local_ns
                     self._hear(event.message, self.driver)
                 case LinkFound():
-                    self.driver = driver_for(event.autopilot, event.vehicle_type)
+                    self.driver = driver_for(event.autopilot, event.vehicle_type, self._kind)
                     self._ask_for_streams(self.driver, local_ns)
                 case LinkLost() | LinkRegained():
                     self._set_link(up=isinstance(event, LinkRegained))
@@ -137,10 +162,18 @@ class AutopilotLink:
                     pass
 
     def _hear(self, message: Message, driver: Driver) -> None:
+        if message.get_type() == "PARAM_VALUE":
+            self._hear_parameter(message, driver)
         shift = self.state.view.frame_shift_enu_m
         self.state = heard(self.state, message, self.session.clock, driver)
         if self.state.view.frame_shift_enu_m != shift:
             self._origin_asked_ns = None  # it has probably moved, too
+
+    def _hear_parameter(self, message: Message, driver: Driver) -> None:
+        """Take a limit that somebody else has changed: autopilots tell everybody."""
+        value = parameter_value(message, driver.autopilot_id)
+        if message.param_id in (*driver.limit_parameters, driver.timeout_parameter) and value is not None:
+            self.state = replace(self.state, parameters={**self.state.parameters, message.param_id: float(value)})
 
     def _start_over(self) -> None:
         """Forget what the autopilot told before its restart, except for its parameters."""
@@ -157,12 +190,20 @@ class AutopilotLink:
     def _set_link(self, *, up: bool) -> None:
         self.state = replace(self.state, view=replace(self.state.view, link_up=up))
 
+    def _is_out_of_touch(self, local_ns: int) -> bool:
+        """Return whether the autopilot may have given up on setpoints, since it is silent or since we stood still."""
+        if self.driver is None or self._heard_ns is None or self._polled_ns is None:
+            return False
+        timeout_s = self.state.parameters.get(self.driver.timeout_parameter, self.driver.timeout_default_s)
+        apart_s = (local_ns - min(self._heard_ns, self._polled_ns)) * 1e-9
+        return apart_s > max(_WAITED_SHARE * timeout_s, _WAITED_MIN_S)
+
     def _ask_for_streams(self, driver: Driver, local_ns: int) -> None:
         motion_hz = dict.fromkeys(_MOTION_IDS, self._motion_rate_hz)
         unused_hz = dict.fromkeys(driver.unused_streams if self._stops_unused else (), 0.0)
-        for message_id, rate_hz in (motion_hz | _STREAMS_HZ | unused_hz).items():
+        for message_id, rate_hz in (motion_hz | _STREAMS_HZ | dict(driver.mode_streams_hz) | unused_hz).items():
             self.session.request_interval(message_id, rate_hz, local_ns)
-        for name in driver.limit_parameters:
+        for name in (*driver.limit_parameters, driver.timeout_parameter):
             self.session.read_parameter(name, local_ns)
 
     def _ask_for_origin(self, local_ns: int) -> None:

@@ -1,17 +1,19 @@
 """The autopilot's messages folded into what the companion's step wants to know of it."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import hypot, isfinite, radians
 from types import MappingProxyType
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotView, Driver
 from companion.data import OwnState
+from companion.sensor_messages import with_sensor
 from link.frames import enu_from_ned, flu_from_frd, multiply, normalized, quaternion_enu_flu_from_ned_frd
 from link.geodesy import Datum
 from link.mavlink.clock_map import ClockMap
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Quaternion, Vector3
+from link.records import replace
 
 _HISTORY_NS = 1_000_000_000  # sightings of the pad arrive less late than this
 _AHEAD_NS = 100_000_000  # how far a report is carried beyond the newest one
@@ -21,10 +23,13 @@ _POSITION_MAX_M = 1e6  # farther from the origin no local frame is meant
 _SPEED_MAX_M_S = 1e3
 _JUMP_MIN_M = 1.5  # of the drone's own position between two reports: its local frame has moved
 _MANOEUVRE_M_S2 = 10.0  # what flying can add to it
+_JUMP_GAP_MAX_S = 0.5  # a drone that was silent for longer may have braked or turned meanwhile
 _GEOID_MAX_M = 120.0  # it lies between -107 and 86 m (EGM96)
 _GEOID_STEP_M = 1.0  # a smaller change of the geoid's height along a flight is left alone
 _LATITUDE_MAX_1E7 = 90 * 10**7
 _LONGITUDE_MAX_1E7 = 180 * 10**7
+_ACCELERATION_OVER_NS = (40_000_000, 120_000_000)  # between two reports that an acceleration is taken from
+_JOLT_OVER_NS = 45_000_000  # a stop within one report is seen in two more at 50 Hz
 _FAILSAFE_STATES = (mavlink.MAV_STATE_CRITICAL, mavlink.MAV_STATE_EMERGENCY)
 
 
@@ -40,7 +45,7 @@ class AutopilotState:
         origin_msl: the origin with its altitude above mean sea level, as it is sent.
         geoid_height_m: of mean sea level above the ellipsoid, 0 until the autopilot's receiver tells it.
         parameters: those read, by name.
-        texts: STATUSTEXT not yet taken.
+        texts: what it said and nobody has taken yet.
     """
 
     view: AutopilotView = NO_AUTOPILOT
@@ -67,15 +72,20 @@ class AutopilotState:
 def carried(own: OwnState, t_ns: int) -> OwnState:
     """Return the drone at `t_ns`, carried from a report at its velocity and angular velocity."""
     dt_s = (t_ns - own.t_ns) * 1e-9
-    (x, y, z), (vx, vy, vz) = own.position_enu_m, own.velocity_enu_m_s
     p, q, r = own.angular_velocity_flu_rad_s
     turn = normalized((1.0, 0.5 * p * dt_s, 0.5 * q * dt_s, 0.5 * r * dt_s))
     return replace(
         own,
         t_ns=t_ns,
-        position_enu_m=(x + vx * dt_s, y + vy * dt_s, z + vz * dt_s),
+        position_enu_m=_moved(own, dt_s),
         orientation_wxyz=multiply(own.orientation_wxyz, turn),
     )
+
+
+def _moved(own: OwnState, dt_s: float) -> Vector3:
+    """Where the drone is `dt_s` after a report at its velocity."""
+    (x, y, z), (vx, vy, vz) = own.position_enu_m, own.velocity_enu_m_s
+    return (x + vx * dt_s, y + vy * dt_s, z + vz * dt_s)
 
 
 def heard(state: AutopilotState, message: Message, clock: ClockMap, driver: Driver) -> AutopilotState:
@@ -91,16 +101,29 @@ def heard(state: AutopilotState, message: Message, clock: ClockMap, driver: Driv
             in_control = driver.is_in_control(mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, message.custom_mode)
             state = replace(state, view=replace(state.view, in_control=in_control))
         case "EXTENDED_SYS_STATE":
-            state = replace(state, view=replace(state.view, landed=_landed(message.landed_state)))
+            taking_off = message.landed_state == mavlink.MAV_LANDED_STATE_TAKEOFF
+            view = replace(state.view, landed=_landed(message.landed_state), taking_off=taking_off)
+            state = replace(state, view=view)
         case "GPS_GLOBAL_ORIGIN":
             state = _origin(state, message)
         case "GPS_RAW_INT":
             state = _geoid(state, message)
-        case "STATUSTEXT":
-            state = replace(state, texts=(*state.texts, f"{message.text}"))
+        case "DISTANCE_SENSOR" | "BATTERY_STATUS":
+            state = replace(state, view=with_sensor(state.view, message, clock))
+        case "STATUSTEXT" | "EVENT":
+            state = _said(state, message, driver)
         case _:
             pass
     return state
+
+
+def _said(state: AutopilotState, message: Message, driver: Driver) -> AutopilotState:
+    """Take a text, or an event in words."""
+    refusal = driver.refusal(message)
+    if refusal is not None and not state.view.armed:
+        state = replace(state, view=replace(state.view, refusal=refusal))
+    text = refusal if message.get_type() == "EVENT" else f"{message.text}"
+    return state if text is None else replace(state, texts=(*state.texts, text))
 
 
 def _position(state: AutopilotState, message: Message, clock: ClockMap) -> AutopilotState:
@@ -125,12 +148,34 @@ def _position(state: AutopilotState, message: Message, clock: ClockMap) -> Autop
 def _reported(state: AutopilotState, own: OwnState) -> AutopilotState:
     """Add the drone's newest report to the history; one that flying cannot explain begins a new one."""
     t_ns = own.t_ns
-    kept = tuple(old for old in state.history if t_ns - old.t_ns <= _HISTORY_NS)
+    kept = state.history
+    while kept and t_ns - kept[0].t_ns > _HISTORY_NS:
+        kept = kept[1:]
     jump = _jump(kept[-1], own) if kept else None
     if jump is None:
+        up_m_s2, jolt_m_s2 = _acceleration_up_m_s2(kept, own), _jolt_m_s2(kept, own)
+        own = replace(own, acceleration_up_m_s2=up_m_s2, jolt_m_s2=jolt_m_s2)
         return replace(state, history=(*kept, own))
     (x, y, z), (dx, dy, dz) = state.view.frame_shift_enu_m, jump
     return replace(state, history=(own,), view=replace(state.view, frame_shift_enu_m=(x + dx, y + dy, z + dz)))
+
+
+def _acceleration_up_m_s2(earlier: Sequence[OwnState], own: OwnState) -> float | None:
+    """Return the vertical acceleration between the newest report and one shortly before it."""
+    shortest_ns, longest_ns = _ACCELERATION_OVER_NS
+    for old in earlier:
+        if shortest_ns <= own.t_ns - old.t_ns <= longest_ns:
+            return (own.velocity_enu_m_s[2] - old.velocity_enu_m_s[2]) / ((own.t_ns - old.t_ns) * 1e-9)
+    return None
+
+
+def _jolt_m_s2(earlier: Sequence[OwnState], own: OwnState) -> float | None:
+    """Return the horizontal acceleration between the newest report and the last one clearly before it."""
+    for old in reversed(earlier):
+        if own.t_ns - old.t_ns >= _JOLT_OVER_NS:
+            (vx, vy, _), (before_x, before_y, _) = own.velocity_enu_m_s, old.velocity_enu_m_s
+            return hypot(vx - before_x, vy - before_y) / ((own.t_ns - old.t_ns) * 1e-9)
+    return None
 
 
 def _is_plausible(position_m: Sequence[float], velocity_m_s: Sequence[float]) -> bool:
@@ -140,9 +185,11 @@ def _is_plausible(position_m: Sequence[float], velocity_m_s: Sequence[float]) ->
 
 def _jump(before: OwnState, own: OwnState) -> Vector3 | None:
     """Return by how much the local frame moved under the drone, None when flying explains the difference."""
-    expected = carried(before, own.t_ns).position_enu_m
-    dx, dy, dz = (now - then for now, then in zip(own.position_enu_m, expected, strict=True))
     duration_s = (own.t_ns - before.t_ns) * 1e-9
+    if duration_s > _JUMP_GAP_MAX_S:
+        return None
+    expected = _moved(before, duration_s)
+    dx, dy, dz = (now - then for now, then in zip(own.position_enu_m, expected, strict=True))
     return (dx, dy, dz) if hypot(dx, dy, dz) > _JUMP_MIN_M + 0.5 * _MANOEUVRE_M_S2 * duration_s**2 else None
 
 
@@ -156,10 +203,12 @@ def _attitude(state: AutopilotState, message: Message) -> AutopilotState:
 
 
 def _heartbeat(state: AutopilotState, message: Message, driver: Driver) -> AutopilotState:
+    armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
     view = replace(
         state.view,
         link_up=True,
-        armed=bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED),
+        armed=armed,
+        refusal=None if armed else state.view.refusal,
         in_control=driver.is_in_control(message.base_mode, message.custom_mode),
         failsafe=message.system_status in _FAILSAFE_STATES,
     )
@@ -198,7 +247,9 @@ def _placed(state: AutopilotState) -> AutopilotState:
     """Put the origin above the ellipsoid; a moved one is counted, since the local frame has then moved."""
     if state.origin_msl is None:
         return state
-    origin = replace(state.origin_msl, altitude_m=state.origin_msl.altitude_m + state.geoid_height_m)
+    latitude_rad, longitude_rad = state.origin_msl.latitude_rad, state.origin_msl.longitude_rad
+    altitude_m = state.origin_msl.altitude_m + state.geoid_height_m
+    origin = Datum(latitude_rad=latitude_rad, longitude_rad=longitude_rad, altitude_m=altitude_m)
     known = state.view.origin
     if known is not None and (
         abs(origin.latitude_rad - known.latitude_rad) < _ORIGIN_MOVED_RAD

@@ -5,12 +5,16 @@ import numpy as np
 from companion.config import CompanionConfig
 from companion.estimation.factory import make_estimator
 from companion.node import CompanionNode
+from companion.pad import turned_lever
 from companion.planning.guidance import PlanRequest, ReferenceState, Target
 from companion.planning.kinds import make_guidance
+from companion.recording_node import RecordingNode
 from companion.step_data import System
 from link.keys import Keys
 from link.mavlink.session import MavlinkSession
 from link.mavlink.session_config import SessionConfig
+from link.mavlink.signing import Signing
+from link.recorder import Recorder
 
 
 def warm_up(system: System) -> None:
@@ -37,6 +41,7 @@ def warm_up(system: System) -> None:
             dt_s=1.0 / system.config.step_rate_hz,
         )
         memory, _ = system.guidance.plan(memory, request)
+    turned_lever(np.zeros_like(offset_s), offset_s, 1.0, 0.0)
 
 
 def build_node(
@@ -46,6 +51,8 @@ def build_node(
     system_id: int = 1,
     dry_run: bool = False,
     records_input: bool = False,
+    recorder: Recorder | None = None,
+    signing_key: bytes | None = None,
 ) -> CompanionNode:
     """Return a companion that has seen nothing yet.
 
@@ -54,7 +61,9 @@ def build_node(
         keys: of the Zenoh contract.
         system_id: MAVLink's, the vehicle's own.
         dry_run: send neither setpoints nor commands.
-        records_input: keep received frames for a recording.
+        records_input: keep received frames for a recording of the link.
+        recorder: takes all that goes in and out, None where nothing is recorded.
+        signing_key: 32 bytes shared with the autopilot; None sends unsigned and takes everything.
     """
     system = System(
         config=config,
@@ -62,5 +71,8 @@ def build_node(
         guidance=make_guidance(config.guidance.kind, config.guidance),
     )
     warm_up(system)
-    session = MavlinkSession(system_id, config=SessionConfig(records_input=records_input))
+    signing = None if signing_key is None else Signing(signing_key)
+    session = MavlinkSession(system_id, config=SessionConfig(records_input=records_input), signing=signing)
+    if recorder is not None:
+        return RecordingNode(system, keys, session, recorder, dry_run=dry_run)
     return CompanionNode(system, keys, session, dry_run=dry_run)

@@ -5,6 +5,7 @@ from typing import Annotated
 
 from pydantic import Field
 
+from companion.autopilots.kinds import AutopilotKind
 from companion.data import FlightLimits
 from companion.estimation.config import EstimatorConfig
 from companion.planning.config import GuidanceConfig
@@ -33,10 +34,14 @@ class LimitsConfig(StrictModel):
     acceleration_max_m_s2: Positive = 5.0
     vertical_acceleration_max_m_s2: Positive = 3.0
     jerk_max_m_s3: Positive = 20.0
+    range_max_m: Positive = 2000.0  # from the waiting point; set it to the fence's radius
+    landing_time_s: Positive = 15.0  # from the chase's beginning to the pad, for the way that takes
+    battery_min_share: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.2  # below this no landing is begun
 
     def flight_limits(self) -> FlightLimits:
-        """Return the same numbers as the planner takes them."""
-        return FlightLimits(**self.model_dump())
+        """Return the planner's part of them."""
+        names = FlightLimits.__dataclass_fields__
+        return FlightLimits(**{name: value for name, value in self.model_dump().items() if name in names})
 
 
 class TakeoffConfig(StrictModel):
@@ -54,6 +59,9 @@ class ChaseConfig(StrictModel):
     height_m: Positive = 3.5  # above the pad, until the drone is over it; 5 m over a road under a roof of 1.5 m
     start_acceleration_m_s2: Positive = 3.5  # share of the limit that the rendezvous is planned with
     passing_distance_m: Positive = 15.0  # a vehicle that passes farther away than this is not chased
+    # One that has passed meanwhile is chased while so much more speed makes its lead up in that time.
+    catch_up_speed_m_s: Positive = 10.0
+    catch_up_s: Positive = 5.0
     parked_speed_m_s: Positive = 0.3  # slower than this is standing
     driving_hold_s: NotNegative = (
         0.5  # faster than that for so long is driving: estimates from fixes of 0.1 m jump for 0.3 s
@@ -77,6 +85,9 @@ class DescentConfig(StrictModel):
     press_depth_m: Positive = 0.5  # how far below the pad the setpoint goes on, so that contact is firm
     cone_radius_at_pad_m: Positive = 0.3
     cone_slope: NotNegative = 0.35  # metres of radius per metre of height
+    # While the vehicle brakes or speeds up harder than this, as the drone must lean for, the descent waits.
+    speed_change_max_m_s2: Positive = 1.2
+    waiting_height_m: Positive = 0.6
     commit_height_m: Positive = 0.35  # below this it lands rather than aborts
     time_limit_s: Positive = 30.0
 
@@ -88,7 +99,15 @@ class TouchdownConfig(StrictModel):
     height_max_m: Positive = 0.35  # estimated height over the pad at which a contact is believed
     blocked_depth_m: Positive = 0.06  # how far the setpoint has sunk below the drone
     blocked_speed_m_s: Positive = 0.2  # relative vertical speed that counts as standing
+    falling_acceleration_m_s2: Positive = 3.5  # downwards faster than this nothing stands on a pad; half of the presses
+    range_finder_height_m: NotNegative = 0.12  # of the range finder above the feet
+    range_corrects_height: bool = (
+        False  # for a drone whose own height wanders: the pad is where the range finder sees it
+    )
+    range_height_max_m: Positive = 0.15  # seen under the feet at which the range finder still agrees with a contact
     hold_s: NotNegative = 0.1
+    jolt_m_s2: Positive = 25.0  # horizontally: no flying changes the velocity so fast, and no hold is waited for
+    disputed_hold_s: NotNegative = 1.0  # instead, when the range finder does not agree
     level_height_m: NotNegative = 0.14  # below this the drone turns less than the deck, to touch down level
     level_acceleration_m_s2: Positive = 1.6  # 9 degrees; S2 allows 10 over trim
     # Downwards, while the signs of a contact hold, and once they are believed: nearly the whole weight on the gear.
@@ -115,10 +134,19 @@ class AbortConfig(StrictModel):
     retries_max: Annotated[int, Field(ge=0, le=20)] = 3
 
 
+class RecordingConfig(StrictModel):
+    """The recording of a flight; see docs/recording.md."""
+
+    folder: str | None = None  # where it is written, none where there is no folder; `--record` stands above it
+    file_max_mb: Positive = 256.0  # after which a new file is begun
+    total_max_mb: Annotated[float, Field(gt=0.0, le=1e6)] = 2000.0  # of all files; the oldest are deleted
+
+
 class CompanionConfig(StrictModel):
     """Everything that can be set about the companion."""
 
     step_rate_hz: Annotated[float, Field(ge=10.0, le=200.0)] = 50.0
+    autopilot: AutopilotKind = AutopilotKind.AUTO  # any other than the one named is refused
     stops_unused_streams: bool = True  # on the companion's own link; false where others listen on it, too
     status_rate_hz: Annotated[float, Field(ge=0.5, le=50.0)] = 10.0
     setpoint_lead_s: Annotated[float, Field(ge=0.0, le=0.5)] = (
@@ -137,3 +165,4 @@ class CompanionConfig(StrictModel):
     abort: AbortConfig = AbortConfig()
     estimator: EstimatorConfig = EstimatorConfig()
     guidance: GuidanceConfig = GuidanceConfig()
+    recording: RecordingConfig = RecordingConfig()

@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 class Quantity(Enum):
     """What a measurement measures, each with the frame of its value."""
 
+    __hash__ = object.__hash__  # by identity, as members compare: a name is hashed anew at every look-up
+
     POSITION = "position"  # of the antenna in W, m (3)
     VELOCITY = "velocity"  # of the antenna in W, m/s (3)
     HEADING = "heading"  # yaw of V about W's z, rad (1)
@@ -81,13 +83,27 @@ class Forecast:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OwnState:
-    """The drone as its autopilot reports it; `t_ns` is when it was so."""
+    """The drone as its autopilot reports it; `t_ns` is when it was so.
+
+    `acceleration_up_m_s2`, and `jolt_m_s2` as the size of the horizontal acceleration, are from the last reports'
+    velocities, None before there are enough.
+    """
 
     t_ns: int
     position_enu_m: Vector3
     velocity_enu_m_s: Vector3
     orientation_wxyz: Quaternion
     angular_velocity_flu_rad_s: Vector3
+    acceleration_up_m_s2: float | None = None
+    jolt_m_s2: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RangeReading:
+    """What a range finder that looks down along the drone's body measured at `t_ns`."""
+
+    t_ns: int
+    distance_m: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,128 +1,32 @@
 """The wire loop of the companion: sockets and clocks around the node, nothing else."""
 
-import queue
 import signal
 import time
-from collections import deque
 from collections.abc import Callable
-from concurrent.futures import Future
 from contextlib import ExitStack
-from dataclasses import dataclass, field
-from pathlib import Path
 
-import psutil  # type: ignore[import-untyped]  # it has no annotations
 import structlog
 
+from companion.command_desk import CommandDesk
+from companion.loop_options import Links, LoopOptions
 from companion.node import CompanionNode
+from companion.onlookers import Onlooker, onlookers
 from companion.phases import Phase
+from companion.recording_node import RecordingNode
+from companion.timings import Timings
 from link import cdr, json_payloads
 from link.clock import Clock, ClockTick, SimulatedClock, SystemClock
 from link.errors import UserError
-from link.keys import Keys
-from link.mavlink.tlog import TlogWriter
-from link.mavlink.transports import Transport
-from link.messages import Command, CommandReply, PadGeometry
+from link.mavlink.tlog import TlogFrames, TlogSink
+from link.messages import Command, PadGeometry
 from link.payload_checks import PayloadError
-from link.zenoh_session import Inbox, ZenohSession
+from link.recorder import BackgroundRecorder, Recorder
+from link.service import Service
+from link.zenoh_session import Inbox
 
 _WAIT_MAX_S = 0.005  # for bytes; Zenoh samples wait no longer than this
-_REPLY_WAIT_S = 2.0
 _ASK_PAD_S = 1.0
-_START_AGAIN_S = 0.5
-_DURATIONS_MAX = 200_000  # steps whose durations are kept, over an hour's worth
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LoopOptions:
-    """How the loop runs.
-
-    Attributes:
-        device: of the MAVLink link, for messages.
-        timeout_s: without an autopilot or, with `start`, a vehicle; 0 waits for ever.
-        start: start the landing without an operator.
-        use_sim_time: follow `{ns}/clock` instead of the system's clock.
-        tlog: file to record MAVLink into.
-    """
-
-    device: str
-    timeout_s: float
-    start: bool
-    use_sim_time: bool
-    tlog: Path | None
-
-
-@dataclass(slots=True)
-class Timings:
-    """How long the loop took, in wall seconds."""
-
-    state_to_setpoint_s: deque[float] = field(default_factory=lambda: deque(maxlen=_DURATIONS_MAX))
-    started_s: float = field(default_factory=time.perf_counter)
-    started_cpu_s: float = field(default_factory=time.process_time)
-
-    def summary(self) -> dict[str, float | int]:
-        """Return what belongs into a timing file."""
-        ordered = sorted(self.state_to_setpoint_s)
-        wall_s = time.perf_counter() - self.started_s
-
-        def quantile_ms(share: float) -> float:
-            return round(1e3 * ordered[min(int(share * len(ordered)), len(ordered) - 1)], 4) if ordered else 0.0
-
-        return {
-            "steps": len(ordered),
-            "state_to_setpoint_median_ms": quantile_ms(0.5),
-            "state_to_setpoint_p99_ms": quantile_ms(0.99),
-            "state_to_setpoint_max_ms": quantile_ms(1.0),
-            "cpu_share": round((time.process_time() - self.started_cpu_s) / wall_s, 4),
-            "memory_mb": round(psutil.Process().memory_info().rss / 1e6, 1),
-        }
-
-
-class CommandDesk:
-    """Takes operators' commands from Zenoh's threads to the loop, and the replies back."""
-
-    def __init__(self) -> None:
-        self._waiting: queue.SimpleQueue[tuple[Command, Future[CommandReply]]] = queue.SimpleQueue()
-        self._asked: deque[Future[CommandReply]] = deque()
-
-    def handle(self, payload: bytes) -> bytes:
-        """Answer a query; called from a thread of Zenoh's."""
-        try:
-            command = json_payloads.decode(Command, payload)
-        except PayloadError as error:
-            return json_payloads.encode(CommandReply(accepted=False, reason=str(error)))
-        reply: Future[CommandReply] = Future()
-        self._waiting.put((command, reply))
-        try:
-            return json_payloads.encode(reply.result(timeout=_REPLY_WAIT_S))
-        except TimeoutError:
-            reply.cancel()  # what was answered by a refusal must not be done later
-            return json_payloads.encode(CommandReply(accepted=False, reason="the companion made no step in time"))
-
-    def pass_on(self, node: CompanionNode) -> None:
-        """Give the oldest command to the node, one at a time."""
-        while not self._asked:
-            try:
-                command, reply = self._waiting.get_nowait()
-            except queue.Empty:
-                return
-            if reply.set_running_or_notify_cancel():
-                node.request(command)
-                self._asked.append(reply)
-
-    def answer(self, replies: list[CommandReply]) -> None:
-        """Give the replies to whom they belong, in order."""
-        for reply in replies:
-            if self._asked:
-                self._asked.popleft().set_result(reply)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Links:
-    """What connects the node with the world."""
-
-    keys: Keys
-    transport: Transport
-    zenoh: ZenohSession
+_LEAVE_MAX_S = 1.5  # a mode may be confirmed by the next heartbeat only
 
 
 def run(node: CompanionNode, links: Links, options: LoopOptions) -> Timings:
@@ -132,19 +36,32 @@ def run(node: CompanionNode, links: Links, options: LoopOptions) -> Timings:
         UserError: no autopilot, no vehicle or no simulated clock within the time-out.
     """
     with ExitStack() as stack:
-        tlog = stack.enter_context(TlogWriter(options.tlog)) if options.tlog is not None else None
-        return _Loop(node, links, options, tlog).run()
+        tlog: Recorder | None = None
+        if options.tlog is not None:
+            tlog = BackgroundRecorder(TlogSink(options.tlog))
+            stack.callback(tlog.close)
+        lookers = onlookers(stack, links.zenoh, links.keys, options.device)
+        return _Loop(node, links, options, tlog, lookers).run()
 
 
 class _Loop:
-    def __init__(self, node: CompanionNode, links: Links, options: LoopOptions, tlog: TlogWriter | None) -> None:
+    def __init__(
+        self,
+        node: CompanionNode,
+        links: Links,
+        options: LoopOptions,
+        tlog: Recorder | None,
+        lookers: list[Onlooker],
+    ) -> None:
         self._node = node
         self._keys = keys = links.keys
         self._transport = links.transport
         self._zenoh = zenoh = links.zenoh
         self._options = options
         self._tlog = tlog
+        self._onlookers = lookers
         self._log = structlog.get_logger("companion")
+        self._service = Service()
         self._desk = CommandDesk()
         self._timings = Timings()
         self._inbox = zenoh.subscribe(keys.fix)
@@ -167,7 +84,10 @@ class _Loop:
         self._log.info("ready", device=self._options.device)
         while not self._stopping:
             self._turn(clock)
+        self._service.stopping()
+        self._leave(clock)
         self._send_rest()
+        self._service.close()
         return self._timings
 
     def _stop(self, *_: object) -> None:
@@ -200,6 +120,7 @@ class _Loop:
 
     def _turn(self, clock: Clock) -> None:
         """Wait for bytes, take what has come, step if due, send."""
+        self._service.alive(time.monotonic_ns())
         if isinstance(clock, SimulatedClock):
             self._tick(clock)
         data = self._transport.receive(min(_WAIT_MAX_S, clock.wall_s(_WAIT_MAX_S)))
@@ -213,8 +134,15 @@ class _Loop:
         stepped = self._node.poll(local_ns)
         self._send_frames(local_ns)
         if stepped:
-            self._timings.state_to_setpoint_s.append(time.perf_counter() - received_s)
+            self._note_time(time.perf_counter() - received_s)
+            for onlooker in self._onlookers:
+                onlooker.tell(self._node, local_ns)
             self._after_step()
+
+    def _note_time(self, state_to_setpoint_s: float) -> None:
+        self._timings.state_to_setpoint_s.append(state_to_setpoint_s)
+        if isinstance(self._node, RecordingNode):
+            self._node.record_step_time(state_to_setpoint_s)
 
     def _take_samples(self) -> None:
         for inbox in self._inboxes:
@@ -232,8 +160,7 @@ class _Loop:
     def _record(self, frames: list[bytes], local_ns: int) -> None:
         if self._tlog is not None and frames:
             utc_ns = self._node.autopilot.session.clock.local_to_utc_ns(local_ns)
-            for frame in frames:
-                self._tlog.write(frame, utc_ns)
+            self._tlog.put(TlogFrames(frames, utc_ns))
 
     def _after_step(self) -> None:
         """Publish, reply, log; and see to what is still missing."""
@@ -243,6 +170,7 @@ class _Loop:
         outputs = self._node.outputs
         if outputs is not None and outputs.text is not None:
             self._log.info(outputs.status.phase, reason=outputs.status.reason)
+            self._service.status(f"{outputs.status.phase}: {outputs.status.reason}")
         for text in self._node.autopilot.take_texts():
             self._log.info("autopilot", text=text)
         self._say_link()
@@ -255,6 +183,7 @@ class _Loop:
         is_up = self._node.autopilot.session.link_up
         if is_up and not self._link_was_up:
             self._log.info("autopilot found" if self._link_was_up is None else "autopilot found again")
+            self._service.ready()
         elif self._link_was_up and not is_up:
             self._log.warning("autopilot lost")
         self._link_was_up = is_up if is_up or self._link_was_up is not None else None
@@ -296,6 +225,15 @@ class _Loop:
                 f"no vehicle fix on {self._keys.fix} within {self._options.timeout_s:g} s: start the vehicle, "
                 "or check --ns, --vehicle and -e"
             )
+
+    def _leave(self, clock: Clock) -> None:
+        """Hand a flying drone over to its autopilot, which may take setpoints that stop for a fault or fly on."""
+        if not self._node.flies:
+            return
+        self._node.leave()
+        until_s = time.monotonic() + _LEAVE_MAX_S
+        while self._node.flies and time.monotonic() < until_s:
+            self._turn(clock)
 
     def _send_rest(self) -> None:
         for frame in self._node.take_frames():

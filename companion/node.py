@@ -6,8 +6,10 @@ The wire loop, the lockstep campaigns and the tests all run this one.
 from dataclasses import replace
 
 from companion.autopilot_link import AutopilotLink
-from companion.data import Measurement
+from companion.data import Measurement, VehicleEstimate
+from companion.estimation.buffered import BufferHealth
 from companion.estimation.factory import make_estimator
+from companion.phases import FLYING_PHASES
 from companion.shifts import at_other_time
 from companion.step import companion_step
 from companion.step_data import StepInputs, StepMemory, StepOutputs, System
@@ -40,6 +42,7 @@ _EARLY = 0.75  # of a period: a new state of the drone starts the next step from
 _LATE = 2.0  # periods without a new state after which the step is made without one
 _CLOCK_SET_NS = 200_000_000  # more than the map to UTC is ever refined by at once
 _FUTURE_MAX_NS = 500_000_000  # a stamp farther ahead comes from a clock that is wrong
+_LINK_DELAY_MAX_S = 0.3  # a longer way is not led for: the model is too uncertain so far ahead
 _LEVER_MAX_M = 50.0  # no vehicle is larger
 _PLAN_EVERY = 2  # statuses
 _PLAN_POINTS = 2  # every so many points of the plan are published
@@ -60,17 +63,21 @@ class CompanionNode:
             session,
             motion_rate_hz=max(system.config.step_rate_hz, _MOTION_RATE_MIN_HZ),
             stops_unused_streams=system.config.stops_unused_streams,
+            kind=system.config.autopilot,
         )
         self._dry_run = dry_run
+        self._limits_wanted = system.config.limits.flight_limits()
         self.memory = StepMemory()
+        self.inputs: StepInputs | None = None
         self.outputs: StepOutputs | None = None
         self.bad_payloads = 0
-        self._system = system
+        self.system = system
         self._keys = keys
         self._measurements: list[Measurement] = []
         self._pad: PadGeometry | None = None
         self._vehicle_alive: bool | None = None
         self._command: Command | None = None
+        self._leaving = False
         self._replies: list[CommandReply] = []
         self._publications: list[Publication] = []
         self._stepped_ns: int | None = None
@@ -83,6 +90,14 @@ class CompanionNode:
     def pad_known(self) -> bool:
         """Whether the vehicle has described its pad."""
         return self._pad is not None
+
+    def vehicle_estimate(self, t_ns: int) -> VehicleEstimate | None:
+        """Return the vehicle at `t_ns` (UTC) as the last step knew it, None before the first fix."""
+        return self.system.estimator.estimate(self.memory.estimator, t_ns)
+
+    def estimator_health(self) -> BufferHealth:
+        """Return what became of the measurements, and whether they agree with the estimator."""
+        return self.system.estimator.health(self.memory.estimator)
 
     def receive_mavlink(self, data: bytes, local_ns: int) -> None:
         """Take bytes of the autopilot's link.
@@ -111,8 +126,8 @@ class CompanionNode:
             self.bad_payloads += 1
             return
         self._pad = pad
-        estimator = make_estimator(self._system.config.estimator, pad.antenna_to_pad_m)
-        self._system = replace(self._system, estimator=estimator)
+        estimator = make_estimator(self.system.config.estimator, pad.antenna_to_pad_m)
+        self.system = replace(self.system, estimator=estimator)
 
     def is_ready_to_start(self) -> bool:
         """Return whether a start would be accepted now."""
@@ -127,6 +142,17 @@ class CompanionNode:
     def request(self, command: Command) -> None:
         """Take an operator's command; its reply follows the next step."""
         self._command = command
+
+    def leave(self) -> None:
+        """Ask the autopilot, from the next step on, to hover by itself."""
+        self._leaving = True
+
+    @property
+    def flies(self) -> bool:
+        """Whether motors turn at this companion's command."""
+        view = self.autopilot.state.view
+        steers = not self._dry_run and self.memory.phase in FLYING_PHASES
+        return steers and view.link_up and view.armed and view.in_control
 
     def poll(self, local_ns: int) -> bool:
         """Do what is due; return whether a step was made."""
@@ -170,7 +196,7 @@ class CompanionNode:
         if self._stepped_ns is None:
             return True
         own = self.autopilot.state.own
-        periods = (local_ns - self._stepped_ns) * 1e-9 * self._system.config.step_rate_hz
+        periods = (local_ns - self._stepped_ns) * 1e-9 * self.system.config.step_rate_hz
         is_new = own is not None and own.t_ns != self._stepped_own_ns
         return periods >= (_EARLY if is_new else _LATE)
 
@@ -179,7 +205,7 @@ class CompanionNode:
         self._set_time(local_ns)
         inputs = StepInputs(
             t_ns=self._t_ns,
-            limits=self.autopilot.limits(self._system.config.limits.flight_limits()),
+            limits=self.autopilot.limits(self._limits_wanted),
             own=state.own,
             autopilot=state.view,
             driver=self.autopilot.driver,
@@ -188,10 +214,13 @@ class CompanionNode:
             vehicle_alive=self._vehicle_alive,
             pad=self._pad,
             command=self._command,
+            leaving=self._leaving,
+            link_delay_s=min(self.autopilot.session.clock.one_way_s, _LINK_DELAY_MAX_S),
         )
         self._measurements, self._command = [], None
         self._stepped_ns, self._stepped_own_ns = local_ns, None if state.own is None else state.own.t_ns
-        self.memory, self.outputs = companion_step(self.memory, inputs, self._system)
+        self.inputs = inputs
+        self.memory, self.outputs = companion_step(self.memory, inputs, self.system)
         self._send(self.outputs, local_ns)
 
     def _set_time(self, local_ns: int) -> None:
@@ -218,7 +247,7 @@ class CompanionNode:
             self.autopilot.send_text(outputs.text)
         if outputs.reply is not None:
             self._replies.append(outputs.reply)
-        period_ns = 1e9 / self._system.config.status_rate_hz
+        period_ns = 1e9 / self.system.config.status_rate_hz
         if outputs.text is not None or self._t_ns - self._status_ns >= period_ns:
             self._publish(outputs)
 

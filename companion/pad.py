@@ -1,8 +1,10 @@
 """The landing pad now and over the horizon, from the forecast of the vehicle's antenna."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
 from companion.data import Array, Forecast
 from link.messages import PadGeometry
@@ -47,12 +49,9 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
     velocity = forecast.velocity_enu_m_s
     is_beside = bool(lever_x_m or lever_y_m)
     if forecast.yaw_rad is not None and is_beside:
-        yaw = np.unwrap(forecast.yaw_rad)
-        cos, sin = np.cos(yaw), np.sin(yaw)
-        lever = np.column_stack([cos * lever_x_m - sin * lever_y_m, sin * lever_x_m + cos * lever_y_m])
-        yaw_rate = np.gradient(yaw, forecast.offset_s)
-        position[:, :2] += lever
-        velocity = velocity + np.column_stack([-yaw_rate * lever[:, 1], yaw_rate * lever[:, 0], np.zeros_like(yaw)])
+        arm, swing = turned_lever(forecast.yaw_rad, forecast.offset_s, lever_x_m, lever_y_m)
+        position += arm
+        velocity = velocity + swing
     return PadPath(
         offset_s=forecast.offset_s,
         position_enu_m=position,
@@ -62,3 +61,29 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
         position_std_m=forecast.position_std_m,
         placed=forecast.yaw_rad is not None or not is_beside,
     )
+
+
+@njit(cache=True)
+def turned_lever(yaw_rad: Array, offset_s: Array, lever_x_m: float, lever_y_m: float) -> tuple[Array, Array]:
+    """Return a horizontal lever arm of V in W over a horizon, and its rate of change, each (n, 3).
+
+    Args:
+        yaw_rad: (n,) of V, wrapped or not; n > 1.
+        offset_s: (n,) rising.
+        lever_x_m: forward in V.
+        lever_y_m: left in V.
+    """
+    n = len(yaw_rad)
+    turn_rad, step_s = np.empty(n - 1), np.diff(offset_s)
+    for i in range(n - 1):
+        turn_rad[i] = (yaw_rad[i + 1] - yaw_rad[i] + math.pi) % (2.0 * math.pi) - math.pi
+    arm, swing = np.zeros((n, 3)), np.zeros((n, 3))
+    for i in range(n):
+        c, s = math.cos(yaw_rad[i]), math.sin(yaw_rad[i])
+        arm[i, 0], arm[i, 1] = c * lever_x_m - s * lever_y_m, s * lever_x_m + c * lever_y_m
+        before, after = max(i - 1, 0), min(i, n - 2)
+        # of second order within, where the slopes to both sides are weighed by each other's step
+        share = step_s[before] / (step_s[before] + step_s[after])
+        rate = (1.0 - share) * turn_rad[before] / step_s[before] + share * turn_rad[after] / step_s[after]
+        swing[i, 0], swing[i, 1] = -rate * arm[i, 1], rate * arm[i, 0]
+    return arm, swing

@@ -10,6 +10,8 @@ from enum import Enum
 class Phase(Enum):
     """Where in the landing the companion is."""
 
+    __hash__ = object.__hash__  # by identity, as members compare: a name is hashed anew at every look-up
+
     IDLE = "idle"  # flies nothing; the autopilot or its pilot does
     TAKEOFF = "takeoff"  # enters offboard control, arms and climbs to the waiting point
     WAITING = "waiting"  # hovers at the waiting point until the vehicle passes
@@ -62,6 +64,9 @@ FLYING_PHASES = frozenset(
 
 LANDING_PHASES = frozenset({Phase.CHASE, Phase.ALIGN, Phase.DESCEND})
 """Phases that follow the vehicle and are watched by the abort tests."""
+
+NEAR_PHASES = frozenset({Phase.ALIGN, Phase.DESCEND})
+"""Phases so near to the vehicle that its place must be known; a chase stays above all that it may be."""
 
 TRANSITIONS: dict[tuple[Phase, Event], Phase] = {
     (Phase.IDLE, Event.START): Phase.TAKEOFF,

@@ -5,12 +5,13 @@ lasting difference between the model and the drone at the same instant; its hori
 and added to the setpoints.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from companion.data import Array, OwnState, Setpoint
 from companion.planning.guidance import ReferenceState
+from link.records import replace
 
 _HISTORY_S = 0.6  # longer than any telemetry is late
 _CORRECTION_GAIN_HZ = 0.5  # slower than the autopilot's own position loop (about 1 rad/s) by a factor of two
@@ -37,7 +38,9 @@ class Tracking:
 
 def remember(tracking: Tracking, t_ns: int, reference: ReferenceState) -> Tracking:
     """Return the tracking with the model's position at `t_ns` added."""
-    kept = tuple(entry for entry in tracking.past if (t_ns - entry[0]) * 1e-9 <= _HISTORY_S)
+    kept = tracking.past
+    while kept and (t_ns - kept[0][0]) * 1e-9 > _HISTORY_S:
+        kept = kept[1:]
     return replace(tracking, past=(*kept, (t_ns, reference.position_enu_m)))
 
 

@@ -1,14 +1,19 @@
 """The facts of one step that the phases decide on, put together from the estimate, the pad and the drone."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from companion.autopilots.driver import AutopilotView
-from companion.data import Array, OwnState
+from companion.data import Array, FlightLimits, OwnState, RangeReading
 from companion.pad import PadPath
 from companion.planning.guidance import ReferenceState
+from link.frames import rotate
 from link.messages import Vector3
+
+_RANGE_AGE_MAX_S = 0.3
+_UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which a range finder does not look down
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -20,12 +25,16 @@ class Drone:
         velocity_enu_m_s: (3,) in W.
         yaw_rad: heading of B about W's z.
         age_s: of the report.
+        acceleration_up_m_s2: from the last reports, None before there are enough.
+        jolt_m_s2: size of the horizontal acceleration, likewise.
     """
 
     position_enu_m: Array
     velocity_enu_m_s: Array
     yaw_rad: float
     age_s: float
+    acceleration_up_m_s2: float | None = None
+    jolt_m_s2: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -43,6 +52,9 @@ class Situation:
         reference: the virtual model that the setpoints follow.
         tracking_error_m: distance of the drone from where it was asked to be at that time.
         waiting_point_enu_m: (3,) in W.
+        range_height_m: of the feet above what a range finder sees below, None without a fresh reading.
+        limits: of the flight, the autopilot's own included.
+        speed_limited_by: the autopilot's parameters that may bound the speed.
     """
 
     t_ns: int
@@ -55,6 +67,9 @@ class Situation:
     reference: ReferenceState | None
     tracking_error_m: float
     waiting_point_enu_m: Array | None
+    range_height_m: float | None = None
+    limits: FlightLimits | None = None
+    speed_limited_by: tuple[str, ...] = ()
 
     @property
     def relative_position_enu_m(self) -> Array | None:
@@ -84,15 +99,16 @@ class Approach:
 
 def approach(situation: Situation) -> Approach | None:
     """Return the drone against the pad, None unless both are known."""
-    position = situation.relative_position_enu_m
-    velocity = situation.relative_velocity_enu_m_s
-    if position is None or velocity is None:
+    drone, pad = situation.drone, situation.pad
+    if drone is None or pad is None:
         return None
+    (x, y, z), (vx, vy, vz) = drone.position_enu_m.tolist(), drone.velocity_enu_m_s.tolist()
+    (pad_x, pad_y, pad_z), (pad_vx, pad_vy, pad_vz) = pad.position_enu_m[0].tolist(), pad.velocity_enu_m_s[0].tolist()
     return Approach(
-        distance_m=float(np.hypot(position[0], position[1])),
-        speed_m_s=float(np.hypot(velocity[0], velocity[1])),
-        height_m=float(position[2]),
-        climb_m_s=float(velocity[2]),
+        distance_m=math.hypot(x - pad_x, y - pad_y),
+        speed_m_s=math.hypot(vx - pad_vx, vy - pad_vy),
+        height_m=z - situation.feet_offset_m - pad_z,
+        climb_m_s=vz - pad_vz,
     )
 
 
@@ -105,7 +121,29 @@ def drone_now(own: OwnState | None, t_ns: int, yaw_rad: float, age_max_s: float)
         return None
     velocity = np.array(own.velocity_enu_m_s)
     position = np.array(own.position_enu_m) + velocity * age_s
-    return Drone(position_enu_m=position, velocity_enu_m_s=velocity, yaw_rad=yaw_rad, age_s=age_s)
+    return Drone(
+        position_enu_m=position,
+        velocity_enu_m_s=velocity,
+        yaw_rad=yaw_rad,
+        age_s=age_s,
+        acceleration_up_m_s2=own.acceleration_up_m_s2,
+        jolt_m_s2=own.jolt_m_s2,
+    )
+
+
+def range_height_m(own: OwnState | None, seen: RangeReading | None, sensor_height_m: float, t_ns: int) -> float | None:
+    """Return the height of the drone's feet above what its range finder sees below.
+
+    Args:
+        own: the drone's newest report, for its tilt.
+        seen: the newest reading.
+        sensor_height_m: of the range finder above the feet.
+        t_ns: now.
+    """
+    if own is None or seen is None or abs(t_ns - seen.t_ns) * 1e-9 > _RANGE_AGE_MAX_S:
+        return None
+    _, _, upright = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
+    return seen.distance_m * upright - sensor_height_m if upright > _UPRIGHT_MIN else None
 
 
 def vector3(array: Array | None) -> Vector3 | None:

@@ -9,6 +9,7 @@ from companion.step_data import StepMemory
 from link.messages import LandingStatus
 
 _WAITING_FOR_PAD = frozenset({Phase.WAITING, Phase.CHASE, Phase.ALIGN})
+_NOT_BEGUN = frozenset({Phase.IDLE, Phase.WAITING})
 _TIMED_PHASES = frozenset({Phase.ALIGN, Phase.DESCEND})
 
 
@@ -35,6 +36,8 @@ def _reason(memory: StepMemory, situation: Situation) -> str:
     """Return what the landing waits for, or why its phase began."""
     if memory.phase in _WAITING_FOR_PAD and situation.pad is not None and not situation.pad.placed:
         return "vehicle heading unknown"
+    if memory.phase in _NOT_BEGUN and memory.obstacle is not None:
+        return memory.obstacle[1]
     return memory.reason
 
 

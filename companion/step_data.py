@@ -7,7 +7,7 @@ from typing import Any
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, AutopilotView, Driver, DriverMemory
 from companion.config import CompanionConfig
-from companion.data import Array, FlightLimits, Measurement, OwnState, Setpoint
+from companion.data import Array, FlightLimits, Forecast, Measurement, OwnState, Setpoint
 from companion.estimation.estimator import Estimator
 from companion.phases import Phase
 from companion.planning.guidance import Guidance, PlanResult, ReferenceState
@@ -39,6 +39,8 @@ class StepInputs:
         vehicle_alive: its liveliness token; None when it never showed one.
         pad: the vehicle's own description of its pad.
         command: an operator's wish.
+        leaving: the companion is about to end, so the autopilot is to hover by itself.
+        link_delay_s: from the companion to the autopilot.
     """
 
     t_ns: int
@@ -51,6 +53,8 @@ class StepInputs:
     vehicle_alive: bool | None = None
     pad: PadGeometry | None = None
     command: Command | None = None
+    leaving: bool = False
+    link_delay_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -64,6 +68,7 @@ class StepOutputs:
         reply: to the operator's command, None when there was none.
         status: for the world.
         plan: of this step, None while nothing is flown.
+        forecast: of the vehicle's antenna, None before the first fix.
     """
 
     setpoint: Setpoint | None
@@ -72,6 +77,7 @@ class StepOutputs:
     reply: CommandReply | None
     status: LandingStatus
     plan: PlanResult | None
+    forecast: Forecast | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -93,11 +99,13 @@ class StepMemory:
         reference_ns: the model's time.
         tracking: how the drone follows it.
         held: since when each test has been true.
+        obstacle: name of what makes a landing impossible, and the sentence that told it; None without one.
         waiting_point_enu_m: (3,) in W.
         anchor_enu_m: (3,) where a hover phase stays.
         yaw_setpoint_rad: last one sent.
         origin_count: of the frame that the estimate is in.
         frame_shift_enu_m: likewise.
+        pad_raised_m: by the range finder, in the drone's frame.
     """
 
     phase: Phase = Phase.IDLE
@@ -114,8 +122,10 @@ class StepMemory:
     reference_ns: int = 0
     tracking: Tracking = field(default_factory=Tracking)
     held: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
+    obstacle: tuple[str, str] | None = None
     waiting_point_enu_m: Array | None = None
     anchor_enu_m: Array | None = None
     yaw_setpoint_rad: float = 0.0
     origin_count: int = 0
     frame_shift_enu_m: Vector3 = (0.0, 0.0, 0.0)
+    pad_raised_m: float = 0.0

@@ -17,6 +17,7 @@ from companion.planning.guidance import ReferenceState, Target
 
 HORIZON_OFFSETS_S: Array = np.arange(0.0, 4.01, 0.2)
 NO_FLOOR_M = -1e4
+_SLOW_M_S = 0.5  # slower than this a vehicle has no direction to speak of
 _REST_M = 0.005
 _REST_MOTION = 0.01  # m/s and m/s^2
 
@@ -89,6 +90,8 @@ def _height_profile(
     """Return the wanted height over the pad (n,) and the sink rate against it (n,)."""
     n = len(pad.offset_s)
     match phase:
+        case Phase.DESCEND if changes_speed(pad, config.descent):
+            return waiting_profile(height_now_m, pad.offset_s, config.descent)
         case Phase.DESCEND | Phase.TOUCHDOWN:
             return sink_profile(height_now_m, pad.offset_s, config.descent)
         case Phase.ABORT:
@@ -133,6 +136,26 @@ def sink_profile(height_now_m: float, offset_s: Array, config: DescentConfig) ->
     ended = offset_s >= fast_s + slowing_s + slow_s
     rate = np.where(ended, 0.0, np.clip(gain_hz * height, slow_m_s, fast_m_s))
     return height, rate
+
+
+def changes_speed(pad: PadPath, config: DescentConfig) -> bool:
+    """Return whether the vehicle brakes or speeds up so hard that the drone would lean against the pad.
+
+    In a curve it leans, too, but that may last; a change of speed passes.
+    """
+    velocity, acceleration = pad.velocity_enu_m_s[0, :2], pad.acceleration_enu_m_s2[0, :2]
+    speed_m_s = float(np.hypot(velocity[0], velocity[1]))
+    along_m_s2 = abs(float(velocity @ acceleration)) / max(speed_m_s, _SLOW_M_S)
+    return along_m_s2 > config.speed_change_max_m_s2
+
+
+def waiting_profile(height_now_m: float, offset_s: Array, config: DescentConfig) -> tuple[Array, Array]:
+    """Return the descent as far as the height at which it waits; below the commit height it goes on."""
+    height, rate = sink_profile(height_now_m, offset_s, config)
+    if height_now_m <= config.commit_height_m:
+        return height, rate
+    lowest_m = min(height_now_m, config.waiting_height_m)
+    return np.maximum(height, lowest_m), np.where(height <= lowest_m, 0.0, rate)
 
 
 def _clearance_m(phase: Phase, config: CompanionConfig) -> float:

@@ -13,6 +13,7 @@ from link.payload_checks import PayloadError
 # Taken when a message states no covariance: plain GNSS and a low-cost attitude sensor.
 _POSITION_STD_M = 1.5
 _VELOCITY_STD_M_S = 0.3
+_VERTICAL_VELOCITY_STD_M_S = 100.0  # of one that is not measured: says nothing
 _HEADING_STD_RAD = 0.1
 _YAW_RATE_STD_RAD_S = 0.02
 
@@ -48,14 +49,23 @@ def plausible(measurement: Measurement) -> Measurement:
         PayloadError: a number is absurd.
     """
     quantity, covariance = measurement.quantity, measurement.covariance
-    if not np.all(np.abs(measurement.value) < _VALUE_MAX[quantity]):
+    value_max, covariance_max = _VALUE_MAX[quantity], _STD_MAX**2
+    if not all(abs(value) < value_max for value in measurement.value.tolist()):
         raise PayloadError(f"the {quantity.value} {measurement.value.tolist()} is absurd")
-    if not np.all(np.abs(covariance) < _STD_MAX**2):
+    if not all(abs(value) < covariance_max for value in covariance.ravel().tolist()):
         raise PayloadError(f"the covariance {covariance.tolist()} of the {quantity.value} is absurd")
     least = _STD_MIN[quantity] ** 2
-    if float(np.linalg.eigvalsh(covariance)[0]) >= least:
+    if _least_variance(covariance) >= least:
         return measurement
     return replace(measurement, covariance=covariance + least * np.eye(len(covariance)))
+
+
+def _least_variance(covariance: Array) -> float:
+    """Return the variance (smallest eigenvalue) of the best known direction; sensors mostly state a diagonal."""
+    variances = covariance.diagonal().tolist()
+    if np.count_nonzero(covariance) == np.count_nonzero(variances):
+        return float(min(variances))
+    return float(np.linalg.eigvalsh(covariance)[0])
 
 
 def fix_measurement(fix: Fix, origin: Datum) -> Measurement:
@@ -71,11 +81,15 @@ def fix_measurement(fix: Fix, origin: Datum) -> Measurement:
 
 def velocity_measurements(message: FixVelocity) -> tuple[Measurement, ...]:
     """Return the velocity and, where the message has it, the yaw rate."""
+    covariance = _matrix(message.velocity_covariance_enu_m2_s2, _VELOCITY_STD_M_S)
+    if not message.is_vertical_measured:
+        covariance[2, :] = covariance[:, 2] = 0.0
+        covariance[2, 2] = _VERTICAL_VELOCITY_STD_M_S**2
     velocity = Measurement(
         t_ns=message.t_ns,
         quantity=Quantity.VELOCITY,
         value=np.array(message.velocity_enu_m_s),
-        covariance=_matrix(message.velocity_covariance_enu_m2_s2, _VELOCITY_STD_M_S),
+        covariance=covariance,
     )
     if message.yaw_rate_rad_s is None:
         return (velocity,)

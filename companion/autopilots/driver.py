@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
-from companion.data import FlightLimits, Setpoint
+from companion.data import FlightLimits, RangeReading, Setpoint
 from link.geodesy import Datum
 from link.mavlink.dialect import Message
 from link.messages import Vector3
@@ -22,9 +22,13 @@ class AutopilotView:
     in_control: bool  # it is in the mode in which it follows the companion's setpoints
     failsafe: bool
     landed: bool | None = None
+    taking_off: bool = False  # by itself, after a command
+    refusal: str | None = None  # what it last said against arming
     origin: Datum | None = None  # above the ellipsoid
     origin_count: int = 0  # how often the origin was set or moved
     frame_shift_enu_m: Vector3 = (0.0, 0.0, 0.0)  # sum of the jumps of the drone's own position
+    range_down: RangeReading | None = None
+    battery_share: float | None = None  # left, 0 to 1
 
 
 NO_AUTOPILOT = AutopilotView(link_up=False, armed=False, in_control=False, failsafe=False)
@@ -39,12 +43,14 @@ class Desire:
         armed: motors on or off.
         force_disarm: the evidence of a touchdown is complete, so a refused disarm may be forced.
         release: leave the companion's control into a hover of its own.
+        takeoff_height_m: be in the air; how far above its home an autopilot climbs that does so by itself.
     """
 
     control: bool | None = None
     armed: bool | None = None
     force_disarm: bool = False
     release: bool = False
+    takeoff_height_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,12 +63,16 @@ class AutopilotCommand:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DriverMemory:
-    """When the driver last asked for what, and what was refused."""
+    """When the driver last asked for what, and what was refused.
+
+    While the autopilot `climbs_by_itself` it is sent no setpoints.
+    """
 
     streaming_since_ns: int | None = None
     asked_ns: Mapping[AutopilotCommand, int] | None = None
     disarm_asked: bool = False
     disarm_refusals: int = 0
+    climbs_by_itself: bool = False
 
 
 class Driver(Protocol):
@@ -81,11 +91,30 @@ class Driver(Protocol):
         """Parameters that bound the flight."""
 
     @property
+    def timeout_parameter(self) -> str:
+        """Parameter that says for how many seconds without a setpoint it still waits for one."""
+
+    @property
+    def timeout_default_s(self) -> float:
+        """What that is taken for while it is unknown."""
+
+    @property
+    def speed_parameters(self) -> tuple[str, ...]:
+        """Those among them that bound the horizontal speed, for messages."""
+
+    @property
+    def mode_streams_hz(self) -> Mapping[int, float]:
+        """Messages that tell its mode promptly, by id."""
+
+    @property
     def unused_streams(self) -> tuple[int, ...]:
         """Messages that it sends unasked on a companion's link and that the companion does not read."""
 
     def is_in_control(self, base_mode: int, custom_mode: int) -> bool:
         """Return whether these heartbeat fields mean that it follows setpoints."""
+
+    def refusal(self, message: Message) -> str | None:
+        """Return what `message` says against arming, in words; None when it says nothing of the kind."""
 
     def act(
         self, memory: DriverMemory, view: AutopilotView, desire: Desire, t_ns: int

@@ -21,6 +21,7 @@ class BufferHealth:
         late: dropped, older than the buffer.
         recoveries: times the filter was opened to data it had rejected for too long.
         nis_per_dof: mean over the whole run, 1 for a consistent filter; None before the second measurement.
+        nis_dof: degrees of freedom that it is the mean of.
         recent_nis_per_dof: the same over what the buffer holds, rejected data included.
     """
 
@@ -29,6 +30,7 @@ class BufferHealth:
     late: int
     recoveries: int
     nis_per_dof: float | None
+    nis_dof: int
     recent_nis_per_dof: float | None
 
 
@@ -71,6 +73,7 @@ class BufferedEstimator(Generic[S]):
             late=0 if memory is None else memory.late,
             recoveries=tally.recoveries,
             nis_per_dof=tally.nis_sum / tally.nis_dof if tally.nis_dof else None,
+            nis_dof=tally.nis_dof,
             recent_nis_per_dof=sum(recent) / len(recent) if recent else None,
         )
 

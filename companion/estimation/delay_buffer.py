@@ -26,6 +26,9 @@ QUANTITIES = tuple(Quantity)
 _RANK = {quantity: rank for rank, quantity in enumerate(QUANTITIES)}
 _NEVER: tuple[int | None, ...] = (None,) * len(QUANTITIES)
 
+Place = tuple[int, int, tuple[float, ...]]
+"""Of a measurement in the order of fusion: by time, then by quantity, then by value."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Update(Generic[S]):
@@ -90,9 +93,10 @@ class Snapshot(Generic[S]):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Entry(Generic[S]):
-    """A measurement, the filter after it, and its NIS per degree of freedom (None when it was not used)."""
+    """A measurement and its place, the filter after it, and its NIS per degree of freedom (None when not used)."""
 
     measurement: Measurement
+    place: Place
     after: Snapshot[S]
     nis_per_dof: float | None
 
@@ -174,7 +178,7 @@ def _run(
 ) -> Iterator[Entry[S]]:
     for measurement in measurements:
         snapshot, nis_per_dof = _step(model, config, snapshot, measurement)
-        yield Entry(measurement=measurement, after=snapshot, nis_per_dof=nis_per_dof)
+        yield Entry(measurement=measurement, place=_place(measurement), after=snapshot, nis_per_dof=nis_per_dof)
 
 
 def _step(
@@ -257,13 +261,13 @@ def _prune(buffer: DelayBuffer[S], keep_s: float) -> DelayBuffer[S]:
     return replace(buffer, base=buffer.entries[count - 1].after, entries=buffer.entries[count:])
 
 
-def _place(measurement: Measurement) -> tuple[int, int, tuple[float, ...]]:
+def _place(measurement: Measurement) -> Place:
     """A total order, so that equal stamps leave no trace of the order of arrival either."""
     return measurement.t_ns, _RANK[measurement.quantity], tuple(measurement.value.tolist())
 
 
-def _entry_place(entry: Entry[S]) -> tuple[int, int, tuple[float, ...]]:
-    return _place(entry.measurement)
+def _entry_place(entry: Entry[S]) -> Place:
+    return entry.place
 
 
 def _time(entry: Entry[S]) -> int:

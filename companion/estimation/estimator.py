@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import Any, Protocol
 
 from companion.data import Array, Forecast, Measurement, VehicleEstimate
+from companion.estimation.buffered import BufferHealth
 
 
 class Estimator(Protocol):
@@ -24,3 +25,6 @@ class Estimator(Protocol):
 
     def newest_fix_ns(self, memory: Any) -> int | None:
         """Return the time at which the newest accepted position was taken."""
+
+    def health(self, memory: Any) -> BufferHealth:
+        """Return the counters and the consistency of the memory."""

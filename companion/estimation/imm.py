@@ -7,7 +7,7 @@ its error beyond some decimetres is slow (Gauss-Markov) rather than white, and i
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import assert_never
 
 import numpy as np
@@ -53,10 +53,16 @@ class ImmModel:
     Attributes:
         config: its numbers.
         antenna_to_pad_m: lever arm in V, for sightings of the pad.
+        numbers: the same as the kernels take them, derived.
     """
 
     config: ImmConfig
     antenna_to_pad_m: Vector3 = (0.0, 0.0, 0.0)
+    numbers: "_Numbers" = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Derive the kernels' numbers."""
+        object.__setattr__(self, "numbers", _numbers(self.config, self.antenna_to_pad_m))
 
     def start(self, fix: Measurement) -> ImmState:
         """Return the state after a first position: anything may be true of the rest."""
@@ -67,26 +73,23 @@ class ImmModel:
         covariance[np.ix_(PLACE, PLACE)] = white
         offset = (self.config.frame_offset_std_m**2 + bias_variance) * np.eye(3)
         covariances = _with_common_step(np.stack([covariance, covariance]), offset)
-        modes = (np.stack([mean, mean]), covariances, self._dwell_s() / self._dwell_s().sum())
+        dwell_s = self.numbers.dwell_s
+        modes = (np.stack([mean, mean]), covariances, dwell_s / dwell_s.sum())
         return ImmState(modes=modes, fix_bias_variance_m2=bias_variance)
 
     def predict(self, state: ImmState, dt_s: float) -> ImmState:
         """Return the state `dt_s` later."""
-        motion, noises = self._motion(), self._noises(state)
-        return replace(state, modes=mixing.predict_modes(state.modes, dt_s, noises, self._dwell_s(), motion))
+        numbers = self.numbers
+        modes = mixing.predict_modes(state.modes, dt_s, self._noises(state), numbers.dwell_s, numbers.motion)
+        return ImmState(modes=modes, fix_bias_variance_m2=state.fix_bias_variance_m2)
 
     def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState]:
         """Return the state after any quantity."""
         R, bias_variance = measurement.covariance, state.fix_bias_variance_m2
         if measurement.quantity is Quantity.POSITION:
             R, bias_variance = self._split(R)
-        known = self._heading_known(state)
-        if measurement.quantity is Quantity.PAD and not known:
-            R = R + np.diag([1.0, 1.0, 0.0]) * math.hypot(*self.antenna_to_pad_m[:2]) ** 2
         reading = (KINDS[measurement.quantity], _own(measurement.value), _own(R))
-        modes, nis, gate_nis = mixing.update_modes(state.modes, reading, np.array(self.antenna_to_pad_m), known)
-        if measurement.quantity in (Quantity.POSITION, Quantity.VELOCITY):
-            modes = self._aligned(modes)
+        modes, nis, gate_nis = mixing.take_reading(state.modes, reading, self.numbers.lever_m, self.numbers.course)
         updated = ImmState(modes=modes, fix_bias_variance_m2=bias_variance)
         return Update(state=updated, nis=nis, gate_nis=gate_nis, dof=len(measurement.value))
 
@@ -118,15 +121,16 @@ class ImmModel:
     def describe(self, state: ImmState, t_ns: int) -> VehicleEstimate:
         """Return the mixture of both modes."""
         x, P = mixing.combine(*state.modes)
-        G = mixing.kinematics_jacobian(x, self._motion()[1:3])
-        kinematics = mixing.kinematics(x[None], self._motion()[1:3])[0]
+        heave = self.numbers.motion[1:3]
+        G = mixing.kinematics_jacobian(x, heave)
+        position, velocity, acceleration = mixing.kinematics(x[None], heave)
         covariance = G @ P @ G.T
         known = self._heading_known(state)
         return VehicleEstimate(
             t_ns=t_ns,
-            position_enu_m=kinematics[:3],
-            velocity_enu_m_s=kinematics[3:6],
-            acceleration_enu_m_s2=kinematics[6:],
+            position_enu_m=position[0],
+            velocity_enu_m_s=velocity[0],
+            acceleration_enu_m_s2=acceleration[0],
             covariance=0.5 * (covariance + covariance.T),
             yaw_rad=wrapped(float(x[HEADING])) if known else None,
             yaw_rate_rad_s=float(x[CURVATURE] * math.hypot(x[2], x[3])) if known else None,
@@ -134,18 +138,17 @@ class ImmModel:
 
     def forecast(self, state: ImmState, t_ns: int, offset_s: Array) -> Forecast:
         """Return the future along the present curvature, with an acceleration that fades and stops at standstill."""
-        x, P = mixing.combine(*state.modes)
-        motion, noise = self._motion(), state.modes[2] @ self._noises(state)
-        means, variances = mixing.horizon(x, P, _own(offset_s), noise, motion)
-        kinematics = mixing.kinematics(means, motion[1:3])
+        position, velocity, acceleration, yaw, std = mixing.forecast_modes(
+            state.modes, _own(offset_s), self._noises(state), self.numbers.motion
+        )
         return Forecast(
             t_ns=t_ns,
             offset_s=offset_s,
-            position_enu_m=kinematics[:, :3],
-            velocity_enu_m_s=kinematics[:, 3:6],
-            acceleration_enu_m_s2=kinematics[:, 6:],
-            yaw_rad=means[:, HEADING].copy() if self._heading_known(state) else None,
-            position_std_m=np.sqrt(variances),
+            position_enu_m=position,
+            velocity_enu_m_s=velocity,
+            acceleration_enu_m_s2=acceleration,
+            yaw_rad=yaw if self._heading_known(state) else None,
+            position_std_m=std,
         )
 
     def _split(self, fix_covariance: Array) -> tuple[Array, float]:
@@ -157,60 +160,27 @@ class ImmModel:
     def _noises(self, state: ImmState) -> Array:
         """Both modes' noise, (2, 8), as `imm_kernels.process_noise` takes it."""
         walk = self.config.frame_offset_walk_m2_s + 2.0 * state.fix_bias_variance_m2 / self.config.fix_bias_time_s
-        return np.array([self._noise(mode, walk) for mode in (self.config.steady, self.config.manoeuvre)])
-
-    def _noise(self, mode: ImmModeConfig, walk_m2_s: float) -> tuple[float, ...]:
-        return (
-            mode.jerk_psd_m2_s5,
-            self.config.side_jerk_psd_m2_s5,
-            mode.lateral_acceleration_psd_m2_s5,
-            self.config.curvature_speed_min_m_s,
-            self.config.heading_psd_rad2_s,
-            self.config.climb_psd_m2_s3,
-            walk_m2_s,
-            walk_m2_s,
-        )
-
-    def _dwell_s(self) -> Array:
-        return np.array([self.config.steady.dwell_s, self.config.manoeuvre.dwell_s])
-
-    def _motion(self) -> Array:
-        """What `imm_mixing` calls motion, (4,)."""
-        config = self.config
-        heave = (2.0 * math.pi * config.heave_frequency_hz, config.heave_damping, config.heave_std_m)
-        return np.array([config.acceleration_decay_s, *heave])
+        noises = self.numbers.noises.copy()
+        noises[:, 6:] = walk
+        return noises
 
     def _prior_variances(self) -> Array:
         """Of every state but position and offset, (15,)."""
         config = self.config
         speed, acceleration = config.initial_speed_std_m_s**2, config.initial_acceleration_std_m_s2**2
         heave = config.heave_std_m**2
-        heave_rate = heave * float(self._motion()[1]) ** 2
+        heave_rate = heave * float(self.numbers.motion[1]) ** 2
         curvature = config.curvature_std_rad_m**2
         moving = [speed, speed, acceleration, acceleration, curvature, UNKNOWN_HEADING_VARIANCE]
         return np.array([0.0, 0.0, *moving, 0.0, CLIMB_STD_M_S**2, heave, heave_rate, 0.0, 0.0, 0.0])
 
-    def _aligned(self, modes: mixing.Modes) -> mixing.Modes:
-        config = self.config
-        means, covariances = mixing.align_modes(
-            modes[0],
-            modes[1],
-            config.course_speed_min_m_s,
-            config.course_std_rad**2,
-            config.heading_known_std_rad**2,
-        )
-        return means, covariances, modes[2]
-
     def _heading_known(self, state: ImmState) -> bool:
-        _, covariances, weights = state.modes
-        variance = float(weights @ covariances[:, HEADING, HEADING])
-        return variance < self.config.heading_known_std_rad**2
+        return mixing.is_heading_known(state.modes, self.config.heading_known_std_rad**2)
 
     def _step_size(self, state: ImmState, measurement: Measurement) -> float:
         """How far, m, a measured place is from the expected one; at least the prior of the offset."""
-        kind, lever = KINDS[measurement.quantity], np.array(self.antenna_to_pad_m)
         means, _, weights = state.modes
-        expected, _ = kernels.observe(kind, weights @ means, lever, False)
+        expected, _ = kernels.observe(KINDS[measurement.quantity], weights @ means, self.numbers.lever_m, False)
         return max(float(np.linalg.norm(measurement.value - expected)), self.config.frame_offset_std_m)
 
     def _placed_by_sightings(self, state: ImmState) -> bool:
@@ -227,6 +197,50 @@ class ImmModel:
         means[:, OFFSET] = x[OFFSET]
         means[:, HEADING], covariances[:, HEADING, HEADING] = x[HEADING], P[HEADING, HEADING]
         return replace(state, modes=(means, covariances, weights))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Numbers:
+    """A configuration as the kernels take it.
+
+    Attributes:
+        motion: (4,) as `imm_mixing` has it.
+        dwell_s: (2,) of both modes.
+        noises: (2, 8) as `imm_kernels.process_noise` takes them, but for the last two, which depend on the state.
+        lever_m: (3,) from the antenna to the pad in V.
+        course: (3,) as `imm_mixing.take_reading` takes it.
+    """
+
+    motion: Array
+    dwell_s: Array
+    noises: Array
+    lever_m: Array
+    course: Array
+
+
+def _numbers(config: ImmConfig, antenna_to_pad_m: Vector3) -> _Numbers:
+    heave = (2.0 * math.pi * config.heave_frequency_hz, config.heave_damping, config.heave_std_m)
+    modes = (config.steady, config.manoeuvre)
+    return _Numbers(
+        motion=np.array([config.acceleration_decay_s, *heave]),
+        dwell_s=np.array([mode.dwell_s for mode in modes]),
+        noises=np.array([_noise(config, mode) for mode in modes]),
+        lever_m=np.array(antenna_to_pad_m),
+        course=np.array([config.course_speed_min_m_s, config.course_std_rad**2, config.heading_known_std_rad**2]),
+    )
+
+
+def _noise(config: ImmConfig, mode: ImmModeConfig) -> tuple[float, ...]:
+    return (
+        mode.jerk_psd_m2_s5,
+        config.side_jerk_psd_m2_s5,
+        mode.lateral_acceleration_psd_m2_s5,
+        config.curvature_speed_min_m_s,
+        config.heading_psd_rad2_s,
+        config.climb_psd_m2_s3,
+        0.0,
+        0.0,
+    )
 
 
 def _own(array: Array) -> Array:

@@ -11,7 +11,18 @@ import numpy as np
 from numba import njit
 
 from companion.data import Array
-from companion.estimation.imm_kernels import COURSE, HEADING, SIZE, advance, correct, observe, process_noise
+from companion.estimation.imm_kernels import (
+    COURSE,
+    HEADING,
+    PAD,
+    POSITION,
+    SIZE,
+    VELOCITY,
+    advance,
+    correct,
+    observe,
+    process_noise,
+)
 
 Modes = tuple[Array, Array, Array]
 
@@ -156,12 +167,51 @@ def align_modes(
     return xs, Ps
 
 
-def kinematics(states: Array, heave: Array) -> Array:
-    """Return position, velocity and acceleration in W, `(n, 9)`, of `states` (n, 15); `heave` is `motion[1:3]`."""
-    x, y, vx, vy, bx, by, curvature, _, z, climb, up, up_rate, _, _, _ = states.T
-    turn_rate = curvature * np.hypot(vx, vy)
-    lift = -(heave[0] ** 2) * up - 2.0 * heave[1] * heave[0] * up_rate
-    return np.column_stack([x, y, z + up, vx, vy, climb + up_rate, bx - turn_rate * vy, by + turn_rate * vx, lift])
+@njit(cache=True)
+def is_heading_known(modes: Modes, known_variance: float) -> bool:
+    """Return whether the heading of the mixture is known better than `known_variance`, rad^2."""
+    _, covariances, weights = modes
+    return bool(weights[0] * covariances[0, 7, 7] + weights[1] * covariances[1, 7, 7] < known_variance)
+
+
+@njit(cache=True)
+def take_reading(
+    modes: Modes, reading: tuple[int, Array, Array], lever: Array, course: Array
+) -> tuple[Modes, float, float]:
+    """Return what `update_modes` does, with the heading judged and, after a fix or a velocity, aligned.
+
+    Args:
+        modes: the filter.
+        reading: kind as `observe` takes it, value (m,), covariance (m, m).
+        lever: (3,) from the antenna to the pad in V, m.
+        course: (3,) `align_modes`' speed, m/s, and variances of course and known heading, rad^2.
+    """
+    kind, value, R = reading
+    known = is_heading_known(modes, course[2])
+    if kind == PAD and not known:
+        arm2 = math.hypot(lever[0], lever[1]) ** 2
+        R = R.copy()
+        R[0, 0] += arm2
+        R[1, 1] += arm2
+    (means, covariances, weights), nis, gate_nis = update_modes(modes, (kind, value, R), lever, known)
+    if kind in (POSITION, VELOCITY):
+        means, covariances = align_modes(means, covariances, course[0], course[1], course[2])
+    return (means, covariances, weights), nis, gate_nis
+
+
+@njit(cache=True)
+def kinematics(states: Array, heave: Array) -> tuple[Array, Array, Array]:
+    """Return position, velocity and acceleration in W, each (n, 3), of `states` (n, 15); `heave` is `motion[1:3]`."""
+    n = len(states)
+    position, velocity, acceleration = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
+    for i in range(n):
+        x = states[i]
+        turn_rate = x[6] * math.hypot(x[2], x[3])
+        position[i, 0], position[i, 1], position[i, 2] = x[0], x[1], x[8] + x[10]
+        velocity[i, 0], velocity[i, 1], velocity[i, 2] = x[2], x[3], x[9] + x[11]
+        acceleration[i, 0], acceleration[i, 1] = x[4] - turn_rate * x[3], x[5] + turn_rate * x[2]
+        acceleration[i, 2] = -(heave[0] ** 2) * x[10] - 2.0 * heave[1] * heave[0] * x[11]
+    return position, velocity, acceleration
 
 
 @njit(cache=True)
@@ -194,3 +244,15 @@ def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) ->
         variances[i, 0], variances[i, 1] = P[0, 0], P[1, 1]
         variances[i, 2] = P[8, 8] + P[10, 10] + 2.0 * P[8, 10]
     return means, variances
+
+
+@njit(cache=True)
+def forecast_modes(
+    modes: Modes, offset_s: Array, noises: Array, motion: Array
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Return the mixture's position, velocity, acceleration (n, 3), heading (n,) and position's deviation (n, 3)."""
+    x, P = combine(modes[0], modes[1], modes[2])
+    noise = modes[2][0] * noises[0] + modes[2][1] * noises[1]
+    means, variances = horizon(x, P, offset_s, noise, motion)
+    position, velocity, acceleration = kinematics(means, motion[1:3])
+    return position, velocity, acceleration, means[:, 7].copy(), np.sqrt(variances)

@@ -47,6 +47,7 @@ class FakePx4(FakeAutopilot):
             mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: self._origin,
             mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: self._receiver,
             mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: self._battery,
+            mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: self._range,
         }
         if message_id in builders:
             return builders[message_id]()
@@ -80,6 +81,10 @@ class FakePx4(FakeAutopilot):
 
     def _battery(self) -> Message:
         return mavlink.MAVLink_battery_status_message(0, 0, 0, 2500, [0] * 10, -1, -1, -1, 80)
+
+    def _range(self) -> Message:
+        down = mavlink.MAV_SENSOR_ROTATION_PITCH_270
+        return mavlink.MAVLink_distance_sensor_message(0, 20, 1200, round(-self.place_ned_m[2] * 100.0), 0, 0, down, 0)
 
     def obey(self, message: Message) -> None:
         super().obey(message)

@@ -1,9 +1,11 @@
 """The conversation with the autopilot: no command is ever late, and a restart begins anew."""
 
 import math
+from dataclasses import replace
 
 from companion.autopilot_link import AutopilotLink
 from companion.autopilots.driver import AutopilotCommand
+from companion.config import CompanionConfig
 from companion.data import Setpoint
 from link.mavlink.dialect import mavlink
 from link.mavlink.session import MavlinkSession
@@ -112,3 +114,12 @@ def test_silent_autopilot_is_said_to_be_lost_and_found_again() -> None:
     talk.autopilot.mute = False
     talk.run(1.5)
     assert talk.is_up()
+
+
+def test_limits_follow_each_change_of_the_autopilots_parameters_and_of_what_is_wanted() -> None:
+    talk, wanted = Talk(FakePx4()), CompanionConfig().limits.flight_limits()
+    for speed_m_s in (7.0, 3.0):
+        known = {**talk.link.state.parameters, "MPC_XY_VEL_MAX": speed_m_s}
+        talk.link.state = replace(talk.link.state, parameters=known)
+        assert talk.link.limits(wanted).speed_max_m_s == speed_m_s
+        assert talk.link.limits(replace(wanted, speed_max_m_s=1.5)).speed_max_m_s == 1.5

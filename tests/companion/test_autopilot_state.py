@@ -167,3 +167,12 @@ def test_no_message_whatever_makes_the_state_absurd(told: list[Message]) -> None
     times = [own.t_ns for own in state.history]
     assert times == sorted(set(times))
     assert np.isfinite(state.view.frame_shift_enu_m).all()
+
+
+def test_stop_within_one_report_is_a_jolt_and_hard_braking_is_none() -> None:
+    stopped = _hear(LEVEL, *(_at(20 * k, (0.1 * k, 0.0, -1.0), (5.0 if k < 5 else 0.0, 0.0, 0.0)) for k in range(6)))
+    assert stopped.own is not None
+    assert stopped.own.jolt_m_s2 == pytest.approx(5.0 / 0.06)
+    braking = _hear(LEVEL, *(_at(20 * k, (0.1 * k, 0.0, -1.0), (5.0 - 0.2 * k, 0.0, 0.0)) for k in range(6)))
+    assert braking.own is not None
+    assert braking.own.jolt_m_s2 == pytest.approx(10.0)

@@ -8,16 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from companion.decisions import (
-    ABORT_TESTS,
-    ENTRY_TESTS,
-    Decision,
-    cone_radius_m,
-    decide,
-    update_held,
-    vehicle_passes,
-)
-from companion.decisions import Test as Condition
+from companion.conditions import ABORT_TESTS, DISPUTED_CONTACT, ENTRY_TESTS, HARD_CONTACT, cone_radius_m, update_held
+from companion.conditions import Test as Condition
+from companion.decisions import Decision, decide, vehicle_passes
 from companion.phases import Event, Phase
 from companion.situation import Situation, approach
 from link.messages import Vector3
@@ -46,6 +39,9 @@ UNSAFE: dict[str, Situation] = {
             0.9 * CONFIG.abort.near_height_m, 0.0, (CONFIG.abort.near_speed_max_m_s + 0.01, 0.0, 0.0), pad=pad_at()
         ),
     ),
+    "too far from the start": replace(
+        situation(), waiting_point_enu_m=np.array([CONFIG.limits.range_max_m + 10.0, 0.0, 5.0])
+    ),
     "below the pad without contact": situation(-CONFIG.descent.press_depth_m - CONFIG.touchdown.height_max_m - 0.01),
 }
 # Below the commit height these still count: without them nobody knows where the pad is.
@@ -61,7 +57,7 @@ def _first_decision(phase: Phase, facts: Situation, limit_s: float) -> tuple[Dec
     ticks = 0
     for ticks in range(round(limit_s * 1e9 / TICK_NS) + 1):
         now = later(facts, ticks * TICK_NS)
-        held = update_held(held, progress(phase, 0.0), now, approach(now), CONFIG)
+        held = update_held(held, phase, now, approach(now), CONFIG)
         decision = decide(progress(phase, 0.0), now, held, CONFIG)
         if decision is not None:
             return decision, ticks
@@ -96,7 +92,7 @@ def test_condition_that_breaks_off_for_one_step_begins_anew(test: Condition, pha
     for ticks in range(4 * hold_ticks):
         is_break = ticks % hold_ticks == hold_ticks - 1
         now = later(situation() if is_break else UNSAFE[test.reason], ticks * TICK_NS)
-        held = update_held(held, progress(phase, 0.0), now, approach(now), CONFIG)
+        held = update_held(held, phase, now, approach(now), CONFIG)
         decision = decide(progress(phase, 0.0), now, held, CONFIG)
         assert decision is None or decision[0] is not Event.UNSAFE
 
@@ -134,6 +130,40 @@ def test_drone_beside_the_pad_below_the_commit_height_aborts_and_is_not_taken_fo
     assert decision == (Event.UNSAFE, "outside the descent cone")
 
 
+def _jolted(facts: Situation) -> Situation:
+    """The same with a drone whose velocity has just changed faster than flying can."""
+    assert facts.drone is not None
+    return replace(facts, drone=replace(facts.drone, jolt_m_s2=CONFIG.touchdown.jolt_m_s2 + 0.1))
+
+
+def test_drone_that_is_stopped_while_the_pad_drives_on_has_landed_and_does_not_climb_away() -> None:
+    stopped = replace(
+        situation(0.0),
+        drone=drone_at(0.0, 0.3, (-4.0, -1.0, 0.0), pad=pad_at((4.0, 1.0, 0.0))),
+        reference=reference_at(-CONFIG.touchdown.blocked_depth_m - 0.01),
+    )
+    decision, ticks = _first_decision(Phase.DESCEND, _jolted(stopped), 1.0)
+    assert decision is not None
+    assert (decision[0], ticks) == (Event.CONTACT, 0)
+    unexplained, _ = _first_decision(Phase.DESCEND, stopped, CONFIG.abort.near_speed_hold_s + 0.02)
+    assert unexplained == (Event.UNSAFE, "too fast against the pad")
+
+
+def test_jolt_with_the_pad_in_the_range_finders_sight_needs_no_sunken_setpoint() -> None:
+    stopped = _jolted(replace(situation(0.0), reference=reference_at(0.05), range_height_m=0.03))
+    decision, _ = _first_decision(Phase.DESCEND, stopped, 0.0)
+    assert decision is not None
+    assert decision[0] is Event.CONTACT
+    far = replace(stopped, range_height_m=CONFIG.touchdown.range_height_max_m + 0.01)
+    assert _first_decision(Phase.DESCEND, far, 0.0)[0] is None
+
+
+def test_jolt_in_the_air_is_no_contact() -> None:
+    sinking = replace(situation(LOW_M), drone=drone_at(LOW_M, 0.1, (0.0, 0.0, -0.4), pad=pad_at()))
+    decision, _ = _first_decision(Phase.DESCEND, _jolted(replace(sinking, reference=reference_at(LOW_M))), 1.0)
+    assert decision is None
+
+
 @pytest.mark.parametrize(("event", "test"), ENTRY_TESTS)
 def test_landing_goes_on_exactly_after_the_hold_time(event: Event, test: Condition) -> None:
     (phase,) = test.phases
@@ -144,9 +174,15 @@ def test_landing_goes_on_exactly_after_the_hold_time(event: Event, test: Conditi
             facts = situation()
         case _:
             facts = replace(situation(0.0), reference=reference_at(-CONFIG.touchdown.blocked_depth_m - 0.01))
+    if test.reason == DISPUTED_CONTACT:
+        facts = replace(facts, range_height_m=2.0)
+    if test.reason == HARD_CONTACT:
+        facts = _jolted(facts)
     hold_s = test.hold_s(CONFIG)
     decision, ticks = _first_decision(phase, facts, hold_s + 1.0)
-    assert decision == (event, test.reason)
+    assert decision is not None
+    assert decision[0] is event
+    assert decision[1].startswith(test.reason)
     assert ticks == math.ceil(hold_s * 1e9 / TICK_NS - 1e-9)
 
 
@@ -200,7 +236,11 @@ def test_chase_starts_when_even_acceleration_meets_the_vehicle(
     assert not passes(lead_m + 0.05)
     assert passes(lead_m - 0.05)
     assert passes(0.0)
-    assert not passes(-CONFIG.chase.passing_distance_m - 0.05)
+    # One that is past is caught up with while the drone can fly so much faster.
+    faster_m_s = min(CONFIG.limits.speed_max_m_s - speed_m_s, CONFIG.chase.catch_up_speed_m_s)
+    past_m = max(CONFIG.chase.catch_up_s * faster_m_s, CONFIG.chase.passing_distance_m)
+    assert passes(-past_m + 0.05)
+    assert not passes(-past_m - 0.05)
 
 
 def test_vehicle_that_passes_too_far_beside_is_not_chased() -> None:

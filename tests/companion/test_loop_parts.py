@@ -5,9 +5,10 @@ from collections.abc import Callable
 
 import pytest
 
-from companion import loop
-from companion.loop import CommandDesk, Timings
+from companion import command_desk
+from companion.command_desk import CommandDesk
 from companion.node import CompanionNode
+from companion.timings import Timings
 from link import json_payloads
 from link.messages import Command, CommandReply
 from tests.companion.peer import Setup
@@ -94,7 +95,7 @@ def test_payload_that_is_no_command_is_refused_and_never_passed_on(node: Compani
 def test_command_answered_by_a_refusal_is_not_done_later(
     node: CompanionNode, asked: list[Command], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(loop, "_REPLY_WAIT_S", 0.01)
+    monkeypatch.setattr(command_desk, "_REPLY_WAIT_S", 0.01)
     desk = CommandDesk()
     assert not Asker(desk, json_payloads.encode(Command.START)).reply().accepted
     desk.pass_on(node)

@@ -45,6 +45,21 @@ def test_stated_covariance_is_taken_and_a_missing_one_is_replaced() -> None:
     assert np.all(np.linalg.eigvalsh(fix_measurement(plain, ORIGIN).covariance) > 0.5)
 
 
+def test_a_vertical_velocity_that_is_not_measured_says_nothing() -> None:
+    stated = (0.04, 0.01, 0.0, 0.01, 0.09, 0.0, 0.0, 0.0, 0.0)
+    for covariance, horizontal in ((None, [0.09, 0.09]), (stated, [0.04, 0.09])):
+        (velocity,) = velocity_measurements(
+            FixVelocity(
+                t_ns=1,
+                velocity_enu_m_s=(1.0, 2.0, 0.0),
+                velocity_covariance_enu_m2_s2=covariance,
+                is_vertical_measured=False,
+            )
+        )
+        assert velocity.covariance.diagonal()[:2].tolist() == pytest.approx(horizontal)
+        assert velocity.covariance[2].tolist() == [0.0, 0.0, 1e4]
+
+
 def test_velocity_comes_with_a_yaw_rate_only_where_one_was_measured() -> None:
     alone = velocity_measurements(FixVelocity(t_ns=1, velocity_enu_m_s=(1.0, 2.0, 3.0)))
     assert [one.quantity for one in alone] == [Quantity.VELOCITY]

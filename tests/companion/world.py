@@ -11,6 +11,7 @@ from companion.autopilots.driver import AutopilotView
 from companion.autopilots.px4 import Px4Driver
 from companion.config import CompanionConfig
 from companion.data import Array, Forecast, Measurement, OwnState, Quantity, VehicleEstimate
+from companion.estimation.buffered import BufferHealth
 from companion.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.planning.kinds import make_guidance
 from companion.step import companion_step
@@ -73,6 +74,11 @@ class KnownVehicle:
 
     def newest_fix_ns(self, memory: int | None) -> int | None:
         return memory
+
+    def health(self, _memory: int | None) -> BufferHealth:
+        return BufferHealth(
+            fused=0, gated=0, late=0, recoveries=0, nis_per_dof=None, nis_dof=0, recent_nis_per_dof=None
+        )
 
 
 def fix(t_ns: int) -> Measurement:

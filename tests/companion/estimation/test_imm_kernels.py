@@ -84,7 +84,7 @@ def test_kinematics_jacobian_is_the_derivative_of_the_kinematics(seed: int) -> N
     G = mixing.kinematics_jacobian(x, MOTION[1:3])
     numeric = np.empty((9, 15))
     for i in range(15):
-        around = mixing.kinematics(x + 1e-6 * np.outer([1.0, -1.0], np.eye(15)[i]), MOTION[1:3])
+        around = np.hstack(mixing.kinematics(x + 1e-6 * np.outer([1.0, -1.0], np.eye(15)[i]), MOTION[1:3]))
         numeric[:, i] = (around[0] - around[1]) / 2e-6
     assert pytest.approx(numeric, abs=1e-5) == G
 

@@ -1,0 +1,108 @@
+"""ArduCopter: GUIDED follows setpoints, but only a take-off command leaves the ground.
+
+A setpoint sent before the take-off is complete silently cancels it, so none may be sent until then.
+
+Source: ArduPilot's copter documentation, guided mode; behaviour measured against its software-in-the-loop build.
+"""
+
+import math
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from companion.autopilots.asking import (
+    Asked,
+    arm,
+    ask,
+    ask_to_disarm,
+    set_mode,
+    take_off,
+    with_disarm_answer,
+    without_disarm,
+)
+from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
+from companion.autopilots.setpoint_message import local_ned_setpoint
+from companion.autopilots.stated_limits import Named, acceleration_of_tilt_m_s2, stated
+from companion.data import FlightLimits, Setpoint
+from link.mavlink.dialect import Message, mavlink
+from link.records import replace
+
+_GUIDED = 4
+_BRAKE = 17  # stops and holds without sticks; LOITER would take a transmitter that is switched off for "descend"
+_TAKE_OFF_AGAIN_S = 5.0  # it lifts off 3.5 to 4 s after it was told to
+_CENTI = 0.01
+_TILT_DEG = 30.0  # taken while the parameter is unknown: its default
+_TILT_MAX_DEG = 45.0  # nothing is planned beyond
+# Each with its name up to release 4.6, in centimetres or centidegrees, and from 4.7 on.
+_TILT = (Named("ANGLE_MAX", _CENTI), Named("ATC_ANGLE_MAX"))
+_SPEED = (Named("WPNAV_SPEED", _CENTI), Named("WP_SPD"))
+_CLIMB = (Named("WPNAV_SPEED_UP", _CENTI), Named("WP_SPD_UP"))
+_DESCENT = (Named("WPNAV_SPEED_DN", _CENTI), Named("WP_SPD_DN"))
+_JERK = (Named("PSC_JERK_XY"), Named("PSC_JERK_NE"))  # it follows no acceleration that changes faster
+
+
+class ArduPilotDriver:
+    """Drives ArduCopter."""
+
+    name = "ardupilot"
+    autopilot_id: int = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
+    limit_parameters = tuple(named.name for names in (_TILT, _SPEED, _CLIMB, _DESCENT, _JERK) for named in names)
+    timeout_parameter = "GUID_TIMEOUT"
+    timeout_default_s = 3.0
+    speed_parameters = tuple(named.name for names in (_TILT, _SPEED) for named in names)
+    mode_streams_hz: Mapping[int, float] = MappingProxyType({mavlink.MAVLINK_MSG_ID_HEARTBEAT: 10.0})
+    unused_streams: tuple[int, ...] = ()  # it sends nothing unasked
+
+    def is_in_control(self, base_mode: int, custom_mode: int) -> bool:
+        """Return whether the mode is GUIDED."""
+        return bool(base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED) and custom_mode == _GUIDED
+
+    def refusal(self, message: Message) -> str | None:
+        """Return what stands against arming, from a STATUSTEXT."""
+        if message.get_type() != "STATUSTEXT":
+            return None
+        kind, _, reason = f"{message.text}".partition(": ")
+        return reason if kind in ("Arm", "PreArm") and reason else None
+
+    def act(self, memory: DriverMemory, view: AutopilotView, desire: Desire, t_ns: int) -> Asked:
+        """Return the commands that bring ArduCopter nearer to `desire`."""
+        climbs = desire.takeoff_height_m is not None and not _is_airborne(view)
+        memory = replace(memory, climbs_by_itself=climbs)
+        if desire.armed is False and view.armed:
+            return ask_to_disarm(memory, desire, t_ns)
+        memory = without_disarm(memory)
+        if desire.release and view.in_control:
+            return ask(memory, set_mode(_BRAKE), t_ns)
+        if desire.control and not view.in_control:
+            return ask(memory, set_mode(_GUIDED), t_ns)
+        if desire.armed and not view.armed:
+            return ask(memory, arm(armed=True), t_ns)
+        if climbs and desire.takeoff_height_m is not None and view.armed and view.landed is not False:
+            return ask(memory, take_off(desire.takeoff_height_m), t_ns, _TAKE_OFF_AGAIN_S)
+        return memory, ()
+
+    def acknowledged(self, memory: DriverMemory, command: int, result: int) -> DriverMemory:
+        """Count refused disarms."""
+        return with_disarm_answer(memory, command, result)
+
+    def setpoint_message(self, setpoint: Setpoint, boot_ms: int, target_system: int) -> Message:
+        """Return SET_POSITION_TARGET_LOCAL_NED; a group of it that is masked in part would mean "stop"."""
+        return local_ned_setpoint(setpoint, boot_ms, target_system)
+
+    def limits(self, wanted: FlightLimits, parameters: Mapping[str, float]) -> FlightLimits:
+        """Return `wanted` cut to ArduCopter's limits of speed, climb, descent, tilt and jerk."""
+        tilt_deg = stated(parameters, _TILT)
+        tilt_deg = min(tilt_deg, _TILT_MAX_DEG) if math.isfinite(tilt_deg) else _TILT_DEG
+        acceleration_m_s2 = acceleration_of_tilt_m_s2(tilt_deg)
+        return replace(
+            wanted,
+            speed_max_m_s=min(wanted.speed_max_m_s, stated(parameters, _SPEED)),
+            climb_max_m_s=min(wanted.climb_max_m_s, stated(parameters, _CLIMB)),
+            descent_max_m_s=min(wanted.descent_max_m_s, stated(parameters, _DESCENT)),
+            acceleration_max_m_s2=min(wanted.acceleration_max_m_s2, acceleration_m_s2),
+            jerk_max_m_s3=min(wanted.jerk_max_m_s3, stated(parameters, _JERK)),
+        )
+
+
+def _is_airborne(view: AutopilotView) -> bool:
+    """Return whether it flies and its own take-off is over."""
+    return view.armed and view.landed is False and not view.taking_off

@@ -1,0 +1,31 @@
+"""Flight limits from an autopilot's parameters, which may be unknown or absurd; shared by the drivers."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+_GRAVITY_M_S2 = 9.81
+_STATED_MIN = 0.1  # m/s or degrees; a limit below this cannot be flown with
+_TILT_SHARE = 0.7  # of the tilt limit left to planned acceleration; the rest is for drag and wind
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """One name of a parameter, and what one of its units is in m/s or degrees."""
+
+    name: str
+    unit: float = 1.0
+
+
+def stated(parameters: Mapping[str, float], names: Sequence[Named]) -> float:
+    """Return a limit by whichever of its names is known, infinity where none is or what it says cannot be meant."""
+    for named in names:
+        value = parameters.get(named.name, math.nan) * named.unit
+        if value >= _STATED_MIN:
+            return value
+    return math.inf
+
+
+def acceleration_of_tilt_m_s2(tilt_deg: float) -> float:
+    """Return the horizontal acceleration that may be planned under a tilt limit."""
+    return _TILT_SHARE * _GRAVITY_M_S2 * math.tan(math.radians(tilt_deg))

@@ -1,0 +1,150 @@
+"""From what was seen of an autopilot and a vehicle to the lines of the check; pure."""
+
+from collections.abc import Sequence
+
+from companion.check.ardupilot_rules import ARDUPILOT_RULES
+from companion.check.findings import Finding, Level, passed
+from companion.check.observation import AutopilotFacts, VehicleFacts
+from companion.check.px4_rules import PX4_RULES
+from companion.check.rules import ParameterRule, judged
+from link.mavlink.dialect import mavlink
+
+RULES: dict[int, tuple[str, tuple[int, int], Sequence[ParameterRule]]] = {
+    mavlink.MAV_AUTOPILOT_PX4: ("PX4", (1, 14), PX4_RULES),
+    mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA: ("ArduPilot", (4, 5), ARDUPILOT_RULES),
+}
+"""By MAV_AUTOPILOT: name, the oldest release that is known to work, rules."""
+
+MOTION = ("LOCAL_POSITION_NED", "ATTITUDE_QUATERNION")
+_MOTION_RATE_MIN_HZ = 40.0
+_LATENCY_MAX_S = 0.1
+_CLOCK_STD_MAX_S = 0.02
+_BATTERY_MIN = 0.3
+_BATTERY_GOOD = 0.5
+_FIX_RATE_MIN_HZ = 4.0
+_FIX_AGE_MAX_S = 0.5  # half of what aborts a landing
+_FIX_AGE_MIN_S = -0.05  # a stamp from the future: somebody's clock is wrong
+_FIX_STD_GOOD_M = 0.3
+_FIX_STD_MAX_M = 1.5
+
+
+def assessed(autopilot: AutopilotFacts, vehicle: VehicleFacts | None, speed_m_s: float) -> list[Finding]:
+    """Return the lines of the check.
+
+    Args:
+        autopilot: as read.
+        vehicle: as received, None when it was not to be looked at.
+        speed_m_s: of the vehicle, for which the parameters are judged.
+    """
+    found = [_firmware(autopilot), _readiness(autopilot), _origin(autopilot), _clock(autopilot)]
+    found += [_rate(autopilot, name) for name in MOTION]
+    found += [_latency(autopilot), _battery(autopilot)]
+    if autopilot.autopilot_id in RULES:
+        found += judged(RULES[autopilot.autopilot_id][2], autopilot.parameters, speed_m_s)
+    return found if vehicle is None else [*found, *_vehicle(vehicle)]
+
+
+def is_ready(findings: Sequence[Finding]) -> bool:
+    """Return whether nothing failed."""
+    return all(finding.level is not Level.FAIL for finding in findings)
+
+
+def _graded(name: str, found: str, level: Level, advice: str, reason: str = "") -> Finding:
+    if level is Level.PASS:
+        return passed(name, found)
+    return Finding(name=name, level=level, found=found, advice=advice, reason=reason)
+
+
+def _when(is_true: bool, otherwise: Level) -> Level:
+    return Level.PASS if is_true else otherwise
+
+
+def _firmware(seen: AutopilotFacts) -> Finding:
+    if seen.autopilot_id not in RULES:
+        return _graded("firmware", f"MAV_AUTOPILOT {seen.autopilot_id}", Level.FAIL, "connect PX4 or ArduPilot")
+    name, oldest, _ = RULES[seen.autopilot_id]
+    if seen.version is None:
+        return _graded("firmware", f"{name}, version not told", Level.WARN, "check that it is a current release")
+    text = f"{name} {'.'.join(map(str, seen.version))}"
+    level = _when(seen.version[:2] >= oldest, Level.WARN)
+    return _graded("firmware", text, level, f"update it: {name} from {oldest[0]}.{oldest[1]} on is known to work")
+
+
+def _readiness(seen: AutopilotFacts) -> Finding:
+    if seen.can_arm is None:
+        return _graded("arming checks", "not told", Level.WARN, "look at them in a ground station")
+    text = "ready to arm" if seen.can_arm else "not ready to arm"
+    return _graded(
+        "arming checks", text, _when(seen.can_arm, Level.WARN), "wait, or see a ground station for the cause"
+    )
+
+
+def _origin(seen: AutopilotFacts) -> Finding:
+    missing = [
+        text for text, there in (("origin", seen.has_origin), ("local position", seen.has_position)) if not there
+    ]
+    text = "origin and local position known" if not missing else f"no {' and no '.join(missing)}"
+    return _graded("estimator", text, _when(not missing, Level.FAIL), "wait for a GNSS fix under an open sky")
+
+
+def _clock(seen: AutopilotFacts) -> Finding:
+    if not seen.round_trips:
+        return _graded("clock", "TIMESYNC not answered", Level.FAIL, "let the autopilot answer TIMESYNC on this link")
+    std_s = seen.clock_std_s
+    text = f"{seen.round_trips} round trips" + ("" if std_s is None else f", offset known to {1e3 * std_s:.1f} ms")
+    if not seen.utc_known:
+        return _graded("clock", f"{text}, no time of day", Level.FAIL, "wait for its GNSS to tell SYSTEM_TIME")
+    level = _when(std_s is None or std_s <= _CLOCK_STD_MAX_S, Level.WARN)
+    return _graded("clock", text, level, "use a faster link: the vehicle's place is off by speed times clock error")
+
+
+def _rate(seen: AutopilotFacts, name: str) -> Finding:
+    rate_hz = seen.rates_hz.get(name, 0.0)
+    level = Level.FAIL if rate_hz <= 0.0 else _when(rate_hz >= _MOTION_RATE_MIN_HZ, Level.WARN)
+    return _graded(name, f"{rate_hz:.0f} Hz", level, "raise the link's baud rate; 50 Hz are asked for")
+
+
+def _latency(seen: AutopilotFacts) -> Finding:
+    if seen.latency_s is None:
+        return _graded("latency", "unknown", Level.WARN, "needs clock and position")
+    level = _when(seen.latency_s <= _LATENCY_MAX_S, Level.WARN)
+    return _graded("latency", f"{1e3 * seen.latency_s:.0f} ms", level, "use a wire instead of a radio")
+
+
+def _battery(seen: AutopilotFacts) -> Finding:
+    share = seen.battery_share
+    if share is None:
+        return _graded("battery", "not told", Level.WARN, "set up the autopilot's battery monitor")
+    level = Level.FAIL if share < _BATTERY_MIN else _when(share >= _BATTERY_GOOD, Level.WARN)
+    return _graded("battery", f"{100.0 * share:.0f} %", level, "charge it: aborts and retries take minutes")
+
+
+def _vehicle(seen: VehicleFacts) -> list[Finding]:
+    if seen.rate_hz <= 0.0:
+        advice = "start the ground vehicle, or check --ns, --vehicle and -e"
+        return [_graded("vehicle", f"nothing on {seen.key}", Level.WARN, advice)]
+    pad = _graded(
+        "vehicle pad",
+        "described" if seen.describes_pad else "not described",
+        _when(seen.describes_pad, Level.FAIL),
+        "let the vehicle answer for its pad",
+    )
+    level = _when(seen.rate_hz >= _FIX_RATE_MIN_HZ, Level.WARN)
+    rate = _graded("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, "set its receiver to 5 Hz or more")
+    return [rate, _vehicle_age(seen), _vehicle_accuracy(seen), pad]
+
+
+def _vehicle_age(seen: VehicleFacts) -> Finding:
+    if seen.age_s is None:
+        return _graded("vehicle age", "unknown", Level.WARN, "needs the autopilot's time of day")
+    is_fit = _FIX_AGE_MIN_S <= seen.age_s <= _FIX_AGE_MAX_S
+    advice = "set its clock by GNSS or NTP, or use a faster link"
+    return _graded("vehicle age", f"{1e3 * seen.age_s:.0f} ms", _when(is_fit, Level.FAIL), advice)
+
+
+def _vehicle_accuracy(seen: VehicleFacts) -> Finding:
+    if seen.std_m is None:
+        return _graded("vehicle accuracy", "not stated", Level.WARN, "let it publish a covariance")
+    level = Level.FAIL if seen.std_m > _FIX_STD_MAX_M else _when(seen.std_m <= _FIX_STD_GOOD_M, Level.WARN)
+    text = f"{seen.std_m:.2f} m" + ("" if seen.has_velocity else ", no velocity")
+    return _graded("vehicle accuracy", text, level, "use RTK, or a landing-pattern detector")

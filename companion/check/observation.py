@@ -1,0 +1,59 @@
+"""What a check has seen of an autopilot and a vehicle, as plain data."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AutopilotFacts:
+    """What was read of the autopilot; None where it said nothing.
+
+    Attributes:
+        autopilot_id: MAV_AUTOPILOT.
+        version: major, minor, patch.
+        can_arm: its own word on whether it would.
+        has_origin: of its local frame.
+        has_position: in its local frame.
+        round_trips: TIMESYNC answers.
+        utc_known: it tells the time of day.
+        clock_std_s: of its boot clock on the companion's.
+        rates_hz: of the messages that the companion asks for, by name.
+        latency_s: median from a position's stamp to its arrival.
+        battery_share: left, 0 to 1.
+        parameters: by name, in its own units.
+    """
+
+    autopilot_id: int
+    version: tuple[int, int, int] | None = None
+    can_arm: bool | None = None
+    has_origin: bool = False
+    has_position: bool = False
+    round_trips: int = 0
+    utc_known: bool = False
+    clock_std_s: float | None = None
+    rates_hz: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    latency_s: float | None = None
+    battery_share: float | None = None
+    parameters: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VehicleFacts:
+    """What was received of the vehicle; None where nothing was.
+
+    Attributes:
+        key: that its fixes were expected on.
+        rate_hz: of its fixes.
+        age_s: median from a fix's stamp to its arrival.
+        std_m: the largest horizontal standard deviation that a fix states.
+        has_velocity: it sends its velocity as well.
+        describes_pad: it answered for its pad.
+    """
+
+    key: str
+    rate_hz: float = 0.0
+    age_s: float | None = None
+    std_m: float | None = None
+    has_velocity: bool = False
+    describes_pad: bool = False

@@ -1,0 +1,117 @@
+"""The check's loop: a transport, a Zenoh session and the system's clock around the readers."""
+
+import time
+from dataclasses import dataclass
+
+from companion.check.reading import Reader
+from companion.check.vehicle_reading import VehicleReader
+from link.errors import UserError
+from link.keys import Keys
+from link.mavlink.parameters import parameter_set_message
+from link.mavlink.transport import Transport
+from link.zenoh_session import Inbox, ZenohSession
+
+_WAIT_S = 0.005
+_PARAMETERS_MAX_S = 10.0
+_SET_ATTEMPTS = 5
+_ASK_PAD_S = 1.0
+_EQUAL = 1e-4  # parameters are 32-bit floats
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Inboxes:
+    """Where a vehicle's samples arrive."""
+
+    fix: Inbox
+    velocity: Inbox
+    pad: Inbox
+
+
+class CheckSession:
+    """A conversation with an autopilot, and with a vehicle beside it.
+
+    Args:
+        reader: of the autopilot.
+        transport: to it.
+        device: its name, for messages.
+    """
+
+    def __init__(self, reader: Reader, transport: Transport, device: str) -> None:
+        self.reader = reader
+        self._transport = transport
+        self._device = device
+
+    def find(self, timeout_s: float) -> None:
+        """Wait for the autopilot.
+
+        Raises:
+            UserError: there is none within `timeout_s`; 0 waits for ever.
+        """
+        end_s = time.monotonic() + timeout_s if timeout_s else float("inf")
+        while self.reader.session.autopilot is None:
+            if time.monotonic() > end_s:
+                raise UserError(
+                    f"no heartbeat of an autopilot within {timeout_s:g} s on {self._device}: check --mavlink"
+                )
+            self.turn()
+
+    def listen(self, duration_s: float, zenoh: ZenohSession, keys: Keys) -> VehicleReader:
+        """Count messages for `duration_s`, read all parameters, and return what the vehicle told meanwhile."""
+        vehicle = VehicleReader(keys.fix)
+        inboxes = Inboxes(
+            fix=zenoh.subscribe(keys.fix),
+            velocity=zenoh.subscribe(keys.fix_velocity),
+            pad=zenoh.ask(keys.pad, b"", _ASK_PAD_S),
+        )
+        patience_s = time.monotonic() + duration_s + _PARAMETERS_MAX_S
+        while self.reader.listened_s < duration_s or not self.reader.parameters_done:
+            if time.monotonic() > patience_s:
+                break
+            self._hear_vehicle(vehicle, inboxes)
+            self.turn()
+        return vehicle
+
+    def set_parameter(self, name: str, value: float) -> bool:
+        """Write a parameter and return whether the autopilot then says that it has this value."""
+        session = self.reader.session
+        autopilot, target = session.autopilot, session.target_system_id
+        kind = self.reader.parameter_types.get(name)
+        if autopilot is None or target is None or kind is None:
+            return False
+        for _ in range(_SET_ATTEMPTS):
+            session.send(parameter_set_message(name, value, kind, autopilot, target))
+            now = self._read(name)
+            if now is not None and abs(now - value) < _EQUAL:
+                return True
+        return False
+
+    def read_parameter(self, name: str) -> float | None:
+        """Return a parameter's present value, None when the autopilot does not answer for it."""
+        return self._read(name)
+
+    def turn(self) -> None:
+        """Take what has come and send what is due."""
+        data = self._transport.receive(_WAIT_S)
+        t_ns = time.time_ns()
+        if data:
+            self.reader.receive(data, t_ns)
+        self.reader.poll(t_ns)
+        for frame in self.reader.session.take_output():
+            self._transport.send(frame)
+
+    def _read(self, name: str) -> float | None:
+        self.reader.read_again(name, time.time_ns())
+        end_s = time.monotonic() + _PARAMETERS_MAX_S
+        while not self.reader.parameters_done and time.monotonic() < end_s:
+            self.turn()
+        return self.reader.value(name)
+
+    def _hear_vehicle(self, vehicle: VehicleReader, inboxes: Inboxes) -> None:
+        now_ns, clock = time.time_ns(), self.reader.session.clock
+        utc_ns = clock.local_to_utc_ns(now_ns) if clock.is_utc_known else None
+        for sample in inboxes.fix.take():
+            vehicle.fix(sample.payload, now_ns, utc_ns)
+        for _ in inboxes.velocity.take():
+            vehicle.velocity()
+        for sample in inboxes.pad.take():
+            vehicle.pad(sample.payload)

@@ -1,0 +1,68 @@
+"""Listening to a vehicle: how often, how late and how exactly it tells where it is; no I/O."""
+
+import math
+import statistics
+
+from companion.check.observation import VehicleFacts
+from link import cdr, json_payloads
+from link.messages import Fix, PadGeometry
+from link.payload_checks import PayloadError
+
+
+class VehicleReader:
+    """Takes a vehicle's samples.
+
+    Args:
+        key: of its fixes.
+    """
+
+    def __init__(self, key: str) -> None:
+        self._key = key
+        self._arrived_ns: list[int] = []
+        self._ages_s: list[float] = []
+        self._std_m: float | None = None
+        self._has_velocity = False
+        self._describes_pad = False
+
+    @property
+    def describes_pad(self) -> bool:
+        """Whether it has answered for its pad."""
+        return self._describes_pad
+
+    def fix(self, payload: bytes, arrived_ns: int, utc_ns: int | None) -> None:
+        """Take a fix that arrived at local time `arrived_ns`, UTC `utc_ns` where that is known."""
+        try:
+            fix = cdr.decode(Fix, payload)
+        except PayloadError:
+            return
+        self._arrived_ns.append(arrived_ns)
+        if utc_ns is not None:
+            self._ages_s.append((utc_ns - fix.t_ns) * 1e-9)
+        if fix.covariance_enu_m2 is not None:
+            variance = max(fix.covariance_enu_m2[0], fix.covariance_enu_m2[4])
+            if math.isfinite(variance) and variance > 0.0:
+                self._std_m = max(self._std_m or 0.0, math.sqrt(variance))
+
+    def velocity(self) -> None:
+        """Take note that it sends its velocity."""
+        self._has_velocity = True
+
+    def pad(self, payload: bytes) -> None:
+        """Take an answer to the question for its pad."""
+        try:
+            json_payloads.decode(PadGeometry, payload)
+        except PayloadError:
+            return
+        self._describes_pad = True
+
+    def facts(self) -> VehicleFacts:
+        """Return what is known now."""
+        span_s = (self._arrived_ns[-1] - self._arrived_ns[0]) * 1e-9 if self._arrived_ns else 0.0
+        return VehicleFacts(
+            key=self._key,
+            rate_hz=(len(self._arrived_ns) - 1) / span_s if span_s > 0.0 else 0.0,
+            age_s=statistics.median(self._ages_s) if self._ages_s else None,
+            std_m=self._std_m,
+            has_velocity=self._has_velocity,
+            describes_pad=self._describes_pad,
+        )

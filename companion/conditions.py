@@ -1,0 +1,192 @@
+"""The conditions that phases wait for or break off at: each true or false of a step's facts, with its hold time.
+
+A condition with a hold time must have been true without a break for that long.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from companion.config import CompanionConfig
+from companion.contact import Verdict, is_stopped_by_pad, over_pad_radius_m, signs_of, verdict
+from companion.phases import LANDING_PHASES, NEAR_PHASES, Event, Phase
+from companion.situation import Approach, Situation, approach
+from companion.targets import chase_floor_m
+
+CONTACT = "contact"
+DISPUTED_CONTACT = "contact against the range finder"
+HARD_CONTACT = "hard contact"
+
+Held = Mapping[str, int]
+"""Since when (UTC ns) each test has been true, by its name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Test:
+    """A condition with the time it must hold before it counts."""
+
+    reason: str
+    phases: frozenset[Phase]
+    is_true: Callable[[Situation, Approach | None, CompanionConfig], bool]
+    hold_s: Callable[[CompanionConfig], float]
+
+
+def fix_too_old(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    """Return whether the vehicle has been silent for too long."""
+    return s.pad is None or s.fix_age_s is None or s.fix_age_s > c.abort.fix_age_max_s
+
+
+def is_uncertain(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    """Return whether the pad is not known well enough to come near it."""
+    return s.pad is not None and float(np.max(s.pad.position_std_m[0, :2])) > c.abort.position_std_max_m
+
+
+def _token_lost(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    silent = s.fix_age_s is None or s.fix_age_s > c.abort.alive_lost_fix_age_max_s
+    return s.vehicle_alive is False and silent
+
+
+def _own_unknown(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
+    return s.drone is None
+
+
+def not_placed(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
+    """Return whether the pad's place on the vehicle is unknown for want of a heading."""
+    return s.pad is not None and not s.pad.placed
+
+
+def _not_followed(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    return s.tracking_error_m > c.abort.tracking_error_max_m
+
+
+def cone_radius_m(height_m: float, config: CompanionConfig) -> float:
+    """Return how far beside the pad's centre the drone may be at `height_m` above it while it descends."""
+    return config.descent.cone_radius_at_pad_m + config.descent.cone_slope * max(height_m, 0.0)
+
+
+def _outside_cone(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
+    return a is not None and a.distance_m > cone_radius_m(a.height_m, c)
+
+
+def is_over_pad(a: Approach, c: CompanionConfig) -> bool:
+    """Return whether the drone is so near the pad's centre that what it touches is the pad."""
+    return a.distance_m < over_pad_radius_m(c)
+
+
+def _too_fast_near_pad(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
+    return a is not None and a.height_m < c.abort.near_height_m and a.speed_m_s > c.abort.near_speed_max_m_s
+
+
+def _missed_pad(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
+    return a is not None and a.height_m < -c.descent.press_depth_m - c.touchdown.height_max_m
+
+
+def is_out_of_range(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    """Return whether the drone is farther from the waiting point than it may go."""
+    if s.drone is None or s.waiting_point_enu_m is None:
+        return False
+    return float(np.hypot(*(s.drone.position_enu_m - s.waiting_point_enu_m)[:2])) > c.limits.range_max_m
+
+
+ABORT_TESTS = (
+    Test("vehicle data too old", LANDING_PHASES, fix_too_old, lambda _: 0.0),
+    Test("vehicle position too uncertain", NEAR_PHASES, is_uncertain, lambda c: c.abort.cone_hold_s),
+    Test("vehicle's link lost", LANDING_PHASES, _token_lost, lambda _: 0.0),
+    Test("own position too old", LANDING_PHASES, _own_unknown, lambda _: 0.0),
+    Test("vehicle heading unknown", frozenset({Phase.DESCEND}), not_placed, lambda _: 0.0),
+    Test("setpoint not followed", LANDING_PHASES, _not_followed, lambda c: c.abort.tracking_hold_s),
+    Test("outside the descent cone", frozenset({Phase.DESCEND}), _outside_cone, lambda c: c.abort.cone_hold_s),
+    Test(
+        "too fast against the pad", frozenset({Phase.DESCEND}), _too_fast_near_pad, lambda c: c.abort.near_speed_hold_s
+    ),
+    Test("too far from the start", LANDING_PHASES, is_out_of_range, lambda _: 0.0),
+    Test("below the pad without contact", frozenset({Phase.DESCEND}), _missed_pad, lambda _: 0.0),
+)
+
+
+def _aligned(s: Situation, a: Approach | None, c: CompanionConfig) -> bool:
+    if a is None or not_placed(s, a, c):
+        return False
+    return a.distance_m < c.descent.aligned_distance_m and a.speed_m_s < c.descent.aligned_speed_m_s
+
+
+def is_too_low(s: Situation, config: CompanionConfig) -> bool:
+    """Return whether the drone hovers so low that a chase would run into the vehicle's side."""
+    relative = approach(s)
+    return relative is None or relative.height_m < chase_floor_m(config)
+
+
+def _stands_nearby(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    if s.drone is None or s.pad is None or not s.pad.placed or fix_too_old(s, None, c) or is_too_low(s, c):
+        return False
+    ahead = s.drone.position_enu_m[:2] - s.pad.position_enu_m[0, :2]
+    speed_m_s = float(np.hypot(*s.pad.velocity_enu_m_s[0, :2]))
+    return speed_m_s < c.chase.parked_speed_m_s and float(np.hypot(*ahead)) < c.chase.passing_distance_m
+
+
+def _drives(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    return s.pad is not None and float(np.hypot(*s.pad.velocity_enu_m_s[0, :2])) >= c.chase.parked_speed_m_s
+
+
+def _in_contact(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    return verdict(signs_of(s), c) is Verdict.CONTACT
+
+
+def _in_hard_contact(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    """Return whether what was touched stops the drone: a moment later the pad may be gone."""
+    jolt_m_s2 = None if s.drone is None else s.drone.jolt_m_s2
+    return jolt_m_s2 is not None and jolt_m_s2 > c.touchdown.jolt_m_s2 and is_stopped_by_pad(signs_of(s), c)
+
+
+def _in_disputed_contact(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    return verdict(signs_of(s), c) is not Verdict.AIRBORNE
+
+
+# A vehicle that stands may be about to depart, so it is landed on only after it has stood for a while.
+ENTRY_TESTS = (
+    (
+        Event.VEHICLE_PASSES,
+        Test("vehicle stands", frozenset({Phase.WAITING}), _stands_nearby, lambda c: c.chase.parked_wait_s),
+    ),
+    (Event.ALIGNED, Test("aligned", frozenset({Phase.ALIGN}), _aligned, lambda c: c.descent.aligned_hold_s)),
+    (Event.CONTACT, Test(CONTACT, frozenset({Phase.DESCEND}), _in_contact, lambda c: c.touchdown.hold_s)),
+    (Event.CONTACT, Test(HARD_CONTACT, frozenset({Phase.DESCEND}), _in_hard_contact, lambda _: 0.0)),
+    (
+        Event.CONTACT,
+        Test(
+            DISPUTED_CONTACT,
+            frozenset({Phase.DESCEND}),
+            _in_disputed_contact,
+            lambda c: c.touchdown.disputed_hold_s,
+        ),
+    ),
+)
+
+
+DRIVES = Test("vehicle drives", frozenset({Phase.WAITING}), _drives, lambda c: c.chase.driving_hold_s)
+"""Without this no vehicle is taken to pass."""
+
+
+def update_held(
+    held: Held,
+    phase: Phase,
+    situation: Situation,
+    relative: Approach | None,
+    config: CompanionConfig,
+    *,
+    others: tuple[Test, ...] = (),
+) -> dict[str, int]:
+    """Return since when each test of this phase has been true."""
+    tests = (*others, *ABORT_TESTS, *(test for _, test in ENTRY_TESTS), DRIVES)
+    return {
+        test.reason: held.get(test.reason, situation.t_ns)
+        for test in tests
+        if phase in test.phases and test.is_true(situation, relative, config)
+    }
+
+
+def holds(test: Test, held: Held, t_ns: int, config: CompanionConfig) -> bool:
+    """Return whether a test has been true for its hold time."""
+    since_ns = held.get(test.reason)
+    return since_ns is not None and (t_ns - since_ns) * 1e-9 >= test.hold_s(config)

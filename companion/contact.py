@@ -1,0 +1,138 @@
+"""Whether the drone stands on the pad, decided by signs that come from different sources; pure.
+
+Three things must agree: the place (the estimates of drone and vehicle say that the feet are at the pad's height, over
+the pad), the standstill (against the pad the drone neither moves up or down nor falls, although its setpoint presses
+down), and the support (the setpoint has sunk below the drone, or the autopilot says that it has landed). Each fails
+for another fault: a wrong height of the vehicle or a stuck place is contradicted by a drone that still follows its
+setpoint, a stuck autopilot's word by the height. A drone's own height that is wrong shifts place and support in
+opposite directions. A range finder is believed when it agrees; when it sees the pad far below, all else has to agree
+for so long that a drone pressed downwards in the air would have fallen.
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+
+from companion.config import CompanionConfig, TouchdownConfig
+from companion.situation import Situation, approach
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Signs:
+    """What is known of a contact; None where it is not.
+
+    Attributes:
+        height_m: of the feet above the pad, by the estimates of drone and vehicle.
+        distance_m: horizontal, from the pad's centre.
+        climb_m_s: upwards against the pad.
+        acceleration_up_m_s2: of the drone.
+        setpoint_below_m: how far the setpoint has sunk below the drone.
+        range_height_m: of the feet above what the range finder sees.
+        landed: the autopilot's own word.
+    """
+
+    height_m: float | None
+    distance_m: float | None
+    climb_m_s: float | None
+    acceleration_up_m_s2: float | None
+    setpoint_below_m: float | None
+    range_height_m: float | None
+    landed: bool | None
+
+
+class Verdict(Enum):
+    """What the signs amount to."""
+
+    AIRBORNE = "airborne"
+    DISPUTED = "disputed"  # a contact but for the range finder
+    CONTACT = "contact"
+
+
+def signs_of(s: Situation) -> Signs:
+    """Return the signs in a step's facts."""
+    relative = approach(s)
+    drone, reference = s.drone, s.reference
+    sunk = None if drone is None or reference is None else drone.position_enu_m[2] - reference.position_enu_m[2]
+    return Signs(
+        height_m=None if relative is None else relative.height_m,
+        distance_m=relative.distance_m if relative is not None and s.pad is not None and s.pad.placed else None,
+        climb_m_s=None if relative is None else relative.climb_m_s,
+        acceleration_up_m_s2=None if drone is None else drone.acceleration_up_m_s2,
+        setpoint_below_m=None if sunk is None else float(sunk),
+        range_height_m=s.range_height_m,
+        landed=s.autopilot.landed,
+    )
+
+
+def verdict(signs: Signs, config: CompanionConfig) -> Verdict:
+    """Return what the signs amount to; what is unknown or no number speaks for the air."""
+    if not (_is_at_pad(signs, config) and _stands(signs, config.touchdown) and _is_supported(signs, config.touchdown)):
+        return Verdict.AIRBORNE
+    seen_m = signs.range_height_m
+    return Verdict.CONTACT if seen_m is None or seen_m <= config.touchdown.range_height_max_m else Verdict.DISPUTED
+
+
+def is_stopped_by_pad(signs: Signs, config: CompanionConfig) -> bool:
+    """Return whether a jolt came from the pad: it is where the drone is, and the range finder or all signs say so."""
+    seen_m = signs.range_height_m
+    touches = seen_m is not None and seen_m <= config.touchdown.range_height_max_m
+    return _is_at_pad(signs, config) and (touches or verdict(signs, config) is Verdict.CONTACT)
+
+
+def may_force_motors_off(signs: Signs, since_contact_s: float, config: CompanionConfig) -> bool:
+    """Return whether the evidence is complete: the motors may be stopped though the autopilot refuses.
+
+    Args:
+        signs: now, all of them anew; that there was a contact is not enough.
+        since_contact_s: for how long a contact has been believed.
+        config: all numbers.
+    """
+    if signs.height_m is None or not signs.height_m < config.descent.commit_height_m:
+        return False
+    match verdict(signs, config):
+        case Verdict.CONTACT:
+            return True
+        case Verdict.DISPUTED:
+            return since_contact_s >= config.touchdown.disputed_hold_s
+        case Verdict.AIRBORNE:
+            return False
+
+
+def described(signs: Signs) -> str:
+    """Return the signs for a log."""
+    parts = [
+        _part(signs.height_m, "m over the pad"),
+        _part(signs.setpoint_below_m, "m above the setpoint"),
+        _part(signs.climb_m_s, "m/s up"),
+        _part(signs.acceleration_up_m_s2, "m/s2 up"),
+        _part(signs.range_height_m, "m by range finder"),
+        {None: "", True: "autopilot landed", False: "autopilot not landed"}[signs.landed],
+    ]
+    return ", ".join(part for part in parts if part)
+
+
+def _part(value: float | None, unit: str) -> str:
+    return "" if value is None else f"{value:.2f} {unit}"
+
+
+def over_pad_radius_m(config: CompanionConfig) -> float:
+    """Return how far from the pad's centre what is touched is still the pad."""
+    return 2.0 * config.descent.cone_radius_at_pad_m
+
+
+def _is_at_pad(signs: Signs, config: CompanionConfig) -> bool:
+    if signs.height_m is None or signs.distance_m is None:
+        return False
+    lowest_m = -config.descent.press_depth_m - config.touchdown.height_max_m
+    is_low = lowest_m <= signs.height_m <= config.touchdown.height_max_m
+    return is_low and signs.distance_m < over_pad_radius_m(config)
+
+
+def _stands(signs: Signs, config: TouchdownConfig) -> bool:
+    if signs.climb_m_s is None or not abs(signs.climb_m_s) < config.blocked_speed_m_s:
+        return False
+    return signs.acceleration_up_m_s2 is None or signs.acceleration_up_m_s2 > -config.falling_acceleration_m_s2
+
+
+def _is_supported(signs: Signs, config: TouchdownConfig) -> bool:
+    sunk = signs.setpoint_below_m is not None and signs.setpoint_below_m > config.blocked_depth_m
+    return sunk or signs.landed is True

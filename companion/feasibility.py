@@ -1,0 +1,86 @@
+"""Whether a landing on this vehicle can be done at all: the speed, the way and the battery against the limits; pure.
+
+What cannot be done is not begun. It is told with its numbers, once, and again only when it is another thing.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from companion.conditions import Held, Test, fix_too_old, holds
+from companion.config import CompanionConfig
+from companion.phases import Phase
+from companion.situation import Approach, Situation
+
+SPEED_MARGIN = 1.15
+"""Of the vehicle's speed: less leaves nothing to catch up with."""
+
+_BEFORE_A_CHASE = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD, Phase.WAITING, Phase.ABORT})
+
+
+@dataclass(frozen=True, slots=True)
+class Obstacle:
+    """What makes a landing impossible, and how it is told."""
+
+    test: Test
+    told: Callable[[Situation, CompanionConfig], str]
+
+
+def _vehicle_speed_m_s(s: Situation) -> float:
+    return 0.0 if s.pad is None else float(np.hypot(*s.pad.velocity_enu_m_s[0, :2]))
+
+
+def _is_too_fast(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    if s.limits is None or fix_too_old(s, None, c):
+        return False
+    return SPEED_MARGIN * _vehicle_speed_m_s(s) > s.limits.speed_max_m_s
+
+
+def _too_fast(s: Situation, c: CompanionConfig) -> str:
+    speed_m_s = _vehicle_speed_m_s(s)
+    allowed_m_s = c.limits.speed_max_m_s if s.limits is None else s.limits.speed_max_m_s
+    name = " or ".join(s.speed_limited_by) if allowed_m_s < c.limits.speed_max_m_s else "limits.speed_max_m_s"
+    needs = f"vehicle at {speed_m_s:.1f} m/s needs {SPEED_MARGIN * speed_m_s:.1f} m/s"
+    return f"{needs}, the limit is {allowed_m_s:.1f}: raise {name} or drive slower"
+
+
+def _way_m(s: Situation, c: CompanionConfig) -> float:
+    return _vehicle_speed_m_s(s) * c.limits.landing_time_s
+
+
+def _is_too_far(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    return not fix_too_old(s, None, c) and _way_m(s, c) > c.limits.range_max_m
+
+
+def _too_far(s: Situation, c: CompanionConfig) -> str:
+    way = f"vehicle at {_vehicle_speed_m_s(s):.1f} m/s goes {_way_m(s, c):.0f} m in {c.limits.landing_time_s:g} s"
+    return f"{way}, limits.range_max_m is {c.limits.range_max_m:g}: raise it or drive slower"
+
+
+def _is_empty(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    share = s.autopilot.battery_share
+    return share is not None and share < c.limits.battery_min_share
+
+
+def _empty(s: Situation, c: CompanionConfig) -> str:
+    share, least = s.autopilot.battery_share or 0.0, c.limits.battery_min_share
+    return f"battery at {100.0 * share:.0f} %, limits.battery_min_share is {100.0 * least:.0f} %: charge it"
+
+
+# An estimate that has just begun jumps: what is said of the vehicle must hold for a while.
+OBSTACLES = (
+    Obstacle(Test("vehicle too fast", _BEFORE_A_CHASE, _is_too_fast, lambda c: c.chase.driving_hold_s), _too_fast),
+    Obstacle(Test("vehicle drives too far", _BEFORE_A_CHASE, _is_too_far, lambda c: c.chase.driving_hold_s), _too_far),
+    Obstacle(Test("battery too low", _BEFORE_A_CHASE, _is_empty, lambda c: c.chase.driving_hold_s), _empty),
+)
+
+OBSTACLE_TESTS = tuple(obstacle.test for obstacle in OBSTACLES)
+
+
+def obstacle(held: Held, s: Situation, config: CompanionConfig) -> tuple[str, str] | None:
+    """Return the name of what makes a landing impossible now, and the sentence with its numbers; None without one."""
+    for one in OBSTACLES:
+        if holds(one.test, held, s.t_ns, config):
+            return one.test.reason, one.told(s, config)
+    return None

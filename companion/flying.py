@@ -1,0 +1,190 @@
+"""From the phase to the next state of the virtual model, and from that to the setpoint; pure."""
+
+import numpy as np
+
+from companion.conditions import CONTACT, DISPUTED_CONTACT
+from companion.config import CompanionConfig
+from companion.contact import over_pad_radius_m
+from companion.data import FlightLimits, Setpoint
+from companion.pad import PadPath
+from companion.phases import FLYING_PHASES, LANDING_PHASES, Phase
+from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
+from companion.reference import Tracking, carried, pressing, remember, setpoint_at
+from companion.situation import Situation, approach
+from companion.step_data import StepInputs, StepMemory, System
+from companion.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
+from companion.transitions import BRAKING_M_S2
+from link.frames import wrap_angle
+from link.records import replace
+
+_STEP_MAX_S = 0.1  # a longer pause does not let the virtual model jump
+
+
+def setpoint(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) -> Setpoint | None:
+    """Return what the autopilot is to follow now, None while nothing is flown."""
+    reference = memory.reference
+    if reference is None or memory.driver.climbs_by_itself:
+        return None
+    if memory.phase is Phase.TOUCHDOWN:
+        reference = pressing(reference, config.touchdown.press_acceleration_m_s2)
+    elif CONTACT in memory.held or DISPUTED_CONTACT in memory.held:
+        reference = pressing(reference, config.touchdown.try_acceleration_m_s2)
+    flown_ns = inputs.t_ns + round((inputs.link_delay_s + config.setpoint_lead_s) * 1e9)
+    return setpoint_at(
+        carried(reference, (flown_ns - memory.reference_ns) * 1e-9),
+        memory.tracking.correction_enu_m,
+        flown_ns,
+        memory.yaw_setpoint_rad,
+        position_only=config.position_only,
+    )
+
+
+def _aim(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Aim:
+    """Return where the present phase wants the drone."""
+    reference, pad = memory.reference, situation.pad
+    if reference is None or memory.anchor_enu_m is None or memory.waiting_point_enu_m is None:
+        raise ValueError(f"phase {memory.phase.value} flies without a reference")
+    match memory.phase:
+        case Phase.CHASE | Phase.ALIGN | Phase.DESCEND | Phase.TOUCHDOWN if pad is not None:
+            return pad_aim(memory.phase, pad, reference, situation.feet_offset_m, config)
+        case Phase.ABORT if pad is not None and _is_fresh(situation, config):
+            return pad_aim(memory.phase, pad, reference, situation.feet_offset_m, config)
+        case Phase.ABORT:
+            return hover_aim(memory.anchor_enu_m + np.array([0.0, 0.0, config.abort.height_m]))
+        case Phase.TAKEOFF if not (situation.autopilot.armed and situation.autopilot.in_control):
+            return hover_aim(memory.anchor_enu_m)
+        case Phase.HOLD:
+            return hover_aim(memory.anchor_enu_m)
+        case _:
+            return hover_aim(memory.waiting_point_enu_m)
+
+
+def _is_fresh(situation: Situation, config: CompanionConfig) -> bool:
+    return situation.fix_age_s is not None and situation.fix_age_s <= config.abort.fix_age_max_s
+
+
+def fly(
+    memory: StepMemory, situation: Situation, inputs: StepInputs, system: System
+) -> tuple[StepMemory, PlanResult | None]:
+    """Plan from the virtual model now to where it is at the next step, one period from now."""
+    if memory.reference is None or memory.phase not in FLYING_PHASES:
+        return memory, None
+    memory = _with_the_drone(memory, situation, system.config)
+    if memory.reference is None:
+        return memory, None
+    # The last plan led to `reference_ns`; this step may come a little earlier or later than that.
+    off_s = (inputs.t_ns - memory.reference_ns) * 1e-9
+    reference = carried(memory.reference, max(min(off_s, _STEP_MAX_S), -_STEP_MAX_S))
+    reference = _at_drone(memory, reference, situation, system.config)
+    memory = replace(memory, reference=reference)
+    period_s = 1.0 / system.config.step_rate_hz
+    aim = _aim(memory, situation, system.config)
+    if is_at_rest(reference, aim):
+        return _resting(memory, inputs.t_ns + round(period_s * 1e9)), None
+    request = PlanRequest(
+        state=reference,
+        target=aim.target,
+        limits=_limits(memory, situation, inputs.limits, system.config),
+        floor_enu_m=aim.floor_enu_m,
+        dt_s=period_s,
+    )
+    guidance, plan = system.guidance.plan(memory.guidance, request)
+    reference_ns = inputs.t_ns + round(period_s * 1e9)
+    memory = replace(
+        memory,
+        guidance=guidance,
+        reference=plan.next_state,
+        reference_ns=reference_ns,
+        tracking=remember(memory.tracking, reference_ns, plan.next_state),
+        yaw_setpoint_rad=_slewed_yaw_rad(memory, situation.pad, period_s, system.config),
+    )
+    return _anchored(memory, situation, system.config), plan
+
+
+def _at_drone(
+    memory: StepMemory, reference: ReferenceState, situation: Situation, config: CompanionConfig
+) -> ReferenceState:
+    """Keep the virtual model with a drone that does not follow it, so that it takes over wherever that ends.
+
+    One climbs by itself; another was held by what it touched while the pad drove on: it is pressed down where it is,
+    which is what an autopilot's land detector waits for.
+    """
+    drone, sinking = situation.drone, _is_left_by_pad(memory, situation, config)
+    if drone is None or not (memory.driver.climbs_by_itself or sinking):
+        return reference
+    depth_m, sink_m_s = (
+        (config.descent.press_depth_m, config.descent.touchdown_sink_rate_m_s) if sinking else (0.0, 0.0)
+    )
+    return ReferenceState(
+        position_enu_m=drone.position_enu_m - np.array([0.0, 0.0, depth_m]),
+        velocity_enu_m_s=np.array([0.0, 0.0, -sink_m_s]),
+        acceleration_enu_m_s2=np.zeros(3),
+    )
+
+
+def _is_left_by_pad(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
+    relative = approach(situation)
+    if memory.phase is not Phase.TOUCHDOWN or relative is None:
+        return False
+    return relative.speed_m_s > config.abort.near_speed_max_m_s or relative.distance_m > 2.0 * over_pad_radius_m(config)
+
+
+def _with_the_drone(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
+    """Return the memory with the virtual model where the drone is, once the drone has lost it outside of a landing.
+
+    A drone that hovered through a silent link is not to be sent after a model that has flown on.
+    """
+    drone, lands = situation.drone, memory.phase in LANDING_PHASES or memory.phase is Phase.TOUCHDOWN
+    if lands or drone is None or memory.tracking.error_m < config.abort.tracking_error_max_m:
+        return memory
+    reference = ReferenceState(
+        position_enu_m=drone.position_enu_m, velocity_enu_m_s=drone.velocity_enu_m_s, acceleration_enu_m_s2=np.zeros(3)
+    )
+    anchor = memory.anchor_enu_m
+    if memory.phase in (Phase.ABORT, Phase.HOLD):
+        anchor = stopping_point(reference, BRAKING_M_S2)
+    return replace(
+        memory,
+        reference=reference,
+        reference_ns=situation.t_ns,
+        guidance=None,
+        tracking=Tracking(compared_ns=memory.tracking.compared_ns),
+        anchor_enu_m=anchor,
+    )
+
+
+def _resting(memory: StepMemory, reference_ns: int) -> StepMemory:
+    """Let the virtual model stay where it is, for there is nothing to plan."""
+    if memory.reference is None:
+        return memory
+    tracking = remember(memory.tracking, reference_ns, memory.reference)
+    return replace(memory, reference_ns=reference_ns, tracking=tracking)
+
+
+def _anchored(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
+    """Take the place to stop along while an abort follows the vehicle, for when the vehicle falls silent."""
+    if memory.phase is not Phase.ABORT or memory.reference is None or memory.anchor_enu_m is None:
+        return memory
+    if situation.pad is None or not _is_fresh(situation, config):
+        return memory
+    x, y, _ = stopping_point(memory.reference, BRAKING_M_S2)
+    return replace(memory, anchor_enu_m=np.array([x, y, memory.anchor_enu_m[2]]))
+
+
+def _limits(memory: StepMemory, situation: Situation, limits: FlightLimits, config: CompanionConfig) -> FlightLimits:
+    """Return the limits of this step: just above the pad the drone turns less than the deck, to touch down level."""
+    relative = approach(situation)
+    if memory.phase is not Phase.DESCEND or relative is None or relative.height_m > config.touchdown.level_height_m:
+        return limits
+    level_m_s2 = min(config.touchdown.level_acceleration_m_s2, limits.acceleration_max_m_s2)
+    return replace(limits, acceleration_max_m_s2=level_m_s2)
+
+
+def _slewed_yaw_rad(memory: StepMemory, pad: PadPath | None, dt_s: float, config: CompanionConfig) -> float:
+    """Turn towards the vehicle's heading while it is followed, at a bounded rate."""
+    follows = memory.phase in LANDING_PHASES or memory.phase is Phase.TOUCHDOWN
+    if not (follows and config.follows_heading) or pad is None or pad.yaw_rad is None:
+        return memory.yaw_setpoint_rad
+    turn_max_rad = config.yaw_rate_max_rad_s * dt_s
+    turn_rad = wrap_angle(pad.yaw_rad - memory.yaw_setpoint_rad)
+    return wrap_angle(memory.yaw_setpoint_rad + min(max(turn_rad, -turn_max_rad), turn_max_rad))

@@ -1,0 +1,32 @@
+"""What the autopilot's sensors beside its estimator say: range finder and battery, from their messages."""
+
+from companion.autopilots.driver import AutopilotView
+from companion.data import RangeReading
+from link.mavlink.clock_map import ClockMap
+from link.mavlink.dialect import Message, mavlink
+from link.records import replace
+
+_CM = 0.01
+
+
+def with_sensor(view: AutopilotView, message: Message, clock: ClockMap) -> AutopilotView:
+    """Return the view after a DISTANCE_SENSOR or a BATTERY_STATUS; only the first battery counts."""
+    if message.get_type() == "DISTANCE_SENSOR":
+        return replace(view, range_down=_range_reading(message, clock) or view.range_down)
+    return replace(view, battery_share=_battery_share(message)) if message.id == 0 else view
+
+
+def _range_reading(message: Message, clock: ClockMap) -> RangeReading | None:
+    """Return what a range finder that looks down sees; at or beyond the ends of its range it sees nothing."""
+    t_ns = clock.boot_to_utc_ns(message.time_boot_ms * 1_000_000)
+    is_within = message.min_distance < message.current_distance < message.max_distance
+    looks_down = message.orientation == mavlink.MAV_SENSOR_ROTATION_PITCH_270
+    if t_ns is None or not (is_within and looks_down):
+        return None
+    return RangeReading(t_ns=t_ns, distance_m=message.current_distance * _CM)
+
+
+def _battery_share(message: Message) -> float | None:
+    """Return what is left of a battery, 0 to 1, None when it is not told."""
+    percent: int = message.battery_remaining
+    return percent / 100.0 if percent >= 0 else None

@@ -1,0 +1,35 @@
+"""How long a companion's loop takes, in wall seconds."""
+
+import time
+from collections import deque
+from dataclasses import dataclass, field
+
+import psutil  # type: ignore[import-untyped]  # it has no annotations
+
+_DURATIONS_MAX = 200_000  # steps whose durations are kept, over an hour's worth
+
+
+@dataclass(slots=True)
+class Timings:
+    """How long the loop took, in wall seconds."""
+
+    state_to_setpoint_s: deque[float] = field(default_factory=lambda: deque(maxlen=_DURATIONS_MAX))
+    started_s: float = field(default_factory=time.perf_counter)
+    started_cpu_s: float = field(default_factory=time.process_time)
+
+    def summary(self) -> dict[str, float | int]:
+        """Return what belongs into a timing file."""
+        ordered = sorted(self.state_to_setpoint_s)
+        wall_s = time.perf_counter() - self.started_s
+
+        def quantile_ms(share: float) -> float:
+            return round(1e3 * ordered[min(int(share * len(ordered)), len(ordered) - 1)], 4) if ordered else 0.0
+
+        return {
+            "steps": len(ordered),
+            "state_to_setpoint_median_ms": quantile_ms(0.5),
+            "state_to_setpoint_p99_ms": quantile_ms(0.99),
+            "state_to_setpoint_max_ms": quantile_ms(1.0),
+            "cpu_share": round((time.process_time() - self.started_cpu_s) / wall_s, 4),
+            "memory_mb": round(psutil.Process().memory_info().rss / 1e6, 1),
+        }

@@ -1,0 +1,98 @@
+"""The operator's command and the event of a step, and what the phase that they lead to begins with; pure."""
+
+import numpy as np
+
+from companion.commands import answer
+from companion.conditions import update_held
+from companion.config import CompanionConfig
+from companion.decisions import Progress, decide
+from companion.feasibility import OBSTACLE_TESTS, obstacle
+from companion.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
+from companion.planning.guidance import ReferenceState
+from companion.reference import Tracking
+from companion.situation import Situation, approach
+from companion.step_data import StepInputs, StepMemory
+from companion.targets import stopping_point
+from link.messages import Command, CommandReply
+from link.records import replace
+
+BRAKING_M_S2 = 2.0
+"""Deceleration that the place to stop at is taken from."""
+
+
+def transitions(
+    memory: StepMemory, situation: Situation, inputs: StepInputs, config: CompanionConfig
+) -> tuple[StepMemory, CommandReply | None]:
+    """Take the operator's command, then the event of this step."""
+    reply = None
+    if inputs.command is not None:
+        known = obstacle(memory.held, situation, config)
+        event, reply = answer(inputs.command, memory.phase, situation, None if known is None else known[1])
+        if event is not None:
+            memory = _enter(memory, event, f"commanded: {inputs.command.value}", situation, config)
+        if reply.accepted:
+            memory = replace(memory, may_retry=inputs.command is Command.START)
+    progress = Progress(
+        phase=memory.phase,
+        since_ns=memory.phase_since_ns,
+        retries=memory.retries,
+        may_retry=memory.may_retry,
+        was_in_control=memory.was_in_control,
+        was_armed=memory.was_armed,
+    )
+    held = update_held(memory.held, memory.phase, situation, approach(situation), config, others=OBSTACLE_TESTS)
+    memory = replace(memory, held=held, obstacle=_same_or_new(memory.obstacle, obstacle(held, situation, config)))
+    decision = decide(progress, situation, held, config)
+    if decision is not None:
+        memory = _enter(memory, *decision, situation, config)
+    flies, view = memory.phase in FLYING_PHASES, inputs.autopilot
+    in_control = flies and (memory.was_in_control or view.in_control)
+    armed = in_control and (memory.was_armed or (view.in_control and view.armed))
+    if (in_control, armed) != (memory.was_in_control, memory.was_armed):
+        memory = replace(memory, was_in_control=in_control, was_armed=armed)
+    return memory, reply
+
+
+def _same_or_new(told: tuple[str, str] | None, now: tuple[str, str] | None) -> tuple[str, str] | None:
+    """Keep the sentence that was told as long as it is the same thing: its numbers change in every step."""
+    return told if told is not None and now is not None and told[0] == now[0] else now
+
+
+def _enter(memory: StepMemory, event: Event, reason: str, situation: Situation, config: CompanionConfig) -> StepMemory:
+    """Return the memory in the phase that `event` leads to, with what that phase needs at its beginning."""
+    phase = next_phase(memory.phase, event)
+    if phase is memory.phase:
+        return memory
+    retries = memory.retries + 1 if event is Event.CLEAR else memory.retries
+    retries = 0 if event is Event.START else retries
+    # What makes an approach unsafe goes on from one of its phases to the next, and so does the time it has held.
+    held = memory.held if {memory.phase, phase} <= LANDING_PHASES else {}
+    memory = replace(memory, phase=phase, phase_since_ns=situation.t_ns, reason=reason, held=held, retries=retries)
+    if phase is Phase.TAKEOFF:
+        return _begin_flight(memory, situation, config)
+    if phase not in FLYING_PHASES:
+        return replace(memory, reference=None, tracking=Tracking())
+    if phase in (Phase.HOLD, Phase.ABORT) and memory.reference is not None:
+        return replace(memory, anchor_enu_m=stopping_point(memory.reference, BRAKING_M_S2))
+    return memory
+
+
+def _begin_flight(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
+    """Start the virtual model where the drone is, and place the waiting point above it."""
+    if situation.drone is None:
+        return replace(memory, phase=Phase.IDLE, reason="the drone's position is not known")
+    position, zero = situation.drone.position_enu_m, np.zeros(3)
+    airborne = situation.autopilot.armed and situation.autopilot.landed is False
+    climb_m = 0.0 if airborne else config.takeoff.waiting_height_m
+    return replace(
+        memory,
+        was_in_control=False,
+        was_armed=False,
+        reference=ReferenceState(position_enu_m=position, velocity_enu_m_s=zero, acceleration_enu_m_s2=zero),
+        reference_ns=situation.t_ns,
+        tracking=Tracking(),
+        guidance=None,
+        anchor_enu_m=position,
+        waiting_point_enu_m=position + np.array([0.0, 0.0, climb_m]),
+        yaw_setpoint_rad=situation.drone.yaw_rad,
+    )

@@ -1,0 +1,143 @@
+"""The ArduCopter driver: what it asks for, in which order, and that nothing disturbs its own take-off."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from companion.autopilots.ardupilot import ArduPilotDriver
+from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, AutopilotView, Desire, DriverMemory
+from companion.config import CompanionConfig
+from link.mavlink.dialect import mavlink
+from tests.companion.world import START_NS, STEP_NS
+
+DRIVER = ArduPilotDriver()
+GROUND = replace(NO_AUTOPILOT, link_up=True, landed=True)
+GUIDED = replace(GROUND, in_control=True)
+ARMED = replace(GUIDED, armed=True)
+CLIMBING = replace(ARMED, landed=False, taking_off=True)
+AIRBORNE = replace(ARMED, landed=False)
+FLY = Desire(control=True, armed=True, takeoff_height_m=5.5)
+ARM, MODE, TAKE_OFF = (
+    mavlink.MAV_CMD_COMPONENT_ARM_DISARM,
+    mavlink.MAV_CMD_DO_SET_MODE,
+    mavlink.MAV_CMD_NAV_TAKEOFF,
+)
+
+
+def _run(
+    view: AutopilotView, desire: Desire, duration_s: float, memory: DriverMemory | None = None
+) -> tuple[DriverMemory, list[AutopilotCommand]]:
+    memory = DriverMemory() if memory is None else memory
+    sent: list[AutopilotCommand] = []
+    for step in range(round(duration_s * 1e9 / STEP_NS)):
+        memory, commands = DRIVER.act(memory, view, desire, START_NS + step * STEP_NS)
+        sent += commands
+    return memory, sent
+
+
+@pytest.mark.parametrize(
+    ("base_mode", "custom_mode", "is_in_control"),
+    [(89, 4, True), (217, 4, True), (217, 9, False), (217, 6, False), (216, 4, False), (81, 0, False)],
+)
+def test_only_guided_is_control(base_mode: int, custom_mode: int, is_in_control: bool) -> None:
+    assert DRIVER.is_in_control(base_mode, custom_mode) is is_in_control
+
+
+@pytest.mark.parametrize(
+    ("view", "expected"),
+    [
+        (GROUND, (MODE, (1.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0))),
+        (GUIDED, (ARM, (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))),
+        (ARMED, (TAKE_OFF, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 5.5))),
+    ],
+)
+def test_flight_begins_by_mode_then_arming_then_take_off(view: AutopilotView, expected: tuple[int, object]) -> None:
+    _, sent = _run(view, FLY, 0.5)
+    assert [(command.command, command.parameters) for command in sent] == [expected]
+
+
+@pytest.mark.parametrize(
+    ("view", "climbs"), [(GROUND, True), (GUIDED, True), (ARMED, True), (CLIMBING, True), (AIRBORNE, False)]
+)
+def test_setpoints_are_held_back_until_its_own_take_off_is_over(view: AutopilotView, climbs: bool) -> None:
+    memory, _ = _run(view, FLY, 0.1)
+    assert memory.climbs_by_itself is climbs
+
+
+def test_take_off_under_way_is_not_told_again() -> None:
+    _, sent = _run(CLIMBING, FLY, 12.0)
+    assert sent == []
+
+
+def test_setpoints_flow_in_every_phase_after_the_take_off() -> None:
+    memory, _ = _run(ARMED, FLY, 0.1)
+    memory, _ = _run(AIRBORNE, Desire(), 0.1, memory)
+    assert not memory.climbs_by_itself
+
+
+@given(armed=st.booleans(), in_control=st.booleans(), landed=st.sampled_from([None, True, False]))
+def test_nothing_is_asked_for_when_nothing_is_wanted(*, armed: bool, in_control: bool, landed: bool | None) -> None:
+    _, sent = _run(replace(GROUND, armed=armed, in_control=in_control, landed=landed), Desire(), 2.0)
+    assert sent == []
+
+
+def test_release_leaves_guided_for_a_hover_that_needs_no_sticks() -> None:
+    _, sent = _run(AIRBORNE, Desire(release=True), 0.5)
+    assert [command.parameters[:2] for command in sent] == [(1.0, 17.0)]
+
+
+def test_disarm_is_forced_after_a_refusal_with_the_evidence_only() -> None:
+    memory, sent = _run(AIRBORNE, Desire(armed=False, force_disarm=True), 0.1)
+    memory = DRIVER.acknowledged(memory, ARM, mavlink.MAV_RESULT_FAILED)
+    assert [command.parameters[:2] for command in sent] == [(0.0, 0.0)]
+    _, without = _run(AIRBORNE, Desire(armed=False), 1.0, memory)
+    assert all(command.parameters[1] == 0.0 for command in without)
+    _, forced = _run(AIRBORNE, Desire(armed=False, force_disarm=True), 0.1, memory)
+    assert [command.parameters[:2] for command in forced] == [(0.0, 21196.0)]
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("Arm: Need Position Estimate", "Need Position Estimate"),
+        ("PreArm: Gyros inconsistent", "Gyros inconsistent"),
+        ("Arm: AHRS: waiting for home", "AHRS: waiting for home"),
+        ("EKF3 IMU0 is using GPS", None),
+    ],
+)
+def test_refused_arming_is_read_from_its_text(text: str, reason: str | None) -> None:
+    message = mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_CRITICAL, text.encode())
+    assert DRIVER.refusal(mavlink.MAVLink("").decode(bytearray(message.pack(mavlink.MAVLink("", 1, 1))))) == reason
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    [
+        {
+            "WPNAV_SPEED": 700.0,
+            "WPNAV_SPEED_UP": 210.0,
+            "WPNAV_SPEED_DN": 110.0,
+            "ANGLE_MAX": 2200.0,
+            "PSC_JERK_XY": 5.0,
+        },
+        {"WP_SPD": 7.0, "WP_SPD_UP": 2.1, "WP_SPD_DN": 1.1, "ATC_ANGLE_MAX": 22.0, "PSC_JERK_NE": 5.0},
+    ],
+)
+def test_limits_are_read_by_the_names_of_old_and_new_releases(parameters: dict[str, float]) -> None:
+    cut = DRIVER.limits(CompanionConfig().limits.flight_limits(), parameters)
+    assert (cut.speed_max_m_s, cut.climb_max_m_s, cut.descent_max_m_s) == pytest.approx((7.0, 2.1, 1.1))
+    assert cut.acceleration_max_m_s2 == pytest.approx(0.7 * 9.81 * math.tan(math.radians(22.0)))
+    assert cut.jerk_max_m_s3 == 5.0
+
+
+@given(st.dictionaries(st.sampled_from(DRIVER.limit_parameters), st.floats()))
+def test_no_parameter_whatever_takes_a_limit_away(parameters: dict[str, float]) -> None:
+    wanted = CompanionConfig().limits.flight_limits()
+    cut = DRIVER.limits(wanted, parameters)
+    assert 0.0 < cut.speed_max_m_s <= wanted.speed_max_m_s
+    assert 0.0 < cut.climb_max_m_s <= wanted.climb_max_m_s
+    assert 0.0 < cut.descent_max_m_s <= wanted.descent_max_m_s
+    assert 0.0 < cut.acceleration_max_m_s2 <= wanted.acceleration_max_m_s2

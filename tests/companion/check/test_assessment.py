@@ -1,0 +1,97 @@
+"""The lines of the check: everything in order passes, and each thing amiss is told by its own line."""
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from companion.check.assessment import MOTION, assessed, is_ready
+from companion.check.changes import advised_values
+from companion.check.findings import Level
+from companion.check.observation import AutopilotFacts, VehicleFacts
+from link.mavlink.dialect import mavlink
+from tests.companion.check.test_rules import ARDUCOPTER_46, PX4_DEFAULTS
+
+GOOD = AutopilotFacts(
+    autopilot_id=mavlink.MAV_AUTOPILOT_PX4,
+    version=(1, 16, 0),
+    can_arm=True,
+    has_origin=True,
+    has_position=True,
+    round_trips=20,
+    utc_known=True,
+    clock_std_s=0.001,
+    rates_hz=dict.fromkeys(MOTION, 50.0),
+    latency_s=0.01,
+    battery_share=0.9,
+    parameters={
+        **PX4_DEFAULTS,
+        "MPC_Z_VEL_MAX_DN": 2.0,
+        "LNDMC_XY_VEL_MAX": 12.0,
+        "COM_OBL_RC_ACT": 5.0,
+        "COM_RC_OVERRIDE": 3.0,
+    },
+)
+VEHICLE = VehicleFacts(
+    key="decklander/vehicle/fix", rate_hz=10.0, age_s=0.1, std_m=0.05, has_velocity=True, describes_pad=True
+)
+
+
+def test_everything_in_order_is_all_pass() -> None:
+    findings = assessed(GOOD, VEHICLE, 10.0)
+    assert {one.level for one in findings} == {Level.PASS}
+    assert is_ready(findings)
+
+
+@pytest.mark.parametrize(
+    ("changed", "line", "level"),
+    [
+        ({"autopilot_id": mavlink.MAV_AUTOPILOT_GENERIC}, "firmware", Level.FAIL),
+        ({"version": (1, 12, 3)}, "firmware", Level.WARN),
+        ({"version": None}, "firmware", Level.WARN),
+        ({"can_arm": False}, "arming checks", Level.WARN),
+        ({"has_origin": False}, "estimator", Level.FAIL),
+        ({"has_position": False}, "estimator", Level.FAIL),
+        ({"round_trips": 0}, "clock", Level.FAIL),
+        ({"utc_known": False}, "clock", Level.FAIL),
+        ({"clock_std_s": 0.1}, "clock", Level.WARN),
+        ({"rates_hz": {}}, MOTION[0], Level.FAIL),
+        ({"rates_hz": dict.fromkeys(MOTION, 20.0)}, MOTION[1], Level.WARN),
+        ({"latency_s": 0.3}, "latency", Level.WARN),
+        ({"battery_share": 0.4}, "battery", Level.WARN),
+        ({"battery_share": 0.2}, "battery", Level.FAIL),
+        ({"battery_share": None}, "battery", Level.WARN),
+    ],
+)
+def test_autopilot_amiss_is_told(changed: dict[str, Any], line: str, level: Level) -> None:
+    by_name = {one.name: one for one in assessed(replace(GOOD, **changed), VEHICLE, 10.0)}
+    assert by_name[line].level is level
+    assert by_name[line].advice
+
+
+@pytest.mark.parametrize(
+    ("changed", "line", "level"),
+    [
+        ({"rate_hz": 0.0}, "vehicle", Level.WARN),
+        ({"rate_hz": 1.0}, "vehicle fixes", Level.WARN),
+        ({"age_s": 2.0}, "vehicle age", Level.FAIL),
+        ({"age_s": -3600.0}, "vehicle age", Level.FAIL),
+        ({"age_s": None}, "vehicle age", Level.WARN),
+        ({"std_m": 1.0}, "vehicle accuracy", Level.WARN),
+        ({"std_m": 5.0}, "vehicle accuracy", Level.FAIL),
+        ({"std_m": None}, "vehicle accuracy", Level.WARN),
+        ({"describes_pad": False}, "vehicle pad", Level.FAIL),
+    ],
+)
+def test_vehicle_amiss_is_told(changed: dict[str, Any], line: str, level: Level) -> None:
+    by_name = {one.name: one for one in assessed(GOOD, replace(VEHICLE, **changed), 10.0)}
+    assert by_name[line].level is level
+    assert by_name[line].advice
+
+
+def test_advised_values_make_an_arducopter_pass() -> None:
+    seen = replace(GOOD, autopilot_id=mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, version=(4, 6, 0), parameters=ARDUCOPTER_46)
+    before = assessed(seen, VEHICLE, 12.0)
+    assert not is_ready(before)
+    after = assessed(replace(seen, parameters={**ARDUCOPTER_46, **advised_values(before)}), VEHICLE, 12.0)
+    assert {one.level for one in after} == {Level.PASS}

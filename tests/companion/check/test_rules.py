@@ -1,0 +1,94 @@
+"""The rules about parameters: what is advised passes, in every spelling, and what was flown passes unchanged."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from companion.check.ardupilot_rules import ARDUPILOT_RULES
+from companion.check.findings import Finding, Level
+from companion.check.px4_rules import PX4_RULES
+from companion.check.rules import ParameterRule, Spelling, judged, names_of
+
+ALL = [*PX4_RULES, *ARDUPILOT_RULES]
+SPELLED = [(rule, spelling) for rule in ALL for spelling in rule.spellings]
+ARDUCOPTER_46 = {
+    "ANGLE_MAX": 3000.0,
+    "WPNAV_SPEED": 1000.0,
+    "WPNAV_ACCEL": 250.0,
+    "WPNAV_SPEED_DN": 150.0,
+    "WPNAV_SPEED_UP": 250.0,
+    "GUID_TIMEOUT": 3.0,
+    "GUID_OPTIONS": 0.0,
+    "FS_GCS_ENABLE": 0.0,
+    "FS_EKF_ACTION": 1.0,
+    "DISARM_DELAY": 10.0,
+}
+"""Defaults, with which 3, 5 and 8 m/s were flown, and 10.2 m/s was the ceiling."""
+ARDUCOPTER_47 = {
+    "ATC_ANGLE_MAX": 30.0,
+    "WP_SPD": 10.0,
+    "WP_ACC": 2.5,
+    "WP_SPD_DN": 1.5,
+    "WP_SPD_UP": 2.5,
+    **{name: ARDUCOPTER_46[name] for name in list(ARDUCOPTER_46)[5:]},
+}
+PX4_DEFAULTS = {
+    "MPC_XY_VEL_MAX": 12.0,
+    "MPC_TILTMAX_AIR": 45.0,
+    "MPC_Z_VEL_MAX_DN": 1.5,
+    "MPC_Z_VEL_MAX_UP": 3.0,
+    "LNDMC_XY_VEL_MAX": 1.5,
+    "COM_OF_LOSS_T": 1.0,
+    "COM_OBL_RC_ACT": 0.0,
+    "COM_DISARM_LAND": 2.0,
+    "COM_RC_OVERRIDE": 1.0,
+}
+
+
+def names(findings: list[Finding], level: Level) -> set[str]:
+    return {one.name for one in findings if one.level is level}
+
+
+@pytest.mark.parametrize(("rule", "spelling"), SPELLED, ids=[spelling.name for _, spelling in SPELLED])
+@given(speed_m_s=st.floats(0.0, 30.0))
+def test_advised_value_passes(rule: ParameterRule, spelling: Spelling, speed_m_s: float) -> None:
+    value = rule.advised(speed_m_s) * spelling.per_unit
+    (found,) = judged([rule], {spelling.name: value}, speed_m_s)
+    assert found.level is Level.PASS
+
+
+@pytest.mark.parametrize("rules", [PX4_RULES, ARDUPILOT_RULES])
+def test_parameter_that_is_not_answered_is_a_warning_with_no_value_to_set(rules: tuple[ParameterRule, ...]) -> None:
+    findings = judged(rules, {}, 5.0)
+    assert len(findings) == len(rules)
+    assert all(one.level is Level.WARN and one.set_to is None and one.advice for one in findings)
+
+
+@pytest.mark.parametrize("defaults", [ARDUCOPTER_46, ARDUCOPTER_47], ids=["4.6", "4.7"])
+def test_arducopters_defaults_serve_8_m_s_and_not_12(defaults: dict[str, float]) -> None:
+    assert set(defaults) <= set(names_of(ARDUPILOT_RULES))
+    assert names(judged(ARDUPILOT_RULES, defaults, 8.0), Level.FAIL) == set()
+    tilt, speed = list(defaults)[:2]
+    assert names(judged(ARDUPILOT_RULES, defaults, 12.0), Level.FAIL) == {tilt, speed}
+
+
+def test_both_spellings_are_advised_the_same_in_their_own_units() -> None:
+    old = {one.name: one.set_to for one in judged(ARDUPILOT_RULES, ARDUCOPTER_46, 12.0)}
+    new = {one.name: one.set_to for one in judged(ARDUPILOT_RULES, ARDUCOPTER_47, 12.0)}
+    assert (old["ANGLE_MAX"], new["ATC_ANGLE_MAX"]) == (4500.0, 45.0)  # flown at 12 m/s
+    assert (old["WPNAV_SPEED"], new["WP_SPD"]) == (1500.0, 15.0)  # flown at 12 m/s
+    assert (old["WPNAV_ACCEL"], new["WP_ACC"]) == (350.0, 3.5)  # flown at 12 m/s
+
+
+def test_px4s_defaults_serve_10_m_s_and_not_11() -> None:
+    assert set(PX4_DEFAULTS) == set(names_of(PX4_RULES))
+    assert names(judged(PX4_RULES, PX4_DEFAULTS, 10.0), Level.FAIL) == set()
+    assert names(judged(PX4_RULES, PX4_DEFAULTS, 11.0), Level.FAIL) == {"MPC_XY_VEL_MAX"}
+
+
+@pytest.mark.parametrize(
+    ("action", "level"), [(5.0, Level.PASS), (0.0, Level.WARN), (6.0, Level.FAIL), (7.0, Level.FAIL)]
+)
+def test_stopping_the_motors_when_setpoints_stay_away_is_a_failure(action: float, level: Level) -> None:
+    found = {one.name: one.level for one in judged(PX4_RULES, {**PX4_DEFAULTS, "COM_OBL_RC_ACT": action}, 5.0)}
+    assert found["COM_OBL_RC_ACT"] is level

@@ -1,0 +1,61 @@
+"""The pages that a pilot reads say what the program does: aborts with their limits, parameters with their values."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from companion.check.ardupilot_rules import ARDUPILOT_RULES
+from companion.check.px4_rules import PX4_RULES
+from companion.check.rules import ParameterRule
+from companion.conditions import ABORT_TESTS
+from companion.config import CompanionConfig
+from companion.feasibility import OBSTACLES
+
+DOCS = Path(__file__).parents[2] / "docs"
+SPEEDS_M_S = (5.0, 8.0, 10.0)
+
+
+def rows(page: str) -> list[list[str]]:
+    """Return the cells of all tables of a page."""
+    lines = (DOCS / page).read_text(encoding="utf-8").splitlines()
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("|")]
+
+
+@pytest.mark.parametrize("reason", [test.reason for test in ABORT_TESTS])
+def test_each_abort_is_explained(reason: str) -> None:
+    told = [row for row in rows("safety.md") if reason in row[0] and len(row) == 3]
+    assert told
+    assert all(row[-1] for row in told)
+
+
+def test_each_reason_for_no_retry_is_explained() -> None:
+    cells = " ".join(row[0] for row in rows("safety.md"))
+    for obstacle in OBSTACLES:
+        assert obstacle.test.reason in cells
+
+
+def test_the_aborts_limits_are_the_defaults() -> None:
+    config, text = CompanionConfig(), " ".join(" ".join(row) for row in rows("safety.md"))
+    for said in (
+        f"no fix younger than {config.abort.fix_age_max_s:g} s",
+        f"the last fix is older than {config.abort.alive_lost_fix_age_max_s:g} s",
+        f"no better than {config.abort.position_std_max_m:g} m",
+        f"{config.abort.own_age_max_s:g} s without a position",
+        f"{config.abort.tracking_error_max_m:g} m behind for {config.abort.tracking_hold_s:g} s",
+        f"{config.descent.cone_radius_at_pad_m:g} m beside the pad's middle, and {config.descent.cone_slope:g} m more",
+        f"more than {config.abort.near_speed_max_m_s:g} m/s",
+        f"{config.chase.time_limit_s:g}, {config.descent.align_time_limit_s:g} and {config.descent.time_limit_s:g} s",
+        f"more than {config.touchdown.lost_height_m:g} m",
+    ):
+        assert said in text
+
+
+@pytest.mark.parametrize(("page", "rules"), [("px4.md", PX4_RULES), ("ardupilot.md", ARDUPILOT_RULES)])
+def test_advised_parameters_are_those_of_the_check(page: str, rules: tuple[ParameterRule, ...]) -> None:
+    expected = {
+        tuple(spelling.name for spelling in rule.spellings): [f"{rule.advised(speed):g}" for speed in SPEEDS_M_S]
+        for rule in rules
+    }
+    found = {tuple(re.findall(r"`(\w+)`", row[0])): row[1:4] for row in rows(page) if len(row) == 5 and "`" in row[0]}
+    assert found == expected
