@@ -8,7 +8,16 @@ import typer
 
 from link.cli import DroneOption, NamespaceOption, VehicleOption, make_app, run_app
 from link.errors import UserError
-from scenarios import bench_commands, campaign_commands, report_commands
+from scenarios import (
+    bench_commands,
+    campaign_commands,
+    faults_command,
+    fly_commands,
+    fuzz_command,
+    record_commands,
+    report_commands,
+    view_commands,
+)
 
 app = make_app("Experiments: run landings, score them on ground truth, and report.")
 
@@ -41,8 +50,12 @@ def run_command(
     seed: SeedOption = 1,
     speed: Annotated[float, typer.Option("--speed", min=0.1, max=50.0, help="Simulated seconds a second.")] = 1.0,
     lockstep: Annotated[bool, typer.Option("--lockstep", help="In one process on a simulated clock.")] = False,
-    firmware: Annotated[str | None, typer.Option("--firmware", metavar="NAME", help="px4.")] = None,
+    firmware: Annotated[str | None, typer.Option("--firmware", metavar="NAME", help="px4 or ardupilot.")] = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the run's folder is made.")] = Path("runs"),
+    record: Annotated[
+        bool, typer.Option("--record/--no-record", help="Record what goes in and out of the companion, and the truth.")
+    ] = True,
+    view: Annotated[bool, typer.Option("--view", help="Show the landing in the browser.")] = False,
     as_json: JsonOption = False,
 ) -> int:
     """Run a landing and score it on ground truth; exit code 1 when it does not land."""
@@ -51,8 +64,9 @@ def run_command(
     from scenarios.run import RunOptions, run_folder, run_in_lockstep, run_over_wire  # noqa: PLC0415
 
     scenario = load_scenario(name if firmware is None else f"{name}+firmware={firmware}")
+    view_port = view_commands.port_of_run(lockstep=lockstep, as_json=as_json) if view else None
     folder = run_folder(out, scenario.name)
-    options = RunOptions(seed=seed, speed=speed, folder=folder)
+    options = RunOptions(seed=seed, speed=speed, folder=folder, record=record, view_port=view_port)
     with Reporter(scenario, folder, as_json=as_json) as reporter:
         run = run_in_lockstep if lockstep else run_over_wire
         outcome = run(scenario, options, reporter.progress)
@@ -113,7 +127,12 @@ def command_command(
 
 campaign_commands.register(app)
 bench_commands.register(app)
+fuzz_command.register(app)
+faults_command.register(app)
 report_commands.register(app)
+record_commands.register(app)
+fly_commands.register(app)
+view_commands.register(app)
 
 
 def main() -> None:

@@ -8,10 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from link.toml_config import merged
+from scenarios.bench_codec import codec_ratios
 from scenarios.bench_measures import first_heartbeats_s, full_speed_factor, help_times_s
+from scenarios.bench_recording import recording_cost
 from scenarios.config import Scenario
 from scenarios.lockstep import Lockstep
 from scenarios.run import RunOptions, run_over_wire
+from scenarios.shares import sampled_parts, shares_of
 from scenarios.stopwatch import quantiles_ms, timed_steps
 
 Table = dict[str, Any]
@@ -58,6 +61,9 @@ BUDGETS = (
     Budget(path=("real_time_factor",), label="simulator, factor at 1x", unit="x", limit=0.99, at_least=True),
     Budget(path=("full_speed_factor",), label="simulator, all it can", unit="x", limit=5.0, at_least=True),
     Budget(path=("lockstep", "real_time_factor"), label="lockstep, whole stack", unit="x", limit=20.0, at_least=True),
+    Budget(path=("recording", "step_ratio"), label="step with recording, without is 1", unit="x", limit=1.03),
+    Budget(path=("codec", "encode_ratio"), label="MAVLink encoding, pymavlink's is 1", unit="x", limit=1.5),
+    Budget(path=("codec", "parse_ratio"), label="MAVLink parsing, pymavlink's is 1", unit="x", limit=1.5),
     *(Budget(path=("help_s", name), label=f"{name} --help", unit="s", limit=1.0) for name in _PROGRAMS),
 )
 """What the project asks of itself, on two shared cores."""
@@ -79,6 +85,8 @@ def bench(scenario: Scenario, seed: int, announce: Announce) -> Table:
         full_speed = full_speed_factor(folder)
         announce("first heartbeats")
         heartbeats_s = first_heartbeats_s(folder)
+        announce("recording")
+        recording = recording_cost(scenario, seed, folder / "recording")
     announce("one landing in lockstep")
     lockstep = _lockstep(scenario, seed)
     announce("help")
@@ -89,7 +97,9 @@ def bench(scenario: Scenario, seed: int, announce: Announce) -> Table:
         **merged(wire.timing, {"step_ms": lockstep.pop("step_ms")}),
         "full_speed_factor": round(full_speed, 3),
         "lockstep": lockstep,
+        "recording": recording,
         "first_heartbeat_s": heartbeats_s,
+        "codec": codec_ratios(),
         "help_s": help_times_s(),
     }
     return table | {"budgets": [budget.check(table) for budget in BUDGETS]}
@@ -99,13 +109,15 @@ def _lockstep(scenario: Scenario, seed: int) -> Table:
     """Time a landing in this process; a first step loads what is loaded once."""
     Lockstep(scenario, seed).step()
     run = Lockstep(scenario, seed)
-    with timed_steps() as durations_s:
-        began_s = time.perf_counter()
+    with timed_steps() as durations_s, sampled_parts() as samples:
+        began_s, began_cpu_s = time.perf_counter(), time.process_time()
         run.run()
-        wall_s = time.perf_counter() - began_s
+        wall_s, cpu_s = time.perf_counter() - began_s, time.process_time() - began_cpu_s
     return {
         "real_time_factor": round(run.recording.elapsed_s / wall_s, 2),
-        "step_ms": {name: quantiles_ms(durations) for name, durations in durations_s.items()},
+        "cpu_s": round(cpu_s, 3),
+        "cpu_shares": shares_of(samples),
+        "step_ms": {name: quantiles_ms(durations) for name, durations in durations_s.items() if durations},
     }
 
 
@@ -117,6 +129,10 @@ def text_lines(table: Table) -> list[str]:
     for name, step in table["step_ms"].items():
         label = "companion, state in to setpoint out" if name == "companion" else f"{name} (lockstep)"
         lines.append(f"  {label:42}" + "".join(f"{step[key]:9.3f}" for key in ("median", "p99", "max")))
+    lines += ["", f"lockstep, share of {table['lockstep']['cpu_s']:.2f} s of processor time"]
+    lines += [f"  {part:42}{share:9.1%}" for part, share in table["lockstep"]["cpu_shares"].items()]
+    share, dropped = table["recording"]["writer_cpu_share"], table["recording"]["dropped"]
+    lines += ["", f"recording, its writer's share of a core in flight {share:.1%}, records dropped {dropped}"]
     lines += ["", "start to first heartbeat, s"]
     lines += [f"  {name:42}{value:9.2f}" for name, value in table["first_heartbeat_s"].items()]
     return lines

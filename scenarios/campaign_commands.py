@@ -73,9 +73,9 @@ def campaign_command(
 
 def table_command(folder: FolderArgument, *, as_json: JsonOption = False) -> None:
     """Print a campaign's summary again."""
-    from scenarios.campaign_folder import read_landings  # noqa: PLC0415 (numerics are slow to load)
+    from scenarios.campaign_folder import read_landings, read_timing  # noqa: PLC0415 (numerics are slow to load)
 
-    _print_summary(read_landings(folder), as_json=as_json)
+    _print_summary(read_landings(folder), read_timing(folder), as_json=as_json)
 
 
 def compare_command(first: FolderArgument, second: FolderArgument, *, as_json: JsonOption = False) -> None:
@@ -92,6 +92,7 @@ def compare_command(first: FolderArgument, second: FolderArgument, *, as_json: J
 
 def _fly(folder: Path, plan: "Plan", where: "Where", *, as_json: bool) -> int:
     from scenarios.campaign import fly_campaign  # noqa: PLC0415 (numerics are slow to load)
+    from scenarios.campaign_folder import read_timing  # noqa: PLC0415
     from scenarios.campaign_progress import CampaignProgress  # noqa: PLC0415
 
     _note(f"campaign in {folder}")
@@ -101,7 +102,7 @@ def _fly(folder: Path, plan: "Plan", where: "Where", *, as_json: bool) -> int:
     except KeyboardInterrupt:
         _note(f"what is done is kept; go on with: scenarios campaign --resume {folder}")
         raise
-    _print_summary(rows, as_json=as_json)
+    _print_summary(rows, read_timing(folder), as_json=as_json)
     failed = [row for row in rows if row["error"] is not None]
     for row in failed[:_ERRORS_SHOWN]:
         _note(f"{row['cell']}, seed {row['seed']}: {row['error']}")
@@ -110,11 +111,11 @@ def _fly(folder: Path, plan: "Plan", where: "Where", *, as_json: bool) -> int:
     return 1 if failed else 0
 
 
-def _print_summary(rows: Sequence["Row"], *, as_json: bool) -> None:
+def _print_summary(rows: Sequence["Row"], times: Sequence["Row"], *, as_json: bool) -> None:
     from scenarios.campaign_tables import print_summary  # noqa: PLC0415 (numerics are slow to load)
     from scenarios.summary import summarize  # noqa: PLC0415
 
-    summary = summarize(rows)
+    summary = summarize(rows, times)
     if as_json:
         _print_json(summary)
     else:

@@ -89,6 +89,15 @@ def read_landings(folder: Path) -> list[Row]:
     return read_rows(folder / _LANDINGS)
 
 
+def read_timing(folder: Path) -> list[Row]:
+    """Return how long the landings of the campaign in `folder` took to compute, by cell and seed.
+
+    Raises:
+        UserError: nobody wrote it down.
+    """
+    return read_rows(folder / _TIMING)
+
+
 class Journal:
     """The rows of a campaign that is being flown; to be had from `open_journal`.
 
@@ -110,7 +119,10 @@ class Journal:
 
     def add(self, flown: Flown) -> None:
         """Write a landing down."""
-        os.write(self._descriptor, (json.dumps({"wall_s": flown.wall_s} | flown.row) + "\n").encode())
+        os.write(
+            self._descriptor,
+            (json.dumps({"wall_s": flown.wall_s, "times": dict(flown.times)} | flown.row) + "\n").encode(),
+        )
         self._done[_task_of(flown.row)] = flown
 
     def write_results(self) -> None:
@@ -118,8 +130,7 @@ class Journal:
         if not self._done:
             return
         write_rows(self._folder / _LANDINGS, [flown.row for flown in self._done.values()])
-        times = [{**_key(flown.row), "wall_s": round(flown.wall_s, 6)} for flown in self._done.values()]
-        write_rows(self._folder / _TIMING, times)
+        write_rows(self._folder / _TIMING, [_timing(flown) for flown in self._done.values()])
 
 
 @contextmanager
@@ -149,8 +160,13 @@ def _read_journal(path: Path, descriptor: int) -> dict[Task, Flown]:
     whole = data.rfind(b"\n") + 1
     os.ftruncate(descriptor, whole)
     lines = [json.loads(line) for line in data[:whole].splitlines()]
-    flown = [Flown(wall_s=line.pop("wall_s"), row=line) for line in lines]
+    flown = [Flown(wall_s=line.pop("wall_s"), times=line.pop("times", {}), row=line) for line in lines]
     return {_task_of(one.row): one for one in flown if one.row["error"] is None}
+
+
+def _timing(flown: Flown) -> Row:
+    times = {"wall_s": flown.wall_s, **flown.times}
+    return _key(flown.row) | {name: round(value, 6) for name, value in times.items()}
 
 
 def _key(row: Row) -> dict[str, Any]:

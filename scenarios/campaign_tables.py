@@ -18,6 +18,9 @@ _UNITS = {
     "sink_rate_m_s": ("sink", "m/s", 1.0, 2),
     "tilt_over_trim_rad": ("tilt", "deg", _DEG, 1),
     "time_to_contact_s": ("time", "s", 1.0, 1),
+    "tilt_rad": ("raw tilt", "deg", _DEG, 1),
+    "position_rmse_m": ("estimate", "m", 1.0, 3),
+    "velocity_rmse_m_s": ("estimate", "m/s", 1.0, 3),
 }
 """Of each measure: heading, unit shown, factor to it, digits."""
 
@@ -38,7 +41,12 @@ def print_summary(summary: Mapping[str, Any], out: TextIO) -> None:
     _print(console, "Shares (95 % intervals)", shares, cells)
     contact: list[Column] = [("contacts", _count_of("contacts"))]
     contact += [(f"{_UNITS[name][0]} [{_UNITS[name][1]}]", _measure_of(name)) for name in _UNITS]
-    _print(console, "At contact (median, 95th percentile; tilt over trim)", contact, cells)
+    title = "At contact (median, 95th percentile; tilt over trim), and the estimate's error in the descent"
+    _print(console, title, contact, cells)
+    consistency: list[Column] = [("NEES", _band_of("nees")), ("NIS per dof", _band_of("nis_per_dof"))]
+    _print(console, "The estimate's consistency (95 % band)", consistency, cells)
+    if all("planner_ms" in cell for cell in cells):
+        _print(console, "Computing (medians over landings; the planner's max is the worst of all)", _COMPUTING, cells)
 
 
 def print_comparison(comparison: Mapping[str, Any], out: TextIO) -> None:
@@ -56,6 +64,16 @@ def print_comparison(comparison: Mapping[str, Any], out: TextIO) -> None:
     if unpaired["a"] or unpaired["b"]:
         console.print(f"without a pair: {unpaired['a']} of A, {unpaired['b']} of B")
 
+
+def _time_of(table: str, name: str) -> Callable[[Cell], str]:
+    return lambda cell: "-" if cell[table][name] is None else f"{cell[table][name]:.2f}"
+
+
+_COMPUTING: tuple[Column, ...] = (
+    *((f"planner {name} [ms]", _time_of("planner_ms", name)) for name in ("median", "p99", "max")),
+    ("wall [s]", _time_of("computing", "wall_s")),
+    ("CPU [s]", _time_of("computing", "cpu_s")),
+)
 
 _SHARES = {"s1_or_better": "S1 or better", "s2_quality": "S2 quality", "unsafe": "unsafe"}
 
@@ -95,6 +113,14 @@ def _share_of(name: str) -> Callable[[Cell], str]:
 def _measure_of(name: str) -> Callable[[Cell], str]:
     def text(cell: Cell) -> str:
         return f"{_number(name, cell[name]['median'])}  {_number(name, cell[name]['p95'])}"
+
+    return text
+
+
+def _band_of(name: str) -> Callable[[Cell], str]:
+    def text(cell: Cell) -> str:
+        found = cell[name]
+        return "-" if found["mean"] is None else f"{found['mean']:.2f} ({found['low']:.2f} to {found['high']:.2f})"
 
     return text
 

@@ -49,7 +49,7 @@ def load_scenario(name_or_path: str) -> Scenario:
         UserError: no such scenario, preset or file, or a file that does not fit.
     """
     name, *options = name_or_path.split("+")
-    if name.endswith(".toml"):
+    if name_or_path.endswith(".toml") or name.endswith(".toml"):  # a folder may have a "+" in its name
         name, options = name_or_path, []
         table = {"name": Path(name).stem} | _file_table(Path(name))
     else:

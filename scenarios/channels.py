@@ -1,9 +1,11 @@
-"""The links of a lockstep run: MAVLink down and up, and Zenoh, each with seeded delay and loss."""
+"""The links of a lockstep run: MAVLink down and up, and Zenoh, each with seeded delay, loss and outage."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from link.memory_link import MemoryLink
-from scenarios.config import ChannelConfig, LinkConfig
+from scenarios.config import ChannelConfig, Scenario
+from scenarios.disturbances import Span, outages_ns
 from scenarios.noise import named_rng
 
 _SEPARATOR = b"\0"
@@ -40,15 +42,29 @@ class Channels:
     zenoh: KeyedLink
 
 
-def channels_of(link: LinkConfig, seed: int) -> Channels:
-    """Return fresh channels for a run."""
+def channels_of(scenario: Scenario, seed: int, start_ns: int) -> Channels:
+    """Return fresh channels for a run that starts at `start_ns`; an outage of MAVLink is one of both directions."""
+    link = scenario.link
+    outages = outages_ns(link.mavlink, scenario, seed, "mavlink", start_ns)
     return Channels(
-        down=_channel(link.mavlink, seed, "mavlink down"),
-        up=_channel(link.mavlink, seed, "mavlink up"),
-        zenoh=KeyedLink(_channel(link.zenoh, seed, "zenoh")),
+        down=_channel(link.mavlink, seed, "mavlink down", outages),
+        up=_channel(link.mavlink, seed, "mavlink up", outages),
+        zenoh=zenoh_link(scenario, seed, start_ns),
     )
 
 
-def _channel(config: ChannelConfig, seed: int, name: str) -> MemoryLink:
+def zenoh_link(scenario: Scenario, seed: int, start_ns: int) -> KeyedLink:
+    """Return the way of the vehicle's samples, in lockstep and over the wire."""
+    outages = outages_ns(scenario.link.zenoh, scenario, seed, "zenoh", start_ns)
+    return KeyedLink(_channel(scenario.link.zenoh, seed, "zenoh", outages))
+
+
+def _channel(config: ChannelConfig, seed: int, name: str, outages: Sequence[Span]) -> MemoryLink:
     rng = named_rng(seed, name)
-    return MemoryLink(seed=int(rng.integers(2**31)), delay_s=config.delay_s, jitter_s=config.jitter_s, loss=config.loss)
+    return MemoryLink(
+        seed=int(rng.integers(2**31)),
+        delay_s=config.delay_s,
+        jitter_s=config.jitter_s,
+        loss=config.loss,
+        outages_ns=outages,
+    )

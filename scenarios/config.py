@@ -15,6 +15,8 @@ from sim_autopilot.config import DatumConfig, DroneConfig
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
+FirmwareName = Literal["px4", "ardupilot"]
+
 
 class DelayConfig(StrictModel):
     """How late and how often samples arrive; a jitter beyond the period puts them out of order."""
@@ -72,8 +74,8 @@ class ClockConfig(StrictModel):
 class OwnStateConfig(StrictModel):
     """How well the autopilot knows its own state; all zero is the truth."""
 
-    position_white_m: NotNegative = 0.0
-    velocity_white_m_s: NotNegative = 0.0
+    position_std_m: NotNegative = 0.0  # on each axis, as are the velocity's
+    velocity_std_m_s: NotNegative = 0.0
     origin_step_range_m: tuple[NotNegative, NotNegative] = (0.0, 0.0)  # one step of its origin in flight, drawn
 
 
@@ -95,7 +97,8 @@ class WindConfig(StrictModel):
     mean_m_s: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0
     from_rad: float | None = None  # mathematical angle, from East counter-clockwise, that the wind blows from
     turbulence: Literal["none", "light", "moderate", "severe"] = "none"
-    gust_m_s: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0  # of one 1-cosine gust
+    gust_m_s: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0  # peak of one 1-cosine gust from a drawn direction
+    gust_duration_s: Positive = 3.0  # from calm to calm; in 5 m/s of airspeed it rises over d_m = 7.5 m
 
 
 class ChannelConfig(StrictModel):
@@ -134,12 +137,12 @@ class VehicleConfig(StrictModel):
 class SystemConfig(StrictModel):
     """What flies: the companion's configuration and the drone's.
 
-    A scenario that is faster than the firmware's own speed limit raises it by `parameters`.
+    A scenario that is faster than a firmware's own limits raises them by `parameters`.
     """
 
     companion: CompanionConfig = CompanionConfig()
     drone: DroneConfig = DroneConfig()
-    parameters: dict[str, float] = Field(default_factory=dict)  # of the firmware, that differ from its defaults
+    parameters: dict[FirmwareName, dict[str, float]] = Field(default_factory=dict)  # that differ from the defaults
 
 
 class Scenario(StrictModel):
@@ -153,9 +156,10 @@ class Scenario(StrictModel):
     link: LinkConfig = LinkConfig()
     vehicle: VehicleConfig = VehicleConfig()
     system: SystemConfig = SystemConfig()
-    firmware: Literal["px4"] = "px4"
+    firmware: FirmwareName = "px4"
     datum: DatumConfig = DatumConfig()
     drone_start_enu_m: Vector3 = (0.0, 0.0, 0.0)  # of the point on the road that it stands on
     waiting_point_enu_m: Vector3 = (0.0, 0.0, 5.0)  # 5 m above the road; source report, section "Task"
     fence_radius_m: Positive = 3000.0  # horizontal, about the datum
     time_limit_s: Positive = 120.0
+    disturbed_between_s: tuple[NotNegative, NotNegative] = (12.0, 20.0)  # a gust, outage or origin step begins; drawn

@@ -4,8 +4,9 @@ import math
 
 from link.messages import Vector3
 from scenarios.config import Scenario
+from scenarios.disturbances import instant_s
 from scenarios.noise import named_rng
-from sim_autopilot.config import SimAutopilotConfig, StartConfig, VehicleConfig, WindConfig
+from sim_autopilot.config import OwnStateConfig, SimAutopilotConfig, StartConfig, VehicleConfig, WindConfig
 
 
 def sim_autopilot_config(scenario: Scenario, seed: int, *, instant: bool) -> SimAutopilotConfig:
@@ -24,13 +25,35 @@ def sim_autopilot_config(scenario: Scenario, seed: int, *, instant: bool) -> Sim
         datum=scenario.datum,
         start=StartConfig(position_enu_m=scenario.drone_start_enu_m),
         drone=scenario.system.drone,
-        wind=WindConfig(
-            mean_m_s=scenario.wind.mean_m_s,
-            from_rad=_wind_from_rad(scenario, seed),
-            turbulence=scenario.wind.turbulence,
-        ),
+        wind=_wind(scenario, seed),
+        own_state=_own_state(scenario, seed),
         vehicle=VehicleConfig(length_m=body.length_m, width_m=body.width_m, roof_height_m=body.roof_height_m),
-        parameters=scenario.system.parameters,
+        parameters=scenario.system.parameters.get(scenario.firmware, {}),
+    )
+
+
+def _wind(scenario: Scenario, seed: int) -> WindConfig:
+    wind = scenario.wind
+    return WindConfig(
+        mean_m_s=wind.mean_m_s,
+        from_rad=_wind_from_rad(scenario, seed),
+        turbulence=wind.turbulence,
+        gust_m_s=wind.gust_m_s,
+        gust_from_rad=float(named_rng(seed, "gust").uniform(-math.pi, math.pi)),
+        gust_start_s=instant_s(scenario, seed, "gust"),
+        gust_duration_s=wind.gust_duration_s,
+    )
+
+
+def _own_state(scenario: Scenario, seed: int) -> OwnStateConfig:
+    own = scenario.sensors.own_state
+    rng = named_rng(seed, "origin step")
+    step_m, angle_rad = float(rng.uniform(*own.origin_step_range_m)), float(rng.uniform(-math.pi, math.pi))
+    return OwnStateConfig(
+        position_std_m=own.position_std_m,
+        velocity_std_m_s=own.velocity_std_m_s,
+        origin_step_enu_m=(step_m * math.cos(angle_rad), step_m * math.sin(angle_rad), 0.0) if step_m > 0.0 else None,
+        origin_step_s=instant_s(scenario, seed, "origin step"),
     )
 
 

@@ -1,7 +1,8 @@
 """The `ground-vehicle` command."""
 
 import sys
-from typing import Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
@@ -19,6 +20,16 @@ from link.cli import (
 )
 from link.errors import UserError
 
+if TYPE_CHECKING:
+    from link.keys import Keys
+    from link.messages import PadGeometry
+    from link.zenoh_options import ZenohOptions
+    from scenarios.vehicle_sources.channel import OpenTransport
+    from scenarios.vehicle_sources.receiver import Receiver
+
+_RECEIVER = "A real vehicle"
+_PAD = "Its pad"
+
 app = make_app("Publish a ground vehicle over Zenoh: its position, velocity, heading and pad.")
 
 
@@ -27,6 +38,55 @@ def ground_vehicle(
     *,
     scenario: Annotated[
         str | None, typer.Option("--scenario", metavar="NAME|FILE", help="Drive this scenario's vehicle.")
+    ] = None,
+    gpsd: Annotated[
+        str | None,
+        typer.Option("--gpsd", metavar="HOST:PORT", help="Publish what this gpsd reports.", rich_help_panel=_RECEIVER),
+    ] = None,
+    nmea: Annotated[
+        str | None,
+        typer.Option(
+            "--nmea",
+            metavar="DEVICE",
+            help="Publish what a receiver says in NMEA 0183: /dev/ttyX,BAUD, tcp://HOST:PORT or a recorded file.",
+            rich_help_panel=_RECEIVER,
+        ),
+    ] = None,
+    mavlink: Annotated[
+        str | None,
+        typer.Option(
+            "--mavlink",
+            metavar="DEVICE",
+            help="Publish what the receiver of an autopilot on the vehicle says: /dev/ttyX,BAUD, udpin:HOST:PORT.",
+            rich_help_panel=_RECEIVER,
+        ),
+    ] = None,
+    pad: Annotated[
+        Path | None,
+        typer.Option(
+            "--pad",
+            metavar="FILE",
+            help="The pad, in TOML: size_m, height_m, antenna_to_pad_m.",
+            rich_help_panel=_PAD,
+        ),
+    ] = None,
+    pad_size: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            "--pad-size", metavar="LENGTH WIDTH", help="Along and across the vehicle, m.", rich_help_panel=_PAD
+        ),
+    ] = None,
+    pad_height: Annotated[
+        float | None, typer.Option("--pad-height", metavar="M", help="Above the road.", rich_help_panel=_PAD)
+    ] = None,
+    antenna_to_pad: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(
+            "--antenna-to-pad",
+            metavar="X Y Z",
+            help="From the antenna to the pad's middle: forward, left, up, m.",
+            rich_help_panel=_PAD,
+        ),
     ] = None,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of everything random.")] = 1,
     use_sim_time: Annotated[
@@ -49,14 +109,10 @@ def ground_vehicle(
 ) -> None:
     """Publish a ground vehicle over Zenoh: its position, velocity, heading and pad."""
     from link.keys import Keys  # noqa: PLC0415 (Zenoh and numerics are slow to load, --help is quick)
-    from link.zenoh_session import DEFAULT_ENDPOINT, ZenohOptions, open_session  # noqa: PLC0415
-    from scenarios.catalogue import load_scenario  # noqa: PLC0415
-    from scenarios.vehicle_loop import VehicleLoop  # noqa: PLC0415
-    from scenarios.vehicle_node import VehicleNode, departing_at_once  # noqa: PLC0415
+    from link.zenoh_options import DEFAULT_ENDPOINT, ZenohOptions  # noqa: PLC0415
 
-    if scenario is None:
-        raise UserError("there is no vehicle: give --scenario NAME; `scenarios list` shows the names")
-    driven = load_scenario(scenario)
+    if sum(one is not None for one in (scenario, gpsd, nmea, mavlink)) > 1:
+        raise UserError("--scenario, --gpsd, --nmea and --mavlink are one vehicle each: give one of them")
     keys = Keys(namespace, vehicle, drone)
     nothing_said = mode != "client" and not (connect or listen or zenoh_config or multicast)
     options = ZenohOptions(
@@ -66,9 +122,78 @@ def ground_vehicle(
         multicast_scouting=multicast,
         config_file=zenoh_config,
     )
-    node = VehicleNode(departing_at_once(driven) if depart_at_once else driven, seed, keys)
+    if scenario is not None:
+        simulation = _Simulation(scenario, seed, depart_at_once, use_sim_time, timeout)
+        _drive(simulation, keys, options)
+        return
+    source = _source(gpsd, nmea, mavlink)
+    from scenarios.vehicle_sources.pad import pad_geometry  # noqa: PLC0415
+
+    geometry = pad_geometry(pad, size_m=pad_size, height_m=pad_height, antenna_to_pad_m=antenna_to_pad)
+    _listen(source, geometry, keys, options)
+
+
+class _Simulation(NamedTuple):
+    scenario: str
+    seed: int
+    departs_at_once: bool
+    uses_sim_time: bool
+    timeout_s: float
+
+
+class _Source(NamedTuple):
+    name: str
+    receiver: "Receiver"
+    open_transport: "OpenTransport"
+
+
+def _source(gpsd: str | None, nmea: str | None, mavlink: str | None) -> _Source:
+    """Return the receiver that the user named; only what it needs is imported."""
+    from link.mavlink.transports import open_transport  # noqa: PLC0415
+    from scenarios.vehicle_sources.channel import device_opener, gpsd_address, nmea_opener  # noqa: PLC0415
+
+    if gpsd is not None:
+        from scenarios.vehicle_sources.gpsd import GpsdReceiver  # noqa: PLC0415
+
+        address, device = gpsd_address(gpsd)
+        return _Source(f"gpsd at {gpsd}", GpsdReceiver(device), lambda: open_transport(str(address)))
+    if nmea is not None:
+        from scenarios.vehicle_sources.nmea import NmeaReceiver  # noqa: PLC0415
+
+        return _Source(nmea, NmeaReceiver(), nmea_opener(nmea))
+    if mavlink is not None:
+        from scenarios.vehicle_sources.mavlink import MavlinkReceiver  # noqa: PLC0415
+
+        return _Source(mavlink, MavlinkReceiver(), device_opener(mavlink))
+    raise UserError(
+        "there is no vehicle: give --scenario NAME (`scenarios list` shows the names), or a receiver by "
+        "--gpsd HOST:PORT, --nmea DEVICE or --mavlink DEVICE"
+    )
+
+
+def _listen(source: _Source, pad: "PadGeometry", keys: "Keys", options: "ZenohOptions") -> None:
+    """Publish a real vehicle."""
+    from link.service import Service  # noqa: PLC0415
+    from link.zenoh_session import open_session  # noqa: PLC0415
+    from scenarios.vehicle_sources.loop import ReceiverLoop  # noqa: PLC0415
+
     with open_session(options) as zenoh:
-        VehicleLoop(node, keys, zenoh, use_sim_time=use_sim_time, timeout_s=timeout).run()
+        ReceiverLoop(
+            source.receiver, source.open_transport, source.name, keys=keys, zenoh=zenoh, pad=pad, service=Service()
+        ).run()
+
+
+def _drive(simulation: _Simulation, keys: "Keys", options: "ZenohOptions") -> None:
+    """Publish a scenario's vehicle."""
+    from link.zenoh_session import open_session  # noqa: PLC0415
+    from scenarios.catalogue import load_scenario  # noqa: PLC0415
+    from scenarios.vehicle_loop import VehicleLoop  # noqa: PLC0415
+    from scenarios.vehicle_node import VehicleNode, departing_at_once  # noqa: PLC0415
+
+    driven = load_scenario(simulation.scenario)
+    node = VehicleNode(departing_at_once(driven) if simulation.departs_at_once else driven, simulation.seed, keys)
+    with open_session(options) as zenoh:
+        VehicleLoop(node, keys, zenoh, use_sim_time=simulation.uses_sim_time, timeout_s=simulation.timeout_s).run()
 
 
 def main() -> None:

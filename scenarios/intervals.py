@@ -11,6 +11,7 @@ from statistics import NormalDist
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import gammaincinv
 
 _LEVEL = 0.95
 _Z = NormalDist().inv_cdf(0.5 + 0.5 * _LEVEL)
@@ -45,6 +46,14 @@ def wilson(successes: int, trials: int) -> Interval:
     half = math.sqrt(share * (1.0 - share) * weight + 0.25 * weight**2) / (1.0 + weight)
     low = 0.0 if successes == 0 else middle - half
     return Interval(value=share, low=low, high=1.0 if successes == trials else middle + half)
+
+
+def mean_band(dof: int) -> tuple[float, float] | tuple[None, None]:
+    """Return between what the mean of `dof` squared normal numbers lies with 95 %, None of none (chi-square)."""
+    if dof == 0:
+        return None, None
+    low, high = (2.0 * float(gammaincinv(0.5 * dof, 0.5 + side * 0.5 * _LEVEL)) / dof for side in (-1.0, 1.0))
+    return low, high
 
 
 def mcnemar_p(only_first: int, only_second: int) -> float:

@@ -3,7 +3,7 @@
 import time
 import traceback
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from threading import Lock
 from typing import Any
@@ -14,6 +14,7 @@ from scenarios.config import Scenario
 from scenarios.lockstep import Lockstep
 from scenarios.outcome import result_table
 from scenarios.recording import Recording
+from scenarios.stopwatch import quantiles_ms, timed_steps
 from scenarios.versions import sources
 
 Row = dict[str, Any]
@@ -33,10 +34,17 @@ class Task:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Flown:
-    """A landing's row, and how long it took to compute, which is no part of the result."""
+    """A landing's row, and how long it took to compute, which is no part of the result.
+
+    Attributes:
+        row: the result.
+        wall_s: of the whole landing.
+        times: by column, `cpu_s` of the process and quantiles of the planner's steps in milliseconds.
+    """
 
     row: Row
     wall_s: float
+    times: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,16 +68,24 @@ class Flights:
         if sources() != self.sources:
             raise UserError("a worker has other sources than this program: install the same on all, or start again")
         with _ONE_AT_A_TIME:
-            began_s = time.perf_counter()
-            try:
-                row = fly(task, self.scenarios[task.cell])
-            except Exception as error:  # noqa: BLE001 (one landing's fault must not end a campaign, and is reported)
-                row = failed(task, _where(error))
-            return Flown(row=row, wall_s=time.perf_counter() - began_s)
+            began_s, began_cpu_s = time.perf_counter(), time.process_time()
+            with timed_steps() as durations_s:
+                try:
+                    row = fly(task, self.scenarios[task.cell])
+                except Exception as error:  # noqa: BLE001 (one landing's fault must not end a campaign, and is reported)
+                    row = failed(task, _where(error))
+            wall_s, cpu_s = time.perf_counter() - began_s, time.process_time() - began_cpu_s
+            return Flown(row=row, wall_s=wall_s, times={"cpu_s": cpu_s} | _planner_ms(durations_s["planner"]))
 
     def only(self, cell: str) -> "Flights":
         """Return the job for tasks of one cell."""
         return Flights(scenarios={cell: self.scenarios[cell]}, sources=self.sources)
+
+
+def _planner_ms(durations_s: Sequence[float]) -> dict[str, float]:
+    """Return the planner's quantiles by column, none where nothing was planned."""
+    quantiles = quantiles_ms(durations_s) if durations_s else {}
+    return {f"planner_{name}_ms": value for name, value in quantiles.items()}
 
 
 def fly(task: Task, scenario: Scenario) -> Row:

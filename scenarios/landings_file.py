@@ -20,6 +20,8 @@ _TYPES: dict[str, pl.DataType] = {
     "s2_quality": pl.Boolean(),
     "aborts": pl.Int64(),
     "retries": pl.Int64(),
+    "nees_count": pl.Int64(),
+    "nis_dof": pl.Int64(),
 }
 """Columns that are no decimal numbers, so that one without any value has its type too."""
 

@@ -8,9 +8,12 @@ from collections.abc import Sequence
 from companion.build import build_node
 from companion.config import CompanionConfig
 from companion.node import CompanionNode
+from companion.phases import Phase
 from link.keys import Keys
 from link.memory_link import MemoryLink
 from link.messages import Command
+from link.recorder import Recorder
+from scenarios.accuracy import PERIOD_NS, PHASES, Nis, antenna_truth, estimate_error
 from scenarios.channels import Channels, channels_of
 from scenarios.config import Scenario
 from scenarios.recording import EndWatch, Recording
@@ -29,18 +32,23 @@ class Lockstep:
         scenario: what is flown.
         seed: of everything random.
         config: of the companion, None for the scenario's own.
+        recorder: of the companion, None where nothing is recorded.
     """
 
-    def __init__(self, scenario: Scenario, seed: int, config: CompanionConfig | None = None) -> None:
+    def __init__(
+        self, scenario: Scenario, seed: int, config: CompanionConfig | None = None, recorder: Recorder | None = None
+    ) -> None:
         keys = Keys()
         self.recording = Recording()
         self.simulation = Simulation(scenario, seed, keys, START_NS, instant=True, publishes_truth=False)
-        self.companion = build_node(scenario.system.companion if config is None else config, keys)
+        self.companion = build_node(scenario.system.companion if config is None else config, keys, recorder=recorder)
         self.companion.receive_pad(self.simulation.vehicle.pad)
-        self._channels: Channels = channels_of(scenario.link, seed)
+        self._channels: Channels = channels_of(scenario, seed, START_NS)
         self._heard = frozenset({keys.fix, keys.fix_velocity, keys.imu, keys.pad_pose})
         self._watch = EndWatch(scenario.time_limit_s)
         self._started = False
+        self._antenna_flu_m = scenario.vehicle.antenna_flu_m
+        self._compared_ns = START_NS
 
     def run(self) -> str:
         """Run to the end and return why it ended."""
@@ -66,17 +74,37 @@ class Lockstep:
             node.receive_mavlink(data, local_ns)
         for key, payload in self._channels.zenoh.take(t_ns):
             node.receive_sample(key, payload)
-        self._start(node)
+        self._command(node)
         if node.poll(local_ns) and node.outputs is not None:
             self.recording.add(node.outputs.status)
+            self._compare(node, t_ns)
         node.take_publications()
         node.take_replies()
         self._send(node.take_frames(), t_ns)
 
-    def _start(self, node: CompanionNode) -> None:
+    def _command(self, node: CompanionNode) -> None:
+        # As the companion's own start over the wire: again and again, until it is under way.
         if not self._started and node.is_ready_to_start():
-            node.request(Command.START)
-            self._started = True
+            self._started = node.memory.phase is not Phase.IDLE
+            if not self._started:
+                node.request(Command.START)
+        if self._watch.must_break_off(self.recording):
+            node.request(Command.ABORT)
+
+    def _compare(self, node: CompanionNode, t_ns: int) -> None:
+        """Compare the estimate with the truth, from time to time."""
+        if node.memory.phase not in PHASES or t_ns - self._compared_ns < PERIOD_NS:
+            return
+        vehicle, estimate = self.simulation.vehicle.state, node.vehicle_estimate(t_ns)
+        if vehicle is None or estimate is None:
+            return
+        self._compared_ns = t_ns
+        truth = antenna_truth(vehicle, self._antenna_flu_m, self.simulation.autopilot.memory)
+        in_descent = node.memory.phase is Phase.DESCEND
+        self.recording.estimate_errors.append(estimate_error(estimate, truth, in_descent=in_descent))
+        health = node.estimator_health()
+        if health.nis_per_dof is not None:
+            self.recording.nis = Nis(total=health.nis_per_dof * health.nis_dof, dof=health.nis_dof)
 
     def _send(self, frames: Sequence[bytes], t_ns: int) -> None:
         up: MemoryLink = self._channels.up

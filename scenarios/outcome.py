@@ -4,25 +4,30 @@ import json
 from pathlib import Path
 from typing import Any
 
+from link.errors import UserError
+from scenarios.accuracy import accuracy_table
 from scenarios.config import Scenario
 from scenarios.drone import mean_wind_enu_m_s
 from scenarios.recording import Recording
 from scenarios.score import Score, Tier, score
-from scenarios.touchdown import rules_of
+from scenarios.touchdown import ScoreRules, rules_of
 
 _DIGITS = 6  # a micrometre, a microsecond
 LANDED = frozenset({Tier.S1, Tier.S2, Tier.S3})
 
 
-def scored(scenario: Scenario, seed: int, recording: Recording) -> Score:
-    """Return the score of a recording, on truth."""
-    rules = rules_of(scenario, wind_mean_enu_m_s=mean_wind_enu_m_s(scenario, seed))
+def scored(scenario: Scenario, seed: int, recording: Recording, rules: ScoreRules | None = None) -> Score:
+    """Return the score of a recording, on truth, by the scenario's rules unless others are given."""
+    rules = rules or rules_of(scenario, wind_mean_enu_m_s=mean_wind_enu_m_s(scenario, seed))
     return score(recording.drone, recording.vehicle, recording.rotors, rules)
 
 
-def result_table(scenario: Scenario, seed: int, recording: Recording, ended: str) -> dict[str, Any]:
-    """Return the result as a table of plain values."""
-    table = scored(scenario, seed, recording).to_json()
+def result_table(
+    scenario: Scenario, seed: int, recording: Recording, ended: str, rules: ScoreRules | None = None
+) -> dict[str, Any]:
+    """Return the result as a table of plain values, by the scenario's rules unless others are given."""
+    table = scored(scenario, seed, recording, rules).to_json()
+    table |= accuracy_table(recording.estimate_errors, recording.nis)
     start_ns = recording.drone[0].t_ns
     times = {key: table.pop(key) for key in ("start_t_ns", "contact_t_ns")}
     relative = {key.removesuffix("_t_ns") + "_s": _since_s(value, start_ns) for key, value in times.items()}
@@ -36,5 +41,21 @@ def _since_s(value: Any, start_ns: int) -> float | None:
 
 
 def write_json(path: Path, table: dict[str, Any]) -> None:
-    """Write `table` with a fixed order and form."""
-    path.write_text(json.dumps(table, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    """Write `table` with a fixed order and form.
+
+    Raises:
+        UserError: the disk is full, or takes nothing else either.
+    """
+    write_text(path, json.dumps(table, indent=2, allow_nan=False) + "\n")
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file of a run.
+
+    Raises:
+        UserError: the disk is full, or takes nothing else either.
+    """
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise UserError(f"{path}: cannot be written ({error.strerror}); make room or choose another --out") from None

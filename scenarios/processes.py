@@ -120,6 +120,16 @@ def free_tcp_endpoint() -> str:
     return f"tcp/127.0.0.1:{_free_port(socket.SOCK_STREAM)}"
 
 
+def free_tcp_port(wanted: int) -> int:
+    """Return a TCP port of loopback that is free now: `wanted`, if it is."""
+    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
+        try:
+            probe.bind(("127.0.0.1", wanted))
+        except OSError:
+            return _free_port(socket.SOCK_STREAM)
+    return wanted
+
+
 def _free_port(kind: socket.SocketKind) -> int:
     with socket.socket(socket.AF_INET, kind) as probe:
         probe.bind(("127.0.0.1", 0))

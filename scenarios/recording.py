@@ -4,12 +4,15 @@ from dataclasses import dataclass, field
 
 from companion.phases import FLYING_PHASES, Phase
 from link.messages import BodyTruth, LandingStatus, RotorTruth
+from scenarios.accuracy import EstimateError, Nis
 
 _AFTER_MOTORS_OFF_NS = 2_500_000_000  # the score looks at the drone 2 s after
-_AFTER_GIVING_UP_NS = 5_000_000_000  # for a drone that aborts to be seen airborne and stable
+_AFTER_GIVING_UP_NS = 10_000_000_000  # for a drone that aborts to brake, and to be seen airborne and stable
+_TO_BREAK_OFF_S = 30.0  # for a drone that is called off to climb away and stand
 _GIVEN_UP = frozenset({Phase.HOLD.value, Phase.PILOT.value})
 _FLYING = frozenset(phase.value for phase in FLYING_PHASES)
 _NS_PER_S = 1e9
+TIME_LIMIT = "time limit"
 
 
 @dataclass(slots=True)
@@ -21,12 +24,16 @@ class Recording:
         vehicle: its truth.
         rotors: of the drone.
         statuses: of the companion, as published.
+        estimate_errors: of the companion's estimate of the vehicle, known in lockstep only.
+        nis: likewise.
     """
 
     drone: list[BodyTruth] = field(default_factory=list)
     vehicle: list[BodyTruth] = field(default_factory=list)
     rotors: list[RotorTruth] = field(default_factory=list)
     statuses: list[LandingStatus] = field(default_factory=list)
+    estimate_errors: list[EstimateError] = field(default_factory=list)
+    nis: Nis | None = None
 
     def add(self, sample: BodyTruth | RotorTruth | LandingStatus, *, is_drone: bool = True) -> None:
         """Append a sample; one that is not newer than the last of its kind is a repetition and is left out."""
@@ -62,10 +69,10 @@ class Recording:
 
 
 class EndWatch:
-    """Tells when a run is over.
+    """Tells when a run is over, and before that when it has taken so long that the landing is to be called off.
 
     Args:
-        time_limit_s: simulated time after which it ends in any case.
+        time_limit_s: simulated time after which the landing is called off.
     """
 
     def __init__(self, time_limit_s: float) -> None:
@@ -73,6 +80,14 @@ class EndWatch:
         self._has_flown = False
         self._over_ns: int | None = None
         self._over_phase = ""
+        self._is_late = False
+
+    def must_break_off(self, recording: Recording) -> bool:
+        """Return once, at the time limit, whether an operator would now call the landing off."""
+        if self._is_late or recording.elapsed_s < self._time_limit_s:
+            return False
+        self._is_late = True
+        return True
 
     def reason(self, recording: Recording) -> str | None:
         """Return why the run is over, None while it goes on."""
@@ -81,8 +96,8 @@ class EndWatch:
             self._watch(status.phase, recording.drone[-1].t_ns)
             wait_ns = _AFTER_GIVING_UP_NS if self._over_phase in _GIVEN_UP else _AFTER_MOTORS_OFF_NS
             if self._over_ns is not None and recording.drone[-1].t_ns - self._over_ns >= wait_ns:
-                return self._over_phase
-        return "time limit" if recording.elapsed_s >= self._time_limit_s else None
+                return TIME_LIMIT if self._is_late else self._over_phase
+        return TIME_LIMIT if recording.elapsed_s >= self._time_limit_s + _TO_BREAK_OFF_S else None
 
     def _watch(self, phase: str, t_ns: int) -> None:
         self._has_flown = self._has_flown or phase in _FLYING

@@ -1,4 +1,4 @@
-"""The commands about the source report: `table report` and `figures report`."""
+"""The commands that show results: `table`, `figures` and `report`, of runs, campaigns and the source report."""
 
 import json
 import sys
@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from link.errors import UserError
 from scenarios.campaign_commands import JsonOption, table_command
 
 _REPORT = "report"
@@ -17,6 +16,7 @@ def register(app: typer.Typer) -> None:
     """Add the commands to `app`."""
     app.command("table")(report_or_campaign_table)
     app.command("figures")(figures_command)
+    app.command("report")(html_command)
 
 
 def report_or_campaign_table(
@@ -49,16 +49,36 @@ def report_or_campaign_table(
 
 
 def figures_command(
-    what: Annotated[str, typer.Argument(metavar="report", help="Whose figures.")],
+    what: Annotated[
+        str,
+        typer.Argument(metavar="report|RUN|CAMPAIGN", help="The source report, or the folder of a run or campaign."),
+    ],
     *,
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the figures are written.")] = Path(
-        "runs/figures"
-    ),
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Where they are written [default: in the folder].")
+    ] = None,
 ) -> None:
-    """Draw the report's figures, measured, as PNG and SVG."""
-    if what != _REPORT:
-        raise UserError(f"there are no figures of '{what}': only of {_REPORT}")
-    from scenarios.report_figures import draw_report  # noqa: PLC0415 (numerics are slow to load)
+    """Draw figures as PNG and SVG: of a run, of a campaign, or the source report's, measured."""
+    from scenarios.figures import draw_figures  # noqa: PLC0415 (numerics are slow to load)
 
-    for file in draw_report(out):
+    if what == _REPORT:
+        from scenarios.report_figures import draw_report  # noqa: PLC0415
+
+        files = draw_report(out or Path("runs/figures"))
+    else:
+        files = draw_figures(Path(what), out)
+    for file in files:
         sys.stdout.write(f"{file}\n")
+
+
+def html_command(
+    what: Annotated[Path, typer.Argument(metavar="RUN|CAMPAIGN", help="Folder of a run or campaign.")],
+    *,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="FILE", help="The page [default: report.html in the folder].")
+    ] = None,
+) -> None:
+    """Write a run or a campaign as one page that opens offline: verdict, figures, tables, configuration, versions."""
+    from scenarios.html_report import write_report  # noqa: PLC0415 (numerics are slow to load)
+
+    sys.stdout.write(f"{write_report(what, out)}\n")

@@ -7,6 +7,8 @@ from types import TracebackType
 from typing import Any, Self
 
 from link.messages import LandingStatus
+from link.screen import Screen
+from link.status_rows import Row
 from scenarios.config import Scenario
 from scenarios.outcome import LANDED
 from scenarios.recording import Recording
@@ -17,7 +19,7 @@ _PLAIN_EVERY_S = 2.0  # simulated, between lines that are not overwritten
 
 
 class Reporter:
-    """Shows a run on the terminal: one live line there, plain lines elsewhere.
+    """Shows a run: a panel on a terminal, plain lines elsewhere.
 
     Args:
         scenario: what is flown.
@@ -29,36 +31,38 @@ class Reporter:
         self._scenario = scenario
         self._folder = folder
         self._as_json = as_json
-        self._live = sys.stdout.isatty() and not as_json
+        self._screen = Screen(f"{scenario.name} in {folder}") if sys.stdout.isatty() and not as_json else None
         self._phase = ""
         self._shown_s = 0.0
 
     def __enter__(self) -> Self:
         if not self._as_json:
             sys.stdout.write(f"{self._scenario.name}: {self._scenario.description}\n")
+        if self._screen is not None:
+            self._screen.start()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self._live:
-            sys.stdout.write("\n")
+        if self._screen is not None:
+            self._screen.stop()
 
     def progress(self, recording: Recording, factor: float) -> None:
         """Show how far the run is."""
         status = recording.status
         if self._as_json or status is None:
             return
+        is_new, self._phase = status.phase != self._phase, status.phase
         line = _progress_line(recording, status, factor)
-        if self._live:
-            sys.stdout.write(f"\r\x1b[2K{line}")
-            if status.phase != self._phase:
-                sys.stdout.write("\n")
-        elif status.phase != self._phase or recording.elapsed_s - self._shown_s >= _PLAIN_EVERY_S:
+        if self._screen is not None:
+            if is_new:
+                self._screen.write_above(line)
+            self._screen.show(status, _run_rows(recording, status, factor))
+        elif is_new or recording.elapsed_s - self._shown_s >= _PLAIN_EVERY_S:
             self._shown_s = recording.elapsed_s
             sys.stdout.write(f"{line}\n")
-        self._phase = status.phase
-        sys.stdout.flush()
+            sys.stdout.flush()
 
     def conclude(self, outcome: RunOutcome) -> int:
         """Show the result and return the exit code: 0 for a landing, 1 for anything else."""
@@ -79,6 +83,13 @@ def _progress_line(recording: Recording, status: LandingStatus, factor: float) -
         parts.append(f"relative speed {(vx_m_s**2 + vy_m_s**2) ** 0.5:5.2f} m/s")
     parts.append(status.reason)
     return "  ".join(parts)
+
+
+def _run_rows(recording: Recording, status: LandingStatus, factor: float) -> list[Row]:
+    return [
+        ("time, pace", f"{recording.elapsed_s:.1f} s, {factor:.2f}x"),
+        ("bad bytes, bad payloads", f"{status.mavlink_bad_bytes}, {status.zenoh_bad_payloads}"),
+    ]
 
 
 def _score_lines(result: dict[str, Any], timing: dict[str, Any]) -> list[str]:

@@ -4,22 +4,26 @@ import json
 import os
 import time
 from collections.abc import Callable
+from contextlib import closing, nullcontext
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from companion.record_folder import recording_sink
 from link.errors import UserError
 from link.keys import Keys
+from link.recorder import DirectRecorder
 from link.toml_config import dump_toml
 from link.zenoh_session import ZenohOptions, open_session
 from scenarios.config import Scenario
 from scenarios.drone import sim_autopilot_config
 from scenarios.lockstep import Lockstep
-from scenarios.outcome import result_table, write_json
+from scenarios.outcome import result_table, write_json, write_text
 from scenarios.processes import MODULES, ProcessGroup, Program, free_tcp_endpoint, free_udp_port
 from scenarios.recording import EndWatch, Recording
 from scenarios.stopwatch import quantiles_ms, timed_steps
+from scenarios.truth_file import TruthFile
 from scenarios.watcher import Watcher
 
 _POLL_S = 0.02
@@ -40,11 +44,15 @@ class RunOptions:
         seed: of everything random.
         speed: simulated seconds per wall second.
         folder: to be made for the run.
+        record: write what goes in and out of the companion, and the truth, as MCAP.
+        view_port: of a page that shows the landing; None for none.
     """
 
     seed: int
     speed: float
     folder: Path
+    record: bool = False
+    view_port: int | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,16 +86,25 @@ def run_over_wire(scenario: Scenario, options: RunOptions, progress: Progress) -
     keys = Keys()
     endpoint = free_tcp_endpoint()
     recording = Recording()
+    truth = TruthFile(options.folder, scenario, options.seed, keys) if options.record else None
     with (
+        closing(truth) if truth is not None else nullcontext(),
         # The watcher listens and the programs come to it, so that it misses nothing while they start.
         open_session(ZenohOptions(listen=(endpoint,))) as zenoh,
         ProcessGroup(_programs(scenario, options, endpoint), options.folder) as processes,
+        ProcessGroup(_view(options, endpoint), options.folder),  # not checked: a landing needs no page
     ):
         watcher = Watcher(zenoh, keys, recording)
-        ended, factor = _watch(watcher, processes, scenario, recording, progress)
+
+        def keep(recording: Recording, factor: float) -> None:
+            if truth is not None:
+                truth.take(recording)
+            progress(recording, factor)
+
+        ended, factor = _watch(watcher, processes, scenario, recording, keep)
     result = result_table(scenario, options.seed, recording, ended)
     timing = {"real_time_factor": round(factor, 4), "speed": options.speed, **_companion_timing(options.folder)}
-    return _written(options.folder, result, timing)
+    return _written(options.folder, result, timing | _lost(truth))
 
 
 def _programs(scenario: Scenario, options: RunOptions, endpoint: str) -> list[Program]:
@@ -95,7 +112,7 @@ def _programs(scenario: Scenario, options: RunOptions, endpoint: str) -> list[Pr
     folder = options.folder
     drone = sim_autopilot_config(scenario, options.seed, instant=False)
     for name, config in (("scenario", scenario), ("sim-autopilot", drone), ("companion", scenario.system.companion)):
-        folder.joinpath(f"{name}.toml").write_text(dump_toml(config), encoding="utf-8")
+        write_text(folder / f"{name}.toml", dump_toml(config))
     port = free_udp_port()
     arguments = {
         "ground-vehicle": [
@@ -110,9 +127,19 @@ def _programs(scenario: Scenario, options: RunOptions, endpoint: str) -> list[Pr
             *("--config", str(folder / "companion.toml"), "--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint),
             *("--use-sim-time", "--start", "--tlog", str(folder / "flight.tlog")),
             *("--timing", str(folder / _COMPANION_TIMING)),
+            *(("--record", str(folder)) if options.record else ()),
         ],
     }
     return [Program(name=name, module=MODULES[name], arguments=words) for name, words in arguments.items()]
+
+
+def _view(options: RunOptions, endpoint: str) -> list[Program]:
+    """Return how the page is started, if it is."""
+    if options.view_port is None:
+        return []
+    road = ("--road", str(options.folder / "scenario.toml"), "--seed", str(options.seed))
+    words = ["view", "-e", endpoint, "--port", str(options.view_port), *road]
+    return [Program(name="view", module=MODULES["scenarios"], arguments=words)]
 
 
 class _Pace:
@@ -143,6 +170,8 @@ def _watch(
         time.sleep(_POLL_S)
         processes.check()
         watcher.take()
+        if end.must_break_off(recording):
+            watcher.break_off()
         now_s = time.monotonic()
         if recording.drone:
             pace.update(now_s, recording.elapsed_s)
@@ -167,17 +196,34 @@ def _companion_timing(folder: Path) -> dict[str, Any]:
 
 def run_in_lockstep(scenario: Scenario, options: RunOptions, progress: Progress) -> RunOutcome:
     """Run a scenario in this process on a simulated clock, score it on truth and write the run's folder."""
-    options.folder.joinpath("scenario.toml").write_text(dump_toml(scenario), encoding="utf-8")
-    lockstep = Lockstep(scenario, options.seed)
+    write_text(options.folder / "scenario.toml", dump_toml(scenario))
+    recorder = _direct_recorder(scenario, options.folder) if options.record else None
+    truth = TruthFile(options.folder, scenario, options.seed, Keys()) if options.record else None
+    lockstep = Lockstep(scenario, options.seed, recorder=recorder)
     with timed_steps() as durations_s:
         began_s = time.monotonic()
         ended = lockstep.run()
         factor = lockstep.recording.elapsed_s / (time.monotonic() - began_s)
+    if recorder is not None:
+        recorder.close()
+    if truth is not None:
+        truth.take(lockstep.recording)
+        truth.close()
     progress(lockstep.recording, factor)
     result = result_table(scenario, options.seed, lockstep.recording, ended)
-    step_ms = {name: quantiles_ms(durations) for name, durations in durations_s.items()}
+    step_ms = {name: quantiles_ms(durations) for name, durations in durations_s.items() if durations}
     timing = {"real_time_factor": round(factor, 4), "step_ms": step_ms}
-    return _written(options.folder, result, timing)
+    return _written(options.folder, result, timing | _lost(truth, recorder))
+
+
+def _direct_recorder(scenario: Scenario, folder: Path) -> DirectRecorder:
+    return DirectRecorder(recording_sink(folder, scenario.system.companion, Keys()))
+
+
+def _lost(*recorders: DirectRecorder | TruthFile | None) -> dict[str, int]:
+    """Return how many records a failing disk has cost; nothing where nothing was recorded."""
+    dropped = [recorder.dropped for recorder in recorders if recorder is not None]
+    return {"records_dropped": sum(dropped)} if dropped else {}
 
 
 def _written(folder: Path, result: dict[str, Any], timing: dict[str, Any]) -> RunOutcome:

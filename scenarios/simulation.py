@@ -4,6 +4,7 @@
 """
 
 from dataclasses import dataclass
+from math import dist
 
 import numpy as np
 
@@ -77,7 +78,7 @@ class Simulation:
 
     def receive(self, data: bytes) -> bytes:
         """Take bytes of a MAVLink link and return what is answered at once."""
-        return self.autopilot.receive(data, self.t_ns)
+        return self.autopilot.receive(data, self.t_ns)[0]
 
     def step(self) -> SimulationOutputs:
         """Advance by `STEP_NS`."""
@@ -85,9 +86,9 @@ class Simulation:
         state = self.vehicle.state
         if state is None:
             raise ValueError("the vehicle has made no step")
-        airspeed_m_s = float(np.linalg.norm(self.autopilot.state.velocity_enu_m_s - self._wind_enu_m_s))
-        self._wind_enu_m_s = self._wind.advance(STEP_NS * 1e-9, airspeed_m_s)
-        mavlink = self.autopilot.step(vehicle_deck(state, self._body), self._wind_enu_m_s)
+        airspeed_m_s = dist(self.autopilot.state.velocity_enu_m_s.tolist(), self._wind_enu_m_s.tolist())
+        self._wind_enu_m_s = self._wind.advance(self.autopilot.step_ns * 1e-9, airspeed_m_s)
+        (mavlink,) = self.autopilot.step(vehicle_deck(state, self._body), self._wind_enu_m_s)
         self._drone = drone_truth(self.autopilot.state)
         return SimulationOutputs(
             mavlink=mavlink,

@@ -3,14 +3,20 @@
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from types import ModuleType
 from typing import Any
 
 import companion.node
 import sim_autopilot.node
+from companion.planning.mpc import Mpc
+from companion.planning.mpc_report import ReportMpc
+from companion.planning.pn import ProportionalNavigation
 
-_STEPS: Mapping[str, ModuleType] = {"autopilot_step": sim_autopilot.node, "companion_step": companion.node}
-"""The two steps of a run, by the module that calls each."""
+_STEPS: Mapping[str, Sequence[tuple[object, str]]] = {
+    "autopilot_step": ((sim_autopilot.node, "autopilot_step"),),
+    "companion_step": ((companion.node, "companion_step"),),
+    "planner": ((Mpc, "plan"), (ReportMpc, "plan"), (ProportionalNavigation, "plan")),
+}
+"""The two steps of a run, by the module that calls each, and the planning within the companion's."""
 
 _DIGITS = 4  # of milliseconds, a tenth of a microsecond
 
@@ -19,14 +25,15 @@ _DIGITS = 4  # of milliseconds, a tenth of a microsecond
 def timed_steps() -> Iterator[dict[str, list[float]]]:
     """Measure the steps inside the block; give their durations in seconds, by name, as they come."""
     durations_s: dict[str, list[float]] = {name: [] for name in _STEPS}
-    plain = {name: getattr(module, name) for name, module in _STEPS.items()}
+    places = [(name, *place) for name, found in _STEPS.items() for place in found]
+    plain = [getattr(owner, attribute) for _, owner, attribute in places]
     try:
-        for name, module in _STEPS.items():
-            setattr(module, name, _timed(plain[name], durations_s[name]))
+        for (name, owner, attribute), function in zip(places, plain, strict=True):
+            setattr(owner, attribute, _timed(function, durations_s[name]))
         yield durations_s
     finally:
-        for name, module in _STEPS.items():
-            setattr(module, name, plain[name])
+        for (_, owner, attribute), function in zip(places, plain, strict=True):
+            setattr(owner, attribute, function)
 
 
 def _timed(function: Callable[..., Any], durations_s: list[float]) -> Callable[..., Any]:

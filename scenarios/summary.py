@@ -1,11 +1,12 @@
 """A campaign's rows by cell: tiers, shares with their intervals, and what the contacts were like."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
-from scenarios.intervals import Interval, wilson
+from scenarios.accuracy import NEES_DOF
+from scenarios.intervals import Interval, mean_band, wilson
 from scenarios.landing_task import Row
 from scenarios.outcome import LANDED
 from scenarios.score import Tier
@@ -16,8 +17,16 @@ MEASURES = (
     "sink_rate_m_s",
     "tilt_over_trim_rad",
     "time_to_contact_s",
+    "tilt_rad",
+    "position_rmse_m",
+    "velocity_rmse_m_s",
 )
-"""What is summed up over all first contacts, wherever on the vehicle."""
+"""What is summed up over all first contacts, wherever on the vehicle; the estimator's errors over all descents."""
+
+_TIMES: dict[str, Callable[[Sequence[float]], Any]] = {"median": np.median, "p99": np.median, "max": max}
+"""Of each of the planner's quantiles in a landing: what of it stands for the cell."""
+
+_COMPUTING = ("wall_s", "cpu_s")
 
 _LANDED = frozenset(tier.value for tier in LANDED)
 _DIGITS = 6
@@ -33,12 +42,24 @@ def is_s2_quality(row: Row) -> bool:
     return bool(row.get("s2_quality"))
 
 
-def summarize(rows: Iterable[Row]) -> dict[str, Any]:
-    """Return the summary of a campaign, in the order of its cells, as plain values for JSON."""
+def summarize(rows: Iterable[Row], times: Iterable[Row] = ()) -> dict[str, Any]:
+    """Return the summary of a campaign, in the order of its cells, as plain values for JSON.
+
+    Args:
+        rows: the landings.
+        times: what they took to compute, where that is known.
+    """
+    cells, timing = _by_cell(rows), _by_cell(times)
+    return {
+        "cells": [_summary_of(cell, cells[cell]) | _timing_of(timing.get(cell, ())) for cell in sorted(cells)],
+    }
+
+
+def _by_cell(rows: Iterable[Row]) -> dict[str, list[Row]]:
     cells: dict[str, list[Row]] = {}
     for row in rows:
         cells.setdefault(row["cell"], []).append(row)
-    return {"cells": [_summary_of(cell, cells[cell]) for cell in sorted(cells)]}
+    return cells
 
 
 def _summary_of(cell: str, rows: Sequence[Row]) -> dict[str, Any]:
@@ -56,7 +77,51 @@ def _summary_of(cell: str, rows: Sequence[Row]) -> dict[str, Any]:
         "aborts": sum(row.get("aborts") or 0 for row in rows),
         "retries": sum(row.get("retries") or 0 for row in rows),
         "errors": sum(row["error"] is not None for row in rows),
+        "nees": _nees(rows),
+        "nis_per_dof": _nis(rows),
     }
+
+
+def _nees(rows: Sequence[Row]) -> dict[str, float | int | None]:
+    """Return the mean over runs of their mean NEES, with the 95 % band of so many independent runs.
+
+    Within a run the errors are alike, so a run counts once, and the band is wider than need be.
+    """
+    means = [row["nees_mean"] for row in rows if row.get("nees_mean") is not None]
+    low, high = mean_band(NEES_DOF * len(means))
+    return {
+        "mean": round(float(np.mean(means)), _DIGITS) if means else None,
+        "low": None if low is None else round(NEES_DOF * low, _DIGITS),
+        "high": None if high is None else round(NEES_DOF * high, _DIGITS),
+        "dof": NEES_DOF,
+        "runs": len(means),
+    }
+
+
+def _nis(rows: Sequence[Row]) -> dict[str, float | int | None]:
+    """Return the NIS of all accepted measurements per degree of freedom, with its 95 % band."""
+    known = [row for row in rows if row.get("nis_dof")]
+    dof = sum(row["nis_dof"] for row in known)
+    low, high = mean_band(dof)
+    return {
+        "mean": round(sum(row["nis_sum"] for row in known) / dof, _DIGITS) if dof else None,
+        "low": None if low is None else round(low, _DIGITS),
+        "high": None if high is None else round(high, _DIGITS),
+        "dof": dof,
+    }
+
+
+def _timing_of(times: Sequence[Row]) -> dict[str, Any]:
+    """Return what a cell's landings took to compute, nothing where that is not known."""
+    if not times:
+        return {}
+    planner_ms = {name: _over(whole, times, f"planner_{name}_ms") for name, whole in _TIMES.items()}
+    return {"planner_ms": planner_ms, "computing": {name: _over(np.median, times, name) for name in _COMPUTING}}
+
+
+def _over(whole: Callable[[Sequence[float]], Any], rows: Sequence[Row], name: str) -> float | None:
+    known = [row[name] for row in rows if row.get(name) is not None]
+    return round(float(whole(known)), _DIGITS) if known else None
 
 
 def share_json(successes: int, trials: int) -> dict[str, float]:

@@ -71,6 +71,8 @@ class Touchdown:
     contact_t_ns: int
     on_pad: bool
     horizontal_error_m: float
+    contact_forward_m: float  # from the pad's centre, in V
+    contact_left_m: float
     relative_speed_m_s: float
     sink_rate_m_s: float
     tilt_rad: float
@@ -127,6 +129,8 @@ def _touchdown(log: TruthLog, contact: Contact, rules: ScoreRules) -> Touchdown:
         contact_t_ns=contact.t_ns,
         on_pad=contact.on_pad,
         horizontal_error_m=math.hypot(contact.position_v_m[0], contact.position_v_m[1]),
+        contact_forward_m=float(contact.position_v_m[0]),
+        contact_left_m=float(contact.position_v_m[1]),
         relative_speed_m_s=math.hypot(velocity_v_m_s[0], velocity_v_m_s[1]),
         sink_rate_m_s=float(-velocity_v_m_s[2]),
         tilt_rad=tilt_rad,

@@ -19,7 +19,7 @@ class Departure(StrictModel):
     """When the vehicle starts: `departs_s` after the drone has hovered at the waiting point, or after the start."""
 
     wait_for_drone: bool = True
-    hover_radius_m: Positive = 0.5
+    hover_radius_m: Positive = 2.5  # of a drone whose own place may be off by three times 0.5 m and more
     hover_s: NotNegative = 1.0
     departs_s: NotNegative = 1.0
 
@@ -36,7 +36,7 @@ class WaypointsTrack(StrictModel):
     """Waypoints, with constant acceleration from each to the next (the report's)."""
 
     kind: Literal["waypoints"]
-    departure: Departure = Departure(departs_s=5.0)  # the report's vehicle stands for 5 s
+    departure: Departure = Departure(hover_radius_m=0.5, departs_s=5.0)  # the report's vehicle stands for 5 s
     waypoints_m: Annotated[tuple[Waypoint, ...], Field(min_length=2)]
     speeds_m_s: Annotated[tuple[NotNegative, ...], Field(min_length=2)]
     smooth: bool = False  # on a curve through the waypoints instead of straight lines

@@ -65,11 +65,16 @@ class VehicleNode:
         if self.state is not None and t_ns <= self.state.t_ns:
             return []
         self.memory, self.state = vehicle_step(self.memory, VehicleInputs(t_ns=t_ns, drone=drone), self.plan)
-        publications = [self._published(sample) for sample in self._sensors.step(t_ns, self.state, drone)]
+        return self.published(self.state, drone)
+
+    def published(self, state: VehicleState, drone: BodyTruth | None) -> list[Publication]:
+        """Return what is to be published of a vehicle in `state`, truth first."""
+        t_ns = state.t_ns
+        publications = [self._published(sample) for sample in self._sensors.step(t_ns, state, drone)]
         if not self._publishes_truth or t_ns < self._truth_due_ns:
             return publications
         self._truth_due_ns = max(self._truth_due_ns + TRUTH_PERIOD_NS, t_ns + 1)
-        return [self._published(vehicle_truth(self.state)), *publications]
+        return [self._published(vehicle_truth(state)), *publications]
 
     def _published(self, message: Fix | FixVelocity | VehicleImu | PadSighting | BodyTruth) -> Publication:
         kind = type(message)

@@ -4,11 +4,12 @@ from typing import TypeVar
 
 from link import cdr, json_payloads
 from link.keys import Keys
-from link.messages import BodyTruth, LandingStatus, RotorTruth
+from link.messages import BodyTruth, Command, LandingStatus, RotorTruth
 from link.payload_checks import PayloadError
 from link.zenoh_session import ZenohSession
 from scenarios.recording import Recording
 
+_ANSWER_S = 3.0
 _CAPACITY = 20_000  # 200 s of truth at real time, should the watcher be held up
 
 T = TypeVar("T", BodyTruth, RotorTruth)
@@ -30,6 +31,7 @@ class Watcher:
     def __init__(self, zenoh: ZenohSession, keys: Keys, recording: Recording) -> None:
         self.recording = recording
         self.bad_payloads = 0
+        self._zenoh, self._command_key = zenoh, keys.landing_command
         self._drone = zenoh.subscribe(keys.drone_truth, capacity=_CAPACITY)
         self._vehicle = zenoh.subscribe(keys.vehicle_truth, capacity=_CAPACITY)
         self._rotors = zenoh.subscribe(keys.drone_rotors, capacity=_CAPACITY)
@@ -45,6 +47,10 @@ class Watcher:
             self._add(RotorTruth, sample.payload)
         for sample in self._status.take():
             self._add_status(sample.payload)
+
+    def break_off(self) -> None:
+        """Call the landing off, as an operator would; what becomes of it shows in the status."""
+        self._zenoh.query(self._command_key, json_payloads.encode(Command.ABORT), _ANSWER_S)
 
     def _add(self, kind: type[T], payload: bytes, *, is_drone: bool = True) -> None:
         try:

@@ -11,9 +11,11 @@ import sim_autopilot.node
 from link.cli import run_app
 from scenarios.__main__ import app
 from scenarios.bench import Budget, text_lines
+from scenarios.bench_recording import recording_cost
 from scenarios.catalogue import load_scenario
 from scenarios.lockstep import Lockstep
 from scenarios.processes import MODULES
+from scenarios.replay import read_flight, replay
 from scenarios.stopwatch import quantiles_ms, timed_steps
 
 BUDGET = Budget(path=("a", "b"), label="a figure", unit="ms", limit=5.0)
@@ -40,7 +42,7 @@ def test_stopwatch_times_every_step_and_is_gone_afterwards() -> None:
             run.step()
     assert len(durations_s["autopilot_step"]) == 20
     assert 5 <= len(durations_s["companion_step"]) <= 20
-    assert min(min(durations) for durations in durations_s.values()) > 0.0
+    assert min(min(durations) for durations in durations_s.values() if durations) > 0.0
     assert (callers[0]["autopilot_step"], callers[1]["companion_step"]) == plain
 
 
@@ -55,9 +57,23 @@ def test_a_budget_says_whether_it_is_met(value: float, *, at_least: bool, met: b
 def test_a_figure_that_could_not_be_measured_misses_its_budget_and_is_shown_as_a_dash() -> None:
     check = BUDGET.check({"c": 1.0})
     assert (check["value"], check["met"]) == (None, False)
+    lockstep = {"cpu_s": 1.0, "cpu_shares": {"companion": 1.0}}
     table = {"scenario": "s", "seed": 1, "tier": "S3", "budgets": [check], "step_ms": {}, "first_heartbeat_s": {}}
+    table |= {"lockstep": lockstep, "recording": {"writer_cpu_share": 0.02, "dropped": 0}}
     line = next(line for line in text_lines(table) if "a figure" in line)
     assert line.split()[-6:] == ["-", "ms", "at", "most", "5", "missed"]
+
+
+@pytest.mark.slow
+def test_cost_of_recording_is_measured_on_a_whole_recording(tmp_path: Path) -> None:
+    scenario = load_scenario("straight_5").model_copy(update={"time_limit_s": 1.0})
+    cost = recording_cost(scenario, 1, tmp_path)
+    assert cost["step_ratio"] > 0.5
+    assert cost["writer_cpu_share"] > 0.0
+    assert cost["dropped"] == 0
+    flight = read_flight(tmp_path)
+    assert replay(flight).differences == ()
+    assert flight.inputs[0].sequence == 0
 
 
 @pytest.mark.slow
@@ -67,7 +83,7 @@ def test_the_command_prints_every_figure_with_its_budget(tmp_path: Path, capfd: 
     assert run_app("scenarios", app, ["bench", str(short), "--json"]) == 0
     table = json.loads(capfd.readouterr().out)
     assert table["real_time_factor"] == pytest.approx(1.0, rel=0.2)
-    assert set(table["step_ms"]) == {"companion", "autopilot_step", "companion_step"}
+    assert set(table["step_ms"]) == {"companion", "autopilot_step", "companion_step", "planner"}
     for step in table["step_ms"].values():
         assert 0.0 < step["median"] <= step["p99"] <= step["max"]
     assert 0.0 < table["companion"]["cpu_share"] < 2.0

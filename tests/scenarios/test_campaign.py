@@ -74,7 +74,7 @@ def test_seeds_make_a_difference(reference: Path) -> None:
 
 def test_computing_time_is_beside_the_results(reference: Path) -> None:
     frame = pl.read_parquet(reference / "timing.parquet")
-    assert frame.columns == ["cell", "seed", "wall_s"]
+    assert {"cell", "seed", "wall_s", "cpu_s"} <= set(frame.columns)
     assert frame["wall_s"].min() > 0.0  # type: ignore[operator]  # of numbers
 
 

@@ -90,6 +90,8 @@ def test_s2_quality_is_landed_within_the_limits_of_s2(tier: Tier, error_m: float
         contact_t_ns=0,
         on_pad=True,
         horizontal_error_m=error_m,
+        contact_forward_m=error_m,
+        contact_left_m=0.0,
         relative_speed_m_s=0.2,
         sink_rate_m_s=0.4,
         tilt_rad=0.1,

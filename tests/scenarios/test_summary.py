@@ -38,7 +38,7 @@ def test_summary_counts_each_landing_for_its_best_tier() -> None:
 
 
 def test_summary_begins_with_what_scripts_rely_on() -> None:
-    assert list(cell("straight_5"))[:8] == ["cell", "seeds", "tiers", *MEASURES]
+    assert list(cell("straight_5"))[: 3 + len(MEASURES)] == ["cell", "seeds", "tiers", *MEASURES]
     assert list(cell("straight_5")["tiers"]) == [tier.value for tier in Tier]
     assert all(list(cell("straight_5")[name]) == ["median", "p95"] for name in MEASURES)
 
@@ -81,8 +81,8 @@ def test_table_outside_a_terminal_is_plain_and_one_line_a_cell() -> None:
     lines = out.getvalue().splitlines()
     assert "\x1b" not in out.getvalue()
     assert out.getvalue().isascii()
-    assert sum(line.startswith("straight_5 ") for line in lines) == 3
-    assert sum(line.startswith("straight_5+sensors=nominal+wind=moderate+link=nominal ") for line in lines) == 3
+    assert sum(line.startswith("straight_5 ") for line in lines) == 4
+    assert sum(line.startswith("straight_5+sensors=nominal+wind=moderate+link=nominal ") for line in lines) == 4
     assert "errors" not in out.getvalue()
     assert "S1 or better [%]" in out.getvalue()
     assert "66.7 (30.0 to 90.3)" in out.getvalue()  # of 4 of 6
@@ -93,3 +93,27 @@ def test_table_shows_errors_where_there_are_any() -> None:
     out = StringIO()
     print_summary(summarize([failed(Task(cell="straight_5", seed=1), "ValueError: wrong")]), out)
     assert "errors" in out.getvalue()
+
+
+def test_summary_pools_consistency_and_shows_its_band() -> None:
+    rows = [row(seed, nees_mean=4.0 + seed, nis_sum=90.0 + 10.0 * seed, nis_dof=100) for seed in (1, 2, 3)]
+    found = cell("straight_5", rows)
+    assert (found["nees"]["mean"], found["nees"]["runs"], found["nees"]["dof"]) == (6.0, 3, 6)
+    # chi-square quantiles of 18 degrees of freedom, 8.231 and 31.526, over 3 runs
+    assert (found["nees"]["low"], found["nees"]["high"]) == pytest.approx((8.231 / 3.0, 31.526 / 3.0), abs=1e-3)
+    assert (found["nis_per_dof"]["mean"], found["nis_per_dof"]["dof"]) == (1.1, 300)
+
+
+def test_summary_has_computing_times_where_they_are_known() -> None:
+    times = [
+        {"cell": "straight_5", "seed": seed, "wall_s": 2.0 * seed, "cpu_s": 1.5, "planner_max_ms": 3.0 * seed}
+        for seed in (1, 2, 3)
+    ]
+    summary = summarize([row(1), row(1, cell="circle_5")], times)
+    circle, straight = summary["cells"]
+    assert "planner_ms" not in circle
+    assert straight["planner_ms"] == {"median": None, "p99": None, "max": 9.0}
+    assert straight["computing"] == {"wall_s": 4.0, "cpu_s": 1.5}
+    out = StringIO()
+    print_summary({"cells": [straight]}, out)
+    assert "planner max [ms]" in out.getvalue()

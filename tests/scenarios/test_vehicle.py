@@ -96,7 +96,7 @@ def test_vehicle_stands_until_the_drone_has_hovered_for_a_second() -> None:
 
 def test_leaving_the_waiting_point_starts_the_hover_again() -> None:
     plan = plan_of(load_scenario("straight_5"), seed=1)
-    steps = driven(plan, [HOVER] * 99 + [(0.0, 0.0, 5.51)] + [HOVER] * 102)
+    steps = driven(plan, [HOVER] * 99 + [(0.0, 0.0, 7.51)] + [HOVER] * 102)
     assert steps[99][0].hovers_since_ns is None
     assert steps[-3][0].departs_ns is None
     assert steps[-1][0].departs_ns is not None

@@ -1,0 +1,109 @@
+"""A lockstep run in which things can be made to fail: links, the autopilot, the companion, what they believe."""
+
+from collections.abc import Mapping, Sequence
+from math import degrees, inf
+
+from companion.build import build_node
+from companion.phases import Phase
+from link.geodesy import geodetic_from_enu
+from link.keys import Keys
+from link.mavlink.codec import MavlinkCodec
+from link.mavlink.dialect import Message, mavlink
+from link.messages import Command, Vector3
+from scenarios.config import Scenario
+from scenarios.lockstep import Lockstep
+from scenarios.simulation import STEP_NS
+
+_STEP_S = STEP_NS * 1e-9
+_REACHED_MAX_S = 60.0
+_FOREVER_NS = 2**62
+_COMMANDED: Mapping[Phase, tuple[Phase, Command]] = {
+    Phase.ABORT: (Phase.CHASE, Command.ABORT),
+    Phase.HOLD: (Phase.WAITING, Command.HOLD),
+}
+"""The phases that an operator leads to, from which and by what."""
+
+
+class FaultFlight(Lockstep):
+    """A lockstep run to be disturbed.
+
+    Args:
+        scenario: what is flown.
+        seed: of everything random.
+    """
+
+    def __init__(self, scenario: Scenario, seed: int) -> None:
+        super().__init__(scenario, seed)
+        self.setpoints = 0
+        self.vehicle_is_silent = False
+        self.scenario = scenario
+        self._cut_until_s = 0.0
+        self._ground_station = MavlinkCodec(255, mavlink.MAV_COMP_ID_MISSIONPLANNER)
+
+    @property
+    def phase(self) -> Phase:
+        """The companion's."""
+        return self.companion.memory.phase
+
+    @property
+    def follows_setpoints(self) -> bool:
+        """Whether the autopilot's true mode is the one in which it flies setpoints."""
+        return self.simulation.autopilot.memory.modes.mode.value == "offboard"
+
+    def fly(self, duration_s: float) -> None:
+        """Go on for `duration_s`."""
+        for _ in range(round(duration_s / _STEP_S)):
+            self.step()
+
+    def fly_to(self, phase: Phase) -> None:
+        """Go on to the first step of `phase`.
+
+        Raises:
+            ValueError: it is not reached.
+        """
+        before, command = _COMMANDED.get(phase, (phase, None))
+        while self.phase is not before:
+            self.step()
+            if self.recording.elapsed_s > _REACHED_MAX_S:
+                raise ValueError(f"phase {before.value} is not reached in {_REACHED_MAX_S:g} s")
+        if command is not None:
+            self.companion.request(command)
+            while self.phase is not phase:
+                self.step()
+
+    def tell(self, message: Message) -> None:
+        """Let a ground station send a message to the autopilot."""
+        self.simulation.receive(self._ground_station.encode(message))
+
+    def cut_link(self, duration_s: float = inf) -> None:
+        """Let nothing through between companion and autopilot."""
+        self._cut_until_s = self.recording.elapsed_s + duration_s
+
+    def set_origin(self, by_enu_m: Vector3) -> None:
+        """Let a ground station move the autopilot's local frame under the drone."""
+        origin = self.simulation.autopilot.memory.origin
+        latitude_rad, longitude_rad, altitude_m = geodetic_from_enu(origin.datum, by_enu_m)
+        latitude, longitude = (round(degrees(angle_rad) * 1e7) for angle_rad in (latitude_rad, longitude_rad))
+        self.tell(mavlink.MAVLink_set_gps_global_origin_message(1, latitude, longitude, round(altitude_m * 1e3)))
+
+    def restart_companion(self) -> None:
+        """Kill the companion and start another one, that knows nothing."""
+        self.companion = build_node(self.scenario.system.companion, Keys())
+        self.companion.receive_pad(self.simulation.vehicle.pad)
+
+    def _advance_companion(self, t_ns: int) -> None:
+        if self._link_is_cut:
+            self._channels.down.take(_FOREVER_NS)
+        if self.vehicle_is_silent:
+            self._channels.zenoh.take(_FOREVER_NS)
+        super()._advance_companion(t_ns)
+
+    def _send(self, frames: Sequence[bytes], t_ns: int) -> None:
+        reader = MavlinkCodec(1, 1)
+        sent = [message for frame in frames for message in reader.decode(frame)]
+        self.setpoints += sum(one.get_type() == "SET_POSITION_TARGET_LOCAL_NED" for one in sent)
+        super()._send([] if self._link_is_cut else frames, t_ns)
+
+    @property
+    def _link_is_cut(self) -> bool:
+        return self.recording.elapsed_s < self._cut_until_s

@@ -1,0 +1,76 @@
+"""ArduPilot's simulated ship deck as a scenario's vehicle: where its reports, 5 a second, say that it is.
+
+Model: constant speed and turn rate from the newest report on, which is how the simulation moves it. The deck is at the
+height of the drone's home. Frames: W is ENU about the datum; V is the ship's body with its origin in the deck's middle.
+"""
+
+import math
+from dataclasses import dataclass
+
+from link.frames import quaternion_from_yaw, wrap_angle, yaw_enu_from_ned
+from link.geodesy import Datum, enu_from_geodetic
+from link.mavlink.dialect import Message
+from scenarios.vehicle import VehicleState
+
+SHIP_SYSTEM_ID = 17  # SIM_SHIP_SYSID
+PARAMETERS = {"SIM_SHIP_PSIZE": 1000.0, "SIM_SHIP_OFS_X": -40.0, "SIM_SHIP_OFS_Y": -1.5}
+"""It starts 40 m behind the drone, to the north on a circle of 500 m, which leads by the drone."""
+
+_DEGREES_1E7 = math.radians(1e-7)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShipReport:
+    """Where the deck was at `boot_ns` of the autopilot's clock."""
+
+    boot_ns: int
+    latitude_rad: float
+    longitude_rad: float
+    speed_m_s: float
+    yaw_rad: float
+
+
+def ship_report(message: Message) -> ShipReport | None:
+    """Return the ship's report, None when `message` is none."""
+    if message.get_srcSystem() != SHIP_SYSTEM_ID or message.get_type() != "GLOBAL_POSITION_INT":
+        return None
+    return ShipReport(
+        boot_ns=message.time_boot_ms * 1_000_000,
+        latitude_rad=message.lat * _DEGREES_1E7,
+        longitude_rad=message.lon * _DEGREES_1E7,
+        speed_m_s=math.hypot(message.vx, message.vy) * 0.01,
+        yaw_rad=wrap_angle(yaw_enu_from_ned(math.radians(message.hdg * 0.01))),
+    )
+
+
+def ship_at(report: ShipReport, reported_ns: int, t_ns: int, datum: Datum, turn_radius_m: float) -> VehicleState:
+    """Return the ship at `t_ns`.
+
+    Args:
+        report: its newest.
+        reported_ns: of the report, by the clock of `t_ns`.
+        t_ns: now.
+        datum: origin of W, at the deck's height.
+        turn_radius_m: of its circle, clockwise.
+    """
+    speed_m_s, dt_s = report.speed_m_s, (t_ns - reported_ns) * 1e-9
+    yaw_rate_rad_s = -speed_m_s / turn_radius_m
+    yaw_rad = report.yaw_rad + yaw_rate_rad_s * dt_s
+    x_m, y_m, _ = enu_from_geodetic(datum, report.latitude_rad, report.longitude_rad, datum.altitude_m)
+    # Along the chord, which is as long as the arc for as short a way as this.
+    middle_rad = report.yaw_rad + 0.5 * yaw_rate_rad_s * dt_s
+    cosine, sine = math.cos(yaw_rad), math.sin(yaw_rad)
+    return VehicleState(
+        t_ns=t_ns,
+        position_enu_m=(
+            x_m + speed_m_s * dt_s * math.cos(middle_rad),
+            y_m + speed_m_s * dt_s * math.sin(middle_rad),
+            0.0,
+        ),
+        velocity_enu_m_s=(speed_m_s * cosine, speed_m_s * sine, 0.0),
+        acceleration_enu_m_s2=(-speed_m_s * yaw_rate_rad_s * sine, speed_m_s * yaw_rate_rad_s * cosine, 0.0),
+        orientation_wxyz=quaternion_from_yaw(wrap_angle(yaw_rad)),
+        angular_velocity_flu_rad_s=(0.0, 0.0, yaw_rate_rad_s),
+        yaw_rad=wrap_angle(yaw_rad),
+        yaw_rate_rad_s=yaw_rate_rad_s,
+    )

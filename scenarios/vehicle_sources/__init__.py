@@ -1,0 +1,1 @@
+"""Real receivers on a vehicle, each behind `receiver.Receiver`; imports nothing of the experiments."""

@@ -1,0 +1,101 @@
+"""The page: the loop that shows a source 20 times a second until it is interrupted."""
+
+import io
+import signal
+import sys
+import time
+from contextlib import redirect_stdout
+
+import viser
+
+from companion.config import CompanionConfig
+from scenarios.vehicle_node import plan_of
+from scenarios.view.live import LiveSource
+from scenarios.view.panel import Panel
+from scenarios.view.recorded import RecordedSource, Road
+from scenarios.view.scene import Scene
+
+_PERIOD_S = 0.05
+_LINES_EVERY = 2  # of these periods
+_TEXT_EVERY = 4
+_PLOTS_EVERY = 10
+_TRAIL_ROWS, _TRAIL_EVERY = 600, 3
+_STALE_S = 3.0
+
+
+class Page:
+    """A page on a port.
+
+    Args:
+        source: what it shows.
+        road: of the vehicle, where it is known.
+        port: of loopback; the next free one is taken when it is in use.
+    """
+
+    def __init__(self, source: LiveSource | RecordedSource, road: Road | None, port: int) -> None:
+        self._source = source
+        with redirect_stdout(io.StringIO()):  # it has a banner of its own
+            self._server = viser.ViserServer(host="127.0.0.1", port=port, verbose=False)
+        descent = CompanionConfig().descent if road is None else road.scenario.system.companion.descent
+        self._scene = Scene(self._server, descent)
+        if road is not None:
+            self._scene.draw_road(plan_of(road.scenario, road.seed).course.road)
+        self._panel = Panel(self._server, self._scene)
+        if isinstance(source, RecordedSource):
+            self._panel.add_playback(source)
+        else:
+            self._panel.add_commands(source.send)
+        self._panel.add_camera_and_plots()
+        self._stopping = False
+        self._stamp_ns: int | None = None
+        self._stamp_seen_s = 0.0
+
+    @property
+    def address(self) -> str:
+        """Where a browser finds it."""
+        return f"http://127.0.0.1:{self._server.get_port()}"
+
+    def run(self) -> None:
+        """Show it until a signal comes."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self._stop)
+        sys.stdout.write(f"view: {self.address}\n")
+        sys.stdout.flush()
+        tick, due_s = 0, time.monotonic()
+        while not self._stopping:
+            self._show(tick, time.monotonic())
+            tick += 1
+            due_s = max(due_s + _PERIOD_S, time.monotonic())
+            time.sleep(max(due_s - time.monotonic(), 0.0))
+        with redirect_stdout(io.StringIO()):
+            self._server.stop()
+
+    def _stop(self, *_: object) -> None:
+        self._stopping = True
+
+    def _show(self, tick: int, now_s: float) -> None:
+        source, state = self._source, self._source.advance(now_s)
+        end, history = source.shown, source.history
+        with self._server.atomic():
+            self._scene.show(state)
+            if tick % _LINES_EVERY == 0:
+                trails = [
+                    history.trail(column, end, _TRAIL_ROWS, _TRAIL_EVERY) for column in (history.drone, history.pad)
+                ]
+                self._scene.show_lines(state, *trails)
+        if tick % _TEXT_EVERY == 0:
+            t_s = history.times_s[end - 1] if end else 0.0
+            self._panel.show(state, t_s=t_s, stale=self._is_stale(now_s))
+            if isinstance(source, RecordedSource) and source.playing:
+                self._panel.show_position(source.position_s)
+        if tick % _PLOTS_EVERY == 0:
+            self._panel.plot(history, end)
+
+    def _is_stale(self, now_s: float) -> bool:
+        """Return whether a live companion has fallen silent."""
+        if isinstance(self._source, RecordedSource):
+            return False
+        status = self._source.state.status
+        if status is not None and status.stamp_ns != self._stamp_ns:
+            self._stamp_ns, self._stamp_seen_s = status.stamp_ns, now_s
+        return now_s - self._stamp_seen_s > _STALE_S

@@ -1,0 +1,151 @@
+"""A recording as the view shows it: its states, 20 a second, and where among them the playback is."""
+
+import tomllib
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from companion.record_folder import STEM as COMPANION
+from companion.records import InputKind
+from link import json_payloads
+from link.errors import UserError
+from link.keys import Keys
+from link.mcap_reader import Recorded, read_head, read_messages, recording_files
+from link.messages import PadGeometry
+from link.payload_checks import PayloadError
+from link.ros_records import fields_of
+from link.toml_config import validated
+from scenarios.config import Scenario
+from scenarios.truth_file import STEM as TRUTH
+from scenarios.view.history import History
+from scenarios.view.state import StateReader, ViewState
+
+_PERIOD_NS = 50_000_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Road:
+    """Which scenario and seed the vehicle's road is of."""
+
+    scenario: Scenario
+    seed: int
+
+
+class RecordedSource:
+    """A recording that plays.
+
+    Args:
+        path: a folder with a companion's recording, and the truth where there is one; or one MCAP file.
+
+    Attributes:
+        history: of the whole recording.
+        road: None where the recording does not tell.
+        position_s: of the playback, since the beginning.
+        playing: whether it moves on.
+        rate: recorded seconds a second.
+
+    Raises:
+        UserError: there is no recording, or nothing in it that could be shown.
+    """
+
+    def __init__(self, path: Path) -> None:
+        companion, truth = _files(path)
+        head = read_head((companion or truth)[0])
+        names = head.metadata
+        keys = Keys(names.get("namespace", "decklander"), names.get("vehicle", "vehicle"), names.get("drone", "drone"))
+        self.road = _road(truth)
+        self.history = History()
+        self._states: list[ViewState] = []
+        for state in _states(_merged(companion, truth), keys, self._pad()):
+            rows = len(self.history.times_s)
+            self.history.add(state)
+            if len(self.history.times_s) > rows:
+                self._states.append(state)
+        if not self._states:
+            raise UserError(f"{path}: the recording holds no motion of a drone")
+        self.position_s = 0.0
+        self.playing = True
+        self.rate = 1.0
+        self._last_s: float | None = None
+
+    @property
+    def duration_s(self) -> float:
+        """Of the whole recording."""
+        return self.history.times_s[-1]
+
+    @property
+    def shown(self) -> int:
+        """How many rows of the history are in the past."""
+        return max(bisect_right(self.history.times_s, self.position_s), 1)
+
+    def advance(self, now_s: float) -> ViewState:
+        """Move on by the wall time since the last call, and return the state there."""
+        if self._last_s is not None and self.playing:
+            self.position_s = min(self.position_s + self.rate * (now_s - self._last_s), self.duration_s)
+        self._last_s = now_s
+        return self._states[self.shown - 1]
+
+    def _pad(self) -> PadGeometry | None:
+        return None if self.road is None else self.road.scenario.vehicle.pad
+
+
+def _files(path: Path) -> tuple[list[Path], list[Path]]:
+    """Return the files of the companion's recording and those of the truth."""
+    if path.is_file():
+        return ([], [path]) if path.name.startswith(TRUTH) else ([path], [])
+    if not path.is_dir():
+        raise UserError(f"{path}: there is no such folder or file; give a run's folder or an MCAP file")
+    return recording_files(path, COMPANION), sorted(path.glob(f"{TRUTH}_*.mcap"))
+
+
+def _road(truth: list[Path]) -> Road | None:
+    if not truth:
+        return None
+    head = read_head(truth[0])
+    if "scenario.toml" not in head.attachments or "seed" not in head.metadata:
+        return None
+    table = tomllib.loads(head.attachments["scenario.toml"])
+    return Road(scenario=validated(Scenario, table, source="scenario.toml"), seed=int(head.metadata["seed"]))
+
+
+def _merged(companion: list[Path], truth: list[Path]) -> list[Recorded]:
+    messages = [*read_messages(companion), *read_messages(truth)]
+    return sorted(messages, key=lambda recorded: recorded.log_ns)
+
+
+def _states(messages: list[Recorded], keys: Keys, pad: PadGeometry | None) -> Iterator[ViewState]:
+    """Return the states in steps of the period; only the newest message of a topic in each is read."""
+    reader, state = StateReader(keys), ViewState(pad=pad)
+    newest: dict[str, bytes] = {}
+    due_ns: int | None = None
+    for recorded in messages:
+        message = recorded.message
+        due_ns = recorded.log_ns + _PERIOD_NS if due_ns is None else due_ns
+        if recorded.log_ns >= due_ns:
+            state = _all_taken(reader, state, newest)
+            newest.clear()
+            due_ns += _PERIOD_NS * (1 + (recorded.log_ns - due_ns) // _PERIOD_NS)
+            yield state
+        if message.topic in reader.topics:
+            newest[message.topic] = message.payload
+        elif message.topic == keys.record("input") and state.pad is None:
+            state = replace(state, pad=_told_pad(message.payload, message.type_name))
+    yield _all_taken(reader, state, newest)
+
+
+def _all_taken(reader: StateReader, state: ViewState, newest: dict[str, bytes]) -> ViewState:
+    for topic, payload in newest.items():
+        try:
+            state = reader.taken(state, topic, payload)
+        except PayloadError:
+            continue
+    return state
+
+
+def _told_pad(payload: bytes, type_name: str) -> PadGeometry | None:
+    """Return the vehicle's description of its pad when this input is it."""
+    fields = fields_of(payload, type_name)
+    if fields["kind"] != InputKind.PAD:
+        return None
+    return json_payloads.decode(PadGeometry, bytes(fields["data"]))

@@ -1,0 +1,209 @@
+"""What the view shows at one instant, put together from messages; pure.
+
+The messages are the same on Zenoh and in a recording. World W is ENU; where there is no truth, a value is None.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from link import cdr, json_payloads
+from link.keys import Keys
+from link.messages import BodyTruth, LandingStatus, PadGeometry, Plan, Vector3
+from link.ros_records import PACKAGE, fields_of
+
+Array = NDArray[np.float64]
+_NS_PER_S = 1_000_000_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Estimate:
+    """The vehicle's antenna at `t_ns` as the companion estimates it: (3,) each in W; an unknown heading is None."""
+
+    t_ns: int
+    position_enu_m: Array
+    velocity_enu_m_s: Array
+    yaw_rad: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ForecastPath:
+    """The antenna over the horizon: (n, 3) positions in W with their standard deviations."""
+
+    position_enu_m: Array
+    std_m: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LinkCounters:
+    """How the companion's links did so far."""
+
+    messages_received: int
+    messages_sent: int
+    lost_messages: int
+    bad_bytes: int
+    bad_payloads: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ViewState:
+    """All that is known at `t_ns`.
+
+    Attributes:
+        t_ns: of the newest motion of the drone, or status.
+        drone_truth: simulation only, as is the vehicle's.
+        own: the drone as its autopilot reports it.
+        plan_enu_m: (n, 3).
+    """
+
+    t_ns: int = 0
+    drone_truth: BodyTruth | None = None
+    vehicle_truth: BodyTruth | None = None
+    own: BodyTruth | None = None
+    estimate: Estimate | None = None
+    forecast: ForecastPath | None = None
+    plan_enu_m: Array | None = None
+    status: LandingStatus | None = None
+    pad: PadGeometry | None = None
+    link: LinkCounters | None = None
+
+    @property
+    def drone(self) -> BodyTruth | None:
+        """The drone as it is or, without truth, as its autopilot reports it."""
+        return self.drone_truth or self.own
+
+
+class StateReader:
+    """Reads messages by their topics.
+
+    Args:
+        keys: of the Zenoh contract.
+    """
+
+    def __init__(self, keys: Keys) -> None:
+        self._readers: dict[str, Callable[[bytes], dict[str, Any]]] = {
+            keys.drone_truth: _drone_truth,
+            keys.vehicle_truth: lambda payload: {"vehicle_truth": cdr.decode(BodyTruth, payload)},
+            keys.record("own"): _own,
+            keys.record("estimate"): _estimate,
+            keys.record("forecast"): _forecast,
+            keys.record("link"): _link,
+            keys.record("plan"): _recorded_plan,
+            keys.record("step"): _step,
+            keys.landing_plan: _plan,
+            keys.landing_status: _status,
+            keys.pad: lambda payload: {"pad": json_payloads.decode(PadGeometry, payload)},
+        }
+
+    @property
+    def topics(self) -> frozenset[str]:
+        """What it can read."""
+        return frozenset(self._readers)
+
+    def taken(self, state: ViewState, topic: str, payload: bytes) -> ViewState:
+        """Return the state with what a message says.
+
+        Raises:
+            PayloadError: the bytes are no such message.
+        """
+        changes = self._readers[topic](payload)
+        t_ns = changes.pop("t_ns", 0)
+        is_drone = "drone_truth" in changes or (state.drone_truth is None and "own" in changes)
+        if is_drone or (state.drone is None and t_ns):
+            changes["t_ns"] = t_ns
+        return replace(state, **changes)
+
+
+def _drone_truth(payload: bytes) -> dict[str, Any]:
+    truth = cdr.decode(BodyTruth, payload)
+    return {"t_ns": truth.t_ns, "drone_truth": truth}
+
+
+def _own(payload: bytes) -> dict[str, Any]:
+    own = cdr.decode(BodyTruth, payload)
+    return {"t_ns": own.t_ns, "own": own}
+
+
+def _status(payload: bytes) -> dict[str, Any]:
+    status = json_payloads.decode(LandingStatus, payload)
+    return {"t_ns": status.stamp_ns, "status": status, **_plan_over(status)}
+
+
+def _plan_over(status: LandingStatus) -> dict[str, Any]:
+    """Forget the plan when nothing is flown any more."""
+    return {} if status.armed else {"plan_enu_m": None}
+
+
+def _estimate(payload: bytes) -> dict[str, Any]:
+    fields = fields_of(payload, f"{PACKAGE}/VehicleEstimate")
+    yaw = fields["yaw_rad"]
+    estimate = Estimate(
+        t_ns=_stamp_ns(fields),
+        position_enu_m=fields["position_m"],
+        velocity_enu_m_s=fields["velocity_m_s"],
+        yaw_rad=float(yaw[0]) if len(yaw) else None,
+    )
+    return {"estimate": estimate}
+
+
+def _forecast(payload: bytes) -> dict[str, Any]:
+    fields = fields_of(payload, f"{PACKAGE}/Forecast")
+    path = ForecastPath(
+        position_enu_m=fields["position_m"].reshape(-1, 3), std_m=fields["position_std_m"].reshape(-1, 3)
+    )
+    return {"forecast": path}
+
+
+def _link(payload: bytes) -> dict[str, Any]:
+    fields = fields_of(payload, f"{PACKAGE}/LinkStatistics")
+    counters = LinkCounters(
+        messages_received=int(fields["messages_received"]),
+        messages_sent=int(fields["messages_sent"]),
+        lost_messages=int(fields["lost_messages"]),
+        bad_bytes=int(fields["bad_bytes"]),
+        bad_payloads=int(fields["zenoh_bad_payloads"]),
+    )
+    return {"link": counters}
+
+
+def _plan(payload: bytes) -> dict[str, Any]:
+    poses = cdr.decode(Plan, payload).poses
+    return {"plan_enu_m": np.array([pose.position_enu_m for pose in poses]).reshape(-1, 3)}
+
+
+def _recorded_plan(payload: bytes) -> dict[str, Any]:
+    return {"plan_enu_m": fields_of(payload, f"{PACKAGE}/Trajectory")["position_m"].reshape(-1, 3)}
+
+
+def _step(payload: bytes) -> dict[str, Any]:
+    fields = fields_of(payload, f"{PACKAGE}/Step")
+    t_ns = _stamp_ns(fields)
+    status = LandingStatus(
+        stamp_ns=t_ns,
+        phase=fields["phase"],
+        reason=fields["reason"],
+        relative_position_enu_m=_vector(fields["relative_position_m"]),
+        relative_velocity_enu_m_s=_vector(fields["relative_velocity_m_s"]),
+        height_above_pad_m=_number(fields["height_above_pad_m"]),
+        time_to_contact_s=_number(fields["time_to_contact_s"]),
+        mavlink_bad_bytes=0,
+        zenoh_bad_payloads=0,
+        armed=bool(fields["armed"]),
+        fix_age_s=_number(fields["fix_age_s"]),
+    )
+    return {"t_ns": t_ns, "status": status, **_plan_over(status)}
+
+
+def _stamp_ns(fields: dict[str, Any]) -> int:
+    return int(fields["header.stamp.sec"]) * _NS_PER_S + int(fields["header.stamp.nanosec"])
+
+
+def _vector(values: Array) -> Vector3 | None:
+    return (float(values[0]), float(values[1]), float(values[2])) if len(values) else None
+
+
+def _number(values: Array) -> float | None:
+    return float(values[0]) if len(values) else None

@@ -1,0 +1,89 @@
+"""The command `view`: a landing or a recording in the browser."""
+
+import importlib.util
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from link.cli import ConnectOption, DroneOption, NamespaceOption, VehicleOption
+from link.errors import UserError
+
+_LOOPBACK = ("127.0.0.1", "localhost", "::1")
+DEFAULT_PORT = 8080
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command to `app`."""
+    app.command("view")(view_command)
+
+
+def check_viser() -> None:
+    """Find out whether the page can be made.
+
+    Raises:
+        UserError: viser is not installed.
+    """
+    if importlib.util.find_spec("viser") is None:
+        raise UserError("the view needs viser: pip install 'decklander[view]'")
+
+
+def port_of_run(*, lockstep: bool, as_json: bool) -> int:
+    """Return the port of the page of a run, and tell it.
+
+    Raises:
+        UserError: there is nothing to see, or nothing to show it with.
+    """
+    from scenarios.processes import free_tcp_port  # noqa: PLC0415 (--help is quick)
+
+    if lockstep:
+        raise UserError("--lockstep is over at once: leave out --view, and give the run's folder to `scenarios view`")
+    check_viser()
+    port = free_tcp_port(DEFAULT_PORT)
+    (sys.stderr if as_json else sys.stdout).write(f"view: http://127.0.0.1:{port}\n")
+    return port
+
+
+def view_command(
+    recording: Annotated[
+        Path | None, typer.Argument(metavar="[RUN|FILE.mcap]", help="A recording; without one, what is on Zenoh.")
+    ] = None,
+    *,
+    port: Annotated[
+        int, typer.Option("--port", min=0, max=65535, help="Of the page; 0 is any free one.")
+    ] = DEFAULT_PORT,
+    host: Annotated[str, typer.Option("--host", metavar="HOST", help="Only this machine's own.")] = "127.0.0.1",
+    road: Annotated[
+        str | None, typer.Option("--road", metavar="NAME|FILE", help="Draw the road of this scenario.")
+    ] = None,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Of that scenario.")] = 1,
+    namespace: NamespaceOption = "decklander",
+    vehicle: VehicleOption = "vehicle",
+    drone: DroneOption = "drone",
+    connect: ConnectOption = None,
+) -> None:
+    """Show a landing in the browser as it goes on, or play a recording."""
+    if host not in _LOOPBACK:
+        raise UserError(
+            f"--host {host}: the page can fly the drone and knows no passwords, so it is for this machine only; "
+            f"from another one: ssh -L {port}:127.0.0.1:{port} THIS_MACHINE"
+        )
+    check_viser()
+    from scenarios.view.page import Page  # noqa: PLC0415 (slow to load, and optional)
+    from scenarios.view.recorded import RecordedSource, Road  # noqa: PLC0415
+
+    if recording is not None:
+        source = RecordedSource(recording)
+        Page(source, source.road, port).run()
+        return
+    from link.keys import Keys  # noqa: PLC0415
+    from link.zenoh_options import zenoh_options  # noqa: PLC0415
+    from link.zenoh_session import open_session  # noqa: PLC0415
+    from scenarios.catalogue import load_scenario  # noqa: PLC0415
+    from scenarios.view.live import LiveSource  # noqa: PLC0415
+
+    drawn = None if road is None else Road(scenario=load_scenario(road), seed=seed)
+    keys = Keys(namespace, vehicle, drone)
+    with open_session(zenoh_options(None, connect, None, None, None)) as zenoh:
+        Page(LiveSource(zenoh, keys), drawn, port).run()

@@ -1,0 +1,144 @@
+"""The manual builds without a warning and without the network; what is made from the program is all there."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from companion.config import CompanionConfig
+from companion.phases import TRANSITIONS, Phase
+from link.cdr import ROS_TYPES
+from link.toml_config import StrictModel
+from scenarios.catalogue import list_presets, list_scenarios, load_scenario
+from scenarios.config import Scenario
+from scenarios.lockstep import Lockstep
+from scenarios.manual.commands import PROGRAMS, helps
+from scenarios.manual.field_comments import comments_of
+from scenarios.manual.pages import PAGES, with_links
+from scenarios.manual.phase_chart import FROM_ANYWHERE, PLACES, arrows, phase_chart
+from scenarios.manual.settings import keys_of, tables_of
+from scenarios.manual.units import unit_of
+from scenarios.outcome import scored
+from scenarios.score import Tier
+from sim_autopilot.config import SimAutopilotConfig
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+EXAMPLE = re.compile(r'^```toml title="(\w+\.toml)"\n(.*?)^```$', re.MULTILINE | re.DOTALL)
+EXAMPLES = dict(EXAMPLE.findall((DOCS / "own_scenario.md").read_text(encoding="utf-8")))
+FETCHED = re.compile(
+    r'<(?:script|img|iframe)[^>]+src="?(?:https?:)?//|<link[^>]+rel="?(?:stylesheet|preconnect)"?[^>]+https?://'
+)
+
+
+@pytest.mark.parametrize(
+    ("path", "model"),
+    [
+        ("reference/companion.md", CompanionConfig),
+        ("reference/sim_autopilot.md", SimAutopilotConfig),
+        ("reference/scenario.md", Scenario),
+    ],
+)
+def test_reference_has_every_key_of_a_configuration(path: str, model: type[StrictModel]) -> None:
+    text = PAGES[path]()
+    for table in tables_of(model, elsewhere={CompanionConfig} - {model}):
+        part = text.split(f"[{table.path.removesuffix('[]')}]" if table.path else "# The file itself")[1:]
+        if table.model is CompanionConfig and table.path:
+            continue
+        for key in keys_of(table.model):
+            assert any(f"| `{key}` |" in one for one in part), (table.path, key)
+
+
+def test_reference_has_the_comment_beside_a_value_and_the_one_above_it() -> None:
+    text = PAGES["reference/companion.md"]()
+    assert (
+        "| `waiting_height_m` | number > 0, ≤ 10000 | m | `5.0` | above where it took off; source report, section "
+        '"Task" |'
+    ) in text
+    assert "| `speed_change_max_m_s2` | number > 0, ≤ 10000 | m/s² | `1.2` | While the vehicle brakes" in text
+
+
+def test_defaults_of_a_table_are_those_of_where_it_stands() -> None:
+    steady, manoeuvre = PAGES["reference/companion.md"]().split("[estimator.imm.")[1:]
+    assert "| `0.05` |" in steady
+    assert "| `300.0` |" in manoeuvre
+
+
+def test_reference_has_every_command() -> None:
+    names = {name for name, _ in helps()}
+    assert {*PROGRAMS, "companion check", "scenarios run", "scenarios view", "scenarios campaign"} <= names
+    assert all(text.startswith(f"Usage: {name} ") for name, text in helps())
+
+
+def test_wire_reference_has_every_type_and_what_the_companion_sends() -> None:
+    text = PAGES["reference/wire.md"]()
+    for ros_type in ROS_TYPES.values():
+        assert f"`{ros_type}`" in text
+    assert "| SET_POSITION_TARGET_LOCAL_NED | 84 | sends |" in text
+    assert "| LOCAL_POSITION_NED | 32 | asks for, reads |" in text
+
+
+def test_phase_chart_has_every_phase_and_event_and_is_the_same_each_time() -> None:
+    chart = phase_chart()
+    assert set(PLACES) == set(Phase)
+    assert sum(len(events) for events in arrows().values()) == sum(e is not FROM_ANYWHERE for _, e in TRANSITIONS)
+    for (_, event), phase in TRANSITIONS.items():
+        assert phase.value in chart
+        assert event is FROM_ANYWHERE or event.value in chart
+    assert phase_chart() == chart
+
+
+def test_units_are_the_longest_ending_that_fits() -> None:
+    assert [unit_of(name) for name in ("jerk_psd_m2_s5", "speed_m_s", "jerk_max_m_s3", "loss")] == [
+        "m²/s⁵",
+        "m/s",
+        "m/s³",
+        "",
+    ]
+
+
+def test_comments_are_found_through_bases() -> None:
+    assert comments_of(Phase)["HOLD"] == "hovers where it is until told what to do"
+
+
+def test_pages_that_are_named_become_links_outside_of_code() -> None:
+    assert with_links("see docs/px4.md, `docs/px4.md`", "a/b.md") == "see [px4](../px4.md), `docs/px4.md`"
+
+
+def test_presets_of_the_page_are_those_that_there_are() -> None:
+    rows = re.findall(
+        r"^\| `(sensors|wind|link|vehicle)` \| (.*) \|$", (DOCS / "own_scenario.md").read_text(), re.MULTILINE
+    )
+    assert {section: sorted(re.findall(r"`(\w+)`", cell)) for section, cell in rows} == {
+        section: list_presets(section) for section in ("sensors", "wind", "link", "vehicle")
+    }
+
+
+@pytest.mark.parametrize("page", ["README.md", *(f"docs/{path.name}" for path in DOCS.glob("*.md"))])
+def test_scenarios_that_a_page_flies_exist(page: str) -> None:
+    text = (ROOT / page).read_text(encoding="utf-8")
+    known = {entry.name for entry in list_scenarios()}
+    for name in re.findall(r"scenarios (?:run|world) ([\w+=]+)(?![\w.])", text):
+        assert name == "NAME" or name.split("+")[0] in known, name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(EXAMPLES))
+def test_example_scenario_lands(name: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_text(EXAMPLES[name], encoding="utf-8")
+    scenario = load_scenario(str(tmp_path / name))
+    run = Lockstep(scenario, 1)
+    run.run()
+    assert scored(scenario, 1, run.recording).tier is Tier.S3
+
+
+@pytest.mark.slow
+def test_manual_builds_without_a_warning_and_fetches_nothing(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "mkdocs", "build", "--quiet", "--strict", "-f", "docs/manual/mkdocs.yml"]
+    done = subprocess.run([*command, "-d", str(tmp_path)], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    pages = list(tmp_path.rglob("*.html"))
+    assert len(pages) > len(PAGES)
+    assert [page.name for page in pages if FETCHED.search(page.read_text(encoding="utf-8"))] == []
