@@ -14,12 +14,20 @@ MAY_IMPORT = {
 }
 HOMES = {
     "zenoh": {"link/zenoh_session.py"},
-    "pymavlink": {"link/mavlink/dialect.py", "link/mavlink/codec.py"},
-    "rosbags": {"link/cdr.py", "link/ros_fields.py", "link/ros_motion.py", "link/ros_sensors.py"},
+    "pymavlink": {f"link/mavlink/{name}.py" for name in ("dialect", "draft_messages", "codec")},
+    "rosbags": {
+        "link/cdr.py",
+        "link/ros_fields.py",
+        "link/ros_motion.py",
+        "link/ros_records.py",
+        "link/ros_sensors.py",
+    },
+    "mcap": {"link/mcap_reader.py", "link/mcap_writer.py"},
     "osqp": {"companion/planning/qp.py"},
     "daqp": {"companion/planning/qp.py"},
     "filterpy": {"companion/estimation/lkf.py", "companion/estimation/ukf.py"},
     "polars": {"scenarios/landings_file.py"},
+    "viser": {f"scenarios/view/{name}.py" for name in ("page", "panel", "scene")},
     "distributed": {"scenarios/dask_pool.py"},
 }
 
@@ -30,7 +38,7 @@ def sources(package: str) -> list[Path]:
 
 
 def imported(path: Path) -> set[str]:
-    """The top-level names that a file imports, wherever in it."""
+    """The top-level names that a file imports, wherever in it; a module named at run time is not seen."""
     names: set[str] = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
@@ -38,7 +46,7 @@ def imported(path: Path) -> set[str]:
         elif isinstance(node, ast.ImportFrom) and node.module is not None:
             names.add(node.module.split(".")[0])
         elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith("import_module"):
-            names |= {str(ast.literal_eval(argument)).split(".")[0] for argument in node.args}
+            names |= {str(one.value).split(".")[0] for one in node.args if isinstance(one, ast.Constant)}
     return names
 
 

@@ -2,6 +2,7 @@
 
 import json
 import signal
+import urllib.request
 from pathlib import Path
 from typing import Any
 
@@ -50,6 +51,8 @@ def test_two_runs_at_once_both_land_and_leave_their_folders(tmp_path: Path) -> N
         assert result.items() <= table.items()
         assert timing == table["timing"]
         assert {path.name for path in folder.iterdir()} == {
+            "companion_000.mcap",
+            "truth_000.mcap",
             *("result.json", "timing.json", "scenario.toml", "flight.tlog"),
             *("companion.toml", "sim-autopilot.toml", *(f"{name}.log" for name in NAMES)),
         }
@@ -104,4 +107,25 @@ def test_a_program_that_dies_ends_the_run_with_one_line_that_names_it(tmp_path: 
         assert len(run.err.all) == 1, run.err.all
         assert run.err.all[0].startswith(f"scenarios: {name} was ended by SIGKILL: ")
         assert str((tmp_path / "latest").resolve().name) in run.err.all[0]
+        assert all_end(children)
+
+
+def test_page_of_a_run_is_served_and_ends_with_the_run(tmp_path: Path) -> None:
+    with Programs() as programs:
+        run = start_run(programs, tmp_path, "--view")
+        address = run.out.wait_for("view: ").removeprefix("view: ")
+
+        def is_served() -> bool:
+            assert run.runs, run.err.all
+            try:
+                with urllib.request.urlopen(address, timeout=1.0) as page:  # noqa: S310 (http on loopback)
+                    return b"<html" in page.read()
+            except OSError:
+                return False
+
+        until(is_served, "the page")
+        children = run.children()
+        assert len(children) == len(NAMES) + 1
+        run.send(signal.SIGINT)
+        assert run.wait() == 130
         assert all_end(children)

@@ -1,0 +1,147 @@
+"""The view in a browser: it follows a landing to its end, and its buttons fly it."""
+
+import shutil
+import signal
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Error, Page, sync_playwright
+
+from scenarios.processes import free_tcp_endpoint, free_udp_port
+from tests.integration.programs import DEADLINE_S, Program, Programs, until
+
+CHROMIUM = shutil.which("chromium")
+DEADLINE_MS = DEADLINE_S * 1e3
+FLAGS = (
+    *("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic"),
+    *("--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"),
+)
+# Keeps each phase that the panel has shown, however short.
+WATCH = """() => {
+    window.phases = [];
+    const look = () => {
+        const phase = document.querySelector('#phase')?.textContent;
+        if (phase && phase !== window.phases.at(-1)) window.phases.push(phase);
+    };
+    new MutationObserver(look).observe(document.body, {childList: true, subtree: true, characterData: true});
+    look();
+}"""
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium; apt-get install chromium"),
+]
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
+    profile = tmp_path_factory.mktemp("profile")
+    with sync_playwright() as playwright:
+        context = playwright.chromium.launch_persistent_context(
+            profile, executable_path=CHROMIUM, headless=True, args=list(FLAGS), viewport={"width": 900, "height": 400}
+        )
+        yield context.new_page()
+        context.close()
+
+
+@pytest.fixture
+def programs() -> Iterator[Programs]:
+    with Programs() as started:
+        yield started
+
+
+def open_page(page: Page, address: str) -> None:
+    """Open a page that may not be there yet."""
+
+    def is_there() -> bool:
+        try:
+            page.goto(address)
+        except Error:
+            page.wait_for_timeout(200)
+            return False
+        return True
+
+    until(is_there, address)
+    page.wait_for_selector("#phase", timeout=DEADLINE_MS)
+    page.evaluate(WATCH)
+
+
+def address_of(program: Program) -> str:
+    return program.out.wait_for("view: ").removeprefix("view: ")
+
+
+def press(page: Page, name: str) -> None:
+    """Press a button until the companion accepts it."""
+    for _ in range(20):
+        page.get_by_role("button", name=name, exact=True).dispatch_event("click")
+        reply = page.wait_for_selector(f"#reply:has-text('{name.lower()}:')", timeout=DEADLINE_MS)
+        if reply is not None and "accepted" in reply.inner_text():
+            return
+        page.wait_for_timeout(300)
+    raise AssertionError(f"{name} was never accepted: {page.inner_text('#reply')}")
+
+
+def wait_for_phase(page: Page, phase: str) -> list[str]:
+    """Return the phases that the page has shown once `phase` is among them."""
+    end_s = time.monotonic() + DEADLINE_S
+    while phase not in (phases := [str(one) for one in page.evaluate("() => window.phases")]):
+        assert time.monotonic() < end_s, f"no {phase} among {phases}: {page.inner_text('#reason')}"
+        page.wait_for_timeout(100)
+    return phases
+
+
+def open_world(page: Page, programs: Programs, *options: str, speed: str) -> Program:
+    """Let the world, the companion and the view run until the page shows the companion; return the companion."""
+    port, endpoint = free_udp_port(), free_tcp_endpoint()
+    speaking = ("--mavlink", f"udpout:127.0.0.1:{port}", "-l", endpoint, "--speed", speed)
+    programs.start("scenarios", "world", "straight_5", *speaking)
+    listening = ("--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint, "--use-sim-time")
+    companion = programs.start("companion", *listening, *options)
+    open_page(page, address_of(programs.start("scenarios", "view", "--port", "0", "-e", endpoint)))
+    wait_for_phase(page, "idle")
+    return companion
+
+
+@pytest.fixture(scope="module")
+def landing(page: Page, tmp_path_factory: pytest.TempPathFactory) -> tuple[list[str], Path]:
+    """The phases that the page has shown of a landing, and the companion's recording of it."""
+    folder = tmp_path_factory.mktemp("recorded")
+    with Programs() as programs:
+        companion = open_world(page, programs, "--record", str(folder), speed="2")
+        press(page, "Start")
+        phases = wait_for_phase(page, "secured")
+        companion.send(signal.SIGINT)
+        companion.wait()
+    return phases, folder
+
+
+def test_page_shows_the_phases_of_a_landing_in_their_order_until_it_is_secured(
+    landing: tuple[list[str], Path],
+) -> None:
+    order = ("idle", "takeoff", "waiting", "chase", "align", "descend", "touchdown", "secured")
+    shown = [phase for phase in landing[0] if phase in order]
+    assert shown[:2] == ["idle", "takeoff"]
+    assert shown[-1] == "secured"
+    assert {"waiting", "descend"} <= set(shown)
+
+
+def test_recording_plays_pauses_and_shows_any_instant(
+    page: Page, programs: Programs, landing: tuple[list[str], Path]
+) -> None:
+    open_page(page, address_of(programs.start("scenarios", "view", "--port", "0", str(landing[1]))))
+    page.get_by_role("button", name="Pause", exact=True).dispatch_event("click")
+    page.get_by_role("button", name="Play", exact=True).wait_for(timeout=DEADLINE_MS)
+    instant = page.locator("input[type=text]").first
+    instant.fill("60")  # behind the end, so the end
+    instant.press("Enter")
+    wait_for_phase(page, "secured")
+
+
+def test_buttons_of_the_page_start_and_abort_a_landing(page: Page, programs: Programs) -> None:
+    open_world(page, programs, speed="1")  # at which there is time to press a button over the pad
+    press(page, "Start")
+    wait_for_phase(page, "align")
+    press(page, "Abort")
+    assert "secured" not in wait_for_phase(page, "abort")
