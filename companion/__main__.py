@@ -72,8 +72,8 @@ def companion(
     """Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot."""
     if context.invoked_subcommand is not None:
         return
-    from companion.config import CompanionConfig  # noqa: PLC0415 (numerics are slow to load, --help is quick)
-    from link.toml_config import dump_toml, load_config  # noqa: PLC0415
+    from companion.config import CompanionConfig
+    from link.toml_config import dump_toml, load_config
 
     settings = load_config(config, CompanionConfig)
     if autopilot is not None:
@@ -81,10 +81,10 @@ def companion(
     if print_config:
         sys.stdout.write(dump_toml(settings))
         return
-    from link.keys import Keys  # noqa: PLC0415
-    from link.mavlink.device import parse_device  # noqa: PLC0415
-    from link.mavlink.signing import read_key  # noqa: PLC0415
-    from link.zenoh_options import zenoh_options  # noqa: PLC0415
+    from link.keys import Keys
+    from link.mavlink.device import parse_device
+    from link.mavlink.signing import read_key
+    from link.zenoh_options import zenoh_options
 
     keys = Keys(namespace, vehicle, drone)
     parse_device(mavlink)  # a mistake is told before the numerics are loaded
@@ -92,18 +92,18 @@ def companion(
     if timing is not None:
         _check_writable(timing)
     endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config)
-    from companion.build import build_node  # noqa: PLC0415
-    from companion.loop import run  # noqa: PLC0415
-    from companion.loop_options import Links, LoopOptions  # noqa: PLC0415
-    from link.mavlink.transports import open_transport  # noqa: PLC0415
-    from link.recorder import BackgroundRecorder  # noqa: PLC0415
-    from link.zenoh_session import open_session  # noqa: PLC0415
+    from companion.build import build_node
+    from companion.loop import run
+    from companion.loop_options import Links, LoopOptions
+    from link.mavlink.transports import open_transport
+    from link.recorder import BackgroundRecorder
+    from link.zenoh_session import open_session
 
     folder = record or (Path(settings.recording.folder) if settings.recording.folder else None)
     with ExitStack() as stack:
         recorder: BackgroundRecorder | None = None
         if folder is not None:
-            from companion.record_folder import recording_sink  # noqa: PLC0415 (its libraries take memory)
+            from companion.record_folder import recording_sink
 
             recorder = BackgroundRecorder(recording_sink(folder, settings, keys, system_id=system_id, dry_run=dry_run))
             stack.callback(recorder.close)

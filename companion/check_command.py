@@ -35,7 +35,7 @@ DeviceOption = Annotated[
 SystemIdOption = Annotated[int, typer.Option("--system-id", min=1, max=255, help="MAVLink system id of the vehicle.")]
 
 
-def check(  # noqa: PLR0917 (a command has as many options as it needs)
+def check(
     mavlink: DeviceOption = "udpin:127.0.0.1:14540",
     speed_max: Annotated[
         float, typer.Option("--speed-max", metavar="M_S", min=0.0, max=50.0, help="Of the vehicle to be landed on.")
@@ -61,14 +61,14 @@ def check(  # noqa: PLR0917 (a command has as many options as it needs)
     zenoh_config: ZenohConfigOption = None,
 ) -> int:
     """Read the autopilot and the vehicle, and say what to change before a landing; exit code 1 when something fails."""
-    from companion.check.changes import kept  # noqa: PLC0415 (--help is quick)
-    from companion.check.reading import Reader  # noqa: PLC0415
-    from companion.check.session import CheckSession  # noqa: PLC0415
-    from link.keys import Keys  # noqa: PLC0415
-    from link.mavlink.session import MavlinkSession  # noqa: PLC0415
-    from link.mavlink.transports import open_transport  # noqa: PLC0415
-    from link.zenoh_options import zenoh_options  # noqa: PLC0415
-    from link.zenoh_session import open_session  # noqa: PLC0415
+    from companion.check.changes import kept
+    from companion.check.reading import Reader
+    from companion.check.session import CheckSession
+    from link.keys import Keys
+    from link.mavlink.session import MavlinkSession
+    from link.mavlink.transports import open_transport
+    from link.zenoh_options import zenoh_options
+    from link.zenoh_session import open_session
 
     back = None if restore is None else kept(restore)
     options = zenoh_options(mode, connect, listen, multicast, zenoh_config)
@@ -89,15 +89,15 @@ def check(  # noqa: PLR0917 (a command has as many options as it needs)
 def _look(
     session: "CheckSession", zenoh: "ZenohSession", keys: "Keys", duration_s: float, speed_m_s: float
 ) -> "list[Finding]":
-    from companion.check.assessment import assessed  # noqa: PLC0415
+    from companion.check.assessment import assessed
 
     vehicle = session.listen(duration_s, zenoh, keys)
     return assessed(session.reader.facts(), vehicle.facts(), speed_m_s)
 
 
 def _show(findings: "list[Finding]", speed_m_s: float, *, as_json: bool) -> int:
-    from companion.check.assessment import is_ready  # noqa: PLC0415
-    from companion.check.table import as_table, print_table  # noqa: PLC0415
+    from companion.check.assessment import is_ready
+    from companion.check.table import as_table, print_table
 
     if as_json:
         sys.stdout.write(json.dumps(as_table(findings, speed_m_s), indent=2) + "\n")
@@ -108,7 +108,7 @@ def _show(findings: "list[Finding]", speed_m_s: float, *, as_json: bool) -> int:
 
 def _set(session: "CheckSession", findings: "list[Finding]", keep_file: Path, *, asks: bool) -> None:
     """Keep the present values, then write the advised ones."""
-    from companion.check.changes import advised_values, keep  # noqa: PLC0415
+    from companion.check.changes import advised_values, keep
 
     advised = advised_values(findings)
     if not advised:

@@ -29,9 +29,9 @@ NameArgument = Annotated[str, typer.Argument(metavar="NAME|FILE", help="Scenario
 @app.command("list")
 def list_command(*, as_json: JsonOption = False) -> None:
     """List the scenarios."""
-    import json  # noqa: PLC0415 (only what a command needs is loaded)
+    import json
 
-    from scenarios.catalogue import list_scenarios  # noqa: PLC0415
+    from scenarios.catalogue import list_scenarios
 
     entries = list_scenarios()
     if as_json:
@@ -59,9 +59,9 @@ def run_command(
     as_json: JsonOption = False,
 ) -> int:
     """Run a landing and score it on ground truth; exit code 1 when it does not land."""
-    from scenarios.catalogue import load_scenario  # noqa: PLC0415
-    from scenarios.report_line import Reporter  # noqa: PLC0415
-    from scenarios.run import RunOptions, run_folder, run_in_lockstep, run_over_wire  # noqa: PLC0415
+    from scenarios.catalogue import load_scenario
+    from scenarios.report_line import Reporter
+    from scenarios.run import RunOptions, run_folder, run_in_lockstep, run_over_wire
 
     scenario = load_scenario(name if firmware is None else f"{name}+firmware={firmware}")
     view_port = view_commands.port_of_run(lockstep=lockstep, as_json=as_json) if view else None
@@ -88,11 +88,11 @@ def world_command(
     drone: DroneOption = "drone",
 ) -> None:
     """Run the simulated side of a scenario, the autopilot with the vehicle in it, in one process."""
-    from link.keys import Keys  # noqa: PLC0415
-    from link.mavlink.transports import open_transport  # noqa: PLC0415
-    from link.zenoh_session import DEFAULT_ENDPOINT, ZenohOptions, open_session  # noqa: PLC0415
-    from scenarios.catalogue import load_scenario  # noqa: PLC0415
-    from scenarios.world import WorldLoop  # noqa: PLC0415
+    from link.keys import Keys
+    from link.mavlink.transports import open_transport
+    from link.zenoh_session import DEFAULT_ENDPOINT, ZenohOptions, open_session
+    from scenarios.catalogue import load_scenario
+    from scenarios.world import WorldLoop
 
     scenario = load_scenario(name)
     keys = Keys(namespace, vehicle, drone)
@@ -110,10 +110,10 @@ def command_command(
     drone: DroneOption = "drone",
 ) -> int:
     """Send a command to the companion; exit code 1 when it is refused."""
-    from link.keys import Keys  # noqa: PLC0415
-    from link.messages import Command  # noqa: PLC0415
-    from link.zenoh_session import DEFAULT_ENDPOINT  # noqa: PLC0415
-    from scenarios.operator_command import send_command  # noqa: PLC0415
+    from link.keys import Keys
+    from link.messages import Command
+    from link.zenoh_session import DEFAULT_ENDPOINT
+    from scenarios.operator_command import send_command
 
     try:
         wanted = Command(command)

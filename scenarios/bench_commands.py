@@ -21,8 +21,8 @@ def bench_command(
     as_json: JsonOption = False,
 ) -> None:
     """Measure step times, speed, memory and start-up against their budgets; takes about a minute."""
-    from scenarios.bench import bench, text_lines  # noqa: PLC0415 (numerics are slow to load, --help is quick)
-    from scenarios.catalogue import load_scenario  # noqa: PLC0415
+    from scenarios.bench import bench, text_lines
+    from scenarios.catalogue import load_scenario
 
     table = bench(load_scenario(name), seed, lambda what: _announce(what, as_json=as_json))
     text = json.dumps(table, indent=2) if as_json else "\n".join(text_lines(table))

@@ -53,8 +53,8 @@ def campaign_command(
     as_json: JsonOption = False,
 ) -> int:
     """Fly each cell with many seeds and print the summary; exit code 1 when a landing raised an error."""
-    from scenarios.campaign import Where, check_same_versions, make_plan  # noqa: PLC0415 (numerics are slow to load)
-    from scenarios.campaign_folder import create_folder, read_plan  # noqa: PLC0415
+    from scenarios.campaign import Where, check_same_versions, make_plan
+    from scenarios.campaign_folder import create_folder, read_plan
 
     where = Where(workers=workers, scheduler=scheduler)
     if workers is not None and scheduler is not None:
@@ -73,15 +73,15 @@ def campaign_command(
 
 def table_command(folder: FolderArgument, *, as_json: JsonOption = False) -> None:
     """Print a campaign's summary again."""
-    from scenarios.campaign_folder import read_landings, read_timing  # noqa: PLC0415 (numerics are slow to load)
+    from scenarios.campaign_folder import read_landings, read_timing
 
     _print_summary(read_landings(folder), read_timing(folder), as_json=as_json)
 
 
 def compare_command(first: FolderArgument, second: FolderArgument, *, as_json: JsonOption = False) -> None:
     """Compare two campaigns on the same cells and seeds."""
-    from scenarios.campaign_tables import print_comparison  # noqa: PLC0415 (numerics are slow to load)
-    from scenarios.compare import compare_campaigns  # noqa: PLC0415
+    from scenarios.campaign_tables import print_comparison
+    from scenarios.compare import compare_campaigns
 
     comparison = compare_campaigns(first, second)
     if as_json:
@@ -91,9 +91,9 @@ def compare_command(first: FolderArgument, second: FolderArgument, *, as_json: J
 
 
 def _fly(folder: Path, plan: "Plan", where: "Where", *, as_json: bool) -> int:
-    from scenarios.campaign import fly_campaign  # noqa: PLC0415 (numerics are slow to load)
-    from scenarios.campaign_folder import read_timing  # noqa: PLC0415
-    from scenarios.campaign_progress import CampaignProgress  # noqa: PLC0415
+    from scenarios.campaign import fly_campaign
+    from scenarios.campaign_folder import read_timing
+    from scenarios.campaign_progress import CampaignProgress
 
     _note(f"campaign in {folder}")
     try:
@@ -112,8 +112,8 @@ def _fly(folder: Path, plan: "Plan", where: "Where", *, as_json: bool) -> int:
 
 
 def _print_summary(rows: Sequence["Row"], times: Sequence["Row"], *, as_json: bool) -> None:
-    from scenarios.campaign_tables import print_summary  # noqa: PLC0415 (numerics are slow to load)
-    from scenarios.summary import summarize  # noqa: PLC0415
+    from scenarios.campaign_tables import print_summary
+    from scenarios.summary import summarize
 
     summary = summarize(rows, times)
     if as_json:

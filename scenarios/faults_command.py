@@ -26,8 +26,8 @@ def faults_command(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> int:
     """Let every fault happen in every phase of a landing; exit code 1 when a reaction is not as expected."""
-    from scenarios.faults import EXPECTED, fly_case, lost  # noqa: PLC0415 (numerics are slow to load, --help is quick)
-    from scenarios.pool import core_count, run_tasks  # noqa: PLC0415
+    from scenarios.faults import EXPECTED, fly_case, lost
+    from scenarios.pool import core_count, run_tasks
 
     with closing(run_tasks(fly_case, EXPECTED, workers=workers or core_count(), lost=lost)) as results:
         found = {ended.case: ended for ended in results}

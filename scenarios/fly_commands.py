@@ -34,10 +34,10 @@ def fly_command(
 
     The vehicle drives by the place where the simulated drone stands, its pad at the height of the ground.
     """
-    from scenarios.catalogue import load_scenario  # noqa: PLC0415 (only what a command needs is loaded)
-    from scenarios.fly import FlyOptions, fly  # noqa: PLC0415
-    from scenarios.report_line import Reporter  # noqa: PLC0415
-    from scenarios.run import run_folder  # noqa: PLC0415
+    from scenarios.catalogue import load_scenario
+    from scenarios.fly import FlyOptions, fly
+    from scenarios.report_line import Reporter
+    from scenarios.run import run_folder
 
     scenario = load_scenario(name)
     folder = run_folder(out, scenario.name)

@@ -23,10 +23,10 @@ def fuzz_command(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> None:
     """Offer broken and absurd frames to the simulated autopilot over real links while its drone hovers."""
-    from dataclasses import asdict  # noqa: PLC0415 (numerics are slow to load, --help is quick)
+    from dataclasses import asdict
 
-    from link.errors import UserError  # noqa: PLC0415
-    from scenarios.fuzz import FIRMWARES, LINK_KINDS, fuzz  # noqa: PLC0415
+    from link.errors import UserError
+    from scenarios.fuzz import FIRMWARES, LINK_KINDS, fuzz
 
     if link not in {*LINK_KINDS, _ALL}:
         raise UserError(f"--link {link} is none of {', '.join(LINK_KINDS)}, {_ALL}; choose one of these")

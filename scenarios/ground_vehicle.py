@@ -108,8 +108,8 @@ def ground_vehicle(
     zenoh_config: ZenohConfigOption = None,
 ) -> None:
     """Publish a ground vehicle over Zenoh: its position, velocity, heading and pad."""
-    from link.keys import Keys  # noqa: PLC0415 (Zenoh and numerics are slow to load, --help is quick)
-    from link.zenoh_options import DEFAULT_ENDPOINT, ZenohOptions  # noqa: PLC0415
+    from link.keys import Keys
+    from link.zenoh_options import DEFAULT_ENDPOINT, ZenohOptions
 
     if sum(one is not None for one in (scenario, gpsd, nmea, mavlink)) > 1:
         raise UserError("--scenario, --gpsd, --nmea and --mavlink are one vehicle each: give one of them")
@@ -127,7 +127,7 @@ def ground_vehicle(
         _drive(simulation, keys, options)
         return
     source = _source(gpsd, nmea, mavlink)
-    from scenarios.vehicle_sources.pad import pad_geometry  # noqa: PLC0415
+    from scenarios.vehicle_sources.pad import pad_geometry
 
     geometry = pad_geometry(pad, size_m=pad_size, height_m=pad_height, antenna_to_pad_m=antenna_to_pad)
     _listen(source, geometry, keys, options)
@@ -149,20 +149,20 @@ class _Source(NamedTuple):
 
 def _source(gpsd: str | None, nmea: str | None, mavlink: str | None) -> _Source:
     """Return the receiver that the user named; only what it needs is imported."""
-    from link.mavlink.transports import open_transport  # noqa: PLC0415
-    from scenarios.vehicle_sources.channel import device_opener, gpsd_address, nmea_opener  # noqa: PLC0415
+    from link.mavlink.transports import open_transport
+    from scenarios.vehicle_sources.channel import device_opener, gpsd_address, nmea_opener
 
     if gpsd is not None:
-        from scenarios.vehicle_sources.gpsd import GpsdReceiver  # noqa: PLC0415
+        from scenarios.vehicle_sources.gpsd import GpsdReceiver
 
         address, device = gpsd_address(gpsd)
         return _Source(f"gpsd at {gpsd}", GpsdReceiver(device), lambda: open_transport(str(address)))
     if nmea is not None:
-        from scenarios.vehicle_sources.nmea import NmeaReceiver  # noqa: PLC0415
+        from scenarios.vehicle_sources.nmea import NmeaReceiver
 
         return _Source(nmea, NmeaReceiver(), nmea_opener(nmea))
     if mavlink is not None:
-        from scenarios.vehicle_sources.mavlink import MavlinkReceiver  # noqa: PLC0415
+        from scenarios.vehicle_sources.mavlink import MavlinkReceiver
 
         return _Source(mavlink, MavlinkReceiver(), device_opener(mavlink))
     raise UserError(
@@ -173,9 +173,9 @@ def _source(gpsd: str | None, nmea: str | None, mavlink: str | None) -> _Source:
 
 def _listen(source: _Source, pad: "PadGeometry", keys: "Keys", options: "ZenohOptions") -> None:
     """Publish a real vehicle."""
-    from link.service import Service  # noqa: PLC0415
-    from link.zenoh_session import open_session  # noqa: PLC0415
-    from scenarios.vehicle_sources.loop import ReceiverLoop  # noqa: PLC0415
+    from link.service import Service
+    from link.zenoh_session import open_session
+    from scenarios.vehicle_sources.loop import ReceiverLoop
 
     with open_session(options) as zenoh:
         ReceiverLoop(
@@ -185,10 +185,10 @@ def _listen(source: _Source, pad: "PadGeometry", keys: "Keys", options: "ZenohOp
 
 def _drive(simulation: _Simulation, keys: "Keys", options: "ZenohOptions") -> None:
     """Publish a scenario's vehicle."""
-    from link.zenoh_session import open_session  # noqa: PLC0415
-    from scenarios.catalogue import load_scenario  # noqa: PLC0415
-    from scenarios.vehicle_loop import VehicleLoop  # noqa: PLC0415
-    from scenarios.vehicle_node import VehicleNode, departing_at_once  # noqa: PLC0415
+    from link.zenoh_session import open_session
+    from scenarios.catalogue import load_scenario
+    from scenarios.vehicle_loop import VehicleLoop
+    from scenarios.vehicle_node import VehicleNode, departing_at_once
 
     driven = load_scenario(simulation.scenario)
     node = VehicleNode(departing_at_once(driven) if simulation.departs_at_once else driven, simulation.seed, keys)

@@ -24,9 +24,9 @@ def replay_command(
     as_json: JsonOption = False,
 ) -> int:
     """Give a recording's inputs to the companion again and compare every output; exit code 1 when one differs."""
-    from companion.config import CompanionConfig  # noqa: PLC0415 (numerics are slow to load, --help is quick)
-    from link.toml_config import load_config  # noqa: PLC0415
-    from scenarios.replay import read_flight, replay, text_lines  # noqa: PLC0415
+    from companion.config import CompanionConfig
+    from link.toml_config import load_config
+    from scenarios.replay import read_flight, replay, text_lines
 
     settings = None if config is None else load_config(config, CompanionConfig)
     results = [(run.name, replay(read_flight(run), settings)) for run in runs]

@@ -37,7 +37,7 @@ def report_or_campaign_table(
     if what != _REPORT:
         table_command(Path(what), as_json=as_json)
         return
-    from scenarios.report_table import fly_report, print_report, write_markdown  # noqa: PLC0415 (numerics are slow to load)
+    from scenarios.report_table import fly_report, print_report, write_markdown
 
     table = fly_report(seeds, workers)
     if as_json:
@@ -59,10 +59,10 @@ def figures_command(
     ] = None,
 ) -> None:
     """Draw figures as PNG and SVG: of a run, of a campaign, or the source report's, measured."""
-    from scenarios.figures import draw_figures  # noqa: PLC0415 (numerics are slow to load)
+    from scenarios.figures import draw_figures
 
     if what == _REPORT:
-        from scenarios.report_figures import draw_report  # noqa: PLC0415
+        from scenarios.report_figures import draw_report
 
         files = draw_report(out or Path("runs/figures"))
     else:
@@ -79,6 +79,6 @@ def html_command(
     ] = None,
 ) -> None:
     """Write a run or a campaign as one page that opens offline: verdict, figures, tables, configuration, versions."""
-    from scenarios.html_report import write_report  # noqa: PLC0415 (numerics are slow to load)
+    from scenarios.html_report import write_report
 
     sys.stdout.write(f"{write_report(what, out)}\n")

@@ -35,7 +35,7 @@ def port_of_run(*, lockstep: bool, as_json: bool) -> int:
     Raises:
         UserError: there is nothing to see, or nothing to show it with.
     """
-    from scenarios.processes import free_tcp_port  # noqa: PLC0415 (--help is quick)
+    from scenarios.processes import free_tcp_port
 
     if lockstep:
         raise UserError("--lockstep is over at once: leave out --view, and give the run's folder to `scenarios view`")
@@ -70,18 +70,18 @@ def view_command(
             f"from another one: ssh -L {port}:127.0.0.1:{port} THIS_MACHINE"
         )
     check_viser()
-    from scenarios.view.page import Page  # noqa: PLC0415 (slow to load, and optional)
-    from scenarios.view.recorded import RecordedSource, Road  # noqa: PLC0415
+    from scenarios.view.page import Page
+    from scenarios.view.recorded import RecordedSource, Road
 
     if recording is not None:
         source = RecordedSource(recording)
         Page(source, source.road, port).run()
         return
-    from link.keys import Keys  # noqa: PLC0415
-    from link.zenoh_options import zenoh_options  # noqa: PLC0415
-    from link.zenoh_session import open_session  # noqa: PLC0415
-    from scenarios.catalogue import load_scenario  # noqa: PLC0415
-    from scenarios.view.live import LiveSource  # noqa: PLC0415
+    from link.keys import Keys
+    from link.zenoh_options import zenoh_options
+    from link.zenoh_session import open_session
+    from scenarios.catalogue import load_scenario
+    from scenarios.view.live import LiveSource
 
     drawn = None if road is None else Road(scenario=load_scenario(road), seed=seed)
     keys = Keys(namespace, vehicle, drone)

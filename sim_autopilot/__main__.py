@@ -70,8 +70,8 @@ def sim_autopilot(
     zenoh_config: ZenohConfigOption = None,
 ) -> int:
     """Simulate a quadrotor under an autopilot that speaks MAVLink."""
-    from link.toml_config import dump_toml, load_config  # noqa: PLC0415 (numerics are slow to load, --help is quick)
-    from sim_autopilot.config import SimAutopilotConfig, autopilot_config, with_default_links  # noqa: PLC0415
+    from link.toml_config import dump_toml, load_config
+    from sim_autopilot.config import SimAutopilotConfig, autopilot_config, with_default_links
 
     given = _given(firmware=firmware, instance=instance, instant=instant, seed=seed)
     if mavlink:
@@ -82,9 +82,9 @@ def sim_autopilot(
     if print_config:
         sys.stdout.write(dump_toml(settings))
         return EXIT_OK
-    from link.keys import Keys  # noqa: PLC0415
-    from link.zenoh_session import DEFAULT_ENDPOINT, ZenohOptions  # noqa: PLC0415
-    from sim_autopilot.run import RunOptions, run  # noqa: PLC0415
+    from link.keys import Keys
+    from link.zenoh_session import DEFAULT_ENDPOINT, ZenohOptions
+    from sim_autopilot.run import RunOptions, run
 
     nothing_said = not (connect or listen or zenoh_config or multicast)
     zenoh = ZenohOptions(

@@ -1,8 +1,5 @@
 """The drone and its flight controller over one autopilot period, as one compiled call."""
 
-# ruff: noqa: PLR0917
-# Compiled functions take no keyword-only arguments.
-
 from pathlib import Path
 
 from sim_autopilot.control.command import fill_control, fill_motor_command

@@ -5,9 +5,6 @@ then held at nearly all of the acceleration limit; the widened acceleration boun
 floor is the height reached by pulling up likewise, at no more than the climb limit. All functions are compiled.
 """
 
-# ruff: noqa: PLR0917
-# Compiled functions take no keyword-only arguments.
-
 import numpy as np
 from numba import njit
 

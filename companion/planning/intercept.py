@@ -5,9 +5,6 @@ limit, then -a. Source: the time-optimal control of the double integrator, Bryso
 bound on w. All functions are compiled; they live in one file, which is what the compiler's cache goes by.
 """
 
-# ruff: noqa: PLR0917
-# Compiled functions take no keyword-only arguments.
-
 import math
 
 import numpy as np

@@ -4,9 +4,6 @@ Minimise `x'Hx/2 + f'x` subject to `lower <= Ax <= upper`. Solving is a pure fun
 solver state survives a call, so the same problem gives the same bits in any order.
 """
 
-# ruff: noqa: PLR0917
-# H, f, A, lower, upper is the order in which a programme is written.
-
 import importlib
 import math
 from dataclasses import dataclass

@@ -97,7 +97,7 @@ class SerialTransport(Transport):
 
 def _open(device: SerialDevice) -> Any:
     # Imported here, since a flight over UDP needs no serial port. SerialException is an OSError.
-    import serial  # noqa: PLC0415
+    import serial  # noqa: PLC0415 (see above)
 
     return serial.Serial(device.path, device.baud, timeout=0)
 

@@ -161,7 +161,7 @@ class UdpBoundTransport(_UdpTransport):
         own_port = device.own_port or 0
         host, _port = self._address
         # To this machine only, unless the other end is elsewhere.
-        own_host = host if host in {"127.0.0.1", "::1"} else "::" if ":" in host else "0.0.0.0"  # noqa: S104
+        own_host = host if host in {"127.0.0.1", "::1"} else "::" if ":" in host else "0.0.0.0"  # noqa: S104 (an autopilot elsewhere)
         bind(self._socket, (own_host, own_port), NetworkDevice(kind="udpin", host=own_host, port=own_port))
 
     def _receivers(self) -> list[Any]:

@@ -4,9 +4,6 @@
 of turn rates alone kR is zero.
 """
 
-# ruff: noqa: PLR0917
-# Compiled functions take no keyword-only arguments.
-
 from sim_autopilot.control.parameters import ATTITUDE, HAS_ATTITUDE, RATE, THRUST
 from sim_autopilot.data import Array
 from sim_autopilot.physics.compiled import kernel

@@ -1,8 +1,5 @@
 """One period of the flight controller: from the drone's state and a reference to what the motors are told."""
 
-# ruff: noqa: PLR0917
-# Compiled functions take no keyword-only arguments.
-
 from sim_autopilot.control.attitude import fill_attitude_wrench
 from sim_autopilot.control.geometric import fill_geometric_wrench
 from sim_autopilot.control.lqr import GOAL, fill_feedforward_wrench, fill_report_wrench

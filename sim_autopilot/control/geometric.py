@@ -11,9 +11,6 @@ set the response (5.8 / pole: the 2 % settling time of a double pole), the three
 beyond. Vertically `s^3 + c s^2 + c kv s + c kp`: the same double pole and one at the rest of the sum.
 """
 
-# ruff: noqa: PLR0917
-# Compiled functions take no keyword-only arguments.
-
 import math
 
 import numpy as np

@@ -9,9 +9,6 @@ so the reference enters through the integrators alone (eqs. 9-11).
 integral action. Angles are Euler's, as in the linear model; tilt is compensated in the thrust.
 """
 
-# ruff: noqa: PLR0917
-# Compiled functions take no keyword-only arguments.
-
 import math
 from dataclasses import dataclass
 

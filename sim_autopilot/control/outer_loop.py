@@ -10,9 +10,6 @@ the integral action: without a disturbance it is zero whatever the reference doe
 against a limit.
 """
 
-# ruff: noqa: PLR0917
-# Compiled functions take no keyword-only arguments.
-
 import math
 
 from sim_autopilot.control.parameters import (

@@ -10,9 +10,6 @@ height, presence. The ground is such a frame without end, at z = 0, but under th
 With four feet of 2000 N/m the drone sinks 1.8 mm at rest and swings at 73 rad/s; 55 N s/m a foot is critical damping.
 """
 
-# ruff: noqa: PLR0917
-# Compiled functions take no keyword-only arguments.
-
 import math
 
 import numpy as np

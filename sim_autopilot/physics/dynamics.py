@@ -4,9 +4,6 @@ State `y` (13,): p_WB m, q_WB wxyz, v_WB m/s, w_WB_B rad/s. World ENU, body FLU.
 `m dv = m g + f`, `dq = q * [0, w] / 2`, `I dw = -w x I w + torque`; f is every force but gravity, in W.
 """
 
-# ruff: noqa: PLR0917
-# Compiled functions take no keyword-only arguments.
-
 import math
 
 from sim_autopilot.data import Array

@@ -5,9 +5,6 @@ R is the rotor's radius, z its height above the surface, V the airspeed, vi the 
 that the gain stays what it is there (4/3 in hover); above 8 R it is under 0.1 % and left out.
 """
 
-# ruff: noqa: PLR0917
-# Compiled functions take no keyword-only arguments.
-
 import math
 
 from sim_autopilot.data import Array

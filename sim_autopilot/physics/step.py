@@ -3,9 +3,6 @@
 Ground effect and the choice whether anything is near are held over the step; the vehicle moves on within it.
 """
 
-# ruff: noqa: PLR0917
-# Compiled functions take no keyword-only arguments.
-
 import math
 
 import numpy as np

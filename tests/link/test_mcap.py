@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from rosbags.highlevel import AnyReader
 
+from link import mcap_writer
 from link.errors import UserError
 from link.mcap_reader import read_head, read_messages, recording_files
 from link.mcap_writer import McapRecording, RecordingSpec
@@ -57,9 +58,9 @@ def test_recording_holds_its_metadata_and_attachments(tmp_path: Path) -> None:
 
 
 def test_every_message_of_ours_has_a_definition_that_rosbags_reads_alone() -> None:
-    from rosbags.typesys import Stores, get_types_from_msg, get_typestore  # noqa: PLC0415
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore  # noqa: PLC0415 (slow to load)
 
-    from link.ros_records import definition  # noqa: PLC0415
+    from link.ros_records import definition  # noqa: PLC0415 (with the type library)
 
     for name in DEFINITIONS:
         store = get_typestore(Stores.EMPTY)
@@ -88,16 +89,14 @@ def test_files_are_rotated_and_the_oldest_deleted_at_the_limit(tmp_path: Path) -
 
 
 def test_write_that_fails_is_told_and_leaves_a_readable_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from link import mcap_writer  # noqa: PLC0415
-
-    whole = mcap_writer._WholeRecords.write  # noqa: SLF001
+    whole = mcap_writer._WholeRecords.write  # noqa: SLF001 (where a disk fills up)
 
     def full_at_50_kb(file: mcap_writer._WholeRecords, data: bytes) -> int:
         if file.size + len(data) > 50_000:
             raise OSError(28, "No space left on device")
         return whole(file, data)
 
-    monkeypatch.setattr(mcap_writer._WholeRecords, "write", full_at_50_kb)  # noqa: SLF001
+    monkeypatch.setattr(mcap_writer._WholeRecords, "write", full_at_50_kb)  # noqa: SLF001 (where a disk fills up)
     recording = McapRecording(RecordingSpec(folder=tmp_path, stem="test"))
     lost = 0
     for index in range(20_000):

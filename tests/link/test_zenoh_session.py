@@ -338,7 +338,7 @@ def test_encoding_reaches_the_receiver(pair: tuple[ZenohSession, ZenohSession]) 
     """A queryable's answer and a sample carry the names that a bridge to ROS 2 looks for."""
     sender, receiver = pair
     encodings: list[str] = []
-    receiver._session.declare_subscriber("ns/e", lambda sample: encodings.append(str(sample.encoding)))  # noqa: SLF001
+    receiver._session.declare_subscriber("ns/e", lambda sample: encodings.append(str(sample.encoding)))  # noqa: SLF001 (Zenoh's own)
 
     def has_come() -> bool:
         sender.publish("ns/e", b"", "application/cdr;nav_msgs/msg/Odometry")

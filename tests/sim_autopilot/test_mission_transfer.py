@@ -139,7 +139,7 @@ def test_arducopter_cancels_a_silent_upload_and_lets_its_client_begin_again() ->
 def test_a_second_client_does_not_disturb_a_transfer() -> None:
     library, _ = send(NO_LIBRARY, count_of(2), 0.0, PX4_MISSIONS)
     other = item(0, WAYPOINT, (0.0, 0.0, 5.0))
-    other._header = mavlink.MAVLink_header(other.get_msgId(), srcSystem=254, srcComponent=1)  # noqa: SLF001
+    other._header = mavlink.MAVLink_header(other.get_msgId(), srcSystem=254, srcComponent=1)  # noqa: SLF001 (as a decoder does)
     after, (answer,) = take_mission_message(library, Arrival(message=other, boot_ns=10, rules=PX4_MISSIONS, current=0))
     assert answer.type == ERROR
     assert after.transfer is not None

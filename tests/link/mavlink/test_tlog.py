@@ -28,7 +28,7 @@ def test_a_recording_is_read_back_by_mavutil_in_both_directions(tmp_path: Path) 
     assert [one.get_srcComponent() for one in read] == [1, 191] * 5
     assert [one.custom_mode for one in read[::2]] == list(range(5))
     for k, message in enumerate(read):
-        assert message._timestamp == pytest.approx((T_NS // 1000 + 1000 * k) / 1e6, abs=1e-6)  # noqa: SLF001
+        assert message._timestamp == pytest.approx((T_NS // 1000 + 1000 * k) / 1e6, abs=1e-6)  # noqa: SLF001 (its only name)
 
 
 def test_times_are_whole_microseconds_big_endian_before_the_frame(tmp_path: Path) -> None:

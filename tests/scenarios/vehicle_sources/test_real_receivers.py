@@ -196,8 +196,8 @@ def test_a_receiver_over_tcp_is_connected_to_again() -> None:
                 before, (connection, _) = len(car.fixes), server.accept()
                 with connection:
                     car.until(
-                        lambda: len(car.fixes) >= before + 4,  # noqa: B023 (called before the next turn)
-                        lambda: connection.sendall(b"".join(epoch(next(instants)))),  # noqa: B023
+                        lambda: len(car.fixes) >= before + 4,  # noqa: B023 (called within this turn) (called before the next turn)
+                        lambda: connection.sendall(b"".join(epoch(next(instants)))),  # noqa: B023 (called within this turn)
                     )
                     connection.sendall(epoch(0)[0][:30])  # it breaks off within a sentence
             assert_is_the_drive(car)
