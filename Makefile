@@ -21,12 +21,12 @@ demo: .venv/.complete
 	$(BIN)/scenarios run $(SCENARIO) --speed $(SPEED) --seed $(SEED)
 
 check: lint
-	$(BIN)/pytest -q -n 2 -m "not slow"
+	$(BIN)/pytest -q -n 2 -m "not slow and not wire"
 
-# What starts processes and keeps time runs by itself, after the rest.
+# What keeps time with the clock runs by itself, after the rest.
 test: lint docs
-	$(BIN)/pytest -q -n 2 -m "not slow"
-	$(BIN)/pytest -q -m slow
+	$(BIN)/pytest -q -n 2 --dist worksteal -m "not wire"
+	$(BIN)/pytest -q -m wire
 
 # The manual, in build/manual/index.html; needs no network. A warning, such as a broken link, fails it.
 docs: .venv/.complete

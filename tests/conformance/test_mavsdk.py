@@ -7,7 +7,7 @@ import pytest
 from tests.conformance.mavsdk_client import CASES
 from tests.conformance.programs import StandIn, outcomes, stand_in
 
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(600)]
+pytestmark = [pytest.mark.wire, pytest.mark.timeout(600)]
 
 
 @pytest.fixture(scope="module", params=["px4", "ardupilot"])

@@ -9,7 +9,7 @@ from pymavlink import mavutil, mavwp
 from link.mavlink.dialect import Message, mavlink
 from tests.conformance.programs import StandIn, stand_in, wait
 
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(600)]
+pytestmark = [pytest.mark.wire, pytest.mark.timeout(600)]
 
 
 @pytest.fixture(scope="module", params=["px4", "ardupilot"])

@@ -11,7 +11,7 @@ from link.mavlink.transports import open_transport
 from scenarios.processes import free_tcp_endpoint, free_udp_port
 from tests.integration.programs import DEADLINE_S, Programs
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.wire
 
 BEAT = mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 4, 3)
 

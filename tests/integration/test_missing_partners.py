@@ -8,7 +8,7 @@ from link.mavlink.transports import open_transport
 from scenarios.processes import free_tcp_endpoint, free_udp_port
 from tests.integration.programs import Program, Programs, until
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.wire
 
 
 def last_line(companion: Program) -> str:

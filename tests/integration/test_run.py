@@ -11,7 +11,7 @@ import pytest
 
 from tests.integration.programs import Program, Programs, all_end, until
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.wire
 
 NAMES = ("ground-vehicle", "sim-autopilot", "companion")
 

@@ -46,7 +46,7 @@ def test_a_unit_restarts_and_watches_its_program(unit: str) -> None:
     assert value(unit, "TimeoutStartSec") == "infinity"
 
 
-@pytest.mark.slow
+@pytest.mark.wire
 @pytest.mark.parametrize("unit", UNITS)
 def test_systemd_itself_finds_no_mistake_in_a_unit(unit: str, tmp_path: Path) -> None:
     analyze = shutil.which("systemd-analyze")
@@ -60,7 +60,7 @@ def test_systemd_itself_finds_no_mistake_in_a_unit(unit: str, tmp_path: Path) ->
     assert about_it == []
 
 
-@pytest.mark.slow
+@pytest.mark.wire
 def test_the_companion_is_ready_with_its_autopilot_and_feeds_the_watchdog(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -30,7 +30,7 @@ WATCH = """() => {
 }"""
 
 pytestmark = [
-    pytest.mark.slow,
+    pytest.mark.wire,
     pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium; apt-get install chromium"),
 ]
 

@@ -130,7 +130,7 @@ def test_liveliness_notices_a_killed_process(endpoint: str) -> None:
         until(companion, lambda: not watched.alive)
 
 
-@pytest.mark.slow
+@pytest.mark.wire
 def test_a_peer_that_hangs_does_not_stall_the_sender(endpoint: str) -> None:
     code = (
         "import threading; from link.zenoh_session import *; "
@@ -202,7 +202,7 @@ def test_query_whose_handler_refuses_has_no_answers_and_others_go_on(
     assert capfd.readouterr().err == ""
 
 
-@pytest.mark.slow
+@pytest.mark.wire
 def test_the_one_to_connect_may_start_first(endpoint: str) -> None:
     with connector(endpoint) as receiver:
         inbox = receiver.subscribe("ns/late")
@@ -211,7 +211,7 @@ def test_the_one_to_connect_may_start_first(endpoint: str) -> None:
             assert first_samples(sender, receiver, inbox, "ns/late")[0].payload == b"probe"
 
 
-@pytest.mark.slow
+@pytest.mark.wire
 def test_samples_flow_again_after_a_restart(endpoint: str) -> None:
     with connector(endpoint) as receiver:
         inbox = receiver.subscribe("ns/restart")
@@ -297,7 +297,7 @@ def test_a_listen_address_of_another_computer_is_the_users_mistake() -> None:
     assert ".rs" not in str(caught.value)
 
 
-@pytest.mark.slow
+@pytest.mark.wire
 def test_a_client_without_router_gives_up(endpoint: str) -> None:
     with pytest.raises(UserError, match=f"--connect {endpoint}: no router answers"):
         open_session(ZenohOptions(mode="client", connect=(endpoint,)))

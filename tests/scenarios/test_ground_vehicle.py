@@ -160,7 +160,7 @@ def until(session: ZenohSession, condition: Callable[[], bool]) -> None:
         session.wake_up.wait(0.05)
 
 
-@pytest.mark.slow
+@pytest.mark.wire
 def test_program_publishes_shows_that_it_lives_and_tells_its_pad() -> None:
     with program("--scenario", "straight_5", "--depart-at-once") as (process, session):
         alive = session.watch_alive(KEYS.alive)
@@ -183,7 +183,7 @@ def test_program_publishes_shows_that_it_lives_and_tells_its_pad() -> None:
         until(session, lambda: not alive.alive)
 
 
-@pytest.mark.slow
+@pytest.mark.wire
 def test_program_follows_the_simulated_clock_and_the_drone() -> None:
     with program("--scenario", "straight_5", "--use-sim-time") as (_, session):
         truths = session.subscribe(KEYS.vehicle_truth)
@@ -203,7 +203,7 @@ def test_program_follows_the_simulated_clock_and_the_drone() -> None:
         assert all(START_NS < truth.t_ns <= t_ns and truth.t_ns % STEP_NS == 0 for truth in received)
 
 
-@pytest.mark.slow
+@pytest.mark.wire
 def test_program_that_hears_no_clock_says_so() -> None:
     command = [sys.executable, "-m", "scenarios.ground_vehicle", "--scenario", "static", "--use-sim-time"]
     ended = subprocess.run(

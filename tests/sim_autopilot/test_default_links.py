@@ -36,7 +36,7 @@ def test_the_system_id_is_shifted_by_the_instance() -> None:
     assert autopilot_config(SimAutopilotConfig(instance=6)).system_id == 7
 
 
-@pytest.mark.slow
+@pytest.mark.wire
 def test_an_idle_autopilot_neither_grows_nor_drifts() -> None:
     clients, counts, objects = Clients(px4()), [], []
     clients.run(20.0)

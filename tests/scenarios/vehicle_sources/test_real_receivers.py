@@ -36,7 +36,7 @@ from tests.scenarios.vehicle_sources.sentences import (
     epoch,
 )
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.wire
 
 KEYS = Keys()
 DEADLINE_S = 60.0
