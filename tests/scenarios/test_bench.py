@@ -76,13 +76,13 @@ def test_cost_of_recording_is_measured_on_a_whole_recording(tmp_path: Path) -> N
     assert flight.inputs[0].sequence == 0
 
 
-@pytest.mark.slow
+@pytest.mark.wire
 def test_the_command_prints_every_figure_with_its_budget(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     short = tmp_path / "short.toml"
     short.write_text('base = "straight_5"\ntime_limit_s = 3.0\n', encoding="utf-8")
     assert run_app("scenarios", app, ["bench", str(short), "--json"]) == 0
     table = json.loads(capfd.readouterr().out)
-    assert table["real_time_factor"] == pytest.approx(1.0, rel=0.2)
+    assert 0.0 < table["real_time_factor"] < 1.05  # never ahead of the clock
     assert set(table["step_ms"]) == {"companion", "autopilot_step", "companion_step", "planner"}
     for step in table["step_ms"].values():
         assert 0.0 < step["median"] <= step["p99"] <= step["max"]

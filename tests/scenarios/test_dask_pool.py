@@ -5,7 +5,6 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,6 +16,7 @@ from scenarios.campaign import Where, fly_campaign, make_plan
 from scenarios.campaign_folder import Plan, create_folder
 from scenarios.dask_pool import fly_on_dask
 from scenarios.landing_task import Flights, Flown
+from tests.integration.programs import Lines
 from tests.scenarios.campaigns import failing_cell, short_cell
 
 pytestmark = pytest.mark.slow
@@ -26,17 +26,21 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 @contextmanager
-def program(*words: str) -> Iterator["subprocess.Popen[bytes]"]:
-    """Run one of Dask's programs until the end of the block."""
+def program(*words: str, ready: str) -> Iterator["subprocess.Popen[str]"]:
+    """Run one of Dask's programs until the end of the block, from its line with `ready` in it."""
     environment = os.environ | {"PYTHONPATH": f"{ROOT}{os.pathsep}{os.environ.get('PYTHONPATH', '')}"}
     process = subprocess.Popen(
-        [sys.executable, "-m", *words], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        [sys.executable, "-m", *words], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
     )
+    assert process.stderr is not None
+    log = Lines(process.stderr)
     try:
+        log.wait_for(ready)
         yield process
     finally:
         process.terminate()
         process.wait(DEADLINE_S)
+        log.finish()
 
 
 def free_port() -> int:
@@ -45,24 +49,11 @@ def free_port() -> int:
         return int(probe.getsockname()[1])
 
 
-def wait_for(port: int) -> None:
-    deadline_s = time.monotonic() + DEADLINE_S
-    while True:
-        try:
-            socket.create_connection(("127.0.0.1", port), timeout=1.0).close()
-        except OSError:
-            assert time.monotonic() < deadline_s
-            time.sleep(0.05)
-        else:
-            return
-
-
 @contextmanager
 def scheduler() -> Iterator[str]:
     port = free_port()
     words = "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"
-    with program(*words):
-        wait_for(port)
+    with program(*words, ready="Scheduler at:"):
         yield f"tcp://127.0.0.1:{port}"
 
 
@@ -75,9 +66,11 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 
 @contextmanager
-def worker(address: str, folder: Path, *, threads: int = 1) -> Iterator["subprocess.Popen[bytes]"]:
+def worker(address: str, folder: Path, *, threads: int = 1) -> Iterator["subprocess.Popen[str]"]:
     words = "--no-nanny", "--no-dashboard", "--host", "127.0.0.1", "--local-directory", str(folder)
-    with program("distributed.cli.dask_worker", address, *words, "--nthreads", str(threads)) as process:
+    with program(
+        "distributed.cli.dask_worker", address, *words, "--nthreads", str(threads), ready="Registered to:"
+    ) as process:
         yield process
 
 
