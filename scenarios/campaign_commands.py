@@ -78,12 +78,21 @@ def table_command(folder: FolderArgument, *, as_json: JsonOption = False) -> Non
     _print_summary(read_landings(folder), read_timing(folder), as_json=as_json)
 
 
-def compare_command(first: FolderArgument, second: FolderArgument, *, as_json: JsonOption = False) -> None:
+def compare_command(
+    first: FolderArgument,
+    second: FolderArgument,
+    *,
+    apart_from: Annotated[
+        str | None,
+        typer.Option("--apart-from", metavar="OPTION", help="Of the cells, in which they differ, such as system."),
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
     """Compare two campaigns on the same cells and seeds."""
     from scenarios.campaign_tables import print_comparison
     from scenarios.compare import compare_campaigns
 
-    comparison = compare_campaigns(first, second)
+    comparison = compare_campaigns(first, second, apart_from)
     if as_json:
         _print_json(comparison)
     else:

@@ -18,8 +18,13 @@ _SHARES = {"s1_or_better": is_s1_or_better, "s2_quality": is_s2_quality}
 Pair = tuple[Row, Row]
 
 
-def compare_campaigns(first: Path, second: Path) -> dict[str, Any]:
+def compare_campaigns(first: Path, second: Path, apart_from: str | None = None) -> dict[str, Any]:
     """Return the comparison of the campaigns in two folders, as plain values for JSON.
+
+    Args:
+        first: folder of A.
+        second: folder of B.
+        apart_from: an option of the cells in which A and B may differ, such as `system`.
 
     Raises:
         UserError: a folder holds no campaign, or they have no landing in common.
@@ -28,26 +33,37 @@ def compare_campaigns(first: Path, second: Path) -> dict[str, Any]:
     differences = list(
         differences_of(read_plan(first).model_dump(mode="json"), read_plan(second).model_dump(mode="json"))
     )
-    return {**compare_rows(*rows), "differences": differences}
+    return {**compare_rows(*rows, apart_from), "differences": differences}
 
 
-def compare_rows(first: Sequence[Row], second: Sequence[Row]) -> dict[str, Any]:
+def compare_rows(first: Sequence[Row], second: Sequence[Row], apart_from: str | None = None) -> dict[str, Any]:
     """Return the comparison of rows, paired by cell and seed; what has no pair is counted and left out.
+
+    Where there are several cells, `together` compares all their pairs.
 
     Raises:
         UserError: there is no pair.
     """
-    others = {(row["cell"], row["seed"]): row for row in second}
+    others = {(_without(row["cell"], apart_from), row["seed"]): row for row in second}
     pairs: dict[str, list[Pair]] = {}
     for row in first:
-        other = others.get((row["cell"], row["seed"]))
+        cell = _without(row["cell"], apart_from)
+        other = others.get((cell, row["seed"]))
         if other is not None:
-            pairs.setdefault(row["cell"], []).append((row, other))
+            pairs.setdefault(cell, []).append((row, other))
     if not pairs:
         raise UserError("the campaigns have no cell and seed in common")
     count = sum(map(len, pairs.values()))
     unpaired = {"a": len(first) - count, "b": len(second) - count}
-    return {"cells": [_comparison(cell, pairs[cell]) for cell in sorted(pairs)], "unpaired": unpaired}
+    cells = [_comparison(cell, pairs[cell]) for cell in sorted(pairs)]
+    if len(pairs) > 1:
+        cells.append(_comparison("together", [pair for cell in sorted(pairs) for pair in pairs[cell]]))
+    return {"cells": cells, "unpaired": unpaired}
+
+
+def _without(cell: str, option: str | None) -> str:
+    """Return a cell's name without one of its options."""
+    return "+".join(part for part in cell.split("+") if option is None or not part.startswith(f"{option}="))
 
 
 def differences_of(first: object, second: object, key: str = "") -> Iterator[dict[str, Any]]:

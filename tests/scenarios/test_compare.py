@@ -72,6 +72,19 @@ def test_campaigns_with_nothing_in_common_are_refused() -> None:
         compare_rows(A, [row(99, "S1")])
 
 
+def test_cells_that_differ_in_one_option_are_paired_without_it() -> None:
+    default = [row(1, "S2", cell="circle_5+wind=strong"), row(1, "S2", cell="static")]
+    other = [row(1, "abort", cell="circle_5+system=ukf+wind=strong"), row(1, "S2", cell="static+system=ukf")]
+    with pytest.raises(UserError, match="no cell and seed in common"):
+        compare_rows(default, other)
+    cells = compare_rows(default, other, "system")["cells"]
+    assert [(cell["cell"], cell["pairs"], cell["s1_or_better"]["only_a"]) for cell in cells] == [
+        ("circle_5+wind=strong", 1, 1),
+        ("static", 1, 0),
+        ("together", 2, 1),
+    ]
+
+
 def test_differences_name_the_keys_that_changed() -> None:
     first = {"guidance": {"kind": "mpc", "gain": 1.0}, "cells": [1, 2]}
     second = {"guidance": {"kind": "pn", "gain": 1.0}, "cells": [1, 2], "new": 3}
