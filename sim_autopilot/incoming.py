@@ -7,27 +7,23 @@ from types import MappingProxyType
 from link.geodesy import Datum, enu_from_geodetic
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
-from sim_autopilot.attitude_setpoints import attitude_from_message
 from sim_autopilot.commands import obey
-from sim_autopilot.data import Reference
-from sim_autopilot.global_setpoints import local_setpoint
-from sim_autopilot.guided import with_attitude, with_wish
-from sim_autopilot.guided_attitude import attitude_wish
-from sim_autopilot.guided_setpoint import STOP, wish_from_message
+from sim_autopilot.files_step import LOG_IDS, take_ftp, take_log_request
+from sim_autopilot.incoming_parameters import list_parameters, read_parameter, set_parameter
+from sim_autopilot.incoming_setpoints import (
+    take_attitude_setpoint,
+    take_global_setpoint,
+    take_landing_target,
+    take_setpoint,
+)
 from sim_autopilot.manual import sticks_from_message
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed, limited
+from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
 from sim_autopilot.mission_transfer import MESSAGE_IDS
 from sim_autopilot.missions_step import mission_current, set_current, take_plan
-from sim_autopilot.mode_change import change_mode
 from sim_autopilot.mode_request import try_mode
-from sim_autopilot.modes import Event, Mode
 from sim_autopilot.origin import move_origin
-from sim_autopilot.parameters import find_index, is_type_right, parameter_message, values_after_set
-from sim_autopilot.precision_landing import place_seen, with_sighting
-from sim_autopilot.requests import is_for_us, request_from_message
-from sim_autopilot.setpoints import reference_from_message, with_setpoint
+from sim_autopilot.requests import is_for_us, is_ours, request_from_message
 from sim_autopilot.streams import with_interval
-from sim_autopilot.telemetry_motion import height_over_surface_m
 
 Result = tuple[AutopilotMemory, tuple[Message, ...]]
 Handler = Callable[[AutopilotMemory, Message, AutopilotConfig], Result]
@@ -42,12 +38,6 @@ def take(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> 
         memory = replace(memory, ground_station=True)
     handler = _HANDLERS.get(message.get_msgId())
     return (memory, ()) if handler is None else handler(memory, message, config)
-
-
-def _is_ours(message: Message, config: AutopilotConfig) -> bool:
-    """Whether a message that is no command is meant for this autopilot; 0 is everybody."""
-    components = (mavlink.MAV_COMP_ID_AUTOPILOT1, mavlink.MAV_COMP_ID_ALL)
-    return message.target_system in (config.system_id, 0) and message.target_component in components
 
 
 def _heartbeat(memory: AutopilotMemory, message: Message, _config: AutopilotConfig) -> Result:
@@ -67,65 +57,6 @@ def _command(memory: AutopilotMemory, message: Message, config: AutopilotConfig)
     return obey(memory, request_from_message(message), config)
 
 
-def _setpoint(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
-    if not _is_ours(message, config):
-        return memory, ()
-    if config.firmware.guided:
-        return _guided_setpoint(memory, message, config)
-    now = memory.now
-    origin = memory.origin.position_enu_m
-    reference = reference_from_message(message, config.firmware.setpoint_frames, origin, now.yaw_rad)
-    return _followed(memory, reference)
-
-
-def _followed(memory: AutopilotMemory, reference: Reference | None) -> Result:
-    if reference is None:
-        return memory, ()
-    now = memory.now
-    setpoints = with_setpoint(memory.setpoints, reference, now.boot_ns, memory.settings.setpoint_loss_s)
-    return change_mode(replace(memory, setpoints=setpoints), Event.SETPOINTS_BACK), ()
-
-
-def _global_setpoint(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
-    guided, origin = config.firmware.guided, memory.origin.position_enu_m
-    local = local_setpoint(message, config.datum, origin, memory.home_enu_m, knows_terrain=guided)
-    if local is not None:
-        return _setpoint(memory, local, config)
-    if guided and memory.modes.mode is Mode.OFFBOARD and _is_ours(message, config):
-        return replace(memory, guided=with_wish(memory.guided, STOP, memory.now)), ()
-    return memory, ()
-
-
-def _attitude_setpoint(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
-    if not _is_ours(message, config):
-        return memory, ()
-    if config.firmware.guided:
-        return _guided_attitude(memory, message), ()
-    return _followed(memory, attitude_from_message(message, memory.settings.hover_share))
-
-
-def _guided_attitude(memory: AutopilotMemory, message: Message) -> AutopilotMemory:
-    settings, guided, now = memory.settings, memory.guided, memory.now
-    if memory.modes.mode is not Mode.OFFBOARD or settings.path is None:
-        return memory
-    attitude = attitude_wish(message, settings, settings.path)
-    taken = with_wish(guided, STOP, now) if attitude is None else with_attitude(guided, attitude, now)
-    return replace(memory, guided=taken)
-
-
-def _landing_target(memory: AutopilotMemory, message: Message, _config: AutopilotConfig) -> Result:
-    """Only a flying LAND mode keeps to it; another forgets the way there."""
-    settings, services, now = memory.settings.landing, memory.services, memory.now
-    place = place_seen(message, now, height_over_surface_m(memory)) if settings.enabled else None
-    if place is None:
-        return memory, ()
-    before = services.target
-    if before is not None and memory.modes.mode is not Mode.LAND:
-        before = replace(before, path=None)
-    target = with_sighting(before, place, now.boot_ns, settings)
-    return replace(memory, services=replace(services, target=target)), ()
-
-
 def _sticks(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
     manual = message.get_msgId() == mavlink.MAVLINK_MSG_ID_MANUAL_CONTROL
     if (message.target if manual else message.target_system) not in {config.system_id, 0}:
@@ -133,44 +64,6 @@ def _sticks(memory: AutopilotMemory, message: Message, config: AutopilotConfig) 
     services = memory.services
     sticks = sticks_from_message(message, memory.now.boot_ns, services.sticks)
     return replace(memory, services=replace(services, sticks=sticks)), ()
-
-
-def _guided_setpoint(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
-    """A setpoint counts in GUIDED only; another mode forgets it at once."""
-    if memory.modes.mode is not Mode.OFFBOARD:
-        return memory, ()
-    now = memory.now
-    wish = wish_from_message(message, config.firmware.setpoint_frames, memory.origin.position_enu_m, now)
-    return (memory if wish is None else replace(memory, guided=with_wish(memory.guided, wish, now))), ()
-
-
-def _parameter_list(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
-    return (replace(memory, listing=0) if _is_ours(message, config) else memory), ()
-
-
-def _parameter_read(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
-    parameters = config.firmware.parameters
-    index = find_index(parameters, message.param_id, message.param_index)
-    if index is None or not _is_ours(message, config):
-        return memory, ()
-    tells_index = config.firmware.tells_indices or message.param_index >= 0
-    autopilot_id = config.firmware.autopilot_id
-    return memory, (parameter_message(parameters, index, memory.values, autopilot_id, tells_index=tells_index),)
-
-
-def _parameter_set(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
-    parameters, autopilot_id = config.firmware.parameters, config.firmware.autopilot_id
-    index = find_index(parameters, message.param_id)
-    if index is None or not _is_ours(message, config):
-        return memory, ()
-    lenient = config.firmware.lenient_parameters
-    if not lenient and not is_type_right(parameters[index], message):
-        return memory, ()
-    values = values_after_set(parameters, index, memory.values, message, autopilot_id, lenient=lenient)
-    settings = config.firmware.settings(values)
-    memory = replace(memory, values=values, settings=settings, plant_config=limited(config.plant, settings))
-    tells_index = config.firmware.tells_indices
-    return memory, (parameter_message(parameters, index, values, autopilot_id, tells_index=tells_index),)
 
 
 def _set_mode(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
@@ -200,7 +93,7 @@ def _set_mode(memory: AutopilotMemory, message: Message, config: AutopilotConfig
 def _data_stream(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
     """Start or stop the messages of an old stream group, at one rate."""
     group = config.firmware.stream_groups.get(message.req_stream_id)
-    if group is None or not _is_ours(message, config):
+    if group is None or not is_ours(message, config):
         return memory, ()
     rate_hz = min(float(message.req_message_rate), config.firmware.stream_rate_max_hz)
     interval_ns = round(1e9 / rate_hz) if message.start_stop and rate_hz > 0.0 else None
@@ -228,33 +121,43 @@ def _set_origin(memory: AutopilotMemory, message: Message, config: AutopilotConf
 
 
 def _plan(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
-    return take_plan(memory, message, config) if _is_ours(message, config) else (memory, ())
+    return take_plan(memory, message, config) if is_ours(message, config) else (memory, ())
 
 
 def _set_current(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
-    sent = set_current(memory, message.seq) if _is_ours(message, config) else None
+    sent = set_current(memory, message.seq) if is_ours(message, config) else None
     return (memory, ()) if sent is None else (sent, (mission_current(sent, config),))
+
+
+def _files(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
+    return take_ftp(memory, message, config) if is_ours(message, config) else (memory, ())
+
+
+def _logs(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
+    return take_log_request(memory, message, config) if is_ours(message, config) else (memory, ())
 
 
 _HANDLERS: Mapping[int, Handler] = MappingProxyType(
     dict.fromkeys(MESSAGE_IDS, _plan)
+    | dict.fromkeys(LOG_IDS, _logs)
     | {
         mavlink.MAVLINK_MSG_ID_HEARTBEAT: _heartbeat,
         mavlink.MAVLINK_MSG_ID_COMMAND_LONG: _command,
         mavlink.MAVLINK_MSG_ID_COMMAND_INT: _command,
-        mavlink.MAVLINK_MSG_ID_SET_POSITION_TARGET_LOCAL_NED: _setpoint,
-        mavlink.MAVLINK_MSG_ID_SET_POSITION_TARGET_GLOBAL_INT: _global_setpoint,
-        mavlink.MAVLINK_MSG_ID_SET_ATTITUDE_TARGET: _attitude_setpoint,
-        mavlink.MAVLINK_MSG_ID_LANDING_TARGET: _landing_target,
+        mavlink.MAVLINK_MSG_ID_SET_POSITION_TARGET_LOCAL_NED: take_setpoint,
+        mavlink.MAVLINK_MSG_ID_SET_POSITION_TARGET_GLOBAL_INT: take_global_setpoint,
+        mavlink.MAVLINK_MSG_ID_SET_ATTITUDE_TARGET: take_attitude_setpoint,
+        mavlink.MAVLINK_MSG_ID_LANDING_TARGET: take_landing_target,
         mavlink.MAVLINK_MSG_ID_MANUAL_CONTROL: _sticks,
         mavlink.MAVLINK_MSG_ID_RC_CHANNELS_OVERRIDE: _sticks,
-        mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_LIST: _parameter_list,
-        mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_READ: _parameter_read,
-        mavlink.MAVLINK_MSG_ID_PARAM_SET: _parameter_set,
+        mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_LIST: list_parameters,
+        mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_READ: read_parameter,
+        mavlink.MAVLINK_MSG_ID_PARAM_SET: set_parameter,
         mavlink.MAVLINK_MSG_ID_SET_GPS_GLOBAL_ORIGIN: _set_origin,
         mavlink.MAVLINK_MSG_ID_SET_MODE: _set_mode,
         mavlink.MAVLINK_MSG_ID_REQUEST_DATA_STREAM: _data_stream,
         mavlink.MAVLINK_MSG_ID_MISSION_SET_CURRENT: _set_current,
+        mavlink.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL: _files,
     }
 )
 

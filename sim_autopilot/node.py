@@ -13,7 +13,8 @@ from link.mavlink.statistics import CodecStatistics
 from link.messages import Vector3
 from sim_autopilot.data import Array, Deck, PlantState
 from sim_autopilot.link_profiles import link_profile
-from sim_autopilot.memory import AutopilotConfig, AutopilotInputs, AutopilotMemory, initial_memory, link_streams
+from sim_autopilot.memory import AutopilotConfig, AutopilotInputs, AutopilotMemory, initial_memory
+from sim_autopilot.memory_links import link_streams
 from sim_autopilot.origin import move_origin
 from sim_autopilot.own_state import NO_ERROR, OwnStateError
 from sim_autopilot.routing import Routes, target_of

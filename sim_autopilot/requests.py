@@ -74,5 +74,11 @@ def is_for_us(message: Message, config: AutopilotConfig) -> bool:
     return config.firmware.answers_other_components or message.target_component in ours
 
 
+def is_ours(message: Message, config: AutopilotConfig) -> bool:
+    """Return whether a message that is no command is meant for this autopilot; 0 is everybody."""
+    components = (mavlink.MAV_COMP_ID_AUTOPILOT1, mavlink.MAV_COMP_ID_ALL)
+    return message.target_system in (config.system_id, 0) and message.target_component in components
+
+
 def _long_tail(message: Message) -> tuple[float, float, float]:
     return (message.param5, message.param6, message.param7)

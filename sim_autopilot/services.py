@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from sim_autopilot.failsafes import NOTHING_NOTICED, Watch
 from sim_autopilot.failures import NO_FAILURES, Failures
 from sim_autopilot.fence import Fence
+from sim_autopilot.ftp_state import NO_FTP, Ftp
+from sim_autopilot.logs import NO_LOGS, Logs
 from sim_autopilot.manual import Sticks
 from sim_autopilot.mission_flight import NO_PROGRESS, Progress
 from sim_autopilot.mission_transfer import NO_LIBRARY, Library
@@ -24,6 +26,8 @@ class Services:
         failures: injected.
         events: how many were told, as the 16 bits on the wire count them.
         target: of a precision landing, None before the first sighting.
+        ftp: the files' server.
+        logs: of the flights.
     """
 
     library: Library = NO_LIBRARY
@@ -34,3 +38,5 @@ class Services:
     failures: Failures = NO_FAILURES
     events: int = 0
     target: Target | None = None
+    ftp: Ftp = NO_FTP
+    logs: Logs = NO_LOGS

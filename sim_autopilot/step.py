@@ -14,6 +14,7 @@ from sim_autopilot.chart import near
 from sim_autopilot.events import failsafe_texts, tell
 from sim_autopilot.failsafes_step import acted, keep_watch
 from sim_autopilot.failures import stopped
+from sim_autopilot.files_step import log_flight, send_log, send_on
 from sim_autopilot.flight import is_takeoff_complete
 from sim_autopilot.incoming import take
 from sim_autopilot.land_detector import detect_landing
@@ -23,9 +24,8 @@ from sim_autopilot.memory import (
     AutopilotInputs,
     AutopilotMemory,
     AutopilotOutputs,
-    at_link,
-    text_links,
 )
+from sim_autopilot.memory_links import at_link, text_links
 from sim_autopilot.missions_step import advance_mission, pass_transfer
 from sim_autopilot.mode_change import change_mode
 from sim_autopilot.modes import Event, Mode
@@ -131,7 +131,8 @@ def _serve(memory: AutopilotMemory, config: AutopilotConfig) -> tuple[AutopilotM
     """Keep watch, and go on with a transfer and with the mission."""
     memory, asked = pass_transfer(keep_watch(memory, config), config)
     memory, told = advance_mission(memory, config)
-    return memory, asked + told
+    memory, sent = send_on(log_flight(memory, config), config)
+    return memory, asked + told + sent
 
 
 def _warn(
@@ -212,6 +213,8 @@ def _reports(memory: AutopilotMemory, config: AutopilotConfig) -> tuple[Autopilo
         memory = replace(memory, listing=end if end < len(parameters) else None)
     if due:
         memory = replace(memory, streams=streams)
+    memory, log = send_log(memory, config)
+    messages += log
     reports = (build_message(config.firmware.streams[message_id], memory, config) for message_id in due)
     return memory, messages + [report for report in reports if report is not None]
 

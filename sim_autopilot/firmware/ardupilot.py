@@ -3,9 +3,11 @@
 Mode numbers, stream groups, texts: ArduCopter's documentation and source. Times and answers: measured.
 """
 
+from functools import partial
 from types import MappingProxyType
 
 from link.mavlink.dialect import mavlink
+from sim_autopilot.file_store import Shown
 from sim_autopilot.firmware.ardupilot_parameters import OBEYED, flight_settings
 from sim_autopilot.firmware.ardupilot_streams import CONTACT_STREAMS, STREAM_GROUPS, STREAMS
 from sim_autopilot.firmware.firmware import (
@@ -20,8 +22,12 @@ from sim_autopilot.firmware.firmware import (
 )
 from sim_autopilot.firmware.plain_answers import ARDUCOPTER_ANSWERS
 from sim_autopilot.firmware.stored_parameters import whole_list
+from sim_autopilot.flight_log import ARDUPILOT_LOGS
+from sim_autopilot.ftp_state import ARDUPILOT_FTP
 from sim_autopilot.missions import ARDUCOPTER_MISSIONS
 from sim_autopilot.modes import Mode
+from sim_autopilot.parameter_file import PATH, packed
+from sim_autopilot.parameters import Parameter, Values
 
 _STICK_FLAGS = (
     mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
@@ -69,11 +75,22 @@ _BOOT_TEXTS = (
     (41.4, _info("EKF3 IMU0 is using GPS")),
 )
 
+
+def _files(parameters: tuple[Parameter, ...], values: Values) -> Shown:
+    return {
+        PATH: partial(packed, parameters, values),
+        f"{PATH}?withdefaults=1": partial(packed, parameters, values, with_defaults=True),
+    }
+
+
 ARDUPILOT = Firmware(
     name="ardupilot",
     autopilot_id=mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA,
     capabilities=mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
     | mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
+    | mavlink.MAV_PROTOCOL_CAPABILITY_FTP
+    | mavlink.MAV_PROTOCOL_CAPABILITY_COMPASS_CALIBRATION
+    | mavlink.MAV_PROTOCOL_CAPABILITY_FLIGHT_TERMINATION
     | mavlink.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
     | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_INT
     | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE
@@ -158,6 +175,9 @@ ARDUPILOT = Firmware(
     set_mode_answered_as=None,
     tells_indices=False,
     plain_answers=ARDUCOPTER_ANSWERS,
+    files=_files,
+    ftp=ARDUPILOT_FTP,
+    logs=ARDUPILOT_LOGS,
     reposition_mode=Mode.OFFBOARD,
     missions=ARDUCOPTER_MISSIONS,
 )

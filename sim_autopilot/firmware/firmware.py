@@ -3,6 +3,9 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from sim_autopilot.file_store import Shown
+from sim_autopilot.flight_log import PX4_LOGS, LogRules
+from sim_autopilot.ftp_state import PX4_FTP, FtpRules
 from sim_autopilot.missions import PX4_MISSIONS, MissionRules
 from sim_autopilot.modes import Mode
 from sim_autopilot.parameters import Parameter, Values
@@ -177,6 +180,9 @@ class Firmware:
         events: that it sends besides texts, by their text.
         lists_modes: whether it sends AVAILABLE_MODES.
         reposition_mode: in which a DO_REPOSITION is flown.
+        files: that it shows over MAVLink FTP, by its parameters and their values.
+        ftp: of that server.
+        logs: of the log service.
     """
 
     name: str
@@ -219,3 +225,6 @@ class Firmware:
     events: Mapping[str, EventCode] = field(default_factory=dict)
     lists_modes: bool = False
     reposition_mode: Mode = Mode.HOLD
+    files: Callable[[tuple[Parameter, ...], Values], Shown]
+    ftp: FtpRules = PX4_FTP
+    logs: LogRules = PX4_LOGS

@@ -1,0 +1,52 @@
+"""PX4's component metadata: two files that say which parameters there are, as ground stations read them over FTP.
+
+Source: https://mavlink.io/en/services/component_information.html. Names, types and defaults of all parameters;
+ranges of those that the flight obeys. Events and actuators are not described.
+"""
+
+import json
+import lzma
+from functools import cache
+
+from link.mavlink.dialect import mavlink
+from sim_autopilot.ftp_handlers import checksum
+from sim_autopilot.parameters import Parameter
+
+GENERAL_PATH = "etc/extras/component_general.json.xz"
+PARAMETERS_PATH = "etc/extras/parameters.json.xz"
+_PARAMETER_METADATA = 1
+_TYPES = {
+    int(mavlink.MAV_PARAM_TYPE_INT8): "Int8",
+    int(mavlink.MAV_PARAM_TYPE_INT16): "Int16",
+    int(mavlink.MAV_PARAM_TYPE_INT32): "Int32",
+    int(mavlink.MAV_PARAM_TYPE_REAL32): "Float",
+}
+
+
+@cache
+def parameters_file(parameters: tuple[Parameter, ...], obeyed: frozenset[str]) -> bytes:
+    """Return the description of `parameters`, with the ranges of those that are `obeyed`."""
+    return _compressed({"version": 1, "parameters": [_described(one, obeyed) for one in parameters]})
+
+
+@cache
+def general_file(parameters: tuple[Parameter, ...], obeyed: frozenset[str]) -> bytes:
+    """Return the list of the descriptions, with the checksum of each."""
+    crc = checksum(parameters_file(parameters, obeyed))
+    entry = {"type": _PARAMETER_METADATA, "uri": f"mftp://{PARAMETERS_PATH}", "fileCrc": crc}
+    return _compressed({"version": 1, "metadataTypes": [entry]})
+
+
+def _described(parameter: Parameter, obeyed: frozenset[str]) -> dict[str, str | float]:
+    described: dict[str, str | float] = {
+        "name": parameter.name,
+        "type": _TYPES[parameter.mavlink_type],
+        "default": parameter.default,
+        "shortDesc": parameter.name,
+        "group": parameter.name.partition("_")[0],
+    }
+    return described | {"min": parameter.lowest, "max": parameter.highest} if parameter.name in obeyed else described
+
+
+def _compressed(content: object) -> bytes:
+    return lzma.compress(json.dumps(content, separators=(",", ":")).encode(), check=lzma.CHECK_CRC32)

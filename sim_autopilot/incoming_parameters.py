@@ -1,0 +1,44 @@
+"""The messages of the parameter protocol, and what answers them.
+
+Source: https://mavlink.io/en/services/parameter.html.
+"""
+
+from link.mavlink.dialect import Message
+from link.records import replace
+from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, limited
+from sim_autopilot.parameters import find_index, is_type_right, parameter_message, values_after_set
+from sim_autopilot.requests import is_ours
+
+Result = tuple[AutopilotMemory, tuple[Message, ...]]
+
+
+def list_parameters(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
+    """Begin to send all parameters on the link at hand."""
+    return (replace(memory, listing=0) if is_ours(message, config) else memory), ()
+
+
+def read_parameter(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
+    """Send one parameter."""
+    parameters = config.firmware.parameters
+    index = find_index(parameters, message.param_id, message.param_index)
+    if index is None or not is_ours(message, config):
+        return memory, ()
+    tells_index = config.firmware.tells_indices or message.param_index >= 0
+    autopilot_id = config.firmware.autopilot_id
+    return memory, (parameter_message(parameters, index, memory.values, autopilot_id, tells_index=tells_index),)
+
+
+def set_parameter(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
+    """Set a parameter, and tell its value."""
+    parameters, autopilot_id = config.firmware.parameters, config.firmware.autopilot_id
+    index = find_index(parameters, message.param_id)
+    if index is None or not is_ours(message, config):
+        return memory, ()
+    lenient = config.firmware.lenient_parameters
+    if not lenient and not is_type_right(parameters[index], message):
+        return memory, ()
+    values = values_after_set(parameters, index, memory.values, message, autopilot_id, lenient=lenient)
+    settings = config.firmware.settings(values)
+    memory = replace(memory, values=values, settings=settings, plant_config=limited(config.plant, settings))
+    tells_index = config.firmware.tells_indices
+    return memory, (parameter_message(parameters, index, values, autopilot_id, tells_index=tells_index),)
