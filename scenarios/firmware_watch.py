@@ -5,11 +5,19 @@ from dataclasses import replace
 from link.errors import UserError
 from link.geodesy import Datum
 from link.mavlink.codec import MavlinkCodec
-from link.mavlink.dialect import mavlink
+from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import LinkFound, MessageReceived
 from link.mavlink.session import MavlinkSession
 from link.messages import BodyTruth, RotorTruth
-from scenarios.autopilot_truth import TRUTH_STREAMS_HZ, TruePose, body_truth, motors_armed, rotor_truth, true_pose
+from scenarios.autopilot_truth import (
+    DATED_BY,
+    TRUTH_STREAMS_HZ,
+    TruePose,
+    body_truth,
+    motors_armed,
+    rotor_truth,
+    true_pose,
+)
 from scenarios.ship import ShipReport, ship_report
 from sim_autopilot.physics.contact import GEAR_HEIGHT_M
 
@@ -37,6 +45,7 @@ class FirmwareWatch:
         self._others = MavlinkCodec(_SYSTEM_ID, 0)
         self._datum_msl: Datum | None = None
         self._geoid_height_m: float | None = None
+        self._sent_boot_ns: dict[str, int] = {}
 
     @property
     def datum(self) -> Datum | None:
@@ -95,9 +104,17 @@ class FirmwareWatch:
             return
         if armed is not None:
             self.truths.append(rotor_truth(t_ns, armed=armed))
+        if message.get_type() in DATED_BY.values():
+            self._sent_boot_ns[message.get_type()] = message.time_boot_ms * 1_000_000
         pose = true_pose(message)
         if pose is not None and self._geoid_height_m is not None:
-            self._see(pose, t_ns)
+            self._see(pose, self._dated_ns(message, t_ns))
+
+    def _dated_ns(self, message: Message, arrived_ns: int) -> int:
+        """Return when a truth was sent, by the message sent with it; its arrival while there is none."""
+        boot_ns = self._sent_boot_ns.pop(DATED_BY.get(message.get_type(), ""), None)
+        sent_ns = None if boot_ns is None else self.session.clock.boot_to_utc_ns(boot_ns)
+        return arrived_ns if sent_ns is None else sent_ns
 
     def _see(self, pose: TruePose, t_ns: int) -> None:
         if self._datum_msl is None:

@@ -34,10 +34,12 @@ _TILT_DEG = 30.0  # taken while the parameter is unknown: its default
 _TILT_MAX_DEG = 45.0  # nothing is planned beyond
 # Each with its name up to release 4.6, in centimetres or centidegrees, and from 4.7 on.
 _TILT = (Named("ANGLE_MAX", _CENTI), Named("ATC_ANGLE_MAX"))
+_TILT_BY_POSITION = (Named("PSC_ANGLE_MAX"),)  # the smaller one counts; 0, the default, is none
 _SPEED = (Named("WPNAV_SPEED", _CENTI), Named("WP_SPD"))
 _CLIMB = (Named("WPNAV_SPEED_UP", _CENTI), Named("WP_SPD_UP"))
 _DESCENT = (Named("WPNAV_SPEED_DN", _CENTI), Named("WP_SPD_DN"))
 _JERK = (Named("PSC_JERK_XY"), Named("PSC_JERK_NE"))  # it follows no acceleration that changes faster
+_LIMITS = (_TILT, _TILT_BY_POSITION, _SPEED, _CLIMB, _DESCENT, _JERK)
 
 
 class ArduPilotDriver:
@@ -45,10 +47,10 @@ class ArduPilotDriver:
 
     name = "ardupilot"
     autopilot_id: int = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
-    limit_parameters = tuple(named.name for names in (_TILT, _SPEED, _CLIMB, _DESCENT, _JERK) for named in names)
+    limit_parameters = tuple(named.name for names in _LIMITS for named in names)
     timeout_parameter = "GUID_TIMEOUT"
     timeout_default_s = 3.0
-    speed_parameters = tuple(named.name for names in (_TILT, _SPEED) for named in names)
+    speed_parameters = tuple(named.name for names in (_TILT, _TILT_BY_POSITION, _SPEED) for named in names)
     mode_streams_hz: Mapping[int, float] = MappingProxyType({mavlink.MAVLINK_MSG_ID_HEARTBEAT: 10.0})
     unused_streams: tuple[int, ...] = ()  # it sends nothing unasked
 
@@ -92,6 +94,7 @@ class ArduPilotDriver:
         """Return `wanted` cut to ArduCopter's limits of speed, climb, descent, tilt and jerk."""
         tilt_deg = stated(parameters, _TILT)
         tilt_deg = min(tilt_deg, _TILT_MAX_DEG) if math.isfinite(tilt_deg) else _TILT_DEG
+        tilt_deg = min(tilt_deg, stated(parameters, _TILT_BY_POSITION))
         acceleration_m_s2 = acceleration_of_tilt_m_s2(tilt_deg)
         return replace(
             wanted,

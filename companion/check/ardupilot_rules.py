@@ -25,6 +25,14 @@ ARDUPILOT_RULES = (
         level=Level.FAIL,
         reason="the tilt that holds the speed against drag; 30 degrees end at 10.2 m/s, silently",
     ),
+    ParameterRule(
+        spellings=(Spelling("PSC_ANGLE_MAX"),),
+        unit="deg",
+        level=Level.FAIL,
+        test=lambda value, speed_m_s: value <= 0.0 or value >= tilt_needed_deg(speed_m_s),
+        advised=lambda _: 0.0,
+        reason="a tilt limit of its own for flight by position, beside the general one; 0 leaves it to that",
+    ),
     at_least(
         lambda v: SPEED_MARGIN * v,
         step=1.0,

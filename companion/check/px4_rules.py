@@ -11,6 +11,7 @@ _CLIMB_M_S = 2.0
 _LOSS_S = (0.5, 3.0)
 _ACT_HOLD, _ACT_LAST_SAFE = 5, 5
 _OVERRIDE_IN_OFFBOARD = 2
+_DLL_ACT_STOPS = 5  # flight termination; 6 disarms
 
 PX4_RULES = (
     at_least(
@@ -70,6 +71,15 @@ PX4_RULES = (
         advised=lambda _: float(_ACT_HOLD),
         reason="what follows the loss of setpoints: 5 hovers; 0 to 2 want a pilot's sticks or land on the road, "
         "4 lands, 3 crosses the traffic, 6 and 7 stop the motors in flight",
+    ),
+    ParameterRule(
+        spellings=(Spelling("NAV_DLL_ACT"),),
+        unit="",
+        level=Level.WARN,
+        test=lambda value, _: value == 0.0,
+        is_fatal=lambda value: value >= _DLL_ACT_STOPS,
+        advised=lambda _: 0.0,
+        reason="a lost ground station would end a landing, in OFFBOARD too; 5 and 6 stop the motors in flight",
     ),
     ParameterRule(
         spellings=(Spelling("COM_DISARM_LAND"),),

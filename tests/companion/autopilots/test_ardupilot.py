@@ -133,6 +133,20 @@ def test_limits_are_read_by_the_names_of_old_and_new_releases(parameters: dict[s
     assert cut.jerk_max_m_s3 == 5.0
 
 
+@pytest.mark.parametrize(
+    ("parameters", "tilt_deg"),
+    [
+        ({"ANGLE_MAX": 4500.0, "PSC_ANGLE_MAX": 25.0}, 25.0),
+        ({"ANGLE_MAX": 2500.0, "PSC_ANGLE_MAX": 40.0}, 25.0),
+        ({"ANGLE_MAX": 4000.0, "PSC_ANGLE_MAX": 0.0}, 40.0),  # 0, the default, is none
+        ({"PSC_ANGLE_MAX": 45.0}, 30.0),  # the general one is not known yet
+    ],
+)
+def test_smaller_of_the_two_tilt_limits_counts(parameters: dict[str, float], tilt_deg: float) -> None:
+    cut = DRIVER.limits(replace(CompanionConfig().limits.flight_limits(), acceleration_max_m_s2=100.0), parameters)
+    assert cut.acceleration_max_m_s2 == pytest.approx(0.7 * 9.81 * math.tan(math.radians(tilt_deg)))
+
+
 @given(st.dictionaries(st.sampled_from(DRIVER.limit_parameters), st.floats()))
 def test_no_parameter_whatever_takes_a_limit_away(parameters: dict[str, float]) -> None:
     wanted = CompanionConfig().limits.flight_limits()

@@ -13,6 +13,7 @@ ALL = [*PX4_RULES, *ARDUPILOT_RULES]
 SPELLED = [(rule, spelling) for rule in ALL for spelling in rule.spellings]
 ARDUCOPTER_46 = {
     "ANGLE_MAX": 3000.0,
+    "PSC_ANGLE_MAX": 0.0,
     "WPNAV_SPEED": 1000.0,
     "WPNAV_ACCEL": 250.0,
     "WPNAV_SPEED_DN": 150.0,
@@ -26,11 +27,12 @@ ARDUCOPTER_46 = {
 """Defaults, with which 3, 5 and 8 m/s were flown, and 10.2 m/s was the ceiling."""
 ARDUCOPTER_47 = {
     "ATC_ANGLE_MAX": 30.0,
+    "PSC_ANGLE_MAX": 0.0,
     "WP_SPD": 10.0,
     "WP_ACC": 2.5,
     "WP_SPD_DN": 1.5,
     "WP_SPD_UP": 2.5,
-    **{name: ARDUCOPTER_46[name] for name in list(ARDUCOPTER_46)[5:]},
+    **{name: ARDUCOPTER_46[name] for name in list(ARDUCOPTER_46)[6:]},
 }
 PX4_DEFAULTS = {
     "MPC_XY_VEL_MAX": 12.0,
@@ -40,6 +42,7 @@ PX4_DEFAULTS = {
     "LNDMC_XY_VEL_MAX": 1.5,
     "COM_OF_LOSS_T": 1.0,
     "COM_OBL_RC_ACT": 0.0,
+    "NAV_DLL_ACT": 0.0,
     "COM_DISARM_LAND": 2.0,
     "COM_RC_OVERRIDE": 1.0,
 }
@@ -68,7 +71,7 @@ def test_parameter_that_is_not_answered_is_a_warning_with_no_value_to_set(rules:
 def test_arducopters_defaults_serve_8_m_s_and_not_12(defaults: dict[str, float]) -> None:
     assert set(defaults) <= set(names_of(ARDUPILOT_RULES))
     assert names(judged(ARDUPILOT_RULES, defaults, 8.0), Level.FAIL) == set()
-    tilt, speed = list(defaults)[:2]
+    tilt, _, speed = list(defaults)[:3]
     assert names(judged(ARDUPILOT_RULES, defaults, 12.0), Level.FAIL) == {tilt, speed}
 
 
@@ -92,3 +95,21 @@ def test_px4s_defaults_serve_10_m_s_and_not_11() -> None:
 def test_stopping_the_motors_when_setpoints_stay_away_is_a_failure(action: float, level: Level) -> None:
     found = {one.name: one.level for one in judged(PX4_RULES, {**PX4_DEFAULTS, "COM_OBL_RC_ACT": action}, 5.0)}
     assert found["COM_OBL_RC_ACT"] is level
+
+
+@pytest.mark.parametrize(("value", "level"), [(0.0, Level.PASS), (45.0, Level.PASS), (20.0, Level.FAIL)])
+def test_tilt_limit_by_position_has_to_be_off_or_large_enough(value: float, level: Level) -> None:
+    (found,) = (
+        one
+        for one in judged(ARDUPILOT_RULES, {**ARDUCOPTER_46, "PSC_ANGLE_MAX": value}, 8.0)
+        if one.name == "PSC_ANGLE_MAX"
+    )
+    assert found.level is level
+
+
+@pytest.mark.parametrize(
+    ("action", "level"), [(0.0, Level.PASS), (2.0, Level.WARN), (5.0, Level.FAIL), (6.0, Level.FAIL)]
+)
+def test_stopping_the_motors_for_a_lost_ground_station_is_a_failure(action: float, level: Level) -> None:
+    found = {one.name: one.level for one in judged(PX4_RULES, {**PX4_DEFAULTS, "NAV_DLL_ACT": action}, 5.0)}
+    assert found["NAV_DLL_ACT"] is level
