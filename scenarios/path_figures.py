@@ -11,6 +11,10 @@ from scenarios.figure_files import DARK, LIGHT, MIDDLE
 from scenarios.run_data import RunData
 from scenarios.run_shown import AXIS_MIN_M, FLOWN, contact_index, is_shown, title
 
+_WIDTH_IN = 8.0
+_SLOPE_MIN = 0.4  # height over width of a figure of a straight road
+_LABEL_SHARE = 0.12  # of the path's extent, above and below it: room for the phases' names
+
 
 def path_3d(run: RunData) -> Figure:
     """Draw the drone and the pad in space."""
@@ -50,9 +54,13 @@ def path_above(run: RunData) -> Figure:
     shown = is_shown(run)
     drone, vehicle = run.log.position_enu_m[shown], run.log.vehicle_position_enu_m[shown]
     both = np.concatenate([drone, vehicle])
-    x_limits_m, y_limits_m = bounds_m(both[:, 0]), bounds_m(both[:, 1])
-    slope = (y_limits_m[1] - y_limits_m[0]) / (x_limits_m[1] - x_limits_m[0])
-    figure = Figure(figsize=(8.0, min(max(8.0 * slope, 3.2), 8.0)), layout="constrained")
+    (left_m, right_m), (low_m, high_m) = bounds_m(both[:, 0]), bounds_m(both[:, 1])
+    room_m = _LABEL_SHARE * (high_m - low_m)
+    low_m, high_m = low_m - room_m, high_m + room_m
+    slope = min(max((high_m - low_m) / (right_m - left_m), _SLOPE_MIN), 1.0)
+    x_limits_m = _widened_m(left_m, right_m, (high_m - low_m) / slope)
+    y_limits_m = _widened_m(low_m, high_m, (right_m - left_m) * slope)
+    figure = Figure(figsize=(_WIDTH_IN, _WIDTH_IN * slope), layout="constrained")
     axes = figure.subplots()
     axes.plot(vehicle[:, 0], vehicle[:, 1], color=LIGHT, linewidth=5, solid_capstyle="butt", label="vehicle")
     axes.plot(drone[:, 0], drone[:, 1], color=DARK, linewidth=1.4, label="drone")
@@ -61,10 +69,16 @@ def path_above(run: RunData) -> Figure:
         x_m, y_m, _ = run.log.position_enu_m[contact]
         axes.plot(x_m, y_m, color=DARK, marker="v", linestyle="none", label="contact")
     _mark_phases(run, axes)
-    axes.set(xlabel="East [m]", ylabel="North [m]", xlim=x_limits_m, title=title(run))
-    axes.set_aspect("equal", adjustable="datalim")
+    axes.set(xlabel="East [m]", ylabel="North [m]", title=title(run), xlim=x_limits_m, ylim=y_limits_m)
+    axes.set_aspect("equal")
     axes.legend(loc="best")
     return figure
+
+
+def _widened_m(low_m: float, high_m: float, extent_m: float) -> tuple[float, float]:
+    """Return the limits, widened on both sides where they span less than `extent_m`."""
+    margin_m = max(0.5 * (extent_m - (high_m - low_m)), 0.0)
+    return low_m - margin_m, high_m + margin_m
 
 
 def _mark_phases(run: RunData, axes: Axes) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from matplotlib.ticker import NullLocator
 
 from scenarios.figure_files import DARK, LIGHT, MIDDLE, STYLES
 from scenarios.path_figures import path_3d, path_above
@@ -25,6 +26,8 @@ from scenarios.run_shown import (
 
 _FUNNEL_MAX_M = 6.0
 _LAST_S = 3.0  # of the way to the contact
+_EVEN_TO_M = 0.1
+_ERROR_TICKS_M = (0.05, 0.1, 1.0, 10.0, 100.0)
 _NAME_MIN_SHARE = 0.03  # of the time axis; the name of a shorter phase stands a line lower
 
 
@@ -138,16 +141,26 @@ def _estimate(run: RunData) -> Figure:
             error_m, std_m = track.error_m[shown, index], track.std_m[shown, index]
             panel.fill_between(track.t_s[shown], -2 * std_m, 2 * std_m, color="0.85", label="2 sigma")
             panel.plot(track.t_s[shown], error_m, color=DARK, linewidth=1.0, label="error")
-            worst_m = float(np.max(np.abs(error_m), initial=0.05))
-            panel.set_ylim(-4.0 * worst_m, 4.0 * worst_m)
+            _scale_for_both(panel, float(np.max(np.abs(error_m), initial=2.0 * float(np.max(std_m, initial=0.0)))))
             inside = float(np.mean(np.abs(error_m) <= 2 * std_m)) if len(error_m) else 0.0
             panel.set_ylabel(f"{('East', 'North', 'up')[index]} [m]")
-            widest_m = 2 * float(np.max(std_m, initial=0.0))
-            panel.set_title(f"{inside:.0%} inside; band up to ±{widest_m:.2f} m", fontsize=8, loc="right")
+            panel.set_title(f"{inside:.0%} inside", fontsize=8, loc="right")
     panels[0].legend(loc="upper left", ncols=2)
     panels[2].set(xlabel="Time [s]", xlim=(from_s, to_s))
     figure.suptitle(f"{title(run)}: estimated position of the antenna")
     return figure
+
+
+def _scale_for_both(axes: Axes, largest_m: float) -> None:
+    """Scale the error's axis: even within centimetres, by powers beyond, so that error and band are both seen."""
+    axes.set_yscale("symlog", linthresh=_EVEN_TO_M, linscale=1.5)
+    reach_m = 3.0 * max(largest_m, _EVEN_TO_M)
+    sizes_m = [size_m for size_m in _ERROR_TICKS_M if size_m <= reach_m]
+    axes.set_yticks([*(-size_m for size_m in reversed(sizes_m)), 0.0, *sizes_m])
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.set_ylim(-reach_m, reach_m)
+    axes.axhline(0.0, color=MIDDLE, linewidth=0.6)
 
 
 def _touchdown(run: RunData) -> Figure:

@@ -12,50 +12,56 @@ from typing import Any
 
 import pytest
 
-from link.toml_config import merged, validated
+from companion.phases import Phase
 from scenarios.catalogue import load_scenario
-from scenarios.config import Scenario
 from scenarios.lockstep import Lockstep
-from scenarios.outcome import result_table
+from scenarios.outcome import result_table, scored
+from scenarios.recording import Recording
+from tests.golden.aborts import ABORTS, SEED, Abort, fly, reasons
 
-pytestmark = pytest.mark.slow
 FOLDER = Path(__file__).parent
-Changes = dict[str, Any]
+Golden = dict[str, Any]
 
 
-def _companion(**sections: Changes) -> Changes:
-    """Return changes to the companion of a flight that is broken off once and then held."""
-    return {"system": {"companion": sections | {"abort": {"retries_max": 0} | sections.get("abort", {})}}}
-
-
-CASES: dict[str, tuple[str, int, Changes]] = {
-    "landing": ("straight_5", 1, {}),
-    "wave_off": ("brake_7", 2, {}),
-    "ardupilot": ("straight_5+firmware=ardupilot", 1, {}),
-    "align_too_long": ("straight_5", 1, _companion(descent={"align_time_limit_s": 0.2})),
-    "descent_too_long": ("straight_5", 1, _companion(descent={"time_limit_s": 1.0})),
+LANDINGS: dict[str, tuple[str, int]] = {
+    "landing": ("straight_5", 1),
+    "wave_off": ("brake_7", 2),
+    "ardupilot": ("straight_5+firmware=ardupilot", 1),
 }
 TOLERANCES = {"contact_s": 0.5, "horizontal_error_m": 0.1, "relative_speed_m_s": 0.15, "sink_rate_m_s": 0.15}
 
 
-def _golden_of(name: str, seed: int, changes: Changes) -> dict[str, Any]:
-    """Fly and return what is kept of a flight."""
-    table = merged(load_scenario(name).model_dump(mode="json"), changes)
-    scenario = validated(Scenario, table, source=name)
+def _landing(name: str, seed: int) -> Golden:
+    """Fly to the end and return what is kept of it."""
+    scenario = load_scenario(name)
     run = Lockstep(scenario, seed)
     ended = run.run()
     result = result_table(scenario, seed, run.recording, ended)
-    begun = [(status.phase, status.reason) for status in run.recording.statuses]
-    entered = [after for before, after in pairwise(begun) if before[0] != after[0]]
-    events = [begun[0][0], *(f"{phase}: {_kind(reason)}" for phase, reason in entered)]
     return {
         "scenario": name,
         "seed": seed,
         "tier": result["tier"],
         "ended": ended,
-        "events": events,
+        "events": _events(run.recording),
         **{name: None if result[name] is None else round(result[name], 3) for name in TOLERANCES},
     }
+
+
+def _abort(abort: Abort) -> Golden:
+    """Fly until it is broken off and return what is kept of it."""
+    flight = fly(abort)
+    return {
+        "scenario": abort.scenario,
+        "seed": SEED,
+        "tier": scored(flight.scenario, SEED, flight.recording).tier.value,
+        "events": _events(flight.recording),
+    }
+
+
+def _events(recording: Recording) -> list[str]:
+    begun = [(status.phase, status.reason) for status in recording.statuses]
+    entered = [after for before, after in pairwise(begun) if before[0] != after[0]]
+    return [begun[0][0], *(f"{phase}: {_kind(reason)}" for phase, reason in entered)]
 
 
 def _kind(reason: str) -> str:
@@ -63,7 +69,7 @@ def _kind(reason: str) -> str:
     return re.sub(r"-?\d+(\.\d+)?", "#", reason.split(":", maxsplit=1)[0] if reason.startswith("contact") else reason)
 
 
-def _differences(golden: dict[str, Any], flown: dict[str, Any]) -> list[str]:
+def _differences(golden: Golden, flown: Golden) -> list[str]:
     found = []
     for name in sorted({*golden, *flown}):
         before, after = golden.get(name), flown.get(name)
@@ -74,11 +80,10 @@ def _differences(golden: dict[str, Any], flown: dict[str, Any]) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("name", sorted(CASES))
-def test_golden_flight_is_what_it_was(name: str, request: pytest.FixtureRequest) -> None:
+def _compare(name: str, flown: Golden, request: pytest.FixtureRequest) -> None:
+    """Compare with what is kept, or keep it and print the differences."""
     path = FOLDER / f"{name}.json"
     golden = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-    flown = _golden_of(*CASES[name])
     differences = _differences(golden, flown)
     if request.config.getoption("--update-golden"):
         capture = request.config.pluginmanager.getplugin("capturemanager")
@@ -88,3 +93,35 @@ def test_golden_flight_is_what_it_was(name: str, request: pytest.FixtureRequest)
             path.write_text(json.dumps(flown, indent=2) + "\n", encoding="utf-8")
         return
     assert not differences
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(LANDINGS))
+def test_golden_landing_is_what_it_was(name: str, request: pytest.FixtureRequest) -> None:
+    _compare(name, _landing(*LANDINGS[name]), request)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(ABORTS))
+def test_golden_abort_is_what_it_was(name: str, request: pytest.FixtureRequest) -> None:
+    _compare(name, _abort(ABORTS[name]), request)
+
+
+@pytest.mark.parametrize("name", sorted(ABORTS))
+def test_golden_abort_has_its_reason_and_ends_clear_of_the_vehicle(name: str) -> None:
+    golden = json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
+    assert [event for event in golden["events"] if event.startswith("abort")] == [f"abort: {ABORTS[name].reason}"]
+    landed_before = ABORTS[name].phase is Phase.TOUCHDOWN
+    assert landed_before or golden["tier"] == "abort"
+
+
+def test_every_reason_that_leads_into_an_abort_is_flown() -> None:
+    kept = [json.loads(path.read_text(encoding="utf-8")) for path in FOLDER.glob("*.json")]
+    flown = {
+        event.removeprefix("abort: ") for golden in kept for event in golden["events"] if event.startswith("abort: ")
+    }
+    assert flown == reasons()
+
+
+def test_golden_files_are_those_of_flights_that_are_flown() -> None:
+    assert {path.stem for path in FOLDER.glob("*.json")} == {*LANDINGS, *ABORTS}

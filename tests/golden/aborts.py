@@ -1,0 +1,184 @@
+"""Flights that are broken off, one for each reason that the companion can have: what goes wrong in which phase.
+
+A setting is tightened where no fault can be told from luck; everything else is what a link, an autopilot, a vehicle or
+an operator does. Nothing is tried again, and a flight is over a moment after the climb.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from companion.conditions import ABORT_TESTS
+from companion.phases import TRANSITIONS, Event, Phase
+from link.mavlink.dialect import mavlink
+from link.messages import Command
+from link.toml_config import merged, validated
+from scenarios.catalogue import load_scenario
+from scenarios.config import Scenario
+from scenarios.fault_flight import FaultFlight
+
+SEED = 1
+_PARKED = {"chase": {"parked_wait_s": 0.5}}
+_ANTENNA_OVER_PAD = {"antenna_flu_m": (0.0, 0.0, 1.6)}  # no heading is needed to place the pad
+_RAISED_M = 3.0
+_BESIDE_M = 0.4
+_PATIENCE_S = 6.0  # from the fault to the abort
+_CLIMB_S = 12.0  # a little more than the abort's own time limit
+_AFTER_S = 3.0  # to brake, and to be seen airborne and stable
+
+Fault = Callable[[FaultFlight], None]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Abort:
+    """A flight that is to be broken off.
+
+    Attributes:
+        reason: of the abort, without its numbers.
+        scenario: what is flown.
+        companion: settings that differ.
+        vehicle: likewise, of the vehicle.
+        phase: in which the fault happens.
+        fault: what goes wrong, None where a setting alone breaks the flight off.
+    """
+
+    reason: str
+    scenario: str = "straight_5"
+    companion: Mapping[str, Any] = field(default_factory=dict)
+    vehicle: Mapping[str, Any] = field(default_factory=dict)
+    phase: Phase = Phase.DESCEND
+    fault: Fault | None = None
+
+
+def fly(abort: Abort) -> FaultFlight:
+    """Fly until the abort's climb is over, or nothing more is to be expected."""
+    companion = merged({"abort": {"retries_max": 0}}, dict(abort.companion))
+    changes = {"system": {"companion": companion}, "vehicle": dict(abort.vehicle)}
+    table = merged(load_scenario(abort.scenario).model_dump(mode="json"), changes)
+    flight = FaultFlight(validated(Scenario, table, source=abort.scenario), SEED)
+    if abort.fault is not None:
+        flight.fly_to(abort.phase)
+        abort.fault(flight)
+    else:
+        flight.fly_to(Phase.CHASE)
+    _fly_until(flight, Phase.ABORT, _PATIENCE_S)
+    _fly_until(flight, Phase.HOLD, _CLIMB_S)
+    flight.fly(_AFTER_S)
+    return flight
+
+
+def _fly_until(flight: FaultFlight, phase: Phase, limit_s: float) -> None:
+    end_s = flight.recording.elapsed_s + limit_s
+    while flight.phase is not phase and flight.recording.elapsed_s < end_s:
+        flight.step()
+
+
+def reasons() -> frozenset[str]:
+    """Return each reason that leads into an abort, without its numbers, from the companion's own tables."""
+    found: set[str] = set()
+    for (phase, event), after in TRANSITIONS.items():
+        if after is Phase.ABORT:
+            found |= _reasons_of(phase, event)
+    return frozenset(found)
+
+
+def _reasons_of(phase: Phase, event: Event) -> set[str]:
+    match event:
+        case Event.UNSAFE:
+            return {test.reason for test in ABORT_TESTS if phase in test.phases}
+        case Event.TIME_LIMIT:
+            return {f"{phase.value} took longer than # s"}
+        case Event.ABORT | Event.HOLD:
+            return {f"commanded: {event.value}"}
+        case Event.CONTACT_LOST:
+            return {"# m above the pad after contact"}
+        case _:
+            raise ValueError(f"{event.value} leads from {phase.value} into an abort for an unknown reason")
+
+
+def _vehicle_falls_silent(flight: FaultFlight) -> None:
+    flight.vehicle_is_silent = True
+
+
+def _token_is_lost(flight: FaultFlight) -> None:
+    _vehicle_falls_silent(flight)
+    flight.companion.receive_liveliness(alive=True)
+    flight.companion.receive_liveliness(alive=False)
+
+
+def _own_position_stops(flight: FaultFlight) -> None:
+    number = mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED
+    interval = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL
+    flight.tell(mavlink.MAVLink_command_long_message(1, 1, interval, 0, number, -1.0, 0, 0, 0, 0, 0))
+
+
+def _pad_is_described(forward_m: float, up_m: float) -> Fault:
+    """Let the vehicle describe its pad anew: its centre is elsewhere than it said before."""
+
+    def describe(flight: FaultFlight) -> None:
+        pad = flight.simulation.vehicle.pad
+        x_m, y_m, z_m = pad.antenna_to_pad_m
+        flight.companion.receive_pad(replace(pad, antenna_to_pad_m=(x_m + forward_m, y_m, z_m + up_m)))
+
+    return describe
+
+
+def _operator(command: Command) -> Fault:
+    return lambda flight: flight.companion.request(command)
+
+
+_ARDUPILOT = "straight_5+firmware=ardupilot"
+
+ABORTS: dict[str, Abort] = {
+    "vehicle_silent": Abort(reason="vehicle data too old", phase=Phase.ALIGN, fault=_vehicle_falls_silent),
+    "vehicle_silent_ardupilot": Abort(
+        reason="vehicle data too old", scenario=_ARDUPILOT, phase=Phase.ALIGN, fault=_vehicle_falls_silent
+    ),
+    "vehicle_uncertain": Abort(
+        reason="vehicle position too uncertain",
+        companion={"abort": {"fix_age_max_s": 20.0}, "descent": {"aligned_hold_s": 20.0}},
+        phase=Phase.ALIGN,
+        fault=_vehicle_falls_silent,
+    ),
+    "token_lost": Abort(reason="vehicle's link lost", phase=Phase.CHASE, fault=_token_is_lost),
+    "own_position_stops": Abort(reason="own position too old", phase=Phase.ALIGN, fault=_own_position_stops),
+    "heading_unknown": Abort(
+        reason="vehicle heading unknown",
+        scenario="static",
+        vehicle=_ANTENNA_OVER_PAD,
+        companion=_PARKED,
+        fault=_pad_is_described(forward_m=_BESIDE_M, up_m=0.0),
+    ),
+    "heading_unknown_for_long": Abort(
+        reason="vehicle heading unknown",
+        scenario="static",
+        vehicle=_ANTENNA_OVER_PAD,
+        companion=_PARKED | {"descent": {"align_time_limit_s": 1.0}},
+        phase=Phase.ALIGN,
+        fault=_pad_is_described(forward_m=_BESIDE_M, up_m=0.0),
+    ),
+    "not_followed": Abort(  # flown for half a second later than it is: the drone is ahead of where it is asked to be
+        reason="setpoint not followed",
+        companion={"setpoint_lead_s": 0.5, "corrects_lag": False, "abort": {"tracking_error_max_m": 1.0}},
+    ),
+    "outside_cone": Abort(
+        reason="outside the descent cone", fault=_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0)
+    ),
+    "too_far": Abort(
+        reason="too far from the start", companion={"limits": {"range_max_m": 6.0, "landing_time_s": 1.0}}
+    ),
+    "below_pad": Abort(reason="below the pad without contact", fault=_pad_is_described(forward_m=0.0, up_m=_RAISED_M)),
+    "contact_lost": Abort(
+        reason="# m above the pad after contact",
+        phase=Phase.TOUCHDOWN,
+        fault=_pad_is_described(forward_m=0.0, up_m=-_RAISED_M),
+    ),
+    "chase_too_long": Abort(reason="chase took longer than # s", companion={"chase": {"time_limit_s": 0.2}}),
+    "align_too_long": Abort(reason="align took longer than # s", companion={"descent": {"align_time_limit_s": 0.2}}),
+    "descent_too_long": Abort(reason="descend took longer than # s", companion={"descent": {"time_limit_s": 1.0}}),
+    "descent_too_long_ardupilot": Abort(
+        reason="descend took longer than # s", scenario=_ARDUPILOT, companion={"descent": {"time_limit_s": 1.0}}
+    ),
+    "operator_aborts": Abort(reason="commanded: abort", phase=Phase.CHASE, fault=_operator(Command.ABORT)),
+    "operator_holds": Abort(reason="commanded: hold", fault=_operator(Command.HOLD)),
+}
