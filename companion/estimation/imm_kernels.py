@@ -21,6 +21,7 @@ import numpy as np
 from numba import njit
 
 from companion.data import Array
+from companion.estimation.small_matrices import inverse_of, less_outer, times
 
 SIZE = 15
 MOTION = 8  # leading states that the non-linear motion touches
@@ -96,6 +97,24 @@ def advance(x: Array, dt_s: float, tau_s: float, heave: Array) -> tuple[Array, A
         y[2:6] = 0.0
         y[7] = x[7] + x[6] * along
     return y, F
+
+
+@njit(cache=True)
+def heave_step(dt_s: float, frequency_rad_s: float, damping: float, std_m: float) -> tuple[Array, Array]:
+    """Return transition and noise, each (2, 2), of a damped oscillator driven by white noise to a steady `std_m`."""
+    damped = frequency_rad_s * math.sqrt(1.0 - damping**2)
+    fade = math.exp(-damping * frequency_rad_s * dt_s)
+    c, s = math.cos(damped * dt_s), math.sin(damped * dt_s)
+    ratio = damping * frequency_rad_s / damped
+    A = np.empty((2, 2))
+    A[0, 0], A[0, 1] = fade * (c + ratio * s), fade * (s / damped)
+    A[1, 0], A[1, 1] = fade * (-(frequency_rad_s**2) / damped * s), fade * (c - ratio * s)
+    place, rate = std_m**2, (std_m * frequency_rad_s) ** 2
+    noise = np.empty((2, 2))
+    noise[0, 0] = place - (A[0, 0] * place * A[0, 0] + A[0, 1] * rate * A[0, 1])
+    noise[1, 1] = rate - (A[1, 0] * place * A[1, 0] + A[1, 1] * rate * A[1, 1])
+    noise[0, 1] = noise[1, 0] = -(A[0, 0] * place * A[1, 0] + A[0, 1] * rate * A[1, 1])
+    return A, noise
 
 
 @njit(cache=True)
@@ -177,7 +196,9 @@ def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Arra
 
 @njit(cache=True)
 def correct(x: Array, P: Array, residual: Array, H: Array, R: Array) -> tuple[Array, Array, float, float]:
-    """Return mean, covariance (Joseph's form), NIS and log-likelihood after a measurement.
+    """Return mean, covariance, NIS and log-likelihood after a measurement.
+
+    The covariance is Joseph's form `(1 - KH) P (1 - KH)' + KRK'`, multiplied out in an order that has m rows only.
 
     Args:
         x: mean (n,).
@@ -186,15 +207,17 @@ def correct(x: Array, P: Array, residual: Array, H: Array, R: Array) -> tuple[Ar
         H: Jacobian (m, n).
         R: covariance of the measurement (m, m).
     """
-    PHt = P @ H.T
-    S = H @ PHt + R
-    inverse = np.linalg.inv(S)
-    K = PHt @ inverse
+    HP = times(H, P)
+    inverse, log_determinant = inverse_of(times(H, HP.T) + R)
+    K = times(inverse, HP)  # transposed, (m, n)
     nis = 0.0
     for i in range(len(residual)):
         for j in range(len(residual)):
             nis += residual[i] * inverse[i, j] * residual[j]
-    keep = np.eye(len(x)) - K @ H
-    joseph = keep @ P @ keep.T + K @ R @ K.T
-    log_likelihood = -0.5 * (nis + math.log(np.linalg.det(S)) + len(residual) * math.log(2.0 * math.pi))
-    return x + K @ residual, 0.5 * (joseph + joseph.T), nis, log_likelihood
+    kept = less_outer(P, K, HP)
+    joseph = less_outer(kept, times(H, kept.T) - times(R, K), K)
+    log_likelihood = -0.5 * (nis + log_determinant + len(residual) * math.log(2.0 * math.pi))
+    y = x.copy()
+    for i in range(len(residual)):
+        y += residual[i] * K[i]
+    return y, 0.5 * (joseph + joseph.T), nis, log_likelihood

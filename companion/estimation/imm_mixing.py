@@ -20,26 +20,16 @@ from companion.estimation.imm_kernels import (
     VELOCITY,
     advance,
     correct,
+    heave_step,
     observe,
     process_noise,
 )
+from companion.estimation.small_matrices import carried_through, inverse_of
 
 Modes = tuple[Array, Array, Array]
 
 WEIGHT_MIN = 1e-12  # a mode that rounding has ruled out could never come back
 STEP_MAX_S = 0.1  # 0.04 rad in the tightest of the benchmark's curves
-
-
-@njit(cache=True)
-def heave_step(dt_s: float, frequency_rad_s: float, damping: float, std_m: float) -> tuple[Array, Array]:
-    """Return transition and noise, each (2, 2), of a damped oscillator driven by white noise to a steady `std_m`."""
-    damped = frequency_rad_s * math.sqrt(1.0 - damping**2)
-    fade = math.exp(-damping * frequency_rad_s * dt_s)
-    c, s = math.cos(damped * dt_s), math.sin(damped * dt_s)
-    ratio = damping * frequency_rad_s / damped
-    A = fade * np.array([[c + ratio * s, s / damped], [-(frequency_rad_s**2) / damped * s, c - ratio * s]])
-    steady = np.diag(np.array([std_m**2, (std_m * frequency_rad_s) ** 2]))
-    return A, steady - A @ steady @ A.T
 
 
 @njit(cache=True)
@@ -63,7 +53,7 @@ def combine(means: Array, covariances: Array, weights: Array) -> tuple[Array, Ar
 def mix(modes: Modes, changes: Array) -> Modes:
     """Return the filter after the modes may have changed with probabilities `changes` (2, 2)."""
     means, covariances, weights = modes
-    after = weights @ changes
+    after = weights[0] * changes[0] + weights[1] * changes[1]
     mixed_means, mixed_covariances = np.empty_like(means), np.empty_like(covariances)
     for j in range(2):
         share = weights * changes[:, j] / after[j]
@@ -88,7 +78,7 @@ def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple
     for _ in range(steps):
         Q = process_noise(x, step_s, noise, heave_noise)
         x, F = advance(x, step_s, motion[0], heave)
-        P = F @ P @ F.T + Q
+        P = carried_through(F, P) + Q
     return x, 0.5 * (P + P.T)
 
 
@@ -133,12 +123,13 @@ def update_modes(
     for j in range(2):
         expected, H = observe(kind, means[j], lever, sees_heading)
         residuals[j] = residual_of(kind, value, expected)
-        spreads[j] = H @ covariances[j] @ H.T + R
+        spreads[j] = carried_through(H, covariances[j]) + R
         xs[j], Ps[j], nis[j], fits[j] = correct(means[j], covariances[j], residuals[j], H, R)
     likelihood = np.maximum(weights, WEIGHT_MIN) * np.exp(fits - fits.max())
     after = likelihood / likelihood.sum()
     residual, spread = combine(residuals, spreads, weights)
-    mixture_nis = residual @ np.linalg.inv(spread) @ residual
+    inverse, _ = inverse_of(spread)
+    mixture_nis = (residual * inverse * residual.reshape(m, 1)).sum()
     return (xs, Ps, after), float(mixture_nis), float(nis.min())
 
 

@@ -10,7 +10,8 @@ from companion.estimation.config import BufferConfig, EstimatorConfig, ImmConfig
 from companion.estimation.delay_buffer import DelayBuffer, fuse
 from companion.estimation.gaussian import Gaussian
 from companion.estimation.imm import ImmModel, ImmState
-from companion.estimation.imm_mixing import combine, heave_step
+from companion.estimation.imm_kernels import heave_step
+from companion.estimation.imm_mixing import combine
 from companion.estimation.lkf import LkfModel, transition
 from companion.estimation.lkf_noise import WhiteJerkNoise
 from tests.companion.estimation.rides import now_ns

@@ -155,7 +155,7 @@ def test_process_noise_is_positive_and_lies_along_the_track() -> None:
 def test_heave_is_a_damped_oscillator_of_the_given_steady_size() -> None:
     _, w, damping, std = MOTION
     A = np.array([[0.0, 1.0], [-(w**2), -2.0 * damping * w]])
-    step, noise = mixing.heave_step(0.13, w, damping, std)
+    step, noise = kernels.heave_step(0.13, w, damping, std)
     assert step == pytest.approx(expm(0.13 * A))
     push = np.diag([0.0, 4.0 * damping * w**3 * std**2])
     steady = solve_continuous_lyapunov(A, -push)
