@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from companion.node import CompanionNode
 from companion.node_records import link_record, step_record
-from companion.record_messages import LONG_EVERY, estimate_message, forecast_message, link_message, own_message
+from companion.record_messages import LONG_EVERY, link_message, own_message, vehicle_messages
 from companion.records import LinkRecord, StepRecord
 from link import cdr
 from link.keys import Keys
@@ -76,8 +76,4 @@ class _Sink:
             yield own_message(record.inputs.own, self._keys)
         if step % LONG_EVERY:
             return
-        estimate = record.estimator.estimate(record.estimator_memory, record.inputs.t_ns)
-        if estimate is not None:
-            yield estimate_message(estimate, self._keys)
-        if record.outputs.forecast is not None:
-            yield forecast_message(record.outputs.forecast, self._keys)
+        yield from vehicle_messages(record, self._keys)

@@ -65,6 +65,9 @@ FLYING_PHASES = frozenset(
 LANDING_PHASES = frozenset({Phase.CHASE, Phase.ALIGN, Phase.DESCEND})
 """Phases that follow the vehicle and are watched by the abort tests."""
 
+FOLLOWING_PHASES = LANDING_PHASES | {Phase.TOUCHDOWN, Phase.ABORT}
+"""Phases that plan by where the pad will be; all others need to know only where it is."""
+
 NEAR_PHASES = frozenset({Phase.ALIGN, Phase.DESCEND})
 """Phases so near to the vehicle that its place must be known; a chase stays above all that it may be."""
 

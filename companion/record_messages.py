@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from companion.data import Forecast, OwnState, Setpoint, VehicleEstimate
 from companion.planning.guidance import PlanResult
 from companion.records import InputRecord, LinkRecord, StepRecord, StepTimeRecord
+from companion.targets import HORIZON_OFFSETS_S
 from link import cdr
 from link.frames import conjugate, rotate
 from link.keys import Keys
@@ -49,13 +50,23 @@ def step_messages(record: StepRecord, keys: Keys, *, long: bool) -> Iterator[Ros
         yield _setpoint(outputs.setpoint, keys)
     if not long:
         return
+    yield from vehicle_messages(record, keys)
+    if outputs.plan is not None:
+        yield _plan(outputs.plan, t_ns, keys)
+
+
+def vehicle_messages(record: StepRecord, keys: Keys) -> Iterator[RosMessage]:
+    """Return the vehicle now and over the horizon as a step knew it, nothing before the first fix.
+
+    A step itself looks only as far ahead as its phase needs.
+    """
+    t_ns = record.inputs.t_ns
     estimate = record.estimator.estimate(record.estimator_memory, t_ns)
     if estimate is not None:
         yield estimate_message(estimate, keys)
-    if outputs.forecast is not None:
-        yield forecast_message(outputs.forecast, keys)
-    if outputs.plan is not None:
-        yield _plan(outputs.plan, t_ns, keys)
+    forecast = record.estimator.forecast(record.estimator_memory, t_ns, HORIZON_OFFSETS_S)
+    if forecast is not None:
+        yield forecast_message(forecast, keys)
 
 
 def link_message(record: LinkRecord, keys: Keys) -> RosMessage:

@@ -10,9 +10,9 @@ from companion.config import CompanionConfig
 from companion.contact import may_force_motors_off, signs_of
 from companion.data import Forecast, OwnState
 from companion.flying import fly, setpoint
-from companion.pad import pad_path
+from companion.pad import PadPath, pad_path
 from companion.pad_height import pad_raised_m, with_pad_raised
-from companion.phases import LANDING_PHASES, Phase
+from companion.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
 from companion.reference import compare
 from companion.shifts import in_present_frame
 from companion.situation import Situation, drone_now, range_height_m
@@ -22,6 +22,8 @@ from companion.targets import HORIZON_OFFSETS_S
 from companion.transitions import transitions
 from link.frames import yaw_of
 from link.records import replace
+
+_PRESENT_OFFSETS_S = HORIZON_OFFSETS_S[:2]  # a second point tells how the lever arm turns
 
 
 def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tuple[StepMemory, StepOutputs]:
@@ -33,12 +35,15 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
         system: configuration, estimator and guidance law.
     """
     memory = _estimate(memory, inputs, system)
-    memory, forecast = _forecast(memory, inputs, system)
-    situation = _situation(memory, forecast, inputs, system)
+    memory, pad = _pad(memory, inputs, system)
+    situation = _situation(memory, pad, inputs, system)
     memory = replace(memory, pad_raised_m=pad_raised_m(memory.pad_raised_m, memory.phase, situation, system.config))
     situation = with_pad_raised(situation, memory.pad_raised_m)
     before = memory
     memory, reply = transitions(memory, situation, inputs, system.config)
+    if memory.phase in FOLLOWING_PHASES and before.phase not in FOLLOWING_PHASES:
+        memory, pad = _pad(memory, inputs, system)
+        situation = replace(situation, pad=pad)
     memory, plan = fly(memory, situation, inputs, system)
     memory, commands = _drive(memory, situation, inputs, system.config)
     outputs = StepOutputs(
@@ -48,7 +53,6 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
         reply=reply,
         status=landing_status(memory, situation, system.config),
         plan=plan,
-        forecast=forecast,
     )
     return memory, outputs
 
@@ -74,11 +78,12 @@ def _estimate(memory: StepMemory, inputs: StepInputs, system: System) -> StepMem
     return replace(memory, estimator=estimator, tracking=tracking)
 
 
-def _forecast(memory: StepMemory, inputs: StepInputs, system: System) -> tuple[StepMemory, Forecast | None]:
-    """Return the vehicle over the horizon; an estimate that is not finite is given up and starts anew."""
-    forecast = system.estimator.forecast(memory.estimator, inputs.t_ns, HORIZON_OFFSETS_S)
+def _pad(memory: StepMemory, inputs: StepInputs, system: System) -> tuple[StepMemory, PadPath | None]:
+    """Return the pad as far ahead as the phase looks; an estimate that is not finite is given up and starts anew."""
+    offset_s = HORIZON_OFFSETS_S if memory.phase in FOLLOWING_PHASES else _PRESENT_OFFSETS_S
+    forecast = system.estimator.forecast(memory.estimator, inputs.t_ns, offset_s)
     if forecast is None or _is_finite(forecast):
-        return memory, forecast
+        return memory, None if forecast is None else pad_path(forecast, inputs.pad)
     return replace(memory, estimator=None), None
 
 
@@ -88,13 +93,13 @@ def _is_finite(forecast: Forecast) -> bool:
     return math.isfinite(sum(float(values.sum()) for values in arrays))
 
 
-def _situation(memory: StepMemory, forecast: Forecast | None, inputs: StepInputs, system: System) -> Situation:
+def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, system: System) -> Situation:
     newest_ns = system.estimator.newest_fix_ns(memory.estimator)
     return Situation(
         t_ns=inputs.t_ns,
         autopilot=inputs.autopilot,
         drone=drone_now(inputs.own, inputs.t_ns, _own_yaw_rad(inputs.own), system.config.abort.own_age_max_s),
-        pad=None if forecast is None else pad_path(forecast, inputs.pad),
+        pad=pad,
         feet_offset_m=system.config.touchdown.gear_height_m,
         fix_age_s=None if newest_ns is None else (inputs.t_ns - newest_ns) * 1e-9,
         vehicle_alive=inputs.vehicle_alive,

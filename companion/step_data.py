@@ -7,7 +7,7 @@ from typing import Any
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, AutopilotView, Driver, DriverMemory
 from companion.config import CompanionConfig
-from companion.data import Array, FlightLimits, Forecast, Measurement, OwnState, Setpoint
+from companion.data import Array, FlightLimits, Measurement, OwnState, Setpoint
 from companion.estimation.estimator import Estimator
 from companion.phases import Phase
 from companion.planning.guidance import Guidance, PlanResult, ReferenceState
@@ -68,7 +68,6 @@ class StepOutputs:
         reply: to the operator's command, None when there was none.
         status: for the world.
         plan: of this step, None while nothing is flown.
-        forecast: of the vehicle's antenna, None before the first fix.
     """
 
     setpoint: Setpoint | None
@@ -77,7 +76,6 @@ class StepOutputs:
     reply: CommandReply | None
     status: LandingStatus
     plan: PlanResult | None
-    forecast: Forecast | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
