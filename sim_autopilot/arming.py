@@ -6,6 +6,7 @@ from sim_autopilot.flight import begin
 from sim_autopilot.land_detector import Landing
 from sim_autopilot.manual import MANUAL_MODES, sticks_in_effect
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
+from sim_autopilot.mission_flight import Stage
 from sim_autopilot.missions_step import mission_items
 from sim_autopilot.modes import Mode, rest
 from sim_autopilot.setpoints import are_streaming
@@ -64,7 +65,8 @@ def should_disarm(memory: AutopilotMemory) -> bool:
     if armed_ns is None or not landing.landed or memory.climb is not None:
         return False
     if landing.landed_ns is not None:
-        by_mode = memory.modes.mode in _LANDING_MODES
+        ended = memory.modes.mode is Mode.MISSION and memory.services.mission.stage is Stage.FINISHED
+        by_mode = memory.modes.mode in _LANDING_MODES or ended
         limit_s = settings.disarm_after_landing_mode_s if by_mode else settings.disarm_landed_s
         since_ns = landing.landed_ns
     else:

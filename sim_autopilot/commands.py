@@ -9,6 +9,8 @@ from types import MappingProxyType
 
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.arming import arm, arming_obstacle, disarm
+from sim_autopilot.calibration import calibrate
+from sim_autopilot.copter_commands import switch_fence, turn
 from sim_autopilot.events import tell
 from sim_autopilot.failures import injected
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, Later
@@ -23,13 +25,13 @@ from sim_autopilot.place_commands import (
     set_home,
     take_off,
 )
+from sim_autopilot.reboot import reboot
 from sim_autopilot.requests import ACCEPTED, DENIED, UNSUPPORTED, Answer, Handler, Request
-from sim_autopilot.stream_commands import get_interval, request_message, request_version, set_interval
+from sim_autopilot.stream_commands import get_interval, request_message, request_protocol, request_version, set_interval
 
 _FORCE = 21196
 _SECOND_ANSWER_NS = 20_000_000
 """A command is obeyed at the beginning of its step: one step later than its own acknowledgement, 10 ms."""
-_NOTHING = 0
 
 
 def obey(
@@ -131,12 +133,6 @@ def _pause_or_continue(memory: AutopilotMemory, request: Request, config: Autopi
     return Answer(memory=memory, result=result)
 
 
-def _reboot(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
-    """Refuse to reboot or to shut down: what stands in for an autopilot ends when its process is told to."""
-    result = ACCEPTED if request.number(1) == _NOTHING else config.firmware.results.reboot_refused
-    return Answer(memory=memory, result=result)
-
-
 def _terminate(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
     """Stop the motors wherever the drone is; a real PX4 lets nobody arm after that, here a new flight is possible."""
     if request.number(1) != 1:
@@ -164,7 +160,7 @@ _HANDLERS: Mapping[int, Handler] = MappingProxyType(
         mavlink.MAV_CMD_DO_ORBIT: circle,
         mavlink.MAV_CMD_DO_SET_HOME: set_home,
         mavlink.MAV_CMD_GET_HOME_POSITION: _tell_home,
-        mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN: _reboot,
+        mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN: reboot,
         mavlink.MAV_CMD_DO_FLIGHTTERMINATION: _terminate,
         mavlink.MAV_CMD_MISSION_START: _start_mission,
         mavlink.MAV_CMD_DO_SET_MISSION_CURRENT: _set_mission_current,
@@ -173,5 +169,9 @@ _HANDLERS: Mapping[int, Handler] = MappingProxyType(
         mavlink.MAV_CMD_GET_MESSAGE_INTERVAL: get_interval,
         mavlink.MAV_CMD_REQUEST_MESSAGE: request_message,
         mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: request_version,
+        mavlink.MAV_CMD_REQUEST_PROTOCOL_VERSION: request_protocol,
+        mavlink.MAV_CMD_PREFLIGHT_CALIBRATION: calibrate,
+        mavlink.MAV_CMD_CONDITION_YAW: turn,
+        mavlink.MAV_CMD_DO_FENCE_ENABLE: switch_fence,
     }
 )

@@ -14,6 +14,8 @@ from sim_autopilot.parameters import Parameter
 
 GENERAL_PATH = "etc/extras/component_general.json.xz"
 PARAMETERS_PATH = "etc/extras/parameters.json.xz"
+COMPONENT_METADATA, PROTOCOL_VERSION = 397, 300
+"""Messages that pymavlink names nowhere."""
 _PARAMETER_METADATA = 1
 _TYPES = {
     int(mavlink.MAV_PARAM_TYPE_INT8): "Int8",

@@ -52,6 +52,7 @@ class ModeFlight:
         goal: where the anchor is on its way to.
         orbit: the circle that it flies.
         speed_m_s: that was asked for, for every way of the mode; None is the parameters'.
+        returns: whether a mission's mode flies home and lands.
     """
 
     began_ns: int
@@ -65,6 +66,7 @@ class ModeFlight:
     goal: Goal | None = None
     orbit: Orbit | None = None
     speed_m_s: float | None = None
+    returns: bool = False
 
 
 def begin(mode: Mode, now: Snapshot, home_enu_m: Vector3, settings: FlightSettings) -> ModeFlight:
@@ -104,7 +106,7 @@ def next_reference(
     mode = modes.mode
     if mode is Mode.OFFBOARD:
         return flight, None if setpoints.reference is None else with_own_motion(setpoints.reference, now)
-    if mode in RETURNING:
+    if mode in RETURNING or flight.returns:
         flight = _return(flight, now, home_enu_m, settings)
     if mode is Mode.ORBIT and flight.orbit is not None:
         orbit, reference = carried_round(flight.orbit, pace_of(settings), elapsed_s)

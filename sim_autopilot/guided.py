@@ -106,6 +106,11 @@ def with_guided_speed(guided: Guided, speed_m_s: float) -> Guided:
     return replace(guided, speed_m_s=speed_m_s)
 
 
+def with_heading(guided: Guided, yaw_rad: float) -> Guided:
+    """Return the memory after the command to turn to `yaw_rad` (of W), which lasts until the next setpoint."""
+    return replace(guided, wish=replace(guided.wish, yaw_rad=yaw_rad, yaw_rate_rad_s=None))
+
+
 def is_rising(guided: Guided) -> bool:
     """Return whether a take-off has left the ground and is not complete."""
     return guided.stage is Stage.CLIMB

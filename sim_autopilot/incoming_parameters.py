@@ -28,6 +28,13 @@ def read_parameter(memory: AutopilotMemory, message: Message, config: AutopilotC
     return memory, (parameter_message(parameters, index, memory.values, autopilot_id, tells_index=tells_index),)
 
 
+def with_value(memory: AutopilotMemory, name: str, value: float, config: AutopilotConfig) -> AutopilotMemory:
+    """Return the memory with one parameter changed."""
+    values = {**memory.values, name: value}
+    settings = config.firmware.settings(values)
+    return replace(memory, values=values, settings=settings, plant_config=limited(config.plant, settings))
+
+
 def set_parameter(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
     """Set a parameter, and tell its value."""
     parameters, autopilot_id = config.firmware.parameters, config.firmware.autopilot_id

@@ -9,8 +9,9 @@ from types import MappingProxyType
 from link.geodesy import Datum
 from link.mavlink.dialect import mavlink
 from link.messages import Vector3
-from sim_autopilot.flight import Leg, ModeFlight, climb_to, descend_here, go_to
+from sim_autopilot.flight import Leg, ModeFlight, begin, climb_to, descend_here, go_to
 from sim_autopilot.missions import Item, place_of
+from sim_autopilot.modes import Mode
 from sim_autopilot.settings import FlightSettings
 from sim_autopilot.snapshot import Snapshot
 from sim_autopilot.travel import Goal
@@ -72,6 +73,7 @@ class Surroundings:
     settings: FlightSettings
     now: Snapshot
     landed: bool
+    returns_itself: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,6 +101,8 @@ def fly_mission(progress: Progress, items: tuple[Item, ...], flight: ModeFlight,
         if progress.stage is Stage.FINISHED or progress.index >= len(items):
             break
         index, item = progress.index, items[progress.index]
+        if item.command == _RETURN and around.returns_itself:
+            return _returning(progress, flight, around)
         if item.command == _RETURN:
             after = replace(progress, stage=Stage.FINISHED)
             return MissionStep(progress=after, flight=flight, reached=(*reached, index), returns=True)
@@ -108,6 +112,16 @@ def fly_mission(progress: Progress, items: tuple[Item, ...], flight: ModeFlight,
         reached.append(index)
         progress = _next(progress, items)
     return MissionStep(progress=progress, flight=flight, reached=tuple(reached))
+
+
+def _returning(progress: Progress, flight: ModeFlight, around: Surroundings) -> MissionStep:
+    """Return to home and land there, without another mode, as ArduCopter does."""
+    if progress.stage is not Stage.LANDING:
+        back = begin(Mode.RTL, around.now, around.home_enu_m, around.settings)
+        return MissionStep(progress=replace(progress, stage=Stage.LANDING), flight=replace(back, returns=True))
+    if not around.landed:
+        return MissionStep(progress=progress, flight=flight)
+    return MissionStep(progress=replace(progress, stage=Stage.FINISHED), flight=flight, reached=(progress.index,))
 
 
 def resumed(progress: Progress) -> Progress:

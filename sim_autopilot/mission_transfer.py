@@ -4,91 +4,18 @@ Source: https://mavlink.io/en/services/mission.html; what is refused, retried an
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
-from enum import Enum
+from dataclasses import replace
 from types import MappingProxyType
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.missions import (
-    NO_PLANS,
-    Item,
-    MissionRules,
-    Plans,
-    item_from_message,
-    item_message,
-    result_of,
-)
+from sim_autopilot.mission_library import Arrival, Library, Transfer, Way, acknowledgement, begun, is_kept_out
+from sim_autopilot.missions import Item, MissionRules, item_from_message, item_message, result_of, unreadable
 
 _ACCEPTED = int(mavlink.MAV_MISSION_ACCEPTED)
 _ERROR = int(mavlink.MAV_MISSION_ERROR)
 _ALL = int(mavlink.MAV_MISSION_TYPE_ALL)
 
-Target = tuple[int, int]
-
-
-class Way(Enum):
-    """Which way the items go."""
-
-    UPLOAD = 0
-    DOWNLOAD = 1
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Transfer:
-    """A transfer under way with `partner` (system, component), last heard at `heard_ns`, last asked at `asked_ns`.
-
-    `whole` says whether items are asked for as integers.
-    """
-
-    way: Way
-    kind: int
-    partner: Target
-    count: int
-    heard_ns: int
-    asked_ns: int
-    items: tuple[Item, ...] = ()
-    whole: bool = True
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Library:
-    """The plans that the autopilot holds and the transfer under way; `changed` counts new missions."""
-
-    plans: Plans = field(default_factory=lambda: NO_PLANS)
-    transfer: Transfer | None = None
-    changed: int = 0
-
-
-NO_LIBRARY = Library()
-
 Result = tuple[Library, tuple[Message, ...]]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Arrival:
-    """A message of the protocol for this autopilot, when it came, and what decides about it.
-
-    `current` is the index of the mission's current item.
-    """
-
-    message: Message
-    boot_ns: int
-    rules: MissionRules
-    current: int
-
-    @property
-    def partner(self) -> Target:
-        """Who sent it."""
-        return self.message.get_srcSystem(), self.message.get_srcComponent()
-
-    @property
-    def kind(self) -> int:
-        """The MAV_MISSION_TYPE; MAVLink 1 knows missions only."""
-        return int(self.message.mission_type)
-
-    def answer(self, result: int) -> Message:
-        """Return the MISSION_ACK to it."""
-        return _acknowledgement(self.partner, result, self.kind)
 
 
 def take_mission_message(library: Library, arrival: Arrival) -> Result:
@@ -110,15 +37,11 @@ def transfer_passes(library: Library, boot_ns: int, rules: MissionRules) -> Resu
         return library, ()
     if (boot_ns - transfer.heard_ns) * 1e-9 > rules.timeout_s:
         told = rules.timeout_answered and transfer.way is Way.UPLOAD
-        cancelled = _acknowledgement(transfer.partner, int(mavlink.MAV_MISSION_OPERATION_CANCELLED), transfer.kind)
+        cancelled = acknowledgement(transfer.partner, int(mavlink.MAV_MISSION_OPERATION_CANCELLED), transfer.kind)
         return replace(library, transfer=None), (cancelled,) if told else ()
     if transfer.way is Way.UPLOAD and (boot_ns - transfer.asked_ns) * 1e-9 > rules.retry_s:
         return _ask(library, replace(transfer, asked_ns=boot_ns))
     return library, ()
-
-
-def _acknowledgement(partner: Target, result: int, kind: int) -> Message:
-    return mavlink.MAVLink_mission_ack_message(*partner, result, kind)
 
 
 def _ask(library: Library, transfer: Transfer) -> Result:
@@ -127,37 +50,15 @@ def _ask(library: Library, transfer: Transfer) -> Result:
     return replace(library, transfer=transfer), (request,)
 
 
-def _is_kept_out(library: Library, arrival: Arrival, way: Way) -> bool:
-    """Whether the transfer under way keeps a new one out."""
-    transfer = library.transfer
-    if transfer is None:
-        return False
-    if not arrival.rules.one_at_a_time:
-        return transfer.way is Way.UPLOAD and transfer.partner != arrival.partner
-    again = transfer.way is way and transfer.kind == arrival.kind
-    return not (again and (way is Way.DOWNLOAD or not transfer.items))
-
-
-def _begun(arrival: Arrival, way: Way, count: int) -> Transfer:
-    return Transfer(
-        way=way,
-        kind=arrival.kind,
-        partner=arrival.partner,
-        count=count,
-        heard_ns=arrival.boot_ns,
-        asked_ns=arrival.boot_ns,
-    )
-
-
 def _count(library: Library, arrival: Arrival) -> Result:
     count, kind = arrival.message.count, arrival.kind
-    if _is_kept_out(library, arrival, Way.UPLOAD):
+    if is_kept_out(library, arrival, Way.UPLOAD):
         return library, (arrival.answer(_ERROR),)
     if count > arrival.rules.counts_max[kind]:
         return library, (arrival.answer(int(mavlink.MAV_MISSION_NO_SPACE)),)
     if count == 0:
         return _store(library, kind, ()), (arrival.answer(_ACCEPTED),)
-    return _ask(library, _begun(arrival, Way.UPLOAD, count))
+    return _ask(library, begun(arrival, Way.UPLOAD, count))
 
 
 def _store(library: Library, kind: int, items: tuple[Item, ...]) -> Library:
@@ -180,9 +81,10 @@ def _item(library: Library, arrival: Arrival) -> Result:
 
 
 def _add(library: Library, transfer: Transfer, arrival: Arrival) -> Result:
+    result = unreadable(arrival.message) if arrival.rules.needs_numbers else None
     try:
         item = item_from_message(arrival.message)
-        result = result_of(item, transfer.kind)
+        result = result_of(item, transfer.kind) if result is None else result
     except ValueError:
         return replace(library, transfer=None), (arrival.answer(_ERROR),)
     if result != _ACCEPTED:
@@ -194,11 +96,11 @@ def _add(library: Library, transfer: Transfer, arrival: Arrival) -> Result:
 
 
 def _list(library: Library, arrival: Arrival) -> Result:
-    if _is_kept_out(library, arrival, Way.DOWNLOAD):
+    if is_kept_out(library, arrival, Way.DOWNLOAD):
         return library, (arrival.answer(_ERROR),)
     items = library.plans[arrival.kind]
     if arrival.rules.one_at_a_time:
-        library = replace(library, transfer=_begun(arrival, Way.DOWNLOAD, len(items)))
+        library = replace(library, transfer=begun(arrival, Way.DOWNLOAD, len(items)))
     count = mavlink.MAVLink_mission_count_message(*arrival.partner, len(items), arrival.kind)
     return library, (count,)
 
@@ -216,6 +118,8 @@ def _request(library: Library, arrival: Arrival) -> Result:
 
 def _serve(library: Library, arrival: Arrival) -> Result:
     kind, index, items = arrival.kind, arrival.message.seq, library.plans[arrival.kind]
+    if kind == mavlink.MAV_MISSION_TYPE_MISSION and arrival.home is not None:
+        items = (arrival.home, *items[1:])
     if index >= len(items):
         wrong = arrival.rules.wrong_sequence
         return replace(library, transfer=None), (arrival.answer(_ERROR if wrong is None else wrong),)

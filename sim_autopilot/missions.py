@@ -83,6 +83,9 @@ class MissionRules:
         timeout_s: of silence after which a transfer is given up.
         timeout_answered: whether the end by time-out is told, as cancelled.
         wrong_sequence: MAV_MISSION_RESULT of an item out of turn; None asks for the right one again.
+        needs_numbers: whether an item with a value that is no number is refused.
+        returns_itself: whether a return within a mission is flown by the mission's own mode.
+        holds_at_the_end: whether the hold mode follows a mission that ends in the air.
         arms_to_start: whether MISSION_START arms.
         waits_for_mission: whether its mode can be chosen on the ground before there is a mission.
     """
@@ -96,6 +99,9 @@ class MissionRules:
     timeout_s: float = 5.0
     timeout_answered: bool = False
     wrong_sequence: int | None = None
+    needs_numbers: bool = False
+    returns_itself: bool = False
+    holds_at_the_end: bool = True
     arms_to_start: bool = True
     waits_for_mission: bool = True
 
@@ -109,6 +115,9 @@ ARDUCOPTER_MISSIONS = MissionRules(
     timeout_s=8.0,
     timeout_answered=True,
     wrong_sequence=int(mavlink.MAV_MISSION_INVALID_SEQUENCE),
+    needs_numbers=True,
+    returns_itself=True,
+    holds_at_the_end=False,
     arms_to_start=False,
 )
 
@@ -185,6 +194,15 @@ def item_message(item: Item, index: int, kind: int, target: tuple[int, int], *, 
         return mavlink.MAVLink_mission_item_int_message(*head, item.x, item.y, item.z, kind)
     scale = 1.0 if item.frame == mavlink.MAV_FRAME_MISSION else _DEGREES_TO_WIRE
     return mavlink.MAVLink_mission_item_message(*head, item.x / scale, item.y / scale, item.z, kind)
+
+
+def unreadable(message: Message) -> int | None:
+    """Return the MAV_MISSION_RESULT that names an item's first value that is no number, None where all are numbers."""
+    if message.mission_type != MISSION:
+        return None
+    values = (message.param1, message.param2, message.param3, message.param4, message.x, message.y, message.z)
+    first = next((index for index, value in enumerate(values) if not isfinite(value)), None)
+    return None if first is None else int(mavlink.MAV_MISSION_INVALID_PARAM1) + first
 
 
 def place_of(item: Item, datum: Datum, home_enu_m: Vector3) -> Vector3:

@@ -1,12 +1,15 @@
 """The mission service in the autopilot's step: its messages, its time-outs and its flight."""
 
 from dataclasses import replace
+from math import degrees
 
+from link.geodesy import geodetic_from_enu
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.fence import fence_of
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.mission_flight import Progress, Stage, Surroundings, fly_mission, resumed, set_to
-from sim_autopilot.mission_transfer import Arrival, take_mission_message, transfer_passes
+from sim_autopilot.mission_library import Arrival
+from sim_autopilot.mission_transfer import take_mission_message, transfer_passes
 from sim_autopilot.missions import FENCE, MISSION, Item
 from sim_autopilot.mode_change import change_mode
 from sim_autopilot.modes import Event, Mode
@@ -31,6 +34,7 @@ def take_plan(memory: AutopilotMemory, message: Message, config: AutopilotConfig
         boot_ns=memory.now.boot_ns,
         rules=config.firmware.missions,
         current=services.mission.index,
+        home=home_item(memory, config) if config.firmware.missions.home_first else None,
     )
     library, answers = take_mission_message(services.library, arrival)
     changed = library.changed != services.library.changed
@@ -40,6 +44,20 @@ def take_plan(memory: AutopilotMemory, message: Message, config: AutopilotConfig
         fence = fence_of(library.plans[FENCE], config.datum)
     memory = replace(memory, services=replace(services, library=library, mission=progress, fence=fence))
     return memory, (*answers, mission_current(memory, config)) if changed else answers
+
+
+def home_item(memory: AutopilotMemory, config: AutopilotConfig) -> Item:
+    """Return home as ArduCopter tells it: item 0 of every mission."""
+    latitude_rad, longitude_rad, altitude_m = geodetic_from_enu(config.datum, memory.home_enu_m)
+    return Item(
+        frame=int(mavlink.MAV_FRAME_GLOBAL),
+        command=int(mavlink.MAV_CMD_NAV_WAYPOINT),
+        autocontinue=1,
+        parameters=(0.0, 0.0, 0.0, 0.0),
+        x=round(degrees(latitude_rad) * 1e7),
+        y=round(degrees(longitude_rad) * 1e7),
+        z=altitude_m,
+    )
 
 
 def first_index(config: AutopilotConfig) -> int:
@@ -83,6 +101,7 @@ def advance_mission(memory: AutopilotMemory, config: AutopilotConfig) -> Result:
         settings=memory.settings,
         now=memory.now,
         landed=memory.landing.landed,
+        returns_itself=config.firmware.missions.returns_itself,
     )
     before = memory.services.mission
     step = fly_mission(before, mission_items(memory), memory.flight, around)
@@ -90,9 +109,21 @@ def advance_mission(memory: AutopilotMemory, config: AutopilotConfig) -> Result:
     messages = tuple(mavlink.MAVLink_mission_item_reached_message(index) for index in step.reached)
     if (step.progress.index, step.progress.stage is Stage.FINISHED) != (before.index, before.stage is Stage.FINISHED):
         messages = (*messages, mission_current(memory, config))
+    if _ends_in_the_air(memory, before, config):
+        memory = change_mode(memory, Event.ASK_HOLD)
+        modes = memory.modes
+        return replace(memory, modes=replace(modes, resting=modes.mode)), messages
     if step.returns:
         memory = change_mode(memory, Event.ASK_RTL)
     return memory, messages
+
+
+def _ends_in_the_air(memory: AutopilotMemory, before: Progress, config: AutopilotConfig) -> bool:
+    """Whether a mission has just ended in the air, after which PX4 holds."""
+    ends = memory.services.mission.stage is Stage.FINISHED and before.stage is not Stage.FINISHED
+    last = mission_items(memory)[memory.services.mission.index] if ends else None
+    stays = last is not None and last.command != mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH
+    return stays and config.firmware.missions.holds_at_the_end and not memory.landing.landed
 
 
 def mission_current(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:

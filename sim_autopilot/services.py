@@ -9,7 +9,7 @@ from sim_autopilot.ftp_state import NO_FTP, Ftp
 from sim_autopilot.logs import NO_LOGS, Logs
 from sim_autopilot.manual import Sticks
 from sim_autopilot.mission_flight import NO_PROGRESS, Progress
-from sim_autopilot.mission_transfer import NO_LIBRARY, Library
+from sim_autopilot.mission_library import NO_LIBRARY, Library
 from sim_autopilot.precision_landing import Target
 
 
@@ -26,6 +26,7 @@ class Services:
         failures: injected.
         events: how many were told, as the 16 bits on the wire count them.
         target: of a precision landing, None before the first sighting.
+        reboot_ns: when it boots again, in ns since boot; None goes on.
         ftp: the files' server.
         logs: of the flights.
     """
@@ -38,5 +39,6 @@ class Services:
     failures: Failures = NO_FAILURES
     events: int = 0
     target: Target | None = None
+    reboot_ns: int | None = None
     ftp: Ftp = NO_FTP
     logs: Logs = NO_LOGS

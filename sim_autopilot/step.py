@@ -32,6 +32,7 @@ from sim_autopilot.modes import Event, Mode
 from sim_autopilot.origin import step_origin
 from sim_autopilot.parameters import parameter_message
 from sim_autopilot.plant import asked_tilt_rad, fly
+from sim_autopilot.reboot import rebooted
 from sim_autopilot.setpoints import are_fresh
 from sim_autopilot.snapshot import take_snapshot
 from sim_autopilot.steering import over_target, steer
@@ -56,6 +57,7 @@ def autopilot_step(
         inputs: received since then; its time is one or more control periods later.
         config: what does not change.
     """
+    memory = rebooted(memory, config)
     was_armed, was_mode = memory.armed_ns is not None, memory.modes.mode
     replies: list[_Sent] = []
     for message, link in zip(inputs.messages, inputs.links or repeat(0), strict=False):

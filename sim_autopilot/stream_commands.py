@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from link.mavlink.dialect import mavlink
 from sim_autopilot.available_modes import available_modes
+from sim_autopilot.component_metadata import PROTOCOL_VERSION
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.requests import ACCEPTED, Answer, Request
 from sim_autopilot.streams import Stream, with_interval
@@ -59,6 +60,12 @@ def request_message(memory: AutopilotMemory, request: Request, config: Autopilot
 def request_version(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
     """Send AUTOPILOT_VERSION now."""
     version = replace(request, parameters=(float(mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION),))
+    return request_message(memory, version, config)
+
+
+def request_protocol(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
+    """Send PROTOCOL_VERSION now."""
+    version = replace(request, parameters=(float(PROTOCOL_VERSION),))
     return request_message(memory, version, config)
 
 

@@ -8,6 +8,8 @@ from sim_autopilot import telemetry_ardupilot as ardupilot
 from sim_autopilot import telemetry_motion as motion
 from sim_autopilot import telemetry_sensors as sensors
 from sim_autopilot import telemetry_status as status
+from sim_autopilot import telemetry_versions as versions
+from sim_autopilot.component_metadata import COMPONENT_METADATA, PROTOCOL_VERSION
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
 from sim_autopilot.missions_step import mission_current
 from sim_autopilot.streams import Stream
@@ -35,7 +37,9 @@ BUILDERS: Mapping[int, Builder] = MappingProxyType(
         mavlink.MAVLINK_MSG_ID_MISSION_CURRENT: mission_current,
         mavlink.MAVLINK_MSG_ID_CURRENT_MODE: status.current_mode,
         mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: status.battery_status,
-        mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION: status.autopilot_version,
+        mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION: versions.autopilot_version,
+        PROTOCOL_VERSION: versions.protocol_version,
+        COMPONENT_METADATA: versions.component_metadata,
         mavlink.MAVLINK_MSG_ID_ATTITUDE: motion.attitude,
         mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: motion.attitude_quaternion,
         mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED: motion.local_position_ned,

@@ -156,11 +156,3 @@ def current_mode(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     modes = config.firmware.modes
     flown, asked = modes[memory.modes.mode].custom_mode, modes[memory.modes.intended].custom_mode
     return mavlink.MAVLink_current_mode_message(0, flown, asked)
-
-
-def autopilot_version(_memory: AutopilotMemory, config: AutopilotConfig) -> Message:
-    """Return AUTOPILOT_VERSION."""
-    firmware, no_hash = config.firmware, (0,) * 8
-    return mavlink.MAVLink_autopilot_version_message(
-        firmware.capabilities, firmware.version, 0, 0, 0, no_hash, no_hash, no_hash, 0, 0, config.system_id
-    )

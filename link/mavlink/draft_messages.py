@@ -3,7 +3,7 @@
 A frame of a message that the dialect does not hold cannot be checked, and its content is lost: PX4's reasons for not
 arming among them.
 
-Source: MAVLink common, messages 8, 380, 410, 411; wire order and checksum seed: https://mavlink.io/en/guide/serialization.html.
+Source: MAVLink common, messages 8, 300, 380, 397, 410, 411; wire order and checksum seed: https://mavlink.io/en/guide/serialization.html.
 """
 
 import struct
@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from pymavlink.dialects.v20 import all as mavlink
 from pymavlink.generator.mavcrc import x25crc
 
-_FORMATS = {"uint8_t": "B", "uint16_t": "H", "uint32_t": "I", "int32_t": "i", "uint64_t": "Q"}
+_FORMATS = {"uint8_t": "B", "uint16_t": "H", "uint32_t": "I", "int32_t": "i", "uint64_t": "Q", "char": "s"}
 
 
 class _Field(NamedTuple):
@@ -50,6 +50,22 @@ _DRAFTS = (
             _Field("int32_t", name)
             for name in ("safe_return", "land", "mission_next_item", "mission_end", "commanded_action")
         ),
+    ),
+    (
+        300,
+        "PROTOCOL_VERSION",
+        (
+            _Field("uint16_t", "version"),
+            _Field("uint16_t", "min_version"),
+            _Field("uint16_t", "max_version"),
+            _Field("uint8_t", "spec_version_hash", 8),
+            _Field("uint8_t", "library_version_hash", 8),
+        ),
+    ),
+    (
+        397,
+        "COMPONENT_METADATA",
+        (_Field("uint32_t", "time_boot_ms"), _Field("uint32_t", "file_crc"), _Field("char", "uri", 100)),
     ),
     (
         410,
@@ -90,7 +106,7 @@ class _Draft(mavlink.MAVLink_message):  # type: ignore[misc]  # pymavlink has no
 
     def pack(self, mav: Any, force_mavlink1: bool = False) -> bytes:
         """Return the frame."""
-        values: list[int] = []
+        values: list[int | bytes] = []
         for name in self.ordered_fieldnames:
             value = getattr(self, name)
             values += value if isinstance(value, list) else [value]
@@ -110,9 +126,11 @@ def _draft(message_id: int, name: str, fields: tuple[_Field, ...]) -> type[_Draf
             "fieldnames": [field.name for field in fields],
             "ordered_fieldnames": [field.name for field in ordered],
             "fieldtypes": [field.type for field in fields],
-            "native_format": bytearray("<" + "".join(_FORMATS[field.type] for field in ordered), "ascii"),
+            "native_format": bytearray(
+                "<" + "".join(_FORMATS[field.type] for field in ordered).replace("s", "c"), "ascii"
+            ),
             "orders": [ordered.index(field) for field in fields],
-            "lengths": [max(field.length, 1) for field in ordered],
+            "lengths": [1 if field.type == "char" else max(field.length, 1) for field in ordered],
             "array_lengths": [field.length for field in ordered],
             "crc_extra": _crc_extra(name, ordered),
             "unpacker": struct.Struct(layout),

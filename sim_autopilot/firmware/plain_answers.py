@@ -13,6 +13,7 @@ _ACCEPTED, _DENIED, _FAILED = (
     int(result) for result in (mavlink.MAV_RESULT_ACCEPTED, mavlink.MAV_RESULT_DENIED, mavlink.MAV_RESULT_FAILED)
 )
 
+_UNSUPPORTED = int(mavlink.MAV_RESULT_UNSUPPORTED)
 _CANCELLED = 6
 """MAV_RESULT_CANCELLED, which the dialect does not have."""
 
@@ -26,10 +27,8 @@ PX4_ANSWERS: Mapping[int, int | None] = MappingProxyType(
             mavlink.MAV_CMD_DO_SET_ROI_WPNEXT_OFFSET,
             mavlink.MAV_CMD_DO_SET_ROI_NONE,
             mavlink.MAV_CMD_DO_SET_ROI,
-            mavlink.MAV_CMD_PREFLIGHT_CALIBRATION,
             mavlink.MAV_CMD_PREFLIGHT_STORAGE,
             mavlink.MAV_CMD_RUN_PREARM_CHECKS,
-            mavlink.MAV_CMD_REQUEST_PROTOCOL_VERSION,
             mavlink.MAV_CMD_REQUEST_STORAGE_INFORMATION,
             mavlink.MAV_CMD_REQUEST_FLIGHT_INFORMATION,
             mavlink.MAV_CMD_LOGGING_START,
@@ -38,6 +37,8 @@ PX4_ANSWERS: Mapping[int, int | None] = MappingProxyType(
     )
     | dict.fromkeys((mavlink.MAV_CMD_DO_SET_STANDARD_MODE, mavlink.MAV_CMD_CONTROL_HIGH_LATENCY), _FAILED)
     | {mavlink.MAV_CMD_DO_LAND_START: _CANCELLED}
+    # ArduCopter's own.
+    | dict.fromkeys((mavlink.MAV_CMD_CONDITION_YAW, mavlink.MAV_CMD_DO_FENCE_ENABLE), _UNSUPPORTED)
     | dict.fromkeys(
         (
             mavlink.MAV_CMD_DO_FIGURE_EIGHT,
@@ -137,9 +138,14 @@ ARDUCOPTER_ANSWERS: Mapping[int, int | None] = MappingProxyType(
         ),
         _FAILED,
     )
-    # It has no such modes or failures.
+    # It has no such modes, failures or message.
     | dict.fromkeys(
-        (mavlink.MAV_CMD_DO_ORBIT, mavlink.MAV_CMD_DO_CHANGE_ALTITUDE, mavlink.MAV_CMD_INJECT_FAILURE),
-        int(mavlink.MAV_RESULT_UNSUPPORTED),
+        (
+            mavlink.MAV_CMD_DO_ORBIT,
+            mavlink.MAV_CMD_DO_CHANGE_ALTITUDE,
+            mavlink.MAV_CMD_INJECT_FAILURE,
+            mavlink.MAV_CMD_REQUEST_PROTOCOL_VERSION,
+        ),
+        _UNSUPPORTED,
     )
 )

@@ -4,6 +4,7 @@ Source: measured on that simulation.
 """
 
 from link.mavlink.dialect import mavlink
+from sim_autopilot.component_metadata import COMPONENT_METADATA, PROTOCOL_VERSION
 from sim_autopilot.streams import Stream
 
 STREAMS = (
@@ -23,6 +24,8 @@ STREAMS = (
     Stream(message_id=mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR, rate_hz=10.0),
     Stream(message_id=mavlink.MAVLINK_MSG_ID_BATTERY_STATUS, rate_hz=0.5, from_s=1.9),
     Stream(message_id=mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION),
+    Stream(message_id=PROTOCOL_VERSION),
+    Stream(message_id=COMPONENT_METADATA),
     Stream(message_id=mavlink.MAVLINK_MSG_ID_HOME_POSITION, rate_hz=0.5, from_s=1.9),
     Stream(message_id=mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE, rate_hz=5.0),
     Stream(message_id=mavlink.MAVLINK_MSG_ID_ODOMETRY, rate_hz=30.0),

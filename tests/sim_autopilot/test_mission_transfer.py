@@ -1,7 +1,8 @@
 import pytest
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.mission_transfer import NO_LIBRARY, Arrival, Library, Way, take_mission_message, transfer_passes
+from sim_autopilot.mission_library import NO_LIBRARY, Arrival, Library, Way
+from sim_autopilot.mission_transfer import take_mission_message, transfer_passes
 from sim_autopilot.missions import ARDUCOPTER_MISSIONS, FENCE, MISSION, PX4_MISSIONS, RALLY, MissionRules
 from tests.sim_autopilot.pilot import Pilot
 from tests.sim_autopilot.planner import download, item, plan_messages, upload

@@ -1,0 +1,34 @@
+"""Messages about what the autopilot is: its version, its protocol, and where its metadata are."""
+
+from link.mavlink.dialect import Message, mavlink
+from sim_autopilot.component_metadata import COMPONENT_METADATA, GENERAL_PATH, PROTOCOL_VERSION
+from sim_autopilot.files_step import shown_files
+from sim_autopilot.ftp_handlers import checksum
+from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.telemetry_status import boot_ms
+
+_MAVLINK = (200, 100, 203)
+"""The version times a hundred, and which it takes, as PX4 tells them."""
+_NO_HASH = [0] * 8
+
+
+def protocol_version(_memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
+    """Return PROTOCOL_VERSION."""
+    return mavlink.mavlink_map[PROTOCOL_VERSION](*_MAVLINK, _NO_HASH, _NO_HASH)
+
+
+def component_metadata(memory: AutopilotMemory, config: AutopilotConfig) -> Message | None:
+    """Return COMPONENT_METADATA, where there are any."""
+    general = shown_files(memory, config).get(GENERAL_PATH)
+    if general is None:
+        return None
+    uri = f"mftp://{GENERAL_PATH}".encode()
+    return mavlink.mavlink_map[COMPONENT_METADATA](boot_ms(memory), checksum(general()), uri)
+
+
+def autopilot_version(_memory: AutopilotMemory, config: AutopilotConfig) -> Message:
+    """Return AUTOPILOT_VERSION."""
+    firmware, no_hash = config.firmware, (0,) * 8
+    return mavlink.MAVLink_autopilot_version_message(
+        firmware.capabilities, firmware.version, 0, 0, 0, no_hash, no_hash, no_hash, 0, 0, config.system_id
+    )

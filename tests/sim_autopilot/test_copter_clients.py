@@ -1,0 +1,107 @@
+"""What client programs ask of ArduCopter besides flying: headings, the fence switch, home, calibration, reboot."""
+
+from math import degrees, nan
+
+import pytest
+
+from link.mavlink.dialect import mavlink
+from sim_autopilot.missions import RALLY
+from tests.sim_autopilot.copter import AUTO, GUIDED, ardupilot, copter_in_the_air, heartbeat, mode
+from tests.sim_autopilot.pilot import Pilot, arm, command
+from tests.sim_autopilot.planner import RELATIVE, download, item, plan_messages, upload
+
+FAILED, UNSUPPORTED, INVALID_PARAM4 = 4, 3, 9
+WAYPOINT, TAKEOFF, RETURN = 16, 22, 20
+NUMBERS = (0.0, 0.0, 0.0, 0.0)
+
+
+def test_a_heading_is_turned_to_and_by_in_guided() -> None:
+    pilot = copter_in_the_air()
+    for parameters, heading in (((200.0, 20.0, 1.0, 0.0), 200.0), ((50.0, 20.0, -1.0, 1.0), 150.0)):
+        assert pilot.acknowledged(command(mavlink.MAV_CMD_CONDITION_YAW, *parameters)) == [0]
+        pilot.run(6.0)
+        assert 90.0 - degrees(pilot.node.memory.now.yaw_rad) % 360.0 == pytest.approx(heading - 360.0, abs=2.0)
+
+
+def test_a_heading_of_more_than_a_turn_is_refused() -> None:
+    pilot = Pilot(ardupilot())
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_CONDITION_YAW, 361.0)) == [FAILED]
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_CONDITION_YAW, 10.0, 0.0, 0.0, 2.0)) == [FAILED]
+
+
+def test_the_fence_is_switched_by_a_command_where_there_is_one() -> None:
+    pilot = Pilot(ardupilot(parameters={"FENCE_TYPE": 4}))
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_FENCE_ENABLE, 1.0)) == [FAILED]
+    pilot = Pilot(ardupilot())
+    for switch in (1.0, 0.0):
+        assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_FENCE_ENABLE, switch)) == [0]
+        assert pilot.node.memory.values["FENCE_ENABLE"] == switch
+
+
+def test_item_0_is_home_whatever_was_uploaded() -> None:
+    pilot = Pilot(ardupilot())
+    away = (50.0, 60.0, 9.0)
+    assert upload(pilot, [item(0, WAYPOINT, away, NUMBERS), item(1, WAYPOINT, away, NUMBERS)]) == 0
+    home, first = download(pilot)
+    assert (home.x, home.y, home.frame) == (524_733_000, 134_017_000, 0)
+    assert home.z == pytest.approx(89.12, abs=0.01)
+    assert first.x > home.x + 4000
+
+
+def test_a_missions_value_that_is_no_number_is_refused_by_its_place() -> None:
+    pilot = Pilot(ardupilot())
+    assert upload(pilot, [item(0, WAYPOINT, (0.0, 0.0, 5.0), (0.0, 0.0, 0.0, nan))]) == INVALID_PARAM4
+    rally = item(0, mavlink.MAV_CMD_NAV_RALLY_POINT, (0.0, 5.0, 20.0), (0.0, 0.0, 0.0, nan), kind=RALLY, frame=RELATIVE)
+    assert upload(pilot, [rally], RALLY) == 0
+
+
+def test_a_mission_that_returns_stays_in_auto_until_the_motors_stop_and_after() -> None:
+    pilot = copter_in_the_air(height_m=12.0)
+    place = (3.0, 25.0, 12.0)
+    items = [item(0, WAYPOINT, place, NUMBERS), item(1, WAYPOINT, place, NUMBERS), item(2, RETURN)]
+    items[2].param4 = 0.0
+    assert upload(pilot, items) == 0
+    assert pilot.acknowledged(mode(AUTO)) == [0]
+    pilot.run_until(lambda: not pilot.is_armed(), 120.0)
+    assert {beat.custom_mode for beat in pilot.all("HEARTBEAT")[-20:]} == {AUTO}
+    assert abs(pilot.position[1]) < 1.0
+    assert heartbeat(pilot)[1] == AUTO
+
+
+def test_calibrations_are_known_by_their_numbers() -> None:
+    pilot = Pilot(ardupilot())
+    for parameters, result in (((1.0,), 0), ((0.0, 0.0, 1.0), 0), ((0.0,) * 4 + (4.0,), 0), ((0.0,), UNSUPPORTED)):
+        assert pilot.acknowledged(command(mavlink.MAV_CMD_PREFLIGHT_CALIBRATION, *parameters)) == [result]
+    pilot.step(mode(GUIDED), arm())
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_PREFLIGHT_CALIBRATION, 1.0)) == [FAILED]
+
+
+def test_a_reboot_keeps_parameters_and_plans_and_begins_time_anew() -> None:
+    pilot = Pilot(ardupilot())
+    upload(pilot, [item(0, WAYPOINT, (0.0, 0.0, 5.0), NUMBERS), item(1, TAKEOFF, (0.0, 0.0, 5.0), NUMBERS)])
+    pilot.step(mavlink.MAVLink_param_set_message(1, 1, b"WPNAV_SPEED", 700.0, 9), mode(GUIDED))
+    pilot.run(3.0)
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0)) == [0]
+    pilot.run(1.5)
+    memory = pilot.node.memory
+    assert memory.now.boot_ns < 2_000_000_000
+    assert memory.values["WPNAV_SPEED"] == 700.0
+    assert heartbeat(pilot)[1] == 0
+    assert len(download(pilot)) == 2
+    pilot.step(mode(GUIDED))
+    assert pilot.acknowledged(arm()) == [0]
+
+
+def test_a_reboot_is_refused_while_armed() -> None:
+    pilot = Pilot(ardupilot())
+    pilot.step(mode(GUIDED), arm())
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0)) == [FAILED]
+    pilot.run(1.0)
+    assert pilot.is_armed()
+
+
+def test_without_a_mission_home_alone_can_be_read() -> None:
+    pilot = Pilot(ardupilot())
+    assert download(pilot) == []
+    (home,) = plan_messages(pilot.step(mavlink.MAVLink_mission_request_int_message(1, 1, 0, 0)))
+    assert (home.get_type(), home.command) == ("MISSION_ITEM_INT", WAYPOINT)

@@ -1,0 +1,94 @@
+"""What client programs ask of PX4 besides flying: calibration, versions and metadata, and the end of a mission."""
+
+import pytest
+
+from link.mavlink.dialect import mavlink
+from sim_autopilot.component_metadata import COMPONENT_METADATA, PROTOCOL_VERSION
+from sim_autopilot.ftp_handlers import checksum
+from tests.sim_autopilot.file_client import FileClient
+from tests.sim_autopilot.pilot import HOLD, Pilot, arm, command
+from tests.sim_autopilot.planner import item, upload
+
+REJECTED, DENIED, UNSUPPORTED = 1, 2, 3
+STATION = mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3)
+CALIBRATE = mavlink.MAV_CMD_PREFLIGHT_CALIBRATION
+
+
+def texts(pilot: Pilot) -> list[str]:
+    return [text.text for text in pilot.all("STATUSTEXT")]
+
+
+@pytest.mark.parametrize(("parameters", "name"), [((1.0,), "gyro"), ((0.0,) * 4 + (2.0,), "level")])
+def test_a_calibration_that_needs_no_turning_tells_its_progress_and_succeeds(
+    parameters: tuple[float, ...], name: str
+) -> None:
+    pilot = Pilot()
+    pilot.step(STATION)
+    assert pilot.acknowledged(command(CALIBRATE, *parameters)) == [0]
+    assert pilot.acknowledged(command(CALIBRATE, *parameters)) == [REJECTED]
+    pilot.run(4.0)
+    told = texts(pilot)
+    assert told[0] == f"[cal] calibration started: 2 {name}"
+    assert told[1:-1] == [f"[cal] progress <{tenth}>" for tenth in range(10, 101, 10)]
+    assert told[-1] == f"[cal] calibration done: {name}"
+    assert pilot.acknowledged(command(CALIBRATE, *parameters)) == [0]
+
+
+def test_a_calibration_that_waits_to_be_turned_is_cancelled() -> None:
+    pilot = Pilot()
+    pilot.step(STATION)
+    pilot.step(command(CALIBRATE, 0.0, 1.0))
+    pilot.run(5.0)
+    assert "[cal] pending: back front left right up down" in texts(pilot)
+    assert pilot.acknowledged(command(CALIBRATE)) == [0]
+    pilot.run(90.0)
+    assert texts(pilot)[-1] == "[cal] calibration cancelled"
+
+
+def test_a_calibration_for_which_nobody_turns_the_drone_fails() -> None:
+    pilot = Pilot()
+    pilot.step(STATION)
+    pilot.step(command(CALIBRATE, 0.0, 0.0, 0.0, 0.0, 1.0))
+    pilot.run(91.0)
+    assert texts(pilot)[-1] == "[cal] calibration failed: accel"
+
+
+def test_nothing_is_calibrated_while_armed() -> None:
+    pilot = Pilot()
+    pilot.step(arm())
+    assert pilot.acknowledged(command(CALIBRATE, 1.0)) == [REJECTED]
+
+
+def test_the_protocols_version_is_told_for_both_commands() -> None:
+    pilot = Pilot()
+    ask = command(mavlink.MAV_CMD_REQUEST_MESSAGE, PROTOCOL_VERSION)
+    for request in (ask, command(mavlink.MAV_CMD_REQUEST_PROTOCOL_VERSION, 1.0)):
+        pilot.received.clear()
+        assert pilot.acknowledged(request) == [0]
+        told = pilot.last("PROTOCOL_VERSION")
+        assert (told.version, told.min_version, told.max_version) == (200, 100, 203)
+
+
+def test_the_metadata_that_are_told_of_can_be_read() -> None:
+    pilot = Pilot()
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_REQUEST_MESSAGE, COMPONENT_METADATA)) == [0]
+    told = pilot.last("COMPONENT_METADATA")
+    assert told.uri == b"mftp://etc/extras/component_general.json.xz"
+    assert checksum(FileClient(pilot).read(told.uri.removeprefix(b"mftp://"))) == told.file_crc
+
+
+def test_a_mission_that_ends_in_the_air_is_followed_by_hold() -> None:
+    pilot = Pilot()
+    assert upload(pilot, [item(0, 22, (0.0, 0.0, 5.0)), item(1, 16, (0.0, 8.0, 5.0))]) == 0
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_MISSION_START)) == [0]
+    pilot.run_until(lambda: pilot.custom_mode() == HOLD, 60.0)
+    assert pilot.is_armed()
+    pilot.run(5.0)
+    assert pilot.position[1] == pytest.approx(8.0, abs=1.5)
+    assert pilot.last("MISSION_CURRENT").mission_state == mavlink.MISSION_STATE_COMPLETE
+
+
+def test_its_simulation_cannot_be_rebooted_and_has_no_fence_switch() -> None:
+    pilot = Pilot()
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0)) == [DENIED]
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_FENCE_ENABLE, 1.0)) == [UNSUPPORTED]
