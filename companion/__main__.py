@@ -100,8 +100,8 @@ def companion(
     from link.zenoh_session import open_session
 
     folder = record or (Path(settings.recording.folder) if settings.recording.folder else None)
+    recorder: BackgroundRecorder | None = None
     with ExitStack() as stack:
-        recorder: BackgroundRecorder | None = None
         if folder is not None:
             from companion.record_folder import recording_sink
 
@@ -120,6 +120,8 @@ def companion(
         transport = stack.enter_context(open_transport(mavlink))
         zenoh = stack.enter_context(open_session(endpoints))
         timings = run(node, Links(keys=keys, transport=transport, zenoh=zenoh), options)
+    if recorder is not None and recorder.dropped:
+        sys.stderr.write(f"recording: {recorder.dropped} records are lost, the disk of {folder} is full or too slow\n")
     if timing is not None:
         timing.write_text(json.dumps(timings.summary(), indent=2) + "\n", encoding="utf-8")
 

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from companion.data import Forecast, OwnState, Setpoint, VehicleEstimate
 from companion.planning.guidance import PlanResult
+from companion.record_paths import forecast_path_message, plan_path_message
 from companion.records import InputRecord, LinkRecord, StepRecord, StepTimeRecord
 from companion.targets import HORIZON_OFFSETS_S
 from link import cdr
@@ -50,23 +51,28 @@ def step_messages(record: StepRecord, keys: Keys, *, long: bool) -> Iterator[Ros
         yield _setpoint(outputs.setpoint, keys)
     if not long:
         return
-    yield from vehicle_messages(record, keys)
+    yield from vehicle_messages(record, keys, path=True)
     if outputs.plan is not None:
+        yaw_rad = 0.0 if outputs.setpoint is None else outputs.setpoint.yaw_rad
         yield _plan(outputs.plan, t_ns, keys)
+        yield plan_path_message(outputs.plan.trajectory, t_ns, yaw_rad, keys)
 
 
-def vehicle_messages(record: StepRecord, keys: Keys) -> Iterator[RosMessage]:
+def vehicle_messages(record: StepRecord, keys: Keys, *, path: bool = False) -> Iterator[RosMessage]:
     """Return the vehicle now and over the horizon as a step knew it, nothing before the first fix.
 
-    A step itself looks only as far ahead as its phase needs.
+    A step itself looks only as far ahead as its phase needs. With `path` the horizon comes in both forms.
     """
     t_ns = record.inputs.t_ns
     estimate = record.estimator.estimate(record.estimator_memory, t_ns)
     if estimate is not None:
         yield estimate_message(estimate, keys)
     forecast = record.estimator.forecast(record.estimator_memory, t_ns, HORIZON_OFFSETS_S)
-    if forecast is not None:
-        yield forecast_message(forecast, keys)
+    if forecast is None:
+        return
+    yield forecast_message(forecast, keys)
+    if path:
+        yield forecast_path_message(forecast, keys)
 
 
 def link_message(record: LinkRecord, keys: Keys) -> RosMessage:

@@ -1,6 +1,7 @@
 """The figures of a campaign: where its landings touched down, and how the errors add up, by cell."""
 
 import math
+import textwrap
 from collections.abc import Sequence
 from itertools import cycle
 
@@ -13,6 +14,7 @@ from scenarios.figure_files import DARK, LIGHT, MIDDLE, STYLES
 from scenarios.landing_task import Row
 from scenarios.run_figures import draw_pad
 
+_TITLE_WIDTH = 34  # characters over a panel
 _COLUMNS_MAX = 3
 _S1_M, _S2_M = 0.5, 0.3  # horizontal errors that the tiers allow, as scenarios.score has them
 
@@ -49,7 +51,7 @@ def _touchdowns(plan: Plan, rows: Sequence[Row]) -> Figure:
                 )
         if touched:
             axes.legend(loc="upper right", fontsize=8)
-        axes.set_title(cell, fontsize=9 if len(cell) < 36 else 6)
+        axes.set_title(textwrap.fill(cell.replace("+", " +"), _TITLE_WIDTH), fontsize=9)
     return figure
 
 

@@ -44,11 +44,11 @@ _CAPTIONS = {
     "errors": "Share of the landings within a distance of the pad's centre",
 }
 _STYLE = """
-body { font: 15px/1.45 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #111; }
+body { font: 15px/1.45 system-ui, sans-serif; max-width: 76rem; margin: 2rem auto; padding: 0 1rem; color: #111; }
 table { border-collapse: collapse; margin: .5rem 0 1.5rem; }
 td, th { padding: .15rem .9rem .15rem 0; text-align: left; }
 td { border-top: 1px solid #ddd; } figure { margin: 1.5rem 0; } figure svg { max-width: 100%; height: auto; }
-figcaption { color: #444; } pre { background: #f5f5f5; padding: .8rem; overflow-x: auto; font-size: 12px; }
+figcaption { color: #444; } pre { background: #f5f5f5; padding: .8rem; overflow-x: auto; font-size: 11.5px; }
 .verdict { font-size: 1.3rem; border-left: .4rem solid #111; padding-left: .8rem; }
 """
 _UNITS = (("_m_s", "m/s"), ("_rad", "rad"), ("_m", "m"), ("_s", "s"))
@@ -81,7 +81,7 @@ def _run_page(run: RunData) -> str:
         f'<p class="verdict">{escape(verdict)}</p>',
         f"<p>{escape(run.scenario.description)}</p>",
         "<h2>Result</h2>",
-        _table({_label(key): _value(value) for key, value in result.items() if key not in {"phases_s", "reason"}}),
+        _table(_known(result)),
         "<h2>Path</h2>",
         _path_chart(run),
         "<h2>Motion</h2>",
@@ -154,6 +154,12 @@ def _table(rows: Mapping[str, str]) -> str:
     )
 
 
+def _known(result: Mapping[str, Any]) -> dict[str, str]:
+    """Return the rows of a result's table; what a run of its kind cannot know is left out."""
+    told_elsewhere = {"phases_s", "reason"}
+    return {_label(k): _value(v) for k, v in result.items() if v is not None and k not in told_elsewhere}
+
+
 def _label(key: str) -> str:
     for ending, unit in _UNITS:
         if key.endswith(ending):
@@ -163,8 +169,6 @@ def _label(key: str) -> str:
 
 def _value(value: Any) -> str:
     match value:
-        case None:
-            return "-"
         case bool():
             return "yes" if value else "no"
         case float():
@@ -178,7 +182,10 @@ def _path_chart(run: RunData) -> str:
     drone = run.log.position_enu_m[shown][::_EVERY]
     vehicle = run.log.vehicle_position_enu_m[shown][::_EVERY]
     height_m = vehicle[:, 2] + run.scenario.vehicle.roof_height_m
-    lines = (("drone", drone.T, {"color": "black", "width": 5}), ("pad", (*vehicle.T[:2], height_m), {"color": "gray"}))
+    lines = (
+        ("drone", drone.T, {"color": "black", "width": 5}),
+        ("pad", (*vehicle.T[:2], height_m), {"color": "gray", "width": 4, "dash": "dash"}),
+    )
     chart = go.Figure(
         [go.Scatter3d(x=x, y=y, z=z, mode="lines", name=name, line=style) for name, (x, y, z), style in lines]
     )
@@ -193,7 +200,8 @@ def _path_chart(run: RunData) -> str:
     }
     view = {"aspectmode": "manual", "aspectratio": dict(zip("xyz", ratio, strict=True)), "camera": {"eye": _CHART_EYE}}
     scene = axes | view
-    chart.update_layout(height=520, margin={"l": 0, "r": 0, "t": 10, "b": 0}, scene=scene)
+    legend = {"x": 0.02, "y": 0.98}  # the buttons stand on the right
+    chart.update_layout(height=520, margin={"l": 0, "r": 0, "t": 10, "b": 0}, scene=scene, legend=legend)
     return _div(chart, "path")
 
 

@@ -1,9 +1,6 @@
 """A flight's recording: complete, the same for the same seed, replayed exactly, and of no consequence to the flight."""
 
-import os
 import shutil
-import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -54,7 +51,7 @@ def test_every_topic_of_a_run_is_decoded_by_an_independent_reader(run: Path) -> 
                 counts[connection.topic] = counts.get(connection.topic, 0) + 1
     named = {name.removeprefix("/decklander/") for name in counts}
     assert named >= {"vehicle/fix", "vehicle/truth", "drone/truth", "drone/truth/rotors"}
-    inside = ("input", "own", "step", "setpoint", "estimate", "forecast", "plan", "link")
+    inside = ("input", "own", "step", "setpoint", "estimate", "forecast", "forecast_path", "plan", "plan_path", "link")
     assert named >= {f"drone/companion/{name}" for name in inside}
     assert min(counts.values()) > 10
 
@@ -128,18 +125,6 @@ def test_folder_without_a_recording_is_told(tmp_path: Path) -> None:
     tmp_path.joinpath("result.json").write_text("{}", encoding="utf-8")
     with pytest.raises(UserError, match="holds no recording"):
         draw_figures(tmp_path, None)
-
-
-@pytest.fixture
-def small_disk(tmp_path: Path) -> Iterator[Path]:
-    """A disk of 200 kB."""
-    mount, umount = shutil.which("mount"), shutil.which("umount")
-    if os.geteuid() != 0 or mount is None or umount is None:
-        pytest.skip("only root may mount a small disk")
-    if subprocess.run([mount, "-t", "tmpfs", "-o", "size=200k", "none", str(tmp_path)], check=False).returncode:
-        pytest.skip("no disk can be mounted here")
-    yield tmp_path
-    subprocess.run([umount, str(tmp_path)], check=True)
 
 
 def test_full_disk_costs_records_and_not_the_landing(small_disk: Path) -> None:
