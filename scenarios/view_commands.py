@@ -3,12 +3,16 @@
 import importlib.util
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from link.cli import ConnectOption, DroneOption, NamespaceOption, VehicleOption
 from link.errors import UserError
+
+if TYPE_CHECKING:
+    from scenarios.view.live import LiveSource
+    from scenarios.view.recorded import RecordedSource, Road
 
 _LOOPBACK = ("127.0.0.1", "localhost", "::1")
 DEFAULT_PORT = 8080
@@ -53,7 +57,9 @@ def view_command(
     port: Annotated[
         int, typer.Option("--port", min=0, max=65535, help="Of the page; 0 is any free one.")
     ] = DEFAULT_PORT,
-    host: Annotated[str, typer.Option("--host", metavar="HOST", help="Only this machine's own.")] = "127.0.0.1",
+    host: Annotated[
+        str, typer.Option("--host", metavar="HOST", help="For other machines: behind a token, which is told.")
+    ] = "127.0.0.1",
     road: Annotated[
         str | None, typer.Option("--road", metavar="NAME|FILE", help="Draw the road of this scenario.")
     ] = None,
@@ -64,18 +70,12 @@ def view_command(
     connect: ConnectOption = None,
 ) -> None:
     """Show a landing in the browser as it goes on, or play a recording."""
-    if host not in _LOOPBACK:
-        raise UserError(
-            f"--host {host}: the page can fly the drone and knows no passwords, so it is for this machine only; "
-            f"from another one: ssh -L {port}:127.0.0.1:{port} THIS_MACHINE"
-        )
     check_viser()
-    from scenarios.view.page import Page
     from scenarios.view.recorded import RecordedSource, Road
 
     if recording is not None:
         source = RecordedSource(recording)
-        Page(source, source.road, port).run()
+        _show(source, source.road, host, port)
         return
     from link.keys import Keys
     from link.zenoh_options import zenoh_options
@@ -86,4 +86,17 @@ def view_command(
     drawn = None if road is None else Road(scenario=load_scenario(road), seed=seed)
     keys = Keys(namespace, vehicle, drone)
     with open_session(zenoh_options(None, connect, None, None, None)) as zenoh:
-        Page(LiveSource(zenoh, keys), drawn, port).run()
+        _show(LiveSource(zenoh, keys), drawn, host, port)
+
+
+def _show(source: "LiveSource | RecordedSource", road: "Road | None", host: str, port: int) -> None:
+    """Serve the page until a signal comes; it can fly the drone, so others are let in by a token only."""
+    from scenarios.view.gate import Gate
+    from scenarios.view.page import Page
+
+    if host in _LOOPBACK:
+        Page(source, road, port).run()
+        return
+    page = Page(source, road, 0)
+    with Gate(host, port, page.port) as gate:
+        page.run(gate.address)

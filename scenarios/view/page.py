@@ -51,15 +51,19 @@ class Page:
         self._stamp_seen_s = 0.0
 
     @property
-    def address(self) -> str:
-        """Where a browser finds it."""
-        return f"http://127.0.0.1:{self._server.get_port()}"
+    def port(self) -> int:
+        """Of loopback, where it is."""
+        return self._server.get_port()
 
-    def run(self) -> None:
-        """Show it until a signal comes."""
+    def run(self, address: str | None = None) -> None:
+        """Show it until a signal comes.
+
+        Args:
+            address: where a browser finds it, None for where it is.
+        """
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._stop)
-        sys.stdout.write(f"view: {self.address}\n")
+        sys.stdout.write(f"view: {address or f'http://127.0.0.1:{self.port}'}\n")
         sys.stdout.flush()
         tick, due_s = 0, time.monotonic()
         while not self._stopping:

@@ -150,7 +150,6 @@ def test_trail_leaves_out_what_is_unknown() -> None:
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["view", "--host", "0.0.0.0"], "ssh -L 8080:127.0.0.1:8080"),  # noqa: S104 (that is what is refused)
         (["view", "/there/is/none"], "no such folder"),
         (["run", "straight_5", "--lockstep", "--view"], "leave out --view"),
     ],
