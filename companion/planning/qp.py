@@ -75,9 +75,9 @@ def refusal(H: Array, f: Array, A: Array, lower: Array, upper: Array) -> QpSolut
 
     DAQP calls problems with NaN or with crossed bounds solved.
     """
-    if not math.isfinite(float(f.sum() + H.sum() + A.sum())):
+    if not math.isfinite(np.vdot(f, f) + np.vdot(H, H) + np.vdot(A, A)):
         return QpSolution(status=PlanStatus.FAILED, x=None, iterations=0)
-    if (lower <= upper).all():
+    if np.count_nonzero(lower <= upper) == len(lower):
         return None
     has_nan = bool(np.isnan(lower).any() or np.isnan(upper).any())
     return QpSolution(status=PlanStatus.FAILED if has_nan else PlanStatus.INFEASIBLE, x=None, iterations=0)
@@ -150,7 +150,7 @@ def _solution(status: PlanStatus, x: Array | None, iterations: int) -> QpSolutio
     """Return a solution whose `x` is there only if it may be used."""
     if status is not PlanStatus.SOLVED or x is None:
         return QpSolution(status=status, x=None, iterations=iterations)
-    if not np.isfinite(x).all():
+    if not math.isfinite(np.vdot(x, x)):
         return QpSolution(status=PlanStatus.FAILED, x=None, iterations=iterations)
     return QpSolution(status=status, x=np.asarray(x, dtype=np.float64), iterations=iterations)
 
