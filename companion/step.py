@@ -3,8 +3,6 @@
 Pure: the same memory, inputs and system give the same result, in flight, in simulation and in replay.
 """
 
-import math
-
 from companion.autopilots.driver import AutopilotCommand, Desire
 from companion.config import CompanionConfig
 from companion.contact import may_force_motors_off, signs_of
@@ -13,6 +11,7 @@ from companion.flying import fly, setpoint
 from companion.pad import PadPath, pad_path
 from companion.pad_height import pad_raised_m, with_pad_raised
 from companion.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
+from companion.planning.requests import are_finite
 from companion.reference import compare
 from companion.shifts import in_present_frame
 from companion.situation import Situation, drone_now, range_height_m
@@ -88,9 +87,8 @@ def _pad(memory: StepMemory, inputs: StepInputs, system: System) -> tuple[StepMe
 
 
 def _is_finite(forecast: Forecast) -> bool:
-    arrays = [forecast.position_enu_m, forecast.velocity_enu_m_s, forecast.acceleration_enu_m_s2]
-    arrays += [forecast.position_std_m, *([] if forecast.yaw_rad is None else [forecast.yaw_rad])]
-    return math.isfinite(sum(float(values.sum()) for values in arrays))
+    path = (forecast.position_enu_m, forecast.velocity_enu_m_s, forecast.acceleration_enu_m_s2)
+    return are_finite(*path, forecast.position_std_m, *(() if forecast.yaw_rad is None else (forecast.yaw_rad,)))
 
 
 def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, system: System) -> Situation:

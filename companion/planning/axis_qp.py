@@ -4,12 +4,13 @@ Variables: the jerk of each block, then one slack >= 0 each for speed, accelerat
 floor, height. Minimise half of the integral of `e'Qe + r (u - u_ref)^2`, `e` the error of [p, v, a], plus `e'Pe` at
 the horizon's end with P of the infinite-horizon problem (algebraic Riccati equation), plus an exact penalty on the
 slacks. The jerk's bounds are hard, all others soft: with finite numbers the programme is always feasible.
-All matrices are built once; a solve only makes vectors.
+All matrices are built once; a solve only makes vectors, in compiled calls.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from scipy.linalg import solve_continuous_are
 
 from companion.data import Array
@@ -17,17 +18,8 @@ from companion.planning.condensed import AxisModel
 from companion.planning.config import MpcConfig
 from companion.planning.qp import QpSolution, QpSolver
 
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class AxisBounds:
-    """Bounds at the nodes (n,) or, for acceleration and jerk, at the ends of and within the m blocks (m,)."""
-
-    velocity_min_m_s: Array
-    velocity_max_m_s: Array
-    acceleration_min_m_s2: Array
-    acceleration_max_m_s2: Array
-    jerk_max_m_s3: Array
-    floor_m: Array | None
+Bounds = tuple[Array, Array]
+"""Lower and upper (c,), as `envelope.bound_rows` has them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -37,7 +29,7 @@ class AxisProblem:
     Attributes:
         model: the predictions behind them.
         H: (q, q) Hessian over the m moves and the slacks.
-        A: (c, q) constraint matrix, rows as `bounds_of` orders them.
+        A: (c, q) constraint matrix, rows as `envelope.bound_rows` orders them.
         from_state: (m, 3) gradient with respect to the moves per state.
         from_reference: (m, 3 n) the same per position, velocity and acceleration reference.
         move_weight: (m,) the same per jerk reference.
@@ -54,31 +46,28 @@ class AxisProblem:
 
     def gradient(self, x: Array, reference: Array, jerk_m_s3: Array) -> Array:
         """Return the linear term (q,) for the state `x` (3,), a reference (3, n) of p, v, a, and one (m,) of jerk."""
-        moves = self.from_state @ x - self.from_reference @ reference.ravel() - self.move_weight * jerk_m_s3
-        return np.concatenate((moves, self.slack_gradient))
+        weights = (self.from_state, self.from_reference, self.move_weight, self.slack_gradient)
+        return linear_term(weights, x, reference, jerk_m_s3)
 
-    def bounds_of(self, x: Array, bounds: AxisBounds) -> tuple[Array, Array]:
-        """Return the lower and upper bounds (c,): of moves, slacks, velocity, acceleration and the floor."""
-        free_v = self.model.free_v @ x
-        lower, upper = np.full(len(self.A), -np.inf), np.full(len(self.A), np.inf)
-        moves, slacks, nodes = len(self.model.move_s), len(self.slack_gradient), len(free_v)
-        velocity = moves + slacks
-        acceleration = velocity + 2 * nodes
-        lower[:moves] = -bounds.jerk_max_m_s3
-        upper[:moves] = bounds.jerk_max_m_s3
-        lower[moves:velocity] = 0.0
-        lower[velocity : velocity + nodes] = bounds.velocity_min_m_s - free_v
-        upper[velocity + nodes : acceleration] = bounds.velocity_max_m_s - free_v
-        lower[acceleration : acceleration + moves] = bounds.acceleration_min_m_s2 - x[2]
-        upper[acceleration + moves : acceleration + 2 * moves] = bounds.acceleration_max_m_s2 - x[2]
-        if bounds.floor_m is not None:
-            lower[acceleration + 2 * moves :] = bounds.floor_m - self.model.free_p @ x
-        return lower, upper
-
-    def solve(self, solver: QpSolver, x: Array, reference: Array, jerk_m_s3: Array, bounds: AxisBounds) -> QpSolution:
+    def solve(self, solver: QpSolver, x: Array, reference: Array, jerk_m_s3: Array, bounds: Bounds) -> QpSolution:
         """Return the moves (m,) and slacks that are best from the state `x` (3,)."""
-        lower, upper = self.bounds_of(x, bounds)
-        return solver.solve(self.H, self.gradient(x, reference, jerk_m_s3), self.A, lower, upper, None)
+        return solver.solve(self.H, self.gradient(x, reference, jerk_m_s3), self.A, *bounds, None)
+
+
+@njit(cache=True)
+def linear_term(weights: tuple[Array, Array, Array, Array], x: Array, reference: Array, jerk: Array) -> Array:
+    """Return the linear term (q,); `weights` are the problem's, the rest as `AxisProblem.gradient` takes them."""
+    from_state, from_reference, move_weight, slack_gradient = weights
+    moves, nodes = len(move_weight), reference.shape[1]
+    term = np.empty(moves + len(slack_gradient))
+    for move in range(moves):
+        slope = from_state[move, 0] * x[0] + from_state[move, 1] * x[1] + from_state[move, 2] * x[2]
+        for rate in range(3):
+            for node in range(nodes):
+                slope -= from_reference[move, rate * nodes + node] * reference[rate, node]
+        term[move] = slope - move_weight[move] * jerk[move]
+    term[moves:] = slack_gradient
+    return term
 
 
 def make_axis_problem(model: AxisModel, config: MpcConfig, *, has_floor: bool) -> AxisProblem:
@@ -96,8 +85,8 @@ def make_axis_problem(model: AxisModel, config: MpcConfig, *, has_floor: bool) -
         model=model,
         H=0.5 * (H + H.T),
         A=_constraints(model, moves, nodes, slacks),
-        from_state=forced.T @ weight @ free,
-        from_reference=forced.T @ weight,
+        from_state=np.ascontiguousarray(forced.T @ weight @ free),
+        from_reference=np.ascontiguousarray(forced.T @ weight),
         move_weight=move_weight,
         slack_gradient=np.full(slacks, config.slack_weight),
     )

@@ -1,9 +1,14 @@
-"""Bounds that are widened just enough for a state that already breaks them to come back as fast as it can.
+"""The bounds of the axes' programmes: what each axis may use of the flight limits, and widened where it must be.
+
+The major axis leaves what the minor one needs for the target's own motion; the minor one gets what the major one's plan
+leaves of each norm. Bounds are widened just enough for a state that already breaks them to come back as fast as it can.
 
 The widened speed bound is the speed that is left when acceleration is turned around with nearly all of the jerk and
 then held at nearly all of the acceleration limit; the widened acceleration bound falls with the jerk; the lowered
 floor is the height reached by pulling up likewise, at no more than the climb limit. All functions are compiled.
 """
+
+import math
 
 import numpy as np
 from numba import njit
@@ -59,3 +64,99 @@ def reachable_floor(
         before, then = velocity, t_s[i]
         floor[i] = min(floor_m[i], height)
     return floor
+
+
+MINOR_SHARE_MIN = 0.05
+"""Share of a norm limit that the minor axis gets even where the major one's plan leaves nothing."""
+
+MINOR_PUSH_FACTOR = 1.1
+"""How much more than its way's acceleration the minor axis gets, for the smoothing of the plan."""
+
+
+@njit(cache=True)
+def left(norm: float, used: Array) -> Array:
+    """Return what is left of a norm limit beside `used` (k,)."""
+    return np.sqrt(np.maximum(norm * norm - used * used, (MINOR_SHARE_MIN * norm) ** 2))
+
+
+@njit(cache=True)
+def major_share(
+    minor: Array, target_v: Array, target_a: Array, way: Array, norms: Array, node_s: Array, end_s: Array
+) -> tuple[Array, Array, Array]:
+    """Return speed (n,), acceleration and jerk (m,) that the major axis may use beside what the minor one needs.
+
+    That is the target's own motion and the way's acceleration, and at first what the minor axis moves at now.
+
+    Args:
+        minor: (3,) position, velocity and acceleration of the minor axis.
+        target_v: (n + 1,) the target's velocity along it, now and at the nodes.
+        target_a: (m + 1,) the target's acceleration along it, now and at the ends of the blocks.
+        way: (3,) split of the acceleration norm, rad; acceleration of the minor axis's way; share of the speed limit
+            that the minor axis gets at least.
+        norms: (3,) of speed, acceleration and jerk.
+        node_s: (n,).
+        end_s: (m,).
+    """
+    push = np.abs(target_a[1:]) + MINOR_PUSH_FACTOR * way[1]
+    target = np.abs(target_v)
+    slowing = 0.5 * push.min() * np.maximum(node_s - 0.2, 0.0)
+    excess = np.maximum(abs(minor[1]) - target[0] - slowing, way[2] * norms[0])
+    easing = abs(minor[2]) - 0.5 * math.sin(way[0]) * norms[2] * end_s
+    jerk = np.full(len(push), math.cos(way[0]) * norms[2])
+    return left(norms[0], target[1:] + excess), left(norms[1], np.maximum(easing, push)), jerk
+
+
+@njit(cache=True)
+def minor_share(
+    major: Array, jerk: Array, forced_v: Array, norms: Array, node_s: Array, move_s: Array
+) -> tuple[Array, Array, Array]:
+    """Return speed (n,), acceleration and jerk (m,) that the major axis's plan leaves of the norms.
+
+    Args:
+        major: (3,) position, velocity and acceleration of the major axis.
+        jerk: (m,) its plan.
+        forced_v: (n, m) its velocity per jerk.
+        norms: (3,) of speed, acceleration and jerk.
+        node_s: (n,).
+        move_s: (m,).
+    """
+    velocity = major[1] + major[2] * node_s
+    for node in range(len(node_s)):
+        for move in range(len(jerk)):
+            velocity[node] += forced_v[node, move] * jerk[move]
+    push = major[2] + np.cumsum(move_s * jerk)
+    return left(norms[0], velocity), left(norms[1], push), left(norms[2], jerk)
+
+
+@njit(cache=True)
+def bound_rows(
+    x: Array, down: Array, up: Array, push: Array, jerk: Array, floor: Array, node_s: Array, end_s: Array
+) -> tuple[Array, Array]:
+    """Return the lower and upper bounds (c,) of moves, slacks, velocity, acceleration and the floor, widened.
+
+    Args:
+        x: (3,) position, velocity and acceleration of the axis.
+        down: (n,) the largest velocity downwards.
+        up: (n,) the largest velocity upwards.
+        push: (m,) the largest acceleration.
+        jerk: (m,) the largest jerk.
+        floor: (n,) the lowest position, or empty.
+        node_s: (n,).
+        end_s: (m,).
+    """
+    v, a, braking, turning = x[1], x[2], push.min(), jerk.min()
+    moves, nodes = len(jerk), len(node_s)
+    velocity = moves + (3 if len(floor) else 2)
+    acceleration = velocity + 2 * nodes
+    lower = np.full(acceleration + 2 * moves + len(floor), -np.inf)
+    upper = np.full(len(lower), np.inf)
+    lower[:moves], upper[:moves] = -jerk, jerk
+    lower[moves:velocity] = 0.0
+    free = v + a * node_s
+    lower[velocity : velocity + nodes] = -velocity_ceiling(down, -v, -a, braking, turning, node_s) - free
+    upper[velocity + nodes : acceleration] = velocity_ceiling(up, v, a, braking, turning, node_s) - free
+    lower[acceleration : acceleration + moves] = -acceleration_ceiling(push, -a, turning, end_s) - a
+    upper[acceleration + moves : acceleration + 2 * moves] = acceleration_ceiling(push, a, turning, end_s) - a
+    if len(floor):
+        lower[acceleration + 2 * moves :] = floor - (x[0] + (v + 0.5 * a * node_s) * node_s)
+    return lower, upper

@@ -6,27 +6,22 @@ horizontal axes are turned to where the motion is needed. The major one is solve
 the minor one then gets what the major one's plan leaves of each norm, node by node.
 """
 
-import math
 from functools import lru_cache
 
 import numpy as np
 
 from companion.data import Array, FlightLimits
-from companion.planning.axis_qp import AxisBounds, make_axis_problem
+from companion.planning.axis_qp import Bounds, make_axis_problem
 from companion.planning.brake import brake
 from companion.planning.condensed import forced_response, free_response, make_axis_model
 from companion.planning.config import MpcConfig
-from companion.planning.envelope import acceleration_ceiling, reachable_floor, velocity_ceiling
+from companion.planning.envelope import bound_rows, major_share, minor_share, reachable_floor
 from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Trajectory
 from companion.planning.horizon import Horizon, make_horizon
 from companion.planning.qp import make_solver
 from companion.planning.requests import has_finite_target, with_finite_state
 
-MINOR_SHARE_MIN = 0.05
-"""Share of a norm limit that the minor axis gets even where the major one's plan leaves nothing."""
-
-MINOR_PUSH_FACTOR = 1.1
-"""How much more than its way's acceleration the minor axis gets, for the smoothing of the plan."""
+NO_FLOOR: Array = np.empty(0)
 
 
 class Mpc:
@@ -62,67 +57,29 @@ class Mpc:
             excess = max(excess, float(solution.x[len(moves) :].max()))
         return self._result(request, horizon, moves, excess, iterations)
 
-    def _bounds(self, horizon: Horizon, limits: FlightLimits, axis: int, major_jerk: Array) -> AxisBounds:
-        """Return the bounds of an axis, widened so that its state can keep them."""
+    def _bounds(self, horizon: Horizon, limits: FlightLimits, axis: int, major_jerk: Array) -> Bounds:
+        """Return the bounds of an axis's programme."""
+        model, x = self._model, horizon.state
+        norms = np.array((limits.speed_max_m_s, limits.acceleration_max_m_s2, limits.jerk_max_m_s3))
         match axis:
             case 0:
-                speed, push, jerk = self._major(horizon, limits)
+                way = np.array((horizon.split_rad, horizon.minor_push_m_s2, self._config.lateral_speed_fraction))
+                target_v, target_a = horizon.target_velocity_m_s[1], horizon.target_acceleration_m_s2[1]
+                share = major_share(x[:, 1], target_v, target_a, way, norms, model.node_s, model.end_s)
             case 1:
-                speed, push, jerk = self._left_for_minor(horizon, limits, major_jerk)
+                share = minor_share(x[:, 0], major_jerk, model.forced_v, norms, model.node_s, model.move_s)
             case _:
                 return self._vertical(horizon, limits)
-        return self._widened(horizon.state[:, axis], (speed, speed), push, jerk, None)
+        speed, push, jerk = share
+        return bound_rows(x[:, axis], speed, speed, push, jerk, NO_FLOOR, model.node_s, model.end_s)
 
-    def _major(self, horizon: Horizon, limits: FlightLimits) -> tuple[Array, Array, Array]:
-        """Return speed (n,), acceleration and jerk (m,) that the major axis may use beside what the minor one needs.
-
-        That is the target's own motion and the way's acceleration, and at first what the minor axis moves at now.
-        """
-        v_now, a_now = abs(float(horizon.state[1, 1])), abs(float(horizon.state[2, 1]))
-        major_share, minor_share = math.cos(horizon.split_rad), math.sin(horizon.split_rad)
-        target = np.abs(horizon.target_velocity_m_s[1])
-        push = np.abs(horizon.target_acceleration_m_s2[1, 1:]) + MINOR_PUSH_FACTOR * horizon.minor_push_m_s2
-        slowing = 0.5 * float(push.min()) * np.maximum(self._model.node_s - 0.2, 0.0)
-        excess = np.maximum(v_now - target[0] - slowing, self._config.lateral_speed_fraction * limits.speed_max_m_s)
-        easing = a_now - 0.5 * minor_share * limits.jerk_max_m_s3 * self._model.end_s
-        return (
-            _left(limits.speed_max_m_s, target[1:] + excess),
-            _left(limits.acceleration_max_m_s2, np.maximum(easing, push)),
-            np.full_like(push, major_share * limits.jerk_max_m_s3),
-        )
-
-    def _left_for_minor(self, horizon: Horizon, limits: FlightLimits, major_jerk: Array) -> tuple[Array, Array, Array]:
-        """Return speed (n,), acceleration and jerk (m,) that the major axis's plan leaves of the norms."""
-        model, x = self._model, horizon.state[:, 0]
-        return (
-            _left(limits.speed_max_m_s, model.free_v @ x + model.forced_v @ major_jerk),
-            _left(limits.acceleration_max_m_s2, x[2] + np.cumsum(model.move_s * major_jerk)),
-            _left(limits.jerk_max_m_s3, major_jerk),
-        )
-
-    def _vertical(self, horizon: Horizon, limits: FlightLimits) -> AxisBounds:
+    def _vertical(self, horizon: Horizon, limits: FlightLimits) -> Bounds:
         """Return the bounds of the vertical axis."""
-        x, t_s = horizon.state[:, 2], self._model.node_s
+        x, t_s, moves = horizon.state[:, 2], self._model.node_s, len(self._model.move_s)
         pull, jerk = limits.vertical_acceleration_max_m_s2, limits.jerk_max_m_s3
-        speeds = np.full_like(t_s, limits.descent_max_m_s), np.full_like(t_s, limits.climb_max_m_s)
+        down, up = np.full(len(t_s), limits.descent_max_m_s), np.full(len(t_s), limits.climb_max_m_s)
         floor = reachable_floor(horizon.floor_m, x, pull, limits.climb_max_m_s, jerk, t_s)
-        ones = np.ones_like(self._model.move_s)
-        return self._widened(x, speeds, pull * ones, jerk * ones, floor)
-
-    def _widened(
-        self, x: Array, speeds: tuple[Array, Array], push: Array, jerk: Array, floor: Array | None
-    ) -> AxisBounds:
-        """Return the bounds, widened so that the state `x` can keep them; `speeds` are those down and up."""
-        _, v, a = x.tolist()
-        nodes, ends, braking, turning = self._model.node_s, self._model.end_s, float(push.min()), float(jerk.min())
-        return AxisBounds(
-            velocity_min_m_s=-velocity_ceiling(speeds[0], -v, -a, braking, turning, nodes),
-            velocity_max_m_s=velocity_ceiling(speeds[1], v, a, braking, turning, nodes),
-            acceleration_min_m_s2=-acceleration_ceiling(push, -a, turning, ends),
-            acceleration_max_m_s2=acceleration_ceiling(push, a, turning, ends),
-            jerk_max_m_s3=jerk,
-            floor_m=floor,
-        )
+        return bound_rows(x, down, up, np.full(moves, pull), np.full(moves, jerk), floor, t_s, self._model.end_s)
 
     def _result(
         self, request: PlanRequest, horizon: Horizon, moves: Array, excess: float, iterations: int
@@ -152,8 +109,3 @@ def _responses(nodes_s: tuple[float, ...], dt_s: float, moves_s: tuple[float, ..
     """Return the maps (3, n + 1, 3) and (3, n + 1, m) from state and moves to p, v, a at the nodes and at `dt_s`."""
     times, moves = np.array([*nodes_s, dt_s]), np.array(moves_s)
     return np.stack(free_response(times)), np.stack(forced_response(times, moves))
-
-
-def _left(norm: float, used: Array) -> Array:
-    """Return what is left of a norm limit beside `used` (k,)."""
-    return np.sqrt(np.maximum(norm * norm - used * used, (MINOR_SHARE_MIN * norm) ** 2))

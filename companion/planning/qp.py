@@ -5,7 +5,6 @@ solver state survives a call, so the same problem gives the same bits in any ord
 """
 
 import importlib
-import math
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -14,6 +13,7 @@ import numpy as np
 from companion.data import Array
 from companion.planning.config import SolverKind
 from companion.planning.guidance import PlanStatus
+from companion.planning.requests import are_finite
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -75,7 +75,7 @@ def refusal(H: Array, f: Array, A: Array, lower: Array, upper: Array) -> QpSolut
 
     DAQP calls problems with NaN or with crossed bounds solved.
     """
-    if not math.isfinite(np.vdot(f, f) + np.vdot(H, H) + np.vdot(A, A)):
+    if not are_finite(f, H, A):
         return QpSolution(status=PlanStatus.FAILED, x=None, iterations=0)
     if np.count_nonzero(lower <= upper) == len(lower):
         return None
@@ -150,7 +150,7 @@ def _solution(status: PlanStatus, x: Array | None, iterations: int) -> QpSolutio
     """Return a solution whose `x` is there only if it may be used."""
     if status is not PlanStatus.SOLVED or x is None:
         return QpSolution(status=status, x=None, iterations=iterations)
-    if not math.isfinite(np.vdot(x, x)):
+    if not are_finite(x):
         return QpSolution(status=PlanStatus.FAILED, x=None, iterations=iterations)
     return QpSolution(status=status, x=np.asarray(x, dtype=np.float64), iterations=iterations)
 

@@ -3,6 +3,9 @@
 import math
 from dataclasses import replace
 
+import numpy as np
+
+from companion.data import Array
 from companion.planning.guidance import PlanRequest, ReferenceState
 
 
@@ -23,12 +26,16 @@ def with_finite_state(last: ReferenceState | None, request: PlanRequest) -> Plan
 
 def is_finite_state(state: ReferenceState) -> bool:
     """Return whether all nine numbers are finite."""
-    total = state.position_enu_m.sum() + state.velocity_enu_m_s.sum() + state.acceleration_enu_m_s2.sum()
-    return math.isfinite(total)
+    return are_finite(state.position_enu_m, state.velocity_enu_m_s, state.acceleration_enu_m_s2)
 
 
 def has_finite_target(request: PlanRequest) -> bool:
     """Return whether target and floor are finite throughout."""
     target = request.target
-    total = target.position_enu_m.sum() + target.velocity_enu_m_s.sum() + target.acceleration_enu_m_s2.sum()
-    return math.isfinite(total + request.floor_enu_m.sum() + target.offset_s.sum())
+    path = (target.position_enu_m, target.velocity_enu_m_s, target.acceleration_enu_m_s2)
+    return are_finite(*path, request.floor_enu_m, target.offset_s)
+
+
+def are_finite(*arrays: Array) -> bool:
+    """Return whether all numbers of all arrays are finite, none beyond 1e150: their squares are summed, in no time."""
+    return all(math.isfinite(np.vdot(array, array)) for array in arrays)

@@ -1,0 +1,84 @@
+"""The compiled bounds of the axes' programmes, against the predictions that they bound and against their Python."""
+
+import numpy as np
+import pytest
+
+from companion.data import Array
+from companion.planning.axis_qp import linear_term, make_axis_problem
+from companion.planning.condensed import make_axis_model
+from companion.planning.config import MpcConfig
+from companion.planning.envelope import MINOR_SHARE_MIN, bound_rows, major_share, minor_share
+
+CONFIG = MpcConfig()
+MODEL = make_axis_model(np.array(CONFIG.moves_s), CONFIG.node_spacing_max_s)
+NODES, MOVES = len(MODEL.node_s), len(MODEL.move_s)
+NORMS = np.array([20.0, 5.0, 12.0])
+NO_FLOOR = np.empty(0)
+
+
+def kept(x: Array, jerk: Array, limits: tuple[Array, ...], floor: Array) -> bool:
+    """Whether a plan keeps to its limits by the predictions themselves, without any slack."""
+    down, up, push, jerk_max = limits
+    velocity = MODEL.free_v @ x + MODEL.forced_v @ jerk
+    ends = (MODEL.free_a @ x + MODEL.forced_a @ jerk)[MODEL.end_node[1:] - 1]
+    inside = [velocity >= -down, velocity <= up, np.abs(ends) <= push, np.abs(jerk) <= jerk_max]
+    if len(floor):
+        inside.append(MODEL.free_p @ x + MODEL.forced_p @ jerk >= floor)
+    return all(bool(rows.all()) for rows in inside)
+
+
+@pytest.mark.parametrize("has_floor", [False, True])
+def test_rows_hold_exactly_where_the_plan_keeps_to_its_limits(*, has_floor: bool) -> None:
+    rng = np.random.default_rng(5)
+    problem = make_axis_problem(MODEL, CONFIG, has_floor=has_floor)
+    verdicts = []
+    for _ in range(300):
+        x = np.array([rng.uniform(1.0, 2.0), *rng.uniform(-0.4, 0.4, 2)])  # keeps all limits by itself
+        down, up, push, most = (rng.uniform(0.9, 3.0, n) for n in (NODES, NODES, MOVES, MOVES))
+        floor = rng.uniform(-4.0, -3.0, NODES) if has_floor else NO_FLOOR
+        jerk = rng.uniform(-0.8, 0.8, MOVES)
+        lower, upper = bound_rows(x, down, up, push, most, floor, MODEL.node_s, MODEL.end_s)
+        rows = problem.A @ np.append(jerk, np.zeros(len(problem.slack_gradient)))
+        verdicts.append(kept(x, jerk, (down, up, push, most), floor))
+        assert bool(((rows >= lower) & (rows <= upper)).all()) == verdicts[-1]
+    assert {True, False} == set(verdicts)
+
+
+def test_major_axis_gets_the_whole_norm_where_the_minor_one_needs_nothing() -> None:
+    none, way = np.zeros(3), np.array([0.0, 0.0, 0.0])
+    speed, push, jerk = major_share(
+        none, np.zeros(NODES + 1), np.zeros(MOVES + 1), way, NORMS, MODEL.node_s, MODEL.end_s
+    )
+    assert [speed.min(), push.min(), jerk.min()] == pytest.approx(NORMS.tolist())
+
+
+def test_both_axes_together_keep_the_norms() -> None:
+    rng = np.random.default_rng(8)
+    x, plan = np.array([3.0, 9.0, -1.5]), rng.uniform(-2.0, 2.0, MOVES)
+    speed, push, jerk = minor_share(x, plan, MODEL.forced_v, NORMS, MODEL.node_s, MODEL.move_s)
+    velocity = MODEL.free_v @ x + MODEL.forced_v @ plan
+    ends = (MODEL.free_a @ x + MODEL.forced_a @ plan)[MODEL.end_node[1:] - 1]
+    for norm, own, rest in zip(NORMS, (velocity, ends, plan), (speed, push, jerk), strict=True):
+        assert np.hypot(own, rest) == pytest.approx(norm)
+
+
+def test_minor_axis_keeps_a_share_of_a_norm_that_is_used_up() -> None:
+    x = np.array([0.0, 25.0, 0.0])
+    speed, _, _ = minor_share(x, np.zeros(MOVES), MODEL.forced_v, NORMS, MODEL.node_s, MODEL.move_s)
+    assert speed == pytest.approx(MINOR_SHARE_MIN * NORMS[0])
+
+
+def test_kernels_are_their_python() -> None:
+    rng = np.random.default_rng(11)
+    x, plan = rng.standard_normal(3), rng.standard_normal(MOVES)
+    target_v, target_a, way = rng.standard_normal(NODES + 1), rng.standard_normal(MOVES + 1), rng.uniform(0.2, 1.2, 3)
+    major = (x, target_v, target_a, way, NORMS, MODEL.node_s, MODEL.end_s)
+    minor = (x, plan, MODEL.forced_v, NORMS, MODEL.node_s, MODEL.move_s)
+    share = major_share(*major)
+    rows = (x, share[0], share[0], *share[1:], NO_FLOOR, MODEL.node_s, MODEL.end_s)
+    problem = make_axis_problem(MODEL, CONFIG, has_floor=False)
+    weights = (problem.from_state, problem.from_reference, problem.move_weight, problem.slack_gradient)
+    term = (weights, x, rng.standard_normal((3, NODES)), plan)
+    for kernel, arguments in ((major_share, major), (minor_share, minor), (bound_rows, rows), (linear_term, term)):
+        compiled, plain = np.hstack([*kernel(*arguments)]), np.hstack([*kernel.py_func(*arguments)])
+        np.testing.assert_allclose(compiled, plain, rtol=1e-12, atol=1e-12)
