@@ -25,6 +25,7 @@ _PLOTS = (
     ("relative speed [m/s], error of the estimate [m]", (
         ("relative_speed_m_s", "relative", GREEN), ("error_m", "error", ORANGE))),
 )  # fmt: skip
+_VALUE = "text-align:right;white-space:nowrap"
 _PAINT = {
     "descend": "#169146", "touchdown": "#169146", "secured": "#0f6b33", "abort": "#c62828", "hold": "#b26a00",
     "pilot in command": "#c62828",
@@ -136,7 +137,7 @@ def _text(state: ViewState, t_s: float, *, stale: bool) -> str:
     reason = "waiting for its status" if status is None or stale else status.reason
     paint = _PAINT.get(phase, "#2563eb")
     rows = "".join(
-        f'<tr><td style="color:#667">{escape(name)}</td><td style="text-align:right">{escape(value)}</td></tr>'
+        f'<tr><td style="color:#667">{escape(name)}</td><td style="{_VALUE}">{escape(value)}</td></tr>'
         for name, value in _rows(state, t_s)
     )
     legend = " ".join(
@@ -144,7 +145,7 @@ def _text(state: ViewState, t_s: float, *, stale: bool) -> str:
         for color, name in _LEGEND
     )
     return (
-        '<div style="padding:.2rem .8rem;font-size:.82rem;line-height:1.35">'
+        '<div style="padding:.2rem .8rem;font-size:.78rem;line-height:1.35">'
         f'<div id="phase" style="font-size:1.35rem;font-weight:700;color:{paint}">{escape(phase)}</div>'
         f'<div id="reason" style="min-height:2.7em;color:#334">{escape(reason)}</div>'
         f'<table style="width:100%;font-variant-numeric:tabular-nums">{rows}</table>'
