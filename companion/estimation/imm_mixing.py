@@ -107,6 +107,8 @@ def update_modes(
     """Return the filter after a measurement, the mixture's NIS, and the smaller of the modes' NIS.
 
     The mixture's NIS tells consistency; an outlier is what even the mode with the wider noise does not expect.
+    What a measurement says for either mode counts as that of one component: receivers state the errors of their axes as
+    independent, but where they are one and the same (a common delay, a reflection) it would count m times over.
 
     Args:
         modes: the filter.
@@ -125,7 +127,7 @@ def update_modes(
         residuals[j] = residual_of(kind, value, expected)
         spreads[j] = carried_through(H, covariances[j]) + R
         xs[j], Ps[j], nis[j], fits[j] = correct(means[j], covariances[j], residuals[j], H, R)
-    likelihood = np.maximum(weights, WEIGHT_MIN) * np.exp(fits - fits.max())
+    likelihood = np.maximum(weights, WEIGHT_MIN) * np.exp((fits - fits.max()) / m)
     after = likelihood / likelihood.sum()
     residual, spread = combine(residuals, spreads, weights)
     inverse, _ = inverse_of(spread)
