@@ -15,7 +15,7 @@ from scenarios.config import Scenario
 from scenarios.lockstep import Lockstep
 from scenarios.run import RunOptions, run_over_wire
 from scenarios.shares import sampled_parts, shares_of
-from scenarios.stopwatch import quantiles_ms, timed_steps
+from scenarios.stopwatch import quantiles_ms, ratio_of, timed_steps
 
 Table = dict[str, Any]
 Announce = Callable[[str], None]
@@ -56,6 +56,9 @@ BUDGETS = (
     Budget(
         path=("step_ms", "companion", "p99"), label="companion, state in to setpoint out, p99", unit="ms", limit=5.0
     ),
+    Budget(path=("step_ms", "planner", "median"), label="planner, median of a step", unit="ms", limit=0.3),
+    Budget(path=("step_ms", "planner", "p99"), label="planner, p99 of a step", unit="ms", limit=3.0),
+    Budget(path=("lockstep", "planner_to_solver"), label="planner, bare solver is 1", unit="x", limit=2.0),
     Budget(path=("companion", "cpu_share"), label="companion, share of a core", unit="", limit=0.3),
     Budget(path=("companion", "memory_mb"), label="companion, memory", unit="MB", limit=250.0),
     Budget(path=("real_time_factor",), label="simulator, factor at 1x", unit="x", limit=0.99, at_least=True),
@@ -117,6 +120,7 @@ def _lockstep(scenario: Scenario, seed: int) -> Table:
         "real_time_factor": round(run.recording.elapsed_s / wall_s, 2),
         "cpu_s": round(cpu_s, 3),
         "cpu_shares": shares_of(samples),
+        "planner_to_solver": ratio_of(durations_s["planner"], durations_s["solver"]),
         "step_ms": {name: quantiles_ms(durations) for name, durations in durations_s.items() if durations},
     }
 

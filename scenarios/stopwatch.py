@@ -10,13 +10,15 @@ import sim_autopilot.node
 from companion.planning.mpc import Mpc
 from companion.planning.mpc_report import ReportMpc
 from companion.planning.pn import ProportionalNavigation
+from companion.planning.qp import DaqpSolver
 
 _STEPS: Mapping[str, Sequence[tuple[object, str]]] = {
     "autopilot_step": ((sim_autopilot.node, "autopilot_step"),),
     "companion_step": ((companion.node, "companion_step"),),
     "planner": ((Mpc, "plan"), (ReportMpc, "plan"), (ProportionalNavigation, "plan")),
+    "solver": ((DaqpSolver, "call"),),
 }
-"""The two steps of a run, by the module that calls each, and the planning within the companion's."""
+"""The two steps of a run, by the module that calls each, the planning in the companion's, and the solver's calls."""
 
 _DIGITS = 4  # of milliseconds, a tenth of a microsecond
 
@@ -57,3 +59,8 @@ def quantiles_ms(durations_s: Sequence[float]) -> dict[str, float]:
     ordered = sorted(durations_s)
     ranks = {"median": len(ordered) // 2, "p99": int(0.99 * len(ordered)), "max": len(ordered) - 1}
     return {name: round(1e3 * ordered[rank], _DIGITS) for name, rank in ranks.items()}
+
+
+def ratio_of(whole_s: Sequence[float], part_s: Sequence[float]) -> float | None:
+    """Return how many times as long all of `whole_s` took as all of `part_s`, None where there is no part."""
+    return round(sum(whole_s) / sum(part_s), _DIGITS) if part_s else None

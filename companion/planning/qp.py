@@ -94,9 +94,16 @@ class DaqpSolver:
         refused = refusal(H, f, A, lower, upper)
         if refused is not None:
             return refused
+        x, flag, iterations = self.call(H, f, A, lower, upper, warm_start)
+        return _solution(DAQP_STATUS.get(flag, PlanStatus.FAILED), x, iterations)
+
+    def call(
+        self, H: Array, f: Array, A: Array, lower: Array, upper: Array, warm_start: Array | None
+    ) -> tuple[Array, int, int]:
+        """Return what the library makes of a problem, and nothing else: `x`, its exit flag, its iterations."""
         sense = np.zeros(len(lower), dtype=np.int32)
         x, _, flag, info = self._daqp.solve(H, f, A, upper, lower, sense, primal_start=warm_start)
-        return _solution(DAQP_STATUS.get(flag, PlanStatus.FAILED), x, int(info["iterations"]))
+        return x, flag, int(info["iterations"])
 
 
 class OsqpSolver:

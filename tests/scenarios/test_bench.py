@@ -16,7 +16,7 @@ from scenarios.catalogue import load_scenario
 from scenarios.lockstep import Lockstep
 from scenarios.processes import MODULES
 from scenarios.replay import read_flight, replay
-from scenarios.stopwatch import quantiles_ms, timed_steps
+from scenarios.stopwatch import quantiles_ms, ratio_of, timed_steps
 
 BUDGET = Budget(path=("a", "b"), label="a figure", unit="ms", limit=5.0)
 
@@ -44,6 +44,20 @@ def test_stopwatch_times_every_step_and_is_gone_afterwards() -> None:
     assert 5 <= len(durations_s["companion_step"]) <= 20
     assert min(min(durations) for durations in durations_s.values() if durations) > 0.0
     assert (callers[0]["autopilot_step"], callers[1]["companion_step"]) == plain
+
+
+def test_stopwatch_times_the_solver_inside_of_the_planner() -> None:
+    run = Lockstep(load_scenario("straight_5"), 1)
+    with timed_steps() as durations_s:
+        while len(durations_s["planner"]) < 5:
+            run.step()
+    assert len(durations_s["solver"]) == 3 * 5  # three axes
+    assert sum(durations_s["solver"]) < sum(durations_s["planner"])
+
+
+def test_ratio_is_that_of_the_sums_and_none_of_nothing() -> None:
+    assert ratio_of([4.0, 5.0], [1.0, 1.0, 1.0]) == 3.0
+    assert ratio_of([4.0], []) is None
 
 
 @pytest.mark.parametrize(
@@ -83,7 +97,7 @@ def test_the_command_prints_every_figure_with_its_budget(tmp_path: Path, capfd: 
     assert run_app("scenarios", app, ["bench", str(short), "--json"]) == 0
     table = json.loads(capfd.readouterr().out)
     assert 0.0 < table["real_time_factor"] < 1.05  # never ahead of the clock
-    assert set(table["step_ms"]) == {"companion", "autopilot_step", "companion_step", "planner"}
+    assert set(table["step_ms"]) == {"companion", "autopilot_step", "companion_step", "planner", "solver"}
     for step in table["step_ms"].values():
         assert 0.0 < step["median"] <= step["p99"] <= step["max"]
     assert 0.0 < table["companion"]["cpu_share"] < 2.0
