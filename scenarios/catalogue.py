@@ -1,7 +1,8 @@
 """The scenarios by name: TOML files in `scenarios/catalogue`, one per track, and presets of what goes with it.
 
 A name is a track and its speed rounded down (`straight_5`), perhaps with presets (`straight_5+sensors=nominal`).
-A file of one's own has the same keys; `base` names a scenario to start from. A section is a preset's name, or a
+A file of one's own has the same keys, perhaps with presets behind its name as well (`own.toml+firmware=px4`); `base`
+names a scenario to start from. A section is a preset's name, or a
 table of values, in which `preset` names what the values change.
 """
 
@@ -22,6 +23,7 @@ from scenarios.config import Scenario
 Table = dict[str, Any]
 _DEFAULT_PRESETS = {"sensors": "rtk", "wind": "calm", "link": "ideal", "vehicle": "car", "system": "default"}
 _PLAIN_OPTIONS = ("firmware",)
+_SUFFIX = ".toml"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,10 +50,12 @@ def load_scenario(name_or_path: str) -> Scenario:
     Raises:
         UserError: no such scenario, preset or file, or a file that does not fit.
     """
-    name, *options = name_or_path.split("+")
-    if name_or_path.endswith(".toml") or name.endswith(".toml"):  # a folder may have a "+" in its name
-        name, options = name_or_path, []
-        table = {"name": Path(name).stem} | _file_table(Path(name))
+    # A folder may have a "+" in its name.
+    path, suffix, presets = name_or_path.rpartition(_SUFFIX)
+    name, *options = presets.split("+")
+    if suffix:
+        table = {"name": Path(path).name} | _file_table(Path(path + suffix + name))
+        table["name"] = "+".join((table["name"], *options))
     else:
         table = _named(name) | {"name": name_or_path}
     for option in options:

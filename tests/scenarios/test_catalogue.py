@@ -96,6 +96,8 @@ def test_presets_in_a_name_replace_their_sections() -> None:
         ("straight_5+firmware=inav", ["firmware", "inav"]),
         ("", ["no scenario"]),
         ("nowhere.toml", ["nowhere.toml", "cannot be read"]),
+        ("nowhere.toml+firmware=px4", ["nowhere.toml", "cannot be read"]),
+        ("nowhere.tomlx", ["nowhere.tomlx", "cannot be read"]),
     ],
 )
 def test_wrong_name_is_one_line_that_names_what_is_near(name: str, words: list[str]) -> None:
@@ -111,6 +113,17 @@ def written(folder: Path, text: str) -> str:
     path = folder / "own.toml"
     path.write_text(text, encoding="utf-8")
     return str(path)
+
+
+def test_presets_behind_a_file_replace_its_sections(tmp_path: Path) -> None:
+    folder = tmp_path / "straight_5+sensors=nominal"  # as a run's folder may be called
+    folder.mkdir()
+    path = written(folder, 'base = "straight_5"\n[track]\nspeed_m_s = 8.0\n')
+    scenario = load_scenario(f"{path}+firmware=ardupilot+sensors=degraded")
+    assert (scenario.name, scenario.firmware) == ("own+firmware=ardupilot+sensors=degraded", "ardupilot")
+    assert scenario.sensors == load_scenario("straight_5+sensors=degraded").sensors
+    assert isinstance(scenario.track, MovingTrack)
+    assert scenario.track.speed_m_s == 8.0
 
 
 def test_file_with_a_base_changes_what_it_names(tmp_path: Path) -> None:
