@@ -86,5 +86,6 @@ def _handled(ftp: Ftp, case: Case) -> tuple[Ftp, Reply | None]:
     ftp, data = handler(ftp, case)
     if data is None:
         return ftp, None
-    session = 0 if rules.own_session else question.session
+    opens = question.opcode in {Opcode.OPEN_FILE_RO, Opcode.OPEN_FILE_WO, Opcode.CREATE_FILE}
+    session = 0 if rules.own_session and opens else question.session
     return ftp, Reply(session=session, asked=question.opcode, offset=question.offset, data=data)

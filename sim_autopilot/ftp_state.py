@@ -12,7 +12,7 @@ class FtpRules:
     """In what the firmwares' servers differ.
 
     Attributes:
-        own_session: whether the server, not the client, numbers the session: always 0.
+        own_session: whether the server, not the client, numbers the session of an open file: always 0.
         busy: refuses to open a second file.
         not_open: refuses to read or write without one.
         unknown: refuses what the server does not know.

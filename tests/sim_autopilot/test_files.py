@@ -111,6 +111,8 @@ def test_px4_numbers_the_session_itself_and_arducopter_takes_the_clients(
 ) -> None:
     for files, path, session in ((px4_files, GENERAL, 0), (copter_files, b"@PARAM/param.pck", 7)):
         files.session = 7
+        (answer,) = files.send(Opcode.LIST_DIRECTORY, b"/")
+        assert told(answer)[:2] == (Opcode.ACK, 7)
         (answer,) = files.send(Opcode.OPEN_FILE_RO, path)
         assert told(answer)[:2] == (Opcode.ACK, session)
 
