@@ -98,8 +98,7 @@ def heard(state: AutopilotState, message: Message, clock: ClockMap, driver: Driv
         case "HEARTBEAT":
             state = _heartbeat(state, message, driver)
         case "CURRENT_MODE":
-            in_control = driver.is_in_control(mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, message.custom_mode)
-            state = replace(state, view=replace(state.view, in_control=in_control))
+            state = _current_mode(state, message, driver)
         case "EXTENDED_SYS_STATE":
             taking_off = message.landed_state == mavlink.MAV_LANDED_STATE_TAKEOFF
             view = replace(state.view, landed=_landed(message.landed_state), taking_off=taking_off)
@@ -213,6 +212,14 @@ def _heartbeat(state: AutopilotState, message: Message, driver: Driver) -> Autop
         failsafe=message.system_status in _FAILSAFE_STATES,
     )
     return replace(state, view=view)
+
+
+def _current_mode(state: AutopilotState, message: Message, driver: Driver) -> AutopilotState:
+    """Take the mode; another one than was last asked for is a failsafe's, long before the heartbeat says so."""
+    custom = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
+    in_control = driver.is_in_control(custom, message.custom_mode)
+    overruled = not in_control and driver.is_in_control(custom, message.intended_custom_mode)
+    return replace(state, view=replace(state.view, in_control=in_control, overruled=overruled))
 
 
 def _landed(landed_state: int) -> bool | None:

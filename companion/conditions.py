@@ -89,6 +89,13 @@ def is_out_of_range(s: Situation, _: Approach | None, c: CompanionConfig) -> boo
     return float(np.hypot(*(s.drone.position_enu_m - s.waiting_point_enu_m)[:2])) > c.limits.range_max_m
 
 
+def _outruns(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    """Return whether the vehicle is faster than the drone may fly, since a limit was lowered or it drives faster."""
+    if s.limits is None or s.pad is None or fix_too_old(s, None, c):
+        return False
+    return float(np.hypot(*s.pad.velocity_enu_m_s[0, :2])) > s.limits.speed_max_m_s
+
+
 ABORT_TESTS = (
     Test("vehicle data too old", LANDING_PHASES, fix_too_old, lambda _: 0.0),
     Test("vehicle position too uncertain", NEAR_PHASES, is_uncertain, lambda c: c.abort.cone_hold_s),
@@ -100,6 +107,7 @@ ABORT_TESTS = (
     Test(
         "too fast against the pad", frozenset({Phase.DESCEND}), _too_fast_near_pad, lambda c: c.abort.near_speed_hold_s
     ),
+    Test("vehicle faster than the limit", LANDING_PHASES, _outruns, lambda c: c.chase.driving_hold_s),
     Test("too far from the start", LANDING_PHASES, is_out_of_range, lambda _: 0.0),
     Test("below the pad without contact", frozenset({Phase.DESCEND}), _missed_pad, lambda _: 0.0),
 )

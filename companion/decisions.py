@@ -91,7 +91,7 @@ def _with_evidence(event: Event, reason: str, situation: Situation) -> str:
 def _control_taken(progress: Progress, s: Situation) -> Decision | None:
     if progress.phase not in FLYING_PHASES or not progress.was_in_control:
         return None
-    if s.autopilot.failsafe:
+    if s.autopilot.failsafe or s.autopilot.overruled:
         return Event.PILOT_TOOK_OVER, "autopilot failsafe"
     if progress.phase is Phase.TOUCHDOWN and not s.autopilot.armed:
         return None  # as wanted; a mode that changes with it is not the pilot's

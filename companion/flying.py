@@ -9,7 +9,7 @@ from companion.data import FlightLimits, Setpoint
 from companion.pad import PadPath
 from companion.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
-from companion.reference import Tracking, carried, pressing, remember, setpoint_at
+from companion.reference import Tracking, carried, not_falling, pressing, remember, setpoint_at
 from companion.situation import Situation, approach
 from companion.step_data import StepInputs, StepMemory, System
 from companion.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
@@ -25,6 +25,8 @@ def setpoint(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) ->
     reference = memory.reference
     if reference is None or memory.driver.climbs_by_itself:
         return None
+    if inputs.driver is not None and inputs.driver.carries_setpoints_on:
+        reference = not_falling(reference)
     if memory.phase is Phase.TOUCHDOWN:
         reference = pressing(reference, config.touchdown.press_acceleration_m_s2)
     elif CONTACT in memory.held or DISPUTED_CONTACT in memory.held:

@@ -86,6 +86,15 @@ def pressing(reference: ReferenceState, acceleration_m_s2: float) -> ReferenceSt
     return replace(reference, acceleration_enu_m_s2=acceleration)
 
 
+def not_falling(reference: ReferenceState) -> ReferenceState:
+    """Return the model without a downward acceleration.
+
+    An autopilot that carries a setpoint on would add that up to several metres per second, should no other follow.
+    """
+    x, y, z = reference.acceleration_enu_m_s2
+    return replace(reference, acceleration_enu_m_s2=np.array([x, y, max(z, 0.0)]))
+
+
 def carried(reference: ReferenceState, duration_s: float) -> ReferenceState:
     """Return the model `duration_s` later (or, negative, earlier) at its present acceleration."""
     velocity, acceleration = reference.velocity_enu_m_s, reference.acceleration_enu_m_s2

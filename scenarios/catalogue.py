@@ -22,7 +22,7 @@ from scenarios.config import Scenario
 
 Table = dict[str, Any]
 _DEFAULT_PRESETS = {"sensors": "rtk", "wind": "calm", "link": "ideal", "vehicle": "car", "system": "default"}
-_PLAIN_OPTIONS = ("firmware",)
+_PLAIN_OPTIONS = ("firmware", "start")
 _SUFFIX = ".toml"
 
 

@@ -157,6 +157,7 @@ class Scenario(StrictModel):
     vehicle: VehicleConfig = VehicleConfig()
     system: SystemConfig = SystemConfig()
     firmware: FirmwareName = "px4"
+    start: Literal["instant", "boot"] = "instant"  # of the autopilot in lockstep; over the wire it always boots
     datum: DatumConfig = DatumConfig()
     drone_start_enu_m: Vector3 = (0.0, 0.0, 0.0)  # of the point on the road that it stands on
     waiting_point_enu_m: Vector3 = (0.0, 0.0, 5.0)  # 5 m above the road; source report, section "Task"

@@ -50,6 +50,11 @@ class FaultFlight(Lockstep):
         """Whether the autopilot's true mode is the one in which it flies setpoints."""
         return self.simulation.autopilot.memory.modes.mode.value == "offboard"
 
+    @property
+    def height_m(self) -> float:
+        """Of the drone above the road, on truth."""
+        return self.recording.drone[-1].position_enu_m[2] if self.recording.drone else 0.0
+
     def fly(self, duration_s: float) -> None:
         """Go on for `duration_s`."""
         for _ in range(round(duration_s / _STEP_S)):

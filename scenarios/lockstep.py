@@ -40,7 +40,8 @@ class Lockstep:
     ) -> None:
         keys = Keys()
         self.recording = Recording()
-        self.simulation = Simulation(scenario, seed, keys, START_NS, instant=True, publishes_truth=False)
+        instant = scenario.start == "instant"
+        self.simulation = Simulation(scenario, seed, keys, START_NS, instant=instant, publishes_truth=False)
         self.companion = build_node(scenario.system.companion if config is None else config, keys, recorder=recorder)
         self.companion.receive_pad(self.simulation.vehicle.pad)
         self._channels: Channels = channels_of(scenario, seed, START_NS)

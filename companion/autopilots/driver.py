@@ -21,6 +21,7 @@ class AutopilotView:
     armed: bool
     in_control: bool  # it is in the mode in which it follows the companion's setpoints
     failsafe: bool
+    overruled: bool = False  # by a failsafe: another mode than was last asked for is flown
     landed: bool | None = None
     taking_off: bool = False  # by itself, after a command
     refusal: str | None = None  # what it last said against arming
@@ -97,6 +98,10 @@ class Driver(Protocol):
     @property
     def timeout_default_s(self) -> float:
         """What that is taken for while it is unknown."""
+
+    @property
+    def carries_setpoints_on(self) -> bool:
+        """Whether it moves a setpoint on with its velocity and acceleration until the next one comes."""
 
     @property
     def speed_parameters(self) -> tuple[str, ...]:

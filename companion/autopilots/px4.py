@@ -30,6 +30,7 @@ class Px4Driver:
     limit_parameters = ("MPC_XY_VEL_MAX", "MPC_Z_VEL_MAX_UP", "MPC_Z_VEL_MAX_DN", "MPC_TILTMAX_AIR")
     timeout_parameter = "COM_OF_LOSS_T"
     timeout_default_s = 1.0
+    carries_setpoints_on = False  # it holds them as they came
     speed_parameters: tuple[str, ...] = ("MPC_XY_VEL_MAX",)
     mode_streams_hz: Mapping[int, float] = MappingProxyType({mavlink.MAVLINK_MSG_ID_CURRENT_MODE: 20.0})
     # 310 messages a second of PX4's default set for an onboard computer

@@ -35,7 +35,8 @@ DISTURBANCE_MAX_M_S2 = 8.0
 CORRECTION_MAX_M_S2 = 5.0
 """Horizontal, 27 degrees of tilt: the benchmark's motors turn the airframe so far in 0.25 s."""
 VERTICAL_CORRECTION_MAX_M_S2 = 3.0
-"""Leaves the rotors the thrust to turn with, also while sinking."""
+"""Leaves the rotors the thrust to turn with, also while sinking; beside this a correction may undo what is fed forward,
+or a drone whose setpoints stop coming would go on falling with the acceleration of the last."""
 VERTICAL_BRAKING_M_S2 = 2.0
 """Less than that, so that braking can still be corrected."""
 HEADING_SLOPE_PER_S = 4.0
@@ -172,7 +173,10 @@ def fill_acceleration(y: Array, memory: Array, reference: Array, control: Record
     out[0] += cosine * ahead - sine * left
     out[1] += sine * ahead + cosine * left
     rising = control["velocity_gain"][2] * (velocity[2] - y[9])
-    out[2] += min(VERTICAL_CORRECTION_MAX_M_S2, max(-VERTICAL_CORRECTION_MAX_M_S2, rising))
+    given = reference[8] if reference[HAS_ACCELERATION] > 0.0 else 0.0
+    most = VERTICAL_CORRECTION_MAX_M_S2 + max(0.0, -given)
+    least = -VERTICAL_CORRECTION_MAX_M_S2 - max(0.0, given)
+    out[2] += min(most, max(least, rising))
 
 
 @kernel

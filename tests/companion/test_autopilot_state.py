@@ -139,6 +139,15 @@ def test_mode_is_known_from_the_quicker_message() -> None:
     assert not state.view.in_control
 
 
+@pytest.mark.parametrize(
+    ("flown", "asked", "overruled"),
+    [(0x0304_0000, 0x0006_0000, True), (0x0304_0000, 0x0304_0000, False), (0x0006_0000, 0x0006_0000, False)],
+)
+def test_mode_that_nobody_asked_for_is_a_failsafes(flown: int, asked: int, overruled: bool) -> None:
+    state = _hear(mavlink.MAVLink_current_mode_message(0, flown, asked))
+    assert state.view.overruled is overruled
+
+
 @pytest.mark.parametrize(("landed_state", "landed"), [(0, None), (1, True), (2, False), (3, False), (4, False)])
 def test_landed_is_unknown_until_said(landed_state: int, landed: bool | None) -> None:
     assert _hear(mavlink.MAVLink_extended_sys_state_message(0, landed_state)).view.landed is landed

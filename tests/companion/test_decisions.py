@@ -42,6 +42,9 @@ UNSAFE: dict[str, Situation] = {
     "too far from the start": replace(
         situation(), waiting_point_enu_m=np.array([CONFIG.limits.range_max_m + 10.0, 0.0, 5.0])
     ),
+    "vehicle faster than the limit": replace(
+        situation(), limits=replace(CONFIG.limits.flight_limits(), speed_max_m_s=4.1)
+    ),
     "below the pad without contact": situation(-CONFIG.descent.press_depth_m - CONFIG.touchdown.height_max_m - 0.01),
 }
 # Below the commit height these still count: without them nobody knows where the pad is.
@@ -284,6 +287,12 @@ def test_pilot_comes_before_everything(phase: Phase, reason: str, in_phase_s: fl
     held = {test.reason: NOW_NS - 10**12 for test in ABORT_TESTS}
     decision = decide(progress(phase, in_phase_s), facts, held, CONFIG)
     assert decision == (Event.PILOT_TOOK_OVER, "mode changed by the pilot")
+
+
+def test_mode_that_the_autopilot_changed_by_itself_is_not_said_to_be_the_pilots() -> None:
+    facts = situation(HIGH_M)
+    facts = replace(facts, autopilot=replace(facts.autopilot, in_control=False, overruled=True))
+    assert decide(progress(Phase.ALIGN), facts, {}, CONFIG) == (Event.PILOT_TOOK_OVER, "autopilot failsafe")
 
 
 def test_retries_are_counted_down_to_a_hold() -> None:

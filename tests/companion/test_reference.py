@@ -1,10 +1,11 @@
 """The virtual model's tracking: lag is learnt, transients are not, the correction stays bounded."""
 
 import numpy as np
+import pytest
 
 from companion.data import OwnState
 from companion.planning.guidance import ReferenceState
-from companion.reference import Tracking, carried, compare, remember, setpoint_at
+from companion.reference import Tracking, carried, compare, not_falling, remember, setpoint_at
 
 STEP_NS = 20_000_000
 
@@ -75,6 +76,18 @@ def test_carried_is_the_closed_form_of_constant_acceleration() -> None:
     np.testing.assert_allclose(later.position_enu_m, [1.0 + 0.2 + 0.0025, 2.0 + 0.00125, 3.0 - 0.05])
     np.testing.assert_allclose(later.velocity_enu_m_s, [4.1, 0.05, -1.0])
     np.testing.assert_allclose(carried(later, -0.05).position_enu_m, reference.position_enu_m, atol=1e-12)
+
+
+@pytest.mark.parametrize(("up_m_s2", "sent_m_s2"), [(-2.9, 0.0), (0.7, 0.7)])
+def test_model_that_is_carried_on_does_not_fall_faster(up_m_s2: float, sent_m_s2: float) -> None:
+    reference = ReferenceState(
+        position_enu_m=np.array([1.0, 2.0, 3.0]),
+        velocity_enu_m_s=np.array([4.0, 0.0, -0.7]),
+        acceleration_enu_m_s2=np.array([2.0, 1.0, up_m_s2]),
+    )
+    sent = not_falling(reference)
+    np.testing.assert_array_equal(sent.acceleration_enu_m_s2, [2.0, 1.0, sent_m_s2])
+    np.testing.assert_array_equal(sent.velocity_enu_m_s, reference.velocity_enu_m_s)
 
 
 def test_setpoint_is_the_model_with_the_correction() -> None:

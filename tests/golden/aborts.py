@@ -22,6 +22,7 @@ _PARKED = {"chase": {"parked_wait_s": 0.5}}
 _ANTENNA_OVER_PAD = {"antenna_flu_m": (0.0, 0.0, 1.6)}  # no heading is needed to place the pad
 _RAISED_M = 3.0
 _BESIDE_M = 0.4
+_LIMIT_M_S = 4.0  # less than the vehicle's 5 m/s
 _PATIENCE_S = 6.0  # from the fault to the abort
 _CLIMB_S = 12.0  # a little more than the abort's own time limit
 _AFTER_S = 3.0  # to brake, and to be seen airborne and stable
@@ -112,6 +113,11 @@ def _own_position_stops(flight: FaultFlight) -> None:
     flight.tell(mavlink.MAVLink_command_long_message(1, 1, interval, 0, number, -1.0, 0, 0, 0, 0, 0))
 
 
+def _limit_is_lowered(flight: FaultFlight) -> None:
+    kind = mavlink.MAV_PARAM_TYPE_REAL32
+    flight.tell(mavlink.MAVLink_param_set_message(1, 1, b"MPC_XY_VEL_MAX", _LIMIT_M_S, kind))
+
+
 def _pad_is_described(forward_m: float, up_m: float) -> Fault:
     """Let the vehicle describe its pad anew: its centre is elsewhere than it said before."""
 
@@ -167,6 +173,7 @@ ABORTS: dict[str, Abort] = {
     "too_far": Abort(
         reason="too far from the start", companion={"limits": {"range_max_m": 6.0, "landing_time_s": 1.0}}
     ),
+    "outrun": Abort(reason="vehicle faster than the limit", phase=Phase.ALIGN, fault=_limit_is_lowered),
     "below_pad": Abort(reason="below the pad without contact", fault=_pad_is_described(forward_m=0.0, up_m=_RAISED_M)),
     "contact_lost": Abort(
         reason="# m above the pad after contact",

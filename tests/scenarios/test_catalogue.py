@@ -4,6 +4,8 @@ import pytest
 
 from link.errors import UserError
 from scenarios.catalogue import list_presets, list_scenarios, load_scenario
+from scenarios.lockstep import Lockstep
+from scenarios.simulation import STEP_NS
 from scenarios.track_config import MovingTrack, WaypointsTrack
 
 BENCHMARK = [
@@ -84,6 +86,14 @@ def test_presets_in_a_name_replace_their_sections() -> None:
     assert (scenario.wind.mean_m_s, scenario.wind.turbulence) == (10.0, "moderate")
     assert scenario.link.zenoh.delay_s == 0.03
     assert scenario.firmware == "px4"
+
+
+@pytest.mark.parametrize(("option", "can_arm"), [("", True), ("+start=boot", False)])
+def test_autopilot_that_boots_is_not_there_within_its_first_second(option: str, can_arm: bool) -> None:
+    lockstep = Lockstep(load_scenario(f"straight_5{option}"), 1)
+    for _ in range(round(1e9 / STEP_NS)):
+        lockstep.step()
+    assert lockstep.companion.is_ready_to_start() is can_arm
 
 
 @pytest.mark.parametrize(

@@ -157,6 +157,14 @@ def test_sudden_velocity_aside_and_down_does_not_overshoot_the_descent_limit() -
     assert flight.velocity_m_s[:, 0].max() < 4.0 * 1.1
 
 
+def test_setpoint_that_is_held_with_its_acceleration_downwards_is_not_fallen_below() -> None:
+    # Real position loops are off by v / kp + a / (kp kv) then: 0.7 / 1.0 + 2.9 / 4.0 m with PX4's vertical gains.
+    held = going((0.0, 0.0, 5.0), (0.8, 0.0, -0.7), (4.1, 0.2, -2.9))
+    flight = flown(CONFIG, hovering(CONFIG, (0.0, 0.0, 5.0)), lambda _: held, 3.0)
+    assert flight.position_m[:, 2].min() > 5.0 - 0.7 / 1.0 - 2.9 / 4.0
+    assert abs(flight.velocity_m_s[-1, 2]) < 0.05
+
+
 def test_no_heading_keeps_the_present_one() -> None:
     flight = flown(CONFIG, hovering(CONFIG, START, yaw=0.9), lambda _: going((5, 3, 20), yaw=None), 6.0)
     np.testing.assert_allclose(flight.yaw_rad, 0.9, atol=0.1)
