@@ -39,8 +39,9 @@ def _close(ftp: Ftp, case: Case) -> _Done:
 
 def _list(ftp: Ftp, case: Case) -> _Done:
     found = entries(ftp.store, case.shown, case.path)
-    lines = [b"S\0", b"S\0"] if case.rules.names_itself else []
-    lines += [(f"D{name}\0" if size is None else f"F{name}\t{size}\0").encode() for name, size in found]
+    names = ["S", "S"] if case.rules.names_itself else []
+    names += [f"D{name}" if size is None else f"F{name}\t{size}" for name, size in found]
+    lines = [name.encode() + case.rules.entry_end for name in names]
     data = b""
     for line in lines[case.question.offset :]:
         if len(data) + len(line) > DATA_MAX:

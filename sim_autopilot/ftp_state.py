@@ -20,6 +20,7 @@ class FtpRules:
         burst_bytes: of one burst at most.
         burst_of_any_size: whether a client chooses how much each answer of a burst holds.
         truncates: whether it can cut files.
+        entry_end: what follows each entry of a listing: ArduPilot's is twice as long as it need be.
         names_itself: whether a listing begins with two entries to be skipped, for the directory and the one above.
     """
 
@@ -31,6 +32,7 @@ class FtpRules:
     burst_bytes: int = 35_000
     burst_of_any_size: bool = False
     truncates: bool = True
+    entry_end: bytes = b"\0"
     names_itself: bool = True
 
 
@@ -44,6 +46,7 @@ ARDUPILOT_FTP = FtpRules(
     burst_bytes=500 * DATA_MAX,
     burst_of_any_size=True,
     truncates=False,
+    entry_end=b"\0\0",
     names_itself=False,
 )
 

@@ -37,7 +37,7 @@ class FileClient:
             opcode, data = self.ask(Opcode.LIST_DIRECTORY, path, offset=len(listed))
             if opcode == Opcode.NAK:
                 return [line.decode() for line in listed if line != b"S"]
-            listed += data.removesuffix(b"\0").split(b"\0")
+            listed += filter(None, data.split(b"\0"))
 
     def read(self, path: bytes) -> bytes:
         """A whole file, read piece by piece."""
