@@ -12,7 +12,7 @@ from companion.config import CompanionConfig
 from companion.contact import Verdict, is_stopped_by_pad, over_pad_radius_m, signs_of, verdict
 from companion.phases import LANDING_PHASES, NEAR_PHASES, Event, Phase
 from companion.situation import Approach, Situation, approach
-from companion.targets import chase_floor_m
+from companion.targets import chase_floor_m, is_vague
 
 CONTACT = "contact"
 DISPUTED_CONTACT = "contact against the range finder"
@@ -39,7 +39,7 @@ def fix_too_old(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
 
 def is_uncertain(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
     """Return whether the pad is not known well enough to come near it."""
-    return s.pad is not None and float(np.max(s.pad.position_std_m[0, :2])) > c.abort.position_std_max_m
+    return s.pad is not None and is_vague(s.pad, c)
 
 
 def _token_lost(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:

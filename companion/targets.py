@@ -105,8 +105,18 @@ def _height_profile(
     return np.full(n, height_m), np.zeros(n)
 
 
+def is_vague(pad: PadPath, config: CompanionConfig) -> bool:
+    """Return whether the pad is not known well enough to come near it."""
+    return float(np.max(pad.position_std_m[0, :2])) > config.abort.position_std_max_m
+
+
 def _chase_height_m(pad: PadPath, reference: ReferenceState, config: CompanionConfig) -> float:
-    """Come down towards the height of alignment as the horizontal distance closes, two metres for each."""
+    """Come down towards the height of alignment as the horizontal distance closes, two metres for each.
+
+    Over a vehicle whose place is not known well enough to align with it, nothing says that its side is not below.
+    """
+    if is_vague(pad, config):
+        return config.chase.height_m
     distance_m = float(np.hypot(*(reference.position_enu_m[:2] - pad.position_enu_m[0, :2])))
     beyond_m = max(distance_m - config.descent.align_distance_m, 0.0)
     return min(config.descent.align_height_m + 0.5 * beyond_m, config.chase.height_m)

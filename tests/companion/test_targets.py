@@ -1,5 +1,7 @@
 """The aims of the phases: the sink profile against its differential equation, hovering and following the pad."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -80,6 +82,15 @@ def test_chase_comes_lower_as_the_distance_closes() -> None:
     far = pad_aim(Phase.CHASE, pad, _at(-20.0, -2.0, 5.0), 0.12, CONFIG).target.position_enu_m[0, 2]
     near = pad_aim(Phase.CHASE, pad, _at(1.0, -2.0, 5.0), 0.12, CONFIG).target.position_enu_m[0, 2]
     assert near < far
+
+
+def test_chase_stays_high_over_a_vehicle_whose_place_is_vague() -> None:
+    known = _pad_path(5.0)
+    vague = replace(known, position_std_m=np.full_like(known.position_std_m, CONFIG.abort.position_std_max_m + 0.01))
+    near = _at(3.1, -2.0, 1.5 + CONFIG.descent.align_height_m)
+    heights = [pad_aim(Phase.CHASE, pad, near, 0.12, CONFIG).target.position_enu_m[:, 2] for pad in (known, vague)]
+    np.testing.assert_allclose(heights[0], 1.5 + 0.12 + CONFIG.descent.align_height_m)
+    np.testing.assert_allclose(heights[1], 1.5 + 0.12 + CONFIG.chase.height_m)
 
 
 def test_stopping_point_is_the_closed_form_of_even_braking() -> None:
