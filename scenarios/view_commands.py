@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from scenarios.view.live import LiveSource
     from scenarios.view.recorded import RecordedSource, Road
 
-_LOOPBACK = ("127.0.0.1", "localhost", "::1")
 DEFAULT_PORT = 8080
 
 
@@ -91,12 +90,11 @@ def view_command(
 
 def _show(source: "LiveSource | RecordedSource", road: "Road | None", host: str, port: int) -> None:
     """Serve the page until a signal comes; it can fly the drone, so others are let in by a token only."""
-    from scenarios.view.gate import Gate
+    from scenarios.processes import free_tcp_port
+    from scenarios.view.gate import LOOPBACK, Gate
     from scenarios.view.page import Page
 
-    if host in _LOOPBACK:
-        Page(source, road, port).run()
-        return
-    page = Page(source, road, 0)
-    with Gate(host, port, page.port) as gate:
+    is_own = host in LOOPBACK
+    page = Page(source, road)
+    with Gate(host, free_tcp_port(port) if is_own else port, page.port, with_token=not is_own) as gate:
         page.run(gate.address)

@@ -1,8 +1,9 @@
-"""A door before the page for other machines: who brings the token is let through to the page, which is on loopback.
+"""A door before the page, since the page can fly the drone: it lets nothing through that another site has sent.
 
-The page's address with `?token=...` answers with a cookie, and every further connection must show it, that of the
-page's WebSocket, too. A browser sends it from no other site (SameSite), and one that did would be seen by its Origin.
-Nothing is encrypted: on a network that is not trusted, a tunnel (ssh) is the way.
+For other machines there is a token besides, while the page itself is on loopback. The page's address with `?token=...`
+answers with a cookie, and every further connection must show it, that of the page's WebSocket, too. A browser sends it
+from no other site (SameSite), and one that did would be seen by its Origin. Nothing is encrypted: on a network that is
+not trusted, a tunnel (ssh) is the way.
 """
 
 import asyncio
@@ -17,6 +18,7 @@ from urllib.parse import parse_qs, urlsplit
 from link.errors import UserError
 
 COOKIE = "decklander_view"
+LOOPBACK = frozenset({"127.0.0.1", "localhost", "::1"})
 _TOKEN_BYTES = 18
 _HEAD_MAX_BYTES = 16_384
 _HEAD_WAIT_S = 5.0
@@ -33,12 +35,13 @@ class Verdict(Enum):
     ADMITTED = "admitted"  # it showed the cookie
 
 
-def verdict(head: bytes, token: str) -> Verdict:
+def verdict(head: bytes, token: str | None) -> Verdict:
     """Return what becomes of a connection that begins with a request.
 
     Args:
         head: the request's first line and headers, up to the empty line.
-        token: that is asked for.
+        token: that is asked for; None lets in whoever calls this machine by a name of loopback, which a page of
+            another site cannot, even if its own name leads here.
     """
     first, *lines = head.decode("latin-1").split("\r\n")
     words = first.split(" ")
@@ -47,6 +50,9 @@ def verdict(head: bytes, token: str) -> Verdict:
     headers = {name.strip().lower(): value.strip() for name, _, value in (line.partition(":") for line in lines)}
     if "origin" in headers and urlsplit(headers["origin"]).netloc != headers.get("host"):
         return Verdict.REFUSED
+    if token is None:
+        called = urlsplit(f"//{headers.get('host', '')}").hostname
+        return Verdict.ADMITTED if called in LOOPBACK else Verdict.REFUSED
     pairs = (part.strip().partition("=") for part in headers.get("cookie", "").split(";"))
     if any(name == COOKIE and _is_same(value, token) for name, _, value in pairs):
         return Verdict.ADMITTED
@@ -72,6 +78,7 @@ class Gate:
         host: where it listens.
         port: 0 for any free one.
         page_port: of the page, on loopback.
+        with_token: whether a token is asked for.
 
     Attributes:
         address: where a browser finds it, token included.
@@ -80,7 +87,7 @@ class Gate:
         UserError: there is no such place to listen at.
     """
 
-    def __init__(self, host: str, port: int, page_port: int) -> None:
+    def __init__(self, host: str, port: int, page_port: int, *, with_token: bool = True) -> None:
         family = _EVERYWHERE.get(host)
         try:
             found = socket.getaddrinfo(host or None, port, family or 0, socket.SOCK_STREAM, 0, socket.AI_PASSIVE)[0]
@@ -88,8 +95,10 @@ class Gate:
         except OSError as error:
             why = error.strerror or str(error)
             raise UserError(f"--host {host} --port {port}: cannot listen there ({why}); choose another") from None
-        self._page_port, self._token = page_port, secrets.token_urlsafe(_TOKEN_BYTES)
-        self.address = f"http://{shown_host(host)}:{self._listening.getsockname()[1]}/?token={self._token}"
+        self._page_port, self._token = page_port, secrets.token_urlsafe(_TOKEN_BYTES) if with_token else None
+        self.address = f"http://{shown_host(host)}:{self._listening.getsockname()[1]}"
+        if self._token is not None:
+            self.address += f"/?token={self._token}"
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._run, name="gate", daemon=True)
 

@@ -24,18 +24,17 @@ _STALE_S = 3.0
 
 
 class Page:
-    """A page on a port.
+    """A page on a free port of loopback.
 
     Args:
         source: what it shows.
         road: of the vehicle, where it is known.
-        port: of loopback; the next free one is taken when it is in use.
     """
 
-    def __init__(self, source: LiveSource | RecordedSource, road: Road | None, port: int) -> None:
+    def __init__(self, source: LiveSource | RecordedSource, road: Road | None) -> None:
         self._source = source
         with redirect_stdout(io.StringIO()):  # it has a banner of its own
-            self._server = viser.ViserServer(host="127.0.0.1", port=port, verbose=False)
+            self._server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
         descent = CompanionConfig().descent if road is None else road.scenario.system.companion.descent
         self._scene = Scene(self._server, descent)
         if road is not None:
@@ -55,15 +54,15 @@ class Page:
         """Of loopback, where it is."""
         return self._server.get_port()
 
-    def run(self, address: str | None = None) -> None:
+    def run(self, address: str) -> None:
         """Show it until a signal comes.
 
         Args:
-            address: where a browser finds it, None for where it is.
+            address: where a browser finds it.
         """
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._stop)
-        sys.stdout.write(f"view: {address or f'http://127.0.0.1:{self.port}'}\n")
+        sys.stdout.write(f"view: {address}\n")
         sys.stdout.flush()
         tick, due_s = 0, time.monotonic()
         while not self._stopping:

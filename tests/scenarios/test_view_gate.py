@@ -41,6 +41,22 @@ def test_door_knows_the_token_and_the_cookie_and_nothing_else(request_head: byte
     assert verdict(request_head, TOKEN) is expected
 
 
+@pytest.mark.parametrize(
+    ("called", "origin", "expected"),
+    [
+        ("127.0.0.1:8080", None, Verdict.ADMITTED),
+        ("localhost:8080", "http://localhost:8080", Verdict.ADMITTED),
+        ("[::1]:8080", "http://[::1]:8080", Verdict.ADMITTED),
+        ("127.0.0.1:8080", "http://elsewhere", Verdict.REFUSED),
+        ("127.0.0.1:8080", "http://localhost:8000", Verdict.REFUSED),
+        ("elsewhere:8080", "http://elsewhere:8080", Verdict.REFUSED),  # a name of theirs that leads here
+    ],
+)
+def test_page_of_this_machine_listens_to_no_other_site(called: str, origin: str | None, expected: Verdict) -> None:
+    request = head("/", **({} if origin is None else {"Origin": origin})).replace(b"car:8080", called.encode())
+    assert verdict(request, None) is expected
+
+
 @pytest.fixture
 def page_port() -> Iterator[int]:
     """A page that answers each line that it gets with the same in capitals."""
