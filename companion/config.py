@@ -108,7 +108,8 @@ class TouchdownConfig(StrictModel):
     hold_s: NotNegative = 0.1
     jolt_m_s2: Positive = 25.0  # horizontally: no flying changes the velocity so fast, and no hold is waited for
     disputed_hold_s: NotNegative = 1.0  # instead, when the range finder does not agree
-    level_height_m: NotNegative = 0.14  # below this the drone turns less than the deck, to touch down level
+    level_height_m: NotNegative = 0.08  # below this the drone turns less than the deck, to touch down level
+    foot_radius_m: NotNegative = 0.2  # of the feet about the drone's axis: the lowest of a leaning drone touches first
     level_acceleration_m_s2: Positive = 1.6  # 9 degrees; S2 allows 10 over trim
     # Downwards, while the signs of a contact hold, and once they are believed: nearly the whole weight on the gear.
     try_acceleration_m_s2: Annotated[float, Field(ge=0.0, le=9.0)] = 5.0

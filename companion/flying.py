@@ -86,7 +86,7 @@ def fly(
     request = PlanRequest(
         state=reference,
         target=aim.target,
-        limits=_limits(memory, situation, inputs.limits, system.config),
+        limits=limits_now(memory, situation, inputs.limits, system.config),
         floor_enu_m=aim.floor_enu_m,
         dt_s=period_s,
     )
@@ -173,12 +173,17 @@ def _anchored(memory: StepMemory, situation: Situation, config: CompanionConfig)
     return replace(memory, anchor_enu_m=np.array([x, y, memory.anchor_enu_m[2]]))
 
 
-def _limits(memory: StepMemory, situation: Situation, limits: FlightLimits, config: CompanionConfig) -> FlightLimits:
-    """Return the limits of this step: just above the pad the drone turns less than the deck, to touch down level."""
-    relative = approach(situation)
-    if memory.phase is not Phase.DESCEND or relative is None or relative.height_m > config.touchdown.level_height_m:
+def limits_now(memory: StepMemory, situation: Situation, limits: FlightLimits, config: CompanionConfig) -> FlightLimits:
+    """Return the limits of this step: just above the pad the drone turns less than the deck, to touch down level.
+
+    A drone that leans touches with its lowest foot, so it begins that much higher.
+    """
+    relative, drone, touchdown = approach(situation), situation.drone, config.touchdown
+    if memory.phase is not Phase.DESCEND or relative is None or drone is None:
         return limits
-    level_m_s2 = min(config.touchdown.level_acceleration_m_s2, limits.acceleration_max_m_s2)
+    if relative.height_m > touchdown.level_height_m + touchdown.foot_radius_m * drone.lean:
+        return limits
+    level_m_s2 = min(touchdown.level_acceleration_m_s2, limits.acceleration_max_m_s2)
     return replace(limits, acceleration_max_m_s2=level_m_s2)
 
 

@@ -27,6 +27,7 @@ class Drone:
         age_s: of the report.
         acceleration_up_m_s2: from the last reports, None before there are enough.
         jolt_m_s2: size of the horizontal acceleration, likewise.
+        lean: sine of its tilt.
     """
 
     position_enu_m: Array
@@ -35,6 +36,7 @@ class Drone:
     age_s: float
     acceleration_up_m_s2: float | None = None
     jolt_m_s2: float | None = None
+    lean: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -128,6 +130,7 @@ def drone_now(own: OwnState | None, t_ns: int, yaw_rad: float, age_max_s: float)
         age_s=age_s,
         acceleration_up_m_s2=own.acceleration_up_m_s2,
         jolt_m_s2=own.jolt_m_s2,
+        lean=math.hypot(*rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))[:2]),
     )
 
 

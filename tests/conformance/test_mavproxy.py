@@ -8,7 +8,7 @@ import pytest
 from tests.conformance.mavproxy_client import MavProxy, mavproxy
 from tests.conformance.programs import StandIn, stand_in, wait
 
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.wire, pytest.mark.timeout(300)]
 
 MISSION = """QGC WPL 110
 0\t1\t0\t16\t0\t0\t0\t0\t52.4733\t13.4017\t89\t1

@@ -53,7 +53,6 @@ def test_commands_that_it_does_not_have_are_answered_as_arducopter_does() -> Non
         mavlink.MAV_CMD_DO_FOLLOW: DENIED,
         mavlink.MAV_CMD_DO_ORBIT: UNSUPPORTED,
         mavlink.MAV_CMD_INJECT_FAILURE: UNSUPPORTED,
-        mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN: FAILED,
     }
     assert {number: pilot.acknowledged(command(number, 1.0)) for number in answers} == {
         number: [result] for number, result in answers.items()
