@@ -15,6 +15,8 @@ from tests.integration.programs import until
 
 SCENARIO = load_scenario("straight_5")
 SEED = 1
+STEADY_STATUSES = 10
+"""What is known may go again while an autopilot's clock is being learnt."""
 
 
 class Observer:
@@ -53,12 +55,13 @@ class Observer:
         until(is_there, "a status")
 
     def wait_for_relative_position(self) -> None:
-        """Wait until the companion knows, anew, where the drone and the pad are."""
+        """Wait until the companion knows, anew and for a while, where the drone and the pad are."""
         seen = len(self.recording.statuses)
 
         def is_known() -> bool:
             self.hear()
-            return any(status.relative_position_enu_m is not None for status in self.recording.statuses[seen:])
+            last = self.recording.statuses[seen:][-STEADY_STATUSES:]
+            return len(last) == STEADY_STATUSES and all(one.relative_position_enu_m is not None for one in last)
 
         until(is_known, f"a relative position, last was {self.recording.status}")
 
