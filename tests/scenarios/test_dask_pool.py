@@ -83,13 +83,21 @@ def plan_of(folder: Path) -> Plan:
     return make_plan(cells, first_seed=3, seeds=3, config=None)
 
 
-def test_dask_gives_the_bytes_that_one_local_process_gives(cluster: str, tmp_path: Path) -> None:
-    plan = plan_of(tmp_path)
-    local, remote = create_folder(tmp_path / "local", plan), create_folder(tmp_path / "remote", plan)
-    rows = fly_campaign(local, plan, Where(workers=1), quiet)
-    fly_campaign(remote, plan, Where(scheduler=cluster), quiet)
+@pytest.fixture(scope="module")
+def local(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """The landings of the plan as one local process flies them."""
+    folder = tmp_path_factory.mktemp("local")
+    plan = plan_of(folder)
+    rows = fly_campaign(create_folder(folder / "out", plan), plan, Where(workers=1), quiet)
     assert sum(row["error"] is None for row in rows) == 6
-    assert (remote / "landings.parquet").read_bytes() == (local / "landings.parquet").read_bytes()
+    return (folder / "out" / "landings.parquet").read_bytes()
+
+
+def test_dask_gives_the_bytes_that_one_local_process_gives(cluster: str, local: bytes, tmp_path: Path) -> None:
+    plan = plan_of(tmp_path)
+    remote = create_folder(tmp_path / "remote", plan)
+    fly_campaign(remote, plan, Where(scheduler=cluster), quiet)
+    assert (remote / "landings.parquet").read_bytes() == local
 
 
 def test_dask_is_interrupted_and_gone_on_with(cluster: str, tmp_path: Path) -> None:
@@ -106,10 +114,9 @@ def test_dask_is_interrupted_and_gone_on_with(cluster: str, tmp_path: Path) -> N
     assert len(rows) == 9
 
 
-def test_dask_worker_killed_in_the_middle_loses_nothing(tmp_path: Path) -> None:
+def test_dask_worker_killed_in_the_middle_loses_nothing(local: bytes, tmp_path: Path) -> None:
     plan = plan_of(tmp_path)
-    local, remote = create_folder(tmp_path / "local", plan), create_folder(tmp_path / "remote", plan)
-    fly_campaign(local, plan, Where(workers=1), quiet)
+    remote = create_folder(tmp_path / "remote", plan)
     with scheduler() as address, worker(address, tmp_path) as victim, worker(address, tmp_path):
 
         def kill(_flown: Flown | None, done: int, _total: int) -> None:
@@ -118,7 +125,7 @@ def test_dask_worker_killed_in_the_middle_loses_nothing(tmp_path: Path) -> None:
 
         fly_campaign(remote, plan, Where(scheduler=address), kill)
         assert victim.wait(DEADLINE_S) == -signal.SIGKILL
-    assert (remote / "landings.parquet").read_bytes() == (local / "landings.parquet").read_bytes()
+    assert (remote / "landings.parquet").read_bytes() == local
 
 
 def test_dask_worker_with_other_sources_is_refused(cluster: str, tmp_path: Path) -> None:
