@@ -78,4 +78,4 @@ def _row(ended: "Ended") -> dict[str, Any]:
 
 
 def _line(row: dict[str, Any]) -> str:
-    return "".join(f"{row[name]:{width}}" for name, width in _WIDTHS.items()) + f"{row['reason']}\n"
+    return "".join(f"{row[name]!s:{width}}" for name, width in _WIDTHS.items()) + f"{row['reason']}\n"
