@@ -177,7 +177,7 @@ class AutopilotLink:
 
     def _start_over(self) -> None:
         """Forget what the autopilot told before its restart, except for its parameters."""
-        view = AutopilotView(link_up=True, armed=False, in_control=False, failsafe=False)
+        view = AutopilotView(link_up=True, armed=False, in_control=False, failsafe=False, restarted=True)
         old = self.state.view
         view = replace(view, origin_count=old.origin_count + 1, frame_shift_enu_m=old.frame_shift_enu_m)
         self.state = AutopilotState(view=view, parameters=self.state.parameters)

@@ -203,13 +203,15 @@ def _attitude(state: AutopilotState, message: Message) -> AutopilotState:
 
 def _heartbeat(state: AutopilotState, message: Message, driver: Driver) -> AutopilotState:
     armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
+    in_control = driver.is_in_control(message.base_mode, message.custom_mode)
     view = replace(
         state.view,
         link_up=True,
         armed=armed,
         refusal=None if armed else state.view.refusal,
-        in_control=driver.is_in_control(message.base_mode, message.custom_mode),
+        in_control=in_control,
         failsafe=message.system_status in _FAILSAFE_STATES,
+        restarted=state.view.restarted and not in_control,
     )
     return replace(state, view=view)
 

@@ -96,7 +96,7 @@ def _control_taken(progress: Progress, s: Situation) -> Decision | None:
     if progress.phase is Phase.TOUCHDOWN and not s.autopilot.armed:
         return None  # as wanted; a mode that changes with it is not the pilot's
     if not s.autopilot.in_control:
-        return Event.PILOT_TOOK_OVER, "mode changed by the pilot"
+        return Event.PILOT_TOOK_OVER, "autopilot restarted" if s.autopilot.restarted else "mode changed by the pilot"
     if progress.was_armed and not s.autopilot.armed:
         return Event.PILOT_TOOK_OVER, "disarmed"
     return None

@@ -22,6 +22,7 @@ class AutopilotView:
     in_control: bool  # it is in the mode in which it follows the companion's setpoints
     failsafe: bool
     overruled: bool = False  # by a failsafe: another mode than was last asked for is flown
+    restarted: bool = False  # and not in control since
     landed: bool | None = None
     taking_off: bool = False  # by itself, after a command
     refusal: str | None = None  # what it last said against arming

@@ -101,6 +101,7 @@ def test_restarted_autopilot_is_taken_for_disarmed_and_its_old_places_are_forgot
     talk.autopilot.restart(talk.t_ns)
     talk.run(4.0)
     assert not talk.is_armed()
+    assert talk.link.state.view.restarted
     assert talk.link.state.view.origin_count > count
     assert talk.link.state.own is not None
 

@@ -295,6 +295,12 @@ def test_mode_that_the_autopilot_changed_by_itself_is_not_said_to_be_the_pilots(
     assert decide(progress(Phase.ALIGN), facts, {}, CONFIG) == (Event.PILOT_TOOK_OVER, "autopilot failsafe")
 
 
+def test_restart_is_not_said_to_be_the_pilots() -> None:
+    facts = situation(HIGH_M)
+    facts = replace(facts, autopilot=replace(facts.autopilot, in_control=False, armed=False, restarted=True))
+    assert decide(progress(Phase.ALIGN), facts, {}, CONFIG) == (Event.PILOT_TOOK_OVER, "autopilot restarted")
+
+
 def test_retries_are_counted_down_to_a_hold() -> None:
     high = situation(CONFIG.abort.height_m)
     for retries in range(CONFIG.abort.retries_max):
