@@ -49,7 +49,7 @@ def test_time_to_contact_is_that_of_the_sink_profile(height_m: float) -> None:
     def contact(_: float, h: np.ndarray) -> float:
         return float(h[0])
 
-    contact.terminal = True  # type: ignore[attr-defined]
+    contact.terminal = True  # type: ignore[attr-defined]  # as scipy wants it
     truth = solve_ivp(rate, (0.0, 20.0), [height_m], events=contact, max_step=1e-2)
     status = landing_status(MEMORY, situation(height_m), CONFIG)
     assert status.time_to_contact_s == pytest.approx(truth.t[-1], rel=0.01)

@@ -4,7 +4,6 @@ A program of its own, since the library keeps threads and prints. `python -m tes
 """
 
 import sys
-import time
 import traceback
 from collections.abc import Callable
 from math import hypot, nan
@@ -34,7 +33,7 @@ from mavsdk.plugins.telemetry import FlightMode, LandedState, Telemetry
 
 from sim_autopilot.firmware.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.px4 import PX4
-from tests.conformance.programs import SPEED, wait
+from tests.conformance.programs import wait
 
 NORTH_DEG = 1.0 / 111_250.0
 """A metre northwards."""
@@ -51,11 +50,6 @@ STREAMS = (
 )
 
 Case = Callable[[SimpleNamespace], None]
-
-
-def flown(seconds: float) -> None:
-    """Let simulated time pass."""
-    time.sleep(seconds / SPEED)
 
 
 def connected(url: str, firmware: str) -> SimpleNamespace:
@@ -258,7 +252,7 @@ def flies_every_kind_of_setpoint(drone: SimpleNamespace) -> None:
 
 
 def _item(north: float, height_m: float, home: object) -> MissionItem:
-    place = (home.latitude_deg + north * NORTH_DEG, home.longitude_deg)  # type: ignore[attr-defined]
+    place = (home.latitude_deg + north * NORTH_DEG, home.longitude_deg)  # type: ignore[attr-defined]  # it has no types
     nothing = (nan, nan, MissionItem.CameraAction.NONE, nan, nan, 1.0, nan, nan, MissionItem.VehicleAction.NONE)
     return MissionItem(*place, height_m, 5.0, True, *nothing)
 
@@ -346,7 +340,7 @@ def stops_its_motors_by_force_and_refuses_to_reboot(drone: SimpleNamespace) -> N
     assert refused == (ActionResult.FAILED if drone.guided else ActionResult.COMMAND_DENIED), refused
     drone.action.kill()
     wait(lambda: not drone.telemetry.armed())
-    flown(4.0)
+    wait(lambda: drone.telemetry.position().relative_altitude_m < 0.5 and hypot(*_velocity(drone)) < 0.1)
     ready(drone)
     drone.action.arm()
     drone.action.disarm()

@@ -45,7 +45,7 @@ def test_recording_is_decoded_by_rosbags_from_the_definitions_inside(tmp_path: P
     (file,) = _write(tmp_path, 300)
     with AnyReader([file]) as reader:
         yaw_rad = [
-            reader.deserialize(raw, connection.msgtype).yaw_rad  # type: ignore[attr-defined]
+            reader.deserialize(raw, connection.msgtype).yaw_rad  # type: ignore[attr-defined]  # made by rosbags
             for connection, _, raw in reader.messages()
         ]
     assert yaw_rad == [0.001 * index for index in range(300)]

@@ -168,7 +168,7 @@ def test_a_flood_of_made_up_systems_does_not_push_out_who_still_speaks() -> None
 
 @pytest.mark.parametrize(("config", "answers"), [(px4(), 1), (ardupilot(), 0)])
 def test_px4_answers_a_ping_to_everybody_and_ardupilot_does_not(config: object, answers: int) -> None:
-    clients = Clients(config)  # type: ignore[arg-type]
+    clients = Clients(config)  # type: ignore[arg-type]  # of either kind
     clients.send(0, mavlink.MAVLink_ping_message(123, 7, 0, 0), mavlink.MAVLink_ping_message(123, 8, 1, 1))
     pings = clients.of(0, "PING")
     assert len(pings) == answers

@@ -76,7 +76,7 @@ def test_lqr_as_published_loses_the_drone_on_a_metre_once_motors_saturate() -> N
 def test_feedforward_settles_unit_steps_in_1_5_s_with_2_percent_overshoot(
     axis: int, yaw: float, airframe: object
 ) -> None:
-    config = PlantConfig(airframe=airframe, controller=ControllerKind.LQR_FEEDFORWARD)  # type: ignore[arg-type]
+    config = PlantConfig(airframe=airframe, controller=ControllerKind.LQR_FEEDFORWARD)  # type: ignore[arg-type]  # by its name
     flight = flown(config, hovering(config, (0, 0, 20), yaw), stepping(axis, 1.0, yaw), 6.0)
     response = measured_step(flight.t_s, flight.position_m[:, axis] - (20.0 if axis == 2 else 0.0))
     assert response.settling_s <= 1.5
