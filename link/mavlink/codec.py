@@ -8,6 +8,7 @@ import re
 import struct
 from collections import Counter
 
+from link.mavlink.contents import message_of
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.sequence import SequenceTracker
 from link.mavlink.signing import Signing
@@ -187,9 +188,8 @@ class MavlinkCodec:
                 return self._skip()
             self._count_unknown(message_id)
         else:
-            try:
-                message = self._pymavlink.decode(frame)
-            except mavlink.MAVError:
+            message = message_of(frame, message_id)
+            if message is None:
                 return self._skip()
             if self.signing is not None and not self.signing.accepts(frame):
                 self._refused += 1
