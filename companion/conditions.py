@@ -3,10 +3,10 @@
 A condition with a hold time must have been true without a break for that long.
 """
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-
-import numpy as np
+from functools import cache
 
 from companion.config import CompanionConfig
 from companion.contact import Verdict, is_stopped_by_pad, over_pad_radius_m, signs_of, verdict
@@ -86,14 +86,14 @@ def is_out_of_range(s: Situation, _: Approach | None, c: CompanionConfig) -> boo
     """Return whether the drone is farther from the waiting point than it may go."""
     if s.drone is None or s.waiting_point_enu_m is None:
         return False
-    return float(np.hypot(*(s.drone.position_enu_m - s.waiting_point_enu_m)[:2])) > c.limits.range_max_m
+    return math.hypot(*(s.drone.position_enu_m - s.waiting_point_enu_m)[:2].tolist()) > c.limits.range_max_m
 
 
 def _outruns(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
     """Return whether the vehicle is faster than the drone may fly, since a limit was lowered or it drives faster."""
     if s.limits is None or s.pad is None or fix_too_old(s, None, c):
         return False
-    return float(np.hypot(*s.pad.velocity_enu_m_s[0, :2])) > s.limits.speed_max_m_s
+    return math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist()) > s.limits.speed_max_m_s
 
 
 ABORT_TESTS = (
@@ -129,12 +129,12 @@ def _stands_nearby(s: Situation, _: Approach | None, c: CompanionConfig) -> bool
     if s.drone is None or s.pad is None or not s.pad.placed or fix_too_old(s, None, c) or is_too_low(s, c):
         return False
     ahead = s.drone.position_enu_m[:2] - s.pad.position_enu_m[0, :2]
-    speed_m_s = float(np.hypot(*s.pad.velocity_enu_m_s[0, :2]))
-    return speed_m_s < c.chase.parked_speed_m_s and float(np.hypot(*ahead)) < c.chase.passing_distance_m
+    speed_m_s = math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist())
+    return speed_m_s < c.chase.parked_speed_m_s and math.hypot(*ahead.tolist()) < c.chase.passing_distance_m
 
 
 def _drives(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
-    return s.pad is not None and float(np.hypot(*s.pad.velocity_enu_m_s[0, :2])) >= c.chase.parked_speed_m_s
+    return s.pad is not None and math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist()) >= c.chase.parked_speed_m_s
 
 
 def _in_contact(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
@@ -186,12 +186,17 @@ def update_held(
     others: tuple[Test, ...] = (),
 ) -> dict[str, int]:
     """Return since when each test of this phase has been true."""
-    tests = (*others, *ABORT_TESTS, *(test for _, test in ENTRY_TESTS), DRIVES)
     return {
         test.reason: held.get(test.reason, situation.t_ns)
-        for test in tests
-        if phase in test.phases and test.is_true(situation, relative, config)
+        for test in _tests_in(phase, others)
+        if test.is_true(situation, relative, config)
     }
+
+
+@cache
+def _tests_in(phase: Phase, others: tuple[Test, ...]) -> tuple[Test, ...]:
+    tests = (*others, *ABORT_TESTS, *(test for _, test in ENTRY_TESTS), DRIVES)
+    return tuple(test for test in tests if phase in test.phases)
 
 
 def holds(test: Test, held: Held, t_ns: int, config: CompanionConfig) -> bool:

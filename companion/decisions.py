@@ -1,8 +1,7 @@
 """Which event a step's facts amount to: who is in command, what is unsafe, what takes too long, what comes next."""
 
+import math
 from dataclasses import dataclass
-
-import numpy as np
 
 from companion.conditions import (
     ABORT_TESTS,
@@ -142,7 +141,7 @@ def _advance(progress: Progress, s: Situation, held: Held, config: CompanionConf
 def _at_waiting_point(s: Situation, config: CompanionConfig) -> Decision | None:
     if s.drone is None or s.waiting_point_enu_m is None or not (s.autopilot.armed and s.autopilot.in_control):
         return None
-    distance_m = float(np.linalg.norm(s.drone.position_enu_m - s.waiting_point_enu_m))
+    distance_m = math.hypot(*(s.drone.position_enu_m - s.waiting_point_enu_m).tolist())
     if distance_m > config.takeoff.reached_distance_m:
         return None
     return Event.AT_WAITING_POINT, "waiting for the vehicle"
@@ -159,7 +158,7 @@ def vehicle_passes(s: Situation, config: CompanionConfig) -> Decision | None:
         return None
     velocity = s.pad.velocity_enu_m_s[0, :2]
     ahead = s.drone.position_enu_m[:2] - s.pad.position_enu_m[0, :2]
-    speed_m_s = float(np.hypot(*velocity))
+    speed_m_s = math.hypot(*velocity.tolist())
     if speed_m_s < config.chase.parked_speed_m_s:
         return None
     to_go_m = float(ahead @ velocity) / speed_m_s

@@ -3,10 +3,9 @@
 What cannot be done is not begun. It is told with its numbers, once, and again only when it is another thing.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
-
-import numpy as np
 
 from companion.conditions import Held, Test, fix_too_old, holds
 from companion.config import CompanionConfig
@@ -28,7 +27,7 @@ class Obstacle:
 
 
 def _vehicle_speed_m_s(s: Situation) -> float:
-    return 0.0 if s.pad is None else float(np.hypot(*s.pad.velocity_enu_m_s[0, :2]))
+    return 0.0 if s.pad is None else math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist())
 
 
 def _is_too_fast(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:

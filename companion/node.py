@@ -270,11 +270,12 @@ class CompanionNode:
         if outputs.plan is None:
             return Plan(t_ns=self._t_ns, poses=())
         trajectory = outputs.plan.trajectory
-        points = zip(trajectory.offset_s[::_PLAN_POINTS], trajectory.position_enu_m[::_PLAN_POINTS], strict=True)
+        offsets_s = trajectory.offset_s[::_PLAN_POINTS].tolist()
+        points = zip(offsets_s, trajectory.position_enu_m[::_PLAN_POINTS].tolist(), strict=True)
         poses = tuple(
             PlannedPose(
                 t_ns=self._t_ns + int(offset_s * 1e9),
-                position_enu_m=(float(x), float(y), float(z)),
+                position_enu_m=(x, y, z),
                 yaw_rad=self.memory.yaw_setpoint_rad,
             )
             for offset_s, (x, y, z) in points

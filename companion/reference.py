@@ -5,6 +5,7 @@ lasting difference between the model and the drone at the same instant; its hori
 and added to the setpoints.
 """
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -55,14 +56,14 @@ def compare(tracking: Tracking, own: OwnState, *, learn: bool) -> Tracking:
     if own.t_ns <= tracking.compared_ns or len(tracking.past) < 2 or own.t_ns < tracking.past[0][0]:
         return tracking
     difference = _position_at(tracking, own.t_ns) - np.array(own.position_enu_m)
-    error_m = float(np.linalg.norm(difference))
+    error_m = math.hypot(*difference.tolist())
     since_s = (own.t_ns - tracking.compared_ns) * 1e-9 if tracking.compared_ns else 0.0
     tracking = replace(tracking, error_m=error_m, compared_ns=own.t_ns)
     if not learn or error_m > _LEARNING_ERROR_MAX_M:
         return tracking
     step = _CORRECTION_GAIN_HZ * min(since_s, _HISTORY_S) * difference * np.array([1.0, 1.0, 0.0])
     correction = tracking.correction_enu_m + step
-    length_m = float(np.linalg.norm(correction))
+    length_m = math.hypot(*correction.tolist())
     if length_m > _CORRECTION_MAX_M:
         correction = correction * (_CORRECTION_MAX_M / length_m)
     return replace(tracking, correction_enu_m=correction)

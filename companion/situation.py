@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -73,32 +74,20 @@ class Situation:
     limits: FlightLimits | None = None
     speed_limited_by: tuple[str, ...] = ()
 
-    @property
-    def relative_position_enu_m(self) -> Array | None:
-        """(3,) of the drone's feet from the pad's centre, in W."""
-        if self.drone is None or self.pad is None:
-            return None
-        feet = self.drone.position_enu_m - np.array([0.0, 0.0, self.feet_offset_m])
-        return np.asarray(feet - self.pad.position_enu_m[0])
-
-    @property
-    def relative_velocity_enu_m_s(self) -> Array | None:
-        """(3,) of the drone against the pad, in W."""
-        if self.drone is None or self.pad is None:
-            return None
-        return np.asarray(self.drone.velocity_enu_m_s - self.pad.velocity_enu_m_s[0])
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Approach:
-    """The drone against the pad in four numbers."""
+    """The drone against the pad: its feet from the pad's centre, in W and in four numbers."""
 
+    position_enu_m: Vector3
+    velocity_enu_m_s: Vector3
     distance_m: float  # horizontal
     speed_m_s: float  # horizontal
     height_m: float  # of the feet above the pad
     climb_m_s: float  # upwards against the pad
 
 
+@lru_cache(maxsize=1)  # the tests, the decisions and the limits of a step all ask for it
 def approach(situation: Situation) -> Approach | None:
     """Return the drone against the pad, None unless both are known."""
     drone, pad = situation.drone, situation.pad
@@ -106,11 +95,15 @@ def approach(situation: Situation) -> Approach | None:
         return None
     (x, y, z), (vx, vy, vz) = drone.position_enu_m.tolist(), drone.velocity_enu_m_s.tolist()
     (pad_x, pad_y, pad_z), (pad_vx, pad_vy, pad_vz) = pad.position_enu_m[0].tolist(), pad.velocity_enu_m_s[0].tolist()
+    position = (x - pad_x, y - pad_y, z - situation.feet_offset_m - pad_z)
+    velocity = (vx - pad_vx, vy - pad_vy, vz - pad_vz)
     return Approach(
-        distance_m=math.hypot(x - pad_x, y - pad_y),
-        speed_m_s=math.hypot(vx - pad_vx, vy - pad_vy),
-        height_m=z - situation.feet_offset_m - pad_z,
-        climb_m_s=vz - pad_vz,
+        position_enu_m=position,
+        velocity_enu_m_s=velocity,
+        distance_m=math.hypot(position[0], position[1]),
+        speed_m_s=math.hypot(velocity[0], velocity[1]),
+        height_m=position[2],
+        climb_m_s=velocity[2],
     )
 
 
@@ -147,8 +140,3 @@ def range_height_m(own: OwnState | None, seen: RangeReading | None, sensor_heigh
         return None
     _, _, upright = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
     return seen.distance_m * upright - sensor_height_m if upright > _UPRIGHT_MIN else None
-
-
-def vector3(array: Array | None) -> Vector3 | None:
-    """Return (3,) as a tuple for a message."""
-    return None if array is None else (float(array[0]), float(array[1]), float(array[2]))

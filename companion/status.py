@@ -4,7 +4,7 @@ import math
 
 from companion.config import CompanionConfig, DescentConfig
 from companion.phases import Phase
-from companion.situation import Approach, Situation, approach, vector3
+from companion.situation import Approach, Situation, approach
 from companion.step_data import StepMemory
 from link.messages import LandingStatus
 
@@ -21,8 +21,8 @@ def landing_status(memory: StepMemory, situation: Situation, config: CompanionCo
         stamp_ns=situation.t_ns,
         phase=memory.phase.value,
         reason=_reason(memory, situation),
-        relative_position_enu_m=vector3(situation.relative_position_enu_m),
-        relative_velocity_enu_m_s=vector3(situation.relative_velocity_enu_m_s),
+        relative_position_enu_m=None if relative is None else relative.position_enu_m,
+        relative_velocity_enu_m_s=None if relative is None else relative.velocity_enu_m_s,
         height_above_pad_m=None if relative is None else relative.height_m,
         time_to_contact_s=_time_to_contact_s(relative, config.descent) if timed and relative is not None else None,
         mavlink_bad_bytes=0,

@@ -17,6 +17,8 @@ from companion.planning.guidance import ReferenceState, Target
 
 HORIZON_OFFSETS_S: Array = np.arange(0.0, 4.01, 0.2)
 NO_FLOOR_M = -1e4
+_AT_REST: Array = np.zeros((len(HORIZON_OFFSETS_S), 3))
+_NO_FLOOR: Array = np.full(len(HORIZON_OFFSETS_S), NO_FLOOR_M)
 _SLOW_M_S = 0.5  # slower than this a vehicle has no direction to speak of
 _REST_M = 0.005
 _REST_MOTION = 0.01  # m/s and m/s^2
@@ -33,24 +35,28 @@ class Aim:
 
 def hover_aim(point_enu_m: Array) -> Aim:
     """Return the aim that stays at `point_enu_m` (3,)."""
-    n = len(HORIZON_OFFSETS_S)
-    zeros = np.zeros((n, 3))
+    position = np.empty_like(_AT_REST)
+    position[:] = point_enu_m
     target = Target(
         offset_s=HORIZON_OFFSETS_S,
-        position_enu_m=np.tile(point_enu_m, (n, 1)),
-        velocity_enu_m_s=zeros,
-        acceleration_enu_m_s2=zeros,
+        position_enu_m=position,
+        velocity_enu_m_s=_AT_REST,
+        acceleration_enu_m_s2=_AT_REST,
     )
-    return Aim(target=target, floor_enu_m=np.full(n, NO_FLOOR_M), is_hover=True)
+    return Aim(target=target, floor_enu_m=_NO_FLOOR, is_hover=True)
 
 
 def is_at_rest(reference: ReferenceState, aim: Aim) -> bool:
     """Return whether the virtual model hovers where the aim wants it for the whole horizon."""
     if not aim.is_hover:
         return False
-    off = np.abs(reference.position_enu_m - aim.target.position_enu_m[0]).max()
-    moving = np.abs(reference.velocity_enu_m_s).max() + np.abs(reference.acceleration_enu_m_s2).max()
-    return bool(off < _REST_M and moving < _REST_MOTION)
+    off = _largest(reference.position_enu_m - aim.target.position_enu_m[0])
+    moving = _largest(reference.velocity_enu_m_s) + _largest(reference.acceleration_enu_m_s2)
+    return off < _REST_M and moving < _REST_MOTION
+
+
+def _largest(vector: Array) -> float:
+    return float(max(map(abs, vector.tolist())))
 
 
 def stopping_point(reference: ReferenceState, deceleration_m_s2: float) -> Array:
@@ -59,7 +65,7 @@ def stopping_point(reference: ReferenceState, deceleration_m_s2: float) -> Array
     Along the velocity as a whole a fast flight with a little sink would end metres lower.
     """
     velocity = reference.velocity_enu_m_s
-    horizontal_m_s, vertical_m_s = float(np.hypot(velocity[0], velocity[1])), abs(float(velocity[2]))
+    horizontal_m_s, vertical_m_s = math.hypot(*velocity[:2].tolist()), abs(float(velocity[2]))
     speed = np.array([horizontal_m_s, horizontal_m_s, vertical_m_s])
     return np.asarray(reference.position_enu_m + velocity * speed / (2.0 * deceleration_m_s2))
 
@@ -107,7 +113,7 @@ def _height_profile(
 
 def is_vague(pad: PadPath, config: CompanionConfig) -> bool:
     """Return whether the pad is not known well enough to come near it."""
-    return float(np.max(pad.position_std_m[0, :2])) > config.abort.position_std_max_m
+    return float(max(pad.position_std_m[0, :2].tolist())) > config.abort.position_std_max_m
 
 
 def _chase_height_m(pad: PadPath, reference: ReferenceState, config: CompanionConfig) -> float:
@@ -117,7 +123,7 @@ def _chase_height_m(pad: PadPath, reference: ReferenceState, config: CompanionCo
     """
     if is_vague(pad, config):
         return config.chase.height_m
-    distance_m = float(np.hypot(*(reference.position_enu_m[:2] - pad.position_enu_m[0, :2])))
+    distance_m = math.hypot(*(reference.position_enu_m[:2] - pad.position_enu_m[0, :2]).tolist())
     beyond_m = max(distance_m - config.descent.align_distance_m, 0.0)
     return min(config.descent.align_height_m + 0.5 * beyond_m, config.chase.height_m)
 
@@ -154,7 +160,7 @@ def changes_speed(pad: PadPath, config: DescentConfig) -> bool:
     In a curve it leans, too, but that may last; a change of speed passes.
     """
     velocity, acceleration = pad.velocity_enu_m_s[0, :2], pad.acceleration_enu_m_s2[0, :2]
-    speed_m_s = float(np.hypot(velocity[0], velocity[1]))
+    speed_m_s = math.hypot(*velocity[:2].tolist())
     along_m_s2 = abs(float(velocity @ acceleration)) / max(speed_m_s, _SLOW_M_S)
     return along_m_s2 > config.speed_change_max_m_s2
 

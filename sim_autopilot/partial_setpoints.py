@@ -5,6 +5,7 @@ with an acceleration alone has no velocity to keep to either: there the drone's 
 """
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -36,6 +37,7 @@ class Given:
         return _unless(either, among=any(either))
 
 
+@lru_cache(maxsize=16)  # a companion's masks are the same all the time
 def given_by(mask: int) -> Given | None:
     """Return what the type mask of a SET_POSITION_TARGET gives, None where PX4 does not fly it."""
     position, velocity, acceleration = (_group(mask, bit) for bit in (_POSITION, _VELOCITY, _ACCELERATION))

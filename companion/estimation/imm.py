@@ -8,6 +8,7 @@ its error beyond some decimetres is slow (Gauss-Markov) rather than white, and i
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import assert_never
 
 import numpy as np
@@ -160,9 +161,7 @@ class ImmModel:
     def _noises(self, state: ImmState) -> Array:
         """Both modes' noise, (2, 8), as `imm_kernels.process_noise` takes it."""
         walk = self.config.frame_offset_walk_m2_s + 2.0 * state.fix_bias_variance_m2 / self.config.fix_bias_time_s
-        noises = self.numbers.noises.copy()
-        noises[:, 6:] = walk
-        return noises
+        return _with_walk(self.numbers, walk)
 
     def _prior_variances(self) -> Array:
         """Of every state but position and offset, (15,)."""
@@ -228,6 +227,13 @@ def _numbers(config: ImmConfig, antenna_to_pad_m: Vector3) -> _Numbers:
         lever_m=np.array(antenna_to_pad_m),
         course=np.array([config.course_speed_min_m_s, config.course_std_rad**2, config.heading_known_std_rad**2]),
     )
+
+
+@lru_cache(maxsize=4)  # it changes with a fix's stated error only
+def _with_walk(numbers: _Numbers, walk_m2_s: float) -> Array:
+    noises = numbers.noises.copy()
+    noises[:, 6:] = walk_m2_s
+    return noises
 
 
 def _noise(config: ImmConfig, mode: ImmModeConfig) -> tuple[float, ...]:
