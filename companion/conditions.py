@@ -151,6 +151,9 @@ def _in_disputed_contact(s: Situation, _: Approach | None, c: CompanionConfig) -
     return verdict(signs_of(s), c) is not Verdict.AIRBORNE
 
 
+STOPPED_BY_PAD = Test(HARD_CONTACT, frozenset({Phase.DESCEND}), _in_hard_contact, lambda _: 0.0)
+"""What stops the drone ends its commitment to land as well: this is asked before the tests that abort."""
+
 # A vehicle that stands may be about to depart, so it is landed on only after it has stood for a while.
 ENTRY_TESTS = (
     (
@@ -159,7 +162,7 @@ ENTRY_TESTS = (
     ),
     (Event.ALIGNED, Test("aligned", frozenset({Phase.ALIGN}), _aligned, lambda c: c.descent.aligned_hold_s)),
     (Event.CONTACT, Test(CONTACT, frozenset({Phase.DESCEND}), _in_contact, lambda c: c.touchdown.hold_s)),
-    (Event.CONTACT, Test(HARD_CONTACT, frozenset({Phase.DESCEND}), _in_hard_contact, lambda _: 0.0)),
+    (Event.CONTACT, STOPPED_BY_PAD),
     (
         Event.CONTACT,
         Test(

@@ -7,6 +7,7 @@ from companion.conditions import (
     ABORT_TESTS,
     DRIVES,
     ENTRY_TESTS,
+    STOPPED_BY_PAD,
     Held,
     fix_too_old,
     holds,
@@ -48,6 +49,9 @@ def decide(progress: Progress, situation: Situation, held: Held, config: Compani
     taken = _control_taken(progress, situation)
     if taken is not None:
         return taken
+    # What the pad stops is fast against a pad that drives on: it would be taken for unsafe in the same step.
+    if holds(STOPPED_BY_PAD, held, situation.t_ns, config):
+        return Event.CONTACT, _with_evidence(Event.CONTACT, STOPPED_BY_PAD.reason, situation)
     # On the pad and committed, cutting the approach short is the more dangerous way.
     for test in ABORT_TESTS:
         committed = progress.phase is Phase.DESCEND and _is_committed(situation, config)

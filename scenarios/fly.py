@@ -2,6 +2,7 @@
 
 import math
 import time
+from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -23,6 +24,7 @@ from scenarios.recording import EndWatch, Recording
 from scenarios.run import Progress, RunOutcome
 from scenarios.ship import PARAMETERS, ship_at
 from scenarios.touchdown import rules_of
+from scenarios.truth_file import TruthFile
 from scenarios.vehicle_node import STEP_PERIOD_NS, VehicleNode, datum_of
 from scenarios.watcher import Watcher
 from sim_autopilot.config import DatumConfig
@@ -46,6 +48,7 @@ class FlyOptions:
         ship_speed_m_s: of ArduPilot's simulated ship, which then is the vehicle; None is the scenario's vehicle.
         seed: of the vehicle's sensors.
         folder: to be made for the flight.
+        record: write what goes in and out of the companion, and the truth, as MCAP.
     """
 
     mavlink: str
@@ -53,6 +56,7 @@ class FlyOptions:
     ship_speed_m_s: float | None
     seed: int
     folder: Path
+    record: bool = False
 
 
 def fly(scenario: Scenario, options: FlyOptions, progress: Progress) -> RunOutcome:
@@ -71,6 +75,8 @@ def fly(scenario: Scenario, options: FlyOptions, progress: Progress) -> RunOutco
         flight = _Flight(placed, options, watch, keys, zenoh)
         with ProcessGroup([_companion(options, endpoint)], options.folder) as processes:
             ended = flight.run(transport, processes, progress)
+        if options.record:
+            _write_truth(placed, options, keys, flight.recording)
     # The drag over a mass of 1 kg; there is no tier for a drone that came near and did not land.
     drag_hz = DRAG_PER_MASS_HZ.get(watch.session.autopilot or 0, 0.0)
     rules = replace(rules_of(placed), mass_kg=1.0, drag_n_s_m=drag_hz, report_rule=False)
@@ -83,8 +89,14 @@ def _companion(options: FlyOptions, endpoint: str) -> Program:
     arguments = (
         *("--config", str(options.folder / "companion.toml"), "--mavlink", options.mavlink, "-e", endpoint),
         *("--start", "--tlog", str(options.folder / "flight.tlog"), "--timeout", "0"),
+        *(("--record", str(options.folder)) if options.record else ()),
     )
     return Program(name="companion", module=MODULES["companion"], arguments=arguments)
+
+
+def _write_truth(scenario: Scenario, options: FlyOptions, keys: Keys, recording: Recording) -> None:
+    with closing(TruthFile(options.folder, scenario, options.seed, keys)) as truth:
+        truth.take(recording)
 
 
 def _placed(scenario: Scenario, datum: Datum) -> Scenario:

@@ -27,6 +27,9 @@ def fly_command(
         typer.Option("--ship", min=0.1, metavar="M_S", help="Land on ArduPilot's simulated ship at this speed."),
     ] = None,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of the vehicle's sensors.")] = 1,
+    record: Annotated[
+        bool, typer.Option("--record", help="Record the companion and the truth, as MCAP, into the run's folder.")
+    ] = False,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the run's folder is made.")] = Path("runs"),
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> int:
@@ -41,7 +44,7 @@ def fly_command(
 
     scenario = load_scenario(name)
     folder = run_folder(out, scenario.name)
-    options = FlyOptions(mavlink=mavlink, watch=watch, ship_speed_m_s=ship, seed=seed, folder=folder)
+    options = FlyOptions(mavlink=mavlink, watch=watch, ship_speed_m_s=ship, seed=seed, folder=folder, record=record)
     with Reporter(scenario, folder, as_json=as_json) as reporter:
         outcome = fly(scenario, options, reporter.progress)
     return reporter.conclude(outcome)

@@ -41,6 +41,7 @@ class Reader:
         self._counts: Counter[str] = Counter()
         self._latencies_s: deque[float] = deque(maxlen=_KEPT)
         self._found_ns: int | None = None
+        self._counted_from_ns = 0
         self._asked_ns = 0
         self._t_ns = 0
 
@@ -52,7 +53,13 @@ class Reader:
     @property
     def listened_s(self) -> float:
         """For how long messages have been counted."""
-        return 0.0 if self._found_ns is None else max(0.0, (self._t_ns - self._found_ns - _SETTLE_NS) * 1e-9)
+        return 0.0 if self._found_ns is None else max(0.0, (self._t_ns - self._counted_from_ns) * 1e-9)
+
+    def count_anew(self, t_ns: int) -> None:
+        """Forget rates and latencies at local time `t_ns`; those of an autopilot just found need time to settle."""
+        self._counts.clear()
+        self._latencies_s.clear()
+        self._counted_from_ns = max(t_ns, self._counted_from_ns)
 
     def receive(self, data: bytes, t_ns: int) -> None:
         """Take bytes of the transport at local time `t_ns`."""
@@ -118,7 +125,7 @@ class Reader:
                     pass
 
     def _ask(self, found: LinkFound) -> None:
-        self._found_ns = found.t_ns
+        self._found_ns, self._counted_from_ns = found.t_ns, found.t_ns + _SETTLE_NS
         for message_id, rate_hz in _STREAMS.items():
             self.session.request_interval(message_id, rate_hz, found.t_ns)
         rules = RULES[found.autopilot][2] if found.autopilot in RULES else ()
@@ -130,7 +137,7 @@ class Reader:
         self._newest[name] = message
         if name == "PARAM_VALUE":
             self.parameter_types[message.param_id] = message.param_type
-        if self._found_ns is None or t_ns - self._found_ns < _SETTLE_NS:
+        if self._found_ns is None or t_ns < self._counted_from_ns:
             return
         self._counts[name] += 1
         boot_ns = self.session.clock.local_to_boot_ns(t_ns)

@@ -57,6 +57,7 @@ class CheckSession:
 
     def listen(self, duration_s: float, zenoh: ZenohSession, keys: Keys) -> VehicleReader:
         """Count messages for `duration_s`, read all parameters, and return what the vehicle told meanwhile."""
+        self.reader.count_anew(time.time_ns())
         vehicle = VehicleReader(keys.fix)
         inboxes = Inboxes(
             fix=zenoh.subscribe(keys.fix),

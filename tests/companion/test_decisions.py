@@ -161,6 +161,31 @@ def test_jolt_with_the_pad_in_the_range_finders_sight_needs_no_sunken_setpoint()
     assert _first_decision(Phase.DESCEND, far, 0.0)[0] is None
 
 
+def test_drone_that_the_pad_stops_beside_the_cone_has_landed_though_the_stop_ends_its_commitment() -> None:
+    beside_m = cone_radius_m(0.05, CONFIG) + 0.1
+    assert beside_m < OVER_PAD_M
+    pad = pad_at((4.0, 1.0, 0.0))
+    sinking = replace(
+        situation(0.05),
+        drone=drone_at(0.05, beside_m, (0.0, 0.0, -0.4), pad=pad),
+        pad=pad,
+        reference=reference_at(0.0),
+        range_height_m=0.05,
+    )
+    stopped = _jolted(replace(sinking, drone=drone_at(0.05, beside_m, (-4.0, -1.0, -0.3), pad=pad)))
+    held: dict[str, int] = {}
+    ticks = 2 * math.ceil(CONFIG.abort.cone_hold_s * 1e9 / TICK_NS)
+    for tick in range(ticks):
+        now = later(sinking, tick * TICK_NS)
+        held = update_held(held, Phase.DESCEND, now, approach(now), CONFIG)
+        assert decide(progress(Phase.DESCEND, 0.0), now, held, CONFIG) is None
+    now = later(stopped, ticks * TICK_NS)
+    held = update_held(held, Phase.DESCEND, now, approach(now), CONFIG)
+    decision = decide(progress(Phase.DESCEND, 0.0), now, held, CONFIG)
+    assert decision is not None
+    assert decision[0] is Event.CONTACT
+
+
 def test_jolt_in_the_air_is_no_contact() -> None:
     sinking = replace(situation(LOW_M), drone=drone_at(LOW_M, 0.1, (0.0, 0.0, -0.4), pad=pad_at()))
     decision, _ = _first_decision(Phase.DESCEND, _jolted(replace(sinking, reference=reference_at(LOW_M))), 1.0)

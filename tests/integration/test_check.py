@@ -39,7 +39,9 @@ def test_check_names_what_must_change_sets_it_and_puts_it_back(tmp_path: Path) -
         assert {"vehicle fixes", "vehicle age", "vehicle pad"} <= {one["name"] for one in found["findings"]}
 
         code, lines = check("--json", "--set", "--yes", "--keep", str(before))
-        assert set(parameters(json.loads("\n".join(lines))).values()) == {"pass"}
+        anew = json.loads("\n".join(lines))
+        assert set(parameters(anew).values()) == {"pass"}
+        assert {"vehicle fixes", "vehicle age", "vehicle pad"} <= {one["name"] for one in anew["findings"]}
         assert set(json.loads(before.read_text())) == AMISS_AT_10_M_S
 
         code, _ = check("--restore", str(before))
