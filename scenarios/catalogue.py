@@ -19,6 +19,7 @@ from typing import Any
 from link.errors import UserError
 from link.toml_config import merged, validated
 from scenarios.config import Scenario
+from scenarios.placement import placed
 
 Table = dict[str, Any]
 _DEFAULT_PRESETS = {"sensors": "rtk", "wind": "calm", "link": "ideal", "vehicle": "car", "system": "default"}
@@ -48,7 +49,7 @@ def load_scenario(name_or_path: str) -> Scenario:
     """Return the scenario called `name_or_path`, or the one in that TOML file.
 
     Raises:
-        UserError: no such scenario, preset or file, or a file that does not fit.
+        UserError: no such scenario, preset or file, a file that does not fit, or a drone inside the vehicle.
     """
     # A folder may have a "+" in its name.
     path, suffix, presets = name_or_path.rpartition(_SUFFIX)
@@ -60,7 +61,7 @@ def load_scenario(name_or_path: str) -> Scenario:
         table = _named(name) | {"name": name_or_path}
     for option in options:
         table |= _option(option, name_or_path)
-    return validated(Scenario, _resolved(table, name_or_path), source=name_or_path)
+    return placed(validated(Scenario, _resolved(table, name_or_path), source=name_or_path))
 
 
 def _option(option: str, whole: str) -> Table:

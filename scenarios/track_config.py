@@ -36,7 +36,7 @@ class WaypointsTrack(StrictModel):
     """Waypoints, with constant acceleration from each to the next (the report's)."""
 
     kind: Literal["waypoints"]
-    departure: Departure = Departure(hover_radius_m=0.5, departs_s=5.0)  # the report's vehicle stands for 5 s
+    departure: Departure = Departure(departs_s=5.0)  # the report's vehicle stands for 5 s
     waypoints_m: Annotated[tuple[Waypoint, ...], Field(min_length=2)]
     speeds_m_s: Annotated[tuple[NotNegative, ...], Field(min_length=2)]
     smooth: bool = False  # on a curve through the waypoints instead of straight lines
