@@ -160,3 +160,40 @@ def bound_rows(
     if len(floor):
         lower[acceleration + 2 * moves :] = floor - (x[0] + (v + 0.5 * a * node_s) * node_s)
     return lower, upper
+
+
+@njit(cache=True)
+def major_bounds(
+    state: Array, target_v: Array, target_a: Array, way: Array, norms: Array, node_s: Array, end_s: Array
+) -> tuple[Array, Array]:
+    """Return the bounds (c,) of the major axis; `state` (3, 3) has the axes in its columns, see `major_share`."""
+    speed, push, jerk = major_share(state[:, 1], target_v, target_a, way, norms, node_s, end_s)
+    return bound_rows(state[:, 0], speed, speed, push, jerk, np.empty(0), node_s, end_s)
+
+
+@njit(cache=True)
+def minor_bounds(
+    state: Array, major_jerk: Array, forced_v: Array, norms: Array, node_s: Array, move_s: Array, end_s: Array
+) -> tuple[Array, Array]:
+    """Return the bounds (c,) of the minor axis; `state` (3, 3) has the axes in its columns, see `minor_share`."""
+    speed, push, jerk = minor_share(state[:, 0], major_jerk, forced_v, norms, node_s, move_s)
+    return bound_rows(state[:, 1], speed, speed, push, jerk, np.empty(0), node_s, end_s)
+
+
+@njit(cache=True)
+def vertical_bounds(
+    x: Array, floor_m: Array, limits: tuple[float, float, float, float], node_s: Array, end_s: Array
+) -> tuple[Array, Array]:
+    """Return the bounds (c,) of the vertical axis in state `x` (3,).
+
+    Args:
+        x: (3,) position, velocity and acceleration.
+        floor_m: (n,) the lowest position; it is lowered to what can be kept.
+        limits: of descent, climb, acceleration and jerk.
+        node_s: (n,).
+        end_s: (m,).
+    """
+    descent, climb, pull, most = limits
+    floor = reachable_floor(floor_m, x, pull, climb, most, node_s)
+    down, up = np.full(len(node_s), descent), np.full(len(node_s), climb)
+    return bound_rows(x, down, up, np.full(len(end_s), pull), np.full(len(end_s), most), floor, node_s, end_s)

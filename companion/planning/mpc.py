@@ -15,13 +15,11 @@ from companion.planning.axis_qp import Bounds, make_axis_problem
 from companion.planning.brake import brake
 from companion.planning.condensed import forced_response, free_response, make_axis_model
 from companion.planning.config import MpcConfig
-from companion.planning.envelope import bound_rows, major_share, minor_share, reachable_floor
+from companion.planning.envelope import major_bounds, minor_bounds, vertical_bounds
 from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Trajectory
 from companion.planning.horizon import Horizon, make_horizon
 from companion.planning.qp import make_solver
 from companion.planning.requests import has_finite_target, with_finite_state
-
-NO_FLOOR: Array = np.empty(0)
 
 
 class Mpc:
@@ -34,6 +32,7 @@ class Mpc:
         level = make_axis_problem(self._model, config, has_floor=False)
         self._problems = (level, level, make_axis_problem(self._model, config, has_floor=True))
         self._nodes_s = np.append(0.0, self._model.node_s)
+        self._node_times_s = tuple(self._nodes_s.tolist())
 
     def plan(self, memory: ReferenceState | None, request: PlanRequest) -> tuple[ReferenceState, PlanResult]:
         """Return the next state as memory, and the plan."""
@@ -65,27 +64,19 @@ class Mpc:
             case 0:
                 way = np.array((horizon.split_rad, horizon.minor_push_m_s2, self._config.lateral_speed_fraction))
                 target_v, target_a = horizon.target_velocity_m_s[1], horizon.target_acceleration_m_s2[1]
-                share = major_share(x[:, 1], target_v, target_a, way, norms, model.node_s, model.end_s)
+                return major_bounds(x, target_v, target_a, way, norms, model.node_s, model.end_s)
             case 1:
-                share = minor_share(x[:, 0], major_jerk, model.forced_v, norms, model.node_s, model.move_s)
+                return minor_bounds(x, major_jerk, model.forced_v, norms, model.node_s, model.move_s, model.end_s)
             case _:
-                return self._vertical(horizon, limits)
-        speed, push, jerk = share
-        return bound_rows(x[:, axis], speed, speed, push, jerk, NO_FLOOR, model.node_s, model.end_s)
-
-    def _vertical(self, horizon: Horizon, limits: FlightLimits) -> Bounds:
-        """Return the bounds of the vertical axis."""
-        x, t_s, moves = horizon.state[:, 2], self._model.node_s, len(self._model.move_s)
-        pull, jerk = limits.vertical_acceleration_max_m_s2, limits.jerk_max_m_s3
-        down, up = np.full(len(t_s), limits.descent_max_m_s), np.full(len(t_s), limits.climb_max_m_s)
-        floor = reachable_floor(horizon.floor_m, x, pull, limits.climb_max_m_s, jerk, t_s)
-        return bound_rows(x, down, up, np.full(moves, pull), np.full(moves, jerk), floor, t_s, self._model.end_s)
+                descent_m_s, climb_m_s = limits.descent_max_m_s, limits.climb_max_m_s
+                vertical = (descent_m_s, climb_m_s, limits.vertical_acceleration_max_m_s2, limits.jerk_max_m_s3)
+                return vertical_bounds(x[:, 2], horizon.floor_m, vertical, model.node_s, model.end_s)
 
     def _result(
         self, request: PlanRequest, horizon: Horizon, moves: Array, excess: float, iterations: int
     ) -> PlanResult:
         """Return the plan in W: at 0, at the nodes, and at the request's `dt_s`."""
-        free, forced = _responses(tuple(self._nodes_s.tolist()), request.dt_s, self._config.moves_s)
+        free, forced = _responses(self._node_times_s, request.dt_s, self._config.moves_s)
         path = (free @ horizon.state + forced @ moves) @ horizon.turn
         position = path[0] + horizon.origin_enu_m
         return PlanResult(

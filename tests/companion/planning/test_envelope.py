@@ -7,7 +7,16 @@ from companion.data import Array
 from companion.planning.axis_qp import linear_term, make_axis_problem
 from companion.planning.condensed import make_axis_model
 from companion.planning.config import MpcConfig
-from companion.planning.envelope import MINOR_SHARE_MIN, bound_rows, major_share, minor_share
+from companion.planning.envelope import (
+    MINOR_SHARE_MIN,
+    bound_rows,
+    major_bounds,
+    major_share,
+    minor_bounds,
+    minor_share,
+    reachable_floor,
+    vertical_bounds,
+)
 
 CONFIG = MpcConfig()
 MODEL = make_axis_model(np.array(CONFIG.moves_s), CONFIG.node_spacing_max_s)
@@ -82,3 +91,22 @@ def test_kernels_are_their_python() -> None:
     for kernel, arguments in ((major_share, major), (minor_share, minor), (bound_rows, rows), (linear_term, term)):
         compiled, plain = np.hstack([*kernel(*arguments)]), np.hstack([*kernel.py_func(*arguments)])
         np.testing.assert_allclose(compiled, plain, rtol=1e-12, atol=1e-12)
+
+
+def test_bounds_in_one_call_are_those_of_their_parts() -> None:
+    rng = np.random.default_rng(13)
+    state, plan, floor = rng.standard_normal((3, 3)), rng.standard_normal(MOVES), rng.uniform(-4.0, -3.0, NODES)
+    target_v, target_a, way = rng.standard_normal(NODES + 1), rng.standard_normal(MOVES + 1), rng.uniform(0.2, 1.2, 3)
+    major, minor, up = (np.ascontiguousarray(state[:, axis]) for axis in range(3))
+    times = (MODEL.node_s, MODEL.end_s)
+    speed, push, jerk = major_share(minor, target_v, target_a, way, NORMS, *times)
+    expected = bound_rows(major, speed, speed, push, jerk, NO_FLOOR, *times)
+    np.testing.assert_array_equal(major_bounds(state, target_v, target_a, way, NORMS, *times), expected)
+    speed, push, jerk = minor_share(major, plan, MODEL.forced_v, NORMS, MODEL.node_s, MODEL.move_s)
+    expected = bound_rows(minor, speed, speed, push, jerk, NO_FLOOR, *times)
+    bounds = minor_bounds(state, plan, MODEL.forced_v, NORMS, MODEL.node_s, MODEL.move_s, MODEL.end_s)
+    np.testing.assert_array_equal(bounds, expected)
+    down, climb, pull, most = np.full(NODES, 1.5), np.full(NODES, 3.0), np.full(MOVES, 4.0), np.full(MOVES, 9.0)
+    kept_floor = reachable_floor(floor, up, 4.0, 3.0, 9.0, MODEL.node_s)
+    expected = bound_rows(up, down, climb, pull, most, kept_floor, *times)
+    np.testing.assert_array_equal(vertical_bounds(state[:, 2], floor, (1.5, 3.0, 4.0, 9.0), *times), expected)
