@@ -33,13 +33,16 @@ class Px4Driver:
     carries_setpoints_on = False  # it holds them as they came
     speed_parameters: tuple[str, ...] = ("MPC_XY_VEL_MAX",)
     mode_streams_hz: Mapping[int, float] = MappingProxyType({mavlink.MAVLINK_MSG_ID_CURRENT_MODE: 20.0})
-    # 310 messages a second of PX4's default set for an onboard computer
+    # 340 messages a second of PX4's default set for an onboard computer; slow ones are left for the log
     unused_streams = (
+        mavlink.MAVLINK_MSG_ID_ALTITUDE,
         mavlink.MAVLINK_MSG_ID_ATTITUDE,
+        mavlink.MAVLINK_MSG_ID_ATTITUDE_TARGET,
         mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT,
         mavlink.MAVLINK_MSG_ID_HIGHRES_IMU,
         mavlink.MAVLINK_MSG_ID_ODOMETRY,
         mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED,
+        mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW,
         mavlink.MAVLINK_MSG_ID_VFR_HUD,
     )
 
