@@ -12,7 +12,7 @@ from companion.config import CompanionConfig
 from companion.contact import Verdict, is_stopped_by_pad, over_pad_radius_m, signs_of, verdict
 from companion.phases import LANDING_PHASES, NEAR_PHASES, Event, Phase
 from companion.situation import Approach, Situation, approach
-from companion.targets import chase_floor_m, is_vague
+from companion.targets import chase_floor_m, is_unseen, is_vague
 
 CONTACT = "contact"
 DISPUTED_CONTACT = "contact against the range finder"
@@ -40,6 +40,15 @@ def fix_too_old(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
 def is_uncertain(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
     """Return whether the pad is not known well enough to come near it."""
     return s.pad is not None and is_vague(s.pad, c)
+
+
+def must_be_seen(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    """Return whether the pad has to be seen (again) before it is landed on."""
+    return s.pad is not None and is_unseen(s.pad, c)
+
+
+def _must_be_seen_above(s: Situation, a: Approach | None, c: CompanionConfig) -> bool:
+    return must_be_seen(s, a, c) and a is not None and a.height_m > c.descent.commit_height_m
 
 
 def _token_lost(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
@@ -114,7 +123,7 @@ ABORT_TESTS = (
 
 
 def _aligned(s: Situation, a: Approach | None, c: CompanionConfig) -> bool:
-    if a is None or not_placed(s, a, c):
+    if a is None or not_placed(s, a, c) or must_be_seen(s, a, c):
         return False
     return a.distance_m < c.descent.aligned_distance_m and a.speed_m_s < c.descent.aligned_speed_m_s
 
@@ -161,6 +170,14 @@ ENTRY_TESTS = (
         Test("vehicle stands", frozenset({Phase.WAITING}), _stands_nearby, lambda c: c.chase.parked_wait_s),
     ),
     (Event.ALIGNED, Test("aligned", frozenset({Phase.ALIGN}), _aligned, lambda c: c.descent.aligned_hold_s)),
+    (
+        Event.OUT_OF_ALIGNMENT,
+        Test("pad to be seen again", frozenset({Phase.DESCEND}), _must_be_seen_above, lambda c: c.abort.cone_hold_s),
+    ),
+    (
+        Event.OUT_OF_ALIGNMENT,
+        Test("pad not seen", frozenset({Phase.ALIGN}), must_be_seen, lambda c: c.descent.unseen_hold_s),
+    ),
     (Event.CONTACT, Test(CONTACT, frozenset({Phase.DESCEND}), _in_contact, lambda c: c.touchdown.hold_s)),
     (Event.CONTACT, STOPPED_BY_PAD),
     (

@@ -89,6 +89,10 @@ class DescentConfig(StrictModel):
     speed_change_max_m_s2: Positive = 1.2
     waiting_height_m: Positive = 0.6
     commit_height_m: Positive = 0.35  # below this it lands rather than aborts
+    # Standard deviation up to which a pad is landed on that the vehicle's fixes are too coarse to place: half of what
+    # S1 allows. Its pattern must have been seen as lately as that, while the drone and the vehicle's clock wander.
+    unseen_std_max_m: Positive = 0.25
+    unseen_hold_s: NotNegative = 1.5  # in the alignment, before it climbs to see more of the road
     time_limit_s: Positive = 30.0
 
 

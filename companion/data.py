@@ -70,6 +70,7 @@ class Forecast:
         acceleration_enu_m_s2: (n, 3).
         yaw_rad: (n,), None while the heading is unknown.
         position_std_m: (n, 3) standard deviation.
+        is_coarse: the vehicle's fixes alone are too coarse to land by.
     """
 
     t_ns: int
@@ -79,6 +80,7 @@ class Forecast:
     acceleration_enu_m_s2: Array
     yaw_rad: Array | None
     position_std_m: Array
+    is_coarse: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,6 +15,7 @@ from companion.conditions import (
     is_over_pad,
     is_too_low,
     is_uncertain,
+    must_be_seen,
     not_placed,
 )
 from companion.config import CompanionConfig, LandingStyle
@@ -180,7 +181,8 @@ def _over_pad(progress: Progress, s: Situation, config: CompanionConfig) -> Deci
     if relative is None or config.landing is LandingStyle.DIRECT:
         return None
     near_m = config.descent.align_distance_m
-    if progress.phase is Phase.CHASE and relative.distance_m < near_m and not is_uncertain(s, relative, config):
+    known = not is_uncertain(s, relative, config) and not must_be_seen(s, relative, config)
+    if progress.phase is Phase.CHASE and relative.distance_m < near_m and known:
         return Event.OVER_PAD, f"{relative.distance_m:.1f} m from the pad"
     if progress.phase is Phase.ALIGN and relative.distance_m > 2.0 * near_m:
         return Event.OUT_OF_ALIGNMENT, f"{relative.distance_m:.1f} m from the pad"

@@ -21,6 +21,7 @@ class PadPath:
         acceleration_enu_m_s2: (n, 3).
         yaw_rad: heading of the vehicle now, None when unknown.
         position_std_m: (n, 3).
+        is_coarse: the vehicle's fixes alone are too coarse to land by: only what the drone sees of the pad places it.
         placed: whether the pad's place is known; False while a lever arm points in an unknown direction.
     """
 
@@ -30,6 +31,7 @@ class PadPath:
     acceleration_enu_m_s2: Array
     yaw_rad: float | None
     position_std_m: Array
+    is_coarse: bool = False
     placed: bool = True
 
 
@@ -59,6 +61,7 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
         acceleration_enu_m_s2=forecast.acceleration_enu_m_s2,
         yaw_rad=None if forecast.yaw_rad is None else float(forecast.yaw_rad[0]),
         position_std_m=forecast.position_std_m,
+        is_coarse=forecast.is_coarse,
         placed=forecast.yaw_rad is not None or not is_beside,
     )
 

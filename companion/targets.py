@@ -116,12 +116,21 @@ def is_vague(pad: PadPath, config: CompanionConfig) -> bool:
     return float(max(pad.position_std_m[0, :2].tolist())) > config.abort.position_std_max_m
 
 
+def is_unseen(pad: PadPath, config: CompanionConfig) -> bool:
+    """Return whether the pad has to be seen (again) before it is landed on.
+
+    Fixes of some decimetres or better place it by themselves; between coarser ones and the drone's own place lie
+    metres, and what a sighting said of them holds for seconds only.
+    """
+    return pad.is_coarse and float(np.max(pad.position_std_m[0, :2])) > config.descent.unseen_std_max_m
+
+
 def _chase_height_m(pad: PadPath, reference: ReferenceState, config: CompanionConfig) -> float:
     """Come down towards the height of alignment as the horizontal distance closes, two metres for each.
 
     Over a vehicle whose place is not known well enough to align with it, nothing says that its side is not below.
     """
-    if is_vague(pad, config):
+    if is_vague(pad, config) or is_unseen(pad, config):
         return config.chase.height_m
     distance_m = math.hypot(*(reference.position_enu_m[:2] - pad.position_enu_m[0, :2]).tolist())
     beyond_m = max(distance_m - config.descent.align_distance_m, 0.0)

@@ -1,14 +1,15 @@
 """The default estimator: two interacting turning models with the offset between the two receivers' frames.
 
-State, motion and units are in `imm_kernels`, the interaction in `imm_mixing`. The vehicle's fixes are in the frame of
-its own receiver; sightings of the pad are in the drone's. Their difference is three states with a slow random walk,
-so that the estimate is right in the drone's frame, and stays right when the sightings end. What a receiver states as
-its error beyond some decimetres is slow (Gauss-Markov) rather than white, and is let into that walk.
+State, motion and units are in `imm_kernels`, what sensors read in `imm_sensors`, the interaction in `imm_mixing`.
+The vehicle's fixes are in the frame of its own receiver and dated by its own clock; sightings of the pad are in the
+drone's. The difference of the frames is three states with a slow random walk, that of the clocks is one, so that the
+estimate is right for the drone, and stays right when the sightings end. What a receiver states as its error beyond
+some decimetres is slow (Gauss-Markov) rather than white, and is let into that walk; the drone's own place then wanders
+as well, and from one sighting to the next nothing tells how far.
 """
 
 import math
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from typing import assert_never
 
 import numpy as np
@@ -17,23 +18,26 @@ from numpy.typing import NDArray
 from companion.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
 from companion.estimation import imm_kernels as kernels
 from companion.estimation import imm_mixing as mixing
-from companion.estimation.config import ImmConfig, ImmModeConfig
+from companion.estimation import imm_sensors as sensors
+from companion.estimation.config import ImmConfig
 from companion.estimation.delay_buffer import Update
 from companion.estimation.gaussian import wrapped
+from companion.estimation.imm_numbers import Numbers, noises_with, numbers_of
 from link.messages import Vector3
 
 KINDS = {
-    Quantity.POSITION: kernels.POSITION,
-    Quantity.VELOCITY: kernels.VELOCITY,
-    Quantity.HEADING: kernels.HEADING,
-    Quantity.YAW_RATE: kernels.YAW_RATE,
-    Quantity.PAD: kernels.PAD,
+    Quantity.POSITION: sensors.POSITION,
+    Quantity.VELOCITY: sensors.VELOCITY,
+    Quantity.HEADING: sensors.HEADING,
+    Quantity.YAW_RATE: sensors.YAW_RATE,
+    Quantity.PAD: sensors.PAD,
 }
 UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
 PLACE = np.array([0, 1, 8])  # indices of the position
 MOVES = np.array([2, 3, 4, 5, 9, 11])  # of what a velocity tells about
 OFFSET = np.array([12, 13, 14])
 CURVATURE, HEADING = 6, 7
+CLOCK = kernels.CLOCK
 CLIMB_STD_M_S = 1.0  # at the start: a grade of 5 % at 20 m/s
 
 IndexArray = NDArray[np.intp]
@@ -59,11 +63,11 @@ class ImmModel:
 
     config: ImmConfig
     antenna_to_pad_m: Vector3 = (0.0, 0.0, 0.0)
-    numbers: "_Numbers" = field(init=False, repr=False)
+    numbers: Numbers = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Derive the kernels' numbers."""
-        object.__setattr__(self, "numbers", _numbers(self.config, self.antenna_to_pad_m))
+        object.__setattr__(self, "numbers", numbers_of(self.config, self.antenna_to_pad_m))
 
     def start(self, fix: Measurement) -> ImmState:
         """Return the state after a first position: anything may be true of the rest."""
@@ -72,6 +76,7 @@ class ImmModel:
         mean[PLACE] = fix.value
         covariance = np.diag(self._prior_variances())
         covariance[np.ix_(PLACE, PLACE)] = white
+        covariance[CLOCK, CLOCK] = self.config.clock_std_s**2 if bias_variance else 0.0
         offset = (self.config.frame_offset_std_m**2 + bias_variance) * np.eye(3)
         covariances = _with_common_step(np.stack([covariance, covariance]), offset)
         dwell_s = self.numbers.dwell_s
@@ -150,6 +155,7 @@ class ImmModel:
             acceleration_enu_m_s2=acceleration,
             yaw_rad=yaw if self._heading_known(state) else None,
             position_std_m=std,
+            is_coarse=state.fix_bias_variance_m2 > 0.0,
         )
 
     def _split(self, fix_covariance: Array) -> tuple[Array, float]:
@@ -159,19 +165,21 @@ class ImmModel:
         return fix_covariance * (white / stated), stated - white
 
     def _noises(self, state: ImmState) -> Array:
-        """Both modes' noise, (2, 8), as `imm_kernels.process_noise` takes it."""
-        walk = self.config.frame_offset_walk_m2_s + 2.0 * state.fix_bias_variance_m2 / self.config.fix_bias_time_s
-        return _with_walk(self.numbers, walk)
+        """Both modes' noise, (2, 9), as `imm_kernels.process_noise` takes it."""
+        walk_m2_s = 2.0 * state.fix_bias_variance_m2 / self.config.fix_bias_time_s
+        receiver_m2_s = self.config.frame_offset_walk_m2_s + walk_m2_s
+        return noises_with(self.numbers, receiver_m2_s, self.config.own_walk_share * walk_m2_s)
 
     def _prior_variances(self) -> Array:
-        """Of every state but position and offset, (15,)."""
+        """Of every state but position, offset and clock, (16,)."""
         config = self.config
         speed, acceleration = config.initial_speed_std_m_s**2, config.initial_acceleration_std_m_s2**2
         heave = config.heave_std_m**2
         heave_rate = heave * float(self.numbers.motion[1]) ** 2
         curvature = config.curvature_std_rad_m**2
         moving = [speed, speed, acceleration, acceleration, curvature, UNKNOWN_HEADING_VARIANCE]
-        return np.array([0.0, 0.0, *moving, 0.0, CLIMB_STD_M_S**2, heave, heave_rate, 0.0, 0.0, 0.0])
+        vertical = [0.0, CLIMB_STD_M_S**2, heave, heave_rate]
+        return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0])
 
     def _heading_known(self, state: ImmState) -> bool:
         return mixing.is_heading_known(state.modes, self.config.heading_known_std_rad**2)
@@ -179,7 +187,7 @@ class ImmModel:
     def _step_size(self, state: ImmState, measurement: Measurement) -> float:
         """How far, m, a measured place is from the expected one; at least the prior of the offset."""
         means, _, weights = state.modes
-        expected, _ = kernels.observe(KINDS[measurement.quantity], weights @ means, self.numbers.lever_m, False)
+        expected, _ = sensors.observe(KINDS[measurement.quantity], weights @ means, self.numbers.lever_m, False)
         return max(float(np.linalg.norm(measurement.value - expected)), self.config.frame_offset_std_m)
 
     def _placed_by_sightings(self, state: ImmState) -> bool:
@@ -189,64 +197,14 @@ class ImmModel:
         return variance < 0.25 * (self.config.frame_offset_std_m**2 + state.fix_bias_variance_m2)
 
     def _restarted(self, state: ImmState, fix: Measurement) -> ImmState:
-        """A new start at `fix` that keeps the offset and the heading."""
+        """A new start at `fix` that keeps offset, heading and clock."""
         x, P = mixing.combine(*state.modes)
         means, covariances, weights = self.start(fix).modes
         means[:, PLACE] += x[OFFSET]
         means[:, OFFSET] = x[OFFSET]
-        means[:, HEADING], covariances[:, HEADING, HEADING] = x[HEADING], P[HEADING, HEADING]
+        for kept in (HEADING, CLOCK):
+            means[:, kept], covariances[:, kept, kept] = x[kept], P[kept, kept]
         return replace(state, modes=(means, covariances, weights))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Numbers:
-    """A configuration as the kernels take it.
-
-    Attributes:
-        motion: (4,) as `imm_mixing` has it.
-        dwell_s: (2,) of both modes.
-        noises: (2, 8) as `imm_kernels.process_noise` takes them, but for the last two, which depend on the state.
-        lever_m: (3,) from the antenna to the pad in V.
-        course: (3,) as `imm_mixing.take_reading` takes it.
-    """
-
-    motion: Array
-    dwell_s: Array
-    noises: Array
-    lever_m: Array
-    course: Array
-
-
-def _numbers(config: ImmConfig, antenna_to_pad_m: Vector3) -> _Numbers:
-    heave = (2.0 * math.pi * config.heave_frequency_hz, config.heave_damping, config.heave_std_m)
-    modes = (config.steady, config.manoeuvre)
-    return _Numbers(
-        motion=np.array([config.acceleration_decay_s, *heave]),
-        dwell_s=np.array([mode.dwell_s for mode in modes]),
-        noises=np.array([_noise(config, mode) for mode in modes]),
-        lever_m=np.array(antenna_to_pad_m),
-        course=np.array([config.course_speed_min_m_s, config.course_std_rad**2, config.heading_known_std_rad**2]),
-    )
-
-
-@lru_cache(maxsize=4)  # it changes with a fix's stated error only
-def _with_walk(numbers: _Numbers, walk_m2_s: float) -> Array:
-    noises = numbers.noises.copy()
-    noises[:, 6:] = walk_m2_s
-    return noises
-
-
-def _noise(config: ImmConfig, mode: ImmModeConfig) -> tuple[float, ...]:
-    return (
-        mode.jerk_psd_m2_s5,
-        config.side_jerk_psd_m2_s5,
-        mode.lateral_acceleration_psd_m2_s5,
-        config.curvature_speed_min_m_s,
-        config.heading_psd_rad2_s,
-        config.climb_psd_m2_s3,
-        0.0,
-        0.0,
-    )
 
 
 def _own(array: Array) -> Array:

@@ -1,6 +1,6 @@
-"""Compiled arithmetic of the turning model: one step of motion, what the sensors see of it, and the Kalman update.
+"""Compiled arithmetic of the turning model: one step of motion, its noise, and the Kalman update.
 
-State `x` (15,) of the antenna in W:
+State `x` (16,) of the antenna in W:
   0:2  p   horizontal position, m
   2:4  v   horizontal velocity, m/s
   4:6  b   what changes the velocity apart from turning, m/s^2; decays with time constant tau
@@ -9,6 +9,7 @@ State `x` (15,) of the antenna in W:
   8:10     height of the road, m, and its rate, m/s
   10:12 h  heave about the road, m, and its rate, m/s: a damped oscillator
   12:15 o  what the vehicle's receiver must be corrected by to be in the drone's frame, m
+  15   c   how far the vehicle's clock is ahead of the drone's, s: what it stamps with now was true c ago
 With `w = k |v|` and J the turn by +90 degrees: `dp = v, dv = w J v + b, db = w J b - b/tau, dpsi = w`. At constant
 `w` this has a closed form: in a frame that turns with the vehicle, `v` relaxes along `b` and nothing else happens.
 At rest `w` is zero, so a standing vehicle cannot turn. Braking ends at standstill.
@@ -23,9 +24,10 @@ from numba import njit
 from companion.data import Array
 from companion.estimation.small_matrices import inverse_of, less_outer, times
 
-SIZE = 15
+SIZE = 16
 MOTION = 8  # leading states that the non-linear motion touches
-POSITION, VELOCITY, HEADING, YAW_RATE, PAD, COURSE = range(6)
+CLOCK = 15
+CLOCK_NOISE = 8  # its place in the noise
 
 
 @njit(cache=True)
@@ -41,10 +43,10 @@ def standstill_s(v: Array, b: Array, tau_s: float, dt_s: float) -> float:
 
 @njit(cache=True)
 def advance(x: Array, dt_s: float, tau_s: float, heave: Array) -> tuple[Array, Array]:
-    """Return the state `dt_s` later and its Jacobian `(15, 15)`.
+    """Return the state `dt_s` later and its Jacobian `(16, 16)`.
 
     Args:
-        x: state (15,).
+        x: state (16,).
         dt_s: step, short against a turn (0.1 s).
         tau_s: time constant of `b`.
         heave: transition (2, 2) of the heave over `dt_s`.
@@ -119,13 +121,14 @@ def heave_step(dt_s: float, frequency_rad_s: float, damping: float, std_m: float
 
 @njit(cache=True)
 def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array) -> Array:
-    """Return Q `(15, 15)` over `dt_s`.
+    """Return Q `(16, 16)` over `dt_s`.
 
     Args:
-        x: state (15,), whose velocity says what is along and what is across.
+        x: state (16,), whose velocity says what is along and what is across.
         dt_s: step.
-        noise: (8,) jerk along and across the track, m^2/s^5; lateral acceleration, m^2/s^5; lowest speed for the
-            curvature, m/s; heading, rad^2/s; climb, m^2/s^3; frame offset, horizontal and vertical, m^2/s.
+        noise: (9,) jerk along and across the track, m^2/s^5; lateral acceleration, m^2/s^5; lowest speed for the
+            curvature, m/s; heading, rad^2/s; climb, m^2/s^3; the receiver's and the drone's own wandering, m^2/s;
+            clock, s^2/s.
         heave_noise: (2, 2) of the heave over `dt_s`.
     """
     Q = np.zeros((SIZE, SIZE))
@@ -148,50 +151,12 @@ def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array) -> Ar
     Q[7, 7] = noise[4] * d
     Q[8, 8], Q[8, 9], Q[9, 8], Q[9, 9] = noise[5] * d**3 / 3, noise[5] * d**2 / 2, noise[5] * d**2 / 2, noise[5] * d
     Q[10:12, 10:12] = heave_noise
-    Q[12, 12], Q[13, 13], Q[14, 14] = noise[6] * d, noise[6] * d, noise[7] * d
+    for place, offset in ((0, 12), (1, 13), (8, 14)):  # where the drone errs about itself, both move
+        Q[place, place] += noise[7] * d
+        Q[place, offset] = Q[offset, place] = noise[7] * d
+        Q[offset, offset] = (noise[6] + noise[7]) * d
+    Q[CLOCK, CLOCK] = noise[CLOCK_NOISE] * d
     return Q
-
-
-@njit(cache=True)
-def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Array, Array]:
-    """Return what a sensor reads at `x`, `(m,)`, and its Jacobian `(m, 15)`.
-
-    Args:
-        kind: POSITION, VELOCITY, HEADING, YAW_RATE, PAD, or COURSE (the course minus the heading).
-        x: state (15,).
-        lever: (3,) from the antenna to the pad in V, m.
-        sees_heading: whether a pad sighting may correct the heading.
-    """
-    speed = math.hypot(x[2], x[3])
-    m = 1 if kind in (HEADING, YAW_RATE, COURSE) else 3
-    z, H = np.zeros(m), np.zeros((m, SIZE))
-    if kind in (POSITION, PAD):
-        z[0], z[1], z[2] = x[0], x[1], x[8] + x[10]
-        H[0, 0], H[1, 1], H[2, 8], H[2, 10] = 1.0, 1.0, 1.0, 1.0
-    if kind == POSITION:
-        z -= x[12:15]
-        H[0, 12], H[1, 13], H[2, 14] = -1.0, -1.0, -1.0
-    elif kind == PAD:
-        c, s = math.cos(x[7]), math.sin(x[7])
-        arm_x, arm_y = c * lever[0] - s * lever[1], s * lever[0] + c * lever[1]
-        z[0] += arm_x
-        z[1] += arm_y
-        z[2] += lever[2]
-        if sees_heading:
-            H[0, 7], H[1, 7] = -arm_y, arm_x
-    elif kind == VELOCITY:
-        z[0], z[1], z[2] = x[2], x[3], x[9] + x[11]
-        H[0, 2], H[1, 3], H[2, 9], H[2, 11] = 1.0, 1.0, 1.0, 1.0
-    elif kind == HEADING:
-        z[0], H[0, 7] = x[7], 1.0
-    elif kind == YAW_RATE:
-        z[0], H[0, 6] = x[6] * speed, speed
-        if speed > 1e-6:
-            H[0, 2], H[0, 3] = x[6] * x[2] / speed, x[6] * x[3] / speed
-    elif kind == COURSE:
-        z[0], H[0, 7] = math.atan2(x[3], x[2]) - x[7], -1.0
-        H[0, 2], H[0, 3] = -x[3] / speed**2, x[2] / speed**2
-    return z, H
 
 
 @njit(cache=True)

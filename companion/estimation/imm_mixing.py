@@ -1,8 +1,9 @@
 """Compiled steps of two interacting turning models that differ in their noise only (Blom and Bar-Shalom 1988).
 
-`Modes` are means (2, 15), covariances (2, 15, 15) and probabilities (2,). Between measurements the vehicle may change
-from one mode to the other as a continuous Markov chain with the given mean dwell times. `motion` (4,) is the time
-constant of the acceleration, s, and the heave's angular frequency, rad/s, damping and standard deviation, m.
+`Modes` are means (2, 16), covariances (2, 16, 16) and probabilities (2,). Between measurements the vehicle may change
+from one mode to the other as a continuous Markov chain with the given mean dwell times. `motion` (5,) is the time
+constant of the acceleration, s, the heave's angular frequency, rad/s, damping and standard deviation, m, and the time
+constant of the clock's difference, s.
 """
 
 import math
@@ -11,18 +12,15 @@ import numpy as np
 from numba import njit
 
 from companion.data import Array
-from companion.estimation.imm_kernels import (
+from companion.estimation.imm_kernels import CLOCK, SIZE, advance, correct, heave_step, process_noise
+from companion.estimation.imm_sensors import (
     COURSE,
     HEADING,
     PAD,
     POSITION,
-    SIZE,
     VELOCITY,
-    advance,
-    correct,
-    heave_step,
+    horizontal_acceleration,
     observe,
-    process_noise,
 )
 from companion.estimation.small_matrices import carried_through, inverse_of
 
@@ -66,25 +64,28 @@ def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple
     """Return mean and covariance of one mode `dt_s` later, in equal steps.
 
     Args:
-        x: mean (15,).
-        P: covariance (15, 15).
+        x: mean (16,).
+        P: covariance (16, 16).
         dt_s: time to pass.
-        noise: (8,) as `process_noise` takes it.
-        motion: (4,), see the module.
+        noise: (9,) as `process_noise` takes it.
+        motion: (5,), see the module.
     """
     steps = max(math.ceil(dt_s / STEP_MAX_S - 1e-9), 1)
     step_s = dt_s / steps
     heave, heave_noise = heave_step(step_s, motion[1], motion[2], motion[3])
+    clock_left = math.exp(-step_s / motion[4])
     for _ in range(steps):
         Q = process_noise(x, step_s, noise, heave_noise)
         x, F = advance(x, step_s, motion[0], heave)
+        x[CLOCK] *= clock_left
+        F[CLOCK, CLOCK] = clock_left
         P = carried_through(F, P) + Q
     return x, 0.5 * (P + P.T)
 
 
 @njit(cache=True)
 def predict_modes(modes: Modes, dt_s: float, noises: Array, dwell_s: Array, motion: Array) -> Modes:
-    """Return the filter `dt_s` later; `noises` (2, 8), `dwell_s` (2,)."""
+    """Return the filter `dt_s` later; `noises` (2, 9), `dwell_s` (2,)."""
     means, covariances, weights = mix(modes, switching(dwell_s, dt_s))
     for j in range(2):
         means[j], covariances[j] = glide(means[j], covariances[j], dt_s, noises[j], motion)
@@ -194,37 +195,32 @@ def take_reading(
 
 @njit(cache=True)
 def kinematics(states: Array, heave: Array) -> tuple[Array, Array, Array]:
-    """Return position, velocity and acceleration in W, each (n, 3), of `states` (n, 15); `heave` is `motion[1:3]`."""
+    """Return position, velocity and acceleration in W, each (n, 3), of `states` (n, 16); `heave` is `motion[1:3]`."""
     n = len(states)
     position, velocity, acceleration = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
     for i in range(n):
         x = states[i]
-        turn_rate = x[6] * math.hypot(x[2], x[3])
         position[i, 0], position[i, 1], position[i, 2] = x[0], x[1], x[8] + x[10]
         velocity[i, 0], velocity[i, 1], velocity[i, 2] = x[2], x[3], x[9] + x[11]
-        acceleration[i, 0], acceleration[i, 1] = x[4] - turn_rate * x[3], x[5] + turn_rate * x[2]
+        acceleration[i, :2], _ = horizontal_acceleration(x)
         acceleration[i, 2] = -(heave[0] ** 2) * x[10] - 2.0 * heave[1] * heave[0] * x[11]
     return position, velocity, acceleration
 
 
 @njit(cache=True)
 def kinematics_jacobian(x: Array, heave: Array) -> Array:
-    """Return the Jacobian `(9, 15)` of position, velocity and acceleration; `heave` is `motion[1:3]`."""
-    speed = math.hypot(x[2], x[3])
-    ux, uy = (x[2] / speed, x[3] / speed) if speed > 1e-6 else (0.0, 0.0)
-    k = x[6]
+    """Return the Jacobian `(9, 16)` of position, velocity and acceleration; `heave` is `motion[1:3]`."""
     G = np.zeros((9, SIZE))
     G[0, 0], G[1, 1], G[2, 8], G[2, 10] = 1.0, 1.0, 1.0, 1.0
     G[3, 2], G[4, 3], G[5, 9], G[5, 11] = 1.0, 1.0, 1.0, 1.0
-    G[6, 4], G[6, 6], G[6, 2], G[6, 3] = 1.0, -speed * x[3], -k * ux * x[3], -k * (uy * x[3] + speed)
-    G[7, 5], G[7, 6], G[7, 2], G[7, 3] = 1.0, speed * x[2], k * (ux * x[2] + speed), k * uy * x[2]
+    _, G[6:8, 2:7] = horizontal_acceleration(x)
     G[8, 10], G[8, 11] = -(heave[0] ** 2), -2.0 * heave[1] * heave[0]
     return G
 
 
 @njit(cache=True)
 def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) -> tuple[Array, Array]:
-    """Return the means `(n, 15)` and the position variances `(n, 3)` at `offset_s` (n,), not falling."""
+    """Return the means `(n, 16)` and the position variances `(n, 3)` at `offset_s` (n,), not falling."""
     n = len(offset_s)
     means, variances = np.empty((n, SIZE)), np.empty((n, 3))
     passed_s = 0.0

@@ -200,6 +200,8 @@ def test_landing_goes_on_exactly_after_the_hold_time(event: Event, test: Conditi
             facts = situation(3.0, 2.0, pad=pad_at((0.0, 0.0, 0.0)))
         case Event.ALIGNED:
             facts = situation()
+        case Event.OUT_OF_ALIGNMENT:
+            facts = situation(pad=replace(pad_at(std_m=CONFIG.descent.unseen_std_max_m + 0.01), is_coarse=True))
         case _:
             facts = replace(situation(0.0), reference=reference_at(-CONFIG.touchdown.blocked_depth_m - 0.01))
     if test.reason == DISPUTED_CONTACT:

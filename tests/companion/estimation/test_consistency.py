@@ -25,6 +25,7 @@ IMM = ImmModel(
         manoeuvre=MODE,
         frame_offset_std_m=0.0,
         frame_offset_walk_m2_s=0.0,
+        clock_std_s=0.0,
         course_std_rad=1e3,
     )
 )
@@ -82,6 +83,7 @@ def wander(x: Array, rng: np.random.Generator) -> Array:
             config.climb_psd_m2_s3,
             0.0,
             0.0,
+            0.0,
         ]
     )
     Q = kernels.process_noise(x, DT_S, noise, heave_noise)
@@ -91,7 +93,7 @@ def wander(x: Array, rng: np.random.Generator) -> Array:
 
 def imm_run(curvature: float, seed: int) -> tuple[float, float, int]:
     rng = np.random.default_rng(seed)
-    x = np.zeros(15)
+    x = np.zeros(kernels.SIZE)
     x[2], x[6] = 8.0, curvature
     buffer: DelayBuffer[ImmState] | None = None
     at_settled = (0.0, 0)

@@ -10,24 +10,25 @@ from scipy.stats import multivariate_normal
 from companion.data import Array
 from companion.estimation import imm_kernels as kernels
 from companion.estimation import imm_mixing as mixing
+from companion.estimation import imm_sensors as sensors
 
 TAU_S = 3.0
-MOTION = np.array([TAU_S, 2.0 * math.pi * 0.75, 0.3, 0.04])
-NOISE = np.array([12.0, 0.005, 20.0, 3.0, 1e-4, 0.01, 1e-5, 1e-5])
+MOTION = np.array([TAU_S, 2.0 * math.pi * 0.75, 0.3, 0.04, 180.0])
+NOISE = np.array([12.0, 0.005, 20.0, 3.0, 1e-4, 0.01, 1e-5, 2e-3, 1e-7])
 LEVER = np.array([-0.7, 0.1, 0.3])
 HEAVE = np.array([[0.91, 0.08], [-1.7, 0.69]])
 
 
 def a_state(seed: int) -> Array:
     rng = np.random.default_rng(seed)
-    x = rng.standard_normal(15)
+    x = rng.standard_normal(kernels.SIZE)
     x[2:4] = rng.uniform(2.0, 9.0, 2)
     x[4:6] = rng.uniform(-1.5, 1.5, 2)
     x[6] = rng.uniform(-0.08, 0.08)
     return x
 
 
-def a_covariance(seed: int, n: int = 15) -> Array:
+def a_covariance(seed: int, n: int = kernels.SIZE) -> Array:
     root = np.random.default_rng(seed).standard_normal((n, n))
     return np.asarray(root @ root.T + 0.1 * np.eye(n))
 
@@ -48,7 +49,7 @@ def test_motion_solves_its_differential_equation(seed: int) -> None:
 
 
 def test_motion_without_acceleration_is_a_circle_exactly() -> None:
-    x = np.zeros(15)
+    x = np.zeros(kernels.SIZE)
     x[2], x[6] = 8.0, 1.0 / 20.0
     after, _ = kernels.advance(x, 0.5, TAU_S, HEAVE)
     turned = 8.0 * 0.5 / 20.0
@@ -60,9 +61,9 @@ def test_motion_without_acceleration_is_a_circle_exactly() -> None:
 def test_jacobian_is_the_derivative_of_the_motion(seed: int) -> None:
     x = a_state(seed)
     _, F = kernels.advance(x, 0.05, TAU_S, HEAVE)
-    numeric = np.empty((15, 15))
-    for i in range(15):
-        step = 1e-6 * np.eye(15)[i]
+    numeric = np.empty((kernels.SIZE, kernels.SIZE))
+    for i in range(kernels.SIZE):
+        step = 1e-6 * np.eye(kernels.SIZE)[i]
         up, down = kernels.advance(x + step, 0.05, TAU_S, HEAVE)[0], kernels.advance(x - step, 0.05, TAU_S, HEAVE)[0]
         numeric[:, i] = (up - down) / 2e-6
     assert pytest.approx(numeric, abs=2e-3) == F
@@ -71,10 +72,10 @@ def test_jacobian_is_the_derivative_of_the_motion(seed: int) -> None:
 @pytest.mark.parametrize("kind", range(6))
 def test_jacobian_is_the_derivative_of_what_a_sensor_reads(kind: int) -> None:
     x = a_state(7)
-    _, H = kernels.observe(kind, x, LEVER, True)
-    for i in range(15):
-        step = 1e-6 * np.eye(15)[i]
-        up, down = kernels.observe(kind, x + step, LEVER, True)[0], kernels.observe(kind, x - step, LEVER, True)[0]
+    _, H = sensors.observe(kind, x, LEVER, True)
+    for i in range(kernels.SIZE):
+        step = 1e-6 * np.eye(kernels.SIZE)[i]
+        up, down = sensors.observe(kind, x + step, LEVER, True)[0], sensors.observe(kind, x - step, LEVER, True)[0]
         assert H[:, i] == pytest.approx((up - down) / 2e-6, abs=1e-6)
 
 
@@ -82,15 +83,15 @@ def test_jacobian_is_the_derivative_of_what_a_sensor_reads(kind: int) -> None:
 def test_kinematics_jacobian_is_the_derivative_of_the_kinematics(seed: int) -> None:
     x = a_state(seed)
     G = mixing.kinematics_jacobian(x, MOTION[1:3])
-    numeric = np.empty((9, 15))
-    for i in range(15):
-        around = np.hstack(mixing.kinematics(x + 1e-6 * np.outer([1.0, -1.0], np.eye(15)[i]), MOTION[1:3]))
+    numeric = np.empty((9, kernels.SIZE))
+    for i in range(kernels.SIZE):
+        around = np.hstack(mixing.kinematics(x + 1e-6 * np.outer([1.0, -1.0], np.eye(kernels.SIZE)[i]), MOTION[1:3]))
         numeric[:, i] = (around[0] - around[1]) / 2e-6
     assert pytest.approx(numeric, abs=1e-5) == G
 
 
 def test_braking_stops_where_the_fading_acceleration_stops_it() -> None:
-    x = np.zeros(15)
+    x = np.zeros(kernels.SIZE)
     x[2], x[4] = 0.4, -6.0
     after, _ = kernels.advance(x, 0.1, TAU_S, HEAVE)
     stop = solve_ivp(
@@ -113,8 +114,8 @@ def _at_standstill(_: float, s: Array) -> float:
 @pytest.mark.parametrize("seed", range(3))
 def test_update_equals_that_of_filterpy(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    x, P, R = rng.standard_normal(15), a_covariance(seed), a_covariance(seed + 50, 3)
-    H, z = rng.standard_normal((3, 15)), rng.standard_normal(3)
+    x, P, R = rng.standard_normal(kernels.SIZE), a_covariance(seed), a_covariance(seed + 50, 3)
+    H, z = rng.standard_normal((3, kernels.SIZE)), rng.standard_normal(3)
     mean, covariance, nis, log_likelihood = kernels.correct(x, P, z - H @ x, H, R)
     other_mean, other_covariance, y, _, S, _ = filterpy_update(x, P, z, R, H, return_all=True)
     assert mean == pytest.approx(other_mean)
@@ -134,7 +135,7 @@ def test_compiled_kernels_equal_their_python(seed: int) -> None:
         assert mine == pytest.approx(python, rel=1e-12, abs=1e-14)
     for kind in range(6):
         for mine, python in zip(
-            kernels.observe(kind, x, LEVER, True), kernels.observe.py_func(kind, x, LEVER, True), strict=True
+            sensors.observe(kind, x, LEVER, True), sensors.observe.py_func(kind, x, LEVER, True), strict=True
         ):
             assert mine == pytest.approx(python, rel=1e-12)
     glided, python_glided = mixing.glide(x, P, 0.33, NOISE, MOTION), mixing.glide.py_func(x, P, 0.33, NOISE, MOTION)
@@ -153,7 +154,7 @@ def test_process_noise_is_positive_and_lies_along_the_track() -> None:
 
 
 def test_heave_is_a_damped_oscillator_of_the_given_steady_size() -> None:
-    _, w, damping, std = MOTION
+    _, w, damping, std, _ = MOTION
     A = np.array([[0.0, 1.0], [-(w**2), -2.0 * damping * w]])
     step, noise = kernels.heave_step(0.13, w, damping, std)
     assert step == pytest.approx(expm(0.13 * A))
@@ -181,9 +182,9 @@ def test_mixing_keeps_mean_and_covariance_of_the_mixture() -> None:
 def test_mode_that_was_ruled_out_comes_back() -> None:
     means = np.stack([a_state(1), a_state(1)])
     means[1, 0] += 3.0
-    covariances = np.stack([1e-2 * np.eye(15), 1e-2 * np.eye(15)])
-    value = kernels.observe(kernels.POSITION, means[1], LEVER, True)[0]
-    modes, reading = (means, covariances, np.array([1.0, 0.0])), (kernels.POSITION, value, 1e-4 * np.eye(3))
+    covariances = np.stack([1e-2 * np.eye(kernels.SIZE), 1e-2 * np.eye(kernels.SIZE)])
+    value = sensors.observe(sensors.POSITION, means[1], LEVER, True)[0]
+    modes, reading = (means, covariances, np.array([1.0, 0.0])), (sensors.POSITION, value, 1e-4 * np.eye(3))
     (_, _, weights), nis, gate_nis = mixing.update_modes(modes, reading, LEVER, True)
     assert weights[1] > 0.99
     assert nis > 100.0
@@ -193,9 +194,9 @@ def test_mode_that_was_ruled_out_comes_back() -> None:
 @pytest.mark.parametrize("axes", [1, 3])
 def test_measurement_tells_the_modes_apart_as_one_component_would(axes: int) -> None:
     means = np.stack([a_state(2), a_state(2)])
-    covariances = np.stack([0.03 * np.eye(15), 0.7 * np.eye(15)])
-    kind = kernels.POSITION if axes == 3 else kernels.HEADING
-    expected, H = kernels.observe(kind, means[0], LEVER, True)
+    covariances = np.stack([0.03 * np.eye(kernels.SIZE), 0.7 * np.eye(kernels.SIZE)])
+    kind = sensors.POSITION if axes == 3 else sensors.HEADING
+    expected, H = sensors.observe(kind, means[0], LEVER, True)
     error, R, before = np.full(axes, 0.9), 0.01 * np.eye(axes), np.array([0.8, 0.2])
     (_, _, after), _, _ = mixing.update_modes((means, covariances, before), (kind, expected + error, R), LEVER, True)
     fits = [multivariate_normal.logpdf(error, cov=H @ P @ H.T + R) for P in covariances]

@@ -1,0 +1,109 @@
+"""Between a vehicle and a drone without corrections lie metres: the pad is landed on only where it was just seen."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from companion.conditions import update_held
+from companion.config import CompanionConfig
+from companion.data import Quantity
+from companion.decisions import decide
+from companion.estimation.config import EstimatorKind
+from companion.pad import PadPath, pad_path
+from companion.phases import Event, Phase
+from companion.situation import Situation, approach
+from companion.targets import is_unseen, pad_aim
+from tests.companion.estimation.driving import DEGRADED, NOMINAL, Sensors, circle
+from tests.companion.estimation.rides import arrivals, estimator, now_ns
+from tests.companion.facts import GEAR_M, later, pad_at, progress, reference_at, situation
+
+CONFIG = CompanionConfig()
+HIGH_M = CONFIG.descent.align_height_m
+LOW_M = 0.5 * CONFIG.descent.commit_height_m
+VAGUE_M = CONFIG.descent.unseen_std_max_m + 0.01
+SURE_M = CONFIG.descent.unseen_std_max_m - 0.01
+PLAIN = replace(DEGRADED, pad_rate_hz=10.0, pad_delay_s=0.15, frame_offset_m=1.2)
+RTK = replace(NOMINAL, pad_rate_hz=30.0, frame_offset_m=0.5)
+TICK_NS = 20_000_000
+
+
+def above(height_m: float, std_m: float, *, is_coarse: bool) -> Situation:
+    return situation(height_m, pad=replace(pad_at(std_m=std_m), is_coarse=is_coarse))
+
+
+def event_within(phase: Phase, facts: Situation, limit_s: float) -> Event | None:
+    """The first event on facts that stay as they are."""
+    held: dict[str, int] = {}
+    for tick in range(round(limit_s * 1e9 / TICK_NS) + 1):
+        now = later(facts, tick * TICK_NS)
+        held = update_held(held, phase, now, approach(now), CONFIG)
+        decision = decide(progress(phase, 0.0), now, held, CONFIG)
+        if decision is not None:
+            return decision[0]
+    return None
+
+
+@pytest.mark.parametrize(
+    ("std_m", "is_coarse", "event"),
+    [(SURE_M, True, Event.ALIGNED), (VAGUE_M, True, Event.OUT_OF_ALIGNMENT), (1.0, False, Event.ALIGNED)],
+    ids=["coarse, just seen", "coarse, long unseen", "rtk, never seen"],
+)
+def test_descent_begins_over_a_pad_that_fixes_or_a_fresh_sighting_place(
+    std_m: float, event: Event, *, is_coarse: bool
+) -> None:
+    assert event_within(Phase.ALIGN, above(HIGH_M, std_m, is_coarse=is_coarse), 5.0) is event
+
+
+@pytest.mark.parametrize(
+    ("height_m", "std_m", "is_coarse", "event"),
+    [
+        (HIGH_M, SURE_M, True, None),
+        (HIGH_M, VAGUE_M, True, Event.OUT_OF_ALIGNMENT),
+        (HIGH_M, 1.0, False, None),
+        (LOW_M, VAGUE_M, True, None),
+    ],
+    ids=["just seen", "long unseen", "rtk", "committed"],
+)
+def test_descent_goes_below_the_commit_height_only_where_the_pad_was_just_seen(
+    height_m: float, std_m: float, event: Event | None, *, is_coarse: bool
+) -> None:
+    assert event_within(Phase.DESCEND, above(height_m, std_m, is_coarse=is_coarse), 5.0) is event
+
+
+@pytest.mark.parametrize(("std_m", "aligns"), [(SURE_M, True), (VAGUE_M, False)])
+def test_chase_stays_high_until_it_sees_the_pad(std_m: float, *, aligns: bool) -> None:
+    facts = above(CONFIG.chase.height_m, std_m, is_coarse=True)
+    assert facts.pad is not None
+    event = event_within(Phase.CHASE, facts, 5.0)
+    height_m = pad_aim(Phase.CHASE, facts.pad, reference_at(HIGH_M), GEAR_M, CONFIG).target.position_enu_m[0, 2]
+    over_pad_m = height_m - facts.pad.position_enu_m[0, 2] - GEAR_M
+    assert event is (Event.OVER_PAD if aligns else None)
+    assert over_pad_m == pytest.approx(HIGH_M if aligns else CONFIG.chase.height_m)
+
+
+def pad_after(sensors: Sensors, unseen_s: float) -> PadPath:
+    """The pad `unseen_s` after its last sighting, the vehicle's data going on."""
+    chosen, until_s = estimator(EstimatorKind.IMM), 10.0 + unseen_s
+    memory = chosen.fuse(None, [])
+    for measurement in arrivals(circle(), sensors, 5):
+        is_seen = measurement.quantity is not Quantity.PAD or measurement.t_ns < now_ns(10.0)
+        if is_seen and measurement.t_ns < now_ns(until_s):
+            memory = chosen.fuse(memory, [measurement])
+    forecast = chosen.forecast(memory, now_ns(until_s), np.arange(0.0, 1.0, 0.2))
+    assert forecast is not None
+    return pad_path(forecast, None)
+
+
+@pytest.mark.parametrize(
+    ("sensors", "unseen_s", "unseen"),
+    [(PLAIN, 0.3, False), (PLAIN, 1.0, False), (PLAIN, 6.0, True), (RTK, 6.0, False)],
+    ids=["just seen", "seen a second ago", "seen long ago", "rtk"],
+)
+def test_sighting_holds_for_seconds_between_coarse_fixes(sensors: Sensors, unseen_s: float, *, unseen: bool) -> None:
+    assert is_unseen(pad_after(sensors, unseen_s), CONFIG) is unseen
+
+
+def test_pad_that_no_sighting_has_placed_is_unseen_between_coarse_fixes() -> None:
+    assert is_unseen(pad_after(replace(PLAIN, pad_rate_hz=0.0), 1.0), CONFIG)
+    assert not is_unseen(pad_after(replace(RTK, pad_rate_hz=0.0), 1.0), CONFIG)
