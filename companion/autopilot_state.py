@@ -162,10 +162,14 @@ def _reported(state: AutopilotState, own: OwnState) -> AutopilotState:
 def _acceleration_up_m_s2(earlier: Sequence[OwnState], own: OwnState) -> float | None:
     """Return the vertical acceleration between the newest report and one shortly before it."""
     shortest_ns, longest_ns = _ACCELERATION_OVER_NS
-    for old in earlier:
-        if shortest_ns <= own.t_ns - old.t_ns <= longest_ns:
-            return (own.velocity_enu_m_s[2] - old.velocity_enu_m_s[2]) / ((own.t_ns - old.t_ns) * 1e-9)
-    return None
+    before = None
+    for old in reversed(earlier):
+        if own.t_ns - old.t_ns > longest_ns:
+            break
+        before = old
+    if before is None or own.t_ns - before.t_ns < shortest_ns:
+        return None
+    return (own.velocity_enu_m_s[2] - before.velocity_enu_m_s[2]) / ((own.t_ns - before.t_ns) * 1e-9)
 
 
 def _jolt_m_s2(earlier: Sequence[OwnState], own: OwnState) -> float | None:

@@ -113,18 +113,27 @@ def _time_limit(progress: Progress, s: Situation, config: CompanionConfig) -> De
             return Event.REFUSED, "the autopilot did not give control in time"
         if not s.autopilot.armed:
             return Event.REFUSED, f"the autopilot did not arm in time: {s.autopilot.refusal or 'it said no reason'}"
-    limits_s = {
-        Phase.TAKEOFF: config.takeoff.time_limit_s,
-        Phase.CHASE: config.chase.time_limit_s,
-        Phase.ALIGN: config.descent.align_time_limit_s,
-        Phase.DESCEND: config.descent.time_limit_s,
-    }
-    limit_s = limits_s.get(progress.phase)
+    limit_s = _longest_s(progress.phase, config)
     if limit_s is not None and in_phase_s > limit_s:
         if progress.phase is Phase.ALIGN and not_placed(s, None, config):
             return Event.TIME_LIMIT, "vehicle heading unknown"
         return Event.TIME_LIMIT, f"{progress.phase.value} took longer than {limit_s:g} s"
     return None
+
+
+def _longest_s(phase: Phase, config: CompanionConfig) -> float | None:
+    """Return how long a phase may take, None for as long as it likes."""
+    match phase:
+        case Phase.TAKEOFF:
+            return config.takeoff.time_limit_s
+        case Phase.CHASE:
+            return config.chase.time_limit_s
+        case Phase.ALIGN:
+            return config.descent.align_time_limit_s
+        case Phase.DESCEND:
+            return config.descent.time_limit_s
+        case _:
+            return None
 
 
 def _advance(progress: Progress, s: Situation, held: Held, config: CompanionConfig) -> Decision | None:

@@ -7,12 +7,13 @@ Angular velocity from ZYX Euler rates by the usual kinematic matrix.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from link.frames import conjugate, quaternion_from_roll_pitch_yaw, rotate, wrap_angle
 from link.messages import BodyTruth, Quaternion, Vector3
+from link.records import replace
 from scenarios.config import VehicleConfig
 from scenarios.profiles import Motion
 from scenarios.roads import RoadPoint

@@ -1,6 +1,6 @@
 """ArduCopter's GUIDED mode: a shaped path that setpoints lead, and the take-off that is a part of the mode."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from math import acos, atan2, hypot
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from link.frames import rotate
 from link.messages import Vector3
+from link.records import replace
 from sim_autopilot.data import Reference
 from sim_autopilot.guided_attitude import AttitudeWish, attitude_flown, levelled
 from sim_autopilot.guided_setpoint import STOP, Task, Wish
