@@ -190,13 +190,19 @@ class AutopilotLink:
     def _set_link(self, *, up: bool) -> None:
         self.state = replace(self.state, view=replace(self.state.view, link_up=up))
 
+    @property
+    def timeout_s(self) -> float:
+        """For how long the autopilot goes on without a setpoint."""
+        if self.driver is None:
+            return 0.0
+        return self.state.parameters.get(self.driver.timeout_parameter, self.driver.timeout_default_s)
+
     def _is_out_of_touch(self, local_ns: int) -> bool:
         """Return whether the autopilot may have given up on setpoints, since it is silent or since we stood still."""
         if self.driver is None or self._heard_ns is None or self._polled_ns is None:
             return False
-        timeout_s = self.state.parameters.get(self.driver.timeout_parameter, self.driver.timeout_default_s)
         apart_s = (local_ns - min(self._heard_ns, self._polled_ns)) * 1e-9
-        return apart_s > max(_WAITED_SHARE * timeout_s, _WAITED_MIN_S)
+        return apart_s > max(_WAITED_SHARE * self.timeout_s, _WAITED_MIN_S)
 
     def _ask_for_streams(self, driver: Driver, local_ns: int) -> None:
         motion_hz = dict.fromkeys(_MOTION_IDS, self._motion_rate_hz)

@@ -26,7 +26,7 @@ def setpoint(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) ->
     if reference is None or memory.driver.climbs_by_itself:
         return None
     if inputs.driver is not None and inputs.driver.carries_setpoints_on:
-        reference = not_falling(reference)
+        reference = not_falling(reference, memory.lowest_enu_m, inputs.timeout_s)
     if memory.phase is Phase.TOUCHDOWN:
         reference = pressing(reference, config.touchdown.press_acceleration_m_s2)
     elif CONTACT in memory.held or DISPUTED_CONTACT in memory.held:
@@ -97,6 +97,7 @@ def fly(
         guidance=guidance,
         reference=plan.next_state,
         reference_ns=reference_ns,
+        lowest_enu_m=float(aim.floor_enu_m[0]),
         tracking=remember(memory.tracking, reference_ns, plan.next_state),
         yaw_setpoint_rad=_slewed_yaw_rad(memory, situation.pad, period_s, system.config),
     )

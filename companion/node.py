@@ -215,6 +215,7 @@ class CompanionNode:
             pad=self._pad,
             command=self._command,
             leaving=self._leaving,
+            timeout_s=self.autopilot.timeout_s,
             link_delay_s=min(self.autopilot.session.clock.one_way_s, _LINK_DELAY_MAX_S),
         )
         self._measurements, self._command = [], None

@@ -87,13 +87,21 @@ def pressing(reference: ReferenceState, acceleration_m_s2: float) -> ReferenceSt
     return replace(reference, acceleration_enu_m_s2=acceleration)
 
 
-def not_falling(reference: ReferenceState) -> ReferenceState:
-    """Return the model without a downward acceleration.
+def not_falling(reference: ReferenceState, lowest_enu_m: float, duration_s: float) -> ReferenceState:
+    """Return the model for an autopilot that carries a setpoint on for `duration_s`, should no other follow.
 
-    An autopilot that carries a setpoint on would add that up to several metres per second, should no other follow.
+    Without a downward acceleration, which would add up to several metres per second, and sinking no faster than what
+    ends above `lowest_enu_m`: ArduCopter was flown into the road at 1.6 m/s from a chase whose companion had died.
     """
-    x, y, z = reference.acceleration_enu_m_s2
-    return replace(reference, acceleration_enu_m_s2=np.array([x, y, max(z, 0.0)]))
+    ax, ay, az = reference.acceleration_enu_m_s2
+    vx, vy, vz = reference.velocity_enu_m_s
+    above_m = max(float(reference.position_enu_m[2]) - lowest_enu_m, 0.0)
+    slowest_m_s = -above_m / duration_s if duration_s > 0.0 else -math.inf
+    return replace(
+        reference,
+        velocity_enu_m_s=np.array([vx, vy, max(vz, slowest_m_s)]),
+        acceleration_enu_m_s2=np.array([ax, ay, max(az, 0.0)]),
+    )
 
 
 def carried(reference: ReferenceState, duration_s: float) -> ReferenceState:

@@ -1,5 +1,6 @@
 """What goes into a companion step, what comes out, and what it remembers in between."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -41,6 +42,7 @@ class StepInputs:
         command: an operator's wish.
         leaving: the companion is about to end, so the autopilot is to hover by itself.
         link_delay_s: from the companion to the autopilot.
+        timeout_s: for how long the autopilot goes on without a setpoint.
     """
 
     t_ns: int
@@ -55,6 +57,7 @@ class StepInputs:
     command: Command | None = None
     leaving: bool = False
     link_delay_s: float = 0.0
+    timeout_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -100,6 +103,7 @@ class StepMemory:
         obstacle: name of what makes a landing impossible, and the sentence that told it; None without one.
         waiting_point_enu_m: (3,) in W.
         anchor_enu_m: (3,) where a hover phase stays.
+        lowest_enu_m: height in W below which this step's plan does not go.
         yaw_setpoint_rad: last one sent.
         origin_count: of the frame that the estimate is in.
         frame_shift_enu_m: likewise.
@@ -123,6 +127,7 @@ class StepMemory:
     obstacle: tuple[str, str] | None = None
     waiting_point_enu_m: Array | None = None
     anchor_enu_m: Array | None = None
+    lowest_enu_m: float = -math.inf
     yaw_setpoint_rad: float = 0.0
     origin_count: int = 0
     frame_shift_enu_m: Vector3 = (0.0, 0.0, 0.0)

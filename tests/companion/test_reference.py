@@ -1,5 +1,7 @@
 """The virtual model's tracking: lag is learnt, transients are not, the correction stays bounded."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -85,9 +87,22 @@ def test_model_that_is_carried_on_does_not_fall_faster(up_m_s2: float, sent_m_s2
         velocity_enu_m_s=np.array([4.0, 0.0, -0.7]),
         acceleration_enu_m_s2=np.array([2.0, 1.0, up_m_s2]),
     )
-    sent = not_falling(reference)
+    sent = not_falling(reference, 0.0, 3.0)
     np.testing.assert_array_equal(sent.acceleration_enu_m_s2, [2.0, 1.0, sent_m_s2])
     np.testing.assert_array_equal(sent.velocity_enu_m_s, reference.velocity_enu_m_s)
+
+
+@pytest.mark.parametrize(("lowest_m", "sent_m_s"), [(-2.0, -1.5), (0.6, -0.8), (3.5, 0.0), (-math.inf, -1.5)])
+def test_model_that_is_carried_on_ends_above_the_lowest_height(lowest_m: float, sent_m_s: float) -> None:
+    reference = ReferenceState(
+        position_enu_m=np.array([1.0, 2.0, 3.0]),
+        velocity_enu_m_s=np.array([4.0, 0.0, -1.5]),
+        acceleration_enu_m_s2=np.array([2.0, 1.0, 0.0]),
+    )
+    sent = not_falling(reference, lowest_m, 3.0)
+    np.testing.assert_allclose(sent.velocity_enu_m_s, [4.0, 0.0, sent_m_s])
+    np.testing.assert_array_equal(sent.position_enu_m, reference.position_enu_m)
+    np.testing.assert_array_equal(not_falling(reference, lowest_m, 0.0).velocity_enu_m_s, reference.velocity_enu_m_s)
 
 
 def test_setpoint_is_the_model_with_the_correction() -> None:
