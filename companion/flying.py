@@ -12,6 +12,7 @@ from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
 from companion.reference import Tracking, carried, not_falling, pressing, remember, setpoint_at
 from companion.situation import Situation, approach
 from companion.step_data import StepInputs, StepMemory, System
+from companion.sway import felt, sways
 from companion.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
 from companion.transitions import BRAKING_M_S2
 from link.frames import wrap_angle
@@ -48,7 +49,8 @@ def _aim(memory: StepMemory, situation: Situation, config: CompanionConfig) -> A
         raise ValueError(f"phase {memory.phase.value} flies without a reference")
     match memory.phase:
         case Phase.CHASE | Phase.ALIGN | Phase.DESCEND | Phase.TOUCHDOWN if pad is not None:
-            return pad_aim(memory.phase, pad, reference, situation.feet_offset_m, config)
+            offset_m, waits = situation.feet_offset_m, waits_for_calm(memory, situation, config)
+            return pad_aim(memory.phase, pad, reference, offset_m, config, waits=waits)
         case Phase.ABORT if pad is not None and _is_fresh(situation, config):
             return pad_aim(memory.phase, pad, reference, situation.feet_offset_m, config)
         case Phase.ABORT:
@@ -61,6 +63,15 @@ def _aim(memory: StepMemory, situation: Situation, config: CompanionConfig) -> A
             return hover_aim(memory.waiting_point_enu_m)
 
 
+def waits_for_calm(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
+    """Return whether a leaning drone is still high enough above the pad to wait until it has come upright."""
+    relative, drone = approach(situation), situation.drone
+    if memory.phase is not Phase.DESCEND or relative is None or drone is None:
+        return False
+    lowest_m = relative.height_m - config.touchdown.foot_radius_m * drone.lean
+    return lowest_m > config.descent.sway_height_m and sways(memory.sway, situation.t_ns, config.descent)
+
+
 def _is_fresh(situation: Situation, config: CompanionConfig) -> bool:
     return situation.fix_age_s is not None and situation.fix_age_s <= config.abort.fix_age_max_s
 
@@ -71,6 +82,8 @@ def fly(
     """Plan from the virtual model now to where it is at the next step, one period from now."""
     if memory.reference is None or memory.phase not in FLYING_PHASES:
         return memory, None
+    if inputs.own is not None:
+        memory = replace(memory, sway=felt(memory.sway, inputs.own, system.config.descent))
     memory = _with_the_drone(memory, situation, system.config)
     if memory.reference is None:
         return memory, None

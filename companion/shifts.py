@@ -8,6 +8,7 @@ from companion.autopilots.driver import AutopilotView, DriverMemory
 from companion.data import Array
 from companion.reference import Tracking
 from companion.step_data import StepMemory
+from companion.sway import Sway
 
 
 def in_present_frame(memory: StepMemory, view: AutopilotView) -> StepMemory:
@@ -53,6 +54,7 @@ def at_other_time(memory: StepMemory, by_ns: int) -> StepMemory:
         driver=_driver_at_other_time(memory.driver, by_ns),
         reference_ns=memory.reference_ns + by_ns,
         tracking=_tracking_at_other_time(memory.tracking, by_ns),
+        sway=Sway(),
     )
 
 

@@ -13,6 +13,7 @@ from companion.estimation.estimator import Estimator
 from companion.phases import Phase
 from companion.planning.guidance import Guidance, PlanResult, ReferenceState
 from companion.reference import Tracking
+from companion.sway import Sway
 from link.messages import Command, CommandReply, LandingStatus, PadGeometry, Vector3
 
 
@@ -99,6 +100,7 @@ class StepMemory:
         reference: the virtual model, None while nothing is flown.
         reference_ns: the model's time.
         tracking: how the drone follows it.
+        sway: how hard the drone leans.
         held: since when each test has been true.
         obstacle: name of what makes a landing impossible, and the sentence that told it; None without one.
         waiting_point_enu_m: (3,) in W.
@@ -123,6 +125,7 @@ class StepMemory:
     reference: ReferenceState | None = None
     reference_ns: int = 0
     tracking: Tracking = field(default_factory=Tracking)
+    sway: Sway = field(default_factory=Sway)
     held: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
     obstacle: tuple[str, str] | None = None
     waiting_point_enu_m: Array | None = None

@@ -71,11 +71,23 @@ def stopping_point(reference: ReferenceState, deceleration_m_s2: float) -> Array
 
 
 def pad_aim(
-    phase: Phase, pad: PadPath, reference: ReferenceState, feet_offset_m: float, config: CompanionConfig
+    phase: Phase,
+    pad: PadPath,
+    reference: ReferenceState,
+    feet_offset_m: float,
+    config: CompanionConfig,
+    *,
+    waits: bool = False,
 ) -> Aim:
-    """Return the aim that follows the pad as `phase` (chase, align, descend, touchdown or abort) asks."""
+    """Return the aim that follows the pad as `phase` (chase, align, descend, touchdown or abort) asks.
+
+    With `waits` a descent goes no lower than the commit height.
+    """
     height_now_m = float(reference.position_enu_m[2] - pad.position_enu_m[0, 2]) - feet_offset_m
     height, sink = _height_profile(phase, height_now_m, pad, reference, config)
+    if waits:
+        sink = np.where(height < config.descent.commit_height_m, 0.0, sink)
+        height = np.maximum(height, config.descent.commit_height_m)
     position = pad.position_enu_m.copy()
     position[:, 2] += feet_offset_m + height
     velocity = pad.velocity_enu_m_s.copy()
