@@ -101,7 +101,7 @@ def _inject_failure(memory: AutopilotMemory, request: Request, _config: Autopilo
 
 def _start_mission(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
     if not mission_items(memory) and config.firmware.missions.arms_to_start:
-        return Answer(memory=memory, result=DENIED)
+        return Answer(memory=memory, result=DENIED, text=config.firmware.texts.no_mission)
     refused = config.firmware.results.mode_refused
     first = request.number(1)
     if first is not None and first > 0:

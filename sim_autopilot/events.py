@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.event_ids import event_id
+from sim_autopilot.firmware.firmware import EventCode
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.telemetry_status import boot_ms, status_texts
 
@@ -15,6 +16,7 @@ _EVENT = 410
 _ARGUMENTS = 40
 _EVERYBODY = 0
 _SEQUENCES = (1 << 16) - 1
+_EXTERNAL = 0x0F
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,12 +27,21 @@ class Telling:
     messages: tuple[Message, ...]
 
 
-def tell(memory: AutopilotMemory, text: str, severity: int, config: AutopilotConfig) -> Telling:
-    """Return how `text` is said: as an event where the firmware has one for it, and as text where somebody reads it."""
-    said = status_texts(severity, text, memory.services.events + 1) if memory.ground_station else ()
-    code = config.firmware.events.get(text)
+def tell(
+    memory: AutopilotMemory, text: str, severity: int, config: AutopilotConfig, code: EventCode | None = None
+) -> Telling:
+    """Return how `text` is said: as an event where the firmware has one for it, and as text where somebody reads it.
+
+    A text that is an event as well ends in a tab, by which ground stations that show events know to leave it out; its
+    severity is the event's. The event is `code`, or that of the firmware's table.
+    """
+    code = config.firmware.events.get(text, code)
     if code is None:
+        said = status_texts(severity, text, memory.services.events + 1) if memory.ground_station else ()
         return Telling(memory=memory, messages=said)
+    told = text if code.said is None else code.said
+    heard = memory.ground_station and told
+    said = status_texts(code.levels & _EXTERNAL, f"{told}\t", memory.services.events + 1) if heard else ()
     services = memory.services
     event = _event(code.name, code.levels, code.arguments, services.events, boot_ms(memory))
     counted = replace(memory, services=replace(services, events=(services.events + 1) % _SEQUENCES))

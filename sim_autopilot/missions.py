@@ -5,7 +5,7 @@ Source: MAVLink mission protocol, https://mavlink.io/en/services/mission.html; c
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import isfinite, radians
+from math import isfinite, isinf, radians
 from types import MappingProxyType
 
 from link.geodesy import Datum, enu_from_geodetic
@@ -55,6 +55,16 @@ _DONE_AT_ONCE = (
     mavlink.MAV_CMD_SET_CAMERA_ZOOM,
     mavlink.MAV_CMD_SET_CAMERA_FOCUS,
 )
+_HEADING = 3
+_HEADED = frozenset(
+    {
+        mavlink.MAV_CMD_NAV_WAYPOINT,
+        mavlink.MAV_CMD_NAV_LOITER_UNLIM,
+        mavlink.MAV_CMD_NAV_LAND,
+        mavlink.MAV_CMD_NAV_TAKEOFF,
+    }
+)
+"""Items whose fourth parameter, a heading, may be no number in ArduCopter too (AP_Mission)."""
 _FENCE_ITEMS = (
     mavlink.MAV_CMD_NAV_FENCE_RETURN_POINT,
     mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION,
@@ -201,7 +211,9 @@ def unreadable(message: Message) -> int | None:
     if message.mission_type != MISSION:
         return None
     values = (message.param1, message.param2, message.param3, message.param4, message.x, message.y, message.z)
-    first = next((index for index, value in enumerate(values) if not isfinite(value)), None)
+    free = _HEADING if message.command in _HEADED else None
+    wrong = (index for index, value in enumerate(values) if not isfinite(value) and (index != free or isinf(value)))
+    first = next(wrong, None)
     return None if first is None else int(mavlink.MAV_MISSION_INVALID_PARAM1) + first
 
 

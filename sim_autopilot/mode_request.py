@@ -31,7 +31,8 @@ def mode_command(mode: Mode) -> Handler:
 
     def handle(memory: AutopilotMemory, _request: Request, config: AutopilotConfig) -> Answer:
         memory, result = try_mode(memory, mode, config)
-        return Answer(memory=memory, result=result)
+        said = config.firmware.texts.obeyed.get(mode) if result == ACCEPTED else None
+        return Answer(memory=memory, result=result, text=said)
 
     return handle
 

@@ -58,7 +58,7 @@ def autopilot_step(
         config: what does not change.
     """
     memory = rebooted(memory, config)
-    was_armed, was_mode = memory.armed_ns is not None, memory.modes.mode
+    start = memory
     replies: list[_Sent] = []
     for message, link in zip(inputs.messages, inputs.links or repeat(0), strict=False):
         memory, answers = take(at_link(memory, link), message, config)
@@ -68,19 +68,20 @@ def autopilot_step(
     memory = at_link(memory, texted[0] if texted else 0)
     messages: list[Message] = []
     was_ns = memory.now.boot_ns
-    before = memory
+    obeyed = memory
     memory, served = _serve(_supervise(memory, config), config)
     messages += served
-    memory, warned = _warn(before, memory, config)
+    memory, warned = _warn(obeyed, memory, config)
     messages += warned
     memory = _after_flight(_advance(memory, inputs, config))
     memory, told = step_origin(memory, was_ns, config)
     messages += told
     if _origin_came(was_ns, memory.now.boot_ns, config):
         messages += announcement(memory, config, with_home=config.firmware.announces_home)
-    if config.firmware.tells_modes and memory.modes.mode is not was_mode:
+    if config.firmware.tells_modes and memory.modes.mode is not start.modes.mode:
         messages.append(heartbeat(memory, config))
-    messages += changes_told(memory, config, was_ns=was_ns, was_armed=was_armed)
+    memory, told = changes_told(start, obeyed, memory, config)
+    messages += told
     memory, late = _late_answers(memory)
     messages += late
     reports: list[_Sent] = []

@@ -1,6 +1,8 @@
 """What the autopilot tells unasked, once, when something happens: texts, and where home and the origin are."""
 
-from link.mavlink.dialect import Message
+from link.mavlink.dialect import Message, mavlink
+from sim_autopilot.events import tell
+from sim_autopilot.flight_texts import flight_texts
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.telemetry_motion import gps_global_origin, home_position
 from sim_autopilot.telemetry_status import status_text
@@ -12,16 +14,23 @@ def announcement(memory: AutopilotMemory, config: AutopilotConfig, *, with_home:
     return [*origin, home_position(memory, config)] if with_home else origin
 
 
-def changes_told(memory: AutopilotMemory, config: AutopilotConfig, *, was_ns: int, was_armed: bool) -> list[Message]:
-    """Return what is said about a step that began at `was_ns` since boot, with the motors on or off."""
+def changes_told(
+    start: AutopilotMemory, obeyed: AutopilotMemory, memory: AutopilotMemory, config: AutopilotConfig
+) -> tuple[AutopilotMemory, list[Message]]:
+    """Return what is said about a step: `start` is before it, `obeyed` after its messages, `memory` at its end."""
     told: list[Message] = []
-    texts, is_armed = config.firmware.texts, memory.armed_ns is not None
+    texts, is_armed, was_armed = config.firmware.texts, memory.armed_ns is not None, start.armed_ns is not None
     if is_armed and not was_armed and config.firmware.announces_home:
         told += announcement(memory, config, with_home=True)
+    if config.firmware.tells_flights:
+        for text, code in flight_texts(start, obeyed, memory, config):
+            telling = tell(memory, text, mavlink.MAV_SEVERITY_INFO, config, code)
+            memory, told = telling.memory, [*told, *telling.messages]
     if not memory.ground_station:
-        return told
+        return memory, told
     change = None if is_armed is was_armed else texts.armed if is_armed else texts.disarmed
     said = [] if change is None else [change]
     if not config.instant:
-        said += [text for at_s, text in texts.boot if was_ns < round(at_s * 1e9) <= memory.now.boot_ns]
-    return told + [status_text(text.severity, text.text) for text in said]
+        was_ns, now_ns = start.now.boot_ns, memory.now.boot_ns
+        said += [text for at_s, text in texts.boot if was_ns < round(at_s * 1e9) <= now_ns]
+    return memory, told + [status_text(text.severity, text.text) for text in said]

@@ -74,11 +74,15 @@ class Text:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EventCode:
-    """An EVENT: its name, its log levels (internal in the upper four bits) and its packed arguments."""
+    """An EVENT: its name, its log levels (internal in the upper four bits) and its packed arguments.
+
+    `said` is what ground stations get as a text: empty is nothing, None what it says itself.
+    """
 
     name: str
     levels: int
     arguments: bytes = b""
+    said: str | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,6 +101,8 @@ class Texts:
         disarmed: None says nothing.
         battery: by the level that the battery has come to, 1 is low.
         failsafe: that a failsafe has begun; empty says nothing.
+        obeyed: to the command that asks for a mode.
+        no_mission: MISSION_START without a mission; None says nothing.
     """
 
     everybody: bool
@@ -110,6 +116,8 @@ class Texts:
     disarmed: Text | None
     battery: Mapping[int, str] = field(default_factory=dict)
     failsafe: str = ""
+    obeyed: Mapping[Mode, str] = field(default_factory=dict)
+    no_mission: str | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -179,6 +187,7 @@ class Firmware:
         missions: of the mission protocol.
         events: that it sends besides texts, by their text.
         lists_modes: whether it sends AVAILABLE_MODES.
+        tells_flights: whether it says what a flight comes to: `flight_texts`.
         reposition_mode: in which a DO_REPOSITION is flown.
         files: that it shows over MAVLink FTP, by its parameters and their values.
         ftp: of that server.
@@ -224,6 +233,7 @@ class Firmware:
     missions: MissionRules = PX4_MISSIONS
     events: Mapping[str, EventCode] = field(default_factory=dict)
     lists_modes: bool = False
+    tells_flights: bool = False
     reposition_mode: Mode = Mode.HOLD
     files: Callable[[tuple[Parameter, ...], Values], Shown]
     ftp: FtpRules = PX4_FTP

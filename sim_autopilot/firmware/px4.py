@@ -11,7 +11,6 @@ from link.mavlink.dialect import mavlink
 from sim_autopilot.component_metadata import GENERAL_PATH, PARAMETERS_PATH, general_file, parameters_file
 from sim_autopilot.file_store import Shown
 from sim_autopilot.firmware.firmware import (
-    EventCode,
     Firmware,
     ModeCode,
     Readiness,
@@ -21,6 +20,19 @@ from sim_autopilot.firmware.firmware import (
     Texts,
 )
 from sim_autopilot.firmware.plain_answers import PX4_ANSWERS
+from sim_autopilot.firmware.px4_events import (
+    BATTERY_CRITICAL,
+    BATTERY_EMERGENCY,
+    BATTERY_LOW,
+    EVENTS,
+    FAILSAFE,
+    LANDING_HERE,
+    NO_MISSION,
+    NO_SETPOINTS,
+    NOT_LANDED,
+    RETURNING,
+    UNHEALTHY,
+)
 from sim_autopilot.firmware.px4_parameters import OBEYED, flight_settings
 from sim_autopilot.firmware.px4_streams import STREAMS
 from sim_autopilot.firmware.stored_parameters import whole_list
@@ -44,28 +56,6 @@ def _code(name: str, flags: int, main: int, sub: int = 0) -> ModeCode:
 
 _ARMING_S = 3.5
 """After boot, as measured: 2.7 to 4.8 s."""
-
-_UNHEALTHY = "Arming denied: Resolve system health failures first"
-_NO_SETPOINTS = "No offboard signal"
-_NOT_LANDED = "Disarming denied: not landed"
-_BATTERY_LOW = "Low battery level, return advised"
-_BATTERY_CRITICAL = "Critical battery level, land now"
-_BATTERY_EMERGENCY = "Emergency battery level, land immediately"
-_FAILSAFE = "Failsafe activated"
-_OFFBOARD_BIT = 1 << 14
-"""Of the modes that a check bars: NAVIGATION_STATE_OFFBOARD."""
-_EVENTS = {
-    _UNHEALTHY: EventCode(name="commander_arm_denied_resolve_failures", levels=0x62),
-    _NO_SETPOINTS: EventCode(
-        name="check_modes_offboard_signal", levels=0x33, arguments=_OFFBOARD_BIT.to_bytes(4, "little")
-    ),
-    _NOT_LANDED: EventCode(name="commander_disarm_denied_not_landed", levels=0x62),
-    _BATTERY_LOW: EventCode(name="commander_failsafe_enter_low_bat", levels=0x64),
-    _BATTERY_CRITICAL: EventCode(name="commander_failsafe_enter_crit_bat_warn", levels=0x62),
-    _BATTERY_EMERGENCY: EventCode(name="commander_failsafe_enter_crit_low_bat_warn", levels=0x60),
-    _FAILSAFE: EventCode(name="commander_failsafe_enter_generic", levels=0x42),
-}
-"""Arguments of modes are left out where no client reads them."""
 
 _OBEYED_NAMES = frozenset(parameter.name for parameter in OBEYED)
 
@@ -124,14 +114,16 @@ PX4 = Firmware(
         everybody=False,
         severity=mavlink.MAV_SEVERITY_CRITICAL,
         boot=(),
-        not_ready=((_ARMING_S, _UNHEALTHY),),
-        unarmable=_UNHEALTHY,
-        no_setpoints=_NO_SETPOINTS,
-        disarm_refused=_NOT_LANDED,
+        not_ready=((_ARMING_S, UNHEALTHY),),
+        unarmable=UNHEALTHY,
+        no_setpoints=NO_SETPOINTS,
+        disarm_refused=NOT_LANDED,
         armed=None,
         disarmed=None,
-        battery=MappingProxyType({1: _BATTERY_LOW, 2: _BATTERY_CRITICAL, 3: _BATTERY_EMERGENCY}),
-        failsafe=_FAILSAFE,
+        battery=MappingProxyType({1: BATTERY_LOW, 2: BATTERY_CRITICAL, 3: BATTERY_EMERGENCY}),
+        failsafe=FAILSAFE,
+        obeyed=MappingProxyType({Mode.LAND: LANDING_HERE, Mode.RTL: RETURNING}),
+        no_mission=NO_MISSION,
     ),
     vtol_state=mavlink.MAV_VTOL_STATE_UNDEFINED,
     streams=MappingProxyType({stream.message_id: stream for stream in STREAMS}),
@@ -162,7 +154,8 @@ PX4 = Firmware(
     announces_home=False,
     takes_off_by_setpoint=True,
     lists_modes=True,
-    events=MappingProxyType(_EVENTS),
+    tells_flights=True,
+    events=MappingProxyType(EVENTS),
     mode_answered_twice=True,
     answers_other_components=False,
     leaves_landing_modes=True,

@@ -250,7 +250,7 @@ def test_it_says_why_it_does_not_arm_only_where_a_ground_station_listens() -> No
     heard.step(mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, 8, 0, 0, 4, 3))
     assert not refused(deaf)
     pieces = refused(heard)
-    assert "".join(text.text for text in pieces) == "Arming denied: Resolve system health failures first"
+    assert "".join(text.text for text in pieces) == "Arming denied: Resolve system health failures first\t"
     assert [(text.id, text.chunk_seq) for text in pieces] == [(1, 0), (1, 1)]
 
 

@@ -1,6 +1,6 @@
 """What client programs ask of ArduCopter besides flying: headings, the fence switch, home, calibration, reboot."""
 
-from math import degrees, nan
+from math import degrees, inf, nan
 
 import pytest
 
@@ -10,7 +10,7 @@ from tests.sim_autopilot.copter import AUTO, GUIDED, ardupilot, copter_in_the_ai
 from tests.sim_autopilot.pilot import Pilot, arm, command
 from tests.sim_autopilot.planner import RELATIVE, download, item, plan_messages, upload
 
-FAILED, UNSUPPORTED, INVALID_PARAM4 = 4, 3, 9
+FAILED, UNSUPPORTED, INVALID_PARAM2, INVALID_PARAM4 = 4, 3, 7, 9
 WAYPOINT, TAKEOFF, RETURN = 16, 22, 20
 NUMBERS = (0.0, 0.0, 0.0, 0.0)
 
@@ -50,9 +50,17 @@ def test_item_0_is_home_whatever_was_uploaded() -> None:
 
 def test_a_missions_value_that_is_no_number_is_refused_by_its_place() -> None:
     pilot = Pilot(ardupilot())
-    assert upload(pilot, [item(0, WAYPOINT, (0.0, 0.0, 5.0), (0.0, 0.0, 0.0, nan))]) == INVALID_PARAM4
+    assert upload(pilot, [item(0, WAYPOINT, (0.0, 0.0, 5.0), (0.0, nan, 0.0, 0.0))]) == INVALID_PARAM2
+    jump = item(0, mavlink.MAV_CMD_DO_JUMP, (0.0, 0.0, 5.0), (1.0, 1.0, 0.0, nan))
+    assert upload(pilot, [jump]) == INVALID_PARAM4
     rally = item(0, mavlink.MAV_CMD_NAV_RALLY_POINT, (0.0, 5.0, 20.0), (0.0, 0.0, 0.0, nan), kind=RALLY, frame=RELATIVE)
     assert upload(pilot, [rally], RALLY) == 0
+
+
+def test_a_waypoint_without_a_heading_is_taken_as_mavsdk_sends_it() -> None:
+    pilot = Pilot(ardupilot())
+    assert upload(pilot, [item(0, WAYPOINT, (0.0, 0.0, 5.0), (0.0, 0.0, 0.0, nan))]) == 0
+    assert upload(pilot, [item(0, WAYPOINT, (0.0, 0.0, 5.0), (0.0, 0.0, 0.0, -inf))]) == INVALID_PARAM4
 
 
 def test_a_mission_that_returns_stays_in_auto_until_the_motors_stop_and_after() -> None:

@@ -1,0 +1,104 @@
+"""What PX4 says about a flight as it goes: motors, take-off, landing, mission, return, ground station.
+
+Texts, names and arguments of events: PX4's source (commander, navigator, logger).
+"""
+
+import struct
+from datetime import UTC, datetime
+from math import ceil
+
+from sim_autopilot.firmware.firmware import EventCode
+from sim_autopilot.firmware.px4_events import (
+    ARMED,
+    DISARMED,
+    DISARMED_IDLE,
+    DISARMED_LANDED,
+    INFO,
+    LANDED,
+    MISSION_BEGINS,
+    MISSION_LANDED,
+    MISSION_LOITERS,
+    RETURN_LANDS,
+    STATION_BACK,
+    STATION_LOST,
+    TAKEN_OFF,
+)
+from sim_autopilot.flight import Leg
+from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.mission_flight import Stage
+from sim_autopilot.modes import Mode
+
+Said = tuple[str, EventCode | None]
+"""A text, and its event where the firmware's table has none of that text."""
+
+
+def flight_texts(
+    start: AutopilotMemory, obeyed: AutopilotMemory, memory: AutopilotMemory, config: AutopilotConfig
+) -> list[Said]:
+    """Return what is said about a step: `start` is before it, `obeyed` after its messages."""
+    said: list[Said] = [(text, None) for text in (*_motors(start, obeyed, memory), *_station(start, memory))]
+    if memory.armed_ns is None:
+        return said
+    told = [*said, *_way(start, memory, config)]
+    if start.armed_ns is None and memory.ground_station:
+        told.append((_log_name(memory, config), None))
+    return told
+
+
+def _motors(start: AutopilotMemory, obeyed: AutopilotMemory, memory: AutopilotMemory) -> list[str]:
+    was_armed, is_armed = start.armed_ns is not None, memory.armed_ns is not None
+    if is_armed and not was_armed:
+        return [ARMED]
+    if was_armed and not is_armed:
+        if obeyed.armed_ns is None:
+            return [DISARMED]
+        if not obeyed.landing.landed:
+            return []
+        return [DISARMED_IDLE if obeyed.landing.landed_ns is None else DISARMED_LANDED]
+    if is_armed and start.landing.landed is not memory.landing.landed:
+        return [LANDED if memory.landing.landed else TAKEN_OFF]
+    return []
+
+
+def _station(start: AutopilotMemory, memory: AutopilotMemory) -> list[str]:
+    """The ground station, whose silence is noticed on the ground too."""
+    heard_ns, limit_s = start.services.watch.station_ns, memory.settings.failsafes.station_lost_s
+    if heard_ns is None:
+        return []
+    was_lost = (start.now.boot_ns - heard_ns) * 1e-9 > limit_s
+    if memory.services.watch.station_ns != heard_ns:
+        return [STATION_BACK] if was_lost else []
+    return [STATION_LOST] if not was_lost and (memory.now.boot_ns - heard_ns) * 1e-9 > limit_s else []
+
+
+def _way(start: AutopilotMemory, memory: AutopilotMemory, config: AutopilotConfig) -> list[Said]:
+    mode, was = memory.modes.mode, start.modes.mode
+    begins = mode is not was or start.armed_ns is None
+    if begins and mode is Mode.TAKEOFF:
+        height_m = memory.settings.takeoff_height_m
+        event = EventCode(name="navigator_takeoff_default_alt", levels=INFO, arguments=struct.pack("<f", height_m))
+        return [(f"Using default takeoff altitude: {height_m:.1f} m", event)]
+    if begins and mode is Mode.RTL:
+        return [_return(memory, config)]
+    if mode is Mode.RTL and memory.flight.leg is Leg.DESCEND and start.flight.leg is not Leg.DESCEND:
+        return [(RETURN_LANDS, None)]
+    if begins and mode is Mode.MISSION:
+        return [(MISSION_BEGINS, None)]
+    finished, had = (each.services.mission.stage is Stage.FINISHED for each in (memory, start))
+    if Mode.MISSION in {mode, was} and finished and not had:
+        return [(MISSION_LANDED if memory.landing.landed else MISSION_LOITERS, None)]
+    return []
+
+
+def _return(memory: AutopilotMemory, config: AutopilotConfig) -> Said:
+    place = memory.flight.anchor.position_enu_m
+    up_m = memory.now.position_enu_m[2] if place is None else float(place[2])
+    above_sea_m, above_home_m = ceil(config.datum.altitude_m + up_m), ceil(up_m - memory.home_enu_m[2])
+    arguments = struct.pack("<ii", above_sea_m, above_home_m)
+    text = f"RTL: start return at {above_sea_m} m ({above_home_m} m above destination)"
+    return text, EventCode(name="vrtl_return_at", levels=INFO, arguments=arguments)
+
+
+def _log_name(memory: AutopilotMemory, config: AutopilotConfig) -> str:
+    began = datetime.fromtimestamp(memory.now.t_ns // 1_000_000_000, UTC)
+    return f"[logger] ./{config.firmware.logs.path.format(began, 0)}\t"
