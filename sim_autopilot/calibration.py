@@ -12,7 +12,7 @@ from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, Later
 from sim_autopilot.requests import ACCEPTED, UNSUPPORTED, Answer, Request
-from sim_autopilot.telemetry_status import status_text
+from sim_autopilot.status_texts import status_text
 
 _REJECTED = int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
 _FAILED = int(mavlink.MAV_RESULT_FAILED)

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.arming import arm, arming_obstacle, disarm
 from sim_autopilot.calibration import calibrate
-from sim_autopilot.copter_commands import switch_fence, turn
+from sim_autopilot.copter_commands import set_servo, switch_fence, turn
 from sim_autopilot.events import tell
 from sim_autopilot.failures import injected
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, Later
@@ -60,7 +60,8 @@ def acknowledgement(request: Request, result: int) -> Message:
 
 
 def _arm_disarm(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
-    wanted, forced = request.number(1), request.number(2) == _FORCE
+    exact = config.firmware.guided and request.parameters[0] not in {0.0, 1.0}
+    wanted, forced = None if exact else request.number(1), request.number(2) == _FORCE
     if wanted == 1:
         obstacle = None if forced or memory.armed_ns is not None else arming_obstacle(memory, config)
         if obstacle is not None:
@@ -68,7 +69,9 @@ def _arm_disarm(memory: AutopilotMemory, request: Request, config: AutopilotConf
             return Answer(memory=memory, result=refused, text=obstacle)
         return Answer(memory=arm(memory), result=ACCEPTED)
     if wanted != 0:
-        return Answer(memory=memory, result=UNSUPPORTED)
+        if config.firmware.guided:
+            return Answer(memory=memory, result=UNSUPPORTED)
+        return Answer(memory=memory, result=None, text=f"Unsupported ARM_DISARM param: {request.parameters[0]:.3f}")
     if memory.armed_ns is not None and not memory.landing.landed and not forced:
         refused = config.firmware.results.disarm_in_the_air
         return Answer(memory=memory, result=refused, text=config.firmware.texts.disarm_refused)
@@ -79,8 +82,11 @@ def _set_mode(memory: AutopilotMemory, request: Request, config: AutopilotConfig
     wanted = (request.number(2), request.number(3))
     modes = config.firmware.modes
     mode = next((mode for mode, code in modes.items() if code.request == wanted[: len(code.request)]), None)
+    if config.firmware.guided and not (request.number(1) or 0) & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
+        return Answer(memory=memory, result=DENIED)
     if mode is None:
-        return Answer(memory=memory, result=config.firmware.results.no_such_mode)
+        said = config.firmware.texts.no_such_mode.format(wanted[0])
+        return Answer(memory=memory, result=config.firmware.results.no_such_mode, text=said or None)
     memory, result = try_mode(memory, mode, config)
     if not config.firmware.mode_answered_twice:
         return Answer(memory=memory, result=result)
@@ -173,5 +179,7 @@ _HANDLERS: Mapping[int, Handler] = MappingProxyType(
         mavlink.MAV_CMD_PREFLIGHT_CALIBRATION: calibrate,
         mavlink.MAV_CMD_CONDITION_YAW: turn,
         mavlink.MAV_CMD_DO_FENCE_ENABLE: switch_fence,
+        mavlink.MAV_CMD_DO_SET_SERVO: set_servo,
+        mavlink.MAV_CMD_DO_REPEAT_SERVO: set_servo,
     }
 )

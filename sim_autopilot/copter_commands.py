@@ -14,6 +14,7 @@ from sim_autopilot.requests import ACCEPTED, Answer, Request
 
 _FULL_TURN_DEG = 360.0
 _HEIGHT, _CIRCLE, _AREAS = 1, 2, 4
+_MOTORS, _OUTPUTS = range(1, 5), range(5, 17)
 _OFF, _ON, _LOWEST_OFF = 0, 1, 2
 
 
@@ -27,6 +28,16 @@ def turn(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> 
     clockwise_rad = radians(angle_deg) * (-1.0 if direction < 0.0 else 1.0)
     heading_rad = memory.now.yaw_rad - clockwise_rad if relative else pi / 2.0 - radians(angle_deg)
     return Answer(memory=replace(memory, guided=with_heading(memory.guided, heading_rad)), result=ACCEPTED)
+
+
+def set_servo(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
+    """Take an order for an output that no motor is at; nothing is moved by those here."""
+    output = request.number(1)
+    if output is not None and output in _MOTORS:
+        refused = config.firmware.results.mode_refused
+        return Answer(memory=memory, result=refused, text=f"ServoRelayEvent: Channel {output} is already in use")
+    free = output is not None and output in _OUTPUTS
+    return Answer(memory=memory, result=ACCEPTED if free else config.firmware.results.mode_refused)
 
 
 def switch_fence(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:

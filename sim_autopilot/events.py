@@ -10,7 +10,8 @@ from link.mavlink.dialect import Message, mavlink
 from link.mavlink.event_ids import event_id
 from sim_autopilot.firmware.firmware import EventCode
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
-from sim_autopilot.telemetry_status import boot_ms, status_texts
+from sim_autopilot.status_texts import status_texts
+from sim_autopilot.telemetry_status import boot_ms
 
 _EVENT = 410
 _ARGUMENTS = 40

@@ -11,8 +11,8 @@ from sim_autopilot.ftp import answer, burst_on
 from sim_autopilot.ftp_wire import question_from_message
 from sim_autopilot.logs import Logs, asked_for, entries, is_due, logged, pieces, shown_logs
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.status_texts import status_text
 from sim_autopilot.telemetry_motion import attitude, global_position_int, local_position_ned
-from sim_autopilot.telemetry_status import status_text
 
 _NS_PER_S = 1_000_000_000
 

@@ -3,18 +3,22 @@
 Source: https://mavlink.io/en/services/parameter.html.
 """
 
-from link.mavlink.dialect import Message
+from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, limited
 from sim_autopilot.parameters import find_index, is_type_right, parameter_message, values_after_set
 from sim_autopilot.requests import is_ours
+from sim_autopilot.status_texts import status_text
 
 Result = tuple[AutopilotMemory, tuple[Message, ...]]
 
 
 def list_parameters(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
     """Begin to send all parameters on the link at hand."""
-    return (replace(memory, listing=0) if is_ours(message, config) else memory), ()
+    if not is_ours(message, config):
+        return memory, ()
+    banner = tuple(status_text(mavlink.MAV_SEVERITY_INFO, text) for text in config.firmware.banner)
+    return replace(memory, listing=0), banner
 
 
 def read_parameter(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:

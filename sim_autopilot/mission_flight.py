@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from math import dist, hypot, isfinite, nan, pi, radians
+from math import dist, hypot, isfinite, nan, pi, radians, tau
 from types import MappingProxyType
 
 from link.geodesy import Datum
@@ -27,6 +27,16 @@ _DELAY = int(mavlink.MAV_CMD_NAV_DELAY)
 _UNLIMITED = int(mavlink.MAV_CMD_NAV_LOITER_UNLIM)
 _TIMED = int(mavlink.MAV_CMD_NAV_LOITER_TIME)
 _PLACES = frozenset({_WAYPOINT, _TAKEOFF, _LAND, _UNLIMITED, _TIMED})
+_FLOWN_AS: Mapping[int, int] = MappingProxyType(
+    {
+        mavlink.MAV_CMD_NAV_LOITER_TURNS: _TIMED,  # it stays as long as the turns would take
+        mavlink.MAV_CMD_NAV_SPLINE_WAYPOINT: _WAYPOINT,
+        mavlink.MAV_CMD_NAV_LOITER_TO_ALT: _WAYPOINT,
+        mavlink.MAV_CMD_NAV_VTOL_TAKEOFF: _TAKEOFF,
+        mavlink.MAV_CMD_NAV_VTOL_LAND: _LAND,
+    }
+)
+_TURN_RADIUS_M = 10.0
 
 
 class Stage(Enum):
@@ -100,7 +110,7 @@ def fly_mission(progress: Progress, items: tuple[Item, ...], flight: ModeFlight,
     for _ in range(len(items) + 1):
         if progress.stage is Stage.FINISHED or progress.index >= len(items):
             break
-        index, item = progress.index, items[progress.index]
+        index, item = progress.index, _as_flown(items[progress.index], around)
         if item.command == _RETURN and around.returns_itself:
             return _returning(progress, flight, around)
         if item.command == _RETURN:
@@ -112,6 +122,20 @@ def fly_mission(progress: Progress, items: tuple[Item, ...], flight: ModeFlight,
         reached.append(index)
         progress = _next(progress, items)
     return MissionStep(progress=progress, flight=flight, reached=tuple(reached))
+
+
+def _as_flown(item: Item, around: Surroundings) -> Item:
+    """Return the item as which it is flown: one without a wing takes off, lands and passes as on its rotors."""
+    command = _FLOWN_AS.get(item.command)
+    if command is None:
+        return item
+    time_s = 0.0
+    if item.command == mavlink.MAV_CMD_NAV_LOITER_TURNS:
+        radius_m = abs(item.number(3)) or _TURN_RADIUS_M
+        time_s = tau * radius_m * item.number(1) / around.settings.cruise_m_s
+    elif item.command == mavlink.MAV_CMD_NAV_SPLINE_WAYPOINT:
+        time_s = item.number(1)
+    return replace(item, command=command, parameters=(time_s, 0.0, 0.0, nan))
 
 
 def _returning(progress: Progress, flight: ModeFlight, around: Surroundings) -> MissionStep:

@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.missions import NO_PLANS, Item, MissionRules, Plans
+from sim_autopilot.mission_rules import MissionRules
+from sim_autopilot.missions import NO_PLANS, Item, Plans
 
 Target = tuple[int, int]
 
@@ -20,7 +21,7 @@ class Way(Enum):
 class Transfer:
     """A transfer under way with `partner` (system, component), last heard at `heard_ns`, last asked at `asked_ns`.
 
-    `whole` says whether items are asked for as integers.
+    `whole` says whether items are asked for as integers, `part` whether the plan's other items stay.
     """
 
     way: Way
@@ -31,6 +32,7 @@ class Transfer:
     asked_ns: int
     items: tuple[Item, ...] = ()
     whole: bool = True
+    part: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,4 +100,5 @@ def begun(arrival: Arrival, way: Way, count: int) -> Transfer:
         count=count,
         heard_ns=arrival.boot_ns,
         asked_ns=arrival.boot_ns,
+        whole=arrival.rules.asks_whole,
     )

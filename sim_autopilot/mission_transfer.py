@@ -9,7 +9,8 @@ from types import MappingProxyType
 
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.mission_library import Arrival, Library, Transfer, Way, acknowledgement, begun, is_kept_out
-from sim_autopilot.missions import Item, MissionRules, item_from_message, item_message, result_of, unreadable
+from sim_autopilot.mission_rules import MissionRules
+from sim_autopilot.missions import Item, item_from_message, item_message, result_of, unreadable
 
 _ACCEPTED = int(mavlink.MAV_MISSION_ACCEPTED)
 _ERROR = int(mavlink.MAV_MISSION_ERROR)
@@ -61,6 +62,16 @@ def _count(library: Library, arrival: Arrival) -> Result:
     return _ask(library, begun(arrival, Way.UPLOAD, count))
 
 
+def _part(library: Library, arrival: Arrival) -> Result:
+    """Take some items of a plan anew; the others stay."""
+    first, last, items = arrival.message.start_index, arrival.message.end_index, library.plans[arrival.kind]
+    if not arrival.rules.takes_parts:
+        return library, ()
+    if is_kept_out(library, arrival, Way.UPLOAD) or not 0 <= first <= last < len(items):
+        return library, (arrival.answer(_ERROR),)
+    return _ask(library, replace(begun(arrival, Way.UPLOAD, last + 1), items=items[:first], part=True))
+
+
 def _store(library: Library, kind: int, items: tuple[Item, ...]) -> Library:
     changed = library.changed + (kind == mavlink.MAV_MISSION_TYPE_MISSION)
     return Library(plans={**library.plans, kind: items}, transfer=None, changed=changed)
@@ -84,15 +95,17 @@ def _add(library: Library, transfer: Transfer, arrival: Arrival) -> Result:
     result = unreadable(arrival.message) if arrival.rules.needs_numbers else None
     try:
         item = item_from_message(arrival.message)
-        result = result_of(item, transfer.kind) if result is None else result
+        result = result_of(item, transfer.kind, arrival.rules.commands) if result is None else result
     except ValueError:
         return replace(library, transfer=None), (arrival.answer(_ERROR),)
     if result != _ACCEPTED:
         return replace(library, transfer=None), (arrival.answer(result),)
     items = (*transfer.items, item)
     if len(items) < transfer.count:
-        return _ask(library, replace(transfer, items=items))
-    return _store(library, transfer.kind, items), (arrival.answer(_ACCEPTED),)
+        whole = arrival.rules.asks_whole and arrival.message.get_msgId() == mavlink.MAVLINK_MSG_ID_MISSION_ITEM_INT
+        return _ask(library, replace(transfer, items=items, whole=whole))
+    rest = library.plans[transfer.kind][len(items) :] if transfer.part else ()
+    return _store(library, transfer.kind, (*items, *rest)), (arrival.answer(_ACCEPTED),)
 
 
 def _list(library: Library, arrival: Arrival) -> Result:
@@ -125,7 +138,10 @@ def _serve(library: Library, arrival: Arrival) -> Result:
         return replace(library, transfer=None), (arrival.answer(_ERROR if wrong is None else wrong),)
     whole = arrival.message.get_msgId() == mavlink.MAVLINK_MSG_ID_MISSION_REQUEST_INT
     current = kind == mavlink.MAV_MISSION_TYPE_MISSION and index == arrival.current
-    return library, (item_message(items[index], index, kind, arrival.partner, current=current, whole=whole),)
+    item = items[index]
+    if whole:
+        item = replace(item, frame=arrival.rules.told_frames.get(item.frame, item.frame))
+    return library, (item_message(item, index, kind, arrival.partner, current=current, whole=whole),)
 
 
 def _answered(library: Library, arrival: Arrival) -> Result:
@@ -151,6 +167,7 @@ def _clear(library: Library, arrival: Arrival) -> Result:
 _HANDLERS: Mapping[int, Callable[[Library, Arrival], Result]] = MappingProxyType(
     {
         mavlink.MAVLINK_MSG_ID_MISSION_COUNT: _count,
+        mavlink.MAVLINK_MSG_ID_MISSION_WRITE_PARTIAL_LIST: _part,
         mavlink.MAVLINK_MSG_ID_MISSION_ITEM: _item,
         mavlink.MAVLINK_MSG_ID_MISSION_ITEM_INT: _item,
         mavlink.MAVLINK_MSG_ID_MISSION_REQUEST_LIST: _list,

@@ -4,7 +4,7 @@ Source: MAVLink mission protocol, https://mavlink.io/en/services/mission.html; c
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import isfinite, isinf, radians
 from types import MappingProxyType
 
@@ -82,57 +82,6 @@ _COMMANDS: Mapping[int, frozenset[int]] = MappingProxyType(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MissionRules:
-    """In what the firmwares differ.
-
-    Attributes:
-        counts_max: most items, by MAV_MISSION_TYPE; a type that is not here is not supported.
-        home_first: whether item 0 is home, whatever is uploaded there, and is not flown.
-        one_at_a_time: whether a transfer that is not finished keeps others out until it times out.
-        retry_s: after which a missing item is asked for again.
-        timeout_s: of silence after which a transfer is given up.
-        timeout_answered: whether the end by time-out is told, as cancelled.
-        wrong_sequence: MAV_MISSION_RESULT of an item out of turn; None asks for the right one again.
-        needs_numbers: whether an item with a value that is no number is refused.
-        returns_itself: whether a return within a mission is flown by the mission's own mode.
-        holds_at_the_end: whether the hold mode follows a mission that ends in the air.
-        arms_to_start: whether MISSION_START arms.
-        waits_for_mission: whether its mode can be chosen on the ground before there is a mission.
-    """
-
-    counts_max: Mapping[int, int] = field(
-        default_factory=lambda: MappingProxyType({MISSION: 500, FENCE: 64, RALLY: 64})
-    )
-    home_first: bool = False
-    one_at_a_time: bool = True
-    retry_s: float = 0.25
-    timeout_s: float = 5.0
-    timeout_answered: bool = False
-    wrong_sequence: int | None = None
-    needs_numbers: bool = False
-    returns_itself: bool = False
-    holds_at_the_end: bool = True
-    arms_to_start: bool = True
-    waits_for_mission: bool = True
-
-
-PX4_MISSIONS = MissionRules()
-ARDUCOPTER_MISSIONS = MissionRules(
-    counts_max=MappingProxyType({MISSION: 724, FENCE: 84, RALLY: 26}),
-    home_first=True,
-    one_at_a_time=False,
-    retry_s=1.0,
-    timeout_s=8.0,
-    timeout_answered=True,
-    wrong_sequence=int(mavlink.MAV_MISSION_INVALID_SEQUENCE),
-    needs_numbers=True,
-    returns_itself=True,
-    holds_at_the_end=False,
-    arms_to_start=False,
-)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Item:
     """One item as it travels; `x` and `y` are the integers of MISSION_ITEM_INT."""
 
@@ -182,9 +131,12 @@ def item_from_message(message: Message) -> Item:
     )
 
 
-def result_of(item: Item, kind: int) -> int:
-    """Return the MAV_MISSION_RESULT that an item of a plan of type `kind` deserves."""
-    if item.command not in _COMMANDS[kind]:
+def result_of(item: Item, kind: int, more: frozenset[int] = frozenset()) -> int:
+    """Return the MAV_MISSION_RESULT that an item of a plan of type `kind` deserves.
+
+    `more` are commands that it may have besides those that every firmware takes.
+    """
+    if item.command not in _COMMANDS[kind] and not (kind == MISSION and item.command in more):
         return int(mavlink.MAV_MISSION_UNSUPPORTED)
     if item.frame not in _FRAMES:
         return int(mavlink.MAV_MISSION_UNSUPPORTED_FRAME)

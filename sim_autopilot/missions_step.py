@@ -9,6 +9,7 @@ from sim_autopilot.fence import fence_of
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.mission_flight import Progress, Stage, Surroundings, fly_mission, resumed, set_to
 from sim_autopilot.mission_library import Arrival
+from sim_autopilot.mission_texts import passed, received
 from sim_autopilot.mission_transfer import take_mission_message, transfer_passes
 from sim_autopilot.missions import FENCE, MISSION, Item
 from sim_autopilot.mode_change import change_mode
@@ -16,7 +17,9 @@ from sim_autopilot.modes import Event, Mode
 
 _NO_ITEMS = 65535
 """What MISSION_CURRENT tells as the total of no mission; its modes follow."""
-_ACTIVE, _SUSPENDED = 1, 2
+_UNKNOWN, _ACTIVE, _SUSPENDED = 0, 1, 2
+
+_CLEAR = int(mavlink.MAVLINK_MSG_ID_MISSION_CLEAR_ALL)
 
 Result = tuple[AutopilotMemory, tuple[Message, ...]]
 
@@ -43,7 +46,10 @@ def take_plan(memory: AutopilotMemory, message: Message, config: AutopilotConfig
     if library.plans[FENCE] is not services.library.plans[FENCE]:
         fence = fence_of(library.plans[FENCE], config.datum)
     memory = replace(memory, services=replace(services, library=library, mission=progress, fence=fence))
-    return memory, (*answers, mission_current(memory, config)) if changed else answers
+    if not changed:
+        return memory, answers
+    said = () if message.get_msgId() == _CLEAR else received(config)
+    return memory, (*answers, mission_current(memory, config), *said)
 
 
 def home_item(memory: AutopilotMemory, config: AutopilotConfig) -> Item:
@@ -107,6 +113,7 @@ def advance_mission(memory: AutopilotMemory, config: AutopilotConfig) -> Result:
     step = fly_mission(before, mission_items(memory), memory.flight, around)
     memory = _with_progress(replace(memory, flight=step.flight), step.progress)
     messages = tuple(mavlink.MAVLink_mission_item_reached_message(index) for index in step.reached)
+    messages = (*messages, *passed(before, step, mission_items(memory), config))
     if (step.progress.index, step.progress.stage is Stage.FINISHED) != (before.index, before.stage is Stage.FINISHED):
         messages = (*messages, mission_current(memory, config))
     if _ends_in_the_air(memory, before, config):
@@ -126,14 +133,16 @@ def _ends_in_the_air(memory: AutopilotMemory, before: Progress, config: Autopilo
     return stays and config.firmware.missions.holds_at_the_end and not memory.landing.landed
 
 
-def mission_current(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
-    """Return MISSION_CURRENT."""
+def mission_current(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
+    """Return MISSION_CURRENT; where item 0 is home it does not count, and whether it is suspended is not told."""
     count, progress = len(mission_items(memory)), memory.services.mission
+    mode = _ACTIVE if memory.modes.mode is Mode.MISSION else _SUSPENDED
+    home_first = config.firmware.missions.home_first
     return mavlink.MAVLink_mission_current_message(
         progress.index,
-        count or _NO_ITEMS,
+        (max(count - 1, 0) if home_first else count) or _NO_ITEMS,
         _state(memory, count),
-        _ACTIVE if memory.modes.mode is Mode.MISSION else _SUSPENDED,
+        _UNKNOWN if home_first else mode,
     )
 
 

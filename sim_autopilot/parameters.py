@@ -61,6 +61,13 @@ def default_values(parameters: tuple[Parameter, ...], overrides: Values) -> Valu
     return values
 
 
+def within_ranges(parameters: tuple[Parameter, ...], values: Values) -> Values:
+    """Return `values`, those of `parameters` brought into their ranges; a choice that there is not is the default."""
+    out = (p for p in parameters if not p.lowest <= values[p.name] <= p.highest)
+    kept = {p.name: float(p.default) if p.is_integer else min(max(values[p.name], p.lowest), p.highest) for p in out}
+    return {**values, **kept} if kept else values
+
+
 def parameter_message(
     parameters: tuple[Parameter, ...], index: int, values: Values, autopilot_id: int, *, tells_index: bool = True
 ) -> Message:
@@ -92,7 +99,7 @@ def values_after_set(
     *,
     lenient: bool = False,
 ) -> Values:
-    """Return the values after a PARAM_SET; one that is not finite or out of range changes nothing.
+    """Return the values after a PARAM_SET; one that is not finite changes nothing, and ranges are not enforced.
 
     A `lenient` autopilot takes any finite number, whatever type was named, rounds it for an integer, and knows no
     ranges but the integer's own, to which it clips.
@@ -101,7 +108,7 @@ def values_after_set(
     if lenient:
         return _values_after_lenient_set(parameter, values, float(message.param_value))
     value = parameter_value(message, autopilot_id)
-    if value is None or not _is_allowed(parameter, value):
+    if value is None or not math.isfinite(value) or (parameter.is_integer and not float(value).is_integer()):
         return values
     return {**values, parameter.name: float(value)}
 

@@ -16,6 +16,8 @@ _STOP = -1
 
 def set_interval(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
     """Set the rate of a stream of the link at hand."""
+    if request.number(1) in config.firmware.silent_messages:
+        return Answer(memory=memory, result=ACCEPTED)
     stream, interval_us = _stream(request.number(1), config), request.number(2)
     if stream is None or stream.fixed or interval_us is None or interval_us < _STOP:
         return Answer(memory=memory, result=config.firmware.results.no_such_stream)
@@ -50,6 +52,8 @@ def request_message(memory: AutopilotMemory, request: Request, config: Autopilot
         return Answer(
             memory=memory, result=ACCEPTED if modes else config.firmware.results.no_such_message, messages=modes
         )
+    if request.number(1) in config.firmware.silent_messages:
+        return Answer(memory=memory, result=ACCEPTED)
     stream = _stream(request.number(1), config)
     if stream is None:
         return Answer(memory=memory, result=config.firmware.results.no_such_message)

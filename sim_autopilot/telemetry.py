@@ -64,6 +64,9 @@ BUILDERS: Mapping[int, Builder] = MappingProxyType(
         mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT: ardupilot.position_target_global,
         mavlink.MAVLINK_MSG_ID_SIMSTATE: ardupilot.simstate,
         mavlink.MAVLINK_MSG_ID_SCALED_IMU2: ardupilot.scaled_imu2,
+        mavlink.MAVLINK_MSG_ID_SCALED_IMU3: ardupilot.scaled_imu3,
+        mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2: ardupilot.scaled_pressure2,
+        mavlink.MAVLINK_MSG_ID_FENCE_STATUS: ardupilot.fence_status,
     }
 )
 

@@ -10,7 +10,7 @@ from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.chart import geodetic
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
 from sim_autopilot.telemetry_motion import attitude, wire_place
-from sim_autopilot.telemetry_sensors import scaled_imu
+from sim_autopilot.telemetry_sensors import scaled_imu, scaled_pressure
 from sim_autopilot.telemetry_status import boot_ms
 
 _BOARD_MV = 5000
@@ -75,6 +75,25 @@ def wind(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     east, north, up = memory.wind_enu_m_s
     from_deg = degrees(yaw_ned_from_enu(atan2(-north, -east))) % 360.0
     return mavlink.MAVLink_wind_message(from_deg, hypot(east, north), -up)
+
+
+def scaled_imu3(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
+    """Return SCALED_IMU3, of a compass of its own; the third gyro and accelerometer are not there."""
+    own = scaled_imu(memory, config)
+    return mavlink.MAVLink_scaled_imu3_message(own.time_boot_ms, 0, 0, 0, 0, 0, 0, own.xmag, own.ymag, own.zmag)
+
+
+def scaled_pressure2(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
+    """Return SCALED_PRESSURE2 of the second barometer, which measures what the first does."""
+    own = scaled_pressure(memory, config)
+    return mavlink.MAVLink_scaled_pressure2_message(own.time_boot_ms, own.press_abs, 0.0, own.temperature)
+
+
+def fence_status(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
+    """Return FENCE_STATUS."""
+    outside = memory.services.watch.outside
+    kind = mavlink.FENCE_BREACH_BOUNDARY if outside else mavlink.FENCE_BREACH_NONE
+    return mavlink.MAVLink_fence_status_message(int(outside), int(outside), kind, boot_ms(memory) if outside else 0)
 
 
 def scaled_imu2(memory: AutopilotMemory, config: AutopilotConfig) -> Message:

@@ -7,7 +7,6 @@ from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
 from sim_autopilot.modes import Mode
 
 _UNKNOWN_MV = 65535
-_TEXT_BYTES = 50
 _MAVLINK_VERSION = 3
 _CHARGE_STATES = (
     mavlink.MAV_BATTERY_CHARGE_STATE_OK,
@@ -100,23 +99,6 @@ def _percent(charge: float) -> int:
 def system_time(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     """Return SYSTEM_TIME: UTC beside the boot clock."""
     return mavlink.MAVLink_system_time_message(memory.now.t_ns // 1000, boot_ms(memory))
-
-
-def status_text(severity: int, text: str) -> Message:
-    """Return a STATUSTEXT; what is longer than 50 bytes is cut off."""
-    return mavlink.MAVLink_statustext_message(severity, text.encode()[:_TEXT_BYTES])
-
-
-def status_texts(severity: int, text: str, number: int) -> tuple[Message, ...]:
-    """Return the STATUSTEXTs of a text; a long one comes in pieces that `number`, not 0, holds together."""
-    encoded = text.encode()
-    if len(encoded) <= _TEXT_BYTES:
-        return (status_text(severity, text),)
-    pieces = range(0, len(encoded), _TEXT_BYTES)
-    return tuple(
-        mavlink.MAVLink_statustext_message(severity, encoded[begin : begin + _TEXT_BYTES], number, place)
-        for place, begin in enumerate(pieces)
-    )
 
 
 def timesync_question(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:

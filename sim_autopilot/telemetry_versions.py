@@ -28,7 +28,20 @@ def component_metadata(memory: AutopilotMemory, config: AutopilotConfig) -> Mess
 
 def autopilot_version(_memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return AUTOPILOT_VERSION."""
-    firmware, no_hash = config.firmware, (0,) * 8
+    firmware, identity, no_hash = config.firmware, config.firmware.identity, (0,) * 8
+    version, commit = firmware.version, tuple(identity.custom_version)
+    system = identity.os_version
     return mavlink.MAVLink_autopilot_version_message(
-        firmware.capabilities, firmware.version, 0, 0, 0, no_hash, no_hash, no_hash, 0, 0, config.system_id
+        firmware.capabilities,
+        version,
+        version if system else 0,
+        system,
+        identity.board_version,
+        commit,
+        commit if system else no_hash,
+        no_hash,
+        0,
+        0,
+        identity.uid,
+        tuple(identity.uid2),
     )

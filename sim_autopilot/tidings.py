@@ -4,8 +4,8 @@ from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.events import tell
 from sim_autopilot.flight_texts import flight_texts
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.status_texts import status_text
 from sim_autopilot.telemetry_motion import gps_global_origin, home_position
-from sim_autopilot.telemetry_status import status_text
 
 
 def announcement(memory: AutopilotMemory, config: AutopilotConfig, *, with_home: bool) -> list[Message]:

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from link.mavlink.dialect import mavlink
 from sim_autopilot.file_store import Shown
 from sim_autopilot.firmware.ardupilot_parameters import OBEYED, flight_settings
-from sim_autopilot.firmware.ardupilot_streams import CONTACT_STREAMS, STREAM_GROUPS, STREAMS
+from sim_autopilot.firmware.ardupilot_streams import CONTACT_STREAMS, SILENT_MESSAGES, STREAM_GROUPS, STREAMS
 from sim_autopilot.firmware.firmware import (
     Firmware,
     ModeCode,
@@ -20,11 +20,12 @@ from sim_autopilot.firmware.firmware import (
     Text,
     Texts,
 )
+from sim_autopilot.firmware.identity import Identity
 from sim_autopilot.firmware.plain_answers import ARDUCOPTER_ANSWERS
 from sim_autopilot.firmware.stored_parameters import whole_list
 from sim_autopilot.flight_log import ARDUPILOT_LOGS
 from sim_autopilot.ftp_state import ARDUPILOT_FTP
-from sim_autopilot.missions import ARDUCOPTER_MISSIONS
+from sim_autopilot.mission_rules import ARDUCOPTER_MISSIONS
 from sim_autopilot.modes import Mode
 from sim_autopilot.parameter_file import PATH, packed
 from sim_autopilot.parameters import Parameter, Values
@@ -83,6 +84,9 @@ def _files(parameters: tuple[Parameter, ...], values: Values) -> Shown:
     }
 
 
+_COMMIT, _BOARD = "c86c3a57", "8d1219c7c4c5404aaa1f6d2a48adfda4"
+"""Of the build that was measured, and its board's number in full."""
+
 ARDUPILOT = Firmware(
     name="ardupilot",
     autopilot_id=mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA,
@@ -124,6 +128,7 @@ ARDUPILOT = Firmware(
         unarmable="Arm: {} mode not armable",
         no_setpoints="",
         disarm_refused=None,
+        no_such_mode="No such mode {}",
         armed=_info("Arming motors"),
         disarmed=_info("Disarming motors"),
     ),
@@ -180,4 +185,7 @@ ARDUPILOT = Firmware(
     logs=ARDUPILOT_LOGS,
     reposition_mode=Mode.OFFBOARD,
     missions=ARDUCOPTER_MISSIONS,
+    banner=(f"ArduCopter V4.6.0-dev ({_COMMIT})", _BOARD, "Frame: QUAD/PLUS"),
+    identity=Identity(custom_version=_COMMIT.encode(), uid2=_BOARD[:17].encode().ljust(18, b"\0")),
+    silent_messages=SILENT_MESSAGES,
 )

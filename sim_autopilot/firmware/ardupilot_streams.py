@@ -52,6 +52,9 @@ STREAMS = (
     Stream(message_id=mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT),
     Stream(message_id=mavlink.MAVLINK_MSG_ID_SIMSTATE),
     Stream(message_id=mavlink.MAVLINK_MSG_ID_SCALED_IMU2),
+    Stream(message_id=mavlink.MAVLINK_MSG_ID_SCALED_IMU3),
+    Stream(message_id=mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2),
+    Stream(message_id=mavlink.MAVLINK_MSG_ID_FENCE_STATUS),
 )
 
 CONTACT_STREAMS = frozenset({mavlink.MAVLINK_MSG_ID_TIMESYNC})
@@ -59,7 +62,9 @@ CONTACT_STREAMS = frozenset({mavlink.MAVLINK_MSG_ID_TIMESYNC})
 _RAW_SENSORS = (
     mavlink.MAVLINK_MSG_ID_RAW_IMU,
     mavlink.MAVLINK_MSG_ID_SCALED_IMU2,
+    mavlink.MAVLINK_MSG_ID_SCALED_IMU3,
     mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE,
+    mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2,
 )
 _EXTENDED_STATUS = (
     mavlink.MAVLINK_MSG_ID_SYS_STATUS,
@@ -107,3 +112,49 @@ STREAM_GROUPS = MappingProxyType(
     {int(mavlink.MAV_DATA_STREAM_ALL): tuple(one for group in _GROUPS.values() for one in group)}
     | {int(number): group for number, group in _GROUPS.items()}
 )
+
+SILENT_MESSAGES = frozenset(
+    {
+        mavlink.MAVLINK_MSG_ID_PARAM_VALUE,
+        mavlink.MAVLINK_MSG_ID_RC_CHANNELS_SCALED,
+        mavlink.MAVLINK_MSG_ID_RC_CHANNELS_RAW,
+        mavlink.MAVLINK_MSG_ID_MISSION_ITEM_REACHED,
+        mavlink.MAVLINK_MSG_ID_OPTICAL_FLOW,
+        mavlink.MAVLINK_MSG_ID_SIM_STATE,
+        mavlink.MAVLINK_MSG_ID_GPS2_RAW,
+        mavlink.MAVLINK_MSG_ID_GPS_RTK,
+        mavlink.MAVLINK_MSG_ID_GPS2_RTK,
+        mavlink.MAVLINK_MSG_ID_TERRAIN_REQUEST,
+        mavlink.MAVLINK_MSG_ID_TERRAIN_REPORT,
+        mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE3,
+        mavlink.MAVLINK_MSG_ID_RANGEFINDER,
+        mavlink.MAVLINK_MSG_ID_CAMERA_FEEDBACK,
+        mavlink.MAVLINK_MSG_ID_MAG_CAL_PROGRESS,
+        mavlink.MAVLINK_MSG_ID_MAG_CAL_REPORT,
+        mavlink.MAVLINK_MSG_ID_PID_TUNING,
+        mavlink.MAVLINK_MSG_ID_DEEPSTALL,
+        mavlink.MAVLINK_MSG_ID_EFI_STATUS,
+        mavlink.MAVLINK_MSG_ID_RPM,
+        mavlink.MAVLINK_MSG_ID_HIGH_LATENCY2,
+        mavlink.MAVLINK_MSG_ID_ADSB_VEHICLE,
+        mavlink.MAVLINK_MSG_ID_CAMERA_INFORMATION,
+        mavlink.MAVLINK_MSG_ID_CAMERA_SETTINGS,
+        mavlink.MAVLINK_MSG_ID_CAMERA_CAPTURE_STATUS,
+        mavlink.MAVLINK_MSG_ID_VIDEO_STREAM_INFORMATION,
+        mavlink.MAVLINK_MSG_ID_CAMERA_FOV_STATUS,
+        mavlink.MAVLINK_MSG_ID_CAMERA_THERMAL_RANGE,
+        mavlink.MAVLINK_MSG_ID_GIMBAL_MANAGER_INFORMATION,
+        mavlink.MAVLINK_MSG_ID_GIMBAL_MANAGER_STATUS,
+        mavlink.MAVLINK_MSG_ID_GIMBAL_DEVICE_ATTITUDE_STATUS,
+        mavlink.MAVLINK_MSG_ID_AUTOPILOT_STATE_FOR_GIMBAL_DEVICE,
+        mavlink.MAVLINK_MSG_ID_AIRSPEED,
+        mavlink.MAVLINK_MSG_ID_AIS_VESSEL,
+        mavlink.MAVLINK_MSG_ID_GENERATOR_STATUS,
+        mavlink.MAVLINK_MSG_ID_RELAY_STATUS,
+        mavlink.MAVLINK_MSG_ID_WINCH_STATUS,
+        mavlink.MAVLINK_MSG_ID_UAVIONIX_ADSB_OUT_STATUS,
+        mavlink.MAVLINK_MSG_ID_AOA_SSA,
+        mavlink.MAVLINK_MSG_ID_ESC_TELEMETRY_1_TO_4,
+    }
+)
+"""What can be asked for as on the measured build, with nothing to tell here (and, most of them, there)."""

@@ -4,9 +4,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from sim_autopilot.file_store import Shown
+from sim_autopilot.firmware.identity import Identity
 from sim_autopilot.flight_log import PX4_LOGS, LogRules
 from sim_autopilot.ftp_state import PX4_FTP, FtpRules
-from sim_autopilot.missions import PX4_MISSIONS, MissionRules
+from sim_autopilot.mission_rules import PX4_MISSIONS, MissionRules
 from sim_autopilot.modes import Mode
 from sim_autopilot.parameters import Parameter, Values
 from sim_autopilot.settings import FlightSettings
@@ -102,6 +103,7 @@ class Texts:
         battery: by the level that the battery has come to, 1 is low.
         failsafe: that a failsafe has begun; empty says nothing.
         obeyed: to the command that asks for a mode.
+        no_such_mode: the number goes in for `{}`; empty says nothing.
         no_mission: MISSION_START without a mission; None says nothing.
     """
 
@@ -117,6 +119,7 @@ class Texts:
     battery: Mapping[int, str] = field(default_factory=dict)
     failsafe: str = ""
     obeyed: Mapping[Mode, str] = field(default_factory=dict)
+    no_such_mode: str = ""
     no_mission: str | None = None
 
 
@@ -178,7 +181,7 @@ class Firmware:
         announces_home: whether it tells the origin and home when home moves.
         takes_off_by_setpoint: whether a setpoint above lifts it off the ground.
         mode_answered_twice: whether DO_SET_MODE is accepted at once, and answered for good a step later.
-        answers_other_components: whether it answers commands for another component of its system.
+        answers_other_components: whether it answers what is for another component of its system, and commands for all.
         leaves_landing_modes: whether it goes back, when the motors stop, to the last mode asked for that lets arm.
         tells_modes: whether a change of mode sends a heartbeat at once.
         set_mode_answered_as: the MAV_CMD that the COMMAND_ACK to a SET_MODE names; None answers nothing.
@@ -191,6 +194,9 @@ class Firmware:
         reposition_mode: in which a DO_REPOSITION is flown.
         files: that it shows over MAVLink FTP, by its parameters and their values.
         ftp: of that server.
+        banner: texts that follow a PARAM_REQUEST_LIST.
+        identity: of AUTOPILOT_VERSION.
+        silent_messages: ids that it can be asked for, and has nothing to tell of.
         logs: of the log service.
     """
 
@@ -237,4 +243,7 @@ class Firmware:
     reposition_mode: Mode = Mode.HOLD
     files: Callable[[tuple[Parameter, ...], Values], Shown]
     ftp: FtpRules = PX4_FTP
+    banner: tuple[str, ...] = ()
+    identity: Identity = field(default_factory=Identity)
+    silent_messages: frozenset[int] = frozenset()
     logs: LogRules = PX4_LOGS

@@ -38,7 +38,15 @@ PX4_ANSWERS: Mapping[int, int | None] = MappingProxyType(
     | dict.fromkeys((mavlink.MAV_CMD_DO_SET_STANDARD_MODE, mavlink.MAV_CMD_CONTROL_HIGH_LATENCY), _FAILED)
     | {mavlink.MAV_CMD_DO_LAND_START: _CANCELLED}
     # ArduCopter's own.
-    | dict.fromkeys((mavlink.MAV_CMD_CONDITION_YAW, mavlink.MAV_CMD_DO_FENCE_ENABLE), _UNSUPPORTED)
+    | dict.fromkeys(
+        (
+            mavlink.MAV_CMD_CONDITION_YAW,
+            mavlink.MAV_CMD_DO_FENCE_ENABLE,
+            mavlink.MAV_CMD_DO_SET_SERVO,
+            mavlink.MAV_CMD_DO_REPEAT_SERVO,
+        ),
+        _UNSUPPORTED,
+    )
     | dict.fromkeys(
         (
             mavlink.MAV_CMD_DO_FIGURE_EIGHT,
@@ -95,6 +103,7 @@ ARDUCOPTER_ANSWERS: Mapping[int, int | None] = MappingProxyType(
             mavlink.MAV_CMD_SOLO_BTN_FLY_CLICK,
             mavlink.MAV_CMD_SOLO_BTN_FLY_HOLD,
             mavlink.MAV_CMD_SOLO_BTN_PAUSE_CLICK,
+            mavlink.MAV_CMD_DO_START_MAG_CAL,
             mavlink.MAV_CMD_DO_ACCEPT_MAG_CAL,
             mavlink.MAV_CMD_DO_CANCEL_MAG_CAL,
             mavlink.MAV_CMD_DO_SEND_BANNER,
@@ -117,8 +126,6 @@ ARDUCOPTER_ANSWERS: Mapping[int, int | None] = MappingProxyType(
         (
             mavlink.MAV_CMD_NAV_VTOL_TAKEOFF,
             mavlink.MAV_CMD_DO_SET_ACTUATOR,
-            mavlink.MAV_CMD_DO_SET_SERVO,
-            mavlink.MAV_CMD_DO_REPEAT_SERVO,
             mavlink.MAV_CMD_DO_RETURN_PATH_START,
             mavlink.MAV_CMD_DO_LAND_START,
             mavlink.MAV_CMD_DO_MOUNT_CONFIGURE,

@@ -19,6 +19,7 @@ from sim_autopilot.firmware.firmware import (
     Statuses,
     Texts,
 )
+from sim_autopilot.firmware.identity import Identity
 from sim_autopilot.firmware.plain_answers import PX4_ANSWERS
 from sim_autopilot.firmware.px4_events import (
     BATTERY_CRITICAL,
@@ -162,6 +163,13 @@ PX4 = Firmware(
     tells_modes=False,
     set_mode_answered_as=mavlink.MAV_CMD_DO_SET_MODE,
     tells_indices=True,
+    identity=Identity(
+        custom_version=bytes((0, 0, 0, 24, 153, 179, 3, 186)),
+        os_version=0x06_12_2C_FF,  # Linux 6.18.44
+        board_version=1,
+        uid=0x4954_414C_4449_4E54,  # its simulation's, the same for all
+        uid2=bytes((5, *(0,) * 17)),
+    ),
     plain_answers=PX4_ANSWERS,
     files=_files,
 )

@@ -7,7 +7,7 @@ from math import radians
 
 from sim_autopilot.failsafes import FailsafeSettings
 from sim_autopilot.modes import Event, Mode
-from sim_autopilot.parameters import Parameter, Values
+from sim_autopilot.parameters import Parameter, Values, within_ranges
 from sim_autopilot.settings import FlightSettings
 from sim_autopilot.stick_feel import StickFeel
 
@@ -65,7 +65,8 @@ def _failsafes(values: Values) -> FailsafeSettings:
 
 
 def flight_settings(values: Values) -> FlightSettings:
-    """Return what the parameters amount to."""
+    """Return what the parameters amount to; the flight keeps to their ranges, whatever was set."""
+    values = within_ranges(OBEYED, values)
     return FlightSettings(
         speed_max_m_s=values["MPC_XY_VEL_MAX"],
         climb_max_m_s=values["MPC_Z_VEL_MAX_UP"],

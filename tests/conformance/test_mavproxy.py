@@ -23,7 +23,7 @@ FENCE = """QGC WPL 110
 RALLY = """QGC WPL 110
 0\t0\t3\t5100\t0\t0\t0\t0\t52.4723\t13.4007\t20\t1
 """
-PARAMETERS = {"px4": ("MPC_XY_CRUISE", 889), "ardupilot": ("WPNAV_ACCEL", 1395)}
+PARAMETERS = {"px4": ("MPC_XY_CRUISE", 897), "ardupilot": ("WPNAV_ACCEL", 1395)}
 
 
 @pytest.fixture(scope="module", params=["px4", "ardupilot"])

@@ -2,8 +2,9 @@ import pytest
 
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.mission_library import NO_LIBRARY, Arrival, Library, Way
+from sim_autopilot.mission_rules import ARDUCOPTER_MISSIONS, PX4_MISSIONS, MissionRules
 from sim_autopilot.mission_transfer import take_mission_message, transfer_passes
-from sim_autopilot.missions import ARDUCOPTER_MISSIONS, FENCE, MISSION, PX4_MISSIONS, RALLY, MissionRules
+from sim_autopilot.missions import FENCE, MISSION, RALLY
 from tests.sim_autopilot.pilot import Pilot
 from tests.sim_autopilot.planner import download, item, plan_messages, upload
 
@@ -132,7 +133,7 @@ def test_arducopter_refuses_an_item_sent_twice_and_px4_asks_for_the_next() -> No
 def test_arducopter_cancels_a_silent_upload_and_lets_its_client_begin_again() -> None:
     library, _ = send(NO_LIBRARY, count_of(2), 0.0, ARDUCOPTER_MISSIONS)
     _, (again,) = send(library, count_of(2), 1.0, ARDUCOPTER_MISSIONS)
-    assert again.get_type() == "MISSION_REQUEST_INT"
+    assert again.get_type() == "MISSION_REQUEST"
     library, (cancelled,) = transfer_passes(library, round(8.1e9), ARDUCOPTER_MISSIONS)
     assert (cancelled.type, library.transfer) == (CANCELLED, None)
 

@@ -7,6 +7,7 @@ from link.mavlink.parameters import parameter_on_wire, parameter_value
 from sim_autopilot.firmware.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.px4 import PX4
 from sim_autopilot.firmware.px4_parameters import OBEYED
+from sim_autopilot.modes import Event
 from sim_autopilot.parameters import default_values
 from tests.sim_autopilot.copter import ardupilot
 from tests.sim_autopilot.pilot import Pilot, px4
@@ -78,21 +79,27 @@ def test_an_integer_travels_bytewise() -> None:
     assert pilot.last("PARAM_VALUE").param_value == pytest.approx(4 * 2.0**-149)
 
 
+def test_a_value_that_is_no_number_leaves_the_parameter_and_tells_its_value() -> None:
+    pilot = Pilot()
+    pilot.step(set_parameter("MPC_XY_VEL_MAX", nan, REAL))
+    assert values(pilot) == {"MPC_XY_VEL_MAX": 12.0}
+
+
 @pytest.mark.parametrize(
-    ("name", "value", "kind"),
+    ("name", "value", "kind", "setting", "flown"),
     [
-        ("MPC_XY_VEL_MAX", nan, REAL),
-        ("MPC_XY_VEL_MAX", -1.0, REAL),
-        ("MPC_XY_VEL_MAX", 1e9, REAL),
-        ("COM_OBL_RC_ACT", 99, INTEGER),
+        ("MPC_XY_VEL_MAX", -1.0, REAL, "speed_max_m_s", 0.1),
+        ("MPC_XY_VEL_MAX", 1e9, REAL, "speed_max_m_s", 40.0),
+        ("COM_OBL_RC_ACT", 99, INTEGER, "setpoint_loss_event", Event.LOST_TO_POSITION),
     ],
 )
-def test_a_value_that_cannot_be_leaves_the_parameter_and_tells_its_value(name: str, value: float, kind: int) -> None:
+def test_a_value_out_of_its_range_is_kept_and_told_and_the_flight_stays_within(
+    name: str, value: float, kind: int, setting: str, flown: object
+) -> None:
     pilot = Pilot()
-    before = pilot.node.memory.values[name]
     pilot.step(set_parameter(name, value, kind))
-    assert values(pilot) == {name: before}
-    assert pilot.node.memory.values[name] == before
+    assert values(pilot) == {name: value}
+    assert getattr(pilot.node.memory.settings, setting) == flown
 
 
 def test_a_set_of_another_type_than_the_parameters_is_not_answered() -> None:
