@@ -79,9 +79,10 @@ def test_mavproxy_lists_and_downloads_the_log_of_that_flight(client: MavProxy, f
     assert (folder / "flight.log").read_bytes()[:4] in {b"ULog", b"\xa3\x95\x80\x80"}
 
 
-def test_mavproxy_sends_and_reads_missions(client: MavProxy) -> None:
+def test_mavproxy_sends_and_reads_missions(client: MavProxy, autopilot: StandIn) -> None:
     client.ask("wp load mission.txt", "TYPE_MISSION: ACCEPTED")
-    client.ask("wp list", r"16 3 52\.4735")
+    frame = 6 if autopilot.firmware == "px4" else 3  # PX4 tells whole numbers in the frames named after them
+    client.ask("wp list", rf"16 {frame} 52\.4735")
 
 
 def test_mavproxy_lists_files(client: MavProxy, autopilot: StandIn) -> None:
