@@ -71,7 +71,7 @@ def _arm_disarm(memory: AutopilotMemory, request: Request, config: AutopilotConf
     if wanted != 0:
         if config.firmware.guided:
             return Answer(memory=memory, result=UNSUPPORTED)
-        return Answer(memory=memory, result=None, text=f"Unsupported ARM_DISARM param: {request.parameters[0]:.3f}")
+        return Answer(memory=memory, result=None, text=f"Unsupported ARM_DISARM param: {request.parameters[0]:.3f}\t")
     if memory.armed_ns is not None and not memory.landing.landed and not forced:
         refused = config.firmware.results.disarm_in_the_air
         return Answer(memory=memory, result=refused, text=config.firmware.texts.disarm_refused)

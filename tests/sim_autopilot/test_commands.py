@@ -143,9 +143,11 @@ def test_arming_by_force_skips_the_checks() -> None:
 
 
 @pytest.mark.parametrize("number", [2.0, -1.0, nan])
-def test_an_arming_command_that_says_neither_is_unsupported(number: float) -> None:
+def test_an_arming_command_that_says_neither_is_not_answered_but_in_words(number: float) -> None:
     pilot = Pilot()
-    assert pilot.acknowledged(command(400, number)) == [UNSUPPORTED]
+    pilot.step(mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, 8, 0, 0, 4, 3))
+    assert pilot.acknowledged(command(400, number)) == []
+    assert pilot.last("STATUSTEXT").text == f"Unsupported ARM_DISARM param: {number:.3f}\t"
     assert not pilot.is_armed()
 
 
