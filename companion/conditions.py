@@ -12,7 +12,7 @@ from companion.config import CompanionConfig
 from companion.contact import Verdict, is_stopped_by_pad, over_pad_radius_m, signs_of, verdict
 from companion.phases import LANDING_PHASES, NEAR_PHASES, Event, Phase
 from companion.situation import Approach, Situation, approach
-from companion.targets import chase_floor_m, is_unseen, is_vague
+from companion.targets import changes_speed, chase_floor_m, is_unseen, is_vague
 
 CONTACT = "contact"
 DISPUTED_CONTACT = "contact against the range finder"
@@ -74,8 +74,25 @@ def cone_radius_m(height_m: float, config: CompanionConfig) -> float:
     return config.descent.cone_radius_at_pad_m + config.descent.cone_slope * max(height_m, 0.0)
 
 
+def _beside_cone(a: Approach, c: CompanionConfig) -> bool:
+    return a.distance_m > cone_radius_m(a.height_m, c)
+
+
+def must_wait(s: Situation, a: Approach | None, c: CompanionConfig) -> bool:
+    """Return whether a descent is to stay above the pad for now: what a change of the vehicle's speed does, passes."""
+    if a is None or s.pad is None:
+        return False
+    beside_m = max(c.descent.aligned_distance_m, c.descent.cone_slope * a.height_m)
+    moves = a.distance_m > beside_m or a.speed_m_s > c.descent.aligned_speed_m_s
+    return moves or changes_speed(s.pad, c.descent)
+
+
 def _outside_cone(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
-    return a is not None and a.distance_m > cone_radius_m(a.height_m, c)
+    return a is not None and a.height_m < c.abort.near_height_m and _beside_cone(a, c)
+
+
+def _strays(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
+    return a is not None and (_beside_cone(a, c) or a.speed_m_s > c.abort.near_speed_max_m_s)
 
 
 def is_over_pad(a: Approach, c: CompanionConfig) -> bool:
@@ -116,6 +133,7 @@ ABORT_TESTS = (
     Test(
         "too fast against the pad", frozenset({Phase.DESCEND}), _too_fast_near_pad, lambda c: c.abort.near_speed_hold_s
     ),
+    Test("not over the pad in time", frozenset({Phase.DESCEND}), _strays, lambda c: c.abort.stray_hold_s),
     Test("vehicle faster than the limit", LANDING_PHASES, _outruns, lambda c: c.chase.driving_hold_s),
     Test("too far from the start", LANDING_PHASES, is_out_of_range, lambda _: 0.0),
     Test("below the pad without contact", frozenset({Phase.DESCEND}), _missed_pad, lambda _: 0.0),

@@ -85,7 +85,8 @@ class DescentConfig(StrictModel):
     press_depth_m: Positive = 0.5  # how far below the pad the setpoint goes on, so that contact is firm
     cone_radius_at_pad_m: Positive = 0.3
     cone_slope: NotNegative = 0.35  # metres of radius per metre of height
-    # While the vehicle brakes or speeds up harder than this, as the drone must lean for, the descent waits.
+    # While the vehicle brakes or speeds up harder than this, as the drone must lean for, the descent waits, as it does
+    # beside the cone and while the drone moves against the pad faster than when it was aligned.
     speed_change_max_m_s2: Positive = 1.2
     waiting_height_m: Positive = 0.6
     commit_height_m: Positive = 0.35  # below this it lands rather than aborts
@@ -135,7 +136,8 @@ class AbortConfig(StrictModel):
     tracking_error_max_m: Positive = 2.5  # of the drone behind its setpoint
     tracking_hold_s: NotNegative = 1.0
     cone_hold_s: NotNegative = 0.3
-    near_height_m: Positive = 1.0  # below this the relative speed is watched
+    stray_hold_s: NotNegative = 3.0  # beside the cone or too fast, but high enough to wait for better
+    near_height_m: Positive = 0.5  # below this there is no time to wait
     near_speed_max_m_s: Positive = 0.8  # S1 asks for 1.0 at contact
     near_speed_hold_s: NotNegative = 0.06
     alive_lost_fix_age_max_s: NotNegative = 0.5  # in place of `fix_age_max_s` once the vehicle's token is lost

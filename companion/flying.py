@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from companion.conditions import CONTACT, DISPUTED_CONTACT
+from companion.conditions import CONTACT, DISPUTED_CONTACT, must_wait
 from companion.config import CompanionConfig
 from companion.contact import over_pad_radius_m
 from companion.data import FlightLimits, Setpoint
@@ -49,8 +49,8 @@ def _aim(memory: StepMemory, situation: Situation, config: CompanionConfig) -> A
         raise ValueError(f"phase {memory.phase.value} flies without a reference")
     match memory.phase:
         case Phase.CHASE | Phase.ALIGN | Phase.DESCEND | Phase.TOUCHDOWN if pad is not None:
-            offset_m, waits = situation.feet_offset_m, waits_for_calm(memory, situation, config)
-            return pad_aim(memory.phase, pad, reference, offset_m, config, waits=waits)
+            lowest_m = _lowest_m(memory, situation, config)
+            return pad_aim(memory.phase, pad, reference, situation.feet_offset_m, config, lowest_m=lowest_m)
         case Phase.ABORT if pad is not None and _is_fresh(situation, config):
             return pad_aim(memory.phase, pad, reference, situation.feet_offset_m, config)
         case Phase.ABORT:
@@ -61,6 +61,16 @@ def _aim(memory: StepMemory, situation: Situation, config: CompanionConfig) -> A
             return hover_aim(memory.anchor_enu_m)
         case _:
             return hover_aim(memory.waiting_point_enu_m)
+
+
+def _lowest_m(memory: StepMemory, situation: Situation, config: CompanionConfig) -> float | None:
+    """Return how low above the pad a descent may go for now, None for down to the pad."""
+    relative = approach(situation)
+    if memory.phase is not Phase.DESCEND or relative is None:
+        return None
+    if must_wait(situation, relative, config) and relative.height_m > config.descent.commit_height_m:
+        return min(relative.height_m, config.descent.waiting_height_m)
+    return config.descent.commit_height_m if waits_for_calm(memory, situation, config) else None
 
 
 def waits_for_calm(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:

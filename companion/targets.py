@@ -77,17 +77,23 @@ def pad_aim(
     feet_offset_m: float,
     config: CompanionConfig,
     *,
-    waits: bool = False,
+    lowest_m: float | None = None,
 ) -> Aim:
     """Return the aim that follows the pad as `phase` (chase, align, descend, touchdown or abort) asks.
 
-    With `waits` a descent goes no lower than the commit height.
+    Args:
+        phase: one of those.
+        pad: its path over the horizon.
+        reference: the virtual model now.
+        feet_offset_m: of the reported position above the feet.
+        config: heights and rates.
+        lowest_m: of the feet above the pad, where a descent ends for now; None for down to the pad.
     """
     height_now_m = float(reference.position_enu_m[2] - pad.position_enu_m[0, 2]) - feet_offset_m
     height, sink = _height_profile(phase, height_now_m, pad, reference, config)
-    if waits:
-        sink = np.where(height < config.descent.commit_height_m, 0.0, sink)
-        height = np.maximum(height, config.descent.commit_height_m)
+    if lowest_m is not None:
+        sink = np.where(height <= lowest_m, 0.0, sink)
+        height = np.maximum(height, lowest_m)
     position = pad.position_enu_m.copy()
     position[:, 2] += feet_offset_m + height
     velocity = pad.velocity_enu_m_s.copy()
@@ -108,8 +114,6 @@ def _height_profile(
     """Return the wanted height over the pad (n,) and the sink rate against it (n,)."""
     n = len(pad.offset_s)
     match phase:
-        case Phase.DESCEND if changes_speed(pad, config.descent):
-            return waiting_profile(height_now_m, pad.offset_s, config.descent)
         case Phase.DESCEND | Phase.TOUCHDOWN:
             return sink_profile(height_now_m, pad.offset_s, config.descent)
         case Phase.ABORT:
@@ -184,15 +188,6 @@ def changes_speed(pad: PadPath, config: DescentConfig) -> bool:
     speed_m_s = math.hypot(*velocity[:2].tolist())
     along_m_s2 = abs(float(velocity @ acceleration)) / max(speed_m_s, _SLOW_M_S)
     return along_m_s2 > config.speed_change_max_m_s2
-
-
-def waiting_profile(height_now_m: float, offset_s: Array, config: DescentConfig) -> tuple[Array, Array]:
-    """Return the descent as far as the height at which it waits; below the commit height it goes on."""
-    height, rate = sink_profile(height_now_m, offset_s, config)
-    if height_now_m <= config.commit_height_m:
-        return height, rate
-    lowest_m = min(height_now_m, config.waiting_height_m)
-    return np.maximum(height, lowest_m), np.where(height <= lowest_m, 0.0, rate)
 
 
 def _clearance_m(phase: Phase, config: CompanionConfig) -> float:

@@ -8,9 +8,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from companion.conditions import ABORT_TESTS, DISPUTED_CONTACT, ENTRY_TESTS, HARD_CONTACT, cone_radius_m, update_held
+from companion.conditions import (
+    ABORT_TESTS,
+    DISPUTED_CONTACT,
+    ENTRY_TESTS,
+    HARD_CONTACT,
+    cone_radius_m,
+    must_wait,
+    update_held,
+)
 from companion.conditions import Test as Condition
 from companion.decisions import Decision, decide, vehicle_passes
+from companion.pad import PadPath
 from companion.phases import Event, Phase
 from companion.situation import Situation, approach
 from link.messages import Vector3
@@ -20,6 +29,7 @@ from tests.companion.world import FLYING, LANDING
 TICK_NS = 20_000_000
 OVER_PAD_M = 2.0 * CONFIG.descent.cone_radius_at_pad_m
 HIGH_M = CONFIG.descent.align_height_m
+NEAR_M = 0.9 * CONFIG.abort.near_height_m
 LOW_M = 0.5 * CONFIG.descent.commit_height_m
 
 # What makes each abort test true, everything else being in order; in the descent, above the commit height.
@@ -32,13 +42,12 @@ UNSAFE: dict[str, Situation] = {
     "own position too old": replace(situation(), drone=None),
     "vehicle heading unknown": situation(pad=pad_at(placed=False)),
     "setpoint not followed": replace(situation(), tracking_error_m=CONFIG.abort.tracking_error_max_m + 0.01),
-    "outside the descent cone": situation(beside_m=cone_radius_m(HIGH_M, CONFIG) + 0.01),
+    "outside the descent cone": situation(NEAR_M, cone_radius_m(NEAR_M, CONFIG) + 0.01),
     "too fast against the pad": replace(
         situation(),
-        drone=drone_at(
-            0.9 * CONFIG.abort.near_height_m, 0.0, (CONFIG.abort.near_speed_max_m_s + 0.01, 0.0, 0.0), pad=pad_at()
-        ),
+        drone=drone_at(NEAR_M, 0.0, (CONFIG.abort.near_speed_max_m_s + 0.01, 0.0, 0.0), pad=pad_at()),
     ),
+    "not over the pad in time": situation(HIGH_M, cone_radius_m(HIGH_M, CONFIG) + 0.01),
     "too far from the start": replace(
         situation(), waiting_point_enu_m=np.array([CONFIG.limits.range_max_m + 10.0, 0.0, 5.0])
     ),
@@ -50,7 +59,19 @@ UNSAFE: dict[str, Situation] = {
 # Below the commit height these still count: without them nobody knows where the pad is.
 BLIND = {"own position too old", "vehicle heading unknown", "below the pad without contact"}
 # These cannot be true of a drone that is committed: it is over the pad and hardly moves against it.
-UNFIT = {"outside the descent cone", "too fast against the pad"}
+UNFIT = {"outside the descent cone", "too fast against the pad", "not over the pad in time"}
+
+
+def _moving(speed_m_s: float) -> Situation:
+    return replace(situation(), drone=drone_at(HIGH_M, 0.0, (0.0, speed_m_s, 0.0), pad=pad_at()))
+
+
+def _braking(deceleration_m_s2: float) -> PadPath:
+    pad = pad_at((5.0, 0.0, 0.0))
+    slowing = np.tile([-deceleration_m_s2, 0.0, 0.0], (len(pad.offset_s), 1))
+    return replace(pad, acceleration_enu_m_s2=slowing)
+
+
 CASES = [(test, phase) for test in ABORT_TESTS for phase in Phase if phase in test.phases]
 
 
@@ -124,6 +145,24 @@ def test_below_the_commit_height_it_does_not_land_where_nobody_knows_the_pad_to_
         blind = replace(blind, drone=drone_at(LOW_M, 0.1, (0.0, 0.0, -0.4), pad=blind.pad))
     decision, _ = _first_decision(Phase.DESCEND, blind, 3.0)
     assert decision == (Event.UNSAFE, reason)
+
+
+@pytest.mark.parametrize(
+    ("drifting", "wanted"),
+    [
+        (situation(HIGH_M, CONFIG.descent.cone_slope * HIGH_M - 0.01), False),
+        (situation(HIGH_M, CONFIG.descent.cone_slope * HIGH_M + 0.01), True),
+        (situation(NEAR_M, CONFIG.descent.aligned_distance_m - 0.01), False),
+        (situation(NEAR_M, CONFIG.descent.aligned_distance_m + 0.01), True),
+        (_moving(CONFIG.descent.aligned_speed_m_s - 0.01), False),
+        (_moving(CONFIG.descent.aligned_speed_m_s + 0.01), True),
+        (situation(pad=_braking(CONFIG.descent.speed_change_max_m_s2 - 0.01)), False),
+        (situation(pad=_braking(CONFIG.descent.speed_change_max_m_s2 + 0.01)), True),
+        (replace(situation(), drone=None), False),
+    ],
+)
+def test_descent_waits_for_what_passes(drifting: Situation, wanted: bool) -> None:
+    assert must_wait(drifting, approach(drifting), CONFIG) is wanted
 
 
 def test_drone_beside_the_pad_below_the_commit_height_aborts_and_is_not_taken_for_landed() -> None:

@@ -91,7 +91,9 @@ def test_only_a_descent_that_can_still_be_stopped_waits(
 @pytest.mark.parametrize("height_m", [1.5, 0.5, 0.2])
 def test_descent_that_waits_ends_at_the_commit_height(height_m: float) -> None:
     pad = pad_at()
-    aim = pad_aim(Phase.DESCEND, pad, reference_at(height_m), GEAR_M, CONFIG, waits=True).target
+    aim = pad_aim(
+        Phase.DESCEND, pad, reference_at(height_m), GEAR_M, CONFIG, lowest_m=CONFIG.descent.commit_height_m
+    ).target
     over_pad_m = aim.position_enu_m[:, 2] - pad.position_enu_m[:, 2] - GEAR_M
     sink_m_s = pad.velocity_enu_m_s[:, 2] - aim.velocity_enu_m_s[:, 2]
     assert over_pad_m.min() >= DESCENT.commit_height_m - 1e-9

@@ -22,6 +22,7 @@ _PARKED = {"chase": {"parked_wait_s": 0.5}}
 _ANTENNA_OVER_PAD = {"antenna_flu_m": (0.0, 0.0, 1.6)}  # no heading is needed to place the pad
 _RAISED_M = 3.0
 _BESIDE_M = 0.4
+_LOW_M = 0.55  # of the drone above the roof: its feet are 0.43 m above
 _LIMIT_M_S = 4.0  # less than the vehicle's 5 m/s
 _PATIENCE_S = 6.0  # from the fault to the abort
 _CLIMB_S = 12.0  # a little more than the abort's own time limit
@@ -129,6 +130,18 @@ def _pad_is_described(forward_m: float, up_m: float) -> Fault:
     return describe
 
 
+def _when_low(fault: Fault) -> Fault:
+    """Let the fault wait until the drone is too low to wait for better."""
+
+    def descend(flight: FaultFlight) -> None:
+        above_m = flight.scenario.vehicle.roof_height_m + _LOW_M
+        while flight.height_m > above_m:
+            flight.step()
+        fault(flight)
+
+    return descend
+
+
 def _operator(command: Command) -> Fault:
     return lambda flight: flight.companion.request(command)
 
@@ -168,7 +181,12 @@ ABORTS: dict[str, Abort] = {
         companion={"setpoint_lead_s": 0.5, "corrects_lag": False, "abort": {"tracking_error_max_m": 1.0}},
     ),
     "outside_cone": Abort(
-        reason="outside the descent cone", fault=_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0)
+        reason="outside the descent cone", fault=_when_low(_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0))
+    ),
+    "strays": Abort(
+        reason="not over the pad in time",
+        companion={"abort": {"stray_hold_s": 0.5}},
+        fault=_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0),
     ),
     "too_far": Abort(
         reason="too far from the start", companion={"limits": {"range_max_m": 6.0, "landing_time_s": 1.0}}
