@@ -200,12 +200,14 @@ def _anchored(memory: StepMemory, situation: Situation, config: CompanionConfig)
 def limits_now(memory: StepMemory, situation: Situation, limits: FlightLimits, config: CompanionConfig) -> FlightLimits:
     """Return the limits of this step: just above the pad the drone turns less than the deck, to touch down level.
 
-    A drone that leans touches with its lowest foot, so it begins that much higher.
+    A drone that leans touches with its lowest foot, so it begins that much higher; one that breaks off climbs before it
+    leans.
     """
     relative, drone, touchdown = approach(situation), situation.drone, config.touchdown
-    if memory.phase is not Phase.DESCEND or relative is None or drone is None:
+    if memory.phase not in (Phase.DESCEND, Phase.ABORT) or relative is None or drone is None:
         return limits
-    if relative.height_m > touchdown.level_height_m + touchdown.foot_radius_m * drone.lean:
+    escape_m = 0.0 if memory.phase is Phase.DESCEND else config.descent.commit_height_m
+    if relative.height_m > touchdown.level_height_m + touchdown.foot_radius_m * drone.lean + escape_m:
         return limits
     level_m_s2 = min(touchdown.level_acceleration_m_s2, limits.acceleration_max_m_s2)
     return replace(limits, acceleration_max_m_s2=level_m_s2)

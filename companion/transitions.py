@@ -73,8 +73,20 @@ def _enter(memory: StepMemory, event: Event, reason: str, situation: Situation, 
     if phase not in FLYING_PHASES:
         return replace(memory, reference=None, tracking=Tracking())
     if phase in (Phase.HOLD, Phase.ABORT) and memory.reference is not None:
-        return replace(memory, anchor_enu_m=stopping_point(memory.reference, BRAKING_M_S2))
-    return memory
+        memory = replace(memory, anchor_enu_m=stopping_point(memory.reference, BRAKING_M_S2))
+    return _escaping(memory, situation, config) if phase is Phase.ABORT else memory
+
+
+def _escaping(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
+    """Let the virtual model sink no further towards a roof that is near: no plan of limited jerk turns it in time."""
+    reference, relative, limits = memory.reference, approach(situation), situation.limits
+    if reference is None or relative is None or limits is None or relative.height_m > config.descent.waiting_height_m:
+        return memory
+    velocity, acceleration = reference.velocity_enu_m_s.copy(), reference.acceleration_enu_m_s2.copy()
+    velocity[2] += max(-relative.climb_m_s, 0.0)
+    acceleration[2] = limits.vertical_acceleration_max_m_s2
+    escaping = replace(reference, velocity_enu_m_s=velocity, acceleration_enu_m_s2=acceleration)
+    return replace(memory, reference=escaping, guidance=None)
 
 
 def _begin_flight(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:

@@ -35,8 +35,14 @@ def test_a_leaning_drone_is_levelled_as_much_higher_as_its_lowest_foot_hangs_dow
     assert acceleration_max(height_m, lean) == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
 
 
-def test_only_a_descent_is_levelled() -> None:
+def test_nothing_but_a_descent_and_its_abort_is_levelled() -> None:
     assert acceleration_max(0.05, 0.0, replace(DESCENDS, phase=Phase.ALIGN)) == LIMITS.acceleration_max_m_s2
+
+
+@pytest.mark.parametrize(("height_m", "lean", "levels"), [(0.4, 0.0, True), (0.44, 0.0, False), (0.5, 0.5, True)])
+def test_a_drone_that_breaks_off_climbs_before_it_leans(height_m: float, lean: float, *, levels: bool) -> None:
+    limit_m_s2 = acceleration_max(height_m, lean, replace(DESCENDS, phase=Phase.ABORT))
+    assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
 
 
 @pytest.mark.parametrize(

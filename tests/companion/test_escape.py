@@ -1,0 +1,48 @@
+"""An abort just above the roof turns the virtual model at once; one that has room keeps it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from companion.config import CompanionConfig
+from companion.phases import Phase
+from companion.step_data import StepInputs, StepMemory
+from companion.transitions import transitions
+from link.messages import Command
+from tests.companion.facts import FLIES, NOW_NS, drone_at, pad_at, reference_at, situation
+
+CONFIG = CompanionConfig()
+LIMITS = CONFIG.limits.flight_limits()
+SINK_M_S = 0.45
+
+
+def broken_off(height_m: float, roof_m_s: float) -> tuple[StepMemory, StepMemory]:
+    """Return the memory before and after an abort of a drone that sinks towards a roof that moves by `roof_m_s`."""
+    pad = pad_at((4.0, 1.0, roof_m_s))
+    drone = drone_at(height_m, 0.0, (0.0, 0.0, -SINK_M_S), pad=pad)
+    facts = replace(situation(height_m, pad=pad), drone=drone, limits=LIMITS)
+    reference = replace(reference_at(height_m), velocity_enu_m_s=drone.velocity_enu_m_s)
+    before = replace(
+        StepMemory(), phase=Phase.DESCEND, reference=reference, reference_ns=NOW_NS, was_in_control=True, was_armed=True
+    )
+    inputs = StepInputs(t_ns=NOW_NS, autopilot=FLIES, limits=LIMITS, command=Command.ABORT)
+    after, _ = transitions(before, facts, inputs, CONFIG)
+    assert after.phase is Phase.ABORT
+    return before, after
+
+
+@pytest.mark.parametrize("roof_m_s", [0.0, 0.3, -0.2])
+def test_abort_near_the_roof_sinks_no_further_towards_it(roof_m_s: float) -> None:
+    before, after = broken_off(0.9 * CONFIG.descent.waiting_height_m, roof_m_s)
+    assert before.reference is not None
+    assert after.reference is not None
+    assert after.reference.velocity_enu_m_s[2] == pytest.approx(roof_m_s)
+    assert after.reference.acceleration_enu_m_s2[2] == LIMITS.vertical_acceleration_max_m_s2
+    np.testing.assert_array_equal(after.reference.velocity_enu_m_s[:2], before.reference.velocity_enu_m_s[:2])
+    np.testing.assert_array_equal(after.reference.position_enu_m, before.reference.position_enu_m)
+
+
+def test_abort_higher_up_goes_on_from_the_plan() -> None:
+    before, after = broken_off(1.1 * CONFIG.descent.waiting_height_m, 0.0)
+    assert after.reference is before.reference
