@@ -113,7 +113,9 @@ def _hovering(firmware: str) -> AutopilotNode:
     orders = [_command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1.0)]
     if firmware == "ardupilot":
         orders.insert(0, _command(mavlink.MAV_CMD_DO_SET_MODE, 1.0, _GUIDED))
-    orders.append(_command(mavlink.MAV_CMD_NAV_TAKEOFF, 0.0, 0.0, 0.0, math.nan, math.nan, math.nan, _HEIGHT_M))
+    # PX4's is above the sea, or without one its parameter's above the ground.
+    height_m = _HEIGHT_M if firmware == "ardupilot" else math.nan
+    orders.append(_command(mavlink.MAV_CMD_NAV_TAKEOFF, 0.0, 0.0, 0.0, math.nan, math.nan, math.nan, height_m))
     for order in orders:
         node.receive(pilot.encode(order), node.state.t_ns)
         node.step(None, _STILL_AIR)

@@ -27,7 +27,14 @@ from sim_autopilot.place_commands import (
 )
 from sim_autopilot.reboot import reboot
 from sim_autopilot.requests import ACCEPTED, DENIED, UNSUPPORTED, Answer, Handler, Request
-from sim_autopilot.stream_commands import get_interval, request_message, request_protocol, request_version, set_interval
+from sim_autopilot.stream_commands import (
+    get_interval,
+    request_flight,
+    request_message,
+    request_protocol,
+    request_version,
+    set_interval,
+)
 
 _FORCE = 21196
 _SECOND_ANSWER_NS = 20_000_000
@@ -176,6 +183,7 @@ _HANDLERS: Mapping[int, Handler] = MappingProxyType(
         mavlink.MAV_CMD_REQUEST_MESSAGE: request_message,
         mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: request_version,
         mavlink.MAV_CMD_REQUEST_PROTOCOL_VERSION: request_protocol,
+        mavlink.MAV_CMD_REQUEST_FLIGHT_INFORMATION: request_flight,
         mavlink.MAV_CMD_PREFLIGHT_CALIBRATION: calibrate,
         mavlink.MAV_CMD_CONDITION_YAW: turn,
         mavlink.MAV_CMD_DO_FENCE_ENABLE: switch_fence,

@@ -76,7 +76,7 @@ def begin(mode: Mode, now: Snapshot, home_enu_m: Vector3, settings: FlightSettin
     place = start + 0.5 * stop_s * velocity
     leg = Leg.BRAKE
     if mode is Mode.TAKEOFF:
-        place[2] = max(place[2], home_enu_m[2] + settings.takeoff_height_m)
+        place[2] = start[2] + settings.takeoff_height_m
     elif mode in RETURNING and _distance_m(now, home_enu_m) >= settings.return_distance_m:
         place[2] = max(place[2], home_enu_m[2] + _return_height_m(now, home_enu_m, settings))
         leg = Leg.CLIMB

@@ -74,7 +74,7 @@ def _station(start: AutopilotMemory, memory: AutopilotMemory) -> list[str]:
 def _way(start: AutopilotMemory, memory: AutopilotMemory, config: AutopilotConfig) -> list[Said]:
     mode, was = memory.modes.mode, start.modes.mode
     begins = mode is not was or start.armed_ns is None
-    if begins and mode is Mode.TAKEOFF:
+    if begins and mode is Mode.TAKEOFF and memory.flight.leg is not Leg.CLIMB:
         height_m = memory.settings.takeoff_height_m
         event = EventCode(name="navigator_takeoff_default_alt", levels=INFO, arguments=struct.pack("<f", height_m))
         return [(f"Using default takeoff altitude: {height_m:.1f} m", event)]

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from math import isfinite, nan, pi
 
+from sim_autopilot.flight import climb_to
 from sim_autopilot.guided import with_destination, with_guided_speed, with_takeoff
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.mode_request import try_mode
@@ -17,11 +18,16 @@ _CURRENT = 1
 
 
 def take_off(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
-    """Take off: by a mode of its own, or within GUIDED to a height above home."""
+    """Take off: by a mode of its own, to the parameter's height or to an altitude, or in GUIDED to one above home."""
     if config.firmware.guided:
         return _take_off_guided(memory, request, config)
     memory, result = try_mode(memory, Mode.TAKEOFF, config)
-    return Answer(memory=memory, result=result)
+    above_sea_m, up_m = request.parameters[6], memory.now.position_enu_m[2]
+    if result != ACCEPTED or not isfinite(above_sea_m):
+        return Answer(memory=memory, result=result)
+    height_m = above_sea_m - config.datum.altitude_m
+    memory = replace(memory, flight=climb_to(memory.flight, height_m, memory.now))
+    return Answer(memory=memory, result=result, text=None if height_m > up_m else config.firmware.texts.high_enough)
 
 
 def _take_off_guided(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:

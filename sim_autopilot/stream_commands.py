@@ -73,5 +73,11 @@ def request_protocol(memory: AutopilotMemory, request: Request, config: Autopilo
     return request_message(memory, version, config)
 
 
+def request_flight(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
+    """Send FLIGHT_INFORMATION now."""
+    flight = replace(request, parameters=(float(mavlink.MAVLINK_MSG_ID_FLIGHT_INFORMATION),))
+    return request_message(memory, flight, config)
+
+
 def _stream(message_id: int | None, config: AutopilotConfig) -> Stream | None:
     return None if message_id is None else config.firmware.streams.get(message_id)

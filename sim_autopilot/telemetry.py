@@ -40,6 +40,7 @@ BUILDERS: Mapping[int, Builder] = MappingProxyType(
         mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION: versions.autopilot_version,
         PROTOCOL_VERSION: versions.protocol_version,
         COMPONENT_METADATA: versions.component_metadata,
+        mavlink.MAVLINK_MSG_ID_FLIGHT_INFORMATION: versions.flight_information,
         mavlink.MAVLINK_MSG_ID_ATTITUDE: motion.attitude,
         mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: motion.attitude_quaternion,
         mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED: motion.local_position_ned,

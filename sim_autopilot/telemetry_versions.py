@@ -45,3 +45,10 @@ def autopilot_version(_memory: AutopilotMemory, config: AutopilotConfig) -> Mess
         identity.uid,
         tuple(identity.uid2),
     )
+
+
+def flight_information(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
+    """Return FLIGHT_INFORMATION: since when it is armed, by the boot clock as PX4 tells it; of take-off nothing."""
+    armed_us = 0 if memory.armed_ns is None else max(memory.armed_ns // 1000, 1)
+    number = round(memory.values["COM_FLIGHT_UUID"])
+    return mavlink.MAVLink_flight_information_message(boot_ms(memory), armed_us, 0, number)

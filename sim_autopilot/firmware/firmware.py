@@ -98,11 +98,11 @@ class Texts:
         unarmable: the mode's name goes in for `{}`.
         no_setpoints: arming in OFFBOARD without setpoints.
         disarm_refused: in the air; None says nothing.
-        armed: None says nothing.
-        disarmed: None says nothing.
+        armed, disarmed: None says nothing.
         battery: by the level that the battery has come to, 1 is low.
         failsafe: that a failsafe has begun; empty says nothing.
         obeyed: to the command that asks for a mode.
+        high_enough: a take-off to where the drone is already, or lower.
         no_such_mode: the number goes in for `{}`; empty says nothing.
         no_mission: MISSION_START without a mission; None says nothing.
     """
@@ -119,6 +119,7 @@ class Texts:
     battery: Mapping[int, str] = field(default_factory=dict)
     failsafe: str = ""
     obeyed: Mapping[Mode, str] = field(default_factory=dict)
+    high_enough: str | None = None
     no_such_mode: str = ""
     no_mission: str | None = None
 

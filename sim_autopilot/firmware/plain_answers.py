@@ -30,7 +30,6 @@ PX4_ANSWERS: Mapping[int, int | None] = MappingProxyType(
             mavlink.MAV_CMD_PREFLIGHT_STORAGE,
             mavlink.MAV_CMD_RUN_PREARM_CHECKS,
             mavlink.MAV_CMD_REQUEST_STORAGE_INFORMATION,
-            mavlink.MAV_CMD_REQUEST_FLIGHT_INFORMATION,
             mavlink.MAV_CMD_LOGGING_START,
         ),
         _ACCEPTED,
@@ -152,6 +151,7 @@ ARDUCOPTER_ANSWERS: Mapping[int, int | None] = MappingProxyType(
             mavlink.MAV_CMD_DO_CHANGE_ALTITUDE,
             mavlink.MAV_CMD_INJECT_FAILURE,
             mavlink.MAV_CMD_REQUEST_PROTOCOL_VERSION,
+            mavlink.MAV_CMD_REQUEST_FLIGHT_INFORMATION,
         ),
         _UNSUPPORTED,
     )

@@ -16,6 +16,7 @@ BATTERY_EMERGENCY = "Emergency battery level, land immediately"
 FAILSAFE = "Failsafe activated"
 LANDING_HERE = "Landing at current position"
 RETURNING = "Returning to launch"
+HIGH_ENOUGH = "Already higher than takeoff altitude"
 NO_MISSION = "Mission start denied! No valid mission"
 ARMED = "Armed by external command"
 DISARMED = "Disarmed by external command"
@@ -46,6 +47,7 @@ EVENTS: Mapping[str, EventCode] = {
     FAILSAFE: EventCode(name="commander_failsafe_enter_generic", levels=0x42),
     LANDING_HERE: EventCode(name="commander_landing_current_pos", levels=INFO),
     RETURNING: EventCode(name="commander_rtl", levels=INFO),
+    HIGH_ENOUGH: EventCode(name="navigator_takeoff_already_higher", levels=0x63),
     NO_MISSION: EventCode(name="commander_mission_start_denied_no_mission", levels=0x62),
     ARMED: EventCode(name="commander_armed_by", levels=INFO, arguments=_BY_COMMAND),
     DISARMED: EventCode(name="commander_disarmed_by", levels=INFO, arguments=_BY_COMMAND),

@@ -26,6 +26,7 @@ STREAMS = (
     Stream(message_id=mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION),
     Stream(message_id=PROTOCOL_VERSION),
     Stream(message_id=COMPONENT_METADATA),
+    Stream(message_id=mavlink.MAVLINK_MSG_ID_FLIGHT_INFORMATION),
     Stream(message_id=mavlink.MAVLINK_MSG_ID_HOME_POSITION, rate_hz=0.5, from_s=1.9),
     Stream(message_id=mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE, rate_hz=5.0),
     Stream(message_id=mavlink.MAVLINK_MSG_ID_ODOMETRY, rate_hz=30.0),

@@ -61,7 +61,8 @@ def test_mavproxy_arms_takes_off_and_lands(client: MavProxy, autopilot: StandIn)
     if autopilot.firmware == "ardupilot":
         client.ask("mode GUIDED", "Mode GUIDED")
     client.ask("arm throttle", "ARMED")
-    client.ask("takeoff 5", "NAV_TAKEOFF: ACCEPTED")
+    height = "5" if autopilot.firmware == "ardupilot" else "95"  # PX4's is above the sea, where the ground is at 89 m
+    client.ask(f"takeoff {height}", "NAV_TAKEOFF: ACCEPTED")
     if autopilot.firmware == "px4":  # whose modes MAVProxy cannot name
         client.heard(r"Mode TAKEOFF[\s\S]*Mode LOITER")
         client.ask("disarm", "COMPONENT_ARM_DISARM: TEMPORARILY_REJECTED")

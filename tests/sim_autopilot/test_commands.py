@@ -169,7 +169,7 @@ def test_the_heartbeat_stays_at_one_hertz_whatever_is_asked_for() -> None:
 
 def test_a_takeoff_while_disarmed_is_accepted_and_begins_with_arming() -> None:
     pilot = Pilot()
-    assert pilot.acknowledged(command(mavlink.MAV_CMD_NAV_TAKEOFF)) == [ACCEPTED]
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_NAV_TAKEOFF, *(nan,) * 7)) == [ACCEPTED]
     pilot.run(5.0)
     assert pilot.position[2] < 0.13
     assert pilot.acknowledged(arm()) == [ACCEPTED]

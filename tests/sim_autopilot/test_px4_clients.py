@@ -97,3 +97,13 @@ def test_its_simulation_cannot_be_rebooted_and_has_no_fence_switch() -> None:
     pilot = Pilot()
     assert pilot.acknowledged(command(mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0)) == [DENIED]
     assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_FENCE_ENABLE, 1.0)) == [UNSUPPORTED]
+
+
+def test_the_flight_information_is_sent_when_asked_for_by_either_command() -> None:
+    pilot = Pilot()
+    pilot.step(arm())
+    ways = ((mavlink.MAV_CMD_REQUEST_MESSAGE, 264.0), (mavlink.MAV_CMD_REQUEST_FLIGHT_INFORMATION, 1.0))
+    for number, parameter in ways:
+        pilot.received.clear()
+        assert pilot.acknowledged(command(number, parameter)) == [0]
+        assert 0 < pilot.last("FLIGHT_INFORMATION").arming_time_utc < 1_000_000

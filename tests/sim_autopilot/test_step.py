@@ -1,5 +1,5 @@
 from itertools import pairwise
-from math import dist, hypot
+from math import dist, hypot, nan
 
 import numpy as np
 import pytest
@@ -10,6 +10,7 @@ from sim_autopilot.memory import AutopilotInputs, initial_memory
 from sim_autopilot.node import STEP_NS
 from sim_autopilot.step import autopilot_step
 from tests.sim_autopilot.pilot import (
+    DATUM,
     HOLD,
     LAND,
     OFFBOARD,
@@ -298,11 +299,39 @@ def test_a_plain_disarm_works_once_it_has_landed() -> None:
 def test_takeoff_goes_to_the_parameters_height_and_holds() -> None:
     pilot = Pilot()
     pilot.acknowledged(arm())
-    assert pilot.acknowledged(command(mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 30.0)) == [ACCEPTED]
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, nan, nan, nan, nan)) == [ACCEPTED]
     assert pilot.custom_mode() == TAKEOFF
     pilot.run_until(lambda: pilot.custom_mode() == HOLD, 15.0)
     pilot.run(3.0)
     assert pilot.position[2] == pytest.approx(2.5 + 0.12, abs=0.2)  # MIS_TAKEOFF_ALT
+
+
+def test_takeoff_goes_to_the_altitude_above_the_sea_that_the_command_says() -> None:
+    pilot = Pilot()
+    pilot.acknowledged(arm())
+    pilot.step(command(mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, nan, nan, nan, DATUM.altitude_m + 7.0))
+    pilot.run_until(lambda: pilot.custom_mode() == HOLD, 15.0)
+    pilot.run(3.0)
+    assert pilot.position[2] == pytest.approx(7.0, abs=0.3)
+
+
+def test_a_takeoff_to_no_higher_than_it_is_leaves_it_on_the_ground_until_it_disarms() -> None:
+    pilot = Pilot()
+    pilot.step(mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, 8, 0, 0, 4, 3))
+    pilot.acknowledged(arm())
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 10.0)) == [ACCEPTED]
+    pilot.run_until(lambda: not pilot.is_armed(), 20.0)
+    assert pilot.position[2] < 0.2
+    assert "Already higher than takeoff altitude\t" in [text.text for text in pilot.all("STATUSTEXT")]
+
+
+def test_a_takeoff_in_the_air_climbs_by_the_parameters_height() -> None:
+    pilot = Pilot()
+    pilot.take_off(4.0)
+    pilot.step(set_mode(4, 2))
+    pilot.run_until(lambda: pilot.custom_mode() == HOLD, 15.0)
+    pilot.run(3.0)
+    assert pilot.position[2] == pytest.approx(4.0 + 2.5, abs=0.3)
 
 
 def test_return_climbs_comes_home_and_lands() -> None:
