@@ -13,6 +13,8 @@ from sim_autopilot.calibration import calibrate
 from sim_autopilot.copter_commands import set_servo, switch_fence, turn
 from sim_autopilot.events import tell
 from sim_autopilot.failures import injected
+from sim_autopilot.gripper_command import grip
+from sim_autopilot.log_stream_step import start_log_stream, stop_log_stream
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, Later
 from sim_autopilot.missions_step import mission_current, mission_items, set_current
 from sim_autopilot.mode_request import loiter, mode_command, try_mode
@@ -26,7 +28,7 @@ from sim_autopilot.place_commands import (
     take_off,
 )
 from sim_autopilot.reboot import reboot
-from sim_autopilot.requests import ACCEPTED, DENIED, UNSUPPORTED, Answer, Handler, Request
+from sim_autopilot.requests import ACCEPTED, DENIED, UNSUPPORTED, Answer, Handler, Request, acknowledgement
 from sim_autopilot.stream_commands import (
     get_interval,
     request_flight,
@@ -57,13 +59,6 @@ def obey(
     if telling is None:
         return answer.memory, (*told, *answer.messages)
     return telling.memory, (*told, *answer.messages, *telling.messages)
-
-
-def acknowledgement(request: Request, result: int) -> Message:
-    """Return the COMMAND_ACK of a command."""
-    return mavlink.MAVLink_command_ack_message(
-        request.command, result, 0, 0, target_system=request.system, target_component=request.component
-    )
 
 
 def _arm_disarm(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
@@ -184,6 +179,9 @@ _HANDLERS: Mapping[int, Handler] = MappingProxyType(
         mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: request_version,
         mavlink.MAV_CMD_REQUEST_PROTOCOL_VERSION: request_protocol,
         mavlink.MAV_CMD_REQUEST_FLIGHT_INFORMATION: request_flight,
+        mavlink.MAV_CMD_LOGGING_START: start_log_stream,
+        mavlink.MAV_CMD_LOGGING_STOP: stop_log_stream,
+        mavlink.MAV_CMD_DO_GRIPPER: grip,
         mavlink.MAV_CMD_PREFLIGHT_CALIBRATION: calibrate,
         mavlink.MAV_CMD_CONDITION_YAW: turn,
         mavlink.MAV_CMD_DO_FENCE_ENABLE: switch_fence,

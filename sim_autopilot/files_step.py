@@ -49,7 +49,7 @@ def log_flight(memory: AutopilotMemory, config: AutopilotConfig) -> AutopilotMem
     if not is_due(logs, memory.now.boot_ns, armed=armed):
         return memory
     return _with_logs(
-        memory, logged(logs, _row(memory, config), memory.now.t_ns // _NS_PER_S, config.firmware.logs, armed=armed)
+        memory, logged(logs, log_row(memory, config), memory.now.t_ns // _NS_PER_S, config.firmware.logs, armed=armed)
     )
 
 
@@ -75,7 +75,8 @@ def _with_logs(memory: AutopilotMemory, logs: Logs) -> AutopilotMemory:
     return replace(memory, services=replace(memory.services, logs=logs))
 
 
-def _row(memory: AutopilotMemory, config: AutopilotConfig) -> Row:
+def log_row(memory: AutopilotMemory, config: AutopilotConfig) -> Row:
+    """Return this moment as logs tell it."""
     local, place, turned = (build(memory, config) for build in (local_position_ned, global_position_int, attitude))
     return Row(
         boot_ns=memory.now.boot_ns,

@@ -16,6 +16,7 @@ from sim_autopilot.incoming_setpoints import (
     take_landing_target,
     take_setpoint,
 )
+from sim_autopilot.log_stream_step import take_logging_ack
 from sim_autopilot.manual import sticks_from_message
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
 from sim_autopilot.mission_transfer import MESSAGE_IDS
@@ -158,6 +159,7 @@ _HANDLERS: Mapping[int, Handler] = MappingProxyType(
         mavlink.MAVLINK_MSG_ID_REQUEST_DATA_STREAM: _data_stream,
         mavlink.MAVLINK_MSG_ID_MISSION_SET_CURRENT: _set_current,
         mavlink.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL: _files,
+        mavlink.MAVLINK_MSG_ID_LOGGING_ACK: take_logging_ack,
     }
 )
 

@@ -66,6 +66,13 @@ def request_from_message(message: Message) -> Request:
     )
 
 
+def acknowledgement(request: Request, result: int, progress: int = 0) -> Message:
+    """Return the COMMAND_ACK of a command."""
+    return mavlink.MAVLink_command_ack_message(
+        request.command, result, progress, 0, target_system=request.system, target_component=request.component
+    )
+
+
 def is_for_us(message: Message, config: AutopilotConfig) -> bool:
     """Return whether a command concerns this autopilot; others are not answered at all."""
     if message.target_system == 0 and config.firmware.answers_other_components:

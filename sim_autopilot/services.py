@@ -6,6 +6,8 @@ from sim_autopilot.failsafes import NOTHING_NOTICED, Watch
 from sim_autopilot.failures import NO_FAILURES, Failures
 from sim_autopilot.fence import Fence
 from sim_autopilot.ftp_state import NO_FTP, Ftp
+from sim_autopilot.gripper import AT_REST, Gripper
+from sim_autopilot.log_stream import LogStream
 from sim_autopilot.logs import NO_LOGS, Logs
 from sim_autopilot.manual import Sticks
 from sim_autopilot.mission_flight import NO_PROGRESS, Progress
@@ -29,6 +31,8 @@ class Services:
         reboot_ns: when it boots again, in ns since boot; None goes on.
         ftp: the files' server.
         logs: of the flights.
+        log_stream: to a client, None without one.
+        gripper: PX4's.
     """
 
     library: Library = NO_LIBRARY
@@ -42,3 +46,5 @@ class Services:
     reboot_ns: int | None = None
     ftp: Ftp = NO_FTP
     logs: Logs = NO_LOGS
+    log_stream: LogStream | None = None
+    gripper: Gripper = AT_REST

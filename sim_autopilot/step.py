@@ -18,6 +18,7 @@ from sim_autopilot.files_step import log_flight, send_log, send_on
 from sim_autopilot.flight import is_takeoff_complete
 from sim_autopilot.incoming import take
 from sim_autopilot.land_detector import detect_landing
+from sim_autopilot.log_stream_step import stream_log
 from sim_autopilot.manual import MANUAL_MODES, are_held
 from sim_autopilot.memory import (
     AutopilotConfig,
@@ -217,7 +218,8 @@ def _reports(memory: AutopilotMemory, config: AutopilotConfig) -> tuple[Autopilo
     if due:
         memory = replace(memory, streams=streams)
     memory, log = send_log(memory, config)
-    messages += log
+    memory, live = stream_log(memory, config)
+    messages += log + live
     reports = (build_message(config.firmware.streams[message_id], memory, config) for message_id in due)
     return memory, messages + [report for report in reports if report is not None]
 

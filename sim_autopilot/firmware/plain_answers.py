@@ -1,4 +1,4 @@
-"""How commands are answered that change nothing here: about cameras, gimbals, grippers, calibration, logs and the like.
+"""How commands are answered that change nothing here: about cameras, gimbals, calibration, logs and the like.
 
 As both simulations were seen to answer them, on the ground and disarmed, with parameters of zero. Everything that is
 neither here nor obeyed is UNSUPPORTED.
@@ -30,7 +30,6 @@ PX4_ANSWERS: Mapping[int, int | None] = MappingProxyType(
             mavlink.MAV_CMD_PREFLIGHT_STORAGE,
             mavlink.MAV_CMD_RUN_PREARM_CHECKS,
             mavlink.MAV_CMD_REQUEST_STORAGE_INFORMATION,
-            mavlink.MAV_CMD_LOGGING_START,
         ),
         _ACCEPTED,
     )
@@ -41,6 +40,7 @@ PX4_ANSWERS: Mapping[int, int | None] = MappingProxyType(
         (
             mavlink.MAV_CMD_CONDITION_YAW,
             mavlink.MAV_CMD_DO_FENCE_ENABLE,
+            mavlink.MAV_CMD_DO_SET_MISSION_CURRENT,
             mavlink.MAV_CMD_DO_SET_SERVO,
             mavlink.MAV_CMD_DO_REPEAT_SERVO,
         ),
@@ -55,7 +55,6 @@ PX4_ANSWERS: Mapping[int, int | None] = MappingProxyType(
             mavlink.MAV_CMD_DO_MOUNT_CONFIGURE,
             mavlink.MAV_CMD_DO_MOUNT_CONTROL,
             mavlink.MAV_CMD_DO_SET_CAM_TRIGG_DIST,
-            mavlink.MAV_CMD_DO_GRIPPER,
             mavlink.MAV_CMD_DO_SET_CAM_TRIGG_INTERVAL,
             mavlink.MAV_CMD_DO_MOUNT_CONTROL_QUAT,
             mavlink.MAV_CMD_PREFLIGHT_SET_SENSOR_OFFSETS,
@@ -69,7 +68,6 @@ PX4_ANSWERS: Mapping[int, int | None] = MappingProxyType(
             mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW,
             mavlink.MAV_CMD_DO_GIMBAL_MANAGER_CONFIGURE,
             mavlink.MAV_CMD_DO_TRIGGER_CONTROL,
-            mavlink.MAV_CMD_LOGGING_STOP,
             mavlink.MAV_CMD_DO_VTOL_TRANSITION,
             mavlink.MAV_CMD_PAYLOAD_PREPARE_DEPLOY,
             mavlink.MAV_CMD_PAYLOAD_CONTROL_DEPLOY,
@@ -152,6 +150,8 @@ ARDUCOPTER_ANSWERS: Mapping[int, int | None] = MappingProxyType(
             mavlink.MAV_CMD_INJECT_FAILURE,
             mavlink.MAV_CMD_REQUEST_PROTOCOL_VERSION,
             mavlink.MAV_CMD_REQUEST_FLIGHT_INFORMATION,
+            mavlink.MAV_CMD_LOGGING_START,
+            mavlink.MAV_CMD_LOGGING_STOP,
         ),
         _UNSUPPORTED,
     )

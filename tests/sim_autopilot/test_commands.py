@@ -41,7 +41,7 @@ def test_an_unknown_command_is_unsupported() -> None:
 def test_commands_about_what_it_has_not_are_answered_as_px4_does() -> None:
     pilot = Pilot()
     assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_SET_ROI_LOCATION)) == [ACCEPTED]
-    assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_GRIPPER)) == []
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_WINCH)) == []
 
 
 @pytest.mark.parametrize(("system", "component"), [(2, 1), (255, 1), (0, 1), (1, 2), (1, 191)])
