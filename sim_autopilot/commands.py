@@ -11,6 +11,7 @@ from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.arming import arm, arming_obstacle, disarm
 from sim_autopilot.calibration import calibrate
 from sim_autopilot.copter_commands import set_servo, switch_fence, turn
+from sim_autopilot.copter_services import format_storage, reset_parameters, spin_motor
 from sim_autopilot.events import tell
 from sim_autopilot.failures import injected
 from sim_autopilot.gripper_command import grip
@@ -187,5 +188,8 @@ _HANDLERS: Mapping[int, Handler] = MappingProxyType(
         mavlink.MAV_CMD_DO_FENCE_ENABLE: switch_fence,
         mavlink.MAV_CMD_DO_SET_SERVO: set_servo,
         mavlink.MAV_CMD_DO_REPEAT_SERVO: set_servo,
+        mavlink.MAV_CMD_DO_MOTOR_TEST: spin_motor,
+        mavlink.MAV_CMD_PREFLIGHT_STORAGE: reset_parameters,
+        mavlink.MAV_CMD_STORAGE_FORMAT: format_storage,
     }
 )

@@ -32,6 +32,8 @@ class MissionRules:
         takes_parts: whether a part of a plan can be written anew.
         commands: of missions, besides those that both take.
         told_frames: in which MISSION_ITEM_INT tells a place, by the frame it was sent in.
+        keeps_little: whether of an item only what flies it is stored, and plans that make no sense are refused.
+        clears_all: whether MAV_MISSION_TYPE_ALL can be cleared.
         tells_texts: whether it says that a plan came, which item begins and which is reached.
     """
 
@@ -53,6 +55,8 @@ class MissionRules:
     takes_parts: bool = False
     commands: frozenset[int] = frozenset()
     told_frames: Mapping[int, int] = field(default_factory=dict)
+    keeps_little: bool = False
+    clears_all: bool = True
     tells_texts: bool = False
 
 
@@ -105,5 +109,7 @@ ARDUCOPTER_MISSIONS = MissionRules(
             mavlink.MAV_FRAME_MISSION: mavlink.MAV_FRAME_GLOBAL,
         }
     ),
+    keeps_little=True,
+    clears_all=False,
     tells_texts=True,
 )

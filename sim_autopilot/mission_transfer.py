@@ -10,6 +10,7 @@ from types import MappingProxyType
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.mission_library import Arrival, Library, Transfer, Way, acknowledgement, begun, is_kept_out
 from sim_autopilot.mission_rules import MissionRules
+from sim_autopilot.mission_stored import encloses_nothing, leads_nowhere, stored, told
 from sim_autopilot.missions import Item, item_from_message, item_message, result_of, unreadable
 
 _ACCEPTED = int(mavlink.MAV_MISSION_ACCEPTED)
@@ -25,7 +26,8 @@ def take_mission_message(library: Library, arrival: Arrival) -> Result:
     handler = _HANDLERS.get(message_id)
     if handler is None:
         return library, ()
-    all_allowed = message_id in {mavlink.MAVLINK_MSG_ID_MISSION_CLEAR_ALL, mavlink.MAVLINK_MSG_ID_MISSION_ACK}
+    clears = message_id == mavlink.MAVLINK_MSG_ID_MISSION_CLEAR_ALL and arrival.rules.clears_all
+    all_allowed = clears or message_id == mavlink.MAVLINK_MSG_ID_MISSION_ACK
     if kind not in arrival.rules.counts_max and not (kind == _ALL and all_allowed):
         return library, (arrival.answer(int(mavlink.MAV_MISSION_UNSUPPORTED)),)
     return handler(library, arrival)
@@ -95,17 +97,28 @@ def _add(library: Library, transfer: Transfer, arrival: Arrival) -> Result:
     result = unreadable(arrival.message) if arrival.rules.needs_numbers else None
     try:
         item = item_from_message(arrival.message)
+        item = stored(item, transfer.kind) if arrival.rules.keeps_little else item
         result = result_of(item, transfer.kind, arrival.rules.commands) if result is None else result
     except ValueError:
         return replace(library, transfer=None), (arrival.answer(_ERROR),)
+    items = (*transfer.items, item)
+    if result == _ACCEPTED and arrival.rules.keeps_little and _makes_no_sense(library, transfer, items):
+        result = _ERROR
     if result != _ACCEPTED:
         return replace(library, transfer=None), (arrival.answer(result),)
-    items = (*transfer.items, item)
     if len(items) < transfer.count:
         whole = arrival.rules.asks_whole and arrival.message.get_msgId() == mavlink.MAVLINK_MSG_ID_MISSION_ITEM_INT
         return _ask(library, replace(transfer, items=items, whole=whole))
     rest = library.plans[transfer.kind][len(items) :] if transfer.part else ()
     return _store(library, transfer.kind, (*items, *rest)), (arrival.answer(_ACCEPTED),)
+
+
+def _makes_no_sense(library: Library, transfer: Transfer, items: tuple[Item, ...]) -> bool:
+    if transfer.kind == mavlink.MAV_MISSION_TYPE_MISSION:
+        kept = len(library.plans[transfer.kind]) if transfer.part else 0
+        return leads_nowhere(items[-1], max(transfer.count, kept))
+    is_fence = transfer.kind == mavlink.MAV_MISSION_TYPE_FENCE
+    return is_fence and len(items) == transfer.count and encloses_nothing(items)
 
 
 def _list(library: Library, arrival: Arrival) -> Result:
@@ -138,7 +151,7 @@ def _serve(library: Library, arrival: Arrival) -> Result:
         return replace(library, transfer=None), (arrival.answer(_ERROR if wrong is None else wrong),)
     whole = arrival.message.get_msgId() == mavlink.MAVLINK_MSG_ID_MISSION_REQUEST_INT
     current = kind == mavlink.MAV_MISSION_TYPE_MISSION and index == arrival.current
-    item = items[index]
+    item = told(items[index]) if arrival.rules.keeps_little else items[index]
     if whole:
         item = replace(item, frame=arrival.rules.told_frames.get(item.frame, item.frame))
     return library, (item_message(item, index, kind, arrival.partner, current=current, whole=whole),)

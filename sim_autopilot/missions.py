@@ -5,7 +5,7 @@ Source: MAVLink mission protocol, https://mavlink.io/en/services/mission.html; c
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import isfinite, isinf, radians
+from math import isfinite, isinf, isnan, radians
 from types import MappingProxyType
 
 from link.geodesy import Datum, enu_from_geodetic
@@ -56,15 +56,35 @@ _DONE_AT_ONCE = (
     mavlink.MAV_CMD_SET_CAMERA_FOCUS,
 )
 _HEADING = 3
-_HEADED = frozenset(
+_FREE_HEADINGS: Mapping[int, tuple[int, ...]] = MappingProxyType(
+    {
+        mavlink.MAV_CMD_NAV_WAYPOINT: (_HEADING,),
+        mavlink.MAV_CMD_NAV_LOITER_UNLIM: (_HEADING,),
+        mavlink.MAV_CMD_NAV_LAND: (_HEADING,),
+        mavlink.MAV_CMD_NAV_TAKEOFF: (_HEADING,),
+        mavlink.MAV_CMD_NAV_VTOL_TAKEOFF: (_HEADING,),
+        mavlink.MAV_CMD_NAV_VTOL_LAND: (_HEADING - 1, _HEADING),
+    }
+)
+"""Parameters, counted from 0, that may be no number in ArduCopter too (AP_Mission): the heading."""
+PLACED = frozenset(
     {
         mavlink.MAV_CMD_NAV_WAYPOINT,
         mavlink.MAV_CMD_NAV_LOITER_UNLIM,
+        mavlink.MAV_CMD_NAV_LOITER_TURNS,
+        mavlink.MAV_CMD_NAV_LOITER_TIME,
+        mavlink.MAV_CMD_NAV_LOITER_TO_ALT,
         mavlink.MAV_CMD_NAV_LAND,
         mavlink.MAV_CMD_NAV_TAKEOFF,
+        mavlink.MAV_CMD_NAV_SPLINE_WAYPOINT,
+        mavlink.MAV_CMD_NAV_VTOL_TAKEOFF,
+        mavlink.MAV_CMD_NAV_VTOL_LAND,
+        mavlink.MAV_CMD_DO_SET_HOME,
+        mavlink.MAV_CMD_DO_LAND_START,
+        mavlink.MAV_CMD_DO_SET_ROI,
     }
 )
-"""Items whose fourth parameter, a heading, may be no number in ArduCopter too (AP_Mission)."""
+"""Commands of which ArduCopter keeps a place."""
 _FENCE_ITEMS = (
     mavlink.MAV_CMD_NAV_FENCE_RETURN_POINT,
     mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION,
@@ -159,12 +179,16 @@ def item_message(item: Item, index: int, kind: int, target: tuple[int, int], *, 
 
 
 def unreadable(message: Message) -> int | None:
-    """Return the MAV_MISSION_RESULT that names an item's first value that is no number, None where all are numbers."""
+    """Return the MAV_MISSION_RESULT that names an item's first value that is no number, None where all are numbers.
+
+    The place counts only for an item that needs one.
+    """
     if message.mission_type != MISSION:
         return None
-    values = (message.param1, message.param2, message.param3, message.param4, message.x, message.y, message.z)
-    free = _HEADING if message.command in _HEADED else None
-    wrong = (index for index, value in enumerate(values) if not isfinite(value) and (index != free or isinf(value)))
+    place = (message.x, message.y, message.z) if message.command in PLACED else ()
+    values = (message.param1, message.param2, message.param3, message.param4, *place)
+    free = _FREE_HEADINGS.get(message.command, ())
+    wrong = (index for index, value in enumerate(values) if isinf(value) or (isnan(value) and index not in free))
     first = next(wrong, None)
     return None if first is None else int(mavlink.MAV_MISSION_INVALID_PARAM1) + first
 

@@ -35,7 +35,8 @@ def reboot(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -
 def rebooted(memory: AutopilotMemory, config: AutopilotConfig) -> AutopilotMemory:
     """Return the memory, booted anew if it is time for that.
 
-    Parameters, plans, the fence, files and logs are stored; streams, origin, home and time begin again.
+    Parameters (where they were not reset), plans, the fence, files and logs are stored; streams, origin, home and time
+    begin again.
     """
     reboot_ns = memory.services.reboot_ns
     if reboot_ns is None or memory.now.boot_ns < reboot_ns:
@@ -47,12 +48,7 @@ def rebooted(memory: AutopilotMemory, config: AutopilotConfig) -> AutopilotMemor
     logs = replace(kept.logs, sending=None, next_ns=0)
     services = Services(library=library, mission=progress, fence=kept.fence, ftp=ftp, logs=logs)
     now = take_snapshot(state, config.plant.airframe, 0)
-    return replace(
-        initial_memory(config, state.t_ns),
-        plant=memory.plant,
-        now=now,
-        values=memory.values,
-        settings=memory.settings,
-        plant_config=memory.plant_config,
-        services=services,
-    )
+    booted = replace(initial_memory(config, state.t_ns), plant=memory.plant, now=now, services=services)
+    if kept.forgets:
+        return booted
+    return replace(booted, values=memory.values, settings=memory.settings, plant_config=memory.plant_config)

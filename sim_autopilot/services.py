@@ -33,6 +33,7 @@ class Services:
         logs: of the flights.
         log_stream: to a client, None without one.
         gripper: PX4's.
+        forgets: whether the next boot begins with the defaults of all parameters.
     """
 
     library: Library = NO_LIBRARY
@@ -48,3 +49,4 @@ class Services:
     logs: Logs = NO_LOGS
     log_stream: LogStream | None = None
     gripper: Gripper = AT_REST
+    forgets: bool = False

@@ -42,6 +42,8 @@ PX4_ANSWERS: Mapping[int, int | None] = MappingProxyType(
             mavlink.MAV_CMD_DO_FENCE_ENABLE,
             mavlink.MAV_CMD_DO_SET_MISSION_CURRENT,
             mavlink.MAV_CMD_DO_SET_SERVO,
+            mavlink.MAV_CMD_DO_MOTOR_TEST,
+            mavlink.MAV_CMD_STORAGE_FORMAT,
             mavlink.MAV_CMD_DO_REPEAT_SERVO,
         ),
         _UNSUPPORTED,
@@ -105,7 +107,7 @@ ARDUCOPTER_ANSWERS: Mapping[int, int | None] = MappingProxyType(
             mavlink.MAV_CMD_DO_CANCEL_MAG_CAL,
             mavlink.MAV_CMD_DO_SEND_BANNER,
             mavlink.MAV_CMD_BATTERY_RESET,
-            mavlink.MAV_CMD_PREFLIGHT_STORAGE,
+            mavlink.MAV_CMD_FIXED_MAG_CAL_YAW,
         ),
         _ACCEPTED,
     )

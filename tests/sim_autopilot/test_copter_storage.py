@@ -1,0 +1,143 @@
+"""What ArduCopter stores of plans and parameters, and what it refuses to store."""
+
+from math import nan
+
+import pytest
+
+from link.mavlink.dialect import Message, mavlink
+from tests.sim_autopilot.copter import GUIDED, ardupilot, mode
+from tests.sim_autopilot.pilot import Pilot, arm, command
+from tests.sim_autopilot.planner import download, item, plan_messages, upload
+
+WAYPOINT, SPEED, JUMP = mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_DO_CHANGE_SPEED, mavlink.MAV_CMD_DO_JUMP
+CORNER, CIRCLE = mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION, mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION
+FENCE, RALLY, ALL = 1, 2, 255
+ACCEPTED, ERROR, UNSUPPORTED = 0, 1, 3
+PLACE = (3.0, 5.0, 10.0)
+NUMBERS = (0.0, 0.0, 0.0, 0.0)
+
+
+def texts(pilot: Pilot) -> list[str]:
+    return [message.text for message in pilot.all("STATUSTEXT")]
+
+
+def waypoints(count: int) -> list[Message]:
+    return [item(index, WAYPOINT, PLACE, (2.0, 3.0, 4.0, 90.0)) for index in range(count)]
+
+
+def corners(count: int, told: float) -> list[Message]:
+    places = ((0.0, 0.0, 0.0), (50.0, 0.0, 0.0), (50.0, 50.0, 0.0), (0.0, 50.0, 0.0))[:count]
+    return [item(index, CORNER, place, (told, 0.0, 0.0, 0.0), kind=FENCE) for index, place in enumerate(places)]
+
+
+def values(message: Message) -> tuple[float, ...]:
+    return (message.param1, message.param2, message.param3, message.param4)
+
+
+def test_a_waypoint_keeps_its_stay_and_neither_radius_nor_heading() -> None:
+    pilot = Pilot(ardupilot())
+    assert upload(pilot, waypoints(2)) == ACCEPTED
+    kept = download(pilot)[1]
+    assert values(kept) == (2.0, 0.0, 0.0, 0.0)
+    assert kept.z == 10.0
+
+
+def test_a_change_of_speed_needs_no_altitude_and_keeps_no_place() -> None:
+    pilot = Pilot(ardupilot())
+    speed = mavlink.MAVLink_mission_item_int_message(1, 1, 1, 2, SPEED, 0, 1, 1.0, 4.0, -1.0, 0.0, 7, 8, nan, 0)
+    assert upload(pilot, [waypoints(1)[0], speed]) == ACCEPTED
+    kept = download(pilot)[1]
+    assert values(kept) == (1.0, 4.0, -1.0, 0.0)
+    assert (kept.frame, kept.x, kept.y, kept.z) == (0, 0, 0, 0.0)
+
+
+def test_a_fence_and_a_rally_point_keep_what_they_need() -> None:
+    pilot = Pilot(ardupilot())
+    assert upload(pilot, corners(3, 3.0), FENCE) == ACCEPTED
+    assert {(kept.frame, kept.autocontinue, kept.param1) for kept in download(pilot, FENCE)} == {(0, 0, 3.0)}
+    point = item(0, mavlink.MAV_CMD_NAV_RALLY_POINT, PLACE, (0.0, 2.0, 0.0, 0.0), kind=RALLY)
+    assert upload(pilot, [point], RALLY) == ACCEPTED
+    (kept,) = download(pilot, RALLY)
+    assert (values(kept), kept.autocontinue, kept.z) == (NUMBERS, 0, 10.0)
+
+
+@pytest.mark.parametrize(
+    "fence",
+    [
+        corners(2, 2.0),
+        corners(2, 3.0),
+        corners(3, 4.0),
+        [item(0, CIRCLE, PLACE, (0.0, 0.0, 0.0, 0.0), kind=FENCE)],
+    ],
+)
+def test_a_fence_that_encloses_nothing_is_refused_and_the_old_one_stays(fence: list[Message]) -> None:
+    pilot = Pilot(ardupilot())
+    assert upload(pilot, corners(4, 4.0), FENCE) == ACCEPTED
+    assert upload(pilot, fence, FENCE) == ERROR
+    assert len(download(pilot, FENCE)) == 4
+
+
+@pytest.mark.parametrize(("target", "result"), [(0.0, ERROR), (1.0, ACCEPTED), (2.0, ACCEPTED), (3.0, ERROR)])
+def test_a_jump_must_lead_to_an_item_that_is_not_home(target: float, result: int) -> None:
+    pilot = Pilot(ardupilot())
+    assert upload(pilot, [*waypoints(2), item(2, JUMP, None, (target, 1.0, 0.0, 0.0))]) == result
+
+
+def test_all_plans_at_once_are_cleared_by_px4_only() -> None:
+    clear = mavlink.MAVLink_mission_clear_all_message(1, 1, ALL)
+    results = []
+    for pilot in (Pilot(), Pilot(ardupilot())):
+        upload(pilot, corners(3, 3.0), FENCE)
+        (answer,) = plan_messages(pilot.step(clear))
+        results.append((answer.type, len(download(pilot, FENCE))))
+    assert results == [(ACCEPTED, 0), (UNSUPPORTED, 3)]
+
+
+def test_a_reset_of_the_parameters_acts_with_the_next_boot_and_nothing_is_saved_or_loaded_by_command() -> None:
+    pilot = Pilot(ardupilot())
+    pilot.step(mavlink.MAVLink_param_set_message(1, 1, b"WPNAV_SPEED", 700.0, 9))
+    storage = mavlink.MAV_CMD_PREFLIGHT_STORAGE
+    assert [pilot.acknowledged(command(storage, wanted)) for wanted in (0.0, 1.0, 2.0)] == [[2], [2], [ACCEPTED]]
+    assert "All parameters reset, reboot board" in texts(pilot)
+    assert pilot.node.memory.values["WPNAV_SPEED"] == 700.0
+    pilot.step(command(mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0))
+    pilot.run(1.5)
+    assert pilot.node.memory.values["WPNAV_SPEED"] == 1000.0
+
+
+def test_a_motor_test_is_told_and_another_one_extends_it() -> None:
+    pilot = Pilot(ardupilot())
+    test = command(mavlink.MAV_CMD_DO_MOTOR_TEST, 1.0, 0.0, 10.0, 1.0)
+    assert pilot.acknowledged(test) == [ACCEPTED]
+    pilot.run(0.5)
+    assert pilot.acknowledged(test) == [ACCEPTED]
+    pilot.run(0.8)
+    assert [text for text in texts(pilot) if "motor test" in text] == ["starting motor test"]
+    pilot.run(0.3)
+    assert [text for text in texts(pilot) if "motor test" in text] == ["starting motor test", "finished motor test"]
+
+
+def test_a_motor_is_not_tested_in_the_air_and_not_by_px4() -> None:
+    pilot = Pilot(ardupilot())
+    pilot.step(mode(GUIDED), arm())
+    pilot.step(command(mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 3.0))
+    pilot.run(8.0)
+    test = command(mavlink.MAV_CMD_DO_MOTOR_TEST, 1.0, 0.0, 10.0, 1.0)
+    assert pilot.acknowledged(test) == [mavlink.MAV_RESULT_FAILED]
+    assert "Motor Test: vehicle not landed" in texts(pilot)
+    assert Pilot().acknowledged(test) == [mavlink.MAV_RESULT_UNSUPPORTED]
+
+
+def test_the_compass_is_calibrated_by_a_heading_and_no_card_is_formatted() -> None:
+    pilot = Pilot(ardupilot())
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_FIXED_MAG_CAL_YAW, 1.0)) == [ACCEPTED]
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_STORAGE_FORMAT, 1.0, 1.0)) == [mavlink.MAV_RESULT_FAILED]
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_STORAGE_FORMAT)) == [mavlink.MAV_RESULT_UNSUPPORTED]
+
+
+def test_the_current_item_is_chosen_by_command_too() -> None:
+    pilot = Pilot(ardupilot())
+    upload(pilot, waypoints(3))
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_SET_MISSION_CURRENT, 2.0)) == [ACCEPTED]
+    assert pilot.last("MISSION_CURRENT").seq == 2
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_SET_MISSION_CURRENT, 9.0)) == [mavlink.MAV_RESULT_DENIED]
