@@ -108,7 +108,8 @@ def heard(state: AutopilotState, message: Message, clock: ClockMap, driver: Driv
         case "GPS_RAW_INT":
             state = _geoid(state, message)
         case "DISTANCE_SENSOR" | "BATTERY_STATUS":
-            state = replace(state, view=with_sensor(state.view, message, clock))
+            up_m = None if state.own is None else state.own.position_enu_m[2]
+            state = replace(state, view=with_sensor(state.view, message, clock, up_m))
         case "STATUSTEXT" | "EVENT":
             state = _said(state, message, driver)
         case _:
@@ -155,8 +156,10 @@ def _reported(state: AutopilotState, own: OwnState) -> AutopilotState:
         up_m_s2, jolt_m_s2 = _acceleration_up_m_s2(kept, own), _jolt_m_s2(kept, own)
         own = replace(own, acceleration_up_m_s2=up_m_s2, jolt_m_s2=jolt_m_s2)
         return replace(state, history=(*kept, own))
-    (x, y, z), (dx, dy, dz) = state.view.frame_shift_enu_m, jump
-    return replace(state, history=(own,), view=replace(state.view, frame_shift_enu_m=(x + dx, y + dy, z + dz)))
+    (x, y, z), (dx, dy, dz), seen = state.view.frame_shift_enu_m, jump, state.view.range_down
+    seen = None if seen is None else replace(seen, up_m=None)
+    view = replace(state.view, frame_shift_enu_m=(x + dx, y + dy, z + dz), range_down=seen)
+    return replace(state, history=(own,), view=view)
 
 
 def _acceleration_up_m_s2(earlier: Sequence[OwnState], own: OwnState) -> float | None:

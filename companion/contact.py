@@ -27,6 +27,7 @@ class Signs:
         acceleration_up_m_s2: of the drone.
         setpoint_below_m: how far the setpoint has sunk below the drone.
         range_height_m: of the feet above what the range finder sees.
+        range_carried_m: likewise, from when it last saw something, by what the drone has sunk since.
         landed: the autopilot's own word.
     """
 
@@ -37,6 +38,7 @@ class Signs:
     setpoint_below_m: float | None
     range_height_m: float | None
     landed: bool | None
+    range_carried_m: float | None = None
 
 
 class Verdict(Enum):
@@ -60,6 +62,7 @@ def signs_of(s: Situation) -> Signs:
         setpoint_below_m=None if sunk is None else float(sunk),
         range_height_m=s.range_height_m,
         landed=s.autopilot.landed,
+        range_carried_m=s.range_carried_m,
     )
 
 
@@ -72,8 +75,11 @@ def verdict(signs: Signs, config: CompanionConfig) -> Verdict:
 
 
 def is_stopped_by_pad(signs: Signs, config: CompanionConfig) -> bool:
-    """Return whether a jolt came from the pad: it is where the drone is, and the range finder or all signs say so."""
-    seen_m = signs.range_height_m
+    """Return whether a jolt came from the pad: it is where the drone is, and the range finder or all signs say so.
+
+    One that sees nothing any more is asked what it saw last: no flying explains the jolt, and it was sinking onto that.
+    """
+    seen_m = signs.range_carried_m if signs.range_height_m is None else signs.range_height_m
     touches = seen_m is not None and seen_m <= config.touchdown.range_height_max_m
     return _is_at_pad(signs, config) and (touches or verdict(signs, config) is Verdict.CONTACT)
 

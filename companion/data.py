@@ -102,10 +102,14 @@ class OwnState:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RangeReading:
-    """What a range finder that looks down along the drone's body measured at `t_ns`."""
+    """What a range finder that looks down along the drone's body measured at `t_ns`.
+
+    `up_m` is the drone's own height in W then, None when it was not known or that frame has moved since.
+    """
 
     t_ns: int
     distance_m: float
+    up_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

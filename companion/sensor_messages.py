@@ -7,23 +7,24 @@ from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 
 _CM = 0.01
+_INVALID = 1  # of a signal's quality in percent; 0 is unknown
 
 
-def with_sensor(view: AutopilotView, message: Message, clock: ClockMap) -> AutopilotView:
-    """Return the view after a DISTANCE_SENSOR or a BATTERY_STATUS; only the first battery counts."""
+def with_sensor(view: AutopilotView, message: Message, clock: ClockMap, up_m: float | None) -> AutopilotView:
+    """Return the view after a DISTANCE_SENSOR, with the drone at `up_m`, or a BATTERY_STATUS, only the first of all."""
     if message.get_type() == "DISTANCE_SENSOR":
-        return replace(view, range_down=_range_reading(message, clock) or view.range_down)
+        return replace(view, range_down=_range_reading(message, clock, up_m) or view.range_down)
     return replace(view, battery_share=_battery_share(message)) if message.id == 0 else view
 
 
-def _range_reading(message: Message, clock: ClockMap) -> RangeReading | None:
-    """Return what a range finder that looks down sees; at or beyond the ends of its range it sees nothing."""
+def _range_reading(message: Message, clock: ClockMap, up_m: float | None) -> RangeReading | None:
+    """Return what a range finder that looks down sees; at or beyond its range's ends it sees nothing."""
     t_ns = clock.boot_to_utc_ns(message.time_boot_ms * 1_000_000)
     is_within = message.min_distance < message.current_distance < message.max_distance
     looks_down = message.orientation == mavlink.MAV_SENSOR_ROTATION_PITCH_270
-    if t_ns is None or not (is_within and looks_down):
+    if t_ns is None or not (is_within and looks_down) or message.signal_quality == _INVALID:
         return None
-    return RangeReading(t_ns=t_ns, distance_m=message.current_distance * _CM)
+    return RangeReading(t_ns=t_ns, distance_m=message.current_distance * _CM, up_m=up_m)
 
 
 def _battery_share(message: Message) -> float | None:

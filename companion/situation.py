@@ -14,6 +14,7 @@ from link.frames import rotate
 from link.messages import Vector3
 
 _RANGE_AGE_MAX_S = 0.3
+_LAST_SEEN_AGE_MAX_S = 3.0  # own heights wander by some millimetres a second
 _UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which a range finder does not look down
 
 
@@ -56,6 +57,7 @@ class Situation:
         tracking_error_m: distance of the drone from where it was asked to be at that time.
         waiting_point_enu_m: (3,) in W.
         range_height_m: of the feet above what a range finder sees below, None without a fresh reading.
+        range_carried_m: the last such height less what the drone has sunk since, for it may be too near to be seen.
         limits: of the flight, the autopilot's own included.
         speed_limited_by: the autopilot's parameters that may bound the speed.
     """
@@ -71,6 +73,7 @@ class Situation:
     tracking_error_m: float
     waiting_point_enu_m: Array | None
     range_height_m: float | None = None
+    range_carried_m: float | None = None
     limits: FlightLimits | None = None
     speed_limited_by: tuple[str, ...] = ()
 
@@ -140,3 +143,19 @@ def range_height_m(own: OwnState | None, seen: RangeReading | None, sensor_heigh
         return None
     _, _, upright = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
     return seen.distance_m * upright - sensor_height_m if upright > _UPRIGHT_MIN else None
+
+
+def range_carried_m(drone: Drone | None, seen: RangeReading | None, sensor_height_m: float, t_ns: int) -> float | None:
+    """Return the last height of the drone's feet that was seen, less what the drone has sunk since.
+
+    A range finder sees nothing nearer than its range begins, and where the drone stands it may never see again.
+
+    Args:
+        drone: now.
+        seen: the last reading within the range.
+        sensor_height_m: of the range finder above the feet.
+        t_ns: now.
+    """
+    if drone is None or seen is None or seen.up_m is None or abs(t_ns - seen.t_ns) * 1e-9 > _LAST_SEEN_AGE_MAX_S:
+        return None
+    return seen.distance_m - sensor_height_m + float(drone.position_enu_m[2]) - seen.up_m

@@ -14,7 +14,7 @@ from companion.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
 from companion.planning.requests import are_finite
 from companion.reference import compare
 from companion.shifts import in_present_frame
-from companion.situation import Situation, drone_now, range_height_m
+from companion.situation import Situation, drone_now, range_carried_m, range_height_m
 from companion.status import landing_status
 from companion.step_data import StepInputs, StepMemory, StepOutputs, System
 from companion.targets import HORIZON_OFFSETS_S
@@ -93,10 +93,12 @@ def _is_finite(forecast: Forecast) -> bool:
 
 def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, system: System) -> Situation:
     newest_ns = system.estimator.newest_fix_ns(memory.estimator)
+    drone = drone_now(inputs.own, inputs.t_ns, _own_yaw_rad(inputs.own), system.config.abort.own_age_max_s)
+    seen, sensor_m = inputs.autopilot.range_down, system.config.touchdown.range_finder_height_m
     return Situation(
         t_ns=inputs.t_ns,
         autopilot=inputs.autopilot,
-        drone=drone_now(inputs.own, inputs.t_ns, _own_yaw_rad(inputs.own), system.config.abort.own_age_max_s),
+        drone=drone,
         pad=pad,
         feet_offset_m=system.config.touchdown.gear_height_m,
         fix_age_s=None if newest_ns is None else (inputs.t_ns - newest_ns) * 1e-9,
@@ -106,9 +108,8 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
         waiting_point_enu_m=memory.waiting_point_enu_m,
         limits=inputs.limits,
         speed_limited_by=() if inputs.driver is None else inputs.driver.speed_parameters,
-        range_height_m=range_height_m(
-            inputs.own, inputs.autopilot.range_down, system.config.touchdown.range_finder_height_m, inputs.t_ns
-        ),
+        range_height_m=range_height_m(inputs.own, seen, sensor_m, inputs.t_ns),
+        range_carried_m=range_carried_m(drone, seen, sensor_m, inputs.t_ns),
     )
 
 

@@ -200,6 +200,25 @@ def test_jolt_with_the_pad_in_the_range_finders_sight_needs_no_sunken_setpoint()
     assert _first_decision(Phase.DESCEND, far, 0.0)[0] is None
 
 
+@pytest.mark.parametrize(("seen_last_m", "wanted"), [(0.0, Event.CONTACT), (0.15, Event.CONTACT), (0.16, Event.UNSAFE)])
+def test_drone_that_is_stopped_after_its_range_finder_fell_blind_has_landed_where_it_was_sinking_to(
+    seen_last_m: float, wanted: Event
+) -> None:
+    pad = pad_at((4.0, 1.0, 0.0))
+    stopped = replace(
+        situation(-0.3),
+        drone=drone_at(-0.3, 0.2, (-4.0, -1.0, -0.25), pad=pad),
+        pad=pad,
+        reference=reference_at(-0.2),  # it follows its setpoint: no other sign speaks for a contact
+        range_carried_m=seen_last_m,
+    )
+    decision, _ = _first_decision(Phase.DESCEND, _jolted(stopped), 1.0)
+    assert decision is not None
+    assert decision[0] is wanted
+    in_sight = replace(stopped, range_height_m=2.0)
+    assert _first_decision(Phase.DESCEND, _jolted(in_sight), 1.0)[0] == (Event.UNSAFE, "too fast against the pad")
+
+
 def test_drone_that_the_pad_stops_beside_the_cone_has_landed_though_the_stop_ends_its_commitment() -> None:
     beside_m = cone_radius_m(0.05, CONFIG) + 0.1
     assert beside_m < OVER_PAD_M
