@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from companion.config import CompanionConfig
-from companion.contact import Verdict, is_stopped_by_pad, over_pad_radius_m, signs_of, verdict
+from companion.contact import Verdict, does_not_fall, is_stopped_by_pad, over_pad_radius_m, signs_of, verdict
 from companion.phases import LANDING_PHASES, NEAR_PHASES, Event, Phase
 from companion.situation import Approach, Situation, approach
 from companion.targets import changes_speed, chase_floor_m, is_unseen, is_vague
@@ -174,12 +174,19 @@ def _in_hard_contact(s: Situation, _: Approach | None, c: CompanionConfig) -> bo
     return jolt_m_s2 is not None and jolt_m_s2 > c.touchdown.jolt_m_s2 and is_stopped_by_pad(signs_of(s), c)
 
 
+def _does_not_fall(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    return does_not_fall(signs_of(s), c)
+
+
 def _in_disputed_contact(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
     return verdict(signs_of(s), c) is not Verdict.AIRBORNE
 
 
 STOPPED_BY_PAD = Test(HARD_CONTACT, frozenset({Phase.DESCEND}), _in_hard_contact, lambda _: 0.0)
 """What stops the drone ends its commitment to land as well: this is asked before the tests that abort."""
+
+HELD_UP = Test("held up", frozenset({Phase.TOUCHDOWN}), _does_not_fall, lambda c: c.touchdown.stopped_hold_s)
+"""Completes the evidence of a hard contact."""
 
 # A vehicle that stands may be about to depart, so it is landed on only after it has stood for a while.
 ENTRY_TESTS = (
@@ -202,12 +209,7 @@ ENTRY_TESTS = (
     (Event.CONTACT, STOPPED_BY_PAD),
     (
         Event.CONTACT,
-        Test(
-            DISPUTED_CONTACT,
-            frozenset({Phase.DESCEND}),
-            _in_disputed_contact,
-            lambda c: c.touchdown.disputed_hold_s,
-        ),
+        Test(DISPUTED_CONTACT, frozenset({Phase.DESCEND}), _in_disputed_contact, lambda c: c.touchdown.disputed_hold_s),
     ),
 )
 
@@ -235,7 +237,7 @@ def update_held(
 
 @cache
 def _tests_in(phase: Phase, others: tuple[Test, ...]) -> tuple[Test, ...]:
-    tests = (*others, *ABORT_TESTS, *(test for _, test in ENTRY_TESTS), DRIVES)
+    tests = (*others, *ABORT_TESTS, *(test for _, test in ENTRY_TESTS), HELD_UP, DRIVES)
     return tuple(test for test in tests if phase in test.phases)
 
 

@@ -117,6 +117,7 @@ class TouchdownConfig(StrictModel):
     range_height_max_m: Positive = 0.15  # seen under the feet at which the range finder still agrees with a contact
     hold_s: NotNegative = 0.1
     jolt_m_s2: Positive = 25.0  # horizontally: no flying changes the velocity so fast, and no hold is waited for
+    stopped_hold_s: Positive = 0.3  # after a jolt, pressed down without falling: in the air it would sink at 2 m/s then
     disputed_hold_s: NotNegative = 1.0  # instead, when the range finder does not agree
     level_height_m: NotNegative = 0.08  # below this the drone turns less than the deck, to touch down level
     foot_radius_m: NotNegative = 0.2  # of the feet about the drone's axis: the lowest of a leaning drone touches first

@@ -84,16 +84,27 @@ def is_stopped_by_pad(signs: Signs, config: CompanionConfig) -> bool:
     return _is_at_pad(signs, config) and (touches or verdict(signs, config) is Verdict.CONTACT)
 
 
-def may_force_motors_off(signs: Signs, since_contact_s: float, config: CompanionConfig) -> bool:
+def does_not_fall(signs: Signs, config: CompanionConfig) -> bool:
+    """Return whether a drone that is pressed down is held up, by whatever has stopped it."""
+    return signs.acceleration_up_m_s2 is not None and _is_no_fall(signs.acceleration_up_m_s2, config.touchdown)
+
+
+def may_force_motors_off(
+    signs: Signs, since_contact_s: float, config: CompanionConfig, *, stopped_and_held: bool = False
+) -> bool:
     """Return whether the evidence is complete: the motors may be stopped though the autopilot refuses.
 
     Args:
         signs: now, all of them anew; that there was a contact is not enough.
         since_contact_s: for how long a contact has been believed.
         config: all numbers.
+        stopped_and_held: the contact was a jolt from the pad, and the drone was pressed down for long enough since
+            without falling. The pad may be gone then, and the stop itself makes estimated speeds wrong for seconds.
     """
     if signs.height_m is None or not signs.height_m < config.descent.commit_height_m:
         return False
+    if stopped_and_held:
+        return True
     match verdict(signs, config):
         case Verdict.CONTACT:
             return True
@@ -136,7 +147,11 @@ def _is_at_pad(signs: Signs, config: CompanionConfig) -> bool:
 def _stands(signs: Signs, config: TouchdownConfig) -> bool:
     if signs.climb_m_s is None or not abs(signs.climb_m_s) < config.blocked_speed_m_s:
         return False
-    return signs.acceleration_up_m_s2 is None or signs.acceleration_up_m_s2 > -config.falling_acceleration_m_s2
+    return signs.acceleration_up_m_s2 is None or _is_no_fall(signs.acceleration_up_m_s2, config)
+
+
+def _is_no_fall(acceleration_up_m_s2: float, config: TouchdownConfig) -> bool:
+    return acceleration_up_m_s2 > -config.falling_acceleration_m_s2
 
 
 def _is_supported(signs: Signs, config: TouchdownConfig) -> bool:

@@ -4,6 +4,7 @@ Pure: the same memory, inputs and system give the same result, in flight, in sim
 """
 
 from companion.autopilots.driver import AutopilotCommand, Desire
+from companion.conditions import HELD_UP, holds
 from companion.config import CompanionConfig
 from companion.contact import may_force_motors_off, signs_of
 from companion.data import Forecast, OwnState
@@ -139,6 +140,11 @@ def _desire(memory: StepMemory, situation: Situation, config: CompanionConfig) -
             return Desire(control=True, armed=True, takeoff_height_m=config.takeoff.waiting_height_m)
         case Phase.TOUCHDOWN:
             since_s = (situation.t_ns - memory.phase_since_ns) * 1e-9
-            return Desire(armed=False, force_disarm=may_force_motors_off(signs_of(situation), since_s, config))
+            # Without accelerations in its setpoints an autopilot is not pressed down so hard that it would fall.
+            held_up = holds(HELD_UP, memory.held, situation.t_ns, config) and not config.position_only
+            evidence = may_force_motors_off(
+                signs_of(situation), since_s, config, stopped_and_held=memory.stopped_by_pad and held_up
+            )
+            return Desire(armed=False, force_disarm=evidence)
         case _:
             return Desire()  # control that was had and is lost is not taken back

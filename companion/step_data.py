@@ -101,6 +101,7 @@ class StepMemory:
         reference_ns: the model's time.
         tracking: how the drone follows it.
         sway: how hard the drone leans.
+        stopped_by_pad: the contact was a jolt.
         held: since when each test has been true.
         obstacle: name of what makes a landing impossible, and the sentence that told it; None without one.
         waiting_point_enu_m: (3,) in W.
@@ -126,6 +127,7 @@ class StepMemory:
     reference_ns: int = 0
     tracking: Tracking = field(default_factory=Tracking)
     sway: Sway = field(default_factory=Sway)
+    stopped_by_pad: bool = False
     held: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
     obstacle: tuple[str, str] | None = None
     waiting_point_enu_m: Array | None = None

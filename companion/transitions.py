@@ -3,7 +3,7 @@
 import numpy as np
 
 from companion.commands import answer
-from companion.conditions import update_held
+from companion.conditions import HARD_CONTACT, update_held
 from companion.config import CompanionConfig
 from companion.decisions import Progress, decide
 from companion.feasibility import OBSTACLE_TESTS, obstacle
@@ -67,7 +67,9 @@ def _enter(memory: StepMemory, event: Event, reason: str, situation: Situation, 
     retries = 0 if event is Event.START else retries
     # What makes an approach unsafe goes on from one of its phases to the next, and so does the time it has held.
     held = memory.held if {memory.phase, phase} <= LANDING_PHASES else {}
+    stopped = event is Event.CONTACT and HARD_CONTACT in memory.held
     memory = replace(memory, phase=phase, phase_since_ns=situation.t_ns, reason=reason, held=held, retries=retries)
+    memory = replace(memory, stopped_by_pad=stopped)
     if phase is Phase.TAKEOFF:
         return _begin_flight(memory, situation, config)
     if phase not in FLYING_PHASES:
