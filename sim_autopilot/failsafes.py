@@ -44,12 +44,13 @@ NO_FAILSAFES = FailsafeSettings()
 class Watch:
     """What was noticed: the battery's level (0 is good), a fence left, since when the station is lost, whether acted.
 
-    `station_ns` is when a ground station was last heard, None before the first.
+    `station_ns` is when a ground station was last heard, None before the first; `companion_ns` when a companion was.
     """
 
     level: int = 0
     outside: bool = False
     station_ns: int | None = None
+    companion_ns: int | None = None
     lost_ns: int | None = None
     acted: bool = False
 

@@ -6,10 +6,13 @@ Texts, names and arguments of events: PX4's source (commander, navigator, logger
 import struct
 from datetime import UTC, datetime
 from math import ceil
+from types import MappingProxyType
 
 from sim_autopilot.firmware.firmware import EventCode
 from sim_autopilot.firmware.px4_events import (
     ARMED,
+    COMPANION_BACK,
+    COMPANION_LOST,
     DISARMED,
     DISARMED_IDLE,
     DISARMED_LANDED,
@@ -27,6 +30,10 @@ from sim_autopilot.flight import Leg
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.mission_flight import Stage
 from sim_autopilot.modes import Mode
+
+_LOST, _BACK = "lost", "back"
+_STATION_SAID = MappingProxyType({_LOST: STATION_LOST, _BACK: STATION_BACK})
+_COMPANION_SAID = MappingProxyType({_LOST: COMPANION_LOST, _BACK: COMPANION_BACK})
 
 Said = tuple[str, EventCode | None]
 """A text, and its event where the firmware's table has none of that text."""
@@ -61,14 +68,25 @@ def _motors(start: AutopilotMemory, obeyed: AutopilotMemory, memory: AutopilotMe
 
 
 def _station(start: AutopilotMemory, memory: AutopilotMemory) -> list[str]:
-    """The ground station, whose silence is noticed on the ground too."""
-    heard_ns, limit_s = start.services.watch.station_ns, memory.settings.failsafes.station_lost_s
-    if heard_ns is None:
-        return []
-    was_lost = (start.now.boot_ns - heard_ns) * 1e-9 > limit_s
-    if memory.services.watch.station_ns != heard_ns:
-        return [STATION_BACK] if was_lost else []
-    return [STATION_LOST] if not was_lost and (memory.now.boot_ns - heard_ns) * 1e-9 > limit_s else []
+    """Ground station and companion, whose silence is noticed on the ground too."""
+    was, watch = start.services.watch, memory.services.watch
+    times_ns = (start.now.boot_ns, memory.now.boot_ns)
+    station_s, companion_s = memory.settings.failsafes.station_lost_s, memory.values["COM_OBC_LOSS_T"]
+    station = _silence((was.station_ns, watch.station_ns), times_ns, station_s)
+    companion = _silence((was.companion_ns, watch.companion_ns), times_ns, companion_s)
+    said = (_STATION_SAID.get(station), _COMPANION_SAID.get(companion))
+    return [text for text in said if text is not None]
+
+
+def _silence(heard_ns: tuple[int | None, int | None], times_ns: tuple[int, int], limit_s: float) -> str:
+    """Return whether somebody is just lost, or back, by when it was heard last: before and after a step."""
+    before_ns, after_ns = heard_ns
+    if before_ns is None:
+        return ""
+    was_lost, is_lost = ((time_ns - before_ns) * 1e-9 > limit_s for time_ns in times_ns)
+    if after_ns != before_ns:
+        return _BACK if was_lost else ""
+    return _LOST if is_lost and not was_lost else ""
 
 
 def _way(start: AutopilotMemory, memory: AutopilotMemory, config: AutopilotConfig) -> list[Said]:

@@ -41,13 +41,17 @@ def take(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> 
     return (memory, ()) if handler is None else handler(memory, message, config)
 
 
-def _heartbeat(memory: AutopilotMemory, message: Message, _config: AutopilotConfig) -> Result:
+def _heartbeat(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
     is_station, counted = message.type == mavlink.MAV_TYPE_GCS, memory.settings.failsafes.station_system
     if is_station and not memory.ground_station:
         memory = replace(memory, ground_station=True)
     if is_station if counted is None else message.get_srcSystem() == counted:
         services = memory.services
         watch = replace(services.watch, station_ns=memory.now.boot_ns)
+        memory = replace(memory, services=replace(services, watch=watch))
+    if message.type == mavlink.MAV_TYPE_ONBOARD_CONTROLLER and message.get_srcSystem() == config.system_id:
+        services = memory.services
+        watch = replace(services.watch, companion_ns=memory.now.boot_ns)
         memory = replace(memory, services=replace(services, watch=watch))
     return memory, ()
 

@@ -52,7 +52,7 @@ def request_message(memory: AutopilotMemory, request: Request, config: Autopilot
         return Answer(
             memory=memory, result=ACCEPTED if modes else config.firmware.results.no_such_message, messages=modes
         )
-    if request.number(1) in config.firmware.silent_messages:
+    if request.number(1) in config.firmware.silent_messages and config.firmware.guided:
         return Answer(memory=memory, result=ACCEPTED)
     stream = _stream(request.number(1), config)
     if stream is None:

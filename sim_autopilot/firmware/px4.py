@@ -36,7 +36,7 @@ from sim_autopilot.firmware.px4_events import (
     UNHEALTHY,
 )
 from sim_autopilot.firmware.px4_parameters import OBEYED, flight_settings
-from sim_autopilot.firmware.px4_streams import STREAMS
+from sim_autopilot.firmware.px4_streams import SILENT_MESSAGES, STREAMS
 from sim_autopilot.firmware.stored_parameters import whole_list
 from sim_autopilot.modes import Mode
 from sim_autopilot.parameters import Parameter, Values
@@ -157,6 +157,7 @@ PX4 = Firmware(
     announces_home=False,
     takes_off_by_setpoint=True,
     lists_modes=True,
+    silent_messages=SILENT_MESSAGES,
     tells_flights=True,
     events=MappingProxyType(EVENTS),
     mode_answered_twice=True,

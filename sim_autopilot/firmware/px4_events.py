@@ -30,6 +30,8 @@ MISSION_LANDED = "Mission finished, landed"
 MISSION_LOITERS = "Mission finished, loitering"
 STATION_LOST = "Connection to ground station lost"
 STATION_BACK = "GCS connection regained"
+COMPANION_LOST = "Connection to mission computer lost"
+COMPANION_BACK = "Onboard controller regained"
 INFO = 0x66
 _BY_COMMAND, _BY_LANDING, _BY_WAITING = b"\x04", b"\x06", b"\x07"
 """Of px4::enums::arm_disarm_reason_t."""
@@ -60,6 +62,8 @@ EVENTS: Mapping[str, EventCode] = {
     MISSION_LANDED: EventCode(name="mission_finished", levels=INFO),
     MISSION_LOITERS: EventCode(name="mission_finished_loiter", levels=INFO),
     STATION_LOST: EventCode(name="commander_gcs_lost", levels=0x64),
+    COMPANION_LOST: EventCode(name="commander_mission_comp_lost", levels=0x22),
+    COMPANION_BACK: EventCode(name="commander_onboard_ctrl_regained", levels=INFO),
     STATION_BACK: EventCode(name="commander_dl_regained", levels=INFO),
 }
 """Arguments of modes are left out where no client reads them."""

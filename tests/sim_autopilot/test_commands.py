@@ -239,6 +239,15 @@ def test_every_message_it_knows_can_be_requested(message_id: int) -> None:
     assert message_id in {message.get_msgId() for _, message in pilot.received}
 
 
+@pytest.mark.parametrize("kind", [mavlink.MAVLINK_MSG_ID_ADSB_VEHICLE, mavlink.MAVLINK_MSG_ID_SCALED_IMU2])
+def test_a_rate_is_taken_for_a_message_without_its_hardware_and_a_request_is_denied(kind: int) -> None:
+    pilot = Pilot()
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(kind), 1e5)) == [ACCEPTED]
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_REQUEST_MESSAGE, float(kind))) == [mavlink.MAV_RESULT_DENIED]
+    pilot.run(1.0)
+    assert not any(message.get_msgId() == kind for _, message in pilot.received)
+
+
 def test_a_request_for_a_message_it_does_not_know_is_denied() -> None:
     assert Pilot().acknowledged(command(REQUEST, 12345.0)) == [DENIED]
 

@@ -92,3 +92,23 @@ def test_a_mission_start_without_a_mission_is_denied_with_its_reason() -> None:
     pilot = watched()
     pilot.step(command(mavlink.MAV_CMD_MISSION_START))
     assert texts(pilot) == ["Mission start denied! No valid mission"]
+
+
+def companion() -> Message:
+    return mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_ONBOARD_CONTROLLER, 8, 0, 0, 4, 3)
+
+
+def test_a_companion_that_falls_silent_is_told_of_and_changes_nothing() -> None:
+    pilot = watched()
+    flown_by_mode(pilot)
+    pilot.step(companion())
+    pilot.received.clear()
+    mode = pilot.custom_mode()
+    pilot.run(4.9, lambda _t_s: station())
+    assert texts(pilot) == []
+    pilot.run(0.2, lambda _t_s: station())
+    assert texts(pilot) == ["Connection to mission computer lost"]
+    assert pilot.last("EVENT").id == event_id("commander_mission_comp_lost")
+    pilot.step(companion())
+    assert texts(pilot)[1:] == ["Onboard controller regained"]
+    assert pilot.custom_mode() == mode
