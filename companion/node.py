@@ -10,30 +10,14 @@ from companion.data import Measurement, VehicleEstimate
 from companion.estimation.buffered import BufferHealth
 from companion.estimation.factory import make_estimator
 from companion.phases import FLYING_PHASES
+from companion.publishing import plan_publication, status_publication
 from companion.shifts import at_other_time
 from companion.step import companion_step
 from companion.step_data import StepInputs, StepMemory, StepOutputs, System
-from companion.vehicle_inputs import (
-    fix_measurement,
-    imu_measurements,
-    plausible,
-    sighting_measurement,
-    velocity_measurements,
-)
-from link import cdr, json_payloads
+from companion.vehicle_inputs import measurements_of
 from link.keys import Keys
 from link.mavlink.session import MavlinkSession
-from link.messages import (
-    Command,
-    CommandReply,
-    Fix,
-    FixVelocity,
-    PadGeometry,
-    PadSighting,
-    Plan,
-    PlannedPose,
-    VehicleImu,
-)
+from link.messages import Command, CommandReply, PadGeometry
 from link.payload_checks import PayloadError
 from link.publication import Publication
 
@@ -45,7 +29,6 @@ _FUTURE_MAX_NS = 500_000_000  # a stamp farther ahead comes from a clock that is
 _LINK_DELAY_MAX_S = 0.3  # a longer way is not led for: the model is too uncertain so far ahead
 _LEVER_MAX_M = 50.0  # no vehicle is larger
 _PLAN_EVERY = 2  # statuses
-_PLAN_POINTS = 2  # every so many points of the plan are published
 
 
 class CompanionNode:
@@ -110,7 +93,7 @@ class CompanionNode:
     def receive_sample(self, key: str, payload: bytes) -> None:
         """Take a Zenoh sample; what cannot be decoded, is absurd or comes from the future is counted and dropped."""
         try:
-            measurements = [plausible(measurement) for measurement in self._decoded(key, payload)]
+            measurements = measurements_of(key, payload, self._keys, self.autopilot.state)
         except PayloadError:
             self.bad_payloads += 1
             return
@@ -175,21 +158,6 @@ class CompanionNode:
         """Return the replies to operators' commands, once, in their order."""
         taken, self._replies = self._replies, []
         return taken
-
-    def _decoded(self, key: str, payload: bytes) -> tuple[Measurement, ...]:
-        keys, state = self._keys, self.autopilot.state
-        if key == keys.fix:
-            fix = cdr.decode(Fix, payload)
-            return () if state.view.origin is None else (fix_measurement(fix, state.view.origin),)
-        if key == keys.fix_velocity:
-            return velocity_measurements(cdr.decode(FixVelocity, payload))
-        if key == keys.imu:
-            return imu_measurements(cdr.decode(VehicleImu, payload))
-        if key == keys.pad_pose:
-            sighting = cdr.decode(PadSighting, payload)
-            own_then = state.own_at(sighting.t_ns)
-            return () if own_then is None else (sighting_measurement(sighting, own_then),)
-        return ()
 
     def _is_due(self, local_ns: int) -> bool:
         """A step follows each new state of the drone, at the step rate, and does not wait for it for ever."""
@@ -260,25 +228,7 @@ class CompanionNode:
             mavlink_bad_bytes=self.autopilot.session.statistics.codec.bad_bytes,
             zenoh_bad_payloads=self.bad_payloads,
         )
-        self._publications.append(
-            Publication(self._keys.landing_status, json_payloads.encode(status), "application/json")
-        )
+        self._publications.append(status_publication(self._keys, status))
         if outputs.plan is not None and self._statuses % _PLAN_EVERY == 0:
-            plan = self._plan(outputs)
-            self._publications.append(Publication(self._keys.landing_plan, cdr.encode(plan), cdr.encoding_of(Plan)))
-
-    def _plan(self, outputs: StepOutputs) -> Plan:
-        if outputs.plan is None:
-            return Plan(t_ns=self._t_ns, poses=())
-        trajectory = outputs.plan.trajectory
-        offsets_s = trajectory.offset_s[::_PLAN_POINTS].tolist()
-        points = zip(offsets_s, trajectory.position_enu_m[::_PLAN_POINTS].tolist(), strict=True)
-        poses = tuple(
-            PlannedPose(
-                t_ns=self._t_ns + int(offset_s * 1e9),
-                position_enu_m=(x, y, z),
-                yaw_rad=self.memory.yaw_setpoint_rad,
-            )
-            for offset_s, (x, y, z) in points
-        )
-        return Plan(t_ns=self._t_ns, poses=poses)
+            plan = plan_publication(self._keys, outputs.plan, self._t_ns, self.memory.yaw_setpoint_rad)
+            self._publications.append(plan)

@@ -4,9 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from companion.autopilot_state import AutopilotState
 from companion.data import Array, Measurement, OwnState, Quantity
+from link import cdr
 from link.frames import rotate, yaw_of
 from link.geodesy import Datum, enu_from_geodetic
+from link.keys import Keys
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, VehicleImu
 from link.payload_checks import PayloadError
 
@@ -34,6 +37,36 @@ _VALUE_MAX = {
     Quantity.YAW_RATE: 10.0,
     Quantity.PAD: 1e5,
 }
+
+
+def measurements_of(key: str, payload: bytes, keys: Keys, state: AutopilotState) -> list[Measurement]:
+    """Return what a Zenoh sample of the vehicle measures, nothing of one that is no measurement or too early.
+
+    Args:
+        key: that it was put on.
+        payload: CDR.
+        keys: of the Zenoh contract.
+        state: of the autopilot, for the origin of W and the drone's place when it saw the pad.
+
+    Raises:
+        PayloadError: it cannot be decoded, or is absurd.
+    """
+    return [plausible(measurement) for measurement in _decoded(key, payload, keys, state)]
+
+
+def _decoded(key: str, payload: bytes, keys: Keys, state: AutopilotState) -> tuple[Measurement, ...]:
+    if key == keys.fix:
+        fix = cdr.decode(Fix, payload)
+        return () if state.view.origin is None else (fix_measurement(fix, state.view.origin),)
+    if key == keys.fix_velocity:
+        return velocity_measurements(cdr.decode(FixVelocity, payload))
+    if key == keys.imu:
+        return imu_measurements(cdr.decode(VehicleImu, payload))
+    if key == keys.pad_pose:
+        sighting = cdr.decode(PadSighting, payload)
+        own_then = state.own_at(sighting.t_ns)
+        return () if own_then is None else (sighting_measurement(sighting, own_then),)
+    return ()
 
 
 def _matrix(covariance: Matrix3 | None, std: float) -> Array:

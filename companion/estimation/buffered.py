@@ -6,7 +6,8 @@ from typing import Generic, TypeVar
 
 from companion.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
 from companion.estimation.config import BufferConfig
-from companion.estimation.delay_buffer import QUANTITIES, DelayBuffer, FilterModel, Tally, fuse
+from companion.estimation.delay_buffer import DelayBuffer, fuse
+from companion.estimation.filter_step import QUANTITIES, FilterModel, Tally
 
 S = TypeVar("S")
 

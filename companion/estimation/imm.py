@@ -20,7 +20,7 @@ from companion.estimation import imm_kernels as kernels
 from companion.estimation import imm_mixing as mixing
 from companion.estimation import imm_sensors as sensors
 from companion.estimation.config import ImmConfig
-from companion.estimation.delay_buffer import Update
+from companion.estimation.filter_step import Update
 from companion.estimation.gaussian import wrapped
 from companion.estimation.imm_numbers import Numbers, noises_with, numbers_of
 from link.messages import Vector3

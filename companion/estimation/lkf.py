@@ -11,7 +11,7 @@ import numpy as np
 from filterpy.kalman import predict, update
 
 from companion.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
-from companion.estimation.delay_buffer import Update
+from companion.estimation.filter_step import Update
 from companion.estimation.gaussian import Gaussian, squared_norm, symmetric
 from companion.estimation.lkf_noise import LkfNoise
 

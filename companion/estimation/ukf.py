@@ -14,7 +14,7 @@ from filterpy.kalman import MerweScaledSigmaPoints, UnscentedKalmanFilter
 
 from companion.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
 from companion.estimation.config import LkfConfig, UkfConfig
-from companion.estimation.delay_buffer import Update
+from companion.estimation.filter_step import Update
 from companion.estimation.gaussian import Gaussian, squared_norm, symmetric, wrapped
 from companion.estimation.lkf import LkfModel
 from companion.estimation.lkf_noise import WhiteJerkNoise

@@ -11,6 +11,7 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "The vehicle's samples count at the time they were taken. `estimator.kind` chooses the filter.",
         (
             "companion.estimation.delay_buffer",
+            "companion.estimation.filter_step",
             "companion.estimation.imm",
             "companion.estimation.imm_kernels",
             "companion.estimation.imm_mixing",

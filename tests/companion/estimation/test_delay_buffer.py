@@ -5,7 +5,8 @@ import pytest
 
 from companion.data import Measurement, Quantity
 from companion.estimation.config import BufferConfig, LkfConfig
-from companion.estimation.delay_buffer import DelayBuffer, fuse, nis_threshold
+from companion.estimation.delay_buffer import DelayBuffer, fuse
+from companion.estimation.filter_step import nis_threshold
 from companion.estimation.gaussian import Gaussian
 from companion.estimation.lkf import LkfModel
 from companion.estimation.lkf_noise import WhiteJerkNoise
