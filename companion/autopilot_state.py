@@ -8,6 +8,7 @@ from types import MappingProxyType
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotView, Driver
 from companion.data import OwnState
 from companion.sensor_messages import with_sensor
+from companion.velocity_bias import velocity_bias, without
 from link.frames import enu_from_ned, flu_from_frd, multiply, normalized, quaternion_enu_flu_from_ned_frd
 from link.geodesy import Datum
 from link.mavlink.clock_map import ClockMap
@@ -131,10 +132,13 @@ def _position(state: AutopilotState, message: Message, clock: ClockMap) -> Autop
     values = (message.x, message.y, message.z, message.vx, message.vy, message.vz)
     if t_ns is None or state.orientation_wxyz is None or not _is_plausible(values[:3], values[3:]):
         return state
+    position, reported = enu_from_ned(values[:3]), enu_from_ned(values[3:])
+    bias = velocity_bias(state.own, t_ns, position, reported)
     own = OwnState(
         t_ns=t_ns,
-        position_enu_m=enu_from_ned(values[:3]),
-        velocity_enu_m_s=enu_from_ned(values[3:]),
+        position_enu_m=position,
+        velocity_enu_m_s=without(reported, bias),
+        velocity_bias_enu_m_s=bias,
         orientation_wxyz=state.orientation_wxyz,
         angular_velocity_flu_rad_s=state.angular_velocity_flu_rad_s,
     )

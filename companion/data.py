@@ -88,7 +88,7 @@ class OwnState:
     """The drone as its autopilot reports it; `t_ns` is when it was so.
 
     `acceleration_up_m_s2`, and `jolt_m_s2` as the size of the horizontal acceleration, are from the last reports'
-    velocities, None before there are enough.
+    velocities, None before there are enough. The autopilot reported `velocity_bias_enu_m_s` more than the velocity.
     """
 
     t_ns: int
@@ -98,6 +98,7 @@ class OwnState:
     angular_velocity_flu_rad_s: Vector3
     acceleration_up_m_s2: float | None = None
     jolt_m_s2: float | None = None
+    velocity_bias_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

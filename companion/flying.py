@@ -15,6 +15,7 @@ from companion.step_data import StepInputs, StepMemory, System
 from companion.sway import felt, sways
 from companion.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
 from companion.transitions import BRAKING_M_S2
+from companion.velocity_bias import as_seen_with
 from link.frames import wrap_angle
 from link.records import replace
 
@@ -33,13 +34,14 @@ def setpoint(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) ->
     elif CONTACT in memory.held or DISPUTED_CONTACT in memory.held:
         reference = pressing(reference, config.touchdown.try_acceleration_m_s2)
     flown_ns = inputs.t_ns + round((inputs.link_delay_s + config.setpoint_lead_s) * 1e9)
-    return setpoint_at(
+    wanted = setpoint_at(
         carried(reference, (flown_ns - memory.reference_ns) * 1e-9),
         memory.tracking.correction_enu_m,
         flown_ns,
         memory.yaw_setpoint_rad,
         position_only=config.position_only,
     )
+    return wanted if inputs.own is None else as_seen_with(wanted, inputs.own.velocity_bias_enu_m_s)
 
 
 def _aim(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Aim:

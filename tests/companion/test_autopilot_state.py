@@ -179,9 +179,14 @@ def test_no_message_whatever_makes_the_state_absurd(told: list[Message]) -> None
 
 
 def test_stop_within_one_report_is_a_jolt_and_hard_braking_is_none() -> None:
-    stopped = _hear(LEVEL, *(_at(20 * k, (0.1 * k, 0.0, -1.0), (5.0 if k < 5 else 0.0, 0.0, 0.0)) for k in range(6)))
+    places_m = (0.0, 0.1, 0.2, 0.3, 0.4, 0.45)  # as far as the velocities lead
+    stopped = _hear(
+        LEVEL, *(_at(20 * k, (x, 0.0, -1.0), (5.0 if k < 5 else 0.0, 0.0, 0.0)) for k, x in enumerate(places_m))
+    )
     assert stopped.own is not None
     assert stopped.own.jolt_m_s2 == pytest.approx(5.0 / 0.06)
-    braking = _hear(LEVEL, *(_at(20 * k, (0.1 * k, 0.0, -1.0), (5.0 - 0.2 * k, 0.0, 0.0)) for k in range(6)))
+    braking = _hear(
+        LEVEL, *(_at(20 * k, (0.1 * k - 0.002 * k**2, 0.0, -1.0), (5.0 - 0.2 * k, 0.0, 0.0)) for k in range(6))
+    )
     assert braking.own is not None
     assert braking.own.jolt_m_s2 == pytest.approx(10.0)
