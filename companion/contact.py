@@ -9,11 +9,15 @@ opposite directions. A range finder is believed when it agrees; when it sees the
 for so long that a drone pressed downwards in the air would have fallen.
 """
 
+import math
 from dataclasses import dataclass
 from enum import Enum
 
 from companion.config import CompanionConfig, TouchdownConfig
-from companion.situation import Situation, approach
+from companion.situation import Approach, Situation, approach
+from link.records import replace
+
+_JOLT_S = 0.06  # three reports at 50 Hz
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,6 +33,7 @@ class Signs:
         range_height_m: of the feet above what the range finder sees.
         range_carried_m: likewise, from when it last saw something, by what the drone has sunk since.
         landed: the autopilot's own word.
+        passed_m: least horizontal distance from the pad's centre within the time that a jolt is seen for.
     """
 
     height_m: float | None
@@ -39,6 +44,7 @@ class Signs:
     range_height_m: float | None
     landed: bool | None
     range_carried_m: float | None = None
+    passed_m: float | None = None
 
 
 class Verdict(Enum):
@@ -63,6 +69,7 @@ def signs_of(s: Situation) -> Signs:
         range_height_m=s.range_height_m,
         landed=s.autopilot.landed,
         range_carried_m=s.range_carried_m,
+        passed_m=None if relative is None or drone is None else _passed_m(relative, _JOLT_S + drone.age_s),
     )
 
 
@@ -79,6 +86,9 @@ def is_stopped_by_pad(signs: Signs, config: CompanionConfig) -> bool:
 
     One that sees nothing any more is asked what it saw last: no flying explains the jolt, and it was sinking onto that.
     """
+    # By the report that shows the stop a pad that drives on is up to half a metre farther than it was at the contact.
+    if signs.distance_m is not None and signs.passed_m is not None:
+        signs = replace(signs, distance_m=min(signs.distance_m, signs.passed_m))
     seen_m = signs.range_carried_m if signs.range_height_m is None else signs.range_height_m
     touches = seen_m is not None and seen_m <= config.touchdown.range_height_max_m
     return _is_at_pad(signs, config) and (touches or verdict(signs, config) is Verdict.CONTACT)
@@ -134,6 +144,15 @@ def _part(value: float | None, unit: str) -> str:
 def over_pad_radius_m(config: CompanionConfig) -> float:
     """Return how far from the pad's centre what is touched is still the pad."""
     return 2.0 * config.descent.cone_radius_at_pad_m
+
+
+def _passed_m(relative: Approach, within_s: float) -> float:
+    """Return the least horizontal distance of a drone that has moved against the pad as it does now."""
+    (x, y, _), (vx, vy, _) = relative.position_enu_m, relative.velocity_enu_m_s
+    speed_squared = vx * vx + vy * vy
+    nearest_s = (x * vx + y * vy) / speed_squared if speed_squared > 0.0 else 0.0
+    ago_s = min(max(nearest_s, 0.0), max(within_s, 0.0))
+    return math.hypot(x - vx * ago_s, y - vy * ago_s)
 
 
 def _is_at_pad(signs: Signs, config: CompanionConfig) -> bool:

@@ -219,6 +219,24 @@ def test_drone_that_is_stopped_after_its_range_finder_fell_blind_has_landed_wher
     assert _first_decision(Phase.DESCEND, _jolted(in_sight), 1.0)[0] == (Event.UNSAFE, "too fast against the pad")
 
 
+@pytest.mark.parametrize(("driven_s", "wanted"), [(0.0, Event.CONTACT), (0.055, Event.CONTACT), (0.16, Event.UNSAFE)])
+def test_what_has_stopped_the_drone_was_the_pad_where_it_was_before_it_drove_on(driven_s: float, wanted: Event) -> None:
+    pad = pad_at((8.0, 0.0, 0.0))
+    before = drone_at(0.02, 0.0, (-8.0, 0.0, 0.0), pad=pad)
+    # Beside the pad's centre at the contact; the pad drives on eastwards, and the drone falls behind.
+    place = before.position_enu_m + np.array([-0.3 - 8.0 * driven_s, 0.45, 0.0])
+    stopped = replace(
+        situation(0.02),
+        drone=replace(before, position_enu_m=place, age_s=0.0),
+        pad=pad,
+        reference=reference_at(0.0),
+        range_height_m=0.02,
+    )
+    decision, _ = _first_decision(Phase.DESCEND, _jolted(stopped), 1.0)
+    assert decision is not None
+    assert decision[0] is wanted
+
+
 def test_drone_that_the_pad_stops_beside_the_cone_has_landed_though_the_stop_ends_its_commitment() -> None:
     beside_m = cone_radius_m(0.05, CONFIG) + 0.1
     assert beside_m < OVER_PAD_M
