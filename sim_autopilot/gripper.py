@@ -8,14 +8,14 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gripper:
-    """What it was last told: to release (0) or to grab (1), None for nothing yet; and when it is done, since boot."""
+    """What it was last told: to release (0) or to grab (1), as it does at boot; and when it is done, since boot."""
 
-    action: int | None = None
+    action: int = 1
     done_ns: int = 0
 
     def moves(self, boot_ns: int) -> bool:
         """Return whether it is still at it."""
-        return self.action is not None and boot_ns < self.done_ns
+        return boot_ns < self.done_ns
 
 
 AT_REST = Gripper()

@@ -19,11 +19,11 @@ def grip(memory: AutopilotMemory, request: Request, _config: AutopilotConfig) ->
     """Open or close the gripper."""
     gripper, now_ns, action = memory.services.gripper, memory.now.boot_ns, request.number(2)
     moves = gripper.moves(now_ns)
-    if action is not None and action == gripper.action:
+    if action == gripper.action:
         return Answer(memory=memory, result=_REJECTED if moves else ACCEPTED)
     under_way = tuple(later for later in memory.later if _is_about_gripper(later)) if moves else ()
     told = tuple(_cancelled(later.message) for later in under_way)
-    if action not in _ACTIONS:
+    if action is None or action not in _ACTIONS:
         return Answer(memory=memory, result=None, messages=(*told, acknowledgement(request, DENIED)))
     done_ns = now_ns + round(memory.values["PD_GRIPPER_TO"] * 1e9)
     done = Later(boot_ns=done_ns, message=acknowledgement(request, ACCEPTED))

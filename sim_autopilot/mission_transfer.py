@@ -150,7 +150,8 @@ def _serve(library: Library, arrival: Arrival) -> Result:
         wrong = arrival.rules.wrong_sequence
         return replace(library, transfer=None), (arrival.answer(_ERROR if wrong is None else wrong),)
     whole = arrival.message.get_msgId() == mavlink.MAVLINK_MSG_ID_MISSION_REQUEST_INT
-    current = kind == mavlink.MAV_MISSION_TYPE_MISSION and index == arrival.current
+    marked = kind == mavlink.MAV_MISSION_TYPE_MISSION and not arrival.rules.keeps_little
+    current = marked and index == arrival.current
     item = told(items[index]) if arrival.rules.keeps_little else items[index]
     if whole:
         item = replace(item, frame=arrival.rules.told_frames.get(item.frame, item.frame))

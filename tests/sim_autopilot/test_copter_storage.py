@@ -39,7 +39,7 @@ def test_a_waypoint_keeps_its_stay_and_neither_radius_nor_heading() -> None:
     assert upload(pilot, waypoints(2)) == ACCEPTED
     kept = download(pilot)[1]
     assert values(kept) == (2.0, 0.0, 0.0, 0.0)
-    assert kept.z == 10.0
+    assert (kept.z, kept.current) == (10.0, 0)
 
 
 def test_a_change_of_speed_needs_no_altitude_and_keeps_no_place() -> None:

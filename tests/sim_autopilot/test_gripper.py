@@ -12,12 +12,13 @@ def grip(action: float) -> Message:
 
 def test_the_gripper_is_in_progress_until_its_time_is_over() -> None:
     pilot = Pilot()
-    assert pilot.acknowledged(grip(1.0)) == [IN_PROGRESS]
-    assert pilot.acknowledged(grip(1.0)) == [REJECTED]
+    assert pilot.acknowledged(grip(1.0)) == [ACCEPTED]  # it is closed from the start
+    assert pilot.acknowledged(grip(0.0)) == [IN_PROGRESS]
+    assert pilot.acknowledged(grip(0.0)) == [REJECTED]
     pilot.received.clear()
     pilot.run(1.0)  # PD_GRIPPER_TO
     assert [answer.result for answer in pilot.all("COMMAND_ACK")] == [ACCEPTED]
-    assert pilot.acknowledged(grip(1.0)) == [ACCEPTED]
+    assert pilot.acknowledged(grip(0.0)) == [ACCEPTED]
 
 
 def test_another_order_cancels_what_the_gripper_is_at() -> None:
