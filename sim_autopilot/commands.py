@@ -13,7 +13,7 @@ from sim_autopilot.calibration import calibrate
 from sim_autopilot.copter_commands import set_servo, switch_fence, turn
 from sim_autopilot.copter_services import format_storage, reset_parameters, spin_motor
 from sim_autopilot.events import tell
-from sim_autopilot.failures import injected
+from sim_autopilot.failures import injected, is_refused
 from sim_autopilot.gripper_command import grip
 from sim_autopilot.log_stream_step import start_log_stream, stop_log_stream
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, Later
@@ -102,9 +102,10 @@ def _inject_failure(memory: AutopilotMemory, request: Request, _config: Autopilo
         return Answer(memory=memory, result=UNSUPPORTED)
     unit, kind, instance = request.number(1), request.number(2), request.number(3)
     services = memory.services
-    failures = injected(services.failures, unit or 0, -1 if kind is None else kind, instance or 0)
+    unit, kind = unit or 0, -1 if kind is None else kind
+    failures = injected(services.failures, unit, kind, instance or 0)
     if failures is None:
-        return Answer(memory=memory, result=None)
+        return Answer(memory=memory, result=UNSUPPORTED if is_refused(unit, kind) else None)
     return Answer(memory=replace(memory, services=replace(services, failures=failures)), result=ACCEPTED)
 
 

@@ -10,6 +10,7 @@ from sim_autopilot.plant import PlantMemory
 
 _OK = int(mavlink.FAILURE_TYPE_OK)
 _OFF = int(mavlink.FAILURE_TYPE_OFF)
+_WRONG = int(mavlink.FAILURE_TYPE_WRONG)
 _BATTERY = int(mavlink.FAILURE_UNIT_SYSTEM_BATTERY)
 _MOTOR = int(mavlink.FAILURE_UNIT_SYSTEM_MOTOR)
 _MOTORS = 4
@@ -27,7 +28,12 @@ NO_FAILURES = Failures()
 
 
 def injected(failures: Failures, unit: int, kind: int, instance: int) -> Failures | None:
-    """Return the failures after an injection, None for one that is not simulated; instance 0 is all of a unit."""
+    """Return the failures after an injection, None for one that is not simulated; instance 0 is all of a unit.
+
+    What a motor tells wrongly of itself changes nothing here: nobody reads it.
+    """
+    if (unit, kind) == (_MOTOR, _WRONG) and 0 <= instance <= _MOTORS:
+        return failures
     if kind not in {_OK, _OFF} or not 0 <= instance <= _MOTORS:
         return None
     if unit == _BATTERY:
@@ -36,6 +42,11 @@ def injected(failures: Failures, unit: int, kind: int, instance: int) -> Failure
         return None
     chosen = frozenset(range(_MOTORS)) if instance == 0 else frozenset({instance - 1})
     return replace(failures, motors=failures.motors | chosen if kind == _OFF else failures.motors - chosen)
+
+
+def is_refused(unit: int, kind: int) -> bool:
+    """Return whether an injection that is not simulated is answered, as unsupported: motors always are."""
+    return unit == _MOTOR or (unit == _BATTERY and kind in {_OK, _OFF})
 
 
 def stopped(plant: PlantMemory, failures: Failures) -> PlantMemory:

@@ -93,6 +93,10 @@ def test_failures_are_injected_only_where_the_parameter_lets_them_and_sensors_ar
     pilot = Pilot()
     assert pilot.acknowledged(command(INJECT, MOTOR, OFF, 2.0)) == [ACCEPTED]
     assert pilot.acknowledged(command(INJECT, GPS, OFF, 0.0)) == []
+    stuck, wrong = float(mavlink.FAILURE_TYPE_STUCK), float(mavlink.FAILURE_TYPE_WRONG)
+    assert pilot.acknowledged(command(INJECT, MOTOR, stuck, 0.0)) == [UNSUPPORTED]
+    assert pilot.acknowledged(command(INJECT, BATTERY, stuck, 0.0)) == []
+    assert pilot.acknowledged(command(INJECT, MOTOR, wrong, 0.0)) == [ACCEPTED]
 
 
 def test_a_failed_motor_brings_the_drone_down() -> None:
