@@ -80,11 +80,7 @@ def _beside_cone(a: Approach, c: CompanionConfig) -> bool:
 
 def must_wait(s: Situation, a: Approach | None, c: CompanionConfig) -> bool:
     """Return whether a descent is to stay above the pad for now: what a change of the vehicle's speed does, passes."""
-    if a is None or s.pad is None:
-        return False
-    beside_m = max(c.descent.aligned_distance_m, c.descent.cone_slope * a.height_m)
-    moves = a.distance_m > beside_m or a.speed_m_s > c.descent.aligned_speed_m_s
-    return moves or changes_speed(s.pad, c.descent)
+    return _strays(s, a, c) or (s.pad is not None and changes_speed(s.pad, c.descent))
 
 
 def _outside_cone(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:

@@ -86,7 +86,7 @@ class DescentConfig(StrictModel):
     cone_radius_at_pad_m: Positive = 0.3
     cone_slope: NotNegative = 0.35  # metres of radius per metre of height
     # While the vehicle brakes or speeds up harder than this, as the drone must lean for, the descent waits, as it does
-    # beside the cone and while the drone moves against the pad faster than when it was aligned.
+    # beside the cone and while the drone moves too fast against the pad.
     speed_change_max_m_s2: Positive = 1.2
     waiting_height_m: Positive = 0.6
     commit_height_m: Positive = 0.35  # below this it lands rather than aborts
@@ -94,9 +94,9 @@ class DescentConfig(StrictModel):
     # S1 allows. Its pattern must have been seen as lately as that, while the drone and the vehicle's clock wander.
     unseen_std_max_m: Positive = 0.25
     unseen_hold_s: NotNegative = 1.5  # in the alignment, before it climbs to see more of the road
-    # Lean beyond that of the last second, as an acceleration: 5.8 degrees of the 15 over trim that S1 allows. Low above
+    # Lean beyond that of the last second, as an acceleration: 8.7 degrees of the 15 over trim that S1 allows. Low above
     # the pad the drone then waits at the commit height for the gust or the correction to pass.
-    sway_max_m_s2: Positive = 1.0
+    sway_max_m_s2: Positive = 1.5
     calm_hold_s: NotNegative = 0.25
     sway_height_m: NotNegative = 0.1  # of the lowest foot, below which the contact comes before a stop
     time_limit_s: Positive = 30.0

@@ -150,15 +150,12 @@ def test_below_the_commit_height_it_does_not_land_where_nobody_knows_the_pad_to_
 @pytest.mark.parametrize(
     ("drifting", "wanted"),
     [
-        (situation(HIGH_M, CONFIG.descent.cone_slope * HIGH_M - 0.01), False),
-        (situation(HIGH_M, CONFIG.descent.cone_slope * HIGH_M + 0.01), True),
-        (situation(NEAR_M, CONFIG.descent.aligned_distance_m - 0.01), False),
-        (situation(NEAR_M, CONFIG.descent.aligned_distance_m + 0.01), True),
-        (_moving(CONFIG.descent.aligned_speed_m_s - 0.01), False),
-        (_moving(CONFIG.descent.aligned_speed_m_s + 0.01), True),
+        (situation(HIGH_M, cone_radius_m(HIGH_M, CONFIG) - 0.01), False),
+        (situation(HIGH_M, cone_radius_m(HIGH_M, CONFIG) + 0.01), True),
+        (_moving(CONFIG.abort.near_speed_max_m_s - 0.01), False),
+        (_moving(CONFIG.abort.near_speed_max_m_s + 0.01), True),
         (situation(pad=_braking(CONFIG.descent.speed_change_max_m_s2 - 0.01)), False),
         (situation(pad=_braking(CONFIG.descent.speed_change_max_m_s2 + 0.01)), True),
-        (replace(situation(), drone=None), False),
     ],
 )
 def test_descent_waits_for_what_passes(drifting: Situation, wanted: bool) -> None:
