@@ -64,17 +64,32 @@ class RunOutcome:
 
 
 def run_folder(parent: Path, name: str) -> Path:
-    """Make the folder of a run and let `latest` beside it point there."""
-    stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S.%f")[:-3]
-    folder = parent / f"{stamp}-{name}"
+    """Make the folder of a run and let `latest` beside it point there.
+
+    Raises:
+        UserError: `parent` cannot be written.
+    """
     try:
-        folder.mkdir(parents=True)
+        folder = _new_folder(parent, name)
         link = parent / f".latest-{os.getpid()}"
         link.symlink_to(folder.name)
         link.replace(parent / "latest")
     except OSError as error:
-        raise UserError(f"{folder}: cannot be made ({error.strerror}); choose another --out") from None
+        raise UserError(f"{parent}: no folder can be made there ({error.strerror}); choose another --out") from None
     return folder
+
+
+def _new_folder(parent: Path, name: str) -> Path:
+    """Make a folder named by the time; where another run took this millisecond, by the next."""
+    while True:
+        folder = parent / f"{datetime.now(UTC).strftime('%Y%m%dT%H%M%S.%f')[:-3]}-{name}"
+        try:
+            folder.mkdir(parents=True)
+        except FileExistsError:
+            if not folder.is_dir():
+                raise
+        else:
+            return folder
 
 
 def run_over_wire(scenario: Scenario, options: RunOptions, progress: Progress) -> RunOutcome:
