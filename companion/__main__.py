@@ -28,38 +28,46 @@ from link.errors import UserError
 app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.")
 app.command("check")(check)
 
+_ConfigOption = Annotated[Path | None, typer.Option("--config", metavar="FILE", help="Configuration in TOML.")]
+_PrintConfigOption = Annotated[bool, typer.Option("--print-config", help="Print the configuration and end.")]
+_StartOption = Annotated[bool, typer.Option("--start", help="Arm, take off and land without an operator's command.")]
+_TimeoutOption = Annotated[
+    float, typer.Option("--timeout", min=0.0, help="Seconds without an autopilot or vehicle; 0 waits for ever.")
+]
+_DryRunOption = Annotated[bool, typer.Option("--dry-run", help="Do everything but send setpoints and commands.")]
+_UseSimTimeOption = Annotated[bool, typer.Option("--use-sim-time", help="Follow the simulation's clock on Zenoh.")]
+_AutopilotOption = Annotated[
+    AutopilotKind | None, typer.Option("--autopilot", help="In place of the configuration's kind of autopilot.")
+]
+_SigningKeyOption = Annotated[
+    Path | None,
+    typer.Option("--signing-key", metavar="FILE", help="Sign MAVLink with this key: 32 bytes or 64 hex digits."),
+]
+_TlogOption = Annotated[Path | None, typer.Option("--tlog", metavar="FILE", help="Record MAVLink into this file.")]
+_RecordOption = Annotated[
+    Path | None, typer.Option("--record", metavar="DIR", help="Record everything into this folder, as MCAP.")
+]
+_TimingOption = Annotated[
+    Path | None, typer.Option("--timing", metavar="FILE", help="Write step times here at the end.")
+]
+
 
 @app.callback(invoke_without_command=True)
 def companion(
     context: typer.Context,
     mavlink: DeviceOption = "udpin:127.0.0.1:14540",
-    config: Annotated[Path | None, typer.Option("--config", metavar="FILE", help="Configuration in TOML.")] = None,
-    print_config: Annotated[bool, typer.Option("--print-config", help="Print the configuration and end.")] = False,
-    start: Annotated[
-        bool, typer.Option("--start", help="Arm, take off and land without an operator's command.")
-    ] = False,
-    timeout: Annotated[
-        float, typer.Option("--timeout", min=0.0, help="Seconds without an autopilot or vehicle; 0 waits for ever.")
-    ] = 60.0,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Do everything but send setpoints and commands.")] = False,
-    use_sim_time: Annotated[
-        bool, typer.Option("--use-sim-time", help="Follow the simulation's clock on Zenoh.")
-    ] = False,
-    autopilot: Annotated[
-        AutopilotKind | None, typer.Option("--autopilot", help="In place of the configuration's kind of autopilot.")
-    ] = None,
+    config: _ConfigOption = None,
+    print_config: _PrintConfigOption = False,
+    start: _StartOption = False,
+    timeout: _TimeoutOption = 60.0,
+    dry_run: _DryRunOption = False,
+    use_sim_time: _UseSimTimeOption = False,
+    autopilot: _AutopilotOption = None,
     system_id: SystemIdOption = 1,
-    signing_key: Annotated[
-        Path | None,
-        typer.Option("--signing-key", metavar="FILE", help="Sign MAVLink with this key: 32 bytes or 64 hex digits."),
-    ] = None,
-    tlog: Annotated[Path | None, typer.Option("--tlog", metavar="FILE", help="Record MAVLink into this file.")] = None,
-    record: Annotated[
-        Path | None, typer.Option("--record", metavar="DIR", help="Record everything into this folder, as MCAP.")
-    ] = None,
-    timing: Annotated[
-        Path | None, typer.Option("--timing", metavar="FILE", help="Write step times here at the end.")
-    ] = None,
+    signing_key: _SigningKeyOption = None,
+    tlog: _TlogOption = None,
+    record: _RecordOption = None,
+    timing: _TimingOption = None,
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
     drone: DroneOption = "drone",

@@ -81,11 +81,13 @@ def _enter(memory: StepMemory, event: Event, reason: str, situation: Situation, 
 
 def _escaping(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
     """Let the virtual model sink no further towards a roof that is near: no plan of limited jerk turns it in time."""
-    reference, relative, limits = memory.reference, approach(situation), situation.limits
-    if reference is None or relative is None or limits is None or relative.height_m > config.descent.waiting_height_m:
+    reference, pad, limits, relative = memory.reference, situation.pad, situation.limits, approach(situation)
+    if reference is None or pad is None or limits is None or relative is None:
+        return memory
+    if relative.height_m > config.descent.waiting_height_m:
         return memory
     velocity, acceleration = reference.velocity_enu_m_s.copy(), reference.acceleration_enu_m_s2.copy()
-    velocity[2] += max(-relative.climb_m_s, 0.0)
+    velocity[2] = max(velocity[2], pad.velocity_enu_m_s[0, 2])
     acceleration[2] = limits.vertical_acceleration_max_m_s2
     escaping = replace(reference, velocity_enu_m_s=velocity, acceleration_enu_m_s2=acceleration)
     return replace(memory, reference=escaping, guidance=None)

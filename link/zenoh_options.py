@@ -53,20 +53,29 @@ def zenoh_options(
     listen: Sequence[str] | None,
     multicast: bool | None,
     config_file: Path | None,
+    *,
+    listens: bool = False,
 ) -> ZenohOptions:
     """Return the options of a command line; one that says nothing connects to the default endpoint.
+
+    With `listens` it waits there for the others instead, unless it is a client, which cannot.
 
     Raises:
         UserError: If the mode or an endpoint is not one.
     """
-    nothing_said = not (connect or listen or config_file or multicast)
+    if not (connect or listen or config_file or multicast):
+        connect, listen = ((), _listened(mode)) if listens else ((DEFAULT_ENDPOINT,), ())
     return ZenohOptions(
         mode=mode,
-        connect=(DEFAULT_ENDPOINT,) if nothing_said else tuple(connect or ()),
+        connect=tuple(connect or ()),
         listen=tuple(listen or ()),
         multicast_scouting=multicast,
         config_file=config_file,
     )
+
+
+def _listened(mode: str | None) -> tuple[str, ...]:
+    return () if mode == "client" else (DEFAULT_ENDPOINT,)
 
 
 def _check_endpoint(option: str, endpoint: str, *, port_min: int) -> None:

@@ -32,72 +32,81 @@ _PAD = "Its pad"
 
 app = make_app("Publish a ground vehicle over Zenoh: its position, velocity, heading and pad.")
 
+_ScenarioOption = Annotated[
+    str | None, typer.Option("--scenario", metavar="NAME|FILE", help="Drive this scenario's vehicle.")
+]
+_GpsdOption = Annotated[
+    str | None,
+    typer.Option("--gpsd", metavar="HOST:PORT", help="Publish what this gpsd reports.", rich_help_panel=_RECEIVER),
+]
+_NmeaOption = Annotated[
+    str | None,
+    typer.Option(
+        "--nmea",
+        metavar="DEVICE",
+        help="Publish what a receiver says in NMEA 0183: /dev/ttyX,BAUD, tcp://HOST:PORT or a recorded file.",
+        rich_help_panel=_RECEIVER,
+    ),
+]
+_MavlinkOption = Annotated[
+    str | None,
+    typer.Option(
+        "--mavlink",
+        metavar="DEVICE",
+        help="Publish what the receiver of an autopilot on the vehicle says: /dev/ttyX,BAUD, udpin:HOST:PORT.",
+        rich_help_panel=_RECEIVER,
+    ),
+]
+_PadOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--pad",
+        metavar="FILE",
+        help="The pad, in TOML: size_m, height_m, antenna_to_pad_m.",
+        rich_help_panel=_PAD,
+    ),
+]
+_PadSizeOption = Annotated[
+    tuple[float, float] | None,
+    typer.Option("--pad-size", metavar="LENGTH WIDTH", help="Along and across the vehicle, m.", rich_help_panel=_PAD),
+]
+_PadHeightOption = Annotated[
+    float | None, typer.Option("--pad-height", metavar="M", help="Above the road.", rich_help_panel=_PAD)
+]
+_AntennaToPadOption = Annotated[
+    tuple[float, float, float] | None,
+    typer.Option(
+        "--antenna-to-pad",
+        metavar="X Y Z",
+        help="From the antenna to the pad's middle: forward, left, up, m.",
+        rich_help_panel=_PAD,
+    ),
+]
+_SeedOption = Annotated[int, typer.Option("--seed", min=0, help="Of everything random.")]
+_UseSimTimeOption = Annotated[bool, typer.Option("--use-sim-time", help="Follow the simulation's clock on Zenoh.")]
+_DepartAtOnceOption = Annotated[
+    bool, typer.Option("--depart-at-once", help="Do not wait until the simulated drone hovers.")
+]
+_TimeoutOption = Annotated[
+    float, typer.Option("--timeout", min=0.0, help="Seconds without a simulated clock; 0 waits for ever.")
+]
+
 
 @app.callback(invoke_without_command=True)
 def ground_vehicle(
     *,
-    scenario: Annotated[
-        str | None, typer.Option("--scenario", metavar="NAME|FILE", help="Drive this scenario's vehicle.")
-    ] = None,
-    gpsd: Annotated[
-        str | None,
-        typer.Option("--gpsd", metavar="HOST:PORT", help="Publish what this gpsd reports.", rich_help_panel=_RECEIVER),
-    ] = None,
-    nmea: Annotated[
-        str | None,
-        typer.Option(
-            "--nmea",
-            metavar="DEVICE",
-            help="Publish what a receiver says in NMEA 0183: /dev/ttyX,BAUD, tcp://HOST:PORT or a recorded file.",
-            rich_help_panel=_RECEIVER,
-        ),
-    ] = None,
-    mavlink: Annotated[
-        str | None,
-        typer.Option(
-            "--mavlink",
-            metavar="DEVICE",
-            help="Publish what the receiver of an autopilot on the vehicle says: /dev/ttyX,BAUD, udpin:HOST:PORT.",
-            rich_help_panel=_RECEIVER,
-        ),
-    ] = None,
-    pad: Annotated[
-        Path | None,
-        typer.Option(
-            "--pad",
-            metavar="FILE",
-            help="The pad, in TOML: size_m, height_m, antenna_to_pad_m.",
-            rich_help_panel=_PAD,
-        ),
-    ] = None,
-    pad_size: Annotated[
-        tuple[float, float] | None,
-        typer.Option(
-            "--pad-size", metavar="LENGTH WIDTH", help="Along and across the vehicle, m.", rich_help_panel=_PAD
-        ),
-    ] = None,
-    pad_height: Annotated[
-        float | None, typer.Option("--pad-height", metavar="M", help="Above the road.", rich_help_panel=_PAD)
-    ] = None,
-    antenna_to_pad: Annotated[
-        tuple[float, float, float] | None,
-        typer.Option(
-            "--antenna-to-pad",
-            metavar="X Y Z",
-            help="From the antenna to the pad's middle: forward, left, up, m.",
-            rich_help_panel=_PAD,
-        ),
-    ] = None,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Of everything random.")] = 1,
-    use_sim_time: Annotated[
-        bool, typer.Option("--use-sim-time", help="Follow the simulation's clock on Zenoh.")
-    ] = False,
-    depart_at_once: Annotated[
-        bool, typer.Option("--depart-at-once", help="Do not wait until the simulated drone hovers.")
-    ] = False,
-    timeout: Annotated[
-        float, typer.Option("--timeout", min=0.0, help="Seconds without a simulated clock; 0 waits for ever.")
-    ] = 60.0,
+    scenario: _ScenarioOption = None,
+    gpsd: _GpsdOption = None,
+    nmea: _NmeaOption = None,
+    mavlink: _MavlinkOption = None,
+    pad: _PadOption = None,
+    pad_size: _PadSizeOption = None,
+    pad_height: _PadHeightOption = None,
+    antenna_to_pad: _AntennaToPadOption = None,
+    seed: _SeedOption = 1,
+    use_sim_time: _UseSimTimeOption = False,
+    depart_at_once: _DepartAtOnceOption = False,
+    timeout: _TimeoutOption = 60.0,
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
     drone: DroneOption = "drone",
@@ -109,19 +118,12 @@ def ground_vehicle(
 ) -> None:
     """Publish a ground vehicle over Zenoh: its position, velocity, heading and pad."""
     from link.keys import Keys
-    from link.zenoh_options import DEFAULT_ENDPOINT, ZenohOptions
+    from link.zenoh_options import zenoh_options
 
     if sum(one is not None for one in (scenario, gpsd, nmea, mavlink)) > 1:
         raise UserError("--scenario, --gpsd, --nmea and --mavlink are one vehicle each: give one of them")
     keys = Keys(namespace, vehicle, drone)
-    nothing_said = mode != "client" and not (connect or listen or zenoh_config or multicast)
-    options = ZenohOptions(
-        mode=mode,
-        connect=tuple(connect or ()),
-        listen=(DEFAULT_ENDPOINT,) if nothing_said else tuple(listen or ()),
-        multicast_scouting=multicast,
-        config_file=zenoh_config,
-    )
+    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, listens=True)
     if scenario is not None:
         simulation = _Simulation(scenario, seed, depart_at_once, use_sim_time, timeout)
         _drive(simulation, keys, options)

@@ -25,41 +25,51 @@ from link.cli import (
 
 app = make_app("Simulate a quadrotor under an autopilot that speaks MAVLink.")
 
+_MavlinkOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--mavlink",
+        metavar="DEVICE",
+        help="A link, and again for more: udpout:HOST:PORT[:OWN_PORT], udpin:HOST:PORT, tcp:HOST:PORT, "
+        "tcpin:HOST:PORT or /dev/ttyX,BAUD [default: those of the firmware's own simulator].",
+    ),
+]
+_FirmwareOption = Annotated[
+    str | None, typer.Option("--firmware", metavar="NAME", help="px4 or ardupilot [default: px4].")
+]
+_InstanceOption = Annotated[
+    int | None, typer.Option("--instance", min=0, max=249, help="Number of the drone; system id - 1 [default: 0].")
+]
+_SpeedOption = Annotated[
+    float, typer.Option("--speed", min=0.0, max=1000.0, help="Simulated seconds a second; 0: as fast as it can.")
+]
+_InstantOption = Annotated[bool | None, typer.Option("--instant", help="Be ready to arm at once.", show_default=False)]
+_DatumOption = Annotated[
+    tuple[float, float, float] | None,
+    typer.Option("--datum", metavar="LAT LON ALT", help="Origin of the world, degrees and metres."),
+]
+_WindOption = Annotated[float | None, typer.Option("--wind", metavar="MEAN_M_S", help="Mean wind [default: 0].")]
+_TurbulenceOption = Annotated[
+    str | None, typer.Option("--turbulence", metavar="SEVERITY", help="none, light, moderate or severe.")
+]
+_SeedOption = Annotated[int | None, typer.Option("--seed", min=0, help="Of the wind [default: 1].")]
+_ConfigOption = Annotated[Path | None, typer.Option("--config", metavar="FILE", help="Configuration in TOML.")]
+_PrintConfigOption = Annotated[bool, typer.Option("--print-config", help="Print the configuration and end.")]
+
 
 @app.callback(invoke_without_command=True)
 def sim_autopilot(
-    mavlink: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--mavlink",
-            metavar="DEVICE",
-            help="A link, and again for more: udpout:HOST:PORT[:OWN_PORT], udpin:HOST:PORT, tcp:HOST:PORT, "
-            "tcpin:HOST:PORT or /dev/ttyX,BAUD [default: those of the firmware's own simulator].",
-        ),
-    ] = None,
-    firmware: Annotated[
-        str | None, typer.Option("--firmware", metavar="NAME", help="px4 or ardupilot [default: px4].")
-    ] = None,
-    instance: Annotated[
-        int | None, typer.Option("--instance", min=0, max=249, help="Number of the drone; system id - 1 [default: 0].")
-    ] = None,
-    speed: Annotated[
-        float, typer.Option("--speed", min=0.0, max=1000.0, help="Simulated seconds a second; 0: as fast as it can.")
-    ] = 1.0,
-    instant: Annotated[
-        bool | None, typer.Option("--instant", help="Be ready to arm at once.", show_default=False)
-    ] = None,
-    datum: Annotated[
-        tuple[float, float, float] | None,
-        typer.Option("--datum", metavar="LAT LON ALT", help="Origin of the world, degrees and metres."),
-    ] = None,
-    wind: Annotated[float | None, typer.Option("--wind", metavar="MEAN_M_S", help="Mean wind [default: 0].")] = None,
-    turbulence: Annotated[
-        str | None, typer.Option("--turbulence", metavar="SEVERITY", help="none, light, moderate or severe.")
-    ] = None,
-    seed: Annotated[int | None, typer.Option("--seed", min=0, help="Of the wind [default: 1].")] = None,
-    config: Annotated[Path | None, typer.Option("--config", metavar="FILE", help="Configuration in TOML.")] = None,
-    print_config: Annotated[bool, typer.Option("--print-config", help="Print the configuration and end.")] = False,
+    mavlink: _MavlinkOption = None,
+    firmware: _FirmwareOption = None,
+    instance: _InstanceOption = None,
+    speed: _SpeedOption = 1.0,
+    instant: _InstantOption = None,
+    datum: _DatumOption = None,
+    wind: _WindOption = None,
+    turbulence: _TurbulenceOption = None,
+    seed: _SeedOption = None,
+    config: _ConfigOption = None,
+    print_config: _PrintConfigOption = False,
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
     drone: DroneOption = "drone",
@@ -83,17 +93,10 @@ def sim_autopilot(
         sys.stdout.write(dump_toml(settings))
         return EXIT_OK
     from link.keys import Keys
-    from link.zenoh_session import DEFAULT_ENDPOINT, ZenohOptions
+    from link.zenoh_options import zenoh_options
     from sim_autopilot.run import RunOptions, run
 
-    nothing_said = not (connect or listen or zenoh_config or multicast)
-    zenoh = ZenohOptions(
-        mode=mode,
-        connect=(DEFAULT_ENDPOINT,) if nothing_said else tuple(connect or ()),
-        listen=tuple(listen or ()),
-        multicast_scouting=multicast,
-        config_file=zenoh_config,
-    )
+    zenoh = zenoh_options(mode, connect, listen, multicast, zenoh_config)
     devices = tuple(link.device for link in settings.links)
     options = RunOptions(devices=devices, speed=speed, keys=Keys(namespace, vehicle, drone), zenoh=zenoh)
     signal.signal(signal.SIGTERM, _interrupt)

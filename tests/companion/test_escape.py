@@ -15,6 +15,7 @@ from tests.companion.facts import FLIES, NOW_NS, drone_at, pad_at, reference_at,
 CONFIG = CompanionConfig()
 LIMITS = CONFIG.limits.flight_limits()
 SINK_M_S = 0.45
+AHEAD_M_S = 0.1  # the model sinks faster than the drone that follows it
 
 
 def broken_off(height_m: float, roof_m_s: float) -> tuple[StepMemory, StepMemory]:
@@ -22,7 +23,8 @@ def broken_off(height_m: float, roof_m_s: float) -> tuple[StepMemory, StepMemory
     pad = pad_at((4.0, 1.0, roof_m_s))
     drone = drone_at(height_m, 0.0, (0.0, 0.0, -SINK_M_S), pad=pad)
     facts = replace(situation(height_m, pad=pad), drone=drone, limits=LIMITS)
-    reference = replace(reference_at(height_m), velocity_enu_m_s=drone.velocity_enu_m_s)
+    ahead = np.array([0.0, 0.0, -AHEAD_M_S])
+    reference = replace(reference_at(height_m), velocity_enu_m_s=drone.velocity_enu_m_s + ahead)
     before = replace(
         StepMemory(), phase=Phase.DESCEND, reference=reference, reference_ns=NOW_NS, was_in_control=True, was_armed=True
     )

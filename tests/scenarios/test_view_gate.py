@@ -118,7 +118,7 @@ def test_address_that_is_not_this_machines_is_told() -> None:
 
 @pytest.mark.parametrize(
     ("host", "shown"),
-    [("192.0.2.7", "192.0.2.7"), ("2001:db8::7", "[2001:db8::7]"), ("0.0.0.0", socket.gethostname())],  # noqa: S104
+    [("192.0.2.7", "192.0.2.7"), ("2001:db8::7", "[2001:db8::7]"), ("0.0.0.0", socket.gethostname())],  # noqa: S104 (nothing listens there)
 )
 def test_address_names_the_host_as_a_browser_wants_it(host: str, shown: str) -> None:
     assert shown_host(host) == shown

@@ -11,7 +11,7 @@ POSHOLD, BRAKE, SMART_RTL = 16, 17, 21
 
 def ardupilot(**changes: object) -> AutopilotConfig:
     """The autopilot, ready at once."""
-    return AutopilotConfig(**({"firmware": ARDUPILOT, "datum": DATUM, "instant": True} | changes))  # type: ignore[arg-type]
+    return AutopilotConfig(**({"firmware": ARDUPILOT, "datum": DATUM, "instant": True} | changes))  # type: ignore[arg-type]  # of any field
 
 
 def mode(number: int) -> Message:

@@ -31,7 +31,7 @@ VELOCITY_ONLY = 0b1001_1100_0111
 
 def px4(**changes: object) -> AutopilotConfig:
     """The autopilot that the tests fly, ready at once."""
-    return AutopilotConfig(**({"firmware": PX4, "datum": DATUM, "instant": True} | changes))  # type: ignore[arg-type]
+    return AutopilotConfig(**({"firmware": PX4, "datum": DATUM, "instant": True} | changes))  # type: ignore[arg-type]  # of any field
 
 
 def command(number: int, *parameters: float, system: int = 1, component: int = 1) -> Message:

@@ -200,7 +200,7 @@ def test_landing_under_control_stays_on_the_roof_after_motors_off(speed_m_s: flo
         return going((along, 0, ON_ROOF[2] + 1.0 - 0.5 * t_s), (speed_m_s, 0, -0.5), (0, 0, 0))
 
     start = hovering(CONFIG, (0, 0, ON_ROOF[2] + 1.0), velocity=(speed_m_s, 0, 0))
-    landing = flown(CONFIG, start, sinking, 3.5, deck_at=deck_at)  # type: ignore[arg-type]
+    landing = flown(CONFIG, start, sinking, 3.5, deck_at=deck_at)  # type: ignore[arg-type]  # `going` tells no type
     after = flown(
         CONFIG,
         landing.end,
