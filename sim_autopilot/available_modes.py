@@ -20,6 +20,7 @@ _MODES: tuple[tuple[Mode, int, str], ...] = (
     (Mode.STABILIZED, _NO_STANDARD, "Stabilized"),
     (Mode.TAKEOFF, int(mavlink.MAV_STANDARD_MODE_TAKEOFF), ""),
     (Mode.LAND, int(mavlink.MAV_STANDARD_MODE_LAND), ""),
+    (Mode.FOLLOW, _NO_STANDARD, "Follow Target"),
     (Mode.ORBIT, int(mavlink.MAV_STANDARD_MODE_ORBIT), ""),
 )
 _SIMPLE = frozenset({Mode.ALTITUDE, Mode.POSITION})

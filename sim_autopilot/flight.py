@@ -8,6 +8,7 @@ import numpy as np
 
 from link.messages import Vector3
 from sim_autopilot.data import Array, Reference
+from sim_autopilot.follow import Chase
 from sim_autopilot.modes import Mode, Modes
 from sim_autopilot.orbit import Orbit, carried_round
 from sim_autopilot.partial_setpoints import with_own_motion
@@ -51,6 +52,7 @@ class ModeFlight:
         sink_m_s: its rate.
         goal: where the anchor is on its way to.
         orbit: the circle that it flies.
+        chase: what it remembers of whom it follows.
         speed_m_s: that was asked for, for every way of the mode; None is the parameters'.
         returns: whether a mission's mode flies home and lands.
     """
@@ -65,6 +67,7 @@ class ModeFlight:
     sink_m_s: float = 0.0
     goal: Goal | None = None
     orbit: Orbit | None = None
+    chase: Chase | None = None
     speed_m_s: float | None = None
     returns: bool = False
 

@@ -14,6 +14,7 @@ from sim_autopilot.incoming_setpoints import (
     take_attitude_setpoint,
     take_global_setpoint,
     take_landing_target,
+    take_leader,
     take_setpoint,
 )
 from sim_autopilot.log_stream_step import take_logging_ack
@@ -153,6 +154,7 @@ _HANDLERS: Mapping[int, Handler] = MappingProxyType(
         mavlink.MAVLINK_MSG_ID_SET_POSITION_TARGET_GLOBAL_INT: take_global_setpoint,
         mavlink.MAVLINK_MSG_ID_SET_ATTITUDE_TARGET: take_attitude_setpoint,
         mavlink.MAVLINK_MSG_ID_LANDING_TARGET: take_landing_target,
+        mavlink.MAVLINK_MSG_ID_FOLLOW_TARGET: take_leader,
         mavlink.MAVLINK_MSG_ID_MANUAL_CONTROL: _sticks,
         mavlink.MAVLINK_MSG_ID_RC_CHANNELS_OVERRIDE: _sticks,
         mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_LIST: list_parameters,

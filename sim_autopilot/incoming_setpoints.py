@@ -1,9 +1,13 @@
-"""What setpoints and the sighting of a landing target change."""
+"""What setpoints, the sighting of a landing target and the word of somebody to follow change."""
 
-from link.mavlink.dialect import Message
+from math import isfinite
+
+from link.frames import enu_from_ned
+from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 from sim_autopilot.attitude_setpoints import attitude_from_message
 from sim_autopilot.data import Reference
+from sim_autopilot.follow import with_word
 from sim_autopilot.global_setpoints import local_setpoint
 from sim_autopilot.guided import with_attitude, with_wish
 from sim_autopilot.guided_attitude import attitude_wish
@@ -12,6 +16,7 @@ from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.mode_change import change_mode
 from sim_autopilot.modes import Event, Mode
 from sim_autopilot.precision_landing import place_seen, with_sighting
+from sim_autopilot.repositioning import place_asked
 from sim_autopilot.requests import is_ours
 from sim_autopilot.setpoints import reference_from_message, with_setpoint
 from sim_autopilot.telemetry_motion import height_over_surface_m
@@ -79,6 +84,19 @@ def take_landing_target(memory: AutopilotMemory, message: Message, _config: Auto
         before = replace(before, path=None)
     target = with_sighting(before, place, now.boot_ns, settings)
     return replace(memory, services=replace(services, target=target)), ()
+
+
+def take_leader(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
+    """Take a FOLLOW_TARGET, which is for everybody."""
+    velocity = enu_from_ned(message.vel)
+    place = place_asked(
+        memory, config.datum, int(mavlink.MAV_FRAME_GLOBAL), (message.lat * 1e-7, message.lon * 1e-7, message.alt)
+    )
+    if Mode.FOLLOW not in config.firmware.modes or place is None or not all(map(isfinite, (*velocity, message.alt))):
+        return memory, ()
+    services, smoothing = memory.services, memory.settings.follow.smoothing
+    leader = with_word(services.leader, place, velocity, memory.now.boot_ns, smoothing)
+    return replace(memory, services=replace(services, leader=leader)), ()
 
 
 def _guided_setpoint(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:

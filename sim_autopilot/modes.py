@@ -26,6 +26,7 @@ class Mode(Enum):
     POSHOLD = "poshold"  # ArduCopter's second position mode
     SMART_RTL = "smart_rtl"  # returns the way it came
     ORBIT = "orbit"  # flies round a place
+    FOLLOW = "follow"  # keeps near somebody who tells where he is
 
 
 class Event(Enum):
@@ -46,6 +47,7 @@ class Event(Enum):
     ASK_POSHOLD = "ask_poshold"
     ASK_SMART_RTL = "ask_smart_rtl"
     ASK_ORBIT = "ask_orbit"
+    ASK_FOLLOW = "ask_follow"
     LOST_TO_POSITION = "lost_to_position"  # setpoints lost, and where the parameters send it then
     LOST_TO_HOLD = "lost_to_hold"
     LOST_TO_LAND = "lost_to_land"

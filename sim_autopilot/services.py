@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from sim_autopilot.failsafes import NOTHING_NOTICED, Watch
 from sim_autopilot.failures import NO_FAILURES, Failures
 from sim_autopilot.fence import Fence
+from sim_autopilot.follow import Leader
 from sim_autopilot.ftp_state import NO_FTP, Ftp
 from sim_autopilot.gripper import AT_REST, Gripper
 from sim_autopilot.log_stream import LogStream
@@ -28,6 +29,7 @@ class Services:
         failures: injected.
         events: how many were told, as the 16 bits on the wire count them.
         target: of a precision landing, None before the first sighting.
+        leader: who is followed, None before his first word.
         reboot_ns: when it boots again, in ns since boot; None goes on.
         ftp: the files' server.
         logs: of the flights.
@@ -44,6 +46,7 @@ class Services:
     failures: Failures = NO_FAILURES
     events: int = 0
     target: Target | None = None
+    leader: Leader | None = None
     reboot_ns: int | None = None
     ftp: Ftp = NO_FTP
     logs: Logs = NO_LOGS

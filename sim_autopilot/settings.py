@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from link.messages import Vector3
 from sim_autopilot.control.kinds import PositionGains
 from sim_autopilot.failsafes import NO_FAILSAFES, FailsafeSettings
+from sim_autopilot.follow import BEHIND, FollowSettings
 from sim_autopilot.modes import Event, Mode
 from sim_autopilot.stick_feel import PX4_STICKS, StickFeel
 
@@ -98,6 +99,7 @@ class FlightSettings:
         wind_enu_m_s: that the parameters add to the air's own, towards.
         takes_failures: whether failures can be injected.
         landing: by LANDING_TARGET.
+        follow: of the mode that follows somebody.
         failsafes: of battery, ground station and fence.
     """
 
@@ -146,4 +148,5 @@ class FlightSettings:
     wind_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
     takes_failures: bool = False
     landing: LandingSettings = NO_PRECISION
+    follow: FollowSettings = BEHIND
     failsafes: FailsafeSettings = NO_FAILSAFES

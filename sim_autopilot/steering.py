@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from sim_autopilot.climb import Climb, asks_for_takeoff, has_lifted, is_idle, ramped
 from sim_autopilot.data import Reference
 from sim_autopilot.flight import ModeFlight, next_reference
+from sim_autopilot.follow import chased
 from sim_autopilot.guided import Guided, has_run_up, lifted, next_guided, on_the_ground
 from sim_autopilot.land_detector import IN_AIR, Landing
 from sim_autopilot.manual import MANUAL_MODES, follow_sticks, sticks_in_effect
@@ -59,6 +60,13 @@ def _wish(memory: AutopilotMemory, elapsed_s: float) -> tuple[ModeFlight, Refere
     sticks = sticks_in_effect(memory.services.sticks, now.boot_ns, memory.settings.sticks)
     if mode in MANUAL_MODES and sticks is not None and not (mode is Mode.POSITION and memory.modes.failsafe):
         return follow_sticks(memory.flight, mode, sticks, now, memory.settings, elapsed_s)
+    leader = memory.services.leader
+    if mode is Mode.FOLLOW and leader is not None:
+        follow = memory.settings.follow
+        chase, reference = chased(
+            memory.flight.chase, leader, now, memory.home_enu_m, settings=follow, elapsed_s=elapsed_s
+        )
+        return replace(memory.flight, chase=chase), reference
     return next_reference(
         memory.flight,
         memory.modes,

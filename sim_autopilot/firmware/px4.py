@@ -95,6 +95,7 @@ PX4 = Firmware(
             Mode.MISSION: _code("mission", _AUTO_FLAGS, 4, 4),
             Mode.POSITION: _code("position", _MANUAL_FLAGS, 3),
             Mode.ORBIT: _code("orbit", _AUTO_FLAGS, 3, 1),
+            Mode.FOLLOW: _code("follow", _AUTO_FLAGS, 4, 8),
             Mode.ALTITUDE: _code("altitude", _MANUAL_FLAGS, 2),
             Mode.STABILIZED: _code("stabilized", _MANUAL_FLAGS, 7),
             Mode.MANUAL: _code("manual", _MANUAL_FLAGS, 1),
@@ -102,7 +103,7 @@ PX4 = Firmware(
         }
     ),
     boot_mode=Mode.HOLD,
-    unarmable_modes=frozenset({Mode.LAND, Mode.RTL}),
+    unarmable_modes=frozenset({Mode.LAND, Mode.RTL, Mode.ORBIT, Mode.FOLLOW}),
     loiter_mode=Mode.HOLD,
     statuses=Statuses(
         booting=mavlink.MAV_STATE_UNINIT,

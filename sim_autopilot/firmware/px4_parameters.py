@@ -6,6 +6,7 @@ Source: PX4 parameter reference, with the defaults of its own simulation.
 from math import radians
 
 from sim_autopilot.failsafes import FailsafeSettings
+from sim_autopilot.follow import FollowSettings
 from sim_autopilot.modes import Event, Mode
 from sim_autopilot.parameters import Parameter, Values, within_ranges
 from sim_autopilot.settings import FlightSettings
@@ -43,6 +44,8 @@ _FENCE_ACTIONS = {
 }
 """By GF_ACTION; 0 and 1 do nothing."""
 _AUTO_MODES = frozenset({Mode.HOLD, Mode.LAND, Mode.TAKEOFF, Mode.RTL, Mode.MISSION})
+_WITH_TARGET = 2
+"""FLW_TGT_ALT_M: the height above the target; the others are above home, since the ground is flat."""
 _OVERRIDDEN = ((1, _AUTO_MODES), (2, frozenset({Mode.OFFBOARD})))
 """By the bits of COM_RC_OVERRIDE."""
 
@@ -61,6 +64,17 @@ def _failsafes(values: Values) -> FailsafeSettings:
         fence_event=_FENCE_ACTIONS.get(int(values["GF_ACTION"])),
         reach_m=values["GF_MAX_HOR_DIST"],
         height_m=values["GF_MAX_VER_DIST"],
+    )
+
+
+def _follow(values: Values) -> FollowSettings:
+    return FollowSettings(
+        distance_m=values["FLW_TGT_DST"],
+        height_m=values["FLW_TGT_HT"],
+        angle_rad=radians(values["FLW_TGT_FA"]),
+        along_m_s=values["FLW_TGT_MAX_VEL"],
+        smoothing=min(1.0, max(0.1, values["FLW_TGT_RS"])),
+        with_him=int(values["FLW_TGT_ALT_M"]) == _WITH_TARGET,
     )
 
 
@@ -101,6 +115,7 @@ def flight_settings(values: Values) -> FlightSettings:
         reached_height_m=values["NAV_MC_ALT_RAD"],
         hover_share=values["MPC_THR_HOVER"],
         failsafes=_failsafes(values),
+        follow=_follow(values),
         sticks=StickFeel(
             speed_m_s=values["MPC_VEL_MANUAL"],
             tilt_rad=radians(values["MPC_MAN_TILT_MAX"]),
@@ -140,6 +155,12 @@ OBEYED = (
     _parameter("COM_RC_OVERRIDE", 1, 0, 3),
     _parameter("COM_RC_STICK_OV", 30.0, 5.0, 80.0),
     _parameter("COM_SPOOLUP_TIME", 1.0, 0.0, 30.0),
+    _parameter("FLW_TGT_ALT_M", 0, 0, 2),
+    _parameter("FLW_TGT_DST", 8.0, 1.0, 1000.0),
+    _parameter("FLW_TGT_FA", 180.0, -180.0, 180.0),
+    _parameter("FLW_TGT_HT", 8.0, 8.0, 1000.0),
+    _parameter("FLW_TGT_MAX_VEL", 5.0, 0.0, 20.0),
+    _parameter("FLW_TGT_RS", 0.1, 0.0, 1.0),
     _parameter("GF_ACTION", 2, 0, 5),
     _parameter("GF_MAX_HOR_DIST", 0.0, 0.0, 10000.0),
     _parameter("GF_MAX_VER_DIST", 0.0, 0.0, 10000.0),
