@@ -32,6 +32,7 @@ class MissionRules:
         takes_parts: whether a part of a plan can be written anew.
         commands: of missions, besides those that both take.
         told_frames: in which MISSION_ITEM_INT tells a place, by the frame it was sent in.
+        stores_at_once: plans of which each item takes the old one's place as it comes, whatever follows.
         keeps_little: whether of an item only what flies it is stored, and plans that make no sense are refused.
         clears_all: whether MAV_MISSION_TYPE_ALL can be cleared.
         tells_texts: whether it says that a plan came, which item begins and which is reached.
@@ -55,6 +56,7 @@ class MissionRules:
     takes_parts: bool = False
     commands: frozenset[int] = frozenset()
     told_frames: Mapping[int, int] = field(default_factory=dict)
+    stores_at_once: frozenset[int] = frozenset()
     keeps_little: bool = False
     clears_all: bool = True
     tells_texts: bool = False
@@ -109,6 +111,7 @@ ARDUCOPTER_MISSIONS = MissionRules(
             mavlink.MAV_FRAME_MISSION: mavlink.MAV_FRAME_GLOBAL,
         }
     ),
+    stores_at_once=frozenset({MISSION, RALLY}),
     keeps_little=True,
     clears_all=False,
     tells_texts=True,

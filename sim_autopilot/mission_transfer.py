@@ -61,6 +61,8 @@ def _count(library: Library, arrival: Arrival) -> Result:
         return library, (arrival.answer(int(mavlink.MAV_MISSION_NO_SPACE)),)
     if count == 0:
         return _store(library, kind, ()), (arrival.answer(_ACCEPTED),)
+    if kind in arrival.rules.stores_at_once:
+        library = _keep(library, kind, library.plans[kind][:count])
     return _ask(library, begun(arrival, Way.UPLOAD, count))
 
 
@@ -72,6 +74,11 @@ def _part(library: Library, arrival: Arrival) -> Result:
     if is_kept_out(library, arrival, Way.UPLOAD) or not 0 <= first <= last < len(items):
         return library, (arrival.answer(_ERROR),)
     return _ask(library, replace(begun(arrival, Way.UPLOAD, last + 1), items=items[:first], part=True))
+
+
+def _keep(library: Library, kind: int, items: tuple[Item, ...]) -> Library:
+    """Change a plan whose upload goes on."""
+    return replace(library, plans={**library.plans, kind: items})
 
 
 def _store(library: Library, kind: int, items: tuple[Item, ...]) -> Library:
@@ -106,6 +113,8 @@ def _add(library: Library, transfer: Transfer, arrival: Arrival) -> Result:
         result = _ERROR
     if result != _ACCEPTED:
         return replace(library, transfer=None), (arrival.answer(result),)
+    if transfer.kind in arrival.rules.stores_at_once:
+        library = _keep(library, transfer.kind, (*items, *library.plans[transfer.kind][len(items) :]))
     if len(items) < transfer.count:
         whole = arrival.rules.asks_whole and arrival.message.get_msgId() == mavlink.MAVLINK_MSG_ID_MISSION_ITEM_INT
         return _ask(library, replace(transfer, items=items, whole=whole))

@@ -11,8 +11,8 @@ from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 ACCEPTED = int(mavlink.MAV_RESULT_ACCEPTED)
 DENIED = int(mavlink.MAV_RESULT_DENIED)
 UNSUPPORTED = int(mavlink.MAV_RESULT_UNSUPPORTED)
-_NOWHERE = 2**31 - 1
-"""What stands for no place in the integers of a COMMAND_INT."""
+_NOWHERE = frozenset({2**31 - 1, -(2**31)})
+"""What stands for no place in the integers of a COMMAND_INT: the largest, and what a client makes of no number."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,7 +30,7 @@ class Request:
     def place(self) -> tuple[float, float, float]:
         """Parameters 5 to 7 as latitude and longitude in degrees, and altitude."""
         x, y, z = self.parameters[4:]
-        known = _NOWHERE not in {x, y}
+        known = _NOWHERE.isdisjoint({x, y})
         return (x * self.scale, y * self.scale, z) if known else (nan, nan, z)
 
     def number(self, position: int) -> int | None:

@@ -5,8 +5,9 @@ from math import nan
 import pytest
 
 from link.mavlink.dialect import Message, mavlink
+from sim_autopilot.memory import AutopilotConfig
 from tests.sim_autopilot.copter import GUIDED, ardupilot, mode
-from tests.sim_autopilot.pilot import Pilot, arm, command
+from tests.sim_autopilot.pilot import Pilot, arm, command, px4
 from tests.sim_autopilot.planner import download, item, plan_messages, upload
 
 WAYPOINT, SPEED, JUMP = mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_DO_CHANGE_SPEED, mavlink.MAV_CMD_DO_JUMP
@@ -141,3 +142,23 @@ def test_the_current_item_is_chosen_by_command_too() -> None:
     assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_SET_MISSION_CURRENT, 2.0)) == [ACCEPTED]
     assert pilot.last("MISSION_CURRENT").seq == 2
     assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_SET_MISSION_CURRENT, 9.0)) == [mavlink.MAV_RESULT_DENIED]
+
+
+@pytest.mark.parametrize(("config", "heights"), [(ardupilot(), [30.0, 10.0]), (px4(), [10.0, 10.0])])
+def test_items_of_an_upload_that_breaks_off_replace_the_old_ones_with_arducopter_only(
+    config: AutopilotConfig, heights: list[float]
+) -> None:
+    pilot = Pilot(config)
+    assert upload(pilot, waypoints(3)) == ACCEPTED
+    begun = [item(index, WAYPOINT, (1.0, 1.0, 29.0 + index)) for index in range(2)]
+    refused = item(2, WAYPOINT, PLACE, frame=mavlink.MAV_FRAME_LOCAL_NED)
+    assert upload(pilot, [*begun, refused]) != ACCEPTED
+    assert [kept.z for kept in download(pilot)[1:]] == heights  # item 0 is home with the one
+
+
+def test_arducopter_cuts_its_mission_off_as_soon_as_a_shorter_one_is_announced() -> None:
+    pilot = Pilot(ardupilot())
+    assert upload(pilot, waypoints(4)) == ACCEPTED
+    pilot.step(mavlink.MAVLink_mission_count_message(1, 1, 2, 0))
+    pilot.run(9.0)
+    assert len(download(pilot)) == 2

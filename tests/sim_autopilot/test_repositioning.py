@@ -74,6 +74,18 @@ def test_a_circle_is_flown_about_its_place_with_the_nose_to_it() -> None:
         assert (x * cos(yaw) + y * sin(yaw)) / hypot(x, y) == pytest.approx(-1.0, abs=0.05)
 
 
+@pytest.mark.parametrize("nowhere", [2**31 - 1, -(2**31)])
+def test_a_circle_about_no_place_is_flown_about_the_drone(nowhere: int) -> None:
+    pilot = Pilot()
+    pilot.take_off()
+    message = mavlink.MAVLink_command_int_message(
+        1, 1, mavlink.MAV_FRAME_GLOBAL_INT, mavlink.MAV_CMD_DO_ORBIT, 0, 0, 8.0, 2.0, 0.0, nan, nowhere, nowhere, nan
+    )
+    assert pilot.acknowledged(message) == [ACCEPTED]
+    pilot.run(15.0)
+    assert hypot(*pilot.position[:2]) == pytest.approx(8.0, abs=0.4)
+
+
 def test_home_is_put_where_the_command_says() -> None:
     pilot = Pilot()
     x, y = LATITUDE + 5 * NORTH_M, LONGITUDE + 3 * EAST_M
