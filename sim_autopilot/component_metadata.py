@@ -1,7 +1,7 @@
-"""PX4's component metadata: two files that say which parameters there are, as ground stations read them over FTP.
+"""PX4's component metadata: files about parameters, events and actuators, as ground stations read them over FTP.
 
 Source: https://mavlink.io/en/services/component_information.html. Names, types and defaults of all parameters;
-ranges of those that the flight obeys. Events and actuators are not described.
+ranges of those that the flight obeys, and the events that are sent.
 """
 
 import json
@@ -9,6 +9,8 @@ import lzma
 from functools import cache
 
 from link.mavlink.dialect import mavlink
+from sim_autopilot.actuator_metadata import ACTUATORS_PATH, actuators_description
+from sim_autopilot.event_metadata import EVENTS_PATH, events_description
 from sim_autopilot.ftp_handlers import checksum
 from sim_autopilot.parameters import Parameter
 
@@ -16,7 +18,8 @@ GENERAL_PATH = "etc/extras/component_general.json.xz"
 PARAMETERS_PATH = "etc/extras/parameters.json.xz"
 COMPONENT_METADATA, PROTOCOL_VERSION = 397, 300
 """Messages that pymavlink names nowhere."""
-_PARAMETER_METADATA = 1
+_PARAMETER_METADATA, _EVENTS_METADATA, _ACTUATORS_METADATA = 1, 4, 5
+"""COMP_METADATA_TYPE."""
 _TYPES = {
     int(mavlink.MAV_PARAM_TYPE_INT8): "Int8",
     int(mavlink.MAV_PARAM_TYPE_INT16): "Int16",
@@ -34,9 +37,25 @@ def parameters_file(parameters: tuple[Parameter, ...], obeyed: frozenset[str]) -
 @cache
 def general_file(parameters: tuple[Parameter, ...], obeyed: frozenset[str]) -> bytes:
     """Return the list of the descriptions, with the checksum of each."""
-    crc = checksum(parameters_file(parameters, obeyed))
-    entry = {"type": _PARAMETER_METADATA, "uri": f"mftp://{PARAMETERS_PATH}", "fileCrc": crc}
-    return _compressed({"version": 1, "metadataTypes": [entry]})
+    files = (
+        (_PARAMETER_METADATA, PARAMETERS_PATH, parameters_file(parameters, obeyed)),
+        (_EVENTS_METADATA, EVENTS_PATH, events_file()),
+        (_ACTUATORS_METADATA, ACTUATORS_PATH, actuators_file()),
+    )
+    entries = [{"type": kind, "uri": f"mftp://{path}", "fileCrc": checksum(data)} for kind, path, data in files]
+    return _compressed({"version": 1, "metadataTypes": entries})
+
+
+@cache
+def events_file() -> bytes:
+    """Return the description of the events."""
+    return _compressed(events_description())
+
+
+@cache
+def actuators_file() -> bytes:
+    """Return the description of the outputs."""
+    return _compressed(actuators_description())
 
 
 def _described(parameter: Parameter, obeyed: frozenset[str]) -> dict[str, str | float]:

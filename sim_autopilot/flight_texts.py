@@ -47,8 +47,8 @@ def flight_texts(
     if memory.armed_ns is None:
         return said
     told = [*said, *_way(start, memory, config)]
-    if start.armed_ns is None and memory.ground_station:
-        told.append((_log_name(memory, config), None))
+    if start.armed_ns is None:
+        told.append(_log(memory, config))
     return told
 
 
@@ -117,6 +117,8 @@ def _return(memory: AutopilotMemory, config: AutopilotConfig) -> Said:
     return text, EventCode(name="vrtl_return_at", levels=INFO, arguments=arguments)
 
 
-def _log_name(memory: AutopilotMemory, config: AutopilotConfig) -> str:
+def _log(memory: AutopilotMemory, config: AutopilotConfig) -> Said:
     began = datetime.fromtimestamp(memory.now.t_ns // 1_000_000_000, UTC)
-    return f"[logger] ./{config.firmware.logs.path.format(began, 0)}\t"
+    arguments = struct.pack("<HBBBBB", *began.timetuple()[:6])
+    event = EventCode(name="logger_open_file_time", levels=INFO, arguments=arguments)
+    return f"[logger] ./{config.firmware.logs.path.format(began, 0)}", event

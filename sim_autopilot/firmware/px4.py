@@ -8,7 +8,16 @@ from functools import partial
 from types import MappingProxyType
 
 from link.mavlink.dialect import mavlink
-from sim_autopilot.component_metadata import GENERAL_PATH, PARAMETERS_PATH, general_file, parameters_file
+from sim_autopilot.actuator_metadata import ACTUATORS_PATH
+from sim_autopilot.component_metadata import (
+    GENERAL_PATH,
+    PARAMETERS_PATH,
+    actuators_file,
+    events_file,
+    general_file,
+    parameters_file,
+)
+from sim_autopilot.event_metadata import EVENTS_PATH
 from sim_autopilot.file_store import Shown
 from sim_autopilot.firmware.firmware import (
     Firmware,
@@ -65,6 +74,8 @@ _OBEYED_NAMES = frozenset(parameter.name for parameter in OBEYED)
 def _files(parameters: tuple[Parameter, ...], _values: Values) -> Shown:
     return {
         GENERAL_PATH: partial(general_file, parameters, _OBEYED_NAMES),
+        ACTUATORS_PATH: actuators_file,
+        EVENTS_PATH: events_file,
         PARAMETERS_PATH: partial(parameters_file, parameters, _OBEYED_NAMES),
     }
 

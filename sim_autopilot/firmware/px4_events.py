@@ -34,7 +34,13 @@ COMPANION_LOST = "Connection to mission computer lost"
 COMPANION_BACK = "Onboard controller regained"
 INFO = 0x66
 _BY_COMMAND, _BY_LANDING, _BY_WAITING = b"\x04", b"\x06", b"\x07"
-"""Of px4::enums::arm_disarm_reason_t."""
+"""Of DISARM_REASONS."""
+DISARM_REASONS: Mapping[int, tuple[str, str]] = {
+    4: ("command_external", "external command"),
+    6: ("auto_disarm_land", "landing"),
+    7: ("auto_disarm_preflight", "auto preflight disarming"),
+}
+"""Name and words by the number in the events about motors: px4::enums::arm_disarm_reason_t."""
 _OFFBOARD_BIT = 1 << 14
 """Of the modes that a check bars: NAVIGATION_STATE_OFFBOARD."""
 EVENTS: Mapping[str, EventCode] = {

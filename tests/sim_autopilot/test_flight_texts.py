@@ -84,7 +84,12 @@ def test_a_companion_without_a_ground_station_gets_the_same_as_events_and_no_tex
     pilot = Pilot(px4())
     flown_by_mode(pilot)
     assert not pilot.all("STATUSTEXT")
-    names = ("commander_armed_by", "navigator_takeoff_default_alt", "commander_takeoff_detected")
+    names = (
+        "commander_armed_by",
+        "navigator_takeoff_default_alt",
+        "logger_open_file_time",
+        "commander_takeoff_detected",
+    )
     assert [event.id for event in pilot.all("EVENT")] == [event_id(name) for name in names]
 
 

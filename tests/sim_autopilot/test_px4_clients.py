@@ -1,5 +1,9 @@
 """What client programs ask of PX4 besides flying: calibration, versions and metadata, and the end of a mission."""
 
+import json
+import lzma
+from math import nan
+
 import pytest
 
 from link.mavlink.dialect import mavlink
@@ -80,6 +84,38 @@ def test_the_metadata_that_are_told_of_can_be_read() -> None:
     told = pilot.last("COMPONENT_METADATA")
     assert told.uri == b"mftp://etc/extras/component_general.json.xz"
     assert checksum(FileClient(pilot).read(told.uri.removeprefix(b"mftp://"))) == told.file_crc
+
+
+def test_every_event_that_is_sent_is_described_in_the_metadata() -> None:
+    pilot = Pilot()
+    files = FileClient(pilot)
+    general = json.loads(lzma.decompress(files.read(b"etc/extras/component_general.json.xz")))
+    (listed,) = (entry for entry in general["metadataTypes"] if entry["type"] == 4)
+    file = files.read(listed["uri"].removeprefix("mftp://").encode())
+    assert checksum(file) == listed["fileCrc"]
+    events = json.loads(lzma.decompress(file))["components"]["1"]["event_groups"]["default"]["events"]
+    pilot.step(command(mavlink.MAV_CMD_NAV_TAKEOFF, *(nan,) * 7))
+    pilot.step(arm())
+    pilot.run(8.0)
+    pilot.acknowledged(command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0.0))
+    pilot.acknowledged(command(mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH))
+    pilot.run_until(lambda: not pilot.is_armed(), 60.0)
+    sent = [event.id for event in pilot.all("EVENT")]
+    names = {events[str(one & 0xFFFFFF)]["name"] for one in sent}
+    assert {"commander_armed_by", "logger_open_file_time", "commander_takeoff_detected", "vrtl_return_at"} <= names
+    said = events[str(sent[0] & 0xFFFFFF)]
+    assert (said["message"], said["arguments"][0]["type"]) == ("Armed by {1}", "px4::arm_disarm_reason_t")
+
+
+def test_the_outputs_that_are_described_have_their_parameters_and_drive_four_motors() -> None:
+    pilot = Pilot()
+    described = json.loads(lzma.decompress(FileClient(pilot).read(b"etc/extras/actuators.json.xz")))
+    (subgroup,) = described["outputs_v1"][0]["subgroups"]
+    (function,) = (one["name"] for one in subgroup["per-channel-parameters"])
+    values = pilot.node.memory.values
+    names = [function.replace("${i}", str(channel["param-index"])) for channel in subgroup["channels"]]
+    driven = {str(round(values[name])) for name in names}
+    assert driven == set(described["functions_v1"])
 
 
 def test_a_mission_that_ends_in_the_air_is_followed_by_hold() -> None:
