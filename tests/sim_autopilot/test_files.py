@@ -53,7 +53,7 @@ def test_arducopters_parameter_file_holds_every_parameter(copter_files: FileClie
 
 def test_px4_describes_its_parameters_in_a_file_whose_checksum_is_told(px4_files: FileClient) -> None:
     general = json.loads(lzma.decompress(px4_files.read(GENERAL)))
-    (entry,) = general["metadataTypes"]
+    (entry,) = (one for one in general["metadataTypes"] if one["type"] == 1)
     packed = px4_files.read(entry["uri"].removeprefix("mftp://").encode())
     assert checksum(packed) == entry["fileCrc"]
     described = {one["name"]: one for one in json.loads(lzma.decompress(packed))["parameters"]}
