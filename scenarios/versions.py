@@ -5,7 +5,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from sim_autopilot.physics.compiled import source_digest
+from link.compiled import source_digest
 
 _PACKAGES = ("companion", "link", "scenarios", "sim_autopilot")
 _NUMERICS = ("daqp", "filterpy", "numba", "numpy", "osqp", "pymavlink", "scipy")

@@ -4,7 +4,7 @@ Variables: the jerk of each block, then one slack >= 0 each for speed, accelerat
 floor, height. Minimise half of the integral of `e'Qe + r (u - u_ref)^2`, `e` the error of [p, v, a], plus `e'Pe` at
 the horizon's end with P of the infinite-horizon problem (algebraic Riccati equation), plus an exact penalty on the
 slacks. The jerk's bounds are hard, all others soft: with finite numbers the programme is always feasible.
-All matrices are built once; a solve only makes vectors, in compiled calls.
+All matrices are built once; a plan only makes vectors, in compiled calls.
 """
 
 from dataclasses import dataclass
@@ -16,10 +16,6 @@ from scipy.linalg import solve_continuous_are
 from companion.data import Array
 from companion.planning.condensed import AxisModel
 from companion.planning.config import MpcConfig
-from companion.planning.qp import QpSolution, QpSolver
-
-Bounds = tuple[Array, Array]
-"""Lower and upper (c,), as `envelope.bound_rows` has them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -31,7 +27,7 @@ class AxisProblem:
         H: (q, q) Hessian over the m moves and the slacks.
         A: (c, q) constraint matrix, rows as `envelope.bound_rows` orders them.
         from_state: (m, 3) gradient with respect to the moves per state.
-        from_reference: (m, 3 n) the same per position, velocity and acceleration reference.
+        from_reference: (3 n, m) the same, transposed, per position, velocity and acceleration reference.
         move_weight: (m,) the same per jerk reference.
         slack_gradient: (q - m,) the penalty's slope.
     """
@@ -44,28 +40,36 @@ class AxisProblem:
     move_weight: Array
     slack_gradient: Array
 
-    def gradient(self, x: Array, reference: Array, jerk_m_s3: Array) -> Array:
-        """Return the linear term (q,) for the state `x` (3,), a reference (3, n) of p, v, a, and one (m,) of jerk."""
-        weights = (self.from_state, self.from_reference, self.move_weight, self.slack_gradient)
-        return linear_term(weights, x, reference, jerk_m_s3)
-
-    def solve(self, solver: QpSolver, x: Array, reference: Array, jerk_m_s3: Array, bounds: Bounds) -> QpSolution:
-        """Return the moves (m,) and slacks that are best from the state `x` (3,)."""
-        return solver.solve(self.H, self.gradient(x, reference, jerk_m_s3), self.A, *bounds, None)
+    @property
+    def weights(self) -> tuple[Array, Array, Array]:
+        """Those of `linear_term`, the same whatever slacks there are."""
+        return self.from_state, self.from_reference, self.move_weight
 
 
 @njit(cache=True)
-def linear_term(weights: tuple[Array, Array, Array, Array], x: Array, reference: Array, jerk: Array) -> Array:
-    """Return the linear term (q,); `weights` are the problem's, the rest as `AxisProblem.gradient` takes them."""
-    from_state, from_reference, move_weight, slack_gradient = weights
+def linear_term(
+    weights: tuple[Array, Array, Array], slack_gradient: Array, x: Array, reference: Array, jerk: Array
+) -> Array:
+    """Return the linear term (q,) of a programme.
+
+    Args:
+        weights: as `AxisProblem.weights` has them.
+        slack_gradient: (q - m,).
+        x: (3,) the state.
+        reference: (3, n) of position, velocity, acceleration.
+        jerk: (m,) the reference of the moves.
+    """
+    from_state, from_reference, move_weight = weights
     moves, nodes = len(move_weight), reference.shape[1]
     term = np.empty(moves + len(slack_gradient))
     for move in range(moves):
         slope = from_state[move, 0] * x[0] + from_state[move, 1] * x[1] + from_state[move, 2] * x[2]
-        for rate in range(3):
-            for node in range(nodes):
-                slope -= from_reference[move, rate * nodes + node] * reference[rate, node]
         term[move] = slope - move_weight[move] * jerk[move]
+    for rate in range(3):
+        for node in range(nodes):
+            wanted = reference[rate, node]
+            for move in range(moves):  # innermost, since only sums that are apart are computed side by side
+                term[move] -= from_reference[rate * nodes + node, move] * wanted
     term[moves:] = slack_gradient
     return term
 
@@ -86,7 +90,7 @@ def make_axis_problem(model: AxisModel, config: MpcConfig, *, has_floor: bool) -
         H=0.5 * (H + H.T),
         A=_constraints(model, moves, nodes, slacks),
         from_state=np.ascontiguousarray(forced.T @ weight @ free),
-        from_reference=np.ascontiguousarray(forced.T @ weight),
+        from_reference=np.ascontiguousarray(weight @ forced),
         move_weight=move_weight,
         slack_gradient=np.full(slacks, config.slack_weight),
     )

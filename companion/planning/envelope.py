@@ -76,7 +76,10 @@ MINOR_PUSH_FACTOR = 1.1
 @njit(cache=True)
 def left(norm: float, used: Array) -> Array:
     """Return what is left of a norm limit beside `used` (k,)."""
-    return np.sqrt(np.maximum(norm * norm - used * used, (MINOR_SHARE_MIN * norm) ** 2))
+    rest, least = np.empty_like(used), (MINOR_SHARE_MIN * norm) ** 2
+    for i in range(len(used)):
+        rest[i] = math.sqrt(max(norm * norm - used[i] * used[i], least))
+    return rest
 
 
 @njit(cache=True)
@@ -114,18 +117,19 @@ def minor_share(
 
     Args:
         major: (3,) position, velocity and acceleration of the major axis.
-        jerk: (m,) its plan.
+        jerk: its plan, the first m of (q,).
         forced_v: (n, m) its velocity per jerk.
         norms: (3,) of speed, acceleration and jerk.
         node_s: (n,).
         move_s: (m,).
     """
     velocity = major[1] + major[2] * node_s
+    plan = jerk[: len(move_s)]
     for node in range(len(node_s)):
-        for move in range(len(jerk)):
-            velocity[node] += forced_v[node, move] * jerk[move]
-    push = major[2] + np.cumsum(move_s * jerk)
-    return left(norms[0], velocity), left(norms[1], push), left(norms[2], jerk)
+        for move in range(len(plan)):
+            velocity[node] += forced_v[node, move] * plan[move]
+    push = major[2] + np.cumsum(move_s * plan)
+    return left(norms[0], velocity), left(norms[1], push), left(norms[2], plan)
 
 
 @njit(cache=True)
@@ -152,13 +156,19 @@ def bound_rows(
     upper = np.full(len(lower), np.inf)
     lower[:moves], upper[:moves] = -jerk, jerk
     lower[moves:velocity] = 0.0
-    free = v + a * node_s
-    lower[velocity : velocity + nodes] = -velocity_ceiling(down, -v, -a, braking, turning, node_s) - free
-    upper[velocity + nodes : acceleration] = velocity_ceiling(up, v, a, braking, turning, node_s) - free
-    lower[acceleration : acceleration + moves] = -acceleration_ceiling(push, -a, turning, end_s) - a
-    upper[acceleration + moves : acceleration + 2 * moves] = acceleration_ceiling(push, a, turning, end_s) - a
-    if len(floor):
-        lower[acceleration + 2 * moves :] = floor - (x[0] + (v + 0.5 * a * node_s) * node_s)
+    slowest = velocity_ceiling(down, -v, -a, braking, turning, node_s)
+    fastest = velocity_ceiling(up, v, a, braking, turning, node_s)
+    for node in range(nodes):
+        free = v + a * node_s[node]
+        lower[velocity + node] = -slowest[node] - free
+        upper[velocity + nodes + node] = fastest[node] - free
+    least, most = acceleration_ceiling(push, -a, turning, end_s), acceleration_ceiling(push, a, turning, end_s)
+    for move in range(moves):
+        lower[acceleration + move] = -least[move] - a
+        upper[acceleration + moves + move] = most[move] - a
+    for node in range(len(floor)):
+        fallen = x[0] + (v + 0.5 * a * node_s[node]) * node_s[node]
+        lower[acceleration + 2 * moves + node] = floor[node] - fallen
     return lower, upper
 
 

@@ -11,88 +11,107 @@ from functools import lru_cache
 import numpy as np
 
 from companion.data import Array, FlightLimits
-from companion.planning.axis_qp import Bounds, make_axis_problem
+from companion.planning.axis_qp import make_axis_problem
 from companion.planning.brake import brake
 from companion.planning.condensed import forced_response, free_response, make_axis_model
 from companion.planning.config import MpcConfig
-from companion.planning.envelope import major_bounds, minor_bounds, vertical_bounds
 from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Trajectory
-from companion.planning.horizon import Horizon, make_horizon
-from companion.planning.qp import make_solver
-from companion.planning.requests import has_finite_target, with_finite_state
+from companion.planning.programmes import Grid, Numbers, PlainLimits, Posed, Statics, bound_minor, path_of, pose
+from companion.planning.qp import Programme, make_solver
+from companion.planning.requests import with_finite_state
+from companion.planning.resample import make_resampler
 
 
 class Mpc:
-    """Holds the constant matrices and the solver; a plan depends on its arguments only."""
+    """Holds the constant matrices and the programmes; a plan depends on its arguments only."""
 
     def __init__(self, config: MpcConfig) -> None:
-        self._config = config
-        self._solver = make_solver(config.solver)
-        self._model = make_axis_model(np.array(config.moves_s), config.node_spacing_max_s)
-        level = make_axis_problem(self._model, config, has_floor=False)
-        self._problems = (level, level, make_axis_problem(self._model, config, has_floor=True))
-        self._nodes_s = np.append(0.0, self._model.node_s)
+        solver = make_solver(config.solver)
+        model = make_axis_model(np.array(config.moves_s), config.node_spacing_max_s)
+        level, upright = (make_axis_problem(model, config, has_floor=floored) for floored in (False, True))
+        self._level, self._upright = (Programme(solver, problem.H, problem.A) for problem in (level, upright))
+        self._moves_s = config.moves_s
+        self._nodes_s = np.append(0.0, model.node_s)
         self._node_times_s = tuple(self._nodes_s.tolist())
+        grid = Grid(nodes_s=self._nodes_s, move_s=model.move_s, forced_v=model.forced_v, end_node=model.end_node)
+        numbers = Numbers(
+            axes_time_s=config.axes_time_s,
+            intercept_fraction=config.intercept_fraction,
+            intercept_time_min_s=config.intercept_time_min_s,
+            lateral_speed_fraction=config.lateral_speed_fraction,
+        )
+        slack_gradients = (level.slack_gradient, upright.slack_gradient)
+        self._statics: Statics = ((*grid,), (*numbers,), level.weights, slack_gradients)
 
     def plan(self, memory: ReferenceState | None, request: PlanRequest) -> tuple[ReferenceState, PlanResult]:
         """Return the next state as memory, and the plan."""
         request = with_finite_state(memory, request)
-        result = self._plan(request) if has_finite_target(request) else brake(request, PlanStatus.FAILED, 0)
+        limits = limits_of(request.limits)
+        posed = self._posed(request, limits)
+        result = self._plan(request, limits, posed) if posed.is_finite else brake(request, PlanStatus.FAILED, 0)
         return result.next_state, result
 
-    def _plan(self, request: PlanRequest) -> PlanResult:
+    def _plan(self, request: PlanRequest, limits: PlainLimits, posed: Posed) -> PlanResult:
         """Return the plan of a request without NaN."""
-        horizon = make_horizon(request, self._model, self._nodes_s, self._config)
-        moves = np.empty((len(self._model.move_s), 3))
-        iterations, excess = 0, 0.0
-        for axis, problem in enumerate(self._problems):
-            bounds = self._bounds(horizon, request.limits, axis, moves[:, 0])
-            x, jerk = horizon.state[:, axis], horizon.jerk_m_s3[axis]
-            solution = problem.solve(self._solver, x, horizon.reference[:, axis], jerk, bounds)
-            iterations += solution.iterations
-            if solution.x is None:
-                return brake(request, solution.status, iterations)
-            moves[:, axis] = solution.x[: len(moves)]
-            excess = max(excess, float(solution.x[len(moves) :].max()))
-        return self._result(request, horizon, moves, excess, iterations)
+        major_term, minor_term, vertical_term = posed.linear_terms
+        major = self._level.solve(major_term, *posed.major)
+        if major.x is None:
+            return brake(request, major.status, major.iterations)
+        minor = self._level.solve(minor_term, *bound_minor(posed.state, major.x, limits, self._statics[0]))
+        vertical = self._upright.solve(vertical_term, *posed.vertical)
+        iterations = major.iterations + minor.iterations + vertical.iterations
+        if minor.x is None or vertical.x is None:
+            return brake(request, minor.status if minor.x is None else vertical.status, iterations)
+        return self._result(request, posed, (major.x, minor.x, vertical.x), iterations)
 
-    def _bounds(self, horizon: Horizon, limits: FlightLimits, axis: int, major_jerk: Array) -> Bounds:
-        """Return the bounds of an axis's programme."""
-        model, x = self._model, horizon.state
-        norms = np.array((limits.speed_max_m_s, limits.acceleration_max_m_s2, limits.jerk_max_m_s3))
-        match axis:
-            case 0:
-                way = np.array((horizon.split_rad, horizon.minor_push_m_s2, self._config.lateral_speed_fraction))
-                target_v, target_a = horizon.target_velocity_m_s[1], horizon.target_acceleration_m_s2[1]
-                return major_bounds(x, target_v, target_a, way, norms, model.node_s, model.end_s)
-            case 1:
-                return minor_bounds(x, major_jerk, model.forced_v, norms, model.node_s, model.move_s, model.end_s)
-            case _:
-                descent_m_s, climb_m_s = limits.descent_max_m_s, limits.climb_max_m_s
-                vertical = (descent_m_s, climb_m_s, limits.vertical_acceleration_max_m_s2, limits.jerk_max_m_s3)
-                return vertical_bounds(x[:, 2], horizon.floor_m, vertical, model.node_s, model.end_s)
+    def _posed(self, request: PlanRequest, limits: PlainLimits) -> Posed:
+        target, state = request.target, request.state
+        resampler = make_resampler(tuple(target.offset_s.tolist()), self._node_times_s)
+        return pose(
+            (state.position_enu_m, state.velocity_enu_m_s, state.acceleration_enu_m_s2),
+            (target.position_enu_m, target.velocity_enu_m_s, target.acceleration_enu_m_s2, request.floor_enu_m),
+            limits,
+            (resampler.left, resampler.weights),
+            self._statics,
+        )
 
     def _result(
-        self, request: PlanRequest, horizon: Horizon, moves: Array, excess: float, iterations: int
+        self, request: PlanRequest, posed: Posed, solved: tuple[Array, Array, Array], iterations: int
     ) -> PlanResult:
         """Return the plan in W: at 0, at the nodes, and at the request's `dt_s`."""
-        free, forced = _responses(self._node_times_s, request.dt_s, self._config.moves_s)
-        path = (free @ horizon.state + forced @ moves) @ horizon.turn
-        position = path[0] + horizon.origin_enu_m
+        maps = _responses(self._node_times_s, request.dt_s, self._moves_s)
+        path = path_of(posed.origin_enu_m, posed.direction, posed.state, solved, maps)
+        slacks = [slack for x in solved for slack in x.tolist()[len(self._moves_s) :]]
+        position, velocity, acceleration = path[:, :-1]
+        next_position, next_velocity, next_acceleration = path[:, -1]
         return PlanResult(
             next_state=ReferenceState(
-                position_enu_m=position[-1], velocity_enu_m_s=path[1, -1], acceleration_enu_m_s2=path[2, -1]
+                position_enu_m=next_position,
+                velocity_enu_m_s=next_velocity,
+                acceleration_enu_m_s2=next_acceleration,
             ),
             trajectory=Trajectory(
                 offset_s=self._nodes_s,
-                position_enu_m=position[:-1],
-                velocity_enu_m_s=path[1, :-1],
-                acceleration_enu_m_s2=path[2, :-1],
+                position_enu_m=position,
+                velocity_enu_m_s=velocity,
+                acceleration_enu_m_s2=acceleration,
             ),
             status=PlanStatus.SOLVED,
-            limit_excess=excess,
+            limit_excess=max(0.0, *slacks),
             iterations=iterations,
         )
+
+
+def limits_of(limits: FlightLimits) -> PlainLimits:
+    """Return the limits as the compiled calls take them."""
+    return (
+        limits.speed_max_m_s,
+        limits.climb_max_m_s,
+        limits.descent_max_m_s,
+        limits.acceleration_max_m_s2,
+        limits.vertical_acceleration_max_m_s2,
+        limits.jerk_max_m_s3,
+    )
 
 
 @lru_cache(maxsize=64)

@@ -17,7 +17,7 @@ from companion.data import Array
 from companion.planning.brake import brake
 from companion.planning.config import ReportMpcConfig, ReportReading, SolverKind
 from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Trajectory
-from companion.planning.qp import QpSolution, make_solver
+from companion.planning.qp import Programme, QpSolution, make_solver
 from companion.planning.requests import has_finite_target, with_finite_state
 from companion.planning.resample import make_resampler
 
@@ -79,11 +79,10 @@ class ReportMpc:
     def __init__(self, config: ReportMpcConfig) -> None:
         self._factor = config.velocity_factor
         self._numbers = NUMBERS[config.reading]
-        self._solver = make_solver(SolverKind.DAQP)
         self._free, self._forced = euler_predictions(self._numbers.prediction_steps, self._numbers.control_steps)
         self._gradient = self._forced.T * _state_weights(self._numbers)
-        self._H = _hessian(self._numbers, self._gradient @ self._forced)
-        self._A = _constraints(self._numbers, self._forced)
+        H, A = _hessian(self._numbers, self._gradient @ self._forced), _constraints(self._numbers, self._forced)
+        self._programme = Programme(make_solver(SolverKind.DAQP), H, A)
 
     def plan(self, memory: ReportMemory | None, request: PlanRequest) -> tuple[ReportMemory, PlanResult]:
         """Return the memory and the plan; the virtual model takes whole steps of 0.01 s, the rest waits."""
@@ -123,9 +122,7 @@ class ReportMpc:
         moves[0] -= self._numbers.change_weight * jerk_m_s3
         above_road = -self._free[:steps] @ x if axis == 2 else np.full(steps, -np.inf)
         lower = np.append(above_road, 0.0)
-        return self._solver.solve(
-            self._H, np.append(moves, SLACK_WEIGHT), self._A, lower, np.full(steps + 1, np.inf), None
-        )
+        return self._programme.solve(np.append(moves, SLACK_WEIGHT), lower, np.full(steps + 1, np.inf))
 
     def _predicted(self, state: Array, moves: Array) -> Trajectory:
         """Return the prediction for the state (3, 3) and the moves (c, 3)."""

@@ -71,7 +71,7 @@ class ProportionalNavigation:
     ) -> list[tuple[bool, ReferenceState]]:
         """Return which law was in force and the state after each instant's step of `dt_s`."""
         resampler = make_resampler(tuple(request.target.offset_s.tolist()), instants)
-        targets, floors = resampler.apply(request.target), resampler.linear @ request.floor_enu_m
+        targets, floors = resampler.apply(request.target), resampler.line(request.floor_enu_m)
         state, states = request.state, []
         for position, velocity, acceleration, floor in zip(*targets, floors, strict=True):
             offset, rate = position - state.position_enu_m, velocity - state.velocity_enu_m_s

@@ -5,10 +5,11 @@ solver state survives a call, so the same problem gives the same bits in any ord
 """
 
 import importlib
-from dataclasses import dataclass
-from typing import Any, Protocol
+import math
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
+from numba import njit
 
 from companion.data import Array
 from companion.planning.config import SolverKind
@@ -16,8 +17,7 @@ from companion.planning.guidance import PlanStatus
 from companion.planning.requests import are_finite
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class QpSolution:
+class QpSolution(NamedTuple):
     """A solver's answer; `x` (n,) is None unless the status is SOLVED."""
 
     status: PlanStatus
@@ -26,10 +26,10 @@ class QpSolution:
 
 
 class QpSolver(Protocol):
-    """What the planners ask of a solver."""
+    """What a programme asks of a solver."""
 
-    def solve(self, H: Array, f: Array, A: Array, lower: Array, upper: Array, warm_start: Array | None) -> QpSolution:
-        """Return the minimiser of one problem.
+    def call(self, H: Array, f: Array, A: Array, lower: Array, upper: Array) -> tuple[PlanStatus, Array | None, int]:
+        """Return the status, the minimiser of one problem if there is one, and the iterations.
 
         Args:
             H: (n, n) symmetric positive definite.
@@ -37,8 +37,49 @@ class QpSolver(Protocol):
             A: (m, n).
             lower: (m,), -inf where there is no bound.
             upper: (m,), +inf where there is no bound.
-            warm_start: (n,) guess of the minimiser, or None.
         """
+
+
+class Programme:
+    """Minimise `x'Hx / 2 + f'x` with `lower <= Ax <= upper`, for one (n, n) H and one (m, n) A.
+
+    It shows no solver what none may see: DAQP calls problems with NaN or with crossed bounds solved.
+    """
+
+    def __init__(self, solver: QpSolver, H: Array, A: Array) -> None:
+        self._solver, self._H, self._A = solver, H, A
+        self._is_sound = are_finite(H, A)
+
+    def solve(self, f: Array, lower: Array, upper: Array) -> QpSolution:
+        """Return the minimiser for `f` (n,) and bounds (m,), where -inf and +inf mean none."""
+        fault = fault_of(f, lower, upper) if self._is_sound else _NOT_FINITE
+        if fault != _NO_FAULT:
+            status = PlanStatus.INFEASIBLE if fault == _CROSSED else PlanStatus.FAILED
+            return QpSolution(status, None, 0)
+        status, x, iterations = self._solver.call(self._H, f, self._A, lower, upper)
+        if status is not PlanStatus.SOLVED or x is None:
+            return QpSolution(status, None, iterations)
+        if not are_finite(x):
+            return QpSolution(PlanStatus.FAILED, None, iterations)
+        return QpSolution(status, x, iterations)
+
+
+_NO_FAULT, _NOT_FINITE, _CROSSED = range(3)
+
+
+@njit(cache=True)
+def fault_of(f: Array, lower: Array, upper: Array) -> int:
+    """Return what is wrong with a linear term and bounds: nothing, a number that is not finite, or crossed bounds."""
+    total, crossed = 0.0, False
+    for i in range(len(f)):
+        total += f[i] * f[i]
+    for i in range(len(lower)):
+        if math.isnan(lower[i]) or math.isnan(upper[i]):
+            return _NOT_FINITE
+        crossed = crossed or lower[i] > upper[i]
+    if not math.isfinite(total):
+        return _NOT_FINITE
+    return _CROSSED if crossed else _NO_FAULT
 
 
 DAQP_STATUS = {
@@ -70,40 +111,17 @@ OSQP_STATUS = {
 """All of OSQP's statuses; unknown ones count as FAILED."""
 
 
-def refusal(H: Array, f: Array, A: Array, lower: Array, upper: Array) -> QpSolution | None:
-    """Return the answer to a problem that no solver may see, or None.
-
-    DAQP calls problems with NaN or with crossed bounds solved.
-    """
-    if not are_finite(f, H, A):
-        return QpSolution(status=PlanStatus.FAILED, x=None, iterations=0)
-    if np.count_nonzero(lower <= upper) == len(lower):
-        return None
-    has_nan = bool(np.isnan(lower).any() or np.isnan(upper).any())
-    return QpSolution(status=PlanStatus.FAILED if has_nan else PlanStatus.INFEASIBLE, x=None, iterations=0)
-
-
 class DaqpSolver:
     """DAQP, a dual active-set method (Arnstrom, Bemporad, Axehill 2022)."""
 
     def __init__(self) -> None:
         self._daqp: Any = importlib.import_module("daqp")
 
-    def solve(self, H: Array, f: Array, A: Array, lower: Array, upper: Array, warm_start: Array | None) -> QpSolution:
-        """Return the minimiser; the meaning of the arguments is the interface's."""
-        refused = refusal(H, f, A, lower, upper)
-        if refused is not None:
-            return refused
-        x, flag, iterations = self.call(H, f, A, lower, upper, warm_start)
-        return _solution(DAQP_STATUS.get(flag, PlanStatus.FAILED), x, iterations)
-
-    def call(
-        self, H: Array, f: Array, A: Array, lower: Array, upper: Array, warm_start: Array | None
-    ) -> tuple[Array, int, int]:
-        """Return what the library makes of a problem, and nothing else: `x`, its exit flag, its iterations."""
+    def call(self, H: Array, f: Array, A: Array, lower: Array, upper: Array) -> tuple[PlanStatus, Array | None, int]:
+        """Return the status, the minimiser and the iterations; the meaning of the arguments is the interface's."""
         sense = np.zeros(len(lower), dtype=np.int32)
-        x, _, flag, info = self._daqp.solve(H, f, A, upper, lower, sense, primal_start=warm_start)
-        return x, flag, int(info["iterations"])
+        x, _, flag, info = self._daqp.solve(H, f, A, upper, lower, sense)
+        return DAQP_STATUS.get(flag, PlanStatus.FAILED), x, int(info["iterations"])
 
 
 class OsqpSolver:
@@ -120,15 +138,12 @@ class OsqpSolver:
         self._osqp: Any = importlib.import_module("osqp")
         self._sparse: Any = importlib.import_module("scipy.sparse")
 
-    def solve(self, H: Array, f: Array, A: Array, lower: Array, upper: Array, warm_start: Array | None) -> QpSolution:
-        """Return the minimiser; the meaning of the arguments is the interface's."""
-        refused = refusal(H, f, A, lower, upper)
-        if refused is not None:
-            return refused
+    def call(self, H: Array, f: Array, A: Array, lower: Array, upper: Array) -> tuple[PlanStatus, Array | None, int]:
+        """Return the status, the minimiser and the iterations; the meaning of the arguments is the interface's."""
         try:
             L = np.linalg.cholesky(H)
         except np.linalg.LinAlgError:
-            return QpSolution(status=PlanStatus.FAILED, x=None, iterations=0)
+            return PlanStatus.FAILED, None, 0
         rows = np.linalg.solve(L, A.T).T
         length = np.maximum(np.linalg.norm(rows, axis=1), 1e-12)
         problem = self._osqp.OSQP()
@@ -145,21 +160,10 @@ class OsqpSolver:
             polishing=True,
             scaling=0,
         )
-        if warm_start is not None:
-            problem.warm_start(x=L.T @ warm_start)
         result = problem.solve(raise_error=False)
         status = OSQP_STATUS.get(self._osqp.SolverStatus(result.info.status_val).name, PlanStatus.FAILED)
         x = np.linalg.solve(L.T, result.x) if status is PlanStatus.SOLVED else None
-        return _solution(status, x, int(result.info.iter))
-
-
-def _solution(status: PlanStatus, x: Array | None, iterations: int) -> QpSolution:
-    """Return a solution whose `x` is there only if it may be used."""
-    if status is not PlanStatus.SOLVED or x is None:
-        return QpSolution(status=status, x=None, iterations=iterations)
-    if not are_finite(x):
-        return QpSolution(status=PlanStatus.FAILED, x=None, iterations=iterations)
-    return QpSolution(status=status, x=np.asarray(x, dtype=np.float64), iterations=iterations)
+        return status, x, int(result.info.iter)
 
 
 def make_solver(kind: SolverKind) -> QpSolver:

@@ -26,7 +26,8 @@ def with_finite_state(last: ReferenceState | None, request: PlanRequest) -> Plan
 
 def is_finite_state(state: ReferenceState) -> bool:
     """Return whether all nine numbers are finite."""
-    return are_finite(state.position_enu_m, state.velocity_enu_m_s, state.acceleration_enu_m_s2)
+    rows = (state.position_enu_m, state.velocity_enu_m_s, state.acceleration_enu_m_s2)
+    return math.isfinite(sum([sum(row.tolist()) for row in rows]))
 
 
 def has_finite_target(request: PlanRequest) -> bool:

@@ -1,4 +1,4 @@
-"""Resampling of a target onto the nodes of a horizon by constant matrices.
+"""Resampling of a target onto the nodes of a horizon by constant weights.
 
 Positions are cubic Hermite in position and velocity, velocities cubic Hermite in velocity and acceleration,
 accelerations linear. After the last sample the target goes on at its last velocity.
@@ -8,42 +8,72 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from numba import njit
+from numpy.typing import NDArray
 
 from companion.data import Array
 from companion.planning.guidance import Target
 
+VALUE, SLOPE, SLOPE_ENDING, LINEAR, LINEAR_ENDING = range(5)
+"""Weights of a sampled value and of a sampled derivative (s) in an interpolated value, and of a linear interpolation;
+those that are ending are zero after the last sample."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Resampler:
-    """Maps (k, n) from n samples to k nodes.
+    """Maps n samples to k nodes, each from the two samples around it.
 
     Attributes:
-        value: weight of a sampled value in an interpolated value.
-        slope: weight of a sampled derivative in an interpolated value, s.
-        slope_ending: the same, but zero after the last sample.
-        linear: linear interpolation, constant after the last sample.
-        linear_ending: the same, but zero after the last sample.
+        left: (k,) the place of the earlier sample.
+        weights: (5, k, 2) of the two samples, by kind: `VALUE` and so on.
     """
 
-    value: Array
-    slope: Array
-    slope_ending: Array
-    linear: Array
-    linear_ending: Array
+    left: NDArray[np.int64]
+    weights: Array
 
     def apply(self, target: Target) -> tuple[Array, Array, Array]:
         """Return position, velocity and acceleration (k, 3) of `target` at the nodes."""
-        velocity, acceleration = target.velocity_enu_m_s, target.acceleration_enu_m_s2
-        return (
-            self.value @ target.position_enu_m + self.slope @ velocity,
-            self.value @ velocity + self.slope_ending @ acceleration,
-            self.linear_ending @ acceleration,
-        )
+        path = (target.position_enu_m, target.velocity_enu_m_s, target.acceleration_enu_m_s2)
+        resampled = resampled_path(path, self.left, self.weights)
+        return resampled[0], resampled[1], resampled[2]
+
+    def line(self, samples: Array) -> Array:
+        """Return `samples` (n,) at the nodes (k,), linear, and after the last one as that."""
+        return resampled_line(samples, self.left, self.weights)
+
+
+@njit(cache=True)
+def resampled_path(path: tuple[Array, Array, Array], left: NDArray[np.int64], weights: Array) -> Array:
+    """Return position, velocity and acceleration (3, k, 3) of samples (n, 3) at the nodes of a `Resampler`."""
+    position, velocity, acceleration = path
+    resampled = np.zeros((3, len(left), 3))
+    for node in range(len(left)):
+        for side in range(2):
+            sample = min(left[node] + side, len(position) - 1)
+            value, slope = weights[VALUE, node, side], weights[SLOPE, node, side]
+            slope_ending, linear_ending = weights[SLOPE_ENDING, node, side], weights[LINEAR_ENDING, node, side]
+            for axis in range(3):
+                p, v, a = position[sample, axis], velocity[sample, axis], acceleration[sample, axis]
+                resampled[0, node, axis] += value * p + slope * v
+                resampled[1, node, axis] += value * v + slope_ending * a
+                resampled[2, node, axis] += linear_ending * a
+    return resampled
+
+
+@njit(cache=True)
+def resampled_line(samples: Array, left: NDArray[np.int64], weights: Array) -> Array:
+    """Return `samples` (n,) at the nodes (k,) of a `Resampler`, linear, and after the last one as that."""
+    resampled = np.empty(len(left))
+    last = len(samples) - 1
+    for node in range(len(left)):
+        linear = weights[LINEAR, node]
+        resampled[node] = linear[0] * samples[left[node]] + linear[1] * samples[min(left[node] + 1, last)]
+    return resampled
 
 
 @lru_cache(maxsize=64)
 def make_resampler(offset_s: tuple[float, ...], node_s: tuple[float, ...]) -> Resampler:
-    """Return the maps from samples at `offset_s`, rising, to nodes at `node_s`; nodes before the first are clamped.
+    """Return the weights from samples at `offset_s`, rising, to nodes at `node_s`; nodes before the first are clamped.
 
     Raises:
         ValueError: if there is no offset, or they do not rise.
@@ -51,34 +81,17 @@ def make_resampler(offset_s: tuple[float, ...], node_s: tuple[float, ...]) -> Re
     offsets, nodes = np.array(offset_s), np.array(node_s)
     if not offsets.size or (np.diff(offsets) <= 0.0).any():
         raise ValueError(f"the target's offsets must rise: {offset_s}")
-    linear = np.stack([np.interp(nodes, offsets, unit) for unit in np.eye(offsets.size)], axis=1)
-    value, slope = _hermite(offsets, nodes)
+    left = np.clip(np.searchsorted(offsets, nodes, side="right") - 1, 0, max(offsets.size - 2, 0))
+    step = np.diff(offsets, append=offsets[-1] + 1.0)[left]
+    s = np.clip((nodes - offsets[left]) / step, 0.0, float(offsets.size > 1))
+    weights = np.empty((5, nodes.size, 2))
+    weights[VALUE] = np.stack(((1.0 + 2.0 * s) * (1.0 - s) ** 2, s**2 * (3.0 - 2.0 * s)), axis=1)
+    weights[SLOPE] = np.stack((s * (1.0 - s) ** 2 * step, s**2 * (s - 1.0) * step), axis=1)
+    weights[LINEAR] = np.stack((1.0 - s, s), axis=1)
     beyond = nodes > offsets[-1] + 1e-9
-    value[beyond], slope[beyond] = 0.0, 0.0
-    value[beyond, -1] = 1.0
-    slope_ending = slope.copy()
-    slope[beyond, -1] = nodes[beyond] - offsets[-1]
-    return Resampler(
-        value=value,
-        slope=slope,
-        slope_ending=slope_ending,
-        linear=linear,
-        linear_ending=np.where(beyond[:, None], 0.0, linear),
-    )
-
-
-def _hermite(offsets: Array, nodes: Array) -> tuple[Array, Array]:
-    """Return the cubic Hermite weights of values and of derivatives, each (k, n)."""
-    value, slope = np.zeros((nodes.size, offsets.size)), np.zeros((nodes.size, offsets.size))
-    rows = np.arange(nodes.size)
-    if offsets.size == 1:
-        value[:, 0] = 1.0
-        return value, slope
-    left = np.clip(np.searchsorted(offsets, nodes, side="right") - 1, 0, offsets.size - 2)
-    step = offsets[left + 1] - offsets[left]
-    s = np.clip((nodes - offsets[left]) / step, 0.0, 1.0)
-    value[rows, left] = (1.0 + 2.0 * s) * (1.0 - s) ** 2
-    value[rows, left + 1] = s**2 * (3.0 - 2.0 * s)
-    slope[rows, left] = s * (1.0 - s) ** 2 * step
-    slope[rows, left + 1] = s**2 * (s - 1.0) * step
-    return value, slope
+    weights[SLOPE, beyond] = 0.0
+    weights[SLOPE_ENDING], weights[LINEAR_ENDING] = weights[SLOPE], weights[LINEAR]
+    weights[LINEAR_ENDING, beyond] = 0.0
+    last = int(offsets.size > 1)  # the place of the last sample of two
+    weights[SLOPE, beyond, last] = nodes[beyond] - offsets[-1]
+    return Resampler(left=left.astype(np.int64), weights=weights)

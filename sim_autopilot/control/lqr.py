@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import expm, solve_continuous_are
 
+from link.compiled import kernel
 from sim_autopilot.control.parameters import (
     HAS_POSITION,
     HAS_YAW,
@@ -26,7 +27,6 @@ from sim_autopilot.control.parameters import (
 )
 from sim_autopilot.data import Array
 from sim_autopilot.physics.airframe import GRAVITY_M_S2, Airframe
-from sim_autopilot.physics.compiled import kernel
 from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotation import euler_angles, wrapped
 

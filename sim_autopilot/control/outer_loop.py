@@ -12,6 +12,7 @@ against a limit.
 
 import math
 
+from link.compiled import kernel
 from sim_autopilot.control.parameters import (
     DISTURBANCE,
     HAS_ACCELERATION,
@@ -26,7 +27,6 @@ from sim_autopilot.control.parameters import (
 )
 from sim_autopilot.data import Array
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
-from sim_autopilot.physics.compiled import kernel
 from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotation import wrapped
 

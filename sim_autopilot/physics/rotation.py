@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from link.compiled import kernel
 from sim_autopilot.data import Array
-from sim_autopilot.physics.compiled import kernel
 
 
 @kernel

@@ -2,7 +2,6 @@ import importlib
 import math
 import pkgutil
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,7 +13,6 @@ from sim_autopilot import plant as plant_module
 from sim_autopilot.control.kinds import ControllerKind
 from sim_autopilot.data import Array, Reference, Surface
 from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, REPORT_AIRFRAME, Airframe
-from sim_autopilot.physics.compiled import source_digest
 from sim_autopilot.physics.contact import GEAR_HEIGHT_M
 from sim_autopilot.plant import PlantConfig, PlantMemory, fly, initial_plant
 from tests.sim_autopilot.flights import CALM, at_rest, driving, flown, going, holding, hovering
@@ -92,19 +90,6 @@ def test_every_kernel_equals_its_python(journey: Journey, monkeypatch: pytest.Mo
     compiled = journey.rows()
     interpret(monkeypatch)
     np.testing.assert_allclose(compiled, journey.rows(), rtol=1e-9, atol=1e-9)
-
-
-def test_machine_code_is_of_the_present_sources(monkeypatch: pytest.MonkeyPatch) -> None:
-    reported = []
-
-    def noted(*arguments: object) -> int:
-        reported.append(kernel_module.advance(*arguments))
-        return reported[-1]
-
-    monkeypatch.setattr(plant_module, "advance", noted)
-    fly(hovering(CONFIG, (0, 0, 5)), None, None, CALM, CONFIG, 0.01)
-    folders = [Path(package.__path__[0]) for package in (sim_autopilot.physics, sim_autopilot.control)]
-    assert reported == [source_digest(folders)]
 
 
 def test_fly_leaves_its_arguments_alone() -> None:

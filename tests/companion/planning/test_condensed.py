@@ -3,7 +3,7 @@ import pytest
 from scipy.integrate import trapezoid
 
 from companion.data import Array
-from companion.planning.axis_qp import make_axis_problem, terminal_cost
+from companion.planning.axis_qp import linear_term, make_axis_problem, terminal_cost
 from companion.planning.condensed import AxisModel, make_axis_model
 from companion.planning.config import MpcConfig
 
@@ -58,7 +58,8 @@ def test_the_programme_costs_what_a_rollout_costs() -> None:
         return float(0.5 * (integral + effort + error[-1] @ terminal_cost(config) @ error[-1]))
 
     z = np.append(u, [0.0, 0.0])
-    quadratic = 0.5 * z @ problem.H @ z + problem.gradient(x, reference, jerk) @ z
+    term = linear_term(problem.weights, problem.slack_gradient, x, reference, jerk)
+    quadratic = 0.5 * z @ problem.H @ z + term @ z
     assert quadratic == pytest.approx(cost(u) - cost(np.zeros_like(u)), rel=1e-9)
 
 

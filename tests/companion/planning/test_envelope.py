@@ -86,8 +86,7 @@ def test_kernels_are_their_python() -> None:
     share = major_share(*major)
     rows = (x, share[0], share[0], *share[1:], NO_FLOOR, MODEL.node_s, MODEL.end_s)
     problem = make_axis_problem(MODEL, CONFIG, has_floor=False)
-    weights = (problem.from_state, problem.from_reference, problem.move_weight, problem.slack_gradient)
-    term = (weights, x, rng.standard_normal((3, NODES)), plan)
+    term = (problem.weights, problem.slack_gradient, x, rng.standard_normal((3, NODES)), plan)
     for kernel, arguments in ((major_share, major), (minor_share, minor), (bound_rows, rows), (linear_term, term)):
         compiled, plain = np.hstack([*kernel(*arguments)]), np.hstack([*kernel.py_func(*arguments)])
         np.testing.assert_allclose(compiled, plain, rtol=1e-12, atol=1e-12)

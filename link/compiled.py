@@ -28,9 +28,19 @@ def kernel(function: Callable[P, R]) -> Kernel[P, R]:
     return cast("Kernel[P, R]", njit(fastmath=False, error_model="numpy")(function))
 
 
-def kept_kernel(function: Callable[P, R]) -> Kernel[P, R]:
-    """Compile `function` at its first call, with all that it calls, and keep that on disk."""
-    return cast("Kernel[P, R]", njit(cache=True, fastmath=False, error_model="numpy")(function))
+def kept_kernel(sources: int) -> Callable[[Callable[P, R]], Kernel[P, R]]:
+    """Compile a function at its first call, with all that it calls, and keep that on disk.
+
+    Args:
+        sources: the `source_digest` of all that it calls. It becomes part of the name by which the machine code is
+            kept, since numba's own key knows only the file of the function itself.
+    """
+
+    def kept(function: Callable[P, R]) -> Kernel[P, R]:
+        function.__qualname__ += f"_{sources:012x}"
+        return cast("Kernel[P, R]", njit(cache=True, fastmath=False, error_model="numpy")(function))
+
+    return kept
 
 
 def source_digest(folders: Iterable[Path]) -> int:

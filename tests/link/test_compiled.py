@@ -1,0 +1,63 @@
+"""Compiled functions that are kept on disk."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from link.compiled import source_digest
+
+INNER = """
+from link.compiled import kernel
+
+
+@kernel
+def inner(x: float) -> float:
+    return {factor} * x
+"""
+
+OUTER = """
+from pathlib import Path
+
+from inner import inner
+from link.compiled import kept_kernel, source_digest
+
+
+@kept_kernel(source_digest([Path(__file__).parent]))
+def outer(x: float) -> float:
+    return inner(x) + 1.0
+
+
+print(outer(10.0), len(outer.stats.cache_hits))
+"""
+
+
+def said(folder: Path, factor: float) -> list[float]:
+    """What a program says whose inner function multiplies by `factor`, and how often it found its code on disk."""
+    (folder / "inner.py").write_text(INNER.format(factor=factor))
+    (folder / "outer.py").write_text(OUTER)
+    root = str(Path(__file__).parents[2])
+    path = {"PYTHONPATH": root, "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run(
+        [sys.executable, "outer.py"], cwd=folder, env=path, capture_output=True, text=True, check=True, timeout=120
+    )
+    return [float(word) for word in done.stdout.split()]
+
+
+@pytest.mark.slow
+def test_kept_code_is_used_again_and_never_after_a_change_in_a_file_that_it_calls(tmp_path: Path) -> None:
+    assert said(tmp_path, 2.0) == [21.0, 0.0]
+    assert said(tmp_path, 2.0) == [21.0, 1.0]
+    assert said(tmp_path, 3.0) == [31.0, 0.0]
+
+
+def test_the_digest_knows_names_and_contents(tmp_path: Path) -> None:
+    first, second = tmp_path / "a.py", tmp_path / "b.py"
+    first.write_text("x = 1")
+    digests = [source_digest([tmp_path])]
+    first.write_text("x = 2")
+    digests.append(source_digest([tmp_path]))
+    first.rename(second)
+    digests.append(source_digest([tmp_path]))
+    assert len(set(digests)) == 3
