@@ -8,7 +8,7 @@ import re
 import struct
 from collections import Counter
 
-from link.mavlink.contents import message_of
+from link.mavlink.contents import frame_of, message_of
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.sequence import SequenceTracker
 from link.mavlink.signing import Signing
@@ -66,7 +66,8 @@ class MavlinkCodec:
         answers_version1: bool = False,
     ) -> None:
         self.signing = signing
-        self._pymavlink = mavlink.MAVLink(None, srcSystem=system_id, srcComponent=component_id)
+        self._system_id, self._component_id = system_id, component_id
+        self._sequence = 0
         self._answers_version1 = answers_version1
         self._version1_heard = self._version2_heard = False
         self._buffer = bytearray()
@@ -113,7 +114,7 @@ class MavlinkCodec:
             ValueError: A field does not fit its type.
         """
         try:
-            frame: bytes = message.pack(self._pymavlink)
+            frame = frame_of(message, self._sequence, self._system_id, self._component_id)
         except (struct.error, TypeError, OverflowError) as error:
             raise ValueError(f"{message.get_type()} cannot be packed: {error}") from error
         if self._answers_version1 and self._version1_heard and not self._version2_heard:
@@ -122,7 +123,7 @@ class MavlinkCodec:
                 return frame
         elif self.signing is not None:
             frame = self.signing.sign(frame)
-        self._pymavlink.seq = (self._pymavlink.seq + 1) % 256
+        self._sequence = (self._sequence + 1) % 256
         self._messages_sent += 1
         self._bytes_sent += len(frame)
         return frame

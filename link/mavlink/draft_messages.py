@@ -101,8 +101,10 @@ class _Draft(mavlink.MAVLink_message):  # type: ignore[misc]  # pymavlink has no
     def __init__(self, *values: Any) -> None:
         super().__init__(type(self).msg_id, type(self).msgname)
         self._fieldnames = type(self).fieldnames
-        for name, value in zip(self.fieldnames, values, strict=True):
+        for name, kind, value in zip(self.fieldnames, self.fieldtypes, values, strict=True):
             setattr(self, name, value)
+            if kind == "char":
+                setattr(self, f"_{name}_raw", value)
 
     def pack(self, mav: Any, force_mavlink1: bool = False) -> bytes:
         """Return the frame."""

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from link.mavlink.checksum import with_checksum
-from link.mavlink.contents import message_of
+from link.mavlink.contents import frame_of, message_of
 from link.mavlink.dialect import Message, mavlink
 
 LISTENER = mavlink.MAVLink(None)
@@ -52,3 +52,23 @@ def test_frame_with_a_spoilt_payload_holds_nothing(message_id: int, payload: byt
     place = bit % (8 * len(payload))
     frame[mavlink.HEADER_LEN_V2 + place // 8] ^= 1 << place % 8
     assert message_of(frame, message_id) is None
+
+
+def packed_by_pymavlink(message: Message, sequence: int) -> bytes:
+    sender = mavlink.MAVLink(None, srcSystem=7, srcComponent=191)
+    sender.seq = sequence
+    return bytes(message.pack(sender))
+
+
+@given(message_id=KINDS, payload=st.binary(max_size=255), sequence=st.integers(0, 255))
+def test_frame_of_a_message_is_the_one_that_pymavlink_packs(message_id: int, payload: bytes, sequence: int) -> None:
+    message = LISTENER.decode(framed(message_id, payload, version1=False))
+    assert frame_of(message, sequence, 7, 191) == packed_by_pymavlink(message, sequence)
+
+
+@pytest.mark.parametrize("message_id", sorted(mavlink.mavlink_map))
+def test_every_message_is_written_whole(message_id: int) -> None:
+    size = mavlink.mavlink_map[message_id].unpacker.size
+    payload = bytes(1 + (7 * place) % 90 for place in range(size))
+    message = LISTENER.decode(framed(message_id, payload, version1=False))
+    assert frame_of(message, 3, 7, 191) == packed_by_pymavlink(message, 3)
