@@ -64,7 +64,22 @@ class MissionRules:
 
 _ALL_FLY = (mavlink.MAV_CMD_NAV_LOITER_TO_ALT, mavlink.MAV_CMD_NAV_VTOL_TAKEOFF, mavlink.MAV_CMD_NAV_VTOL_LAND)
 PX4_MISSIONS = MissionRules(
-    commands=frozenset((*_ALL_FLY, mavlink.MAV_CMD_NAV_ROI)),
+    commands=frozenset(
+        (
+            *_ALL_FLY,
+            mavlink.MAV_CMD_NAV_ROI,
+            mavlink.MAV_CMD_CONDITION_DELAY,
+            mavlink.MAV_CMD_CONDITION_DISTANCE,
+            mavlink.MAV_CMD_CONDITION_GATE,
+            mavlink.MAV_CMD_COMPONENT_ARM_DISARM,
+            mavlink.MAV_CMD_DO_CONTROL_VIDEO,
+            mavlink.MAV_CMD_DO_SET_ACTUATOR,
+            mavlink.MAV_CMD_DO_SET_CAM_TRIGG_INTERVAL,
+            mavlink.MAV_CMD_DO_SET_ROI_WPNEXT_OFFSET,
+            mavlink.MAV_CMD_DO_VTOL_TRANSITION,
+            mavlink.MAV_CMD_DO_WINCH,
+        )
+    ),
     told_frames=MappingProxyType(
         {
             mavlink.MAV_FRAME_GLOBAL: mavlink.MAV_FRAME_GLOBAL_INT,

@@ -5,6 +5,7 @@ from types import MappingProxyType
 
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot import telemetry_ardupilot as ardupilot
+from sim_autopilot import telemetry_asked as asked
 from sim_autopilot import telemetry_motion as motion
 from sim_autopilot import telemetry_sensors as sensors
 from sim_autopilot import telemetry_status as status
@@ -68,6 +69,12 @@ BUILDERS: Mapping[int, Builder] = MappingProxyType(
         mavlink.MAVLINK_MSG_ID_SCALED_IMU3: ardupilot.scaled_imu3,
         mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2: ardupilot.scaled_pressure2,
         mavlink.MAVLINK_MSG_ID_FENCE_STATUS: ardupilot.fence_status,
+        mavlink.MAVLINK_MSG_ID_SIM_STATE: asked.sim_state,
+        mavlink.MAVLINK_MSG_ID_HIGH_LATENCY2: asked.high_latency2,
+        mavlink.MAVLINK_MSG_ID_TERRAIN_REPORT: asked.terrain_report,
+        mavlink.MAVLINK_MSG_ID_AUTOPILOT_STATE_FOR_GIMBAL_DEVICE: asked.state_for_gimbal,
+        mavlink.MAVLINK_MSG_ID_RELAY_STATUS: asked.relay_status,
+        mavlink.MAVLINK_MSG_ID_ESC_TELEMETRY_1_TO_4: asked.esc_telemetry,
     }
 )
 

@@ -55,6 +55,12 @@ STREAMS = (
     Stream(message_id=mavlink.MAVLINK_MSG_ID_SCALED_IMU3),
     Stream(message_id=mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2),
     Stream(message_id=mavlink.MAVLINK_MSG_ID_FENCE_STATUS),
+    Stream(message_id=mavlink.MAVLINK_MSG_ID_SIM_STATE),
+    Stream(message_id=mavlink.MAVLINK_MSG_ID_HIGH_LATENCY2),
+    Stream(message_id=mavlink.MAVLINK_MSG_ID_TERRAIN_REPORT),
+    Stream(message_id=mavlink.MAVLINK_MSG_ID_AUTOPILOT_STATE_FOR_GIMBAL_DEVICE),
+    Stream(message_id=mavlink.MAVLINK_MSG_ID_RELAY_STATUS),
+    Stream(message_id=mavlink.MAVLINK_MSG_ID_ESC_TELEMETRY_1_TO_4),
 )
 
 CONTACT_STREAMS = frozenset({mavlink.MAVLINK_MSG_ID_TIMESYNC})
@@ -120,12 +126,10 @@ SILENT_MESSAGES = frozenset(
         mavlink.MAVLINK_MSG_ID_RC_CHANNELS_RAW,
         mavlink.MAVLINK_MSG_ID_MISSION_ITEM_REACHED,
         mavlink.MAVLINK_MSG_ID_OPTICAL_FLOW,
-        mavlink.MAVLINK_MSG_ID_SIM_STATE,
         mavlink.MAVLINK_MSG_ID_GPS2_RAW,
         mavlink.MAVLINK_MSG_ID_GPS_RTK,
         mavlink.MAVLINK_MSG_ID_GPS2_RTK,
         mavlink.MAVLINK_MSG_ID_TERRAIN_REQUEST,
-        mavlink.MAVLINK_MSG_ID_TERRAIN_REPORT,
         mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE3,
         mavlink.MAVLINK_MSG_ID_RANGEFINDER,
         mavlink.MAVLINK_MSG_ID_CAMERA_FEEDBACK,
@@ -135,7 +139,6 @@ SILENT_MESSAGES = frozenset(
         mavlink.MAVLINK_MSG_ID_DEEPSTALL,
         mavlink.MAVLINK_MSG_ID_EFI_STATUS,
         mavlink.MAVLINK_MSG_ID_RPM,
-        mavlink.MAVLINK_MSG_ID_HIGH_LATENCY2,
         mavlink.MAVLINK_MSG_ID_ADSB_VEHICLE,
         mavlink.MAVLINK_MSG_ID_CAMERA_INFORMATION,
         mavlink.MAVLINK_MSG_ID_CAMERA_SETTINGS,
@@ -146,15 +149,12 @@ SILENT_MESSAGES = frozenset(
         mavlink.MAVLINK_MSG_ID_GIMBAL_MANAGER_INFORMATION,
         mavlink.MAVLINK_MSG_ID_GIMBAL_MANAGER_STATUS,
         mavlink.MAVLINK_MSG_ID_GIMBAL_DEVICE_ATTITUDE_STATUS,
-        mavlink.MAVLINK_MSG_ID_AUTOPILOT_STATE_FOR_GIMBAL_DEVICE,
         mavlink.MAVLINK_MSG_ID_AIRSPEED,
         mavlink.MAVLINK_MSG_ID_AIS_VESSEL,
         mavlink.MAVLINK_MSG_ID_GENERATOR_STATUS,
-        mavlink.MAVLINK_MSG_ID_RELAY_STATUS,
         mavlink.MAVLINK_MSG_ID_WINCH_STATUS,
         mavlink.MAVLINK_MSG_ID_UAVIONIX_ADSB_OUT_STATUS,
         mavlink.MAVLINK_MSG_ID_AOA_SSA,
-        mavlink.MAVLINK_MSG_ID_ESC_TELEMETRY_1_TO_4,
     }
 )
 """What can be asked for as on the measured build, with nothing to tell here (and, most of them, there)."""
