@@ -22,6 +22,10 @@ _WITH_ARGUMENTS: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType(
         "navigator_takeoff_default_alt": ("Using default takeoff altitude: {1:.2m}", ("float",)),
         "vrtl_return_at": ("RTL: start return at {1m_v} ({2m_v} above destination)", ("int32_t", "int32_t")),
         "check_modes_offboard_signal": ("No offboard signal", (_MODES,)),
+        "commander_failsafe_enter_generic_hold": (
+            "Failsafe activated: entering Hold for {3} seconds",
+            (_MODES, "uint8_t", "uint16_t"),
+        ),
         "logger_open_file_time": (
             "logging: opening log file {1}-{2}-{3}/{4}_{5}_{6}.ulg",
             ("uint16_t", *("uint8_t",) * 5),

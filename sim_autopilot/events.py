@@ -3,6 +3,7 @@
 Source: MAVLink events interface; names, levels and arguments: PX4's source.
 """
 
+import struct
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -18,6 +19,8 @@ _ARGUMENTS = 40
 _EVERYBODY = 0
 _SEQUENCES = (1 << 16) - 1
 _EXTERNAL = 0x0F
+_CRITICAL = 0x42
+"""A warning inside, critical outside."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,12 +54,20 @@ def tell(
 
 def failsafe_texts(
     before: AutopilotMemory, memory: AutopilotMemory, texts: Mapping[int, str], entered: str
-) -> list[str]:
+) -> list[tuple[str, EventCode | None]]:
     """Return what is said about a battery that has become worse and about a failsafe that has begun."""
     level, armed = memory.services.watch.level, memory.armed_ns is not None
-    said = [texts[level]] if level > before.services.watch.level and level in texts else []
-    begins = armed and memory.modes.failsafe and memory.modes.mode is not before.modes.mode
-    return [*said, entered] if begins and entered else said
+    said: list[tuple[str, EventCode | None]] = []
+    if level > before.services.watch.level and level in texts:
+        said.append((texts[level], None))
+    if not (armed and memory.modes.failsafe and memory.modes.mode is not before.modes.mode and entered):
+        return said
+    hold_s = memory.settings.failsafes.hold_s
+    if not memory.services.watch.waits or hold_s is None:
+        return [*said, (entered, None)]
+    arguments = struct.pack("<IBH", 0, 0, round(hold_s))
+    event = EventCode(name="commander_failsafe_enter_generic_hold", levels=_CRITICAL, arguments=arguments)
+    return [*said, (f"{entered}: entering Hold for {hold_s:.0f} seconds", event)]
 
 
 def _event(name: str, levels: int, arguments: bytes, sequence: int, now_ms: int) -> Message:

@@ -44,7 +44,8 @@ NO_FAILSAFES = FailsafeSettings()
 class Watch:
     """What was noticed: the battery's level (0 is good), a fence left, since when the station is lost, whether acted.
 
-    `station_ns` is when a ground station was last heard, None before the first; `companion_ns` when a companion was.
+    `station_ns` is when a ground station was last heard, None before the first; `companion_ns` when a companion was;
+    `sticks_lost_ns` since when it holds because the sticks were let go of.
     """
 
     level: int = 0
@@ -53,6 +54,12 @@ class Watch:
     companion_ns: int | None = None
     lost_ns: int | None = None
     acted: bool = False
+    sticks_lost_ns: int | None = None
+
+    @property
+    def waits(self) -> bool:
+        """Whether it holds before it does what a loss leads to."""
+        return self.sticks_lost_ns is not None or (self.lost_ns is not None and not self.acted)
 
 
 NOTHING_NOTICED = Watch()

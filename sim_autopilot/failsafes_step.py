@@ -3,7 +3,8 @@
 from dataclasses import replace
 
 from sim_autopilot.arming import disarm
-from sim_autopilot.failsafes import watch_battery, watch_fence, watch_station
+from sim_autopilot.failsafes import Watch, watch_battery, watch_fence, watch_station
+from sim_autopilot.manual import MANUAL_MODES
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.mode_change import change_mode
 from sim_autopilot.modes import Event
@@ -35,6 +36,29 @@ def keep_watch(memory: AutopilotMemory, config: AutopilotConfig) -> AutopilotMem
     for event in (left, lost, low):
         memory = acted(memory, event)
     return memory
+
+
+def mind_lost_sticks(memory: AutopilotMemory, *, held: bool) -> AutopilotMemory:
+    """Return the memory of an armed drone after its sticks were looked at: a manual mode without any holds for a while.
+
+    Sticks that come back do not end that; a mode that is asked for does.
+    """
+    services, settings, boot_ns = memory.services, memory.settings, memory.now.boot_ns
+    watch, hold_s = services.watch, settings.failsafes.hold_s
+    if memory.modes.mode in MANUAL_MODES and not held and settings.sticks_lost_event is not None and hold_s is not None:
+        watch = replace(watch, sticks_lost_ns=boot_ns)
+        return acted(_watching(memory, watch), Event.FAILSAFE_HOLD)
+    if watch.sticks_lost_ns is None:
+        return memory
+    if not memory.modes.latched:
+        return _watching(memory, replace(watch, sticks_lost_ns=None))
+    if hold_s is None or (boot_ns - watch.sticks_lost_ns) * 1e-9 < hold_s:
+        return memory
+    return acted(_watching(memory, replace(watch, sticks_lost_ns=None)), settings.sticks_lost_event)
+
+
+def _watching(memory: AutopilotMemory, watch: Watch) -> AutopilotMemory:
+    return replace(memory, services=replace(memory.services, watch=watch))
 
 
 def acted(memory: AutopilotMemory, event: Event | None) -> AutopilotMemory:

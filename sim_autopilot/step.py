@@ -12,14 +12,14 @@ from link.records import replace
 from sim_autopilot.arming import disarm, should_disarm
 from sim_autopilot.chart import near
 from sim_autopilot.events import failsafe_texts, tell
-from sim_autopilot.failsafes_step import acted, keep_watch
+from sim_autopilot.failsafes_step import keep_watch, mind_lost_sticks
 from sim_autopilot.failures import stopped
 from sim_autopilot.files_step import log_flight, send_log, send_on
 from sim_autopilot.flight import is_takeoff_complete
 from sim_autopilot.incoming import take
 from sim_autopilot.land_detector import detect_landing
 from sim_autopilot.log_stream_step import stream_log
-from sim_autopilot.manual import MANUAL_MODES, are_held
+from sim_autopilot.manual import are_held
 from sim_autopilot.memory import (
     AutopilotConfig,
     AutopilotInputs,
@@ -125,8 +125,10 @@ def _mind_sticks(memory: AutopilotMemory) -> AutopilotMemory:
     sticks, settings, mode = memory.services.sticks, memory.settings, memory.modes.mode
     if sticks is None:
         return memory
-    if not are_held(sticks, memory.now.boot_ns, settings.sticks):
-        return acted(memory, settings.sticks_lost_event) if mode in MANUAL_MODES else memory
+    held = are_held(sticks, memory.now.boot_ns, settings.sticks)
+    memory = mind_lost_sticks(memory, held=held)
+    if not held:
+        return memory
     moved = sticks.moved_per_s > settings.sticks_moved_per_s and not memory.landing.landed
     return change_mode(memory, Event.ASK_POSITION) if moved and mode in settings.overridden_modes else memory
 
@@ -144,8 +146,8 @@ def _warn(
 ) -> tuple[AutopilotMemory, tuple[Message, ...]]:
     """Say what the failsafes have noticed and done."""
     texts, messages = config.firmware.texts, ()
-    for text in failsafe_texts(before, memory, texts.battery, texts.failsafe):
-        telling = tell(memory, text, texts.severity, config)
+    for text, code in failsafe_texts(before, memory, texts.battery, texts.failsafe):
+        telling = tell(memory, text, texts.severity, config, code)
         memory, messages = telling.memory, (*messages, *telling.messages)
     return memory, messages
 

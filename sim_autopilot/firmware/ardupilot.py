@@ -132,6 +132,7 @@ ARDUPILOT = Firmware(
         armed=_info("Arming motors"),
         disarmed=_info("Disarming motors"),
     ),
+    current_ca=0,
     vtol_state=mavlink.MAV_VTOL_STATE_MC,
     streams=MappingProxyType({stream.message_id: stream for stream in STREAMS}),
     stream_groups=STREAM_GROUPS,

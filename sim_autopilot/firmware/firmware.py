@@ -164,12 +164,12 @@ class Firmware:
         fix_type: GPS_FIX_TYPE, once there is a fix.
         texts: of STATUSTEXT.
         vtol_state: of EXTENDED_SYS_STATE.
+        current_ca: that the battery tells, centiampere: neither simulation measures one.
         streams: every message that it can send, by id, with default rates.
         stream_groups: message ids by the MAV_DATA_STREAM that starts them.
         contact_streams: message ids that begin only when somebody has spoken.
         stream_rate_max_hz: that a SET_MESSAGE_INTERVAL gets at most.
-        readiness: after boot.
-        results: of refusals.
+        readiness, results: after boot, and of refusals.
         sensors: of SYS_STATUS.
         parameters: in index order; what the flight does not obey is kept and answered all the same.
         system_id_parameter: the name of the one that holds the MAVLink system.
@@ -188,7 +188,7 @@ class Firmware:
         set_mode_answered_as: the MAV_CMD that the COMMAND_ACK to a SET_MODE names; None answers nothing.
         tells_indices: whether a parameter that was asked for or set by name is answered with its index.
         plain_answers: the MAV_RESULT of commands that change nothing here, None for no answer, by MAV_CMD.
-        missions: of the mission protocol.
+        missions, logs: of the mission protocol and of the log service.
         events: that it sends besides texts, by their text.
         lists_modes: whether it sends AVAILABLE_MODES.
         tells_flights: whether it says what a flight comes to: `flight_texts`.
@@ -198,7 +198,6 @@ class Firmware:
         banner: texts that follow a PARAM_REQUEST_LIST.
         identity: of AUTOPILOT_VERSION.
         silent_messages: ids that it can be asked for, and has nothing to tell of.
-        logs: of the log service.
     """
 
     name: str
@@ -213,6 +212,7 @@ class Firmware:
     fix_type: int
     texts: Texts
     vtol_state: int
+    current_ca: int
     streams: Mapping[int, Stream]
     stream_groups: Mapping[int, tuple[int, ...]]
     contact_streams: frozenset[int]

@@ -140,6 +140,7 @@ PX4 = Firmware(
         no_mission=NO_MISSION,
         high_enough=HIGH_ENOUGH,
     ),
+    current_ca=-100,
     vtol_state=mavlink.MAV_VTOL_STATE_UNDEFINED,
     streams=MappingProxyType({stream.message_id: stream for stream in STREAMS}),
     stream_groups=MappingProxyType({}),

@@ -80,9 +80,23 @@ def test_moved_sticks_take_over_from_the_modes_that_the_parameter_names() -> Non
     assert hovering.custom_mode() == OFFBOARD
 
 
-def test_sticks_that_are_let_go_of_bring_it_home() -> None:
+def test_sticks_that_are_let_go_of_are_waited_for_in_hold_and_then_bring_it_home() -> None:
     pilot = flying(3)
+    pilot.step(mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, 8, 0, 0, 4, 3))
     pilot.run(0.4)
     assert pilot.custom_mode() == POSITION
     pilot.run(0.3)
+    assert (pilot.custom_mode(), pilot.node.memory.modes.failsafe) == (HOLD, True)
+    assert pilot.last("STATUSTEXT").text == "Failsafe activated: entering Hold for 5 seconds\t"
+    pilot.run(4.0, sticks())  # they are back, which changes nothing
+    assert pilot.custom_mode() == HOLD
+    pilot.run(1.0)
     assert pilot.custom_mode() == RTL
+
+
+def test_a_mode_that_is_asked_for_ends_the_wait_for_the_sticks() -> None:
+    pilot = flying(3)
+    pilot.run(1.0)
+    pilot.acknowledged(set_mode(4, 3))
+    pilot.run(6.0)
+    assert (pilot.custom_mode(), pilot.node.memory.modes.failsafe) == (HOLD, False)
