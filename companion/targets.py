@@ -117,7 +117,7 @@ def _height_profile(
         case Phase.DESCEND | Phase.TOUCHDOWN:
             return sink_profile(height_now_m, pad.offset_s, config.descent)
         case Phase.ABORT:
-            height_m = config.abort.height_m
+            height_m = config.abort.height_m + _unseen_clearance_m(pad, config)
         case Phase.ALIGN:
             height_m = config.descent.align_height_m
         case _ if config.landing is LandingStyle.DIRECT:
@@ -141,13 +141,19 @@ def is_unseen(pad: PadPath, config: CompanionConfig) -> bool:
     return pad.is_coarse and float(np.max(pad.position_std_m[0, :2])) > config.descent.unseen_std_max_m
 
 
+def _unseen_clearance_m(pad: PadPath, config: CompanionConfig) -> float:
+    """Return how much higher than else the drone stays above a pad that it has to see first; it sees more, too."""
+    return config.chase.unseen_height_stds * float(pad.position_std_m[0, 2]) if is_unseen(pad, config) else 0.0
+
+
 def _chase_height_m(pad: PadPath, reference: ReferenceState, config: CompanionConfig) -> float:
     """Come down towards the height of alignment as the horizontal distance closes, two metres for each.
 
-    Over a vehicle whose place is not known well enough to align with it, nothing says that its side is not below.
+    Over a vehicle whose place is not known well enough to align with it, nothing says that its side is not below, and
+    as long as its height is as vague, that the roof is not where the drone flies.
     """
     if is_vague(pad, config) or is_unseen(pad, config):
-        return config.chase.height_m
+        return config.chase.height_m + _unseen_clearance_m(pad, config)
     distance_m = math.hypot(*(reference.position_enu_m[:2] - pad.position_enu_m[0, :2]).tolist())
     beyond_m = max(distance_m - config.descent.align_distance_m, 0.0)
     return min(config.descent.align_height_m + 0.5 * beyond_m, config.chase.height_m)

@@ -79,7 +79,19 @@ def test_chase_stays_high_until_it_sees_the_pad(std_m: float, *, aligns: bool) -
     height_m = pad_aim(Phase.CHASE, facts.pad, reference_at(HIGH_M), GEAR_M, CONFIG).target.position_enu_m[0, 2]
     over_pad_m = height_m - facts.pad.position_enu_m[0, 2] - GEAR_M
     assert event is (Event.OVER_PAD if aligns else None)
-    assert over_pad_m == pytest.approx(HIGH_M if aligns else CONFIG.chase.height_m)
+    unsure_m = CONFIG.chase.unseen_height_stds * std_m
+    assert over_pad_m == pytest.approx(HIGH_M if aligns else CONFIG.chase.height_m + unsure_m)
+
+
+@pytest.mark.parametrize("phase", [Phase.CHASE, Phase.ABORT])
+def test_drone_stays_higher_by_what_the_height_of_an_unseen_pad_is_unsure(phase: Phase) -> None:
+    unsure_m = np.array([VAGUE_M, VAGUE_M, 1.7])
+    pads = [
+        replace(pad_at(), is_coarse=True, position_std_m=np.tile(std_m, (len(pad_at().offset_s), 1)))
+        for std_m in (np.array([VAGUE_M, VAGUE_M, 0.0]), unsure_m)
+    ]
+    low, high = (pad_aim(phase, pad, reference_at(HIGH_M), GEAR_M, CONFIG).target.position_enu_m[:, 2] for pad in pads)
+    assert high - low == pytest.approx(CONFIG.chase.unseen_height_stds * 1.7)
 
 
 def pad_after(sensors: Sensors, unseen_s: float) -> PadPath:

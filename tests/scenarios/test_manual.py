@@ -62,7 +62,7 @@ def test_reference_has_the_comment_beside_a_value_and_the_one_above_it() -> None
 
 def test_defaults_of_a_table_are_those_of_where_it_stands() -> None:
     steady, manoeuvre = PAGES["reference/companion.md"]().split("[estimator.imm.")[1:]
-    assert "| `0.05` |" in steady
+    assert "| `0.3` |" in steady
     assert "| `300.0` |" in manoeuvre
 
 
