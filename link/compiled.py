@@ -32,7 +32,7 @@ def kept_kernel(sources: int) -> Callable[[Callable[P, R]], Kernel[P, R]]:
     """Compile a function at its first call, with all that it calls, and keep that on disk.
 
     Args:
-        sources: the `source_digest` of all that it calls. It becomes part of the name by which the machine code is
+        sources: the digest of all that it calls. It becomes part of the name by which the machine code is
             kept, since numba's own key knows only the file of the function itself.
     """
 
@@ -45,7 +45,12 @@ def kept_kernel(sources: int) -> Callable[[Callable[P, R]], Kernel[P, R]]:
 
 def source_digest(folders: Iterable[Path]) -> int:
     """Return a number that changes with any source in `folders`, or with any of their names."""
+    return file_digest(path for folder in folders for path in folder.glob("*.py"))
+
+
+def file_digest(files: Iterable[Path]) -> int:
+    """Return a number that changes with any of the files, or with any of their names."""
     digest = hashlib.sha256()
-    for path in sorted(path for folder in folders for path in folder.glob("*.py")):
+    for path in sorted(files):
         digest.update(path.name.encode() + path.read_bytes())
     return int.from_bytes(digest.digest()[:6], "big")

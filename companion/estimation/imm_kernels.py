@@ -19,9 +19,9 @@ Source: constant turn rate models in Bar-Shalom, Li and Kirubarajan 2001, 11.7; 
 import math
 
 import numpy as np
-from numba import njit
 
 from companion.data import Array
+from companion.estimation.kept import kept
 from companion.estimation.small_matrices import inverse_of, less_outer, times
 
 SIZE = 16
@@ -30,7 +30,7 @@ CLOCK = 15
 CLOCK_NOISE = 8  # its place in the noise
 
 
-@njit(cache=True)
+@kept
 def standstill_s(v: Array, b: Array, tau_s: float, dt_s: float) -> float:
     """Return when, within `dt_s`, braking has used up the speed; a negative time if it does not."""
     speed2 = v[0] * v[0] + v[1] * v[1]
@@ -41,7 +41,7 @@ def standstill_s(v: Array, b: Array, tau_s: float, dt_s: float) -> float:
     return -tau_s * math.log(max(1.0 - speed2 / (braking * tau_s), 1e-12))
 
 
-@njit(cache=True)
+@kept
 def advance(x: Array, dt_s: float, tau_s: float, heave: Array) -> tuple[Array, Array]:
     """Return the state `dt_s` later and its Jacobian `(16, 16)`.
 
@@ -101,7 +101,7 @@ def advance(x: Array, dt_s: float, tau_s: float, heave: Array) -> tuple[Array, A
     return y, F
 
 
-@njit(cache=True)
+@kept
 def heave_step(dt_s: float, frequency_rad_s: float, damping: float, std_m: float) -> tuple[Array, Array]:
     """Return transition and noise, each (2, 2), of a damped oscillator driven by white noise to a steady `std_m`."""
     damped = frequency_rad_s * math.sqrt(1.0 - damping**2)
@@ -119,7 +119,7 @@ def heave_step(dt_s: float, frequency_rad_s: float, damping: float, std_m: float
     return A, noise
 
 
-@njit(cache=True)
+@kept
 def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array) -> Array:
     """Return Q `(16, 16)` over `dt_s`.
 
@@ -159,7 +159,7 @@ def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array) -> Ar
     return Q
 
 
-@njit(cache=True)
+@kept
 def correct(x: Array, P: Array, residual: Array, H: Array, R: Array) -> tuple[Array, Array, float, float]:
     """Return mean, covariance, NIS and log-likelihood after a measurement.
 

@@ -9,7 +9,6 @@ constant of the clock's difference, s.
 import math
 
 import numpy as np
-from numba import njit
 
 from companion.data import Array
 from companion.estimation.imm_kernels import CLOCK, SIZE, advance, correct, heave_step, process_noise
@@ -22,6 +21,7 @@ from companion.estimation.imm_sensors import (
     horizontal_acceleration,
     observe,
 )
+from companion.estimation.kept import kept
 from companion.estimation.small_matrices import carried_through, inverse_of
 
 Modes = tuple[Array, Array, Array]
@@ -30,7 +30,7 @@ WEIGHT_MIN = 1e-12  # a mode that rounding has ruled out could never come back
 STEP_MAX_S = 0.1  # 0.04 rad in the tightest of the benchmark's curves
 
 
-@njit(cache=True)
+@kept
 def switching(dwell_s: Array, dt_s: float) -> Array:
     """Return the probabilities `(2, 2)` of having gone from row to column after `dt_s`."""
     mixed = 1.0 - math.exp(-dt_s * (1.0 / dwell_s[0] + 1.0 / dwell_s[1]))
@@ -38,7 +38,7 @@ def switching(dwell_s: Array, dt_s: float) -> Array:
     return mixed * np.stack((long_run, long_run)) + (1.0 - mixed) * np.eye(2)
 
 
-@njit(cache=True)
+@kept
 def combine(means: Array, covariances: Array, weights: Array) -> tuple[Array, Array]:
     """Return mean and covariance of the mixture."""
     mean = weights[0] * means[0] + weights[1] * means[1]
@@ -47,7 +47,7 @@ def combine(means: Array, covariances: Array, weights: Array) -> tuple[Array, Ar
     return mean, weights[0] * covariances[0] + weights[1] * covariances[1] + spread
 
 
-@njit(cache=True)
+@kept
 def mix(modes: Modes, changes: Array) -> Modes:
     """Return the filter after the modes may have changed with probabilities `changes` (2, 2)."""
     means, covariances, weights = modes
@@ -59,7 +59,7 @@ def mix(modes: Modes, changes: Array) -> Modes:
     return mixed_means, mixed_covariances, after
 
 
-@njit(cache=True)
+@kept
 def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple[Array, Array]:
     """Return mean and covariance of one mode `dt_s` later, in equal steps.
 
@@ -83,7 +83,7 @@ def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple
     return x, 0.5 * (P + P.T)
 
 
-@njit(cache=True)
+@kept
 def predict_modes(modes: Modes, dt_s: float, noises: Array, dwell_s: Array, motion: Array) -> Modes:
     """Return the filter `dt_s` later; `noises` (2, 9), `dwell_s` (2,)."""
     means, covariances, weights = mix(modes, switching(dwell_s, dt_s))
@@ -92,7 +92,7 @@ def predict_modes(modes: Modes, dt_s: float, noises: Array, dwell_s: Array, moti
     return means, covariances, weights
 
 
-@njit(cache=True)
+@kept
 def residual_of(kind: int, value: Array, expected: Array) -> Array:
     """Return measured minus expected, the short way round for angles."""
     residual = value - expected
@@ -101,7 +101,7 @@ def residual_of(kind: int, value: Array, expected: Array) -> Array:
     return residual
 
 
-@njit(cache=True)
+@kept
 def update_modes(
     modes: Modes, reading: tuple[int, Array, Array], lever: Array, sees_heading: bool
 ) -> tuple[Modes, float, float]:
@@ -136,7 +136,7 @@ def update_modes(
     return (xs, Ps, after), float(mixture_nis), float(nis.min())
 
 
-@njit(cache=True)
+@kept
 def align_modes(
     means: Array, covariances: Array, speed_min_m_s: float, course_variance: float, known_variance: float
 ) -> tuple[Array, Array]:
@@ -161,14 +161,14 @@ def align_modes(
     return xs, Ps
 
 
-@njit(cache=True)
+@kept
 def is_heading_known(modes: Modes, known_variance: float) -> bool:
     """Return whether the heading of the mixture is known better than `known_variance`, rad^2."""
     _, covariances, weights = modes
     return bool(weights[0] * covariances[0, 7, 7] + weights[1] * covariances[1, 7, 7] < known_variance)
 
 
-@njit(cache=True)
+@kept
 def take_reading(
     modes: Modes, reading: tuple[int, Array, Array], lever: Array, course: Array
 ) -> tuple[Modes, float, float]:
@@ -193,7 +193,7 @@ def take_reading(
     return (means, covariances, weights), nis, gate_nis
 
 
-@njit(cache=True)
+@kept
 def kinematics(states: Array, heave: Array) -> tuple[Array, Array, Array]:
     """Return position, velocity and acceleration in W, each (n, 3), of `states` (n, 16); `heave` is `motion[1:3]`."""
     n = len(states)
@@ -207,7 +207,7 @@ def kinematics(states: Array, heave: Array) -> tuple[Array, Array, Array]:
     return position, velocity, acceleration
 
 
-@njit(cache=True)
+@kept
 def kinematics_jacobian(x: Array, heave: Array) -> Array:
     """Return the Jacobian `(9, 16)` of position, velocity and acceleration; `heave` is `motion[1:3]`."""
     G = np.zeros((9, SIZE))
@@ -218,7 +218,7 @@ def kinematics_jacobian(x: Array, heave: Array) -> Array:
     return G
 
 
-@njit(cache=True)
+@kept
 def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) -> tuple[Array, Array]:
     """Return the means `(n, 16)` and the position variances `(n, 3)` at `offset_s` (n,), not falling."""
     n = len(offset_s)
@@ -235,7 +235,7 @@ def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) ->
     return means, variances
 
 
-@njit(cache=True)
+@kept
 def forecast_modes(
     modes: Modes, offset_s: Array, noises: Array, motion: Array
 ) -> tuple[Array, Array, Array, Array, Array]:

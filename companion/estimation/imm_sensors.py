@@ -7,22 +7,22 @@ most, over which the acceleration is taken as even. The pad is seen from the dro
 import math
 
 import numpy as np
-from numba import njit
 
 from companion.data import Array
 from companion.estimation.imm_kernels import CLOCK, SIZE
+from companion.estimation.kept import kept
 
 POSITION, VELOCITY, HEADING, YAW_RATE, PAD, COURSE = range(6)
 
 
-@njit(cache=True)
+@kept
 def course(x: Array) -> tuple[float, float, float]:
     """Return the horizontal speed, m/s, and its direction as a unit vector, (0, 0) at rest."""
     speed = math.hypot(x[2], x[3])
     return (speed, x[2] / speed, x[3] / speed) if speed > 1e-6 else (speed, 0.0, 0.0)
 
 
-@njit(cache=True)
+@kept
 def horizontal_acceleration(x: Array) -> tuple[Array, Array]:
     """Return the horizontal acceleration (2,), m/s^2, of `x` and its Jacobian (2, 5) by `v`, `b` and `k`."""
     speed, ux, uy = course(x)
@@ -33,7 +33,7 @@ def horizontal_acceleration(x: Array) -> tuple[Array, Array]:
     return np.array([x[4] - k * speed * x[3], x[5] + k * speed * x[2]]), G
 
 
-@njit(cache=True)
+@kept
 def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Array, Array]:
     """Return what a sensor reads at `x`, `(m,)`, and its Jacobian `(m, 16)`.
 

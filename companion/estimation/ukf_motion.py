@@ -8,14 +8,14 @@ brakes the vehicle stops and does not drive backwards. Without distance there is
 import math
 
 import numpy as np
-from numba import njit
 
 from companion.data import Array
+from companion.estimation.kept import kept
 
 SIZE = 8
 
 
-@njit(cache=True)
+@kept
 def drive(state: Array, dt_s: float, decay_s: float) -> Array:
     """Return the state (8,) after `dt_s` with an acceleration that fades with `decay_s`."""
     _, _, heading, speed, acceleration, curvature, _, climb = state
@@ -39,7 +39,7 @@ def drive(state: Array, dt_s: float, decay_s: float) -> Array:
     return after
 
 
-@njit(cache=True)
+@kept
 def drive_all(states: Array, offset_s: Array, decay_s: float) -> Array:
     """Return `(n, k, 8)`: each of `states` (k, 8) at each of `offset_s` (n,)."""
     after = np.empty((len(offset_s), *states.shape))

@@ -10,12 +10,12 @@ All matrices are built once; a plan only makes vectors, in compiled calls.
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from scipy.linalg import solve_continuous_are
 
 from companion.data import Array
 from companion.planning.condensed import AxisModel
 from companion.planning.config import MpcConfig
+from companion.planning.kept import kept
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -46,7 +46,7 @@ class AxisProblem:
         return self.from_state, self.from_reference, self.move_weight
 
 
-@njit(cache=True)
+@kept
 def linear_term(
     weights: tuple[Array, Array, Array], slack_gradient: Array, x: Array, reference: Array, jerk: Array
 ) -> Array:

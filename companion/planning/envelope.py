@@ -11,15 +11,15 @@ floor is the height reached by pulling up likewise, at no more than the climb li
 import math
 
 import numpy as np
-from numba import njit
 
 from companion.data import Array
+from companion.planning.kept import kept
 
 AUTHORITY = 0.98
 """Share of the limits that the way back uses, so that the solver has room to follow it."""
 
 
-@njit(cache=True)
+@kept
 def velocity_left(velocity: float, acceleration: float, braking: float, jerk: float, t_s: float) -> float:
     """Return the velocity at `t_s` when the acceleration goes to `-braking` at `jerk` and stays there."""
     turning = min(t_s, max((acceleration + braking) / jerk, 0.0))
@@ -27,7 +27,7 @@ def velocity_left(velocity: float, acceleration: float, braking: float, jerk: fl
     return turned + min(-braking, acceleration) * (t_s - turning)
 
 
-@njit(cache=True)
+@kept
 def velocity_ceiling(
     bound_m_s: Array, velocity_m_s: float, acceleration_m_s2: float, braking_m_s2: float, jerk_m_s3: float, t_s: Array
 ) -> Array:
@@ -40,7 +40,7 @@ def velocity_ceiling(
     return ceiling
 
 
-@njit(cache=True)
+@kept
 def acceleration_ceiling(bound_m_s2: Array, acceleration_m_s2: float, jerk_m_s3: float, t_s: Array) -> Array:
     """Return the upper bound (n,) at `t_s`, at least `bound_m_s2` (n,), that a state can keep."""
     ceiling = np.empty_like(bound_m_s2)
@@ -49,7 +49,7 @@ def acceleration_ceiling(bound_m_s2: Array, acceleration_m_s2: float, jerk_m_s3:
     return ceiling
 
 
-@njit(cache=True)
+@kept
 def reachable_floor(
     floor_m: Array, x: Array, pull_m_s2: float, climb_m_s: float, jerk_m_s3: float, t_s: Array
 ) -> Array:
@@ -73,7 +73,7 @@ MINOR_PUSH_FACTOR = 1.1
 """How much more than its way's acceleration the minor axis gets, for the smoothing of the plan."""
 
 
-@njit(cache=True)
+@kept
 def left(norm: float, used: Array) -> Array:
     """Return what is left of a norm limit beside `used` (k,)."""
     rest, least = np.empty_like(used), (MINOR_SHARE_MIN * norm) ** 2
@@ -82,7 +82,7 @@ def left(norm: float, used: Array) -> Array:
     return rest
 
 
-@njit(cache=True)
+@kept
 def major_share(
     minor: Array, target_v: Array, target_a: Array, way: Array, norms: Array, node_s: Array, end_s: Array
 ) -> tuple[Array, Array, Array]:
@@ -109,7 +109,7 @@ def major_share(
     return left(norms[0], target[1:] + excess), left(norms[1], np.maximum(easing, push)), jerk
 
 
-@njit(cache=True)
+@kept
 def minor_share(
     major: Array, jerk: Array, forced_v: Array, norms: Array, node_s: Array, move_s: Array
 ) -> tuple[Array, Array, Array]:
@@ -132,7 +132,7 @@ def minor_share(
     return left(norms[0], velocity), left(norms[1], push), left(norms[2], plan)
 
 
-@njit(cache=True)
+@kept
 def bound_rows(
     x: Array, down: Array, up: Array, push: Array, jerk: Array, floor: Array, node_s: Array, end_s: Array
 ) -> tuple[Array, Array]:
@@ -172,7 +172,7 @@ def bound_rows(
     return lower, upper
 
 
-@njit(cache=True)
+@kept
 def major_bounds(
     state: Array, target_v: Array, target_a: Array, way: Array, norms: Array, node_s: Array, end_s: Array
 ) -> tuple[Array, Array]:
@@ -181,7 +181,7 @@ def major_bounds(
     return bound_rows(state[:, 0], speed, speed, push, jerk, np.empty(0), node_s, end_s)
 
 
-@njit(cache=True)
+@kept
 def minor_bounds(
     state: Array, major_jerk: Array, forced_v: Array, norms: Array, node_s: Array, move_s: Array, end_s: Array
 ) -> tuple[Array, Array]:
@@ -190,7 +190,7 @@ def minor_bounds(
     return bound_rows(state[:, 1], speed, speed, push, jerk, np.empty(0), node_s, end_s)
 
 
-@njit(cache=True)
+@kept
 def vertical_bounds(
     x: Array, floor_m: Array, limits: tuple[float, float, float, float], node_s: Array, end_s: Array
 ) -> tuple[Array, Array]:

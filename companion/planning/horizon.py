@@ -6,9 +6,9 @@ Axis 0 is the major horizontal axis, where most of the motion is needed, axis 1 
 import math
 
 import numpy as np
-from numba import njit
 
 from companion.data import Array
+from companion.planning.kept import kept
 
 EXCESS_WEIGHT = 1e3
 """Metres that each m/s or m/s^2 over a limit counts for when the axes are turned: more than any distance."""
@@ -16,7 +16,7 @@ EXCESS_WEIGHT = 1e3
 TINY = 1e-12
 
 
-@njit(cache=True)
+@kept
 def needs(x: Array, target_v: Array, speed_max: float, acceleration_max: float, time_s: float) -> Array:
     """Return four horizontal needs of motion as lengths (4, 2).
 
@@ -42,7 +42,7 @@ def needs(x: Array, target_v: Array, speed_max: float, acceleration_max: float, 
     return lengths
 
 
-@njit(cache=True)
+@kept
 def major_direction(lengths: Array) -> tuple[float, float]:
     """Return the unit vector along the principal direction of `lengths` (k, 2)."""
     xx, xy, yy = 0.0, 0.0, 0.0
@@ -54,7 +54,7 @@ def major_direction(lengths: Array) -> tuple[float, float]:
     return math.cos(angle), math.sin(angle)
 
 
-@njit(cache=True)
+@kept
 def turned_horizon(
     state: tuple[Array, Array, Array], path: Array, speed_max: float, acceleration_max: float, axes_time_s: float
 ) -> tuple[tuple[float, float], Array, Array]:

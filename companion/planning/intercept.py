@@ -8,9 +8,9 @@ bound on w. All functions are compiled; they live in one file, which is what the
 import math
 
 import numpy as np
-from numba import njit
 
 from companion.data import Array
+from companion.planning.kept import kept
 
 TINY = 1e-12
 
@@ -35,7 +35,7 @@ SPLIT_SOFTNESS_S = 0.2
 """Splits whose summed times of both axes differ by less than this are mixed, so that the split does not jump."""
 
 
-@njit(cache=True)
+@kept
 def fastest_way(
     error: float, rate: float, push: float, slowest: float, fastest: float
 ) -> tuple[float, float, float, float]:
@@ -61,7 +61,7 @@ def fastest_way(
     return way * cruise, first_s, cruise_s, last_s
 
 
-@njit(cache=True)
+@kept
 def way_at(
     error: float, rate: float, way: tuple[float, float, float, float], t_s: float
 ) -> tuple[float, float, float, float]:
@@ -80,19 +80,19 @@ def way_at(
     return sums, error, rate, 0.0
 
 
-@njit(cache=True)
+@kept
 def usable(push: float, target_push: float, fraction: float) -> float:
     """Return what an approach may use of an acceleration limit beside the target's own acceleration."""
     return max(fraction * push - TARGET_PUSH_SHARE * abs(target_push), PUSH_RESERVE * push)
 
 
-@njit(cache=True)
+@kept
 def left_of(norm: float, used: float) -> float:
     """Return what one axis may use of a norm limit beside `used` on the other; never less than a fifth."""
     return math.sqrt(max(norm * norm - used * used, 0.04 * norm * norm))
 
 
-@njit(cache=True)
+@kept
 def rate_bounds(target_v: Array, limits: Array) -> tuple[Array, Array]:
     """Return the bounds (3,) of the velocity relative to a target's for `limits` as `limit_array` has them."""
     slowest, fastest = np.empty(3), np.empty(3)
@@ -104,7 +104,7 @@ def rate_bounds(target_v: Array, limits: Array) -> tuple[Array, Array]:
     return slowest, fastest
 
 
-@njit(cache=True)
+@kept
 def split_norm(error: Array, rate: Array, target_v: Array, target_a: Array, limits: Array, fraction: float) -> float:
     """Return the angle that splits the acceleration norm with the least sum of the times of both axes."""
     slowest, fastest = rate_bounds(target_v, limits)
@@ -120,7 +120,7 @@ def split_norm(error: Array, rate: Array, target_v: Array, target_a: Array, limi
     return float((weights * angles).sum() / weights.sum())
 
 
-@njit(cache=True)
+@kept
 def approach_push(error: float, rate: float, push: float, push_max: float, time_min_s: float) -> float:
     """Return the acceleration of the approach on one axis.
 
@@ -134,7 +134,7 @@ def approach_push(error: float, rate: float, push: float, push_max: float, time_
     return chosen
 
 
-@njit(cache=True)
+@kept
 def approach(
     x: Array, node_s: Array, target: Array, floor: Array, limits: Array, fraction: float, time_min_s: float
 ) -> tuple[float, Array, Array]:

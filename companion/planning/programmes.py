@@ -6,7 +6,6 @@ norm is the angle at which the sum of the times that the two horizontal axes nee
 """
 
 import math
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -17,12 +16,11 @@ from companion.planning.axis_qp import linear_term
 from companion.planning.envelope import major_bounds, minor_bounds, vertical_bounds
 from companion.planning.horizon import turned_horizon
 from companion.planning.intercept import approach
+from companion.planning.kept import kept
 from companion.planning.resample import resampled_line, resampled_path
-from link.compiled import kept_kernel, kernel, source_digest
 
 Path3 = tuple[Array, Array, Array]
 """Position, velocity and acceleration in W: (3,) each of one state, or (n, 3) each of a path."""
-
 
 Sampling = tuple[NDArray[np.int64], Array]
 """`left` and `weights` of a resampler."""
@@ -100,10 +98,7 @@ class Posed(NamedTuple):
     is_finite: bool
 
 
-SOURCES = source_digest([Path(__file__).parent])
-
-
-@kernel
+@kept
 def total_of(target: tuple[Array, Array, Array, Array]) -> float:
     """Return a number that is not finite if any of the target's is not, or is too large to be a place."""
     position, velocity, acceleration, floor = target
@@ -116,7 +111,7 @@ def total_of(target: tuple[Array, Array, Array, Array]) -> float:
     return total
 
 
-@kept_kernel(SOURCES)
+@kept
 def pose(
     state: Path3, target: tuple[Array, Array, Array, Array], limits: PlainLimits, sampling: Sampling, statics: Statics
 ) -> Posed:
@@ -159,7 +154,7 @@ def pose(
     )
 
 
-@kept_kernel(SOURCES)
+@kept
 def bound_minor(x: Array, major_jerk: Array, limits: PlainLimits, plain_grid: PlainGrid) -> tuple[Array, Array]:
     """Return the bounds (c,) of the minor axis beside the major one's plan; see `envelope.minor_bounds`."""
     most, grid = Limits(*limits), Grid(*plain_grid)
@@ -167,7 +162,7 @@ def bound_minor(x: Array, major_jerk: Array, limits: PlainLimits, plain_grid: Pl
     return minor_bounds(x, major_jerk, grid.forced_v, norms, grid.nodes_s[1:], grid.move_s, np.cumsum(grid.move_s))
 
 
-@kept_kernel(SOURCES)
+@kept
 def path_of(
     origin_m: Array, direction: tuple[float, float], x: Array, moves: tuple[Array, Array, Array], maps: Maps
 ) -> Array:

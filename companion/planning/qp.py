@@ -9,11 +9,11 @@ import math
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
-from numba import njit
 
 from companion.data import Array
 from companion.planning.config import SolverKind
 from companion.planning.guidance import PlanStatus
+from companion.planning.kept import kept
 from companion.planning.requests import are_finite
 
 
@@ -67,7 +67,7 @@ class Programme:
 _NO_FAULT, _NOT_FINITE, _CROSSED = range(3)
 
 
-@njit(cache=True)
+@kept
 def fault_of(f: Array, lower: Array, upper: Array) -> int:
     """Return what is wrong with a linear term and bounds: nothing, a number that is not finite, or crossed bounds."""
     total, crossed = 0.0, False

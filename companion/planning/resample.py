@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from companion.data import Array
 from companion.planning.guidance import Target
+from companion.planning.kept import kept
 
 VALUE, SLOPE, SLOPE_ENDING, LINEAR, LINEAR_ENDING = range(5)
 """Weights of a sampled value and of a sampled derivative (s) in an interpolated value, and of a linear interpolation;
@@ -42,7 +42,7 @@ class Resampler:
         return resampled_line(samples, self.left, self.weights)
 
 
-@njit(cache=True)
+@kept
 def resampled_path(path: tuple[Array, Array, Array], left: NDArray[np.int64], weights: Array) -> Array:
     """Return position, velocity and acceleration (3, k, 3) of samples (n, 3) at the nodes of a `Resampler`."""
     position, velocity, acceleration = path
@@ -60,7 +60,7 @@ def resampled_path(path: tuple[Array, Array, Array], left: NDArray[np.int64], we
     return resampled
 
 
-@njit(cache=True)
+@kept
 def resampled_line(samples: Array, left: NDArray[np.int64], weights: Array) -> Array:
     """Return `samples` (n,) at the nodes (k,) of a `Resampler`, linear, and after the last one as that."""
     resampled = np.empty(len(left))
