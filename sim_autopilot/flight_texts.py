@@ -19,6 +19,7 @@ from sim_autopilot.firmware.px4_events import (
     INFO,
     LANDED,
     MISSION_BEGINS,
+    MISSION_GONE,
     MISSION_LANDED,
     MISSION_LOITERS,
     RETURN_LANDS,
@@ -29,6 +30,7 @@ from sim_autopilot.firmware.px4_events import (
 from sim_autopilot.flight import Leg
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.mission_flight import Stage
+from sim_autopilot.missions import MISSION
 from sim_autopilot.modes import Mode
 
 _LOST, _BACK = "lost", "back"
@@ -100,12 +102,21 @@ def _way(start: AutopilotMemory, memory: AutopilotMemory, config: AutopilotConfi
         return [_return(memory, config)]
     if mode is Mode.RTL and memory.flight.leg is Leg.DESCEND and start.flight.leg is not Leg.DESCEND:
         return [(RETURN_LANDS, None)]
+    told = _mission(start, memory)
+    return [] if told is None else [(told, None)]
+
+
+def _mission(start: AutopilotMemory, memory: AutopilotMemory) -> str | None:
+    mode, was = memory.modes.mode, start.modes.mode
+    begins = mode is not was or start.armed_ns is None
     if begins and mode is Mode.MISSION:
-        return [(MISSION_BEGINS, None)]
+        return MISSION_BEGINS
+    if begins and was is Mode.MISSION and not memory.services.library.plans[MISSION]:
+        return MISSION_GONE
     finished, had = (each.services.mission.stage is Stage.FINISHED for each in (memory, start))
     if Mode.MISSION in {mode, was} and finished and not had:
-        return [(MISSION_LANDED if memory.landing.landed else MISSION_LOITERS, None)]
-    return []
+        return MISSION_LANDED if memory.landing.landed else MISSION_LOITERS
+    return None
 
 
 def _return(memory: AutopilotMemory, config: AutopilotConfig) -> Said:

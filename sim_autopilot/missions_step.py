@@ -116,6 +116,8 @@ def advance_mission(memory: AutopilotMemory, config: AutopilotConfig) -> Result:
     messages = (*messages, *passed(before, step, mission_items(memory), config))
     if (step.progress.index, step.progress.stage is Stage.FINISHED) != (before.index, before.stage is Stage.FINISHED):
         messages = (*messages, mission_current(memory, config))
+    if _has_nothing_to_fly(memory, config):
+        return change_mode(memory, Event.ASK_HOLD), messages
     if _ends_in_the_air(memory, before, config):
         memory = change_mode(memory, Event.ASK_HOLD)
         modes = memory.modes
@@ -123,6 +125,11 @@ def advance_mission(memory: AutopilotMemory, config: AutopilotConfig) -> Result:
     if step.returns:
         memory = change_mode(memory, Event.ASK_RTL)
     return memory, messages
+
+
+def _has_nothing_to_fly(memory: AutopilotMemory, config: AutopilotConfig) -> bool:
+    """Whether the mission was cleared under way, after which PX4 holds too."""
+    return not mission_items(memory) and config.firmware.missions.holds_at_the_end and not memory.landing.landed
 
 
 def _ends_in_the_air(memory: AutopilotMemory, before: Progress, config: AutopilotConfig) -> bool:

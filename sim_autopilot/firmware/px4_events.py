@@ -28,6 +28,7 @@ RETURN_LANDS = "RTL: land at destination"
 MISSION_BEGINS = "Executing Mission"
 MISSION_LANDED = "Mission finished, landed"
 MISSION_LOITERS = "Mission finished, loitering"
+MISSION_GONE = "No valid mission available, loitering"
 STATION_LOST = "Connection to ground station lost"
 STATION_BACK = "GCS connection regained"
 COMPANION_LOST = "Connection to mission computer lost"
@@ -67,6 +68,7 @@ EVENTS: Mapping[str, EventCode] = {
     MISSION_BEGINS: EventCode(name="mission_execute", levels=INFO),
     MISSION_LANDED: EventCode(name="mission_finished", levels=INFO),
     MISSION_LOITERS: EventCode(name="mission_finished_loiter", levels=INFO),
+    MISSION_GONE: EventCode(name="mission_not_valid_loiter", levels=0x93),
     STATION_LOST: EventCode(name="commander_gcs_lost", levels=0x64),
     COMPANION_LOST: EventCode(name="commander_mission_comp_lost", levels=0x22),
     COMPANION_BACK: EventCode(name="commander_onboard_ctrl_regained", levels=INFO),

@@ -45,6 +45,17 @@ def test_a_mission_takes_off_flies_its_waypoints_in_order_and_lands() -> None:
     assert pilot.last("MISSION_CURRENT").mission_state == COMPLETE
 
 
+def test_a_mission_that_is_cleared_in_flight_is_followed_by_hold_which_is_told() -> None:
+    pilot = started(planned(item(0, TAKEOFF, (0.0, 0.0, 6.0)), item(1, WAYPOINT, (60.0, 0.0, 6.0))))
+    pilot.step(mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, 8, 0, 0, 4, 3))
+    pilot.run_until(lambda: pilot.position[0] > 8.0, 30.0)
+    pilot.step(mavlink.MAVLink_mission_clear_all_message(1, 1, 0))
+    pilot.run(5.0)
+    assert (pilot.custom_mode(), pilot.is_armed()) == (HOLD, True)
+    assert "No valid mission available, loitering\t" in [text.text for text in pilot.all("STATUSTEXT")]
+    assert hypot(*pilot.node.state.velocity_enu_m_s[:2]) < 0.1
+
+
 def test_a_mission_without_a_takeoff_rises_before_it_goes() -> None:
     pilot = started(planned(item(0, WAYPOINT, (30.0, 0.0, 10.0))))
     pilot.run_until(lambda: pilot.position[2] > 9.0, 20.0)
