@@ -25,6 +25,7 @@ from sim_autopilot.missions_step import mission_current, set_current, take_plan
 from sim_autopilot.mode_request import try_mode
 from sim_autopilot.origin import move_origin
 from sim_autopilot.requests import is_for_us, is_ours, request_from_message
+from sim_autopilot.shell import take_typed
 from sim_autopilot.streams import with_interval
 
 Result = tuple[AutopilotMemory, tuple[Message, ...]]
@@ -166,6 +167,7 @@ _HANDLERS: Mapping[int, Handler] = MappingProxyType(
         mavlink.MAVLINK_MSG_ID_MISSION_SET_CURRENT: _set_current,
         mavlink.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL: _files,
         mavlink.MAVLINK_MSG_ID_LOGGING_ACK: take_logging_ack,
+        mavlink.MAVLINK_MSG_ID_SERIAL_CONTROL: take_typed,
     }
 )
 

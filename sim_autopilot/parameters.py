@@ -55,7 +55,7 @@ def default_values(parameters: tuple[Parameter, ...], overrides: Values) -> Valu
             near = difflib.get_close_matches(name, values, 5) or ["no name like it"]
             raise ValueError(f"no parameter {name}; there is {', '.join(near)}")
         parameter = by_name[name]
-        if not _is_allowed(parameter, value):
+        if not is_allowed(parameter, value):
             raise ValueError(f"{name} = {value} is not between {parameter.lowest} and {parameter.highest}")
         values[name] = float(value)
     return values
@@ -127,6 +127,7 @@ def _values_after_lenient_set(parameter: Parameter, values: Values, value: float
     return {**values, parameter.name: value}
 
 
-def _is_allowed(parameter: Parameter, value: float) -> bool:
+def is_allowed(parameter: Parameter, value: float) -> bool:
+    """Return whether a value is of the parameter's kind and within its range."""
     fits = not parameter.is_integer or float(value).is_integer()
     return math.isfinite(value) and fits and parameter.lowest <= value <= parameter.highest

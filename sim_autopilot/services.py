@@ -35,6 +35,7 @@ class Services:
         logs: of the flights.
         log_stream: to a client, None without one.
         gripper: PX4's.
+        typed: into the shell, of a line that is not finished.
         forgets: whether the next boot begins with the defaults of all parameters.
     """
 
@@ -52,4 +53,5 @@ class Services:
     logs: Logs = NO_LOGS
     log_stream: LogStream | None = None
     gripper: Gripper = AT_REST
+    typed: str = ""
     forgets: bool = False

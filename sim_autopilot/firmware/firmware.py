@@ -160,9 +160,8 @@ class Firmware:
         boot_mode: in which it starts.
         unarmable_modes: in which it refuses to arm.
         loiter_mode: which MAV_CMD_NAV_LOITER_UNLIM asks for.
-        statuses: of the heartbeat.
         fix_type: GPS_FIX_TYPE, once there is a fix.
-        texts: of STATUSTEXT.
+        statuses, texts: of HEARTBEAT and of STATUSTEXT.
         vtol_state: of EXTENDED_SYS_STATE.
         current_ca: that the battery tells, centiampere: neither simulation measures one.
         streams: every message that it can send, by id, with default rates.
@@ -190,7 +189,7 @@ class Firmware:
         plain_answers: the MAV_RESULT of commands that change nothing here, None for no answer, by MAV_CMD.
         missions, logs: of the mission protocol and of the log service.
         events: that it sends besides texts, by their text.
-        lists_modes: whether it sends AVAILABLE_MODES.
+        lists_modes, has_shell: whether it sends AVAILABLE_MODES, and answers SERIAL_CONTROL.
         tells_flights: whether it says what a flight comes to: `flight_texts`.
         reposition_mode: in which a DO_REPOSITION is flown.
         files: that it shows over MAVLink FTP, by its parameters and their values.
@@ -239,6 +238,7 @@ class Firmware:
     plain_answers: Mapping[int, int | None]
     missions: MissionRules = PX4_MISSIONS
     events: Mapping[str, EventCode] = field(default_factory=dict)
+    has_shell: bool = False
     lists_modes: bool = False
     tells_flights: bool = False
     reposition_mode: Mode = Mode.HOLD

@@ -170,6 +170,7 @@ PX4 = Firmware(
     announces_home=False,
     takes_off_by_setpoint=True,
     lists_modes=True,
+    has_shell=True,
     silent_messages=SILENT_MESSAGES,
     tells_flights=True,
     events=MappingProxyType(EVENTS),
