@@ -9,6 +9,7 @@ from types import MappingProxyType
 
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.arming import arm, arming_obstacle, disarm
+from sim_autopilot.arming_report import report_arming
 from sim_autopilot.calibration import calibrate
 from sim_autopilot.copter_commands import set_servo, switch_fence, turn
 from sim_autopilot.copter_services import format_storage, reset_parameters, spin_motor
@@ -172,6 +173,7 @@ _HANDLERS: Mapping[int, Handler] = MappingProxyType(
         mavlink.MAV_CMD_GET_HOME_POSITION: _tell_home,
         mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN: reboot,
         mavlink.MAV_CMD_DO_FLIGHTTERMINATION: _terminate,
+        mavlink.MAV_CMD_RUN_PREARM_CHECKS: report_arming,
         mavlink.MAV_CMD_MISSION_START: _start_mission,
         mavlink.MAV_CMD_DO_SET_MISSION_CURRENT: _set_mission_current,
         mavlink.MAV_CMD_DO_PAUSE_CONTINUE: _pause_or_continue,

@@ -12,6 +12,7 @@ from link.mavlink.dialect import mavlink
 from sim_autopilot.actuator_metadata import ACTUATORS_PATH, actuators_description
 from sim_autopilot.event_metadata import EVENTS_PATH, events_description
 from sim_autopilot.ftp_handlers import checksum
+from sim_autopilot.modes import Mode
 from sim_autopilot.parameters import Parameter
 
 GENERAL_PATH = "etc/extras/component_general.json.xz"
@@ -27,6 +28,9 @@ _TYPES = {
     int(mavlink.MAV_PARAM_TYPE_REAL32): "Float",
 }
 
+CustomModes = tuple[tuple[Mode, int], ...]
+"""Each mode's number in the heartbeat."""
+
 
 @cache
 def parameters_file(parameters: tuple[Parameter, ...], obeyed: frozenset[str]) -> bytes:
@@ -35,11 +39,11 @@ def parameters_file(parameters: tuple[Parameter, ...], obeyed: frozenset[str]) -
 
 
 @cache
-def general_file(parameters: tuple[Parameter, ...], obeyed: frozenset[str]) -> bytes:
+def general_file(parameters: tuple[Parameter, ...], obeyed: frozenset[str], modes: CustomModes) -> bytes:
     """Return the list of the descriptions, with the checksum of each."""
     files = (
         (_PARAMETER_METADATA, PARAMETERS_PATH, parameters_file(parameters, obeyed)),
-        (_EVENTS_METADATA, EVENTS_PATH, events_file()),
+        (_EVENTS_METADATA, EVENTS_PATH, events_file(modes)),
         (_ACTUATORS_METADATA, ACTUATORS_PATH, actuators_file()),
     )
     entries = [{"type": kind, "uri": f"mftp://{path}", "fileCrc": checksum(data)} for kind, path, data in files]
@@ -47,9 +51,9 @@ def general_file(parameters: tuple[Parameter, ...], obeyed: frozenset[str]) -> b
 
 
 @cache
-def events_file() -> bytes:
-    """Return the description of the events."""
-    return _compressed(events_description())
+def events_file(modes: CustomModes) -> bytes:
+    """Return the description of the events, and of the modes that the report on arming tells of."""
+    return _compressed(events_description(dict(modes)))
 
 
 @cache

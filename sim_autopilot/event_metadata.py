@@ -9,6 +9,8 @@ from types import MappingProxyType
 
 from link.mavlink.event_ids import event_id
 from sim_autopilot.firmware.px4_events import DISARM_REASONS, EVENTS
+from sim_autopilot.firmware.px4_health import ARMING_SUMMARY, COMPONENTS, HEALTH_SUMMARY, MODE_STATES
+from sim_autopilot.modes import Mode
 
 EVENTS_PATH = "etc/extras/all_events.json.xz"
 _AUTOPILOT, _NAMESPACE = "1", "px4"
@@ -35,8 +37,17 @@ _WITH_ARGUMENTS: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType(
 """Words, with a number for each argument, and the arguments' types."""
 
 
-def events_description() -> dict[str, object]:
-    """Return the definition of all events that are sent, as libevents reads it."""
+_HEALTH, _GROUP = "health_component_t", "navigation_mode_group_t"
+_PARTS, _STATES = f"{_NAMESPACE}::{_HEALTH}", f"{_NAMESPACE}::{_GROUP}"
+_SUMMARIES = (
+    ("arming_check", ARMING_SUMMARY, ("uint8_t", _PARTS, _PARTS, _STATES, _STATES)),
+    ("health", HEALTH_SUMMARY, ("uint8_t", _PARTS, _PARTS, _PARTS)),
+)
+"""Of the report on arming: group, name, arguments' types."""
+
+
+def events_description(custom_modes: Mapping[Mode, int]) -> dict[str, object]:
+    """Return the definition of all events that are sent, as libevents reads it, with the modes' numbers."""
     words = {code.name: text for text, code in EVENTS.items()}
     plain = {name: (text, ()) for name, text in words.items() if name not in _WITH_ARGUMENTS}
     events = {
@@ -46,10 +57,31 @@ def events_description() -> dict[str, object]:
     entries = {str(number): {"name": name, "description": said} for number, (name, said) in DISARM_REASONS.items()}
     component = {
         "namespace": _NAMESPACE,
-        "enums": {_REASON: {"type": "uint8_t", "entries": entries}},
-        "event_groups": {"default": {"events": events}},
+        "enums": {
+            _REASON: {"type": "uint8_t", "entries": entries},
+            _HEALTH: _bitfield(COMPONENTS),
+            _GROUP: _bitfield({number: (name, name) for number, name in MODE_STATES.values()}),
+        },
+        "event_groups": {"default": {"events": events}, **_summaries()},
+        "supported_protocols": ["health_and_arming_check"],
+        "navigation_mode_groups": {
+            "groups": {str(MODE_STATES[mode][0]): [number] for mode, number in custom_modes.items()}
+        },
     }
     return {"version": 2, "components": {_AUTOPILOT: component}}
+
+
+def _summaries() -> dict[str, object]:
+    groups: dict[str, object] = {}
+    for group, name, types in _SUMMARIES:
+        described = _described(name, "Summary", types) | {"type": "summary"}
+        groups[group] = {"events": {str(event_id(name) & _ID_BITS): described}}
+    return groups
+
+
+def _bitfield(names: Mapping[int, tuple[str, str]]) -> dict[str, object]:
+    entries = {str(1 << number): {"name": name, "description": said} for number, (name, said) in names.items()}
+    return {"type": "uint32_t", "is_bitfield": True, "entries": entries}
 
 
 def _described(name: str, message: str, types: tuple[str, ...]) -> dict[str, object]:

@@ -28,7 +28,6 @@ PX4_ANSWERS: Mapping[int, int | None] = MappingProxyType(
             mavlink.MAV_CMD_DO_SET_ROI_NONE,
             mavlink.MAV_CMD_DO_SET_ROI,
             mavlink.MAV_CMD_PREFLIGHT_STORAGE,
-            mavlink.MAV_CMD_RUN_PREARM_CHECKS,
             mavlink.MAV_CMD_REQUEST_STORAGE_INFORMATION,
         ),
         _ACCEPTED,

@@ -71,11 +71,31 @@ _ARMING_S = 3.5
 _OBEYED_NAMES = frozenset(parameter.name for parameter in OBEYED)
 
 
+_MODES = MappingProxyType(
+    {
+        Mode.OFFBOARD: _code("offboard", _OFFBOARD_FLAGS, 6),
+        Mode.HOLD: _code("hold", _AUTO_FLAGS, 4, 3),
+        Mode.LAND: _code("land", _AUTO_FLAGS, 4, 6),
+        Mode.TAKEOFF: _code("takeoff", _AUTO_FLAGS, 4, 2),
+        Mode.RTL: _code("rtl", _AUTO_FLAGS, 4, 5),
+        Mode.MISSION: _code("mission", _AUTO_FLAGS, 4, 4),
+        Mode.POSITION: _code("position", _MANUAL_FLAGS, 3),
+        Mode.ORBIT: _code("orbit", _AUTO_FLAGS, 3, 1),
+        Mode.FOLLOW: _code("follow", _AUTO_FLAGS, 4, 8),
+        Mode.ALTITUDE: _code("altitude", _MANUAL_FLAGS, 2),
+        Mode.STABILIZED: _code("stabilized", _MANUAL_FLAGS, 7),
+        Mode.MANUAL: _code("manual", _MANUAL_FLAGS, 1),
+        Mode.ACRO: _code("acro", _ACRO_FLAGS, 5),
+    }
+)
+_CUSTOM_MODES = tuple((mode, code.custom_mode) for mode, code in _MODES.items())
+
+
 def _files(parameters: tuple[Parameter, ...], _values: Values) -> Shown:
     return {
-        GENERAL_PATH: partial(general_file, parameters, _OBEYED_NAMES),
+        GENERAL_PATH: partial(general_file, parameters, _OBEYED_NAMES, _CUSTOM_MODES),
         ACTUATORS_PATH: actuators_file,
-        EVENTS_PATH: events_file,
+        EVENTS_PATH: partial(events_file, _CUSTOM_MODES),
         PARAMETERS_PATH: partial(parameters_file, parameters, _OBEYED_NAMES),
     }
 
@@ -96,23 +116,7 @@ PX4 = Firmware(
     | mavlink.MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
     | mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED,
     version=0x01_11_00_00,  # 1.17.0, in development
-    modes=MappingProxyType(
-        {
-            Mode.OFFBOARD: _code("offboard", _OFFBOARD_FLAGS, 6),
-            Mode.HOLD: _code("hold", _AUTO_FLAGS, 4, 3),
-            Mode.LAND: _code("land", _AUTO_FLAGS, 4, 6),
-            Mode.TAKEOFF: _code("takeoff", _AUTO_FLAGS, 4, 2),
-            Mode.RTL: _code("rtl", _AUTO_FLAGS, 4, 5),
-            Mode.MISSION: _code("mission", _AUTO_FLAGS, 4, 4),
-            Mode.POSITION: _code("position", _MANUAL_FLAGS, 3),
-            Mode.ORBIT: _code("orbit", _AUTO_FLAGS, 3, 1),
-            Mode.FOLLOW: _code("follow", _AUTO_FLAGS, 4, 8),
-            Mode.ALTITUDE: _code("altitude", _MANUAL_FLAGS, 2),
-            Mode.STABILIZED: _code("stabilized", _MANUAL_FLAGS, 7),
-            Mode.MANUAL: _code("manual", _MANUAL_FLAGS, 1),
-            Mode.ACRO: _code("acro", _ACRO_FLAGS, 5),
-        }
-    ),
+    modes=_MODES,
     boot_mode=Mode.HOLD,
     unarmable_modes=frozenset({Mode.LAND, Mode.RTL, Mode.ORBIT, Mode.FOLLOW}),
     loiter_mode=Mode.HOLD,

@@ -2,15 +2,19 @@
 
 import json
 import lzma
+import struct
 from math import nan
 
 import pytest
 
 from link.mavlink.dialect import mavlink
+from link.mavlink.event_ids import event_id
 from sim_autopilot.component_metadata import COMPONENT_METADATA, PROTOCOL_VERSION
+from sim_autopilot.firmware.px4_health import ARMING_SUMMARY, HEALTH_SUMMARY, MODE_STATES
 from sim_autopilot.ftp_handlers import checksum
+from sim_autopilot.modes import Mode
 from tests.sim_autopilot.file_client import FileClient
-from tests.sim_autopilot.pilot import HOLD, Pilot, arm, command
+from tests.sim_autopilot.pilot import HOLD, Pilot, arm, command, setpoint
 from tests.sim_autopilot.planner import item, upload
 
 REJECTED, DENIED, UNSUPPORTED = 1, 2, 3
@@ -105,6 +109,45 @@ def test_every_event_that_is_sent_is_described_in_the_metadata() -> None:
     assert {"commander_armed_by", "logger_open_file_time", "commander_takeoff_detected", "vrtl_return_at"} <= names
     said = events[str(sent[0] & 0xFFFFFF)]
     assert (said["message"], said["arguments"][0]["type"]) == ("Armed by {1}", "px4::arm_disarm_reason_t")
+
+
+def arming_bits(pilot: Pilot) -> tuple[int, int]:
+    """The modes in which it says that it arms, and those in which it flies."""
+    pilot.received.clear()
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_RUN_PREARM_CHECKS)) == [0]
+    summary, health = pilot.all("EVENT")
+    assert [event.id for event in (summary, health)] == [event_id(ARMING_SUMMARY), event_id(HEALTH_SUMMARY)]
+    _, _, _, can_arm, can_run = struct.unpack_from("<BIIII", bytes(summary.arguments))
+    return can_arm, can_run
+
+
+def bits(*modes: Mode) -> int:
+    return sum(1 << MODE_STATES[mode][0] for mode in modes)
+
+
+def test_the_report_on_arming_says_in_which_modes_it_arms_and_flies() -> None:
+    pilot = Pilot()
+    can_arm, can_run = arming_bits(pilot)
+    assert can_arm == bits(Mode.HOLD, Mode.TAKEOFF)
+    assert can_run & bits(Mode.RTL, Mode.LAND, Mode.HOLD) == bits(Mode.RTL, Mode.LAND, Mode.HOLD)
+    assert not can_run & bits(Mode.OFFBOARD, Mode.POSITION, Mode.MISSION)
+    upload(pilot, [item(0, 22, (0.0, 0.0, 5.0))])
+    pilot.run(0.5, lambda _t: setpoint((0.0, 0.0, -3.0)))
+    pilot.step(mavlink.MAVLink_manual_control_message(1, 0, 0, 500, 0, 0))
+    can_arm, can_run = arming_bits(pilot)
+    assert can_arm & can_run & bits(Mode.OFFBOARD, Mode.POSITION, Mode.MISSION)
+    assert not can_arm & bits(Mode.RTL, Mode.LAND)
+
+
+def test_the_metadata_name_every_mode_of_the_report_by_its_number_in_the_heartbeat() -> None:
+    pilot = Pilot()
+    described = json.loads(lzma.decompress(FileClient(pilot).read(b"etc/extras/all_events.json.xz")))
+    component = described["components"]["1"]
+    assert component["supported_protocols"] == ["health_and_arming_check"]
+    groups = component["navigation_mode_groups"]["groups"]
+    assert groups["4"] == [HOLD]
+    entries = component["enums"]["navigation_mode_group_t"]["entries"]
+    assert {str(1 << int(number)) for number in groups} == set(entries)
 
 
 def test_the_outputs_that_are_described_have_their_parameters_and_drive_four_motors() -> None:
