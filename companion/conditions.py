@@ -129,7 +129,6 @@ ABORT_TESTS = (
     Test(
         "too fast against the pad", frozenset({Phase.DESCEND}), _too_fast_near_pad, lambda c: c.abort.near_speed_hold_s
     ),
-    Test("not over the pad in time", frozenset({Phase.DESCEND}), _strays, lambda c: c.abort.stray_hold_s),
     Test("vehicle faster than the limit", LANDING_PHASES, _outruns, lambda c: c.chase.driving_hold_s),
     Test("too far from the start", LANDING_PHASES, is_out_of_range, lambda _: 0.0),
     Test("below the pad without contact", frozenset({Phase.DESCEND}), _missed_pad, lambda _: 0.0),
@@ -196,6 +195,10 @@ ENTRY_TESTS = (
         Test(
             "pad to be seen again", frozenset({Phase.DESCEND}), _must_be_seen_above, lambda _: 0.0
         ),  # or it slips below
+    ),
+    (
+        Event.OUT_OF_ALIGNMENT,  # which costs no approach: nothing was near
+        Test("not over the pad in time", frozenset({Phase.DESCEND}), _strays, lambda c: c.abort.stray_hold_s),
     ),
     (
         Event.OUT_OF_ALIGNMENT,

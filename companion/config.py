@@ -92,6 +92,10 @@ class DescentConfig(StrictModel):
     # beside the cone and while the drone moves too fast against the pad.
     speed_change_max_m_s2: Positive = 1.2
     waiting_height_m: Positive = 0.6
+    # So far off, in hindsight, the vehicle's speed may have been believed; S1 asks for 1.0 m/s at contact. Beyond
+    # it the descent waits until the vehicle stands, or has driven as expected for as long as from one stop to the next.
+    surprise_speed_m_s: Positive = 0.7
+    surprise_hold_s: NotNegative = 10.0
     commit_height_m: Positive = 0.35  # below this it lands rather than aborts
     # Standard deviation up to which a pad is landed on that the vehicle's fixes are too coarse to place: half of what
     # S1 allows. Its pattern must have been seen as lately as that, while the drone and the vehicle's clock wander.
@@ -140,7 +144,7 @@ class AbortConfig(StrictModel):
     tracking_error_max_m: Positive = 2.5  # of the drone behind its setpoint
     tracking_hold_s: NotNegative = 1.0
     cone_hold_s: NotNegative = 0.3
-    stray_hold_s: NotNegative = 3.0  # beside the cone or too fast, but high enough to wait for better
+    stray_hold_s: NotNegative = 3.0  # beside the cone or too fast, but high enough to be aligned again
     near_height_m: Positive = 0.5  # below this there is no time to wait
     near_speed_max_m_s: Positive = 0.8  # S1 asks for 1.0 at contact
     near_speed_hold_s: NotNegative = 0.06

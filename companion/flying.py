@@ -1,5 +1,7 @@
 """From the phase to the next state of the virtual model, and from that to the setpoint; pure."""
 
+import math
+
 import numpy as np
 
 from companion.conditions import CONTACT, DISPUTED_CONTACT, must_wait
@@ -12,6 +14,7 @@ from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
 from companion.reference import Tracking, carried, not_falling, pressing, remember, setpoint_at
 from companion.situation import Situation, approach
 from companion.step_data import StepInputs, StepMemory, System
+from companion.surprise import may_surprise
 from companion.sway import felt, sways
 from companion.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
 from companion.transitions import BRAKING_M_S2
@@ -51,7 +54,7 @@ def _aim(memory: StepMemory, situation: Situation, config: CompanionConfig) -> A
         raise ValueError(f"phase {memory.phase.value} flies without a reference")
     match memory.phase:
         case Phase.CHASE | Phase.ALIGN | Phase.DESCEND | Phase.TOUCHDOWN if pad is not None:
-            lowest_m = _lowest_m(memory, situation, config)
+            lowest_m = waits_at_m(memory, situation, config)
             return pad_aim(memory.phase, pad, reference, situation.feet_offset_m, config, lowest_m=lowest_m)
         case Phase.ABORT if pad is not None and _is_fresh(situation, config):
             return pad_aim(memory.phase, pad, reference, situation.feet_offset_m, config)
@@ -65,14 +68,23 @@ def _aim(memory: StepMemory, situation: Situation, config: CompanionConfig) -> A
             return hover_aim(memory.waiting_point_enu_m)
 
 
-def _lowest_m(memory: StepMemory, situation: Situation, config: CompanionConfig) -> float | None:
+def waits_at_m(memory: StepMemory, situation: Situation, config: CompanionConfig) -> float | None:
     """Return how low above the pad a descent may go for now, None for down to the pad."""
     relative = approach(situation)
     if memory.phase is not Phase.DESCEND or relative is None:
         return None
-    if must_wait(situation, relative, config) and relative.height_m > config.descent.commit_height_m:
+    waits = must_wait(situation, relative, config) or _may_be_surprised(memory, situation, config)
+    if waits and relative.height_m > config.descent.commit_height_m:
         return min(relative.height_m, config.descent.waiting_height_m)
     return config.descent.commit_height_m if waits_for_calm(memory, situation, config) else None
+
+
+def _may_be_surprised(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
+    """Return whether the vehicle drives, and has lately done what nobody could expect."""
+    if situation.pad is None or not may_surprise(memory.surprise, situation.t_ns, config.descent):
+        return False
+    velocity = situation.pad.velocity_enu_m_s[0, :2]
+    return math.hypot(*velocity.tolist()) > config.chase.parked_speed_m_s
 
 
 def waits_for_calm(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:

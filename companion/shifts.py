@@ -8,6 +8,7 @@ from companion.autopilots.driver import AutopilotView, DriverMemory
 from companion.data import Array
 from companion.reference import Tracking
 from companion.step_data import StepMemory
+from companion.surprise import Surprise
 from companion.sway import Sway
 
 
@@ -55,6 +56,7 @@ def at_other_time(memory: StepMemory, by_ns: int) -> StepMemory:
         reference_ns=memory.reference_ns + by_ns,
         tracking=_tracking_at_other_time(memory.tracking, by_ns),
         sway=Sway(),
+        surprise=Surprise(),
     )
 
 

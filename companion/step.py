@@ -18,6 +18,7 @@ from companion.shifts import in_present_frame
 from companion.situation import Situation, drone_now, range_carried_m, range_height_m
 from companion.status import landing_status
 from companion.step_data import StepInputs, StepMemory, StepOutputs, System
+from companion.surprise import looked_back
 from companion.targets import HORIZON_OFFSETS_S
 from companion.transitions import transitions
 from link.frames import yaw_of
@@ -75,7 +76,8 @@ def _estimate(memory: StepMemory, inputs: StepInputs, system: System) -> StepMem
     if inputs.own is not None and memory.reference is not None:
         learn = system.config.corrects_lag and memory.phase in LANDING_PHASES
         tracking = compare(tracking, inputs.own, learn=learn)
-    return replace(memory, estimator=estimator, tracking=tracking)
+    surprise = looked_back(memory.surprise, system.estimator, estimator, inputs.t_ns, system.config.descent)
+    return replace(memory, estimator=estimator, tracking=tracking, surprise=surprise)
 
 
 def _pad(memory: StepMemory, inputs: StepInputs, system: System) -> tuple[StepMemory, PadPath | None]:

@@ -13,6 +13,7 @@ from companion.estimation.estimator import Estimator
 from companion.phases import Phase
 from companion.planning.guidance import Guidance, PlanResult, ReferenceState
 from companion.reference import Tracking
+from companion.surprise import Surprise
 from companion.sway import Sway
 from link.messages import Command, CommandReply, LandingStatus, PadGeometry, Vector3
 
@@ -101,6 +102,7 @@ class StepMemory:
         reference_ns: the model's time.
         tracking: how the drone follows it.
         sway: how hard the drone leans.
+        surprise: how the vehicle drives against what was expected.
         stopped_by_pad: the contact was a jolt.
         held: since when each test has been true.
         obstacle: name of what makes a landing impossible, and the sentence that told it; None without one.
@@ -127,6 +129,7 @@ class StepMemory:
     reference_ns: int = 0
     tracking: Tracking = field(default_factory=Tracking)
     sway: Sway = field(default_factory=Sway)
+    surprise: Surprise = field(default_factory=Surprise)
     stopped_by_pad: bool = False
     held: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
     obstacle: tuple[str, str] | None = None

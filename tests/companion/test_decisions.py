@@ -47,7 +47,6 @@ UNSAFE: dict[str, Situation] = {
         situation(),
         drone=drone_at(NEAR_M, 0.0, (CONFIG.abort.near_speed_max_m_s + 0.01, 0.0, 0.0), pad=pad_at()),
     ),
-    "not over the pad in time": situation(HIGH_M, cone_radius_m(HIGH_M, CONFIG) + 0.01),
     "too far from the start": replace(
         situation(), waiting_point_enu_m=np.array([CONFIG.limits.range_max_m + 10.0, 0.0, 5.0])
     ),
@@ -59,7 +58,7 @@ UNSAFE: dict[str, Situation] = {
 # Below the commit height these still count: without them nobody knows where the pad is.
 BLIND = {"own position too old", "vehicle heading unknown", "below the pad without contact"}
 # These cannot be true of a drone that is committed: it is over the pad and hardly moves against it.
-UNFIT = {"outside the descent cone", "too fast against the pad", "not over the pad in time"}
+UNFIT = {"outside the descent cone", "too fast against the pad"}
 
 
 def _moving(speed_m_s: float) -> Situation:
@@ -273,6 +272,8 @@ def test_landing_goes_on_exactly_after_the_hold_time(event: Event, test: Conditi
             facts = situation(3.0, 2.0, pad=pad_at((0.0, 0.0, 0.0)))
         case Event.ALIGNED:
             facts = situation()
+        case Event.OUT_OF_ALIGNMENT if test.reason == "not over the pad in time":
+            facts = situation(HIGH_M, cone_radius_m(HIGH_M, CONFIG) + 0.01)
         case Event.OUT_OF_ALIGNMENT:
             facts = situation(pad=replace(pad_at(std_m=CONFIG.descent.unseen_std_max_m + 0.01), is_coarse=True))
         case _:

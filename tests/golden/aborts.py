@@ -183,11 +183,6 @@ ABORTS: dict[str, Abort] = {
     "outside_cone": Abort(
         reason="outside the descent cone", fault=_when_low(_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0))
     ),
-    "strays": Abort(
-        reason="not over the pad in time",
-        companion={"abort": {"stray_hold_s": 0.5}},
-        fault=_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0),
-    ),
     "too_far": Abort(
         reason="too far from the start", companion={"limits": {"range_max_m": 6.0, "landing_time_s": 1.0}}
     ),

@@ -1,0 +1,79 @@
+"""Whether the vehicle has lately done what its data did not let expect, told in hindsight; pure.
+
+What is known of a vehicle is as old as its data: 0.1 s over a good link, 0.6 s over a poor one. What it does meanwhile
+is a guess, which can be checked once the data of that moment are there. A guess that was off by nearly the speed that a
+contact may have against the pad means that a contact at that moment would have been too fast. A vehicle that has braked
+or started like that will again (a bus, a queue of cars), so it is landed on only while it stands, or has driven for
+some time as expected. Only its speed is asked about: the beginning of a curve surprises as well, but once it is known
+it lasts. With fresh data even an emergency brake surprises by little.
+"""
+
+import math
+from dataclasses import dataclass
+
+from companion.config import DescentConfig
+from companion.data import VehicleEstimate
+from companion.estimation.estimator import Estimator
+from link.records import replace
+
+_BELIEF_PERIOD_NS = 100_000_000
+_KNOWN_STD_MAX_M_S = 1.0  # of a velocity that is a belief: in its first second an estimate knows no acceleration
+_KEPT = 30  # beliefs: of 3 s, longer than any data are awaited
+
+Belief = tuple[int, float]
+"""UTC ns, and the horizontal speed that was believed then, m/s."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Surprise:
+    """What has been believed of the vehicle's speed, and when that was last found to be wrong.
+
+    Attributes:
+        beliefs: not checked yet, oldest first.
+        surprised_ns: when the newest wrong one was held; 0 when none was.
+    """
+
+    beliefs: tuple[Belief, ...] = ()
+    surprised_ns: int = 0
+
+
+def looked_back(surprise: Surprise, estimator: Estimator, memory: object, t_ns: int, config: DescentConfig) -> Surprise:
+    """Return the surprise at `t_ns`: beliefs are checked whose time the vehicle's data have reached, and one is added.
+
+    Args:
+        surprise: so far.
+        estimator: of the vehicle.
+        memory: the estimator's own, after all that has arrived.
+        t_ns: now.
+        config: what counts as wrong.
+    """
+    newest_ns = estimator.newest_fix_ns(memory)
+    if newest_ns is None:
+        return replace(surprise, beliefs=()) if surprise.beliefs else surprise
+    while surprise.beliefs and surprise.beliefs[0][0] <= newest_ns:
+        (then_ns, speed_m_s), *later = surprise.beliefs
+        surprise = replace(surprise, beliefs=tuple(later))
+        known = estimator.estimate(memory, then_ns)
+        if known is None or not _is_known(known):
+            continue
+        if abs(_speed_m_s(known) - speed_m_s) > config.surprise_speed_m_s:
+            surprise = replace(surprise, surprised_ns=max(then_ns, surprise.surprised_ns))
+    if surprise.beliefs and t_ns - surprise.beliefs[-1][0] < _BELIEF_PERIOD_NS:
+        return surprise
+    now = estimator.estimate(memory, t_ns)
+    if now is None or not _is_known(now):
+        return surprise
+    return replace(surprise, beliefs=(*surprise.beliefs, (t_ns, _speed_m_s(now)))[-_KEPT:])
+
+
+def may_surprise(surprise: Surprise, t_ns: int, config: DescentConfig) -> bool:
+    """Return whether a driving vehicle is to be expected to do at `t_ns` what it has done."""
+    return surprise.surprised_ns > 0 and (t_ns - surprise.surprised_ns) * 1e-9 < config.surprise_hold_s
+
+
+def _speed_m_s(estimate: VehicleEstimate) -> float:
+    return math.hypot(*estimate.velocity_enu_m_s[:2].tolist())
+
+
+def _is_known(estimate: VehicleEstimate) -> bool:
+    return float(estimate.covariance[3, 3] + estimate.covariance[4, 4]) < _KNOWN_STD_MAX_M_S**2
