@@ -71,10 +71,16 @@ def campaign_command(
     return _fly(create_folder(out, plan), plan, where, as_json=as_json)
 
 
-def table_command(folder: FolderArgument, *, as_json: JsonOption = False) -> None:
+def table_command(folder: FolderArgument, *, as_json: JsonOption = False, markdown: bool = False) -> None:
     """Print a campaign's summary again."""
     from scenarios.campaign_folder import read_landings, read_timing
 
+    if markdown and not as_json:
+        from scenarios.campaign_markdown import write_markdown
+        from scenarios.summary import summarize
+
+        write_markdown(summarize(read_landings(folder)), sys.stdout)
+        return
     _print_summary(read_landings(folder), read_timing(folder), as_json=as_json)
 
 

@@ -29,13 +29,13 @@ def report_or_campaign_table(
         int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
     ] = None,
     markdown: Annotated[
-        bool, typer.Option("--markdown", help="Print the report's tables as docs/report.md has them.")
-    ] = (False),
+        bool, typer.Option("--markdown", help="Print tables as docs/report.md and docs/benchmark.md have them.")
+    ] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Print the report's outcomes, published against measured; or a campaign's summary again."""
     if what != _REPORT:
-        table_command(Path(what), as_json=as_json)
+        table_command(Path(what), as_json=as_json, markdown=markdown)
         return
     from scenarios.report_table import fly_report, print_report, write_markdown
 
