@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from link.mavlink.dialect import mavlink
-from sim_autopilot.missions import FENCE, MISSION, RALLY
+from sim_autopilot.missions import ABOVE_TERRAIN, FENCE, MISSION, RALLY
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,6 +31,7 @@ class MissionRules:
         asks_whole: whether items are asked for by MISSION_REQUEST_INT, until a MISSION_ITEM comes.
         takes_parts: whether a part of a plan can be written anew.
         commands: of missions, besides those that both take.
+        frames: of places, besides those that both take.
         told_frames: in which MISSION_ITEM_INT tells a place, by the frame it was sent in.
         stores_at_once: plans of which each item takes the old one's place as it comes, whatever follows.
         keeps_little: whether of an item only what flies it is stored, and plans that make no sense are refused.
@@ -55,6 +56,7 @@ class MissionRules:
     asks_whole: bool = True
     takes_parts: bool = False
     commands: frozenset[int] = frozenset()
+    frames: frozenset[int] = frozenset()
     told_frames: Mapping[int, int] = field(default_factory=dict)
     stores_at_once: frozenset[int] = frozenset()
     keeps_little: bool = False
@@ -124,8 +126,10 @@ ARDUCOPTER_MISSIONS = MissionRules(
             mavlink.MAV_FRAME_GLOBAL_INT: mavlink.MAV_FRAME_GLOBAL,
             mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT: mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT,
             mavlink.MAV_FRAME_MISSION: mavlink.MAV_FRAME_GLOBAL,
+            mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT_INT: mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT,
         }
     ),
+    frames=ABOVE_TERRAIN,
     stores_at_once=frozenset({MISSION, RALLY}),
     keeps_little=True,
     clears_all=False,

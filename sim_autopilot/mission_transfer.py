@@ -105,7 +105,9 @@ def _add(library: Library, transfer: Transfer, arrival: Arrival) -> Result:
     try:
         item = item_from_message(arrival.message)
         item = stored(item, transfer.kind) if arrival.rules.keeps_little else item
-        result = result_of(item, transfer.kind, arrival.rules.commands) if result is None else result
+        result = (
+            result_of(item, transfer.kind, arrival.rules.commands, arrival.rules.frames) if result is None else result
+        )
     except ValueError:
         return replace(library, transfer=None), (arrival.answer(_ERROR),)
     items = (*transfer.items, item)

@@ -16,6 +16,8 @@ _DEGREES_TO_WIRE = 1e7
 _ABOVE_SEA = frozenset({mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT})
 _ABOVE_HOME = frozenset({mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT})
 _FRAMES = _ABOVE_SEA | _ABOVE_HOME | {mavlink.MAV_FRAME_MISSION}
+ABOVE_TERRAIN = frozenset({mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT, mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT_INT})
+"""Of items above the ground, which is flat: as high as home."""
 
 MISSION, FENCE, RALLY = (
     int(kind)
@@ -151,14 +153,14 @@ def item_from_message(message: Message) -> Item:
     )
 
 
-def result_of(item: Item, kind: int, more: frozenset[int] = frozenset()) -> int:
+def result_of(item: Item, kind: int, more: frozenset[int] = frozenset(), frames: frozenset[int] = frozenset()) -> int:
     """Return the MAV_MISSION_RESULT that an item of a plan of type `kind` deserves.
 
-    `more` are commands that it may have besides those that every firmware takes.
+    `more` are commands, and `frames` MAV_FRAMEs, that it may have besides those that every firmware takes.
     """
     if item.command not in _COMMANDS[kind] and not (kind == MISSION and item.command in more):
         return int(mavlink.MAV_MISSION_UNSUPPORTED)
-    if item.frame not in _FRAMES:
+    if item.frame not in _FRAMES | frames:
         return int(mavlink.MAV_MISSION_UNSUPPORTED_FRAME)
     if abs(item.x) > 90 * _DEGREES_TO_WIRE and item.frame != mavlink.MAV_FRAME_MISSION:
         return int(mavlink.MAV_MISSION_INVALID_PARAM5_X)

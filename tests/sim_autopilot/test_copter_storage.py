@@ -13,7 +13,7 @@ from tests.sim_autopilot.planner import download, item, plan_messages, upload
 WAYPOINT, SPEED, JUMP = mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_DO_CHANGE_SPEED, mavlink.MAV_CMD_DO_JUMP
 CORNER, CIRCLE = mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION, mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION
 FENCE, RALLY, ALL = 1, 2, 255
-ACCEPTED, ERROR, UNSUPPORTED = 0, 1, 3
+ACCEPTED, ERROR, UNSUPPORTED_FRAME, UNSUPPORTED = 0, 1, 2, 3
 PLACE = (3.0, 5.0, 10.0)
 NUMBERS = (0.0, 0.0, 0.0, 0.0)
 
@@ -154,6 +154,15 @@ def test_items_of_an_upload_that_breaks_off_replace_the_old_ones_with_arducopter
     refused = item(2, WAYPOINT, PLACE, frame=mavlink.MAV_FRAME_LOCAL_NED)
     assert upload(pilot, [*begun, refused]) != ACCEPTED
     assert [kept.z for kept in download(pilot)[1:]] == heights  # item 0 is home with the one
+
+
+def test_a_waypoint_above_the_terrain_is_kept_as_such_by_arducopter_only() -> None:
+    for frame in (mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT, mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT_INT):
+        plan = [waypoints(1)[0], item(1, WAYPOINT, PLACE, frame=frame)]
+        pilot = Pilot(ardupilot())
+        assert upload(pilot, plan) == ACCEPTED
+        assert download(pilot)[1].frame == mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT
+        assert upload(Pilot(), plan) == UNSUPPORTED_FRAME
 
 
 def test_arducopter_cuts_its_mission_off_as_soon_as_a_shorter_one_is_announced() -> None:
