@@ -86,8 +86,11 @@ def _set_mode(memory: AutopilotMemory, request: Request, config: AutopilotConfig
     wanted = (request.number(2), request.number(3))
     modes = config.firmware.modes
     mode = next((mode for mode, code in modes.items() if code.request == wanted[: len(code.request)]), None)
-    if config.firmware.guided and not (request.number(1) or 0) & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
-        return Answer(memory=memory, result=DENIED)
+    base = (request.number(1) or 0) & 0xFF
+    if not base & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
+        if config.firmware.guided:
+            return Answer(memory=memory, result=DENIED)
+        mode = _mode_of_flags(base)
     if mode is None:
         said = config.firmware.texts.no_such_mode.format(wanted[0])
         return Answer(memory=memory, result=config.firmware.results.no_such_mode, text=said or None)
@@ -96,6 +99,17 @@ def _set_mode(memory: AutopilotMemory, request: Request, config: AutopilotConfig
         return Answer(memory=memory, result=result)
     second = Later(boot_ns=memory.now.boot_ns + _SECOND_ANSWER_NS, message=acknowledgement(request, result))
     return Answer(memory=replace(memory, later=(*memory.later, second)), result=ACCEPTED)
+
+
+def _mode_of_flags(base: int) -> Mode | None:
+    """Return the mode that the MAV_MODE_FLAGs of a client without custom modes ask PX4 for."""
+    if base & mavlink.MAV_MODE_FLAG_AUTO_ENABLED:
+        return Mode.MISSION
+    if not base & mavlink.MAV_MODE_FLAG_MANUAL_INPUT_ENABLED:
+        return None
+    if base & mavlink.MAV_MODE_FLAG_GUIDED_ENABLED:
+        return Mode.POSITION
+    return Mode.STABILIZED if base & mavlink.MAV_MODE_FLAG_STABILIZE_ENABLED else Mode.MANUAL
 
 
 def _inject_failure(memory: AutopilotMemory, request: Request, _config: AutopilotConfig) -> Answer:

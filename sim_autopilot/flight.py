@@ -168,10 +168,10 @@ def descend_here(flight: ModeFlight, now: Snapshot) -> ModeFlight:
     )
 
 
-def is_takeoff_complete(flight: ModeFlight, now: Snapshot) -> bool:
-    """Return whether a drone in the take-off mode has come to its height."""
+def is_takeoff_complete(flight: ModeFlight, now: Snapshot, settings: FlightSettings) -> bool:
+    """Return whether a drone in the take-off mode has come near its height, to which the hold after it goes on."""
     target = flight.anchor.position_enu_m
-    return target is not None and now.position_enu_m[2] > float(target[2]) - _REACHED_M / 2.0
+    return target is not None and now.position_enu_m[2] > float(target[2]) - settings.reached_height_m
 
 
 def _braking(flight: ModeFlight, since_s: float) -> Reference:

@@ -112,7 +112,8 @@ def fly_mission(progress: Progress, items: tuple[Item, ...], flight: ModeFlight,
             break
         index, item = progress.index, _as_flown(items[progress.index], around)
         if item.command == _RETURN and around.returns_itself:
-            return _returning(progress, flight, around)
+            step = _returning(progress, flight, around)
+            return replace(step, reached=(*reached, *step.reached))
         if item.command == _RETURN:
             after = replace(progress, stage=Stage.FINISHED)
             return MissionStep(progress=after, flight=flight, reached=(*reached, index), returns=True)

@@ -39,8 +39,6 @@ _DONE_AT_ONCE = (
     mavlink.MAV_CMD_DO_SET_HOME,
     mavlink.MAV_CMD_DO_SET_SERVO,
     mavlink.MAV_CMD_DO_LAND_START,
-    mavlink.MAV_CMD_DO_SET_ROI_LOCATION,
-    mavlink.MAV_CMD_DO_SET_ROI_NONE,
     mavlink.MAV_CMD_DO_SET_ROI,
     mavlink.MAV_CMD_DO_DIGICAM_CONTROL,
     mavlink.MAV_CMD_DO_MOUNT_CONFIGURE,
@@ -53,7 +51,6 @@ _DONE_AT_ONCE = (
     mavlink.MAV_CMD_IMAGE_STOP_CAPTURE,
     mavlink.MAV_CMD_VIDEO_START_CAPTURE,
     mavlink.MAV_CMD_VIDEO_STOP_CAPTURE,
-    mavlink.MAV_CMD_SET_CAMERA_MODE,
     mavlink.MAV_CMD_SET_CAMERA_ZOOM,
     mavlink.MAV_CMD_SET_CAMERA_FOCUS,
 )

@@ -13,7 +13,7 @@ from sim_autopilot.requests import ACCEPTED, Answer, Handler, Request
 def try_mode(memory: AutopilotMemory, mode: Mode, config: AutopilotConfig) -> tuple[AutopilotMemory, int]:
     """Return the memory in `mode`, or as it was, and the MAV_RESULT."""
     firmware = config.firmware
-    stale = mode is Mode.OFFBOARD and not may_fly_setpoints(memory, config)
+    stale = mode is Mode.OFFBOARD and memory.armed_ns is not None and not may_fly_setpoints(memory, config)
     if stale or mode not in firmware.modes:
         return memory, firmware.results.mode_refused
     if mode is Mode.MISSION:

@@ -190,8 +190,8 @@ def _after_flight(memory: AutopilotMemory) -> AutopilotMemory:
     landing = detect_landing(landing, now, memory.following, memory.settings, tilt_rad)
     if landing != memory.landing:
         memory = replace(memory, landing=landing)
-    if memory.modes.mode is Mode.TAKEOFF and is_takeoff_complete(memory.flight, now):
-        memory = change_mode(memory, Event.TAKEOFF_COMPLETE)
+    if memory.modes.mode is Mode.TAKEOFF and is_takeoff_complete(memory.flight, now, memory.settings):
+        memory = replace(change_mode(memory, Event.TAKEOFF_COMPLETE), flight=memory.flight)
         modes = memory.modes
         return memory if modes.resting is None else replace(memory, modes=replace(modes, resting=modes.mode))
     return memory

@@ -5,6 +5,7 @@ import pytest
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.event_ids import event_id
 from sim_autopilot.firmware.px4 import PX4
+from sim_autopilot.modes import Mode
 from tests.sim_autopilot.pilot import (
     HOLD,
     LAND,
@@ -77,8 +78,33 @@ def test_a_mode_is_answered_twice_and_entered(main: int, sub: int, mode: int) ->
 
 def test_offboard_without_setpoints_is_accepted_first_and_refused_after() -> None:
     pilot = Pilot()
+    pilot.step(arm())
     assert pilot.acknowledged(set_mode(6)) == [ACCEPTED, REJECTED]
     assert pilot.custom_mode() == HOLD
+
+
+def test_disarmed_every_mode_can_be_chosen_but_offboard_does_not_arm_without_setpoints() -> None:
+    pilot = Pilot()
+    for code in PX4.modes.values():
+        assert pilot.acknowledged(set_mode(*code.request)) == [ACCEPTED, ACCEPTED]
+        assert pilot.custom_mode() == code.custom_mode
+    pilot.acknowledged(set_mode(6))
+    assert pilot.acknowledged(arm()) == [REJECTED]
+
+
+@pytest.mark.parametrize(
+    ("flags", "mode"),
+    [
+        (mavlink.MAV_MODE_MANUAL_ARMED, Mode.MANUAL),
+        (mavlink.MAV_MODE_STABILIZE_ARMED, Mode.STABILIZED),
+        (mavlink.MAV_MODE_GUIDED_DISARMED, Mode.POSITION),
+        (mavlink.MAV_MODE_AUTO_DISARMED, Mode.MISSION),
+    ],
+)
+def test_a_client_without_custom_modes_asks_by_flags(flags: int, mode: Mode) -> None:
+    pilot = Pilot()
+    assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_SET_MODE, float(flags))) == [ACCEPTED, ACCEPTED]
+    assert pilot.custom_mode() == PX4.modes[mode].custom_mode
 
 
 def test_offboard_is_entered_after_three_tenths_of_a_second_of_setpoints() -> None:
@@ -96,6 +122,7 @@ def test_one_fresh_setpoint_is_enough_for_offboard() -> None:
 
 def test_offboard_is_refused_once_the_setpoints_are_stale() -> None:
     pilot = Pilot()
+    pilot.step(arm())
     setpoints_for(pilot, 0.5)
     pilot.run(1.1)
     assert pilot.acknowledged(set_mode(6)) == [ACCEPTED, REJECTED]
@@ -174,7 +201,8 @@ def test_a_takeoff_while_disarmed_is_accepted_and_begins_with_arming() -> None:
     assert pilot.position[2] < 0.13
     assert pilot.acknowledged(arm()) == [ACCEPTED]
     pilot.run_until(lambda: pilot.custom_mode() == HOLD, 10.0)
-    assert pilot.position[2] == pytest.approx(2.5, abs=0.5)  # MIS_TAKEOFF_ALT
+    pilot.run(2.0)
+    assert pilot.position[2] == pytest.approx(2.5, abs=0.2)  # MIS_TAKEOFF_ALT
 
 
 @pytest.mark.parametrize("wanted_hz", [1.0, 7.0, 20.0, 30.0, 50.0, 100.0])

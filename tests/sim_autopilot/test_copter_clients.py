@@ -76,6 +76,17 @@ def test_a_mission_that_returns_stays_in_auto_until_the_motors_stop_and_after() 
     assert heartbeat(pilot)[1] == AUTO
 
 
+def test_the_place_before_a_return_is_told_as_reached_and_the_return_at_its_end() -> None:
+    pilot = copter_in_the_air(ardupilot(parameters={"RTL_ALT": 500.0}), height_m=5.0)
+    place = (0.0, 8.0, 5.0)
+    items = [item(0, WAYPOINT, place, NUMBERS), item(1, WAYPOINT, place, NUMBERS), item(2, RETURN, None, NUMBERS)]
+    assert upload(pilot, items) == 0
+    pilot.acknowledged(mode(AUTO))
+    pilot.run_until(lambda: not pilot.is_armed(), 60.0)
+    assert [reached.seq for reached in pilot.all("MISSION_ITEM_REACHED")] == [1, 2]
+    assert "Reached command #1" in [text.text for text in pilot.all("STATUSTEXT")]
+
+
 def test_calibrations_are_known_by_their_numbers() -> None:
     pilot = Pilot(ardupilot())
     for parameters, result in (((1.0,), 0), ((0.0, 0.0, 1.0), 0), ((0.0,) * 4 + (4.0,), 0), ((0.0,), UNSUPPORTED)):

@@ -171,3 +171,19 @@ def test_arducopter_cuts_its_mission_off_as_soon_as_a_shorter_one_is_announced()
     pilot.step(mavlink.MAVLink_mission_count_message(1, 1, 2, 0))
     pilot.run(9.0)
     assert len(download(pilot)) == 2
+
+
+@pytest.mark.parametrize(
+    ("number", "copter", "px4_takes"),
+    [
+        (mavlink.MAV_CMD_NAV_PAYLOAD_PLACE, ACCEPTED, UNSUPPORTED),
+        (mavlink.MAV_CMD_DO_SET_RESUME_REPEAT_DIST, ACCEPTED, UNSUPPORTED),
+        (mavlink.MAV_CMD_DO_SET_ROI_LOCATION, UNSUPPORTED, ACCEPTED),
+        (mavlink.MAV_CMD_SET_CAMERA_MODE, UNSUPPORTED, ACCEPTED),
+        (mavlink.MAV_CMD_CONDITION_DELAY, ACCEPTED, ACCEPTED),
+    ],
+)
+def test_each_firmware_takes_its_own_commands_into_a_mission(number: int, copter: int, px4_takes: int) -> None:
+    plan = [waypoints(1)[0], item(1, number, None, NUMBERS)]
+    assert upload(Pilot(ardupilot()), plan) == copter
+    assert upload(Pilot(), plan) == px4_takes
