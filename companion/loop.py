@@ -20,6 +20,7 @@ from link.errors import UserError
 from link.mavlink.tlog import TlogFrames, TlogSink
 from link.messages import Command, PadGeometry
 from link.payload_checks import PayloadError
+from link.real_time import spare_present_objects
 from link.recorder import BackgroundRecorder, Recorder
 from link.service import Service
 from link.zenoh_session import Inbox
@@ -81,6 +82,7 @@ class _Loop:
             signal.signal(number, self._stop)
         clock = self._clock()
         self._zenoh.serve(self._keys.landing_command, self._desk.handle)
+        spare_present_objects()
         self._log.info("ready", device=self._options.device)
         while not self._stopping:
             self._turn(clock)

@@ -16,6 +16,7 @@ from scenarios.lockstep import Lockstep
 from scenarios.run import RunOptions, run_over_wire
 from scenarios.shares import sampled_parts, shares_of
 from scenarios.stopwatch import quantiles_ms, ratio_of, timed_steps
+from scenarios.warm_up import warm_process
 
 Table = dict[str, Any]
 Announce = Callable[[str], None]
@@ -109,8 +110,8 @@ def bench(scenario: Scenario, seed: int, announce: Announce) -> Table:
 
 
 def _lockstep(scenario: Scenario, seed: int) -> Table:
-    """Time a landing in this process; a first step loads what is loaded once."""
-    Lockstep(scenario, seed).step()
+    """Time a landing in this process."""
+    warm_process()
     run = Lockstep(scenario, seed)
     with timed_steps() as durations_s, sampled_parts() as samples:
         began_s, began_cpu_s = time.perf_counter(), time.process_time()

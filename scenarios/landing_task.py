@@ -16,6 +16,7 @@ from scenarios.outcome import result_table
 from scenarios.recording import Recording
 from scenarios.stopwatch import quantiles_ms, timed_steps
 from scenarios.versions import sources
+from scenarios.warm_up import warm_process
 
 Row = dict[str, Any]
 """A landing's result by column: plain values, None where there is none; `error` tells why there is no result."""
@@ -68,6 +69,7 @@ class Flights:
         if sources() != self.sources:
             raise UserError("a worker has other sources than this program: install the same on all, or start again")
         with _ONE_AT_A_TIME:
+            warm_process()
             began_s, began_cpu_s = time.perf_counter(), time.process_time()
             with timed_steps() as durations_s:
                 try:

@@ -1,15 +1,24 @@
 """Compiles the numerical kernels once after an installation: `python -m scenarios.warm_up`."""
 
 import sys
+from functools import cache
 
+from link.real_time import spare_present_objects
 from scenarios.catalogue import load_scenario
 from scenarios.lockstep import Lockstep
 
 
-def main() -> None:
-    """Make one step of the whole stack, which compiles what it needs into the cache beside the sources."""
-    sys.stderr.write("compiling the numerical kernels, once\n")
+@cache
+def warm_process() -> None:
+    """Make a step of the whole stack in this process, which loads what is loaded once, as the programs do at start."""
     Lockstep(load_scenario("straight_5"), seed=1).step()
+    spare_present_objects()
+
+
+def main() -> None:
+    """Compile what a step needs into the cache beside the sources."""
+    sys.stderr.write("compiling the numerical kernels, once\n")
+    warm_process()
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from link.clock import ClockTick, ScaledClock
 from link.keys import Keys
 from link.mavlink.transports import Transport
 from link.messages import BodyTruth, RotorTruth
+from link.real_time import spare_present_objects
 from link.zenoh_session import ZenohSession
 from sim_autopilot.node import AutopilotNode
 from sim_autopilot.physics.wind import WindModel
@@ -62,6 +63,7 @@ class WireLoop:
         """Run until a signal asks for the end; a step under way is finished first."""
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._stop)
+        spare_present_objects()
         while not self._stopping:
             self._listen()
             self.step()
