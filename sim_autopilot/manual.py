@@ -27,8 +27,8 @@ _PWM_IGNORED = frozenset({0, 65535})
 _SOONEST_S = 0.01
 _LEAD_M = 1.0
 """How far the held place runs ahead of a drone that cannot follow it."""
-_PLACED = frozenset({Mode.POSITION, Mode.POSHOLD})
-MANUAL_MODES = _PLACED | {Mode.ALTITUDE, Mode.STABILIZED, Mode.MANUAL, Mode.ACRO}
+_PLACED = frozenset({Mode.POSITION, Mode.POSHOLD, Mode.ZIGZAG})
+MANUAL_MODES = _PLACED | {Mode.ALTITUDE, Mode.STABILIZED, Mode.MANUAL, Mode.ACRO, Mode.DRIFT}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

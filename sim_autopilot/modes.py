@@ -26,6 +26,11 @@ class Mode(Enum):
     POSHOLD = "poshold"  # ArduCopter's second position mode
     SMART_RTL = "smart_rtl"  # returns the way it came
     ORBIT = "orbit"  # flies round a place
+    DRIFT = "drift"  # flown as stabilized
+    ZIGZAG = "zigzag"  # and this as the position mode, without lines
+    THROW = "throw"  # these hold their place
+    AVOID = "avoid"
+    GUIDED_NOGPS = "guided_nogps"
     FOLLOW = "follow"  # keeps near somebody who tells where he is
 
 
@@ -47,6 +52,11 @@ class Event(Enum):
     ASK_POSHOLD = "ask_poshold"
     ASK_SMART_RTL = "ask_smart_rtl"
     ASK_ORBIT = "ask_orbit"
+    ASK_DRIFT = "ask_drift"
+    ASK_ZIGZAG = "ask_zigzag"
+    ASK_THROW = "ask_throw"
+    ASK_AVOID = "ask_avoid"
+    ASK_GUIDED_NOGPS = "ask_guided_nogps"
     ASK_FOLLOW = "ask_follow"
     LOST_TO_POSITION = "lost_to_position"  # setpoints lost, and where the parameters send it then
     LOST_TO_HOLD = "lost_to_hold"

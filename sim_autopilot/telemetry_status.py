@@ -8,6 +8,8 @@ from sim_autopilot.modes import Mode
 
 _UNKNOWN_MV = 65535
 _MAVLINK_VERSION = 3
+_CAPACITY_TO_CA = 360.0
+"""Centiampere that give a milliampere-hour in a second."""
 _CHARGE_STATES = (
     mavlink.MAV_BATTERY_CHARGE_STATE_OK,
     mavlink.MAV_BATTERY_CHARGE_STATE_LOW,
@@ -58,7 +60,7 @@ def sys_status(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
         health,
         200,
         _millivolts(charge, memory),
-        config.firmware.current_ca,
+        _current_ca(memory, config),
         _percent(charge),
         0,
         0,
@@ -78,13 +80,32 @@ def battery_status(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
         mavlink.MAV_BATTERY_TYPE_LIPO,
         32767,
         (_millivolts(charge, memory), *(_UNKNOWN_MV,) * 9),
-        config.firmware.current_ca,
-        0,
+        _current_ca(memory, config),
+        _given_mah(memory, charge) if config.firmware.current_ca is None else 0,
         -1,
         _percent(charge),
         0,
         _CHARGE_STATES[memory.services.watch.level],
     )
+
+
+def _current_ca(memory: AutopilotMemory, config: AutopilotConfig) -> int:
+    """What the motors take, where that is measured."""
+    if config.firmware.current_ca is not None:
+        return config.firmware.current_ca
+    return (
+        0
+        if memory.armed_ns is None
+        else min(32767, round(_CAPACITY_TO_CA * _capacity_mah(memory) / config.endurance_s))
+    )
+
+
+def _given_mah(memory: AutopilotMemory, charge: float) -> int:
+    return round((1.0 - charge) * _capacity_mah(memory))
+
+
+def _capacity_mah(memory: AutopilotMemory) -> float:
+    return max(0.0, memory.values["BATT_CAPACITY"])
 
 
 def _millivolts(charge: float, memory: AutopilotMemory) -> int:

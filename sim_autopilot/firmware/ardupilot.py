@@ -53,9 +53,14 @@ _MODES = {
     Mode.RTL: _code("RTL", 6),
     Mode.ORBIT: _code("CIRCLE", 7),
     Mode.LAND: _code("LAND", 9),
+    Mode.DRIFT: _code("DRIFT", 11, _STICK_FLAGS),
     Mode.POSHOLD: _code("POSHOLD", 16),
     Mode.BRAKE: _code("BRAKE", 17),
+    Mode.THROW: _code("THROW", 18, _STICK_FLAGS),
+    Mode.AVOID: _code("AVOID_ADSB", 19),
+    Mode.GUIDED_NOGPS: _code("GUIDED_NOGPS", 20, _STICK_FLAGS),
     Mode.SMART_RTL: _code("SMART_RTL", 21),
+    Mode.ZIGZAG: _code("ZIGZAG", 24, _STICK_FLAGS),
 }
 
 
@@ -132,7 +137,7 @@ ARDUPILOT = Firmware(
         armed=_info("Arming motors"),
         disarmed=_info("Disarming motors"),
     ),
-    current_ca=0,
+    current_ca=None,
     vtol_state=mavlink.MAV_VTOL_STATE_MC,
     streams=MappingProxyType({stream.message_id: stream for stream in STREAMS}),
     stream_groups=STREAM_GROUPS,

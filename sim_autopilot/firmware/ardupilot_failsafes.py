@@ -11,7 +11,7 @@ from sim_autopilot.parameters import Parameter, Values
 
 _EMPTY_PART = 9.9 / 12.6
 """Of the full voltage, three cells' usual."""
-PILOT_MODES = frozenset({Mode.STABILIZED, Mode.ALTITUDE, Mode.POSITION, Mode.POSHOLD})
+PILOT_MODES = frozenset({Mode.STABILIZED, Mode.ALTITUDE, Mode.POSITION, Mode.POSHOLD, Mode.DRIFT, Mode.ZIGZAG})
 _INT8, _INT16, _INT32 = mavlink.MAV_PARAM_TYPE_INT8, mavlink.MAV_PARAM_TYPE_INT16, mavlink.MAV_PARAM_TYPE_INT32
 _NEVER = -1.0
 _FENCE_HEIGHT, _FENCE_CIRCLE, _FENCE_AREAS = 1, 2, 4

@@ -163,7 +163,7 @@ class Firmware:
         fix_type: GPS_FIX_TYPE, once there is a fix.
         statuses, texts: of HEARTBEAT and of STATUSTEXT.
         vtol_state: of EXTENDED_SYS_STATE.
-        current_ca: that the battery tells, centiampere: neither simulation measures one.
+        current_ca: that the battery tells, centiampere; None for what empties it evenly, with what it has given.
         streams: every message that it can send, by id, with default rates.
         stream_groups: message ids by the MAV_DATA_STREAM that starts them.
         contact_streams: message ids that begin only when somebody has spoken.
@@ -211,7 +211,7 @@ class Firmware:
     fix_type: int
     texts: Texts
     vtol_state: int
-    current_ca: int
+    current_ca: int | None
     streams: Mapping[int, Stream]
     stream_groups: Mapping[int, tuple[int, ...]]
     contact_streams: frozenset[int]

@@ -7,6 +7,7 @@ from tests.sim_autopilot.pilot import DATUM, Pilot, arm, command
 
 STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND = 0, 2, 3, 4, 5, 6, 9
 POSHOLD, BRAKE, SMART_RTL = 16, 17, 21
+DRIFT, THROW, AVOID, NO_GPS, ZIGZAG = 11, 18, 19, 20, 24
 
 
 def ardupilot(**changes: object) -> AutopilotConfig:

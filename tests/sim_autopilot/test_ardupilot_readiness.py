@@ -4,14 +4,19 @@ from link.mavlink.dialect import mavlink
 from tests.sim_autopilot.copter import (
     ALT_HOLD,
     AUTO,
+    AVOID,
     BRAKE,
+    DRIFT,
     GUIDED,
     LAND,
     LOITER,
+    NO_GPS,
     POSHOLD,
     RTL,
     SMART_RTL,
     STABILIZE,
+    THROW,
+    ZIGZAG,
     ardupilot,
     copter_in_the_air,
     every,
@@ -63,7 +68,10 @@ def test_the_heartbeat_is_89_4_3_in_guided_and_217_4_3_armed_on_the_ground() -> 
     assert heartbeat(pilot) == (217, GUIDED, 3)
 
 
-@pytest.mark.parametrize("number", [STABILIZE, ALT_HOLD, GUIDED, LOITER, RTL, LAND, POSHOLD, BRAKE, SMART_RTL])
+@pytest.mark.parametrize(
+    "number",
+    [STABILIZE, ALT_HOLD, GUIDED, LOITER, RTL, LAND, DRIFT, POSHOLD, BRAKE, THROW, AVOID, NO_GPS, SMART_RTL, ZIGZAG],
+)
 def test_every_mode_number_is_acknowledged_once_and_reported(number: int) -> None:
     pilot = Pilot(ardupilot())
     assert pilot.acknowledged(mode(number)) == [ACCEPTED]

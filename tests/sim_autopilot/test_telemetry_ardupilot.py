@@ -71,3 +71,15 @@ def test_the_motors_tell_how_fast_they_turn_only_while_they_do() -> None:
     speeds = one(copter_in_the_air(), "ESC_TELEMETRY_1_TO_4").rpm
     assert min(speeds) > 1000
     assert max(speeds) / min(speeds) < 1.2
+
+
+def test_the_battery_tells_the_current_that_empties_its_capacity_in_its_endurance() -> None:
+    assert one(Pilot(ardupilot()), "BATTERY_STATUS").current_battery == 0
+    pilot = copter_in_the_air(ardupilot(endurance_s=600.0))
+    battery = one(pilot, "BATTERY_STATUS")
+    assert battery.current_battery == pytest.approx(100.0 * 3.3 * 3600.0 / 600.0, abs=1)  # BATT_CAPACITY 3300 mAh
+    before_s = pilot.t_s
+    pilot.run(20.0)
+    given_mah = one(pilot, "BATTERY_STATUS").current_consumed - battery.current_consumed
+    assert given_mah == pytest.approx(19.8 * (pilot.t_s - before_s) / 3.6, abs=2)
+    assert one(pilot, "SYS_STATUS").current_battery == battery.current_battery
