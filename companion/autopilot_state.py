@@ -1,36 +1,29 @@
 """The autopilot's messages folded into what the companion's step wants to know of it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import hypot, isfinite, radians
+from math import isfinite, radians
 from types import MappingProxyType
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotView, Driver
 from companion.data import OwnState
+from companion.own_reports import HISTORY_NS, carried, is_plausible, with_report
 from companion.sensor_messages import with_sensor
 from companion.velocity_bias import velocity_bias, without
-from link.frames import enu_from_ned, flu_from_frd, multiply, normalized, quaternion_enu_flu_from_ned_frd
+from link.frames import enu_from_ned, flu_from_frd, normalized, quaternion_enu_flu_from_ned_frd
 from link.geodesy import Datum
 from link.mavlink.clock_map import ClockMap
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Quaternion, Vector3
 from link.records import replace
 
-_HISTORY_NS = 1_000_000_000  # sightings of the pad arrive less late than this
 _AHEAD_NS = 100_000_000  # how far a report is carried beyond the newest one
 _ORIGIN_MOVED_RAD = 1e-8  # 6 cm; the field's resolution is 1e-7 degrees, 1 cm
 _ORIGIN_MOVED_M = 0.05
-_POSITION_MAX_M = 1e6  # farther from the origin no local frame is meant
-_SPEED_MAX_M_S = 1e3
-_JUMP_MIN_M = 1.5  # of the drone's own position between two reports: its local frame has moved
-_MANOEUVRE_M_S2 = 10.0  # what flying can add to it
-_JUMP_GAP_MAX_S = 0.5  # a drone that was silent for longer may have braked or turned meanwhile
 _GEOID_MAX_M = 120.0  # it lies between -107 and 86 m (EGM96)
 _GEOID_STEP_M = 1.0  # a smaller change of the geoid's height along a flight is left alone
 _LATITUDE_MAX_1E7 = 90 * 10**7
 _LONGITUDE_MAX_1E7 = 180 * 10**7
-_ACCELERATION_OVER_NS = (40_000_000, 120_000_000)  # between two reports that an acceleration is taken from
-_JOLT_OVER_NS = 45_000_000  # a stop within one report is seen in two more at 50 Hz
 _FAILSAFE_STATES = (mavlink.MAV_STATE_CRITICAL, mavlink.MAV_STATE_EMERGENCY)
 
 
@@ -68,25 +61,6 @@ class AutopilotState:
         if not self.history or t_ns < self.history[0].t_ns or t_ns > self.history[-1].t_ns + _AHEAD_NS:
             return None
         return carried(min(self.history, key=lambda own: abs(own.t_ns - t_ns)), t_ns)
-
-
-def carried(own: OwnState, t_ns: int) -> OwnState:
-    """Return the drone at `t_ns`, carried from a report at its velocity and angular velocity."""
-    dt_s = (t_ns - own.t_ns) * 1e-9
-    p, q, r = own.angular_velocity_flu_rad_s
-    turn = normalized((1.0, 0.5 * p * dt_s, 0.5 * q * dt_s, 0.5 * r * dt_s))
-    return replace(
-        own,
-        t_ns=t_ns,
-        position_enu_m=_moved(own, dt_s),
-        orientation_wxyz=multiply(own.orientation_wxyz, turn),
-    )
-
-
-def _moved(own: OwnState, dt_s: float) -> Vector3:
-    """Where the drone is `dt_s` after a report at its velocity."""
-    (x, y, z), (vx, vy, vz) = own.position_enu_m, own.velocity_enu_m_s
-    return (x + vx * dt_s, y + vy * dt_s, z + vz * dt_s)
 
 
 def heard(state: AutopilotState, message: Message, clock: ClockMap, driver: Driver) -> AutopilotState:
@@ -130,7 +104,7 @@ def _said(state: AutopilotState, message: Message, driver: Driver) -> AutopilotS
 def _position(state: AutopilotState, message: Message, clock: ClockMap) -> AutopilotState:
     t_ns = clock.boot_to_utc_ns(message.time_boot_ms * 1_000_000)
     values = (message.x, message.y, message.z, message.vx, message.vy, message.vz)
-    if t_ns is None or state.orientation_wxyz is None or not _is_plausible(values[:3], values[3:]):
+    if t_ns is None or state.orientation_wxyz is None or not is_plausible(values[:3], values[3:]):
         return state
     position, reported = enu_from_ned(values[:3]), enu_from_ned(values[3:])
     bias = velocity_bias(state.own, t_ns, position, reported)
@@ -143,64 +117,21 @@ def _position(state: AutopilotState, message: Message, clock: ClockMap) -> Autop
         angular_velocity_flu_rad_s=state.angular_velocity_flu_rad_s,
     )
     if state.history and t_ns <= state.history[-1].t_ns:
-        if state.history[-1].t_ns - t_ns <= _HISTORY_NS:
+        if state.history[-1].t_ns - t_ns <= HISTORY_NS:
             return state
         state = replace(state, history=())  # not late: the clock was set back
     return _reported(state, own)
 
 
 def _reported(state: AutopilotState, own: OwnState) -> AutopilotState:
-    """Add the drone's newest report to the history; one that flying cannot explain begins a new one."""
-    t_ns = own.t_ns
-    kept = state.history
-    while kept and t_ns - kept[0].t_ns > _HISTORY_NS:
-        kept = kept[1:]
-    jump = _jump(kept[-1], own) if kept else None
+    """Add the drone's newest report to the history; with one that flying cannot explain the local frame has moved."""
+    history, jump = with_report(state.history, own)
+    state = replace(state, history=history)
     if jump is None:
-        up_m_s2, jolt_m_s2 = _acceleration_up_m_s2(kept, own), _jolt_m_s2(kept, own)
-        own = replace(own, acceleration_up_m_s2=up_m_s2, jolt_m_s2=jolt_m_s2)
-        return replace(state, history=(*kept, own))
+        return state
     (x, y, z), (dx, dy, dz), seen = state.view.frame_shift_enu_m, jump, state.view.range_down
     seen = None if seen is None else replace(seen, up_m=None)
-    view = replace(state.view, frame_shift_enu_m=(x + dx, y + dy, z + dz), range_down=seen)
-    return replace(state, history=(own,), view=view)
-
-
-def _acceleration_up_m_s2(earlier: Sequence[OwnState], own: OwnState) -> float | None:
-    """Return the vertical acceleration between the newest report and one shortly before it."""
-    shortest_ns, longest_ns = _ACCELERATION_OVER_NS
-    before = None
-    for old in reversed(earlier):
-        if own.t_ns - old.t_ns > longest_ns:
-            break
-        before = old
-    if before is None or own.t_ns - before.t_ns < shortest_ns:
-        return None
-    return (own.velocity_enu_m_s[2] - before.velocity_enu_m_s[2]) / ((own.t_ns - before.t_ns) * 1e-9)
-
-
-def _jolt_m_s2(earlier: Sequence[OwnState], own: OwnState) -> float | None:
-    """Return the horizontal acceleration between the newest report and the last one clearly before it."""
-    for old in reversed(earlier):
-        if own.t_ns - old.t_ns >= _JOLT_OVER_NS:
-            (vx, vy, _), (before_x, before_y, _) = own.velocity_enu_m_s, old.velocity_enu_m_s
-            return hypot(vx - before_x, vy - before_y) / ((own.t_ns - old.t_ns) * 1e-9)
-    return None
-
-
-def _is_plausible(position_m: Sequence[float], velocity_m_s: Sequence[float]) -> bool:
-    """Whether all are numbers that a flight can have; NaN is none."""
-    return all(abs(p) < _POSITION_MAX_M for p in position_m) and all(abs(v) < _SPEED_MAX_M_S for v in velocity_m_s)
-
-
-def _jump(before: OwnState, own: OwnState) -> Vector3 | None:
-    """Return by how much the local frame moved under the drone, None when flying explains the difference."""
-    duration_s = (own.t_ns - before.t_ns) * 1e-9
-    if duration_s > _JUMP_GAP_MAX_S:
-        return None
-    expected = _moved(before, duration_s)
-    dx, dy, dz = (now - then for now, then in zip(own.position_enu_m, expected, strict=True))
-    return (dx, dy, dz) if hypot(dx, dy, dz) > _JUMP_MIN_M + 0.5 * _MANOEUVRE_M_S2 * duration_s**2 else None
+    return replace(state, view=replace(state.view, frame_shift_enu_m=(x + dx, y + dy, z + dz), range_down=seen))
 
 
 def _attitude(state: AutopilotState, message: Message) -> AutopilotState:

@@ -1,0 +1,91 @@
+"""The drone's own reports: the last second of them, and what can be told from one to the next."""
+
+from collections.abc import Sequence
+from math import hypot
+
+from companion.data import OwnState
+from link.frames import multiply, normalized
+from link.messages import Vector3
+from link.records import replace
+
+HISTORY_NS = 1_000_000_000  # sightings of the pad arrive less late than this
+_POSITION_MAX_M = 1e6  # farther from the origin no local frame is meant
+_SPEED_MAX_M_S = 1e3
+_JUMP_MIN_M = 1.5  # of the drone's own position between two reports: its local frame has moved
+_MANOEUVRE_M_S2 = 10.0  # what flying can add to it
+_JUMP_GAP_MAX_S = 0.5  # a drone that was silent for longer may have braked or turned meanwhile
+_ACCELERATION_OVER_NS = (40_000_000, 120_000_000)  # between two reports that an acceleration is taken from
+_JOLT_OVER_NS = 45_000_000  # a stop within one report is seen in two more at 50 Hz
+
+
+def carried(own: OwnState, t_ns: int) -> OwnState:
+    """Return the drone at `t_ns`, carried from a report at its velocity and angular velocity."""
+    dt_s = (t_ns - own.t_ns) * 1e-9
+    p, q, r = own.angular_velocity_flu_rad_s
+    turn = normalized((1.0, 0.5 * p * dt_s, 0.5 * q * dt_s, 0.5 * r * dt_s))
+    return replace(
+        own,
+        t_ns=t_ns,
+        position_enu_m=_moved(own, dt_s),
+        orientation_wxyz=multiply(own.orientation_wxyz, turn),
+    )
+
+
+def _moved(own: OwnState, dt_s: float) -> Vector3:
+    """Where the drone is `dt_s` after a report at its velocity."""
+    (x, y, z), (vx, vy, vz) = own.position_enu_m, own.velocity_enu_m_s
+    return (x + vx * dt_s, y + vy * dt_s, z + vz * dt_s)
+
+
+def with_report(history: tuple[OwnState, ...], own: OwnState) -> tuple[tuple[OwnState, ...], Vector3 | None]:
+    """Add the newest report to the last second's, oldest first.
+
+    Returns:
+        them, and by how much the local frame has moved under the drone, where flying cannot explain the report: then it
+        begins a new history.
+    """
+    kept = history
+    while kept and own.t_ns - kept[0].t_ns > HISTORY_NS:
+        kept = kept[1:]
+    jump = _jump(kept[-1], own) if kept else None
+    if jump is not None:
+        return (own,), jump
+    up_m_s2, jolt_m_s2 = _acceleration_up_m_s2(kept, own), _jolt_m_s2(kept, own)
+    return (*kept, replace(own, acceleration_up_m_s2=up_m_s2, jolt_m_s2=jolt_m_s2)), None
+
+
+def is_plausible(position_m: Sequence[float], velocity_m_s: Sequence[float]) -> bool:
+    """Whether all are numbers that a flight can have; NaN is none."""
+    return all(abs(p) < _POSITION_MAX_M for p in position_m) and all(abs(v) < _SPEED_MAX_M_S for v in velocity_m_s)
+
+
+def _acceleration_up_m_s2(earlier: Sequence[OwnState], own: OwnState) -> float | None:
+    """Return the vertical acceleration between the newest report and one shortly before it."""
+    shortest_ns, longest_ns = _ACCELERATION_OVER_NS
+    before = None
+    for old in reversed(earlier):
+        if own.t_ns - old.t_ns > longest_ns:
+            break
+        before = old
+    if before is None or own.t_ns - before.t_ns < shortest_ns:
+        return None
+    return (own.velocity_enu_m_s[2] - before.velocity_enu_m_s[2]) / ((own.t_ns - before.t_ns) * 1e-9)
+
+
+def _jolt_m_s2(earlier: Sequence[OwnState], own: OwnState) -> float | None:
+    """Return the horizontal acceleration between the newest report and the last one clearly before it."""
+    for old in reversed(earlier):
+        if own.t_ns - old.t_ns >= _JOLT_OVER_NS:
+            (vx, vy, _), (before_x, before_y, _) = own.velocity_enu_m_s, old.velocity_enu_m_s
+            return hypot(vx - before_x, vy - before_y) / ((own.t_ns - old.t_ns) * 1e-9)
+    return None
+
+
+def _jump(before: OwnState, own: OwnState) -> Vector3 | None:
+    """Return by how much the local frame moved under the drone, None when flying explains the difference."""
+    duration_s = (own.t_ns - before.t_ns) * 1e-9
+    if duration_s > _JUMP_GAP_MAX_S:
+        return None
+    expected = _moved(before, duration_s)
+    dx, dy, dz = (now - then for now, then in zip(own.position_enu_m, expected, strict=True))
+    return (dx, dy, dz) if hypot(dx, dy, dz) > _JUMP_MIN_M + 0.5 * _MANOEUVRE_M_S2 * duration_s**2 else None
