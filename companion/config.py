@@ -92,6 +92,10 @@ class DescentConfig(StrictModel):
     # beside the cone and while the drone moves too fast against the pad.
     speed_change_max_m_s2: Positive = 1.2
     waiting_height_m: Positive = 0.6
+    # Faster than this against the pad it waits there, too, to settle (S2 asks for 0.5 at contact), and faster
+    # than so many standard deviations of the vehicle's velocity, for of a speed that is hardly known nothing is gained.
+    waiting_speed_m_s: Positive = 0.4
+    waiting_speed_stds: NotNegative = 4.0
     # So far off, in hindsight, the vehicle's speed may have been believed; S1 asks for 1.0 m/s at contact. Beyond
     # it the descent waits until the vehicle stands, or has driven as expected for as long as from one stop to the next.
     surprise_speed_m_s: Positive = 0.7
@@ -128,7 +132,11 @@ class TouchdownConfig(StrictModel):
     disputed_hold_s: NotNegative = 1.0  # instead, when the range finder does not agree
     level_height_m: NotNegative = 0.08  # below this the drone turns less than the deck, to touch down level
     foot_radius_m: NotNegative = 0.2  # of the feet about the drone's axis: the lowest of a leaning drone touches first
-    level_acceleration_m_s2: Positive = 1.6  # 9 degrees; S2 allows 10 over trim
+    # By so much of the pad's own acceleration, between these: what it turns more makes the contact slower than tilted,
+    # and there is no time for what else would have it lean.
+    level_share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.6
+    level_acceleration_min_m_s2: Positive = 0.6  # 3.5 degrees
+    level_acceleration_max_m_s2: Positive = 1.6  # 9 degrees; S2 allows 10 over trim
     # Downwards, while the signs of a contact hold, and once they are believed: nearly the whole weight on the gear.
     try_acceleration_m_s2: Annotated[float, Field(ge=0.0, le=9.0)] = 5.0
     press_acceleration_m_s2: Annotated[float, Field(ge=0.0, le=9.0)] = 9.0

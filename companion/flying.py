@@ -12,7 +12,7 @@ from companion.pad import PadPath
 from companion.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
 from companion.reference import Tracking, carried, not_falling, pressing, remember, setpoint_at
-from companion.situation import Situation, approach
+from companion.situation import Approach, Situation, approach
 from companion.step_data import StepInputs, StepMemory, System
 from companion.surprise import may_surprise
 from companion.sway import felt, sways
@@ -73,10 +73,17 @@ def waits_at_m(memory: StepMemory, situation: Situation, config: CompanionConfig
     relative = approach(situation)
     if memory.phase is not Phase.DESCEND or relative is None:
         return None
-    waits = must_wait(situation, relative, config) or _may_be_surprised(memory, situation, config)
+    unsettled = _is_unsettled(memory, relative, config) or _may_be_surprised(memory, situation, config)
+    waits = unsettled or must_wait(situation, relative, config)
     if waits and relative.height_m > config.descent.commit_height_m:
         return min(relative.height_m, config.descent.waiting_height_m)
     return config.descent.commit_height_m if waits_for_calm(memory, situation, config) else None
+
+
+def _is_unsettled(memory: StepMemory, relative: Approach, config: CompanionConfig) -> bool:
+    """Return whether the drone has to become slower against the pad first, as far as that speed is known."""
+    known_m_s = config.descent.waiting_speed_stds * memory.surprise.speed_std_m_s
+    return relative.speed_m_s > max(config.descent.waiting_speed_m_s, known_m_s)
 
 
 def _may_be_surprised(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
@@ -223,7 +230,9 @@ def limits_now(memory: StepMemory, situation: Situation, limits: FlightLimits, c
     escape_m = 0.0 if memory.phase is Phase.DESCEND else config.descent.commit_height_m
     if relative.height_m > touchdown.level_height_m + touchdown.foot_radius_m * drone.lean + escape_m:
         return limits
-    level_m_s2 = min(touchdown.level_acceleration_m_s2, limits.acceleration_max_m_s2)
+    turns_m_s2 = 0.0 if situation.pad is None else math.hypot(*situation.pad.acceleration_enu_m_s2[0, :2].tolist())
+    level_m_s2 = max(touchdown.level_share * turns_m_s2, touchdown.level_acceleration_min_m_s2)
+    level_m_s2 = min(level_m_s2, touchdown.level_acceleration_max_m_s2, limits.acceleration_max_m_s2)
     return replace(limits, acceleration_max_m_s2=level_m_s2)
 
 

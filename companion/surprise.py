@@ -30,10 +30,12 @@ class Surprise:
 
     Attributes:
         beliefs: not checked yet, oldest first.
+        speed_std_m_s: of the newest of all; infinite before the first.
         surprised_ns: when the newest wrong one was held; 0 when none was.
     """
 
     beliefs: tuple[Belief, ...] = ()
+    speed_std_m_s: float = math.inf
     surprised_ns: int = 0
 
 
@@ -63,7 +65,8 @@ def looked_back(surprise: Surprise, estimator: Estimator, memory: object, t_ns: 
     now = estimator.estimate(memory, t_ns)
     if now is None or not _is_known(now):
         return surprise
-    return replace(surprise, beliefs=(*surprise.beliefs, (t_ns, _speed_m_s(now)))[-_KEPT:])
+    beliefs = (*surprise.beliefs, (t_ns, _speed_m_s(now)))[-_KEPT:]
+    return replace(surprise, beliefs=beliefs, speed_std_m_s=_std_m_s(now))
 
 
 def may_surprise(surprise: Surprise, t_ns: int, config: DescentConfig) -> bool:
@@ -76,4 +79,8 @@ def _speed_m_s(estimate: VehicleEstimate) -> float:
 
 
 def _is_known(estimate: VehicleEstimate) -> bool:
-    return float(estimate.covariance[3, 3] + estimate.covariance[4, 4]) < _KNOWN_STD_MAX_M_S**2
+    return _std_m_s(estimate) < _KNOWN_STD_MAX_M_S
+
+
+def _std_m_s(estimate: VehicleEstimate) -> float:
+    return math.sqrt(estimate.covariance[3, 3] + estimate.covariance[4, 4])

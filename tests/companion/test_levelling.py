@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from companion.config import CompanionConfig
@@ -10,11 +11,11 @@ from companion.flying import limits_now
 from companion.phases import Phase
 from companion.situation import drone_now
 from companion.step_data import StepMemory
-from tests.companion.facts import NOW_NS, situation
+from tests.companion.facts import NOW_NS, pad_at, situation
 
 CONFIG = CompanionConfig()
 LIMITS = CONFIG.limits.flight_limits()
-LEVEL_M_S2 = CONFIG.touchdown.level_acceleration_m_s2
+LEVEL_M_S2 = CONFIG.touchdown.level_acceleration_min_m_s2
 DESCENDS = replace(StepMemory(), phase=Phase.DESCEND)
 
 
@@ -33,6 +34,22 @@ def test_a_leaning_drone_is_levelled_as_much_higher_as_its_lowest_foot_hangs_dow
     height_m: float, lean: float, *, levels: bool
 ) -> None:
     assert acceleration_max(height_m, lean) == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
+
+
+@pytest.mark.parametrize(
+    ("turns_m_s2", "level_m_s2"),
+    [
+        (0.0, CONFIG.touchdown.level_acceleration_min_m_s2),
+        (1.25, CONFIG.touchdown.level_share * 1.25),
+        (4.0, CONFIG.touchdown.level_acceleration_max_m_s2),
+    ],
+    ids=["straight on", "a circle of 20 m at 5 m/s", "harder than it may lean"],
+)
+def test_a_drone_above_a_turning_pad_is_levelled_by_a_share_of_that_turn(turns_m_s2: float, level_m_s2: float) -> None:
+    pad = pad_at()
+    turn = np.tile([0.6 * turns_m_s2, -0.8 * turns_m_s2, 0.0], (len(pad.offset_s), 1))
+    here = situation(0.05, pad=replace(pad, acceleration_enu_m_s2=turn))
+    assert limits_now(DESCENDS, here, LIMITS, CONFIG).acceleration_max_m_s2 == pytest.approx(level_m_s2)
 
 
 def test_nothing_but_a_descent_and_its_abort_is_levelled() -> None:

@@ -1,5 +1,6 @@
 """A vehicle that has done what its late data did not let expect is landed on while it stands, or has driven evenly."""
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -14,7 +15,7 @@ from companion.surprise import Surprise, looked_back, may_surprise
 from link.messages import Vector3
 from tests.companion.estimation.driving import DEGRADED, NOMINAL, Drive, Sensors, brake, circle, sense, straight
 from tests.companion.estimation.rides import estimator, now_ns
-from tests.companion.facts import NOW_NS, pad_at, situation
+from tests.companion.facts import NOW_NS, drone_at, pad_at, situation
 
 CONFIG = CompanionConfig()
 DESCENT = CONFIG.descent
@@ -60,6 +61,26 @@ def test_surprise_holds_for_its_time_and_no_longer() -> None:
 def test_beliefs_end_with_the_estimate_that_they_were() -> None:
     surprise = Surprise(beliefs=((NOW_NS, 5.0),), surprised_ns=NOW_NS)
     assert looked_back(surprise, estimator(EstimatorKind.IMM), None, NOW_NS, DESCENT) == replace(surprise, beliefs=())
+
+
+@pytest.mark.parametrize(
+    ("speed_m_s", "std_m_s", "waits"),
+    [
+        (DESCENT.waiting_speed_m_s - 0.01, 0.05, False),
+        (DESCENT.waiting_speed_m_s + 0.01, 0.05, True),
+        (DESCENT.waiting_speed_m_s + 0.01, 0.2, False),
+        (DESCENT.waiting_speed_m_s + 0.01, math.inf, False),
+        (CONFIG.abort.near_speed_max_m_s + 0.01, math.inf, True),
+    ],
+    ids=["settled", "too fast", "hardly known", "not known", "too fast by far"],
+)
+def test_descent_waits_until_the_drone_has_settled_as_far_as_that_is_known(
+    speed_m_s: float, std_m_s: float, *, waits: bool
+) -> None:
+    pad = pad_at()
+    here = replace(situation(0.9), drone=drone_at(0.9, 0.0, (0.6 * speed_m_s, -0.8 * speed_m_s, 0.0), pad=pad))
+    memory = StepMemory(phase=Phase.DESCEND, surprise=Surprise(speed_std_m_s=std_m_s))
+    assert waits_at_m(memory, here, CONFIG) == (DESCENT.waiting_height_m if waits else None)
 
 
 @pytest.mark.parametrize(
