@@ -24,6 +24,8 @@ _FULL = 1000.0
 _UNSAID = 32767
 _PWM_MIDDLE_US, _PWM_SPAN_US = 1500.0, 500.0
 _PWM_IGNORED = frozenset({0, 65535})
+NO_OTHERS_US = (1500,) * 4
+"""The channels 5 to 8 before anybody says something else."""
 _SOONEST_S = 0.01
 _LEAD_M = 1.0
 """How far the held place runs ahead of a drone that cannot follow it."""
@@ -35,7 +37,7 @@ MANUAL_MODES = _PLACED | {Mode.ALTITUDE, Mode.STABILIZED, Mode.MANUAL, Mode.ACRO
 class Sticks:
     """The sticks at `received_ns` since boot, each from -1 to 1: right, forward, up and clockwise are positive.
 
-    `moved_per_s` is how fast the fastest of them moved since the message before.
+    `moved_per_s` is how fast the fastest of them moved since the message before, `others_us` the channels 5 to 8.
     """
 
     received_ns: int
@@ -44,6 +46,7 @@ class Sticks:
     throttle: float
     yaw: float
     moved_per_s: float = 0.0
+    others_us: tuple[int, ...] = NO_OTHERS_US
 
 
 def sticks_from_message(message: Message, boot_ns: int, before: Sticks | None) -> Sticks | None:
@@ -64,7 +67,7 @@ def _read(message: Message, boot_ns: int, before: Sticks | None) -> Sticks | Non
             for value, old in ((message.y, kept.roll), (message.x, kept.pitch), (message.r, kept.yaw))
         )
         throttle = kept.throttle if message.z == _UNSAID else _bounded(message.z / _FULL * 2.0 - 1.0)
-        return Sticks(received_ns=boot_ns, roll=roll, pitch=pitch, throttle=throttle, yaw=yaw)
+        return replace(kept, received_ns=boot_ns, roll=roll, pitch=pitch, throttle=throttle, yaw=yaw, moved_per_s=0.0)
     channels = (message.chan1_raw, message.chan2_raw, message.chan3_raw, message.chan4_raw)
     if all(value in _PWM_IGNORED for value in channels):
         return before
@@ -72,7 +75,11 @@ def _read(message: Message, boot_ns: int, before: Sticks | None) -> Sticks | Non
         old if value in _PWM_IGNORED else _bounded((value - _PWM_MIDDLE_US) / _PWM_SPAN_US)
         for value, old in zip(channels, (kept.roll, -kept.pitch, kept.throttle, kept.yaw), strict=True)
     )
-    return Sticks(received_ns=boot_ns, roll=roll, pitch=-pitch, throttle=throttle, yaw=yaw)
+    told_us = (message.chan5_raw, message.chan6_raw, message.chan7_raw, message.chan8_raw)
+    others_us = tuple(
+        old if value in _PWM_IGNORED else value for value, old in zip(told_us, kept.others_us, strict=True)
+    )
+    return Sticks(received_ns=boot_ns, roll=roll, pitch=-pitch, throttle=throttle, yaw=yaw, others_us=others_us)
 
 
 def are_held(sticks: Sticks | None, boot_ns: int, feel: StickFeel) -> bool:

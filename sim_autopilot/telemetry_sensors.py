@@ -112,9 +112,8 @@ def rc_channels(memory: AutopilotMemory, _config: AutopilotConfig) -> Message | 
         return None
     values = (sticks.roll, -sticks.pitch, sticks.throttle, sticks.yaw)
     used = [round(_PWM_MIDDLE_US + _PWM_SWING_US * value) for value in values]
-    rest = (_PWM_MIDDLE_US,) * (_CHANNELS - len(used))
     unused = (_NO_CHANNEL,) * (_CHANNELS_MAX - _CHANNELS)
-    return mavlink.MAVLink_rc_channels_message(boot_ms(memory), _CHANNELS, *used, *rest, *unused, _NO_RSSI)
+    return mavlink.MAVLink_rc_channels_message(boot_ms(memory), _CHANNELS, *used, *sticks.others_us, *unused, _NO_RSSI)
 
 
 def scaled_imu(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:

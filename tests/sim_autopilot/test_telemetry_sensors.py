@@ -3,6 +3,7 @@ import pytest
 
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.telemetry_sensors import pressure_hpa
+from tests.sim_autopilot.copter import ardupilot, every
 from tests.sim_autopilot.pilot import Pilot, command
 
 
@@ -66,3 +67,14 @@ def test_rc_channels_tell_what_the_pilot_holds() -> None:
     told = pilot.last("RC_CHANNELS")
     assert (told.chan1_raw, told.chan2_raw, told.chan3_raw, told.chan4_raw) == (1400, 1300, 1500, 2000)
     assert (told.chancount, told.chan9_raw) == (8, 65535)
+
+
+def test_rc_channels_tell_the_others_as_they_were_overridden_and_keep_what_is_not_told() -> None:
+    pilot = Pilot(ardupilot())
+    pilot.step(every(mavlink.MAVLINK_MSG_ID_RC_CHANNELS, 10.0))
+    pilot.step(mavlink.MAVLink_rc_channels_override_message(1, 1, 1500, 1500, 1100, 1500, 1200, 1900, 0, 65535))
+    pilot.run(0.2)
+    pilot.step(mavlink.MAVLink_rc_channels_override_message(1, 1, 1500, 1500, 1100, 1500, 0, 1100, 0, 0))
+    pilot.run(0.2)
+    told = pilot.last("RC_CHANNELS")
+    assert (told.chan3_raw, told.chan5_raw, told.chan6_raw, told.chan7_raw) == (1100, 1200, 1100, 1500)
