@@ -11,7 +11,7 @@ from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.arming import arm, arming_obstacle, disarm
 from sim_autopilot.arming_report import report_arming
 from sim_autopilot.calibration import calibrate
-from sim_autopilot.copter_commands import set_servo, switch_fence, turn
+from sim_autopilot.copter_commands import pause_or_resume, set_servo, switch_fence, turn
 from sim_autopilot.copter_services import format_storage, reset_parameters, spin_motor
 from sim_autopilot.events import tell
 from sim_autopilot.failures import injected, is_refused
@@ -152,6 +152,8 @@ def _set_mission_current(memory: AutopilotMemory, request: Request, config: Auto
 
 def _pause_or_continue(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
     wanted = {0: Mode.HOLD, 1: Mode.MISSION}.get(request.number(1) or 0)
+    if wanted is not None and config.firmware.guided:
+        return pause_or_resume(memory, pauses=wanted is Mode.HOLD, refused=config.firmware.results.mode_refused)
     if wanted is None:
         return Answer(memory=memory, result=DENIED)
     memory, result = try_mode(memory, wanted, config)

@@ -1,12 +1,13 @@
-"""Commands that ArduCopter alone obeys: to turn the nose in GUIDED, and to switch the fence.
+"""Commands that ArduCopter alone obeys, or in its own way: to turn the nose, to pause, and to switch the fence.
 
-Source: ArduCopter's documentation of MAV_CMD_CONDITION_YAW and MAV_CMD_DO_FENCE_ENABLE.
+Source: ArduCopter's documentation of MAV_CMD_CONDITION_YAW, MAV_CMD_DO_PAUSE_CONTINUE and MAV_CMD_DO_FENCE_ENABLE.
 """
 
 from dataclasses import replace
 from math import pi, radians
 
-from sim_autopilot.guided import with_heading
+from sim_autopilot.guided import with_heading, with_wish
+from sim_autopilot.guided_setpoint import STOP
 from sim_autopilot.incoming_parameters import with_value
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.modes import Mode
@@ -38,6 +39,19 @@ def set_servo(memory: AutopilotMemory, request: Request, config: AutopilotConfig
         return Answer(memory=memory, result=refused, text=f"ServoRelayEvent: Channel {output} is already in use")
     free = output is not None and output in _OUTPUTS
     return Answer(memory=memory, result=ACCEPTED if free else config.firmware.results.mode_refused)
+
+
+def pause_or_resume(memory: AutopilotMemory, *, pauses: bool, refused: int) -> Answer:
+    """Stop in GUIDED, or go on with what AUTO does or with nothing in GUIDED; other modes have nothing to pause.
+
+    A pause of AUTO, which the real one has, is refused here.
+    """
+    mode = memory.modes.mode
+    if mode is Mode.OFFBOARD and pauses:
+        return Answer(memory=replace(memory, guided=with_wish(memory.guided, STOP, memory.now)), result=ACCEPTED)
+    if mode in {Mode.OFFBOARD, Mode.MISSION} and not pauses:
+        return Answer(memory=memory, result=ACCEPTED)
+    return Answer(memory=memory, result=refused, text="Failed to pause" if pauses else "Failed to resume")
 
 
 def switch_fence(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:

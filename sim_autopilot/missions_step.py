@@ -7,7 +7,7 @@ from link.geodesy import geodetic_from_enu
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.fence import fence_of
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
-from sim_autopilot.mission_flight import Progress, Stage, Surroundings, fly_mission, resumed, set_to
+from sim_autopilot.mission_flight import NO_PROGRESS, Progress, Stage, Surroundings, fly_mission, resumed, set_to
 from sim_autopilot.mission_library import Arrival
 from sim_autopilot.mission_texts import passed, received
 from sim_autopilot.mission_transfer import take_mission_message, transfer_passes
@@ -41,7 +41,7 @@ def take_plan(memory: AutopilotMemory, message: Message, config: AutopilotConfig
     )
     library, answers = take_mission_message(services.library, arrival)
     changed = library.changed != services.library.changed
-    progress = Progress(index=first_index(config)) if changed else services.mission
+    progress = NO_PROGRESS if changed else services.mission
     fence = services.fence
     if library.plans[FENCE] is not services.library.plans[FENCE]:
         fence = fence_of(library.plans[FENCE], config.datum)
@@ -92,7 +92,7 @@ def pass_transfer(memory: AutopilotMemory, config: AutopilotConfig) -> Result:
 def begin_mission(memory: AutopilotMemory, config: AutopilotConfig) -> AutopilotMemory:
     """Return the memory of a mission mode that begins: a finished mission from the start, another where it was."""
     progress = resumed(memory.services.mission)
-    if progress.stage is Stage.FINISHED:
+    if progress.stage is Stage.FINISHED or progress.index < first_index(config):
         progress = Progress(index=first_index(config))
     return _with_progress(memory, progress)
 

@@ -2,8 +2,6 @@
 
 from link.records import replace
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, initial_memory
-from sim_autopilot.mission_flight import Progress
-from sim_autopilot.missions_step import first_index
 from sim_autopilot.requests import ACCEPTED, UNSUPPORTED, Answer, Request
 from sim_autopilot.services import Services
 from sim_autopilot.snapshot import take_snapshot
@@ -43,10 +41,9 @@ def rebooted(memory: AutopilotMemory, config: AutopilotConfig) -> AutopilotMemor
         return memory
     state, kept = memory.plant.state, memory.services
     library = replace(kept.library, transfer=None)
-    progress = Progress(index=first_index(config))
     ftp = replace(kept.ftp, opened=None, burst=None, last=None, asked_ns=0)
     logs = replace(kept.logs, sending=None, next_ns=0)
-    services = Services(library=library, mission=progress, fence=kept.fence, ftp=ftp, logs=logs)
+    services = Services(library=library, fence=kept.fence, ftp=ftp, logs=logs)
     now = take_snapshot(state, config.plant.airframe, 0)
     booted = replace(initial_memory(config, state.t_ns), plant=memory.plant, now=now, services=services)
     if kept.forgets:

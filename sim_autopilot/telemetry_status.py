@@ -8,6 +8,8 @@ from sim_autopilot.modes import Mode
 
 _UNKNOWN_MV = 65535
 _MAVLINK_VERSION = 3
+_FENCE = "FENCE_ENABLE"
+"""ArduCopter's; PX4 tells of no fence there."""
 _CAPACITY_TO_CA = 360.0
 """Centiampere that give a milliampere-hour in a second."""
 _CHARGE_STATES = (
@@ -50,13 +52,14 @@ def sys_status(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return SYS_STATUS, whose health says whether it can arm."""
     sensors, readiness = config.firmware.sensors, config.firmware.readiness
     control = sensors.control if memory.armed_ns is not None else 0
+    fenced = mavlink.MAV_SYS_STATUS_GEOFENCE if memory.values.get(_FENCE, 0.0) > 0.0 else 0
     health = sensors.health | control
     health |= sensors.fix_health if has_passed(config, memory, readiness.fix_s) else 0
     health |= sensors.arming_health if has_passed(config, memory, sensors.arming_s) else 0
     charge = charge_of(memory, config)
     return mavlink.MAVLink_sys_status_message(
         sensors.present,
-        sensors.enabled | control,
+        sensors.enabled | control | fenced,
         health,
         200,
         _millivolts(charge, memory),

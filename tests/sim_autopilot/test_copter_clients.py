@@ -6,8 +6,8 @@ import pytest
 
 from link.mavlink.dialect import mavlink
 from sim_autopilot.missions import RALLY
-from tests.sim_autopilot.copter import AUTO, GUIDED, ardupilot, copter_in_the_air, heartbeat, mode
-from tests.sim_autopilot.pilot import Pilot, arm, command
+from tests.sim_autopilot.copter import AUTO, GUIDED, ardupilot, copter_in_the_air, every, heartbeat, mode
+from tests.sim_autopilot.pilot import VELOCITY_ONLY, Pilot, arm, command, setpoint
 from tests.sim_autopilot.planner import RELATIVE, download, item, plan_messages, upload
 
 FAILED, UNSUPPORTED, INVALID_PARAM2, INVALID_PARAM4 = 4, 3, 7, 9
@@ -124,3 +124,37 @@ def test_without_a_mission_home_alone_can_be_read() -> None:
     assert download(pilot) == []
     (home,) = plan_messages(pilot.step(mavlink.MAVLink_mission_request_int_message(1, 1, 0, 0)))
     assert (home.get_type(), home.command) == ("MISSION_ITEM_INT", WAYPOINT)
+
+
+def test_a_mission_that_has_not_begun_has_home_as_its_current_item() -> None:
+    pilot = Pilot(ardupilot())
+    upload(pilot, [item(index, WAYPOINT, (0.0, 5.0, 5.0), NUMBERS) for index in range(3)])
+    assert pilot.last("MISSION_CURRENT").seq == 0
+    pilot.step(mavlink.MAVLink_mission_set_current_message(1, 1, 2))
+    assert pilot.last("MISSION_CURRENT").seq == 2
+    pilot.step(mavlink.MAVLink_mission_clear_all_message(1, 1, 0))
+    assert pilot.last("MISSION_CURRENT").seq == 0
+
+
+def test_only_guided_pauses_and_auto_and_guided_go_on() -> None:
+    pause, resume = (command(mavlink.MAV_CMD_DO_PAUSE_CONTINUE, value) for value in (0.0, 1.0))
+    pilot = Pilot(ardupilot())
+    assert pilot.acknowledged(resume) == [FAILED]
+    assert pilot.last("STATUSTEXT").text == "Failed to resume"
+    flying = copter_in_the_air()
+    flying.step(setpoint(velocity=(3.0, 0.0, 0.0), mask=VELOCITY_ONLY))
+    flying.run(2.0)
+    assert flying.acknowledged(pause) == [0]
+    flying.run(4.0)
+    assert flying.node.memory.now.speed_m_s < 0.1
+    assert flying.acknowledged(resume) == [0]
+
+
+def test_the_fence_that_is_switched_on_is_among_the_enabled_sensors() -> None:
+    pilot = Pilot(ardupilot())
+    pilot.step(every(mavlink.MAVLINK_MSG_ID_SYS_STATUS, 10.0))
+    for wanted in (True, False):
+        assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_FENCE_ENABLE, float(wanted))) == [0]
+        pilot.run(0.3)
+        enabled = pilot.last("SYS_STATUS").onboard_control_sensors_enabled & mavlink.MAV_SYS_STATUS_GEOFENCE
+        assert bool(enabled) is wanted
