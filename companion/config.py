@@ -99,7 +99,7 @@ class DescentConfig(StrictModel):
     # So far off, in hindsight, the vehicle's speed may have been believed; S1 asks for 1.0 m/s at contact. Beyond
     # it the descent waits until the vehicle stands, or has driven as expected for as long as from one stop to the next.
     surprise_speed_m_s: Positive = 0.7
-    surprise_hold_s: NotNegative = 10.0
+    surprise_hold_s: NotNegative = 20.0  # `stop_and_go` brakes again 15 s later
     commit_height_m: Positive = 0.35  # below this it lands rather than aborts
     # Standard deviation up to which a pad is landed on that the vehicle's fixes are too coarse to place: half of what
     # S1 allows. Its pattern must have been seen as lately as that, while the drone and the vehicle's clock wander.
