@@ -34,6 +34,7 @@ class MissionRules:
         frames: of places, besides those that both take.
         told_frames: in which MISSION_ITEM_INT tells a place, by the frame it was sent in.
         stores_at_once: plans of which each item takes the old one's place as it comes, whatever follows.
+        told_fence_frame: of every place of a fence, likewise; 0 is its own.
         keeps_little: whether of an item only what flies it is stored, and plans that make no sense are refused.
         clears_all: whether MAV_MISSION_TYPE_ALL can be cleared.
         tells_texts: whether it says that a plan came, which item begins and which is reached.
@@ -59,6 +60,7 @@ class MissionRules:
     frames: frozenset[int] = frozenset()
     told_frames: Mapping[int, int] = field(default_factory=dict)
     stores_at_once: frozenset[int] = frozenset()
+    told_fence_frame: int = 0
     keeps_little: bool = False
     clears_all: bool = True
     tells_texts: bool = False
@@ -66,6 +68,7 @@ class MissionRules:
 
 _ALL_FLY = (mavlink.MAV_CMD_NAV_LOITER_TO_ALT, mavlink.MAV_CMD_NAV_VTOL_TAKEOFF, mavlink.MAV_CMD_NAV_VTOL_LAND)
 PX4_MISSIONS = MissionRules(
+    told_fence_frame=int(mavlink.MAV_FRAME_GLOBAL_INT),
     commands=frozenset(
         (
             *_ALL_FLY,

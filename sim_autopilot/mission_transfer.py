@@ -11,7 +11,7 @@ from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.mission_library import Arrival, Library, Transfer, Way, acknowledgement, begun, is_kept_out
 from sim_autopilot.mission_rules import MissionRules
 from sim_autopilot.mission_stored import encloses_nothing, leads_nowhere, stored, told
-from sim_autopilot.missions import Item, item_from_message, item_message, result_of, unreadable
+from sim_autopilot.missions import FENCE, Item, item_from_message, item_message, result_of, unreadable
 
 _ACCEPTED = int(mavlink.MAV_MISSION_ACCEPTED)
 _ERROR = int(mavlink.MAV_MISSION_ERROR)
@@ -165,7 +165,8 @@ def _serve(library: Library, arrival: Arrival) -> Result:
     current = marked and index == arrival.current
     item = told(items[index]) if arrival.rules.keeps_little else items[index]
     if whole:
-        item = replace(item, frame=arrival.rules.told_frames.get(item.frame, item.frame))
+        frame = arrival.rules.told_frames.get(item.frame, item.frame)
+        item = replace(item, frame=arrival.rules.told_fence_frame or frame if kind == FENCE else frame)
     return library, (item_message(item, index, kind, arrival.partner, current=current, whole=whole),)
 
 
