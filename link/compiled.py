@@ -15,6 +15,7 @@ class Kernel(Protocol[P, R]):
     """A compiled function beside the Python that it came from."""
 
     py_func: Callable[P, R]
+    signatures: list[object]
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """Run the machine code."""
@@ -37,7 +38,7 @@ def kept_kernel(sources: int) -> Callable[[Callable[P, R]], Kernel[P, R]]:
     """
 
     def kept(function: Callable[P, R]) -> Kernel[P, R]:
-        function.__qualname__ += f"_{sources:012x}"
+        function.__qualname__ += f"_{sources ^ _FLAGS:012x}"
         return cast("Kernel[P, R]", njit(cache=True, fastmath=False, error_model="numpy")(function))
 
     return kept
@@ -54,3 +55,7 @@ def file_digest(files: Iterable[Path]) -> int:
     for path in sorted(files):
         digest.update(path.name.encode() + path.read_bytes())
     return int.from_bytes(digest.digest()[:6], "big")
+
+
+_FLAGS = file_digest([Path(__file__)])
+"""Stands for the flags above, which numba's key does not know."""

@@ -12,7 +12,7 @@ Cell = Mapping[str, Any]
 
 _DEG = 180.0 / math.pi
 _MEASURES = (
-    ("error m", "horizontal_error_m", 1.0, 2),
+    ("horizontal error m", "horizontal_error_m", 1.0, 2),
     ("relative speed m/s", "relative_speed_m_s", 1.0, 2),
     ("tilt over trim degrees", "tilt_over_trim_rad", _DEG, 1),
     ("passing to contact s", "time_to_contact_s", 1.0, 1),
@@ -22,6 +22,7 @@ _HEAD = (
     "cell",
     "seeds",
     *(tier.value for tier in _TIERS),
+    "failed",
     "S1 or better %",
     "unsafe %",
     "S2 quality %",
@@ -45,7 +46,7 @@ def write_markdown(summary: Mapping[str, Any], out: TextIO) -> None:
 
 def shared_options(names: Sequence[str]) -> list[str]:
     """Return the options that all cells' names have, in the first one's order."""
-    first, *others = [name.split("+")[1:] for name in names]
+    first, *others = [name.split("+")[1:] for name in names] or [[]]
     return [option for option in first if all(option in other for other in others)]
 
 
@@ -58,6 +59,7 @@ def _row(cell: Cell, shared: Sequence[str]) -> list[str]:
         code(name),
         str(cell["seeds"]),
         *(_count(cell["tiers"][tier.value]) for tier in _TIERS),
+        _count(cell["errors"]),
         *shares,
         *(_measure(cell[measure], factor, digits) for _, measure, factor, digits in _MEASURES),
         "" if nees is None else f"{nees:.1f}",
@@ -70,7 +72,8 @@ def _total(cells: Sequence[Cell]) -> list[str]:
     landed, unsafe = tiers[Tier.S3] + tiers[Tier.S2] + tiers[Tier.S1], tiers[Tier.UNSAFE]
     shares = [wilson(count, seeds) for count in (landed, unsafe)]
     texts = [_share({"share": share.value, "low": share.low, "high": share.high}) for share in shares]
-    return ["all", str(seeds), *(_count(tiers[tier]) for tier in _TIERS), *texts, *[""] * (len(_MEASURES) + 2)]
+    counts = [*(tiers[tier] for tier in _TIERS), sum(cell["errors"] for cell in cells)]
+    return ["all", str(seeds), *map(_count, counts), *texts, *[""] * (len(_MEASURES) + 2)]
 
 
 def _count(number: int) -> str:

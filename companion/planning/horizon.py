@@ -8,16 +8,15 @@ import math
 import numpy as np
 
 from companion.data import Array
+from companion.planning.intercept import TINY
 from companion.planning.kept import kept
 
 EXCESS_WEIGHT = 1e3
 """Metres that each m/s or m/s^2 over a limit counts for when the axes are turned: more than any distance."""
 
-TINY = 1e-12
-
 
 @kept
-def needs(x: Array, target_v: Array, speed_max: float, acceleration_max: float, time_s: float) -> Array:
+def needs(x: Array, target_v: Array, speed_max_m_s: float, acceleration_max_m_s2: float, time_s: float) -> Array:
     """Return four horizontal needs of motion as lengths (4, 2).
 
     They are the relative position, the relative velocity times `time_s`, and the velocity and the acceleration as far
@@ -26,13 +25,13 @@ def needs(x: Array, target_v: Array, speed_max: float, acceleration_max: float, 
     Args:
         x: (3, 3) position relative to the target, velocity, acceleration.
         target_v: (3,) the target's velocity.
-        speed_max: of the drone, m/s.
-        acceleration_max: of the drone, m/s^2.
+        speed_max_m_s: of the drone.
+        acceleration_max_m_s2: of the drone.
         time_s: the time in which a relative velocity counts like the distance it covers.
     """
     speed, push = math.hypot(x[1, 0], x[1, 1]), math.hypot(x[2, 0], x[2, 1])
-    fast = EXCESS_WEIGHT * max(1.0 - speed_max / max(speed, TINY), 0.0)
-    hard = EXCESS_WEIGHT * max(1.0 - acceleration_max / max(push, TINY), 0.0)
+    fast = EXCESS_WEIGHT * max(1.0 - speed_max_m_s / max(speed, TINY), 0.0)
+    hard = EXCESS_WEIGHT * max(1.0 - acceleration_max_m_s2 / max(push, TINY), 0.0)
     lengths = np.empty((4, 2))
     for axis in range(2):
         lengths[0, axis] = x[0, axis]
@@ -56,15 +55,19 @@ def major_direction(lengths: Array) -> tuple[float, float]:
 
 @kept
 def turned_horizon(
-    state: tuple[Array, Array, Array], path: Array, speed_max: float, acceleration_max: float, axes_time_s: float
+    state: tuple[Array, Array, Array],
+    path: Array,
+    speed_max_m_s: float,
+    acceleration_max_m_s2: float,
+    axes_time_s: float,
 ) -> tuple[tuple[float, float], Array, Array]:
     """Return a plan's problem in turned axes, relative to the target now.
 
     Args:
         state: (3,) each: position, velocity, acceleration in W.
         path: (3, n, 3) of the target in W, from now on.
-        speed_max: of the drone, m/s.
-        acceleration_max: of the drone, m/s^2.
+        speed_max_m_s: of the drone.
+        acceleration_max_m_s2: of the drone.
         axes_time_s: see `needs`.
 
     Returns:
@@ -74,7 +77,7 @@ def turned_horizon(
     x = np.empty((3, 3))
     x[0] = state[0] - path[0, 0]
     x[1], x[2] = state[1], state[2]
-    c, s = major_direction(needs(x, path[1, 0], speed_max, acceleration_max, axes_time_s))
+    c, s = major_direction(needs(x, path[1, 0], speed_max_m_s, acceleration_max_m_s2, axes_time_s))
     turned_x, target = np.empty((3, 3)), np.empty((3, 3, path.shape[1]))
     for rate in range(3):
         turned_x[rate, 0] = c * x[rate, 0] + s * x[rate, 1]

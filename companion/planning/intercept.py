@@ -2,7 +2,7 @@
 
 One axis has the state `[e, w]`, relative position m and velocity m/s; its acceleration is +a, then 0 at the speed
 limit, then -a. Source: the time-optimal control of the double integrator, Bryson and Ho 1975, section 3.9, with a
-bound on w. All functions are compiled; they live in one file, which is what the compiler's cache goes by.
+bound on w. All functions are compiled.
 """
 
 import math
@@ -94,7 +94,7 @@ def left_of(norm: float, used: float) -> float:
 
 @kept
 def rate_bounds(target_v: Array, limits: Array) -> tuple[Array, Array]:
-    """Return the bounds (3,) of the velocity relative to a target's for `limits` as `limit_array` has them."""
+    """Return the bounds (3,) of the velocity relative to a target's for `limits` (5,), see `approach`."""
     slowest, fastest = np.empty(3), np.empty(3)
     for axis in range(3):
         up = limits[1] if axis == 2 else left_of(limits[0], target_v[1 - axis])
@@ -145,7 +145,7 @@ def approach(
         node_s: (n,) rising from 0.
         target: (3, 3, n) position, velocity, acceleration; axis; node.
         floor: (n,) the lowest height; the reference does not go below.
-        limits: (5,) as `limit_array` has them.
+        limits: (5,) of speed, climb, descent, horizontal and vertical acceleration.
         fraction: of the acceleration limit that the approach is planned with.
         time_min_s: ways shorter than this are slowed down, see `approach_push`.
 

@@ -65,11 +65,11 @@ class Mpc:
         return self._result(request, posed, (major.x, minor.x, vertical.x), iterations)
 
     def _posed(self, request: PlanRequest, limits: PlainLimits) -> Posed:
-        target, state = request.target, request.state
-        resampler = make_resampler(tuple(target.offset_s.tolist()), self._node_times_s)
+        state = request.state
+        resampler = make_resampler(tuple(request.target.offset_s.tolist()), self._node_times_s)
         return pose(
             (state.position_enu_m, state.velocity_enu_m_s, state.acceleration_enu_m_s2),
-            (target.position_enu_m, target.velocity_enu_m_s, target.acceleration_enu_m_s2, request.floor_enu_m),
+            (*resampler.taken(request.target), resampler.taken_line(request.floor_enu_m)),
             limits,
             (resampler.left, resampler.weights),
             self._statics,

@@ -46,14 +46,14 @@ class Grid(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """Of speed, climb, descent, horizontal and vertical acceleration and jerk: m/s, m/s^2, m/s^3."""
+    """What may be asked of the drone; accelerations are horizontal but for the vertical one."""
 
-    speed: float
-    climb: float
-    descent: float
-    acceleration: float
-    vertical_acceleration: float
-    jerk: float
+    speed_m_s: float
+    climb_m_s: float
+    descent_m_s: float
+    acceleration_m_s2: float
+    vertical_acceleration_m_s2: float
+    jerk_m_s3: float
 
 
 class Numbers(NamedTuple):
@@ -128,17 +128,19 @@ def pose(
     grid, numbers, weights, (level, upright) = Grid(*statics[0]), Numbers(*statics[1]), statics[2], statics[3]
     node_s, end_s = grid.nodes_s[1:], np.cumsum(grid.move_s)
     path = resampled_path(target[:3], sampling[0], sampling[1])
-    direction, x, turned = turned_horizon(state, path, most.speed, most.acceleration, numbers.axes_time_s)
+    direction, x, turned = turned_horizon(state, path, most.speed_m_s, most.acceleration_m_s2, numbers.axes_time_s)
     floor = resampled_line(target[3], sampling[0], sampling[1]) - path[0, 0, 2]
-    rates = np.array((most.speed, most.climb, most.descent, most.acceleration, most.vertical_acceleration))
+    rates = np.array(
+        (most.speed_m_s, most.climb_m_s, most.descent_m_s, most.acceleration_m_s2, most.vertical_acceleration_m_s2)
+    )
     split, push, reference = approach(
         x[:2], grid.nodes_s, turned, floor, rates, numbers.intercept_fraction, numbers.intercept_time_min_s
     )
     ends = turned[2][:, grid.end_node]
     jerk = (ends[:, 1:] - ends[:, :-1]) / grid.move_s
-    norms = np.array((most.speed, most.acceleration, most.jerk))
+    norms = np.array((most.speed_m_s, most.acceleration_m_s2, most.jerk_m_s3))
     way = np.array((split, push[1], numbers.lateral_speed_fraction))
-    vertical = (most.descent, most.climb, most.vertical_acceleration, most.jerk)
+    vertical = (most.descent_m_s, most.climb_m_s, most.vertical_acceleration_m_s2, most.jerk_m_s3)
     return Posed(
         path[0, 0].copy(),
         direction,
@@ -158,7 +160,7 @@ def pose(
 def bound_minor(x: Array, major_jerk: Array, limits: PlainLimits, plain_grid: PlainGrid) -> tuple[Array, Array]:
     """Return the bounds (c,) of the minor axis beside the major one's plan; see `envelope.minor_bounds`."""
     most, grid = Limits(*limits), Grid(*plain_grid)
-    norms = np.array((most.speed, most.acceleration, most.jerk))
+    norms = np.array((most.speed_m_s, most.acceleration_m_s2, most.jerk_m_s3))
     return minor_bounds(x, major_jerk, grid.forced_v, norms, grid.nodes_s[1:], grid.move_s, np.cumsum(grid.move_s))
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from companion.data import Array
+from companion.data import Array, FlightLimits
 from companion.planning.guidance import PlanRequest, ReferenceState
 
 
@@ -13,15 +13,30 @@ def with_finite_state(last: ReferenceState | None, request: PlanRequest) -> Plan
     """Return `request`, its state replaced by the `last` planned one where it is not finite.
 
     Raises:
-        ValueError: if the state is not finite and there is no last one, or `dt_s` is not positive.
+        ValueError: if the state is not finite and there is no last one, or `dt_s` or a limit is not positive.
     """
     if not request.dt_s > 0.0:
         raise ValueError(f"the control period must be positive, not {request.dt_s} s")
+    if not _are_positive(request.limits):
+        raise ValueError(f"the drone's limits must be positive: {request.limits}")
     if is_finite_state(request.state):
         return request
     if last is None:
         raise ValueError(f"the first reference state is not finite: {request.state}")
     return replace(request, state=last)
+
+
+def _are_positive(limits: FlightLimits) -> bool:
+    """Return whether all limits are positive numbers; without them there is not even a braking."""
+    values = (
+        limits.speed_max_m_s,
+        limits.climb_max_m_s,
+        limits.descent_max_m_s,
+        limits.acceleration_max_m_s2,
+        limits.vertical_acceleration_max_m_s2,
+        limits.jerk_max_m_s3,
+    )
+    return math.isfinite(sum(values)) and min(values) > 0.0
 
 
 def is_finite_state(state: ReferenceState) -> bool:

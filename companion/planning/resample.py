@@ -24,22 +24,49 @@ class Resampler:
     """Maps n samples to k nodes, each from the two samples around it.
 
     Attributes:
+        samples: n.
         left: (k,) the place of the earlier sample.
-        weights: (5, k, 2) of the two samples, by kind: `VALUE` and so on.
+        weights: (5, k, 2) of the two samples, by kind: `VALUE` and so on. NaN where an offset is not finite, so that
+            nothing made with them is finite either.
     """
 
+    samples: int
     left: NDArray[np.int64]
     weights: Array
 
+    def taken(self, target: Target) -> tuple[Array, Array, Array]:
+        """Return position, velocity and acceleration (n, 3) as compiled functions take them: no index is checked there.
+
+        They are laid out in one piece, since any other layout would be compiled for when it first comes, in flight.
+
+        Raises:
+            ValueError: if they are not one for each offset.
+        """
+        rows = (target.position_enu_m, target.velocity_enu_m_s, target.acceleration_enu_m_s2)
+        for row in rows:
+            if row.shape != (self.samples, 3):
+                raise ValueError(f"a target of {self.samples} offsets has rows of shape {row.shape}")
+        position, velocity, acceleration = rows
+        return np.ascontiguousarray(position), np.ascontiguousarray(velocity), np.ascontiguousarray(acceleration)
+
+    def taken_line(self, samples: Array) -> Array:
+        """Return `samples` (n,) likewise.
+
+        Raises:
+            ValueError: if they are not one for each offset.
+        """
+        if samples.shape != (self.samples,):
+            raise ValueError(f"a target of {self.samples} offsets has samples of shape {samples.shape}")
+        return np.ascontiguousarray(samples)
+
     def apply(self, target: Target) -> tuple[Array, Array, Array]:
         """Return position, velocity and acceleration (k, 3) of `target` at the nodes."""
-        path = (target.position_enu_m, target.velocity_enu_m_s, target.acceleration_enu_m_s2)
-        resampled = resampled_path(path, self.left, self.weights)
+        resampled = resampled_path(self.taken(target), self.left, self.weights)
         return resampled[0], resampled[1], resampled[2]
 
     def line(self, samples: Array) -> Array:
         """Return `samples` (n,) at the nodes (k,), linear, and after the last one as that."""
-        return resampled_line(samples, self.left, self.weights)
+        return resampled_line(self.taken_line(samples), self.left, self.weights)
 
 
 @kept
@@ -79,6 +106,9 @@ def make_resampler(offset_s: tuple[float, ...], node_s: tuple[float, ...]) -> Re
         ValueError: if there is no offset, or they do not rise.
     """
     offsets, nodes = np.array(offset_s), np.array(node_s)
+    if not np.isfinite(offsets).all():
+        nowhere = np.zeros(nodes.size, dtype=np.int64)
+        return Resampler(samples=offsets.size, left=nowhere, weights=np.full((5, nodes.size, 2), np.nan))
     if not offsets.size or (np.diff(offsets) <= 0.0).any():
         raise ValueError(f"the target's offsets must rise: {offset_s}")
     left = np.clip(np.searchsorted(offsets, nodes, side="right") - 1, 0, max(offsets.size - 2, 0))
@@ -94,4 +124,4 @@ def make_resampler(offset_s: tuple[float, ...], node_s: tuple[float, ...]) -> Re
     weights[LINEAR_ENDING, beyond] = 0.0
     last = int(offsets.size > 1)  # the place of the last sample of two
     weights[SLOPE, beyond, last] = nodes[beyond] - offsets[-1]
-    return Resampler(left=left.astype(np.int64), weights=weights)
+    return Resampler(samples=offsets.size, left=left.astype(np.int64), weights=weights)

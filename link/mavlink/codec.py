@@ -111,11 +111,11 @@ class MavlinkCodec:
             The frame; nothing for a message that MAVLink 1 does not have, where that is spoken.
 
         Raises:
-            ValueError: A field does not fit its type.
+            ValueError: A field does not fit its type, or the dialect does not have the message.
         """
         try:
             frame = frame_of(message, self._sequence, self._system_id, self._component_id)
-        except (struct.error, TypeError, OverflowError) as error:
+        except (struct.error, TypeError, OverflowError, KeyError) as error:
             raise ValueError(f"{message.get_type()} cannot be packed: {error}") from error
         if self._answers_version1 and self._version1_heard and not self._version2_heard:
             frame = as_version1(frame) or b""

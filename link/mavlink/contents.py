@@ -25,7 +25,7 @@ class _Layout(NamedTuple):
         arrays: which of the fields are arrays of numbers.
         texts: which of them are texts.
         fields_of: a message's fields in the order of the payload.
-        lengths: of these, of the arrays of numbers among them, by their place; nothing else is in it.
+        lengths: how long the arrays of numbers among these fields are, by their place.
     """
 
     kind: type[Message]
@@ -79,7 +79,8 @@ def frame_of(message: Message, sequence: int, system_id: int, component_id: int)
 
     Raises:
         struct.error: a field does not fit its type, or an array is too short.
-        TypeError: an array is none.
+        TypeError: what should be an array is not one.
+        KeyError: the dialect does not have the message.
     """
     message_id = message.get_msgId()
     layout = _layout(message_id)

@@ -23,6 +23,7 @@ def written(*rows: dict[str, Any]) -> list[list[str]]:
 @pytest.mark.parametrize(
     ("names", "shared"),
     [
+        ([], []),
         (["straight_5"], []),
         ([CALM], ["wind=calm", "link=nominal"]),
         ([CALM, ROUGH], ["link=nominal"]),
@@ -47,7 +48,7 @@ def test_each_cell_is_a_row_and_all_together_are_the_last() -> None:
     assert [rough[at[name]] for name in tiers] == ["2", "", "1", "", "1"]
     assert [total[at[name]] for name in tiers] == ["4", "1", "1", "1", "1"]
     assert total[at["unsafe %"]].startswith("25 (")
-    assert calm[at["error m"]] == "0.10, 0.10"
+    assert calm[at["horizontal error m"]] == "0.10, 0.10"
 
 
 def test_all_lines_of_the_table_have_as_many_cells() -> None:
