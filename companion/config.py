@@ -57,9 +57,10 @@ class ChaseConfig(StrictModel):
     """When the chase begins and when it is close enough."""
 
     height_m: Positive = 3.5  # above the pad, until the drone is over it; 5 m over a road under a roof of 1.5 m
-    # And so many standard deviations of the pad's height more while it has to be seen first: where receiver and frames
-    # are 2 m off, 3.5 m above where the roof is said to be are none once in 25 times.
+    # And so many standard deviations of the pad's height more while it has to be seen first: with a deviation of 2 m,
+    # one roof in 25 is 3.5 m or more higher than it is said to be, and the drone would fly into it.
     unseen_height_stds: NotNegative = 2.0
+    unseen_height_max_m: Positive = 8.0  # in all; less than the range of the detector that is to see it (12 m here)
     start_acceleration_m_s2: Positive = 3.5  # share of the limit that the rendezvous is planned with
     passing_distance_m: Positive = 15.0  # a vehicle that passes farther away than this is not chased
     # One that has passed meanwhile is chased while so much more speed makes its lead up in that time.

@@ -46,7 +46,8 @@ def in_present_frame(memory: StepMemory, view: AutopilotView) -> StepMemory:
 def at_other_time(memory: StepMemory, by_ns: int) -> StepMemory:
     """Return the memory with all its times put off by `by_ns`, for a clock that was set by as much.
 
-    The estimate keeps its times: they are the vehicle's, whose clock is another one.
+    The estimate keeps its times: they are the vehicle's, whose clock is another one, so that what was believed of it
+    cannot be checked any more.
     """
     return replace(
         memory,
@@ -56,7 +57,7 @@ def at_other_time(memory: StepMemory, by_ns: int) -> StepMemory:
         reference_ns=memory.reference_ns + by_ns,
         tracking=_tracking_at_other_time(memory.tracking, by_ns),
         sway=Sway(),
-        surprise=Surprise(),
+        surprise=_surprise_at_other_time(memory.surprise, by_ns),
     )
 
 
@@ -71,6 +72,11 @@ def _driver_at_other_time(memory: DriverMemory, by_ns: int) -> DriverMemory:
         streaming_since_ns=None if since_ns is None else since_ns + by_ns,
         asked_ns=None if asked is None else {command: t_ns + by_ns for command, t_ns in asked.items()},
     )
+
+
+def _surprise_at_other_time(surprise: Surprise, by_ns: int) -> Surprise:
+    since_ns = surprise.surprised_ns
+    return replace(surprise, beliefs=(), surprised_ns=None if since_ns is None else since_ns + by_ns)
 
 
 def _tracking_at_other_time(tracking: Tracking, by_ns: int) -> Tracking:

@@ -30,13 +30,13 @@ class Surprise:
 
     Attributes:
         beliefs: not checked yet, oldest first.
-        speed_std_m_s: of the newest of all; infinite before the first.
-        surprised_ns: when the newest wrong one was held; 0 when none was.
+        speed_std_m_s: of the newest of all; infinite while the speed is not known.
+        surprised_ns: when the newest wrong one was held; None when none was.
     """
 
     beliefs: tuple[Belief, ...] = ()
     speed_std_m_s: float = math.inf
-    surprised_ns: int = 0
+    surprised_ns: int | None = None
 
 
 def looked_back(surprise: Surprise, estimator: Estimator, memory: object, t_ns: int, config: DescentConfig) -> Surprise:
@@ -51,7 +51,7 @@ def looked_back(surprise: Surprise, estimator: Estimator, memory: object, t_ns: 
     """
     newest_ns = estimator.newest_fix_ns(memory)
     if newest_ns is None:
-        return replace(surprise, beliefs=()) if surprise.beliefs else surprise
+        return replace(surprise, beliefs=(), speed_std_m_s=math.inf)
     while surprise.beliefs and surprise.beliefs[0][0] <= newest_ns:
         (then_ns, speed_m_s), *later = surprise.beliefs
         surprise = replace(surprise, beliefs=tuple(later))
@@ -59,19 +59,20 @@ def looked_back(surprise: Surprise, estimator: Estimator, memory: object, t_ns: 
         if known is None or not _is_known(known):
             continue
         if abs(_speed_m_s(known) - speed_m_s) > config.surprise_speed_m_s:
-            surprise = replace(surprise, surprised_ns=max(then_ns, surprise.surprised_ns))
+            surprise = replace(surprise, surprised_ns=max(then_ns, surprise.surprised_ns or then_ns))
     if surprise.beliefs and t_ns - surprise.beliefs[-1][0] < _BELIEF_PERIOD_NS:
         return surprise
     now = estimator.estimate(memory, t_ns)
     if now is None or not _is_known(now):
-        return surprise
+        return replace(surprise, speed_std_m_s=math.inf)
     beliefs = (*surprise.beliefs, (t_ns, _speed_m_s(now)))[-_KEPT:]
     return replace(surprise, beliefs=beliefs, speed_std_m_s=_std_m_s(now))
 
 
 def may_surprise(surprise: Surprise, t_ns: int, config: DescentConfig) -> bool:
     """Return whether a driving vehicle is to be expected to do at `t_ns` what it has done."""
-    return surprise.surprised_ns > 0 and (t_ns - surprise.surprised_ns) * 1e-9 < config.surprise_hold_s
+    since_ns = surprise.surprised_ns
+    return since_ns is not None and (t_ns - since_ns) * 1e-9 < config.surprise_hold_s
 
 
 def _speed_m_s(estimate: VehicleEstimate) -> float:
@@ -83,4 +84,4 @@ def _is_known(estimate: VehicleEstimate) -> bool:
 
 
 def _std_m_s(estimate: VehicleEstimate) -> float:
-    return math.sqrt(estimate.covariance[3, 3] + estimate.covariance[4, 4])
+    return math.sqrt(max(float(estimate.covariance[3, 3] + estimate.covariance[4, 4]), 0.0))  # rounding

@@ -117,7 +117,7 @@ def _height_profile(
         case Phase.DESCEND | Phase.TOUCHDOWN:
             return sink_profile(height_now_m, pad.offset_s, config.descent)
         case Phase.ABORT:
-            height_m = config.abort.height_m + _unseen_clearance_m(pad, config)
+            height_m = _unseen_height_m(config.abort.height_m, pad, config)
         case Phase.ALIGN:
             height_m = config.descent.align_height_m
         case _ if config.landing is LandingStyle.DIRECT:
@@ -141,9 +141,15 @@ def is_unseen(pad: PadPath, config: CompanionConfig) -> bool:
     return pad.is_coarse and float(np.max(pad.position_std_m[0, :2])) > config.descent.unseen_std_max_m
 
 
-def _unseen_clearance_m(pad: PadPath, config: CompanionConfig) -> float:
-    """Return how much higher than else the drone stays above a pad that it has to see first; it sees more, too."""
-    return config.chase.unseen_height_stds * float(pad.position_std_m[0, 2]) if is_unseen(pad, config) else 0.0
+def _unseen_height_m(height_m: float, pad: PadPath, config: CompanionConfig) -> float:
+    """Return how high the drone stays above a pad that it has to see first, and `height_m` above any other.
+
+    Higher by what the pad's height is unsure, but not out of its detector's sight: it would never be seen then.
+    """
+    if not is_unseen(pad, config):
+        return height_m
+    clear_m = height_m + config.chase.unseen_height_stds * float(pad.position_std_m[0, 2])
+    return max(height_m, min(clear_m, config.chase.unseen_height_max_m))
 
 
 def _chase_height_m(pad: PadPath, reference: ReferenceState, config: CompanionConfig) -> float:
@@ -153,7 +159,7 @@ def _chase_height_m(pad: PadPath, reference: ReferenceState, config: CompanionCo
     as long as its height is as vague, that the roof is not where the drone flies.
     """
     if is_vague(pad, config) or is_unseen(pad, config):
-        return config.chase.height_m + _unseen_clearance_m(pad, config)
+        return _unseen_height_m(config.chase.height_m, pad, config)
     distance_m = math.hypot(*(reference.position_enu_m[:2] - pad.position_enu_m[0, :2]).tolist())
     beyond_m = max(distance_m - config.descent.align_distance_m, 0.0)
     return min(config.descent.align_height_m + 0.5 * beyond_m, config.chase.height_m)

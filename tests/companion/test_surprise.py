@@ -1,21 +1,25 @@
 """A vehicle that has done what its late data did not let expect is landed on while it stands, or has driven evenly."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from companion.config import CompanionConfig
+from companion.data import VehicleEstimate
 from companion.estimation.config import EstimatorKind
 from companion.flying import waits_at_m
 from companion.phases import Phase
+from companion.shifts import at_other_time
 from companion.step_data import StepMemory
 from companion.surprise import Surprise, looked_back, may_surprise
 from link.messages import Vector3
 from tests.companion.estimation.driving import DEGRADED, NOMINAL, Drive, Sensors, brake, circle, sense, straight
 from tests.companion.estimation.rides import estimator, now_ns
 from tests.companion.facts import NOW_NS, drone_at, pad_at, situation
+from tests.companion.world import PAD_HEIGHT_M, Flight, KnownVehicle
 
 CONFIG = CompanionConfig()
 DESCENT = CONFIG.descent
@@ -41,13 +45,13 @@ def after(truth: Drive, sensors: Sensors, seed: int, until_s: float) -> Surprise
 @pytest.mark.parametrize("seed", [1, 2])
 @pytest.mark.parametrize("truth", [straight(7.0), circle(5.0)], ids=["straight", "circle"])
 def test_even_driving_surprises_nobody_however_late_it_is_told(truth: Drive, seed: int) -> None:
-    assert after(truth, LATE, seed, 15.0).surprised_ns < now_ns(BEGUN_S)
+    assert (after(truth, LATE, seed, 15.0).surprised_ns or 0) < now_ns(BEGUN_S)
 
 
 @pytest.mark.parametrize(("sensors", "surprises"), [(LATE, True), (NOMINAL, False)], ids=["late", "nominal"])
 def test_hard_brake_surprises_who_is_told_late(sensors: Sensors, *, surprises: bool) -> None:
     found = after(brake(), sensors, 3, brake().length_s)
-    assert (found.surprised_ns > now_ns(BEGUN_S)) is surprises
+    assert ((found.surprised_ns or 0) > now_ns(BEGUN_S)) is surprises
 
 
 def test_surprise_holds_for_its_time_and_no_longer() -> None:
@@ -59,8 +63,71 @@ def test_surprise_holds_for_its_time_and_no_longer() -> None:
 
 
 def test_beliefs_end_with_the_estimate_that_they_were() -> None:
-    surprise = Surprise(beliefs=((NOW_NS, 5.0),), surprised_ns=NOW_NS)
-    assert looked_back(surprise, estimator(EstimatorKind.IMM), None, NOW_NS, DESCENT) == replace(surprise, beliefs=())
+    surprise = Surprise(beliefs=((NOW_NS, 5.0),), speed_std_m_s=0.1, surprised_ns=NOW_NS)
+    found = looked_back(surprise, estimator(EstimatorKind.IMM), None, NOW_NS, DESCENT)
+    assert found == Surprise(surprised_ns=NOW_NS)
+
+
+class Told:
+    """An estimator that tells one speed, and how well it knows it."""
+
+    def __init__(self, speed_m_s: float, variance_m2_s2: float) -> None:
+        self.speed_m_s, self.variance_m2_s2 = speed_m_s, variance_m2_s2
+
+    def newest_fix_ns(self, memory: int) -> int:
+        return memory
+
+    def estimate(self, _memory: int, t_ns: int) -> VehicleEstimate:
+        covariance = np.diag([0.0] * 3 + [self.variance_m2_s2, 0.0] + [0.0] * 4)
+        velocity = np.array([0.6 * self.speed_m_s, -0.8 * self.speed_m_s, 0.0])
+        return VehicleEstimate(
+            t_ns=t_ns,
+            position_enu_m=np.zeros(3),
+            velocity_enu_m_s=velocity,
+            acceleration_enu_m_s2=np.zeros(3),
+            covariance=covariance,
+            yaw_rad=None,
+            yaw_rate_rad_s=None,
+        )
+
+
+@pytest.mark.parametrize(
+    ("variance_m2_s2", "std_m_s"),
+    [(0.04, 0.2), (4.0, math.inf), (-1e-18, 0.0)],
+    ids=["known", "no longer known", "rounded below nothing"],
+)
+def test_speed_is_as_uncertain_as_it_is_told_and_unknown_once_it_is_lost(variance_m2_s2: float, std_m_s: float) -> None:
+    told: Any = Told(5.0, variance_m2_s2)
+    found = looked_back(Surprise(speed_std_m_s=0.1), told, NOW_NS - 10, NOW_NS, DESCENT)
+    assert found.speed_std_m_s == pytest.approx(std_m_s)
+
+
+def test_surprise_outlasts_a_clock_that_is_set() -> None:
+    surprise = Surprise(beliefs=((NOW_NS, 5.0),), speed_std_m_s=0.1, surprised_ns=NOW_NS)
+    by_ns = 7_000_000_000
+    assert at_other_time(StepMemory(surprise=surprise), by_ns).surprise == replace(
+        surprise, beliefs=(), surprised_ns=NOW_NS + by_ns
+    )
+    assert at_other_time(StepMemory(), by_ns).surprise == Surprise()
+
+
+@dataclass(frozen=True)
+class Braking(KnownVehicle):
+    """Drives at 4 m/s as far as the data tell, and has stood in hindsight."""
+
+    def estimate(self, memory: int | None, t_ns: int) -> VehicleEstimate | None:
+        return None if memory is None else Told(4.0 if t_ns > memory else 0.0, 0.01).estimate(memory, t_ns)
+
+
+@pytest.mark.parametrize("kind", [Braking, KnownVehicle])
+def test_step_looks_back_at_what_it_has_believed(kind: type[KnownVehicle]) -> None:
+    flight = Flight(vehicle=kind((-20.0, 0.4, PAD_HEIGHT_M), (4.0, 0.0, 0.0)))
+    flight.run(0.1)
+    flight.sends_fixes = False
+    flight.run(0.5)
+    flight.sends_fixes = True
+    flight.run(0.1)
+    assert may_surprise(flight.memory.surprise, flight.t_ns, DESCENT) is (kind is Braking)
 
 
 @pytest.mark.parametrize(
@@ -97,7 +164,7 @@ def test_descent_waits_until_the_drone_has_settled_as_far_as_that_is_known(
 def test_descent_waits_above_a_driving_vehicle_that_has_surprised(
     phase: Phase, height_m: float, velocity: Vector3, *, surprised: bool, waits: bool
 ) -> None:
-    surprise = Surprise(surprised_ns=NOW_NS - 10 if surprised else 0)
+    surprise = Surprise(surprised_ns=NOW_NS - 10 if surprised else None)
     memory = StepMemory(phase=phase, surprise=surprise)
     waiting_m = waits_at_m(memory, situation(height_m, pad=pad_at(velocity)), CONFIG)
     assert waiting_m == (DESCENT.waiting_height_m if waits else None)

@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from companion.conditions import update_held
 from companion.config import CompanionConfig
@@ -14,6 +16,7 @@ from companion.pad import PadPath, pad_path
 from companion.phases import Event, Phase
 from companion.situation import Situation, approach
 from companion.targets import is_unseen, pad_aim
+from scenarios.config import PatternConfig
 from tests.companion.estimation.driving import DEGRADED, NOMINAL, Sensors, circle
 from tests.companion.estimation.rides import arrivals, estimator, now_ns
 from tests.companion.facts import GEAR_M, later, pad_at, progress, reference_at, situation
@@ -85,13 +88,32 @@ def test_chase_stays_high_until_it_sees_the_pad(std_m: float, *, aligns: bool) -
 
 @pytest.mark.parametrize("phase", [Phase.CHASE, Phase.ABORT])
 def test_drone_stays_higher_by_what_the_height_of_an_unseen_pad_is_unsure(phase: Phase) -> None:
-    unsure_m = np.array([VAGUE_M, VAGUE_M, 1.7])
-    pads = [
-        replace(pad_at(), is_coarse=True, position_std_m=np.tile(std_m, (len(pad_at().offset_s), 1)))
-        for std_m in (np.array([VAGUE_M, VAGUE_M, 0.0]), unsure_m)
-    ]
-    low, high = (pad_aim(phase, pad, reference_at(HIGH_M), GEAR_M, CONFIG).target.position_enu_m[:, 2] for pad in pads)
-    assert high - low == pytest.approx(CONFIG.chase.unseen_height_stds * 1.7)
+    low, high = (wanted_over_unseen_m(phase, std_m) for std_m in (0.0, 1.1))
+    assert high - low == pytest.approx(CONFIG.chase.unseen_height_stds * 1.1)
+
+
+def wanted_over_unseen_m(phase: Phase, height_std_m: float, config: CompanionConfig = CONFIG) -> float:
+    """How high above an unseen pad the drone is to fly whose height is known so well."""
+    std_m = np.tile([VAGUE_M, VAGUE_M, height_std_m], (len(pad_at().offset_s), 1))
+    pad = replace(pad_at(), is_coarse=True, position_std_m=std_m)
+    wanted_m = pad_aim(phase, pad, reference_at(HIGH_M), GEAR_M, config).target.position_enu_m[0, 2]
+    return float(wanted_m - pad.position_enu_m[0, 2]) - GEAR_M
+
+
+@pytest.mark.parametrize("phase", [Phase.CHASE, Phase.ABORT])
+@given(height_std_m=st.floats(0.0, 100.0))
+def test_drone_stays_where_its_detector_sees_the_pad_however_vague_that_is(phase: Phase, height_std_m: float) -> None:
+    base_m = {Phase.CHASE: CONFIG.chase.height_m, Phase.ABORT: CONFIG.abort.height_m}[phase]
+    assert base_m - 1e-9 <= wanted_over_unseen_m(phase, height_std_m) <= CONFIG.chase.unseen_height_max_m + 1e-9
+
+
+def test_abort_that_is_to_climb_higher_than_a_detector_sees_climbs_as_high_as_it_is_told() -> None:
+    config = CONFIG.model_copy(update={"abort": CONFIG.abort.model_copy(update={"height_m": 15.0})})
+    assert wanted_over_unseen_m(Phase.ABORT, 3.0, config) == pytest.approx(15.0)
+
+
+def test_scenarios_detector_sees_farther_than_the_drone_stays_above_an_unseen_pad() -> None:
+    assert PatternConfig.model_fields["range_max_m"].default > CONFIG.chase.unseen_height_max_m
 
 
 def pad_after(sensors: Sensors, unseen_s: float) -> PadPath:
