@@ -56,7 +56,8 @@ def _token_lost(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
     return s.vehicle_alive is False and silent
 
 
-def _own_unknown(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
+def own_unknown(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
+    """Return whether nobody knows where the drone is."""
     return s.drone is None
 
 
@@ -91,6 +92,10 @@ def _strays(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
     return a is not None and (_beside_cone(a, c) or a.speed_m_s > c.abort.near_speed_max_m_s)
 
 
+def _strays_above(s: Situation, a: Approach | None, c: CompanionConfig) -> bool:
+    return a is not None and a.height_m > c.descent.commit_height_m and _strays(s, a, c)
+
+
 def is_over_pad(a: Approach, c: CompanionConfig) -> bool:
     """Return whether the drone is so near the pad's centre that what it touches is the pad."""
     return a.distance_m < over_pad_radius_m(c)
@@ -122,7 +127,7 @@ ABORT_TESTS = (
     Test("vehicle data too old", LANDING_PHASES, fix_too_old, lambda _: 0.0),
     Test("vehicle position too uncertain", NEAR_PHASES, is_uncertain, lambda c: c.abort.cone_hold_s),
     Test("vehicle's link lost", LANDING_PHASES, _token_lost, lambda _: 0.0),
-    Test("own position too old", LANDING_PHASES, _own_unknown, lambda _: 0.0),
+    Test("own position too old", LANDING_PHASES, own_unknown, lambda _: 0.0),
     Test("vehicle heading unknown", frozenset({Phase.DESCEND}), not_placed, lambda _: 0.0),
     Test("setpoint not followed", LANDING_PHASES, _not_followed, lambda c: c.abort.tracking_hold_s),
     Test("outside the descent cone", frozenset({Phase.DESCEND}), _outside_cone, lambda c: c.abort.cone_hold_s),
@@ -177,6 +182,9 @@ def _in_disputed_contact(s: Situation, _: Approach | None, c: CompanionConfig) -
     return verdict(signs_of(s), c) is not Verdict.AIRBORNE
 
 
+STRAYS = Test("not over the pad in time", frozenset({Phase.DESCEND}), _strays_above, lambda c: c.descent.stray_hold_s)
+"""Costs no approach at first, for nothing was near."""
+
 STOPPED_BY_PAD = Test(HARD_CONTACT, frozenset({Phase.DESCEND}), _in_hard_contact, lambda _: 0.0)
 """What stops the drone ends its commitment to land as well: this is asked before the tests that abort."""
 
@@ -190,16 +198,11 @@ ENTRY_TESTS = (
         Test("vehicle stands", frozenset({Phase.WAITING}), _stands_nearby, lambda c: c.chase.parked_wait_s),
     ),
     (Event.ALIGNED, Test("aligned", frozenset({Phase.ALIGN}), _aligned, lambda c: c.descent.aligned_hold_s)),
-    (
+    (  # without a hold time, or it slips below
         Event.OUT_OF_ALIGNMENT,
-        Test(
-            "pad to be seen again", frozenset({Phase.DESCEND}), _must_be_seen_above, lambda _: 0.0
-        ),  # or it slips below
+        Test("pad to be seen again", frozenset({Phase.DESCEND}), _must_be_seen_above, lambda _: 0.0),
     ),
-    (
-        Event.OUT_OF_ALIGNMENT,  # which costs no approach: nothing was near
-        Test("not over the pad in time", frozenset({Phase.DESCEND}), _strays, lambda c: c.abort.stray_hold_s),
-    ),
+    (Event.OUT_OF_ALIGNMENT, STRAYS),
     (
         Event.OUT_OF_ALIGNMENT,
         Test("pad not seen", frozenset({Phase.ALIGN}), must_be_seen, lambda c: c.descent.unseen_hold_s),

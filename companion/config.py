@@ -101,6 +101,9 @@ class DescentConfig(StrictModel):
     # it the descent waits until the vehicle stands, or has driven as expected for as long as from one stop to the next.
     surprise_speed_m_s: Positive = 0.7
     surprise_hold_s: NotNegative = 20.0  # `stop_and_go` brakes again 15 s later
+    surprise_wait_max_s: NotNegative = 60.0  # for which it waits so without its time limit running: three surprises
+    stray_hold_s: NotNegative = 3.0  # beside the cone or too fast, but high enough to be aligned again
+    strays_max: Annotated[int, Field(ge=0, le=20)] = 3  # so often in one approach, as retries: a gust may last
     commit_height_m: Positive = 0.35  # below this it lands rather than aborts
     # Standard deviation up to which a pad is landed on that the vehicle's fixes are too coarse to place: half of what
     # S1 allows. Its pattern must have been seen as lately as that, while the drone and the vehicle's clock wander.
@@ -153,7 +156,6 @@ class AbortConfig(StrictModel):
     tracking_error_max_m: Positive = 2.5  # of the drone behind its setpoint
     tracking_hold_s: NotNegative = 1.0
     cone_hold_s: NotNegative = 0.3
-    stray_hold_s: NotNegative = 3.0  # beside the cone or too fast, but high enough to be aligned again
     near_height_m: Positive = 0.5  # below this there is no time to wait
     near_speed_max_m_s: Positive = 0.8  # S1 asks for 1.0 at contact
     near_speed_hold_s: NotNegative = 0.06

@@ -8,6 +8,7 @@ from companion.conditions import (
     DRIVES,
     ENTRY_TESTS,
     STOPPED_BY_PAD,
+    STRAYS,
     Held,
     fix_too_old,
     holds,
@@ -37,6 +38,9 @@ class Progress:
     may_retry: bool  # no operator has broken the landing off
     was_in_control: bool  # the autopilot's mode has been the companion's since the start
     was_armed: bool  # and its motors were armed in that mode
+    is_interrupted: bool  # what was broken off goes on, at no cost
+    strays: int  # of this approach
+    waited_s: float  # in this phase, above a vehicle that has surprised
 
 
 def decide(progress: Progress, situation: Situation, held: Held, config: CompanionConfig) -> Decision | None:
@@ -70,6 +74,8 @@ def _going_on(progress: Progress, s: Situation, held: Held, config: CompanionCon
         return None
     for event, test in ENTRY_TESTS:
         if holds(test, held, s.t_ns, config):
+            if test is STRAYS and progress.strays >= config.descent.strays_max:
+                return Event.UNSAFE, test.reason
             return event, _with_evidence(event, test.reason, s)
     if progress.phase is Phase.WAITING and not holds(DRIVES, held, s.t_ns, config):
         return None
@@ -113,8 +119,8 @@ def _time_limit(progress: Progress, s: Situation, config: CompanionConfig) -> De
             return Event.REFUSED, "the autopilot did not give control in time"
         if not s.autopilot.armed:
             return Event.REFUSED, f"the autopilot did not arm in time: {s.autopilot.refusal or 'it said no reason'}"
-    limit_s = _longest_s(progress.phase, config)
-    if limit_s is not None and in_phase_s > limit_s:
+    limit_s, waited_s = _longest_s(progress.phase, config), min(progress.waited_s, config.descent.surprise_wait_max_s)
+    if limit_s is not None and in_phase_s - waited_s > limit_s:
         if progress.phase is Phase.ALIGN and not_placed(s, None, config):
             return Event.TIME_LIMIT, "vehicle heading unknown"
         return Event.TIME_LIMIT, f"{progress.phase.value} took longer than {limit_s:g} s"
@@ -215,6 +221,8 @@ def _climbed(progress: Progress, s: Situation, held: Held, config: CompanionConf
     if not (fresh and high) and in_phase_s < config.abort.time_limit_s:
         return None
     why_not = _no_retry(progress, s, held, config)
+    if why_not is None and progress.is_interrupted:
+        return Event.CLEAR, "heard again: the same approach goes on"
     if why_not is None:
         return Event.CLEAR, f"retry {progress.retries + 1} of {config.abort.retries_max}"
     return Event.CLEAR_TO_HOLD, why_not
@@ -230,6 +238,6 @@ def _no_retry(progress: Progress, s: Situation, held: Held, config: CompanionCon
         "vehicle heading unknown": not_placed(s, None, config),
         "too far from the start": is_out_of_range(s, None, config),
         known[1] if known is not None else "": known is not None,
-        "no retry left": progress.retries >= config.abort.retries_max,
+        "no retry left": not progress.is_interrupted and progress.retries >= config.abort.retries_max,
     }
     return next((reason for reason, holds_now in reasons.items() if holds_now), None)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from companion.conditions import CONTACT, DISPUTED_CONTACT, must_wait
+from companion.conditions import CONTACT, DISPUTED_CONTACT
 from companion.config import CompanionConfig
 from companion.contact import over_pad_radius_m
 from companion.data import FlightLimits, Setpoint
@@ -12,13 +12,13 @@ from companion.pad import PadPath
 from companion.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
 from companion.reference import Tracking, carried, not_falling, pressing, remember, setpoint_at
-from companion.situation import Approach, Situation, approach
+from companion.situation import Situation, approach
 from companion.step_data import StepInputs, StepMemory, System
-from companion.surprise import may_surprise
-from companion.sway import felt, sways
+from companion.sway import felt
 from companion.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
 from companion.transitions import BRAKING_M_S2
 from companion.velocity_bias import as_seen_with
+from companion.waiting import waits_at_m
 from link.frames import wrap_angle
 from link.records import replace
 
@@ -66,41 +66,6 @@ def _aim(memory: StepMemory, situation: Situation, config: CompanionConfig) -> A
             return hover_aim(memory.anchor_enu_m)
         case _:
             return hover_aim(memory.waiting_point_enu_m)
-
-
-def waits_at_m(memory: StepMemory, situation: Situation, config: CompanionConfig) -> float | None:
-    """Return how low above the pad a descent may go for now, None for down to the pad."""
-    relative = approach(situation)
-    if memory.phase is not Phase.DESCEND or relative is None:
-        return None
-    unsettled = _is_unsettled(memory, relative, config) or _may_be_surprised(memory, situation, config)
-    waits = unsettled or must_wait(situation, relative, config)
-    if waits and relative.height_m > config.descent.commit_height_m:
-        return min(relative.height_m, config.descent.waiting_height_m)
-    return config.descent.commit_height_m if waits_for_calm(memory, situation, config) else None
-
-
-def _is_unsettled(memory: StepMemory, relative: Approach, config: CompanionConfig) -> bool:
-    """Return whether the drone has to become slower against the pad first, as far as that speed is known."""
-    known_m_s = config.descent.waiting_speed_stds * memory.surprise.speed_std_m_s
-    return relative.speed_m_s > max(config.descent.waiting_speed_m_s, known_m_s)
-
-
-def _may_be_surprised(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
-    """Return whether the vehicle drives, and has lately done what nobody could expect."""
-    if situation.pad is None or not may_surprise(memory.surprise, situation.t_ns, config.descent):
-        return False
-    velocity = situation.pad.velocity_enu_m_s[0, :2]
-    return math.hypot(*velocity.tolist()) > config.chase.parked_speed_m_s
-
-
-def waits_for_calm(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
-    """Return whether a leaning drone is still high enough above the pad to wait until it has come upright."""
-    relative, drone = approach(situation), situation.drone
-    if memory.phase is not Phase.DESCEND or relative is None or drone is None:
-        return False
-    lowest_m = relative.height_m - config.touchdown.foot_radius_m * drone.lean
-    return lowest_m > config.descent.sway_height_m and sways(memory.sway, situation.t_ns, config.descent)
 
 
 def _is_fresh(situation: Situation, config: CompanionConfig) -> bool:

@@ -52,6 +52,8 @@ def at_other_time(memory: StepMemory, by_ns: int) -> StepMemory:
     return replace(
         memory,
         phase_since_ns=memory.phase_since_ns + by_ns,
+        interrupted_ns=_put_off(memory.interrupted_ns, by_ns),
+        waits_since_ns=_put_off(memory.waits_since_ns, by_ns),
         held={name: since_ns + by_ns for name, since_ns in memory.held.items()},
         driver=_driver_at_other_time(memory.driver, by_ns),
         reference_ns=memory.reference_ns + by_ns,
@@ -61,22 +63,25 @@ def at_other_time(memory: StepMemory, by_ns: int) -> StepMemory:
     )
 
 
+def _put_off(t_ns: int | None, by_ns: int) -> int | None:
+    return None if t_ns is None else t_ns + by_ns
+
+
 def _moved(point_enu_m: Array | None, by_enu_m: Array) -> Array | None:
     return None if point_enu_m is None else point_enu_m + by_enu_m
 
 
 def _driver_at_other_time(memory: DriverMemory, by_ns: int) -> DriverMemory:
-    since_ns, asked = memory.streaming_since_ns, memory.asked_ns
+    asked = memory.asked_ns
     return replace(
         memory,
-        streaming_since_ns=None if since_ns is None else since_ns + by_ns,
+        streaming_since_ns=_put_off(memory.streaming_since_ns, by_ns),
         asked_ns=None if asked is None else {command: t_ns + by_ns for command, t_ns in asked.items()},
     )
 
 
 def _surprise_at_other_time(surprise: Surprise, by_ns: int) -> Surprise:
-    since_ns = surprise.surprised_ns
-    return replace(surprise, beliefs=(), surprised_ns=None if since_ns is None else since_ns + by_ns)
+    return replace(surprise, beliefs=(), surprised_ns=_put_off(surprise.surprised_ns, by_ns))
 
 
 def _tracking_at_other_time(tracking: Tracking, by_ns: int) -> Tracking:

@@ -6,6 +6,7 @@ from companion.config import CompanionConfig, DescentConfig
 from companion.phases import Phase
 from companion.situation import Approach, Situation, approach
 from companion.step_data import StepMemory
+from companion.waiting import why_held_up
 from link.messages import LandingStatus
 
 _WAITING_FOR_PAD = frozenset({Phase.WAITING, Phase.CHASE, Phase.ALIGN})
@@ -20,7 +21,7 @@ def landing_status(memory: StepMemory, situation: Situation, config: CompanionCo
     return LandingStatus(
         stamp_ns=situation.t_ns,
         phase=memory.phase.value,
-        reason=_reason(memory, situation),
+        reason=_reason(memory, situation, config),
         relative_position_enu_m=None if relative is None else relative.position_enu_m,
         relative_velocity_enu_m_s=None if relative is None else relative.velocity_enu_m_s,
         height_above_pad_m=None if relative is None else relative.height_m,
@@ -32,13 +33,14 @@ def landing_status(memory: StepMemory, situation: Situation, config: CompanionCo
     )
 
 
-def _reason(memory: StepMemory, situation: Situation) -> str:
+def _reason(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str:
     """Return what the landing waits for, or why its phase began."""
     if memory.phase in _WAITING_FOR_PAD and situation.pad is not None and not situation.pad.placed:
         return "vehicle heading unknown"
     if memory.phase in _NOT_BEGUN and memory.obstacle is not None:
         return memory.obstacle[1]
-    return memory.reason
+    awaited = why_held_up(memory, situation, config)
+    return memory.reason if awaited is None else f"waits above the pad: {awaited}"
 
 
 def _time_to_contact_s(relative: Approach, descent: DescentConfig) -> float:

@@ -89,9 +89,13 @@ class StepMemory:
 
     Attributes:
         phase: of the landing.
-        phase_since_ns: when it began.
+        phase_since_ns: when it began; a chase that goes on after an outage, when it began first.
         reason: why it began.
         retries: landings aborted since the start.
+        interrupted_ns: when the chase began that an outage has broken off; None when an abort counts.
+        strays: alignments that this approach has begun anew since it strayed.
+        waits_since_ns: when it began to wait above a vehicle that has surprised; None while it does not.
+        waited_s: for how long it has done so before, in this phase.
         may_retry: no operator has broken the landing off since the start.
         was_in_control: the autopilot's mode has been the companion's since the start.
         was_armed: and its motors were armed in that mode.
@@ -119,6 +123,10 @@ class StepMemory:
     phase_since_ns: int = 0
     reason: str = "waiting for a start"
     retries: int = 0
+    interrupted_ns: int | None = None
+    strays: int = 0
+    waits_since_ns: int | None = None
+    waited_s: float = 0.0
     may_retry: bool = True
     was_in_control: bool = False
     was_armed: bool = False

@@ -3,7 +3,7 @@
 import numpy as np
 
 from companion.commands import answer
-from companion.conditions import HARD_CONTACT, update_held
+from companion.conditions import ABORT_TESTS, HARD_CONTACT, STRAYS, fix_too_old, own_unknown, update_held
 from companion.config import CompanionConfig
 from companion.decisions import Progress, decide
 from companion.feasibility import OBSTACLE_TESTS, obstacle
@@ -13,11 +13,14 @@ from companion.reference import Tracking
 from companion.situation import Situation, approach
 from companion.step_data import StepInputs, StepMemory
 from companion.targets import stopping_point
+from companion.waiting import waited_s, with_wait_counted
 from link.messages import Command, CommandReply
 from link.records import replace
 
 BRAKING_M_S2 = 2.0
 """Deceleration that the place to stop at is taken from."""
+
+_OUTAGES = frozenset(test.reason for test in ABORT_TESTS if test.is_true in (fix_too_old, own_unknown))
 
 
 def transitions(
@@ -32,6 +35,7 @@ def transitions(
             memory = _enter(memory, event, f"commanded: {inputs.command.value}", situation, config)
         if reply.accepted:
             memory = replace(memory, may_retry=inputs.command is Command.START)
+    memory = with_wait_counted(memory, situation, config)
     progress = Progress(
         phase=memory.phase,
         since_ns=memory.phase_since_ns,
@@ -39,6 +43,9 @@ def transitions(
         may_retry=memory.may_retry,
         was_in_control=memory.was_in_control,
         was_armed=memory.was_armed,
+        is_interrupted=memory.interrupted_ns is not None,
+        strays=memory.strays,
+        waited_s=waited_s(memory, situation.t_ns),
     )
     held = update_held(memory.held, memory.phase, situation, approach(situation), config, others=OBSTACLE_TESTS)
     memory = replace(memory, held=held, obstacle=_same_or_new(memory.obstacle, obstacle(held, situation, config)))
@@ -63,13 +70,11 @@ def _enter(memory: StepMemory, event: Event, reason: str, situation: Situation, 
     phase = next_phase(memory.phase, event)
     if phase is memory.phase:
         return memory
-    retries = memory.retries + 1 if event is Event.CLEAR else memory.retries
-    retries = 0 if event is Event.START else retries
+    memory = _counted(memory, event, reason, situation, config)
     # What makes an approach unsafe goes on from one of its phases to the next, and so does the time it has held.
     held = memory.held if {memory.phase, phase} <= LANDING_PHASES else {}
     stopped = event is Event.CONTACT and HARD_CONTACT in memory.held
-    memory = replace(memory, phase=phase, phase_since_ns=situation.t_ns, reason=reason, held=held, retries=retries)
-    memory = replace(memory, stopped_by_pad=stopped)
+    memory = replace(memory, phase=phase, reason=reason, held=held, stopped_by_pad=stopped)
     if phase is Phase.TAKEOFF:
         return _begin_flight(memory, situation, config)
     if phase not in FLYING_PHASES:
@@ -77,6 +82,33 @@ def _enter(memory: StepMemory, event: Event, reason: str, situation: Situation, 
     if phase in (Phase.HOLD, Phase.ABORT) and memory.reference is not None:
         memory = replace(memory, anchor_enu_m=stopping_point(memory.reference, BRAKING_M_S2))
     return _escaping(memory, situation, config) if phase is Phase.ABORT else memory
+
+
+def _counted(
+    memory: StepMemory, event: Event, reason: str, situation: Situation, config: CompanionConfig
+) -> StepMemory:
+    """Return the memory, still in the old phase, with what is counted over an approach and from the new phase on.
+
+    A chase that an outage broke off, before the drone was near, goes on after it: it costs no retry, nor does it get
+    more time.
+    """
+    continues = event is Event.CLEAR and memory.interrupted_ns is not None
+    retries = memory.retries + 1 if event is Event.CLEAR and not continues else memory.retries
+    begun_ns, since_ns = situation.t_ns, memory.phase_since_ns
+    if continues and memory.interrupted_ns is not None:
+        begun_ns = memory.interrupted_ns
+    in_time = (situation.t_ns - since_ns) * 1e-9 < config.chase.time_limit_s
+    is_outage = event is Event.UNSAFE and memory.phase is Phase.CHASE and reason in _OUTAGES and in_time
+    strays = memory.strays + 1 if reason == STRAYS.reason else memory.strays
+    return replace(
+        memory,
+        phase_since_ns=begun_ns,
+        retries=0 if event is Event.START else retries,
+        interrupted_ns=since_ns if is_outage else None,
+        strays=strays if {memory.phase, next_phase(memory.phase, event)} <= LANDING_PHASES else 0,
+        waits_since_ns=None,
+        waited_s=0.0,
+    )
 
 
 def _escaping(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:

@@ -42,6 +42,12 @@ def pad_at(velocity_enu_m_s: Vector3 = (4.0, 1.0, 0.0), *, std_m: float = 0.05, 
     )
 
 
+def braking_pad(deceleration_m_s2: float) -> PadPath:
+    pad = pad_at((5.0, 0.0, 0.0))
+    slowing = np.tile([-deceleration_m_s2, 0.0, 0.0], (len(pad.offset_s), 1))
+    return replace(pad, acceleration_enu_m_s2=slowing)
+
+
 def drone_at(
     height_m: float, beside_m: float = 0.0, relative_velocity_enu_m_s: Vector3 = (0.0, 0.0, 0.0), *, pad: PadPath
 ) -> Drone:
@@ -87,6 +93,9 @@ def progress(phase: Phase, in_phase_s: float = 1.0) -> Progress:
         may_retry=True,
         was_in_control=True,
         was_armed=True,
+        is_interrupted=False,
+        strays=0,
+        waited_s=0.0,
     )
 
 

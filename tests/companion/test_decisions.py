@@ -19,11 +19,20 @@ from companion.conditions import (
 )
 from companion.conditions import Test as Condition
 from companion.decisions import Decision, decide, vehicle_passes
-from companion.pad import PadPath
 from companion.phases import Event, Phase
 from companion.situation import Situation, approach
 from link.messages import Vector3
-from tests.companion.facts import CONFIG, NOW_NS, drone_at, later, pad_at, progress, reference_at, situation
+from tests.companion.facts import (
+    CONFIG,
+    NOW_NS,
+    braking_pad,
+    drone_at,
+    later,
+    pad_at,
+    progress,
+    reference_at,
+    situation,
+)
 from tests.companion.world import FLYING, LANDING
 
 TICK_NS = 20_000_000
@@ -63,12 +72,6 @@ UNFIT = {"outside the descent cone", "too fast against the pad"}
 
 def _moving(speed_m_s: float) -> Situation:
     return replace(situation(), drone=drone_at(HIGH_M, 0.0, (0.0, speed_m_s, 0.0), pad=pad_at()))
-
-
-def _braking(deceleration_m_s2: float) -> PadPath:
-    pad = pad_at((5.0, 0.0, 0.0))
-    slowing = np.tile([-deceleration_m_s2, 0.0, 0.0], (len(pad.offset_s), 1))
-    return replace(pad, acceleration_enu_m_s2=slowing)
 
 
 CASES = [(test, phase) for test in ABORT_TESTS for phase in Phase if phase in test.phases]
@@ -153,8 +156,8 @@ def test_below_the_commit_height_it_does_not_land_where_nobody_knows_the_pad_to_
         (situation(HIGH_M, cone_radius_m(HIGH_M, CONFIG) + 0.01), True),
         (_moving(CONFIG.abort.near_speed_max_m_s - 0.01), False),
         (_moving(CONFIG.abort.near_speed_max_m_s + 0.01), True),
-        (situation(pad=_braking(CONFIG.descent.speed_change_max_m_s2 - 0.01)), False),
-        (situation(pad=_braking(CONFIG.descent.speed_change_max_m_s2 + 0.01)), True),
+        (situation(pad=braking_pad(CONFIG.descent.speed_change_max_m_s2 - 0.01)), False),
+        (situation(pad=braking_pad(CONFIG.descent.speed_change_max_m_s2 + 0.01)), True),
     ],
 )
 def test_descent_waits_for_what_passes(drifting: Situation, wanted: bool) -> None:

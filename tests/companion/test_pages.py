@@ -8,7 +8,7 @@ import pytest
 from companion.check.ardupilot_rules import ARDUPILOT_RULES
 from companion.check.px4_rules import PX4_RULES
 from companion.check.rules import ParameterRule
-from companion.conditions import ABORT_TESTS
+from companion.conditions import ABORT_TESTS, STRAYS
 from companion.config import CompanionConfig
 from companion.feasibility import OBSTACLES
 
@@ -22,7 +22,7 @@ def rows(page: str) -> list[list[str]]:
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("|")]
 
 
-@pytest.mark.parametrize("reason", [test.reason for test in ABORT_TESTS])
+@pytest.mark.parametrize("reason", [test.reason for test in (*ABORT_TESTS, STRAYS)])
 def test_each_abort_is_explained(reason: str) -> None:
     told = [row for row in rows("safety.md") if reason in row[0] and len(row) == 3]
     assert told
@@ -47,6 +47,9 @@ def test_the_aborts_limits_are_the_defaults() -> None:
         f"more than {config.abort.near_speed_max_m_s:g} m/s",
         f"{config.chase.time_limit_s:g}, {config.descent.align_time_limit_s:g} and {config.descent.time_limit_s:g} s",
         f"more than {config.touchdown.lost_height_m:g} m",
+        f"for {config.descent.stray_hold_s:g} s, for the {config.descent.strays_max + 1}th time in one approach",
+        f"slower than {config.descent.waiting_speed_m_s:g} m/s",
+        f"for up to {config.descent.surprise_wait_max_s:g} s",
     ):
         assert said in text
 

@@ -101,6 +101,7 @@ def test_retries_end_in_a_hold_and_a_new_start_has_them_all_again() -> None:
         before = len(flight.history)
         flight.run_until(Phase.CHASE)
         for retry in range(CONFIG.abort.retries_max + 1):
+            flight.run_until(Phase.ALIGN)
             flight.own = replace(flight.own, t_ns=flight.t_ns - 10**9)
             flight.step()
             assert flight.memory.reason == "own position too old"

@@ -10,11 +10,11 @@ import pytest
 from companion.config import CompanionConfig
 from companion.data import VehicleEstimate
 from companion.estimation.config import EstimatorKind
-from companion.flying import waits_at_m
 from companion.phases import Phase
 from companion.shifts import at_other_time
 from companion.step_data import StepMemory
 from companion.surprise import Surprise, looked_back, may_surprise
+from companion.waiting import waits_at_m
 from link.messages import Vector3
 from tests.companion.estimation.driving import DEGRADED, NOMINAL, Drive, Sensors, brake, circle, sense, straight
 from tests.companion.estimation.rides import estimator, now_ns

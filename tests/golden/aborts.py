@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from companion.conditions import ABORT_TESTS
+from companion.conditions import ABORT_TESTS, STRAYS
 from companion.phases import TRANSITIONS, Event, Phase
 from link.mavlink.dialect import mavlink
 from link.messages import Command
@@ -87,7 +87,7 @@ def reasons() -> frozenset[str]:
 def _reasons_of(phase: Phase, event: Event) -> set[str]:
     match event:
         case Event.UNSAFE:
-            return {test.reason for test in ABORT_TESTS if phase in test.phases}
+            return {test.reason for test in (*ABORT_TESTS, STRAYS) if phase in test.phases}
         case Event.TIME_LIMIT:
             return {f"{phase.value} took longer than # s"}
         case Event.ABORT | Event.HOLD:
@@ -182,6 +182,11 @@ ABORTS: dict[str, Abort] = {
     ),
     "outside_cone": Abort(
         reason="outside the descent cone", fault=_when_low(_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0))
+    ),
+    "strays": Abort(
+        reason="not over the pad in time",
+        companion={"descent": {"strays_max": 0, "stray_hold_s": 0.2}},
+        fault=_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0),
     ),
     "too_far": Abort(
         reason="too far from the start", companion={"limits": {"range_max_m": 6.0, "landing_time_s": 1.0}}

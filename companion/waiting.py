@@ -1,0 +1,87 @@
+"""What a descent stays above the pad for, how low it may go meanwhile, and for how long it has; pure."""
+
+import math
+
+from companion.conditions import must_wait
+from companion.config import CompanionConfig
+from companion.phases import Phase
+from companion.situation import Approach, Situation, approach
+from companion.step_data import StepMemory
+from companion.surprise import may_surprise
+from companion.sway import sways
+from companion.targets import changes_speed
+from link.records import replace
+
+_HELD_UP_M = 0.1  # above the height of waiting, down to which a descent sinks whether it is to wait or not
+
+
+def waits_at_m(memory: StepMemory, situation: Situation, config: CompanionConfig) -> float | None:
+    """Return how low above the pad a descent may go for now, None for down to the pad."""
+    relative = approach(situation)
+    if memory.phase is not Phase.DESCEND or relative is None:
+        return None
+    if _awaited(memory, situation, config) is not None:
+        return min(relative.height_m, config.descent.waiting_height_m)
+    return config.descent.commit_height_m if waits_for_calm(memory, situation, config) else None
+
+
+def why_held_up(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str | None:
+    """Return what a descent waits for that has come as low as it may, None for one that goes on."""
+    relative = approach(situation)
+    if relative is None or relative.height_m > config.descent.waiting_height_m + _HELD_UP_M:
+        return None
+    return _awaited(memory, situation, config)
+
+
+def with_wait_counted(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
+    """Return the memory with the time for which this descent has waited above a vehicle that has surprised."""
+    since_ns, t_ns = memory.waits_since_ns, situation.t_ns
+    if waits_for_even_driving(memory, situation, config):
+        return memory if since_ns is not None else replace(memory, waits_since_ns=t_ns)
+    if since_ns is None:
+        return memory
+    return replace(memory, waits_since_ns=None, waited_s=waited_s(memory, t_ns))
+
+
+def waited_s(memory: StepMemory, t_ns: int) -> float:
+    """Return for how long this descent has waited above a vehicle that has surprised."""
+    return memory.waited_s + (0.0 if memory.waits_since_ns is None else (t_ns - memory.waits_since_ns) * 1e-9)
+
+
+def waits_for_even_driving(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
+    """Return whether a descent waits since the vehicle drives, and has lately done what nobody could expect."""
+    relative, pad = approach(situation), situation.pad
+    if memory.phase is not Phase.DESCEND or relative is None or pad is None:
+        return False
+    is_high = relative.height_m > config.descent.commit_height_m
+    drives = math.hypot(*pad.velocity_enu_m_s[0, :2].tolist()) > config.chase.parked_speed_m_s
+    return is_high and drives and may_surprise(memory.surprise, situation.t_ns, config.descent)
+
+
+def _awaited(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str | None:
+    relative = approach(situation)
+    if memory.phase is not Phase.DESCEND or relative is None or relative.height_m <= config.descent.commit_height_m:
+        return None
+    if waits_for_even_driving(memory, situation, config):
+        return "the vehicle's speed has surprised"
+    if must_wait(situation, relative, config):
+        brakes = situation.pad is not None and changes_speed(situation.pad, config.descent)
+        return "the vehicle brakes or speeds up" if brakes else "the drone is not over the pad"
+    if _is_unsettled(memory, relative, config):
+        return f"faster than {config.descent.waiting_speed_m_s:g} m/s against the pad"
+    return None
+
+
+def _is_unsettled(memory: StepMemory, relative: Approach, config: CompanionConfig) -> bool:
+    """Return whether the drone has to become slower against the pad first, as far as that speed is known."""
+    known_m_s = config.descent.waiting_speed_stds * memory.surprise.speed_std_m_s
+    return relative.speed_m_s > max(config.descent.waiting_speed_m_s, known_m_s)
+
+
+def waits_for_calm(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
+    """Return whether a leaning drone is still high enough above the pad to wait until it has come upright."""
+    relative, drone = approach(situation), situation.drone
+    if memory.phase is not Phase.DESCEND or relative is None or drone is None:
+        return False
+    lowest_m = relative.height_m - config.touchdown.foot_radius_m * drone.lean
+    return lowest_m > config.descent.sway_height_m and sways(memory.sway, situation.t_ns, config.descent)
