@@ -103,14 +103,14 @@ class Mpc:
 
 
 def limits_of(limits: FlightLimits) -> PlainLimits:
-    """Return the limits as the compiled calls take them."""
+    """Return the limits as the compiled calls take them: a whole number would have them compiled anew, in flight."""
     return (
-        limits.speed_max_m_s,
-        limits.climb_max_m_s,
-        limits.descent_max_m_s,
-        limits.acceleration_max_m_s2,
-        limits.vertical_acceleration_max_m_s2,
-        limits.jerk_max_m_s3,
+        float(limits.speed_max_m_s),
+        float(limits.climb_max_m_s),
+        float(limits.descent_max_m_s),
+        float(limits.acceleration_max_m_s2),
+        float(limits.vertical_acceleration_max_m_s2),
+        float(limits.jerk_max_m_s3),
     )
 
 

@@ -112,6 +112,13 @@ def test_limits_that_are_no_positive_numbers_are_refused(limit: str, value: floa
         planned(replace(REQUEST, limits=replace(LIMITS, **{limit: value})))
 
 
+def test_limits_that_are_whole_numbers_compile_nothing() -> None:
+    planned(REQUEST)
+    known = len(pose.signatures), len(bound_minor.signatures)
+    planned(replace(REQUEST, limits=replace(LIMITS, speed_max_m_s=20, jerk_max_m_s3=20)))
+    assert (len(pose.signatures), len(bound_minor.signatures)) == known
+
+
 def test_arrays_laid_out_otherwise_give_the_same_plan_and_compile_nothing() -> None:
     first, known = planned(REQUEST), len(pose.signatures)
     strided = {name: np.asfortranarray(getattr(REQUEST.target, name)) for name in Target.__slots__[1:]}
