@@ -92,17 +92,15 @@ def _counted(
     A chase that an outage broke off, before the drone was near, goes on after it: it costs no retry, nor does it get
     more time.
     """
-    continues = event is Event.CLEAR and memory.interrupted_ns is not None
-    retries = memory.retries + 1 if event is Event.CLEAR and not continues else memory.retries
-    begun_ns, since_ns = situation.t_ns, memory.phase_since_ns
-    if continues and memory.interrupted_ns is not None:
-        begun_ns = memory.interrupted_ns
+    resumed_ns = memory.interrupted_ns if event is Event.CLEAR else None
+    retries = memory.retries + 1 if event is Event.CLEAR and resumed_ns is None else memory.retries
+    since_ns = memory.phase_since_ns
     in_time = (situation.t_ns - since_ns) * 1e-9 < config.chase.time_limit_s
     is_outage = event is Event.UNSAFE and memory.phase is Phase.CHASE and reason in _OUTAGES and in_time
     strays = memory.strays + 1 if reason == STRAYS.reason else memory.strays
     return replace(
         memory,
-        phase_since_ns=begun_ns,
+        phase_since_ns=situation.t_ns if resumed_ns is None else resumed_ns,
         retries=0 if event is Event.START else retries,
         interrupted_ns=since_ns if is_outage else None,
         strays=strays if {memory.phase, next_phase(memory.phase, event)} <= LANDING_PHASES else 0,

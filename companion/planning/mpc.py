@@ -10,7 +10,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from companion.data import Array, FlightLimits
+from companion.data import Array
 from companion.planning.axis_qp import make_axis_problem
 from companion.planning.brake import brake
 from companion.planning.condensed import forced_response, free_response, make_axis_model
@@ -18,7 +18,7 @@ from companion.planning.config import MpcConfig
 from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Trajectory
 from companion.planning.programmes import Grid, Numbers, PlainLimits, Posed, Statics, bound_minor, path_of, pose
 from companion.planning.qp import Programme, make_solver
-from companion.planning.requests import with_finite_state
+from companion.planning.requests import limits_of, with_finite_state
 from companion.planning.resample import make_resampler
 
 
@@ -100,18 +100,6 @@ class Mpc:
             limit_excess=max(0.0, *slacks),
             iterations=iterations,
         )
-
-
-def limits_of(limits: FlightLimits) -> PlainLimits:
-    """Return the limits as the compiled calls take them: a whole number would have them compiled anew, in flight."""
-    return (
-        float(limits.speed_max_m_s),
-        float(limits.climb_max_m_s),
-        float(limits.descent_max_m_s),
-        float(limits.acceleration_max_m_s2),
-        float(limits.vertical_acceleration_max_m_s2),
-        float(limits.jerk_max_m_s3),
-    )
 
 
 @lru_cache(maxsize=64)

@@ -26,16 +26,21 @@ def with_finite_state(last: ReferenceState | None, request: PlanRequest) -> Plan
     return replace(request, state=last)
 
 
+def limits_of(limits: FlightLimits) -> tuple[float, float, float, float, float, float]:
+    """Return the limits as the compiled calls take them: a whole number would have them compiled anew, in flight."""
+    return (
+        float(limits.speed_max_m_s),
+        float(limits.climb_max_m_s),
+        float(limits.descent_max_m_s),
+        float(limits.acceleration_max_m_s2),
+        float(limits.vertical_acceleration_max_m_s2),
+        float(limits.jerk_max_m_s3),
+    )
+
+
 def _are_positive(limits: FlightLimits) -> bool:
     """Return whether all limits are positive numbers; without them there is not even a braking."""
-    values = (
-        limits.speed_max_m_s,
-        limits.climb_max_m_s,
-        limits.descent_max_m_s,
-        limits.acceleration_max_m_s2,
-        limits.vertical_acceleration_max_m_s2,
-        limits.jerk_max_m_s3,
-    )
+    values = limits_of(limits)
     return math.isfinite(sum(values)) and min(values) > 0.0
 
 

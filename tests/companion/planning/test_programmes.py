@@ -10,8 +10,9 @@ from companion.data import Array, FlightLimits
 from companion.planning import horizon, qp, resample
 from companion.planning.config import MpcConfig
 from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, Target
-from companion.planning.mpc import Mpc, limits_of
+from companion.planning.mpc import Mpc
 from companion.planning.programmes import bound_minor, path_of, pose, total_of
+from companion.planning.requests import limits_of
 from companion.planning.resample import make_resampler
 from tests.companion.planning.cases import LIMITS, circle, request_of, state_at, target_of
 
