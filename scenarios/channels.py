@@ -29,17 +29,19 @@ class KeyedLink:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Channels:
-    """The three directions that matter.
+    """The directions that matter.
 
     Attributes:
         down: from the autopilot to the companion.
         up: from the companion to the autopilot.
         zenoh: from the vehicle to the companion.
+        detector: from the detector on the drone to the companion.
     """
 
     down: MemoryLink
     up: MemoryLink
     zenoh: KeyedLink
+    detector: KeyedLink
 
 
 def channels_of(scenario: Scenario, seed: int, start_ns: int) -> Channels:
@@ -49,14 +51,13 @@ def channels_of(scenario: Scenario, seed: int, start_ns: int) -> Channels:
     return Channels(
         down=_channel(link.mavlink, seed, "mavlink down", outages),
         up=_channel(link.mavlink, seed, "mavlink up", outages),
-        zenoh=zenoh_link(scenario, seed, start_ns),
+        zenoh=_keyed_link(link.zenoh, scenario, seed, "zenoh", start_ns),
+        detector=_keyed_link(link.detector, scenario, seed, "detector", start_ns),
     )
 
 
-def zenoh_link(scenario: Scenario, seed: int, start_ns: int) -> KeyedLink:
-    """Return the way of the vehicle's samples, in lockstep and over the wire."""
-    outages = outages_ns(scenario.link.zenoh, scenario, seed, "zenoh", start_ns)
-    return KeyedLink(_channel(scenario.link.zenoh, seed, "zenoh", outages))
+def _keyed_link(config: ChannelConfig, scenario: Scenario, seed: int, name: str, start_ns: int) -> KeyedLink:
+    return KeyedLink(_channel(config, seed, name, outages_ns(config, scenario, seed, name, start_ns)))
 
 
 def _channel(config: ChannelConfig, seed: int, name: str, outages: Sequence[Span]) -> MemoryLink:

@@ -111,10 +111,17 @@ class ChannelConfig(StrictModel):
 
 
 class LinkConfig(StrictModel):
-    """The two links of the companion."""
+    """The links of the companion.
+
+    Attributes:
+        mavlink: to and from the autopilot.
+        zenoh: from the vehicle.
+        detector: from the detector of the landing pattern, which is on the drone as the companion is.
+    """
 
     mavlink: ChannelConfig = ChannelConfig()
     zenoh: ChannelConfig = ChannelConfig()
+    detector: ChannelConfig = ChannelConfig()
 
 
 class VehicleConfig(StrictModel):

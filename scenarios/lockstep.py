@@ -45,7 +45,8 @@ class Lockstep:
         self.companion = build_node(scenario.system.companion if config is None else config, keys, recorder=recorder)
         self.companion.receive_pad(self.simulation.vehicle.pad)
         self._channels: Channels = channels_of(scenario, seed, START_NS)
-        self._heard = frozenset({keys.fix, keys.fix_velocity, keys.imu, keys.pad_pose})
+        from_vehicle = dict.fromkeys((keys.fix, keys.fix_velocity, keys.imu), self._channels.zenoh)
+        self._ways = {**from_vehicle, keys.pad_pose: self._channels.detector}
         self._watch = EndWatch(scenario.time_limit_s)
         self._started = False
         self._antenna_flu_m = scenario.vehicle.antenna_flu_m
@@ -65,16 +66,18 @@ class Lockstep:
         if outputs.mavlink:
             self._channels.down.put(outputs.mavlink, t_ns)
         for publication in outputs.publications:
-            if publication.key in self._heard:
-                self._channels.zenoh.put(publication.key, publication.payload, t_ns)
+            way = self._ways.get(publication.key)
+            if way is not None:
+                way.put(publication.key, publication.payload, t_ns)
         self._advance_companion(t_ns)
 
     def _advance_companion(self, t_ns: int) -> None:
         node, local_ns = self.companion, t_ns - START_NS + _COMPANION_LOCAL_NS
         for data in self._channels.down.take(t_ns):
             node.receive_mavlink(data, local_ns)
-        for key, payload in self._channels.zenoh.take(t_ns):
-            node.receive_sample(key, payload)
+        for way in (self._channels.zenoh, self._channels.detector):
+            for key, payload in way.take(t_ns):
+                node.receive_sample(key, payload)
         self._command(node)
         if node.poll(local_ns) and node.outputs is not None:
             self.recording.add(node.outputs.status)

@@ -63,6 +63,14 @@ def test_delays_of_the_degraded_links_are_those_of_the_benchmark() -> None:
     assert channels.zenoh.take(START_NS + 300_000_000) == [("key", b"x")]
 
 
+def test_sightings_come_from_the_drone_itself_unless_their_detector_is_elsewhere() -> None:
+    for name, delay_ns in (("degraded", 0), ("degraded_detector", 300_000_000)):
+        channels = channels_of(load_scenario(f"straight_5+link={name}"), 5, START_NS)
+        channels.detector.put("pad_pose", b"x", START_NS)
+        assert channels.detector.take(START_NS + delay_ns - 1) == []
+        assert channels.detector.take(START_NS + delay_ns) == [("pad_pose", b"x")]
+
+
 def test_gust_of_the_preset_is_blown_as_the_standard_has_it() -> None:
     scenario = load_scenario("straight_5+wind=gust")
     calm = scenario.model_copy(update={"wind": scenario.wind.model_copy(update={"gust_m_s": 0.0})})
