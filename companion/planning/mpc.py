@@ -6,7 +6,7 @@ horizontal axes are turned to where the motion is needed. The major one is solve
 the minor one then gets what the major one's plan leaves of each norm, node by node.
 """
 
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from companion.planning.config import MpcConfig
 from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Trajectory
 from companion.planning.programmes import Grid, Numbers, PlainLimits, Posed, Statics, bound_minor, path_of, pose
 from companion.planning.qp import Programme, make_solver
-from companion.planning.requests import limits_of, with_finite_state
+from companion.planning.requests import check, is_finite_state, limits_of, with_finite_state
 from companion.planning.resample import make_resampler
 
 
@@ -30,9 +30,8 @@ class Mpc:
         model = make_axis_model(np.array(config.moves_s), config.node_spacing_max_s)
         level, upright = (make_axis_problem(model, config, has_floor=floored) for floored in (False, True))
         self._level, self._upright = (Programme(solver, problem.H, problem.A) for problem in (level, upright))
-        self._moves_s = config.moves_s
         self._nodes_s = np.append(0.0, model.node_s)
-        self._node_times_s = tuple(self._nodes_s.tolist())
+        self._responses = lru_cache(maxsize=64)(partial(_responses, self._nodes_s, np.array(config.moves_s)))
         grid = Grid(nodes_s=self._nodes_s, move_s=model.move_s, forced_v=model.forced_v, end_node=model.end_node)
         numbers = Numbers(
             axes_time_s=config.axes_time_s,
@@ -45,9 +44,12 @@ class Mpc:
 
     def plan(self, memory: ReferenceState | None, request: PlanRequest) -> tuple[ReferenceState, PlanResult]:
         """Return the next state as memory, and the plan."""
-        request = with_finite_state(memory, request)
+        check(request)
         limits = limits_of(request.limits)
         posed = self._posed(request, limits)
+        if not posed.is_finite and not is_finite_state(request.state):
+            request = with_finite_state(memory, request)
+            posed = self._posed(request, limits)
         result = self._plan(request, limits, posed) if posed.is_finite else brake(request, PlanStatus.FAILED, 0)
         return result.next_state, result
 
@@ -66,7 +68,7 @@ class Mpc:
 
     def _posed(self, request: PlanRequest, limits: PlainLimits) -> Posed:
         state = request.state
-        resampler = make_resampler(tuple(request.target.offset_s.tolist()), self._node_times_s)
+        resampler = make_resampler(request.target.offset_s, self._nodes_s)
         return pose(
             (state.position_enu_m, state.velocity_enu_m_s, state.acceleration_enu_m_s2),
             (*resampler.taken(request.target), resampler.taken_line(request.floor_enu_m)),
@@ -79,9 +81,7 @@ class Mpc:
         self, request: PlanRequest, posed: Posed, solved: tuple[Array, Array, Array], iterations: int
     ) -> PlanResult:
         """Return the plan in W: at 0, at the nodes, and at the request's `dt_s`."""
-        maps = _responses(self._node_times_s, request.dt_s, self._moves_s)
-        path = path_of(posed.origin_enu_m, posed.direction, posed.state, solved, maps)
-        slacks = [slack for x in solved for slack in x.tolist()[len(self._moves_s) :]]
+        path, excess = path_of(posed.origin_enu_m, posed.direction, posed.state, solved, self._responses(request.dt_s))
         position, velocity, acceleration = path[:, :-1]
         next_position, next_velocity, next_acceleration = path[:, -1]
         return PlanResult(
@@ -97,13 +97,12 @@ class Mpc:
                 acceleration_enu_m_s2=acceleration,
             ),
             status=PlanStatus.SOLVED,
-            limit_excess=max(0.0, *slacks),
+            limit_excess=excess,
             iterations=iterations,
         )
 
 
-@lru_cache(maxsize=64)
-def _responses(nodes_s: tuple[float, ...], dt_s: float, moves_s: tuple[float, ...]) -> tuple[Array, Array]:
+def _responses(nodes_s: Array, moves_s: Array, dt_s: float) -> tuple[Array, Array]:
     """Return the maps (3, n + 1, 3) and (3, n + 1, m) from state and moves to p, v, a at the nodes and at `dt_s`."""
-    times, moves = np.array([*nodes_s, dt_s]), np.array(moves_s)
-    return np.stack(free_response(times)), np.stack(forced_response(times, moves))
+    times = np.append(nodes_s, dt_s)
+    return np.stack(free_response(times)), np.stack(forced_response(times, moves_s))

@@ -194,8 +194,8 @@ def _still(state: ReferenceState) -> Trajectory:
 
 def _targets(request: PlanRequest, steps: int) -> Array:
     """Return the target's position, velocity, acceleration (steps, 3, 3) at the law's own instants."""
-    instants = tuple(STEP_S * step for step in range(steps))
-    resampled = make_resampler(tuple(request.target.offset_s.tolist()), instants).apply(request.target)
+    instants = np.arange(steps, dtype=np.float64) * STEP_S
+    resampled = make_resampler(request.target.offset_s, instants).apply(request.target)
     return np.stack(resampled, axis=1)
 
 

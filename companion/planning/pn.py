@@ -49,8 +49,8 @@ class ProportionalNavigation:
         if not has_finite_target(request):
             result = brake(request, PlanStatus.FAILED, 0)
             return PnMemory(state=result.next_state, near=near), result
-        next_near, next_state = self._run(near, request, (0.0,), request.dt_s)[-1]
-        instants = tuple(STEP_S * step for step in range(STEPS))
+        next_near, next_state = self._run(near, request, np.zeros(1), request.dt_s)[-1]
+        instants = np.arange(STEPS, dtype=np.float64) * STEP_S
         path = [request.state, *(state for _, state in self._run(near, request, instants, STEP_S))]
         result = PlanResult(
             next_state=next_state,
@@ -66,11 +66,9 @@ class ProportionalNavigation:
         )
         return PnMemory(state=next_state, near=next_near), result
 
-    def _run(
-        self, near: bool, request: PlanRequest, instants: tuple[float, ...], dt_s: float
-    ) -> list[tuple[bool, ReferenceState]]:
+    def _run(self, near: bool, request: PlanRequest, instants: Array, dt_s: float) -> list[tuple[bool, ReferenceState]]:
         """Return which law was in force and the state after each instant's step of `dt_s`."""
-        resampler = make_resampler(tuple(request.target.offset_s.tolist()), instants)
+        resampler = make_resampler(request.target.offset_s, instants)
         targets, floors = resampler.apply(request.target), resampler.line(request.floor_enu_m)
         state, states = request.state, []
         for position, velocity, acceleration, floor in zip(*targets, floors, strict=True):

@@ -167,14 +167,14 @@ def bound_minor(x: Array, major_jerk: Array, limits: PlainLimits, plain_grid: Pl
 @kept
 def path_of(
     origin_m: Array, direction: tuple[float, float], x: Array, moves: tuple[Array, Array, Array], maps: Maps
-) -> Array:
-    """Return position, velocity and acceleration (3, k, 3) in W of a plan.
+) -> tuple[Array, float]:
+    """Return position, velocity and acceleration (3, k, 3) in W of a plan, and its largest slack.
 
     Args:
         origin_m: (3,) in W.
         direction: of the major axis in W.
         x: (3, 3) the turned state.
-        moves: of each axis, the first m of (q,).
+        moves: of each axis, the first m of (q,); slacks behind them.
         maps: (3, k, 3) from the state and (3, k, m) from the moves to p, v, a at k instants.
     """
     free, forced = maps
@@ -194,4 +194,8 @@ def path_of(
             path[rate, node] = c * major - s * minor, s * major + c * minor, up
             if rate == 0:
                 path[rate, node] += origin_m
-    return path
+    excess = 0.0
+    for axis in range(3):
+        for slack in moves[axis][forced.shape[2] :]:
+            excess = max(excess, slack)
+    return path, excess

@@ -15,15 +15,24 @@ def with_finite_state(last: ReferenceState | None, request: PlanRequest) -> Plan
     Raises:
         ValueError: if the state is not finite and there is no last one, or `dt_s` or a limit is not positive.
     """
-    if not request.dt_s > 0.0:
-        raise ValueError(f"the control period must be positive, not {request.dt_s} s")
-    if not _are_positive(request.limits):
-        raise ValueError(f"the drone's limits must be positive: {request.limits}")
+    check(request)
     if is_finite_state(request.state):
         return request
     if last is None:
         raise ValueError(f"the first reference state is not finite: {request.state}")
     return replace(request, state=last)
+
+
+def check(request: PlanRequest) -> None:
+    """Check what is asked of every request.
+
+    Raises:
+        ValueError: if `dt_s` or a limit is not positive.
+    """
+    if not request.dt_s > 0.0:
+        raise ValueError(f"the control period must be positive, not {request.dt_s} s")
+    if not _are_positive(request.limits):
+        raise ValueError(f"the drone's limits must be positive: {request.limits}")
 
 
 def limits_of(limits: FlightLimits) -> tuple[float, float, float, float, float, float]:
