@@ -13,6 +13,7 @@ from companion.config import LandingStyle
 from link.errors import UserError
 from scenarios.catalogue import load_scenario
 from scenarios.config import Scenario
+from scenarios.course import Course
 from scenarios.lockstep import Lockstep
 from scenarios.noise import named_rng
 from scenarios.outcome import scored
@@ -22,7 +23,6 @@ from scenarios.score import Score
 from scenarios.sensors import white_error_m
 from scenarios.touch import Flags
 from scenarios.track_config import WaypointsTrack
-from scenarios.tracks import Course
 from scenarios.truth_log import Array
 
 

@@ -15,8 +15,9 @@ import numpy as np
 from link.frames import canonical, conjugate, multiply, quaternion_from_yaw, rotate
 from link.geodesy import Datum, geodetic_from_enu
 from link.messages import BodyTruth, Fix, FixVelocity, Matrix3, PadSighting, Quaternion, Vector3, VehicleImu
-from scenarios.config import DelayConfig, FixConfig, ImuConfig, PatternConfig, SensorsConfig, VelocityConfig
+from scenarios.config import FixConfig, ImuConfig, PatternConfig, SensorsConfig, VelocityConfig
 from scenarios.noise import Dropouts, GaussMarkov, StampClock, named_rng, normal3
+from scenarios.sensor_schedule import SensorSchedule
 from scenarios.vehicle import VehicleState
 
 Sample = Fix | FixVelocity | VehicleImu | PadSighting
@@ -32,45 +33,13 @@ class Mounting:
     pad_height_m: float
 
 
-class _Schedule:
-    """When a sensor takes samples, which are lost, and when the others are released."""
-
-    def __init__(self, config: DelayConfig, seed: int, name: str) -> None:
-        self._config = config
-        self._rng = named_rng(seed, f"{name} link")
-        self._period_ns = round(1e9 / config.rate_hz)
-        self._due_ns: int | None = None
-        self._taken_ns: int | None = None
-
-    def due(self, t_ns: int) -> bool:
-        """Return whether a sample is to be taken now."""
-        return self._due_ns is None or t_ns >= self._due_ns
-
-    def take(self, t_ns: int) -> float:
-        """Plan the next sample and return the seconds since the one before."""
-        if self._due_ns is None or t_ns - self._due_ns > self._period_ns:
-            self._due_ns = t_ns
-        self._due_ns += self._period_ns
-        elapsed_s = 0.0 if self._taken_ns is None else (t_ns - self._taken_ns) * 1e-9
-        self._taken_ns = t_ns
-        return elapsed_s
-
-    def release_ns(self, t_ns: int) -> int | None:
-        """Return when a sample taken at `t_ns` leaves, None if it is lost."""
-        loss, shift = map(float, self._rng.random(2))
-        if loss < self._config.loss:
-            return None
-        delay_s = self._config.delay_s + (2.0 * shift - 1.0) * self._config.jitter_s
-        return t_ns + round(max(0.0, delay_s) * 1e9)
-
-
 class _FixSensor:
     """The receiver's position, at the antenna, in the receiver's own frame."""
 
     def __init__(
         self, config: FixConfig, seed: int, *, mounting: Mounting, offset_enu_m: Vector3, datum: Datum
     ) -> None:
-        self.schedule = _Schedule(config, seed, "fix")
+        self.schedule = SensorSchedule(config, seed, "fix")
         self._rng = named_rng(seed, "fix")
         self._bias = GaussMarkov(named_rng(seed, "fix bias"), std=config.bias_m, tau_s=config.bias_tau_s)
         self._config = config
@@ -105,7 +74,7 @@ class _VelocitySensor:
     """The receiver's velocity, at the antenna."""
 
     def __init__(self, config: VelocityConfig, seed: int, *, mounting: Mounting) -> None:
-        self.schedule = _Schedule(config, seed, "velocity")
+        self.schedule = SensorSchedule(config, seed, "velocity")
         self._rng = named_rng(seed, "velocity")
         self._white_m_s = config.white_m_s
         self._covariance = _diagonal(max(_STATED_STD_MIN_M, config.white_m_s) ** 2)
@@ -124,7 +93,7 @@ class _ImuSensor:
     """Heading and yaw rate; roll and pitch are reported as level, with the same doubt as the heading."""
 
     def __init__(self, config: ImuConfig, seed: int) -> None:
-        self.schedule = _Schedule(config, seed, "imu")
+        self.schedule = SensorSchedule(config, seed, "imu")
         self._rng = named_rng(seed, "imu")
         self._bias = GaussMarkov(
             named_rng(seed, "imu bias"), std=config.heading_bias_rad, tau_s=config.heading_bias_tau_s
@@ -151,7 +120,7 @@ class _PatternSensor:
     """The detector on the drone: a cone of view straight down from the drone's centre."""
 
     def __init__(self, config: PatternConfig, seed: int, *, mounting: Mounting) -> None:
-        self.schedule = _Schedule(config, seed, "pattern")
+        self.schedule = SensorSchedule(config, seed, "pattern")
         self._rng = named_rng(seed, "pattern")
         chain = named_rng(seed, "pattern dropouts")
         share = float(chain.uniform(*config.dropout_share_range))
@@ -223,7 +192,7 @@ class SensorSuite:
             released.append(heapq.heappop(self._queue)[2])
         return released
 
-    def _send(self, schedule: _Schedule, t_ns: int, sample: Sample | None) -> None:
+    def _send(self, schedule: SensorSchedule, t_ns: int, sample: Sample | None) -> None:
         release_ns = schedule.release_ns(t_ns)
         if sample is not None and release_ns is not None:
             heapq.heappush(self._queue, (release_ns, self._count, sample))

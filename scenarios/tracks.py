@@ -1,4 +1,4 @@
-"""Courses of the benchmark's tracks: the road, the speed along it, its roughness and what the vehicle reacts to.
+"""Courses of the benchmark's tracks.
 
 Every course passes the waiting point at (0, 0) and, but for the report's and the parked one, at its full speed.
 Sources: MBZIRC 2017 for the figure eight (circles of radius 16.5 m, centres at ±23.3 m); the report's table of
@@ -7,15 +7,16 @@ waypoints for `waypoints`; an Ornstein-Uhlenbeck process in its exact discretisa
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import assert_never
 
 import numpy as np
 
+from scenarios.course import BrakeEvent, Course, Roughness, Wave
 from scenarios.curved_roads import curve_through
 from scenarios.profiles import Profile, cruise_steps, profile_of, waypoint_steps
-from scenarios.roads import Piece, Point, Road, Slope, advance, polyline, road_of
+from scenarios.roads import Piece, Point, Slope, advance, polyline, road_of
 from scenarios.track_config import (
     BrakeTrack,
     CircleTrack,
@@ -36,49 +37,6 @@ _CURVE_STEP_M = 0.1  # pieces of a lane change: the heading is then within 0.1 m
 _RANDOM_STEP_S = 0.01
 _SPEED_BAND = 0.5  # a random vehicle keeps within this share of its mean speed
 _TURN_RADIUS_MIN_M = 6.0  # of a car
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Wave:
-    """A sine along the road."""
-
-    amplitude: float
-    wavelength_m: float
-    phase_rad: float
-
-    def at(self, s_m: float) -> tuple[float, float, float]:
-        """Return the value at `s_m` and its first two derivatives by arc length."""
-        number_per_m = 2.0 * math.pi / self.wavelength_m
-        angle_rad = number_per_m * s_m + self.phase_rad
-        value = self.amplitude * math.sin(angle_rad)
-        return value, number_per_m * self.amplitude * math.cos(angle_rad), -(number_per_m**2) * value
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Roughness:
-    """How the body heaves (m), rolls and pitches (rad) along the road."""
-
-    heave: Wave
-    roll: Wave
-    pitch: Wave
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BrakeEvent:
-    """Emergency braking when the drone is `height_above_roof_m` or less above the roof."""
-
-    deceleration_m_s2: float
-    height_above_roof_m: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Course:
-    """What a vehicle drives; `brake` and `roughness` are None where the track has none."""
-
-    road: Road
-    profile: Profile
-    roughness: Roughness | None = None
-    brake: BrakeEvent | None = None
 
 
 def course_of(track: TrackConfig, rng: np.random.Generator) -> Course:  # noqa: C901, PLR0911 (one case for each kind of track)

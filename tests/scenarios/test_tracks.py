@@ -5,10 +5,11 @@ import numpy as np
 import pytest
 
 from scenarios.catalogue import list_scenarios, load_scenario
+from scenarios.course import Course
 from scenarios.profiles import profile_of, waypoint_steps
 from scenarios.roads import Slope, polyline, road_of
 from scenarios.track_config import MovingTrack, RandomTrack
-from scenarios.tracks import Course, approach_m, course_of
+from scenarios.tracks import approach_m, course_of
 
 SMOOTH = [entry.name for entry in list_scenarios() if not entry.name.startswith(("report_", "static"))]
 CURVE = ((0.0, 0.0), (10.0, 0.0), (15.9, -1.1), (21.3, -3.5), (28.6, -8.6), (40.1, -19.8))
