@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from companion.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
+from companion.estimation import imm_forecast as forecasts
 from companion.estimation import imm_kernels as kernels
 from companion.estimation import imm_mixing as mixing
 from companion.estimation import imm_sensors as sensors
@@ -57,7 +58,7 @@ class ImmModel:
 
     Attributes:
         config: its numbers.
-        antenna_to_pad_m: lever arm in V, for sightings of the pad.
+        antenna_to_pad_m: lever arm in V; the vehicle turns about the pad's centre, and sightings are of it.
         numbers: the same as the kernels take them, derived.
     """
 
@@ -85,8 +86,8 @@ class ImmModel:
 
     def predict(self, state: ImmState, dt_s: float) -> ImmState:
         """Return the state `dt_s` later."""
-        numbers = self.numbers
-        modes = mixing.predict_modes(state.modes, dt_s, self._noises(state), numbers.dwell_s, numbers.motion)
+        motion = self._motion(state)
+        modes = mixing.predict_modes(state.modes, dt_s, self._noises(state), self.numbers.dwell_s, motion)
         return ImmState(modes=modes, fix_bias_variance_m2=state.fix_bias_variance_m2)
 
     def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState]:
@@ -127,9 +128,9 @@ class ImmModel:
     def describe(self, state: ImmState, t_ns: int) -> VehicleEstimate:
         """Return the mixture of both modes."""
         x, P = mixing.combine(*state.modes)
-        heave = self.numbers.motion[1:3]
-        G = mixing.kinematics_jacobian(x, heave)
-        position, velocity, acceleration = mixing.kinematics(x[None], heave)
+        motion = self._motion(state)
+        G = forecasts.kinematics_jacobian(x, motion)
+        position, velocity, acceleration = forecasts.kinematics(x[None], motion)
         covariance = G @ P @ G.T
         known = self._heading_known(state)
         return VehicleEstimate(
@@ -144,8 +145,8 @@ class ImmModel:
 
     def forecast(self, state: ImmState, t_ns: int, offset_s: Array) -> Forecast:
         """Return the future along the present curvature, with an acceleration that fades and stops at standstill."""
-        position, velocity, acceleration, yaw, std = mixing.forecast_modes(
-            state.modes, _own(offset_s), self._noises(state), self.numbers.motion
+        position, velocity, acceleration, yaw, std = forecasts.forecast_modes(
+            state.modes, _own(offset_s), self._noises(state), self._motion(state)
         )
         return Forecast(
             t_ns=t_ns,
@@ -163,6 +164,10 @@ class ImmModel:
         stated = float(fix_covariance.diagonal().max())
         white = min(stated, self.config.fix_white_std_max_m**2)
         return fix_covariance * (white / stated), stated - white
+
+    def _motion(self, state: ImmState) -> Array:
+        """The motion's numbers, (8,), as `imm_mixing` has them; the lever arm is zero while the heading is unknown."""
+        return mixing.with_direction(self.numbers.motion, state.modes, float(self.numbers.course[2]))
 
     def _noises(self, state: ImmState) -> Array:
         """Both modes' noise, (2, 9), as `imm_kernels.process_noise` takes it."""

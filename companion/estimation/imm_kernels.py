@@ -1,8 +1,8 @@
 """Compiled arithmetic of the turning model: one step of motion, its noise, and the Kalman update.
 
-State `x` (16,) of the antenna in W:
-  0:2  p   horizontal position, m
-  2:4  v   horizontal velocity, m/s
+State `x` (16,) of the vehicle in W:
+  0:2  p   horizontal position, m: the antenna's, and the pad's while it moves (`imm_mixing.glide`)
+  2:4  v   horizontal velocity of the pad's centre, m/s, where the vehicle's body follows the road
   4:6  b   what changes the velocity apart from turning, m/s^2; decays with time constant tau
   6    k   curvature of the track, rad/m, left positive
   7    psi heading of V, rad, not wrapped
@@ -26,6 +26,7 @@ from companion.estimation.small_matrices import inverse_of, less_outer, times
 
 SIZE = 16
 MOTION = 8  # leading states that the non-linear motion touches
+FOLLOWS = (0, 0, 1, 1, 1, 1, 2, 1)  # each of them: 2 is the curvature, 1 its integral, 0 its second one
 CLOCK = 15
 CLOCK_NOISE = 8  # its place in the noise
 
@@ -146,9 +147,14 @@ def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array) -> Ar
             g = white_jerk[i][j]
             Q[2 * i, 2 * j], Q[2 * i + 1, 2 * j + 1] = g * qxx, g * qyy
             Q[2 * i, 2 * j + 1], Q[2 * i + 1, 2 * j] = g * qxy, g * qxy
-    floor = max(speed, noise[3])
-    Q[6, 6] = noise[2] / floor**4 * d
-    Q[7, 7] = noise[4] * d
+    # What the curvature does within the step has turned velocity and heading by its end: left out, a curve that begins
+    # between two measurements leaves a velocity that nothing explains and that is held for certain.
+    turning = noise[2] / max(speed, noise[3]) ** 4
+    rates = (-speed * x[3], speed * x[2], -speed * x[3], speed * x[2], -speed * x[5], speed * x[4], 1.0, speed)
+    for i in range(MOTION):
+        for j in range(MOTION):
+            Q[i, j] += turning * white_jerk[FOLLOWS[i]][FOLLOWS[j]] * rates[i] * rates[j]
+    Q[7, 7] += noise[4] * d
     Q[8, 8], Q[8, 9], Q[9, 8], Q[9, 9] = noise[5] * d**3 / 3, noise[5] * d**2 / 2, noise[5] * d**2 / 2, noise[5] * d
     Q[10:12, 10:12] = heave_noise
     for place, offset in ((0, 12), (1, 13), (8, 14)):  # where the drone errs about itself, both move

@@ -1,9 +1,9 @@
 """Compiled steps of two interacting turning models that differ in their noise only (Blom and Bar-Shalom 1988).
 
 `Modes` are means (2, 16), covariances (2, 16, 16) and probabilities (2,). Between measurements the vehicle may change
-from one mode to the other as a continuous Markov chain with the given mean dwell times. `motion` (5,) is the time
-constant of the acceleration, s, the heave's angular frequency, rad/s, damping and standard deviation, m, and the time
-constant of the clock's difference, s.
+from one mode to the other as a continuous Markov chain with the given mean dwell times. `motion` (8,) is the time
+constant of the acceleration, s, the heave's angular frequency, rad/s, damping and standard deviation, m, the time
+constant of the clock's difference, s, and the lever arm (3,) from the antenna to the pad in V, m.
 """
 
 import math
@@ -18,8 +18,8 @@ from companion.estimation.imm_sensors import (
     PAD,
     POSITION,
     VELOCITY,
-    horizontal_acceleration,
     observe,
+    turned,
 )
 from companion.estimation.kept import kept
 from companion.estimation.small_matrices import carried_through, inverse_of
@@ -60,32 +60,68 @@ def mix(modes: Modes, changes: Array) -> Modes:
 
 
 @kept
+def shifted(x: Array, P: Array, lever: Array, sign: float) -> tuple[Array, Array]:
+    """Return mean and covariance with the position moved by `sign` times `lever` (3,) of V, which the heading turns."""
+    arm_x, arm_y = turned(lever, x[7])
+    y, S = x.copy(), P.copy()
+    y[0] += sign * arm_x
+    y[1] += sign * arm_y
+    for i in range(SIZE):
+        S[0, i] -= sign * arm_y * S[7, i]
+        S[1, i] += sign * arm_x * S[7, i]
+    for i in range(SIZE):
+        S[i, 0] -= sign * arm_y * S[i, 7]
+        S[i, 1] += sign * arm_x * S[i, 7]
+    return y, S
+
+
+@kept
 def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple[Array, Array]:
     """Return mean and covariance of one mode `dt_s` later, in equal steps.
+
+    It is the pad's centre that moves as `advance` says, and the antenna swings about it.
 
     Args:
         x: mean (16,).
         P: covariance (16, 16).
         dt_s: time to pass.
         noise: (9,) as `process_noise` takes it.
-        motion: (5,), see the module.
+        motion: (8,), see the module; a lever arm of zero where it has no known direction.
     """
     steps = max(math.ceil(dt_s / STEP_MAX_S - 1e-9), 1)
     step_s = dt_s / steps
     heave, heave_noise = heave_step(step_s, motion[1], motion[2], motion[3])
     clock_left = math.exp(-step_s / motion[4])
+    x, P = shifted(x, P, motion[5:8], 1.0)
     for _ in range(steps):
         Q = process_noise(x, step_s, noise, heave_noise)
         x, F = advance(x, step_s, motion[0], heave)
         x[CLOCK] *= clock_left
         F[CLOCK, CLOCK] = clock_left
         P = carried_through(F, P) + Q
+    x, P = shifted(x, P, motion[5:8], -1.0)
     return x, 0.5 * (P + P.T)
 
 
 @kept
+def is_heading_known(modes: Modes, known_variance: float) -> bool:
+    """Return whether the heading of the mixture is known better than `known_variance`, rad^2."""
+    _, covariances, weights = modes
+    return bool(weights[0] * covariances[0, 7, 7] + weights[1] * covariances[1, 7, 7] < known_variance)
+
+
+@kept
+def with_direction(motion: Array, modes: Modes, known_variance: float) -> Array:
+    """Return `motion` without its lever arm where the heading is not known better than `known_variance`, rad^2."""
+    directed = motion.copy()
+    if not is_heading_known(modes, known_variance):
+        directed[5:8] = 0.0
+    return directed
+
+
+@kept
 def predict_modes(modes: Modes, dt_s: float, noises: Array, dwell_s: Array, motion: Array) -> Modes:
-    """Return the filter `dt_s` later; `noises` (2, 9), `dwell_s` (2,)."""
+    """Return the filter `dt_s` later; `noises` (2, 9), `dwell_s` (2,), `motion` as `with_direction` has it."""
     means, covariances, weights = mix(modes, switching(dwell_s, dt_s))
     for j in range(2):
         means[j], covariances[j] = glide(means[j], covariances[j], dt_s, noises[j], motion)
@@ -115,7 +151,7 @@ def update_modes(
         modes: the filter.
         reading: kind as `observe` takes it, value (m,), covariance (m, m).
         lever: (3,) from the antenna to the pad in V, m.
-        sees_heading: whether a pad sighting may correct the heading.
+        sees_heading: whether the heading is known, so that the lever arm has a direction.
     """
     means, covariances, weights = modes
     kind, value, R = reading
@@ -162,13 +198,6 @@ def align_modes(
 
 
 @kept
-def is_heading_known(modes: Modes, known_variance: float) -> bool:
-    """Return whether the heading of the mixture is known better than `known_variance`, rad^2."""
-    _, covariances, weights = modes
-    return bool(weights[0] * covariances[0, 7, 7] + weights[1] * covariances[1, 7, 7] < known_variance)
-
-
-@kept
 def take_reading(
     modes: Modes, reading: tuple[int, Array, Array], lever: Array, course: Array
 ) -> tuple[Modes, float, float]:
@@ -191,57 +220,3 @@ def take_reading(
     if kind in (POSITION, VELOCITY):
         means, covariances = align_modes(means, covariances, course[0], course[1], course[2])
     return (means, covariances, weights), nis, gate_nis
-
-
-@kept
-def kinematics(states: Array, heave: Array) -> tuple[Array, Array, Array]:
-    """Return position, velocity and acceleration in W, each (n, 3), of `states` (n, 16); `heave` is `motion[1:3]`."""
-    n = len(states)
-    position, velocity, acceleration = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
-    for i in range(n):
-        x = states[i]
-        position[i, 0], position[i, 1], position[i, 2] = x[0], x[1], x[8] + x[10]
-        velocity[i, 0], velocity[i, 1], velocity[i, 2] = x[2], x[3], x[9] + x[11]
-        acceleration[i, :2], _ = horizontal_acceleration(x)
-        acceleration[i, 2] = -(heave[0] ** 2) * x[10] - 2.0 * heave[1] * heave[0] * x[11]
-    return position, velocity, acceleration
-
-
-@kept
-def kinematics_jacobian(x: Array, heave: Array) -> Array:
-    """Return the Jacobian `(9, 16)` of position, velocity and acceleration; `heave` is `motion[1:3]`."""
-    G = np.zeros((9, SIZE))
-    G[0, 0], G[1, 1], G[2, 8], G[2, 10] = 1.0, 1.0, 1.0, 1.0
-    G[3, 2], G[4, 3], G[5, 9], G[5, 11] = 1.0, 1.0, 1.0, 1.0
-    _, G[6:8, 2:7] = horizontal_acceleration(x)
-    G[8, 10], G[8, 11] = -(heave[0] ** 2), -2.0 * heave[1] * heave[0]
-    return G
-
-
-@kept
-def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) -> tuple[Array, Array]:
-    """Return the means `(n, 16)` and the position variances `(n, 3)` at `offset_s` (n,), not falling."""
-    n = len(offset_s)
-    means, variances = np.empty((n, SIZE)), np.empty((n, 3))
-    passed_s = 0.0
-    for i in range(n):
-        ahead_s = offset_s[i] - passed_s
-        if ahead_s > 0.0:
-            x, P = glide(x, P, ahead_s, noise, motion)
-            passed_s = offset_s[i]
-        means[i] = x
-        variances[i, 0], variances[i, 1] = P[0, 0], P[1, 1]
-        variances[i, 2] = P[8, 8] + P[10, 10] + 2.0 * P[8, 10]
-    return means, variances
-
-
-@kept
-def forecast_modes(
-    modes: Modes, offset_s: Array, noises: Array, motion: Array
-) -> tuple[Array, Array, Array, Array, Array]:
-    """Return the mixture's position, velocity, acceleration (n, 3), heading (n,) and position's deviation (n, 3)."""
-    x, P = combine(modes[0], modes[1], modes[2])
-    noise = modes[2][0] * noises[0] + modes[2][1] * noises[1]
-    means, variances = horizon(x, P, offset_s, noise, motion)
-    position, velocity, acceleration = kinematics(means, motion[1:3])
-    return position, velocity, acceleration, means[:, 7].copy(), np.sqrt(variances)

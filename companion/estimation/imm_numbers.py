@@ -17,7 +17,7 @@ class Numbers:
     """A configuration as the kernels take it.
 
     Attributes:
-        motion: (5,) as `imm_mixing` has it.
+        motion: (8,) as `imm_mixing` has it.
         dwell_s: (2,) of both modes.
         noises: (2, 9) as `imm_kernels.process_noise` takes them, but for the two wanderings, which depend on the state.
         lever_m: (3,) from the antenna to the pad in V.
@@ -36,7 +36,7 @@ def numbers_of(config: ImmConfig, antenna_to_pad_m: Vector3) -> Numbers:
     heave = (2.0 * math.pi * config.heave_frequency_hz, config.heave_damping, config.heave_std_m)
     modes = (config.steady, config.manoeuvre)
     return Numbers(
-        motion=np.array([config.acceleration_decay_s, *heave, config.clock_time_s]),
+        motion=np.array([config.acceleration_decay_s, *heave, config.clock_time_s, *antenna_to_pad_m]),
         dwell_s=np.array([mode.dwell_s for mode in modes]),
         noises=np.array([_noise(config, mode) for mode in modes]),
         lever_m=np.array(antenna_to_pad_m),

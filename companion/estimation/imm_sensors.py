@@ -34,6 +34,35 @@ def horizontal_acceleration(x: Array) -> tuple[Array, Array]:
 
 
 @kept
+def turned(lever: Array, yaw_rad: float) -> tuple[float, float]:
+    """Return the horizontal part of `lever` (3,) in V, turned by the heading into W, m."""
+    c, s = math.cos(yaw_rad), math.sin(yaw_rad)
+    return c * lever[0] - s * lever[1], s * lever[0] + c * lever[1]
+
+
+@kept
+def antenna_velocity(x: Array, lever: Array) -> tuple[Array, Array]:
+    """Return the antenna's velocity (3,), m/s, and its Jacobian (3, 16).
+
+    The pad's centre goes where the road goes; behind it by `lever` the antenna swings out as the vehicle turns.
+
+    Args:
+        x: state (16,).
+        lever: (3,) from the antenna to the pad in V, m, zero where it has no known direction.
+    """
+    speed, ux, uy = course(x)
+    arm_x, arm_y = turned(lever, x[7])
+    w = x[6] * speed
+    z, H = np.array([x[2] + w * arm_y, x[3] - w * arm_x, x[9] + x[11]]), np.zeros((3, SIZE))
+    H[0, 2], H[0, 3] = 1.0 + x[6] * ux * arm_y, x[6] * uy * arm_y
+    H[1, 2], H[1, 3] = -x[6] * ux * arm_x, 1.0 - x[6] * uy * arm_x
+    H[2, 9], H[2, 11] = 1.0, 1.0
+    H[0, 6], H[1, 6] = speed * arm_y, -speed * arm_x
+    H[0, 7], H[1, 7] = w * arm_x, w * arm_y
+    return z, H
+
+
+@kept
 def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Array, Array]:
     """Return what a sensor reads at `x`, `(m,)`, and its Jacobian `(m, 16)`.
 
@@ -41,7 +70,7 @@ def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Arra
         kind: POSITION, VELOCITY, HEADING, YAW_RATE, PAD, or COURSE (the course minus the heading).
         x: state (16,).
         lever: (3,) from the antenna to the pad in V, m.
-        sees_heading: whether a pad sighting may correct the heading.
+        sees_heading: whether the heading is known, so that the lever arm has a direction.
     """
     speed, ux, uy = course(x)
     m = 1 if kind in (HEADING, YAW_RATE, COURSE) else 3
@@ -50,22 +79,20 @@ def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Arra
         z[0], z[1], z[2] = x[0], x[1], x[8] + x[10]
         H[0, 0], H[1, 1], H[2, 8], H[2, 10] = 1.0, 1.0, 1.0, 1.0
     if kind == POSITION:
-        late = np.array([x[2], x[3], x[9] + x[11]])
+        late, change = antenna_velocity(x, lever if sees_heading else np.zeros(3))
         z -= x[12:15] + x[CLOCK] * late
+        H -= x[CLOCK] * change
         H[:, CLOCK] = -late
-        H[0, 2], H[1, 3], H[2, 9], H[2, 11] = -x[CLOCK], -x[CLOCK], -x[CLOCK], -x[CLOCK]
         H[0, 12], H[1, 13], H[2, 14] = -1.0, -1.0, -1.0
     elif kind == PAD:
-        c, s = math.cos(x[7]), math.sin(x[7])
-        arm_x, arm_y = c * lever[0] - s * lever[1], s * lever[0] + c * lever[1]
+        arm_x, arm_y = turned(lever, x[7])
         z[0] += arm_x
         z[1] += arm_y
         z[2] += lever[2]
         if sees_heading:
             H[0, 7], H[1, 7] = -arm_y, arm_x
     elif kind == VELOCITY:
-        z[0], z[1], z[2] = x[2], x[3], x[9] + x[11]
-        H[0, 2], H[1, 3], H[2, 9], H[2, 11] = 1.0, 1.0, 1.0, 1.0
+        z, H = antenna_velocity(x, lever if sees_heading else np.zeros(3))
         late, change = horizontal_acceleration(x)
         z[:2] -= x[CLOCK] * late
         H[:2, CLOCK] = -late

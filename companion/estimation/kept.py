@@ -4,7 +4,7 @@ from pathlib import Path
 
 from link.compiled import file_digest, kept_kernel
 
-FILES = ("small_matrices.py", "imm_kernels.py", "imm_sensors.py", "imm_mixing.py", "ukf_motion.py")
+FILES = ("small_matrices.py", "imm_kernels.py", "imm_sensors.py", "imm_mixing.py", "imm_forecast.py", "ukf_motion.py")
 """All that compiled functions of this package are in: they call each other across them."""
 
 kept = kept_kernel(file_digest(Path(__file__).with_name(name) for name in FILES))

@@ -62,16 +62,24 @@ DEGRADED = Sensors(fix_std_m=0.3, fix_bias_std_m=1.5, velocity_std_m_s=0.1, rate
 
 
 def drive(length_s: float, speed: Profile, curvature: Profile, height: Profile = lambda _: 0.0) -> Drive:
-    """Integrate a vehicle that starts at (30, -20) heading 0.3 rad."""
+    """Integrate a vehicle whose pad starts at (30, -20) heading 0.3 rad and follows the road."""
     n = round(length_s / TRUTH_STEP_S) + 1
     t = np.arange(n) * TRUTH_STEP_S
     v = np.array([speed(s) for s in t])
     yaw_rate = v * np.array([curvature(s) for s in t])
     yaw = 0.3 + np.concatenate([[0.0], np.cumsum(0.5 * (yaw_rate[1:] + yaw_rate[:-1]) * TRUTH_STEP_S)])
     z = np.array([height(s) for s in t])
-    velocity = np.column_stack([v * np.cos(yaw), v * np.sin(yaw), np.gradient(z, TRUTH_STEP_S)])
-    xy = np.cumsum(0.5 * (velocity[1:, :2] + velocity[:-1, :2]) * TRUTH_STEP_S, axis=0)
-    position = np.column_stack([np.array([30.0, -20.0]) + np.vstack([np.zeros(2), xy]), z + 1.8])
+    road = np.column_stack([v * np.cos(yaw), v * np.sin(yaw)])
+    xy = np.array([30.0, -20.0]) + np.vstack(
+        [np.zeros(2), np.cumsum(0.5 * (road[1:] + road[:-1]) * TRUTH_STEP_S, axis=0)]
+    )
+    lever_x, lever_y, _ = ANTENNA_TO_PAD_M
+    arm = np.column_stack(
+        [np.cos(yaw) * lever_x - np.sin(yaw) * lever_y, np.sin(yaw) * lever_x + np.cos(yaw) * lever_y]
+    )
+    swing = yaw_rate[:, None] * np.column_stack([arm[:, 1], -arm[:, 0]])
+    position = np.column_stack([xy - arm, z + 1.8])
+    velocity = np.column_stack([road + swing, np.gradient(z, TRUTH_STEP_S)])
     return Drive(position=position, velocity=velocity, yaw=yaw, yaw_rate=yaw_rate)
 
 

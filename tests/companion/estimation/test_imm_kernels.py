@@ -8,14 +8,15 @@ from scipy.linalg import expm, solve_continuous_lyapunov
 from scipy.stats import multivariate_normal
 
 from companion.data import Array
+from companion.estimation import imm_forecast as forecasts
 from companion.estimation import imm_kernels as kernels
 from companion.estimation import imm_mixing as mixing
 from companion.estimation import imm_sensors as sensors
 
 TAU_S = 3.0
-MOTION = np.array([TAU_S, 2.0 * math.pi * 0.75, 0.3, 0.04, 180.0])
+MOTION = np.array([TAU_S, 2.0 * math.pi * 0.75, 0.3, 0.04, 180.0, -0.7, 0.1, 0.3])
 NOISE = np.array([12.0, 0.005, 20.0, 3.0, 1e-4, 0.01, 1e-5, 2e-3, 1e-7])
-LEVER = np.array([-0.7, 0.1, 0.3])
+LEVER = MOTION[5:8]
 HEAVE = np.array([[0.91, 0.08], [-1.7, 0.69]])
 
 
@@ -25,6 +26,7 @@ def a_state(seed: int) -> Array:
     x[2:4] = rng.uniform(2.0, 9.0, 2)
     x[4:6] = rng.uniform(-1.5, 1.5, 2)
     x[6] = rng.uniform(-0.08, 0.08)
+    x[kernels.CLOCK] = rng.uniform(-0.1, 0.1)
     return x
 
 
@@ -82,10 +84,10 @@ def test_jacobian_is_the_derivative_of_what_a_sensor_reads(kind: int) -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_kinematics_jacobian_is_the_derivative_of_the_kinematics(seed: int) -> None:
     x = a_state(seed)
-    G = mixing.kinematics_jacobian(x, MOTION[1:3])
+    G = forecasts.kinematics_jacobian(x, MOTION)
     numeric = np.empty((9, kernels.SIZE))
     for i in range(kernels.SIZE):
-        around = np.hstack(mixing.kinematics(x + 1e-6 * np.outer([1.0, -1.0], np.eye(kernels.SIZE)[i]), MOTION[1:3]))
+        around = np.hstack(forecasts.kinematics(x + 1e-6 * np.outer([1.0, -1.0], np.eye(kernels.SIZE)[i]), MOTION))
         numeric[:, i] = (around[0] - around[1]) / 2e-6
     assert pytest.approx(numeric, abs=1e-5) == G
 
@@ -145,8 +147,8 @@ def test_compiled_kernels_equal_their_python(seed: int) -> None:
 
 def test_process_noise_is_positive_and_lies_along_the_track() -> None:
     x = a_state(3)
-    Q = kernels.process_noise(x, 0.1, NOISE, 1e-6 * np.eye(2))
-    assert np.linalg.eigvalsh(Q).min() > -1e-15
+    assert np.linalg.eigvalsh(kernels.process_noise(x, 0.1, NOISE, 1e-6 * np.eye(2))).min() > -1e-15
+    Q = kernels.process_noise(x, 0.1, np.where(np.arange(9) == 2, 0.0, NOISE), 1e-6 * np.eye(2))
     along = x[2:4] / np.hypot(*x[2:4])
     across = np.array([-along[1], along[0]])
     assert along @ Q[4:6, 4:6] @ along == pytest.approx(12.0 * 0.1)
@@ -154,7 +156,7 @@ def test_process_noise_is_positive_and_lies_along_the_track() -> None:
 
 
 def test_heave_is_a_damped_oscillator_of_the_given_steady_size() -> None:
-    _, w, damping, std, _ = MOTION
+    w, damping, std = MOTION[1:4]
     A = np.array([[0.0, 1.0], [-(w**2), -2.0 * damping * w]])
     step, noise = kernels.heave_step(0.13, w, damping, std)
     assert step == pytest.approx(expm(0.13 * A))
