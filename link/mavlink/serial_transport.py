@@ -1,15 +1,17 @@
 """A serial port, opened again when its plug was out for a while."""
 
 import os
+import termios
 import time
 from typing import Any
 
 from link.errors import UserError
 from link.mavlink.device import SerialDevice
-from link.mavlink.transport import Transport, wait_readable
+from link.mavlink.send_queue import WAITING_MAX_S, SendQueue
+from link.mavlink.transport import Transport, held_bytes, wait_readable
 
 _REOPEN_S = 1.0
-_UNSENT_BYTES_MAX = 4096  # 0.7 s of a 57600 baud line
+_BITS_PER_BYTE = 10  # with start and stop bit
 
 
 class SerialTransport(Transport):
@@ -26,7 +28,7 @@ class SerialTransport(Transport):
         super().__init__()
         self._device = device
         self._next_attempt_s = 0.0
-        self._unsent = bytearray()
+        self._queue = SendQueue()
         try:
             self._port: Any = _open(device)
         except (OSError, ValueError) as error:
@@ -49,22 +51,30 @@ class SerialTransport(Transport):
 
     def send(self, data: bytes) -> None:
         """Sends bytes if there is somebody to send them to."""
-        if self._port is None or len(self._unsent) + len(data) > _UNSENT_BYTES_MAX:
+        if self._port is None or not self._queue.put(data, time.monotonic()):
             self._dropped += 1
-        else:
-            self._unsent += data
         self._flush()
 
     def _flush(self) -> None:
         """Sends what the line takes and keeps the rest; pyserial's own write would spin on a full line."""
-        if self._port is None or not self._unsent:
+        if self._port is None:
             return
+        now_s = time.monotonic()
         try:
-            del self._unsent[: os.write(self._port.fileno(), self._unsent)]
-        except BlockingIOError:
-            return
-        except OSError:
-            self._lose()
+            self._dropped += self._queue.write(self._write, now_s)
+            if not self._queue.is_overdue(held_bytes(self.fileno()), now_s):
+                return
+            self._port.reset_output_buffer()  # else it arrives late, and closing would wait for it
+        except (OSError, termios.error):
+            pass  # the port is lost, which ends it just so
+        self._dropped += len(self._queue)
+        self._lose()
+
+    def _write(self, data: bytes) -> int:
+        """Gives the system no more than the line takes in time: there a slow line's frames would grow old unseen."""
+        if held_bytes(self.fileno()) > self._device.baud / _BITS_PER_BYTE * WAITING_MAX_S:
+            raise BlockingIOError
+        return os.write(self.fileno(), data)
 
     def fileno(self) -> int:
         """The descriptor to wait on for input, -1 while there is none."""
@@ -75,7 +85,7 @@ class SerialTransport(Transport):
         if self._port is not None:
             self._port.close()
         self._port = None
-        self._unsent.clear()
+        self._queue = SendQueue()
         self._next_attempt_s = float("inf")
 
     def _lose(self) -> None:

@@ -1,10 +1,16 @@
-"""One TCP connection: what the other end does not take at once is kept, and a frame is never cut off."""
+"""One TCP connection: frames that the other end does not take in time do not reach it later either.
+
+The system acknowledges for a program that does not read, as long as it has room for it: that cannot be called back.
+"""
 
 import socket
+import struct
 
-from link.mavlink.transport import CHUNK_BYTES, DRAIN_BYTES_MAX
+from link.mavlink.send_queue import UNDER_WAY_MAX_S, SendQueue
+from link.mavlink.transport import CHUNK_BYTES, DRAIN_BYTES_MAX, held_bytes
 
-_UNSENT_BYTES_MAX = 65536  # more than a second of setpoints; to a peer that reads so late they are no use
+_SEND_BUFFER_BYTES = 16384  # the system's own part in what is under way; Linux takes it twice
+_RESET_AT_ONCE = struct.pack("ii", 1, 0)  # socket(7), SO_LINGER: what is unsent is thrown away
 
 
 class TcpConnection:
@@ -17,28 +23,33 @@ class TcpConnection:
     def __init__(self, connected: socket.socket) -> None:
         connected.setblocking(False)
         connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        connected.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER_BYTES)
+        if hasattr(socket, "TCP_USER_TIMEOUT"):  # Linux; sees a stall even while this program does nothing
+            connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, round(UNDER_WAY_MAX_S * 1000.0))
         self._socket = connected
-        self._unsent = bytearray()
+        self._queue = SendQueue()
         self.is_open = True
 
-    def send(self, data: bytes) -> bool:
-        """Takes whole frames to be sent; returns whether there was room for them."""
-        has_room = len(self._unsent) + len(data) <= _UNSENT_BYTES_MAX
-        if has_room:
-            self._unsent += data
-        self.flush()
-        return has_room
+    def send(self, data: bytes, now_s: float) -> int:
+        """Takes whole frames to be sent, at a monotonic time; returns how many given to it never will be."""
+        refused = not self._queue.put(data, now_s)
+        return refused + self.flush(now_s)
 
-    def flush(self) -> None:
-        """Sends what the other end takes, and keeps the rest."""
-        if not self.is_open or not self._unsent:
-            return
+    def flush(self, now_s: float) -> int:
+        """Sends what the other end takes, and ends a connection that stalls; returns how many never will be sent."""
+        if not self.is_open:
+            return 0
+        dropped = 0
         try:
-            del self._unsent[: self._socket.send(self._unsent)]
-        except BlockingIOError:
-            return
+            dropped = self._queue.write(self._socket.send, now_s)
+            if not self._queue.is_overdue(held_bytes(self._socket.fileno()), now_s):
+                return dropped
+            self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, _RESET_AT_ONCE)
         except OSError:
-            self.close()
+            pass  # the connection is lost, which ends it just so
+        dropped += len(self._queue)
+        self.close()
+        return dropped
 
     def read(self) -> bytes:
         """Takes what is there; the connection is closed afterwards when the other end has closed it."""
@@ -62,5 +73,4 @@ class TcpConnection:
     def close(self) -> None:
         """Gives the socket back."""
         self._socket.close()
-        self._unsent.clear()
         self.is_open = False

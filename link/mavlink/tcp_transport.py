@@ -34,8 +34,7 @@ class TcpClientTransport(Transport):
 
     def send(self, data: bytes) -> None:
         """Sends bytes if there is somebody to send them to."""
-        if self._connection is None or not self._connection.send(data):
-            self._dropped += 1
+        self._dropped += 1 if self._connection is None else self._connection.send(data, time.monotonic())
         self._check()
 
     def receive(self, timeout_s: float) -> bytes:
@@ -43,7 +42,7 @@ class TcpClientTransport(Transport):
         if self._connection is None:
             self._connect(timeout_s)
             return b""
-        self._connection.flush()
+        self._dropped += self._connection.flush(time.monotonic())
         if self._connection.is_open and not wait_readable(self._connection.fileno(), timeout_s):
             return b""
         data = self._connection.read()
@@ -131,8 +130,9 @@ class TcpServerTransport(Transport):
         """Sends bytes to every client, if there is one."""
         if not self._clients:
             self._dropped += 1
+        now_s = time.monotonic()
         for client in self._clients.values():
-            self._dropped += not client.send(data)
+            self._dropped += client.send(data, now_s)
         self._let_go()
 
     def receive(self, timeout_s: float) -> bytes:
@@ -141,8 +141,9 @@ class TcpServerTransport(Transport):
 
     def receive_by_peer(self, timeout_s: float) -> list[PeerBytes]:
         """Waits for bytes and takes all that are there, each client's apart."""
+        now_s = time.monotonic()
         for client in self._clients.values():
-            client.flush()
+            self._dropped += client.flush(now_s)
         self._let_go()
         if self.fileno() < 0 or not wait_readable(self.fileno(), timeout_s):
             return []

@@ -1,9 +1,12 @@
 """What all transports have in common: waiting for bytes, counting what went wrong."""
 
 import errno
+import fcntl
 import os
 import select
 import socket
+import struct
+import termios
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from types import TracebackType
@@ -100,6 +103,15 @@ def wait_readable(descriptor: int, timeout_s: float) -> bool:
     """Whether a descriptor has bytes within the time; just waits when it is -1."""
     descriptors = [descriptor] if descriptor >= 0 else []
     return bool(select.select(descriptors, [], [], max(timeout_s, 0.0))[0])
+
+
+def held_bytes(descriptor: int) -> int:
+    """How many bytes written to a socket or serial port the system still holds: tcp(7) SIOCOUTQ, which is TIOCOUTQ.
+
+    Raises:
+        OSError: The descriptor has gone.
+    """
+    return int(struct.unpack("i", fcntl.ioctl(descriptor, termios.TIOCOUTQ, bytes(4)))[0])
 
 
 def resolve(device: NetworkDevice, kind: socket.SocketKind) -> tuple[socket.AddressFamily, tuple[str, int]]:

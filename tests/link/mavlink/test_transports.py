@@ -189,27 +189,6 @@ def test_tcp_carries_both_ways() -> None:
         assert received(client, 6) == b"answer"
 
 
-def test_a_tcp_peer_that_does_not_read_costs_whole_frames_but_no_waiting() -> None:
-    frame = bytes(range(251)) * 100
-    with tcp_in() as server, tcp_out(server.port) as client:
-        connect(client, server)
-        sent = 0
-        while client.statistics.dropped == 0:
-            client.send(frame)
-            sent += 1
-        expected = frame * (sent - 1)
-        got = bytearray()
-
-        def is_all_there() -> bool:
-            client.receive(0.0)
-            got.extend(server.receive(0.01))
-            return len(got) >= len(expected)
-
-        until(is_all_there)
-        assert bytes(got) == expected
-        assert client.is_connected
-
-
 def test_a_tcp_client_connects_again_when_the_server_comes_back() -> None:
     with tcp_in() as server:
         port = server.port
