@@ -54,7 +54,7 @@ def print_comparison(comparison: Mapping[str, Any], out: TextIO) -> None:
     console = _console(out)
     cells: Sequence[Cell] = comparison["cells"]
     shares: list[Column] = [("pairs", lambda cell: str(cell["pairs"]))]
-    shares += [(_SHARES[name], _mcnemar_of(name)) for name in ("s1_or_better", "s2_quality")]
+    shares += [(_SHARES[name], _mcnemar_of(name)) for name in _SHARES]
     _print(console, "A, B, and McNemar's exact p (pairs that only A, only B reached)", shares, cells)
     measures: list[Column] = [(f"{_UNITS[name][0]} [{_UNITS[name][1]}]", _difference_of(name)) for name in _UNITS]
     _print(console, "Median of B - A over pairs with contact (95 % bootstrap interval)", measures, cells)

@@ -1,6 +1,7 @@
 """Two campaigns on the same cells and seeds: whether one lands better than the other, and by how much."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +11,10 @@ from link.errors import UserError
 from scenarios.campaign_folder import read_landings, read_plan
 from scenarios.intervals import mcnemar_p, median_difference
 from scenarios.landing_task import Row
-from scenarios.summary import MEASURES, interval_json, is_s1_or_better, is_s2_quality
+from scenarios.summary import MEASURES, interval_json, is_s1_or_better, is_s2_quality, is_unsafe
 
 _DIGITS = 6
-_SHARES = {"s1_or_better": is_s1_or_better, "s2_quality": is_s2_quality}
+_SHARES = {"s1_or_better": is_s1_or_better, "s2_quality": is_s2_quality, "unsafe": is_unsafe}
 
 Pair = tuple[Row, Row]
 
@@ -27,7 +28,8 @@ def compare_campaigns(first: Path, second: Path, apart_from: str | None = None) 
         apart_from: an option of the cells in which A and B may differ, such as `system`.
 
     Raises:
-        UserError: a folder holds no campaign, or they have no landing in common.
+        UserError: a folder holds no campaign, they have no landing in common, or two cells of one of them differ in
+            nothing but `apart_from`.
     """
     rows = read_landings(first), read_landings(second)
     differences = list(
@@ -42,12 +44,13 @@ def compare_rows(first: Sequence[Row], second: Sequence[Row], apart_from: str | 
     Where there are several cells, `together` compares all their pairs.
 
     Raises:
-        UserError: there is no pair.
+        UserError: there is no pair, or two cells of one campaign differ in nothing but `apart_from`.
     """
-    others = {(_without(row["cell"], apart_from), row["seed"]): row for row in second}
+    names, other_names = _names(first, apart_from), _names(second, apart_from)
+    others = {(other_names[row["cell"]], row["seed"]): row for row in second}
     pairs: dict[str, list[Pair]] = {}
     for row in first:
-        cell = _without(row["cell"], apart_from)
+        cell = names[row["cell"]]
         other = others.get((cell, row["seed"]))
         if other is not None:
             pairs.setdefault(cell, []).append((row, other))
@@ -59,6 +62,23 @@ def compare_rows(first: Sequence[Row], second: Sequence[Row], apart_from: str | 
     if len(pairs) > 1:
         cells.append(_comparison("together", [pair for cell in sorted(pairs) for pair in pairs[cell]]))
     return {"cells": cells, "unpaired": unpaired}
+
+
+def _names(rows: Sequence[Row], apart_from: str | None) -> dict[str, str]:
+    """Return under which name each cell of a campaign is compared.
+
+    Raises:
+        UserError: two have the same name, and which of them is meant is not known.
+    """
+    cells = sorted({row["cell"] for row in rows})
+    names = {cell: _without(cell, apart_from) for cell in cells}
+    for first, second in combinations(cells, 2):
+        if names[first] == names[second]:
+            raise UserError(
+                f"--apart-from {apart_from}: {first} and {second} of one campaign differ in nothing else; "
+                "compare campaigns in which each cell stands once"
+            )
+    return names
 
 
 def _without(cell: str, option: str | None) -> str:

@@ -42,6 +42,11 @@ def is_s2_quality(row: Row) -> bool:
     return bool(row.get("s2_quality"))
 
 
+def is_unsafe(row: Row) -> bool:
+    """Return whether the run was unsafe; one without a result is not known to have been."""
+    return row.get("tier") == Tier.UNSAFE.value
+
+
 def summarize(rows: Iterable[Row], times: Iterable[Row] = ()) -> dict[str, Any]:
     """Return the summary of a campaign, in the order of its cells, as plain values for JSON.
 
@@ -72,7 +77,7 @@ def _summary_of(cell: str, rows: Sequence[Row]) -> dict[str, Any]:
         **measures,
         "s1_or_better": share_json(sum(map(is_s1_or_better, rows)), len(rows)),
         "s2_quality": share_json(sum(map(is_s2_quality, rows)), len(rows)),
-        "unsafe": share_json(tiers.count(Tier.UNSAFE.value), len(rows)),
+        "unsafe": share_json(sum(map(is_unsafe, rows)), len(rows)),
         "contacts": sum(row.get("horizontal_error_m") is not None for row in rows),
         "aborts": sum(row.get("aborts") or 0 for row in rows),
         "retries": sum(row.get("retries") or 0 for row in rows),

@@ -85,6 +85,21 @@ def test_cells_that_differ_in_one_option_are_paired_without_it() -> None:
     ]
 
 
+@pytest.mark.parametrize("turned", [False, True])
+def test_cells_of_one_campaign_that_become_the_same_are_refused(*, turned: bool) -> None:
+    both = [row(1, "S2", cell="circle_5"), row(1, "abort", cell="circle_5+system=ukf")]
+    campaigns = both, [row(1, "S2", cell="circle_5+system=lkf")]
+    with pytest.raises(UserError, match=r"apart-from system: circle_5 and circle_5\+system=ukf of one campaign"):
+        compare_rows(*campaigns[:: -1 if turned else 1], "system")
+
+
+def test_comparison_tells_aborts_from_unsafe_runs() -> None:
+    found = compared([row(seed, "abort") for seed in range(100)], [row(seed, "unsafe") for seed in range(100)])
+    assert (found["unsafe"]["a"], found["unsafe"]["b"]) == (0.0, 1.0)
+    assert found["unsafe"]["p"] < 1e-20
+    assert found["s1_or_better"]["p"] == 1.0
+
+
 def test_differences_name_the_keys_that_changed() -> None:
     first = {"guidance": {"kind": "mpc", "gain": 1.0}, "cells": [1, 2]}
     second = {"guidance": {"kind": "pn", "gain": 1.0}, "cells": [1, 2], "new": 3}
@@ -102,3 +117,4 @@ def test_comparison_outside_a_terminal_is_plain() -> None:
     assert "guidance.kind: mpc | [pn]" in out.getvalue()
     assert "without a pair: 1 of A, 0 of B" in out.getvalue()
     assert "p=0.25 (0, 3)" in out.getvalue()
+    assert "unsafe" in out.getvalue()
