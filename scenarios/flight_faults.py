@@ -18,7 +18,7 @@ _IN_AIR_M = 0.3
 _APART_S = 0.3  # contacts closer in time than this are one landing, bounces included
 _TIPPED_ON_DECK_RAD = math.radians(45.0)
 _TIPPED_IN_AIR_RAD = math.radians(80.0)
-_CLEAR_M = 1.0  # of the vehicle at the end
+_CLEAR_M = 1.0  # at the end, of feet and blades from vehicle and ground: three times the reach of the blades
 _STABLE_S = 1.0
 _STABLE_TILT_RAD = math.radians(50.0)  # the airframe's limit is 45 degrees
 _STABLE_RATE_RAD_S = 2.0
@@ -88,8 +88,9 @@ def _tilt_rad(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
 def _end_faults(log: TruthLog, touched: Touches) -> list[Fault]:
     """Return what keeps a flight without contact from being a clean abort."""
     end_ns = int(log.t_ns[-1])
-    if float(touched.height_m[-1].min()) <= _CLEAR_M:
-        return [(end_ns, "ends low over the vehicle or the ground")]
+    # A flank that is driven into is no better than a roof that is flown into: all directions count.
+    if float(np.minimum(touched.height_m[-1], touched.from_box_m[-1]).min()) <= _CLEAR_M:
+        return [(end_ns, "ends close to the vehicle or the ground")]
     last = log.t_ns >= end_ns - round(_STABLE_S * 1e9)
     steady = (_tilt_rad(log.rotation[last]) <= _STABLE_TILT_RAD) & (log.rate_rad_s[last] <= _STABLE_RATE_RAD_S)
     return [] if steady.all() else [(end_ns, "ends unstable")]

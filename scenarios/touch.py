@@ -35,6 +35,7 @@ class Touches:
         ground: (n, 8).
         points_v_m: (n, 8, 3).
         height_m: (n, 8) over the roof where there is one below, else over the ground.
+        from_box_m: (n, 8) from the vehicle's body, in whatever direction it is nearest; 0 within it.
     """
 
     roof: Flags
@@ -42,6 +43,7 @@ class Touches:
     ground: Flags
     points_v_m: Array
     height_m: Array
+    from_box_m: Array
 
     @property
     def any(self) -> Flags:
@@ -83,6 +85,9 @@ def touches(log: TruthLog, box: Box) -> Touches:
         ground=~over & (ground_height_m <= 0.0),
         points_v_m=points_v_m,
         height_m=np.where(over, roof_height_m, ground_height_m),
+        from_box_m=np.sqrt(
+            np.square(np.maximum(-across_m, 0.0)).sum(axis=2) + np.square(np.maximum(roof_height_m, 0.0))
+        ),
     )
 
 

@@ -9,7 +9,7 @@ from link.messages import BodyTruth, RotorTruth, Vector3
 from scenarios.catalogue import load_scenario
 from scenarios.score import Score, Tier, score
 from scenarios.touchdown import ScoreRules, rules_of
-from sim_autopilot.physics.contact import CONTACT_POINTS_FLU_M
+from sim_autopilot.physics.contact import BLADE_REACH_M, CONTACT_POINTS_FLU_M
 
 START_NS = 1_800_000_000_000_000_000
 STEP_S = 0.01
@@ -275,8 +275,8 @@ def test_drone_that_ends_in_the_air_clear_and_stable_aborted() -> None:
 @pytest.mark.parametrize(
     ("position", "roll_rad", "reason"),
     [
-        ((0.0, 0.0, 2.3), 0.0, "ends low over the vehicle or the ground"),
-        ((9.0, 0.0, 0.9), 0.0, "ends low over the vehicle or the ground"),
+        ((0.0, 0.0, 2.3), 0.0, "ends close to the vehicle or the ground"),
+        ((9.0, 0.0, 0.9), 0.0, "ends close to the vehicle or the ground"),
         ((9.0, 0.0, 5.0), 1.0, "ends unstable"),
         ((9.0, 0.0, 5.0), 1.5, "tipped over"),
     ],
@@ -284,6 +284,17 @@ def test_drone_that_ends_in_the_air_clear_and_stable_aborted() -> None:
 def test_end_in_the_air_that_is_not_clear_or_stable_is_unsafe(position: Vector3, roll_rad: float, reason: str) -> None:
     result = flown([body(t_s, position, STILL, roll_rad=roll_rad) for t_s in TIMES_S[:300]])
     assert (result.tier, result.reason) == (Tier.UNSAFE, reason)
+
+
+@pytest.mark.parametrize(("apart_m", "tier"), [(0.05, Tier.UNSAFE), (0.99, Tier.UNSAFE), (1.01, Tier.ABORT)])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_drone_that_ends_beside_the_flank_is_clear_from_a_metre_on(axis: int, apart_m: float, tier: Tier) -> None:
+    position = [0.0, 0.0, 1.3]
+    position[axis] = -0.5 * RULES.box.roof_size_m[axis] - BLADE_REACH_M - apart_m
+    beside = (position[0], position[1], position[2])
+    vehicle = [body(t_s, STILL, STILL) for t_s in TIMES_S[:300]]
+    result = score([body(t_s, beside, STILL) for t_s in TIMES_S[:300]], vehicle, [], CALM)
+    assert result.tier is tier
 
 
 def test_drone_that_never_took_off_is_unsafe() -> None:
