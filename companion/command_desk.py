@@ -1,4 +1,8 @@
-"""Where operators' commands come in from Zenoh's threads, and their replies go out."""
+"""Where operators' commands come in from Zenoh's threads, and their replies go out.
+
+A command that is answered by a refusal is never done afterwards: it is kept here, and can be taken back, until the step
+that does it is made at once. From then on that step's own answer is waited for.
+"""
 
 import queue
 from collections import deque
@@ -9,7 +13,8 @@ from link import json_payloads
 from link.messages import Command, CommandReply
 from link.payload_checks import PayloadError
 
-_REPLY_WAIT_S = 2.0
+_REPLY_WAIT_S = 2.0  # for the step to begin
+_STEP_WAIT_S = 0.5  # for it to end; together less than an operator's query waits
 
 
 class CommandDesk:
@@ -27,15 +32,11 @@ class CommandDesk:
             return json_payloads.encode(CommandReply(accepted=False, reason=str(error)))
         reply: Future[CommandReply] = Future()
         self._waiting.put((command, reply))
-        try:
-            return json_payloads.encode(reply.result(timeout=_REPLY_WAIT_S))
-        except TimeoutError:
-            reply.cancel()  # what was answered by a refusal must not be done later
-            return json_payloads.encode(CommandReply(accepted=False, reason="the companion made no step in time"))
+        return json_payloads.encode(awaited(reply))
 
-    def pass_on(self, node: CompanionNode) -> None:
-        """Give the oldest command to the node, one at a time."""
-        while not self._asked:
+    def pass_on(self, node: CompanionNode, local_ns: int) -> None:
+        """Give the oldest command to the node, one at a time, if it makes a step now."""
+        while not self._asked and node.is_due(local_ns):
             try:
                 command, reply = self._waiting.get_nowait()
             except queue.Empty:
@@ -49,3 +50,18 @@ class CommandDesk:
         for reply in replies:
             if self._asked:
                 self._asked.popleft().set_result(reply)
+
+
+def awaited(reply: Future[CommandReply]) -> CommandReply:
+    """Return the answer to a command, or that it was taken back, or that neither came in time."""
+    try:
+        return reply.result(timeout=_REPLY_WAIT_S)
+    except TimeoutError:
+        if reply.cancel():
+            return CommandReply(accepted=False, reason="the companion made no step in time")
+    try:
+        return reply.result(timeout=_STEP_WAIT_S)
+    except TimeoutError:
+        return CommandReply(
+            accepted=False, reason="the companion's step takes too long: it may still do it, see its status"
+        )

@@ -132,7 +132,7 @@ class _Loop:
             self._node.receive_mavlink(data, local_ns)
             self._record(self._node.autopilot.session.take_input(), local_ns)
         self._take_samples()
-        self._desk.pass_on(self._node)
+        self._desk.pass_on(self._node, local_ns)
         stepped = self._node.poll(local_ns)
         self._send_frames(local_ns)
         if stepped:

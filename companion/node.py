@@ -140,7 +140,7 @@ class CompanionNode:
     def poll(self, local_ns: int) -> bool:
         """Do what is due; return whether a step was made."""
         self.autopilot.poll(local_ns)
-        if not self._is_due(local_ns):
+        if not self.is_due(local_ns):
             return False
         self._step(local_ns)
         return True
@@ -159,8 +159,11 @@ class CompanionNode:
         taken, self._replies = self._replies, []
         return taken
 
-    def _is_due(self, local_ns: int) -> bool:
-        """A step follows each new state of the drone, at the step rate, and does not wait for it for ever."""
+    def is_due(self, local_ns: int) -> bool:
+        """Return whether it is time for a step: one follows each new state of the drone, and waits no longer than that.
+
+        What is asked for by `request` while this is true is in the step of the next `poll`.
+        """
         if self._stepped_ns is None:
             return True
         own = self.autopilot.state.own
