@@ -90,26 +90,28 @@ def companion(
         sys.stdout.write(dump_toml(settings))
         return
     from link.keys import Keys
-    from link.mavlink.device import parse_device
     from link.mavlink.signing import read_key
-    from link.zenoh_options import zenoh_options
-
-    keys = Keys(namespace, vehicle, drone)
-    parse_device(mavlink)  # a mistake is told before the numerics are loaded
-    key = None if signing_key is None else read_key(signing_key)
-    if timing is not None:
-        _check_writable(timing)
-    endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config)
-    from companion.build import build_node
-    from companion.loop import run
-    from companion.loop_options import Links, LoopOptions
     from link.mavlink.transports import open_transport
     from link.recorder import BackgroundRecorder
+    from link.zenoh_options import zenoh_options
     from link.zenoh_session import open_session
 
+    keys = Keys(namespace, vehicle, drone)
+    key = None if signing_key is None else read_key(signing_key)
+    for written in (timing, tlog):
+        if written is not None:
+            _check_writable(written)
     folder = record or (Path(settings.recording.folder) if settings.recording.folder else None)
     recorder: BackgroundRecorder | None = None
     with ExitStack() as stack:
+        # What a user may have got wrong is opened first: the numerics take their time, up to a minute to be compiled.
+        endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config)
+        transport = stack.enter_context(open_transport(mavlink))
+        zenoh = stack.enter_context(open_session(endpoints))
+        from companion.build import build_node
+        from companion.loop import run
+        from companion.loop_options import Links, LoopOptions
+
         if folder is not None:
             from companion.record_folder import recording_sink
 
@@ -124,9 +126,8 @@ def companion(
             recorder=recorder,
             signing_key=key,
         )
+        transport.receive(0.0)  # what has come meanwhile is old, and its time of receipt is not known
         options = LoopOptions(device=mavlink, timeout_s=timeout, start=start, use_sim_time=use_sim_time, tlog=tlog)
-        transport = stack.enter_context(open_transport(mavlink))
-        zenoh = stack.enter_context(open_session(endpoints))
         timings = run(node, Links(keys=keys, transport=transport, zenoh=zenoh), options)
     if recorder is not None and recorder.dropped:
         sys.stderr.write(f"recording: {recorder.dropped} records are lost, the disk of {folder} is full or too slow\n")

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from companion.__main__ import app
 from companion.config import CompanionConfig
+from link.cli import run_app
 from link.toml_config import load_config
 
 OPTIONS = (
@@ -66,6 +68,26 @@ def test_mistake_is_one_line_and_exit_code_2(arguments: tuple[str, ...], named: 
     assert shown.returncode == 2
     assert named in shown.stderr
     assert "Traceback" not in shown.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (("--mavlink", "carrier-pigeon:1"), "carrier-pigeon"),
+        (("--mavlink", "/dev/ttyNONE,57600"), "/dev/ttyNONE"),
+        (("--zenoh-config", "none.json5"), "none.json5"),
+        (("-l", "tcp/192.0.2.1:7447"), "192.0.2.1"),
+        (("--timing", "there/is/no/folder.json"), "folder.json"),
+        (("--tlog", "there/is/no/flight.tlog"), "flight.tlog"),
+        (("--signing-key", "none.key"), "none.key"),
+    ],
+)
+def test_mistake_is_told_before_the_numerics_are_loaded(
+    arguments: tuple[str, ...], named: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "companion.build", None)  # whoever imports it now, fails
+    assert run_app("companion", app, ["--mavlink", "udpin:127.0.0.1:0", *arguments]) == 2
+    assert named in capsys.readouterr().err
 
 
 @pytest.mark.slow
