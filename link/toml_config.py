@@ -3,7 +3,7 @@
 import difflib
 import json
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -14,6 +14,7 @@ from pydantic_core import ErrorDetails
 from link.errors import UserError
 
 Location = tuple[int | str, ...]
+Fields = Mapping[str, FieldInfo]
 
 _BOUNDS = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most"}
 
@@ -41,7 +42,7 @@ def load_config(path: Path | None, model: type[Model], overrides: Mapping[str, A
     Raises:
         UserError: the file cannot be read, is no TOML, or a key or value does not fit.
     """
-    table = {} if path is None else _read(path)
+    table = {} if path is None else read_toml(path)
     above = overrides or {}
     source = "the defaults" if path is None else str(path)
     return _checked(model, merged(table, above), lambda location: "command line" if _is_in(location, above) else source)
@@ -75,7 +76,12 @@ def dump_toml(model: StrictModel) -> str:
     return tomli_w.dumps(model.model_dump(mode="json", exclude_none=True))
 
 
-def _read(path: Path) -> dict[str, Any]:
+def read_toml(path: Path) -> dict[str, Any]:
+    """Return the tables of a file.
+
+    Raises:
+        UserError: it cannot be read, or is no TOML.
+    """
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
@@ -93,7 +99,8 @@ def _checked(model: type[Model], table: Mapping[str, Any], source_of: Callable[[
     except ValidationError as error:
         # an unknown key goes first: misspelt, it is why another one is missing
         details = sorted(error.errors(include_url=False), key=lambda one: one["type"] != "extra_forbidden")
-        raise UserError(_sentence(details[0], model, source_of(details[0]["loc"]), len(details) - 1)) from None
+        location, fields = _place(details[0]["loc"], model)
+        raise UserError(_sentence(details[0], location, fields, source_of(location), len(details) - 1)) from None
 
 
 def _is_in(location: Location, table: Mapping[str, Any]) -> bool:
@@ -108,11 +115,9 @@ def _is_in(location: Location, table: Mapping[str, Any]) -> bool:
     return True
 
 
-def _sentence(details: ErrorDetails, model: type[BaseModel], source: str, further: int) -> str:
+def _sentence(details: ErrorDetails, location: Location, fields: Fields, source: str, further: int) -> str:
     """Return one line that names the file, the key, the value and what would fit."""
-    location = details["loc"]
     key = ".".join(str(part) for part in location)
-    fields = _fields_beside(location, model)
     if details["type"] == "extra_forbidden":
         text = f"{source}: unknown key '{key}'{_nearest(str(location[-1]), list(fields))}"
     elif details["type"] == "missing":
@@ -120,7 +125,8 @@ def _sentence(details: ErrorDetails, model: type[BaseModel], source: str, furthe
     else:
         field = fields.get(str(location[-1])) if location else None
         expected = (_range_of(field) if field is not None else "") or _lowered(details["msg"])
-        text = f"{source}: {key} = {json.dumps(details['input'], default=str)} does not fit: {expected}"
+        given = f"{key} = {json.dumps(details['input'], default=str)}" if location else "it"
+        text = f"{source}: {given} does not fit: {expected}"
     return f"{' '.join(text.split())} ({further} more like this)" if further else " ".join(text.split())
 
 
@@ -148,15 +154,33 @@ def _nearest(name: str, known: list[str]) -> str:
     return f"; valid are {', '.join(known)}" if known else ""
 
 
-def _fields_beside(location: Location, model: type[BaseModel]) -> Mapping[str, FieldInfo]:
-    """Return the fields of the table that the last part of `location` is in."""
-    fields: Mapping[str, FieldInfo] = model.model_fields
-    for part in location[:-1]:
-        if isinstance(part, str):
-            field = fields.get(part)
-            below = [] if field is None else list(_models_in(field.annotation))
-            fields = below[0].model_fields if below else {}
-    return fields
+def _place(location: Location, model: type[BaseModel]) -> tuple[Location, Fields]:
+    """Return where in the file a mistake is, and the fields of the table that its last part is in.
+
+    Where a table's kind decides which model it must fit, the kind stands in pydantic's location, but not in the file.
+    """
+    kept: list[int | str] = []
+    beside: Fields = model.model_fields
+    below: Fields = beside
+    by_kind: Mapping[int | str, type[BaseModel]] = {}
+    for part in location:
+        if part in by_kind:
+            below, by_kind = by_kind[part].model_fields, {}
+            continue
+        kept.append(part)
+        beside = below
+        field = beside.get(part) if isinstance(part, str) else None
+        if field is not None:
+            models = list(_models_in(field.annotation))
+            below, by_kind = (models[0].model_fields if models else {}), _by_kind(models, field.discriminator)
+    return tuple(kept), beside
+
+
+def _by_kind(models: Sequence[type[BaseModel]], discriminator: object) -> Mapping[int | str, type[BaseModel]]:
+    """Return which model each value of the `discriminator`, a key of all of them, stands for."""
+    if not isinstance(discriminator, str):
+        return {}
+    return {kind: model for model in models for kind in get_args(model.model_fields[discriminator].annotation)}
 
 
 def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:

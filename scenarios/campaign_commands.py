@@ -68,6 +68,10 @@ def campaign_command(
     if not cells:
         raise UserError("no cell is given; `scenarios list` shows the scenarios")
     plan = make_plan(cells, first_seed=first_seed, seeds=seeds, config=config)
+    if scheduler is not None:
+        from scenarios.dask_pool import check_scheduler
+
+        check_scheduler(scheduler)  # before there is a folder of a campaign that cannot begin
     return _fly(create_folder(out, plan), plan, where, as_json=as_json)
 
 

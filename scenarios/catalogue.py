@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from link.errors import UserError
-from link.toml_config import merged, validated
+from link.toml_config import merged, read_toml, validated
 from scenarios.config import Scenario
 from scenarios.placement import placed
 
@@ -73,17 +73,17 @@ def _option(option: str, whole: str) -> Table:
     return {section: preset}
 
 
-def _named(name: str) -> Table:
-    """Return the catalogue's table called `name`."""
+def _named(name: str, place: str = "") -> Table:
+    """Return the catalogue's table called `name`; `place` is where the name stands, for the message."""
     try:
         return _scenarios()[name]
     except KeyError:
-        raise _unknown("scenario", name, list(_scenarios()), "; `scenarios list` shows all") from None
+        raise _unknown("scenario", name, list(_scenarios()), "; `scenarios list` shows all", place) from None
 
 
-def _unknown(what: str, name: str, known: list[str], hint: str = "") -> UserError:
+def _unknown(what: str, name: str, known: list[str], hint: str = "", place: str = "") -> UserError:
     near = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
-    return UserError(f"no {what} is called '{name}', the nearest is '{near[0]}'{hint}")
+    return UserError(f"{place}no {what} is called '{name}', the nearest is '{near[0]}'{hint}")
 
 
 @cache
@@ -115,14 +115,9 @@ def _at_speeds(track: str, table: Table) -> dict[str, Table]:
 
 def _file_table(path: Path) -> Table:
     """Return the table of a user's file, laid over its base."""
-    try:
-        table = _read(path)
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read ({error.strerror})") from None
-    except tomllib.TOMLDecodeError as error:
-        raise UserError(f"{path}: not valid TOML ({error})") from None
+    table = read_toml(path)
     base = table.pop("base", None)
-    return table if base is None else merged(_named(str(base)), table)
+    return table if base is None else merged(_named(str(base), f"{path}: base: "), table)
 
 
 def _resolved(table: Table, source: str) -> Table:
@@ -161,5 +156,5 @@ def _folder() -> Traversable:
     return resources.files("scenarios") / "catalogue"
 
 
-def _read(file: Traversable | Path) -> Table:
+def _read(file: Traversable) -> Table:
     return tomllib.loads(file.read_text(encoding="utf-8"))

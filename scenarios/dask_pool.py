@@ -1,5 +1,6 @@
 """A campaign's tasks on an existing Dask cluster; the only file that imports `distributed`."""
 
+import importlib.util
 import socket
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
@@ -30,11 +31,9 @@ def fly_on_dask(address: str, flights: Flights, tasks: Sequence[Task]) -> Iterat
         UserError: `distributed` is not installed, the scheduler cannot be reached, it has no workers, or theirs are
             other sources.
     """
-    try:
-        from distributed import Client, as_completed  # noqa: PLC0415 (an optional dependency)
-    except ImportError:
-        raise UserError("--scheduler needs Dask: install decklander[dask], here and on its workers") from None
-    _check_listens(address)
+    check_scheduler(address)
+    from distributed import Client, as_completed  # noqa: PLC0415 (an optional dependency)
+
     try:
         client = Client(address, timeout=_CONNECT_S, set_as_default=False)
     except (OSError, ValueError) as error:
@@ -53,12 +52,14 @@ def fly_on_dask(address: str, flights: Flights, tasks: Sequence[Task]) -> Iterat
             client.cancel(list(futures))
 
 
-def _check_listens(address: str) -> None:
+def check_scheduler(address: str) -> None:
     """Knock at the address: Dask's own client starts threads first, and is slow to give up.
 
     Raises:
-        UserError: it is no address, or nobody listens there.
+        UserError: `distributed` is not installed, it is no address, or nobody listens there.
     """
+    if importlib.util.find_spec("distributed") is None:
+        raise UserError("--scheduler needs Dask: install decklander[dask], here and on its workers")
     try:
         parts = urlsplit(address)
         host, port = parts.hostname, parts.port

@@ -95,6 +95,8 @@ def _show(source: "LiveSource | RecordedSource", road: "Road | None", host: str,
     from scenarios.view.page import Page
 
     is_own = host in LOOPBACK
-    page = Page(source, road)
-    with Gate(host, free_tcp_port(port) if is_own else port, page.port, with_token=not is_own) as gate:
+    with (
+        Page(source, road) as page,
+        Gate(host, free_tcp_port(port) if is_own else port, page.port, with_token=not is_own) as gate,
+    ):
         page.run(gate.address)

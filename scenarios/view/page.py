@@ -5,6 +5,8 @@ import signal
 import sys
 import time
 from contextlib import redirect_stdout
+from types import TracebackType
+from typing import Self
 
 import viser
 
@@ -24,7 +26,7 @@ _STALE_S = 3.0
 
 
 class Page:
-    """A page on a free port of loopback.
+    """A page on a free port of loopback, until the end of a `with` block.
 
     Args:
         source: what it shows.
@@ -49,6 +51,15 @@ class Page:
         self._stamp_ns: int | None = None
         self._stamp_seen_s = 0.0
 
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        with redirect_stdout(io.StringIO()):  # nor has its end anything to say
+            self._server.stop()
+
     @property
     def port(self) -> int:
         """Of loopback, where it is."""
@@ -70,8 +81,6 @@ class Page:
             tick += 1
             due_s = max(due_s + _PERIOD_S, time.monotonic())
             time.sleep(max(due_s - time.monotonic(), 0.0))
-        with redirect_stdout(io.StringIO()):
-            self._server.stop()
 
     def _stop(self, *_: object) -> None:
         self._stopping = True

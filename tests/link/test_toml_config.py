@@ -3,7 +3,7 @@
 import tomllib
 from enum import Enum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import pytest
 from hypothesis import given
@@ -117,6 +117,41 @@ def test_merging_leaves_what_it_merges_alone() -> None:
 )
 def test_a_mistake_is_named_with_its_key_and_what_would_fit(tmp_path: Path, text: str, expected: str) -> None:
     assert complaint(tmp_path, text).startswith(expected)
+
+
+class Road(StrictModel):
+    kind: Literal["road"]
+    length_m: float = 1.0
+
+
+class Circle(StrictModel):
+    kind: Literal["circle"]
+    radius_m: Annotated[float, Field(gt=0.0)] = 1.0
+
+
+class Drive(StrictModel):
+    track: Annotated[Road | Circle, Field(discriminator="kind")]
+
+
+@pytest.mark.parametrize(
+    ("values", "expected"),
+    [
+        ({"radius": 2.0}, "unknown key 'track.radius', did you mean 'radius_m'?"),
+        ({"length_m": 2.0}, "unknown key 'track.length_m'; valid are kind, radius_m"),
+        ({"radius_m": -1.0}, "track.radius_m = -1.0 does not fit: it must be a number above 0.0"),
+    ],
+)
+def test_a_mistake_in_a_table_of_some_kind_is_named_as_it_stands_in_the_file(
+    values: dict[str, float], expected: str
+) -> None:
+    with pytest.raises(UserError) as caught:
+        validated(Drive, {"track": {"kind": "circle"} | values}, source="x.toml")
+    assert str(caught.value) == f"x.toml: {expected}"
+
+
+def test_a_file_that_holds_no_table_is_told_so() -> None:
+    with pytest.raises(UserError, match=r"^x.json: it does not fit: input should be an object$"):
+        validated(Config, [], source="x.json")  # type: ignore[arg-type]  # as JSON may hold it
 
 
 def test_further_mistakes_are_counted(tmp_path: Path) -> None:

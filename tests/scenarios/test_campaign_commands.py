@@ -91,6 +91,16 @@ def test_campaign_refuses_workers_beside_a_scheduler(capsys: pytest.CaptureFixtu
     assert "local processes" in refusal(capsys, "campaign", *words)
 
 
+@pytest.mark.parametrize("address", ["foo", "tcp://127.0.0.1:1"])
+def test_campaign_without_its_cluster_leaves_no_folder(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], address: str
+) -> None:
+    folder = tmp_path / "a"
+    said = refusal(capsys, "campaign", "straight_5", "--scheduler", address, "--out", folder)
+    assert f"no Dask scheduler answers at {address}" in said
+    assert not folder.exists()
+
+
 def test_resuming_with_other_sources_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = campaign(tmp_path / "a", errors_m=(0.1,))
     file = folder / "campaign.json"

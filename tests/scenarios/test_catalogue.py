@@ -125,6 +125,27 @@ def written(folder: Path, text: str) -> str:
     return str(path)
 
 
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ('base = "strait_5"', "{path}: base: no scenario is called 'strait_5', the nearest is 'straight_5'"),
+        ('base = "straight_5"\n[track]\nspeed = 3', "{path}: unknown key 'track.speed', did you mean 'speed_m_s'?"),
+    ],
+)
+def test_mistake_in_a_file_is_one_line_that_names_it(tmp_path: Path, text: str, expected: str) -> None:
+    path = written(tmp_path, text)
+    with pytest.raises(UserError) as caught:
+        load_scenario(path)
+    assert str(caught.value).startswith(expected.format(path=path))
+
+
+def test_file_that_is_no_text_is_one_line(tmp_path: Path) -> None:
+    path = tmp_path / "own.toml"
+    path.write_bytes(b"name = '\xe9'")
+    with pytest.raises(UserError, match=r"own.toml: not UTF-8 text$"):
+        load_scenario(str(path))
+
+
 def test_presets_behind_a_file_replace_its_sections(tmp_path: Path) -> None:
     folder = tmp_path / "straight_5+sensors=nominal"  # as a run's folder may be called
     folder.mkdir()
