@@ -2,12 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import chain
 
-from companion.autopilot_state import AutopilotState, heard
+from companion.autopilot_state import AutopilotState, heard, put_off
 from companion.autopilots.choice import driver_for
 from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver
 from companion.autopilots.kinds import AutopilotKind
 from companion.data import FlightLimits, Setpoint
+from companion.limit_questions import LimitQuestions, named
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import (
     AutopilotRestarted,
@@ -18,7 +20,7 @@ from link.mavlink.events import (
     LinkLost,
     LinkRegained,
     MessageReceived,
-    ParameterRead,
+    ParameterMissing,
 )
 from link.mavlink.parameters import parameter_value
 from link.mavlink.session import MavlinkSession
@@ -34,6 +36,8 @@ _MOTION_IDS = (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_I
 _ASK_ORIGIN_NS = 1_000_000_000
 _ASK_KNOWN_ORIGIN_NS = 5_000_000_000
 _TEXT_SIZE = 50  # of a STATUSTEXT
+CLOCK_SET_NS = 200_000_000
+"""More than the map to UTC is ever refined by at once: beyond it the clock was set."""
 _LimitsAsked = tuple[FlightLimits, Driver, Mapping[str, float]]
 _WAITED_SHARE = 0.9  # of the autopilot's time-out; the rest is for the way there and back
 _WAITED_MIN_S = 0.5  # a shorter time-out cannot be told from a late message
@@ -70,6 +74,8 @@ class AutopilotLink:
         self._limits: tuple[_LimitsAsked, FlightLimits] | None = None
         self._heard_ns: int | None = None
         self._polled_ns: int | None = None
+        self._questions = LimitQuestions()
+        self._times: tuple[int, int] | None = None
 
     def receive(self, data: bytes, local_ns: int) -> None:
         """Take bytes of the transport.
@@ -86,6 +92,9 @@ class AutopilotLink:
             self._set_link(up=False)  # until a heartbeat says what the autopilot does now
         self._polled_ns = local_ns
         self._ask_for_origin(local_ns)
+        if self.driver is not None:
+            for name in self._questions.due(self.driver, self.state.parameters.keys(), local_ns):
+                self.session.read_parameter(name, local_ns)
 
     def take_acknowledgements(self) -> tuple[tuple[int, int], ...]:
         """Return (command, MAV_RESULT) received since the last call."""
@@ -136,6 +145,7 @@ class AutopilotLink:
         self.session.send(mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_INFO, cut))
 
     def _take(self, events: list[Event], local_ns: int) -> None:
+        self._follow_clock(local_ns)
         for event in events:
             match event:
                 case MessageReceived() if self.driver is not None:
@@ -154,12 +164,8 @@ class AutopilotLink:
                     self._acknowledgements.append((event.command, event.result))
                 case CommandTimedOut():
                     self._answered(event.command, event.ticket)
-                case ParameterRead():
-                    self.state = replace(
-                        self.state, parameters={**self.state.parameters, event.name: float(event.value)}
-                    )
-                case _:
-                    pass
+                case ParameterMissing():
+                    self._questions.unanswered(event.name, local_ns)
 
     def _hear(self, message: Message, driver: Driver) -> None:
         if message.get_type() == "PARAM_VALUE":
@@ -170,9 +176,9 @@ class AutopilotLink:
             self._origin_asked_ns = None  # it has probably moved, too
 
     def _hear_parameter(self, message: Message, driver: Driver) -> None:
-        """Take a limit that somebody else has changed: autopilots tell everybody."""
+        """Take a limit that was asked for or that somebody else has changed: autopilots tell everybody."""
         value = parameter_value(message, driver.autopilot_id)
-        if message.param_id in (*driver.limit_parameters, driver.timeout_parameter) and value is not None:
+        if value is not None and any(message.param_id in names for names in named(driver)):
             self.state = replace(self.state, parameters={**self.state.parameters, message.param_id: float(value)})
 
     def _start_over(self) -> None:
@@ -209,8 +215,18 @@ class AutopilotLink:
         unused_hz = dict.fromkeys(driver.unused_streams if self._stops_unused else (), 0.0)
         for message_id, rate_hz in (motion_hz | _STREAMS_HZ | dict(driver.mode_streams_hz) | unused_hz).items():
             self.session.request_interval(message_id, rate_hz, local_ns)
-        for name in (*driver.limit_parameters, driver.timeout_parameter):
+        for name in chain(*named(driver)):
             self.session.read_parameter(name, local_ns)
+
+    def _follow_clock(self, local_ns: int) -> None:
+        """Put off the times of what has been reported, once UTC was set: what comes next has the new time."""
+        utc_ns = self.session.clock.local_to_utc_ns(local_ns)
+        if self._times is not None:
+            then_local_ns, then_utc_ns = self._times
+            set_by_ns = utc_ns - then_utc_ns - (local_ns - then_local_ns)
+            if abs(set_by_ns) > CLOCK_SET_NS:
+                self.state = put_off(self.state, set_by_ns)
+        self._times = local_ns, utc_ns
 
     def _ask_for_origin(self, local_ns: int) -> None:
         """Ask until it is known, and from time to time after, since it can be moved."""

@@ -92,6 +92,14 @@ def heard(state: AutopilotState, message: Message, clock: ClockMap, driver: Driv
     return state
 
 
+def put_off(state: AutopilotState, by_ns: int) -> AutopilotState:
+    """Return the state with the times of all reports put off by `by_ns`, for a UTC that was set by as much."""
+    history = tuple(replace(own, t_ns=own.t_ns + by_ns) for own in state.history)
+    seen = state.view.range_down
+    seen = None if seen is None else replace(seen, t_ns=seen.t_ns + by_ns)
+    return replace(state, history=history, view=replace(state.view, range_down=seen))
+
+
 def _said(state: AutopilotState, message: Message, driver: Driver) -> AutopilotState:
     """Take a text, or an event in words."""
     refusal = driver.refusal(message)

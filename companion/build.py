@@ -59,7 +59,7 @@ def build_node(
     Args:
         config: all its numbers.
         keys: of the Zenoh contract.
-        system_id: MAVLink's, the vehicle's own.
+        system_id: MAVLink's, of the autopilot that is flown and, on the same drone, of the companion.
         dry_run: send neither setpoints nor commands.
         records_input: keep received frames for a recording of the link.
         recorder: takes all that goes in and out, None where nothing is recorded.
@@ -72,7 +72,8 @@ def build_node(
     )
     warm_up(system)
     signing = None if signing_key is None else Signing(signing_key)
-    session = MavlinkSession(system_id, config=SessionConfig(records_input=records_input), signing=signing)
+    settings = SessionConfig(records_input=records_input)
+    session = MavlinkSession(system_id, target_system_id=system_id, config=settings, signing=signing)
     if recorder is not None:
         return RecordingNode(system, keys, session, recorder, dry_run=dry_run)
     return CompanionNode(system, keys, session, dry_run=dry_run)

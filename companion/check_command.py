@@ -32,7 +32,7 @@ DeviceOption = Annotated[
         "--mavlink", metavar="DEVICE", help="udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT or /dev/ttyX,BAUD."
     ),
 ]
-SystemIdOption = Annotated[int, typer.Option("--system-id", min=1, max=255, help="MAVLink system id of the vehicle.")]
+SystemIdOption = Annotated[int, typer.Option("--system-id", min=1, max=255, help="MAVLink system id of the drone.")]
 
 
 def check(
@@ -73,7 +73,7 @@ def check(
     back = None if restore is None else kept(restore)
     options = zenoh_options(mode, connect, listen, multicast, zenoh_config)
     with open_transport(mavlink) as transport, open_session(options) as zenoh:
-        session = CheckSession(Reader(MavlinkSession(system_id)), transport, mavlink)
+        session = CheckSession(Reader(MavlinkSession(system_id, target_system_id=system_id)), transport, mavlink)
         session.find(timeout)
         if back is not None:
             _write(session, back)

@@ -10,6 +10,7 @@ from functools import cache
 
 from companion.config import CompanionConfig
 from companion.contact import Verdict, does_not_fall, is_stopped_by_pad, over_pad_radius_m, signs_of, verdict
+from companion.pad import HEADING_UNKNOWN
 from companion.phases import LANDING_PHASES, NEAR_PHASES, Event, Phase
 from companion.situation import Approach, Situation, approach
 from companion.targets import changes_speed, chase_floor_m, is_unseen, is_vague
@@ -63,7 +64,7 @@ def own_unknown(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
 
 def not_placed(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
     """Return whether the pad's place on the vehicle is unknown for want of a heading."""
-    return s.pad is not None and not s.pad.placed
+    return s.pad is not None and s.pad.unplaced is not None
 
 
 def _not_followed(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
@@ -105,7 +106,8 @@ def _too_fast_near_pad(_: Situation, a: Approach | None, c: CompanionConfig) -> 
     return a is not None and a.height_m < c.abort.near_height_m and a.speed_m_s > c.abort.near_speed_max_m_s
 
 
-def _missed_pad(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
+def missed_pad(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
+    """Return whether the drone is lower than anything that presses it onto the pad could bring it."""
     return a is not None and a.height_m < -c.descent.press_depth_m - c.touchdown.height_max_m
 
 
@@ -128,7 +130,7 @@ ABORT_TESTS = (
     Test("vehicle position too uncertain", NEAR_PHASES, is_uncertain, lambda c: c.abort.cone_hold_s),
     Test("vehicle's link lost", LANDING_PHASES, _token_lost, lambda _: 0.0),
     Test("own position too old", LANDING_PHASES, own_unknown, lambda _: 0.0),
-    Test("vehicle heading unknown", frozenset({Phase.DESCEND}), not_placed, lambda _: 0.0),
+    Test(HEADING_UNKNOWN, frozenset({Phase.DESCEND}), not_placed, lambda _: 0.0),
     Test("setpoint not followed", LANDING_PHASES, _not_followed, lambda c: c.abort.tracking_hold_s),
     Test("outside the descent cone", frozenset({Phase.DESCEND}), _outside_cone, lambda c: c.abort.cone_hold_s),
     Test(
@@ -136,7 +138,7 @@ ABORT_TESTS = (
     ),
     Test("vehicle faster than the limit", LANDING_PHASES, _outruns, lambda c: c.chase.driving_hold_s),
     Test("too far from the start", LANDING_PHASES, is_out_of_range, lambda _: 0.0),
-    Test("below the pad without contact", frozenset({Phase.DESCEND}), _missed_pad, lambda _: 0.0),
+    Test("below the pad without contact", frozenset({Phase.DESCEND}), missed_pad, lambda _: 0.0),
 )
 
 
@@ -153,7 +155,7 @@ def is_too_low(s: Situation, config: CompanionConfig) -> bool:
 
 
 def _stands_nearby(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
-    if s.drone is None or s.pad is None or not s.pad.placed or fix_too_old(s, None, c) or is_too_low(s, c):
+    if s.drone is None or s.pad is None or not_placed(s, None, c) or fix_too_old(s, None, c) or is_too_low(s, c):
         return False
     ahead = s.drone.position_enu_m[:2] - s.pad.position_enu_m[0, :2]
     speed_m_s = math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist())

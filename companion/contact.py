@@ -62,7 +62,9 @@ def signs_of(s: Situation) -> Signs:
     sunk = None if drone is None or reference is None else drone.position_enu_m[2] - reference.position_enu_m[2]
     return Signs(
         height_m=None if relative is None else relative.height_m,
-        distance_m=relative.distance_m if relative is not None and s.pad is not None and s.pad.placed else None,
+        distance_m=relative.distance_m
+        if relative is not None and s.pad is not None and s.pad.unplaced is None
+        else None,
         climb_m_s=None if relative is None else relative.climb_m_s,
         acceleration_up_m_s2=None if drone is None else drone.acceleration_up_m_s2,
         setpoint_below_m=None if sunk is None else float(sunk),

@@ -16,6 +16,7 @@ from companion.conditions import (
     is_over_pad,
     is_too_low,
     is_uncertain,
+    missed_pad,
     must_be_seen,
     not_placed,
 )
@@ -58,14 +59,17 @@ def decide(progress: Progress, situation: Situation, held: Held, config: Compani
     if holds(STOPPED_BY_PAD, held, situation.t_ns, config):
         return Event.CONTACT, _with_evidence(Event.CONTACT, STOPPED_BY_PAD.reason, situation)
     # On the pad and committed, cutting the approach short is the more dangerous way.
+    committed = progress.phase is Phase.DESCEND and _is_committed(situation, config)
+    broken_off = None if committed else _broken_off(progress, situation, held, config)
+    return _going_on(progress, situation, held, config) if broken_off is None else broken_off
+
+
+def _broken_off(progress: Progress, s: Situation, held: Held, config: CompanionConfig) -> Decision | None:
+    """Return what is unsafe, or takes too long."""
     for test in ABORT_TESTS:
-        committed = progress.phase is Phase.DESCEND and _is_committed(situation, config)
-        if not committed and holds(test, held, situation.t_ns, config):
+        if holds(test, held, s.t_ns, config):
             return Event.UNSAFE, test.reason
-    late = _time_limit(progress, situation, config)
-    if late is not None:
-        return late
-    return _going_on(progress, situation, held, config)
+    return _time_limit(progress, s, config)
 
 
 def _going_on(progress: Progress, s: Situation, held: Held, config: CompanionConfig) -> Decision | None:
@@ -121,8 +125,8 @@ def _time_limit(progress: Progress, s: Situation, config: CompanionConfig) -> De
             return Event.REFUSED, f"the autopilot did not arm in time: {s.autopilot.refusal or 'it said no reason'}"
     limit_s, waited_s = _longest_s(progress.phase, config), min(progress.waited_s, config.descent.surprise_wait_max_s)
     if limit_s is not None and in_phase_s - waited_s > limit_s:
-        if progress.phase is Phase.ALIGN and not_placed(s, None, config):
-            return Event.TIME_LIMIT, "vehicle heading unknown"
+        if progress.phase is Phase.ALIGN and s.pad is not None and s.pad.unplaced is not None:
+            return Event.TIME_LIMIT, s.pad.unplaced
         return Event.TIME_LIMIT, f"{progress.phase.value} took longer than {limit_s:g} s"
     return None
 
@@ -210,6 +214,8 @@ def _on_the_pad(s: Situation, config: CompanionConfig) -> Decision | None:
     relative = approach(s)
     if relative is not None and relative.height_m > config.touchdown.lost_height_m:
         return Event.CONTACT_LOST, f"{relative.height_m:.1f} m above the pad after contact"
+    if missed_pad(s, relative, config):
+        return Event.CONTACT_LOST, "below the pad after contact"
     return None
 
 
@@ -231,11 +237,12 @@ def _climbed(progress: Progress, s: Situation, held: Held, config: CompanionConf
 def _no_retry(progress: Progress, s: Situation, held: Held, config: CompanionConfig) -> str | None:
     """Return why no other approach is made, the first of all reasons; None when one is."""
     known = obstacle(held, s, config)
+    unplaced = None if s.pad is None else s.pad.unplaced
     reasons = {
         "broken off by the operator": not progress.may_retry,
         "no vehicle data": fix_too_old(s, None, config),
         "own position too old": s.drone is None,
-        "vehicle heading unknown": not_placed(s, None, config),
+        unplaced or "pad placed": unplaced is not None,
         "too far from the start": is_out_of_range(s, None, config),
         known[1] if known is not None else "": known is not None,
         "no retry left": not progress.is_interrupted and progress.retries >= config.abort.retries_max,

@@ -17,6 +17,7 @@ from companion.timings import Timings
 from link import cdr, json_payloads
 from link.clock import Clock, ClockTick, SimulatedClock, SystemClock
 from link.errors import UserError
+from link.mavlink.session import MavlinkSession
 from link.mavlink.tlog import TlogFrames, TlogSink
 from link.messages import Command, PadGeometry
 from link.payload_checks import PayloadError
@@ -73,6 +74,8 @@ class _Loop:
         self._asked_pad_s = -_ASK_PAD_S
         self._start_pending = options.start
         self._fix_seen = False
+        self._pad_wanted = True
+        self._was_alive = False
         self._pads: Inbox | None = None
         self._link_was_up: bool | None = None
 
@@ -191,41 +194,50 @@ class _Loop:
         self._link_was_up = is_up if is_up or self._link_was_up is not None else None
 
     def _ask_for_pad(self) -> None:
-        """Ask the vehicle for its pad until it has answered."""
-        now_s = time.monotonic()
+        """Ask the vehicle for its pad until it has answered, and again when it has come back: it may be another one."""
+        now_s, alive = time.monotonic(), self._alive.alive
+        self._pad_wanted = self._pad_wanted or (alive and not self._was_alive)
+        self._was_alive = alive
         if self._pads is not None:
             for sample in self._pads.take():
                 try:
                     self._node.receive_pad(json_payloads.decode(PadGeometry, sample.payload))
+                    self._pad_wanted = False
                 except PayloadError:
                     self._node.bad_payloads += 1
-        if not self._node.pad_known and self._alive.alive and now_s - self._asked_pad_s >= _ASK_PAD_S:
+        if self._pad_wanted and (alive or self._fix_seen) and now_s - self._asked_pad_s >= _ASK_PAD_S:
             self._asked_pad_s = now_s
             self._pads = self._zenoh.ask(self._keys.pad, b"", _ASK_PAD_S)
 
     def _start_by_itself(self) -> None:
-        if not self._start_pending or not self._fix_seen or not self._node.pad_known:
-            return
-        if self._node.memory.phase is not Phase.IDLE:
-            self._start_pending = False
-        elif self._node.is_ready_to_start():
+        self._start_pending = self._start_pending and self._node.memory.phase is Phase.IDLE
+        if self._start_pending and self._fix_seen and self._node.pad_known and self._node.is_ready_to_start():
             self._node.request(Command.START)
 
     def _check_time_out(self) -> None:
         """Say what is missing when nothing has come within the time-out; not once a flight has begun."""
         waited_s = time.perf_counter() - self._timings.started_s
-        if not self._options.timeout_s or waited_s < self._options.timeout_s:
+        if (
+            not self._options.timeout_s
+            or waited_s < self._options.timeout_s
+            or self._node.memory.phase is not Phase.IDLE
+        ):
             return
         session = self._node.autopilot.session
-        if session.target_system_id is None:
+        if session.autopilot is None:
             raise UserError(
                 f"no heartbeat of an autopilot within {self._options.timeout_s:g} s on {self._options.device}: "
-                f"{_seen(session.statistics)}; check --mavlink and the autopilot's port"
+                f"{_seen(session)}; check --mavlink and the autopilot's port"
             )
         if self._start_pending and not self._fix_seen:
             raise UserError(
                 f"no vehicle fix on {self._keys.fix} within {self._options.timeout_s:g} s: start the vehicle, "
                 "or check --ns, --vehicle and -e"
+            )
+        if self._start_pending and not self._node.pad_known:
+            raise UserError(
+                f"the vehicle did not describe its pad on {self._keys.pad} within {self._options.timeout_s:g} s: "
+                "let it answer there"
             )
 
     def _leave(self, clock: Clock) -> None:
@@ -242,9 +254,11 @@ class _Loop:
             self._transport.send(frame)
 
 
-def _seen(statistics: object) -> str:
-    codec = getattr(statistics, "codec", None)
-    received = getattr(codec, "bytes_received", 0)
-    if not received:
+def _seen(session: MavlinkSession) -> str:
+    codec = session.statistics.codec
+    if not codec.bytes_received:
         return "nothing was received"
-    return f"{received} bytes received, {getattr(codec, 'messages_received', 0)} messages, none of them its heartbeat"
+    others = ", ".join(map(str, sorted(session.other_system_ids)))
+    if others:
+        return f"autopilots of system {others} were heard, see --system-id"
+    return f"{codec.bytes_received} bytes received, {codec.messages_received} messages, none of them its heartbeat"

@@ -5,7 +5,7 @@ The wire loop, the lockstep campaigns and the tests all run this one.
 
 from dataclasses import replace
 
-from companion.autopilot_link import AutopilotLink
+from companion.autopilot_link import CLOCK_SET_NS, AutopilotLink
 from companion.data import Measurement, VehicleEstimate
 from companion.estimation.buffered import BufferHealth
 from companion.estimation.factory import make_estimator
@@ -24,7 +24,6 @@ from link.publication import Publication
 _MOTION_RATE_MIN_HZ = 50.0
 _EARLY = 0.75  # of a period: a new state of the drone starts the next step from here on
 _LATE = 2.0  # periods without a new state after which the step is made without one
-_CLOCK_SET_NS = 200_000_000  # more than the map to UTC is ever refined by at once
 _FUTURE_MAX_NS = 500_000_000  # a stamp farther ahead comes from a clock that is wrong
 _LINK_DELAY_MAX_S = 0.3  # a longer way is not led for: the model is too uncertain so far ahead
 _LEVER_MAX_M = 50.0  # no vehicle is larger
@@ -204,7 +203,7 @@ class CompanionNode:
         utc_ns = self.autopilot.session.clock.local_to_utc_ns(local_ns)
         if self._stepped_ns is not None:
             set_by_ns = utc_ns - (self._t_ns + local_ns - self._stepped_ns)
-            if abs(set_by_ns) > _CLOCK_SET_NS:
+            if abs(set_by_ns) > CLOCK_SET_NS:
                 self.memory = at_other_time(self.memory, set_by_ns)
                 self._t_ns += set_by_ns
                 self._status_ns += set_by_ns

@@ -9,6 +9,9 @@ from numba import njit
 from companion.data import Array, Forecast
 from link.messages import PadGeometry
 
+HEADING_UNKNOWN = "vehicle heading unknown"
+NOT_DESCRIBED = "the vehicle has not described its pad"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PadPath:
@@ -22,7 +25,7 @@ class PadPath:
         yaw_rad: heading of the vehicle now, None when unknown.
         position_std_m: (n, 3).
         is_coarse: the vehicle's fixes alone are too coarse to land by: only what the drone sees of the pad places it.
-        placed: whether the pad's place is known; False while a lever arm points in an unknown direction.
+        unplaced: why the pad's place is not known, in words; None when it is. Until then it is not landed on.
     """
 
     offset_s: Array
@@ -32,15 +35,15 @@ class PadPath:
     yaw_rad: float | None
     position_std_m: Array
     is_coarse: bool = False
-    placed: bool = True
+    unplaced: str | None = None
 
 
 def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
     """Return where the pad will be.
 
     The lever arm from the antenna turns with the vehicle's heading. With an unknown heading its horizontal
-    part is left out and the pad is not placed: it can be followed, but not landed on. Without a pad geometry the
-    antenna is taken for the pad's centre.
+    part is left out and the pad is not placed: it can be followed, but not landed on. Nor can one that the vehicle has
+    not described; the antenna is followed then.
 
     Args:
         forecast: of the antenna, its first offset 0.
@@ -62,7 +65,7 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
         yaw_rad=None if forecast.yaw_rad is None else float(forecast.yaw_rad[0]),
         position_std_m=forecast.position_std_m,
         is_coarse=forecast.is_coarse,
-        placed=forecast.yaw_rad is not None or not is_beside,
+        unplaced=NOT_DESCRIBED if pad is None else HEADING_UNKNOWN if is_beside and forecast.yaw_rad is None else None,
     )
 
 

@@ -35,8 +35,8 @@ def landing_status(memory: StepMemory, situation: Situation, config: CompanionCo
 
 def _reason(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str:
     """Return what the landing waits for, or why its phase began."""
-    if memory.phase in _WAITING_FOR_PAD and situation.pad is not None and not situation.pad.placed:
-        return "vehicle heading unknown"
+    if memory.phase in _WAITING_FOR_PAD and situation.pad is not None and situation.pad.unplaced is not None:
+        return situation.pad.unplaced
     if memory.phase in _NOT_BEGUN and memory.obstacle is not None:
         return memory.obstacle[1]
     awaited = why_held_up(memory, situation, config)

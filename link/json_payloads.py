@@ -58,7 +58,7 @@ class _LandingStatus(_Report):
     relative_velocity_enu_m_s: Annotated[
         Coordinates | None, Field(description="drone against the pad, east north up, m/s; null if unknown")
     ]
-    height_above_pad_m: Annotated[float | None, Field(description="m; null if unknown")]
+    height_above_pad_m: Annotated[float | None, Field(description="m, of the feet; null if unknown")]
     time_to_contact_s: Annotated[float | None, Field(description="s; null unless descending")]
     mavlink_bad_bytes: Annotated[Count, Field(description="bytes from the autopilot that were no message")]
     zenoh_bad_payloads: Annotated[Count, Field(description="payloads that were refused")]

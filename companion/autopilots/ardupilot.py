@@ -47,7 +47,7 @@ class ArduPilotDriver:
 
     name = "ardupilot"
     autopilot_id: int = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
-    limit_parameters = tuple(named.name for names in _LIMITS for named in names)
+    limit_names = tuple(tuple(named.name for named in names) for names in _LIMITS)
     timeout_parameter = "GUID_TIMEOUT"
     timeout_default_s = 3.0
     carries_setpoints_on = True

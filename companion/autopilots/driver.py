@@ -89,8 +89,8 @@ class Driver(Protocol):
         """MAV_AUTOPILOT of its heartbeat."""
 
     @property
-    def limit_parameters(self) -> tuple[str, ...]:
-        """Parameters that bound the flight."""
+    def limit_names(self) -> tuple[tuple[str, ...], ...]:
+        """Parameters that bound the flight, each by all of its names."""
 
     @property
     def timeout_parameter(self) -> str:

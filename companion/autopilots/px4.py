@@ -27,7 +27,7 @@ class Px4Driver:
 
     name = "px4"
     autopilot_id: int = mavlink.MAV_AUTOPILOT_PX4
-    limit_parameters = ("MPC_XY_VEL_MAX", "MPC_Z_VEL_MAX_UP", "MPC_Z_VEL_MAX_DN", "MPC_TILTMAX_AIR")
+    limit_names = (("MPC_XY_VEL_MAX",), ("MPC_Z_VEL_MAX_UP",), ("MPC_Z_VEL_MAX_DN",), ("MPC_TILTMAX_AIR",))
     timeout_parameter = "COM_OF_LOSS_T"
     timeout_default_s = 1.0
     carries_setpoints_on = False  # it holds them as they came
@@ -84,7 +84,7 @@ class Px4Driver:
     def limits(self, wanted: FlightLimits, parameters: Mapping[str, float]) -> FlightLimits:
         """Return `wanted` cut to PX4's speed, climb, descent and tilt limits."""
         speed_m_s, climb_m_s, descent_m_s, tilt_deg = (
-            stated(parameters, (Named(name),)) for name in self.limit_parameters
+            stated(parameters, (Named(name),)) for (name,) in self.limit_names
         )
         acceleration_m_s2 = acceleration_of_tilt_m_s2(min(tilt_deg, _TILT_MAX_DEG))
         return replace(

@@ -46,7 +46,7 @@ class VehicleFacts:
         key: that its fixes were expected on.
         rate_hz: of its fixes.
         age_s: median from a fix's stamp to its arrival.
-        std_m: the largest horizontal standard deviation that a fix states.
+        std_m: the largest standard deviation, of any axis, that a fix states.
         has_velocity: it sends its velocity as well.
         describes_pad: it answered for its pad.
     """

@@ -50,9 +50,9 @@ class CheckSession:
         end_s = time.monotonic() + timeout_s if timeout_s else float("inf")
         while self.reader.session.autopilot is None:
             if time.monotonic() > end_s:
-                raise UserError(
-                    f"no heartbeat of an autopilot within {timeout_s:g} s on {self._device}: check --mavlink"
-                )
+                others = ", ".join(map(str, sorted(self.reader.session.other_system_ids)))
+                advice = f"autopilots of system {others} were heard, see --system-id" if others else "check --mavlink"
+                raise UserError(f"no heartbeat of an autopilot within {timeout_s:g} s on {self._device}: {advice}")
             self.turn()
 
     def listen(self, duration_s: float, zenoh: ZenohSession, keys: Keys) -> VehicleReader:

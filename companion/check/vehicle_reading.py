@@ -39,7 +39,8 @@ class VehicleReader:
         if utc_ns is not None:
             self._ages_s.append((utc_ns - fix.t_ns) * 1e-9)
         if fix.covariance_enu_m2 is not None:
-            variance = max(fix.covariance_enu_m2[0], fix.covariance_enu_m2[4])
+            # The estimator goes by the worst axis, and a receiver's is the vertical one.
+            variance = max(fix.covariance_enu_m2[0], fix.covariance_enu_m2[4], fix.covariance_enu_m2[8])
             if math.isfinite(variance) and variance > 0.0:
                 self._std_m = max(self._std_m or 0.0, math.sqrt(variance))
 

@@ -38,6 +38,8 @@ class Peer:
         self.autopilot: int | None = None
         self.vehicle_type: int | None = None
         self.is_up = False
+        self.others: set[int] = set()
+        """Systems of further autopilots that were heard."""
         self._own = own
         self._lost_after_ns = duration_ns(config.link_lost_after_s)
         self._last_heard_ns = 0
@@ -46,6 +48,8 @@ class Peer:
         """Whether a message is from the autopilot and for us or for everybody."""
         if self.target_system_id is None:
             return is_autopilot_heartbeat(message)
+        if message.get_srcSystem() != self.target_system_id and is_autopilot_heartbeat(message):
+            self.others.add(message.get_srcSystem())
         return bool(
             message.get_srcSystem() == self.target_system_id
             and message.get_srcComponent() == AUTOPILOT_COMPONENT_ID

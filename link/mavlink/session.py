@@ -73,6 +73,11 @@ class MavlinkSession:
         return self._peer.target_system_id
 
     @property
+    def other_system_ids(self) -> frozenset[int]:
+        """Systems of autopilots that were heard and are not the target."""
+        return frozenset(self._peer.others)
+
+    @property
     def autopilot(self) -> int | None:
         """MAV_AUTOPILOT of its heartbeat, None before the first one."""
         return self._peer.autopilot

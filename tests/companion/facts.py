@@ -7,7 +7,7 @@ import numpy as np
 from companion.autopilots.driver import AutopilotView
 from companion.config import CompanionConfig
 from companion.decisions import Progress
-from companion.pad import PadPath
+from companion.pad import HEADING_UNKNOWN, PadPath
 from companion.phases import Phase
 from companion.planning.guidance import ReferenceState
 from companion.situation import Drone, Situation
@@ -38,7 +38,7 @@ def pad_at(velocity_enu_m_s: Vector3 = (4.0, 1.0, 0.0), *, std_m: float = 0.05, 
         acceleration_enu_m_s2=np.zeros_like(velocity),
         yaw_rad=0.2,
         position_std_m=np.full_like(velocity, std_m),
-        placed=placed,
+        unplaced=None if placed else HEADING_UNKNOWN,
     )
 
 

@@ -3,6 +3,8 @@
 import math
 from dataclasses import replace
 
+import pytest
+
 from companion.autopilot_link import AutopilotLink
 from companion.autopilots.driver import AutopilotCommand
 from companion.config import CompanionConfig
@@ -34,6 +36,9 @@ class Talk:
             self.link.poll(self.t_ns)
             for frame in self.link.session.take_output():
                 self.autopilot.receive(frame, self.t_ns)
+
+    def utc_ahead_ns(self) -> int:
+        return self.link.session.clock.local_to_utc_ns(self.t_ns) - self.t_ns
 
     def is_armed(self) -> bool:
         return self.link.state.view.armed
@@ -124,3 +129,27 @@ def test_limits_follow_each_change_of_the_autopilots_parameters_and_of_what_is_w
         talk.link.state = replace(talk.link.state, parameters=known)
         assert talk.link.limits(wanted).speed_max_m_s == speed_m_s
         assert talk.link.limits(replace(wanted, speed_max_m_s=1.5)).speed_max_m_s == 1.5
+
+
+@pytest.mark.parametrize("set_by_s", [-30.0, -0.9, -0.7, 0.7, 30.0])
+def test_drone_is_never_taken_for_silent_when_utc_is_set(set_by_s: float) -> None:
+    talk = Talk(FakePx4())
+    talk.run(4.0)  # by then the clocks' drift is known
+    before_ns = talk.utc_ahead_ns()
+    talk.autopilot.utc_set_by_ns = round(set_by_s * 1e9)
+    for _ in range(600):
+        talk.run(0.005)
+        own = talk.link.state.own
+        assert own is not None
+        assert abs(talk.utc_ahead_ns() + talk.t_ns - own.t_ns) < 50 * MS
+    assert talk.utc_ahead_ns() - before_ns == pytest.approx(set_by_s * 1e9, abs=10 * MS)
+
+
+def test_limit_that_was_not_told_is_asked_for_until_it_is() -> None:
+    talk = Talk(FakePx4(parameters={"MPC_Z_VEL_MAX_UP": (2.0, mavlink.MAV_PARAM_TYPE_REAL32)}))
+    talk.run(10.0)
+    wanted = CompanionConfig().limits.flight_limits()
+    assert talk.link.limits(wanted).speed_max_m_s == wanted.speed_max_m_s
+    talk.autopilot.parameters["MPC_XY_VEL_MAX"] = (7.0, mavlink.MAV_PARAM_TYPE_REAL32)
+    talk.run(8.0)
+    assert talk.link.limits(wanted).speed_max_m_s == 7.0

@@ -19,6 +19,7 @@ from companion.conditions import (
 )
 from companion.conditions import Test as Condition
 from companion.decisions import Decision, decide, vehicle_passes
+from companion.pad import NOT_DESCRIBED
 from companion.phases import Event, Phase
 from companion.situation import Situation, approach
 from link.messages import Vector3
@@ -380,6 +381,13 @@ def test_time_limit_is_kept(phase: Phase, limit_s: float) -> None:
     assert late[0] is Event.TIME_LIMIT
 
 
+def test_time_limit_does_not_end_a_landing_that_is_committed() -> None:
+    late = progress(Phase.DESCEND, CONFIG.descent.time_limit_s + 1.0)
+    low_m, high_m = 0.5 * CONFIG.descent.commit_height_m, 1.1 * CONFIG.descent.commit_height_m
+    assert decide(late, situation(low_m), {}, CONFIG) is None
+    assert decide(late, situation(high_m), {}, CONFIG) == (Event.TIME_LIMIT, "descend took longer than 30 s")
+
+
 @given(
     phase=st.sampled_from(FLYING),
     reason=st.sampled_from(sorted(UNSAFE)),
@@ -420,3 +428,19 @@ def test_bounce_is_seen_above_its_height_only() -> None:
     decision = decide(progress(Phase.TOUCHDOWN), situation(CONFIG.touchdown.lost_height_m + 0.01), {}, CONFIG)
     assert decision is not None
     assert decision[0] is Event.CONTACT_LOST
+
+
+def test_drone_that_slid_off_the_pad_is_not_pressed_down_any_longer() -> None:
+    lowest_m = -CONFIG.descent.press_depth_m - CONFIG.touchdown.height_max_m
+    assert decide(progress(Phase.TOUCHDOWN), situation(lowest_m + 0.01), {}, CONFIG) is None
+    decision = decide(progress(Phase.TOUCHDOWN), situation(lowest_m - 0.01, 2.0), {}, CONFIG)
+    assert decision == (Event.CONTACT_LOST, "below the pad after contact")
+
+
+def test_pad_that_was_not_described_is_not_landed_on_and_it_is_said_why() -> None:
+    facts = situation(pad=replace(pad_at(), unplaced=NOT_DESCRIBED))
+    late = progress(Phase.ALIGN, CONFIG.descent.align_time_limit_s + 1.0)
+    aligned = {"aligned": NOW_NS - 10**12}
+    held = update_held(aligned, Phase.ALIGN, facts, approach(facts), CONFIG)
+    assert "aligned" not in held
+    assert decide(late, facts, held, CONFIG) == (Event.TIME_LIMIT, NOT_DESCRIBED)

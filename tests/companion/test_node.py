@@ -116,7 +116,7 @@ def test_late_and_swapped_fixes_leave_the_same_estimate() -> None:
     np.testing.assert_array_equal(fly([0, 1, 2, 3, 4, 5]), fly([3, 0, 5, 1, 4, 2]))
 
 
-@pytest.mark.parametrize("set_by_s", [-37.0, 90.0])
+@pytest.mark.parametrize("set_by_s", [-37.0, -0.9, 0.7, 90.0])
 def test_flight_goes_on_evenly_when_utc_is_set(set_by_s: float) -> None:
     setup = _flying()
     setup.run(3.0)

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from companion.data import Array, Forecast
-from companion.pad import pad_path
+from companion.pad import HEADING_UNKNOWN, NOT_DESCRIBED, pad_path
 from link.frames import quaternion_from_yaw, rotate
 from link.messages import PadGeometry, Vector3
 from tests.companion.world import START_NS
@@ -44,7 +44,7 @@ def test_lever_arm_rotates_with_the_heading(lever: Vector3, yaw_rad: float, rate
     path = pad_path(forecast, _pad(lever))
     expected = [rotate(quaternion_from_yaw(angle), lever) for angle in yaw.tolist()]
     np.testing.assert_allclose(path.position_enu_m - forecast.position_enu_m, expected, atol=1e-9)
-    assert path.placed
+    assert path.unplaced is None
 
 
 @given(lever=st.tuples(metres, metres, metres), yaw_rad=st.floats(-math.pi, math.pi), rate_rad_s=st.floats(-0.8, 0.8))
@@ -58,18 +58,18 @@ def test_velocity_is_the_derivative_of_the_position(lever: Vector3, yaw_rad: flo
 def test_unknown_heading_leaves_a_horizontal_lever_arm_out_and_says_so() -> None:
     forecast = _forecast(None)
     path = pad_path(forecast, _pad((0.4, 0.0, 0.7)))
-    assert not path.placed
+    assert path.unplaced == HEADING_UNKNOWN
     np.testing.assert_allclose(path.position_enu_m - forecast.position_enu_m, np.tile([0.0, 0.0, 0.7], (41, 1)))
 
 
 def test_vertical_lever_arm_needs_no_heading() -> None:
-    assert pad_path(_forecast(None), _pad((0.0, 0.0, 0.7))).placed
+    assert pad_path(_forecast(None), _pad((0.0, 0.0, 0.7))).unplaced is None
 
 
-def test_without_a_description_the_antenna_is_the_pad() -> None:
-    forecast = _forecast(None)
+def test_pad_that_was_not_described_is_followed_at_the_antenna_and_not_placed() -> None:
+    forecast = _forecast(np.zeros_like(OFFSETS_S))
     path = pad_path(forecast, None)
-    assert path.placed
+    assert path.unplaced == NOT_DESCRIBED
     np.testing.assert_array_equal(path.position_enu_m, forecast.position_enu_m)
 
 

@@ -33,6 +33,7 @@ START_NS = 1_795_000_000_000_000_000
 STEP_NS = 20_000_000
 ORIGIN = Datum(latitude_rad=0.83, longitude_rad=0.14, altitude_m=400.0)
 PAD_HEIGHT_M = 1.5
+PAD = PadGeometry(size_m=(1.5, 1.5), height_m=PAD_HEIGHT_M, antenna_to_pad_m=(0.0, 0.0, 0.0))
 GEAR_M = CONFIG.touchdown.gear_height_m
 FLYING = sorted(FLYING_PHASES, key=lambda one: one.value)
 LANDING = sorted(LANDING_PHASES, key=lambda one: one.value)
@@ -102,7 +103,7 @@ class Flight:
 
     vehicle: KnownVehicle = field(default_factory=lambda: KnownVehicle((-20.0, 0.4, PAD_HEIGHT_M), (4.0, 0.0, 0.0)))
     config: CompanionConfig = CONFIG
-    pad: PadGeometry | None = None
+    pad: PadGeometry | None = PAD
     refuses: frozenset[int] = frozenset()
     refuses_plain_disarm: bool = False
     sends_fixes: bool = True

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import chain
 
 import pytest
 from hypothesis import given
@@ -14,6 +15,7 @@ from link.mavlink.dialect import mavlink
 from tests.companion.world import START_NS, STEP_NS
 
 DRIVER = Px4Driver()
+LIMITS = tuple(chain(*DRIVER.limit_names))
 GROUND = replace(NO_AUTOPILOT, link_up=True)
 ARMED = replace(GROUND, armed=True, in_control=True)
 DISARM, SET_MODE = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, mavlink.MAV_CMD_DO_SET_MODE
@@ -121,13 +123,13 @@ def test_limits_are_cut_to_the_parameters_and_never_raised() -> None:
     wanted = CompanionConfig().limits.flight_limits()
     cut = DRIVER.limits(wanted, {"MPC_XY_VEL_MAX": 12.0, "MPC_Z_VEL_MAX_DN": 1.0, "MPC_Z_VEL_MAX_UP": 2.0})
     assert (cut.speed_max_m_s, cut.descent_max_m_s, cut.climb_max_m_s) == (12.0, 1.0, 2.0)
-    roomy = dict.fromkeys(DRIVER.limit_parameters, 1e3)
+    roomy = dict.fromkeys(LIMITS, 1e3)
     assert DRIVER.limits(wanted, roomy) == wanted
     tilted = DRIVER.limits(wanted, {"MPC_TILTMAX_AIR": 20.0})
     assert tilted.acceleration_max_m_s2 == pytest.approx(0.7 * 9.81 * math.tan(math.radians(20.0)))
 
 
-@given(st.dictionaries(st.sampled_from(DRIVER.limit_parameters), st.floats()))
+@given(st.dictionaries(st.sampled_from(LIMITS), st.floats()))
 def test_no_parameter_whatever_takes_a_limit_away(parameters: dict[str, float]) -> None:
     wanted = CompanionConfig().limits.flight_limits()
     cut = DRIVER.limits(wanted, parameters)

@@ -63,6 +63,7 @@ def test_only_the_chosen_system_is_heard() -> None:
     session = MavlinkSession(4, target_system_id=4)
     beat = heartbeat(mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4)
     assert session.receive(MavlinkCodec(1, 1).encode(beat), START_NS) == []
+    assert session.other_system_ids == {1}
     assert len(of_kind(session.receive(MavlinkCodec(4, 1).encode(beat), START_NS), LinkFound)) == 1
 
 
