@@ -109,7 +109,7 @@ class LaneChangeTrack(MovingTrack):
     offset_m: Positive = 3.5
     change_s: Positive = 3.0
     turn_radius_m: Positive = 8.0
-    change_after_s: Positive = 5.0  # behind the waiting point: while the drone catches up or aligns
+    change_after_s: Positive = 1.0  # behind the waiting point: while the drone aligns and descends
     turn_after_s: Positive = 3.0  # behind the lane change
 
 

@@ -83,7 +83,7 @@ def test_figure_eight_repeats_itself() -> None:
 def test_lane_change_moves_over_by_one_lane_and_then_turns_left(speed_m_s: float) -> None:
     name = f"lane_change_{speed_m_s:.0f}"
     road = course(name).road
-    behind_m = 40.0 + 5.0 * speed_m_s + 3.0 * speed_m_s
+    behind_m = 40.0 + (1.0 + 3.0) * speed_m_s  # begun 1 s behind the waiting point
     assert road.at(behind_m + 0.01).y_m == pytest.approx(3.5, abs=1e-6)
     assert road.at(behind_m + 0.01).heading_rad == pytest.approx(0.0, abs=1e-9)
     assert road.at(road.length_m).heading_rad == pytest.approx(0.5 * math.pi, abs=1e-9)
