@@ -69,7 +69,7 @@ def steady(memory: Array, reference: Array, control: Record) -> None:
 
     A setpoint that moves comes with the jitter of its link: half a metre at 5 m/s and 0.1 s. Followed at once with
     this loop's gains, it would swing the thrust about faster than the rotors can. What is farther off than jitter
-    explains is another place, and followed at once.
+    explains is another place, and followed at once. Nor is there any to be steadied where it is the drone's own.
     """
     if reference[HAS_POSITION] + reference[HAS_VELOCITY] < 2.0:
         return

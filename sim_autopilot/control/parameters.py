@@ -25,6 +25,8 @@ PLACE = 12
 MEMORY_SIZE = 15
 
 YAW, YAW_RATE, HAS_POSITION, HAS_VELOCITY, HAS_ACCELERATION, HAS_YAW = 9, 10, 11, 12, 13, 14
+PARTLY = 0.5
+"""In place of 1 for a position that is nobody's wish on some axes, where it is the drone's own."""
 HAS_ATTITUDE, HAS_RATES, THRUST, ATTITUDE, RATE = 15, 16, 17, 18, 22
 REFERENCE_SIZE = 25
 
@@ -103,7 +105,7 @@ def reference_vector(reference: Reference) -> Array:
     vector = np.zeros(REFERENCE_SIZE)
     if reference.position_enu_m is not None:
         vector[0:3] = reference.position_enu_m
-        vector[HAS_POSITION] = 1.0
+        vector[HAS_POSITION] = PARTLY if any(reference.free_position) else 1.0
     if reference.velocity_enu_m_s is not None:
         vector[3:6] = reference.velocity_enu_m_s
         vector[HAS_VELOCITY] = 1.0

@@ -80,6 +80,23 @@ def test_a_height_and_a_horizontal_velocity_are_flown_together() -> None:
     assert pilot.node.state.velocity_enu_m_s == pytest.approx((1.0, 2.0, 0.0), abs=0.15)
 
 
+def _slowed(mask: int) -> list[float]:
+    """Speeds northward after one of 4 m/s was asked for, and then one of 2 m/s, every 0.1 s."""
+    pilot, speeds = Pilot(), list[float]()
+    pilot.take_off(5.0)
+    fast, slow = (setpoint((nan, nan, -5.0), (speed, 0.0, 0.0), mask=mask) for speed in (4.0, 2.0))
+    pilot.run(3.0, lambda _t: fast)
+    for _ in range(20):
+        pilot.run(0.1, lambda _t: slow)
+        speeds.append(float(pilot.node.state.velocity_enu_m_s[1]))
+    return speeds
+
+
+def test_a_velocity_is_flown_no_otherwise_for_a_height_beside_it() -> None:
+    # what steadies the place of a moving setpoint must not hold on to one that nobody asked for
+    assert _slowed(0b1001_1110_0011) == pytest.approx(_slowed(0b1001_1100_0111), abs=0.02)
+
+
 def test_a_climb_rate_over_a_held_place_takes_off_and_keeps_the_place() -> None:
     pilot = Pilot()
     rise = setpoint((0.0, 0.0, nan), (nan, nan, -1.0), mask=0b1001_1101_1100)
