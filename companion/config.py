@@ -104,6 +104,10 @@ class DescentConfig(StrictModel):
     surprise_wait_max_s: NotNegative = 60.0  # for which it waits so without its time limit running: three surprises
     stray_hold_s: NotNegative = 3.0  # beside the cone or too fast, but high enough to be aligned again
     strays_max: Annotated[int, Field(ge=0, le=20)] = 3  # so often in one approach, as retries: a gust may last
+    # Below this what the drone is beside its place is made up for with this time constant: every step of the estimate
+    # would lean it just before the contact.
+    unhurried_height_m: NotNegative = 0.4
+    unhurried_s: Positive = 1.5
     commit_height_m: Positive = 0.35  # below this it lands rather than aborts
     # Standard deviation up to which a pad is landed on that the vehicle's fixes are too coarse to place: half of what
     # S1 allows. Its pattern must have been seen as lately as that, while the drone and the vehicle's clock wander.
@@ -135,6 +139,7 @@ class TouchdownConfig(StrictModel):
     stopped_hold_s: Positive = 0.3  # after a jolt, pressed down without falling: in the air it would sink at 2 m/s then
     disputed_hold_s: NotNegative = 1.0  # instead, when the range finder does not agree
     level_height_m: NotNegative = 0.08  # below this the drone turns less than the deck, to touch down level
+    level_late_stds: NotNegative = 1.5  # of the link's delay, by which it begins earlier: so late a setpoint may be
     foot_radius_m: NotNegative = 0.2  # of the feet about the drone's axis: the lowest of a leaning drone touches first
     # By so much of the pad's own acceleration, between these: what it turns more makes the contact slower than tilted,
     # and there is no time for what else would have it lean.
@@ -183,6 +188,10 @@ class CompanionConfig(StrictModel):
     setpoint_lead_s: Annotated[float, Field(ge=0.0, le=0.5)] = (
         0.03  # half a period of holding plus the way to the motors
     )
+    # So far a link's jitter may move the place that a landing drone is asked for: 0.1 m leans the benchmark's by 5
+    # degrees. Beyond that it is asked for velocities, which make up for what it is off its place by a gain.
+    place_jitter_max_m: NotNegative = 0.1
+    place_gain_hz: Positive = 1.0  # as PX4's MPC_XY_P, 0.95; the delay of a poor link leaves no room for more
     yaw_rate_max_rad_s: Positive = 0.8  # ArduCopter slews at 60 degrees a second
     position_only: bool = False  # leave velocity and acceleration out of the setpoints, as the source report does
     corrects_lag: bool = True  # learn how far the autopilot trails its setpoints, and lead by it

@@ -115,13 +115,17 @@ class RangeReading:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Setpoint:
-    """What the autopilot is to follow from `t_ns` on; None leaves a group out."""
+    """What the autopilot is to follow from `t_ns` on; None leaves a group out.
+
+    Where the place is free, of the position only the height is to be held.
+    """
 
     t_ns: int
     position_enu_m: Vector3
     velocity_enu_m_s: Vector3 | None
     acceleration_enu_m_s2: Vector3 | None
     yaw_rad: float
+    is_place_free: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

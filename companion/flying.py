@@ -7,11 +7,12 @@ import numpy as np
 from companion.conditions import CONTACT, DISPUTED_CONTACT
 from companion.config import CompanionConfig
 from companion.contact import over_pad_radius_m
-from companion.data import FlightLimits, Setpoint
+from companion.data import Setpoint
+from companion.levelling import limits_now
 from companion.pad import PadPath
 from companion.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
-from companion.reference import Tracking, carried, not_falling, pressing, remember, setpoint_at
+from companion.reference import Tracking, by_velocity, carried, not_falling, planned, pressing, remember, setpoint_at
 from companion.situation import Situation, approach
 from companion.step_data import StepInputs, StepMemory, System
 from companion.sway import felt
@@ -22,29 +23,66 @@ from companion.waiting import waits_at_m
 from link.frames import wrap_angle
 from link.records import replace
 
+# A chase keeps its place: through an outage the drone then stops where it was last sent.
+_FREE_PLACE_PHASES = (Phase.ALIGN, Phase.DESCEND, Phase.TOUCHDOWN)
 _STEP_MAX_S = 0.1  # a longer pause does not let the virtual model jump
 
 
-def setpoint(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) -> Setpoint | None:
-    """Return what the autopilot is to follow now, None while nothing is flown."""
-    reference = memory.reference
-    if reference is None or memory.driver.climbs_by_itself:
+def setpoint(
+    memory: StepMemory, inputs: StepInputs, config: CompanionConfig, plan: PlanResult | None = None
+) -> Setpoint | None:
+    """Return what the autopilot is to follow now, None while nothing is flown.
+
+    Args:
+        memory: after this step's plan.
+        inputs: of this step.
+        config: all numbers.
+        plan: of this step, None when there was nothing to plan.
+    """
+    if memory.reference is None or memory.driver.climbs_by_itself:
         return None
+    ahead_s = inputs.link_delay_s + config.setpoint_lead_s
+    if plan is None:
+        reference = carried(memory.reference, (inputs.t_ns - memory.reference_ns) * 1e-9 + ahead_s)
+    else:
+        reference = planned(plan.trajectory, ahead_s)
     if inputs.driver is not None and inputs.driver.carries_setpoints_on:
         reference = not_falling(reference, memory.lowest_enu_m, inputs.timeout_s)
-    if memory.phase is Phase.TOUCHDOWN:
-        reference = pressing(reference, config.touchdown.press_acceleration_m_s2)
-    elif CONTACT in memory.held or DISPUTED_CONTACT in memory.held:
-        reference = pressing(reference, config.touchdown.try_acceleration_m_s2)
-    flown_ns = inputs.t_ns + round((inputs.link_delay_s + config.setpoint_lead_s) * 1e9)
+    press_m_s2 = _press_m_s2(memory, config)
+    if press_m_s2 is not None:
+        reference = pressing(reference, press_m_s2, ahead_s)
     wanted = setpoint_at(
-        carried(reference, (flown_ns - memory.reference_ns) * 1e-9),
+        reference,
         memory.tracking.correction_enu_m,
-        flown_ns,
+        inputs.t_ns + round(ahead_s * 1e9),
         memory.yaw_setpoint_rad,
         position_only=config.position_only,
     )
+    if has_free_place(memory, inputs, config):
+        wanted = by_velocity(wanted, memory.tracking.behind_enu_m, config.place_gain_hz)
     return wanted if inputs.own is None else as_seen_with(wanted, inputs.own.velocity_bias_enu_m_s)
+
+
+def has_free_place(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) -> bool:
+    """Return whether the link's jitter would move the place that is asked for too far for a landing.
+
+    A setpoint is held as it came, so one that comes late by so much asks for a place that the vehicle has left.
+    """
+    reference, driver = memory.reference, inputs.driver
+    if memory.phase not in _FREE_PLACE_PHASES or reference is None or config.position_only:
+        return False
+    if driver is None or not driver.holds_height_alone:
+        return False
+    speed_m_s = math.hypot(*reference.velocity_enu_m_s[:2].tolist())
+    return speed_m_s * inputs.link_delay_std_s > config.place_jitter_max_m
+
+
+def _press_m_s2(memory: StepMemory, config: CompanionConfig) -> float | None:
+    """Return the downward acceleration with which a drone is pressed on what it touches, None for one that flies."""
+    if memory.phase is Phase.TOUCHDOWN:
+        return config.touchdown.press_acceleration_m_s2
+    touches = CONTACT in memory.held or DISPUTED_CONTACT in memory.held
+    return config.touchdown.try_acceleration_m_s2 if touches else None
 
 
 def _aim(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Aim:
@@ -95,7 +133,7 @@ def fly(
     request = PlanRequest(
         state=reference,
         target=aim.target,
-        limits=limits_now(memory, situation, inputs.limits, system.config),
+        limits=limits_now(memory, situation, inputs, system.config),
         floor_enu_m=aim.floor_enu_m,
         dt_s=period_s,
     )
@@ -181,24 +219,6 @@ def _anchored(memory: StepMemory, situation: Situation, config: CompanionConfig)
         return memory
     x, y, _ = stopping_point(memory.reference, BRAKING_M_S2)
     return replace(memory, anchor_enu_m=np.array([x, y, memory.anchor_enu_m[2]]))
-
-
-def limits_now(memory: StepMemory, situation: Situation, limits: FlightLimits, config: CompanionConfig) -> FlightLimits:
-    """Return the limits of this step: just above the pad the drone turns less than the deck, to touch down level.
-
-    A drone that leans touches with its lowest foot, so it begins that much higher; one that breaks off climbs before it
-    leans.
-    """
-    relative, drone, touchdown = approach(situation), situation.drone, config.touchdown
-    if memory.phase not in (Phase.DESCEND, Phase.ABORT) or relative is None or drone is None:
-        return limits
-    escape_m = 0.0 if memory.phase is Phase.DESCEND else config.descent.commit_height_m
-    if relative.height_m > touchdown.level_height_m + touchdown.foot_radius_m * drone.lean + escape_m:
-        return limits
-    turns_m_s2 = 0.0 if situation.pad is None else math.hypot(*situation.pad.acceleration_enu_m_s2[0, :2].tolist())
-    level_m_s2 = max(touchdown.level_share * turns_m_s2, touchdown.level_acceleration_min_m_s2)
-    level_m_s2 = min(level_m_s2, touchdown.level_acceleration_max_m_s2, limits.acceleration_max_m_s2)
-    return replace(limits, acceleration_max_m_s2=level_m_s2)
 
 
 def _slewed_yaw_rad(memory: StepMemory, pad: PadPath | None, dt_s: float, config: CompanionConfig) -> float:

@@ -187,6 +187,7 @@ class CompanionNode:
             leaving=self._leaving,
             timeout_s=self.autopilot.timeout_s,
             link_delay_s=min(self.autopilot.session.clock.one_way_s, _LINK_DELAY_MAX_S),
+            link_delay_std_s=self.autopilot.session.clock.one_way_std_s,
         )
         self._measurements, self._command = [], None
         self._stepped_ns, self._stepped_own_ns = local_ns, None if state.own is None else state.own.t_ns

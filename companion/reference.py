@@ -11,12 +11,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from companion.data import Array, OwnState, Setpoint
-from companion.planning.guidance import ReferenceState
+from companion.planning.guidance import ReferenceState, Trajectory
 from link.records import replace
 
 _HISTORY_S = 0.6  # longer than any telemetry is late
 _CORRECTION_GAIN_HZ = 0.5  # slower than the autopilot's own position loop (about 1 rad/s) by a factor of two
 _CORRECTION_MAX_M = 1.5
+_CAUGHT_UP_MAX_M = 1.0  # made up for by velocity at a time; more would be a chase
 _LEARNING_ERROR_MAX_M = 1.0  # a larger difference is a transient, not a lag
 
 
@@ -26,12 +27,14 @@ class Tracking:
 
     Attributes:
         past: (t_ns, position (3,) in W), oldest first.
-        error_m: distance of the drone from the model at the time of the drone's newest report.
+        behind_enu_m: (3,) from the drone to the model at the time of the drone's newest report.
+        error_m: length of that.
         correction_enu_m: (3,) added to the setpoints' position.
         compared_ns: time of the newest report that was compared.
     """
 
     past: tuple[tuple[int, Array], ...] = ()
+    behind_enu_m: Array = field(default_factory=lambda: np.zeros(3))
     error_m: float = 0.0
     correction_enu_m: Array = field(default_factory=lambda: np.zeros(3))
     compared_ns: int = 0
@@ -58,7 +61,7 @@ def compare(tracking: Tracking, own: OwnState, *, learn: bool) -> Tracking:
     difference = _position_at(tracking, own.t_ns) - np.array(own.position_enu_m)
     error_m = math.hypot(*difference.tolist())
     since_s = (own.t_ns - tracking.compared_ns) * 1e-9 if tracking.compared_ns else 0.0
-    tracking = replace(tracking, error_m=error_m, compared_ns=own.t_ns)
+    tracking = replace(tracking, behind_enu_m=difference, error_m=error_m, compared_ns=own.t_ns)
     if not learn or error_m > _LEARNING_ERROR_MAX_M:
         return tracking
     step = _CORRECTION_GAIN_HZ * min(since_s, _HISTORY_S) * difference * np.array([1.0, 1.0, 0.0])
@@ -81,10 +84,14 @@ def _position_at(tracking: Tracking, t_ns: int) -> Array:
     return later[1]
 
 
-def pressing(reference: ReferenceState, acceleration_m_s2: float) -> ReferenceState:
-    """Return the model with a downward acceleration, so that the thrust drops and the gear holds on to the pad."""
-    acceleration = np.array([*reference.acceleration_enu_m_s2[:2], -acceleration_m_s2])
-    return replace(reference, acceleration_enu_m_s2=acceleration)
+def pressing(reference: ReferenceState, acceleration_m_s2: float, duration_s: float) -> ReferenceState:
+    """Return the model pressed down for `duration_s`, so that the thrust drops and the gear holds on to the pad."""
+    faster_m_s = acceleration_m_s2 * duration_s
+    return ReferenceState(
+        position_enu_m=reference.position_enu_m - np.array([0.0, 0.0, 0.5 * faster_m_s * duration_s]),
+        velocity_enu_m_s=reference.velocity_enu_m_s - np.array([0.0, 0.0, faster_m_s]),
+        acceleration_enu_m_s2=np.array([*reference.acceleration_enu_m_s2[:2], -acceleration_m_s2]),
+    )
 
 
 def not_falling(reference: ReferenceState, lowest_enu_m: float, duration_s: float) -> ReferenceState:
@@ -114,6 +121,22 @@ def carried(reference: ReferenceState, duration_s: float) -> ReferenceState:
     )
 
 
+def planned(trajectory: Trajectory, offset_s: float) -> ReferenceState:
+    """Return the model `offset_s` after its plan was made; between two instants of a plan the jerk is constant."""
+    last = len(trajectory.offset_s) - 2
+    node = min(max(int(np.searchsorted(trajectory.offset_s, offset_s, side="right")) - 1, 0), last)
+    start_s, end_s = trajectory.offset_s[node : node + 2].tolist()
+    position, velocity = trajectory.position_enu_m[node], trajectory.velocity_enu_m_s[node]
+    acceleration = trajectory.acceleration_enu_m_s2[node]
+    jerk = (trajectory.acceleration_enu_m_s2[node + 1] - acceleration) / (end_s - start_s)
+    t_s = offset_s - start_s
+    return ReferenceState(
+        position_enu_m=position + (velocity + (acceleration / 2.0 + jerk * t_s / 6.0) * t_s) * t_s,
+        velocity_enu_m_s=velocity + (acceleration + jerk * t_s / 2.0) * t_s,
+        acceleration_enu_m_s2=acceleration + jerk * t_s,
+    )
+
+
 def setpoint_at(
     reference: ReferenceState, correction_enu_m: Array, t_ns: int, yaw_rad: float, *, position_only: bool
 ) -> Setpoint:
@@ -128,3 +151,18 @@ def setpoint_at(
         acceleration_enu_m_s2=None if position_only else (ax, ay, az),
         yaw_rad=yaw_rad,
     )
+
+
+def by_velocity(setpoint: Setpoint, behind_enu_m: Array, gain_hz: float) -> Setpoint:
+    """Return the setpoint with a free place: what the drone is off its place is made up for by the velocity asked for.
+
+    Args:
+        setpoint: with a velocity.
+        behind_enu_m: (3,) from the drone to where it was asked to be.
+        gain_hz: velocity per distance.
+    """
+    if setpoint.velocity_enu_m_s is None:
+        return setpoint
+    (vx, vy, vz), (x_m, y_m, _) = setpoint.velocity_enu_m_s, behind_enu_m.tolist()
+    gain_hz *= _CAUGHT_UP_MAX_M / max(math.hypot(x_m, y_m), _CAUGHT_UP_MAX_M)
+    return replace(setpoint, velocity_enu_m_s=(vx + gain_hz * x_m, vy + gain_hz * y_m, vz), is_place_free=True)

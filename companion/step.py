@@ -8,7 +8,7 @@ from companion.conditions import HELD_UP, holds
 from companion.config import CompanionConfig
 from companion.contact import may_force_motors_off, signs_of
 from companion.data import Forecast, OwnState
-from companion.flying import fly, setpoint
+from companion.flying import fly, has_free_place, setpoint
 from companion.pad import PadPath, pad_path
 from companion.pad_height import pad_raised_m, with_pad_raised
 from companion.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
@@ -48,7 +48,7 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
     memory, plan = fly(memory, situation, inputs, system)
     memory, commands = _drive(memory, situation, inputs, system.config)
     outputs = StepOutputs(
-        setpoint=setpoint(memory, inputs, system.config),
+        setpoint=setpoint(memory, inputs, system.config, plan),
         commands=commands,
         text=_news(before, memory),
         reply=reply,
@@ -74,7 +74,8 @@ def _estimate(memory: StepMemory, inputs: StepInputs, system: System) -> StepMem
     if inputs.measurements:
         estimator = system.estimator.fuse(estimator, inputs.measurements)
     if inputs.own is not None and memory.reference is not None:
-        learn = system.config.corrects_lag and memory.phase in LANDING_PHASES
+        flies_place = memory.phase in LANDING_PHASES and not has_free_place(memory, inputs, system.config)
+        learn = system.config.corrects_lag and flies_place
         tracking = compare(tracking, inputs.own, learn=learn)
     surprise = looked_back(memory.surprise, system.estimator, estimator, inputs.t_ns, system.config.descent)
     return replace(memory, estimator=estimator, tracking=tracking, surprise=surprise)

@@ -44,6 +44,7 @@ class StepInputs:
         command: an operator's wish.
         leaving: the companion is about to end, so the autopilot is to hover by itself.
         link_delay_s: from the companion to the autopilot.
+        link_delay_std_s: its standard deviation.
         timeout_s: for how long the autopilot goes on without a setpoint.
     """
 
@@ -59,6 +60,7 @@ class StepInputs:
     command: Command | None = None
     leaving: bool = False
     link_delay_s: float = 0.0
+    link_delay_std_s: float = 0.0
     timeout_s: float = 0.0
 
 

@@ -105,6 +105,10 @@ class Driver(Protocol):
         """Whether it moves a setpoint on with its velocity and acceleration until the next one comes."""
 
     @property
+    def holds_height_alone(self) -> bool:
+        """Whether it flies setpoints whose position is a height only, with the velocity on all axes."""
+
+    @property
     def speed_parameters(self) -> tuple[str, ...]:
         """Those among them that bound the horizontal speed, for messages."""
 

@@ -4,6 +4,7 @@ from companion.data import Setpoint
 from link.frames import ned_from_enu, yaw_ned_from_enu
 from link.mavlink.dialect import Message, mavlink
 
+_IGNORE_PLACE = 0b0000_0000_0000_0011
 _IGNORE_VELOCITY = 0b0000_0000_0011_1000
 _IGNORE_ACCELERATION = 0b0000_0001_1100_0000
 _IGNORE_YAW_RATE = 0b0000_1000_0000_0000
@@ -25,6 +26,7 @@ def local_ned_setpoint(setpoint: Setpoint, boot_ms: int, target_system: int) -> 
     Source: MAVLink common, POSITION_TARGET_TYPEMASK.
     """
     mask = _IGNORE_YAW_RATE
+    mask |= _IGNORE_PLACE if setpoint.is_place_free else 0
     mask |= _IGNORE_VELOCITY if setpoint.velocity_enu_m_s is None else 0
     mask |= _IGNORE_ACCELERATION if setpoint.acceleration_enu_m_s2 is None else 0
     position = ned_from_enu(setpoint.position_enu_m)

@@ -12,6 +12,7 @@ and so do the messages whose stamps are mapped, so these cuts are left alone.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from statistics import pstdev
 from typing import NamedTuple
 
 from link.mavlink.clock_line import ClockLine, ClockPair, fit_clock_line
@@ -79,6 +80,7 @@ class ClockMap:
         local_to_boot: None before the first round trip.
         boot_to_utc: None before the first SYSTEM_TIME.
         one_way_s: how long a message is under way: half the median round trip, 0 while there was none.
+        one_way_std_s: standard deviation of that, when both ways are as unsteady as each other; 0 while it is unknown.
     """
 
     round_trips: tuple[RoundTrip, ...] = ()
@@ -86,6 +88,7 @@ class ClockMap:
     local_to_boot: ClockLine | None = None
     boot_to_utc: ClockLine | None = None
     one_way_s: float = 0.0
+    one_way_std_s: float = 0.0
 
     @property
     def is_utc_known(self) -> bool:
@@ -156,6 +159,7 @@ def with_round_trip(clock: ClockMap, trip: RoundTrip, config: ClockConfig = DEFA
         round_trips=trips,
         local_to_boot=_fit(_pairs(trips, config), line, config),
         one_way_s=0.5e-9 * durations_ns[len(durations_ns) // 2],
+        one_way_std_s=1e-9 * pstdev(durations_ns) * math.sqrt(0.5),
     )
 
 

@@ -7,14 +7,15 @@ import pytest
 
 from companion.config import CompanionConfig
 from companion.data import OwnState
-from companion.flying import limits_now
+from companion.levelling import limits_now
 from companion.phases import Phase
-from companion.situation import drone_now
-from companion.step_data import StepMemory
-from tests.companion.facts import NOW_NS, pad_at, situation
+from companion.situation import Situation, drone_now
+from companion.step_data import StepInputs, StepMemory
+from tests.companion.facts import NOW_NS, drone_at, pad_at, situation
 
 CONFIG = CompanionConfig()
 LIMITS = CONFIG.limits.flight_limits()
+INPUTS = StepInputs(t_ns=NOW_NS, limits=LIMITS)
 LEVEL_M_S2 = CONFIG.touchdown.level_acceleration_min_m_s2
 DESCENDS = replace(StepMemory(), phase=Phase.DESCEND)
 
@@ -23,7 +24,7 @@ def acceleration_max(height_m: float, lean: float, memory: StepMemory = DESCENDS
     here = situation(height_m)
     assert here.drone is not None
     leaning = replace(here, drone=replace(here.drone, lean=lean))
-    return limits_now(memory, leaning, LIMITS, CONFIG).acceleration_max_m_s2
+    return limits_now(memory, leaning, INPUTS, CONFIG).acceleration_max_m_s2
 
 
 @pytest.mark.parametrize(
@@ -49,7 +50,41 @@ def test_a_drone_above_a_turning_pad_is_levelled_by_a_share_of_that_turn(turns_m
     pad = pad_at()
     turn = np.tile([0.6 * turns_m_s2, -0.8 * turns_m_s2, 0.0], (len(pad.offset_s), 1))
     here = situation(0.05, pad=replace(pad, acceleration_enu_m_s2=turn))
-    assert limits_now(DESCENDS, here, LIMITS, CONFIG).acceleration_max_m_s2 == pytest.approx(level_m_s2)
+    assert limits_now(DESCENDS, here, INPUTS, CONFIG).acceleration_max_m_s2 == pytest.approx(level_m_s2)
+
+
+def _sinking(height_m: float, sink_m_s: float) -> Situation:
+    here = situation(height_m)
+    return replace(here, drone=drone_at(height_m, 0.0, (0.0, 0.0, -sink_m_s), pad=pad_at()))
+
+
+@pytest.mark.parametrize(("sink_m_s", "late_s", "levels"), [(0.4, 0.08, True), (0.4, 0.0, False), (0.2, 0.08, False)])
+def test_a_drone_is_levelled_earlier_by_what_its_setpoints_may_be_late(
+    sink_m_s: float, late_s: float, *, levels: bool
+) -> None:
+    facts = _sinking(CONFIG.touchdown.level_height_m + 0.025, sink_m_s)  # 0.4 m/s for 0.08 s are 32 mm
+    inputs = replace(INPUTS, link_delay_std_s=late_s / CONFIG.touchdown.level_late_stds)
+    limit_m_s2 = limits_now(DESCENDS, facts, inputs, CONFIG).acceleration_max_m_s2
+    assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
+
+
+@pytest.mark.parametrize(
+    ("estimated_m", "seen_m", "beside_m", "levels"),
+    [
+        (0.3, 0.05, 0.0, True),
+        (0.05, 0.3, 0.0, False),
+        (0.05, None, 0.0, True),
+        (0.05, 1.6, 0.0, True),
+        (0.05, 0.3, 0.7, True),
+    ],
+    ids=["nearer than estimated", "farther", "nothing seen", "the road is seen", "not above the pad"],
+)
+def test_the_height_to_be_levelled_at_is_what_a_range_finder_has_just_seen_of_the_pad(
+    estimated_m: float, seen_m: float | None, beside_m: float, *, levels: bool
+) -> None:
+    facts = replace(situation(estimated_m, beside_m), range_height_m=seen_m, range_carried_m=seen_m)
+    limit_m_s2 = limits_now(DESCENDS, facts, INPUTS, CONFIG).acceleration_max_m_s2
+    assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
 
 
 def test_nothing_but_a_descent_and_its_abort_is_levelled() -> None:

@@ -5,9 +5,19 @@ import math
 import numpy as np
 import pytest
 
-from companion.data import OwnState
-from companion.planning.guidance import ReferenceState
-from companion.reference import Tracking, carried, compare, not_falling, remember, setpoint_at
+from companion.data import Array, OwnState
+from companion.planning.guidance import ReferenceState, Trajectory
+from companion.reference import (
+    Tracking,
+    by_velocity,
+    carried,
+    compare,
+    not_falling,
+    planned,
+    pressing,
+    remember,
+    setpoint_at,
+)
 
 STEP_NS = 20_000_000
 
@@ -53,6 +63,7 @@ def test_nothing_is_learnt_unless_asked() -> None:
     tracking = _fly_with_lag(0.4, 200, learn=False)
     assert not np.any(tracking.correction_enu_m)
     np.testing.assert_allclose(tracking.error_m, 0.4, atol=1e-6)
+    np.testing.assert_allclose(tracking.behind_enu_m, [0.4, 0.0, 0.0], atol=1e-6)
 
 
 def test_transient_is_not_learnt() -> None:
@@ -110,3 +121,48 @@ def test_setpoint_is_the_model_with_the_correction() -> None:
     np.testing.assert_allclose(setpoint.position_enu_m, [10.1, 0.3, 4.0])
     assert setpoint.velocity_enu_m_s == (5.0, 0.0, 0.0)
     assert setpoint_at(_state(2.0, 5.0), np.zeros(3), 0, 0.3, position_only=True).velocity_enu_m_s is None
+
+
+def _cubic(t_s: Array) -> Trajectory:
+    """A motion of constant jerk, at `t_s` (n,)."""
+    p, v, a, j = (np.array(one) for one in ([1.0, 2.0, 3.0], [4.0, -1.0, 0.3], [0.5, 2.0, -0.7], [3.0, -5.0, 1.0]))
+    t = t_s[:, None]
+    return Trajectory(
+        offset_s=t_s,
+        position_enu_m=p + v * t + a * t**2 / 2.0 + j * t**3 / 6.0,
+        velocity_enu_m_s=v + a * t + j * t**2 / 2.0,
+        acceleration_enu_m_s2=a + j * t,
+    )
+
+
+@pytest.mark.parametrize("offset_s", [0.0, 0.013, 0.11, 0.3, 0.37])
+def test_model_between_two_instants_of_its_plan_is_the_motion_of_their_jerk(offset_s: float) -> None:
+    model, truth = planned(_cubic(np.array([0.0, 0.02, 0.13, 0.3])), offset_s), _cubic(np.array([offset_s]))
+    np.testing.assert_allclose(model.position_enu_m, truth.position_enu_m[0])
+    np.testing.assert_allclose(model.velocity_enu_m_s, truth.velocity_enu_m_s[0])
+    np.testing.assert_allclose(model.acceleration_enu_m_s2, truth.acceleration_enu_m_s2[0])
+
+
+def test_model_that_is_pressed_falls_as_if_nothing_held_it() -> None:
+    level = _state(2.0, 5.0)
+    pressed = pressing(level, 9.0, 0.13)
+    np.testing.assert_allclose(level.position_enu_m - pressed.position_enu_m, [0.0, 0.0, 0.5 * 9.0 * 0.13**2])
+    np.testing.assert_allclose(pressed.velocity_enu_m_s, [5.0, 0.0, -9.0 * 0.13])
+    np.testing.assert_allclose(pressed.acceleration_enu_m_s2, [0.0, 0.0, -9.0])
+
+
+@pytest.mark.parametrize(
+    ("behind_m", "faster_m_s"),
+    [((0.3, -0.2, 0.5), (0.45, -0.3)), ((3.0, -4.0, 0.0), (0.9, -1.2))],
+    ids=["in proportion", "bounded"],
+)
+def test_free_place_is_made_up_for_by_the_horizontal_velocity(
+    behind_m: tuple[float, float, float], faster_m_s: tuple[float, float]
+) -> None:
+    wanted = setpoint_at(_state(2.0, 5.0), np.zeros(3), 0, 0.3, position_only=False)
+    free = by_velocity(wanted, np.array(behind_m), 1.5)
+    assert free.is_place_free
+    assert free.velocity_enu_m_s == pytest.approx((5.0 + faster_m_s[0], faster_m_s[1], 0.0))
+    assert free.position_enu_m == wanted.position_enu_m
+    held = setpoint_at(_state(2.0, 5.0), np.zeros(3), 0, 0.3, position_only=True)
+    assert by_velocity(held, np.array(behind_m), 1.5) is held

@@ -51,6 +51,14 @@ def test_a_jittering_link_is_averaged_below_its_jitter() -> None:
     assert math.sqrt(np.mean(np.square(errors_ns))) < 12 * MS  # one exchange alone: 20 ms
 
 
+@pytest.mark.parametrize("jitter_s", [0.0, 0.004, 0.05])
+def test_the_deviation_of_the_delay_is_that_of_one_way(jitter_s: float) -> None:
+    clock, _ = exchanged(1e-5, (0.1 - jitter_s, 0.1 + jitter_s), 60.0, seed=5)
+    uniform_s = jitter_s / math.sqrt(3.0)
+    assert clock.one_way_std_s == pytest.approx(uniform_s, rel=0.3, abs=1e-6)
+    assert ClockMap().one_way_std_s == 0.0
+
+
 def test_the_stated_uncertainty_is_that_of_the_errors() -> None:
     shares = []
     for seed in range(40):
