@@ -12,8 +12,8 @@ from companion.config import CompanionConfig
 from companion.phases import Phase
 from companion.situation import Approach, Situation
 
-SPEED_MARGIN = 1.15
-"""Of the vehicle's speed: less leaves nothing to catch up with."""
+SPEED_SHARE_MIN = 1.15
+"""Of the vehicle's speed: with less there is nothing to catch up with, and no landing is begun."""
 
 _BEFORE_A_CHASE = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD, Phase.WAITING, Phase.ABORT})
 
@@ -33,14 +33,14 @@ def _vehicle_speed_m_s(s: Situation) -> float:
 def _is_too_fast(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
     if s.limits is None or fix_too_old(s, None, c):
         return False
-    return SPEED_MARGIN * _vehicle_speed_m_s(s) > s.limits.speed_max_m_s
+    return SPEED_SHARE_MIN * _vehicle_speed_m_s(s) > s.limits.speed_max_m_s
 
 
 def _too_fast(s: Situation, c: CompanionConfig) -> str:
     speed_m_s = _vehicle_speed_m_s(s)
     allowed_m_s = c.limits.speed_max_m_s if s.limits is None else s.limits.speed_max_m_s
     name = " or ".join(s.speed_limited_by) if allowed_m_s < c.limits.speed_max_m_s else "limits.speed_max_m_s"
-    needs = f"vehicle at {speed_m_s:.1f} m/s needs {SPEED_MARGIN * speed_m_s:.1f} m/s"
+    needs = f"vehicle at {speed_m_s:.1f} m/s needs {SPEED_SHARE_MIN * speed_m_s:.1f} m/s"
     return f"{needs}, the limit is {allowed_m_s:.1f}: raise {name} or drive slower"
 
 

@@ -14,7 +14,18 @@ def with_sensor(view: AutopilotView, message: Message, clock: ClockMap, up_m: fl
     """Return the view after a DISTANCE_SENSOR, with the drone at `up_m`, or a BATTERY_STATUS, only the first of all."""
     if message.get_type() == "DISTANCE_SENSOR":
         return replace(view, range_down=_range_reading(message, clock, up_m) or view.range_down)
-    return replace(view, battery_share=_battery_share(message)) if message.id == 0 else view
+    return replace(view, battery_share=battery_share(message)) if is_of_first_battery(message) else view
+
+
+def is_of_first_battery(message: Message) -> bool:
+    """Return whether a BATTERY_STATUS is of the battery that flies the drone; others feed a payload."""
+    return bool(message.id == 0)
+
+
+def battery_share(message: Message) -> float | None:
+    """Return what a BATTERY_STATUS says is left, 0 to 1, None when it is not told."""
+    percent: int = message.battery_remaining
+    return percent / 100.0 if percent >= 0 else None
 
 
 def _range_reading(message: Message, clock: ClockMap, up_m: float | None) -> RangeReading | None:
@@ -25,9 +36,3 @@ def _range_reading(message: Message, clock: ClockMap, up_m: float | None) -> Ran
     if t_ns is None or not (is_within and looks_down) or message.signal_quality == _INVALID:
         return None
     return RangeReading(t_ns=t_ns, distance_m=message.current_distance * _CM, up_m=up_m)
-
-
-def _battery_share(message: Message) -> float | None:
-    """Return what is left of a battery, 0 to 1, None when it is not told."""
-    percent: int = message.battery_remaining
-    return percent / 100.0 if percent >= 0 else None

@@ -1,11 +1,10 @@
 """The landing's status for the world, from a step's memory and facts."""
 
-import math
-
 from companion.config import CompanionConfig, DescentConfig
 from companion.phases import Phase
 from companion.situation import Approach, Situation, approach
 from companion.step_data import StepMemory
+from companion.targets import sink_stretches
 from companion.waiting import why_held_up
 from link.messages import LandingStatus
 
@@ -45,9 +44,6 @@ def _reason(memory: StepMemory, situation: Situation, config: CompanionConfig) -
 
 def _time_to_contact_s(relative: Approach, descent: DescentConfig) -> float:
     """Return how long the sink profile takes from the present height: fast, slowing down, slow."""
-    fast_m_s, slow_m_s, gain_hz = descent.descent_rate_max_m_s, descent.touchdown_sink_rate_m_s, descent.descent_gain_hz
-    fast_down_to_m, slow_from_m = fast_m_s / gain_hz, slow_m_s / gain_hz
-    fast_s = max(relative.height_m - fast_down_to_m, 0.0) / fast_m_s
-    slowing_from_m = min(relative.height_m, fast_down_to_m)
-    slowing_s = math.log(slowing_from_m / slow_from_m) / gain_hz if slowing_from_m > slow_from_m else 0.0
-    return fast_s + slowing_s + max(min(slowing_from_m, slow_from_m), 0.0) / slow_m_s
+    stretches = sink_stretches(relative.height_m, descent)
+    slow_s = max(stretches.slow_from_m, 0.0) / descent.touchdown_sink_rate_m_s
+    return stretches.fast_s + stretches.slowing_s + slow_s

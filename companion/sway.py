@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 from companion.config import DescentConfig
 from companion.data import OwnState
+from companion.gravity import GRAVITY_M_S2
 from link.frames import rotate
 
-GRAVITY_M_S2 = 9.80665
 _UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady
 _MEAN_S = 1.0  # longer than a gust's beginning, shorter than the turn of a curve
 

@@ -6,6 +6,7 @@ its feet, which stand on the pad after the landing.
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -174,6 +175,35 @@ def _chase_height_m(pad: PadPath, reference: ReferenceState, config: CompanionCo
     return min(config.descent.align_height_m + 0.5 * beyond_m, config.chase.height_m)
 
 
+class SinkStretches(NamedTuple):
+    """A descent's three stretches one after the other: at the largest rate, slowing down exponentially, at the slowest.
+
+    Attributes:
+        fast_s: how long the first takes.
+        slowing_from_m: height over the pad at which the second begins.
+        slowing_s: how long it takes.
+        slow_from_m: height at which the third begins.
+    """
+
+    fast_s: float
+    slowing_from_m: float
+    slowing_s: float
+    slow_from_m: float
+
+
+def sink_stretches(height_now_m: float, config: DescentConfig) -> SinkStretches:
+    """Return how a descent from a height over the pad goes: it sinks at the height times the gain, within limits."""
+    fast_m_s, slow_m_s, gain_hz = config.descent_rate_max_m_s, config.touchdown_sink_rate_m_s, config.descent_gain_hz
+    slowing_from_m = min(height_now_m, fast_m_s / gain_hz)
+    slow_from_m = min(slowing_from_m, slow_m_s / gain_hz)
+    return SinkStretches(
+        fast_s=max(height_now_m - slowing_from_m, 0.0) / fast_m_s,
+        slowing_from_m=slowing_from_m,
+        slowing_s=math.log(slowing_from_m / slow_from_m) / gain_hz if slowing_from_m > slow_from_m else 0.0,
+        slow_from_m=slow_from_m,
+    )
+
+
 def sink_profile(height_now_m: float, offset_s: Array, config: DescentConfig) -> tuple[Array, Array]:
     """Return height over the pad (n,) and sink rate (n,) of a descent that slows down to the touchdown rate.
 
@@ -181,11 +211,7 @@ def sink_profile(height_now_m: float, offset_s: Array, config: DescentConfig) ->
     it goes on at the touchdown rate to the press depth, where it ends.
     """
     fast_m_s, slow_m_s, gain_hz = config.descent_rate_max_m_s, config.touchdown_sink_rate_m_s, config.descent_gain_hz
-    # Three stretches one after the other: at the largest rate, slowing down exponentially, at the touchdown rate.
-    slowing_from_m = min(height_now_m, fast_m_s / gain_hz)
-    fast_s = max(height_now_m - slowing_from_m, 0.0) / fast_m_s
-    slow_from_m = min(slowing_from_m, slow_m_s / gain_hz)
-    slowing_s = math.log(slowing_from_m / slow_from_m) / gain_hz if slowing_from_m > slow_from_m else 0.0
+    fast_s, slowing_from_m, slowing_s, slow_from_m = sink_stretches(height_now_m, config)
     slow_s = max(slow_from_m + config.press_depth_m, 0.0) / slow_m_s
     in_slowing_s = np.clip(offset_s - fast_s, 0.0, slowing_s)
     in_slow_s = np.clip(offset_s - fast_s - slowing_s, 0.0, slow_s)

@@ -13,7 +13,7 @@ from sim_autopilot.physics.airframe import GRAVITY_M_S2
 
 _RISE_ASKED_M = 0.1
 """A position setpoint this much above the drone asks for a take-off."""
-_RATE_FROM_M_S = 9.81 / 4.0
+_RATE_FROM_M_S = GRAVITY_M_S2 / 4.0
 """Below zero, where the ramp begins: gravity over the gain of the vertical velocity (PX4 MPC_Z_VEL_P_ACC)."""
 _LIFTED_SHARE = 0.25
 """Of the ramp; PX4 was seen to report IN_AIR 0.8 s after its 3 s ramp began, 1.4 s before the drone moved."""

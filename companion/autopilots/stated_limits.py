@@ -4,7 +4,8 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-_GRAVITY_M_S2 = 9.81
+from companion.gravity import GRAVITY_M_S2
+
 _STATED_MIN = 0.1  # m/s or degrees; a limit below this cannot be flown with
 _TILT_SHARE = 0.7  # of the tilt limit left to planned acceleration; the rest is for drag and wind
 
@@ -28,4 +29,4 @@ def stated(parameters: Mapping[str, float], names: Sequence[Named]) -> float:
 
 def acceleration_of_tilt_m_s2(tilt_deg: float) -> float:
     """Return the horizontal acceleration that may be planned under a tilt limit."""
-    return _TILT_SHARE * _GRAVITY_M_S2 * math.tan(math.radians(tilt_deg))
+    return _TILT_SHARE * GRAVITY_M_S2 * math.tan(math.radians(tilt_deg))

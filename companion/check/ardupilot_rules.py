@@ -5,7 +5,7 @@ WPNAV_SPEED in cm/s WP_SPD in m/s). Effects as measured on its software-in-the-l
 """
 
 from companion.check.findings import Level
-from companion.check.rules import GRADE_MAX, SPEED_MARGIN, ParameterRule, Spelling, at_least, tilt_needed_deg
+from companion.check.rules import GRADE_MAX, SPEED_SHARE_ADVISED, ParameterRule, Spelling, at_least, tilt_needed_deg
 
 _CENTI = 100.0
 _SINK_M_S = 1.2  # the companion's own largest, `descent.descent_rate_max_m_s`
@@ -34,7 +34,7 @@ ARDUPILOT_RULES = (
         reason="a tilt limit of its own for flight by position, beside the general one; 0 leaves it to that",
     ),
     at_least(
-        lambda v: SPEED_MARGIN * v,
+        lambda v: SPEED_SHARE_ADVISED * v,
         step=1.0,
         spellings=(Spelling("WP_SPD"), Spelling("WPNAV_SPEED", _CENTI)),
         unit="m/s",

@@ -4,7 +4,7 @@ Source: PX4 parameter reference, 1.16 and 1.17; effects as measured on its softw
 """
 
 from companion.check.findings import Level
-from companion.check.rules import GRADE_MAX, SPEED_MARGIN, ParameterRule, Spelling, at_least, tilt_needed_deg
+from companion.check.rules import GRADE_MAX, SPEED_SHARE_ADVISED, ParameterRule, Spelling, at_least, tilt_needed_deg
 
 _SINK_M_S = 1.2  # the companion's own largest, `descent.descent_rate_max_m_s`
 _CLIMB_M_S = 2.0
@@ -15,7 +15,7 @@ _DLL_ACT_STOPS = 5  # flight termination; 6 disarms
 
 PX4_RULES = (
     at_least(
-        lambda v: SPEED_MARGIN * v,
+        lambda v: SPEED_SHARE_ADVISED * v,
         step=1.0,
         spellings=(Spelling("MPC_XY_VEL_MAX"),),
         unit="m/s",
@@ -47,7 +47,7 @@ PX4_RULES = (
         reason="the climb of an abort, away from a deck that drives uphill",
     ),
     at_least(
-        lambda v: SPEED_MARGIN * v,
+        lambda v: SPEED_SHARE_ADVISED * v,
         step=1.0,
         spellings=(Spelling("LNDMC_XY_VEL_MAX"),),
         unit="m/s",

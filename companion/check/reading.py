@@ -6,6 +6,7 @@ from collections import Counter, deque
 from companion.check.assessment import MOTION, RULES
 from companion.check.observation import AutopilotFacts
 from companion.check.rules import names_of
+from companion.sensor_messages import battery_share, is_of_first_battery
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import Event, LinkFound, MessageReceived, ParameterMissing, ParameterRead
 from link.mavlink.session import MavlinkSession
@@ -134,6 +135,8 @@ class Reader:
 
     def _hear(self, message: Message, t_ns: int) -> None:
         name = message.get_type()
+        if name == "BATTERY_STATUS" and not is_of_first_battery(message):
+            return
         self._newest[name] = message
         if name == "PARAM_VALUE":
             self.parameter_types[message.param_id] = message.param_type
@@ -157,7 +160,7 @@ class Reader:
 
     def _battery_share(self) -> float | None:
         message = self._newest.get("BATTERY_STATUS")
-        return None if message is None or message.battery_remaining < 0 else message.battery_remaining / 100.0
+        return None if message is None else battery_share(message)
 
 
 def _name(message_id: int) -> str:

@@ -8,10 +8,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from companion.check.findings import Finding, Level, passed
+from companion.gravity import GRAVITY_M_S2
 
-GRAVITY_M_S2 = 9.81
-SPEED_MARGIN = 1.2
-"""Of the vehicle's speed: the drone has to catch up and to correct."""
+SPEED_SHARE_ADVISED = 1.2
+"""Of the vehicle's speed: the drone has to catch up and to correct. More than what a landing is refused for, so that a
+vehicle a little faster than it was said to be does not stop one."""
 
 GRADE_MAX = 0.05
 """Of a road; on it the deck itself climbs or sinks."""

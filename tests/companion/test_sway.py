@@ -7,9 +7,10 @@ import pytest
 
 from companion.config import CompanionConfig
 from companion.data import OwnState
+from companion.gravity import GRAVITY_M_S2
 from companion.phases import Phase
 from companion.step_data import StepMemory
-from companion.sway import GRAVITY_M_S2, Sway, felt, sways
+from companion.sway import Sway, felt, sways
 from companion.targets import pad_aim
 from companion.waiting import waits_for_calm
 from tests.companion.facts import GEAR_M, NOW_NS, pad_at, reference_at, situation

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from companion.check.ardupilot_rules import ARDUPILOT_RULES
 from companion.check.findings import Finding, Level
 from companion.check.px4_rules import PX4_RULES
-from companion.check.rules import ParameterRule, Spelling, judged, names_of
+from companion.check.rules import SPEED_SHARE_ADVISED, ParameterRule, Spelling, judged, names_of
+from companion.feasibility import SPEED_SHARE_MIN
 
 ALL = [*PX4_RULES, *ARDUPILOT_RULES]
 SPELLED = [(rule, spelling) for rule in ALL for spelling in rule.spellings]
@@ -113,3 +114,7 @@ def test_tilt_limit_by_position_has_to_be_off_or_large_enough(value: float, leve
 def test_stopping_the_motors_for_a_lost_ground_station_is_a_failure(action: float, level: Level) -> None:
     found = {one.name: one.level for one in judged(PX4_RULES, {**PX4_DEFAULTS, "NAV_DLL_ACT": action}, 5.0)}
     assert found["NAV_DLL_ACT"] is level
+
+
+def test_a_vehicle_that_a_check_advises_for_is_not_refused_in_flight() -> None:
+    assert SPEED_SHARE_ADVISED > SPEED_SHARE_MIN
