@@ -2,8 +2,8 @@
 
 Frames: ENU (east, north, up) and FLU (forward, left, up) inside the project; NED (north, east, down) and FRD
 (forward, right, down) on MAVLink. Quaternions are Hamilton, order wxyz, unit; `q_WB` turns B's coordinates into W's.
-Every function takes any three or four numbers (tuples, lists, arrays) and returns tuples of floats, except the
-rotation matrices, which are (3, 3) float64 arrays. Angles are in radians.
+Every function takes any three or four numbers (tuples, lists, arrays) and returns tuples of floats. Angles are in
+radians.
 Source: Diebel, Representing Attitude: Euler Angles, Unit Quaternions, and Rotation Vectors, 2006.
 """
 
@@ -165,32 +165,3 @@ def roll_pitch_yaw_of(q_WB: Numbers) -> Vector3:
     # rounding may carry the sine of a vertical attitude past 1
     pitch = asin(sin_pitch) if abs(sin_pitch) < 1.0 else copysign(0.5 * pi, sin_pitch)
     return (roll, pitch, yaw_of((w, x, y, z)))
-
-
-def matrix_of(q_AB: Numbers) -> Array:
-    """Return R_AB (3, 3), for which `R_AB @ r_B` is `r_A`."""
-    w, x, y, z = q_AB
-    return np.array(
-        (
-            (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
-            (2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
-            (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
-        )
-    )
-
-
-def quaternion_from_matrix(R_AB: Array) -> Quaternion:
-    """Return q_AB, with w >= 0, of a rotation matrix (3, 3).
-
-    Source: Shepperd, Quaternion from Rotation Matrix, 1978: divides by the largest component.
-    """
-    (a, b, c), (d, e, f), (g, h, i) = R_AB.tolist()
-    squares = (1.0 + a + e + i, 1.0 + a - e - i, 1.0 - a + e - i, 1.0 - a - e + i)
-    largest = squares.index(max(squares))
-    columns = (
-        (squares[0], h - f, c - g, d - b),
-        (h - f, squares[1], b + d, c + g),
-        (c - g, b + d, squares[2], f + h),
-        (d - b, c + g, f + h, squares[3]),
-    )
-    return normalized(columns[largest])

@@ -66,11 +66,6 @@ class ProcessGroup:
     ) -> None:
         self._stop()
 
-    @property
-    def process_ids(self) -> dict[str, int]:
-        """The process id of each program, by name."""
-        return {name: process.pid for name, process in self._processes.items()}
-
     def check(self) -> None:
         """Raise when a program has ended by itself.
 

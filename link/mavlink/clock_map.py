@@ -115,24 +115,9 @@ class ClockMap:
             return local_ns
         return self.boot_to_utc.y_ns(self.local_to_boot.y_ns(local_ns))
 
-    def utc_to_local_ns(self, utc_ns: int) -> int:
-        """Local time at a UTC, the inverse of `local_to_utc_ns`."""
-        if self.boot_to_utc is None or self.local_to_boot is None:
-            return utc_ns
-        return self.local_to_boot.x_ns(self.boot_to_utc.x_ns(utc_ns))
-
     def local_to_boot_std_ns(self, local_ns: int) -> float | None:
         """Standard deviation of `local_to_boot_ns` by the scatter that the link is known for, None when unknown."""
         return None if self.local_to_boot is None else self.local_to_boot.std_ns(local_ns)
-
-    def boot_to_utc_std_ns(self, boot_ns: int) -> float | None:
-        """Standard deviation of `boot_to_utc_ns` while SYSTEM_TIME is known, else None."""
-        return None if self.boot_to_utc is None else self.boot_to_utc.std_ns(boot_ns)
-
-    @property
-    def asymmetry_max_ns(self) -> int | None:
-        """What a link slower one way than the other may shift `local_to_boot_ns` by: half the quickest round trip."""
-        return min(trip.duration_ns for trip in self.round_trips) // 2 if self.round_trips else None
 
 
 def with_round_trip(clock: ClockMap, trip: RoundTrip, config: ClockConfig = DEFAULT_CLOCK_CONFIG) -> ClockMap:

@@ -13,7 +13,7 @@ import pytest
 
 from companion.autopilot_link import AutopilotLink
 from link.mavlink.session import MavlinkSession
-from link.mavlink.tlog import frames_of
+from tests.link.mavlink.tlog_frames import frames_of
 
 DATA = Path(__file__).parents[1] / "data"
 SYSTEM_ID = 1

@@ -104,20 +104,6 @@ def test_conjugate_undoes_a_rotation() -> None:
     assert frames.rotate(frames.conjugate(Q), frames.rotate(Q, vector)) == pytest.approx(vector, abs=1e-12)
 
 
-def test_matrix_equals_scipy() -> None:
-    for q in random_quaternions(50):
-        np.testing.assert_allclose(frames.matrix_of(q), scipy_rotation(q).as_matrix(), atol=1e-12)
-
-
-def test_matrix_gives_its_quaternion_back() -> None:
-    half_turns = [(0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0, 0.6, -0.8, 0.0)]
-    for q in random_quaternions(50):
-        assert frames.quaternion_from_matrix(frames.matrix_of(q)) == pytest.approx(q, abs=1e-9)
-    for q in half_turns:
-        back = frames.quaternion_from_matrix(frames.matrix_of(q))
-        assert abs(np.dot(back, q)) == pytest.approx(1.0, abs=1e-12)
-
-
 @given(ANGLES, st.floats(-1.5, 1.5), ANGLES)
 def test_roll_pitch_yaw_equals_scipy_and_returns(roll_rad: float, pitch_rad: float, yaw_rad: float) -> None:
     q = frames.quaternion_from_roll_pitch_yaw(roll_rad, pitch_rad, yaw_rad)

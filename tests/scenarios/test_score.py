@@ -4,12 +4,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from link.frames import conjugate, matrix_of, quaternion_from_roll_pitch_yaw, rotate
+from link.frames import conjugate, quaternion_from_roll_pitch_yaw, rotate
 from link.messages import BodyTruth, RotorTruth, Vector3
 from scenarios.catalogue import load_scenario
 from scenarios.score import Score, Tier, score
 from scenarios.touchdown import ScoreRules, rules_of
 from sim_autopilot.physics.contact import BLADE_REACH_M, CONTACT_POINTS_FLU_M
+from tests.rotations import matrix_of
 
 START_NS = 1_800_000_000_000_000_000
 STEP_S = 0.01

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from link.frames import matrix_of, rotate
+from link.frames import rotate
 from link.messages import BodyTruth, Vector3
 from scenarios.catalogue import load_scenario
 from scenarios.vehicle import (
@@ -19,6 +19,7 @@ from scenarios.vehicle import (
     vehicle_truth,
 )
 from scenarios.vehicle_node import plan_of
+from tests.rotations import matrix_of
 
 START_NS = 1_800_000_000_000_000_000
 STEP_NS = 10_000_000

@@ -99,7 +99,7 @@ def test_local_time_is_taken_for_utc_until_utc_is_known() -> None:
 def test_an_empty_map_knows_only_local_time() -> None:
     clock = ClockMap()
     assert clock.local_to_utc_ns(LOCAL_NS) == LOCAL_NS
-    assert (clock.local_to_boot_ns(LOCAL_NS), clock.boot_to_utc_ns(BOOT_NS), clock.asymmetry_max_ns) == (None,) * 3
+    assert (clock.local_to_boot_ns(LOCAL_NS), clock.boot_to_utc_ns(BOOT_NS)) == (None, None)
 
 
 @given(st.floats(-0.025, 0.025), st.integers(-60 * S, 60 * S))
@@ -111,7 +111,6 @@ def test_mapping_there_and_back_returns_to_the_start(drift: float, since_ns: int
     boot_ns = clock.local_to_boot_ns(local_ns)
     assert boot_ns is not None
     assert abs((clock.boot_to_local_ns(boot_ns) or 0) - local_ns) <= 2
-    assert abs(clock.utc_to_local_ns(clock.local_to_utc_ns(local_ns)) - local_ns) <= 4
 
 
 def test_a_step_of_the_boot_clock_is_followed_at_once() -> None:

@@ -8,7 +8,8 @@ from link.errors import UserError
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
 from link.mavlink.heartbeat import companion_heartbeat
-from link.mavlink.tlog import TlogWriter, frames_of
+from link.mavlink.tlog import TlogWriter
+from tests.link.mavlink.tlog_frames import frames_of
 
 T_NS = 1_795_220_114_620_015_999
 
