@@ -232,7 +232,7 @@ class AutopilotLink:
         """Ask until it is known, and from time to time after, since it can be moved."""
         if self.driver is None or not self.session.link_up:
             return
-        period_ns = _ASK_ORIGIN_NS if self.state.view.origin is None else _ASK_KNOWN_ORIGIN_NS
+        period_ns = _ASK_ORIGIN_NS if self.state.view.frame is None else _ASK_KNOWN_ORIGIN_NS
         if self._origin_asked_ns is None or local_ns - self._origin_asked_ns >= period_ns:
             self._origin_asked_ns = local_ns
             self.session.request_message(mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN, local_ns)

@@ -12,6 +12,7 @@ from companion.sensor_messages import with_sensor
 from companion.velocity_bias import velocity_bias, without
 from link.frames import enu_from_ned, flu_from_frd, normalized, quaternion_enu_flu_from_ned_frd
 from link.geodesy import Datum
+from link.local_frame import LocalFrame, Projection
 from link.mavlink.clock_map import ClockMap
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Quaternion, Vector3
@@ -79,9 +80,9 @@ def heard(state: AutopilotState, message: Message, clock: ClockMap, driver: Driv
             view = replace(state.view, landed=_landed(message.landed_state), taking_off=taking_off)
             state = replace(state, view=view)
         case "GPS_GLOBAL_ORIGIN":
-            state = _origin(state, message)
+            state = _origin(state, message, driver.projection)
         case "GPS_RAW_INT":
-            state = _geoid(state, message)
+            state = _geoid(state, message, driver.projection)
         case "DISTANCE_SENSOR" | "BATTERY_STATUS":
             up_m = None if state.own is None else state.own.position_enu_m[2]
             state = replace(state, view=with_sensor(state.view, message, clock, up_m))
@@ -180,7 +181,7 @@ def _landed(landed_state: int) -> bool | None:
     return bool(landed_state == mavlink.MAV_LANDED_STATE_ON_GROUND)
 
 
-def _origin(state: AutopilotState, message: Message) -> AutopilotState:
+def _origin(state: AutopilotState, message: Message, projection: Projection) -> AutopilotState:
     """Take the origin, whose altitude MAVLink has above mean sea level."""
     if abs(message.latitude) > _LATITUDE_MAX_1E7 or abs(message.longitude) > _LONGITUDE_MAX_1E7:
         return state
@@ -189,33 +190,42 @@ def _origin(state: AutopilotState, message: Message) -> AutopilotState:
         longitude_rad=radians(message.longitude * 1e-7),
         altitude_m=message.altitude * 1e-3,
     )
-    return _placed(replace(state, origin_msl=origin))
+    return _placed(replace(state, origin_msl=origin), projection)
 
 
-def _geoid(state: AutopilotState, message: Message) -> AutopilotState:
+def _geoid(state: AutopilotState, message: Message, projection: Projection) -> AutopilotState:
     """Take the height of mean sea level above the ellipsoid, which the vehicle's fixes refer to."""
     if message.fix_type < mavlink.GPS_FIX_TYPE_3D_FIX or message.alt_ellipsoid == 0:
         return state
     height_m = (message.alt_ellipsoid - message.alt) * 1e-3
     if abs(height_m - state.geoid_height_m) < _GEOID_STEP_M or abs(height_m) > _GEOID_MAX_M:
         return state
-    return _placed(replace(state, geoid_height_m=height_m))
+    return _placed(replace(state, geoid_height_m=height_m), projection)
 
 
-def _placed(state: AutopilotState) -> AutopilotState:
+def _placed(state: AutopilotState, projection: Projection) -> AutopilotState:
     """Put the origin above the ellipsoid; a moved one is counted, since the local frame has then moved."""
     if state.origin_msl is None:
         return state
     latitude_rad, longitude_rad = state.origin_msl.latitude_rad, state.origin_msl.longitude_rad
     altitude_m = state.origin_msl.altitude_m + state.geoid_height_m
     origin = Datum(latitude_rad=latitude_rad, longitude_rad=longitude_rad, altitude_m=altitude_m)
-    known = state.view.origin
-    if known is not None and (
-        abs(origin.latitude_rad - known.latitude_rad) < _ORIGIN_MOVED_RAD
-        and abs(origin.longitude_rad - known.longitude_rad) < _ORIGIN_MOVED_RAD
-        and abs(origin.altitude_m - known.altitude_m) < _ORIGIN_MOVED_M
-    ):
+    known = state.view.frame
+    if known is not None and known.projection is projection and _is_same(origin, known.origin):
         return state
     # The newest report stays, for the next one tells by how much the drone's own position jumps with the origin.
-    view = replace(state.view, origin=origin, origin_count=state.view.origin_count + 1)
+    view = replace(
+        state.view,
+        frame=LocalFrame(origin=origin, projection=projection),
+        origin_count=state.view.origin_count + 1,
+    )
     return replace(state, view=view, history=state.history[-1:])
+
+
+def _is_same(origin: Datum, other: Datum) -> bool:
+    """Return whether two origins are one, as exactly as they are sent."""
+    return (
+        abs(origin.latitude_rad - other.latitude_rad) < _ORIGIN_MOVED_RAD
+        and abs(origin.longitude_rad - other.longitude_rad) < _ORIGIN_MOVED_RAD
+        and abs(origin.altitude_m - other.altitude_m) < _ORIGIN_MOVED_M
+    )

@@ -34,7 +34,7 @@ def answer(
 def _missing_for_start(situation: Situation) -> str | None:
     if not situation.autopilot.link_up:
         return "no autopilot is connected"
-    if situation.autopilot.origin is None:
+    if situation.autopilot.frame is None:
         return "the autopilot has no origin yet"
     if situation.drone is None:
         return "the autopilot reports no local position yet"

@@ -1,6 +1,6 @@
 """What the companion's steps hand to each other: SI units, radians, world ENU (W), UTC nanoseconds.
 
-W is the autopilot's local frame turned to ENU: its origin is the autopilot's GPS_GLOBAL_ORIGIN.
+W is the autopilot's local frame turned to ENU: about its GPS_GLOBAL_ORIGIN, and laid out as the autopilot does.
 Arrays are float64 and are never written in place. Unknown is None.
 """
 

@@ -114,7 +114,7 @@ class CompanionNode:
     def is_ready_to_start(self) -> bool:
         """Return whether a start would be accepted now."""
         state = self.autopilot.state
-        return state.view.link_up and state.view.origin is not None and state.own is not None
+        return state.view.link_up and state.view.frame is not None and state.own is not None
 
     def receive_liveliness(self, *, alive: bool) -> None:
         """Take the state of the vehicle's liveliness token; one that never was is not lost."""

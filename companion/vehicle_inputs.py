@@ -8,8 +8,8 @@ from companion.autopilot_state import AutopilotState
 from companion.data import Array, Measurement, OwnState, Quantity
 from link import cdr
 from link.frames import rotate, yaw_of
-from link.geodesy import Datum, enu_from_geodetic
 from link.keys import Keys
+from link.local_frame import LocalFrame, local_from_geodetic, scale_of
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, VehicleImu
 from link.payload_checks import PayloadError
 
@@ -46,7 +46,7 @@ def measurements_of(key: str, payload: bytes, keys: Keys, state: AutopilotState)
         key: that it was put on.
         payload: CDR.
         keys: of the Zenoh contract.
-        state: of the autopilot, for the origin of W and the drone's place when it saw the pad.
+        state: of the autopilot, for its local frame W and the drone's place when it saw the pad.
 
     Raises:
         PayloadError: it cannot be decoded, or is absurd.
@@ -55,11 +55,13 @@ def measurements_of(key: str, payload: bytes, keys: Keys, state: AutopilotState)
 
 
 def _decoded(key: str, payload: bytes, keys: Keys, state: AutopilotState) -> tuple[Measurement, ...]:
+    frame = state.view.frame
     if key == keys.fix:
         fix = cdr.decode(Fix, payload)
-        return () if state.view.origin is None else (fix_measurement(fix, state.view.origin),)
+        return () if frame is None else (fix_measurement(fix, frame),)
     if key == keys.fix_velocity:
-        return velocity_measurements(cdr.decode(FixVelocity, payload))
+        velocity = cdr.decode(FixVelocity, payload)
+        return () if frame is None else velocity_measurements(velocity, frame)
     if key == keys.imu:
         return imu_measurements(cdr.decode(VehicleImu, payload))
     if key == keys.pad_pose:
@@ -101,9 +103,9 @@ def _least_variance(covariance: Array) -> float:
     return float(np.linalg.eigvalsh(covariance)[0])
 
 
-def fix_measurement(fix: Fix, origin: Datum) -> Measurement:
-    """Return the antenna's position in W, whose origin is the autopilot's."""
-    position = enu_from_geodetic(origin, fix.latitude_rad, fix.longitude_rad, fix.altitude_m)
+def fix_measurement(fix: Fix, frame: LocalFrame) -> Measurement:
+    """Return the antenna's position in W, which is the autopilot's `frame`."""
+    position = local_from_geodetic(frame, fix.latitude_rad, fix.longitude_rad, fix.altitude_m)
     return Measurement(
         t_ns=fix.t_ns,
         quantity=Quantity.POSITION,
@@ -112,8 +114,8 @@ def fix_measurement(fix: Fix, origin: Datum) -> Measurement:
     )
 
 
-def velocity_measurements(message: FixVelocity) -> tuple[Measurement, ...]:
-    """Return the velocity and, where the message has it, the yaw rate."""
+def velocity_measurements(message: FixVelocity, frame: LocalFrame) -> tuple[Measurement, ...]:
+    """Return the velocity in W, which is the autopilot's `frame`, and, where the message has it, the yaw rate."""
     covariance = _matrix(message.velocity_covariance_enu_m2_s2, _VELOCITY_STD_M_S)
     if not message.is_vertical_measured:
         covariance[2, :] = covariance[:, 2] = 0.0
@@ -121,7 +123,7 @@ def velocity_measurements(message: FixVelocity) -> tuple[Measurement, ...]:
     velocity = Measurement(
         t_ns=message.t_ns,
         quantity=Quantity.VELOCITY,
-        value=np.array(message.velocity_enu_m_s),
+        value=np.array(message.velocity_enu_m_s) * scale_of(frame),
         covariance=covariance,
     )
     if message.yaw_rate_rad_s is None:

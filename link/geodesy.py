@@ -74,6 +74,13 @@ def _ecef(latitude_rad: float, longitude_rad: float, altitude_m: float) -> Vecto
     return (from_axis_m * cos(longitude_rad), from_axis_m * sin(longitude_rad), z_m)
 
 
+def curvature_radii_m(datum: Datum) -> tuple[float, float]:
+    """Return the radii of the meridian and of the prime vertical at `datum`, at its altitude."""
+    root = sqrt(1.0 - _ECCENTRICITY2 * sin(datum.latitude_rad) ** 2)
+    meridian_m, prime_vertical_m = _SEMI_MAJOR_M * (1.0 - _ECCENTRICITY2) / root**3, _SEMI_MAJOR_M / root
+    return (meridian_m + datum.altitude_m, prime_vertical_m + datum.altitude_m)
+
+
 def enu_from_geodetic(datum: Datum, latitude_rad: float, longitude_rad: float, altitude_m: float) -> Vector3:
     """Return the position in metres, ENU about `datum`, of a geodetic point."""
     frame = _frame(datum)

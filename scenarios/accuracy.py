@@ -14,8 +14,10 @@ import numpy as np
 from companion.data import Array, VehicleEstimate
 from companion.phases import Phase
 from link.frames import rotate
+from link.local_frame import scale_of
 from link.messages import Vector3
 from scenarios.vehicle import VehicleState
+from sim_autopilot.local_places import local_from_world
 from sim_autopilot.memory import AutopilotMemory
 
 NEES_DOF = 6
@@ -56,9 +58,12 @@ def antenna_truth(vehicle: VehicleState, antenna_flu_m: Vector3, autopilot: Auto
     lever_m = np.array(rotate(vehicle.orientation_wxyz, antenna_flu_m))
     rate_rad_s = rotate(vehicle.orientation_wxyz, vehicle.angular_velocity_flu_rad_s)
     own_error_m = np.array(autopilot.now.position_enu_m) - autopilot.plant.state.position_enu_m
-    position_m = np.array(vehicle.position_enu_m) + lever_m + own_error_m - autopilot.origin.position_enu_m
+    position_m = np.array(vehicle.position_enu_m) + lever_m + own_error_m
     velocity_m_s = np.array(vehicle.velocity_enu_m_s) + np.cross(rate_rad_s, lever_m)
-    return Truth(position_enu_m=_vector3(position_m), velocity_enu_m_s=_vector3(velocity_m_s))
+    return Truth(
+        position_enu_m=local_from_world(autopilot.origin, _vector3(position_m)),
+        velocity_enu_m_s=_vector3(velocity_m_s * scale_of(autopilot.origin.frame)),
+    )
 
 
 def estimate_error(estimate: VehicleEstimate, truth: Truth, *, in_descent: bool) -> EstimateError:

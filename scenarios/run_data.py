@@ -17,6 +17,7 @@ from companion.config import CompanionConfig
 from companion.record_folder import STEM as COMPANION
 from link.errors import UserError
 from link.keys import Keys
+from link.local_frame import LocalFrame, Projection
 from link.mcap_reader import RecordingHead, read_head, read_messages, recording_files
 from link.ros_records import fields_of
 from link.toml_config import validated
@@ -24,6 +25,8 @@ from scenarios.config import Scenario
 from scenarios.truth_file import STEM as TRUTH
 from scenarios.truth_file import read_truth
 from scenarios.truth_log import TruthLog, truth_log
+from scenarios.vehicle_node import datum_of
+from sim_autopilot.local_places import Origin, local_from_world
 
 Array = NDArray[np.float64]
 Fields = dict[str, Any]
@@ -46,7 +49,7 @@ class EstimateTrack:
 
     Attributes:
         t_s: (n,).
-        error_m: (n, 3) in W.
+        error_m: (n, 3) in the local frame that the drone flies in.
         std_m: (n, 3).
     """
 
@@ -119,7 +122,7 @@ def read_run(folder: Path) -> RunData:
         vehicle_velocity_enu_m_s=np.gradient(log.vehicle_position_enu_m, t_s, axis=0),
         antenna_enu_m=antenna,
         phases=_phases(steps, start_ns, float(t_s[-1])),
-        estimate=_estimate(estimates, start_ns, t_s, antenna),
+        estimate=_estimate(estimates, start_ns, t_s, _in_local_frame(antenna, scenario)),
     )
 
 
@@ -127,6 +130,13 @@ def _turned(log: TruthLog, vector_flu: tuple[float, float, float]) -> Array:
     """Return a vector of V in W, (n, 3): R_WV is R_WB times the inverse of R_VB."""
     rotation_wv = log.rotation @ np.swapaxes(log.rotation_vb, 1, 2)
     return np.asarray(rotation_wv @ np.array(vector_flu))
+
+
+def _in_local_frame(positions_enu_m: Array, scenario: Scenario) -> Array:
+    """Return places in W (n, 3) as the scenario's firmware lays them out about the datum, its origin at boot."""
+    datum = datum_of(scenario.datum)
+    origin = Origin(world=datum, frame=LocalFrame(origin=datum, projection=Projection(scenario.firmware)))
+    return np.array([local_from_world(origin, (x, y, z)) for x, y, z in positions_enu_m.tolist()])
 
 
 def _beliefs(folder: Path, keys: Keys) -> tuple[list[Fields], list[Fields]]:

@@ -2,9 +2,12 @@
 
 from math import hypot, radians
 
-from link.geodesy import Datum, enu_from_geodetic
+from link.frames import ned_from_enu
+from link.geodesy import geodetic_from_enu
+from link.local_frame import local_from_geodetic
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
+from sim_autopilot.local_places import Origin
 
 _ABOVE_SEA = frozenset({mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT})
 _ABOVE_HOME = frozenset({mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT})
@@ -15,15 +18,14 @@ _REACH_M = 1e5
 
 
 def local_setpoint(
-    message: Message, datum: Datum, origin_enu_m: Vector3, home_enu_m: Vector3, *, knows_terrain: bool = False
+    message: Message, origin: Origin, home_enu_m: Vector3, *, knows_terrain: bool = False
 ) -> Message | None:
     """Return the SET_POSITION_TARGET_LOCAL_NED of a global setpoint, None for a frame or a place that is not flown.
 
     Args:
         message: the setpoint.
-        datum: of W.
-        origin_enu_m: of the autopilot's local frame in W.
-        home_enu_m: what relative altitudes are above.
+        origin: the autopilot's local frame.
+        home_enu_m: in W, what relative altitudes are above.
         knows_terrain: whether altitudes above the ground are flown.
     """
     above_ground = _ABOVE_HOME | _ABOVE_TERRAIN if knows_terrain else _ABOVE_HOME
@@ -32,14 +34,12 @@ def local_setpoint(
     north = east = down = 0.0
     if message.type_mask & _NO_POSITION != _NO_POSITION:
         latitude_rad, longitude_rad = radians(message.lat_int * 1e-7), radians(message.lon_int * 1e-7)
-        try:
-            x, y, _ = enu_from_geodetic(datum, latitude_rad, longitude_rad, datum.altitude_m)
-        except ValueError:
+        altitude_m = message.alt
+        if message.coordinate_frame in above_ground:
+            altitude_m += geodetic_from_enu(origin.world, home_enu_m)[2]
+        north, east, down = ned_from_enu(local_from_geodetic(origin.frame, latitude_rad, longitude_rad, altitude_m))
+        if hypot(north, east) > _REACH_M:
             return None
-        if hypot(x, y) > _REACH_M:
-            return None
-        base_m = home_enu_m[2] if message.coordinate_frame in above_ground else -datum.altitude_m
-        north, east, down = y - origin_enu_m[1], x - origin_enu_m[0], origin_enu_m[2] - (message.alt + base_m)
     return mavlink.MAVLink_set_position_target_local_ned_message(
         message.time_boot_ms,
         message.target_system,

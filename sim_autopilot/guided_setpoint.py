@@ -11,6 +11,7 @@ from math import cos, isfinite, pi, sin
 
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
+from sim_autopilot.local_places import Origin, world_from_local
 from sim_autopilot.snapshot import Snapshot
 
 _POSITION = 0b0000_0000_0000_0111
@@ -48,13 +49,13 @@ class Wish:
 STOP = Wish(task=Task.VELOCITY)
 
 
-def wish_from_message(message: Message, frames: frozenset[int], origin_enu_m: Vector3, now: Snapshot) -> Wish | None:
+def wish_from_message(message: Message, frames: frozenset[int], origin: Origin, now: Snapshot) -> Wish | None:
     """Return what a SET_POSITION_TARGET_LOCAL_NED asks for; None where it changes nothing.
 
     Args:
         message: the setpoint.
         frames: MAV_FRAMEs that are understood.
-        origin_enu_m: of the local frame in W.
+        origin: the local frame.
         now: the drone, for the frames that are about it.
     """
     mask, frame = message.type_mask, message.coordinate_frame
@@ -68,7 +69,7 @@ def wish_from_message(message: Message, frames: frozenset[int], origin_enu_m: Ve
         return STOP
     wish = Wish(
         task=task,
-        position=_place(message, origin_enu_m, now) if has_position else _NONE,
+        position=_place(message, origin, now) if has_position else _NONE,
         velocity=_vector((message.vx, message.vy, message.vz), frame, now) if has_velocity else _NONE,
         acceleration=_vector((message.afx, message.afy, message.afz), frame, now) if has_acceleration else _NONE,
         yaw_rad=None if mask & _YAW else _yaw(message, now),
@@ -85,10 +86,11 @@ def _task(*, position: bool, velocity: bool, acceleration: bool) -> Task | None:
     return Task.ACCELERATION if acceleration else None
 
 
-def _place(message: Message, origin_enu_m: Vector3, now: Snapshot) -> Vector3:
-    x, y, z = _vector((message.x, message.y, message.z), message.coordinate_frame, now)
-    absolute = message.coordinate_frame == mavlink.MAV_FRAME_LOCAL_NED
-    east, north, up = origin_enu_m if absolute else now.position_enu_m
+def _place(message: Message, origin: Origin, now: Snapshot) -> Vector3:
+    x, y, z = place = _vector((message.x, message.y, message.z), message.coordinate_frame, now)
+    if message.coordinate_frame == mavlink.MAV_FRAME_LOCAL_NED:
+        return world_from_local(origin, place) if all(map(isfinite, place)) else place
+    east, north, up = now.position_enu_m
     return (east + x, north + y, up + z)
 
 

@@ -30,9 +30,7 @@ def take_setpoint(memory: AutopilotMemory, message: Message, config: AutopilotCo
         return memory, ()
     if config.firmware.guided:
         return _guided_setpoint(memory, message, config)
-    now = memory.now
-    origin = memory.origin.position_enu_m
-    reference = reference_from_message(message, config.firmware.setpoint_frames, origin, now.yaw_rad)
+    reference = reference_from_message(message, config.firmware.setpoint_frames, memory.origin, memory.now)
     return _followed(memory, reference)
 
 
@@ -46,8 +44,8 @@ def _followed(memory: AutopilotMemory, reference: Reference | None) -> Result:
 
 def take_global_setpoint(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
     """Take a SET_POSITION_TARGET_GLOBAL_INT."""
-    guided, origin = config.firmware.guided, memory.origin.position_enu_m
-    local = local_setpoint(message, config.datum, origin, memory.home_enu_m, knows_terrain=guided)
+    guided = config.firmware.guided
+    local = local_setpoint(message, memory.origin, memory.home_enu_m, knows_terrain=guided)
     if local is not None:
         return take_setpoint(memory, local, config)
     if guided and memory.modes.mode is Mode.OFFBOARD and is_ours(message, config):
@@ -104,5 +102,5 @@ def _guided_setpoint(memory: AutopilotMemory, message: Message, config: Autopilo
     if memory.modes.mode is not Mode.OFFBOARD:
         return memory, ()
     now = memory.now
-    wish = wish_from_message(message, config.firmware.setpoint_frames, memory.origin.position_enu_m, now)
+    wish = wish_from_message(message, config.firmware.setpoint_frames, memory.origin, now)
     return (memory if wish is None else replace(memory, guided=with_wish(memory.guided, wish, now))), ()

@@ -7,6 +7,7 @@ from math import pi
 import numpy as np
 
 from link.geodesy import Datum
+from link.local_frame import LocalFrame
 from link.mavlink.dialect import Message
 from link.messages import Vector3
 from sim_autopilot.chart import Chart, chart_at
@@ -16,6 +17,7 @@ from sim_autopilot.firmware.firmware import Firmware
 from sim_autopilot.flight import ModeFlight, begin
 from sim_autopilot.guided import Guided, begin_guided
 from sim_autopilot.land_detector import Landing
+from sim_autopilot.local_places import Origin
 from sim_autopilot.modes import Modes
 from sim_autopilot.own_state import NO_ERROR, OwnStateModel
 from sim_autopilot.parameters import Values, default_values
@@ -33,7 +35,7 @@ class AutopilotConfig:
 
     Attributes:
         firmware: which one it stands in for.
-        datum: origin of W, and of the autopilot's local frame at boot.
+        datum: origin of W, a tangent plane, and of the autopilot's local frame at boot.
         plant: the drone; the parameters' limits take the place of its envelope's.
         system_id: MAVLink system.
         instant: ready at once, without the seconds that a boot takes.
@@ -57,15 +59,6 @@ class AutopilotConfig:
     endurance_s: float = 1200.0
     own_state: OwnStateModel = field(default_factory=OwnStateModel)
     links: tuple[Mapping[int, float] | None, ...] = (None,)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Origin:
-    """The autopilot's local frame: its geodetic point, where that is in W, and how often it was moved."""
-
-    datum: Datum
-    position_enu_m: Vector3 = (0.0, 0.0, 0.0)
-    resets: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -209,7 +202,7 @@ def initial_memory(config: AutopilotConfig, start_ns: int) -> AutopilotMemory:
         landing=Landing(),
         setpoints=NO_SETPOINTS,
         streams=links[0].streams,
-        origin=Origin(datum=config.datum),
+        origin=Origin(world=config.datum, frame=LocalFrame(origin=config.datum, projection=firmware.projection)),
         home_enu_m=now.position_enu_m,
         chart=chart_at(config.datum, now.position_enu_m),
         later=(),

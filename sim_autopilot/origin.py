@@ -7,6 +7,7 @@ import numpy as np
 from link.geodesy import Datum, geodetic_from_enu
 from link.mavlink.dialect import Message
 from link.messages import Vector3
+from sim_autopilot.local_places import local_from_world, world_from_local
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.telemetry_motion import gps_global_origin
 
@@ -19,13 +20,14 @@ def move_origin(
     The last setpoint keeps its local coordinates, as in PX4, so it moves with the frame; what a mode of the autopilot
     itself keeps to stays where it is.
     """
-    by_m = np.subtract(position_enu_m, memory.origin.position_enu_m)
+    before = memory.origin
+    frame = replace(before.frame, origin=datum)
+    origin = replace(before, frame=frame, position_enu_m=position_enu_m, resets=before.resets + 1)
     setpoints, reference = memory.setpoints, memory.setpoints.reference
     if reference is not None and reference.position_enu_m is not None:
-        moved = replace(reference, position_enu_m=reference.position_enu_m + by_m)
-        setpoints = replace(setpoints, reference=moved)
-    resets = memory.origin.resets + 1
-    origin = replace(memory.origin, datum=datum, position_enu_m=position_enu_m, resets=resets)
+        x, y, z = reference.position_enu_m.tolist()
+        kept = world_from_local(origin, local_from_world(before, (x, y, z)))
+        setpoints = replace(setpoints, reference=replace(reference, position_enu_m=np.array(kept)))
     memory = replace(memory, origin=origin, setpoints=setpoints)
     return memory, gps_global_origin(memory, config)
 

@@ -9,10 +9,13 @@ from math import cos, isfinite, pi, sin
 
 import numpy as np
 
+from link.frames import enu_from_ned, ned_from_enu
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
 from sim_autopilot.data import Array, Reference
+from sim_autopilot.local_places import Origin, local_from_world, world_from_local
 from sim_autopilot.partial_setpoints import Axes, given_by
+from sim_autopilot.snapshot import Snapshot
 
 _POSITION = 0b0000_0000_0000_0111
 _VELOCITY = 0b0000_0000_0011_1000
@@ -34,16 +37,14 @@ class Setpoints:
 NO_SETPOINTS = Setpoints()
 
 
-def reference_from_message(
-    message: Message, frames: frozenset[int], origin_enu_m: Vector3, yaw_rad: float
-) -> Reference | None:
+def reference_from_message(message: Message, frames: frozenset[int], origin: Origin, now: Snapshot) -> Reference | None:
     """Return what a SET_POSITION_TARGET_LOCAL_NED asks for in W, None where it asks for nothing that can be flown.
 
     Args:
         message: the setpoint.
         frames: MAV_FRAMEs that are understood; in MAV_FRAME_BODY_NED a position is left out, as PX4 does.
-        origin_enu_m: of the autopilot's local frame in W.
-        yaw_rad: the drone's present heading, for MAV_FRAME_BODY_NED.
+        origin: the autopilot's local frame.
+        now: the drone, for what a setpoint leaves free and for the heading in MAV_FRAME_BODY_NED.
     """
     mask, frame = message.type_mask, message.coordinate_frame
     if frame not in frames or mask & _FORCE:
@@ -56,13 +57,11 @@ def reference_from_message(
         return None
     position = velocity = acceleration = None
     if any(given.position):
-        east, north, up = origin_enu_m
-        x, y, z = _known((message.x, message.y, message.z), given.position)
-        position = np.array((east + y, north + x, up - z))
+        position = np.array(_place((message.x, message.y, message.z), given.position, origin, now))
     if any(given.velocity):
-        velocity = _enu(*_known((message.vx, message.vy, message.vz), given.velocity), body, yaw_rad)
+        velocity = _enu(*_known((message.vx, message.vy, message.vz), given.velocity), body, now.yaw_rad)
     if any(given.acceleration):
-        acceleration = _enu(*_known((message.afx, message.afy, message.afz), given.acceleration), body, yaw_rad)
+        acceleration = _enu(*_known((message.afx, message.afy, message.afz), given.acceleration), body, now.yaw_rad)
     return Reference(
         free_position=given.free_position,
         free_velocity=given.free_velocity,
@@ -99,6 +98,15 @@ def _values_used(message: Message, mask: int) -> list[float]:
     if not mask & _YAW_RATE:
         used.append(message.yaw_rate)
     return used
+
+
+def _place(ned: Vector3, given: Axes, origin: Origin, now: Snapshot) -> Vector3:
+    """Return a place in W; along an axis that is not given it is the drone's own, for the others depend on it."""
+    if not all(given):
+        here = ned_from_enu(local_from_world(origin, now.position_enu_m))
+        x, y, z = (value if one else own for value, own, one in zip(ned, here, given, strict=True))
+        ned = (x, y, z)
+    return world_from_local(origin, enu_from_ned(ned))
 
 
 def _known(vector: Vector3, given: Axes) -> Vector3:

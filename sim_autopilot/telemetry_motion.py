@@ -12,9 +12,11 @@ from link.frames import (
     yaw_ned_from_enu,
 )
 from link.geodesy import geodetic_from_enu
+from link.local_frame import local_from_geodetic
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
 from sim_autopilot.chart import geodetic
+from sim_autopilot.local_places import local_from_world
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.snapshot import Snapshot
 from sim_autopilot.telemetry_status import boot_ms
@@ -42,16 +44,21 @@ _TWIST_COVARIANCE = _diagonal(_VELOCITY_VARIANCE_M2_S2, _ANGLE_VARIANCE_RAD2)
 
 
 def _local_ned(memory: AutopilotMemory, position_enu_m: Vector3) -> Vector3:
-    east, north, up = position_enu_m
-    origin = memory.origin.position_enu_m
-    return (north - origin[1], east - origin[0], origin[2] - up)
+    return ned_from_enu(local_from_world(memory.origin, position_enu_m))
+
+
+def _own_ned(memory: AutopilotMemory) -> Vector3:
+    """Return where the drone is, by the chart, which costs less."""
+    place = geodetic(memory.chart, memory.now.position_enu_m)
+    return ned_from_enu(local_from_geodetic(memory.origin.frame, *place))
 
 
 def local_position_ned(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     """Return LOCAL_POSITION_NED about the autopilot's origin."""
     now = memory.now
-    position = _local_ned(memory, now.position_enu_m)
-    return mavlink.MAVLink_local_position_ned_message(boot_ms(memory), *position, *ned_from_enu(now.velocity_enu_m_s))
+    return mavlink.MAVLink_local_position_ned_message(
+        boot_ms(memory), *_own_ned(memory), *ned_from_enu(now.velocity_enu_m_s)
+    )
 
 
 def attitude(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
@@ -77,7 +84,7 @@ def odometry(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
         now.boot_ns // 1000,
         mavlink.MAV_FRAME_LOCAL_NED,
         mavlink.MAV_FRAME_LOCAL_NED,
-        *_local_ned(memory, now.position_enu_m),
+        *_own_ned(memory),
         quaternion_ned_frd_from_enu_flu(now.orientation_wxyz),
         *ned_from_enu(now.velocity_enu_m_s),
         *frd_from_flu(now.angular_velocity_flu_rad_s),
@@ -181,7 +188,7 @@ def gps_raw_int(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
 def gps_global_origin(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     """Return GPS_GLOBAL_ORIGIN, about which LOCAL_POSITION_NED is."""
     now = memory.now
-    datum = memory.origin.datum
+    datum = memory.origin.frame.origin
     place = wire_place((datum.latitude_rad, datum.longitude_rad, datum.altitude_m))
     return mavlink.MAVLink_gps_global_origin_message(*place, now.boot_ns // 1000)
 

@@ -47,15 +47,15 @@ def pressure_hpa(altitude_m: float) -> float:
 def altitude(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     """Return ALTITUDE."""
     now, above_sea_m = memory.now, _altitude_m(memory)
-    up_m = now.position_enu_m[2]
+    local_m = above_sea_m - memory.origin.frame.origin.altitude_m
     clearance_m = height_over_surface_m(memory)
     return mavlink.MAVLink_altitude_message(
         now.boot_ns // 1000,
         above_sea_m,
         above_sea_m,
-        up_m - memory.origin.position_enu_m[2],
-        up_m - memory.home_enu_m[2],
-        up_m - memory.origin.position_enu_m[2] - clearance_m,
+        local_m,
+        now.position_enu_m[2] - memory.home_enu_m[2],
+        local_m - clearance_m,
         clearance_m,
     )
 

@@ -23,6 +23,7 @@ from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
 from companion.autopilots.setpoint_message import local_ned_setpoint
 from companion.autopilots.stated_limits import Named, acceleration_of_tilt_m_s2, stated
 from companion.data import FlightLimits, Setpoint
+from link.local_frame import Projection
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 
@@ -47,6 +48,7 @@ class ArduPilotDriver:
 
     name = "ardupilot"
     autopilot_id: int = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
+    projection = Projection.ARDUPILOT
     limit_names = tuple(tuple(named.name for named in names) for names in _LIMITS)
     timeout_parameter = "GUID_TIMEOUT"
     timeout_default_s = 3.0

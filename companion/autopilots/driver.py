@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from companion.data import FlightLimits, RangeReading, Setpoint
-from link.geodesy import Datum
+from link.local_frame import LocalFrame, Projection
 from link.mavlink.dialect import Message
 from link.messages import Vector3
 
@@ -26,7 +26,7 @@ class AutopilotView:
     landed: bool | None = None
     taking_off: bool = False  # by itself, after a command
     refusal: str | None = None  # what it last said against arming
-    origin: Datum | None = None  # above the ellipsoid
+    frame: LocalFrame | None = None  # W; its origin above the ellipsoid
     origin_count: int = 0  # how often the origin was set or moved
     frame_shift_enu_m: Vector3 = (0.0, 0.0, 0.0)  # sum of the jumps of the drone's own position
     range_down: RangeReading | None = None
@@ -87,6 +87,10 @@ class Driver(Protocol):
     @property
     def autopilot_id(self) -> int:
         """MAV_AUTOPILOT of its heartbeat."""
+
+    @property
+    def projection(self) -> Projection:
+        """How it lays its local frame out."""
 
     @property
     def limit_names(self) -> tuple[tuple[str, ...], ...]:

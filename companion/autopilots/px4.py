@@ -12,6 +12,7 @@ from companion.autopilots.px4_events import refusal_of
 from companion.autopilots.setpoint_message import local_ned_setpoint
 from companion.autopilots.stated_limits import Named, acceleration_of_tilt_m_s2, stated
 from companion.data import FlightLimits, Setpoint
+from link.local_frame import Projection
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 
@@ -27,6 +28,7 @@ class Px4Driver:
 
     name = "px4"
     autopilot_id: int = mavlink.MAV_AUTOPILOT_PX4
+    projection = Projection.PX4
     limit_names = (("MPC_XY_VEL_MAX",), ("MPC_Z_VEL_MAX_UP",), ("MPC_Z_VEL_MAX_DN",), ("MPC_TILTMAX_AIR",))
     timeout_parameter = "COM_OF_LOSS_T"
     timeout_default_s = 1.0

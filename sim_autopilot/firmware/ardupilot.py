@@ -6,6 +6,7 @@ Mode numbers, stream groups, texts: ArduCopter's documentation and source. Times
 from functools import partial
 from types import MappingProxyType
 
+from link.local_frame import Projection
 from link.mavlink.dialect import mavlink
 from sim_autopilot.file_store import Shown
 from sim_autopilot.firmware.ardupilot_parameters import OBEYED, flight_settings
@@ -176,6 +177,7 @@ ARDUPILOT = Firmware(
     ),
     setpoint_stream_s=None,
     guided=True,
+    projection=Projection.ARDUPILOT,
     keeps_origin=True,
     announces_home=True,
     takes_off_by_setpoint=False,

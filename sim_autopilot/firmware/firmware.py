@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from link.local_frame import Projection
 from sim_autopilot.file_store import Shown
 from sim_autopilot.firmware.identity import Identity
 from sim_autopilot.flight_log import PX4_LOGS, LogRules
@@ -177,7 +178,7 @@ class Firmware:
         setpoint_frames: MAV_FRAMEs of setpoints it takes.
         setpoint_stream_s: how long setpoints must have come before they may fly; None asks for none.
         guided: whether OFFBOARD is ArduCopter's GUIDED: setpoints move a shaped path, and never time out of the mode.
-        keeps_origin: whether the origin, once there, moves no more.
+        projection, keeps_origin: how its local frame is laid out, and whether the origin, once there, moves no more.
         announces_home: whether it tells the origin and home when home moves.
         takes_off_by_setpoint: whether a setpoint above lifts it off the ground.
         mode_answered_twice: whether DO_SET_MODE is accepted at once, and answered for good a step later.
@@ -192,10 +193,8 @@ class Firmware:
         lists_modes, has_shell: whether it sends AVAILABLE_MODES, and answers SERIAL_CONTROL.
         tells_flights: whether it says what a flight comes to: `flight_texts`.
         reposition_mode: in which a DO_REPOSITION is flown.
-        files: that it shows over MAVLink FTP, by its parameters and their values.
-        ftp: of that server.
-        banner: texts that follow a PARAM_REQUEST_LIST.
-        identity: of AUTOPILOT_VERSION.
+        files, ftp: that it shows over MAVLink FTP, by its parameters and their values, and of that server.
+        banner, identity: texts that follow a PARAM_REQUEST_LIST, and of AUTOPILOT_VERSION.
         silent_messages: ids that it can be asked for, and has nothing to tell of.
     """
 
@@ -226,6 +225,7 @@ class Firmware:
     setpoint_frames: frozenset[int]
     setpoint_stream_s: float | None
     guided: bool
+    projection: Projection
     keeps_origin: bool
     announces_home: bool
     takes_off_by_setpoint: bool

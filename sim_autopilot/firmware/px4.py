@@ -7,6 +7,7 @@ Rates, times and answers: measured on that simulation.
 from functools import partial
 from types import MappingProxyType
 
+from link.local_frame import Projection
 from link.mavlink.dialect import mavlink
 from sim_autopilot.actuator_metadata import ACTUATORS_PATH
 from sim_autopilot.component_metadata import (
@@ -170,6 +171,7 @@ PX4 = Firmware(
     setpoint_frames=frozenset({mavlink.MAV_FRAME_LOCAL_NED, mavlink.MAV_FRAME_BODY_NED}),
     setpoint_stream_s=0.0,  # one fresh setpoint: MAVSDK sends its first and asks for the mode at once
     guided=False,
+    projection=Projection.PX4,
     keeps_origin=False,
     announces_home=False,
     takes_off_by_setpoint=True,

@@ -12,6 +12,7 @@ from companion.phases import Phase
 from companion.planning.guidance import ReferenceState
 from companion.situation import Drone, Situation
 from link.geodesy import Datum
+from link.local_frame import LocalFrame, Projection
 from link.messages import Vector3
 
 CONFIG = CompanionConfig()
@@ -24,7 +25,9 @@ FLIES = AutopilotView(
     in_control=True,
     failsafe=False,
     landed=False,
-    origin=Datum(latitude_rad=0.8, longitude_rad=0.1, altitude_m=100.0),
+    frame=LocalFrame(
+        origin=Datum(latitude_rad=0.8, longitude_rad=0.1, altitude_m=100.0), projection=Projection.TANGENT_PLANE
+    ),
 )
 
 

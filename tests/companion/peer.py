@@ -8,11 +8,11 @@ from companion.build import build_node
 from companion.config import CompanionConfig
 from companion.node import CompanionNode
 from link import cdr
-from link.geodesy import geodetic_from_enu
 from link.keys import Keys
+from link.local_frame import geodetic_from_local
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Fix, Vector3
-from tests.companion.world import ORIGIN, PAD_HEIGHT_M
+from tests.companion.world import FRAME, ORIGIN, PAD_HEIGHT_M
 from tests.link.mavlink.fake_autopilot import MS, START_NS, UTC_AHEAD_NS, FakeAutopilot, S
 
 OFFBOARD, POSITION = 0x0006_0000, 0x0003_0000
@@ -138,8 +138,8 @@ class Setup:
 
     def fix(self, place_enu_m: Vector3 = (-30.0, 0.4, PAD_HEIGHT_M), late_s: float = 0.0) -> None:
         """Send a fix of a vehicle, made `late_s` ago."""
-        origin = self.node.autopilot.state.view.origin
-        latitude_rad, longitude_rad, altitude_m = geodetic_from_enu(origin or ORIGIN, place_enu_m)
+        frame = self.node.autopilot.state.view.frame or FRAME
+        latitude_rad, longitude_rad, altitude_m = geodetic_from_local(frame, place_enu_m)
         message = Fix(
             t_ns=self.utc_ns - round(late_s * 1e9),
             latitude_rad=latitude_rad,

@@ -8,8 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from companion.autopilot_state import AutopilotState, heard
+from companion.autopilots.ardupilot import ArduPilotDriver
+from companion.autopilots.driver import Driver
 from companion.autopilots.px4 import Px4Driver
 from link.frames import quaternion_ned_frd_from_enu_flu
+from link.local_frame import Projection
 from link.mavlink.clock_map import ClockMap, with_round_trip, with_system_time
 from link.mavlink.clock_map import RoundTrip as Trip
 from link.mavlink.dialect import Message, mavlink
@@ -98,8 +101,25 @@ def test_moved_origin_is_counted_and_a_repeated_one_is_not() -> None:
     assert _hear(_origin(475_000_000, 80_000_000, 401_000), state=state).view.origin_count == 2
 
 
+@pytest.mark.parametrize(
+    ("driver", "projection"), [(Px4Driver(), Projection.PX4), (ArduPilotDriver(), Projection.ARDUPILOT)]
+)
+def test_frame_is_laid_out_as_the_driver_says(driver: Driver, projection: Projection) -> None:
+    state = heard(AutopilotState(), _origin(475_000_000, 80_000_000, 400_000), CLOCK, driver)
+    assert state.view.frame is not None
+    assert state.view.frame.projection is projection
+
+
+def test_the_same_origin_of_another_kind_of_autopilot_is_another_frame() -> None:
+    state = _hear(_origin(475_000_000, 80_000_000, 400_000))
+    other = heard(state, _origin(475_000_000, 80_000_000, 400_000), CLOCK, ArduPilotDriver())
+    assert other.view.frame is not None
+    assert other.view.frame.projection is Projection.ARDUPILOT
+    assert other.view.origin_count == 2
+
+
 def test_origin_off_the_earth_is_no_origin() -> None:
-    assert _hear(_origin(910_000_000, 0, 0), _origin(0, 1_900_000_000, 0)).view.origin is None
+    assert _hear(_origin(910_000_000, 0, 0), _origin(0, 1_900_000_000, 0)).view.frame is None
 
 
 def _receiver(fix: int, msl_mm: int, ellipsoid_mm: int) -> Message:
@@ -112,8 +132,8 @@ def _receiver(fix: int, msl_mm: int, ellipsoid_mm: int) -> Message:
 def test_origins_altitude_is_above_the_ellipsoid_whatever_comes_first(first: int) -> None:
     told = [_origin(475_000_000, 80_000_000, 400_000), _receiver(3, 410_000, 457_300)]
     state = _hear(told[first], told[1 - first])
-    assert state.view.origin is not None
-    assert state.view.origin.altitude_m == pytest.approx(447.3)
+    assert state.view.frame is not None
+    assert state.view.frame.origin.altitude_m == pytest.approx(447.3)
     again = _hear(_receiver(3, 430_000, 477_500), state=state)
     assert again.view == state.view
 
@@ -121,8 +141,8 @@ def test_origins_altitude_is_above_the_ellipsoid_whatever_comes_first(first: int
 @pytest.mark.parametrize("receiver", [_receiver(1, 0, 47_000), _receiver(3, 400_000, 0), _receiver(3, 0, 900_000)])
 def test_receiver_that_does_not_know_the_geoid_says_nothing(receiver: Message) -> None:
     state = _hear(_origin(475_000_000, 80_000_000, 400_000), receiver)
-    assert state.view.origin is not None
-    assert state.view.origin.altitude_m == 400.0
+    assert state.view.frame is not None
+    assert state.view.frame.origin.altitude_m == 400.0
 
 
 @pytest.mark.parametrize(("status", "failsafe"), [(3, False), (4, False), (5, True), (6, True)])

@@ -56,7 +56,7 @@ def test_start_says_what_is_missing() -> None:
     view = facts.autopilot
     for missing, reason in (
         (replace(facts, autopilot=replace(view, link_up=False)), "no autopilot is connected"),
-        (replace(facts, autopilot=replace(view, origin=None)), "the autopilot has no origin yet"),
+        (replace(facts, autopilot=replace(view, frame=None)), "the autopilot has no origin yet"),
         (replace(facts, drone=None), "the autopilot reports no local position yet"),
         (replace(facts, autopilot=replace(view, failsafe=True)), "the autopilot is in failsafe"),
     ):

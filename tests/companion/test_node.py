@@ -201,9 +201,9 @@ def test_pad_that_no_vehicle_has_is_counted_and_not_taken() -> None:
 def test_geoid_lifts_the_origin_to_the_ellipsoid() -> None:
     setup = Setup(autopilot=FakePx4(geoid_height_m=47.3))
     setup.run(4.0)
-    origin = setup.node.autopilot.state.view.origin
-    assert origin is not None
-    assert origin.altitude_m == pytest.approx(setup.autopilot.origin_altitude_m + 47.3, abs=1e-3)
+    frame = setup.node.autopilot.state.view.frame
+    assert frame is not None
+    assert frame.origin.altitude_m == pytest.approx(setup.autopilot.origin_altitude_m + 47.3, abs=1e-3)
 
 
 finite = st.floats(allow_nan=False, allow_infinity=False)

@@ -90,4 +90,4 @@ def test_px4_is_read_to_lack_attitude_and_setpoints_while_it_boots() -> None:
 def test_clock_and_origin_come_with_the_recording(name: str) -> None:
     link = _replayed(name).link
     assert link.session.clock.is_utc_known
-    assert link.state.view.origin is not None
+    assert link.state.view.frame is not None

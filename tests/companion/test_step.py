@@ -47,7 +47,7 @@ def test_start_is_refused_without_what_a_flight_needs() -> None:
     good = flight.view
     for view, reason in (
         (replace(good, link_up=False), "no autopilot is connected"),
-        (replace(good, origin=None), "the autopilot has no origin yet"),
+        (replace(good, frame=None), "the autopilot has no origin yet"),
         (replace(good, failsafe=True), "the autopilot is in failsafe"),
     ):
         flight.view = view

@@ -18,6 +18,7 @@ from companion.step import companion_step
 from companion.step_data import StepInputs, StepMemory, StepOutputs, System
 from link.frames import quaternion_from_yaw
 from link.geodesy import Datum
+from link.local_frame import LocalFrame, Projection
 from link.mavlink.dialect import mavlink
 from link.messages import Command, PadGeometry, Vector3
 
@@ -32,6 +33,7 @@ IMPATIENT = CONFIG.model_copy(
 START_NS = 1_795_000_000_000_000_000
 STEP_NS = 20_000_000
 ORIGIN = Datum(latitude_rad=0.83, longitude_rad=0.14, altitude_m=400.0)
+FRAME = LocalFrame(origin=ORIGIN, projection=Projection.PX4)
 PAD_HEIGHT_M = 1.5
 PAD = PadGeometry(size_m=(1.5, 1.5), height_m=PAD_HEIGHT_M, antenna_to_pad_m=(0.0, 0.0, 0.0))
 GEAR_M = CONFIG.touchdown.gear_height_m
@@ -114,7 +116,7 @@ class Flight:
         self.memory = StepMemory()
         self.t_ns = START_NS
         self.view = AutopilotView(
-            link_up=True, armed=False, in_control=False, failsafe=False, landed=True, origin=ORIGIN, origin_count=1
+            link_up=True, armed=False, in_control=False, failsafe=False, landed=True, frame=FRAME, origin_count=1
         )
         self.own = own_state(START_NS, (0.0, 0.0, GEAR_M))
         self.history: list[Phase] = []

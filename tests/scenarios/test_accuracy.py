@@ -9,10 +9,13 @@ from scipy import stats
 
 from companion.data import VehicleEstimate
 from link.frames import quaternion_from_yaw
+from link.geodesy import Datum, geodetic_from_enu
+from link.local_frame import LocalFrame, Projection
 from scenarios.accuracy import EstimateError, Nis, Truth, accuracy_table, antenna_truth, estimate_error
 from scenarios.intervals import mean_band
 from scenarios.vehicle import VehicleState
-from sim_autopilot.memory import Origin, initial_memory
+from sim_autopilot.local_places import Origin
+from sim_autopilot.memory import initial_memory
 from tests.sim_autopilot.pilot import DATUM, START_NS, px4
 
 TRUTH = Truth(position_enu_m=(10.0, -4.0, 1.6), velocity_enu_m_s=(5.0, 1.0, 0.0))
@@ -43,10 +46,13 @@ def test_antenna_is_seen_from_the_frame_and_with_the_error_that_the_drone_flies_
     )
     memory = initial_memory(px4(position_enu_m=(3.0, 4.0, 0.12)), START_NS)
     believed = replace(memory.now, position_enu_m=(3.5, 4.0, 0.12))
-    origin = Origin(datum=DATUM, position_enu_m=(3.0, -4.0, 0.0), resets=1)
+    latitude_rad, longitude_rad, altitude_m = geodetic_from_enu(DATUM, (3.0, -4.0, 0.0))
+    moved = Datum(latitude_rad=latitude_rad, longitude_rad=longitude_rad, altitude_m=altitude_m)
+    frame = LocalFrame(origin=moved, projection=Projection.TANGENT_PLANE)
+    origin = Origin(world=DATUM, frame=frame, position_enu_m=(3.0, -4.0, 0.0), resets=1)
     truth = antenna_truth(vehicle, (-1.2, 0.5, 1.6), replace(memory, now=believed, origin=origin))
     # lever (-0.5, -1.2, 1.6) in W, error (0.5, 0, 0), frame moved by (3, -4, 0); w x lever = 0.4 (1.2, -0.5)
-    assert truth.position_enu_m == pytest.approx((100.0 - 0.5 + 0.5 - 3.0, 50.0 - 1.2 + 4.0, 1.6))
+    assert truth.position_enu_m == pytest.approx((100.0 - 0.5 + 0.5 - 3.0, 50.0 - 1.2 + 4.0, 1.6), abs=1e-3)
     assert truth.velocity_enu_m_s == pytest.approx((0.48, 5.0 - 0.2, 0.0))
 
 

@@ -81,4 +81,4 @@ def test_the_origin_moves_no_more_once_it_is_there() -> None:
     pilot = Pilot(ardupilot())
     pilot.step(mavlink.MAVLink_set_gps_global_origin_message(1, 524_740_000, 134_020_000, 90_000))
     pilot.step()
-    assert pilot.node.memory.origin.datum == DATUM
+    assert pilot.node.memory.origin.frame.origin == DATUM

@@ -1,10 +1,15 @@
+from dataclasses import replace
 from math import inf, nan, pi
 
 import numpy as np
 import pytest
 
+from link.geodesy import Datum, geodetic_from_enu
+from link.local_frame import LocalFrame, Projection
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.data import Array, Reference
+from sim_autopilot.local_places import Origin
+from sim_autopilot.memory import initial_memory
 from sim_autopilot.setpoints import (
     NO_SETPOINTS,
     are_fresh,
@@ -12,11 +17,21 @@ from sim_autopilot.setpoints import (
     reference_from_message,
     with_setpoint,
 )
-from tests.sim_autopilot.pilot import Pilot, arm, set_mode, setpoint
+from tests.sim_autopilot.pilot import DATUM, START_NS, Pilot, arm, px4, set_mode, setpoint
 
+PLACE_NAMES = ("latitude_rad", "longitude_rad", "altitude_m")
 FRAMES = frozenset({mavlink.MAV_FRAME_LOCAL_NED, mavlink.MAV_FRAME_BODY_NED})
-ORIGIN = (100.0, 200.0, 30.0)
+ORIGIN_ENU_M = (100.0, 200.0, 30.0)
+ORIGIN = Origin(
+    world=DATUM,
+    frame=LocalFrame(
+        origin=Datum(**dict(zip(PLACE_NAMES, geodetic_from_enu(DATUM, ORIGIN_ENU_M), strict=True))),
+        projection=Projection.TANGENT_PLANE,
+    ),
+    position_enu_m=ORIGIN_ENU_M,
+)
 YAW_RAD = 0.7
+NOW = replace(initial_memory(px4(), START_NS).now, position_enu_m=(104.0, 203.0, 31.0), yaw_rad=YAW_RAD)
 
 
 def message(mask: int, frame: int = mavlink.MAV_FRAME_LOCAL_NED, **fields: float) -> Message:
@@ -26,7 +41,7 @@ def message(mask: int, frame: int = mavlink.MAV_FRAME_LOCAL_NED, **fields: float
 
 
 def understood(mask: int, frame: int = mavlink.MAV_FRAME_LOCAL_NED, **fields: float) -> Reference | None:
-    return reference_from_message(message(mask, frame, **fields), FRAMES, ORIGIN, YAW_RAD)
+    return reference_from_message(message(mask, frame, **fields), FRAMES, ORIGIN, NOW)
 
 
 def near(vector: Array | None, expected: tuple[float, float, float]) -> bool:
@@ -67,7 +82,7 @@ def test_an_axis_that_is_masked_is_free_and_may_hold_no_number() -> None:
     assert reference is not None
     assert reference.free_position == (True, True, False)
     assert reference.free_velocity == (False, False, False)
-    assert reference.height_m == 33.0
+    assert reference.height_m == pytest.approx(33.0, abs=1e-3)
     assert near(reference.velocity_enu_m_s, (5.0, 4.0, 0.0))
 
 
@@ -112,7 +127,7 @@ def test_a_climb_rate_over_a_held_place_takes_off_and_keeps_the_place() -> None:
 def test_a_used_field_that_is_not_finite_drops_the_setpoint(name: str, value: float) -> None:
     spoilt = message(0)
     setattr(spoilt, name, value)
-    assert reference_from_message(spoilt, FRAMES, ORIGIN, YAW_RAD) is None
+    assert reference_from_message(spoilt, FRAMES, ORIGIN, NOW) is None
 
 
 @pytest.mark.parametrize("frame", [frame for frame in range(22) if frame not in FRAMES])

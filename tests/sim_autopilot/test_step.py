@@ -350,7 +350,7 @@ def test_a_moved_origin_moves_the_local_frame_under_the_vehicle() -> None:
     pilot.take_off()
     pilot.run(0.1)
     before, resets = pilot.last("LOCAL_POSITION_NED"), pilot.last("ODOMETRY").reset_counter
-    origin = pilot.node.memory.origin.datum
+    origin = pilot.node.memory.origin.frame.origin
     # 3 m north: 3 / (a meridian's 111.2 km to a degree)
     latitude = round(np.degrees(origin.latitude_rad) * 1e7 + 3.0 / 111_250.0 * 1e7)
     longitude = round(np.degrees(origin.longitude_rad) * 1e7)

@@ -1,10 +1,11 @@
-from math import degrees, pi
+from math import degrees, pi, radians
 
 import numpy as np
 import pymap3d
 import pytest
 from scipy.spatial.transform import Rotation
 
+from link.local_frame import LocalFrame, Projection, local_from_geodetic
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.chart import chart_at, geodetic, near
@@ -45,9 +46,13 @@ def test_each_stream_of_the_firmware_has_a_builder() -> None:
     assert set(PX4.streams) <= set(BUILDERS)
 
 
-def test_local_position_is_the_truth_in_ned(flying: Pilot) -> None:
-    message, (position, velocity) = flying.last("LOCAL_POSITION_NED"), ned(flying)
-    assert np.allclose((message.x, message.y, message.z), position, atol=1e-5)
+def test_local_position_is_the_true_place_on_px4s_sphere_and_velocity_the_truth_in_ned(flying: Pilot) -> None:
+    message, (_, velocity) = flying.last("LOCAL_POSITION_NED"), ned(flying)
+    datum_deg = (degrees(DATUM.latitude_rad), degrees(DATUM.longitude_rad), DATUM.altitude_m)
+    latitude_deg, longitude_deg, altitude_m = map(float, pymap3d.enu2geodetic(*flying.position, *datum_deg))
+    frame = LocalFrame(origin=DATUM, projection=Projection.PX4)
+    place = local_from_geodetic(frame, radians(latitude_deg), radians(longitude_deg), altitude_m)
+    assert np.allclose((message.x, message.y, message.z), NED_FROM_ENU @ place, atol=1e-4)
     assert np.allclose((message.vx, message.vy, message.vz), velocity, atol=1e-5)
     assert message.time_boot_ms == round(flying.t_s * 1000)
 

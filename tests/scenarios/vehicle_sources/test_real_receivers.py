@@ -22,6 +22,7 @@ from link import cdr, json_payloads
 from link.frames import yaw_of
 from link.geodesy import Datum
 from link.keys import Keys
+from link.local_frame import LocalFrame, Projection
 from link.messages import Fix, FixVelocity, PadGeometry, VehicleImu
 from link.zenoh_session import Inbox, ZenohOptions, ZenohSession, open_session
 from tests.integration.programs import Program, Programs
@@ -42,6 +43,7 @@ KEYS = Keys()
 DEADLINE_S = 60.0
 PAD = ("--pad-size", "1.5", "1.2", "--pad-height", "1.6", "--antenna-to-pad", "0.8", "-0.1", "0.05")
 DATUM = Datum(latitude_rad=radians(LATITUDE_DEG), longitude_rad=radians(LONGITUDE_DEG), altitude_m=ALTITUDE_M)
+FRAME = LocalFrame(origin=DATUM, projection=Projection.TANGENT_PLANE)
 
 
 def free_port(kind: socket.SocketKind = socket.SOCK_STREAM) -> int:
@@ -125,11 +127,11 @@ def assert_is_the_drive(car: Vehicle) -> None:
     """Stamps, place, accuracy, velocity and heading as the companion takes them."""
     fix = car.fixes[-1]
     assert (fix.t_ns - UTC_NS) % PERIOD_NS == 0
-    place = fix_measurement(fix, DATUM)
+    place = fix_measurement(fix, FRAME)
     assert place.value.tolist() == pytest.approx([0.0, 0.0, 0.0], abs=1e-3)
     assert place.covariance[2, 2] == pytest.approx(0.040**2)
     assert place.covariance[0, 0] + place.covariance[1, 1] == pytest.approx(0.030**2 + 0.020**2)
-    (velocity,) = velocity_measurements(car.velocities[-1])
+    (velocity,) = velocity_measurements(car.velocities[-1], FRAME)
     assert hypot(*velocity.value[:2]) == pytest.approx(SPEED_KNOTS * 1852.0 / 3600.0, abs=1e-3)
     assert velocity.covariance[2, 2] > 100.0  # the vertical velocity was not measured
     (heading,) = imu_measurements(car.attitudes[-1])
