@@ -1,14 +1,26 @@
 """How a numeric function becomes machine code: deterministic, no fast-math, kept on disk between runs."""
 
 import hashlib
+import re
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import ParamSpec, Protocol, TypeVar, cast
 
 from numba import njit
 
+_KEPT_NAME = re.compile(r"_(?P<digest>[0-9a-f]{12})-[0-9]+\.")
+"""The end of a function's name and its line, in the name of a file that numba keeps."""
+
 P = ParamSpec("P")
 R = TypeVar("R")
+
+
+class Kept(Protocol):
+    """Where numba keeps machine code."""
+
+    @property
+    def cache_path(self) -> str:
+        """Of the folder."""
 
 
 class Kernel(Protocol[P, R]):
@@ -16,6 +28,10 @@ class Kernel(Protocol[P, R]):
 
     py_func: Callable[P, R]
     signatures: list[object]
+
+    @property
+    def stats(self) -> "Kept":
+        """What numba tells about it."""
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """Run the machine code."""
@@ -38,10 +54,33 @@ def kept_kernel(sources: int) -> Callable[[Callable[P, R]], Kernel[P, R]]:
     """
 
     def kept(function: Callable[P, R]) -> Kernel[P, R]:
-        function.__qualname__ += f"_{sources ^ _FLAGS:012x}"
-        return cast("Kernel[P, R]", njit(cache=True, fastmath=False, error_model="numpy")(function))
+        digest = f"{sources ^ _FLAGS:012x}"
+        function.__qualname__ += f"_{digest}"
+        compiled = cast("Kernel[P, R]", njit(cache=True, fastmath=False, error_model="numpy")(function))
+        _kept_digests.append((compiled.stats, digest))
+        return compiled
 
     return kept
+
+
+def remove_outdated() -> int:
+    """Remove what is kept on disk for other sources than those that are loaded; return how many files that were.
+
+    Beside the functions that are loaded only: of what is not, nothing is known. Another process that finds a file gone
+    compiles it anew.
+    """
+    digests: dict[str, set[str]] = {}
+    for kept, digest in _kept_digests:
+        digests.setdefault(kept.cache_path, set()).add(digest)
+    outdated = [
+        path
+        for folder, current in digests.items()
+        for path in Path(folder).glob("*.nb[ci]")
+        if (match := _KEPT_NAME.search(path.name)) is not None and match["digest"] not in current
+    ]
+    for path in outdated:
+        path.unlink(missing_ok=True)
+    return len(outdated)
 
 
 def source_digest(folders: Iterable[Path]) -> int:
@@ -59,3 +98,5 @@ def file_digest(files: Iterable[Path]) -> int:
 
 _FLAGS = file_digest([Path(__file__)])
 """Stands for the flags above, which numba's key does not know."""
+
+_kept_digests: list[tuple[Kept, str]] = []

@@ -18,10 +18,11 @@ def inner(x: float) -> float:
 """
 
 OUTER = """
+import sys
 from pathlib import Path
 
 from inner import inner
-from link.compiled import kept_kernel, source_digest
+from link.compiled import kept_kernel, remove_outdated, source_digest
 
 
 @kept_kernel(source_digest([Path(__file__).parent]))
@@ -30,17 +31,25 @@ def outer(x: float) -> float:
 
 
 print(outer(10.0), len(outer.stats.cache_hits))
+if "tidy" in sys.argv:
+    print(remove_outdated())
 """
 
 
-def said(folder: Path, factor: float) -> list[float]:
+def said(folder: Path, factor: float, *words: str) -> list[float]:
     """What a program says whose inner function multiplies by `factor`, and how often it found its code on disk."""
     (folder / "inner.py").write_text(INNER.format(factor=factor))
     (folder / "outer.py").write_text(OUTER)
     root = str(Path(__file__).parents[2])
     path = {"PYTHONPATH": root, "PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run(
-        [sys.executable, "outer.py"], cwd=folder, env=path, capture_output=True, text=True, check=True, timeout=120
+        [sys.executable, "outer.py", *words],
+        cwd=folder,
+        env=path,
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=120,
     )
     return [float(word) for word in done.stdout.split()]
 
@@ -50,6 +59,19 @@ def test_kept_code_is_used_again_and_never_after_a_change_in_a_file_that_it_call
     assert said(tmp_path, 2.0) == [21.0, 0.0]
     assert said(tmp_path, 2.0) == [21.0, 1.0]
     assert said(tmp_path, 3.0) == [31.0, 0.0]
+
+
+@pytest.mark.slow
+def test_code_of_other_sources_is_removed_and_nothing_else(tmp_path: Path) -> None:
+    said(tmp_path, 2.0)
+    kept = tmp_path / "__pycache__"
+    old = set(kept.iterdir())
+    other = kept / "another.one-7.py311.1.nbc"
+    other.touch()
+    assert said(tmp_path, 3.0, "tidy") == [31.0, 0.0, len(old)]
+    assert other.exists()
+    assert not old & set(kept.iterdir())
+    assert said(tmp_path, 3.0, "tidy") == [31.0, 1.0, 0.0]
 
 
 def test_the_digest_knows_names_and_contents(tmp_path: Path) -> None:
