@@ -28,6 +28,8 @@ ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 EXAMPLE = re.compile(r'^```toml title="(\w+\.toml)"\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 EXAMPLES = dict(EXAMPLE.findall((DOCS / "own_scenario.md").read_text(encoding="utf-8")))
+ARCHITECTURE = (DOCS / "architecture.md").read_text(encoding="utf-8")
+PAGE_FILES = ["README.md", *(f"docs/{path.name}" for path in DOCS.glob("*.md"))]
 FETCHED = re.compile(
     r'<(?:script|img|iframe)[^>]+src="?(?:https?:)?//|<link[^>]+rel="?(?:stylesheet|preconnect)"?[^>]+https?://'
 )
@@ -109,14 +111,29 @@ def test_pages_that_are_named_become_links_outside_of_code() -> None:
 
 def test_presets_of_the_page_are_those_that_there_are() -> None:
     rows = re.findall(
-        r"^\| `(sensors|wind|link|vehicle)` \| (.*) \|$", (DOCS / "own_scenario.md").read_text(), re.MULTILINE
+        r"^\| `(sensors|wind|link|vehicle|system)` \| (.*) \|$", (DOCS / "own_scenario.md").read_text(), re.MULTILINE
     )
     assert {section: sorted(re.findall(r"`(\w+)`", cell)) for section, cell in rows} == {
-        section: list_presets(section) for section in ("sensors", "wind", "link", "vehicle")
+        section: list_presets(section) for section in ("sensors", "wind", "link", "vehicle", "system")
     }
 
 
-@pytest.mark.parametrize("page", ["README.md", *(f"docs/{path.name}" for path in DOCS.glob("*.md"))])
+def test_architecture_names_every_command_of_scenarios() -> None:
+    row = re.search(r"^\| `scenarios` \| `scenarios` \| experiments: (.*) \|$", ARCHITECTURE, re.MULTILINE)
+    assert row is not None
+    assert sorted(row[1].split(", ")) == sorted(
+        name.removeprefix("scenarios ") for name, _ in helps() if name.startswith("scenarios ")
+    )
+
+
+@pytest.mark.parametrize("page", PAGE_FILES)
+def test_files_that_a_page_leads_to_are_there_without_the_manual_being_built(page: str) -> None:
+    path = ROOT / page
+    for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8")):
+        assert (path.parent / target).exists(), target
+
+
+@pytest.mark.parametrize("page", PAGE_FILES)
 def test_scenarios_that_a_page_flies_exist(page: str) -> None:
     text = (ROOT / page).read_text(encoding="utf-8")
     known = {entry.name for entry in list_scenarios()}
