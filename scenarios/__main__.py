@@ -97,7 +97,7 @@ def world_command(
     scenario = load_scenario(name)
     keys = Keys(namespace, vehicle, drone)
     options = ZenohOptions(listen=(listen or DEFAULT_ENDPOINT,))
-    with open_transport(mavlink) as transport, open_session(options) as zenoh:
+    with open_transport(mavlink, is_patient=True) as transport, open_session(options) as zenoh:
         WorldLoop(scenario, seed, keys, transport, zenoh, speed=speed).run()
 
 

@@ -182,7 +182,7 @@ def _link(kind: str) -> Iterator[tuple[Transport, Send]]:
             yield both
         return
     here, there = _devices(kind)
-    with open_transport(here) as transport, open_transport(there) as client:
+    with open_transport(here, is_patient=True) as transport, open_transport(there) as client:
 
         def send(data: bytes) -> None:
             client.receive(0.0)  # what the autopilot sends must not fill the buffers

@@ -44,7 +44,7 @@ def run(settings: SimAutopilotConfig, autopilot: AutopilotConfig, options: RunOp
     """
     log = structlog.wrap_logger(structlog.PrintLogger(sys.stderr))
     with ExitStack() as stack:
-        transports = [stack.enter_context(open_transport(device)) for device in options.devices]
+        transports = [stack.enter_context(open_transport(device, is_patient=True)) for device in options.devices]
         zenoh = stack.enter_context(open_session(options.zenoh))
         AutopilotNode(autopilot, 0).step(None, np.zeros(3))  # loads the compiled kernels before time starts to count
         node = AutopilotNode(autopilot, time.time_ns() // STEP_NS * STEP_NS)

@@ -18,15 +18,19 @@ class TcpConnection:
 
     Args:
         connected: the socket, which is the connection's from now on.
+        is_patient: stay connected however late the other end reads what the system holds for it.
     """
 
-    def __init__(self, connected: socket.socket) -> None:
+    def __init__(self, connected: socket.socket, *, is_patient: bool = False) -> None:
         connected.setblocking(False)
         connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        connected.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER_BYTES)
-        if hasattr(socket, "TCP_USER_TIMEOUT"):  # Linux; sees a stall even while this program does nothing
+        if not is_patient:
+            connected.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER_BYTES)
+        if not is_patient and hasattr(
+            socket, "TCP_USER_TIMEOUT"
+        ):  # Linux; sees a stall even while this program does nothing
             connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, round(UNDER_WAY_MAX_S * 1000.0))
-        self._socket = connected
+        self._socket, self._is_patient = connected, is_patient
         self._queue = SendQueue()
         self.is_open = True
 
@@ -42,7 +46,7 @@ class TcpConnection:
         dropped = 0
         try:
             dropped = self._queue.write(self._socket.send, now_s)
-            if not self._queue.is_overdue(held_bytes(self._socket.fileno()), now_s):
+            if self._is_patient or not self._queue.is_overdue(held_bytes(self._socket.fileno()), now_s):
                 return dropped
             self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, _RESET_AT_ONCE)
         except OSError:

@@ -15,12 +15,17 @@ _CLIENTS_MAX = 16
 class TcpClientTransport(Transport):
     """Connects to a server, and again after each loss.
 
+    Args:
+        device: the server.
+        is_patient: stay connected to one that does not read.
+
     Raises:
         UserError: The host is unknown.
     """
 
-    def __init__(self, device: NetworkDevice) -> None:
+    def __init__(self, device: NetworkDevice, *, is_patient: bool = False) -> None:
         super().__init__()
+        self._is_patient = is_patient
         self._family, self._address = resolve(device, socket.SOCK_STREAM)
         self._connection: TcpConnection | None = None
         self._attempt: socket.socket | None = None
@@ -87,7 +92,7 @@ class TcpClientTransport(Transport):
             self._abandon()
             return
         self._attempt = None
-        self._connection = TcpConnection(attempt)
+        self._connection = TcpConnection(attempt, is_patient=self._is_patient)
 
     def _abandon(self) -> None:
         if self._attempt is not None:
@@ -98,12 +103,17 @@ class TcpClientTransport(Transport):
 class TcpServerTransport(Transport):
     """Serves clients, each of which gets everything that is sent.
 
+    Args:
+        device: where.
+        is_patient: keep clients that do not read.
+
     Raises:
         UserError: The host is unknown or the port in use.
     """
 
-    def __init__(self, device: NetworkDevice) -> None:
+    def __init__(self, device: NetworkDevice, *, is_patient: bool = False) -> None:
         super().__init__()
+        self._is_patient = is_patient
         family, address = resolve(device, socket.SOCK_STREAM)
         self._listener = socket.socket(family, socket.SOCK_STREAM)
         # Without this the port of a server that has just ended stays taken for a minute.
@@ -172,7 +182,7 @@ class TcpServerTransport(Transport):
         if len(self._clients) == _CLIENTS_MAX:
             connected.close()
             return
-        self._clients[self._met] = TcpConnection(connected)
+        self._clients[self._met] = TcpConnection(connected, is_patient=self._is_patient)
         self._met += 1
         self._waiting.register(connected, select.EPOLLIN)
 

@@ -12,12 +12,14 @@ from link.mavlink.udp_transport import UdpBoundTransport, UdpInTransport, UdpOut
 __all__ = ["Transport", "open_transport"]
 
 
-def open_transport(device: str) -> Transport:
+def open_transport(device: str, *, is_patient: bool = False) -> Transport:
     """Opens a device.
 
     Args:
         device: `udpin:HOST:PORT`, `udpout:HOST:PORT`, `udpout:HOST:PORT:OWN_PORT`, `tcp:HOST:PORT`, `tcpin:HOST:PORT`
             or `/dev/ttyX,BAUD`.
+        is_patient: stay connected over TCP to who does not read for a while. For telemetry, which may come late:
+            a setpoint or command must not.
 
     Returns:
         The open transport; a TCP client may not be connected yet, and goes on trying.
@@ -30,12 +32,16 @@ def open_transport(device: str) -> Transport:
         return SerialTransport(parsed)
     if parsed.own_port is not None:
         return UdpBoundTransport(parsed)
-    return _NETWORK_TRANSPORTS[parsed.kind](parsed)
+    if parsed.kind in _TCP_TRANSPORTS:
+        return _TCP_TRANSPORTS[parsed.kind](parsed, is_patient=is_patient)
+    return _UDP_TRANSPORTS[parsed.kind](parsed)
 
 
-_NETWORK_TRANSPORTS: dict[str, type[UdpInTransport | UdpOutTransport | TcpClientTransport | TcpServerTransport]] = {
+_UDP_TRANSPORTS: dict[str, type[UdpInTransport | UdpOutTransport]] = {
     "udpin": UdpInTransport,
     "udpout": UdpOutTransport,
+}
+_TCP_TRANSPORTS: dict[str, type[TcpClientTransport | TcpServerTransport]] = {
     "tcp": TcpClientTransport,
     "tcpin": TcpServerTransport,
 }

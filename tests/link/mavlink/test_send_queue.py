@@ -59,11 +59,20 @@ def filled(connection: TcpConnection) -> int:
     return sent
 
 
-@pytest.fixture
-def ends() -> tuple[TcpConnection, socket.socket]:
+def both_ends(*, is_patient: bool) -> tuple[TcpConnection, socket.socket]:
     with socket.create_server(("127.0.0.1", 0)) as server:
         ours = socket.create_connection(server.getsockname())
-        return TcpConnection(ours), server.accept()[0]
+        return TcpConnection(ours, is_patient=is_patient), server.accept()[0]
+
+
+@pytest.fixture
+def ends() -> tuple[TcpConnection, socket.socket]:
+    return both_ends(is_patient=False)
+
+
+@pytest.fixture
+def patient_ends() -> tuple[TcpConnection, socket.socket]:
+    return both_ends(is_patient=True)
 
 
 def test_a_frame_that_nobody_takes_in_time_is_never_sent() -> None:
@@ -156,6 +165,25 @@ def test_a_tcp_peer_that_reads_nothing_is_not_sent_what_has_waited(ends: tuple[T
     assert connection.flush(UNDER_WAY_MAX_S + 0.01) > 1000  # setpoints of 20 s
     assert not connection.is_open
     assert len(read_until_reset(peer)) < sent * len(SETPOINT) - 65000
+    peer.close()
+
+
+def test_a_patient_connection_stays_and_goes_on_with_whole_frames(
+    patient_ends: tuple[TcpConnection, socket.socket],
+) -> None:
+    connection, peer = patient_ends
+    sent = filled(connection)
+    dropped = connection.flush(100.0)
+    assert connection.is_open
+    assert dropped > 1000
+    got = bytearray()
+    while len(got) < (sent - dropped) * len(SETPOINT):
+        got += peer.recv(65536)
+        connection.flush(100.0)
+    connection.send(b"new", 100.0)
+    got += peer.recv(3, socket.MSG_WAITALL)
+    assert bytes(got) == SETPOINT * (sent - dropped) + b"new"
+    connection.close()
     peer.close()
 
 
