@@ -25,11 +25,7 @@ class TcpConnection:
         connected.setblocking(False)
         connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         if not is_patient:
-            connected.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER_BYTES)
-        if not is_patient and hasattr(
-            socket, "TCP_USER_TIMEOUT"
-        ):  # Linux; sees a stall even while this program does nothing
-            connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, round(UNDER_WAY_MAX_S * 1000.0))
+            _set_impatient(connected)
         self._socket, self._is_patient = connected, is_patient
         self._queue = SendQueue()
         self.is_open = True
@@ -78,3 +74,10 @@ class TcpConnection:
         """Gives the socket back."""
         self._socket.close()
         self.is_open = False
+
+
+def _set_impatient(connected: socket.socket) -> None:
+    """Let the system hold little, and see a stall even while this program does nothing, where it can."""
+    connected.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER_BYTES)
+    if hasattr(socket, "TCP_USER_TIMEOUT"):  # Linux
+        connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, round(UNDER_WAY_MAX_S * 1000.0))
