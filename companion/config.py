@@ -104,10 +104,6 @@ class DescentConfig(StrictModel):
     surprise_wait_max_s: NotNegative = 60.0  # for which it waits so without its time limit running: three surprises
     stray_hold_s: NotNegative = 3.0  # beside the cone or too fast, but high enough to be aligned again
     strays_max: Annotated[int, Field(ge=0, le=20)] = 3  # so often in one approach, as retries: a gust may last
-    # Below this what the drone is beside its place is made up for with this time constant: every step of the estimate
-    # would lean it just before the contact.
-    unhurried_height_m: NotNegative = 0.4
-    unhurried_s: Positive = 1.5
     commit_height_m: Positive = 0.35  # below this it lands rather than aborts
     # Standard deviation up to which a pad is landed on that the vehicle's fixes are too coarse to place: half of what
     # S1 allows. Its pattern must have been seen as lately as that, while the drone and the vehicle's clock wander.

@@ -99,8 +99,6 @@ def pad_aim(
     position[:, 2] += feet_offset_m + height
     velocity = pad.velocity_enu_m_s.copy()
     velocity[:, 2] -= sink
-    if phase is Phase.DESCEND and lowest_m is None and height_now_m < config.descent.unhurried_height_m:
-        _unhurry(position, velocity, pad, reference, config.descent.unhurried_s)
     target = Target(
         offset_s=pad.offset_s,
         position_enu_m=position,
@@ -109,13 +107,6 @@ def pad_aim(
     )
     floor = pad.position_enu_m[:, 2] + feet_offset_m + _clearance_m(phase, config)
     return Aim(target=target, floor_enu_m=floor)
-
-
-def _unhurry(position: Array, velocity: Array, pad: PadPath, reference: ReferenceState, time_s: float) -> None:
-    """Change an aim (n, 3), in place, to one that makes up slowly for what the virtual model is beside the pad."""
-    off = (reference.position_enu_m - pad.position_enu_m[0])[:2] * np.exp(-pad.offset_s / time_s)[:, None]
-    position[:, :2] += off
-    velocity[:, :2] -= off / time_s
 
 
 def _height_profile(

@@ -109,18 +109,3 @@ def test_fast_flight_with_a_little_sink_stops_no_lower_than_the_sink_takes() -> 
         acceleration_enu_m_s2=np.zeros(3),
     )
     np.testing.assert_allclose(stopping_point(moving, 2.0), [1.0 + 12.0 * 5.0, 2.0 + 16.0 * 5.0, 3.0 - 0.25])
-
-
-@pytest.mark.parametrize(("height_m", "lowest_m"), [(0.39, None), (0.41, None), (0.39, 0.35)])
-def test_just_above_the_pad_a_step_beside_it_is_made_up_for_slowly_unless_it_waits(
-    height_m: float, lowest_m: float | None
-) -> None:
-    pad, gear_m = _pad_path(5.0), 0.12
-    model = _at(3.3, -2.4, 1.5 + height_m + gear_m)
-    target = pad_aim(Phase.DESCEND, pad, model, gear_m, CONFIG, lowest_m=lowest_m).target
-    beside_m = target.position_enu_m[:, :2] - pad.position_enu_m[:, :2]
-    is_slow = height_m < DESCENT.unhurried_height_m and lowest_m is None
-    left = np.exp(-HORIZON_OFFSETS_S / DESCENT.unhurried_s) if is_slow else np.zeros(len(HORIZON_OFFSETS_S))
-    np.testing.assert_allclose(beside_m, np.outer(left, [0.3, -0.4]), atol=1e-12)
-    drift_m_s = target.velocity_enu_m_s[:, :2] - pad.velocity_enu_m_s[:, :2]
-    np.testing.assert_allclose(drift_m_s, -beside_m / DESCENT.unhurried_s, atol=1e-12)
