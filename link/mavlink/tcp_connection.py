@@ -29,6 +29,7 @@ class TcpConnection:
         self._socket, self._is_patient = connected, is_patient
         self._queue = SendQueue()
         self.is_open = True
+        self.has_stalled = False
 
     def send(self, data: bytes, now_s: float) -> int:
         """Takes whole frames to be sent, at a monotonic time; returns how many given to it never will be."""
@@ -44,9 +45,10 @@ class TcpConnection:
             dropped = self._queue.write(self._socket.send, now_s)
             if self._is_patient or not self._queue.is_overdue(held_bytes(self._socket.fileno()), now_s):
                 return dropped
+            self.has_stalled = True
             self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, _RESET_AT_ONCE)
-        except OSError:
-            pass  # the connection is lost, which ends it just so
+        except OSError as error:  # the connection is lost, which ends it just so
+            self.has_stalled = self.has_stalled or isinstance(error, TimeoutError)
         dropped += len(self._queue)
         self.close()
         return dropped
@@ -59,7 +61,8 @@ class TcpConnection:
                 data = self._socket.recv(CHUNK_BYTES)
             except BlockingIOError:
                 break
-            except OSError:
+            except OSError as error:
+                self.has_stalled = self.has_stalled or isinstance(error, TimeoutError)
                 data = b""
             if not data:
                 self.close()

@@ -30,6 +30,7 @@ class TcpClientTransport(Transport):
         self._connection: TcpConnection | None = None
         self._attempt: socket.socket | None = None
         self._next_attempt_s = 0.0
+        self._awaits_sign = False
         self._connect(0.0)
 
     @property
@@ -39,7 +40,10 @@ class TcpClientTransport(Transport):
 
     def send(self, data: bytes) -> None:
         """Sends bytes if there is somebody to send them to."""
-        self._dropped += 1 if self._connection is None else self._connection.send(data, time.monotonic())
+        if self._connection is None or self._awaits_sign:
+            self._dropped += 1
+        else:
+            self._dropped += self._connection.send(data, time.monotonic())
         self._check()
 
     def receive(self, timeout_s: float) -> bytes:
@@ -51,6 +55,7 @@ class TcpClientTransport(Transport):
         if self._connection.is_open and not wait_readable(self._connection.fileno(), timeout_s):
             return b""
         data = self._connection.read()
+        self._awaits_sign = self._awaits_sign and not data
         self._check()
         return data
 
@@ -67,9 +72,14 @@ class TcpClientTransport(Transport):
         self._next_attempt_s = float("inf")
 
     def _check(self) -> None:
-        """Takes note of a loss."""
+        """Takes note of a loss.
+
+        After a stall the other end has to be heard first: its system also connects and takes frames for a program that
+        sleeps, which would read them late. Whoever speaks MAVLink says so each second.
+        """
         if self._connection is not None and not self._connection.is_open:
             self._errors += 1
+            self._awaits_sign = self._awaits_sign or self._connection.has_stalled
             self._connection = None
 
     def _connect(self, timeout_s: float) -> None:

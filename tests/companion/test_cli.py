@@ -57,8 +57,6 @@ def test_printed_configuration_is_the_default_and_can_be_read_back(tmp_path: Pat
     ("arguments", "named"),
     [
         (("--config", "there_is_none.toml"), "there_is_none.toml"),
-        (("--mavlink", "carrier-pigeon:1"), "carrier-pigeon"),
-        (("--timing", "there/is/no/folder.json"), "folder.json"),
         (("--timeout", "-1"), "--timeout"),
         (("--system-id", "0"), "--system-id"),
     ],

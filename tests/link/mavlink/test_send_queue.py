@@ -204,12 +204,23 @@ def sent_until(transport: Transport, condition: Callable[[], bool]) -> None:
         transport.receive(0.005)
 
 
-def test_a_tcp_client_connects_anew_when_the_server_stops_reading() -> None:
+def test_a_tcp_client_leaves_a_server_that_stops_reading_and_speaks_again_when_it_is_heard() -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         device = NetworkDevice(kind="tcp", host="127.0.0.1", port=server.getsockname()[1])
         with TcpClientTransport(device) as client:
             sent_until(client, lambda: client.statistics.errors > 0)
             sent_until(client, lambda: client.is_connected)
+            asleep, awake = server.accept()[0], server.accept()[0]
+            client.send(b"to somebody who may be asleep")
+            awake.sendall(b"sign of life")
+            awake.settimeout(DEADLINE_S)
+            deadline_s = time.monotonic() + DEADLINE_S
+            while client.receive(0.05) != b"sign of life":
+                assert time.monotonic() < deadline_s
+            client.send(b"to somebody who is awake")
+            assert awake.recv(64) == b"to somebody who is awake"
+            asleep.close()
+            awake.close()
 
 
 def test_a_serial_line_that_takes_nothing_is_emptied_and_opened_anew() -> None:
