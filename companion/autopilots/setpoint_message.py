@@ -17,7 +17,7 @@ def local_ned_setpoint(setpoint: Setpoint, boot_ms: int, target_system: int) -> 
 
     Args:
         setpoint: position, velocity and acceleration in ENU; a None group is masked out.
-        boot_ms: the autopilot's boot time at which the setpoint holds.
+        boot_ms: the autopilot's boot time at which it is sent; no autopilot goes by it.
         target_system: the autopilot's system id.
 
     Raises:
