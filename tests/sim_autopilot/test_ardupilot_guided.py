@@ -6,6 +6,7 @@ from math import atan2, cos, degrees, hypot, inf, nan, radians, sin
 import pytest
 
 from link.mavlink.dialect import Message, mavlink
+from sim_autopilot.local_places import local_from_world
 from sim_autopilot.memory import AutopilotConfig
 from sim_autopilot.physics.airframe import ARDUCOPTER_AIRFRAME
 from sim_autopilot.plant import PlantConfig
@@ -82,15 +83,22 @@ def flown(course: Course, mask: int, duration_s: float, config: AutopilotConfig 
     return pilot, began_s
 
 
+def local_enu_m(pilot: Pilot) -> Vector:
+    """Where the drone is in the frame that its setpoints are in."""
+    east_m, north_m, up_m = pilot.position.tolist()
+    return local_from_world(pilot.node.memory.origin, (east_m, north_m, up_m))
+
+
 def lag_m(speed_m_s: float, mask: int, duration_s: float, ramp_m_s2: float = inf) -> float:
     course = north(speed_m_s, ramp_m_s2)
     pilot, began_s = flown(course, mask, duration_s)
-    return float(pilot.position[1]) - course(pilot.t_s - began_s)[0][0]
+    return local_enu_m(pilot)[1] - course(pilot.t_s - began_s)[0][0]
 
 
 def outward_m(radius_m: float, mask: int) -> float:
     pilot, _ = flown(circle(radius_m), mask, 30.0)
-    return float(hypot(pilot.position[1] + radius_m, pilot.position[0])) - radius_m
+    east_m, north_m, _ = local_enu_m(pilot)
+    return hypot(north_m + radius_m, east_m) - radius_m
 
 
 def landed_state(pilot: Pilot) -> int:
