@@ -12,7 +12,7 @@ from companion.config import CompanionConfig
 from companion.contact import Verdict, does_not_fall, is_stopped_by_pad, over_pad_radius_m, signs_of, verdict
 from companion.pad import HEADING_UNKNOWN
 from companion.phases import LANDING_PHASES, NEAR_PHASES, Event, Phase
-from companion.situation import Approach, Situation, approach
+from companion.situation import Approach, Situation, approach, stands
 from companion.targets import changes_speed, chase_floor_m, is_unseen, is_vague
 
 CONTACT = "contact"
@@ -158,12 +158,11 @@ def _stands_nearby(s: Situation, _: Approach | None, c: CompanionConfig) -> bool
     if s.drone is None or s.pad is None or not_placed(s, None, c) or fix_too_old(s, None, c) or is_too_low(s, c):
         return False
     ahead = s.drone.position_enu_m[:2] - s.pad.position_enu_m[0, :2]
-    speed_m_s = math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist())
-    return speed_m_s < c.chase.parked_speed_m_s and math.hypot(*ahead.tolist()) < c.chase.passing_distance_m
+    return stands(s, c.chase) and math.hypot(*ahead.tolist()) < c.chase.passing_distance_m
 
 
 def _drives(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
-    return s.pad is not None and math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist()) >= c.chase.parked_speed_m_s
+    return s.pad is not None and not stands(s, c.chase)
 
 
 def _in_contact(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:

@@ -66,7 +66,10 @@ class ChaseConfig(StrictModel):
     # One that has passed meanwhile is chased while so much more speed makes its lead up in that time.
     catch_up_speed_m_s: Positive = 10.0
     catch_up_s: Positive = 5.0
-    parked_speed_m_s: Positive = 0.3  # slower than this is standing
+    # Slower than this is standing, or than so many standard deviations of a speed that is known less well than that:
+    # over poor data a parked vehicle seems to move by 0.3 m/s now and then.
+    parked_speed_m_s: Positive = 0.3
+    parked_speed_stds: NotNegative = 1.5
     driving_hold_s: NotNegative = (
         0.5  # faster than that for so long is driving: estimates from fixes of 0.1 m jump for 0.3 s
     )

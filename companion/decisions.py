@@ -24,7 +24,7 @@ from companion.config import CompanionConfig, LandingStyle
 from companion.contact import described, signs_of
 from companion.feasibility import obstacle
 from companion.phases import FLYING_PHASES, Event, Phase
-from companion.situation import Situation, approach
+from companion.situation import Situation, approach, stands
 
 Decision = tuple[Event, str]
 
@@ -183,7 +183,7 @@ def vehicle_passes(s: Situation, config: CompanionConfig) -> Decision | None:
     velocity = s.pad.velocity_enu_m_s[0, :2]
     ahead = s.drone.position_enu_m[:2] - s.pad.position_enu_m[0, :2]
     speed_m_s = math.hypot(*velocity.tolist())
-    if speed_m_s < config.chase.parked_speed_m_s:
+    if stands(s, config.chase):
         return None
     to_go_m = float(ahead @ velocity) / speed_m_s
     beside_m = abs(float(ahead[0] * velocity[1] - ahead[1] * velocity[0])) / speed_m_s

@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from companion.autopilots.driver import AutopilotView
+from companion.config import ChaseConfig
 from companion.data import Array, FlightLimits, OwnState, RangeReading
 from companion.pad import PadPath
 from companion.planning.guidance import ReferenceState
@@ -58,6 +59,7 @@ class Situation:
         waiting_point_enu_m: (3,) in W.
         range_height_m: of the feet above what a range finder sees below, None without a fresh reading.
         range_carried_m: the last such height less what the drone has sunk since, for it may be too near to be seen.
+        speed_std_m_s: of the vehicle's horizontal velocity; infinite while that is not known.
         limits: of the flight, the autopilot's own included.
         speed_limited_by: the autopilot's parameters that may bound the speed.
     """
@@ -74,6 +76,7 @@ class Situation:
     waiting_point_enu_m: Array | None
     range_height_m: float | None = None
     range_carried_m: float | None = None
+    speed_std_m_s: float = math.inf
     limits: FlightLimits | None = None
     speed_limited_by: tuple[str, ...] = ()
 
@@ -159,3 +162,12 @@ def range_carried_m(drone: Drone | None, seen: RangeReading | None, sensor_heigh
     if drone is None or seen is None or seen.up_m is None or abs(t_ns - seen.t_ns) * 1e-9 > _LAST_SEEN_AGE_MAX_S:
         return None
     return seen.distance_m - sensor_height_m + float(drone.position_enu_m[2]) - seen.up_m
+
+
+def stands(situation: Situation, config: ChaseConfig) -> bool:
+    """Return whether the vehicle is known and stands, as far as its speed is known."""
+    if situation.pad is None:
+        return False
+    std_m_s = situation.speed_std_m_s
+    unsure_m_s = config.parked_speed_stds * std_m_s if math.isfinite(std_m_s) else 0.0
+    return math.hypot(*situation.pad.velocity_enu_m_s[0, :2].tolist()) < max(config.parked_speed_m_s, unsure_m_s)

@@ -110,6 +110,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
         reference=memory.reference,
         tracking_error_m=memory.tracking.error_m,
         waiting_point_enu_m=memory.waiting_point_enu_m,
+        speed_std_m_s=memory.surprise.speed_std_m_s,
         limits=inputs.limits,
         speed_limited_by=() if inputs.driver is None else inputs.driver.speed_parameters,
         range_height_m=range_height_m(inputs.own, seen, sensor_m, inputs.t_ns),

@@ -1,11 +1,9 @@
 """What a descent stays above the pad for, how low it may go meanwhile, and for how long it has; pure."""
 
-import math
-
 from companion.conditions import must_wait
 from companion.config import CompanionConfig
 from companion.phases import Phase
-from companion.situation import Approach, Situation, approach
+from companion.situation import Approach, Situation, approach, stands
 from companion.step_data import StepMemory
 from companion.surprise import may_surprise
 from companion.sway import sways
@@ -50,12 +48,15 @@ def waited_s(memory: StepMemory, t_ns: int) -> float:
 
 def waits_for_even_driving(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
     """Return whether a descent waits since the vehicle drives, and has lately done what nobody could expect."""
-    relative, pad = approach(situation), situation.pad
-    if memory.phase is not Phase.DESCEND or relative is None or pad is None:
+    relative = approach(situation)
+    if memory.phase is not Phase.DESCEND or relative is None:
         return False
     is_high = relative.height_m > config.descent.commit_height_m
-    drives = math.hypot(*pad.velocity_enu_m_s[0, :2].tolist()) > config.chase.parked_speed_m_s
-    return is_high and drives and may_surprise(memory.surprise, situation.t_ns, config.descent)
+    return (
+        is_high
+        and not stands(situation, config.chase)
+        and may_surprise(memory.surprise, situation.t_ns, config.descent)
+    )
 
 
 def _awaited(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str | None:

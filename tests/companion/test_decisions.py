@@ -21,7 +21,7 @@ from companion.conditions import Test as Condition
 from companion.decisions import Decision, decide, vehicle_passes
 from companion.pad import NOT_DESCRIBED
 from companion.phases import Event, Phase
-from companion.situation import Situation, approach
+from companion.situation import Situation, approach, stands
 from link.messages import Vector3
 from tests.companion.facts import (
     CONFIG,
@@ -444,3 +444,25 @@ def test_pad_that_was_not_described_is_not_landed_on_and_it_is_said_why() -> Non
     held = update_held(aligned, Phase.ALIGN, facts, approach(facts), CONFIG)
     assert "aligned" not in held
     assert decide(late, facts, held, CONFIG) == (Event.TIME_LIMIT, NOT_DESCRIBED)
+
+
+@pytest.mark.parametrize(
+    ("speed_m_s", "std_m_s", "expected"),
+    [
+        (0.2, 0.1, True),
+        (0.4, 0.1, False),
+        (0.4, 0.5, True),
+        (0.8, 0.5, False),
+        (0.4, math.inf, False),
+        (0.2, math.inf, True),
+    ],
+)
+def test_vehicle_stands_as_far_as_its_speed_is_known(speed_m_s: float, std_m_s: float, *, expected: bool) -> None:
+    facts = replace(situation(pad=pad_at((speed_m_s, 0.0, 0.0))), speed_std_m_s=std_m_s)
+    assert stands(facts, CONFIG.chase) is expected
+    assert ("vehicle stands" in update_held({}, Phase.WAITING, facts, approach(facts), CONFIG)) is expected
+    assert ("vehicle drives" in update_held({}, Phase.WAITING, facts, approach(facts), CONFIG)) is not expected
+
+
+def test_vehicle_that_is_not_known_does_not_stand() -> None:
+    assert not stands(replace(situation(), pad=None), CONFIG.chase)
