@@ -63,7 +63,7 @@ def own_unknown(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
 
 
 def not_placed(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
-    """Return whether the pad's place on the vehicle is unknown for want of a heading."""
+    """Return whether nobody knows where on the vehicle the pad is: no heading is known, or no description."""
     return s.pad is not None and s.pad.unplaced is not None
 
 
