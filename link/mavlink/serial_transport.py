@@ -1,5 +1,6 @@
 """A serial port, opened again when its plug was out for a while."""
 
+import errno
 import os
 import termios
 import time
@@ -21,7 +22,7 @@ class SerialTransport(Transport):
         device: its path and baud rate.
 
     Raises:
-        UserError: It is missing, not ours to use, or does not know the baud rate.
+        UserError: It is missing, not ours to use, open in another program, or does not know the baud rate.
     """
 
     def __init__(self, device: SerialDevice) -> None:
@@ -109,7 +110,8 @@ def _open(device: SerialDevice) -> Any:
     # Imported here, since a flight over UDP needs no serial port. SerialException is an OSError.
     import serial  # noqa: PLC0415 (see above)
 
-    return serial.Serial(device.path, device.baud, timeout=0)
+    # Two programs on one port would get half of the stream each.
+    return serial.Serial(device.path, device.baud, timeout=0, exclusive=True)
 
 
 def _problem(error: OSError | ValueError, device: SerialDevice) -> str:
@@ -117,4 +119,6 @@ def _problem(error: OSError | ValueError, device: SerialDevice) -> str:
         return "there is no such device; is it plugged in?"
     if not os.access(device.path, os.R_OK | os.W_OK):
         return "no permission; join the group that owns it, often dialout"
+    if isinstance(error, OSError) and error.errno == errno.EWOULDBLOCK:
+        return "another program has it open; end that one first, a companion that runs as a service perhaps"
     return f"cannot be opened as a serial port ({error}); check path and baud rate"

@@ -283,6 +283,20 @@ def test_a_serial_port_pulled_out_is_counted_and_raises_nothing() -> None:
         assert transport.fileno() == -1
 
 
+def test_a_serial_port_that_another_program_has_is_one_clear_line_and_is_left_to_it() -> None:
+    ours, theirs = pty.openpty()
+    tty.setraw(theirs)
+    device = f"{os.ttyname(theirs)},57600"
+    with open_transport(device) as first:
+        with pytest.raises(UserError, match="^" + device + ": another program has it open"):
+            open_transport(device)
+        os.write(ours, b"all of it")
+        assert received(first, 9) == b"all of it"
+    open_transport(device).close()
+    os.close(ours)
+    os.close(theirs)
+
+
 @pytest.mark.parametrize("device", ["udpin:127.0.0.1:0", "tcpin:127.0.0.1:0", "tcp:127.0.0.1:9", "udpout:127.0.0.1:9"])
 def test_a_closed_transport_gives_nothing_and_may_be_closed_again(device: str) -> None:
     transport = open_transport(device)
