@@ -26,52 +26,41 @@ class AxisProblem:
         model: the predictions behind them.
         H: (q, q) Hessian over the m moves and the slacks.
         A: (c, q) constraint matrix, rows as `envelope.bound_rows` orders them.
-        from_state: (m, 3) gradient with respect to the moves per state.
-        from_reference: (3 n, m) the same, transposed, per position, velocity and acceleration reference.
-        move_weight: (m,) the same per jerk reference.
-        slack_gradient: (q - m,) the penalty's slope.
+        weights: (3 + 3 n + 1, m) gradient with respect to the moves: per position, velocity and acceleration of the
+            state, per position, velocity and acceleration of the reference at each node, and per jerk reference.
+        slack_weight: the penalty's slope.
     """
 
     model: AxisModel
     H: Array
     A: Array
-    from_state: Array
-    from_reference: Array
-    move_weight: Array
-    slack_gradient: Array
-
-    @property
-    def weights(self) -> tuple[Array, Array, Array]:
-        """Those of `linear_term`, the same whatever slacks there are."""
-        return self.from_state, self.from_reference, self.move_weight
+    weights: Array
+    slack_weight: float
 
 
 @kept
-def linear_term(
-    weights: tuple[Array, Array, Array], slack_gradient: Array, x: Array, reference: Array, jerk: Array
-) -> Array:
-    """Return the linear term (q,) of a programme.
+def slopes_of(weights: Array, x: Array, reference: Array, jerk: Array) -> Array:
+    """Return the linear terms (3, m) of the axes' programmes over the moves; a slack has `AxisProblem.slack_weight`.
 
     Args:
-        weights: as `AxisProblem.weights` has them.
-        slack_gradient: (q - m,).
-        x: (3,) the state.
-        reference: (3, n) of position, velocity, acceleration.
-        jerk: (m,) the reference of the moves.
+        weights: as `AxisProblem` has them.
+        x: (3, 3) the state: position, velocity, acceleration; axis.
+        reference: (3, 3, n) of position, velocity, acceleration; axis; node.
+        jerk: (3, m) the reference of the moves.
     """
-    from_state, from_reference, move_weight = weights
-    moves, nodes = len(move_weight), reference.shape[1]
-    term = np.empty(moves + len(slack_gradient))
-    for move in range(moves):
-        slope = from_state[move, 0] * x[0] + from_state[move, 1] * x[1] + from_state[move, 2] * x[2]
-        term[move] = slope - move_weight[move] * jerk[move]
+    moves, nodes = weights.shape[1], reference.shape[2]
+    slopes = np.empty((3, moves))
+    for axis in range(3):
+        for move in range(moves):
+            slope = weights[0, move] * x[0, axis] + weights[1, move] * x[1, axis] + weights[2, move] * x[2, axis]
+            slopes[axis, move] = slope - weights[-1, move] * jerk[axis, move]
     for rate in range(3):
         for node in range(nodes):
-            wanted = reference[rate, node]
-            for move in range(moves):  # innermost, since only sums that are apart are computed side by side
-                term[move] -= from_reference[rate * nodes + node, move] * wanted
-    term[moves:] = slack_gradient
-    return term
+            for axis in range(3):
+                wanted = reference[rate, axis, node]
+                for move in range(moves):  # innermost, since only sums that are apart are computed side by side
+                    slopes[axis, move] -= weights[3 + rate * nodes + node, move] * wanted
+    return slopes
 
 
 def make_axis_problem(model: AxisModel, config: MpcConfig, *, has_floor: bool) -> AxisProblem:
@@ -89,10 +78,8 @@ def make_axis_problem(model: AxisModel, config: MpcConfig, *, has_floor: bool) -
         model=model,
         H=0.5 * (H + H.T),
         A=_constraints(model, moves, nodes, slacks),
-        from_state=np.ascontiguousarray(forced.T @ weight @ free),
-        from_reference=np.ascontiguousarray(weight @ forced),
-        move_weight=move_weight,
-        slack_gradient=np.full(slacks, config.slack_weight),
+        weights=np.vstack(((forced.T @ weight @ free).T, weight @ forced, move_weight)),
+        slack_weight=config.slack_weight,
     )
 
 

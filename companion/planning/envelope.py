@@ -15,6 +15,11 @@ import numpy as np
 from companion.data import Array
 from companion.planning.kept import kept
 
+Three = tuple[float, float, float]
+
+Bounds = tuple[Array, Array]
+"""The lower and the upper ones of a programme's rows, written in place."""
+
 AUTHORITY = 0.98
 """Share of the limits that the way back uses, so that the solver has room to follow it."""
 
@@ -84,7 +89,7 @@ def left(norm: float, used: Array) -> Array:
 
 @kept
 def major_share(
-    minor: Array, target_v: Array, target_a: Array, way: Array, norms: Array, node_s: Array, end_s: Array
+    minor: Array, target_v: Array, target_a: Array, way: Three, norms: Three, node_s: Array, end_s: Array
 ) -> tuple[Array, Array, Array]:
     """Return speed (n,), acceleration and jerk (m,) that the major axis may use beside what the minor one needs.
 
@@ -94,24 +99,30 @@ def major_share(
         minor: (3,) position, velocity and acceleration of the minor axis.
         target_v: (n + 1,) the target's velocity along it, now and at the nodes.
         target_a: (m + 1,) the target's acceleration along it, now and at the ends of the blocks.
-        way: (3,) split of the acceleration norm, rad; acceleration of the minor axis's way; share of the speed limit
+        way: split of the acceleration norm, rad; acceleration of the minor axis's way; share of the speed limit
             that the minor axis gets at least.
-        norms: (3,) of speed, acceleration and jerk.
+        norms: of speed, acceleration and jerk.
         node_s: (n,).
         end_s: (m,).
     """
-    push = np.abs(target_a[1:]) + MINOR_PUSH_FACTOR * way[1]
-    target = np.abs(target_v)
-    slowing = 0.5 * push.min() * np.maximum(node_s - 0.2, 0.0)
-    excess = np.maximum(abs(minor[1]) - target[0] - slowing, way[2] * norms[0])
-    easing = abs(minor[2]) - 0.5 * math.sin(way[0]) * norms[2] * end_s
-    jerk = np.full(len(push), math.cos(way[0]) * norms[2])
-    return left(norms[0], target[1:] + excess), left(norms[1], np.maximum(easing, push)), jerk
+    speed, push, jerk = np.empty_like(node_s), np.empty_like(end_s), np.empty_like(end_s)
+    for move in range(len(end_s)):
+        push[move] = abs(target_a[move + 1]) + MINOR_PUSH_FACTOR * way[1]
+        jerk[move] = math.cos(way[0]) * norms[2]
+    least = push.min()
+    for node in range(len(node_s)):
+        slowing = 0.5 * least * max(node_s[node] - 0.2, 0.0)
+        excess = max(abs(minor[1]) - abs(target_v[0]) - slowing, way[2] * norms[0])
+        speed[node] = abs(target_v[node + 1]) + excess
+    for move in range(len(end_s)):
+        easing = abs(minor[2]) - 0.5 * math.sin(way[0]) * norms[2] * end_s[move]
+        push[move] = max(easing, push[move])
+    return left(norms[0], speed), left(norms[1], push), jerk
 
 
 @kept
 def minor_share(
-    major: Array, jerk: Array, forced_v: Array, norms: Array, node_s: Array, move_s: Array
+    major: Array, jerk: Array, forced_v: Array, norms: Three, node_s: Array, move_s: Array
 ) -> tuple[Array, Array, Array]:
     """Return speed (n,), acceleration and jerk (m,) that the major axis's plan leaves of the norms.
 
@@ -119,24 +130,26 @@ def minor_share(
         major: (3,) position, velocity and acceleration of the major axis.
         jerk: its plan, the first m of (q,).
         forced_v: (n, m) its velocity per jerk.
-        norms: (3,) of speed, acceleration and jerk.
+        norms: of speed, acceleration and jerk.
         node_s: (n,).
         move_s: (m,).
     """
-    velocity = major[1] + major[2] * node_s
-    plan = jerk[: len(move_s)]
+    velocity, push, gained = np.empty_like(node_s), np.empty_like(move_s), 0.0
     for node in range(len(node_s)):
-        for move in range(len(plan)):
-            velocity[node] += forced_v[node, move] * plan[move]
-    push = major[2] + np.cumsum(move_s * plan)
-    return left(norms[0], velocity), left(norms[1], push), left(norms[2], plan)
+        velocity[node] = major[1] + major[2] * node_s[node]
+        for move in range(len(move_s)):
+            velocity[node] += forced_v[node, move] * jerk[move]
+    for move in range(len(move_s)):
+        gained += move_s[move] * jerk[move]
+        push[move] = major[2] + gained
+    return left(norms[0], velocity), left(norms[1], push), left(norms[2], jerk[: len(move_s)])
 
 
 @kept
 def bound_rows(
-    x: Array, down: Array, up: Array, push: Array, jerk: Array, floor: Array, node_s: Array, end_s: Array
-) -> tuple[Array, Array]:
-    """Return the lower and upper bounds (c,) of moves, slacks, velocity, acceleration and the floor, widened.
+    x: Array, down: Array, up: Array, push: Array, jerk: Array, floor: Array, node_s: Array, end_s: Array, rows: Bounds
+) -> None:
+    """Write the bounds of moves, slacks, velocity, acceleration and the floor, widened.
 
     Args:
         x: (3,) position, velocity and acceleration of the axis.
@@ -147,15 +160,19 @@ def bound_rows(
         floor: (n,) the lowest position, or empty.
         node_s: (n,).
         end_s: (m,).
+        rows: (c,) each, where they are written.
     """
+    lower, upper = rows
     v, a, braking, turning = x[1], x[2], push.min(), jerk.min()
     moves, nodes = len(jerk), len(node_s)
     velocity = moves + (3 if len(floor) else 2)
     acceleration = velocity + 2 * nodes
-    lower = np.full(acceleration + 2 * moves + len(floor), -np.inf)
-    upper = np.full(len(lower), np.inf)
-    lower[:moves], upper[:moves] = -jerk, jerk
-    lower[moves:velocity] = 0.0
+    for row in range(len(lower)):
+        lower[row], upper[row] = -math.inf, math.inf
+    for move in range(moves):
+        lower[move], upper[move] = -jerk[move], jerk[move]
+    for slack in range(moves, velocity):
+        lower[slack] = 0.0
     slowest = velocity_ceiling(down, -v, -a, braking, turning, node_s)
     fastest = velocity_ceiling(up, v, a, braking, turning, node_s)
     for node in range(nodes):
@@ -169,32 +186,38 @@ def bound_rows(
     for node in range(len(floor)):
         fallen = x[0] + (v + 0.5 * a * node_s[node]) * node_s[node]
         lower[acceleration + 2 * moves + node] = floor[node] - fallen
-    return lower, upper
 
 
 @kept
 def major_bounds(
-    state: Array, target_v: Array, target_a: Array, way: Array, norms: Array, node_s: Array, end_s: Array
-) -> tuple[Array, Array]:
-    """Return the bounds (c,) of the major axis; `state` (3, 3) has the axes in its columns, see `major_share`."""
+    state: Array, target_v: Array, target_a: Array, way: Three, norms: Three, node_s: Array, end_s: Array, rows: Bounds
+) -> None:
+    """Write the bounds of the major axis; `state` (3, 3) has the axes in its columns, see `major_share`."""
     speed, push, jerk = major_share(state[:, 1], target_v, target_a, way, norms, node_s, end_s)
-    return bound_rows(state[:, 0], speed, speed, push, jerk, np.empty(0), node_s, end_s)
+    bound_rows(state[:, 0], speed, speed, push, jerk, np.empty(0), node_s, end_s, rows)
 
 
 @kept
 def minor_bounds(
-    state: Array, major_jerk: Array, forced_v: Array, norms: Array, node_s: Array, move_s: Array, end_s: Array
-) -> tuple[Array, Array]:
-    """Return the bounds (c,) of the minor axis; `state` (3, 3) has the axes in its columns, see `minor_share`."""
+    state: Array,
+    major_jerk: Array,
+    forced_v: Array,
+    norms: Three,
+    node_s: Array,
+    move_s: Array,
+    end_s: Array,
+    rows: Bounds,
+) -> None:
+    """Write the bounds of the minor axis; `state` (3, 3) has the axes in its columns, see `minor_share`."""
     speed, push, jerk = minor_share(state[:, 0], major_jerk, forced_v, norms, node_s, move_s)
-    return bound_rows(state[:, 1], speed, speed, push, jerk, np.empty(0), node_s, end_s)
+    bound_rows(state[:, 1], speed, speed, push, jerk, np.empty(0), node_s, end_s, rows)
 
 
 @kept
 def vertical_bounds(
-    x: Array, floor_m: Array, limits: tuple[float, float, float, float], node_s: Array, end_s: Array
-) -> tuple[Array, Array]:
-    """Return the bounds (c,) of the vertical axis in state `x` (3,).
+    x: Array, floor_m: Array, limits: tuple[float, float, float, float], node_s: Array, end_s: Array, rows: Bounds
+) -> None:
+    """Write the bounds of the vertical axis in state `x` (3,).
 
     Args:
         x: (3,) position, velocity and acceleration.
@@ -202,8 +225,9 @@ def vertical_bounds(
         limits: of descent, climb, acceleration and jerk.
         node_s: (n,).
         end_s: (m,).
+        rows: (c,) each, where they are written.
     """
     descent, climb, pull, most = limits
     floor = reachable_floor(floor_m, x, pull, climb, most, node_s)
     down, up = np.full(len(node_s), descent), np.full(len(node_s), climb)
-    return bound_rows(x, down, up, np.full(len(end_s), pull), np.full(len(end_s), most), floor, node_s, end_s)
+    bound_rows(x, down, up, np.full(len(end_s), pull), np.full(len(end_s), most), floor, node_s, end_s, rows)

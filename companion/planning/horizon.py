@@ -75,18 +75,20 @@ def turned_horizon(
         position, velocity, acceleration; axis; node.
     """
     x = np.empty((3, 3))
-    x[0] = state[0] - path[0, 0]
-    x[1], x[2] = state[1], state[2]
+    for axis in range(3):
+        x[0, axis] = state[0][axis] - path[0, 0, axis]
+        x[1, axis], x[2, axis] = state[1][axis], state[2][axis]
     c, s = major_direction(needs(x, path[1, 0], speed_max_m_s, acceleration_max_m_s2, axes_time_s))
     turned_x, target = np.empty((3, 3)), np.empty((3, 3, path.shape[1]))
     for rate in range(3):
         turned_x[rate, 0] = c * x[rate, 0] + s * x[rate, 1]
         turned_x[rate, 1] = c * x[rate, 1] - s * x[rate, 0]
         turned_x[rate, 2] = x[rate, 2]
-        origin = path[0, 0] if rate == 0 else np.zeros(3)
+        is_place = 1.0 if rate == 0 else 0.0
         for node in range(path.shape[1]):
-            east, north = path[rate, node, 0] - origin[0], path[rate, node, 1] - origin[1]
+            east = path[rate, node, 0] - is_place * path[0, 0, 0]
+            north = path[rate, node, 1] - is_place * path[0, 0, 1]
             target[rate, 0, node] = c * east + s * north
             target[rate, 1, node] = c * north - s * east
-            target[rate, 2, node] = path[rate, node, 2] - origin[2]
+            target[rate, 2, node] = path[rate, node, 2] - is_place * path[0, 0, 2]
     return (c, s), turned_x, target

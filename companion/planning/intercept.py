@@ -12,6 +12,8 @@ import numpy as np
 from companion.data import Array
 from companion.planning.kept import kept
 
+Rates = tuple[float, float, float, float, float]
+
 TINY = 1e-12
 
 RATE_RESERVE = 0.05
@@ -93,8 +95,8 @@ def left_of(norm: float, used: float) -> float:
 
 
 @kept
-def rate_bounds(target_v: Array, limits: Array) -> tuple[Array, Array]:
-    """Return the bounds (3,) of the velocity relative to a target's for `limits` (5,), see `approach`."""
+def rate_bounds(target_v: Array, limits: Rates) -> tuple[Array, Array]:
+    """Return the bounds (3,) of the velocity relative to a target's for `limits`, see `approach`."""
     slowest, fastest = np.empty(3), np.empty(3)
     for axis in range(3):
         up = limits[1] if axis == 2 else left_of(limits[0], target_v[1 - axis])
@@ -105,7 +107,7 @@ def rate_bounds(target_v: Array, limits: Array) -> tuple[Array, Array]:
 
 
 @kept
-def split_norm(error: Array, rate: Array, target_v: Array, target_a: Array, limits: Array, fraction: float) -> float:
+def split_norm(error: Array, rate: Array, target_v: Array, target_a: Array, limits: Rates, fraction: float) -> float:
     """Return the angle that splits the acceleration norm with the least sum of the times of both axes."""
     slowest, fastest = rate_bounds(target_v, limits)
     angles = np.linspace(SPLIT_MIN_RAD, SPLIT_MAX_RAD, SPLITS)
@@ -116,8 +118,12 @@ def split_norm(error: Array, rate: Array, target_v: Array, target_a: Array, limi
             push = usable(share, target_a[axis], fraction)
             way = fastest_way(error[axis], rate[axis], push, slowest[axis], fastest[axis])
             times[i] += way[1] + way[2] + way[3]
-    weights = np.exp((times.min() - times) / SPLIT_SOFTNESS_S)
-    return float((weights * angles).sum() / weights.sum())
+    least, mixed, total = times.min(), 0.0, 0.0
+    for i in range(SPLITS):
+        weight = math.exp((least - times[i]) / SPLIT_SOFTNESS_S)
+        mixed += weight * angles[i]
+        total += weight
+    return mixed / total
 
 
 @kept
@@ -136,7 +142,7 @@ def approach_push(error: float, rate: float, push: float, push_max: float, time_
 
 @kept
 def approach(
-    x: Array, node_s: Array, target: Array, floor: Array, limits: Array, fraction: float, time_min_s: float
+    x: Array, node_s: Array, target: Array, floor: Array, limits: Rates, fraction: float, time_min_s: float
 ) -> tuple[float, Array, Array]:
     """Return how the target is approached from the state `x`, in the frame that moves with the target.
 
@@ -145,7 +151,7 @@ def approach(
         node_s: (n,) rising from 0.
         target: (3, 3, n) position, velocity, acceleration; axis; node.
         floor: (n,) the lowest height; the reference does not go below.
-        limits: (5,) of speed, climb, descent, horizontal and vertical acceleration.
+        limits: of speed, climb, descent, horizontal and vertical acceleration.
         fraction: of the acceleration limit that the approach is planned with.
         time_min_s: ways shorter than this are slowed down, see `approach_push`.
 
@@ -153,10 +159,12 @@ def approach(
         the split of the acceleration norm, rad; the acceleration (3,) of the way; and the reference (3, 3, n - 1),
         ordered as `target`, at the nodes after now.
     """
-    error, rate = x[0] - target[0, :, 0], x[1] - target[1, :, 0]
+    error, rate = np.empty(3), np.empty(3)
+    for axis in range(3):
+        error[axis], rate[axis] = x[0, axis] - target[0, axis, 0], x[1, axis] - target[1, axis, 0]
     split = split_norm(error, rate, target[1, :, 0], target[2, :, 0], limits, fraction)
     slowest, fastest = rate_bounds(target[1, :, 0], limits)
-    reference, pushes = target[:, :, 1:].copy(), np.empty(3)
+    reference, pushes = np.empty((3, 3, len(node_s) - 1)), np.empty(3)
     for axis in range(3):
         share = limits[4] if axis == 2 else limits[3] * (math.cos(split) if axis == 0 else math.sin(split))
         push = usable(share, target[2, axis, 0], fraction)
@@ -164,9 +172,9 @@ def approach(
         way = fastest_way(error[axis], rate[axis], pushes[axis], slowest[axis], fastest[axis])
         for node in range(1, len(node_s)):
             _, p, v, a = way_at(error[axis], rate[axis], way, node_s[node])
-            reference[0, axis, node - 1] += p
-            reference[1, axis, node - 1] += v
-            reference[2, axis, node - 1] += a
+            reference[0, axis, node - 1] = target[0, axis, node] + p
+            reference[1, axis, node - 1] = target[1, axis, node] + v
+            reference[2, axis, node - 1] = target[2, axis, node] + a
     for node in range(1, len(node_s)):
         if reference[0, 2, node - 1] < floor[node]:
             reference[0, 2, node - 1] = floor[node]

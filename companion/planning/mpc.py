@@ -16,10 +16,13 @@ from companion.planning.brake import brake
 from companion.planning.condensed import forced_response, free_response, make_axis_model
 from companion.planning.config import MpcConfig
 from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Trajectory
-from companion.planning.programmes import Grid, Numbers, PlainLimits, Posed, Statics, bound_minor, path_of, pose
+from companion.planning.programmes import Numbers, PlainLimits, Posed, Statics, bound_minor, plan_of, pose
 from companion.planning.qp import Programme, make_solver
-from companion.planning.requests import check, is_finite_state, limits_of, with_finite_state
+from companion.planning.requests import is_finite_state, limits_of, with_finite_state
 from companion.planning.resample import make_resampler
+from link.records import maker
+
+_made_state, _made_trajectory, _made_result = maker(ReferenceState), maker(Trajectory), maker(PlanResult)
 
 
 class Mpc:
@@ -32,69 +35,70 @@ class Mpc:
         self._level, self._upright = (Programme(solver, problem.H, problem.A) for problem in (level, upright))
         self._nodes_s = np.append(0.0, model.node_s)
         self._responses = lru_cache(maxsize=64)(partial(_responses, self._nodes_s, np.array(config.moves_s)))
-        grid = Grid(nodes_s=self._nodes_s, move_s=model.move_s, forced_v=model.forced_v, end_node=model.end_node)
+        self._forced_v, self._grid = model.forced_v, (self._nodes_s, model.move_s, model.end_s)
         numbers = Numbers(
             axes_time_s=config.axes_time_s,
             intercept_fraction=config.intercept_fraction,
             intercept_time_min_s=config.intercept_time_min_s,
             lateral_speed_fraction=config.lateral_speed_fraction,
+            slack_weight=config.slack_weight,
         )
-        slack_gradients = (level.slack_gradient, upright.slack_gradient)
-        self._statics: Statics = ((*grid,), (*numbers,), level.weights, slack_gradients)
+        self._statics: Statics = (self._grid, model.end_node, (*numbers,), level.weights)
 
     def plan(self, memory: ReferenceState | None, request: PlanRequest) -> tuple[ReferenceState, PlanResult]:
         """Return the next state as memory, and the plan."""
-        check(request)
-        limits = limits_of(request.limits)
+        limits = limits_of(request)
         posed = self._posed(request, limits)
-        if not posed.is_finite and not is_finite_state(request.state):
+        if posed is None and not is_finite_state(request.state):
             request = with_finite_state(memory, request)
             posed = self._posed(request, limits)
-        result = self._plan(request, limits, posed) if posed.is_finite else brake(request, PlanStatus.FAILED, 0)
+        result = brake(request, PlanStatus.FAILED, 0) if posed is None else self._plan(request, limits, posed)
         return result.next_state, result
 
-    def _plan(self, request: PlanRequest, limits: PlainLimits, posed: Posed) -> PlanResult:
-        """Return the plan of a request without NaN."""
-        major_term, minor_term, vertical_term = posed.linear_terms
-        major = self._level.solve(major_term, *posed.major)
-        if major.x is None:
-            return brake(request, major.status, major.iterations)
-        minor = self._level.solve(minor_term, *bound_minor(posed.state, major.x, limits, self._statics[0]))
-        vertical = self._upright.solve(vertical_term, *posed.vertical)
-        iterations = major.iterations + minor.iterations + vertical.iterations
-        if minor.x is None or vertical.x is None:
-            return brake(request, minor.status if minor.x is None else vertical.status, iterations)
-        return self._result(request, posed, (major.x, minor.x, vertical.x), iterations)
-
-    def _posed(self, request: PlanRequest, limits: PlainLimits) -> Posed:
-        state = request.state
-        resampler = make_resampler(request.target.offset_s, self._nodes_s)
-        return pose(
+    def _posed(self, request: PlanRequest, limits: PlainLimits) -> Posed | None:
+        """Return the problem of a plan, all but its minor axis's bounds; None where the request is not finite."""
+        state, resampler = request.state, make_resampler(request.target.offset_s, self._nodes_s)
+        posed = np.empty((5, 3)), self._level.blank(), self._level.blank(), self._upright.blank()
+        is_finite = pose(
             (state.position_enu_m, state.velocity_enu_m_s, state.acceleration_enu_m_s2),
             (*resampler.taken(request.target), resampler.taken_line(request.floor_enu_m)),
             limits,
             (resampler.left, resampler.weights),
             self._statics,
+            posed,
         )
+        return posed if is_finite else None
 
-    def _result(
-        self, request: PlanRequest, posed: Posed, solved: tuple[Array, Array, Array], iterations: int
-    ) -> PlanResult:
-        """Return the plan in W: at 0, at the nodes, and at the request's `dt_s`."""
-        path, excess = path_of(posed.origin_enu_m, posed.direction, posed.state, solved, self._responses(request.dt_s))
-        position, velocity, acceleration = path[:, :-1]
-        next_position, next_velocity, next_acceleration = path[:, -1]
-        return PlanResult(
-            next_state=ReferenceState(
-                position_enu_m=next_position,
-                velocity_enu_m_s=next_velocity,
-                acceleration_enu_m_s2=next_acceleration,
+    def _plan(self, request: PlanRequest, limits: PlainLimits, posed: Posed) -> PlanResult:
+        """Return the plan of a request without NaN."""
+        frame, major, minor, vertical = posed
+        status, x, iterations = self._level.solve(major)
+        if x is None:
+            return brake(request, status, iterations)
+        bound_minor(frame, x, self._forced_v, limits, self._grid, minor)
+        status, y, more = self._level.solve(minor)
+        if y is None:
+            return brake(request, status, iterations + more)
+        status, z, most = self._upright.solve(vertical)
+        if z is None:
+            return brake(request, status, iterations + more + most)
+        return self._result(frame, (x, y, z), request.dt_s, iterations + more + most)
+
+    def _result(self, frame: Array, moves: tuple[Array, Array, Array], dt_s: float, iterations: int) -> PlanResult:
+        """Return the plan in W: at 0, at the nodes, and at `dt_s`."""
+        path = np.empty((3, len(self._nodes_s) + 1, 3))
+        excess = plan_of(frame, moves, self._responses(dt_s), path)
+        return _made_result(
+            next_state=_made_state(
+                position_enu_m=path[0, -1],
+                velocity_enu_m_s=path[1, -1],
+                acceleration_enu_m_s2=path[2, -1],
             ),
-            trajectory=Trajectory(
+            trajectory=_made_trajectory(
                 offset_s=self._nodes_s,
-                position_enu_m=position,
-                velocity_enu_m_s=velocity,
-                acceleration_enu_m_s2=acceleration,
+                position_enu_m=path[0, :-1],
+                velocity_enu_m_s=path[1, :-1],
+                acceleration_enu_m_s2=path[2, :-1],
             ),
             status=PlanStatus.SOLVED,
             limit_excess=excess,
@@ -102,7 +106,8 @@ class Mpc:
         )
 
 
-def _responses(nodes_s: Array, moves_s: Array, dt_s: float) -> tuple[Array, Array]:
-    """Return the maps (3, n + 1, 3) and (3, n + 1, m) from state and moves to p, v, a at the nodes and at `dt_s`."""
+def _responses(nodes_s: Array, moves_s: Array, dt_s: float) -> Array:
+    """Return the maps (3 + m, 3 (n + 1)) from state and moves to p, v, a at the nodes and at `dt_s`."""
     times = np.append(nodes_s, dt_s)
-    return np.stack(free_response(times)), np.stack(forced_response(times, moves_s))
+    free, forced = np.vstack(free_response(times)), np.vstack(forced_response(times, moves_s))
+    return np.ascontiguousarray(np.hstack((free, forced)).T)

@@ -95,10 +95,10 @@ class ReportMpc:
         iterations, excess, trajectory = 0, 0.0, [_still(request.state)]
         for target in _targets(request, steps):
             solutions = [self._solve(axis, state[:, axis], target[:, axis], float(jerk[axis])) for axis in range(3)]
-            iterations += sum(solution.iterations for solution in solutions)
-            unknowns = [solution.x for solution in solutions if solution.x is not None]
+            iterations += sum(count for _, _, count in solutions)
+            unknowns = [x for _, x, _ in solutions if x is not None]
             if len(unknowns) < len(solutions):
-                status = next(s.status for s in solutions if s.status is not PlanStatus.SOLVED)
+                status = next(status for status, _, _ in solutions if status is not PlanStatus.SOLVED)
                 return _fallback(request, status, iterations)
             moves = np.stack(unknowns, axis=1)
             trajectory.append(self._predicted(state, moves[:-1]))
@@ -122,7 +122,7 @@ class ReportMpc:
         moves[0] -= self._numbers.change_weight * jerk_m_s3
         above_road = -self._free[:steps] @ x if axis == 2 else np.full(steps, -np.inf)
         lower = np.append(above_road, 0.0)
-        return self._programme.solve(np.append(moves, SLACK_WEIGHT), lower, np.full(steps + 1, np.inf))
+        return self._programme.solve((np.append(moves, SLACK_WEIGHT), lower, np.full(steps + 1, np.inf)))
 
     def _predicted(self, state: Array, moves: Array) -> Trajectory:
         """Return the prediction for the state (3, 3) and the moves (c, 3)."""

@@ -1,8 +1,9 @@
 """What one plan gives to the solver and what it makes of the answers, in three compiled calls.
 
 Between the solver's calls a plan is arithmetic on small arrays, which costs more to call than to do. Plain tuples go
-in and get their names inside: named ones take numba five times as long to recognise. The split of the acceleration
-norm is the angle at which the sum of the times that the two horizontal axes need to the target is least.
+in and get their names inside: named ones take numba five times as long to recognise. Results are written into arrays
+that go in as well: numpy makes one in a third of the time that a compiled function needs to hand one out. The split of
+the acceleration norm is the angle at which the sum of the times that both horizontal axes need to the target is least.
 """
 
 import math
@@ -12,11 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from companion.data import Array
-from companion.planning.axis_qp import linear_term
+from companion.planning.axis_qp import slopes_of
 from companion.planning.envelope import major_bounds, minor_bounds, vertical_bounds
 from companion.planning.horizon import turned_horizon
 from companion.planning.intercept import approach
 from companion.planning.kept import kept
+from companion.planning.qp import Problem
 from companion.planning.resample import resampled_line, resampled_path
 
 Path3 = tuple[Array, Array, Array]
@@ -25,9 +27,6 @@ Path3 = tuple[Array, Array, Array]
 Sampling = tuple[NDArray[np.int64], Array]
 """`left` and `weights` of a resampler."""
 
-Maps = tuple[Array, Array]
-"""From state and moves to the motion."""
-
 
 class Grid(NamedTuple):
     """The constant times of a plan.
@@ -35,14 +34,12 @@ class Grid(NamedTuple):
     Attributes:
         nodes_s: (n + 1,) now and the nodes.
         move_s: (m,) the durations of the blocks.
-        forced_v: (n, m) velocity at the nodes per jerk in the blocks.
-        end_node: (m + 1,) the places of their ends, and that of now, among `nodes_s`.
+        end_s: (m,) their ends.
     """
 
     nodes_s: Array
     move_s: Array
-    forced_v: Array
-    end_node: NDArray[np.int64]
+    end_s: Array
 
 
 class Limits(NamedTuple):
@@ -63,46 +60,34 @@ class Numbers(NamedTuple):
     intercept_fraction: float
     intercept_time_min_s: float
     lateral_speed_fraction: float
+    slack_weight: float
 
 
 PlainLimits = tuple[float, float, float, float, float, float]
 """`Limits` as a plain tuple."""
 
-PlainGrid = tuple[Array, Array, Array, NDArray[np.int64]]
+PlainGrid = tuple[Array, Array, Array]
 """`Grid` as a plain tuple."""
 
-Statics = tuple[PlainGrid, tuple[float, float, float, float], tuple[Array, Array, Array], tuple[Array, Array]]
-"""What all plans of a law have in common: `Grid` and `Numbers` as plain tuples, the weights of the linear terms as
-`AxisProblem.weights` has them, and the slacks' gradients (q - m,) of a horizontal axis and of the vertical one."""
+Statics = tuple[PlainGrid, NDArray[np.int64], tuple[float, float, float, float, float], Array]
+"""What all plans of a law have in common: `Grid` as a plain tuple, the places (m + 1,) of now and of the blocks' ends
+among its nodes, `Numbers` as a plain tuple, and the weights of the linear terms as `AxisProblem` has them."""
 
+Posed = tuple[Array, Problem, Problem, Problem]
+"""The problem of a plan in turned axes: the frame, and the programmes of the major, the minor and the vertical axis.
 
-class Posed(NamedTuple):
-    """The problem of a plan, in turned axes.
-
-    Attributes:
-        origin_enu_m: (3,) the target's position now.
-        direction: of the major axis in W.
-        state: (3, 3) position, velocity, acceleration (rows) per axis (columns).
-        linear_terms: (q,) of the major, the minor and the vertical axis's programme.
-        major: its lower and upper bounds (c,).
-        vertical: the same.
-        is_finite: whether state, target and floor were finite throughout; nothing else counts if not.
-    """
-
-    origin_enu_m: Array
-    direction: tuple[float, float]
-    state: Array
-    linear_terms: tuple[Array, Array, Array]
-    major: tuple[Array, Array]
-    vertical: tuple[Array, Array]
-    is_finite: bool
+The frame (5, 3) has position, velocity and acceleration in its rows, the axes in their columns; then, in W, the place
+of the target now and the direction of the major axis.
+"""
 
 
 @kept
-def total_of(target: tuple[Array, Array, Array, Array]) -> float:
-    """Return a number that is not finite if any of the target's is not, or is too large to be a place."""
+def total_of(state: Path3, target: tuple[Array, Array, Array, Array]) -> float:
+    """Return a number that is not finite if any of these is not, or is too large to be a place."""
     position, velocity, acceleration, floor = target
     total = 0.0
+    for axis in range(3):
+        total += state[0][axis] + state[1][axis] + state[2][axis]
     for sample in range(len(floor)):
         total += floor[sample] * floor[sample]
         for axis in range(3):
@@ -113,9 +98,14 @@ def total_of(target: tuple[Array, Array, Array, Array]) -> float:
 
 @kept
 def pose(
-    state: Path3, target: tuple[Array, Array, Array, Array], limits: PlainLimits, sampling: Sampling, statics: Statics
-) -> Posed:
-    """Return the problem of a plan, all but the bounds of its minor axis.
+    state: Path3,
+    target: tuple[Array, Array, Array, Array],
+    limits: PlainLimits,
+    sampling: Sampling,
+    statics: Statics,
+    posed: Posed,
+) -> bool:
+    """Write the problem of a plan, all but the bounds of its minor axis.
 
     Args:
         state: of the virtual model now.
@@ -123,79 +113,95 @@ def pose(
         limits: of the drone.
         sampling: from the target's offsets to the grid's `nodes_s`.
         statics: of the law.
+        posed: where it is written.
+
+    Returns:
+        whether state, target and floor are finite throughout; nothing of the problem counts if not.
     """
-    most = Limits(*limits)
-    grid, numbers, weights, (level, upright) = Grid(*statics[0]), Numbers(*statics[1]), statics[2], statics[3]
-    node_s, end_s = grid.nodes_s[1:], np.cumsum(grid.move_s)
+    most, grid, numbers = Limits(*limits), Grid(*statics[0]), Numbers(*statics[2])
+    node_s, end_s = grid.nodes_s[1:], grid.end_s
     path = resampled_path(target[:3], sampling[0], sampling[1])
     direction, x, turned = turned_horizon(state, path, most.speed_m_s, most.acceleration_m_s2, numbers.axes_time_s)
-    floor = resampled_line(target[3], sampling[0], sampling[1]) - path[0, 0, 2]
-    rates = np.array(
-        (most.speed_m_s, most.climb_m_s, most.descent_m_s, most.acceleration_m_s2, most.vertical_acceleration_m_s2)
-    )
+    floor = resampled_line(target[3], sampling[0], sampling[1])
+    for node in range(len(floor)):
+        floor[node] -= path[0, 0, 2]
+    rates = (most.speed_m_s, most.climb_m_s, most.descent_m_s, most.acceleration_m_s2, most.vertical_acceleration_m_s2)
     split, push, reference = approach(
         x[:2], grid.nodes_s, turned, floor, rates, numbers.intercept_fraction, numbers.intercept_time_min_s
     )
-    ends = turned[2][:, grid.end_node]
-    jerk = (ends[:, 1:] - ends[:, :-1]) / grid.move_s
-    norms = np.array((most.speed_m_s, most.acceleration_m_s2, most.jerk_m_s3))
-    way = np.array((split, push[1], numbers.lateral_speed_fraction))
+    ends, jerk = at_ends(turned[2], statics[1], grid.move_s)
+    norms = (most.speed_m_s, most.acceleration_m_s2, most.jerk_m_s3)
+    way = (split, push[1], numbers.lateral_speed_fraction)
     vertical = (most.descent_m_s, most.climb_m_s, most.vertical_acceleration_m_s2, most.jerk_m_s3)
-    return Posed(
-        path[0, 0].copy(),
-        direction,
-        x,
-        (
-            linear_term(weights, level, x[:, 0], reference[:, 0], jerk[0]),
-            linear_term(weights, level, x[:, 1], reference[:, 1], jerk[1]),
-            linear_term(weights, upright, x[:, 2], reference[:, 2], jerk[2]),
-        ),
-        major_bounds(x, turned[1, 1], ends[1], way, norms, node_s, end_s),
-        vertical_bounds(x[:, 2], floor[1:], vertical, node_s, end_s),
-        math.isfinite(total_of(target) + np.sum(path) + np.sum(x)),
-    )
+    frame, major, minor, upright = posed
+    for axis in range(3):
+        frame[0, axis], frame[1, axis], frame[2, axis] = x[0, axis], x[1, axis], x[2, axis]
+        frame[3, axis] = path[0, 0, axis]
+    frame[4, 0], frame[4, 1], frame[4, 2] = direction[0], direction[1], 0.0
+    slopes = slopes_of(statics[3], x, reference, jerk)
+    put_linear(major[0], slopes[0], numbers.slack_weight)
+    put_linear(minor[0], slopes[1], numbers.slack_weight)
+    put_linear(upright[0], slopes[2], numbers.slack_weight)
+    major_bounds(x, turned[1, 1], ends[1], way, norms, node_s, end_s, major[1:])
+    vertical_bounds(x[:, 2], floor[1:], vertical, node_s, end_s, upright[1:])
+    return math.isfinite(total_of(state, target) + sampling[1][0, 0, 0])
 
 
 @kept
-def bound_minor(x: Array, major_jerk: Array, limits: PlainLimits, plain_grid: PlainGrid) -> tuple[Array, Array]:
-    """Return the bounds (c,) of the minor axis beside the major one's plan; see `envelope.minor_bounds`."""
+def put_linear(term: Array, slopes: Array, slack_weight: float) -> None:
+    """Write a linear term (q,): `slopes` (m,) of the moves, then those of the slacks."""
+    for i in range(len(term)):
+        term[i] = slopes[i] if i < len(slopes) else slack_weight
+
+
+@kept
+def at_ends(acceleration: Array, end_node: NDArray[np.int64], move_s: Array) -> tuple[Array, Array]:
+    """Return the accelerations (3, n + 1) now and at the ends of the blocks, (3, m + 1), and the mean jerks (3, m)."""
+    ends, jerk = np.empty((3, len(end_node))), np.empty((3, len(move_s)))
+    for axis in range(3):
+        for end in range(len(end_node)):
+            ends[axis, end] = acceleration[axis, end_node[end]]
+        for move in range(len(move_s)):
+            jerk[axis, move] = (ends[axis, move + 1] - ends[axis, move]) / move_s[move]
+    return ends, jerk
+
+
+@kept
+def bound_minor(
+    frame: Array, major_jerk: Array, forced_v: Array, limits: PlainLimits, plain_grid: PlainGrid, minor: Problem
+) -> None:
+    """Write the bounds of the minor axis beside the major one's plan; see `envelope.minor_bounds`."""
     most, grid = Limits(*limits), Grid(*plain_grid)
-    norms = np.array((most.speed_m_s, most.acceleration_m_s2, most.jerk_m_s3))
-    return minor_bounds(x, major_jerk, grid.forced_v, norms, grid.nodes_s[1:], grid.move_s, np.cumsum(grid.move_s))
+    norms = (most.speed_m_s, most.acceleration_m_s2, most.jerk_m_s3)
+    minor_bounds(frame[:3], major_jerk, forced_v, norms, grid.nodes_s[1:], grid.move_s, grid.end_s, minor[1:])
 
 
 @kept
-def path_of(
-    origin_m: Array, direction: tuple[float, float], x: Array, moves: tuple[Array, Array, Array], maps: Maps
-) -> tuple[Array, float]:
-    """Return position, velocity and acceleration (3, k, 3) in W of a plan, and its largest slack.
+def plan_of(frame: Array, moves: tuple[Array, Array, Array], maps: Array, path: Array) -> float:
+    """Write a plan, and return its largest slack.
 
     Args:
-        origin_m: (3,) in W.
-        direction: of the major axis in W.
-        x: (3, 3) the turned state.
+        frame: as `Posed` has it.
         moves: of each axis, the first m of (q,); slacks behind them.
-        maps: (3, k, 3) from the state and (3, k, m) from the moves to p, v, a at k instants.
+        maps: (3 + m, 3 k) from the state and the moves to p, v, a at k instants.
+        path: (3, k, 3) where position, velocity and acceleration in W are written.
     """
-    free, forced = maps
-    c, s = direction
-    path = np.empty((3, free.shape[1], 3))
-    for rate in range(3):
-        for node in range(free.shape[1]):
-            major, minor, up = 0.0, 0.0, 0.0
-            for before in range(3):
-                major += free[rate, node, before] * x[before, 0]
-                minor += free[rate, node, before] * x[before, 1]
-                up += free[rate, node, before] * x[before, 2]
-            for move in range(forced.shape[2]):
-                major += forced[rate, node, move] * moves[0][move]
-                minor += forced[rate, node, move] * moves[1][move]
-                up += forced[rate, node, move] * moves[2][move]
-            path[rate, node] = c * major - s * minor, s * major + c * minor, up
-            if rate == 0:
-                path[rate, node] += origin_m
-    excess = 0.0
+    c, s = frame[4, 0], frame[4, 1]
+    sources, instants = maps.shape[0], path.shape[1]
+    turned, excess = np.zeros((3, 3 * instants)), 0.0
     for axis in range(3):
-        for slack in moves[axis][forced.shape[2] :]:
-            excess = max(excess, slack)
-    return path, excess
+        for source in range(sources):
+            share = frame[source, axis] if source < 3 else moves[axis][source - 3]
+            for i in range(3 * instants):  # innermost, since only sums that are apart are computed side by side
+                turned[axis, i] += maps[source, i] * share
+        for slack in range(sources - 3, len(moves[axis])):
+            excess = max(excess, moves[axis][slack])
+    for rate in range(3):
+        is_place = 1.0 if rate == 0 else 0.0
+        for instant in range(instants):
+            i = rate * instants + instant
+            major, minor, up = turned[0, i], turned[1, i], turned[2, i]
+            path[rate, instant, 0] = c * major - s * minor + is_place * frame[3, 0]
+            path[rate, instant, 1] = s * major + c * minor + is_place * frame[3, 1]
+            path[rate, instant, 2] = up + is_place * frame[3, 2]
+    return excess

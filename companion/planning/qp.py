@@ -6,7 +6,7 @@ solver state survives a call, so the same problem gives the same bits in any ord
 
 import importlib
 import math
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -16,20 +16,15 @@ from companion.planning.guidance import PlanStatus
 from companion.planning.kept import kept
 from companion.planning.requests import are_finite
 
-
-class QpSolution(NamedTuple):
-    """A solver's answer; `x` (n,) is None unless the status is SOLVED."""
-
-    status: PlanStatus
-    x: Array | None
-    iterations: int
+QpSolution = tuple[PlanStatus, Array | None, int]
+"""A solver's answer: the status, the minimiser (n,), None unless the status is SOLVED, and the iterations."""
 
 
 class QpSolver(Protocol):
     """What a programme asks of a solver."""
 
-    def call(self, H: Array, f: Array, A: Array, lower: Array, upper: Array) -> tuple[PlanStatus, Array | None, int]:
-        """Return the status, the minimiser of one problem if there is one, and the iterations.
+    def call(self, H: Array, f: Array, A: Array, lower: Array, upper: Array) -> QpSolution:
+        """Return the answer to one problem.
 
         Args:
             H: (n, n) symmetric positive definite.
@@ -38,6 +33,10 @@ class QpSolver(Protocol):
             lower: (m,), -inf where there is no bound.
             upper: (m,), +inf where there is no bound.
         """
+
+
+Problem = tuple[Array, Array, Array]
+"""What varies of a problem: its linear term (n,), lower and upper bounds (m,), where -inf and +inf mean none."""
 
 
 class Programme:
@@ -50,34 +49,47 @@ class Programme:
         self._solver, self._H, self._A = solver, H, A
         self._is_sound = are_finite(H, A)
 
-    def solve(self, f: Array, lower: Array, upper: Array) -> QpSolution:
-        """Return the minimiser for `f` (n,) and bounds (m,), where -inf and +inf mean none."""
+    def blank(self) -> Problem:
+        """Return new arrays to write a problem into."""
+        rows, unknowns = self._A.shape
+        return np.empty(unknowns), np.empty(rows), np.empty(rows)
+
+    def solve(self, problem: Problem) -> QpSolution:
+        """Return the answer to one problem."""
+        f, lower, upper = problem
         fault = fault_of(f, lower, upper) if self._is_sound else _NOT_FINITE
         if fault != _NO_FAULT:
             status = PlanStatus.INFEASIBLE if fault == _CROSSED else PlanStatus.FAILED
-            return QpSolution(status, None, 0)
+            return status, None, 0
         status, x, iterations = self._solver.call(self._H, f, self._A, lower, upper)
         if status is not PlanStatus.SOLVED or x is None:
-            return QpSolution(status, None, iterations)
-        if not are_finite(x):
-            return QpSolution(PlanStatus.FAILED, None, iterations)
-        return QpSolution(status, x, iterations)
+            return status, None, iterations
+        if not is_finite(x):
+            return PlanStatus.FAILED, None, iterations
+        return status, x, iterations
 
 
 _NO_FAULT, _NOT_FINITE, _CROSSED = range(3)
 
 
 @kept
+def is_finite(x: Array) -> bool:
+    """Return whether all numbers of `x` (n,) are finite, none so large that the sum of their squares is not."""
+    total = 0.0
+    for i in range(len(x)):
+        total += x[i] * x[i]
+    return math.isfinite(total)
+
+
+@kept
 def fault_of(f: Array, lower: Array, upper: Array) -> int:
     """Return what is wrong with a linear term and bounds: nothing, a number that is not finite, or crossed bounds."""
-    total, crossed = 0.0, False
-    for i in range(len(f)):
-        total += f[i] * f[i]
+    crossed = False
     for i in range(len(lower)):
         if math.isnan(lower[i]) or math.isnan(upper[i]):
             return _NOT_FINITE
         crossed = crossed or lower[i] > upper[i]
-    if not math.isfinite(total):
+    if not is_finite(f):
         return _NOT_FINITE
     return _CROSSED if crossed else _NO_FAULT
 
@@ -117,8 +129,8 @@ class DaqpSolver:
     def __init__(self) -> None:
         self._daqp: Any = importlib.import_module("daqp")
 
-    def call(self, H: Array, f: Array, A: Array, lower: Array, upper: Array) -> tuple[PlanStatus, Array | None, int]:
-        """Return the status, the minimiser and the iterations; the meaning of the arguments is the interface's."""
+    def call(self, H: Array, f: Array, A: Array, lower: Array, upper: Array) -> QpSolution:
+        """Return the answer; the meaning of the arguments is the interface's."""
         sense = np.zeros(len(lower), dtype=np.int32)
         x, _, flag, info = self._daqp.solve(H, f, A, upper, lower, sense)
         return DAQP_STATUS.get(flag, PlanStatus.FAILED), x, int(info["iterations"])
@@ -138,8 +150,8 @@ class OsqpSolver:
         self._osqp: Any = importlib.import_module("osqp")
         self._sparse: Any = importlib.import_module("scipy.sparse")
 
-    def call(self, H: Array, f: Array, A: Array, lower: Array, upper: Array) -> tuple[PlanStatus, Array | None, int]:
-        """Return the status, the minimiser and the iterations; the meaning of the arguments is the interface's."""
+    def call(self, H: Array, f: Array, A: Array, lower: Array, upper: Array) -> QpSolution:
+        """Return the answer; the meaning of the arguments is the interface's."""
         try:
             L = np.linalg.cholesky(H)
         except np.linalg.LinAlgError:

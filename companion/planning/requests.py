@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from companion.data import Array, FlightLimits
+from companion.data import Array
 from companion.planning.guidance import PlanRequest, ReferenceState
 
 
@@ -15,7 +15,7 @@ def with_finite_state(last: ReferenceState | None, request: PlanRequest) -> Plan
     Raises:
         ValueError: if the state is not finite and there is no last one, or `dt_s` or a limit is not positive.
     """
-    check(request)
+    limits_of(request)  # refuses what cannot be planned with
     if is_finite_state(request.state):
         return request
     if last is None:
@@ -23,21 +23,16 @@ def with_finite_state(last: ReferenceState | None, request: PlanRequest) -> Plan
     return replace(request, state=last)
 
 
-def check(request: PlanRequest) -> None:
-    """Check what is asked of every request.
+def limits_of(request: PlanRequest) -> tuple[float, float, float, float, float, float]:
+    """Return the limits as the compiled calls take them: a whole number would have them compiled anew, in flight.
 
     Raises:
-        ValueError: if `dt_s` or a limit is not positive.
+        ValueError: if `dt_s` or a limit is not a positive number; without them there is not even a braking.
     """
     if not request.dt_s > 0.0:
         raise ValueError(f"the control period must be positive, not {request.dt_s} s")
-    if not _are_positive(request.limits):
-        raise ValueError(f"the drone's limits must be positive: {request.limits}")
-
-
-def limits_of(limits: FlightLimits) -> tuple[float, float, float, float, float, float]:
-    """Return the limits as the compiled calls take them: a whole number would have them compiled anew, in flight."""
-    return (
+    limits = request.limits
+    values = (
         float(limits.speed_max_m_s),
         float(limits.climb_max_m_s),
         float(limits.descent_max_m_s),
@@ -45,12 +40,9 @@ def limits_of(limits: FlightLimits) -> tuple[float, float, float, float, float, 
         float(limits.vertical_acceleration_max_m_s2),
         float(limits.jerk_max_m_s3),
     )
-
-
-def _are_positive(limits: FlightLimits) -> bool:
-    """Return whether all limits are positive numbers; without them there is not even a braking."""
-    values = limits_of(limits)
-    return math.isfinite(sum(values)) and min(values) > 0.0
+    if not (math.isfinite(sum(values)) and min(values) > 0.0):
+        raise ValueError(f"the drone's limits must be positive: {limits}")
+    return values
 
 
 def is_finite_state(state: ReferenceState) -> bool:

@@ -3,7 +3,7 @@ import pytest
 from scipy.integrate import trapezoid
 
 from companion.data import Array
-from companion.planning.axis_qp import linear_term, make_axis_problem, terminal_cost
+from companion.planning.axis_qp import make_axis_problem, slopes_of, terminal_cost
 from companion.planning.condensed import AxisModel, make_axis_model
 from companion.planning.config import MpcConfig
 
@@ -41,13 +41,15 @@ def test_the_nodes_hold_all_ends_of_blocks_and_no_wide_gap() -> None:
     assert np.diff(model.node_s, prepend=0.0).max() <= 0.16 + 1e-12
 
 
-def test_the_programme_costs_what_a_rollout_costs() -> None:
+@pytest.mark.parametrize("axis", range(3))
+def test_the_programme_costs_what_a_rollout_costs(axis: int) -> None:
     config = MpcConfig()
     model = make_axis_model(np.array(config.moves_s), config.node_spacing_max_s)
     problem = make_axis_problem(model, config, has_floor=False)
     rng = np.random.default_rng(5)
-    x, u = rng.normal(size=3), 5.0 * rng.normal(size=len(config.moves_s))
-    reference, jerk = rng.normal(size=(3, len(model.node_s))), rng.normal(size=len(u))
+    u = 5.0 * rng.normal(size=len(config.moves_s))
+    states, references, jerks = (rng.normal(size=(3, 3, *rest)) for rest in ((), (len(model.node_s),), (len(u),)))
+    x, reference, jerk = states[:, axis], references[:, axis], jerks[0, axis]
 
     def cost(moves: Array) -> float:
         error = rolled_out(model, x, moves) - reference.T
@@ -58,8 +60,8 @@ def test_the_programme_costs_what_a_rollout_costs() -> None:
         return float(0.5 * (integral + effort + error[-1] @ terminal_cost(config) @ error[-1]))
 
     z = np.append(u, [0.0, 0.0])
-    term = linear_term(problem.weights, problem.slack_gradient, x, reference, jerk)
-    quadratic = 0.5 * z @ problem.H @ z + term @ z
+    slopes = slopes_of(problem.weights, states, references, jerks[0])[axis]
+    quadratic = 0.5 * z @ problem.H @ z + slopes @ u
     assert quadratic == pytest.approx(cost(u) - cost(np.zeros_like(u)), rel=1e-9)
 
 

@@ -1,10 +1,13 @@
 """The compiled bounds of the axes' programmes, against the predictions that they bound and against their Python."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 
 from companion.data import Array
-from companion.planning.axis_qp import linear_term, make_axis_problem
+from companion.planning.axis_qp import make_axis_problem, slopes_of
 from companion.planning.condensed import make_axis_model
 from companion.planning.config import MpcConfig
 from companion.planning.envelope import (
@@ -21,8 +24,16 @@ from companion.planning.envelope import (
 CONFIG = MpcConfig()
 MODEL = make_axis_model(np.array(CONFIG.moves_s), CONFIG.node_spacing_max_s)
 NODES, MOVES = len(MODEL.node_s), len(MODEL.move_s)
-NORMS = np.array([20.0, 5.0, 12.0])
+NORMS = (20.0, 5.0, 12.0)
 NO_FLOOR = np.empty(0)
+
+
+def written(kernel: Callable[..., None], *arguments: Any, has_floor: bool = False) -> tuple[Array, Array]:
+    """The bounds that a kernel writes for these arguments."""
+    count = len(make_axis_problem(MODEL, CONFIG, has_floor=has_floor).A)
+    rows = np.full(count, np.nan), np.full(count, np.nan)
+    kernel(*arguments, rows)
+    return rows
 
 
 def kept(x: Array, jerk: Array, limits: tuple[Array, ...], floor: Array) -> bool:
@@ -46,19 +57,20 @@ def test_rows_hold_exactly_where_the_plan_keeps_to_its_limits(*, has_floor: bool
         down, up, push, most = (rng.uniform(0.9, 3.0, n) for n in (NODES, NODES, MOVES, MOVES))
         floor = rng.uniform(-4.0, -3.0, NODES) if has_floor else NO_FLOOR
         jerk = rng.uniform(-0.8, 0.8, MOVES)
-        lower, upper = bound_rows(x, down, up, push, most, floor, MODEL.node_s, MODEL.end_s)
-        rows = problem.A @ np.append(jerk, np.zeros(len(problem.slack_gradient)))
-        verdicts.append(kept(x, jerk, (down, up, push, most), floor))
+        limits = (down, up, push, most)
+        lower, upper = written(bound_rows, x, *limits, floor, MODEL.node_s, MODEL.end_s, has_floor=has_floor)
+        rows = problem.A @ np.append(jerk, np.zeros(len(problem.H) - MOVES))
+        verdicts.append(kept(x, jerk, limits, floor))
         assert bool(((rows >= lower) & (rows <= upper)).all()) == verdicts[-1]
     assert {True, False} == set(verdicts)
 
 
 def test_major_axis_gets_the_whole_norm_where_the_minor_one_needs_nothing() -> None:
-    none, way = np.zeros(3), np.array([0.0, 0.0, 0.0])
+    none, way = np.zeros(3), (0.0, 0.0, 0.0)
     speed, push, jerk = major_share(
         none, np.zeros(NODES + 1), np.zeros(MOVES + 1), way, NORMS, MODEL.node_s, MODEL.end_s
     )
-    assert [speed.min(), push.min(), jerk.min()] == pytest.approx(NORMS.tolist())
+    assert (speed.min(), push.min(), jerk.min()) == pytest.approx(NORMS)
 
 
 def test_both_axes_together_keep_the_norms() -> None:
@@ -80,32 +92,34 @@ def test_minor_axis_keeps_a_share_of_a_norm_that_is_used_up() -> None:
 def test_kernels_are_their_python() -> None:
     rng = np.random.default_rng(11)
     x, plan = rng.standard_normal(3), rng.standard_normal(MOVES)
-    target_v, target_a, way = rng.standard_normal(NODES + 1), rng.standard_normal(MOVES + 1), rng.uniform(0.2, 1.2, 3)
+    target_v, target_a, way = rng.standard_normal(NODES + 1), rng.standard_normal(MOVES + 1), (0.3, 1.1, 0.7)
     major = (x, target_v, target_a, way, NORMS, MODEL.node_s, MODEL.end_s)
     minor = (x, plan, MODEL.forced_v, NORMS, MODEL.node_s, MODEL.move_s)
     share = major_share(*major)
     rows = (x, share[0], share[0], *share[1:], NO_FLOOR, MODEL.node_s, MODEL.end_s)
-    problem = make_axis_problem(MODEL, CONFIG, has_floor=False)
-    term = (problem.weights, problem.slack_gradient, x, rng.standard_normal((3, NODES)), plan)
-    for kernel, arguments in ((major_share, major), (minor_share, minor), (bound_rows, rows), (linear_term, term)):
+    weights = make_axis_problem(MODEL, CONFIG, has_floor=False).weights
+    term = (weights, *(rng.standard_normal((3, *rest)) for rest in ((3,), (3, NODES), (MOVES,))))
+    for kernel, arguments in ((major_share, major), (minor_share, minor), (slopes_of, term)):
         compiled, plain = np.hstack([*kernel(*arguments)]), np.hstack([*kernel.py_func(*arguments)])
         np.testing.assert_allclose(compiled, plain, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(written(bound_rows, *rows), written(bound_rows.py_func, *rows), rtol=1e-12, atol=1e-12)
 
 
 def test_bounds_in_one_call_are_those_of_their_parts() -> None:
     rng = np.random.default_rng(13)
     state, plan, floor = rng.standard_normal((3, 3)), rng.standard_normal(MOVES), rng.uniform(-4.0, -3.0, NODES)
-    target_v, target_a, way = rng.standard_normal(NODES + 1), rng.standard_normal(MOVES + 1), rng.uniform(0.2, 1.2, 3)
+    target_v, target_a, way = rng.standard_normal(NODES + 1), rng.standard_normal(MOVES + 1), (0.3, 1.1, 0.7)
     major, minor, up = (np.ascontiguousarray(state[:, axis]) for axis in range(3))
     times = (MODEL.node_s, MODEL.end_s)
     speed, push, jerk = major_share(minor, target_v, target_a, way, NORMS, *times)
-    expected = bound_rows(major, speed, speed, push, jerk, NO_FLOOR, *times)
-    np.testing.assert_array_equal(major_bounds(state, target_v, target_a, way, NORMS, *times), expected)
+    expected = written(bound_rows, major, speed, speed, push, jerk, NO_FLOOR, *times)
+    np.testing.assert_array_equal(written(major_bounds, state, target_v, target_a, way, NORMS, *times), expected)
     speed, push, jerk = minor_share(major, plan, MODEL.forced_v, NORMS, MODEL.node_s, MODEL.move_s)
-    expected = bound_rows(minor, speed, speed, push, jerk, NO_FLOOR, *times)
-    bounds = minor_bounds(state, plan, MODEL.forced_v, NORMS, MODEL.node_s, MODEL.move_s, MODEL.end_s)
+    expected = written(bound_rows, minor, speed, speed, push, jerk, NO_FLOOR, *times)
+    bounds = written(minor_bounds, state, plan, MODEL.forced_v, NORMS, MODEL.node_s, MODEL.move_s, MODEL.end_s)
     np.testing.assert_array_equal(bounds, expected)
     down, climb, pull, most = np.full(NODES, 1.5), np.full(NODES, 3.0), np.full(MOVES, 4.0), np.full(MOVES, 9.0)
     kept_floor = reachable_floor(floor, up, 4.0, 3.0, 9.0, MODEL.node_s)
-    expected = bound_rows(up, down, climb, pull, most, kept_floor, *times)
-    np.testing.assert_array_equal(vertical_bounds(state[:, 2], floor, (1.5, 3.0, 4.0, 9.0), *times), expected)
+    expected = written(bound_rows, up, down, climb, pull, most, kept_floor, *times, has_floor=True)
+    bounds = written(vertical_bounds, state[:, 2], floor, (1.5, 3.0, 4.0, 9.0), *times, has_floor=True)
+    np.testing.assert_array_equal(bounds, expected)

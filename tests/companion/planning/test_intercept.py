@@ -58,7 +58,7 @@ def test_the_compiled_approach_equals_its_python() -> None:
     nodes = np.linspace(0.0, 3.0, 12)
     for _ in range(20):
         x, target = 10.0 * rng.normal(size=(2, 3)), 3.0 * rng.normal(size=(3, 3, 12))
-        limits, floor = rng.uniform(1.0, 20.0, 5), rng.normal(size=12)
+        limits, floor = tuple(rng.uniform(1.0, 20.0, 5).tolist()), rng.normal(size=12)
         compiled = intercept.approach(x, nodes, target, floor, limits, 0.9, 1.4)
         plain = intercept.approach.py_func(x, nodes, target, floor, limits, 0.9, 1.4)
         np.testing.assert_allclose(

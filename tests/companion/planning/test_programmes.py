@@ -11,7 +11,7 @@ from companion.planning import horizon, qp, resample
 from companion.planning.config import MpcConfig
 from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, Target
 from companion.planning.mpc import Mpc
-from companion.planning.programmes import bound_minor, path_of, pose, total_of
+from companion.planning.programmes import bound_minor, plan_of, pose, total_of
 from companion.planning.requests import limits_of
 from companion.planning.resample import make_resampler
 from tests.companion.planning.cases import LIMITS, circle, request_of, state_at, target_of
@@ -32,6 +32,11 @@ def flat(value: Any) -> Array:
     return np.ravel(np.asarray(value, dtype=np.float64))
 
 
+def blank_like(posed: Any) -> Any:
+    """Nested arrays of the same shapes, in which nothing has been written."""
+    return tuple(blank_like(one) for one in posed) if isinstance(posed, tuple) else np.full_like(posed, np.nan)
+
+
 def arguments_of_pose(monkeypatch: pytest.MonkeyPatch) -> tuple[Any, ...]:
     """What a plan gives to `pose`."""
     seen: list[tuple[Any, ...]] = []
@@ -47,16 +52,20 @@ def arguments_of_pose(monkeypatch: pytest.MonkeyPatch) -> tuple[Any, ...]:
 
 def test_compiled_calls_of_a_plan_are_their_python(monkeypatch: pytest.MonkeyPatch) -> None:
     arguments = arguments_of_pose(monkeypatch)
-    posed, plain = pose(*arguments), pose.py_func(*arguments)
+    posed, plain = blank_like(arguments[5]), blank_like(arguments[5])
+    for kernel, written in ((pose, posed), (pose.py_func, plain)):
+        given = (*arguments[:5], written)
+        assert kernel(*given)
+    grid, limits, rng = arguments[4][0], limits_of(REQUEST), np.random.default_rng(3)
+    nodes, moves = len(grid[0]) - 1, len(grid[1])
+    jerk, forced_v = rng.normal(size=moves + 2), rng.normal(size=(nodes, moves))
+    bound_minor(posed[0], jerk, forced_v, limits, grid, posed[2])
+    bound_minor.py_func(plain[0], jerk, forced_v, limits, grid, plain[2])
     np.testing.assert_allclose(flat(posed), flat(plain), rtol=1e-9, atol=1e-9)
-    rng = np.random.default_rng(3)
-    grid, limits = arguments[4][0], limits_of(LIMITS)
-    move = rng.normal(size=len(grid[1]) + 2)
-    bounds, plain_bounds = (one(posed.state, move, limits, grid) for one in (bound_minor, bound_minor.py_func))
-    np.testing.assert_allclose(flat(bounds), flat(plain_bounds), rtol=1e-9, atol=1e-9)
-    maps = (rng.normal(size=(3, 5, 3)), rng.normal(size=(3, 5, len(grid[1]))))
-    path = (posed.origin_enu_m, posed.direction, posed.state, (move, 2.0 * move, -move), maps)
-    np.testing.assert_allclose(flat(path_of(*path)), flat(path_of.py_func(*path)), rtol=1e-9, atol=1e-9)
+    maps, path, plain_path = rng.normal(size=(3 + moves, 15)), np.empty((3, 5, 3)), np.empty((3, 5, 3))
+    plan = (posed[0], (jerk, 2.0 * jerk, -jerk), maps)
+    assert plan_of(*plan, path) == pytest.approx(plan_of.py_func(*plan, plain_path))
+    np.testing.assert_allclose(path, plain_path, rtol=1e-9, atol=1e-9)
 
 
 def test_kernels_within_are_their_python() -> None:
@@ -71,7 +80,9 @@ def test_kernels_within_are_their_python() -> None:
         (horizon.needs, (x, path[1, 0], 4.0, 2.0, 1.0)),
         (horizon.major_direction, (rng.normal(size=(4, 2)),)),
         (horizon.turned_horizon, (tuple(x), path, 4.0, 2.0, 1.0)),
-        (total_of, ((*rows, line),)),
+        (total_of, (tuple(x), (*rows, line))),
+        (qp.is_finite, (term,)),
+        (qp.is_finite, (np.full(3, np.inf),)),
         (qp.fault_of, (term, *bounds)),
         (qp.fault_of, (term, bounds[1], bounds[0])),
         (qp.fault_of, (term, np.full(6, np.nan), bounds[1])),
