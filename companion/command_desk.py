@@ -34,16 +34,18 @@ class CommandDesk:
         self._waiting.put((command, reply))
         return json_payloads.encode(awaited(reply))
 
-    def pass_on(self, node: CompanionNode, local_ns: int) -> None:
-        """Give the oldest command to the node, one at a time, if it makes a step now."""
+    def pass_on(self, node: CompanionNode, local_ns: int) -> Command | None:
+        """Give the oldest command to the node, one at a time, if it makes a step now; return it."""
         while not self._asked and node.is_due(local_ns):
             try:
                 command, reply = self._waiting.get_nowait()
             except queue.Empty:
-                return
+                return None
             if reply.set_running_or_notify_cancel():
                 node.request(command)
                 self._asked.append(reply)
+                return command
+        return None
 
     def answer(self, replies: list[CommandReply]) -> None:
         """Give the replies to whom they belong, in order."""

@@ -11,15 +11,15 @@ from companion.command_desk import CommandDesk
 from companion.loop_options import Links, LoopOptions
 from companion.node import CompanionNode
 from companion.onlookers import Onlooker, onlookers
+from companion.own_start import OwnStart, check_autopilot
 from companion.phases import Phase
 from companion.recording_node import RecordingNode
 from companion.timings import Timings
 from link import cdr, json_payloads
 from link.clock import Clock, ClockTick, SimulatedClock, SystemClock
 from link.errors import UserError
-from link.mavlink.session import MavlinkSession
 from link.mavlink.tlog import TlogFrames, TlogSink
-from link.messages import Command, PadGeometry
+from link.messages import PadGeometry
 from link.payload_checks import PayloadError
 from link.real_time import spare_present_objects
 from link.recorder import BackgroundRecorder, Recorder
@@ -72,7 +72,7 @@ class _Loop:
         self._alive = zenoh.watch_alive(keys.alive)
         self._stopping = False
         self._asked_pad_s = -_ASK_PAD_S
-        self._start_pending = options.start
+        self._start = OwnStart(wanted=options.start)
         self._fix_seen = False
         self._pad_wanted = True
         self._was_alive = False
@@ -135,7 +135,8 @@ class _Loop:
             self._node.receive_mavlink(data, local_ns)
             self._record(self._node.autopilot.session.take_input(), local_ns)
         self._take_samples()
-        self._desk.pass_on(self._node, local_ns)
+        if self._start.commanded(self._desk.pass_on(self._node, local_ns)):
+            self._log.info("start called off")
         stepped = self._node.poll(local_ns)
         self._send_frames(local_ns)
         if stepped:
@@ -171,7 +172,7 @@ class _Loop:
         """Publish, reply, log; and see to what is still missing."""
         for publication in self._node.take_publications():
             self._zenoh.publish(publication.key, publication.payload, publication.encoding)
-        self._desk.answer(self._node.take_replies())
+        self._desk.answer(self._start.answered(self._node.take_replies()))
         outputs = self._node.outputs
         if outputs is not None and outputs.text is not None:
             self._log.info(outputs.status.phase, reason=outputs.status.reason)
@@ -180,7 +181,7 @@ class _Loop:
             self._log.info("autopilot", text=text)
         self._say_link()
         self._ask_for_pad()
-        self._start_by_itself()
+        self._start.follow(self._node, fix_seen=self._fix_seen)
         self._check_time_out()
 
     def _say_link(self) -> None:
@@ -209,11 +210,6 @@ class _Loop:
             self._asked_pad_s = now_s
             self._pads = self._zenoh.ask(self._keys.pad, b"", _ASK_PAD_S)
 
-    def _start_by_itself(self) -> None:
-        self._start_pending = self._start_pending and self._node.memory.phase is Phase.IDLE
-        if self._start_pending and self._fix_seen and self._node.pad_known and self._node.is_ready_to_start():
-            self._node.request(Command.START)
-
     def _check_time_out(self) -> None:
         """Say what is missing when nothing has come within the time-out; not once a flight has begun."""
         waited_s = time.perf_counter() - self._timings.started_s
@@ -223,22 +219,9 @@ class _Loop:
             or self._node.memory.phase is not Phase.IDLE
         ):
             return
-        session = self._node.autopilot.session
-        if session.autopilot is None:
-            raise UserError(
-                f"no heartbeat of an autopilot within {self._options.timeout_s:g} s on {self._options.device}: "
-                f"{_seen(session)}; check --mavlink and the autopilot's port"
-            )
-        if self._start_pending and not self._fix_seen:
-            raise UserError(
-                f"no vehicle fix on {self._keys.fix} within {self._options.timeout_s:g} s: start the vehicle, "
-                "or check --ns, --vehicle and -e"
-            )
-        if self._start_pending and not self._node.pad_known:
-            raise UserError(
-                f"the vehicle did not describe its pad on {self._keys.pad} within {self._options.timeout_s:g} s: "
-                "let it answer there"
-            )
+        timeout_s = self._options.timeout_s
+        check_autopilot(self._node.autopilot.session, self._options.device, timeout_s)
+        self._start.check_vehicle(self._keys, timeout_s, fix_seen=self._fix_seen, pad_known=self._node.pad_known)
 
     def _leave(self, clock: Clock) -> None:
         """Hand a flying drone over to its autopilot, which may take setpoints that stop for a fault or fly on."""
@@ -252,13 +235,3 @@ class _Loop:
     def _send_rest(self) -> None:
         for frame in self._node.take_frames():
             self._transport.send(frame)
-
-
-def _seen(session: MavlinkSession) -> str:
-    codec = session.statistics.codec
-    if not codec.bytes_received:
-        return "nothing was received"
-    others = ", ".join(map(str, sorted(session.other_system_ids)))
-    if others:
-        return f"autopilots of system {others} were heard, see --system-id"
-    return f"{codec.bytes_received} bytes received, {codec.messages_received} messages, none of them its heartbeat"
