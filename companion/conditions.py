@@ -4,33 +4,20 @@ A condition with a hold time must have been true without a break for that long.
 """
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cache
 
 from companion.config import CompanionConfig
-from companion.contact import Verdict, does_not_fall, is_stopped_by_pad, over_pad_radius_m, signs_of, verdict
+from companion.contact import Verdict, does_not_fall, is_stopped_by_pad, signs_of, verdict
 from companion.pad import HEADING_UNKNOWN
+from companion.pad_reach import cone_radius_at_pad_m, over_pad_radius_m
 from companion.phases import LANDING_PHASES, NEAR_PHASES, Event, Phase
 from companion.situation import Approach, Situation, approach, stands
 from companion.targets import changes_speed, chase_floor_m, is_unseen, is_vague
+from companion.timed import Held, Test
 
 CONTACT = "contact"
 DISPUTED_CONTACT = "contact against the range finder"
 HARD_CONTACT = "hard contact"
-
-Held = Mapping[str, int]
-"""Since when (UTC ns) each test has been true, by its name."""
-
-
-@dataclass(frozen=True, slots=True)
-class Test:
-    """A condition with the time it must hold before it counts."""
-
-    reason: str
-    phases: frozenset[Phase]
-    is_true: Callable[[Situation, Approach | None, CompanionConfig], bool]
-    hold_s: Callable[[CompanionConfig], float]
 
 
 def fix_too_old(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
@@ -71,13 +58,13 @@ def _not_followed(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
     return s.tracking_error_m > c.abort.tracking_error_max_m
 
 
-def cone_radius_m(height_m: float, config: CompanionConfig) -> float:
-    """Return how far beside the pad's centre the drone may be at `height_m` above it while it descends."""
-    return config.descent.cone_radius_at_pad_m + config.descent.cone_slope * max(height_m, 0.0)
+def cone_radius_m(height_m: float, half_width_m: float, config: CompanionConfig) -> float:
+    """Return how far beside the centre of a pad the drone may be at `height_m` above it while it descends."""
+    return cone_radius_at_pad_m(half_width_m, config) + config.descent.cone_slope * max(height_m, 0.0)
 
 
 def _beside_cone(a: Approach, c: CompanionConfig) -> bool:
-    return a.distance_m > cone_radius_m(a.height_m, c)
+    return a.distance_m > cone_radius_m(a.height_m, a.pad_half_width_m, c)
 
 
 def must_wait(s: Situation, a: Approach | None, c: CompanionConfig) -> bool:
@@ -99,7 +86,7 @@ def _strays_above(s: Situation, a: Approach | None, c: CompanionConfig) -> bool:
 
 def is_over_pad(a: Approach, c: CompanionConfig) -> bool:
     """Return whether the drone is so near the pad's centre that what it touches is the pad."""
-    return a.distance_m < over_pad_radius_m(c)
+    return a.distance_m < over_pad_radius_m(a.pad_half_width_m, c)
 
 
 def _too_fast_near_pad(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
@@ -242,9 +229,3 @@ def update_held(
 def _tests_in(phase: Phase, others: tuple[Test, ...]) -> tuple[Test, ...]:
     tests = (*others, *ABORT_TESTS, *(test for _, test in ENTRY_TESTS), HELD_UP, DRIVES)
     return tuple(test for test in tests if phase in test.phases)
-
-
-def holds(test: Test, held: Held, t_ns: int, config: CompanionConfig) -> bool:
-    """Return whether a test has been true for its hold time."""
-    since_ns = held.get(test.reason)
-    return since_ns is not None and (t_ns - since_ns) * 1e-9 >= test.hold_s(config)

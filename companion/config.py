@@ -90,8 +90,9 @@ class DescentConfig(StrictModel):
     descent_gain_hz: Positive = 1.0  # sink rate per metre of height left
     touchdown_sink_rate_m_s: Positive = 0.45  # S2 asks for 0.7 at most
     press_depth_m: Positive = 0.5  # how far below the pad the setpoint goes on, so that contact is firm
-    cone_radius_at_pad_m: Positive = 0.3
+    cone_radius_at_pad_m: Positive = 0.3  # 0.2 of the width of a pad narrower than 1.5 m
     cone_slope: NotNegative = 0.35  # metres of radius per metre of height
+    pad_width_min_m: Positive = 0.5  # narrower ones are refused: the cone would end narrower than 0.1 m
     # While the vehicle brakes or speeds up harder than this, as the drone must lean for, the descent waits, as it does
     # beside the cone and while the drone moves too fast against the pad.
     speed_change_max_m_s2: Positive = 1.2

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from companion.config import CompanionConfig, TouchdownConfig
+from companion.pad_reach import over_pad_radius_m
 from companion.situation import Approach, Situation, approach
 from link.records import replace
 
@@ -33,6 +34,7 @@ class Signs:
         range_height_m: of the feet above what the range finder sees.
         range_carried_m: likewise, from when it last saw something, by what the drone has sunk since.
         landed: the autopilot's own word.
+        pad_half_width_m: from the pad's centre to its nearest edge.
         passed_m: least horizontal distance from the pad's centre within the time that a jolt is seen for.
     """
 
@@ -45,6 +47,7 @@ class Signs:
     landed: bool | None
     range_carried_m: float | None = None
     passed_m: float | None = None
+    pad_half_width_m: float = math.inf
 
 
 class Verdict(Enum):
@@ -71,6 +74,7 @@ def signs_of(s: Situation) -> Signs:
         range_height_m=s.range_height_m,
         landed=s.autopilot.landed,
         range_carried_m=s.range_carried_m,
+        pad_half_width_m=math.inf if s.pad is None else s.pad.half_width_m,
         passed_m=None if relative is None or drone is None else _passed_m(relative, _JOLT_S + drone.age_s),
     )
 
@@ -143,11 +147,6 @@ def _part(value: float | None, unit: str) -> str:
     return "" if value is None else f"{value:.2f} {unit}"
 
 
-def over_pad_radius_m(config: CompanionConfig) -> float:
-    """Return how far from the pad's centre what is touched is still the pad."""
-    return 2.0 * config.descent.cone_radius_at_pad_m
-
-
 def _passed_m(relative: Approach, within_s: float) -> float:
     """Return the least horizontal distance of a drone that has moved against the pad as it does now."""
     (x, y, _), (vx, vy, _) = relative.position_enu_m, relative.velocity_enu_m_s
@@ -162,7 +161,7 @@ def _is_at_pad(signs: Signs, config: CompanionConfig) -> bool:
         return False
     lowest_m = -config.descent.press_depth_m - config.touchdown.height_max_m
     is_low = lowest_m <= signs.height_m <= config.touchdown.height_max_m
-    return is_low and signs.distance_m < over_pad_radius_m(config)
+    return is_low and signs.distance_m < over_pad_radius_m(signs.pad_half_width_m, config)
 
 
 def _stands(signs: Signs, config: TouchdownConfig) -> bool:

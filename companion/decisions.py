@@ -9,9 +9,7 @@ from companion.conditions import (
     ENTRY_TESTS,
     STOPPED_BY_PAD,
     STRAYS,
-    Held,
     fix_too_old,
-    holds,
     is_out_of_range,
     is_over_pad,
     is_too_low,
@@ -25,6 +23,7 @@ from companion.contact import described, signs_of
 from companion.feasibility import obstacle
 from companion.phases import FLYING_PHASES, Event, Phase
 from companion.situation import Situation, approach, stands
+from companion.timed import Held, holds
 
 Decision = tuple[Event, str]
 

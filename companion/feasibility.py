@@ -7,10 +7,12 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from companion.conditions import Held, Test, fix_too_old, holds
+from companion.conditions import fix_too_old
 from companion.config import CompanionConfig
+from companion.pad_reach import is_too_small
 from companion.phases import Phase
 from companion.situation import Approach, Situation
+from companion.timed import Held, Test, holds
 
 SPEED_SHARE_MIN = 1.15
 """Of the vehicle's speed: with less there is nothing to catch up with, and no landing is begun."""
@@ -67,11 +69,21 @@ def _empty(s: Situation, c: CompanionConfig) -> str:
     return f"battery at {100.0 * share:.0f} %, limits.battery_min_share is {100.0 * least:.0f} %: charge it"
 
 
+def _is_too_narrow(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    return s.pad is not None and is_too_small(s.pad, c)
+
+
+def _too_narrow(s: Situation, c: CompanionConfig) -> str:
+    width_m = 0.0 if s.pad is None else 2.0 * s.pad.half_width_m
+    return f"pad is {width_m:.2f} m wide, descent.pad_width_min_m is {c.descent.pad_width_min_m:.2f}: use a larger pad"
+
+
 # An estimate that has just begun jumps: what is said of the vehicle must hold for a while.
 OBSTACLES = (
     Obstacle(Test("vehicle too fast", _BEFORE_A_CHASE, _is_too_fast, lambda c: c.chase.driving_hold_s), _too_fast),
     Obstacle(Test("vehicle drives too far", _BEFORE_A_CHASE, _is_too_far, lambda c: c.chase.driving_hold_s), _too_far),
     Obstacle(Test("battery too low", _BEFORE_A_CHASE, _is_empty, lambda c: c.chase.driving_hold_s), _empty),
+    Obstacle(Test("pad too small", _BEFORE_A_CHASE, _is_too_narrow, lambda _: 0.0), _too_narrow),
 )
 
 OBSTACLE_TESTS = tuple(obstacle.test for obstacle in OBSTACLES)

@@ -6,10 +6,10 @@ import numpy as np
 
 from companion.conditions import CONTACT, DISPUTED_CONTACT
 from companion.config import CompanionConfig
-from companion.contact import over_pad_radius_m
 from companion.data import Setpoint
 from companion.levelling import limits_now
 from companion.pad import PadPath
+from companion.pad_reach import over_pad_radius_m
 from companion.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
 from companion.reference import Tracking, by_velocity, carried, not_falling, planned, pressing, remember, setpoint_at
@@ -176,7 +176,8 @@ def _is_left_by_pad(memory: StepMemory, situation: Situation, config: CompanionC
     relative = approach(situation)
     if memory.phase is not Phase.TOUCHDOWN or relative is None:
         return False
-    return relative.speed_m_s > config.abort.near_speed_max_m_s or relative.distance_m > 2.0 * over_pad_radius_m(config)
+    left_m = 2.0 * over_pad_radius_m(relative.pad_half_width_m, config)
+    return relative.speed_m_s > config.abort.near_speed_max_m_s or relative.distance_m > left_m
 
 
 def _with_the_drone(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:

@@ -7,8 +7,8 @@ turns less than the pad does, and takes the speed against it that it gains so.
 import math
 
 from companion.config import CompanionConfig, TouchdownConfig
-from companion.contact import over_pad_radius_m
 from companion.data import FlightLimits
+from companion.pad_reach import over_pad_radius_m
 from companion.phases import Phase
 from companion.situation import Approach, Situation, approach
 from companion.step_data import StepInputs, StepMemory
@@ -40,7 +40,7 @@ def lowest_foot_m(situation: Situation, relative: Approach, config: CompanionCon
     """Return how high the lowest foot of a leaning drone is above the pad, by a range finder that has just seen it."""
     lean = 0.0 if situation.drone is None else situation.drone.lean
     seen_m, height_m = situation.range_carried_m, relative.height_m
-    is_over = relative.distance_m < over_pad_radius_m(config)
+    is_over = relative.distance_m < over_pad_radius_m(relative.pad_half_width_m, config)
     if situation.range_height_m is not None and seen_m is not None and is_over:
         height_m = seen_m if abs(seen_m - height_m) < _SEEN_OFF_MAX_M else height_m
     return height_m - config.touchdown.foot_radius_m * lean

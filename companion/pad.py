@@ -25,6 +25,7 @@ class PadPath:
         yaw_rad: heading of the vehicle now, None when unknown.
         position_std_m: (n, 3).
         is_coarse: the vehicle's fixes alone are too coarse to land by: only what the drone sees of the pad places it.
+        half_width_m: from its centre to the nearest edge; infinite until it is described.
         unplaced: why the pad's place is not known, in words; None when it is. Until then it is not landed on.
     """
 
@@ -35,6 +36,7 @@ class PadPath:
     yaw_rad: float | None
     position_std_m: Array
     is_coarse: bool = False
+    half_width_m: float = math.inf
     unplaced: str | None = None
 
 
@@ -65,6 +67,7 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
         yaw_rad=None if forecast.yaw_rad is None else float(forecast.yaw_rad[0]),
         position_std_m=forecast.position_std_m,
         is_coarse=forecast.is_coarse,
+        half_width_m=math.inf if pad is None else 0.5 * min(pad.size_m),
         unplaced=NOT_DESCRIBED if pad is None else HEADING_UNKNOWN if is_beside and forecast.yaw_rad is None else None,
     )
 

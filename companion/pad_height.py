@@ -1,7 +1,7 @@
 """The pad's height where the drone's own height wanders: as its range finder sees the pad below; pure."""
 
 from companion.config import CompanionConfig
-from companion.contact import over_pad_radius_m
+from companion.pad_reach import over_pad_radius_m
 from companion.phases import LANDING_PHASES, Phase
 from companion.situation import Situation, approach
 from link.records import replace
@@ -23,7 +23,9 @@ def pad_raised_m(raised_m: float, phase: Phase, situation: Situation, config: Co
     if phase not in _OVER_PHASES or not config.touchdown.range_corrects_height:
         return 0.0
     relative, seen_m = approach(situation), situation.range_height_m
-    if relative is None or seen_m is None or relative.distance_m > over_pad_radius_m(config):
+    if relative is None or seen_m is None:
+        return raised_m
+    if relative.distance_m > over_pad_radius_m(relative.pad_half_width_m, config):
         return raised_m
     off_m = relative.height_m - seen_m
     if abs(off_m) > _OFF_MAX_M:

@@ -91,6 +91,7 @@ class Approach:
     speed_m_s: float  # horizontal
     height_m: float  # of the feet above the pad
     climb_m_s: float  # upwards against the pad
+    pad_half_width_m: float = math.inf  # from its centre to its nearest edge
 
 
 @lru_cache(maxsize=1)  # the tests, the decisions and the limits of a step all ask for it
@@ -110,6 +111,7 @@ def approach(situation: Situation) -> Approach | None:
         speed_m_s=math.hypot(velocity[0], velocity[1]),
         height_m=position[2],
         climb_m_s=velocity[2],
+        pad_half_width_m=pad.half_width_m,
     )
 
 

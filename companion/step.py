@@ -4,7 +4,7 @@ Pure: the same memory, inputs and system give the same result, in flight, in sim
 """
 
 from companion.autopilots.driver import AutopilotCommand, Desire
-from companion.conditions import HELD_UP, holds
+from companion.conditions import HELD_UP
 from companion.config import CompanionConfig
 from companion.contact import may_force_motors_off, signs_of
 from companion.data import Forecast, OwnState
@@ -20,6 +20,7 @@ from companion.status import landing_status
 from companion.step_data import StepInputs, StepMemory, StepOutputs, System
 from companion.surprise import looked_back
 from companion.targets import HORIZON_OFFSETS_S
+from companion.timed import holds
 from companion.transitions import transitions
 from link.frames import yaw_of
 from link.records import replace

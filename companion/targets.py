@@ -13,6 +13,7 @@ import numpy as np
 from companion.config import CompanionConfig, DescentConfig, LandingStyle
 from companion.data import Array
 from companion.pad import PadPath
+from companion.pad_reach import unseen_std_max_m
 from companion.phases import Phase
 from companion.planning.guidance import ReferenceState, Target
 
@@ -139,7 +140,7 @@ def is_unseen(pad: PadPath, config: CompanionConfig) -> bool:
     Fixes of some decimetres or better place it by themselves; between coarser ones and the drone's own place lie
     metres, and what a sighting said of them holds for seconds only.
     """
-    return pad.is_coarse and float(np.max(pad.position_std_m[0, :2])) > config.descent.unseen_std_max_m
+    return pad.is_coarse and float(np.max(pad.position_std_m[0, :2])) > unseen_std_max_m(pad.half_width_m, config)
 
 
 def _unseen_height_m(height_m: float, pad: PadPath, config: CompanionConfig) -> float:

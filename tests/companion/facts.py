@@ -41,6 +41,7 @@ def pad_at(velocity_enu_m_s: Vector3 = (4.0, 1.0, 0.0), *, std_m: float = 0.05, 
         acceleration_enu_m_s2=np.zeros_like(velocity),
         yaw_rad=0.2,
         position_std_m=np.full_like(velocity, std_m),
+        half_width_m=0.75,
         unplaced=None if placed else HEADING_UNKNOWN,
     )
 

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from companion.contact import Verdict, described, may_force_motors_off, over_pad_radius_m, signs_of, verdict
+from companion.contact import Verdict, described, may_force_motors_off, signs_of, verdict
+from companion.pad_reach import over_pad_radius_m
 from companion.situation import Situation
 from link.messages import Vector3
 from tests.companion.facts import CONFIG, GEAR_M, drone_at, pad_at, reference_at, situation
@@ -130,7 +131,7 @@ def test_range_finder_that_sees_the_pad_far_below_puts_off_the_forced_disarm() -
     "facts",
     [
         replace(on_pad(), drone=drone_at(CONFIG.touchdown.height_max_m + 0.01, pad=pad_at())),
-        replace(on_pad(), drone=drone_at(0.0, over_pad_radius_m(CONFIG) + 0.01, pad=pad_at())),
+        replace(on_pad(), drone=drone_at(0.0, over_pad_radius_m(pad_at().half_width_m, CONFIG) + 0.01, pad=pad_at())),
         replace(on_pad(), drone=drone_at(0.0, 0.0, (0.0, 0.0, -TOUCHDOWN.blocked_speed_m_s - 0.01), pad=pad_at())),
         replace(
             on_pad(),

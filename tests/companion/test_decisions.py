@@ -17,11 +17,11 @@ from companion.conditions import (
     must_wait,
     update_held,
 )
-from companion.conditions import Test as Condition
 from companion.decisions import Decision, decide, vehicle_passes
 from companion.pad import NOT_DESCRIBED
 from companion.phases import Event, Phase
 from companion.situation import Situation, approach, stands
+from companion.timed import Test as Condition
 from link.messages import Vector3
 from tests.companion.facts import (
     CONFIG,
@@ -37,6 +37,7 @@ from tests.companion.facts import (
 from tests.companion.world import FLYING, LANDING
 
 TICK_NS = 20_000_000
+HALF_M = pad_at().half_width_m
 OVER_PAD_M = 2.0 * CONFIG.descent.cone_radius_at_pad_m
 HIGH_M = CONFIG.descent.align_height_m
 NEAR_M = 0.9 * CONFIG.abort.near_height_m
@@ -52,7 +53,7 @@ UNSAFE: dict[str, Situation] = {
     "own position too old": replace(situation(), drone=None),
     "vehicle heading unknown": situation(pad=pad_at(placed=False)),
     "setpoint not followed": replace(situation(), tracking_error_m=CONFIG.abort.tracking_error_max_m + 0.01),
-    "outside the descent cone": situation(NEAR_M, cone_radius_m(NEAR_M, CONFIG) + 0.01),
+    "outside the descent cone": situation(NEAR_M, cone_radius_m(NEAR_M, HALF_M, CONFIG) + 0.01),
     "too fast against the pad": replace(
         situation(),
         drone=drone_at(NEAR_M, 0.0, (CONFIG.abort.near_speed_max_m_s + 0.01, 0.0, 0.0), pad=pad_at()),
@@ -153,8 +154,8 @@ def test_below_the_commit_height_it_does_not_land_where_nobody_knows_the_pad_to_
 @pytest.mark.parametrize(
     ("drifting", "wanted"),
     [
-        (situation(HIGH_M, cone_radius_m(HIGH_M, CONFIG) - 0.01), False),
-        (situation(HIGH_M, cone_radius_m(HIGH_M, CONFIG) + 0.01), True),
+        (situation(HIGH_M, cone_radius_m(HIGH_M, HALF_M, CONFIG) - 0.01), False),
+        (situation(HIGH_M, cone_radius_m(HIGH_M, HALF_M, CONFIG) + 0.01), True),
         (_moving(CONFIG.abort.near_speed_max_m_s - 0.01), False),
         (_moving(CONFIG.abort.near_speed_max_m_s + 0.01), True),
         (situation(pad=braking_pad(CONFIG.descent.speed_change_max_m_s2 - 0.01)), False),
@@ -238,7 +239,7 @@ def test_what_has_stopped_the_drone_was_the_pad_where_it_was_before_it_drove_on(
 
 
 def test_drone_that_the_pad_stops_beside_the_cone_has_landed_though_the_stop_ends_its_commitment() -> None:
-    beside_m = cone_radius_m(0.05, CONFIG) + 0.1
+    beside_m = cone_radius_m(0.05, HALF_M, CONFIG) + 0.1
     assert beside_m < OVER_PAD_M
     pad = pad_at((4.0, 1.0, 0.0))
     sinking = replace(
@@ -277,7 +278,7 @@ def test_landing_goes_on_exactly_after_the_hold_time(event: Event, test: Conditi
         case Event.ALIGNED:
             facts = situation()
         case Event.OUT_OF_ALIGNMENT if test.reason == "not over the pad in time":
-            facts = situation(HIGH_M, cone_radius_m(HIGH_M, CONFIG) + 0.01)
+            facts = situation(HIGH_M, cone_radius_m(HIGH_M, HALF_M, CONFIG) + 0.01)
         case Event.OUT_OF_ALIGNMENT:
             facts = situation(pad=replace(pad_at(std_m=CONFIG.descent.unseen_std_max_m + 0.01), is_coarse=True))
         case _:
