@@ -126,7 +126,7 @@ class CompanionNode:
         self._command = command
 
     def leave(self) -> None:
-        """Ask the autopilot, from the next step on, to hover by itself."""
+        """Ask the autopilot, from the next step on, to hover by itself; on the pad it switches its motors off first."""
         self._leaving = True
 
     @property

@@ -25,6 +25,7 @@ from companion.transitions import transitions
 from link.frames import yaw_of
 from link.records import replace
 
+_DISARM_MAX_S = 1.0  # it takes 0.5 s where the plain one is refused; the companion waits for 1.5 s before it ends
 _PRESENT_OFFSETS_S = HORIZON_OFFSETS_S[:2]  # a second point tells how the lever arm turns
 
 
@@ -132,11 +133,17 @@ def _drive(
     driver_memory = memory.driver
     for command, result in inputs.acknowledgements:
         driver_memory = inputs.driver.acknowledged(driver_memory, command, result)
-    desire = Desire(release=True) if inputs.leaving else _desire(memory, situation, config)
+    hands_over = inputs.leaving and not _finishes_disarm(memory, situation)
+    desire = Desire(release=True) if hands_over else _desire(memory, situation, config)
     driver_memory, commands = inputs.driver.act(driver_memory, inputs.autopilot, desire, inputs.t_ns)
     if driver_memory is not memory.driver:
         memory = replace(memory, driver=driver_memory)
     return memory, commands
+
+
+def _finishes_disarm(memory: StepMemory, situation: Situation) -> bool:
+    """Return whether the motors are being switched off: an autopilot that hovers by itself would leave the pad."""
+    return memory.phase is Phase.TOUCHDOWN and (situation.t_ns - memory.phase_since_ns) * 1e-9 < _DISARM_MAX_S
 
 
 def _desire(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Desire:

@@ -42,7 +42,7 @@ class StepInputs:
         vehicle_alive: its liveliness token; None when it never showed one.
         pad: the vehicle's own description of its pad.
         command: an operator's wish.
-        leaving: the companion is about to end, so the autopilot is to hover by itself.
+        leaving: the companion is about to end, so the autopilot is to hover by itself, or to finish its disarm.
         link_delay_s: from the companion to the autopilot.
         link_delay_std_s: its standard deviation.
         timeout_s: for how long the autopilot goes on without a setpoint.

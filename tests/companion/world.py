@@ -111,6 +111,7 @@ class Flight:
     sends_fixes: bool = True
     own_is_silent: bool = False
     alive: bool | None = True
+    leaving: bool = False
 
     def __post_init__(self) -> None:
         self.memory = StepMemory()
@@ -150,6 +151,7 @@ class Flight:
             vehicle_alive=self.alive,
             pad=self.pad,
             command=command,
+            leaving=self.leaving,
         )
 
     def step(self, command: Command | None = None) -> StepOutputs:

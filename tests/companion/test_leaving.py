@@ -1,0 +1,39 @@
+"""A companion that ends in flight: the autopilot is to hover, but on the pad the motors are switched off first."""
+
+import pytest
+
+from companion.phases import Phase
+from tests.companion.world import DISARM, FLYING, SET_MODE, Flight, reached
+
+LOITER = 4.0, 3.0  # PX4's main and sub mode, the second and third parameter of the command
+
+
+def _modes(flight: Flight) -> int:
+    return len(flight.told(SET_MODE))
+
+
+@pytest.mark.parametrize("phase", [phase for phase in FLYING if phase is not Phase.TOUCHDOWN])
+def test_companion_that_ends_in_the_air_lets_the_autopilot_hover(phase: Phase) -> None:
+    flight = reached(phase)
+    flight.leaving, modes = True, _modes(flight)
+    commands = flight.step().commands
+    assert [(one.command, one.parameters[1:3]) for one in commands] == [(SET_MODE, LOITER)]
+    assert _modes(flight) == modes + 1
+
+
+def test_companion_that_ends_on_the_pad_switches_the_motors_off_first() -> None:
+    flight = reached(Phase.TOUCHDOWN)
+    flight.leaving = True
+    flight.run_until(Phase.SECURED, limit_s=0.6)
+    assert not flight.view.armed
+    assert Phase.TOUCHDOWN not in [phase for phase, *_ in flight.told(SET_MODE)]
+
+
+def test_companion_that_ends_on_the_pad_does_not_wait_for_a_disarm_that_never_comes() -> None:
+    flight = reached(Phase.TOUCHDOWN)
+    flight.refuses, flight.leaving, modes = frozenset({DISARM}), True, _modes(flight)
+    begun_ns = flight.memory.phase_since_ns
+    while _modes(flight) == modes:
+        flight.step()
+        assert flight.t_ns - begun_ns < 1.2e9
+    assert flight.view.armed
