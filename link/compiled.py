@@ -8,6 +8,8 @@ from typing import ParamSpec, Protocol, TypeVar, cast
 
 from numba import njit
 
+from link.errors import UserError
+
 _KEPT_NAME = re.compile(r"_(?P<digest>[0-9a-f]{12})-[0-9]+\.")
 """The end of a function's name and its line, in the name of a file that numba keeps."""
 
@@ -51,12 +53,21 @@ def kept_kernel(sources: int) -> Callable[[Callable[P, R]], Kernel[P, R]]:
     Args:
         sources: the digest of all that it calls. It becomes part of the name by which the machine code is
             kept, since numba's own key knows only the file of the function itself.
+
+    Raises:
+        UserError: from what is returned: there is no place to keep it, so each start would compile for a minute.
     """
 
     def kept(function: Callable[P, R]) -> Kernel[P, R]:
         digest = f"{sources ^ _FLAGS:012x}"
         function.__qualname__ += f"_{digest}"
-        compiled = cast("Kernel[P, R]", njit(cache=True, fastmath=False, error_model="numpy")(function))
+        try:
+            compiled = cast("Kernel[P, R]", njit(cache=True, fastmath=False, error_model="numpy")(function))
+        except RuntimeError as error:  # numba's, after it has tried every place that it knows
+            raise UserError(
+                f"machine code cannot be kept: neither {Path(function.__code__.co_filename).parent} nor a cache of "
+                "this user's can be written; set NUMBA_CACHE_DIR to a folder that can"
+            ) from error
         _kept_digests.append((compiled.stats, digest))
         return compiled
 

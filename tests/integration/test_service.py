@@ -46,6 +46,16 @@ def test_a_unit_restarts_and_watches_its_program(unit: str) -> None:
     assert value(unit, "TimeoutStartSec") == "infinity"
 
 
+def test_the_companion_keeps_machine_code_where_its_user_may_write_and_its_installation_compiles_there() -> None:
+    unit = "decklander-companion.service"
+    variable, _, folder = value(unit, "Environment").partition("=")
+    assert variable == "NUMBA_CACHE_DIR"
+    assert Path(folder).parent == Path("/var/lib") / value(unit, "StateDirectory")
+    installation = (FOLDER.parent / "safety.md").read_text(encoding="utf-8")
+    user = value(unit, "User")
+    assert f"sudo -u {user} env NUMBA_CACHE_DIR={folder} .venv/bin/python -m scenarios.warm_up" in installation
+
+
 @pytest.mark.wire
 @pytest.mark.parametrize("unit", UNITS)
 def test_systemd_itself_finds_no_mistake_in_a_unit(unit: str, tmp_path: Path) -> None:

@@ -74,6 +74,30 @@ def test_code_of_other_sources_is_removed_and_nothing_else(tmp_path: Path) -> No
     assert said(tmp_path, 3.0, "tidy") == [31.0, 1.0, 0.0]
 
 
+def test_without_a_place_to_keep_code_one_line_says_what_to_set(tmp_path: Path) -> None:
+    """As for a service's user, who has no home and may not write into the installation."""
+    (tmp_path / "inner.py").write_text(INNER.format(factor=2.0))
+    (tmp_path / "outer.py").write_text(OUTER)
+    for place in ("__pycache__", "cache"):  # a file where numba wants a folder is refused to every user, root too
+        (tmp_path / place).touch()
+    said_last = {}
+    for name, more in {"nowhere": {}, "there": {"NUMBA_CACHE_DIR": str(tmp_path / "numba")}}.items():
+        environment = {
+            "PYTHONPATH": str(Path(__file__).parents[2]),
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "XDG_CACHE_HOME": str(tmp_path / "cache"),
+        }
+        command = [sys.executable, "-c", "from outer import outer"]
+        done = subprocess.run(
+            command, cwd=tmp_path, env=environment | more, capture_output=True, text=True, check=False, timeout=120
+        )
+        said_last[name] = (done.stderr or done.stdout).splitlines()[-1]
+    assert said_last["nowhere"].startswith("link.errors.UserError: machine code cannot be kept:")
+    assert str(tmp_path) in said_last["nowhere"]
+    assert "NUMBA_CACHE_DIR" in said_last["nowhere"]
+    assert said_last["there"] == "21.0 0"
+
+
 def test_the_digest_knows_names_and_contents(tmp_path: Path) -> None:
     first, second = tmp_path / "a.py", tmp_path / "b.py"
     first.write_text("x = 1")
