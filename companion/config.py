@@ -3,7 +3,7 @@
 from enum import Enum
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import Field, ValidationInfo, field_validator
 
 from companion.autopilots.kinds import AutopilotKind
 from companion.data import FlightLimits
@@ -175,7 +175,16 @@ class RecordingConfig(StrictModel):
 
     folder: str | None = None  # where it is written, none where there is no folder; `--record` stands above it
     file_max_mb: Positive = 256.0  # after which a new file is begun
-    total_max_mb: Annotated[float, Field(gt=0.0, le=1e6)] = 2000.0  # of all files; the oldest are deleted
+    # Of all files in the folder, earlier starts' too; the oldest are deleted.
+    total_max_mb: Annotated[float, Field(gt=0.0, le=1e6, validate_default=True)] = 2000.0
+
+    @field_validator("total_max_mb")
+    @classmethod
+    def _has_room_for_a_file(cls, value: float, info: ValidationInfo) -> float:
+        file_max_mb = info.data.get("file_max_mb")
+        if file_max_mb is not None and value < file_max_mb:
+            raise ValueError(f"it must be file_max_mb, {file_max_mb:g}, or more, for one file is always kept")
+        return value
 
 
 class CompanionConfig(StrictModel):

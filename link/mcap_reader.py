@@ -1,8 +1,9 @@
-"""Reading recordings: all files of one, in order, up to where each was written, complete or not."""
+"""Reading recordings: all files of one start, in order, up to where each was written, complete or not."""
 
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 
 from mcap.exceptions import McapError
@@ -10,6 +11,7 @@ from mcap.records import Attachment, Channel, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader
 
 from link.errors import UserError
+from link.recording_names import present_files
 from link.ros_records import RosMessage
 
 
@@ -29,16 +31,25 @@ class RecordingHead:
     attachments: dict[str, str]
 
 
-def recording_files(folder: Path, stem: str) -> list[Path]:
-    """Return the files of a recording, oldest first.
+def recordings(folder: Path, stem: str) -> list[list[Path]]:
+    """Return the recordings in a folder, one for each start of the program, each with its files, oldest first.
 
     Raises:
         UserError: there are none.
     """
-    files = sorted(folder.glob(f"{stem}_*.mcap"))
+    files = present_files(folder, stem)
     if not files:
         raise UserError(f"{folder}: holds no recording {stem}_*.mcap; is this a run's folder?")
-    return files
+    return [[file.path for file in group] for _, group in groupby(files, lambda file: file.start)]
+
+
+def recording_files(folder: Path, stem: str) -> list[Path]:
+    """Return the files of the newest recording in a folder, oldest first.
+
+    Raises:
+        UserError: there are none.
+    """
+    return recordings(folder, stem)[-1]
 
 
 def read_head(path: Path) -> RecordingHead:

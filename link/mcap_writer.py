@@ -1,5 +1,6 @@
 """A recording as MCAP files in a folder, with ROS 2 schemas: rotated by size, the oldest given up for the newest.
 
+What earlier starts have recorded there is never overwritten; it counts, and is given up, like this one's oldest files.
 Each file is complete in itself: it repeats the metadata, the attachments and the schemas.
 """
 
@@ -15,6 +16,7 @@ from mcap.writer import CompressionType, Writer
 
 from link.errors import UserError
 from link.recorder import RecordsLost
+from link.recording_names import present_files, recording_path
 from link.ros_records import RosMessage, definition
 
 _CHUNK_BYTES = 128 * 1024  # what is lost at most when the power fails, and how long compressing takes at once
@@ -28,11 +30,11 @@ class RecordingSpec:
 
     Attributes:
         folder: made when it is missing.
-        stem: of the files' names, `<stem>_000.mcap` and so on.
+        stem: of the files' names, `<stem>_000.mcap` and so on (`link.recording_names`).
         metadata: such as versions.
         attachments: texts by file name, such as the configuration.
         file_max_bytes: after which the next file is begun.
-        total_max_bytes: of all files of the recording; the oldest are deleted.
+        total_max_bytes: of all files of this stem in the folder; the oldest are deleted.
     """
 
     folder: Path
@@ -47,7 +49,7 @@ class _WholeRecords(RawIOBase):
     """A file that holds each write in full or not at all, so that a full disk leaves no half of a record."""
 
     def __init__(self, path: Path) -> None:
-        self._file = path.open("wb", buffering=0)
+        self._file = path.open("xb", buffering=0)
         self.size = 0
 
     def writable(self) -> bool:
@@ -93,11 +95,11 @@ class McapFile:
     """One file of a recording.
 
     Args:
-        path: replaced when it exists.
+        path: of a file that does not exist yet.
         spec: of the recording.
 
     Raises:
-        OSError: it cannot be written.
+        OSError: it exists, or cannot be written.
     """
 
     def __init__(self, path: Path, spec: RecordingSpec) -> None:
@@ -177,12 +179,14 @@ class McapRecording:
 
     def __init__(self, spec: RecordingSpec) -> None:
         self._spec = spec
-        self._files: list[Path] = []
         self._count = 0
         self._skip = 0
         self._file: McapFile | None = None
         try:
             spec.folder.mkdir(parents=True, exist_ok=True)
+            earlier = present_files(spec.folder, spec.stem)
+            self._start = earlier[-1].start + 1 if earlier else 1
+            self._files = [file.path for file in earlier]
             self._file = self._next_file()
         except OSError as error:
             raise UserError(
@@ -226,7 +230,7 @@ class McapRecording:
 
     def _next_file(self) -> McapFile:
         self._delete_oldest()
-        path = self._spec.folder / f"{self._spec.stem}_{self._count:03d}.mcap"
+        path = recording_path(self._spec.folder, self._spec.stem, self._start, self._count)
         file = McapFile(path, self._spec)
         self._files.append(path)
         self._count += 1

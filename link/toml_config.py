@@ -124,14 +124,16 @@ def _sentence(details: ErrorDetails, location: Location, fields: Fields, source:
         text = f"{source}: key '{key}' is missing"
     else:
         field = fields.get(str(location[-1])) if location else None
-        expected = (_range_of(field) if field is not None else "") or _lowered(details["msg"])
+        is_ours = details["type"] == "value_error"  # a check of the model's own, beyond the range of one number
+        expected = ("" if is_ours or field is None else _range_of(field)) or _lowered(details["msg"])
         given = f"{key} = {json.dumps(details['input'], default=str)}" if location else "it"
         text = f"{source}: {given} does not fit: {expected}"
     return f"{' '.join(text.split())} ({further} more like this)" if further else " ".join(text.split())
 
 
 def _lowered(message: str) -> str:
-    return message[:1].lower() + message[1:]
+    plain = message.removeprefix("Value error, ")
+    return plain[:1].lower() + plain[1:]
 
 
 def _range_of(field: FieldInfo) -> str:

@@ -26,10 +26,10 @@ def replay_command(
     """Give a recording's inputs to the companion again and compare every output; exit code 1 when one differs."""
     from companion.config import CompanionConfig
     from link.toml_config import load_config
-    from scenarios.replay import read_flight, replay, text_lines
+    from scenarios.replay import read_flights, replay, text_lines
 
     settings = None if config is None else load_config(config, CompanionConfig)
-    results = [(run.name, replay(read_flight(run), settings)) for run in runs]
+    results = [(name, replay(flight, settings)) for run in runs for name, flight in read_flights(run)]
     if as_json:
         rows = [{"run": name, **result.to_json()} for name, result in results]
         sys.stdout.write(json.dumps({"replays": rows}, indent=2, allow_nan=False) + "\n")

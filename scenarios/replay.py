@@ -3,7 +3,7 @@
 import math
 import tomllib
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from companion.records import InputKind, InputRecord
 from link import json_payloads
 from link.errors import UserError
 from link.keys import Keys
-from link.mcap_reader import RecordingHead, read_head, read_messages, recording_files
+from link.mcap_reader import RecordingHead, read_head, read_messages, recordings
 from link.messages import Command, PadGeometry
 from link.recorder import DirectRecorder
 from link.ros_records import RosMessage, fields_of
@@ -82,13 +82,18 @@ class _MessageLists:
         """Do nothing: it is complete at any time."""
 
 
-def read_flight(folder: Path) -> Flight:
-    """Return the companion's recording in `folder`.
+def read_flights(folder: Path) -> Iterator[tuple[str, Flight]]:
+    """Return the companion's recordings in `folder` with their names: one for each time that it was started.
 
     Raises:
         UserError: there is none.
     """
-    files = recording_files(folder, STEM)
+    found = recordings(folder, STEM)
+    for files in found:
+        yield folder.name if len(found) == 1 else f"{folder.name}/{files[0].name}", _read(files)
+
+
+def _read(files: list[Path]) -> Flight:
     head = read_head(files[0])
     if CONFIG_NAME not in head.attachments:
         raise UserError(f"{files[0]}: holds no configuration; it is no recording of a companion's")

@@ -6,6 +6,7 @@ from types import TracebackType
 from typing import NamedTuple, Self
 
 from link.errors import UserError
+from link.recording_names import free_path
 
 _TIME = struct.Struct(">Q")
 
@@ -14,7 +15,7 @@ class TlogWriter:
     """Writes frames of both directions to a file.
 
     Args:
-        path: of the file, replaced when it exists.
+        path: of the file; where it exists that is kept, and the next free of `<stem>_2` and so on is taken.
 
     Raises:
         UserError: The file cannot be written.
@@ -22,7 +23,7 @@ class TlogWriter:
 
     def __init__(self, path: Path) -> None:
         try:
-            self._file = path.open("wb")
+            self._file = free_path(path).open("xb")
         except OSError as error:
             raise UserError(f"{path}: cannot be written ({error.strerror}); choose another place") from error
 
@@ -63,7 +64,7 @@ class TlogSink:
     """A recorder's sink that writes a recording of frames.
 
     Args:
-        path: of the file, replaced when it exists.
+        path: of the file, as `TlogWriter` takes it.
 
     Raises:
         UserError: The file cannot be written.

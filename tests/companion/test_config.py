@@ -49,6 +49,20 @@ def test_mistake_is_one_line_that_names_file_and_key(tmp_path: Path, text: str, 
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.parametrize(
+    "text", ["total_max_mb = 100.0\n", "file_max_mb = 3000.0\n", "file_max_mb = 50\ntotal_max_mb = 49"]
+)
+def test_recording_whose_files_together_may_take_less_than_one_is_refused(tmp_path: Path, text: str) -> None:
+    with pytest.raises(UserError, match=r"companion\.toml: recording\.total_max_mb = .* file_max_mb") as error:
+        load_config(_file(tmp_path, f"[recording]\n{text}"), CompanionConfig)
+    assert "\n" not in str(error.value)
+
+
+def test_recording_of_one_file_only_is_taken(tmp_path: Path) -> None:
+    config = load_config(_file(tmp_path, "[recording]\ntotal_max_mb = 256.0\n"), CompanionConfig)
+    assert config.recording.total_max_mb == config.recording.file_max_mb
+
+
 def test_limits_of_the_flight_are_those_of_the_file() -> None:
     limits = CompanionConfig().limits
     assert limits.flight_limits().descent_max_m_s == limits.descent_max_m_s

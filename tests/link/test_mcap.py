@@ -7,9 +7,10 @@ from rosbags.highlevel import AnyReader
 
 from link import mcap_writer
 from link.errors import UserError
-from link.mcap_reader import read_head, read_messages, recording_files
+from link.mcap_reader import read_head, read_messages, recording_files, recordings
 from link.mcap_writer import McapRecording, RecordingSpec
 from link.recorder import RecordsLost
+from link.recording_names import present_files
 from link.ros_records import DEFINITIONS, PACKAGE, RosMessage, fields_of, floats, ros_message
 
 
@@ -86,6 +87,32 @@ def test_files_are_rotated_and_the_oldest_deleted_at_the_limit(tmp_path: Path) -
     kept = [recorded.log_ns - 10**18 for recorded in read_messages(files)]
     assert kept == list(range(kept[0], 30_000))
     assert all(read_head(file).metadata == {"seed": "3"} for file in files)
+
+
+def test_each_start_has_files_of_its_own_and_leaves_those_before_as_they_are(tmp_path: Path) -> None:
+    first = _write(tmp_path, 300)
+    before = [file.read_bytes() for file in first]
+    second = _write(tmp_path, 500)
+    third = _write(tmp_path, 10)
+    assert [file.read_bytes() for file in first] == before
+    assert recordings(tmp_path, "test") == [first, second, third]
+    assert [len(list(read_messages(files))) for files in recordings(tmp_path, "test")] == [300, 500, 10]
+    assert [file.name for file in (*first, *second, *third)] == [
+        "test_000.mcap",
+        "test_2_000.mcap",
+        "test_3_000.mcap",
+    ]
+
+
+def test_limit_of_all_files_counts_those_of_earlier_starts(tmp_path: Path) -> None:
+    for _ in range(12):
+        _write(tmp_path, 5_000, file_max_bytes=100_000, total_max_bytes=350_000)
+    files = [file for start in recordings(tmp_path, "test") for file in start]
+    assert sum(file.stat().st_size for file in files) <= 350_000
+    numbers = [file.start for file in present_files(tmp_path, "test")]
+    assert numbers[-1] == 12
+    assert numbers == sorted(numbers)
+    assert min(numbers) > 1
 
 
 def test_write_that_fails_is_told_and_leaves_a_readable_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

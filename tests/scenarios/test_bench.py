@@ -15,7 +15,7 @@ from scenarios.bench_recording import recording_cost
 from scenarios.catalogue import load_scenario
 from scenarios.lockstep import Lockstep
 from scenarios.processes import MODULES
-from scenarios.replay import read_flight, replay
+from scenarios.replay import read_flights, replay
 from scenarios.stopwatch import quantiles_ms, ratio_of, timed_steps
 
 BUDGET = Budget(path=("a", "b"), label="a figure", unit="ms", limit=5.0)
@@ -85,7 +85,7 @@ def test_cost_of_recording_is_measured_on_a_whole_recording(tmp_path: Path) -> N
     assert cost["step_ratio"] > 0.5
     assert cost["writer_cpu_share"] > 0.0
     assert cost["dropped"] == 0
-    flight = read_flight(tmp_path)
+    ((_, flight),) = read_flights(tmp_path)
     assert replay(flight).differences == ()
     assert flight.inputs[0].sequence == 0
 

@@ -19,7 +19,7 @@ from scenarios.figures import draw_figures
 from scenarios.html_report import write_report
 from scenarios.lockstep import Lockstep
 from scenarios.outcome import result_table
-from scenarios.replay import Flight, read_flight, replay
+from scenarios.replay import Flight, read_flights, replay
 from scenarios.run import RunOptions, run_in_lockstep
 from scenarios.run_data import read_run
 from scenarios.run_shown import distances, heights
@@ -39,7 +39,8 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def flight(run: Path) -> Flight:
-    return read_flight(run)
+    ((_, flight),) = read_flights(run)
+    return flight
 
 
 def test_every_topic_of_a_run_is_decoded_by_an_independent_reader(run: Path) -> None:
@@ -67,6 +68,17 @@ def test_replay_of_the_same_version_equals_the_flight_in_every_field(flight: Fli
     assert result.fields > 20_000
     assert result.differences == ()
     assert result.missing_inputs == 0
+
+
+def test_companion_that_was_started_again_leaves_two_flights_that_are_replayed_apart(run: Path, tmp_path: Path) -> None:
+    (file,) = recording_files(run, "companion")
+    for name in ("companion_000.mcap", "companion_2_000.mcap"):
+        shutil.copy(file, tmp_path / name)
+    flights = dict(read_flights(tmp_path))
+    names = [f"{tmp_path.name}/companion_000.mcap", f"{tmp_path.name}/companion_2_000.mcap"]
+    assert list(flights) == names
+    results = [replay(flight) for flight in flights.values()]
+    assert [(result.differences, result.missing_inputs) for result in results] == [((), 0), ((), 0)]
 
 
 def test_replay_with_another_gain_names_the_fields_largest_difference_first(flight: Flight) -> None:

@@ -39,6 +39,15 @@ def test_times_are_whole_microseconds_big_endian_before_the_frame(tmp_path: Path
     assert path.read_bytes() == struct.pack(">Q", 1_795_220_114_620_015) + b"frame"
 
 
+def test_a_recording_that_is_there_is_kept_and_the_new_one_gets_the_next_number(tmp_path: Path) -> None:
+    path = tmp_path / "run.tlog"
+    for word in (b"one", b"two", b"three"):
+        with TlogWriter(path) as tlog:
+            tlog.write(word, T_NS)
+    ends = {file.name: file.read_bytes()[8:] for file in tmp_path.iterdir()}
+    assert ends == {"run.tlog": b"one", "run_2.tlog": b"two", "run_3.tlog": b"three"}
+
+
 def test_a_place_that_cannot_be_written_is_one_clear_line(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"no/run\.tlog: cannot be written"):
         TlogWriter(tmp_path / "no" / "run.tlog")
