@@ -92,7 +92,7 @@ def _look(
     from companion.check.assessment import assessed
 
     vehicle = session.listen(duration_s, zenoh, keys)
-    return assessed(session.reader.facts(), vehicle.facts(), speed_m_s)
+    return assessed(session.reader.facts(), vehicle, speed_m_s)
 
 
 def _show(findings: "list[Finding]", speed_m_s: float, *, as_json: bool) -> int:

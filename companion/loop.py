@@ -12,22 +12,20 @@ from companion.loop_options import Links, LoopOptions
 from companion.node import CompanionNode
 from companion.onlookers import Onlooker, onlookers
 from companion.own_start import OwnStart, check_autopilot
+from companion.pad_question import PadQuestion
 from companion.phases import Phase
 from companion.recording_node import RecordingNode
 from companion.timings import Timings
-from link import cdr, json_payloads
+from link import cdr
 from link.clock import Clock, ClockTick, SimulatedClock, SystemClock
 from link.errors import UserError
 from link.mavlink.tlog import TlogFrames, TlogSink
-from link.messages import PadGeometry
 from link.payload_checks import PayloadError
 from link.real_time import spare_present_objects
 from link.recorder import BackgroundRecorder, Recorder
 from link.service import Service
-from link.zenoh_session import Inbox
 
 _WAIT_MAX_S = 0.005  # for bytes; Zenoh samples wait no longer than this
-_ASK_PAD_S = 1.0
 _LEAVE_MAX_S = 1.5  # a mode may be confirmed by the next heartbeat only
 
 
@@ -71,12 +69,10 @@ class _Loop:
         self._ticks = zenoh.subscribe(keys.clock) if options.use_sim_time else None
         self._alive = zenoh.watch_alive(keys.alive)
         self._stopping = False
-        self._asked_pad_s = -_ASK_PAD_S
         self._start = OwnStart(wanted=options.start)
         self._fix_seen = False
-        self._pad_wanted = True
         self._was_alive = False
-        self._pads: Inbox | None = None
+        self._pad_question = PadQuestion(zenoh, keys.pad)
         self._link_was_up: bool | None = None
 
     def run(self) -> Timings:
@@ -196,19 +192,17 @@ class _Loop:
 
     def _ask_for_pad(self) -> None:
         """Ask the vehicle for its pad until it has answered, and again when it has come back: it may be another one."""
-        now_s, alive = time.monotonic(), self._alive.alive
-        self._pad_wanted = self._pad_wanted or (alive and not self._was_alive)
+        question, alive = self._pad_question, self._alive.alive
+        if alive and not self._was_alive:
+            question.ask_anew()
         self._was_alive = alive
-        if self._pads is not None:
-            for sample in self._pads.take():
-                try:
-                    self._node.receive_pad(json_payloads.decode(PadGeometry, sample.payload))
-                    self._pad_wanted = False
-                except PayloadError:
-                    self._node.bad_payloads += 1
-        if self._pad_wanted and (alive or self._fix_seen) and now_s - self._asked_pad_s >= _ASK_PAD_S:
-            self._asked_pad_s = now_s
-            self._pads = self._zenoh.ask(self._keys.pad, b"", _ASK_PAD_S)
+        bad, why = question.bad_answers, question.refused_why
+        pad = question.poll(time.monotonic(), asks=alive or self._fix_seen)
+        self._node.bad_payloads += question.bad_answers - bad
+        if question.refused_why != why:
+            self._log.warning("the vehicle's description of its pad is refused", why=question.refused_why)
+        if pad is not None:
+            self._node.receive_pad(pad)
 
     def _check_time_out(self) -> None:
         """Say what is missing when nothing has come within the time-out; not once a flight has begun."""

@@ -17,7 +17,7 @@ from companion.step_data import StepInputs, StepMemory, StepOutputs, System
 from companion.vehicle_inputs import measurements_of
 from link.keys import Keys
 from link.mavlink.session import MavlinkSession
-from link.messages import Command, CommandReply, PadGeometry
+from link.messages import LEVER_MAX_M, Command, CommandReply, PadGeometry
 from link.payload_checks import PayloadError
 from link.publication import Publication
 
@@ -26,7 +26,6 @@ _EARLY = 0.75  # of a period: a new state of the drone starts the next step from
 _LATE = 2.0  # periods without a new state after which the step is made without one
 _FUTURE_MAX_NS = 500_000_000  # a stamp farther ahead comes from a clock that is wrong
 _LINK_DELAY_MAX_S = 0.3  # a longer way is not led for: the model is too uncertain so far ahead
-_LEVER_MAX_M = 50.0  # no vehicle is larger
 _PLAN_EVERY = 2  # statuses
 
 
@@ -104,7 +103,7 @@ class CompanionNode:
 
     def receive_pad(self, pad: PadGeometry) -> None:
         """Take the vehicle's description of its pad; the estimator needs the lever arm for sightings of the pad."""
-        if not all(abs(part_m) < _LEVER_MAX_M for part_m in pad.antenna_to_pad_m):
+        if not all(abs(part_m) <= LEVER_MAX_M for part_m in pad.antenna_to_pad_m):
             self.bad_payloads += 1
             return
         self._pad = pad

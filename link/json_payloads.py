@@ -8,7 +8,7 @@ from typing import Annotated, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from link.messages import Command, CommandReply, LandingStatus, PadGeometry
+from link.messages import LEVER_MAX_M, Command, CommandReply, LandingStatus, PadGeometry
 from link.payload_checks import PayloadError
 
 __all__ = ["JSON_ENCODING", "LANDING_STATUS_SCHEMA", "PayloadError", "decode", "encode"]
@@ -21,6 +21,7 @@ M = TypeVar("M", bound=Message)
 Coordinates = tuple[float, float, float]
 Count = Annotated[int, Field(ge=0)]
 Size = Annotated[float, Field(gt=0.0)]
+Lever = Annotated[float, Field(ge=-LEVER_MAX_M, le=LEVER_MAX_M)]
 
 
 class _Report(BaseModel):
@@ -30,7 +31,7 @@ class _Report(BaseModel):
 class _PadGeometry(_Report):
     size_m: tuple[Size, Size]
     height_m: Annotated[float, Field(ge=0.0)]
-    antenna_to_pad_m: Coordinates
+    antenna_to_pad_m: tuple[Lever, Lever, Lever]
 
 
 class _Command(_Report):

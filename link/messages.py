@@ -8,6 +8,9 @@ The wire forms (ROS 2 messages in CDR, JSON) live in `link.cdr` and `link.json_p
 from dataclasses import dataclass
 from enum import Enum
 
+LEVER_MAX_M = 50.0
+"""From a vehicle's antenna to its pad along each axis: no vehicle is larger, so what is further is a mistake."""
+
 Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 Matrix3 = tuple[float, float, float, float, float, float, float, float, float]
@@ -103,7 +106,10 @@ class Plan:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PadGeometry:
-    """The landing pad on the vehicle; `antenna_to_pad_m` leads from the GNSS antenna to the pad's centre in V."""
+    """The landing pad on the vehicle.
+
+    `antenna_to_pad_m` leads from the GNSS antenna to the pad's centre in V, by `LEVER_MAX_M` along each axis at most.
+    """
 
     size_m: tuple[float, float]
     height_m: float

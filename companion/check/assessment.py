@@ -123,11 +123,12 @@ def _vehicle(seen: VehicleFacts) -> list[Finding]:
     if seen.rate_hz <= 0.0:
         advice = "start the ground vehicle, or check --ns, --vehicle and -e"
         return [_graded("vehicle", f"nothing on {seen.key}", Level.WARN, advice)]
+    refused = "not described" if seen.pad_refused_why is None else f"refused: {seen.pad_refused_why}"
     pad = _graded(
         "vehicle pad",
-        "described" if seen.describes_pad else "not described",
+        "described" if seen.describes_pad else refused,
         _when(seen.describes_pad, Level.FAIL),
-        "let the vehicle answer for its pad",
+        "let the vehicle answer for its pad" if seen.pad_refused_why is None else "mend the vehicle's description",
     )
     level = _when(seen.rate_hz >= _FIX_RATE_MIN_HZ, Level.WARN)
     rate = _graded("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, "set its receiver to 5 Hz or more")

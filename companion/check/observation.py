@@ -49,6 +49,7 @@ class VehicleFacts:
         std_m: the largest standard deviation, of any axis, that a fix states.
         has_velocity: it sends its velocity as well.
         describes_pad: it answered for its pad.
+        pad_refused_why: what was wrong with an answer, None where nothing was.
     """
 
     key: str
@@ -57,3 +58,4 @@ class VehicleFacts:
     std_m: float | None = None
     has_velocity: bool = False
     describes_pad: bool = False
+    pad_refused_why: str | None = None

@@ -3,8 +3,10 @@
 import time
 from dataclasses import dataclass
 
+from companion.check.observation import VehicleFacts
 from companion.check.reading import Reader
 from companion.check.vehicle_reading import VehicleReader
+from companion.pad_question import PadQuestion
 from link.errors import UserError
 from link.keys import Keys
 from link.mavlink.parameters import parameter_set_message
@@ -13,8 +15,8 @@ from link.zenoh_session import Inbox, ZenohSession
 
 _WAIT_S = 0.005
 _PARAMETERS_MAX_S = 10.0
+_PAD_MAX_S = 3.0
 _SET_ATTEMPTS = 5
-_ASK_PAD_S = 1.0
 _EQUAL = 1e-4  # parameters are 32-bit floats
 
 
@@ -24,7 +26,7 @@ class Inboxes:
 
     fix: Inbox
     velocity: Inbox
-    pad: Inbox
+    pad: PadQuestion
 
 
 class CheckSession:
@@ -55,22 +57,27 @@ class CheckSession:
                 raise UserError(f"no heartbeat of an autopilot within {timeout_s:g} s on {self._device}: {advice}")
             self.turn()
 
-    def listen(self, duration_s: float, zenoh: ZenohSession, keys: Keys) -> VehicleReader:
-        """Count messages for `duration_s`, read all parameters, and return what the vehicle told meanwhile."""
+    def listen(self, duration_s: float, zenoh: ZenohSession, keys: Keys) -> VehicleFacts:
+        """Count messages for `duration_s`, read all parameters, and return what the vehicle told meanwhile.
+
+        A vehicle that is heard and has not answered for its pad is listened to for some seconds more.
+        """
         self.reader.count_anew(time.time_ns())
         vehicle = VehicleReader(keys.fix)
         inboxes = Inboxes(
             fix=zenoh.subscribe(keys.fix),
             velocity=zenoh.subscribe(keys.fix_velocity),
-            pad=zenoh.ask(keys.pad, b"", _ASK_PAD_S),
+            pad=PadQuestion(zenoh, keys.pad),
         )
         patience_s = time.monotonic() + duration_s + _PARAMETERS_MAX_S
-        while self.reader.listened_s < duration_s or not self.reader.parameters_done:
-            if time.monotonic() > patience_s:
+        pad_patience_s = time.monotonic() + duration_s + _PAD_MAX_S
+        while time.monotonic() <= patience_s:
+            awaits_pad = vehicle.is_heard and not inboxes.pad.is_answered and time.monotonic() <= pad_patience_s
+            if self.reader.listened_s >= duration_s and self.reader.parameters_done and not awaits_pad:
                 break
             self._hear_vehicle(vehicle, inboxes)
             self.turn()
-        return vehicle
+        return vehicle.facts(inboxes.pad)
 
     def set_parameter(self, name: str, value: float) -> bool:
         """Write a parameter and return whether the autopilot then says that it has this value."""
@@ -114,5 +121,4 @@ class CheckSession:
             vehicle.fix(sample.payload, now_ns, utc_ns)
         for _ in inboxes.velocity.take():
             vehicle.velocity()
-        for sample in inboxes.pad.take():
-            vehicle.pad(sample.payload)
+        inboxes.pad.poll(time.monotonic())

@@ -4,8 +4,9 @@ import math
 import statistics
 
 from companion.check.observation import VehicleFacts
-from link import cdr, json_payloads
-from link.messages import Fix, PadGeometry
+from companion.pad_question import PadQuestion
+from link import cdr
+from link.messages import Fix
 from link.payload_checks import PayloadError
 
 
@@ -22,12 +23,6 @@ class VehicleReader:
         self._ages_s: list[float] = []
         self._std_m: float | None = None
         self._has_velocity = False
-        self._describes_pad = False
-
-    @property
-    def describes_pad(self) -> bool:
-        """Whether it has answered for its pad."""
-        return self._describes_pad
 
     def fix(self, payload: bytes, arrived_ns: int, utc_ns: int | None) -> None:
         """Take a fix that arrived at local time `arrived_ns`, UTC `utc_ns` where that is known."""
@@ -48,16 +43,13 @@ class VehicleReader:
         """Take note that it sends its velocity."""
         self._has_velocity = True
 
-    def pad(self, payload: bytes) -> None:
-        """Take an answer to the question for its pad."""
-        try:
-            json_payloads.decode(PadGeometry, payload)
-        except PayloadError:
-            return
-        self._describes_pad = True
+    @property
+    def is_heard(self) -> bool:
+        """Whether a fix of it has come."""
+        return bool(self._arrived_ns)
 
-    def facts(self) -> VehicleFacts:
-        """Return what is known now."""
+    def facts(self, pad: PadQuestion) -> VehicleFacts:
+        """Return what is known now, with what came of the question for its pad."""
         span_s = (self._arrived_ns[-1] - self._arrived_ns[0]) * 1e-9 if self._arrived_ns else 0.0
         return VehicleFacts(
             key=self._key,
@@ -65,5 +57,6 @@ class VehicleReader:
             age_s=statistics.median(self._ages_s) if self._ages_s else None,
             std_m=self._std_m,
             has_velocity=self._has_velocity,
-            describes_pad=self._describes_pad,
+            describes_pad=pad.is_answered,
+            pad_refused_why=pad.refused_why,
         )

@@ -6,13 +6,13 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from link.errors import UserError
-from link.messages import PadGeometry
+from link.messages import LEVER_MAX_M, PadGeometry
 from link.toml_config import StrictModel, load_config
 
 _OPTIONS = {"size_m": "--pad-size", "height_m": "--pad-height", "antenna_to_pad_m": "--antenna-to-pad"}
 
 Length = Annotated[float, Field(gt=0.0, le=100.0)]
-Lever = Annotated[float, Field(ge=-100.0, le=100.0)]
+Lever = Annotated[float, Field(ge=-LEVER_MAX_M, le=LEVER_MAX_M)]
 
 
 class PadConfig(StrictModel):

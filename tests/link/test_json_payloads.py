@@ -113,6 +113,7 @@ def test_what_is_no_command_is_refused(payload: bytes) -> None:
         {"antenna_to_pad_m": [0.0, 0.0, nan]},
         {"antenna_to_pad_m": [0.0, 0.0, inf]},
         {"antenna_to_pad_m": None},
+        {"antenna_to_pad_m": [0.0, -50.1, 0.0]},
     ],
     ids=str,
 )

@@ -81,6 +81,7 @@ def test_autopilot_amiss_is_told(changed: dict[str, Any], line: str, level: Leve
         ({"std_m": 5.0}, "vehicle accuracy", Level.FAIL),
         ({"std_m": None}, "vehicle accuracy", Level.WARN),
         ({"describes_pad": False}, "vehicle pad", Level.FAIL),
+        ({"describes_pad": False, "pad_refused_why": "antenna_to_pad_m.0: 60"}, "vehicle pad", Level.FAIL),
     ],
 )
 def test_vehicle_amiss_is_told(changed: dict[str, Any], line: str, level: Level) -> None:

@@ -1,0 +1,92 @@
+"""The check's conversation, on a clock of the test's own."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from companion.check import session as session_module
+from companion.check.observation import VehicleFacts
+from companion.check.reading import Reader
+from companion.check.session import CheckSession
+from link import cdr, json_payloads
+from link.inbox import Inbox, Sample
+from link.keys import Keys
+from link.mavlink.session import MavlinkSession
+from link.messages import Fix, PadGeometry
+
+KEYS = Keys()
+WAKE_UP: Any = SimpleNamespace(set=lambda: None)
+PAD = PadGeometry(size_m=(1.5, 1.2), height_m=1.6, antenna_to_pad_m=(0.8, -0.1, 0.05))
+FIX = cdr.encode(Fix(t_ns=10**18, latitude_rad=0.8, longitude_rad=0.1, altitude_m=400.0))
+
+
+class World:
+    """A transport that nothing comes through, and a vehicle on Zenoh that hears only a later question for its pad.
+
+    Args:
+        heard_from: the number of the first question that it hears, None for none.
+    """
+
+    def __init__(self, heard_from: int | None) -> None:
+        self.now_s = 5.0
+        self._heard_from = heard_from
+        self._asked = 0
+        self._fixes = Inbox(capacity=100, wake_up=WAKE_UP)
+
+    def monotonic(self) -> float:
+        return self.now_s
+
+    def time_ns(self) -> int:
+        return 10**18 + round(self.now_s * 1e9)
+
+    def receive(self, wait_s: float) -> bytes:
+        self.now_s += wait_s
+        return b""
+
+    def send(self, _: bytes) -> None:
+        """Lose it."""
+
+    def subscribe(self, key: str) -> Inbox:
+        if key != KEYS.fix:
+            return Inbox(capacity=1, wake_up=WAKE_UP)
+        for _ in range(20):
+            self._fixes.put(Sample(key, FIX, 0))
+        return self._fixes
+
+    def ask(self, key: str, _: bytes, timeout_s: float) -> Inbox:
+        assert timeout_s > 0.0
+        inbox = Inbox(capacity=1, wake_up=WAKE_UP)
+        if self._heard_from is not None and self._asked >= self._heard_from:
+            inbox.put(Sample(key, json_payloads.encode(PAD), 0))
+        self._asked += 1
+        return inbox
+
+
+def listened(monkeypatch: pytest.MonkeyPatch, world: World, duration_s: float) -> tuple[VehicleFacts, float]:
+    """Return what a session tells of the vehicle of an autopilot that has told all, and how long it took."""
+    monkeypatch.setattr(session_module, "time", SimpleNamespace(monotonic=world.monotonic, time_ns=world.time_ns))
+    monkeypatch.setattr(Reader, "parameters_done", True)
+    began_s = world.now_s
+    monkeypatch.setattr(Reader, "listened_s", property(lambda _: world.now_s - began_s))
+    anything: Any = world
+    session = CheckSession(Reader(MavlinkSession(1, target_system_id=1)), anything, "test")
+    return session.listen(duration_s, anything, KEYS), world.now_s - began_s
+
+
+def test_pad_is_asked_for_until_the_vehicle_has_heard_the_question(monkeypatch: pytest.MonkeyPatch) -> None:
+    facts, took_s = listened(monkeypatch, World(heard_from=2), 4.0)
+    assert facts.describes_pad
+    assert took_s == pytest.approx(4.0, abs=0.1)
+
+
+def test_vehicle_that_is_heard_is_given_some_seconds_more_for_its_pad(monkeypatch: pytest.MonkeyPatch) -> None:
+    facts, took_s = listened(monkeypatch, World(heard_from=2), 1.0)
+    assert facts.describes_pad
+    assert 1.9 < took_s < 2.2
+
+
+def test_vehicle_that_never_describes_its_pad_is_told_so_in_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    facts, took_s = listened(monkeypatch, World(heard_from=None), 1.0)
+    assert not facts.describes_pad
+    assert 3.9 < took_s < 4.2
