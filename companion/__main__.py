@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from companion.autopilots.kinds import AutopilotKind
-from companion.check_command import DeviceOption, SystemIdOption, check
+from companion.check_command import ConfigOption, DeviceOption, SigningKeyOption, SystemIdOption, check
 from link.cli import (
     ConnectOption,
     DroneOption,
@@ -28,7 +28,6 @@ from link.errors import UserError
 app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.")
 app.command("check")(check)
 
-_ConfigOption = Annotated[Path | None, typer.Option("--config", metavar="FILE", help="Configuration in TOML.")]
 _PrintConfigOption = Annotated[bool, typer.Option("--print-config", help="Print the configuration and end.")]
 _StartOption = Annotated[bool, typer.Option("--start", help="Arm, take off and land without an operator's command.")]
 _TimeoutOption = Annotated[
@@ -38,10 +37,6 @@ _DryRunOption = Annotated[bool, typer.Option("--dry-run", help="Do everything bu
 _UseSimTimeOption = Annotated[bool, typer.Option("--use-sim-time", help="Follow the simulation's clock on Zenoh.")]
 _AutopilotOption = Annotated[
     AutopilotKind | None, typer.Option("--autopilot", help="In place of the configuration's kind of autopilot.")
-]
-_SigningKeyOption = Annotated[
-    Path | None,
-    typer.Option("--signing-key", metavar="FILE", help="Sign MAVLink with this key: 32 bytes or 64 hex digits."),
 ]
 _TlogOption = Annotated[Path | None, typer.Option("--tlog", metavar="FILE", help="Record MAVLink into this file.")]
 _RecordOption = Annotated[
@@ -56,7 +51,7 @@ _TimingOption = Annotated[
 def companion(
     context: typer.Context,
     mavlink: DeviceOption = "udpin:127.0.0.1:14540",
-    config: _ConfigOption = None,
+    config: ConfigOption = None,
     print_config: _PrintConfigOption = False,
     start: _StartOption = False,
     timeout: _TimeoutOption = 60.0,
@@ -64,7 +59,7 @@ def companion(
     use_sim_time: _UseSimTimeOption = False,
     autopilot: _AutopilotOption = None,
     system_id: SystemIdOption = 1,
-    signing_key: _SigningKeyOption = None,
+    signing_key: SigningKeyOption = None,
     tlog: _TlogOption = None,
     record: _RecordOption = None,
     timing: _TimingOption = None,

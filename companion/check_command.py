@@ -2,6 +2,7 @@
 
 import json
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -21,6 +22,7 @@ from link.errors import UserError
 if TYPE_CHECKING:
     from companion.check.findings import Finding
     from companion.check.session import CheckSession
+    from companion.config import CompanionConfig
     from link.keys import Keys
     from link.zenoh_session import ZenohSession
 
@@ -31,6 +33,11 @@ DeviceOption = Annotated[
     typer.Option(
         "--mavlink", metavar="DEVICE", help="udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT or /dev/ttyX,BAUD."
     ),
+]
+ConfigOption = Annotated[Path | None, typer.Option("--config", metavar="FILE", help="Configuration in TOML.")]
+SigningKeyOption = Annotated[
+    Path | None,
+    typer.Option("--signing-key", metavar="FILE", help="Sign MAVLink with this key: 32 bytes or 64 hex digits."),
 ]
 SystemIdOption = Annotated[int, typer.Option("--system-id", min=1, max=255, help="MAVLink system id of the drone.")]
 
@@ -51,7 +58,9 @@ def check(
         Path | None, typer.Option("--restore", metavar="FILE", help="Write back what --set kept there, and end.")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    config: ConfigOption = None,
     system_id: SystemIdOption = 1,
+    signing_key: SigningKeyOption = None,
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
     mode: ModeOption = None,
@@ -62,37 +71,50 @@ def check(
 ) -> int:
     """Read the autopilot and the vehicle, and say what to change before a landing; exit code 1 when something fails."""
     from companion.check.changes import kept
-    from companion.check.reading import Reader
-    from companion.check.session import CheckSession
+    from companion.check.session import open_check
+    from companion.config import CompanionConfig
     from link.keys import Keys
-    from link.mavlink.session import MavlinkSession
+    from link.mavlink.signing import read_key
     from link.mavlink.transports import open_transport
+    from link.toml_config import load_config
     from link.zenoh_options import zenoh_options
     from link.zenoh_session import open_session
 
+    settings = load_config(config, CompanionConfig)
+    key = None if signing_key is None else read_key(signing_key)
     back = None if restore is None else kept(restore)
     options = zenoh_options(mode, connect, listen, multicast, zenoh_config)
     with open_transport(mavlink) as transport, open_session(options) as zenoh:
-        session = CheckSession(Reader(MavlinkSession(system_id, target_system_id=system_id)), transport, mavlink)
+        session = open_check(transport, mavlink, system_id=system_id, signing_key=key)
         session.find(timeout)
         if back is not None:
             _write(session, back)
             return 0
         keys = Keys(namespace, vehicle, "drone")
-        findings = _look(session, zenoh, keys, duration, speed_max)
+        ask = _Question(zenoh=zenoh, keys=keys, duration_s=duration, speed_m_s=speed_max, config=settings)
+        findings = _look(session, ask)
         if set_values:
             _set(session, findings, keep_file, asks=not yes)
-            findings = _look(session, zenoh, keys, duration, speed_max)
+            findings = _look(session, ask)
     return _show(findings, speed_max, as_json=as_json)
 
 
-def _look(
-    session: "CheckSession", zenoh: "ZenohSession", keys: "Keys", duration_s: float, speed_m_s: float
-) -> "list[Finding]":
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Question:
+    """What is looked at, and what for."""
+
+    zenoh: "ZenohSession"
+    keys: "Keys"
+    duration_s: float
+    speed_m_s: float
+    config: "CompanionConfig"
+
+
+def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
     from companion.check.assessment import assessed
 
-    vehicle = session.listen(duration_s, zenoh, keys)
-    return assessed(session.reader.facts(), vehicle, speed_m_s)
+    vehicle = session.listen(asked.duration_s, asked.zenoh, asked.keys)
+    return assessed(session.reader.facts(), vehicle, asked.speed_m_s, asked.config)
 
 
 def _show(findings: "list[Finding]", speed_m_s: float, *, as_json: bool) -> int:

@@ -6,7 +6,18 @@ from typing import Annotated
 
 import typer
 
-from link.cli import DroneOption, NamespaceOption, VehicleOption, make_app, run_app
+from link.cli import (
+    ConnectOption,
+    DroneOption,
+    ListenOption,
+    ModeOption,
+    MulticastOption,
+    NamespaceOption,
+    VehicleOption,
+    ZenohConfigOption,
+    make_app,
+    run_app,
+)
 from link.errors import UserError
 from scenarios import (
     bench_commands,
@@ -82,21 +93,26 @@ def world_command(
     mavlink: Annotated[
         str, typer.Option("--mavlink", metavar="DEVICE", help="Where the companion listens.")
     ] = "udpout:127.0.0.1:14540",
-    listen: Annotated[str | None, typer.Option("-l", "--listen", metavar="ENDPOINT", help="Zenoh endpoint.")] = None,
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
     drone: DroneOption = "drone",
+    mode: ModeOption = None,
+    connect: ConnectOption = None,
+    listen: ListenOption = None,
+    multicast: MulticastOption = None,
+    zenoh_config: ZenohConfigOption = None,
 ) -> None:
     """Run the simulated side of a scenario, the autopilot with the vehicle in it, in one process."""
     from link.keys import Keys
     from link.mavlink.transports import open_transport
-    from link.zenoh_session import DEFAULT_ENDPOINT, ZenohOptions, open_session
+    from link.zenoh_options import zenoh_options
+    from link.zenoh_session import open_session
     from scenarios.catalogue import load_scenario
     from scenarios.world import WorldLoop
 
     scenario = load_scenario(name)
     keys = Keys(namespace, vehicle, drone)
-    options = ZenohOptions(listen=(listen or DEFAULT_ENDPOINT,))
+    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, listens=True)
     with open_transport(mavlink, is_patient=True) as transport, open_session(options) as zenoh:
         WorldLoop(scenario, seed, keys, transport, zenoh, speed=speed).run()
 
@@ -105,14 +121,18 @@ def world_command(
 def command_command(
     command: Annotated[str, typer.Argument(metavar="start|abort|hold", help="What the companion is asked for.")],
     *,
-    connect: Annotated[str | None, typer.Option("-e", "--connect", metavar="ENDPOINT", help="Zenoh endpoint.")] = None,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",
+    mode: ModeOption = None,
+    connect: ConnectOption = None,
+    listen: ListenOption = None,
+    multicast: MulticastOption = None,
+    zenoh_config: ZenohConfigOption = None,
 ) -> int:
     """Send a command to the companion; exit code 1 when it is refused."""
     from link.keys import Keys
     from link.messages import Command
-    from link.zenoh_session import DEFAULT_ENDPOINT
+    from link.zenoh_options import zenoh_options
     from scenarios.operator_command import send_command
 
     try:
@@ -120,7 +140,8 @@ def command_command(
     except ValueError:
         known = ", ".join(one.value for one in Command)
         raise UserError(f"command '{command}' does not exist: give one of {known}") from None
-    reply = send_command(wanted, Keys(namespace, "vehicle", drone), connect or DEFAULT_ENDPOINT)
+    options = zenoh_options(mode, connect, listen, multicast, zenoh_config)
+    reply = send_command(wanted, Keys(namespace, "vehicle", drone), options)
     sys.stdout.write("accepted\n" if reply.accepted else f"refused: {reply.reason}\n")
     return 0 if reply.accepted else 1
 

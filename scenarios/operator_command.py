@@ -13,17 +13,24 @@ _ANSWER_S = 3.0
 _TRY_AGAIN_S = 0.1
 
 
-def send_command(command: Command, keys: Keys, endpoint: str) -> CommandReply:
+def send_command(command: Command, keys: Keys, options: ZenohOptions) -> CommandReply:
     """Return the companion's answer.
+
+    Args:
+        command: what it is asked for.
+        keys: of the Zenoh contract.
+        options: how it is met.
 
     Raises:
         UserError: no companion answers.
     """
-    with open_session(ZenohOptions(connect=(endpoint,))) as zenoh:
+    with open_session(options) as zenoh:
         deadline_s = time.monotonic() + _MEETING_S
         while time.monotonic() < deadline_s:
             answers = zenoh.query(keys.landing_command, json_payloads.encode(command), _ANSWER_S)
             if answers:
                 return json_payloads.decode(CommandReply, answers[0])
             time.sleep(_TRY_AGAIN_S)
-    raise UserError(f"no companion answers on {keys.landing_command} at {endpoint}: start it, or check --drone and -e")
+    where = ", ".join((*options.connect, *options.listen))
+    at = f" at {where}" if where else ""
+    raise UserError(f"no companion answers on {keys.landing_command}{at}: start it, or check --drone and -e")

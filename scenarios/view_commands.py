@@ -7,7 +7,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from link.cli import ConnectOption, DroneOption, NamespaceOption, VehicleOption
+from link.cli import (
+    ConnectOption,
+    DroneOption,
+    ListenOption,
+    ModeOption,
+    MulticastOption,
+    NamespaceOption,
+    VehicleOption,
+    ZenohConfigOption,
+)
 from link.errors import UserError
 
 if TYPE_CHECKING:
@@ -66,7 +75,11 @@ def view_command(
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
     drone: DroneOption = "drone",
+    mode: ModeOption = None,
     connect: ConnectOption = None,
+    listen: ListenOption = None,
+    multicast: MulticastOption = None,
+    zenoh_config: ZenohConfigOption = None,
 ) -> None:
     """Show a landing in the browser as it goes on, or play a recording."""
     check_viser()
@@ -84,7 +97,7 @@ def view_command(
 
     drawn = None if road is None else Road(scenario=load_scenario(road), seed=seed)
     keys = Keys(namespace, vehicle, drone)
-    with open_session(zenoh_options(None, connect, None, None, None)) as zenoh:
+    with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config)) as zenoh:
         _show(LiveSource(zenoh, keys), drawn, host, port)
 
 

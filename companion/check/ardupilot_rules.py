@@ -8,7 +8,6 @@ from companion.check.findings import Level
 from companion.check.rules import GRADE_MAX, SPEED_SHARE_ADVISED, ParameterRule, Spelling, at_least, tilt_needed_deg
 
 _CENTI = 100.0
-_SINK_M_S = 1.2  # the companion's own largest, `descent.descent_rate_max_m_s`
 _CLIMB_M_S = 2.0
 _FAST_M_S = 8.0  # flown with the default acceleration; 12 m/s with 3.5 m/s^2
 _NO_STABILISATION = 0b110000  # bits 4 and 5: positions, velocities are not held
@@ -16,93 +15,96 @@ _GUIDED_LOSS_S = (0.5, 1.5)
 _DISARM_DELAY_MIN_S = 5.0
 _EKF_ACTIONS = (1, 3)
 
-ARDUPILOT_RULES = (
-    at_least(
-        tilt_needed_deg,
-        step=5.0,
-        spellings=(Spelling("ATC_ANGLE_MAX"), Spelling("ANGLE_MAX", _CENTI)),
-        unit="deg",
-        level=Level.FAIL,
-        reason="the tilt that holds the speed against drag; 30 degrees end at 10.2 m/s, silently",
-    ),
-    ParameterRule(
-        spellings=(Spelling("PSC_ANGLE_MAX"),),
-        unit="deg",
-        level=Level.FAIL,
-        test=lambda value, speed_m_s: value <= 0.0 or value >= tilt_needed_deg(speed_m_s),
-        advised=lambda _: 0.0,
-        reason="a tilt limit of its own for flight by position, beside the general one; 0 leaves it to that",
-    ),
-    at_least(
-        lambda v: SPEED_SHARE_ADVISED * v,
-        step=1.0,
-        spellings=(Spelling("WP_SPD"), Spelling("WPNAV_SPEED", _CENTI)),
-        unit="m/s",
-        level=Level.FAIL,
-        reason="limits the correction of the position beside the speed asked for",
-    ),
-    at_least(
-        lambda v: 2.5 if v <= _FAST_M_S else 3.5,
-        step=0.5,
-        spellings=(Spelling("WP_ACC"), Spelling("WPNAV_ACCEL", _CENTI)),
-        unit="m/s^2",
-        level=Level.WARN,
-        reason="how quickly the position is corrected",
-    ),
-    at_least(
-        lambda v: _SINK_M_S + GRADE_MAX * v,
-        step=0.5,
-        spellings=(Spelling("WP_SPD_DN"), Spelling("WPNAV_SPEED_DN", _CENTI)),
-        unit="m/s",
-        level=Level.WARN,
-        reason="the correction downwards on a deck that drives downhill",
-    ),
-    at_least(
-        lambda v: _CLIMB_M_S + GRADE_MAX * v,
-        step=0.5,
-        spellings=(Spelling("WP_SPD_UP"), Spelling("WPNAV_SPEED_UP", _CENTI)),
-        unit="m/s",
-        level=Level.WARN,
-        reason="the climb of an abort, away from a deck that drives uphill",
-    ),
-    ParameterRule(
-        spellings=(Spelling("GUID_TIMEOUT"),),
-        unit="s",
-        level=Level.WARN,
-        test=lambda value, _: _GUIDED_LOSS_S[0] <= value <= _GUIDED_LOSS_S[1],
-        advised=lambda _: 1.0,
-        reason="so long it coasts on when setpoints stay away: 21 m from 5 m/s with 3 s",
-    ),
-    ParameterRule(
-        spellings=(Spelling("GUID_OPTIONS"),),
-        unit="",
-        level=Level.FAIL,
-        test=lambda value, _: not int(value) & _NO_STABILISATION,
-        advised=lambda _: 0.0,
-        reason="bits 4 and 5 switch off the holding of position and velocity",
-    ),
-    ParameterRule(
-        spellings=(Spelling("FS_GCS_ENABLE"),),
-        unit="",
-        level=Level.WARN,
-        test=lambda value, _: value == 0.0,
-        advised=lambda _: 0.0,
-        reason="a lost ground station would end a landing by a return, or on the road",
-    ),
-    ParameterRule(
-        spellings=(Spelling("FS_EKF_ACTION"),),
-        unit="",
-        level=Level.WARN,
-        test=lambda value, _: value in _EKF_ACTIONS,
-        advised=lambda _: 1.0,
-        reason="an estimator that fails must end the flight by itself; without a position nothing can be chased",
-    ),
-    ParameterRule(
-        spellings=(Spelling("DISARM_DELAY"),),
-        unit="s",
-        level=Level.FAIL,
-        test=lambda value, _: value == 0.0 or value >= _DISARM_DELAY_MIN_S,
-        advised=lambda _: 10.0,
-        reason="armed and idle it disarms after this; the take-off begins 4 s after arming",
-    ),
-)
+
+def ardupilot_rules(sink_m_s: float) -> tuple[ParameterRule, ...]:
+    """Return the rules for a companion that sinks by `sink_m_s` at most."""
+    return (
+        at_least(
+            tilt_needed_deg,
+            step=5.0,
+            spellings=(Spelling("ATC_ANGLE_MAX"), Spelling("ANGLE_MAX", _CENTI)),
+            unit="deg",
+            level=Level.FAIL,
+            reason="the tilt that holds the speed against drag; 30 degrees end at 10.2 m/s, silently",
+        ),
+        ParameterRule(
+            spellings=(Spelling("PSC_ANGLE_MAX"),),
+            unit="deg",
+            level=Level.FAIL,
+            test=lambda value, speed_m_s: value <= 0.0 or value >= tilt_needed_deg(speed_m_s),
+            advised=lambda _: 0.0,
+            reason="a tilt limit of its own for flight by position, beside the general one; 0 leaves it to that",
+        ),
+        at_least(
+            lambda v: SPEED_SHARE_ADVISED * v,
+            step=1.0,
+            spellings=(Spelling("WP_SPD"), Spelling("WPNAV_SPEED", _CENTI)),
+            unit="m/s",
+            level=Level.FAIL,
+            reason="limits the correction of the position beside the speed asked for",
+        ),
+        at_least(
+            lambda v: 2.5 if v <= _FAST_M_S else 3.5,
+            step=0.5,
+            spellings=(Spelling("WP_ACC"), Spelling("WPNAV_ACCEL", _CENTI)),
+            unit="m/s^2",
+            level=Level.WARN,
+            reason="how quickly the position is corrected",
+        ),
+        at_least(
+            lambda v: sink_m_s + GRADE_MAX * v,
+            step=0.5,
+            spellings=(Spelling("WP_SPD_DN"), Spelling("WPNAV_SPEED_DN", _CENTI)),
+            unit="m/s",
+            level=Level.WARN,
+            reason="the correction downwards on a deck that drives downhill",
+        ),
+        at_least(
+            lambda v: _CLIMB_M_S + GRADE_MAX * v,
+            step=0.5,
+            spellings=(Spelling("WP_SPD_UP"), Spelling("WPNAV_SPEED_UP", _CENTI)),
+            unit="m/s",
+            level=Level.WARN,
+            reason="the climb of an abort, away from a deck that drives uphill",
+        ),
+        ParameterRule(
+            spellings=(Spelling("GUID_TIMEOUT"),),
+            unit="s",
+            level=Level.WARN,
+            test=lambda value, _: _GUIDED_LOSS_S[0] <= value <= _GUIDED_LOSS_S[1],
+            advised=lambda _: 1.0,
+            reason="so long it coasts on when setpoints stay away: 21 m from 5 m/s with 3 s",
+        ),
+        ParameterRule(
+            spellings=(Spelling("GUID_OPTIONS"),),
+            unit="",
+            level=Level.FAIL,
+            test=lambda value, _: not int(value) & _NO_STABILISATION,
+            advised=lambda _: 0.0,
+            reason="bits 4 and 5 switch off the holding of position and velocity",
+        ),
+        ParameterRule(
+            spellings=(Spelling("FS_GCS_ENABLE"),),
+            unit="",
+            level=Level.WARN,
+            test=lambda value, _: value == 0.0,
+            advised=lambda _: 0.0,
+            reason="a lost ground station would end a landing by a return, or on the road",
+        ),
+        ParameterRule(
+            spellings=(Spelling("FS_EKF_ACTION"),),
+            unit="",
+            level=Level.WARN,
+            test=lambda value, _: value in _EKF_ACTIONS,
+            advised=lambda _: 1.0,
+            reason="an estimator that fails must end the flight by itself; without a position nothing can be chased",
+        ),
+        ParameterRule(
+            spellings=(Spelling("DISARM_DELAY"),),
+            unit="s",
+            level=Level.FAIL,
+            test=lambda value, _: value == 0.0 or value >= _DISARM_DELAY_MIN_S,
+            advised=lambda _: 10.0,
+            reason="armed and idle it disarms after this; the take-off begins 4 s after arming",
+        ),
+    )

@@ -1,47 +1,73 @@
 """From what was seen of an autopilot and a vehicle to the lines of the check; pure."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
-from companion.check.ardupilot_rules import ARDUPILOT_RULES
+from companion.autopilots.kinds import AutopilotKind
+from companion.check.ardupilot_rules import ardupilot_rules
 from companion.check.findings import Finding, Level, passed
 from companion.check.observation import AutopilotFacts, VehicleFacts
-from companion.check.px4_rules import PX4_RULES
+from companion.check.px4_rules import px4_rules
 from companion.check.rules import ParameterRule, judged
+from companion.config import AbortConfig, CompanionConfig
 from link.mavlink.dialect import mavlink
 
-RULES: dict[int, tuple[str, tuple[int, int], Sequence[ParameterRule]]] = {
-    mavlink.MAV_AUTOPILOT_PX4: ("PX4", (1, 14), PX4_RULES),
-    mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA: ("ArduPilot", (4, 5), ARDUPILOT_RULES),
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Firmware:
+    """A firmware that can be flown.
+
+    Attributes:
+        name: for messages.
+        kind: what a configuration calls it.
+        oldest: release that is known to work.
+        rules: of its parameters, for the companion's largest sink rate in m/s.
+    """
+
+    name: str
+    kind: AutopilotKind
+    oldest: tuple[int, int]
+    rules: Callable[[float], Sequence[ParameterRule]]
+
+
+FIRMWARES = {
+    mavlink.MAV_AUTOPILOT_PX4: Firmware(name="PX4", kind=AutopilotKind.PX4, oldest=(1, 14), rules=px4_rules),
+    mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA: Firmware(
+        name="ArduPilot", kind=AutopilotKind.ARDUPILOT, oldest=(4, 5), rules=ardupilot_rules
+    ),
 }
-"""By MAV_AUTOPILOT: name, the oldest release that is known to work, rules."""
+"""By MAV_AUTOPILOT."""
 
 MOTION = ("LOCAL_POSITION_NED", "ATTITUDE_QUATERNION")
 _MOTION_RATE_MIN_HZ = 40.0
 _LATENCY_MAX_S = 0.1
 _CLOCK_STD_MAX_S = 0.02
-_BATTERY_MIN = 0.3
-_BATTERY_GOOD = 0.5
+_BATTERY_SPARE = 0.1  # beyond what no landing is begun below
+_BATTERY_GOOD = 0.3  # likewise
 _FIX_RATE_MIN_HZ = 4.0
-_FIX_AGE_MAX_S = 0.5  # half of what aborts a landing
+_FIX_AGE_SHARE = 0.5  # of what aborts a landing
 _FIX_AGE_MIN_S = -0.05  # a stamp from the future: somebody's clock is wrong
 _FIX_STD_GOOD_M = 0.3
-_FIX_STD_MAX_M = 1.5
 
 
-def assessed(autopilot: AutopilotFacts, vehicle: VehicleFacts | None, speed_m_s: float) -> list[Finding]:
+def assessed(
+    autopilot: AutopilotFacts, vehicle: VehicleFacts | None, speed_m_s: float, config: CompanionConfig
+) -> list[Finding]:
     """Return the lines of the check.
 
     Args:
         autopilot: as read.
         vehicle: as received, None when it was not to be looked at.
         speed_m_s: of the vehicle, for which the parameters are judged.
+        config: the companion's, whose limits are to hold.
     """
-    found = [_firmware(autopilot), _readiness(autopilot), _origin(autopilot), _clock(autopilot)]
+    found = [_firmware(autopilot, config.autopilot), _readiness(autopilot), _origin(autopilot), _clock(autopilot)]
     found += [_rate(autopilot, name) for name in MOTION]
-    found += [_latency(autopilot), _battery(autopilot)]
-    if autopilot.autopilot_id in RULES:
-        found += judged(RULES[autopilot.autopilot_id][2], autopilot.parameters, speed_m_s)
-    return found if vehicle is None else [*found, *_vehicle(vehicle)]
+    found += [_latency(autopilot), _battery(autopilot, config.limits.battery_min_share)]
+    if autopilot.autopilot_id in FIRMWARES:
+        rules = FIRMWARES[autopilot.autopilot_id].rules(config.descent.descent_rate_max_m_s)
+        found += judged(rules, autopilot.parameters, speed_m_s)
+    return found if vehicle is None else [*found, *_vehicle(vehicle, config.abort)]
 
 
 def is_ready(findings: Sequence[Finding]) -> bool:
@@ -59,10 +85,14 @@ def _when(is_true: bool, otherwise: Level) -> Level:
     return Level.PASS if is_true else otherwise
 
 
-def _firmware(seen: AutopilotFacts) -> Finding:
-    if seen.autopilot_id not in RULES:
+def _firmware(seen: AutopilotFacts, wanted: AutopilotKind) -> Finding:
+    if seen.autopilot_id not in FIRMWARES:
         return _graded("firmware", f"MAV_AUTOPILOT {seen.autopilot_id}", Level.FAIL, "connect PX4 or ArduPilot")
-    name, oldest, _ = RULES[seen.autopilot_id]
+    firmware = FIRMWARES[seen.autopilot_id]
+    name, oldest = firmware.name, firmware.oldest
+    if wanted not in {AutopilotKind.AUTO, firmware.kind}:
+        text = f"{name}, and the configuration says {wanted.value}"
+        return _graded("firmware", text, Level.FAIL, 'connect the other, or set autopilot = "auto"')
     if seen.version is None:
         return _graded("firmware", f"{name}, version not told", Level.WARN, "check that it is a current release")
     text = f"{name} {'.'.join(map(str, seen.version))}"
@@ -111,15 +141,16 @@ def _latency(seen: AutopilotFacts) -> Finding:
     return _graded("latency", f"{1e3 * seen.latency_s:.0f} ms", level, "use a wire instead of a radio")
 
 
-def _battery(seen: AutopilotFacts) -> Finding:
+def _battery(seen: AutopilotFacts, share_min: float) -> Finding:
     share = seen.battery_share
     if share is None:
         return _graded("battery", "not told", Level.WARN, "set up the autopilot's battery monitor")
-    level = Level.FAIL if share < _BATTERY_MIN else _when(share >= _BATTERY_GOOD, Level.WARN)
+    needed, good = round(share_min + _BATTERY_SPARE, 6), min(round(share_min + _BATTERY_GOOD, 6), 1.0)
+    level = Level.FAIL if share < needed else _when(share >= good, Level.WARN)
     return _graded("battery", f"{100.0 * share:.0f} %", level, "charge it: aborts and retries take minutes")
 
 
-def _vehicle(seen: VehicleFacts) -> list[Finding]:
+def _vehicle(seen: VehicleFacts, limits: AbortConfig) -> list[Finding]:
     if seen.rate_hz <= 0.0:
         advice = "start the ground vehicle, or check --ns, --vehicle and -e"
         return [_graded("vehicle", f"nothing on {seen.key}", Level.WARN, advice)]
@@ -132,20 +163,20 @@ def _vehicle(seen: VehicleFacts) -> list[Finding]:
     )
     level = _when(seen.rate_hz >= _FIX_RATE_MIN_HZ, Level.WARN)
     rate = _graded("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, "set its receiver to 5 Hz or more")
-    return [rate, _vehicle_age(seen), _vehicle_accuracy(seen), pad]
+    return [rate, _vehicle_age(seen, limits.fix_age_max_s), _vehicle_accuracy(seen, limits.position_std_max_m), pad]
 
 
-def _vehicle_age(seen: VehicleFacts) -> Finding:
+def _vehicle_age(seen: VehicleFacts, age_max_s: float) -> Finding:
     if seen.age_s is None:
         return _graded("vehicle age", "unknown", Level.WARN, "needs the autopilot's time of day")
-    is_fit = _FIX_AGE_MIN_S <= seen.age_s <= _FIX_AGE_MAX_S
+    is_fit = _FIX_AGE_MIN_S <= seen.age_s <= _FIX_AGE_SHARE * age_max_s
     advice = "set its clock by GNSS or NTP, or use a faster link"
     return _graded("vehicle age", f"{1e3 * seen.age_s:.0f} ms", _when(is_fit, Level.FAIL), advice)
 
 
-def _vehicle_accuracy(seen: VehicleFacts) -> Finding:
+def _vehicle_accuracy(seen: VehicleFacts, std_max_m: float) -> Finding:
     if seen.std_m is None:
         return _graded("vehicle accuracy", "not stated", Level.WARN, "let it publish a covariance")
-    level = Level.FAIL if seen.std_m > _FIX_STD_MAX_M else _when(seen.std_m <= _FIX_STD_GOOD_M, Level.WARN)
+    level = Level.FAIL if seen.std_m > std_max_m else _when(seen.std_m <= _FIX_STD_GOOD_M, Level.WARN)
     text = f"{seen.std_m:.2f} m" + ("" if seen.has_velocity else ", no velocity")
     return _graded("vehicle accuracy", text, level, "use RTK, or a landing-pattern detector")

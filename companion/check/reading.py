@@ -3,7 +3,7 @@
 import statistics
 from collections import Counter, deque
 
-from companion.check.assessment import MOTION, RULES
+from companion.check.assessment import FIRMWARES, MOTION
 from companion.check.observation import AutopilotFacts
 from companion.check.rules import names_of
 from companion.sensor_messages import battery_share, is_of_first_battery
@@ -129,8 +129,8 @@ class Reader:
         self._found_ns, self._counted_from_ns = found.t_ns, found.t_ns + _SETTLE_NS
         for message_id, rate_hz in _STREAMS.items():
             self.session.request_interval(message_id, rate_hz, found.t_ns)
-        rules = RULES[found.autopilot][2] if found.autopilot in RULES else ()
-        for name in names_of(rules):
+        firmware = FIRMWARES.get(found.autopilot)
+        for name in () if firmware is None else names_of(firmware.rules(0.0)):  # whose names are always the same
             self.read_again(name, found.t_ns)
 
     def _hear(self, message: Message, t_ns: int) -> None:

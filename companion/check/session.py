@@ -10,6 +10,8 @@ from companion.pad_question import PadQuestion
 from link.errors import UserError
 from link.keys import Keys
 from link.mavlink.parameters import parameter_set_message
+from link.mavlink.session import MavlinkSession
+from link.mavlink.signing import Signing
 from link.mavlink.transport import Transport
 from link.zenoh_session import Inbox, ZenohSession
 
@@ -27,6 +29,22 @@ class Inboxes:
     fix: Inbox
     velocity: Inbox
     pad: PadQuestion
+
+
+def open_check(
+    transport: Transport, device: str, *, system_id: int, signing_key: bytes | None = None
+) -> "CheckSession":
+    """Return a conversation that has not begun.
+
+    Args:
+        transport: to the autopilot.
+        device: its name, for messages.
+        system_id: MAVLink's, of the drone.
+        signing_key: 32 bytes shared with the autopilot; None sends unsigned and takes everything.
+    """
+    signing = None if signing_key is None else Signing(signing_key)
+    session = MavlinkSession(system_id, target_system_id=system_id, signing=signing)
+    return CheckSession(Reader(session), transport, device)
 
 
 class CheckSession:

@@ -59,6 +59,8 @@ def test_printed_configuration_is_the_default_and_can_be_read_back(tmp_path: Pat
         (("--config", "there_is_none.toml"), "there_is_none.toml"),
         (("--timeout", "-1"), "--timeout"),
         (("--system-id", "0"), "--system-id"),
+        (("check", "--signing-key", "none.key"), "none.key"),
+        (("check", "--config", "none.toml"), "none.toml"),
     ],
 )
 def test_mistake_is_one_line_and_exit_code_2(arguments: tuple[str, ...], named: str) -> None:

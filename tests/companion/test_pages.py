@@ -5,13 +5,15 @@ from pathlib import Path
 
 import pytest
 
-from companion.check.ardupilot_rules import ARDUPILOT_RULES
-from companion.check.px4_rules import PX4_RULES
+from companion.check.ardupilot_rules import ardupilot_rules
+from companion.check.px4_rules import px4_rules
 from companion.check.rules import ParameterRule
 from companion.conditions import ABORT_TESTS, STRAYS
 from companion.config import CompanionConfig
 from companion.feasibility import OBSTACLES
 
+SINK_M_S = CompanionConfig().descent.descent_rate_max_m_s
+ARDUPILOT_RULES, PX4_RULES = ardupilot_rules(SINK_M_S), px4_rules(SINK_M_S)
 DOCS = Path(__file__).parents[2] / "docs"
 SPEEDS_M_S = (5.0, 8.0, 10.0)
 

@@ -46,6 +46,10 @@ MISTAKES = [
     ("sim-autopilot", "-l tcp/127.0.0.1:{tcp}", ["{tcp}", "in use", "choose another port"]),
     ("scenarios", "world straight_5 -l tcp/127.0.0.1:{tcp}", ["{tcp}", "in use", "choose another port"]),
     ("scenarios", "command start -e tcp:127.0.0.1:1", ["'tcp:127.0.0.1:1'", "write it as tcp/127.0.0.1:7447"]),
+    ("scenarios", "command start -m pear", ["--mode 'pear'", "peer, client, router"]),
+    ("scenarios", "command start --zenoh-config none.json5", ["none.json5", "no such file"]),
+    ("scenarios", "view --zenoh-config none.json5", ["none.json5", "no such file"]),
+    ("scenarios", "world straight_5 --zenoh-config zenoh.json5", ["zenoh.json5", "1:9"]),
     # scenarios
     ("ground-vehicle", "", ["--scenario", "scenarios list"]),
     ("ground-vehicle", "--scenario strait_5", ["'strait_5'", "'straight_5'", "scenarios list"]),

@@ -9,7 +9,9 @@ from companion.check.assessment import MOTION, assessed, is_ready
 from companion.check.changes import advised_values
 from companion.check.findings import Level
 from companion.check.observation import AutopilotFacts, VehicleFacts
+from companion.config import CompanionConfig
 from link.mavlink.dialect import mavlink
+from link.toml_config import validated
 from tests.companion.check.test_rules import ARDUCOPTER_46, PX4_DEFAULTS
 
 GOOD = AutopilotFacts(
@@ -32,13 +34,14 @@ GOOD = AutopilotFacts(
         "COM_RC_OVERRIDE": 3.0,
     },
 )
+CONFIG = CompanionConfig()
 VEHICLE = VehicleFacts(
     key="decklander/vehicle/fix", rate_hz=10.0, age_s=0.1, std_m=0.05, has_velocity=True, describes_pad=True
 )
 
 
 def test_everything_in_order_is_all_pass() -> None:
-    findings = assessed(GOOD, VEHICLE, 10.0)
+    findings = assessed(GOOD, VEHICLE, 10.0, CONFIG)
     assert {one.level for one in findings} == {Level.PASS}
     assert is_ready(findings)
 
@@ -64,7 +67,7 @@ def test_everything_in_order_is_all_pass() -> None:
     ],
 )
 def test_autopilot_amiss_is_told(changed: dict[str, Any], line: str, level: Level) -> None:
-    by_name = {one.name: one for one in assessed(replace(GOOD, **changed), VEHICLE, 10.0)}
+    by_name = {one.name: one for one in assessed(replace(GOOD, **changed), VEHICLE, 10.0, CONFIG)}
     assert by_name[line].level is level
     assert by_name[line].advice
 
@@ -85,14 +88,34 @@ def test_autopilot_amiss_is_told(changed: dict[str, Any], line: str, level: Leve
     ],
 )
 def test_vehicle_amiss_is_told(changed: dict[str, Any], line: str, level: Level) -> None:
-    by_name = {one.name: one for one in assessed(GOOD, replace(VEHICLE, **changed), 10.0)}
+    by_name = {one.name: one for one in assessed(GOOD, replace(VEHICLE, **changed), 10.0, CONFIG)}
     assert by_name[line].level is level
     assert by_name[line].advice
 
 
 def test_advised_values_make_an_arducopter_pass() -> None:
     seen = replace(GOOD, autopilot_id=mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, version=(4, 6, 0), parameters=ARDUCOPTER_46)
-    before = assessed(seen, VEHICLE, 12.0)
+    before = assessed(seen, VEHICLE, 12.0, CONFIG)
     assert not is_ready(before)
-    after = assessed(replace(seen, parameters={**ARDUCOPTER_46, **advised_values(before)}), VEHICLE, 12.0)
+    after = assessed(replace(seen, parameters={**ARDUCOPTER_46, **advised_values(before)}), VEHICLE, 12.0, CONFIG)
     assert {one.level for one in after} == {Level.PASS}
+
+
+@pytest.mark.parametrize(
+    ("table", "line", "level"),
+    [
+        ({"autopilot": "ardupilot"}, "firmware", Level.FAIL),
+        ({"descent": {"descent_rate_max_m_s": 2.0}}, "MPC_Z_VEL_MAX_DN", Level.WARN),
+        ({"limits": {"battery_min_share": 0.85}}, "battery", Level.FAIL),
+        ({"limits": {"battery_min_share": 0.7}}, "battery", Level.WARN),
+        ({"abort": {"position_std_max_m": 0.04}}, "vehicle accuracy", Level.FAIL),
+        ({"abort": {"fix_age_max_s": 0.15}}, "vehicle age", Level.FAIL),
+    ],
+)
+def test_what_passes_with_the_defaults_is_judged_by_the_configuration_given(
+    table: dict[str, Any], line: str, level: Level
+) -> None:
+    config = validated(CompanionConfig, table, source="test")
+    by_name = {one.name: one for one in assessed(GOOD, VEHICLE, 10.0, config)}
+    assert by_name[line].level is level
+    assert by_name[line].advice

@@ -1,5 +1,6 @@
 """The check's conversation, on a clock of the test's own."""
 
+import time
 from types import SimpleNamespace
 from typing import Any
 
@@ -8,14 +9,19 @@ import pytest
 from companion.check import session as session_module
 from companion.check.observation import VehicleFacts
 from companion.check.reading import Reader
-from companion.check.session import CheckSession
+from companion.check.session import CheckSession, open_check
 from link import cdr, json_payloads
+from link.errors import UserError
 from link.inbox import Inbox, Sample
 from link.keys import Keys
+from link.mavlink.codec import MavlinkCodec
+from link.mavlink.dialect import mavlink
 from link.mavlink.session import MavlinkSession
+from link.mavlink.signing import Signing
 from link.messages import Fix, PadGeometry
 
 KEYS = Keys()
+KEY = bytes(range(32))
 WAKE_UP: Any = SimpleNamespace(set=lambda: None)
 PAD = PadGeometry(size_m=(1.5, 1.2), height_m=1.6, antenna_to_pad_m=(0.8, -0.1, 0.05))
 FIX = cdr.encode(Fix(t_ns=10**18, latitude_rad=0.8, longitude_rad=0.1, altitude_m=400.0))
@@ -63,6 +69,22 @@ class World:
         return inbox
 
 
+class SignedAutopilot:
+    """A transport to an autopilot that signs all that it sends."""
+
+    def __init__(self) -> None:
+        self._signing = Signing(KEY)
+        self._codec = MavlinkCodec(1, 1, signing=self._signing)
+        self.sent: list[bytes] = []
+
+    def receive(self, _: float) -> bytes:
+        self._signing.advance(time.time_ns())
+        return self._codec.encode(mavlink.MAVLink_heartbeat_message(2, 12, 0, 0, 4, 3))
+
+    def send(self, frame: bytes) -> None:
+        self.sent.append(frame)
+
+
 def listened(monkeypatch: pytest.MonkeyPatch, world: World, duration_s: float) -> tuple[VehicleFacts, float]:
     """Return what a session tells of the vehicle of an autopilot that has told all, and how long it took."""
     monkeypatch.setattr(session_module, "time", SimpleNamespace(monotonic=world.monotonic, time_ns=world.time_ns))
@@ -90,3 +112,22 @@ def test_vehicle_that_never_describes_its_pad_is_told_so_in_the_end(monkeypatch:
     facts, took_s = listened(monkeypatch, World(heard_from=None), 1.0)
     assert not facts.describes_pad
     assert 3.9 < took_s < 4.2
+
+
+def test_autopilot_that_signs_is_found_with_its_key_and_spoken_to_in_signed_frames() -> None:
+    autopilot = SignedAutopilot()
+    anything: Any = autopilot
+    session = open_check(anything, "test", system_id=1, signing_key=KEY)
+    session.find(5.0)
+    session.turn()
+    signing = Signing(KEY)
+    signing.advance(time.time_ns())
+    heard = MavlinkCodec(1, 1, signing=signing)
+    assert autopilot.sent
+    assert [len(heard.decode(frame)) for frame in autopilot.sent] == [1] * len(autopilot.sent)
+
+
+def test_autopilot_that_signs_with_another_key_is_not_found() -> None:
+    anything: Any = SignedAutopilot()
+    with pytest.raises(UserError, match="no heartbeat"):
+        open_check(anything, "test", system_id=1, signing_key=bytes(32)).find(0.2)
