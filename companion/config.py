@@ -97,13 +97,20 @@ class DescentConfig(StrictModel):
     # beside the cone and while the drone moves too fast against the pad.
     speed_change_max_m_s2: Positive = 1.2
     waiting_height_m: Positive = 0.6
+    # Above this a pad that only the detector places is waited above, too, until it is within `aligned_distance_m`: what
+    # is made up for below is speed against the pad at contact, and the detector is blind there.
+    centred_height_m: NotNegative = 0.5
     # Faster than this against the pad it waits there, too, to settle (S2 asks for 0.5 at contact), and faster
     # than so many standard deviations of the vehicle's velocity, for of a speed that is hardly known nothing is gained.
     waiting_speed_m_s: Positive = 0.4
-    waiting_speed_stds: NotNegative = 4.0
+    waiting_speed_stds: NotNegative = 1.5
     # So far off, in hindsight, the vehicle's speed may have been believed; S1 asks for 1.0 m/s at contact. Beyond
     # it the descent waits until the vehicle stands, or has driven as expected for as long as from one stop to the next.
     surprise_speed_m_s: Positive = 0.7
+    # A vehicle whose speed has changed like that in the last 15 s, and whose data are older than this, is waited above,
+    # too: what it does in the last second is known too late. An even driver shows 0.1 m/s^2, `random` 0.7.
+    uneven_acceleration_m_s2: Positive = 0.35
+    uneven_age_s: NotNegative = 0.3
     surprise_hold_s: NotNegative = 20.0  # `stop_and_go` brakes again 15 s later
     surprise_wait_max_s: NotNegative = 60.0  # for which it waits so without its time limit running: three surprises
     stray_hold_s: NotNegative = 3.0  # beside the cone or too fast, but high enough to be aligned again

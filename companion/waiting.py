@@ -5,7 +5,7 @@ from companion.config import CompanionConfig
 from companion.phases import Phase
 from companion.situation import Approach, Situation, approach, stands
 from companion.step_data import StepMemory
-from companion.surprise import may_surprise
+from companion.surprise import drives_unevenly, may_surprise
 from companion.sway import sways
 from companion.targets import changes_speed
 from link.records import replace
@@ -51,12 +51,15 @@ def waits_for_even_driving(memory: StepMemory, situation: Situation, config: Com
     relative = approach(situation)
     if memory.phase is not Phase.DESCEND or relative is None:
         return False
-    is_high = relative.height_m > config.descent.commit_height_m
-    return (
-        is_high
-        and not stands(situation, config.chase)
-        and may_surprise(memory.surprise, situation.t_ns, config.descent)
-    )
+    if relative.height_m <= config.descent.commit_height_m or stands(situation, config.chase):
+        return False
+    return _is_unpredictable(memory, situation, config)
+
+
+def _is_unpredictable(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
+    if may_surprise(memory.surprise, situation.t_ns, config.descent):
+        return True
+    return drives_unevenly(memory.surprise, situation.fix_age_s, config.descent)
 
 
 def _awaited(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str | None:
@@ -64,13 +67,26 @@ def _awaited(memory: StepMemory, situation: Situation, config: CompanionConfig) 
     if memory.phase is not Phase.DESCEND or relative is None or relative.height_m <= config.descent.commit_height_m:
         return None
     if waits_for_even_driving(memory, situation, config):
-        return "the vehicle's speed has surprised"
+        surprised = may_surprise(memory.surprise, situation.t_ns, config.descent)
+        return "the vehicle's speed has surprised" if surprised else "the vehicle's speed changes all the time"
     if must_wait(situation, relative, config):
         brakes = situation.pad is not None and changes_speed(situation.pad, config.descent)
         return "the vehicle brakes or speeds up" if brakes else "the drone is not over the pad"
+    if _is_off_centre(situation, relative, config):
+        return f"farther than {config.descent.aligned_distance_m:g} m from the pad's centre"
     if _is_unsettled(memory, relative, config):
         return f"faster than {config.descent.waiting_speed_m_s:g} m/s against the pad"
     return None
+
+
+def _is_off_centre(situation: Situation, relative: Approach, config: CompanionConfig) -> bool:
+    """Return whether the drone has to come nearer the centre first, while it may still see the pad.
+
+    What it makes up for in the last second is speed against the pad, and where fixes are coarse nothing corrects it.
+    """
+    if situation.pad is None or not situation.pad.is_coarse or relative.height_m < config.descent.centred_height_m:
+        return False
+    return relative.distance_m > config.descent.aligned_distance_m
 
 
 def _is_unsettled(memory: StepMemory, relative: Approach, config: CompanionConfig) -> bool:

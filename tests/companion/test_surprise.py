@@ -13,10 +13,20 @@ from companion.estimation.config import EstimatorKind
 from companion.phases import Phase
 from companion.shifts import at_other_time
 from companion.step_data import StepMemory
-from companion.surprise import Surprise, looked_back, may_surprise
+from companion.surprise import Surprise, drives_unevenly, looked_back, may_surprise
 from companion.waiting import waits_at_m
 from link.messages import Vector3
-from tests.companion.estimation.driving import DEGRADED, NOMINAL, Drive, Sensors, brake, circle, sense, straight
+from tests.companion.estimation.driving import (
+    DEGRADED,
+    NOMINAL,
+    Drive,
+    Sensors,
+    brake,
+    circle,
+    random_drive,
+    sense,
+    straight,
+)
 from tests.companion.estimation.rides import estimator, now_ns
 from tests.companion.facts import NOW_NS, drone_at, pad_at, situation
 from tests.companion.world import PAD_HEIGHT_M, Flight, KnownVehicle
@@ -52,6 +62,45 @@ def test_even_driving_surprises_nobody_however_late_it_is_told(truth: Drive, see
 def test_hard_brake_surprises_who_is_told_late(sensors: Sensors, *, surprises: bool) -> None:
     found = after(brake(), sensors, 3, brake().length_s)
     assert ((found.surprised_ns or 0) > now_ns(BEGUN_S)) is surprises
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize(
+    ("truth", "uneven"),
+    [(straight(7.0), False), (circle(5.0), False), (random_drive(1), True), (random_drive(2), True)],
+    ids=["straight", "circle", "uneven", "uneven as well"],
+)
+def test_driver_who_changes_speed_time_and_again_is_told_from_an_even_one(
+    truth: Drive, seed: int, *, uneven: bool
+) -> None:
+    found = after(truth, LATE, seed, 18.0)
+    assert drives_unevenly(found, LATE.delay_s, DESCENT) is uneven
+    assert not drives_unevenly(found, DESCENT.uneven_age_s, DESCENT)
+    assert not drives_unevenly(found, None, DESCENT)
+
+
+def test_uneven_driving_is_told_from_the_last_seconds_only() -> None:
+    """Speeds of 4 and 5 m/s in turn, 2 s each, and an even 5 m/s afterwards, over a fix every tenth of a second."""
+    surprise, t_ns = Surprise(), NOW_NS
+    for i in range(400):
+        told: Any = Told(4.0 if i < 200 and i // 20 % 2 else 5.0, 0.01)
+        surprise = looked_back(surprise, told, t_ns, t_ns, DESCENT)
+        t_ns += 100_000_000
+        if i == 199:
+            assert surprise.unevenness_m_s2 == pytest.approx(0.5, rel=0.05)
+    assert surprise.unevenness_m_s2 == 0.0
+
+
+def test_speeds_before_and_after_an_outage_are_not_compared() -> None:
+    surprise, t_ns = Surprise(), NOW_NS
+    for speed_m_s in (1.0, 9.0):
+        told: Any = Told(speed_m_s, 0.01)
+        for _ in range(22):
+            surprise = looked_back(surprise, told, t_ns, t_ns, DESCENT)
+            t_ns += 100_000_000
+        t_ns, surprise = t_ns + 10_000_000_000, replace(surprise, beliefs=())
+    assert len(surprise.driven) == 42
+    assert surprise.unevenness_m_s2 == 0.0
 
 
 def test_surprise_holds_for_its_time_and_no_longer() -> None:
@@ -103,10 +152,11 @@ def test_speed_is_as_uncertain_as_it_is_told_and_unknown_once_it_is_lost(varianc
 
 
 def test_surprise_outlasts_a_clock_that_is_set() -> None:
-    surprise = Surprise(beliefs=((NOW_NS, 5.0),), speed_std_m_s=0.1, surprised_ns=NOW_NS)
+    known = ((NOW_NS, 5.0),)
+    surprise = Surprise(beliefs=known, speed_std_m_s=0.1, surprised_ns=NOW_NS, driven=known, unevenness_m_s2=0.5)
     by_ns = 7_000_000_000
     assert at_other_time(StepMemory(surprise=surprise), by_ns).surprise == replace(
-        surprise, beliefs=(), surprised_ns=NOW_NS + by_ns
+        surprise, beliefs=(), driven=(), surprised_ns=NOW_NS + by_ns
     )
     assert at_other_time(StepMemory(), by_ns).surprise == Surprise()
 
@@ -135,7 +185,7 @@ def test_step_looks_back_at_what_it_has_believed(kind: type[KnownVehicle]) -> No
     [
         (DESCENT.waiting_speed_m_s - 0.01, 0.05, False),
         (DESCENT.waiting_speed_m_s + 0.01, 0.05, True),
-        (DESCENT.waiting_speed_m_s + 0.01, 0.2, False),
+        (DESCENT.waiting_speed_m_s + 0.01, 0.3, False),
         (DESCENT.waiting_speed_m_s + 0.01, math.inf, False),
         (CONFIG.abort.near_speed_max_m_s + 0.01, math.inf, True),
     ],

@@ -12,7 +12,8 @@ from companion.status import landing_status
 from companion.step_data import StepMemory
 from companion.surprise import Surprise
 from companion.transitions import transitions
-from companion.waiting import waited_s
+from companion.waiting import waited_s, waits_at_m, why_held_up
+from link.messages import Vector3
 from tests.companion.facts import CONFIG, NOW_NS, braking_pad, drone_at, later, pad_at, progress, situation
 from tests.companion.world import Flight, reached
 
@@ -111,3 +112,35 @@ def test_straying_is_unsafe_once_it_has_been_aligned_again_for_so_often(strays: 
     held = {"not over the pad in time": NOW_NS - 10**10}
     decision = decide(replace(progress(Phase.DESCEND), strays=strays), STRAYING, held, CONFIG)
     assert decision == (event, "not over the pad in time")
+
+
+@pytest.mark.parametrize(
+    ("age_s", "velocity", "waits"),
+    [(0.5, (5.0, 1.0, 0.0), True), (0.1, (5.0, 1.0, 0.0), False), (0.5, (0.1, 0.1, 0.0), False)],
+    ids=["late data", "fresh data", "stands"],
+)
+def test_descent_waits_above_an_uneven_driver_of_whom_is_told_late(
+    age_s: float, velocity: Vector3, *, waits: bool
+) -> None:
+    memory = StepMemory(phase=Phase.DESCEND, surprise=Surprise(unevenness_m_s2=0.7))
+    here = replace(situation(WAITING_M + 0.05, pad=pad_at(velocity)), fix_age_s=age_s)
+    assert waits_at_m(memory, here, CONFIG) == (WAITING_M if waits else None)
+    assert why_held_up(memory, here, CONFIG) == ("the vehicle's speed changes all the time" if waits else None)
+
+
+@pytest.mark.parametrize(
+    ("beside_m", "height_m", "is_coarse", "waits"),
+    [
+        (DESCENT.aligned_distance_m + 0.01, 0.9, True, True),
+        (DESCENT.aligned_distance_m - 0.01, 0.9, True, False),
+        (DESCENT.aligned_distance_m + 0.01, 0.9, False, False),
+        (DESCENT.aligned_distance_m + 0.01, 0.95 * DESCENT.centred_height_m, True, False),
+    ],
+    ids=["beside", "centred", "placed by fixes", "already below"],
+)
+def test_descent_onto_a_pad_that_only_the_detector_places_is_centred_while_it_is_seen(
+    beside_m: float, height_m: float, *, is_coarse: bool, waits: bool
+) -> None:
+    memory = StepMemory(phase=Phase.DESCEND, surprise=Surprise(speed_std_m_s=0.05))
+    here = situation(height_m, beside_m, replace(pad_at(), is_coarse=is_coarse))
+    assert waits_at_m(memory, here, CONFIG) == (WAITING_M if waits else None)
