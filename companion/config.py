@@ -135,6 +135,7 @@ class TouchdownConfig(StrictModel):
     height_max_m: Positive = 0.35  # estimated height over the pad at which a contact is believed
     blocked_depth_m: Positive = 0.06  # how far the setpoint has sunk below the drone
     blocked_speed_m_s: Positive = 0.2  # relative vertical speed that counts as standing
+    pressed_speed_m_s: Positive = 0.5  # likewise where it is pressed down and the range finder sees the pad at its feet
     falling_acceleration_m_s2: Positive = 3.5  # downwards faster than this nothing stands on a pad; half of the presses
     range_finder_height_m: NotNegative = 0.12  # of the range finder above the feet
     range_corrects_height: bool = (

@@ -79,9 +79,16 @@ def signs_of(s: Situation) -> Signs:
     )
 
 
-def verdict(signs: Signs, config: CompanionConfig) -> Verdict:
-    """Return what the signs amount to; what is unknown or no number speaks for the air."""
-    if not (_is_at_pad(signs, config) and _stands(signs, config.touchdown) and _is_supported(signs, config.touchdown)):
+def verdict(signs: Signs, config: CompanionConfig, *, is_pressed: bool = False) -> Verdict:
+    """Return what the signs amount to; what is unknown or no number speaks for the air.
+
+    Args:
+        signs: now.
+        config: all numbers.
+        is_pressed: the drone has been pressed down for so long that in the air it would sink at 2 m/s by now.
+    """
+    stands = _stands(signs, config.touchdown) or (is_pressed and _stands_pressed(signs, config.touchdown))
+    if not (_is_at_pad(signs, config) and stands and _is_supported(signs, config.touchdown)):
         return Verdict.AIRBORNE
     seen_m = signs.range_height_m
     return Verdict.CONTACT if seen_m is None or seen_m <= config.touchdown.range_height_max_m else Verdict.DISPUTED
@@ -121,7 +128,9 @@ def may_force_motors_off(
         return False
     if stopped_and_held:
         return True
-    match verdict(signs, config):
+    # Without accelerations in its setpoints an autopilot is not pressed down so hard that it would fall.
+    is_pressed = since_contact_s >= config.touchdown.stopped_hold_s and not config.position_only
+    match verdict(signs, config, is_pressed=is_pressed):
         case Verdict.CONTACT:
             return True
         case Verdict.DISPUTED:
@@ -168,6 +177,18 @@ def _stands(signs: Signs, config: TouchdownConfig) -> bool:
     if signs.climb_m_s is None or not abs(signs.climb_m_s) < config.blocked_speed_m_s:
         return False
     return signs.acceleration_up_m_s2 is None or _is_no_fall(signs.acceleration_up_m_s2, config)
+
+
+def _stands_pressed(signs: Signs, config: TouchdownConfig) -> bool:
+    """Return whether a drone that is pressed down stands, although speeds are not known well enough to show it.
+
+    Over poor data the difference of two climb rates is off by 0.2 m/s. The range finder has to see the pad for it.
+    """
+    seen_m, climb_m_s = signs.range_height_m, signs.climb_m_s
+    if seen_m is None or climb_m_s is None or not seen_m <= config.range_height_max_m:
+        return False
+    falls = signs.acceleration_up_m_s2 is not None and not _is_no_fall(signs.acceleration_up_m_s2, config)
+    return abs(climb_m_s) < config.pressed_speed_m_s and not falls
 
 
 def _is_no_fall(acceleration_up_m_s2: float, config: TouchdownConfig) -> bool:

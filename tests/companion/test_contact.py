@@ -128,6 +128,29 @@ def test_range_finder_that_sees_the_pad_far_below_puts_off_the_forced_disarm() -
 
 
 @pytest.mark.parametrize(
+    ("climb_m_s", "range_height_m", "since_s", "is_forced"),
+    [
+        (0.4, 0.0, TOUCHDOWN.stopped_hold_s, True),
+        (-0.4, 0.0, TOUCHDOWN.stopped_hold_s, True),
+        (-0.4, 0.0, TOUCHDOWN.stopped_hold_s - 0.01, False),
+        (-0.4, None, TOUCHDOWN.stopped_hold_s, False),
+        (-0.4, TOUCHDOWN.range_height_max_m + 0.01, TOUCHDOWN.stopped_hold_s, False),
+        (-TOUCHDOWN.pressed_speed_m_s - 0.01, 0.0, TOUCHDOWN.stopped_hold_s, False),
+        (float("nan"), 0.0, TOUCHDOWN.stopped_hold_s, False),
+    ],
+    ids=["seems to climb", "seems to sink", "just touched", "no range finder", "sees nothing", "falls", "no number"],
+)
+def test_pressed_drone_whose_speeds_are_known_badly_is_switched_off_where_the_range_finder_sees_the_pad(
+    climb_m_s: float, range_height_m: float | None, since_s: float, *, is_forced: bool
+) -> None:
+    drone = drone_at(0.0, 0.0, (0.0, 0.0, climb_m_s), pad=pad_at())
+    signs = signs_of(replace(on_pad(), drone=drone, range_height_m=range_height_m))
+    assert verdict(signs, CONFIG) is Verdict.AIRBORNE
+    assert may_force_motors_off(signs, since_s, CONFIG) is is_forced
+    assert not may_force_motors_off(signs, since_s, CONFIG.model_copy(update={"position_only": True}))
+
+
+@pytest.mark.parametrize(
     "facts",
     [
         replace(on_pad(), drone=drone_at(CONFIG.touchdown.height_max_m + 0.01, pad=pad_at())),
