@@ -51,6 +51,7 @@ class AutopilotLink:
         motion_rate_hz: of the drone's position and attitude.
         stops_unused_streams: ask the autopilot not to send what the companion does not read.
         kind: of the autopilot.
+        geoid_height_m: of mean sea level above the ellipsoid, until the autopilot's receiver tells it.
     """
 
     def __init__(
@@ -60,12 +61,14 @@ class AutopilotLink:
         *,
         stops_unused_streams: bool = True,
         kind: AutopilotKind = AutopilotKind.AUTO,
+        geoid_height_m: float | None = None,
     ) -> None:
         self.session = session
         self._kind = kind
         self._stops_unused = stops_unused_streams
         self._motion_rate_hz = motion_rate_hz
-        self.state = AutopilotState()
+        self._geoid_height_m = geoid_height_m
+        self.state = AutopilotState(geoid_height_m=geoid_height_m)
         self.driver: Driver | None = None
         self.bad_setpoints = 0
         self._acknowledgements: list[tuple[int, int]] = []
@@ -186,7 +189,8 @@ class AutopilotLink:
         view = AutopilotView(link_up=True, armed=False, in_control=False, failsafe=False, restarted=True)
         old = self.state.view
         view = replace(view, origin_count=old.origin_count + 1, frame_shift_enu_m=old.frame_shift_enu_m)
-        self.state = AutopilotState(view=view, parameters=self.state.parameters)
+        parameters, geoid_m = self.state.parameters, self._geoid_height_m
+        self.state = AutopilotState(view=view, parameters=parameters, geoid_height_m=geoid_m)
         self._origin_asked_ns = None
 
     def _answered(self, command: int, ticket: int | None) -> None:

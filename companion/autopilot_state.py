@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import isfinite, radians
+from math import isfinite
 from types import MappingProxyType
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotView, Driver
 from companion.data import OwnState
+from companion.local_origin import above_ellipsoid, geoid_height_m, is_same, origin_above_sea
 from companion.own_reports import HISTORY_NS, carried, is_plausible, with_report
 from companion.sensor_messages import with_sensor
 from companion.velocity_bias import velocity_bias, without
@@ -19,12 +20,6 @@ from link.messages import Quaternion, Vector3
 from link.records import replace
 
 _AHEAD_NS = 100_000_000  # how far a report is carried beyond the newest one
-_ORIGIN_MOVED_RAD = 1e-8  # 6 cm; the field's resolution is 1e-7 degrees, 1 cm
-_ORIGIN_MOVED_M = 0.05
-_GEOID_MAX_M = 120.0  # it lies between -107 and 86 m (EGM96)
-_GEOID_STEP_M = 1.0  # a smaller change of the geoid's height along a flight is left alone
-_LATITUDE_MAX_1E7 = 90 * 10**7
-_LONGITUDE_MAX_1E7 = 180 * 10**7
 _FAILSAFE_STATES = (mavlink.MAV_STATE_CRITICAL, mavlink.MAV_STATE_EMERGENCY)
 
 
@@ -38,7 +33,7 @@ class AutopilotState:
         orientation_wxyz: q_WB of the newest attitude.
         angular_velocity_flu_rad_s: with it.
         origin_msl: the origin with its altitude above mean sea level, as it is sent.
-        geoid_height_m: of mean sea level above the ellipsoid, 0 until the autopilot's receiver tells it.
+        geoid_height_m: of mean sea level above the ellipsoid, None until the autopilot's receiver tells it.
         parameters: those read, by name.
         texts: what it said and nobody has taken yet.
     """
@@ -48,7 +43,7 @@ class AutopilotState:
     orientation_wxyz: Quaternion | None = None
     angular_velocity_flu_rad_s: Vector3 = (0.0, 0.0, 0.0)
     origin_msl: Datum | None = None
-    geoid_height_m: float = 0.0
+    geoid_height_m: float | None = None
     parameters: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     texts: tuple[str, ...] = ()
 
@@ -80,9 +75,10 @@ def heard(state: AutopilotState, message: Message, clock: ClockMap, driver: Driv
             view = replace(state.view, landed=_landed(message.landed_state), taking_off=taking_off)
             state = replace(state, view=view)
         case "GPS_GLOBAL_ORIGIN":
-            state = _origin(state, message, driver.projection)
+            state = _placed(replace(state, origin_msl=origin_above_sea(message) or state.origin_msl), driver.projection)
         case "GPS_RAW_INT":
-            state = _geoid(state, message, driver.projection)
+            height_m = geoid_height_m(state.geoid_height_m, message)
+            state = _placed(replace(state, geoid_height_m=height_m), driver.projection)
         case "DISTANCE_SENSOR" | "BATTERY_STATUS":
             up_m = None if state.own is None else state.own.position_enu_m[2]
             state = replace(state, view=with_sensor(state.view, message, clock, up_m))
@@ -181,51 +177,19 @@ def _landed(landed_state: int) -> bool | None:
     return bool(landed_state == mavlink.MAV_LANDED_STATE_ON_GROUND)
 
 
-def _origin(state: AutopilotState, message: Message, projection: Projection) -> AutopilotState:
-    """Take the origin, whose altitude MAVLink has above mean sea level."""
-    if abs(message.latitude) > _LATITUDE_MAX_1E7 or abs(message.longitude) > _LONGITUDE_MAX_1E7:
-        return state
-    origin = Datum(
-        latitude_rad=radians(message.latitude * 1e-7),
-        longitude_rad=radians(message.longitude * 1e-7),
-        altitude_m=message.altitude * 1e-3,
-    )
-    return _placed(replace(state, origin_msl=origin), projection)
-
-
-def _geoid(state: AutopilotState, message: Message, projection: Projection) -> AutopilotState:
-    """Take the height of mean sea level above the ellipsoid, which the vehicle's fixes refer to."""
-    if message.fix_type < mavlink.GPS_FIX_TYPE_3D_FIX or message.alt_ellipsoid == 0:
-        return state
-    height_m = (message.alt_ellipsoid - message.alt) * 1e-3
-    if abs(height_m - state.geoid_height_m) < _GEOID_STEP_M or abs(height_m) > _GEOID_MAX_M:
-        return state
-    return _placed(replace(state, geoid_height_m=height_m), projection)
-
-
 def _placed(state: AutopilotState, projection: Projection) -> AutopilotState:
     """Put the origin above the ellipsoid; a moved one is counted, since the local frame has then moved."""
     if state.origin_msl is None:
         return state
-    latitude_rad, longitude_rad = state.origin_msl.latitude_rad, state.origin_msl.longitude_rad
-    altitude_m = state.origin_msl.altitude_m + state.geoid_height_m
-    origin = Datum(latitude_rad=latitude_rad, longitude_rad=longitude_rad, altitude_m=altitude_m)
-    known = state.view.frame
-    if known is not None and known.projection is projection and _is_same(origin, known.origin):
-        return state
+    origin = above_ellipsoid(state.origin_msl, state.geoid_height_m)
+    known, geoid_known = state.view.frame, state.geoid_height_m is not None
+    if known is not None and known.projection is projection and is_same(origin, known.origin):
+        return replace(state, view=replace(state.view, geoid_known=geoid_known))
     # The newest report stays, for the next one tells by how much the drone's own position jumps with the origin.
     view = replace(
         state.view,
         frame=LocalFrame(origin=origin, projection=projection),
+        geoid_known=geoid_known,
         origin_count=state.view.origin_count + 1,
     )
     return replace(state, view=view, history=state.history[-1:])
-
-
-def _is_same(origin: Datum, other: Datum) -> bool:
-    """Return whether two origins are one, as exactly as they are sent."""
-    return (
-        abs(origin.latitude_rad - other.latitude_rad) < _ORIGIN_MOVED_RAD
-        and abs(origin.longitude_rad - other.longitude_rad) < _ORIGIN_MOVED_RAD
-        and abs(origin.altitude_m - other.altitude_m) < _ORIGIN_MOVED_M
-    )

@@ -1,5 +1,6 @@
 """Answers to an operator's commands: what is accepted in which phase, and why not."""
 
+from companion.feasibility import HEIGHTS_APART
 from companion.phases import Event, Phase, next_phase
 from companion.situation import Situation
 from link.messages import Command, CommandReply
@@ -36,6 +37,8 @@ def _missing_for_start(situation: Situation) -> str | None:
         return "no autopilot is connected"
     if situation.autopilot.frame is None:
         return "the autopilot has no origin yet"
+    if not situation.autopilot.geoid_known:
+        return HEIGHTS_APART
     if situation.drone is None:
         return "the autopilot reports no local position yet"
     if situation.autopilot.failsafe:

@@ -200,6 +200,8 @@ class CompanionConfig(StrictModel):
 
     step_rate_hz: Annotated[float, Field(ge=10.0, le=200.0)] = 50.0
     autopilot: AutopilotKind = AutopilotKind.AUTO  # any other than the one named is refused
+    # Of mean sea level above the ellipsoid, where the autopilot's receiver does not tell it; none: then no start.
+    geoid_height_m: Annotated[float, Field(ge=-120.0, le=120.0)] | None = None
     stops_unused_streams: bool = True  # on the companion's own link; false where others listen on it, too
     status_rate_hz: Annotated[float, Field(ge=0.5, le=50.0)] = 10.0
     setpoint_lead_s: Annotated[float, Field(ge=0.0, le=0.5)] = (

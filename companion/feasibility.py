@@ -17,6 +17,13 @@ from companion.timed import Held, Test, holds
 SPEED_SHARE_MIN = 1.15
 """Of the vehicle's speed: with less there is nothing to catch up with, and no landing is begun."""
 
+HEIGHTS_APART = (
+    "heights cannot be compared: the vehicle's are above the ellipsoid, and the autopilot tells its own above the sea "
+    "only (no alt_ellipsoid in GPS_RAW_INT): set geoid_height_m"
+)
+"""Of an autopilot whose receiver does not know the geoid: a drone that is off by it flies into the vehicle."""
+
+_RECEIVER_TOLD_S = 3.0  # it says so once a second
 _BEFORE_A_CHASE = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD, Phase.WAITING, Phase.ABORT})
 
 
@@ -78,10 +85,17 @@ def _too_narrow(s: Situation, c: CompanionConfig) -> str:
     return f"pad is {width_m:.2f} m wide, descent.pad_width_min_m is {c.descent.pad_width_min_m:.2f}: use a larger pad"
 
 
+def _lacks_geoid(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
+    return s.autopilot.frame is not None and not s.autopilot.geoid_known
+
+
 # An estimate that has just begun jumps: what is said of the vehicle must hold for a while.
 OBSTACLES = (
     Obstacle(Test("vehicle too fast", _BEFORE_A_CHASE, _is_too_fast, lambda c: c.chase.driving_hold_s), _too_fast),
     Obstacle(Test("vehicle drives too far", _BEFORE_A_CHASE, _is_too_far, lambda c: c.chase.driving_hold_s), _too_far),
+    Obstacle(
+        Test("geoid unknown", _BEFORE_A_CHASE, _lacks_geoid, lambda _: _RECEIVER_TOLD_S), lambda *_: HEIGHTS_APART
+    ),
     Obstacle(Test("battery too low", _BEFORE_A_CHASE, _is_empty, lambda c: c.chase.driving_hold_s), _empty),
     Obstacle(Test("pad too small", _BEFORE_A_CHASE, _is_too_narrow, lambda _: 0.0), _too_narrow),
 )

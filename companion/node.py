@@ -45,6 +45,7 @@ class CompanionNode:
             motion_rate_hz=max(system.config.step_rate_hz, _MOTION_RATE_MIN_HZ),
             stops_unused_streams=system.config.stops_unused_streams,
             kind=system.config.autopilot,
+            geoid_height_m=system.config.geoid_height_m,
         )
         self._dry_run = dry_run
         self._limits_wanted = system.config.limits.flight_limits()
@@ -113,7 +114,8 @@ class CompanionNode:
     def is_ready_to_start(self) -> bool:
         """Return whether a start would be accepted now."""
         state = self.autopilot.state
-        return state.view.link_up and state.view.frame is not None and state.own is not None
+        placed = state.view.frame is not None and state.view.geoid_known
+        return state.view.link_up and placed and state.own is not None
 
     def receive_liveliness(self, *, alive: bool) -> None:
         """Take the state of the vehicle's liveliness token; one that never was is not lost."""

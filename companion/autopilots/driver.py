@@ -27,6 +27,7 @@ class AutopilotView:
     taking_off: bool = False  # by itself, after a command
     refusal: str | None = None  # what it last said against arming
     frame: LocalFrame | None = None  # W; its origin above the ellipsoid
+    geoid_known: bool = False  # without it the height of that origin is one above the sea
     origin_count: int = 0  # how often the origin was set or moved
     frame_shift_enu_m: Vector3 = (0.0, 0.0, 0.0)  # sum of the jumps of the drone's own position
     range_down: RangeReading | None = None

@@ -61,7 +61,8 @@ def assessed(
         speed_m_s: of the vehicle, for which the parameters are judged.
         config: the companion's, whose limits are to hold.
     """
-    found = [_firmware(autopilot, config.autopilot), _readiness(autopilot), _origin(autopilot), _clock(autopilot)]
+    found = [_firmware(autopilot, config.autopilot), _readiness(autopilot), _origin(autopilot)]
+    found += [_heights(autopilot, config.geoid_height_m), _clock(autopilot)]
     found += [_rate(autopilot, name) for name in MOTION]
     found += [_latency(autopilot), _battery(autopilot, config.limits.battery_min_share)]
     if autopilot.autopilot_id in FIRMWARES:
@@ -115,6 +116,16 @@ def _origin(seen: AutopilotFacts) -> Finding:
     ]
     text = "origin and local position known" if not missing else f"no {' and no '.join(missing)}"
     return _graded("estimator", text, _when(not missing, Level.FAIL), "wait for a GNSS fix under an open sky")
+
+
+def _heights(seen: AutopilotFacts, configured_m: float | None) -> Finding:
+    height_m = configured_m if seen.geoid_height_m is None else seen.geoid_height_m
+    if height_m is None:
+        advice = "let its receiver tell alt_ellipsoid, or set geoid_height_m in the companion's configuration"
+        reason = "the vehicle's heights are above the ellipsoid, the autopilot's above the sea; without it no start"
+        return _graded("heights", "geoid not told", Level.FAIL, advice, reason)
+    source = "by the configuration" if seen.geoid_height_m is None else "by its receiver"
+    return passed("heights", f"the sea is {height_m:.1f} m above the ellipsoid, {source}")
 
 
 def _clock(seen: AutopilotFacts) -> Finding:

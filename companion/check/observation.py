@@ -15,6 +15,7 @@ class AutopilotFacts:
         can_arm: its own word on whether it would.
         has_origin: of its local frame.
         has_position: in its local frame.
+        geoid_height_m: of mean sea level above the ellipsoid, by its receiver.
         round_trips: TIMESYNC answers.
         utc_known: it tells the time of day.
         clock_std_s: of its boot clock on the companion's.
@@ -29,6 +30,7 @@ class AutopilotFacts:
     can_arm: bool | None = None
     has_origin: bool = False
     has_position: bool = False
+    geoid_height_m: float | None = None
     round_trips: int = 0
     utc_known: bool = False
     clock_std_s: float | None = None

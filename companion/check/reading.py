@@ -6,6 +6,7 @@ from collections import Counter, deque
 from companion.check.assessment import FIRMWARES, MOTION
 from companion.check.observation import AutopilotFacts
 from companion.check.rules import names_of
+from companion.local_origin import geoid_height_m
 from companion.sensor_messages import battery_share, is_of_first_battery
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import Event, LinkFound, MessageReceived, ParameterMissing, ParameterRead
@@ -19,6 +20,7 @@ _STREAMS = {
     mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: _RATE_HZ,
     mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: 2.0,
     mavlink.MAVLINK_MSG_ID_SYS_STATUS: 2.0,
+    mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: 1.0,
     mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: 1.0,
 }
 _ONCE = (mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION, mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN)
@@ -100,6 +102,7 @@ class Reader:
             version=self._version(),
             can_arm=self._can_arm(),
             has_origin="GPS_GLOBAL_ORIGIN" in self._newest,
+            geoid_height_m=self._geoid_height_m(),
             has_position="LOCAL_POSITION_NED" in self._newest,
             round_trips=self.session.statistics.round_trips,
             utc_known=clock.is_utc_known,
@@ -157,6 +160,10 @@ class Reader:
     def _can_arm(self) -> bool | None:
         message = self._newest.get("SYS_STATUS")
         return None if message is None else bool(message.onboard_control_sensors_health & _READY_BIT)
+
+    def _geoid_height_m(self) -> float | None:
+        message = self._newest.get("GPS_RAW_INT")
+        return None if message is None else geoid_height_m(None, message)
 
     def _battery_share(self) -> float | None:
         message = self._newest.get("BATTERY_STATUS")

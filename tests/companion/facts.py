@@ -28,6 +28,7 @@ FLIES = AutopilotView(
     frame=LocalFrame(
         origin=Datum(latitude_rad=0.8, longitude_rad=0.1, altitude_m=100.0), projection=Projection.TANGENT_PLANE
     ),
+    geoid_known=True,
 )
 
 

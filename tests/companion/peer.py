@@ -34,7 +34,7 @@ class FakePx4(FakeAutopilot):
     custom_mode: int = POSITION
     place_ned_m: Vector3 = (0.0, 0.0, -0.12)
     origin_altitude_m: float = ORIGIN.altitude_m
-    geoid_height_m: float = 0.0
+    geoid_height_m: float | None = 0.0  # None: its receiver does not tell it
     vehicle_type: int = mavlink.MAV_TYPE_QUADROTOR
     utc_set_by_ns: int = 0
     now_ns: int = START_NS
@@ -76,7 +76,7 @@ class FakePx4(FakeAutopilot):
 
     def _receiver(self) -> Message:
         msl_mm = round(self.origin_altitude_m * 1e3)
-        ellipsoid_mm = msl_mm + round(self.geoid_height_m * 1e3) if self.geoid_height_m else 0
+        ellipsoid_mm = 0 if self.geoid_height_m is None else msl_mm + round(self.geoid_height_m * 1e3)
         return mavlink.MAVLink_gps_raw_int_message(0, 3, *PLACE_1E7, msl_mm, 70, 110, 0, 0, 10, ellipsoid_mm)
 
     def _battery(self) -> Message:
@@ -117,9 +117,10 @@ class Setup:
     autopilot: FakePx4 = field(default_factory=FakePx4)
     dry_run: bool = False
     t_ns: int = START_NS
+    config: CompanionConfig = field(default_factory=_config)
 
     def __post_init__(self) -> None:
-        self.node: CompanionNode = build_node(_config(), KEYS, dry_run=self.dry_run)
+        self.node: CompanionNode = build_node(self.config, KEYS, dry_run=self.dry_run)
 
     @property
     def utc_ns(self) -> int:

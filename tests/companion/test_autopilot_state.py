@@ -143,6 +143,24 @@ def test_receiver_that_does_not_know_the_geoid_says_nothing(receiver: Message) -
     state = _hear(_origin(475_000_000, 80_000_000, 400_000), receiver)
     assert state.view.frame is not None
     assert state.view.frame.origin.altitude_m == 400.0
+    assert not state.view.geoid_known
+
+
+@pytest.mark.parametrize("geoid_mm", [-32_400, -950, -3, 0, 600, 990, 47_300])
+def test_first_geoid_height_is_taken_whatever_it_is(geoid_mm: int) -> None:
+    state = _hear(_origin(475_000_000, 80_000_000, 400_000), _receiver(3, 410_000, 410_000 + geoid_mm))
+    assert state.view.frame is not None
+    assert state.view.geoid_known
+    assert state.view.frame.origin.altitude_m == pytest.approx(400.0 + geoid_mm * 1e-3, abs=0.05)
+
+
+def test_later_geoid_height_counts_when_it_is_another_one() -> None:
+    state = _hear(_origin(475_000_000, 80_000_000, 400_000), _receiver(3, 410_000, 410_600))
+    near = _hear(_receiver(3, 410_000, 411_500), state=state)
+    assert near.view == state.view
+    other = _hear(_receiver(3, 410_000, 411_700), state=state)
+    assert other.view.frame is not None
+    assert other.view.frame.origin.altitude_m == pytest.approx(401.7)
 
 
 @pytest.mark.parametrize(("status", "failsafe"), [(3, False), (4, False), (5, True), (6, True)])

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from companion.commands import answer
+from companion.feasibility import HEIGHTS_APART
 from companion.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
 from link.messages import Command
 from tests.companion.facts import situation
@@ -57,6 +58,7 @@ def test_start_says_what_is_missing() -> None:
     for missing, reason in (
         (replace(facts, autopilot=replace(view, link_up=False)), "no autopilot is connected"),
         (replace(facts, autopilot=replace(view, frame=None)), "the autopilot has no origin yet"),
+        (replace(facts, autopilot=replace(view, geoid_known=False)), HEIGHTS_APART),
         (replace(facts, drone=None), "the autopilot reports no local position yet"),
         (replace(facts, autopilot=replace(view, failsafe=True)), "the autopilot is in failsafe"),
     ):

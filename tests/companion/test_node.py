@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from companion.config import CompanionConfig
 from companion.phases import Phase
 from companion.shifts import at_other_time
 from link import cdr, json_payloads
@@ -204,6 +205,30 @@ def test_geoid_lifts_the_origin_to_the_ellipsoid() -> None:
     frame = setup.node.autopilot.state.view.frame
     assert frame is not None
     assert frame.origin.altitude_m == pytest.approx(setup.autopilot.origin_altitude_m + 47.3, abs=1e-3)
+
+
+def test_autopilot_that_tells_no_height_above_the_ellipsoid_is_not_started_and_says_what_to_set() -> None:
+    setup = Setup(autopilot=FakePx4(geoid_height_m=None))
+    setup.run(5.0, setup.fix)
+    setup.node.request(Command.START)
+    setup.run(0.1, setup.fix)
+    (reply,) = setup.node.take_replies()
+    assert not reply.accepted
+    assert "set geoid_height_m" in reply.reason
+    assert setup.node.outputs is not None
+    assert setup.node.outputs.status.reason == reply.reason
+    assert not setup.node.is_ready_to_start()
+
+
+def test_geoid_of_the_configuration_counts_where_the_autopilot_tells_none() -> None:
+    config = CompanionConfig(geoid_height_m=47.3)
+    for told_m, taken_m in ((None, 47.3), (-30.0, -30.0)):
+        setup = Setup(autopilot=FakePx4(geoid_height_m=told_m), config=config)
+        setup.run(2.0)
+        frame = setup.node.autopilot.state.view.frame
+        assert frame is not None
+        assert frame.origin.altitude_m == pytest.approx(setup.autopilot.origin_altitude_m + taken_m, abs=1e-3)
+        assert setup.node.is_ready_to_start()
 
 
 finite = st.floats(allow_nan=False, allow_infinity=False)

@@ -117,7 +117,14 @@ class Flight:
         self.memory = StepMemory()
         self.t_ns = START_NS
         self.view = AutopilotView(
-            link_up=True, armed=False, in_control=False, failsafe=False, landed=True, frame=FRAME, origin_count=1
+            link_up=True,
+            armed=False,
+            in_control=False,
+            failsafe=False,
+            landed=True,
+            frame=FRAME,
+            geoid_known=True,
+            origin_count=1,
         )
         self.own = own_state(START_NS, (0.0, 0.0, GEAR_M))
         self.history: list[Phase] = []

@@ -20,6 +20,7 @@ GOOD = AutopilotFacts(
     can_arm=True,
     has_origin=True,
     has_position=True,
+    geoid_height_m=-0.4,
     round_trips=20,
     utc_known=True,
     clock_std_s=0.001,
@@ -55,6 +56,7 @@ def test_everything_in_order_is_all_pass() -> None:
         ({"can_arm": False}, "arming checks", Level.WARN),
         ({"has_origin": False}, "estimator", Level.FAIL),
         ({"has_position": False}, "estimator", Level.FAIL),
+        ({"geoid_height_m": None}, "heights", Level.FAIL),
         ({"round_trips": 0}, "clock", Level.FAIL),
         ({"utc_known": False}, "clock", Level.FAIL),
         ({"clock_std_s": 0.1}, "clock", Level.WARN),
@@ -119,3 +121,10 @@ def test_what_passes_with_the_defaults_is_judged_by_the_configuration_given(
     by_name = {one.name: one for one in assessed(GOOD, VEHICLE, 10.0, config)}
     assert by_name[line].level is level
     assert by_name[line].advice
+
+
+def test_geoid_of_the_configuration_is_as_good_as_one_that_is_told() -> None:
+    untold = replace(GOOD, geoid_height_m=None)
+    for facts, config in ((untold, CONFIG.model_copy(update={"geoid_height_m": 47.3})), (GOOD, CONFIG)):
+        by_name = {one.name: one for one in assessed(facts, VEHICLE, 10.0, config)}
+        assert by_name["heights"].level is Level.PASS

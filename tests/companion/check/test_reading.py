@@ -13,13 +13,26 @@ def battery(number: int, percent: int) -> Message:
     return mavlink.MAVLink_battery_status_message(number, 0, 0, 2500, [0] * 10, -1, -1, -1, percent)
 
 
+def heard(*messages: Message) -> Reader:
+    """A reader that has found a PX4 and heard `messages` of it."""
+    reader, autopilot = Reader(MavlinkSession(1)), MavlinkCodec(1, 1)
+    heartbeat = mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4, 0, 0, 3, 3)
+    for k, message in enumerate((heartbeat, *messages)):
+        reader.receive(autopilot.encode(message), START_NS + k * MS)
+    return reader
+
+
 @pytest.mark.parametrize(
     ("told", "share"),
     [([(0, 80), (1, 5)], 0.8), ([(1, 5)], None), ([(0, -1), (2, 50)], None), ([(0, 80), (0, 79)], 0.79)],
 )
 def test_only_the_first_battery_counts_as_in_flight(told: list[tuple[int, int]], share: float | None) -> None:
-    reader, autopilot = Reader(MavlinkSession(1)), MavlinkCodec(1, 1)
-    heartbeat = mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4, 0, 0, 3, 3)
-    for k, message in enumerate((heartbeat, *(battery(*one) for one in told))):
-        reader.receive(autopilot.encode(message), START_NS + k * MS)
-    assert reader.facts().battery_share == share
+    assert heard(*(battery(*one) for one in told)).facts().battery_share == share
+
+
+@pytest.mark.parametrize(
+    ("fix", "ellipsoid_mm", "height_m"), [(3, 400_000, 0.0), (3, 447_300, 47.3), (3, 0, None), (1, 447_300, None)]
+)
+def test_geoid_is_read_off_the_receiver_as_in_flight(fix: int, ellipsoid_mm: int, height_m: float | None) -> None:
+    receiver = mavlink.MAVLink_gps_raw_int_message(0, fix, 1, 1, 400_000, 1, 1, 0, 0, 9, alt_ellipsoid=ellipsoid_mm)
+    assert heard(receiver).facts().geoid_height_m == (None if height_m is None else pytest.approx(height_m))
