@@ -151,13 +151,18 @@ def _attitude(state: AutopilotState, message: Message) -> AutopilotState:
 def _heartbeat(state: AutopilotState, message: Message, driver: Driver) -> AutopilotState:
     armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
     in_control = driver.is_in_control(message.base_mode, message.custom_mode)
+    reports = message.system_status in _FAILSAFE_STATES
+    # Nothing follows setpoints in an emergency, whatever its mode.
+    warns = reports and message.system_status != mavlink.MAV_STATE_EMERGENCY
+    warns = warns and in_control and driver.follows_in_failsafe
     view = replace(
         state.view,
         link_up=True,
         armed=armed,
         refusal=None if armed else state.view.refusal,
         in_control=in_control,
-        failsafe=message.system_status in _FAILSAFE_STATES,
+        failsafe=reports and not warns,
+        warns=warns,
         restarted=state.view.restarted and not in_control,
     )
     return replace(state, view=view)

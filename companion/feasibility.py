@@ -89,6 +89,14 @@ def _lacks_geoid(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
     return s.autopilot.frame is not None and not s.autopilot.geoid_known
 
 
+def _is_warned(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
+    return s.autopilot.warns
+
+
+def _warned(_: Situation, __: CompanionConfig) -> str:
+    return "the autopilot reports a failsafe (battery, radio, ground station): end its cause, see its own messages"
+
+
 # An estimate that has just begun jumps: what is said of the vehicle must hold for a while.
 OBSTACLES = (
     Obstacle(Test("vehicle too fast", _BEFORE_A_CHASE, _is_too_fast, lambda c: c.chase.driving_hold_s), _too_fast),
@@ -96,6 +104,7 @@ OBSTACLES = (
     Obstacle(
         Test("geoid unknown", _BEFORE_A_CHASE, _lacks_geoid, lambda _: _RECEIVER_TOLD_S), lambda *_: HEIGHTS_APART
     ),
+    Obstacle(Test("autopilot reports a failsafe", _BEFORE_A_CHASE, _is_warned, lambda _: 0.0), _warned),
     Obstacle(Test("battery too low", _BEFORE_A_CHASE, _is_empty, lambda c: c.chase.driving_hold_s), _empty),
     Obstacle(Test("pad too small", _BEFORE_A_CHASE, _is_too_narrow, lambda _: 0.0), _too_narrow),
 )

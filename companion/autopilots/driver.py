@@ -20,7 +20,8 @@ class AutopilotView:
     link_up: bool
     armed: bool
     in_control: bool  # it is in the mode in which it follows the companion's setpoints
-    failsafe: bool
+    failsafe: bool  # in which it flies by itself
+    warns: bool = False  # it reports a failsafe, and follows the setpoints on
     overruled: bool = False  # by a failsafe: another mode than was last asked for is flown
     restarted: bool = False  # and not in control since
     landed: bool | None = None
@@ -112,6 +113,10 @@ class Driver(Protocol):
     @property
     def holds_height_alone(self) -> bool:
         """Whether it flies setpoints whose position is a height only, with the velocity on all axes."""
+
+    @property
+    def follows_in_failsafe(self) -> bool:
+        """Whether it may report a failsafe and follow setpoints on: that a mode is flown by one is told by the mode."""
 
     @property
     def speed_parameters(self) -> tuple[str, ...]:

@@ -163,12 +163,31 @@ def test_later_geoid_height_counts_when_it_is_another_one() -> None:
     assert other.view.frame.origin.altitude_m == pytest.approx(401.7)
 
 
-@pytest.mark.parametrize(("status", "failsafe"), [(3, False), (4, False), (5, True), (6, True)])
-def test_failsafe_is_read_off_the_heartbeat(status: int, failsafe: bool) -> None:
-    state = _hear(mavlink.MAVLink_heartbeat_message(2, 12, 0x91, 0x0006_0000, status, 3))
-    assert state.view.failsafe is failsafe
-    assert state.view.armed
-    assert state.view.in_control
+OFFBOARD, LOITER, GUIDED, RTL = 0x0006_0000, 0x0304_0000, 4, 6
+
+
+@pytest.mark.parametrize(
+    ("driver", "mode", "status", "failsafe", "warns"),
+    [
+        (Px4Driver(), OFFBOARD, 3, False, False),
+        (Px4Driver(), OFFBOARD, 4, False, False),
+        (Px4Driver(), OFFBOARD, 5, True, False),
+        (Px4Driver(), OFFBOARD, 6, True, False),
+        (Px4Driver(), LOITER, 5, True, False),
+        (ArduPilotDriver(), GUIDED, 4, False, False),
+        (ArduPilotDriver(), GUIDED, 5, False, True),
+        (ArduPilotDriver(), GUIDED, 6, True, False),
+        (ArduPilotDriver(), RTL, 5, True, False),
+    ],
+)
+def test_failsafe_is_read_off_the_heartbeat(
+    driver: Driver, mode: int, status: int, *, failsafe: bool, warns: bool
+) -> None:
+    heartbeat = mavlink.MAVLink_heartbeat_message(2, driver.autopilot_id, 0x91, mode, status, 3)
+    view = heard(AutopilotState(), heartbeat, CLOCK, driver).view
+    assert (view.failsafe, view.warns) == (failsafe, warns)
+    assert view.armed
+    assert view.in_control is (mode in (OFFBOARD, GUIDED))
 
 
 def test_mode_is_known_from_the_quicker_message() -> None:

@@ -62,6 +62,30 @@ def test_failsafe_ends_the_companions_flight(phase: Phase) -> None:
     assert flight.memory.reason == "autopilot failsafe"
 
 
+@pytest.mark.parametrize("phase", [Phase.CHASE, Phase.ALIGN, Phase.DESCEND])
+def test_failsafe_in_which_the_autopilot_follows_on_does_not_end_a_landing(phase: Phase) -> None:
+    flight = reached(phase)
+    flight.view = replace(flight.view, warns=True)
+    flight.run_until(Phase.SECURED)
+    assert Phase.ABORT not in flight.history
+    assert not flight.view.armed
+
+
+def test_nothing_is_begun_while_the_autopilot_reports_a_failsafe() -> None:
+    flight = reached(Phase.ALIGN)
+    flight.view = replace(flight.view, warns=True)
+    flight.sends_fixes = False
+    flight.run_until(Phase.ABORT)
+    flight.sends_fixes = True
+    flight.run_until(Phase.HOLD)
+    assert "reports a failsafe" in flight.memory.reason
+    flight.step()
+    reply = flight.step(Command.START).reply
+    assert reply is not None
+    assert not reply.accepted
+    assert reply.reason == flight.memory.reason
+
+
 def test_autopilot_that_never_gives_control_is_given_up() -> None:
     flight = Flight(config=IMPATIENT, refuses=frozenset({SET_MODE}))
     flight.start_and_reach(Phase.TAKEOFF)
