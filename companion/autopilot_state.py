@@ -32,6 +32,7 @@ class AutopilotState:
         history: the drone's states of the last second, oldest first.
         orientation_wxyz: q_WB of the newest attitude.
         angular_velocity_flu_rad_s: with it.
+        attitude_boot_ms: when that was, on the autopilot's clock.
         origin_msl: the origin with its altitude above mean sea level, as it is sent.
         geoid_height_m: of mean sea level above the ellipsoid, None until the autopilot's receiver tells it.
         parameters: those read, by name.
@@ -42,6 +43,7 @@ class AutopilotState:
     history: tuple[OwnState, ...] = ()
     orientation_wxyz: Quaternion | None = None
     angular_velocity_flu_rad_s: Vector3 = (0.0, 0.0, 0.0)
+    attitude_boot_ms: int = 0
     origin_msl: Datum | None = None
     geoid_height_m: float | None = None
     parameters: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
@@ -120,6 +122,7 @@ def _position(state: AutopilotState, message: Message, clock: ClockMap) -> Autop
         velocity_bias_enu_m_s=bias,
         orientation_wxyz=state.orientation_wxyz,
         angular_velocity_flu_rad_s=state.angular_velocity_flu_rad_s,
+        attitude_age_s=max(0.0, (message.time_boot_ms - state.attitude_boot_ms) * 1e-3),
     )
     if state.history and t_ns <= state.history[-1].t_ns:
         if state.history[-1].t_ns - t_ns <= HISTORY_NS:
@@ -145,7 +148,12 @@ def _attitude(state: AutopilotState, message: Message) -> AutopilotState:
     if not all(map(isfinite, (*q, *rates))) or sum(part * part for part in q) < 0.5:
         return state
     orientation = normalized(quaternion_enu_flu_from_ned_frd(q))
-    return replace(state, orientation_wxyz=orientation, angular_velocity_flu_rad_s=flu_from_frd(rates))
+    return replace(
+        state,
+        orientation_wxyz=orientation,
+        angular_velocity_flu_rad_s=flu_from_frd(rates),
+        attitude_boot_ms=message.time_boot_ms,
+    )
 
 
 def _heartbeat(state: AutopilotState, message: Message, driver: Driver) -> AutopilotState:

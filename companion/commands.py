@@ -33,14 +33,14 @@ def answer(
 
 
 def _missing_for_start(situation: Situation) -> str | None:
-    if not situation.autopilot.link_up:
-        return "no autopilot is connected"
-    if situation.autopilot.frame is None:
-        return "the autopilot has no origin yet"
-    if not situation.autopilot.geoid_known:
-        return HEIGHTS_APART
-    if situation.drone is None:
-        return "the autopilot reports no local position yet"
-    if situation.autopilot.failsafe:
-        return "the autopilot is in failsafe"
-    return None
+    """Return the first thing that is missing for a start, None when nothing is."""
+    view, drone = situation.autopilot, situation.drone
+    missing = {
+        "no autopilot is connected": not view.link_up,
+        "the autopilot has no origin yet": view.frame is None,
+        HEIGHTS_APART: not view.geoid_known,
+        "the autopilot reports no local position yet": drone is None,
+        "the autopilot's attitude is too old": drone is not None and not drone.attitude_known,
+        "the autopilot is in failsafe": view.failsafe,
+    }
+    return next((reason for reason, is_missing in missing.items() if is_missing), None)

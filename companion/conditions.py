@@ -49,6 +49,11 @@ def own_unknown(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
     return s.drone is None
 
 
+def attitude_unknown(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
+    """Return whether nobody knows which way the drone looks and leans: sightings of the pad are turned by it."""
+    return s.drone is not None and not s.drone.attitude_known
+
+
 def not_placed(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
     """Return whether nobody knows where on the vehicle the pad is: no heading is known, or no description."""
     return s.pad is not None and s.pad.unplaced is not None
@@ -117,6 +122,7 @@ ABORT_TESTS = (
     Test("vehicle position too uncertain", NEAR_PHASES, is_uncertain, lambda c: c.abort.cone_hold_s),
     Test("vehicle's link lost", LANDING_PHASES, _token_lost, lambda _: 0.0),
     Test("own position too old", LANDING_PHASES, own_unknown, lambda _: 0.0),
+    Test("own attitude too old", LANDING_PHASES, attitude_unknown, lambda _: 0.0),
     Test(HEADING_UNKNOWN, frozenset({Phase.DESCEND}), not_placed, lambda _: 0.0),
     Test("setpoint not followed", LANDING_PHASES, _not_followed, lambda c: c.abort.tracking_hold_s),
     Test("outside the descent cone", frozenset({Phase.DESCEND}), _outside_cone, lambda c: c.abort.cone_hold_s),

@@ -89,6 +89,7 @@ class OwnState:
 
     `acceleration_up_m_s2`, and `jolt_m_s2` as the size of the horizontal acceleration, are from the last reports'
     velocities, None before there are enough. The autopilot reported `velocity_bias_enu_m_s` more than the velocity.
+    The orientation was so `attitude_age_s` earlier.
     """
 
     t_ns: int
@@ -99,6 +100,7 @@ class OwnState:
     acceleration_up_m_s2: float | None = None
     jolt_m_s2: float | None = None
     velocity_bias_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
+    attitude_age_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,6 +9,7 @@ from companion.conditions import (
     ENTRY_TESTS,
     STOPPED_BY_PAD,
     STRAYS,
+    attitude_unknown,
     fix_too_old,
     is_out_of_range,
     is_over_pad,
@@ -221,9 +222,8 @@ def _on_the_pad(s: Situation, config: CompanionConfig) -> Decision | None:
 def _climbed(progress: Progress, s: Situation, held: Held, config: CompanionConfig) -> Decision | None:
     relative = approach(s)
     in_phase_s = (s.t_ns - progress.since_ns) * 1e-9
-    fresh = not fix_too_old(s, None, config)
     high = relative is not None and relative.height_m > 0.8 * config.abort.height_m
-    if not (fresh and high) and in_phase_s < config.abort.time_limit_s:
+    if (fix_too_old(s, None, config) or not high) and in_phase_s < config.abort.time_limit_s:
         return None
     why_not = _no_retry(progress, s, held, config)
     if why_not is None and progress.is_interrupted:
@@ -241,6 +241,7 @@ def _no_retry(progress: Progress, s: Situation, held: Held, config: CompanionCon
         "broken off by the operator": not progress.may_retry,
         "no vehicle data": fix_too_old(s, None, config),
         "own position too old": s.drone is None,
+        "own attitude too old": attitude_unknown(s, None, config),
         unplaced or "pad placed": unplaced is not None,
         "too far from the start": is_out_of_range(s, None, config),
         known[1] if known is not None else "": known is not None,

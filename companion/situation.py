@@ -31,6 +31,7 @@ class Drone:
         acceleration_up_m_s2: from the last reports, None before there are enough.
         jolt_m_s2: size of the horizontal acceleration, likewise.
         lean: sine of its tilt.
+        attitude_known: no older than a report may be.
     """
 
     position_enu_m: Array
@@ -40,6 +41,7 @@ class Drone:
     acceleration_up_m_s2: float | None = None
     jolt_m_s2: float | None = None
     lean: float = 0.0
+    attitude_known: bool = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -131,6 +133,7 @@ def drone_now(own: OwnState | None, t_ns: int, yaw_rad: float, age_max_s: float)
         age_s=age_s,
         acceleration_up_m_s2=own.acceleration_up_m_s2,
         jolt_m_s2=own.jolt_m_s2,
+        attitude_known=age_s + own.attitude_age_s <= age_max_s,
         lean=math.hypot(*rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))[:2]),
     )
 

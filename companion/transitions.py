@@ -3,7 +3,15 @@
 import numpy as np
 
 from companion.commands import answer
-from companion.conditions import ABORT_TESTS, HARD_CONTACT, STRAYS, fix_too_old, own_unknown, update_held
+from companion.conditions import (
+    ABORT_TESTS,
+    HARD_CONTACT,
+    STRAYS,
+    attitude_unknown,
+    fix_too_old,
+    own_unknown,
+    update_held,
+)
 from companion.config import CompanionConfig
 from companion.decisions import Progress, decide
 from companion.feasibility import OBSTACLE_TESTS, obstacle
@@ -20,7 +28,8 @@ from link.records import replace
 BRAKING_M_S2 = 2.0
 """Deceleration that the place to stop at is taken from."""
 
-_OUTAGES = frozenset(test.reason for test in ABORT_TESTS if test.is_true in (fix_too_old, own_unknown))
+_SILENCES = (fix_too_old, own_unknown, attitude_unknown)
+_OUTAGES = frozenset(test.reason for test in ABORT_TESTS if test.is_true in _SILENCES)
 
 
 def transitions(

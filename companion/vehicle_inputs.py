@@ -28,6 +28,7 @@ _STD_MIN = {
     Quantity.YAW_RATE: 0.001,
     Quantity.PAD: 0.002,
 }
+_ATTITUDE_AGE_MAX_S = 0.15  # of a drone that turns at 0.5 rad/s: what it sees 5 m away is then 0.4 m off
 _STD_MAX = 1e4  # says nothing at all
 # Beyond these a message is wrong, or of a vehicle that nobody lands on.
 _VALUE_MAX = {
@@ -67,7 +68,9 @@ def _decoded(key: str, payload: bytes, keys: Keys, state: AutopilotState) -> tup
     if key == keys.pad_pose:
         sighting = cdr.decode(PadSighting, payload)
         own_then = state.own_at(sighting.t_ns)
-        return () if own_then is None else (sighting_measurement(sighting, own_then),)
+        if own_then is None or own_then.attitude_age_s > _ATTITUDE_AGE_MAX_S:
+            return ()
+        return (sighting_measurement(sighting, own_then),)
     return ()
 
 

@@ -63,6 +63,14 @@ def test_position_without_an_attitude_is_not_yet_a_state() -> None:
     assert _hear(_at(0, (0.0, 0.0, 0.0))).own is None
 
 
+def test_age_of_the_attitude_is_told_with_each_position() -> None:
+    state = _hear(LEVEL, _at(20, (0.0, 0.0, 0.0)), _at(700, (0.4, 0.0, 0.0)))
+    assert [own.attitude_age_s for own in state.history] == pytest.approx([0.02, 0.7])
+    newer = mavlink.MAVLink_attitude_quaternion_message(BOOT_MS + 715, 1.0, 0.0, 0.0, 0.0, 0.1, 0.2, 0.3)
+    (*_, newest) = _hear(newer, _at(710, (0.4, 0.0, 0.0)), state=state).history
+    assert newest.attitude_age_s == 0.0
+
+
 def test_late_and_doubled_positions_are_passed_over() -> None:
     state = _hear(LEVEL, _at(0, (0.0, 0.0, 0.0)), _at(40, (0.4, 0.0, 0.0)))
     assert _hear(_at(20, (0.2, 0.0, 0.0)), _at(40, (9.0, 0.0, 0.0)), state=state).own == state.own

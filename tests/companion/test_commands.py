@@ -54,12 +54,14 @@ def test_take_off_is_called_off_before_the_motors_turn_and_held_after(command: C
 
 def test_start_says_what_is_missing() -> None:
     facts = situation()
-    view = facts.autopilot
+    view, drone = facts.autopilot, facts.drone
+    assert drone is not None
     for missing, reason in (
         (replace(facts, autopilot=replace(view, link_up=False)), "no autopilot is connected"),
         (replace(facts, autopilot=replace(view, frame=None)), "the autopilot has no origin yet"),
         (replace(facts, autopilot=replace(view, geoid_known=False)), HEIGHTS_APART),
         (replace(facts, drone=None), "the autopilot reports no local position yet"),
+        (replace(facts, drone=replace(drone, attitude_known=False)), "the autopilot's attitude is too old"),
         (replace(facts, autopilot=replace(view, failsafe=True)), "the autopilot is in failsafe"),
     ):
         event, reply = answer(Command.START, Phase.IDLE, missing)

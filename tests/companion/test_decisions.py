@@ -51,6 +51,7 @@ UNSAFE: dict[str, Situation] = {
         situation(), vehicle_alive=False, fix_age_s=CONFIG.abort.alive_lost_fix_age_max_s + 0.01
     ),
     "own position too old": replace(situation(), drone=None),
+    "own attitude too old": replace(situation(), drone=replace(drone_at(1.5, pad=pad_at()), attitude_known=False)),
     "vehicle heading unknown": situation(pad=pad_at(placed=False)),
     "setpoint not followed": replace(situation(), tracking_error_m=CONFIG.abort.tracking_error_max_m + 0.01),
     "outside the descent cone": situation(NEAR_M, cone_radius_m(NEAR_M, HALF_M, CONFIG) + 0.01),
@@ -136,7 +137,9 @@ def test_below_the_commit_height_it_lands_rather_than_aborts(reason: str) -> Non
     unsafe = UNSAFE[reason]
     assert unsafe.pad is not None
     speed: Vector3 = (0.9 * CONFIG.abort.near_speed_max_m_s, 0.0, -0.4)
-    low = replace(unsafe, drone=drone_at(LOW_M, 0.1, speed, pad=unsafe.pad), reference=reference_at(LOW_M))
+    assert unsafe.drone is not None
+    drone = replace(drone_at(LOW_M, 0.1, speed, pad=unsafe.pad), attitude_known=unsafe.drone.attitude_known)
+    low = replace(unsafe, drone=drone, reference=reference_at(LOW_M))
     decision, _ = _first_decision(Phase.DESCEND, low, 3.0)
     assert decision is None
 

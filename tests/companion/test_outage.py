@@ -26,6 +26,11 @@ def _own_is_late(flight: Flight) -> None:
     flight.step()
 
 
+def _own_attitude_is_late(flight: Flight) -> None:
+    flight.own = replace(flight.own, attitude_age_s=CONFIG.abort.own_age_max_s + 0.1)
+    flight.step()
+
+
 def _vehicle_is_late(flight: Flight) -> None:
     flight.sends_fixes = False
     flight.run_until(Phase.ABORT, limit_s=CONFIG.abort.fix_age_max_s + 0.1)
@@ -33,7 +38,12 @@ def _vehicle_is_late(flight: Flight) -> None:
 
 
 @pytest.mark.parametrize(
-    ("outage", "reason"), [(_own_is_late, "own position too old"), (_vehicle_is_late, "vehicle data too old")]
+    ("outage", "reason"),
+    [
+        (_own_is_late, "own position too old"),
+        (_own_attitude_is_late, "own attitude too old"),
+        (_vehicle_is_late, "vehicle data too old"),
+    ],
 )
 @pytest.mark.parametrize(("phase", "retries"), [(Phase.CHASE, 0), (Phase.ALIGN, 1), (Phase.DESCEND, 1)])
 def test_outage_costs_a_retry_only_where_the_drone_was_near(

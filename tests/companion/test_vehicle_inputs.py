@@ -152,6 +152,19 @@ def test_sighting_is_turned_into_the_world_with_its_covariance() -> None:
     assert math.isclose(np.trace(measurement.covariance), sum(COVARIANCE[::4]))
 
 
+@pytest.mark.parametrize(("age_s", "count"), [(0.02, 1), (0.1, 1), (0.3, 0), (5.0, 0)])
+def test_sighting_is_taken_only_where_the_drones_attitude_was_known(age_s: float, count: int) -> None:
+    own = replace(own_state(START_NS, (4.0, 5.0, 6.0)), attitude_age_s=age_s)
+    sighting = PadSighting(
+        t_ns=START_NS + 1,
+        position_flu_m=(0.3, -0.2, -2.5),
+        orientation_wxyz=(1.0, 0.0, 0.0, 0.0),
+        position_covariance_m2=COVARIANCE,
+    )
+    state = AutopilotState(view=replace(NO_AUTOPILOT, frame=FRAME), history=(own,))
+    assert len(measurements_of(KEYS.pad_pose, cdr.encode(sighting), KEYS, state)) == count
+
+
 @pytest.mark.parametrize("variances", [(0.0, 0.0, 0.0), (0.1, 0.1, 0.0), (1e-30, 1.0, 1.0)])
 def test_covariance_that_is_singular_is_widened_to_what_sensors_can_do(variances: Vector3) -> None:
     fix = fix_measurement(Fix(t_ns=1, latitude_rad=0.83, longitude_rad=0.14, altitude_m=1.0), FRAME)
