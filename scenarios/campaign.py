@@ -3,14 +3,15 @@
 A landing is decided by its scenario and seed, so neither the number of processes nor their order shows in the result.
 """
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from companion.config import CompanionConfig
 from link.errors import UserError
-from link.toml_config import load_config
+from link.toml_config import load_config, merged, read_toml, validated
 from scenarios.campaign_folder import Plan, open_journal
 from scenarios.catalogue import load_scenario
 from scenarios.config import Scenario
@@ -44,7 +45,7 @@ def make_plan(cells: Sequence[str], *, first_seed: int, seeds: int, config: Path
         cells: names or files, as `load_scenario` takes them.
         first_seed: the others follow.
         seeds: how many.
-        config: the companion's, in the place of the scenarios' own.
+        config: the companion's, laid over each scenario's own: only what it sets is changed.
 
     Raises:
         UserError: no such cell, two of one name, or a configuration that does not fit.
@@ -55,8 +56,9 @@ def make_plan(cells: Sequence[str], *, first_seed: int, seeds: int, config: Path
     if double is not None:
         raise UserError(f"cell '{double}' is given twice")
     if config is not None:
-        companion = load_config(config, CompanionConfig)
-        scenarios = [_with_companion(scenario, companion) for scenario in scenarios]
+        load_config(config, CompanionConfig)  # by itself it has to fit as well
+        table = read_toml(config)
+        scenarios = [_with_companion(scenario, table, str(config)) for scenario in scenarios]
     return Plan(
         cells=names,
         first_seed=first_seed,
@@ -113,6 +115,9 @@ def _flown(plan: Plan, tasks: Sequence[Task], where: Where) -> Generator[Flown, 
     )
 
 
-def _with_companion(scenario: Scenario, companion: CompanionConfig) -> Scenario:
+def _with_companion(scenario: Scenario, table: Mapping[str, Any], source: str) -> Scenario:
+    """Return `scenario` with a table of the companion's configuration laid over its own."""
+    below = scenario.system.companion.model_dump(mode="json")
+    companion = validated(CompanionConfig, merged(below, table), source=f"{source} over {scenario.name}")
     system = scenario.system.model_copy(update={"companion": companion})
     return scenario.model_copy(update={"system": system})

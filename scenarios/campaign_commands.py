@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from scenarios.landing_task import Row
 
 _ERRORS_SHOWN = 5
+_SEEDS, _FIRST_SEED = 100, 1
 
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 FolderArgument = Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="Folder of a campaign.")]
@@ -33,8 +34,12 @@ def campaign_command(
         typer.Argument(metavar="CELL...", help="Scenarios, such as straight_5+sensors=nominal+wind=moderate."),
     ] = None,
     *,
-    seeds: Annotated[int, typer.Option("--seeds", min=1, metavar="N", help="Landings of each cell.")] = 100,
-    first_seed: Annotated[int, typer.Option("--first-seed", min=0, metavar="N", help="The others follow.")] = 1,
+    seeds: Annotated[
+        int | None, typer.Option("--seeds", min=1, metavar="N", help="Landings of each cell [default: 100].")
+    ] = None,
+    first_seed: Annotated[
+        int | None, typer.Option("--first-seed", min=0, metavar="N", help="The others follow [default: 1].")
+    ] = None,
     workers: Annotated[
         int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
     ] = None,
@@ -60,14 +65,21 @@ def campaign_command(
     if workers is not None and scheduler is not None:
         raise UserError("--workers is about local processes: leave it out with --scheduler")
     if resume is not None:
-        if cells or config or out:
-            raise UserError(f"{resume} says what is flown: leave out cells, --config and --out with --resume")
+        if cells or any(one is not None for one in (config, out, seeds, first_seed)):
+            raise UserError(
+                f"{resume} says what is flown: leave out cells, --config, --out, --seeds and --first-seed with --resume"
+            )
         plan = read_plan(resume)
         check_same_versions(plan)
         return _fly(resume, plan, where, as_json=as_json)
     if not cells:
         raise UserError("no cell is given; `scenarios list` shows the scenarios")
-    plan = make_plan(cells, first_seed=first_seed, seeds=seeds, config=config)
+    plan = make_plan(
+        cells,
+        first_seed=_FIRST_SEED if first_seed is None else first_seed,
+        seeds=_SEEDS if seeds is None else seeds,
+        config=config,
+    )
     if scheduler is not None:
         from scenarios.dask_pool import check_scheduler
 
@@ -79,6 +91,7 @@ def table_command(folder: FolderArgument, *, as_json: JsonOption = False, markdo
     """Print a campaign's summary again."""
     from scenarios.campaign_folder import read_landings, read_timing
 
+    say_missing(folder)
     if markdown and not as_json:
         from scenarios.campaign_markdown import write_markdown
         from scenarios.summary import summarize
@@ -103,10 +116,21 @@ def compare_command(
     from scenarios.compare import compare_campaigns
 
     comparison = compare_campaigns(first, second, apart_from)
+    for folder in (first, second):
+        say_missing(folder)
     if as_json:
         _print_json(comparison)
     else:
         print_comparison(comparison, sys.stdout)
+
+
+def say_missing(folder: Path) -> None:
+    """Say, beside the results, when a campaign was broken off or still goes on."""
+    from scenarios.campaign_folder import missing_landings
+
+    text = missing_landings(folder)
+    if text is not None:
+        _note(text)
 
 
 def _fly(folder: Path, plan: "Plan", where: "Where", *, as_json: bool) -> int:

@@ -1,13 +1,14 @@
 """A campaign's folder: what is flown, and the rows as they come, so that nothing done is lost.
 
 `campaign.json` says what is flown, `landings.jsonl` takes a line for each landing when it is done, and from these
-come `landings.parquet`, which only cells, seeds and sources decide, and `timing.parquet`.
+come `landings.parquet`, which only cells, seeds and sources decide, and `timing.parquet`. These two are read
+where there are no lines; beside them they may lack what was flown by a process that was killed.
 """
 
 import fcntl
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
@@ -19,7 +20,7 @@ from link.errors import UserError
 from link.toml_config import StrictModel, validated
 from scenarios.config import Scenario
 from scenarios.landing_task import Flown, Row, Task
-from scenarios.landings_file import read_rows, write_rows
+from scenarios.landings_file import as_written, read_rows, write_rows
 from scenarios.outcome import write_json
 
 _PLAN, _JOURNAL, _LANDINGS, _TIMING = "campaign.json", "landings.jsonl", "landings.parquet", "timing.parquet"
@@ -80,13 +81,18 @@ def read_plan(folder: Path) -> Plan:
 
 
 def read_landings(folder: Path) -> list[Row]:
-    """Return the rows of the campaign in `folder`.
+    """Return the rows of the campaign in `folder`; of one that was killed, or still goes on, those that are done.
 
     Raises:
         UserError: there are none.
     """
     read_plan(folder)
-    return read_rows(folder / _LANDINGS)
+    if (folder / _LANDINGS).exists() and not (folder / _JOURNAL).exists():
+        return read_rows(folder / _LANDINGS)
+    rows = [flown.row for flown in _written_down(folder)]
+    if not rows:
+        raise UserError(f"{folder}: no landing is done; go on with: scenarios campaign --resume {folder}")
+    return as_written(rows)
 
 
 def read_timing(folder: Path) -> list[Row]:
@@ -95,7 +101,38 @@ def read_timing(folder: Path) -> list[Row]:
     Raises:
         UserError: nobody wrote it down.
     """
-    return read_rows(folder / _TIMING)
+    if not (folder / _JOURNAL).exists():
+        return read_rows(folder / _TIMING)
+    return as_written([_timing(flown) for flown in _written_down(folder)])
+
+
+def missing_landings(folder: Path) -> str | None:
+    """Return a line that says what of a campaign is not done yet, None when nothing is missing or it is no campaign.
+
+    Raises:
+        UserError: nothing is done.
+    """
+    if not (folder / _PLAN).exists():
+        return None
+    done, planned = len(read_landings(folder)), len(read_plan(folder).tasks())
+    if done >= planned:
+        return None
+    return f"{done} of {planned} landings are done; go on with: scenarios campaign --resume {folder}"
+
+
+def _written_down(folder: Path) -> Collection[Flown]:
+    """Return the newest line of each landing in the journal; the one at which a process was interrupted is left out.
+
+    The Parquet files are written from it, but only when a campaign ends by itself.
+    """
+    path = folder / _JOURNAL
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        return ()
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read ({error.strerror})") from None
+    return {_task_of(one.row): one for one in _lines(data[: data.rfind(b"\n") + 1])}.values()
 
 
 class Journal:
@@ -159,9 +196,12 @@ def _read_journal(path: Path, descriptor: int) -> dict[Task, Flown]:
     data = path.read_bytes()
     whole = data.rfind(b"\n") + 1
     os.ftruncate(descriptor, whole)
-    lines = [json.loads(line) for line in data[:whole].splitlines()]
-    flown = [Flown(wall_s=line.pop("wall_s"), times=line.pop("times", {}), row=line) for line in lines]
-    return {_task_of(one.row): one for one in flown if one.row["error"] is None}
+    return {_task_of(one.row): one for one in _lines(data[:whole]) if one.row["error"] is None}
+
+
+def _lines(data: bytes) -> list[Flown]:
+    lines = [json.loads(line) for line in data.splitlines()]
+    return [Flown(wall_s=line.pop("wall_s"), times=line.pop("times", {}), row=line) for line in lines]
 
 
 def _timing(flown: Flown) -> Row:

@@ -28,10 +28,7 @@ _TYPES: dict[str, pl.DataType] = {
 
 def write_rows(path: Path, rows: Sequence[Row]) -> None:
     """Write rows into a Parquet file, at once or not at all; the same rows in any order make the same file."""
-    ordered = sorted(rows, key=lambda row: (row["cell"], row["seed"]))
-    names = sorted({name for row in rows for name in row})
-    columns = [*(name for name in _FIRST if name in names), *(name for name in names if name not in _FIRST)]
-    frame = pl.DataFrame({name: _column(name, ordered) for name in columns})
+    frame = _frame(rows)
     unfinished = path.with_suffix(".unfinished")
     frame.write_parquet(unfinished, compression="zstd", statistics=False)
     unfinished.replace(path)
@@ -47,6 +44,18 @@ def read_rows(path: Path) -> list[Row]:
         return pl.read_parquet(path, glob=False).to_dicts()
     except (OSError, pl.exceptions.PolarsError) as error:
         raise UserError(f"{path}: cannot be read ({str(error).splitlines()[0]})") from None
+
+
+def as_written(rows: Sequence[Row]) -> list[Row]:
+    """Return rows as they would be read back from a file that they were written into."""
+    return _frame(rows).to_dicts()
+
+
+def _frame(rows: Sequence[Row]) -> pl.DataFrame:
+    ordered = sorted(rows, key=lambda row: (row["cell"], row["seed"]))
+    names = sorted({name for row in rows for name in row})
+    columns = [*(name for name in _FIRST if name in names), *(name for name in names if name not in _FIRST)]
+    return pl.DataFrame({name: _column(name, ordered) for name in columns})
 
 
 def _column(name: str, rows: Sequence[Row]) -> pl.Series:

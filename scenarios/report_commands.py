@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from scenarios.campaign_commands import JsonOption, table_command
+from scenarios.campaign_commands import JsonOption, say_missing, table_command
 
 _REPORT = "report"
 
@@ -67,6 +67,7 @@ def figures_command(
         files = draw_report(out or Path("runs/figures"))
     else:
         files = draw_figures(Path(what), out)
+        say_missing(Path(what))
     for file in files:
         sys.stdout.write(f"{file}\n")
 
@@ -81,4 +82,6 @@ def html_command(
     """Write a run or a campaign as one page that opens offline: verdict, figures, tables, configuration, versions."""
     from scenarios.html_report import write_report
 
-    sys.stdout.write(f"{write_report(what, out)}\n")
+    page = write_report(what, out)
+    say_missing(what)
+    sys.stdout.write(f"{page}\n")

@@ -1,8 +1,12 @@
-"""Geodetic coordinates of a moving drone at little cost: an exact point and its slopes, renewed every few metres."""
+"""Geodetic coordinates of a moving drone at little cost: an exact point and its slopes, renewed every few metres.
+
+Longitudes are kept in (-pi, pi], and their differences go the short way: a flight may cross the antimeridian.
+"""
 
 from dataclasses import dataclass
 from math import dist
 
+from link.frames import wrap_angle
 from link.geodesy import Datum, geodetic_from_enu
 from link.messages import Vector3
 
@@ -51,9 +55,9 @@ def geodetic(chart: Chart, position_enu_m: Vector3) -> Vector3:
         b + e * x + n * y + u * z
         for b, e, n, u in zip(chart.base, chart.per_east, chart.per_north, chart.per_up, strict=True)
     )
-    return (latitude, longitude, altitude)
+    return (latitude, wrap_angle(longitude), altitude)
 
 
 def _slope(base: Vector3, moved: Vector3) -> Vector3:
-    a, b, c = ((m - o) / _STEP_M for m, o in zip(moved, base, strict=True))
-    return (a, b, c)
+    latitude, longitude, altitude = (m - o for m, o in zip(moved, base, strict=True))
+    return (latitude / _STEP_M, wrap_angle(longitude) / _STEP_M, altitude / _STEP_M)

@@ -56,7 +56,28 @@ def test_compare_pairs_two_campaigns_and_tells_what_differs(tmp_path: Path, caps
     assert "companion.guidance.kind: mpc | pn" in capsys.readouterr().out
 
 
-def test_config_takes_the_place_of_the_scenarios_own(tmp_path: Path) -> None:
+def test_config_changes_only_what_it_sets(tmp_path: Path) -> None:
+    config = tmp_path / "companion.toml"
+    config.write_text("[descent]\nalign_height_m = 1.25\n", encoding="utf-8")
+    cells = ["straight_5+system=pn", "straight_5+system=lkf", "straight_5"]
+    own = make_plan(cells, first_seed=1, seeds=1, config=None).scenarios
+    laid = make_plan(cells, first_seed=1, seeds=1, config=config).scenarios
+    assert laid["straight_5+system=pn"].system.companion.guidance.kind.value == "pn"
+    assert laid["straight_5+system=lkf"].system.companion.estimator.kind.value == "lkf"
+    for cell in cells:
+        before, after = own[cell].model_dump(), laid[cell].model_dump()
+        assert after["system"]["companion"]["descent"].pop("align_height_m") == 1.25
+        assert before["system"]["companion"]["descent"].pop("align_height_m") != 1.25
+        assert after == before
+
+
+def test_config_that_does_not_fit_over_a_cell_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    config = tmp_path / "companion.toml"
+    config.write_text("[descent]\nalign_hight_m = 1.25\n", encoding="utf-8")
+    assert "align_height_m" in refusal(capsys, "campaign", "straight_5", "--config", config)
+
+
+def test_config_goes_over_the_scenarios_own(tmp_path: Path) -> None:
     config = tmp_path / "companion.toml"
     config.write_text("[descent]\nalign_height_m = 1.25\n", encoding="utf-8")
     plan = make_plan(["straight_5", "circle_5"], first_seed=1, seeds=1, config=config)
@@ -84,6 +105,12 @@ def test_campaign_refuses_a_folder_in_use(tmp_path: Path, capsys: pytest.Capture
 def test_campaign_refuses_cells_beside_resume(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = campaign(tmp_path / "a", errors_m=(0.1,))
     assert "leave out cells" in refusal(capsys, "campaign", "straight_5", "--resume", folder)
+
+
+@pytest.mark.parametrize("option", ["--seeds", "--first-seed"])
+def test_campaign_refuses_seeds_beside_resume(option: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = campaign(tmp_path / "a", errors_m=(0.1,))
+    assert option in refusal(capsys, "campaign", "--resume", folder, option, 50)
 
 
 def test_campaign_refuses_workers_beside_a_scheduler(capsys: pytest.CaptureFixture[str]) -> None:
@@ -124,7 +151,48 @@ def test_plan_that_was_changed_by_hand_is_checked(tmp_path: Path, capsys: pytest
 
 def test_campaign_without_results_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     create_folder(tmp_path / "a", make_plan(["straight_5"], first_seed=1, seeds=1, config=None))
-    assert "landings.parquet: cannot be read" in refusal(capsys, "table", tmp_path / "a")
+    said = refusal(capsys, "table", tmp_path / "a")
+    assert "no landing is done" in said
+    assert f"--resume {tmp_path / 'a'}" in said
+
+
+def test_killed_campaign_shows_what_is_done(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    whole = campaign(tmp_path / "a", errors_m=(0.1, 0.3))
+    assert scenarios("table", whole, "--json") == 0
+    expected = capsys.readouterr().out
+    killed = campaign(tmp_path / "b", errors_m=(0.1, 0.3, 0.5))
+    for file in ("landings.parquet", "timing.parquet"):
+        (killed / file).unlink()
+    journal = killed / "landings.jsonl"
+    journal.write_text(journal.read_text(encoding="utf-8")[:-20], encoding="utf-8")  # within the third line
+    assert scenarios("table", killed, "--json") == 0
+    printed = capsys.readouterr()
+    assert printed.out == expected
+    assert printed.err == f"2 of 3 landings are done; go on with: scenarios campaign --resume {killed}\n"
+    assert scenarios("compare", whole, killed, "--json") == 0
+    assert json.loads(capsys.readouterr().out)["cells"][0]["horizontal_error_m"]["difference"] == 0.0
+
+
+def test_campaign_that_was_killed_while_it_went_on_shows_the_newer_rows(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = campaign(tmp_path / "a", errors_m=(0.1, 0.3))
+    old = {file: (folder / file).read_bytes() for file in ("landings.parquet", "timing.parquet")}
+    again = campaign(tmp_path / "b", errors_m=(0.1, 0.3, 0.8))
+    for file, data in old.items():
+        (again / file).write_bytes(data)
+    assert scenarios("table", again, "--json") == 0
+    (cell,) = json.loads(capsys.readouterr().out)["cells"]
+    assert cell["seeds"] == 3
+
+
+def test_campaign_is_shown_by_its_results_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = campaign(tmp_path / "a", errors_m=(0.1, 0.3))
+    assert scenarios("table", folder, "--json") == 0
+    expected = capsys.readouterr().out
+    (folder / "landings.jsonl").unlink()
+    assert scenarios("table", folder, "--json") == 0
+    assert capsys.readouterr().out == expected
 
 
 def test_commands_load_no_numerics() -> None:
