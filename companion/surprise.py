@@ -22,14 +22,18 @@ from link.records import replace
 
 _BELIEF_PERIOD_NS = 100_000_000
 _KNOWN_STD_MAX_M_S = 1.0  # of a velocity that is a belief: in its first second an estimate knows no acceleration
+_SURPRISE_STDS = 2.5  # less was said to be possible: through an outage of 2 s a belief is off by 1 m/s
 _KEPT = 30  # beliefs: of 3 s, longer than any data are awaited
 _SURE_STD_MAX_M_S = 0.3  # of a speed that was driven; one fix's is 0.1
 _DRIVEN_KEPT = 150  # speeds: of 15 s, five times as long as an uneven driver keeps an acceleration
 _APART = 20  # speeds that are compared: 2 s, over which a fix's error counts little
 _APART_MAX_S = 4.0  # farther apart there was an outage
 
-Belief = tuple[int, float]
-"""UTC ns, and the horizontal speed that was believed then, m/s."""
+Belief = tuple[int, float, float]
+"""UTC ns, the horizontal speed that was believed then, m/s, and its standard deviation, m/s."""
+
+Driven = tuple[int, float]
+"""UTC ns, and the horizontal speed at that time, m/s."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,7 +51,7 @@ class Surprise:
     beliefs: tuple[Belief, ...] = ()
     speed_std_m_s: float = math.inf
     surprised_ns: int | None = None
-    driven: tuple[Belief, ...] = ()
+    driven: tuple[Driven, ...] = ()
     unevenness_m_s2: float = 0.0
 
 
@@ -65,12 +69,13 @@ def looked_back(surprise: Surprise, estimator: Estimator, memory: object, t_ns: 
     if newest_ns is None:
         return replace(surprise, beliefs=(), speed_std_m_s=math.inf)
     while surprise.beliefs and surprise.beliefs[0][0] <= newest_ns:
-        (then_ns, speed_m_s), *later = surprise.beliefs
+        (then_ns, speed_m_s, std_m_s), *later = surprise.beliefs
         surprise = replace(surprise, beliefs=tuple(later))
         known = estimator.estimate(memory, then_ns)
         if known is None or not _is_known(known):
             continue
-        if abs(_speed_m_s(known) - speed_m_s) > config.surprise_speed_m_s:
+        off_m_s = abs(_speed_m_s(known) - speed_m_s)
+        if off_m_s > max(config.surprise_speed_m_s, _SURPRISE_STDS * std_m_s):
             surprise = replace(surprise, surprised_ns=max(then_ns, surprise.surprised_ns or then_ns))
         if _std_m_s(known) < _SURE_STD_MAX_M_S:
             surprise = _with_driven(surprise, (then_ns, _speed_m_s(known)))
@@ -79,8 +84,9 @@ def looked_back(surprise: Surprise, estimator: Estimator, memory: object, t_ns: 
     now = estimator.estimate(memory, t_ns)
     if now is None or not _is_known(now):
         return replace(surprise, speed_std_m_s=math.inf)
-    beliefs = (*surprise.beliefs, (t_ns, _speed_m_s(now)))[-_KEPT:]
-    return replace(surprise, beliefs=beliefs, speed_std_m_s=_std_m_s(now))
+    std_m_s = _std_m_s(now)
+    beliefs = (*surprise.beliefs, (t_ns, _speed_m_s(now), std_m_s))[-_KEPT:]
+    return replace(surprise, beliefs=beliefs, speed_std_m_s=std_m_s)
 
 
 def may_surprise(surprise: Surprise, t_ns: int, config: DescentConfig) -> bool:
@@ -98,7 +104,7 @@ def drives_unevenly(surprise: Surprise, fix_age_s: float | None, config: Descent
     return is_late and surprise.unevenness_m_s2 > config.uneven_acceleration_m_s2
 
 
-def _with_driven(surprise: Surprise, newest: Belief) -> Surprise:
+def _with_driven(surprise: Surprise, newest: Driven) -> Surprise:
     driven = (*surprise.driven, newest)[-_DRIVEN_KEPT:]
     squares = [
         ((speed_m_s - before_m_s) / passed_s) ** 2

@@ -89,13 +89,13 @@ def pad_aim(
         reference: the virtual model now.
         feet_offset_m: of the reported position above the feet.
         config: heights and rates.
-        lowest_m: of the feet above the pad, where a descent ends for now; None for down to the pad.
+        lowest_m: of the feet above the pad, where a descent waits; None for one that goes on.
     """
     height_now_m = float(reference.position_enu_m[2] - pad.position_enu_m[0, 2]) - feet_offset_m
-    height, sink = _height_profile(phase, height_now_m, pad, reference, config)
-    if lowest_m is not None:
-        sink = np.where(height <= lowest_m, 0.0, sink)
-        height = np.maximum(height, lowest_m)
+    if lowest_m is None:
+        height, sink = _height_profile(phase, height_now_m, pad, reference, config)
+    else:  # no descent that ends there: to a target that sinks from wherever the drone is and soon stops it never gets
+        height, sink = np.full(len(pad.offset_s), lowest_m), np.zeros(len(pad.offset_s))
     position = pad.position_enu_m.copy()
     position[:, 2] += feet_offset_m + height
     velocity = pad.velocity_enu_m_s.copy()

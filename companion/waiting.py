@@ -14,12 +14,9 @@ _HELD_UP_M = 0.1  # above the height of waiting, down to which a descent sinks w
 
 
 def waits_at_m(memory: StepMemory, situation: Situation, config: CompanionConfig) -> float | None:
-    """Return how low above the pad a descent may go for now, None for down to the pad."""
-    relative = approach(situation)
-    if memory.phase is not Phase.DESCEND or relative is None:
-        return None
+    """Return how high above the pad a descent waits for now, None for one that goes on."""
     if _awaited(memory, situation, config) is not None:
-        return min(relative.height_m, config.descent.waiting_height_m)
+        return config.descent.waiting_height_m
     return config.descent.commit_height_m if waits_for_calm(memory, situation, config) else None
 
 

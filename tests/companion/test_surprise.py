@@ -103,6 +103,19 @@ def test_speeds_before_and_after_an_outage_are_not_compared() -> None:
     assert surprise.unevenness_m_s2 == 0.0
 
 
+@pytest.mark.parametrize(
+    ("off_m_s", "std_m_s", "surprises"),
+    [(0.8, 0.2, True), (0.6, 0.2, False), (0.8, 0.5, False), (1.3, 0.5, True)],
+    ids=["wrong", "nearly right", "vague, as was said", "wrong beyond what was said"],
+)
+def test_belief_surprises_by_more_than_it_was_said_to_be_off(
+    off_m_s: float, std_m_s: float, *, surprises: bool
+) -> None:
+    told: Any = Told(5.0, 0.01)
+    found = looked_back(Surprise(beliefs=((NOW_NS, 5.0 + off_m_s, std_m_s),)), told, NOW_NS, NOW_NS, DESCENT)
+    assert (found.surprised_ns is not None) is surprises
+
+
 def test_surprise_holds_for_its_time_and_no_longer() -> None:
     surprise = Surprise(surprised_ns=NOW_NS)
     hold_ns = round(DESCENT.surprise_hold_s * 1e9)
@@ -112,7 +125,7 @@ def test_surprise_holds_for_its_time_and_no_longer() -> None:
 
 
 def test_beliefs_end_with_the_estimate_that_they_were() -> None:
-    surprise = Surprise(beliefs=((NOW_NS, 5.0),), speed_std_m_s=0.1, surprised_ns=NOW_NS)
+    surprise = Surprise(beliefs=((NOW_NS, 5.0, 0.1),), speed_std_m_s=0.1, surprised_ns=NOW_NS)
     found = looked_back(surprise, estimator(EstimatorKind.IMM), None, NOW_NS, DESCENT)
     assert found == Surprise(surprised_ns=NOW_NS)
 
@@ -152,8 +165,13 @@ def test_speed_is_as_uncertain_as_it_is_told_and_unknown_once_it_is_lost(varianc
 
 
 def test_surprise_outlasts_a_clock_that_is_set() -> None:
-    known = ((NOW_NS, 5.0),)
-    surprise = Surprise(beliefs=known, speed_std_m_s=0.1, surprised_ns=NOW_NS, driven=known, unevenness_m_s2=0.5)
+    surprise = Surprise(
+        beliefs=((NOW_NS, 5.0, 0.1),),
+        speed_std_m_s=0.1,
+        surprised_ns=NOW_NS,
+        driven=((NOW_NS, 5.0),),
+        unevenness_m_s2=0.5,
+    )
     by_ns = 7_000_000_000
     assert at_other_time(StepMemory(surprise=surprise), by_ns).surprise == replace(
         surprise, beliefs=(), driven=(), surprised_ns=NOW_NS + by_ns

@@ -14,8 +14,8 @@ from companion.surprise import Surprise
 from companion.transitions import transitions
 from companion.waiting import waited_s, waits_at_m, why_held_up
 from link.messages import Vector3
-from tests.companion.facts import CONFIG, NOW_NS, braking_pad, drone_at, later, pad_at, progress, situation
-from tests.companion.world import Flight, reached
+from tests.companion.facts import CONFIG, GEAR_M, NOW_NS, braking_pad, drone_at, later, pad_at, progress, situation
+from tests.companion.world import PAD_HEIGHT_M, Flight, reached
 
 DESCENT = CONFIG.descent
 TICK_NS = 20_000_000
@@ -54,6 +54,15 @@ def _kept_surprised(flight: Flight, duration_s: float) -> None:
         flight.step()
         if flight.phase is not Phase.DESCEND:
             return
+
+
+def test_descent_that_waits_comes_to_rest_at_its_height() -> None:
+    flight = reached(Phase.DESCEND)
+    _kept_surprised(flight, 5.0)
+    for _ in range(10):
+        _kept_surprised(flight, 0.5)
+        feet_m = flight.own.position_enu_m[2] - GEAR_M - PAD_HEIGHT_M
+        assert feet_m == pytest.approx(WAITING_M, abs=0.03)
 
 
 def test_descent_outlasts_its_time_limit_above_a_vehicle_that_surprises_and_then_lands() -> None:
