@@ -1,6 +1,7 @@
 """What a view is told of a companion's inside: some of its records, published from a thread of their own.
 
-The messages are those of the recording: `own` 25 times a second, `estimate` and `forecast` 10 times, `link` once.
+The messages are those of the recording, by steps: at 50 steps a second, the default, `own` comes 25 times a second,
+`estimate` and `forecast` 10 times, `link` once.
 Where nobody subscribes to them nothing is encoded.
 """
 

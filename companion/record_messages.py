@@ -15,7 +15,7 @@ from link.payload_checks import PayloadError
 from link.ros_records import RosMessage, bytes_array, floats, ids_array, ros_message
 
 LONG_EVERY = 5
-"""Forecast, plan and estimate are recorded every so many steps, that is, 10 times a second."""
+"""Forecast, plan and estimate are recorded every so many steps: 10 times a second at 50 of them."""
 
 
 def input_messages(record: InputRecord, keys: Keys) -> Iterator[RosMessage]:

@@ -8,7 +8,7 @@ from companion.records import LinkRecord
 from link.messages import LandingStatus
 from link.recorder import BackgroundRecorder
 from link.screen import Screen
-from link.status_rows import Row, number
+from link.status_rows import link_rows, number
 
 _EVERY = 25  # steps: twice a second
 _CAPACITY = 2  # a terminal that is stopped gets nothing, and holds nobody up
@@ -50,17 +50,12 @@ class _Sink:
     def write(self, record: View) -> None:
         """Draw."""
         status, error_m, link = record
-        self._screen.show(status, [("behind its setpoint", number(error_m, "m")), *link_rows(link)])
+        codec = link.session.codec
+        rows = link_rows(
+            codec.messages_received, codec.messages_sent, codec.lost_messages, codec.bad_bytes, link.zenoh_bad_payloads
+        )
+        self._screen.show(status, [("behind its setpoint", number(error_m, "m")), *rows])
 
     def close(self) -> None:
         """Give the terminal back."""
         self._screen.stop()
-
-
-def link_rows(link: LinkRecord) -> list[Row]:
-    """Return how the links do."""
-    codec = link.session.codec
-    return [
-        ("messages in, out, lost", f"{codec.messages_received}, {codec.messages_sent}, {codec.lost_messages}"),
-        ("bad bytes, bad payloads", f"{codec.bad_bytes}, {link.zenoh_bad_payloads}"),
-    ]

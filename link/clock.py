@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-NANOSECONDS_PER_SECOND = 1_000_000_000
+from link.units import NS_PER_S
 
 MonotonicNs = Callable[[], int]
 
@@ -155,7 +155,7 @@ class SimulatedClock:
         if not self._ticks:
             raise RuntimeError("the simulated clock has not ticked yet")
         wall_ns, t_ns = self._ticks[-1]
-        age_ns = min(self._monotonic_ns() - wall_ns, round(EXTRAPOLATION_MAX_S * NANOSECONDS_PER_SECOND))
+        age_ns = min(self._monotonic_ns() - wall_ns, round(EXTRAPOLATION_MAX_S * NS_PER_S))
         self._shown_ns = max(self._shown_ns, t_ns + round(self.rate * age_ns))
         return self._shown_ns
 

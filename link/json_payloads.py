@@ -54,7 +54,8 @@ class _LandingStatus(_Report):
     phase: Annotated[str, Field(description="phase of the landing")]
     reason: Annotated[str, Field(description="why it waits, held off or aborted; empty if there is nothing to say")]
     relative_position_enu_m: Annotated[
-        Coordinates | None, Field(description="drone from the pad's centre, east north up, m; null if unknown")
+        Coordinates | None,
+        Field(description="of the drone's feet from the pad's centre, east north up, m; null if unknown"),
     ]
     relative_velocity_enu_m_s: Annotated[
         Coordinates | None, Field(description="drone against the pad, east north up, m/s; null if unknown")

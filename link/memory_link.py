@@ -5,7 +5,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-_NS_PER_S = 1e9
+from link.units import NS_PER_S
+
 _DRAWS = 6  # for each packet
 _BLOCK = 256  # packets whose draws are made at once
 
@@ -41,8 +42,8 @@ class MemoryLink:
     ) -> None:
         _check(delay_s=delay_s, jitter_s=jitter_s, loss=loss, duplication=duplication, corruption=corruption)
         self._draws = _draws(np.random.default_rng(seed))
-        self._delay_ns = round(delay_s * _NS_PER_S)
-        self._jitter_ns = round(jitter_s * _NS_PER_S)
+        self._delay_ns = round(delay_s * NS_PER_S)
+        self._jitter_ns = round(jitter_s * NS_PER_S)
         self._loss = loss
         self._duplication = duplication
         self._corruption = corruption
@@ -82,10 +83,6 @@ class MemoryLink:
         while self._waiting and self._waiting[0][0] <= t_ns:
             packets.append(heapq.heappop(self._waiting)[2])
         return packets
-
-    def next_due_ns(self) -> int | None:
-        """Tells when the next packet arrives, None when there is none on its way."""
-        return self._waiting[0][0] if self._waiting else None
 
     def _push(self, data: bytes, t_ns: int, draw: float) -> None:
         due_ns = t_ns + max(0, self._delay_ns + round(self._jitter_ns * (2.0 * draw - 1.0)))

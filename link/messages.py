@@ -134,7 +134,11 @@ class CommandReply:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LandingStatus:
-    """What the companion tells the world about the landing; None where it does not know."""
+    """What the companion tells the world about the landing; None where it does not know.
+
+    `relative_position_enu_m` is of the drone's feet from the pad's centre: east and north are those of the drone, up is
+    `height_above_pad_m`.
+    """
 
     stamp_ns: int
     phase: str

@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from math import hypot, isfinite
 
 from link.messages import Matrix3, Quaternion
-
-NANOSECONDS_PER_SECOND = 1_000_000_000
+from link.units import NS_PER_S
 
 _UNIT_TOLERANCE = 1e-3
 """Publishers that round to three decimals pass, quaternions that were never set do not."""
@@ -35,9 +34,9 @@ def t_ns_of(seconds: int, nanoseconds: int) -> int:
     Raises:
         PayloadError: If the stamp is before 1970 or its nanoseconds are not below one second.
     """
-    if seconds < 0 or not 0 <= nanoseconds < NANOSECONDS_PER_SECOND:
+    if seconds < 0 or not 0 <= nanoseconds < NS_PER_S:
         raise PayloadError(f"the stamp {seconds} s + {nanoseconds} ns is out of range")
-    return seconds * NANOSECONDS_PER_SECOND + nanoseconds
+    return seconds * NS_PER_S + nanoseconds
 
 
 def checked_quaternion(quaternion: Quaternion) -> Quaternion:

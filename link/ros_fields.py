@@ -10,13 +10,13 @@ from rosbags.typesys.stores import ros2_humble as ros
 
 from link.messages import Matrix3, Quaternion, Vector3
 from link.payload_checks import (
-    NANOSECONDS_PER_SECOND,
     PayloadError,
     check_finite,
     checked_covariance,
     checked_quaternion,
     t_ns_of,
 )
+from link.units import NS_PER_S
 
 Array = NDArray[np.float64]
 
@@ -38,7 +38,7 @@ class Conversion:
 
 def to_time(t_ns: int) -> ros.builtin_interfaces__msg__Time:
     """Return UTC nanoseconds as a stamp, PayloadError if ROS cannot hold them."""
-    seconds, nanoseconds = divmod(t_ns, NANOSECONDS_PER_SECOND)
+    seconds, nanoseconds = divmod(t_ns, NS_PER_S)
     if not 0 <= seconds <= _SECONDS_MAX:
         raise PayloadError(f"t_ns {t_ns} is out of range")
     return ros.builtin_interfaces__msg__Time(seconds, nanoseconds)

@@ -21,6 +21,14 @@ def status_rows(status: LandingStatus | None) -> list[Row]:
     ]
 
 
+def link_rows(received: int, sent: int, lost: int, bad_bytes: int, bad_payloads: int) -> list[Row]:
+    """Return how the companion's links did: MAVLink messages, bytes that were none, and payloads that were refused."""
+    return [
+        ("messages in, out, lost", f"{received}, {sent}, {lost}"),
+        ("bad bytes, bad payloads", f"{bad_bytes}, {bad_payloads}"),
+    ]
+
+
 def number(value: float | None, unit: str) -> str:
     """Return a value with its unit, a dash for an unknown one."""
     return "-" if value is None else f"{value:.2f} {unit}"

@@ -71,11 +71,6 @@ class ZenohSession:
         """Close the session."""
         self.close()
 
-    @property
-    def peer_count(self) -> int:
-        """How many other sessions this one is connected to."""
-        return len(self._session.info.peers_zid()) + len(self._session.info.routers_zid())
-
     def publish(self, key: str, payload: bytes, encoding: str) -> None:
         """Send `payload` to whoever subscribes to `key`; `encoding` as of `link.cdr.encoding_of`."""
         self._publisher(key, encoding).put(payload)

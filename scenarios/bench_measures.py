@@ -18,7 +18,6 @@ from link.payload_checks import PayloadError
 from link.zenoh_session import Inbox, ZenohOptions, open_session
 from scenarios.processes import MODULES, ProcessGroup, Program, free_tcp_endpoint, free_udp_port
 
-_NS_PER_S = 1e9
 _DEADLINE_S = 60.0
 _POLL_S = 0.005
 _SETTLING_S = 1.0

@@ -14,11 +14,11 @@ from companion.record_folder import recording_sink
 from companion.records import InputRecord
 from link.keys import Keys
 from link.recorder import BackgroundRecorder
+from link.units import NS_PER_S
 from scenarios.config import Scenario
 from scenarios.lockstep import Lockstep
 from scenarios.replay import give
 
-_NS_PER_S = 1e9
 _LOOK_S = 0.001
 _BLOCK = 25  # steps, after which the recorder catches up: in flight it has most of the time for itself
 
@@ -59,7 +59,7 @@ def recording_cost(scenario: Scenario, seed: int, folder: Path) -> dict[str, flo
     began_ns = time.process_time_ns() - time.thread_time_ns()
     steps = _steps(inputs.records, nodes, recorder)
     recorder.close()
-    writer_s = (time.process_time_ns() - time.thread_time_ns() - began_ns) / _NS_PER_S
+    writer_s = (time.process_time_ns() - time.thread_time_ns() - began_ns) / NS_PER_S
     return {
         "step_ratio": round(statistics.median(recorded / plain for plain, recorded in steps), 4),
         "writer_cpu_share": round(writer_s / flight.recording.elapsed_s, 4),

@@ -40,11 +40,6 @@ def list_scenarios() -> list[Entry]:
     return [Entry(name=name, description=table["description"]) for name, table in sorted(_scenarios().items())]
 
 
-def list_presets(section: str) -> list[str]:
-    """Return the names of the presets of `section`: sensors, wind, link or vehicle."""
-    return sorted(_presets(section))
-
-
 def load_scenario(name_or_path: str) -> Scenario:
     """Return the scenario called `name_or_path`, or the one in that TOML file.
 

@@ -125,6 +125,11 @@ def ground_vehicle(
     keys = Keys(namespace, vehicle, drone)
     options = zenoh_options(mode, connect, listen, multicast, zenoh_config, listens=True)
     if scenario is not None:
+        if any(one is not None for one in (pad, pad_size, pad_height, antenna_to_pad)):
+            raise UserError(
+                "--pad and what else describes a pad are for a real vehicle: leave them out with --scenario, whose "
+                "file says pad_size_m, roof_height_m and antenna_flu_m of its [vehicle]"
+            )
         simulation = _Simulation(scenario, seed, depart_at_once, use_sim_time, timeout)
         _drive(simulation, keys, options)
         return

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from companion.phases import FLYING_PHASES, Phase
 from link.messages import BodyTruth, LandingStatus, RotorTruth
+from link.units import NS_PER_S
 from scenarios.accuracy import EstimateError, Nis
 
 _AFTER_MOTORS_OFF_NS = 2_500_000_000  # the score looks at the drone 2 s after
@@ -11,7 +12,6 @@ _AFTER_GIVING_UP_NS = 10_000_000_000  # for a drone that aborts to brake, and to
 _TO_BREAK_OFF_S = 30.0  # for a drone that is called off to climb away and stand
 _GIVEN_UP = frozenset({Phase.HOLD.value, Phase.PILOT.value})
 _FLYING = frozenset(phase.value for phase in FLYING_PHASES)
-_NS_PER_S = 1e9
 TIME_LIMIT = "time limit"
 
 
@@ -51,7 +51,7 @@ class Recording:
     @property
     def elapsed_s(self) -> float:
         """Simulated time since the drone's first sample."""
-        return (self.drone[-1].t_ns - self.drone[0].t_ns) / _NS_PER_S if self.drone else 0.0
+        return (self.drone[-1].t_ns - self.drone[0].t_ns) / NS_PER_S if self.drone else 0.0
 
     @property
     def status(self) -> LandingStatus | None:
@@ -64,7 +64,7 @@ class Recording:
         for status in self.statuses:
             # Before the clocks are mapped a status bears the companion's own time.
             if status.stamp_ns >= self.drone[0].t_ns:
-                times.setdefault(status.phase, (status.stamp_ns - self.drone[0].t_ns) / _NS_PER_S)
+                times.setdefault(status.phase, (status.stamp_ns - self.drone[0].t_ns) / NS_PER_S)
         return times
 
 

@@ -21,6 +21,7 @@ from link.local_frame import LocalFrame, Projection
 from link.mcap_reader import RecordingHead, read_head, read_messages, recording_files
 from link.ros_records import fields_of
 from link.toml_config import validated
+from link.units import NS_PER_S
 from scenarios.config import Scenario
 from scenarios.truth_file import STEM as TRUTH
 from scenarios.truth_file import read_truth
@@ -30,7 +31,6 @@ from sim_autopilot.local_places import Origin, local_from_world
 
 Array = NDArray[np.float64]
 Fields = dict[str, Any]
-_NS_PER_S = 1e9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -108,7 +108,7 @@ def read_run(folder: Path) -> RunData:
     truth = read_truth(folder, keys)
     log = truth_log(truth.drone, truth.vehicle, truth.rotors)
     start_ns = int(log.t_ns[0])
-    t_s = (log.t_ns - start_ns) / _NS_PER_S
+    t_s = (log.t_ns - start_ns) / NS_PER_S
     antenna = log.vehicle_position_enu_m + _turned(log, scenario.vehicle.antenna_flu_m)
     steps, estimates = _beliefs(folder, keys)
     return RunData(
@@ -151,7 +151,7 @@ def _beliefs(folder: Path, keys: Keys) -> tuple[list[Fields], list[Fields]]:
 
 def _time_s(fields: Fields, start_ns: int) -> float:
     t_ns = int(fields["header.stamp.sec"]) * 1_000_000_000 + int(fields["header.stamp.nanosec"])
-    return (t_ns - start_ns) / _NS_PER_S
+    return (t_ns - start_ns) / NS_PER_S
 
 
 def _phases(steps: list[Fields], start_ns: int, end_s: float) -> tuple[PhaseSpan, ...]:

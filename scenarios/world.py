@@ -10,11 +10,10 @@ from link.keys import Keys
 from link.mavlink.transports import Transport
 from link.messages import BodyTruth, RotorTruth
 from link.publication import Publication
+from link.units import NS_PER_S
 from link.zenoh_session import ZenohSession
 from scenarios.config import Scenario
 from scenarios.simulation import STEP_NS, Simulation, SimulationOutputs
-
-_NS_PER_S = 1e9
 
 
 class WorldLoop:
@@ -60,7 +59,7 @@ class WorldLoop:
     def _listen(self, clock: ScaledClock) -> None:
         """Take what the companion sends until the next step is due."""
         while True:
-            left_s = (self._simulation.t_ns + STEP_NS - clock.now_ns()) / _NS_PER_S
+            left_s = (self._simulation.t_ns + STEP_NS - clock.now_ns()) / NS_PER_S
             data = self._transport.receive(max(clock.wall_s(left_s), 0.0))
             answer = self._simulation.receive(data) if data else b""
             if answer:

@@ -5,6 +5,7 @@ from types import MappingProxyType
 
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
+from link.units import NS_PER_S
 from sim_autopilot.file_store import Shown
 from sim_autopilot.flight_log import Row
 from sim_autopilot.ftp import answer, burst_on
@@ -13,8 +14,6 @@ from sim_autopilot.logs import Logs, asked_for, entries, is_due, logged, pieces,
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.status_texts import status_text
 from sim_autopilot.telemetry_motion import attitude, global_position_int, local_position_ned
-
-_NS_PER_S = 1_000_000_000
 
 Result = tuple[AutopilotMemory, tuple[Message, ...]]
 
@@ -49,7 +48,7 @@ def log_flight(memory: AutopilotMemory, config: AutopilotConfig) -> AutopilotMem
     if not is_due(logs, memory.now.boot_ns, armed=armed):
         return memory
     return _with_logs(
-        memory, logged(logs, log_row(memory, config), memory.now.t_ns // _NS_PER_S, config.firmware.logs, armed=armed)
+        memory, logged(logs, log_row(memory, config), memory.now.t_ns // NS_PER_S, config.firmware.logs, armed=armed)
     )
 
 

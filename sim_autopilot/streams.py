@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-_NS_PER_S = 1_000_000_000
+from link.units import NS_PER_S
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,7 +37,7 @@ def default_streams(streams: Iterable[Stream], rates_hz: Mapping[int, float] | N
     rates = {one.message_id: one.rate_hz if rates_hz is None else rates_hz.get(one.message_id, 0.0) for one in streams}
     running = {message_id: rate_hz for message_id, rate_hz in rates.items() if rate_hz > 0.0}
     return Streams(
-        interval_ns={message_id: round(_NS_PER_S / rate_hz) for message_id, rate_hz in running.items()},
+        interval_ns={message_id: round(NS_PER_S / rate_hz) for message_id, rate_hz in running.items()},
         next_ns=dict.fromkeys(running, 0),
     )
 

@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-_NS_PER_S = 1e9
+from link.units import NS_PER_S
+
 _RATE_MIN = 1e-3  # of y in x: a clock that stands still has no inverse
 
 
@@ -44,7 +45,7 @@ class ClockLine:
 
     def std_ns(self, x_ns: int) -> float:
         """Standard deviation of `y_ns(x_ns)`, which grows away from the pairs."""
-        s = (x_ns - self.reference_ns) / _NS_PER_S
+        s = (x_ns - self.reference_ns) / NS_PER_S
         variance_ns2 = (
             self.offset_variance_ns2 + 2.0 * s * self.covariance_ns2_per_s + s * s * self.drift_variance_ns2_per_s2
         )
@@ -64,11 +65,11 @@ def fit_clock_line(pairs: Sequence[ClockPair], drift: float, drift_std: float) -
     """
     last = pairs[-1]
     reference_offset_ns = last.y_ns - last.x_ns
-    drift_ns_per_s = drift * _NS_PER_S
-    prior_weight = (drift_std * _NS_PER_S) ** -2
+    drift_ns_per_s = drift * NS_PER_S
+    prior_weight = (drift_std * NS_PER_S) ** -2
     w = wx = wxx = wy = wxy = 0.0
     for x_ns, y_ns, std_ns in pairs:
-        x_s = (x_ns - last.x_ns) / _NS_PER_S
+        x_s = (x_ns - last.x_ns) / NS_PER_S
         rest_ns = y_ns - x_ns - reference_offset_ns - drift_ns_per_s * x_s
         weight = std_ns**-2
         w += weight
@@ -81,7 +82,7 @@ def fit_clock_line(pairs: Sequence[ClockPair], drift: float, drift_std: float) -
     return ClockLine(
         reference_ns=last.x_ns,
         offset_ns=reference_offset_ns + round((wxx * wy - wx * wxy) / determinant),
-        drift=drift + (w * wxy - wx * wy) / determinant / _NS_PER_S,
+        drift=drift + (w * wxy - wx * wy) / determinant / NS_PER_S,
         offset_variance_ns2=wxx / determinant,
         covariance_ns2_per_s=-wx / determinant,
         drift_variance_ns2_per_s2=w / determinant,

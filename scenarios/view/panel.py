@@ -10,11 +10,11 @@ import viser
 from viser import uplot
 
 from link.messages import Command, CommandReply
-from link.status_rows import number, status_rows
+from link.status_rows import link_rows, number, status_rows
 from scenarios.view.history import NAMES, History
 from scenarios.view.recorded import RecordedSource
 from scenarios.view.scene import BLUE, FOLLOWED, GREEN, GREY, ORANGE, Scene
-from scenarios.view.state import LinkCounters, ViewState
+from scenarios.view.state import ViewState
 
 _POINTS_MIN, _POINTS_MAX = 2, 300
 _RATES = ("0.25", "0.5", "1", "2", "4")
@@ -162,13 +162,9 @@ def _rows(state: ViewState, t_s: float) -> list[tuple[str, str]]:
     elif state.estimate is not None:
         vehicle_m_s = math.hypot(*(float(value) for value in state.estimate.velocity_enu_m_s))
     rows.append(("vehicle's speed", number(vehicle_m_s, "m/s")))
-    return rows + _link_rows(state.link)
-
-
-def _link_rows(link: LinkCounters | None) -> list[tuple[str, str]]:
-    if link is None:
-        return []
-    bad = link.bad_bytes + link.bad_payloads
-    return [
-        ("messages in, out, lost, bad", f"{link.messages_received}, {link.messages_sent}, {link.lost_messages}, {bad}")
-    ]
+    if state.link is not None:
+        link = state.link
+        rows += link_rows(
+            link.messages_received, link.messages_sent, link.lost_messages, link.bad_bytes, link.bad_payloads
+        )
+    return rows

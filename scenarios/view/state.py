@@ -14,9 +14,9 @@ from link import cdr, json_payloads
 from link.keys import Keys
 from link.messages import BodyTruth, LandingStatus, PadGeometry, Plan, Vector3
 from link.ros_records import PACKAGE, fields_of
+from link.units import NS_PER_S
 
 Array = NDArray[np.float64]
-_NS_PER_S = 1_000_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -198,7 +198,7 @@ def _step(payload: bytes) -> dict[str, Any]:
 
 
 def _stamp_ns(fields: dict[str, Any]) -> int:
-    return int(fields["header.stamp.sec"]) * _NS_PER_S + int(fields["header.stamp.nanosec"])
+    return int(fields["header.stamp.sec"]) * NS_PER_S + int(fields["header.stamp.nanosec"])
 
 
 def _vector(values: Array) -> Vector3 | None:

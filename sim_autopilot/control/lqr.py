@@ -116,11 +116,6 @@ def measured_step(t_s: Array, output: Array) -> StepResponse:
     return StepResponse(settling_s=settling, overshoot=max(0.0, float(output.max()) - 1.0))
 
 
-def step_response_linear(airframe: Airframe, output: int) -> StepResponse:
-    """Return how the report's closed linear loop answers a unit step of output 0 to 3 (x, y, z, psi)."""
-    return measured_step(*linear_step(airframe, output))
-
-
 def linear_step(airframe: Airframe, output: int, *, step_s: float = 1e-3, end_s: float = 6.0) -> tuple[Array, Array]:
     """Return time (n,) and the answer (n,) of the report's closed linear loop to a unit step of an output, exactly."""
     A, B, C = linear_model(airframe)

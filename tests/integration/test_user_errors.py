@@ -52,6 +52,8 @@ MISTAKES = [
     ("scenarios", "world straight_5 --zenoh-config zenoh.json5", ["zenoh.json5", "1:9"]),
     # scenarios
     ("ground-vehicle", "", ["--scenario", "scenarios list"]),
+    ("ground-vehicle", "--scenario straight_5 --pad none.toml", ["--pad", "leave them out with --scenario"]),
+    ("ground-vehicle", "--scenario straight_5 --pad-height 1.0", ["--pad", "leave them out with --scenario"]),
     ("ground-vehicle", "--scenario strait_5", ["'strait_5'", "'straight_5'", "scenarios list"]),
     ("ground-vehicle", "--scenario straight_5+sensors=rtkk", ["'rtkk'", "'rtk'"]),
     ("scenarios", "run strait_5", ["'strait_5'", "'straight_5'"]),

@@ -3,10 +3,11 @@ from pathlib import Path
 import pytest
 
 from link.errors import UserError
-from scenarios.catalogue import list_presets, list_scenarios, load_scenario
+from scenarios.catalogue import list_scenarios, load_scenario
 from scenarios.lockstep import Lockstep
 from scenarios.simulation import STEP_NS
 from scenarios.track_config import MovingTrack, WaypointsTrack
+from tests.scenarios.presets import list_presets
 
 BENCHMARK = [
     "static",

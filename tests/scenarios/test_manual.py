@@ -11,7 +11,7 @@ from companion.config import CompanionConfig
 from companion.phases import TRANSITIONS, Phase
 from link.cdr import ROS_TYPES
 from link.toml_config import StrictModel
-from scenarios.catalogue import list_presets, list_scenarios, load_scenario
+from scenarios.catalogue import list_scenarios, load_scenario
 from scenarios.config import Scenario
 from scenarios.lockstep import Lockstep
 from scenarios.manual.commands import PROGRAMS, helps
@@ -23,6 +23,7 @@ from scenarios.manual.units import unit_of
 from scenarios.outcome import scored
 from scenarios.score import Tier
 from sim_autopilot.config import SimAutopilotConfig
+from tests.scenarios.presets import list_presets
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"

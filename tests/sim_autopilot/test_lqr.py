@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sim_autopilot.control.kinds import ControllerKind
-from sim_autopilot.control.lqr import linear_model, measured_step, report_gains, step_response_linear
+from sim_autopilot.control.lqr import linear_model, linear_step, measured_step, report_gains
 from sim_autopilot.data import Reference
 from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, REPORT_AIRFRAME
 from sim_autopilot.plant import PlantConfig
@@ -28,7 +28,7 @@ def stepping(axis: int, size: float, yaw: float = 0.0) -> Callable[[float], Refe
 def test_linear_loop_reproduces_the_published_step_responses(
     output: int, settling_s: float, recomputed_s: float, overshoot: float
 ) -> None:
-    response = step_response_linear(REPORT_AIRFRAME, output)
+    response = measured_step(*linear_step(REPORT_AIRFRAME, output))
     assert response.settling_s == pytest.approx(settling_s, abs=0.01)
     assert response.settling_s == pytest.approx(recomputed_s, abs=0.002)
     assert response.overshoot == pytest.approx(overshoot, abs=0.001)
@@ -47,7 +47,7 @@ def test_lqr_flies_small_steps_as_linear_theory_says(axis: int) -> None:
     flight = flown(LQR, hovering(LQR, (0, 0, 20)), stepping(axis, size), 5.0)
     start = 20.0 if axis == 2 else 0.0
     flew = measured_step(flight.t_s, (flight.position_m[:, axis] - start) / size)
-    theory = step_response_linear(REPORT_AIRFRAME, axis)
+    theory = measured_step(*linear_step(REPORT_AIRFRAME, axis))
     assert flew.settling_s == pytest.approx(theory.settling_s, abs=0.03)
     assert flew.overshoot == pytest.approx(theory.overshoot, abs=0.01)
 
