@@ -44,6 +44,11 @@ def _token_lost(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
     return s.vehicle_alive is False and silent
 
 
+def is_stamped_ahead(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    """Return whether the newest fix came before it was taken: the vehicle's clock, or ours, is wrong."""
+    return s.fix_age_on_arrival_s is not None and s.fix_age_on_arrival_s < -c.abort.fix_ahead_max_s
+
+
 def own_unknown(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
     """Return whether nobody knows where the drone is."""
     return s.drone is None
@@ -121,6 +126,7 @@ ABORT_TESTS = (
     Test("vehicle data too old", LANDING_PHASES, fix_too_old, lambda _: 0.0),
     Test("vehicle position too uncertain", NEAR_PHASES, is_uncertain, lambda c: c.abort.cone_hold_s),
     Test("vehicle's link lost", LANDING_PHASES, _token_lost, lambda _: 0.0),
+    Test("vehicle's clock is ahead", LANDING_PHASES, is_stamped_ahead, lambda c: c.abort.fix_ahead_hold_s),
     Test("own position too old", LANDING_PHASES, own_unknown, lambda _: 0.0),
     Test("own attitude too old", LANDING_PHASES, attitude_unknown, lambda _: 0.0),
     Test(HEADING_UNKNOWN, frozenset({Phase.DESCEND}), not_placed, lambda _: 0.0),

@@ -164,6 +164,8 @@ class AbortConfig(StrictModel):
     """The abort tests and the climb after one."""
 
     fix_age_max_s: Positive = 1.0
+    fix_ahead_max_s: NotNegative = 0.05  # so far in the future a fix may be stamped: what clocks err by
+    fix_ahead_hold_s: Positive = 1.0  # each fix of that time is; a late or early one says nothing
     own_age_max_s: Positive = 0.5  # of the drone's own report; 25 of them in a row are missing then
     position_std_max_m: Positive = 1.5
     tracking_error_max_m: Positive = 2.5  # of the drone behind its setpoint

@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from companion.conditions import fix_too_old
+from companion.conditions import fix_too_old, is_stamped_ahead
 from companion.config import CompanionConfig
 from companion.pad_reach import is_too_small
 from companion.phases import Phase
@@ -89,6 +89,11 @@ def _lacks_geoid(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
     return s.autopilot.frame is not None and not s.autopilot.geoid_known
 
 
+def _stamped_ahead(s: Situation, _: CompanionConfig) -> str:
+    ahead_s = -(s.fix_age_on_arrival_s or 0.0)
+    return f"vehicle's fixes come {ahead_s:.2f} s before their stamps: set its clock by GNSS or NTP, or the autopilot's"
+
+
 def _is_warned(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
     return s.autopilot.warns
 
@@ -99,6 +104,10 @@ def _warned(_: Situation, __: CompanionConfig) -> str:
 
 # An estimate that has just begun jumps: what is said of the vehicle must hold for a while.
 OBSTACLES = (
+    Obstacle(
+        Test("vehicle's stamps are ahead", _BEFORE_A_CHASE, is_stamped_ahead, lambda c: c.abort.fix_ahead_hold_s),
+        _stamped_ahead,
+    ),
     Obstacle(Test("vehicle too fast", _BEFORE_A_CHASE, _is_too_fast, lambda c: c.chase.driving_hold_s), _too_fast),
     Obstacle(Test("vehicle drives too far", _BEFORE_A_CHASE, _is_too_far, lambda c: c.chase.driving_hold_s), _too_far),
     Obstacle(

@@ -6,6 +6,7 @@ import numpy as np
 
 from companion.autopilots.driver import AutopilotView, DriverMemory
 from companion.data import Array
+from companion.fix_stamps import FixStamps
 from companion.reference import Tracking
 from companion.step_data import StepMemory
 from companion.surprise import Surprise
@@ -59,6 +60,7 @@ def at_other_time(memory: StepMemory, by_ns: int) -> StepMemory:
         reference_ns=memory.reference_ns + by_ns,
         tracking=_tracking_at_other_time(memory.tracking, by_ns),
         sway=Sway(),
+        fix_stamps=FixStamps(),
         surprise=_surprise_at_other_time(memory.surprise, by_ns),
     )
 

@@ -55,6 +55,7 @@ class Situation:
         pad: now and over the horizon.
         feet_offset_m: of the drone's reported position above its feet.
         fix_age_s: since the newest accepted fix was taken.
+        fix_age_on_arrival_s: of the newest accepted fix when it was taken in.
         vehicle_alive: its liveliness token; None when it never showed one.
         reference: the virtual model that the setpoints follow.
         tracking_error_m: distance of the drone from where it was asked to be at that time.
@@ -76,6 +77,7 @@ class Situation:
     reference: ReferenceState | None
     tracking_error_m: float
     waiting_point_enu_m: Array | None
+    fix_age_on_arrival_s: float | None = None
     range_height_m: float | None = None
     range_carried_m: float | None = None
     speed_std_m_s: float = math.inf

@@ -8,6 +8,7 @@ from companion.conditions import HELD_UP
 from companion.config import CompanionConfig
 from companion.contact import may_force_motors_off, signs_of
 from companion.data import Forecast, OwnState
+from companion.fix_stamps import with_newest
 from companion.flying import fly, has_free_place, setpoint
 from companion.pad import PadPath, pad_path
 from companion.pad_height import pad_raised_m, with_pad_raised
@@ -80,7 +81,8 @@ def _estimate(memory: StepMemory, inputs: StepInputs, system: System) -> StepMem
         learn = system.config.corrects_lag and flies_place
         tracking = compare(tracking, inputs.own, learn=learn)
     surprise = looked_back(memory.surprise, system.estimator, estimator, inputs.t_ns, system.config.descent)
-    return replace(memory, estimator=estimator, tracking=tracking, surprise=surprise)
+    stamps = with_newest(memory.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns)
+    return replace(memory, estimator=estimator, tracking=tracking, surprise=surprise, fix_stamps=stamps)
 
 
 def _pad(memory: StepMemory, inputs: StepInputs, system: System) -> tuple[StepMemory, PadPath | None]:
@@ -108,6 +110,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
         pad=pad,
         feet_offset_m=system.config.touchdown.gear_height_m,
         fix_age_s=None if newest_ns is None else (inputs.t_ns - newest_ns) * 1e-9,
+        fix_age_on_arrival_s=memory.fix_stamps.age_on_arrival_s,
         vehicle_alive=inputs.vehicle_alive,
         reference=memory.reference,
         tracking_error_m=memory.tracking.error_m,

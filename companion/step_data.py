@@ -10,6 +10,7 @@ from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, Autopilo
 from companion.config import CompanionConfig
 from companion.data import Array, FlightLimits, Measurement, OwnState, Setpoint
 from companion.estimation.estimator import Estimator
+from companion.fix_stamps import FixStamps
 from companion.phases import Phase
 from companion.planning.guidance import Guidance, PlanResult, ReferenceState
 from companion.reference import Tracking
@@ -109,6 +110,7 @@ class StepMemory:
         tracking: how the drone follows it.
         sway: how hard the drone leans.
         surprise: how the vehicle drives against what was expected.
+        fix_stamps: whether its fixes come from the future.
         stopped_by_pad: the contact was a jolt.
         held: since when each test has been true.
         obstacle: name of what makes a landing impossible, and the sentence that told it; None without one.
@@ -140,6 +142,7 @@ class StepMemory:
     tracking: Tracking = field(default_factory=Tracking)
     sway: Sway = field(default_factory=Sway)
     surprise: Surprise = field(default_factory=Surprise)
+    fix_stamps: FixStamps = field(default_factory=FixStamps)
     stopped_by_pad: bool = False
     held: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
     obstacle: tuple[str, str] | None = None

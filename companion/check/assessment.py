@@ -46,7 +46,6 @@ _BATTERY_SPARE = 0.1  # beyond what no landing is begun below
 _BATTERY_GOOD = 0.3  # likewise
 _FIX_RATE_MIN_HZ = 4.0
 _FIX_AGE_SHARE = 0.5  # of what aborts a landing
-_FIX_AGE_MIN_S = -0.05  # a stamp from the future: somebody's clock is wrong
 _FIX_STD_GOOD_M = 0.3
 
 
@@ -174,13 +173,13 @@ def _vehicle(seen: VehicleFacts, limits: AbortConfig) -> list[Finding]:
     )
     level = _when(seen.rate_hz >= _FIX_RATE_MIN_HZ, Level.WARN)
     rate = _graded("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, "set its receiver to 5 Hz or more")
-    return [rate, _vehicle_age(seen, limits.fix_age_max_s), _vehicle_accuracy(seen, limits.position_std_max_m), pad]
+    return [rate, _vehicle_age(seen, limits), _vehicle_accuracy(seen, limits.position_std_max_m), pad]
 
 
-def _vehicle_age(seen: VehicleFacts, age_max_s: float) -> Finding:
+def _vehicle_age(seen: VehicleFacts, limits: AbortConfig) -> Finding:
     if seen.age_s is None:
         return _graded("vehicle age", "unknown", Level.WARN, "needs the autopilot's time of day")
-    is_fit = _FIX_AGE_MIN_S <= seen.age_s <= _FIX_AGE_SHARE * age_max_s
+    is_fit = -limits.fix_ahead_max_s <= seen.age_s <= _FIX_AGE_SHARE * limits.fix_age_max_s
     advice = "set its clock by GNSS or NTP, or use a faster link"
     return _graded("vehicle age", f"{1e3 * seen.age_s:.0f} ms", _when(is_fit, Level.FAIL), advice)
 

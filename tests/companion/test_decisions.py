@@ -50,6 +50,7 @@ UNSAFE: dict[str, Situation] = {
     "vehicle's link lost": replace(
         situation(), vehicle_alive=False, fix_age_s=CONFIG.abort.alive_lost_fix_age_max_s + 0.01
     ),
+    "vehicle's clock is ahead": replace(situation(), fix_age_on_arrival_s=-CONFIG.abort.fix_ahead_max_s - 0.01),
     "own position too old": replace(situation(), drone=None),
     "own attitude too old": replace(situation(), drone=replace(drone_at(1.5, pad=pad_at()), attitude_known=False)),
     "vehicle heading unknown": situation(pad=pad_at(placed=False)),

@@ -44,6 +44,8 @@ def test_the_aborts_limits_are_the_defaults() -> None:
         f"the last fix is older than {config.abort.alive_lost_fix_age_max_s:g} s",
         f"no better than {config.abort.position_std_max_m:g} m",
         f"{config.abort.own_age_max_s:g} s without a position",
+        f"for {config.abort.fix_ahead_hold_s:g} s each of its fixes",
+        f"more than {config.abort.fix_ahead_max_s:g} s before its stamp",
         f"{config.abort.tracking_error_max_m:g} m behind for {config.abort.tracking_hold_s:g} s",
         f"{config.descent.cone_radius_at_pad_m:g} m beside the pad's middle, and {config.descent.cone_slope:g} m more",
         f"more than {config.abort.near_speed_max_m_s:g} m/s",

@@ -112,6 +112,7 @@ class Flight:
     own_is_silent: bool = False
     alive: bool | None = True
     leaving: bool = False
+    stamps_ahead_s: float = 0.0
 
     def __post_init__(self) -> None:
         self.memory = StepMemory()
@@ -154,7 +155,7 @@ class Flight:
             autopilot=self.view,
             driver=Px4Driver(),
             acknowledgements=tuple(self.acknowledgements),
-            measurements=(fix(self.t_ns),) if self.sends_fixes else (),
+            measurements=(fix(self.t_ns + round(self.stamps_ahead_s * 1e9)),) if self.sends_fixes else (),
             vehicle_alive=self.alive,
             pad=self.pad,
             command=command,
