@@ -1,4 +1,4 @@
-"""A landing a kilometre from the autopilot's origin, where its local frame is metres beside a tangent plane."""
+"""Landings a kilometre from the autopilot's origin, metres beside a tangent plane, and across the antimeridian."""
 
 import pytest
 
@@ -42,3 +42,17 @@ def test_a_landing_a_kilometre_from_the_origin_is_as_good_as_one_beside_it(firmw
     frame = run.simulation.autopilot.memory.origin.frame
     local = local_from_geodetic(frame, *geodetic_from_enu(datum_of(scenario.datum), contact))
     assert abs(local[0] - contact[0]) > beside_m  # without the projection it would have been flown so far beside
+
+
+@pytest.mark.parametrize("firmware", ["px4", "ardupilot"])
+def test_a_landing_across_the_antimeridian_is_as_good_as_one_elsewhere(firmware: str) -> None:
+    scenario = load_scenario(f"straight_5+firmware={firmware}")
+    datum = scenario.datum.model_copy(update={"latitude_deg": -77.85, "longitude_deg": 179.9999})  # 2.3 m west of it
+    run = Lockstep(scenario.model_copy(update={"datum": datum}), 1)
+    ended = run.run()
+    result = result_table(scenario, 1, run.recording, ended)
+    places = [geodetic_from_enu(datum_of(datum), truth.position_enu_m)[1] for truth in run.recording.drone]
+    assert min(places) < 0.0 < max(places)  # it has flown on both sides
+    assert result["tier"] == "S3"
+    assert result["horizontal_error_m"] < 0.2
+    assert result["position_rmse_m"] < 0.05
