@@ -8,7 +8,7 @@ Noise: white normal, and first-order Gauss-Markov for a bias; standard deviation
 
 import heapq
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -174,6 +174,12 @@ class SensorSuite:
         if config.imu is not None:
             self._on_vehicle.append(_ImuSensor(config.imu, seed))
         self._pattern = None if config.pattern is None else _PatternSensor(config.pattern, seed, mounting=mounting)
+
+    def set_clock(self, ahead_s: float) -> None:
+        """Set the vehicle's clock ahead by `ahead_s`: what is taken from now on is stamped by it."""
+        self._offset_s += ahead_s
+        if self._clock is not None:
+            self._clock = replace(self._clock, offset_s=self._offset_s)
 
     def step(self, t_ns: int, vehicle: VehicleState, drone: BodyTruth | None) -> list[Sample]:
         """Take the samples that are due at `t_ns` and return those that leave by then, in the order of leaving."""

@@ -55,6 +55,10 @@ class VehicleNode:
         self._publishes_truth = publishes_truth
         self._truth_due_ns = 0
 
+    def set_clock(self, ahead_s: float) -> None:
+        """Set the vehicle's clock ahead by `ahead_s`."""
+        self._sensors.set_clock(ahead_s)
+
     def step(self, t_ns: int, drone: BodyTruth | None) -> list[Publication]:
         """Return what is to be published at `t_ns`, truth first; a time that has not advanced yields nothing.
 

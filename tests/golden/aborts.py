@@ -23,6 +23,7 @@ _ANTENNA_OVER_PAD = {"antenna_flu_m": (0.0, 0.0, 1.6)}  # no heading is needed t
 _RAISED_M = 3.0
 _BESIDE_M = 0.4
 _LOW_M = 0.55  # of the drone above the roof: its feet are 0.43 m above
+_AHEAD_S = 0.3
 _LIMIT_M_S = 4.0  # less than the vehicle's 5 m/s
 _PATIENCE_S = 6.0  # from the fault to the abort
 _CLIMB_S = 12.0  # a little more than the abort's own time limit
@@ -109,9 +110,20 @@ def _token_is_lost(flight: FaultFlight) -> None:
 
 
 def _own_position_stops(flight: FaultFlight) -> None:
-    number = mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED
+    _stream_stops(flight, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED)
+
+
+def _stream_stops(flight: FaultFlight, number: int) -> None:
     interval = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL
     flight.tell(mavlink.MAVLink_command_long_message(1, 1, interval, 0, number, -1.0, 0, 0, 0, 0, 0))
+
+
+def _own_attitude_stops(flight: FaultFlight) -> None:
+    _stream_stops(flight, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION)
+
+
+def _vehicles_clock_is_set(flight: FaultFlight) -> None:
+    flight.simulation.vehicle.set_clock(_AHEAD_S)
 
 
 def _limit_is_lowered(flight: FaultFlight) -> None:
@@ -161,6 +173,13 @@ ABORTS: dict[str, Abort] = {
     ),
     "token_lost": Abort(reason="vehicle's link lost", phase=Phase.CHASE, fault=_token_is_lost),
     "own_position_stops": Abort(reason="own position too old", phase=Phase.ALIGN, fault=_own_position_stops),
+    "own_attitude_stops": Abort(reason="own attitude too old", phase=Phase.ALIGN, fault=_own_attitude_stops),
+    "clock_ahead": Abort(
+        reason="vehicle's clock is ahead",
+        companion={"descent": {"aligned_hold_s": 20.0}},
+        phase=Phase.ALIGN,
+        fault=_vehicles_clock_is_set,
+    ),
     "heading_unknown": Abort(
         reason="vehicle heading unknown",
         scenario="static",
