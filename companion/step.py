@@ -26,7 +26,7 @@ from companion.transitions import transitions
 from link.frames import yaw_of
 from link.records import replace
 
-_DISARM_MAX_S = 1.0  # it takes 0.5 s where the plain one is refused; the companion waits for 1.5 s before it ends
+_DISARM_MAX_S = 1.0  # it takes 0.6 s where the plain one is refused; the companion waits for 1.5 s before it ends
 _PRESENT_OFFSETS_S = HORIZON_OFFSETS_S[:2]  # a second point tells how the lever arm turns
 
 
