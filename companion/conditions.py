@@ -6,10 +6,11 @@ A condition with a hold time must have been true without a break for that long.
 import math
 from functools import cache
 
-from companion.config import CompanionConfig
+from companion.config import CompanionConfig, LandingStyle
 from companion.contact import Verdict, does_not_fall, is_stopped_by_pad, signs_of, verdict
+from companion.ground import SEEN_TOO_NEAR, is_seen_too_near
 from companion.pad import HEADING_UNKNOWN
-from companion.pad_reach import cone_radius_at_pad_m, over_pad_radius_m
+from companion.pad_reach import cone_radius_m, over_pad_radius_m
 from companion.phases import LANDING_PHASES, NEAR_PHASES, Event, Phase
 from companion.situation import Approach, Situation, approach, stands
 from companion.targets import changes_speed, chase_floor_m, is_unseen, is_vague
@@ -66,11 +67,6 @@ def not_placed(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
 
 def _not_followed(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
     return s.tracking_error_m > c.abort.tracking_error_max_m
-
-
-def cone_radius_m(height_m: float, half_width_m: float, config: CompanionConfig) -> float:
-    """Return how far beside the centre of a pad the drone may be at `height_m` above it while it descends."""
-    return cone_radius_at_pad_m(half_width_m, config) + config.descent.cone_slope * max(height_m, 0.0)
 
 
 def _beside_cone(a: Approach, c: CompanionConfig) -> bool:
@@ -135,6 +131,7 @@ ABORT_TESTS = (
     Test(
         "too fast against the pad", frozenset({Phase.DESCEND}), _too_fast_near_pad, lambda c: c.abort.near_speed_hold_s
     ),
+    Test(SEEN_TOO_NEAR, LANDING_PHASES, is_seen_too_near, lambda c: c.touchdown.range_off_hold_s),
     Test("vehicle faster than the limit", LANDING_PHASES, _outruns, lambda c: c.chase.driving_hold_s),
     Test("too far from the start", LANDING_PHASES, is_out_of_range, lambda _: 0.0),
     Test("below the pad without contact", frozenset({Phase.DESCEND}), missed_pad, lambda _: 0.0),
@@ -145,6 +142,10 @@ def _aligned(s: Situation, a: Approach | None, c: CompanionConfig) -> bool:
     if a is None or not_placed(s, a, c) or must_be_seen(s, a, c):
         return False
     return a.distance_m < c.descent.aligned_distance_m and a.speed_m_s < c.descent.aligned_speed_m_s
+
+
+def _is_far_off(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
+    return a is not None and a.distance_m > 2.0 * c.descent.align_distance_m and c.landing is not LandingStyle.DIRECT
 
 
 def is_too_low(s: Situation, config: CompanionConfig) -> bool:
@@ -188,6 +189,9 @@ STRAYS = Test("not over the pad in time", frozenset({Phase.DESCEND}), _strays_ab
 STOPPED_BY_PAD = Test(HARD_CONTACT, frozenset({Phase.DESCEND}), _in_hard_contact, lambda _: 0.0)
 """What stops the drone ends its commitment to land as well: this is asked before the tests that abort."""
 
+ALIGNMENT_LOST = Test("alignment lost", frozenset({Phase.ALIGN}), _is_far_off, lambda _: 0.0)
+"""Is counted as strays are."""
+
 HELD_UP = Test("held up", frozenset({Phase.TOUCHDOWN}), _does_not_fall, lambda c: c.touchdown.stopped_hold_s)
 """Completes the evidence of a hard contact."""
 
@@ -203,6 +207,7 @@ ENTRY_TESTS = (
         Test("pad to be seen again", frozenset({Phase.DESCEND}), _must_be_seen_above, lambda _: 0.0),
     ),
     (Event.OUT_OF_ALIGNMENT, STRAYS),
+    (Event.OUT_OF_ALIGNMENT, ALIGNMENT_LOST),
     (
         Event.OUT_OF_ALIGNMENT,
         Test("pad not seen", frozenset({Phase.ALIGN}), must_be_seen, lambda c: c.descent.unseen_hold_s),

@@ -62,6 +62,15 @@ class ChaseConfig(StrictModel):
     unseen_height_stds: NotNegative = 2.0
     unseen_height_max_m: Positive = 8.0  # in all; less than the range of the detector that is to see it (12 m here)
     start_acceleration_m_s2: Positive = 3.5  # share of the limit that the rendezvous is planned with
+    # A vehicle this near whose road is said to be farther above or below the ground that the drone took off from than a
+    # step and a hill can be, has a receiver with another height: a bank beside the road, and a steep street.
+    ground_within_m: Positive = 30.0
+    ground_step_max_m: Positive = 1.5
+    ground_slope_max: NotNegative = 0.07  # metres for each metre between them
+    # From this speed on the heading is compared with the course. So far off, the pad is 0.3 m beside its place at the
+    # end of the benchmark's lever arm of 1.3 m; side slip and mounting are less.
+    course_speed_min_m_s: Positive = 2.0
+    heading_off_max_rad: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.21
     passing_distance_m: Positive = 15.0  # a vehicle that passes farther away than this is not chased
     # One that has passed meanwhile is chased while so much more speed makes its lead up in that time.
     catch_up_speed_m_s: Positive = 10.0
@@ -141,6 +150,8 @@ class TouchdownConfig(StrictModel):
     range_corrects_height: bool = (
         False  # for a drone whose own height wanders: the pad is where the range finder sees it
     )
+    range_off_max_m: Positive = 0.4  # what it sees may be nearer than the pad by so much before a landing is broken off
+    range_off_hold_s: NotNegative = 0.3  # so long readings and attitude belong together
     range_height_max_m: Positive = 0.15  # seen under the feet at which the range finder still agrees with a contact
     hold_s: NotNegative = 0.1
     jolt_m_s2: Positive = 25.0  # horizontally: no flying changes the velocity so fast, and no hold is waited for

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from companion.conditions import (
     ABORT_TESTS,
+    ALIGNMENT_LOST,
     DRIVES,
     ENTRY_TESTS,
     STOPPED_BY_PAD,
@@ -13,7 +14,6 @@ from companion.conditions import (
     fix_too_old,
     is_out_of_range,
     is_over_pad,
-    is_too_low,
     is_uncertain,
     missed_pad,
     must_be_seen,
@@ -22,8 +22,9 @@ from companion.conditions import (
 from companion.config import CompanionConfig, LandingStyle
 from companion.contact import described, signs_of
 from companion.feasibility import obstacle
+from companion.passing import vehicle_passes
 from companion.phases import FLYING_PHASES, Event, Phase
-from companion.situation import Situation, approach, stands
+from companion.situation import Situation, approach
 from companion.timed import Held, holds
 
 Decision = tuple[Event, str]
@@ -41,6 +42,7 @@ class Progress:
     was_armed: bool  # and its motors were armed in that mode
     is_interrupted: bool  # what was broken off goes on, at no cost
     strays: int  # of this approach
+    losses: int  # of its alignment, likewise
     waited_s: float  # in this phase, above a vehicle that has surprised
 
 
@@ -68,7 +70,8 @@ def _broken_off(progress: Progress, s: Situation, held: Held, config: CompanionC
     """Return what is unsafe, or takes too long."""
     for test in ABORT_TESTS:
         if holds(test, held, s.t_ns, config):
-            return Event.UNSAFE, test.reason
+            unplaced = s.pad.unplaced if s.pad is not None and test.is_true is not_placed else None
+            return Event.UNSAFE, unplaced or test.reason
     return _time_limit(progress, s, config)
 
 
@@ -78,7 +81,8 @@ def _going_on(progress: Progress, s: Situation, held: Held, config: CompanionCon
         return None
     for event, test in ENTRY_TESTS:
         if holds(test, held, s.t_ns, config):
-            if test is STRAYS and progress.strays >= config.descent.strays_max:
+            again = {STRAYS.reason: progress.strays, ALIGNMENT_LOST.reason: progress.losses}.get(test.reason, -1)
+            if again >= config.descent.strays_max:
                 return Event.UNSAFE, test.reason
             return event, _with_evidence(event, test.reason, s)
     if progress.phase is Phase.WAITING and not holds(DRIVES, held, s.t_ns, config):
@@ -152,8 +156,8 @@ def _advance(progress: Progress, s: Situation, held: Held, config: CompanionConf
             return _at_waiting_point(s, config)
         case Phase.WAITING:
             return vehicle_passes(s, config)
-        case Phase.CHASE | Phase.ALIGN:
-            return _over_pad(progress, s, config)
+        case Phase.CHASE:
+            return _over_pad(s, config)
         case Phase.TOUCHDOWN:
             return _on_the_pad(s, config)
         case Phase.ABORT:
@@ -171,40 +175,13 @@ def _at_waiting_point(s: Situation, config: CompanionConfig) -> Decision | None:
     return Event.AT_WAITING_POINT, "waiting for the vehicle"
 
 
-def vehicle_passes(s: Situation, config: CompanionConfig) -> Decision | None:
-    """Return the event that starts the chase.
-
-    A moving vehicle is chased from the moment at which a drone that accelerates evenly to the vehicle's speed
-    v meets it: v / (2 a) before it passes. One that is past is let go when it is farther away than the passing
-    distance and would not be caught up with soon.
-    """
-    if s.drone is None or s.pad is None or fix_too_old(s, None, config) or is_too_low(s, config):
-        return None
-    velocity = s.pad.velocity_enu_m_s[0, :2]
-    ahead = s.drone.position_enu_m[:2] - s.pad.position_enu_m[0, :2]
-    speed_m_s = math.hypot(*velocity.tolist())
-    if stands(s, config.chase):
-        return None
-    to_go_m = float(ahead @ velocity) / speed_m_s
-    beside_m = abs(float(ahead[0] * velocity[1] - ahead[1] * velocity[0])) / speed_m_s
-    lead_m = speed_m_s**2 / (2.0 * config.chase.start_acceleration_m_s2)
-    faster_m_s = min(config.limits.speed_max_m_s - speed_m_s, config.chase.catch_up_speed_m_s)
-    past_m = max(config.chase.passing_distance_m, config.chase.catch_up_s * faster_m_s)
-    if beside_m > config.chase.passing_distance_m or not -past_m < to_go_m < lead_m:
-        return None
-    return Event.VEHICLE_PASSES, f"vehicle passes at {speed_m_s:.1f} m/s"
-
-
-def _over_pad(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
+def _over_pad(s: Situation, config: CompanionConfig) -> Decision | None:
     relative = approach(s)
     if relative is None or config.landing is LandingStyle.DIRECT:
         return None
-    near_m = config.descent.align_distance_m
     known = not is_uncertain(s, relative, config) and not must_be_seen(s, relative, config)
-    if progress.phase is Phase.CHASE and relative.distance_m < near_m and known:
+    if relative.distance_m < config.descent.align_distance_m and known:
         return Event.OVER_PAD, f"{relative.distance_m:.1f} m from the pad"
-    if progress.phase is Phase.ALIGN and relative.distance_m > 2.0 * near_m:
-        return Event.OUT_OF_ALIGNMENT, f"{relative.distance_m:.1f} m from the pad"
     return None
 
 

@@ -9,9 +9,11 @@ from dataclasses import dataclass
 
 from companion.conditions import fix_too_old, is_stamped_ahead
 from companion.config import CompanionConfig
+from companion.ground import road_above_ground_m, road_distance_m
 from companion.pad_reach import is_too_small
 from companion.phases import Phase
-from companion.situation import Approach, Situation
+from companion.situation import Approach, Situation, approach
+from companion.targets import chase_floor_m
 from companion.timed import Held, Test, holds
 
 SPEED_SHARE_MIN = 1.15
@@ -24,7 +26,9 @@ HEIGHTS_APART = (
 """Of an autopilot whose receiver does not know the geoid: a drone that is off by it flies into the vehicle."""
 
 _RECEIVER_TOLD_S = 3.0  # it says so once a second
-_BEFORE_A_CHASE = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD, Phase.WAITING, Phase.ABORT})
+_ROUNDING = 1e-6
+_BEFORE_A_FLIGHT = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD, Phase.WAITING})
+_BEFORE_A_CHASE = _BEFORE_A_FLIGHT | {Phase.ABORT}
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +106,37 @@ def _warned(_: Situation, __: CompanionConfig) -> str:
     return "the autopilot reports a failsafe (battery, radio, ground station): end its cause, see its own messages"
 
 
+def _is_elsewhere(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+    return not fix_too_old(s, None, c) and s.is_road_elsewhere
+
+
+def _elsewhere(s: Situation, _: CompanionConfig) -> str:
+    above_m = road_above_ground_m(s) or 0.0
+    side = "above" if above_m > 0.0 else "below"
+    where = f"{abs(above_m):.1f} m {side} the ground {road_distance_m(s):.0f} m from it"
+    return f"the vehicle's road is said to be {where}: let drone and vehicle tell altitudes of one kind"
+
+
+def _hover_height_m(s: Situation, a: Approach, c: CompanionConfig) -> float:
+    """Return how high above the pad the drone hovers, or will after its take-off."""
+    stands = not s.autopilot.armed or s.autopilot.landed is not False
+    return a.height_m + (c.takeoff.waiting_height_m if stands else 0.0)
+
+
+def _is_high(s: Situation, a: Approach | None, c: CompanionConfig) -> bool:
+    if a is None or fix_too_old(s, None, c) or a.distance_m > c.chase.ground_within_m:
+        return False
+    return _hover_height_m(s, a, c) < chase_floor_m(c)
+
+
+def _high(s: Situation, c: CompanionConfig) -> str:
+    relative = approach(s)
+    height_m = 0.0 if relative is None else _hover_height_m(s, relative, c)
+    more_m = math.ceil(10.0 * (chase_floor_m(c) - height_m) - _ROUNDING) / 10.0
+    needed = f"waiting {height_m:.1f} m above the pad, {chase_floor_m(c):.1f} m are needed"
+    return f"{needed}: raise takeoff.waiting_height_m by {more_m:.1f} m or hover higher"
+
+
 # An estimate that has just begun jumps: what is said of the vehicle must hold for a while.
 OBSTACLES = (
     Obstacle(
@@ -116,6 +151,11 @@ OBSTACLES = (
     Obstacle(Test("autopilot reports a failsafe", _BEFORE_A_CHASE, _is_warned, lambda _: 0.0), _warned),
     Obstacle(Test("battery too low", _BEFORE_A_CHASE, _is_empty, lambda c: c.chase.driving_hold_s), _empty),
     Obstacle(Test("pad too small", _BEFORE_A_CHASE, _is_too_narrow, lambda _: 0.0), _too_narrow),
+    Obstacle(
+        Test("vehicle's height implausible", _BEFORE_A_CHASE, _is_elsewhere, lambda c: c.chase.driving_hold_s),
+        _elsewhere,
+    ),
+    Obstacle(Test("roof too high", _BEFORE_A_FLIGHT, _is_high, lambda c: c.chase.driving_hold_s), _high),
 )
 
 OBSTACLE_TESTS = tuple(obstacle.test for obstacle in OBSTACLES)

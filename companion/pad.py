@@ -26,6 +26,8 @@ class PadPath:
         position_std_m: (n, 3).
         is_coarse: the vehicle's fixes alone are too coarse to land by: only what the drone sees of the pad places it.
         half_width_m: from its centre to the nearest edge; infinite until it is described.
+        height_m: of its surface above the vehicle's road.
+        needs_heading: it is beside the antenna.
         unplaced: why the pad's place is not known, in words; None when it is. Until then it is not landed on.
     """
 
@@ -37,6 +39,8 @@ class PadPath:
     position_std_m: Array
     is_coarse: bool = False
     half_width_m: float = math.inf
+    height_m: float = 0.0
+    needs_heading: bool = False
     unplaced: str | None = None
 
 
@@ -68,6 +72,8 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
         position_std_m=forecast.position_std_m,
         is_coarse=forecast.is_coarse,
         half_width_m=math.inf if pad is None else 0.5 * min(pad.size_m),
+        height_m=0.0 if pad is None else pad.height_m,
+        needs_heading=is_beside,
         unplaced=NOT_DESCRIBED if pad is None else HEADING_UNKNOWN if is_beside and forecast.yaw_rad is None else None,
     )
 

@@ -6,7 +6,7 @@ from companion.phases import LANDING_PHASES, Phase
 from companion.situation import Situation, approach
 from link.records import replace
 
-_OFF_MAX_M = 1.0  # what is farther off is not the pad: a roof is 1.5 m above the road
+RAISED_MAX_M = 1.0  # what is farther off is not the pad: a roof is 1.5 m above the road
 _SLEW_M_S = 0.5
 _OVER_PHASES = LANDING_PHASES | {Phase.TOUCHDOWN}
 
@@ -28,7 +28,7 @@ def pad_raised_m(raised_m: float, phase: Phase, situation: Situation, config: Co
     if relative.distance_m > over_pad_radius_m(relative.pad_half_width_m, config):
         return raised_m
     off_m = relative.height_m - seen_m
-    if abs(off_m) > _OFF_MAX_M:
+    if abs(off_m) > RAISED_MAX_M:
         return raised_m
     step_m = _SLEW_M_S / config.step_rate_hz
     return raised_m + min(max(off_m - raised_m, -step_m), step_m)

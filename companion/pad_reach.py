@@ -17,6 +17,11 @@ def cone_radius_at_pad_m(half_width_m: float, config: CompanionConfig) -> float:
     return min(config.descent.cone_radius_at_pad_m, _CONE_SHARE * half_width_m)
 
 
+def cone_radius_m(height_m: float, half_width_m: float, config: CompanionConfig) -> float:
+    """Return how far beside the centre of a pad the drone may be at `height_m` above it while it descends."""
+    return cone_radius_at_pad_m(half_width_m, config) + config.descent.cone_slope * max(height_m, 0.0)
+
+
 def over_pad_radius_m(half_width_m: float, config: CompanionConfig) -> float:
     """Return how far from the pad's centre what is touched is still the pad."""
     return min(2.0 * config.descent.cone_radius_at_pad_m, _CONTACT_SHARE * half_width_m)

@@ -41,6 +41,7 @@ def in_present_frame(memory: StepMemory, view: AutopilotView) -> StepMemory:
         tracking=replace(tracking, past=tuple((t_ns, place + by_enu_m) for t_ns, place in tracking.past)),
         waiting_point_enu_m=_moved(memory.waiting_point_enu_m, by_enu_m),
         anchor_enu_m=_moved(memory.anchor_enu_m, by_enu_m),
+        ground_enu_m=_moved(memory.ground_enu_m, by_enu_m),
     )
 
 

@@ -63,6 +63,8 @@ class Situation:
         range_height_m: of the feet above what a range finder sees below, None without a fresh reading.
         range_carried_m: the last such height less what the drone has sunk since, for it may be too near to be seen.
         speed_std_m_s: of the vehicle's horizontal velocity; infinite while that is not known.
+        ground_enu_m: (3,) where the drone stood, or what its range finder saw before the flight.
+        is_road_elsewhere: the vehicle is said to be higher or lower than any hill puts it.
         limits: of the flight, the autopilot's own included.
         speed_limited_by: the autopilot's parameters that may bound the speed.
     """
@@ -81,6 +83,8 @@ class Situation:
     range_height_m: float | None = None
     range_carried_m: float | None = None
     speed_std_m_s: float = math.inf
+    ground_enu_m: Array | None = None
+    is_road_elsewhere: bool = False
     limits: FlightLimits | None = None
     speed_limited_by: tuple[str, ...] = ()
 

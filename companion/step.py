@@ -7,9 +7,11 @@ from companion.autopilots.driver import AutopilotCommand, Desire
 from companion.conditions import HELD_UP
 from companion.config import CompanionConfig
 from companion.contact import may_force_motors_off, signs_of
+from companion.course import watched, without_contradicted_heading
 from companion.data import Forecast, OwnState
 from companion.fix_stamps import with_newest
 from companion.flying import fly, has_free_place, setpoint
+from companion.ground import ground_enu_m, is_road_elsewhere
 from companion.pad import PadPath, pad_path
 from companion.pad_height import pad_raised_m, with_pad_raised
 from companion.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
@@ -40,8 +42,16 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
     """
     memory = _estimate(memory, inputs, system)
     memory, pad = _pad(memory, inputs, system)
+    course = watched(memory.course, pad, memory.surprise.speed_std_m_s, system.config)
     situation = _situation(memory, pad, inputs, system)
-    memory = replace(memory, pad_raised_m=pad_raised_m(memory.pad_raised_m, memory.phase, situation, system.config))
+    raised_m = pad_raised_m(memory.pad_raised_m, memory.phase, situation, system.config)
+    memory = replace(
+        memory,
+        course=course,
+        pad_raised_m=raised_m,
+        ground_enu_m=ground_enu_m(memory.ground_enu_m, memory.phase, situation),
+        is_road_elsewhere=is_road_elsewhere(memory.is_road_elsewhere, memory.phase, situation, system.config),
+    )
     situation = with_pad_raised(situation, memory.pad_raised_m)
     before = memory
     memory, reply = transitions(memory, situation, inputs, system.config)
@@ -89,8 +99,10 @@ def _pad(memory: StepMemory, inputs: StepInputs, system: System) -> tuple[StepMe
     """Return the pad as far ahead as the phase looks; an estimate that is not finite is given up and starts anew."""
     offset_s = HORIZON_OFFSETS_S if memory.phase in FOLLOWING_PHASES else _PRESENT_OFFSETS_S
     forecast = system.estimator.forecast(memory.estimator, inputs.t_ns, offset_s)
-    if forecast is None or _is_finite(forecast):
-        return memory, None if forecast is None else pad_path(forecast, inputs.pad)
+    if forecast is None:
+        return memory, None
+    if _is_finite(forecast):
+        return memory, without_contradicted_heading(pad_path(forecast, inputs.pad), memory.course)
     return replace(memory, estimator=None), None
 
 
@@ -116,6 +128,8 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
         tracking_error_m=memory.tracking.error_m,
         waiting_point_enu_m=memory.waiting_point_enu_m,
         speed_std_m_s=memory.surprise.speed_std_m_s,
+        ground_enu_m=memory.ground_enu_m,
+        is_road_elsewhere=memory.is_road_elsewhere,
         limits=inputs.limits,
         speed_limited_by=() if inputs.driver is None else inputs.driver.speed_parameters,
         range_height_m=range_height_m(inputs.own, seen, sensor_m, inputs.t_ns),

@@ -8,6 +8,7 @@ from typing import Any
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, AutopilotView, Driver, DriverMemory
 from companion.config import CompanionConfig
+from companion.course import CourseWatch
 from companion.data import Array, FlightLimits, Measurement, OwnState, Setpoint
 from companion.estimation.estimator import Estimator
 from companion.fix_stamps import FixStamps
@@ -97,6 +98,7 @@ class StepMemory:
         retries: landings aborted since the start.
         interrupted_ns: when the chase began that an outage has broken off; None when an abort counts.
         strays: alignments that this approach has begun anew since it strayed.
+        losses: chases that it has begun anew since its alignment was lost.
         waits_since_ns: when it began to wait above a vehicle that has surprised; None while it does not.
         waited_s: for how long it has done so before, in this phase.
         may_retry: no operator has broken the landing off since the start.
@@ -111,10 +113,13 @@ class StepMemory:
         sway: how hard the drone leans.
         surprise: how the vehicle drives against what was expected.
         fix_stamps: whether its fixes come from the future.
+        course: how the vehicle's heading compares with its course.
         stopped_by_pad: the contact was a jolt.
         held: since when each test has been true.
         obstacle: name of what makes a landing impossible, and the sentence that told it; None without one.
         waiting_point_enu_m: (3,) in W.
+        ground_enu_m: (3,) of the ground, in W.
+        is_road_elsewhere: the vehicle is said to be far above or below it.
         anchor_enu_m: (3,) where a hover phase stays.
         lowest_enu_m: height in W below which this step's plan does not go.
         yaw_setpoint_rad: last one sent.
@@ -129,6 +134,7 @@ class StepMemory:
     retries: int = 0
     interrupted_ns: int | None = None
     strays: int = 0
+    losses: int = 0
     waits_since_ns: int | None = None
     waited_s: float = 0.0
     may_retry: bool = True
@@ -143,11 +149,14 @@ class StepMemory:
     sway: Sway = field(default_factory=Sway)
     surprise: Surprise = field(default_factory=Surprise)
     fix_stamps: FixStamps = field(default_factory=FixStamps)
+    course: CourseWatch = field(default_factory=CourseWatch)
     stopped_by_pad: bool = False
     held: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
     obstacle: tuple[str, str] | None = None
     waiting_point_enu_m: Array | None = None
     anchor_enu_m: Array | None = None
+    ground_enu_m: Array | None = None
+    is_road_elsewhere: bool = False
     lowest_enu_m: float = -math.inf
     yaw_setpoint_rad: float = 0.0
     origin_count: int = 0

@@ -5,6 +5,7 @@ import numpy as np
 from companion.commands import answer
 from companion.conditions import (
     ABORT_TESTS,
+    ALIGNMENT_LOST,
     HARD_CONTACT,
     STRAYS,
     attitude_unknown,
@@ -39,7 +40,7 @@ def transitions(
     reply = None
     if inputs.command is not None:
         known = obstacle(memory.held, situation, config)
-        event, reply = answer(inputs.command, memory.phase, situation, None if known is None else known[1])
+        event, reply = answer(inputs.command, memory.phase, situation, config, None if known is None else known[1])
         if event is not None:
             memory = _enter(memory, event, f"commanded: {inputs.command.value}", situation, config)
         if reply.accepted:
@@ -54,6 +55,7 @@ def transitions(
         was_armed=memory.was_armed,
         is_interrupted=memory.interrupted_ns is not None,
         strays=memory.strays,
+        losses=memory.losses,
         waited_s=waited_s(memory, situation.t_ns),
     )
     held = update_held(memory.held, memory.phase, situation, approach(situation), config, others=OBSTACLE_TESTS)
@@ -84,6 +86,8 @@ def _enter(memory: StepMemory, event: Event, reason: str, situation: Situation, 
     held = memory.held if {memory.phase, phase} <= LANDING_PHASES else {}
     stopped = event is Event.CONTACT and HARD_CONTACT in memory.held
     memory = replace(memory, phase=phase, reason=reason, held=held, stopped_by_pad=stopped)
+    if phase is Phase.WAITING and event is Event.START:
+        return replace(memory, waiting_point_enu_m=memory.anchor_enu_m)  # it waits where it hovers
     if phase is Phase.TAKEOFF:
         return _begin_flight(memory, situation, config)
     if phase not in FLYING_PHASES:
@@ -107,12 +111,15 @@ def _counted(
     in_time = (situation.t_ns - since_ns) * 1e-9 < config.chase.time_limit_s
     is_outage = event is Event.UNSAFE and memory.phase is Phase.CHASE and reason in _OUTAGES and in_time
     strays = memory.strays + 1 if reason == STRAYS.reason else memory.strays
+    losses = memory.losses + 1 if reason == ALIGNMENT_LOST.reason else memory.losses
+    goes_on = {memory.phase, next_phase(memory.phase, event)} <= LANDING_PHASES
     return replace(
         memory,
         phase_since_ns=situation.t_ns if resumed_ns is None else resumed_ns,
         retries=0 if event is Event.START else retries,
         interrupted_ns=since_ns if is_outage else None,
-        strays=strays if {memory.phase, next_phase(memory.phase, event)} <= LANDING_PHASES else 0,
+        strays=strays if goes_on else 0,
+        losses=losses if goes_on else 0,
         waits_since_ns=None,
         waited_s=0.0,
     )

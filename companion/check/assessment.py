@@ -1,5 +1,6 @@
 """From what was seen of an autopilot and a vehicle to the lines of the check; pure."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -9,7 +10,7 @@ from companion.check.findings import Finding, Level, passed
 from companion.check.observation import AutopilotFacts, VehicleFacts
 from companion.check.px4_rules import px4_rules
 from companion.check.rules import ParameterRule, judged
-from companion.config import AbortConfig, CompanionConfig
+from companion.config import AbortConfig, ChaseConfig, CompanionConfig
 from link.mavlink.dialect import mavlink
 
 
@@ -64,10 +65,11 @@ def assessed(
     found += [_heights(autopilot, config.geoid_height_m), _clock(autopilot)]
     found += [_rate(autopilot, name) for name in MOTION]
     found += [_latency(autopilot), _battery(autopilot, config.limits.battery_min_share)]
+    found.append(_range_finder(autopilot))
     if autopilot.autopilot_id in FIRMWARES:
         rules = FIRMWARES[autopilot.autopilot_id].rules(config.descent.descent_rate_max_m_s)
         found += judged(rules, autopilot.parameters, speed_m_s)
-    return found if vehicle is None else [*found, *_vehicle(vehicle, config.abort)]
+    return found if vehicle is None else [*found, *_vehicle(vehicle, config)]
 
 
 def is_ready(findings: Sequence[Finding]) -> bool:
@@ -160,7 +162,14 @@ def _battery(seen: AutopilotFacts, share_min: float) -> Finding:
     return _graded("battery", f"{100.0 * share:.0f} %", level, "charge it: aborts and retries take minutes")
 
 
-def _vehicle(seen: VehicleFacts, limits: AbortConfig) -> list[Finding]:
+def _range_finder(seen: AutopilotFacts) -> Finding:
+    text = "tells what is below" if seen.has_range_finder else "no DISTANCE_SENSOR that looks down"
+    advice = "fit one, or compare drone and pad at rest before each day's first landing (docs/vehicle.md)"
+    reason = "a vehicle's height that is wrong by less than 2 m is told by nothing else"
+    return _graded("range finder", text, _when(seen.has_range_finder, Level.WARN), advice, reason)
+
+
+def _vehicle(seen: VehicleFacts, config: CompanionConfig) -> list[Finding]:
     if seen.rate_hz <= 0.0:
         advice = "start the ground vehicle, or check --ns, --vehicle and -e"
         return [_graded("vehicle", f"nothing on {seen.key}", Level.WARN, advice)]
@@ -173,7 +182,18 @@ def _vehicle(seen: VehicleFacts, limits: AbortConfig) -> list[Finding]:
     )
     level = _when(seen.rate_hz >= _FIX_RATE_MIN_HZ, Level.WARN)
     rate = _graded("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, "set its receiver to 5 Hz or more")
-    return [rate, _vehicle_age(seen, limits), _vehicle_accuracy(seen, limits.position_std_max_m), pad]
+    known = [_vehicle_age(seen, config.abort), _vehicle_accuracy(seen, config.abort.position_std_max_m)]
+    return [rate, *known, *_vehicle_heading(seen, config.chase), pad]
+
+
+def _vehicle_heading(seen: VehicleFacts, config: ChaseConfig) -> list[Finding]:
+    """Return the line on a heading that was compared with the course: of a vehicle that drove meanwhile."""
+    if seen.heading_off_rad is None:
+        return []
+    level = _when(abs(seen.heading_off_rad) <= config.heading_off_max_rad, Level.FAIL)
+    text = f"{abs(math.degrees(seen.heading_off_rad)):.0f} degrees off its course"
+    advice = "see its compass, the IMU's mounting and axes; reversing is 180 degrees, so drive forwards"
+    return [_graded("vehicle heading", text, level, advice, "the pad is not placed by it")]
 
 
 def _vehicle_age(seen: VehicleFacts, limits: AbortConfig) -> Finding:

@@ -21,6 +21,7 @@ class AutopilotFacts:
         clock_std_s: of its boot clock on the companion's.
         rates_hz: of the messages that the companion asks for, by name.
         latency_s: median from a position's stamp to its arrival.
+        has_range_finder: it tells what one sees that looks down.
         battery_share: left, 0 to 1.
         parameters: by name, in its own units.
     """
@@ -36,6 +37,7 @@ class AutopilotFacts:
     clock_std_s: float | None = None
     rates_hz: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     latency_s: float | None = None
+    has_range_finder: bool = False
     battery_share: float | None = None
     parameters: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
 
@@ -52,6 +54,7 @@ class VehicleFacts:
         has_velocity: it sends its velocity as well.
         describes_pad: it answered for its pad.
         pad_refused_why: what was wrong with an answer, None where nothing was.
+        heading_off_rad: mean angle from its course to its heading while it drove; None when it stood or told none.
     """
 
     key: str
@@ -61,3 +64,4 @@ class VehicleFacts:
     has_velocity: bool = False
     describes_pad: bool = False
     pad_refused_why: str | None = None
+    heading_off_rad: float | None = None

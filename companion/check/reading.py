@@ -22,6 +22,7 @@ _STREAMS = {
     mavlink.MAVLINK_MSG_ID_SYS_STATUS: 2.0,
     mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: 1.0,
     mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: 1.0,
+    mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: 2.0,
 }
 _ONCE = (mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION, mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN)
 _ASK_AGAIN_NS = 1_000_000_000
@@ -109,6 +110,7 @@ class Reader:
             clock_std_s=None if std_ns is None else std_ns * 1e-9,
             rates_hz={name: self._counts[name] / self.listened_s for name in MOTION} if self.listened_s else {},
             latency_s=statistics.median(self._latencies_s) if self._latencies_s else None,
+            has_range_finder=self._has_range_finder(),
             battery_share=self._battery_share(),
             parameters=dict(self._parameters),
         )
@@ -164,6 +166,10 @@ class Reader:
     def _geoid_height_m(self) -> float | None:
         message = self._newest.get("GPS_RAW_INT")
         return None if message is None else geoid_height_m(None, message)
+
+    def _has_range_finder(self) -> bool:
+        message = self._newest.get("DISTANCE_SENSOR")
+        return message is not None and message.orientation == mavlink.MAV_SENSOR_ROTATION_PITCH_270
 
     def _battery_share(self) -> float | None:
         message = self._newest.get("BATTERY_STATUS")

@@ -28,6 +28,7 @@ class Inboxes:
 
     fix: Inbox
     velocity: Inbox
+    imu: Inbox
     pad: PadQuestion
 
 
@@ -85,6 +86,7 @@ class CheckSession:
         inboxes = Inboxes(
             fix=zenoh.subscribe(keys.fix),
             velocity=zenoh.subscribe(keys.fix_velocity),
+            imu=zenoh.subscribe(keys.imu),
             pad=PadQuestion(zenoh, keys.pad),
         )
         patience_s = time.monotonic() + duration_s + _PARAMETERS_MAX_S
@@ -137,6 +139,8 @@ class CheckSession:
         utc_ns = clock.local_to_utc_ns(now_ns) if clock.is_utc_known else None
         for sample in inboxes.fix.take():
             vehicle.fix(sample.payload, now_ns, utc_ns)
-        for _ in inboxes.velocity.take():
-            vehicle.velocity()
+        for sample in inboxes.imu.take():
+            vehicle.imu(sample.payload)
+        for sample in inboxes.velocity.take():
+            vehicle.velocity(sample.payload)
         inboxes.pad.poll(time.monotonic())

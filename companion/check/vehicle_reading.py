@@ -1,13 +1,20 @@
 """Listening to a vehicle: how often, how late and how exactly it tells where it is; no I/O."""
 
+import cmath
 import math
 import statistics
 
 from companion.check.observation import VehicleFacts
+from companion.config import ChaseConfig
 from companion.pad_question import PadQuestion
 from link import cdr
-from link.messages import Fix
+from link.frames import yaw_of
+from link.messages import Fix, FixVelocity, VehicleImu
 from link.payload_checks import PayloadError
+
+_COURSE_SPEED_MIN_M_S = ChaseConfig().course_speed_min_m_s
+_HEADING_AGE_MAX_NS = 300_000_000
+_COMPARED_MIN = 5
 
 
 class VehicleReader:
@@ -23,6 +30,8 @@ class VehicleReader:
         self._ages_s: list[float] = []
         self._std_m: float | None = None
         self._has_velocity = False
+        self._heading: tuple[int, float] | None = None
+        self._offs: list[complex] = []
 
     def fix(self, payload: bytes, arrived_ns: int, utc_ns: int | None) -> None:
         """Take a fix that arrived at local time `arrived_ns`, UTC `utc_ns` where that is known."""
@@ -39,9 +48,28 @@ class VehicleReader:
             if math.isfinite(variance) and variance > 0.0:
                 self._std_m = max(self._std_m or 0.0, math.sqrt(variance))
 
-    def velocity(self) -> None:
-        """Take note that it sends its velocity."""
+    def velocity(self, payload: bytes) -> None:
+        """Take a velocity: that there is one, and of a vehicle that drives how its heading compares with its course."""
         self._has_velocity = True
+        try:
+            message = cdr.decode(FixVelocity, payload)
+        except PayloadError:
+            return
+        east_m_s, north_m_s, _ = message.velocity_enu_m_s
+        if self._heading is None or math.hypot(east_m_s, north_m_s) < _COURSE_SPEED_MIN_M_S:
+            return
+        heard_ns, yaw_rad = self._heading
+        if abs(message.t_ns - heard_ns) <= _HEADING_AGE_MAX_NS:
+            self._offs.append(cmath.rect(1.0, yaw_rad - math.atan2(north_m_s, east_m_s)))
+
+    def imu(self, payload: bytes) -> None:
+        """Take its heading, where it tells one."""
+        try:
+            message = cdr.decode(VehicleImu, payload)
+        except PayloadError:
+            return
+        if message.orientation_wxyz is not None:
+            self._heading = (message.t_ns, yaw_of(message.orientation_wxyz))
 
     @property
     def is_heard(self) -> bool:
@@ -59,4 +87,5 @@ class VehicleReader:
             has_velocity=self._has_velocity,
             describes_pad=pad.is_answered,
             pad_refused_why=pad.refused_why,
+            heading_off_rad=cmath.phase(sum(self._offs)) if len(self._offs) >= _COMPARED_MIN else None,
         )

@@ -100,6 +100,7 @@ def progress(phase: Phase, in_phase_s: float = 1.0) -> Progress:
         was_armed=True,
         is_interrupted=False,
         strays=0,
+        losses=0,
         waited_s=0.0,
     )
 

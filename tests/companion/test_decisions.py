@@ -13,12 +13,14 @@ from companion.conditions import (
     DISPUTED_CONTACT,
     ENTRY_TESTS,
     HARD_CONTACT,
-    cone_radius_m,
     must_wait,
     update_held,
 )
-from companion.decisions import Decision, decide, vehicle_passes
+from companion.decisions import Decision, decide
+from companion.ground import SEEN_TOO_NEAR
 from companion.pad import NOT_DESCRIBED
+from companion.pad_reach import cone_radius_m
+from companion.passing import vehicle_passes
 from companion.phases import Event, Phase
 from companion.situation import Situation, approach, stands
 from companion.timed import Test as Condition
@@ -66,6 +68,7 @@ UNSAFE: dict[str, Situation] = {
     "vehicle faster than the limit": replace(
         situation(), limits=replace(CONFIG.limits.flight_limits(), speed_max_m_s=4.1)
     ),
+    SEEN_TOO_NEAR: replace(situation(), range_height_m=0.5),
     "below the pad without contact": situation(-CONFIG.descent.press_depth_m - CONFIG.touchdown.height_max_m - 0.01),
 }
 # Below the commit height these still count: without them nobody knows where the pad is.
@@ -283,6 +286,8 @@ def test_landing_goes_on_exactly_after_the_hold_time(event: Event, test: Conditi
             facts = situation()
         case Event.OUT_OF_ALIGNMENT if test.reason == "not over the pad in time":
             facts = situation(HIGH_M, cone_radius_m(HIGH_M, HALF_M, CONFIG) + 0.01)
+        case Event.OUT_OF_ALIGNMENT if test.reason == "alignment lost":
+            facts = situation(HIGH_M, 2.0 * CONFIG.descent.align_distance_m + 0.01)
         case Event.OUT_OF_ALIGNMENT:
             facts = situation(pad=replace(pad_at(std_m=CONFIG.descent.unseen_std_max_m + 0.01), is_coarse=True))
         case _:
@@ -354,6 +359,15 @@ def test_chase_starts_when_even_acceleration_meets_the_vehicle(
     past_m = max(CONFIG.chase.catch_up_s * faster_m_s, CONFIG.chase.passing_distance_m)
     assert passes(-past_m + 0.05)
     assert not passes(-past_m - 0.05)
+
+
+def test_vehicle_that_is_past_is_let_go_by_the_limit_that_the_autopilot_lowers() -> None:
+    pad = pad_at((10.0, 0.0, 0.0))
+    behind = drone_at(HIGH_M, -20.0, pad=pad)
+    facts = replace(situation(pad=pad), drone=behind)
+    limits = CONFIG.limits.flight_limits()
+    assert vehicle_passes(replace(facts, limits=limits), CONFIG) is not None
+    assert vehicle_passes(replace(facts, limits=replace(limits, speed_max_m_s=11.6)), CONFIG) is None
 
 
 def test_vehicle_that_passes_too_far_beside_is_not_chased() -> None:

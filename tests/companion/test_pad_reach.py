@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.conditions import cone_radius_m, is_over_pad
+from companion.conditions import is_over_pad
 from companion.contact import Verdict, signs_of, verdict
-from companion.pad_reach import cone_radius_at_pad_m, over_pad_radius_m, unseen_std_max_m
+from companion.pad_reach import cone_radius_at_pad_m, cone_radius_m, over_pad_radius_m, unseen_std_max_m
 from companion.phases import Phase
 from companion.situation import Situation, approach
 from companion.targets import is_unseen

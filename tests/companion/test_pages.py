@@ -1,5 +1,6 @@
 """The pages that a pilot reads say what the program does: aborts with their limits, parameters with their values."""
 
+import math
 import re
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import pytest
 from companion.check.ardupilot_rules import ardupilot_rules
 from companion.check.px4_rules import px4_rules
 from companion.check.rules import ParameterRule
-from companion.conditions import ABORT_TESTS, STRAYS
+from companion.conditions import ABORT_TESTS, ALIGNMENT_LOST, STRAYS
 from companion.config import CompanionConfig
 from companion.feasibility import OBSTACLES
 
@@ -24,7 +25,7 @@ def rows(page: str) -> list[list[str]]:
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("|")]
 
 
-@pytest.mark.parametrize("reason", [test.reason for test in (*ABORT_TESTS, STRAYS)])
+@pytest.mark.parametrize("reason", [test.reason for test in (*ABORT_TESTS, STRAYS, ALIGNMENT_LOST)])
 def test_each_abort_is_explained(reason: str) -> None:
     told = [row for row in rows("safety.md") if reason in row[0] and len(row) == 3]
     assert told
@@ -51,6 +52,11 @@ def test_the_aborts_limits_are_the_defaults() -> None:
         f"more than {config.abort.near_speed_max_m_s:g} m/s",
         f"{config.chase.time_limit_s:g}, {config.descent.align_time_limit_s:g} and {config.descent.time_limit_s:g} s",
         f"more than {config.touchdown.lost_height_m:g} m",
+        f"at {config.chase.course_speed_min_m_s:g} m/s or more",
+        f"more than {round(math.degrees(config.chase.heading_off_max_rad))} degrees",
+        f"for {config.touchdown.range_off_hold_s:g} s something is {config.touchdown.range_off_max_m:g} m nearer",
+        f"more than {config.chase.ground_step_max_m:g} m, and {config.chase.ground_slope_max:g} m per metre",
+        f"within {config.chase.ground_within_m:g} m",
         f"for {config.descent.stray_hold_s:g} s, for the {config.descent.strays_max + 1}th time in one approach",
         f"slower than {config.descent.waiting_speed_m_s:g} m/s",
         f"for up to {config.descent.surprise_wait_max_s:g} s",

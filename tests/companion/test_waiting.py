@@ -114,6 +114,19 @@ def test_approach_that_strays_again_and_again_is_broken_off() -> None:
     assert memory.strays == 0
 
 
+def test_approach_that_loses_its_alignment_again_and_again_is_broken_off() -> None:
+    memory, facts = StepMemory(phase=Phase.ALIGN, phase_since_ns=NOW_NS), situation()
+    far = situation(2.0, 2.0 * DESCENT.align_distance_m + 0.1)
+    for _ in range(DESCENT.strays_max):
+        memory, facts = _after(memory, replace(far, t_ns=facts.t_ns), 1.0)
+        assert (memory.phase, memory.reason) == (Phase.CHASE, "alignment lost")
+        memory, facts = _after(memory, replace(situation(2.0, 1.0), t_ns=facts.t_ns), 1.0)
+        assert memory.phase is Phase.ALIGN
+    memory, facts = _after(memory, replace(far, t_ns=facts.t_ns), 1.0)
+    assert (memory.phase, memory.reason) == (Phase.ABORT, "alignment lost")
+    assert memory.losses == 0
+
+
 @pytest.mark.parametrize(
     ("strays", "event"), [(DESCENT.strays_max - 1, Event.OUT_OF_ALIGNMENT), (DESCENT.strays_max, Event.UNSAFE)]
 )

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from companion.conditions import ABORT_TESTS, STRAYS
+from companion.conditions import ABORT_TESTS, ALIGNMENT_LOST, STRAYS
 from companion.phases import TRANSITIONS, Event, Phase
 from link.mavlink.dialect import mavlink
 from link.messages import Command
@@ -21,6 +21,7 @@ SEED = 1
 _PARKED = {"chase": {"parked_wait_s": 0.5}}
 _ANTENNA_OVER_PAD = {"antenna_flu_m": (0.0, 0.0, 1.6)}  # no heading is needed to place the pad
 _RAISED_M = 3.0
+_LOWER_M = 0.8
 _BESIDE_M = 0.4
 _LOW_M = 0.55  # of the drone above the roof: its feet are 0.43 m above
 _AHEAD_S = 0.3
@@ -88,7 +89,7 @@ def reasons() -> frozenset[str]:
 def _reasons_of(phase: Phase, event: Event) -> set[str]:
     match event:
         case Event.UNSAFE:
-            return {test.reason for test in (*ABORT_TESTS, STRAYS) if phase in test.phases}
+            return {test.reason for test in (*ABORT_TESTS, STRAYS, ALIGNMENT_LOST) if phase in test.phases}
         case Event.TIME_LIMIT:
             return {f"{phase.value} took longer than # s"}
         case Event.ABORT | Event.HOLD:
@@ -207,11 +208,22 @@ ABORTS: dict[str, Abort] = {
         companion={"descent": {"strays_max": 0, "stray_hold_s": 0.2}},
         fault=_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0),
     ),
+    "alignment_lost": Abort(
+        reason="alignment lost",
+        companion={"descent": {"strays_max": 0}},
+        phase=Phase.ALIGN,
+        fault=_pad_is_described(forward_m=10.0 * _BESIDE_M, up_m=0.0),
+    ),
     "too_far": Abort(
         reason="too far from the start", companion={"limits": {"range_max_m": 6.0, "landing_time_s": 1.0}}
     ),
     "outrun": Abort(reason="vehicle faster than the limit", phase=Phase.ALIGN, fault=_limit_is_lowered),
     "below_pad": Abort(reason="below the pad without contact", fault=_pad_is_described(forward_m=0.0, up_m=_RAISED_M)),
+    "seen_too_near": Abort(
+        reason="range finder sees less room than there is to the pad",
+        phase=Phase.ALIGN,
+        fault=_pad_is_described(forward_m=0.0, up_m=-_LOWER_M),
+    ),
     "contact_lost": Abort(
         reason="# m above the pad after contact",
         phase=Phase.TOUCHDOWN,

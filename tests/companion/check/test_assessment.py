@@ -1,5 +1,6 @@
 """The lines of the check: everything in order passes, and each thing amiss is told by its own line."""
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -27,6 +28,7 @@ GOOD = AutopilotFacts(
     rates_hz=dict.fromkeys(MOTION, 50.0),
     latency_s=0.01,
     battery_share=0.9,
+    has_range_finder=True,
     parameters={
         **PX4_DEFAULTS,
         "MPC_Z_VEL_MAX_DN": 2.0,
@@ -66,6 +68,7 @@ def test_everything_in_order_is_all_pass() -> None:
         ({"battery_share": 0.4}, "battery", Level.WARN),
         ({"battery_share": 0.2}, "battery", Level.FAIL),
         ({"battery_share": None}, "battery", Level.WARN),
+        ({"has_range_finder": False}, "range finder", Level.WARN),
     ],
 )
 def test_autopilot_amiss_is_told(changed: dict[str, Any], line: str, level: Level) -> None:
@@ -82,6 +85,8 @@ def test_autopilot_amiss_is_told(changed: dict[str, Any], line: str, level: Leve
         ({"age_s": 2.0}, "vehicle age", Level.FAIL),
         ({"age_s": -3600.0}, "vehicle age", Level.FAIL),
         ({"age_s": None}, "vehicle age", Level.WARN),
+        ({"heading_off_rad": math.pi}, "vehicle heading", Level.FAIL),
+        ({"heading_off_rad": -0.3}, "vehicle heading", Level.FAIL),
         ({"std_m": 1.0}, "vehicle accuracy", Level.WARN),
         ({"std_m": 5.0}, "vehicle accuracy", Level.FAIL),
         ({"std_m": None}, "vehicle accuracy", Level.WARN),
@@ -93,6 +98,11 @@ def test_vehicle_amiss_is_told(changed: dict[str, Any], line: str, level: Level)
     by_name = {one.name: one for one in assessed(GOOD, replace(VEHICLE, **changed), 10.0, CONFIG)}
     assert by_name[line].level is level
     assert by_name[line].advice
+
+
+def test_heading_that_follows_the_course_passes() -> None:
+    by_name = {one.name: one for one in assessed(GOOD, replace(VEHICLE, heading_off_rad=0.1), 10.0, CONFIG)}
+    assert by_name["vehicle heading"].level is Level.PASS
 
 
 def test_advised_values_make_an_arducopter_pass() -> None:

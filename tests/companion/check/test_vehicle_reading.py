@@ -1,0 +1,56 @@
+"""What a check gathers from a vehicle's samples."""
+
+import math
+
+import pytest
+
+from companion.check.vehicle_reading import VehicleReader
+from companion.pad_question import PadQuestion
+from link import cdr
+from link.frames import quaternion_from_yaw
+from link.inbox import Inbox
+from link.messages import FixVelocity, VehicleImu
+
+START_NS = 1_795_000_000_000_000_000
+PERIOD_NS = 100_000_000
+
+
+class Nobody:
+    """What is never asked here."""
+
+    def ask(self, key: str, payload: bytes, timeout_s: float) -> Inbox:
+        raise AssertionError(f"asked {key} with {payload!r} for {timeout_s} s")
+
+
+NOT_ASKED = PadQuestion(Nobody(), "decklander/vehicle/pad")
+
+
+def _after_a_drive(course_rad: float, off_rad: float, speed_m_s: float, imu_late_ns: int = 0) -> VehicleReader:
+    reader = VehicleReader("decklander/vehicle/fix")
+    for k in range(10):
+        t_ns = START_NS + k * PERIOD_NS
+        velocity = (speed_m_s * math.cos(course_rad), speed_m_s * math.sin(course_rad), 0.0)
+        heading = VehicleImu(t_ns=t_ns - imu_late_ns, orientation_wxyz=quaternion_from_yaw(course_rad + off_rad))
+        reader.imu(cdr.encode(heading))
+        reader.velocity(cdr.encode(FixVelocity(t_ns=t_ns, velocity_enu_m_s=velocity)))
+    return reader
+
+
+@pytest.mark.parametrize("off_rad", [0.05, -0.4, 3.0])
+@pytest.mark.parametrize("course_rad", [0.3, 3.1, -2.0])
+def test_heading_is_compared_with_the_course_of_a_vehicle_that_drives(course_rad: float, off_rad: float) -> None:
+    facts = _after_a_drive(course_rad, off_rad, 4.0).facts(NOT_ASKED)
+    assert facts.has_velocity
+    assert facts.heading_off_rad == pytest.approx(off_rad, abs=1e-6)
+
+
+def test_nothing_is_compared_at_rest_or_long_after() -> None:
+    assert _after_a_drive(0.3, 1.0, 0.5).facts(NOT_ASKED).heading_off_rad is None
+    assert _after_a_drive(0.3, 1.0, 4.0, imu_late_ns=10**9).facts(NOT_ASKED).heading_off_rad is None
+
+
+def test_what_cannot_be_read_is_left_out() -> None:
+    reader = VehicleReader("decklander/vehicle/fix")
+    reader.imu(b"no imu")
+    reader.velocity(b"no velocity")
+    assert reader.facts(NOT_ASKED).heading_off_rad is None
