@@ -8,6 +8,7 @@ from functools import cache
 
 from companion.config import CompanionConfig, LandingStyle
 from companion.contact import Verdict, does_not_fall, is_stopped_by_pad, signs_of, verdict
+from companion.contradiction import CONTRADICTING, contradicts_itself
 from companion.ground import SEEN_TOO_NEAR, is_seen_too_near
 from companion.pad import HEADING_UNKNOWN
 from companion.pad_reach import cone_radius_m, over_pad_radius_m
@@ -132,6 +133,7 @@ ABORT_TESTS = (
         "too fast against the pad", frozenset({Phase.DESCEND}), _too_fast_near_pad, lambda c: c.abort.near_speed_hold_s
     ),
     Test(SEEN_TOO_NEAR, LANDING_PHASES, is_seen_too_near, lambda c: c.touchdown.range_off_hold_s),
+    Test(CONTRADICTING, LANDING_PHASES, contradicts_itself, lambda _: 0.0),
     Test("vehicle faster than the limit", LANDING_PHASES, _outruns, lambda c: c.chase.driving_hold_s),
     Test("too far from the start", LANDING_PHASES, is_out_of_range, lambda _: 0.0),
     Test("below the pad without contact", frozenset({Phase.DESCEND}), missed_pad, lambda _: 0.0),

@@ -177,6 +177,8 @@ class AbortConfig(StrictModel):
     fix_age_max_s: Positive = 1.0
     fix_ahead_max_s: NotNegative = 0.05  # so far in the future a fix may be stamped: what clocks err by
     fix_ahead_hold_s: Positive = 1.0  # each fix of that time is; a late or early one says nothing
+    # Share of the vehicle's measurements of 5 s that the estimator rejects; over poor links with outages 0.07 at most.
+    rejected_share_max: Annotated[float, Field(gt=0.0, le=1.0)] = 0.2
     own_age_max_s: Positive = 0.5  # of the drone's own report; 25 of them in a row are missing then
     position_std_max_m: Positive = 1.5
     tracking_error_max_m: Positive = 2.5  # of the drone behind its setpoint

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from companion.conditions import fix_too_old, is_stamped_ahead
 from companion.config import CompanionConfig
+from companion.contradiction import CONTRADICTING, contradicts_itself
 from companion.ground import road_above_ground_m, road_distance_m
 from companion.pad_reach import is_too_small
 from companion.phases import Phase
@@ -68,6 +69,11 @@ def _is_too_far(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
 def _too_far(s: Situation, c: CompanionConfig) -> str:
     way = f"vehicle at {_vehicle_speed_m_s(s):.1f} m/s goes {_way_m(s, c):.0f} m in {c.limits.landing_time_s:g} s"
     return f"{way}, limits.range_max_m is {c.limits.range_max_m:g}: raise it or drive slower"
+
+
+def _contradicting(s: Situation, _: CompanionConfig) -> str:
+    share = f"{100.0 * s.rejected_share:.0f} % of the last 5 s' measurements"
+    return f"{CONTRADICTING}: {share} were rejected: see the axes of its velocity, its stamps, its receiver"
 
 
 def _is_empty(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
@@ -149,6 +155,7 @@ OBSTACLES = (
         Test("geoid unknown", _BEFORE_A_CHASE, _lacks_geoid, lambda _: _RECEIVER_TOLD_S), lambda *_: HEIGHTS_APART
     ),
     Obstacle(Test("autopilot reports a failsafe", _BEFORE_A_CHASE, _is_warned, lambda _: 0.0), _warned),
+    Obstacle(Test("vehicle data rejected", _BEFORE_A_CHASE, contradicts_itself, lambda _: 0.0), _contradicting),
     Obstacle(Test("battery too low", _BEFORE_A_CHASE, _is_empty, lambda c: c.chase.driving_hold_s), _empty),
     Obstacle(Test("pad too small", _BEFORE_A_CHASE, _is_too_narrow, lambda _: 0.0), _too_narrow),
     Obstacle(

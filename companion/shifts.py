@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from companion.autopilots.driver import AutopilotView, DriverMemory
+from companion.contradiction import Contradictions
 from companion.data import Array
 from companion.fix_stamps import FixStamps
 from companion.reference import Tracking
@@ -61,6 +62,7 @@ def at_other_time(memory: StepMemory, by_ns: int) -> StepMemory:
         reference_ns=memory.reference_ns + by_ns,
         tracking=_tracking_at_other_time(memory.tracking, by_ns),
         sway=Sway(),
+        contradictions=Contradictions(),
         fix_stamps=FixStamps(),
         surprise=_surprise_at_other_time(memory.surprise, by_ns),
     )

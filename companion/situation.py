@@ -65,6 +65,7 @@ class Situation:
         speed_std_m_s: of the vehicle's horizontal velocity; infinite while that is not known.
         ground_enu_m: (3,) where the drone stood, or what its range finder saw before the flight.
         is_road_elsewhere: the vehicle is said to be higher or lower than any hill puts it.
+        rejected_share: of the vehicle's measurements of the last seconds, 0 to 1.
         limits: of the flight, the autopilot's own included.
         speed_limited_by: the autopilot's parameters that may bound the speed.
     """
@@ -85,6 +86,7 @@ class Situation:
     speed_std_m_s: float = math.inf
     ground_enu_m: Array | None = None
     is_road_elsewhere: bool = False
+    rejected_share: float = 0.0
     limits: FlightLimits | None = None
     speed_limited_by: tuple[str, ...] = ()
 

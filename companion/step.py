@@ -7,6 +7,7 @@ from companion.autopilots.driver import AutopilotCommand, Desire
 from companion.conditions import HELD_UP
 from companion.config import CompanionConfig
 from companion.contact import may_force_motors_off, signs_of
+from companion.contradiction import counted
 from companion.course import watched, without_contradicted_heading
 from companion.data import Forecast, OwnState
 from companion.fix_stamps import with_newest
@@ -92,6 +93,9 @@ def _estimate(memory: StepMemory, inputs: StepInputs, system: System) -> StepMem
         tracking = compare(tracking, inputs.own, learn=learn)
     surprise = looked_back(memory.surprise, system.estimator, estimator, inputs.t_ns, system.config.descent)
     stamps = with_newest(memory.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns)
+    if memory.contradictions.is_due(inputs.t_ns):
+        health = system.estimator.health(estimator)
+        memory = replace(memory, contradictions=counted(memory.contradictions, health, inputs.t_ns))
     return replace(memory, estimator=estimator, tracking=tracking, surprise=surprise, fix_stamps=stamps)
 
 
@@ -130,6 +134,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
         speed_std_m_s=memory.surprise.speed_std_m_s,
         ground_enu_m=memory.ground_enu_m,
         is_road_elsewhere=memory.is_road_elsewhere,
+        rejected_share=memory.contradictions.rejected_share,
         limits=inputs.limits,
         speed_limited_by=() if inputs.driver is None else inputs.driver.speed_parameters,
         range_height_m=range_height_m(inputs.own, seen, sensor_m, inputs.t_ns),

@@ -8,6 +8,7 @@ from typing import Any
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, AutopilotView, Driver, DriverMemory
 from companion.config import CompanionConfig
+from companion.contradiction import Contradictions
 from companion.course import CourseWatch
 from companion.data import Array, FlightLimits, Measurement, OwnState, Setpoint
 from companion.estimation.estimator import Estimator
@@ -113,6 +114,7 @@ class StepMemory:
         sway: how hard the drone leans.
         surprise: how the vehicle drives against what was expected.
         fix_stamps: whether its fixes come from the future.
+        contradictions: of the vehicle's data.
         course: how the vehicle's heading compares with its course.
         stopped_by_pad: the contact was a jolt.
         held: since when each test has been true.
@@ -149,6 +151,7 @@ class StepMemory:
     sway: Sway = field(default_factory=Sway)
     surprise: Surprise = field(default_factory=Surprise)
     fix_stamps: FixStamps = field(default_factory=FixStamps)
+    contradictions: Contradictions = field(default_factory=Contradictions)
     course: CourseWatch = field(default_factory=CourseWatch)
     stopped_by_pad: bool = False
     held: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))

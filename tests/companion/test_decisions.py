@@ -16,6 +16,7 @@ from companion.conditions import (
     must_wait,
     update_held,
 )
+from companion.contradiction import CONTRADICTING
 from companion.decisions import Decision, decide
 from companion.ground import SEEN_TOO_NEAR
 from companion.pad import NOT_DESCRIBED
@@ -68,6 +69,7 @@ UNSAFE: dict[str, Situation] = {
     "vehicle faster than the limit": replace(
         situation(), limits=replace(CONFIG.limits.flight_limits(), speed_max_m_s=4.1)
     ),
+    CONTRADICTING: replace(situation(), rejected_share=CONFIG.abort.rejected_share_max + 0.01),
     SEEN_TOO_NEAR: replace(situation(), range_height_m=0.5),
     "below the pad without contact": situation(-CONFIG.descent.press_depth_m - CONFIG.touchdown.height_max_m - 0.01),
 }

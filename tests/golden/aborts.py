@@ -16,6 +16,7 @@ from link.toml_config import merged, validated
 from scenarios.catalogue import load_scenario
 from scenarios.config import Scenario
 from scenarios.fault_flight import FaultFlight
+from tests.golden.wrong_data import velocity_is_in_ned
 
 SEED = 1
 _PARKED = {"chase": {"parked_wait_s": 0.5}}
@@ -213,6 +214,12 @@ ABORTS: dict[str, Abort] = {
         companion={"descent": {"strays_max": 0}},
         phase=Phase.ALIGN,
         fault=_pad_is_described(forward_m=10.0 * _BESIDE_M, up_m=0.0),
+    ),
+    "contradicting": Abort(
+        reason="vehicle data contradict themselves",
+        companion={"descent": {"aligned_hold_s": 20.0, "strays_max": 20}},
+        phase=Phase.ALIGN,
+        fault=velocity_is_in_ned,
     ),
     "too_far": Abort(
         reason="too far from the start", companion={"limits": {"range_max_m": 6.0, "landing_time_s": 1.0}}
