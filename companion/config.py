@@ -105,7 +105,8 @@ class DescentConfig(StrictModel):
     # While the vehicle brakes or speeds up harder than this, as the drone must lean for, the descent waits, as it does
     # beside the cone and while the drone moves too fast against the pad.
     speed_change_max_m_s2: Positive = 1.2
-    waiting_height_m: Positive = 0.6
+    waiting_height_m: Positive = 0.7  # as much above the height of the abort tests as a poor estimate may be wrong
+    settled_hold_s: NotNegative = 0.3  # of nothing to wait for, before it goes on
     # Above this a pad that only the detector places is waited above, too, until it is within `aligned_distance_m`: what
     # is made up for below is speed against the pad at contact, and the detector is blind there.
     centred_height_m: NotNegative = 0.5

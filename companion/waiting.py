@@ -15,9 +15,13 @@ _HELD_UP_M = 0.1  # above the height of waiting, down to which a descent sinks w
 
 def waits_at_m(memory: StepMemory, situation: Situation, config: CompanionConfig) -> float | None:
     """Return how high above the pad a descent waits for now, None for one that goes on."""
-    if _awaited(memory, situation, config) is not None:
+    if _awaited(memory, situation, config) is not None or _has_just_waited(memory, situation, config):
         return config.descent.waiting_height_m
-    return config.descent.commit_height_m if waits_for_calm(memory, situation, config) else None
+    if not waits_for_calm(memory, situation, config):
+        return None
+    # Where only the detector places the pad, nothing corrects a drone that stays as low as it is blind.
+    is_blind = situation.pad is not None and situation.pad.is_coarse
+    return config.descent.waiting_height_m if is_blind else config.descent.commit_height_m
 
 
 def why_held_up(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str | None:
@@ -29,13 +33,27 @@ def why_held_up(memory: StepMemory, situation: Situation, config: CompanionConfi
 
 
 def with_wait_counted(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
-    """Return the memory with the time for which this descent has waited above a vehicle that has surprised."""
+    """Return the memory with the time for which this descent has waited above a vehicle that has surprised.
+
+    And with when it last had anything to wait for.
+    """
     since_ns, t_ns = memory.waits_since_ns, situation.t_ns
+    if _awaited(memory, situation, config) is not None:
+        memory = replace(memory, awaited_ns=t_ns)
     if waits_for_even_driving(memory, situation, config):
         return memory if since_ns is not None else replace(memory, waits_since_ns=t_ns)
     if since_ns is None:
         return memory
     return replace(memory, waits_since_ns=None, waited_s=waited_s(memory, t_ns))
+
+
+def _has_just_waited(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
+    """Return whether what a descent waited for is over but now: on a rough road speeds swing through zero."""
+    relative = approach(situation)
+    if memory.awaited_ns is None or memory.phase is not Phase.DESCEND or relative is None:
+        return False
+    is_high = relative.height_m > config.descent.commit_height_m
+    return is_high and (situation.t_ns - memory.awaited_ns) * 1e-9 < config.descent.settled_hold_s
 
 
 def waited_s(memory: StepMemory, t_ns: int) -> float:

@@ -12,7 +12,7 @@ from companion.phases import Phase
 from companion.step_data import StepMemory
 from companion.sway import Sway, felt, sways
 from companion.targets import pad_aim
-from companion.waiting import waits_for_calm
+from companion.waiting import waits_at_m, waits_for_calm
 from tests.companion.facts import GEAR_M, NOW_NS, pad_at, reference_at, situation
 
 CONFIG = CompanionConfig()
@@ -87,6 +87,15 @@ def test_only_a_descent_that_can_still_be_stopped_waits(
     memory = replace(StepMemory(), phase=phase, sway=Sway(t_ns=NOW_NS, swayed_ns=NOW_NS))
     assert waits_for_calm(memory, facts, CONFIG) is waits
     assert not waits_for_calm(replace(memory, sway=Sway(t_ns=NOW_NS)), facts, CONFIG)
+
+
+@pytest.mark.parametrize(
+    ("is_coarse", "waiting_m"), [(False, DESCENT.commit_height_m), (True, DESCENT.waiting_height_m)]
+)
+def test_drone_that_leans_waits_no_lower_than_the_pad_is_known(waiting_m: float, *, is_coarse: bool) -> None:
+    memory = replace(StepMemory(), phase=Phase.DESCEND, sway=Sway(t_ns=NOW_NS, swayed_ns=NOW_NS))
+    facts = situation(0.3, pad=replace(pad_at(), is_coarse=is_coarse))
+    assert waits_at_m(memory, facts, CONFIG) == waiting_m
 
 
 @pytest.mark.parametrize("height_m", [1.5, 0.5, 0.2])
