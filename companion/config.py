@@ -185,7 +185,7 @@ class AbortConfig(StrictModel):
     tracking_error_max_m: Positive = 2.5  # of the drone behind its setpoint
     tracking_hold_s: NotNegative = 1.0
     cone_hold_s: NotNegative = 0.3
-    near_height_m: Positive = 0.5  # below this there is no time to wait
+    near_height_m: Positive = 0.4  # below this there is no time to wait; what is higher climbs back to wait
     near_speed_max_m_s: Positive = 0.8  # S1 asks for 1.0 at contact
     near_speed_hold_s: NotNegative = 0.06
     alive_lost_fix_age_max_s: NotNegative = 0.5  # in place of `fix_age_max_s` once the vehicle's token is lost

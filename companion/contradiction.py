@@ -12,7 +12,7 @@ from companion.situation import Approach, Situation
 
 CONTRADICTING = "vehicle data contradict themselves"
 _EVERY_NS = 500_000_000
-_OVER = 10  # samples, of 5 s in all
+_OVER = 20  # samples, of 10 s in all: a step of the drone's own frame has measurements of half a second rejected
 _LEAST = 20  # measurements that something is said of
 
 Sample = tuple[int, int, int]

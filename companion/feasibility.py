@@ -72,7 +72,7 @@ def _too_far(s: Situation, c: CompanionConfig) -> str:
 
 
 def _contradicting(s: Situation, _: CompanionConfig) -> str:
-    share = f"{100.0 * s.rejected_share:.0f} % of the last 5 s' measurements"
+    share = f"{100.0 * s.rejected_share:.0f} % of the last 10 s' measurements"
     return f"{CONTRADICTING}: {share} were rejected: see the axes of its velocity, its stamps, its receiver"
 
 

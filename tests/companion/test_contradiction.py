@@ -28,9 +28,9 @@ def after(per_half_second: list[tuple[int, int]]) -> Contradictions:
     return counts
 
 
-def test_share_is_of_the_last_five_seconds() -> None:
-    assert after([(10, 0)] * 20 + [(6, 4)] * 10).rejected_share == pytest.approx(0.4)
-    assert after([(6, 4)] * 20 + [(10, 0)] * 10).rejected_share == 0.0
+def test_share_is_of_the_last_ten_seconds() -> None:
+    assert after([(10, 0)] * 30 + [(6, 4)] * 20).rejected_share == pytest.approx(0.4)
+    assert after([(6, 4)] * 30 + [(10, 0)] * 20).rejected_share == 0.0
     assert after([(10, 0)] * 5 + [(6, 4)] * 5).rejected_share == pytest.approx(0.2)
 
 
@@ -52,4 +52,4 @@ def test_it_keeps_a_landing_from_being_begun_and_is_told_with_the_share() -> Non
     facts = replace(situation(), rejected_share=0.41)
     known = obstacle({"vehicle data rejected": NOW_NS}, facts, CONFIG)
     assert known is not None
-    assert known[1].startswith("vehicle data contradict themselves: 41 % of the last 5 s' measurements were rejected")
+    assert known[1].startswith("vehicle data contradict themselves: 41 % of the last 10 s' measurements were rejected")
