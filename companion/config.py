@@ -105,8 +105,10 @@ class DescentConfig(StrictModel):
     # While the vehicle brakes or speeds up harder than this, as the drone must lean for, the descent waits, as it does
     # beside the cone and while the drone moves too fast against the pad.
     speed_change_max_m_s2: Positive = 1.2
-    waiting_height_m: Positive = 0.7  # as much above the height of the abort tests as a poor estimate may be wrong
-    settled_hold_s: NotNegative = 0.3  # of nothing to wait for, before it goes on
+    waiting_height_m: Positive = 0.85  # a heaving roof and a late stop leave the drone above `abort.near_height_m`
+    # Likewise over a pad that only the detector places, which is blind below 0.5 m: what is known late grows old below.
+    waiting_height_coarse_m: Positive = 0.7
+    settled_hold_s: NotNegative = 0.3  # of nothing to wait for, before it goes on: a swinging pad's speed passes zero
     # Above this a pad that only the detector places is waited above, too, until it is within `aligned_distance_m`: what
     # is made up for below is speed against the pad at contact, and the detector is blind there.
     centred_height_m: NotNegative = 0.5

@@ -16,18 +16,23 @@ _HELD_UP_M = 0.1  # above the height of waiting, down to which a descent sinks w
 def waits_at_m(memory: StepMemory, situation: Situation, config: CompanionConfig) -> float | None:
     """Return how high above the pad a descent waits for now, None for one that goes on."""
     if _awaited(memory, situation, config) is not None or _has_just_waited(memory, situation, config):
-        return config.descent.waiting_height_m
+        return _waiting_height_m(situation, config)
     if not waits_for_calm(memory, situation, config):
         return None
     # Where only the detector places the pad, nothing corrects a drone that stays as low as it is blind.
     is_blind = situation.pad is not None and situation.pad.is_coarse
-    return config.descent.waiting_height_m if is_blind else config.descent.commit_height_m
+    return _waiting_height_m(situation, config) if is_blind else config.descent.commit_height_m
+
+
+def _waiting_height_m(situation: Situation, config: CompanionConfig) -> float:
+    is_coarse = situation.pad is not None and situation.pad.is_coarse
+    return config.descent.waiting_height_coarse_m if is_coarse else config.descent.waiting_height_m
 
 
 def why_held_up(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str | None:
     """Return what a descent waits for that has come as low as it may, None for one that goes on."""
     relative = approach(situation)
-    if relative is None or relative.height_m > config.descent.waiting_height_m + _HELD_UP_M:
+    if relative is None or relative.height_m > _waiting_height_m(situation, config) + _HELD_UP_M:
         return None
     return _awaited(memory, situation, config)
 

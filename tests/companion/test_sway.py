@@ -90,7 +90,7 @@ def test_only_a_descent_that_can_still_be_stopped_waits(
 
 
 @pytest.mark.parametrize(
-    ("is_coarse", "waiting_m"), [(False, DESCENT.commit_height_m), (True, DESCENT.waiting_height_m)]
+    ("is_coarse", "waiting_m"), [(False, DESCENT.commit_height_m), (True, DESCENT.waiting_height_coarse_m)]
 )
 def test_drone_that_leans_waits_no_lower_than_the_pad_is_known(waiting_m: float, *, is_coarse: bool) -> None:
     memory = replace(StepMemory(), phase=Phase.DESCEND, sway=Sway(t_ns=NOW_NS, swayed_ns=NOW_NS))

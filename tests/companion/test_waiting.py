@@ -178,4 +178,4 @@ def test_descent_onto_a_pad_that_only_the_detector_places_is_centred_while_it_is
 ) -> None:
     memory = StepMemory(phase=Phase.DESCEND, surprise=Surprise(speed_std_m_s=0.05))
     here = situation(height_m, beside_m, replace(pad_at(), is_coarse=is_coarse))
-    assert waits_at_m(memory, here, CONFIG) == (WAITING_M if waits else None)
+    assert waits_at_m(memory, here, CONFIG) == (DESCENT.waiting_height_coarse_m if waits else None)
