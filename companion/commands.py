@@ -4,11 +4,11 @@ import math
 
 from companion.config import CompanionConfig
 from companion.feasibility import HEIGHTS_APART
+from companion.ground import VEHICLE_M
 from companion.phases import Event, Phase, next_phase
 from companion.situation import Situation, approach, stands
 from link.messages import Command, CommandReply
 
-_ON_VEHICLE_M = 3.0  # from the pad
 _ON_ROOF_M = 1.0  # above or below it: the road is farther below
 _EVENTS = {Command.START: Event.START, Command.ABORT: Event.ABORT, Command.HOLD: Event.HOLD}
 
@@ -45,7 +45,7 @@ def _rides_along(s: Situation, config: CompanionConfig) -> str | None:
     relative, is_airborne = approach(s), s.autopilot.armed and s.autopilot.landed is False
     if relative is None or s.pad is None or is_airborne or stands(s, config.chase):
         return None
-    if relative.distance_m > _ON_VEHICLE_M or abs(relative.height_m) > _ON_ROOF_M:
+    if relative.distance_m > VEHICLE_M or abs(relative.height_m) > _ON_ROOF_M:
         return None
     speed_m_s = math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist())
     return f"the drone stands on the vehicle, which drives at {speed_m_s:.1f} m/s: stop it first"

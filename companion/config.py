@@ -108,7 +108,6 @@ class DescentConfig(StrictModel):
     waiting_height_m: Positive = 0.85  # a heaving roof and a late stop leave the drone above `abort.near_height_m`
     # Likewise over a pad that only the detector places, which is blind below 0.5 m: what is known late grows old below.
     waiting_height_coarse_m: Positive = 0.7
-    settled_hold_s: NotNegative = 0.3  # of nothing to wait for, before it goes on: a swinging pad's speed passes zero
     # Above this a pad that only the detector places is waited above, too, until it is within `aligned_distance_m`: what
     # is made up for below is speed against the pad at contact, and the detector is blind there.
     centred_height_m: NotNegative = 0.5
@@ -180,7 +179,7 @@ class AbortConfig(StrictModel):
     fix_age_max_s: Positive = 1.0
     fix_ahead_max_s: NotNegative = 0.05  # so far in the future a fix may be stamped: what clocks err by
     fix_ahead_hold_s: Positive = 1.0  # each fix of that time is; a late or early one says nothing
-    # Share of the vehicle's measurements of 5 s that the estimator rejects; over poor links with outages 0.07 at most.
+    # Share of the vehicle's measurements of 10 s that the estimator rejects; over poor links with outages 0.07 at most.
     rejected_share_max: Annotated[float, Field(gt=0.0, le=1.0)] = 0.2
     own_age_max_s: Positive = 0.5  # of the drone's own report; 25 of them in a row are missing then
     position_std_max_m: Positive = 1.5

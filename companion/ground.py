@@ -16,7 +16,7 @@ from companion.phases import FLYING_PHASES, Phase
 from companion.situation import Approach, Situation, approach
 
 SEEN_TOO_NEAR = "range finder sees less room than there is to the pad"
-_VEHICLE_M = 3.0  # so near the pad what the drone stands on may be the vehicle
+VEHICLE_M = 3.0  # so near the pad what the drone stands on may be the vehicle
 _STDS = 2.0
 _LEAN_MAX = 0.4  # sine; a drone that leans more turns too fast for the attitude to be that of the reading
 _COARSE_OFF_M = 0.7  # twice what over poor receivers the estimates of both heights have been seen to differ by
@@ -33,7 +33,7 @@ def ground_enu_m(ground: Array | None, phase: Phase, s: Situation) -> Array | No
     relative = approach(s)
     if phase in FLYING_PHASES or s.drone is None:
         return ground
-    if relative is not None and relative.distance_m < _VEHICLE_M:
+    if relative is not None and relative.distance_m < VEHICLE_M:
         return ground
     stands = not s.autopilot.armed or s.autopilot.landed is True
     above_m = 0.0 if stands else s.range_height_m

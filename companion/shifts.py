@@ -56,7 +56,6 @@ def at_other_time(memory: StepMemory, by_ns: int) -> StepMemory:
         memory,
         phase_since_ns=memory.phase_since_ns + by_ns,
         interrupted_ns=_put_off(memory.interrupted_ns, by_ns),
-        awaited_ns=_put_off(memory.awaited_ns, by_ns),
         waits_since_ns=_put_off(memory.waits_since_ns, by_ns),
         held={name: since_ns + by_ns for name, since_ns in memory.held.items()},
         driver=_driver_at_other_time(memory.driver, by_ns),

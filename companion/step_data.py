@@ -100,7 +100,6 @@ class StepMemory:
         interrupted_ns: when the chase began that an outage has broken off; None when an abort counts.
         strays: alignments that this approach has begun anew since it strayed.
         losses: chases that it has begun anew since its alignment was lost.
-        awaited_ns: when this descent last had something to wait for; None while it has had nothing.
         waits_since_ns: when it began to wait above a vehicle that has surprised; None while it does not.
         waited_s: for how long it has done so before, in this phase.
         may_retry: no operator has broken the landing off since the start.
@@ -138,7 +137,6 @@ class StepMemory:
     interrupted_ns: int | None = None
     strays: int = 0
     losses: int = 0
-    awaited_ns: int | None = None
     waits_since_ns: int | None = None
     waited_s: float = 0.0
     may_retry: bool = True

@@ -120,7 +120,6 @@ def _counted(
         interrupted_ns=since_ns if is_outage else None,
         strays=strays if goes_on else 0,
         losses=losses if goes_on else 0,
-        awaited_ns=None,
         waits_since_ns=None,
         waited_s=0.0,
     )

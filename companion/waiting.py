@@ -15,7 +15,7 @@ _HELD_UP_M = 0.1  # above the height of waiting, down to which a descent sinks w
 
 def waits_at_m(memory: StepMemory, situation: Situation, config: CompanionConfig) -> float | None:
     """Return how high above the pad a descent waits for now, None for one that goes on."""
-    if _awaited(memory, situation, config) is not None or _has_just_waited(memory, situation, config):
+    if _awaited(memory, situation, config) is not None:
         return _waiting_height_m(situation, config)
     if not waits_for_calm(memory, situation, config):
         return None
@@ -38,27 +38,13 @@ def why_held_up(memory: StepMemory, situation: Situation, config: CompanionConfi
 
 
 def with_wait_counted(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
-    """Return the memory with the time for which this descent has waited above a vehicle that has surprised.
-
-    And with when it last had anything to wait for.
-    """
+    """Return the memory with the time for which this descent has waited above a vehicle that drives unpredictably."""
     since_ns, t_ns = memory.waits_since_ns, situation.t_ns
-    if _awaited(memory, situation, config) is not None:
-        memory = replace(memory, awaited_ns=t_ns)
-    if waits_for_even_driving(memory, situation, config):
+    if _unpredictable(memory, situation, config) is not None:
         return memory if since_ns is not None else replace(memory, waits_since_ns=t_ns)
     if since_ns is None:
         return memory
     return replace(memory, waits_since_ns=None, waited_s=waited_s(memory, t_ns))
-
-
-def _has_just_waited(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
-    """Return whether what a descent waited for is over but now: on a rough road speeds swing through zero."""
-    relative = approach(situation)
-    if memory.awaited_ns is None or memory.phase is not Phase.DESCEND or relative is None:
-        return False
-    is_high = relative.height_m > config.descent.commit_height_m
-    return is_high and (situation.t_ns - memory.awaited_ns) * 1e-9 < config.descent.settled_hold_s
 
 
 def waited_s(memory: StepMemory, t_ns: int) -> float:
@@ -66,29 +52,29 @@ def waited_s(memory: StepMemory, t_ns: int) -> float:
     return memory.waited_s + (0.0 if memory.waits_since_ns is None else (t_ns - memory.waits_since_ns) * 1e-9)
 
 
-def waits_for_even_driving(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
-    """Return whether a descent waits since the vehicle drives, and has lately done what nobody could expect."""
-    relative = approach(situation)
-    if memory.phase is not Phase.DESCEND or relative is None:
-        return False
-    if relative.height_m <= config.descent.commit_height_m or stands(situation, config.chase):
-        return False
-    return _is_unpredictable(memory, situation, config)
-
-
-def _is_unpredictable(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
+def _unpredictable(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str | None:
+    """Return what a vehicle has lately done that nobody could expect, None of one that stands or drives evenly."""
+    if not _may_wait(memory, situation, config) or stands(situation, config.chase):
+        return None
     if may_surprise(memory.surprise, situation.t_ns, config.descent):
-        return True
-    return drives_unevenly(memory.surprise, situation.fix_age_s, config.descent)
+        return "the vehicle's speed has surprised"
+    uneven = drives_unevenly(memory.surprise, situation.fix_age_s, config.descent)
+    return "the vehicle's speed changes all the time" if uneven else None
+
+
+def _may_wait(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
+    """Return whether this is a descent that is not committed yet."""
+    relative = approach(situation)
+    return memory.phase is Phase.DESCEND and relative is not None and relative.height_m > config.descent.commit_height_m
 
 
 def _awaited(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str | None:
     relative = approach(situation)
-    if memory.phase is not Phase.DESCEND or relative is None or relative.height_m <= config.descent.commit_height_m:
+    if relative is None or not _may_wait(memory, situation, config):
         return None
-    if waits_for_even_driving(memory, situation, config):
-        surprised = may_surprise(memory.surprise, situation.t_ns, config.descent)
-        return "the vehicle's speed has surprised" if surprised else "the vehicle's speed changes all the time"
+    unpredictable = _unpredictable(memory, situation, config)
+    if unpredictable is not None:
+        return unpredictable
     if must_wait(situation, relative, config):
         brakes = situation.pad is not None and changes_speed(situation.pad, config.descent)
         return "the vehicle brakes or speeds up" if brakes else "the drone is not over the pad"

@@ -56,18 +56,6 @@ def _kept_surprised(flight: Flight, duration_s: float) -> None:
             return
 
 
-def test_descent_goes_on_once_there_was_nothing_to_wait_for_for_a_while() -> None:
-    facts, inputs = _moving(WAITING_M, 0.5), Flight().inputs()
-    memory = StepMemory(phase=Phase.DESCEND, phase_since_ns=NOW_NS, surprise=KNOWN)
-    memory, _ = transitions(memory, facts, replace(inputs, t_ns=NOW_NS), CONFIG)
-    settled = later(situation(WAITING_M), round(0.9e9 * DESCENT.settled_hold_s))
-    memory, _ = transitions(memory, settled, replace(inputs, t_ns=settled.t_ns), CONFIG)
-    assert waits_at_m(memory, settled, CONFIG) == WAITING_M
-    assert waits_at_m(memory, later(settled, round(0.2e9 * DESCENT.settled_hold_s)), CONFIG) is None
-    low = replace(settled, drone=drone_at(0.9 * DESCENT.commit_height_m, pad=pad_at()))
-    assert waits_at_m(memory, low, CONFIG) is None
-
-
 def test_descent_that_waits_comes_to_rest_at_its_height() -> None:
     flight = reached(Phase.DESCEND)
     _kept_surprised(flight, 5.0)
@@ -96,9 +84,8 @@ def test_descent_above_a_vehicle_that_surprises_for_ever_is_broken_off() -> None
 
 
 def test_time_of_waiting_is_put_off_with_the_clock() -> None:
-    memory = StepMemory(waits_since_ns=NOW_NS, waited_s=2.0, interrupted_ns=NOW_NS - 10, awaited_ns=NOW_NS - 20)
+    memory = StepMemory(waits_since_ns=NOW_NS, waited_s=2.0, interrupted_ns=NOW_NS - 10)
     moved = at_other_time(memory, 10**12)
-    assert moved.awaited_ns == NOW_NS - 20 + 10**12
     assert waited_s(moved, NOW_NS + 10**12 + 10**9) == pytest.approx(3.0)
     assert moved.interrupted_ns == NOW_NS - 10 + 10**12
     assert at_other_time(StepMemory(), 10**12).waits_since_ns is None
