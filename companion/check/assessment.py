@@ -1,15 +1,15 @@
 """From what was seen of an autopilot and a vehicle to the lines of the check; pure."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from companion.autopilots.kinds import AutopilotKind
-from companion.check.ardupilot_rules import ardupilot_rules
+from companion.check.ardupilot_rules import ARDUPILOT_RULES, ARDUPILOT_SINK
 from companion.check.findings import Finding, Level, passed
 from companion.check.observation import AutopilotFacts, VehicleFacts
-from companion.check.px4_rules import px4_rules
-from companion.check.rules import ParameterRule, judged
+from companion.check.px4_rules import PX4_RULES, PX4_SINK
+from companion.check.rules import ParameterRule, Spelling, judged, names_of, sink_rule
 from companion.config import AbortConfig, ChaseConfig, CompanionConfig
 from link.mavlink.dialect import mavlink
 
@@ -22,19 +22,36 @@ class Firmware:
         name: for messages.
         kind: what a configuration calls it.
         oldest: release that is known to work.
-        rules: of its parameters, for the companion's largest sink rate in m/s.
+        rules: of its parameters, but for the one that limits the descent.
+        sink: names of that one.
     """
 
     name: str
     kind: AutopilotKind
     oldest: tuple[int, int]
-    rules: Callable[[float], Sequence[ParameterRule]]
+    rules: Sequence[ParameterRule]
+    sink: tuple[Spelling, ...]
+
+    def rules_for(self, sink_m_s: float) -> tuple[ParameterRule, ...]:
+        """Return all rules, for a companion that sinks by `sink_m_s` at most."""
+        return (*self.rules, sink_rule(self.sink, sink_m_s))
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Every name that the rules look for."""
+        return (*names_of(self.rules), *(spelling.name for spelling in self.sink))
 
 
 FIRMWARES = {
-    mavlink.MAV_AUTOPILOT_PX4: Firmware(name="PX4", kind=AutopilotKind.PX4, oldest=(1, 14), rules=px4_rules),
+    mavlink.MAV_AUTOPILOT_PX4: Firmware(
+        name="PX4", kind=AutopilotKind.PX4, oldest=(1, 14), rules=PX4_RULES, sink=PX4_SINK
+    ),
     mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA: Firmware(
-        name="ArduPilot", kind=AutopilotKind.ARDUPILOT, oldest=(4, 5), rules=ardupilot_rules
+        name="ArduPilot",
+        kind=AutopilotKind.ARDUPILOT,
+        oldest=(4, 5),
+        rules=ARDUPILOT_RULES,
+        sink=ARDUPILOT_SINK,
     ),
 }
 """By MAV_AUTOPILOT."""
@@ -67,7 +84,7 @@ def assessed(
     found += [_latency(autopilot), _battery(autopilot, config.limits.battery_min_share)]
     found.append(_range_finder(autopilot))
     if autopilot.autopilot_id in FIRMWARES:
-        rules = FIRMWARES[autopilot.autopilot_id].rules(config.descent.descent_rate_max_m_s)
+        rules = FIRMWARES[autopilot.autopilot_id].rules_for(config.descent.descent_rate_max_m_s)
         found += judged(rules, autopilot.parameters, speed_m_s)
     return found if vehicle is None else [*found, *_vehicle(vehicle, config)]
 

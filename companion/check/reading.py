@@ -5,7 +5,6 @@ from collections import Counter, deque
 
 from companion.check.assessment import FIRMWARES, MOTION
 from companion.check.observation import AutopilotFacts
-from companion.check.rules import names_of
 from companion.local_origin import geoid_height_m
 from companion.sensor_messages import battery_share, is_of_first_battery
 from link.mavlink.dialect import Message, mavlink
@@ -135,7 +134,7 @@ class Reader:
         for message_id, rate_hz in _STREAMS.items():
             self.session.request_interval(message_id, rate_hz, found.t_ns)
         firmware = FIRMWARES.get(found.autopilot)
-        for name in () if firmware is None else names_of(firmware.rules(0.0)):  # whose names are always the same
+        for name in () if firmware is None else firmware.parameters:
             self.read_again(name, found.t_ns)
 
     def _hear(self, message: Message, t_ns: int) -> None:

@@ -83,6 +83,18 @@ def at_least(
     )
 
 
+def sink_rule(spellings: tuple[Spelling, ...], sink_m_s: float) -> ParameterRule:
+    """Return the rule of the parameter that limits the descent, for a companion that sinks by `sink_m_s` at most."""
+    return at_least(
+        lambda speed_m_s: sink_m_s + GRADE_MAX * speed_m_s,
+        step=0.5,
+        spellings=spellings,
+        unit="m/s",
+        level=Level.WARN,
+        reason="the descent onto a deck that drives downhill, and the correction of its height",
+    )
+
+
 def names_of(rules: Sequence[ParameterRule]) -> tuple[str, ...]:
     """Return every name that the rules look for."""
     return tuple(spelling.name for rule in rules for spelling in rule.spellings)

@@ -6,15 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from companion.check.ardupilot_rules import ardupilot_rules
-from companion.check.px4_rules import px4_rules
+from companion.check.assessment import FIRMWARES
 from companion.check.rules import ParameterRule
 from companion.conditions import ABORT_TESTS, ALIGNMENT_LOST, STRAYS
 from companion.config import CompanionConfig
 from companion.feasibility import OBSTACLES
+from link.mavlink.dialect import mavlink
 
 SINK_M_S = CompanionConfig().descent.descent_rate_max_m_s
-ARDUPILOT_RULES, PX4_RULES = ardupilot_rules(SINK_M_S), px4_rules(SINK_M_S)
+ARDUPILOT_RULES = FIRMWARES[mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA].rules_for(SINK_M_S)
+PX4_RULES = FIRMWARES[mavlink.MAV_AUTOPILOT_PX4].rules_for(SINK_M_S)
 DOCS = Path(__file__).parents[2] / "docs"
 SPEEDS_M_S = (5.0, 8.0, 10.0)
 

@@ -4,14 +4,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.check.ardupilot_rules import ardupilot_rules
+from companion.check.assessment import FIRMWARES
 from companion.check.findings import Finding, Level
-from companion.check.px4_rules import px4_rules
 from companion.check.rules import SPEED_SHARE_ADVISED, ParameterRule, Spelling, judged, names_of
 from companion.feasibility import SPEED_SHARE_MIN
+from link.mavlink.dialect import mavlink
 
 SINK_M_S = 1.2
-ARDUPILOT_RULES, PX4_RULES = ardupilot_rules(SINK_M_S), px4_rules(SINK_M_S)
+ARDUPILOT_RULES = FIRMWARES[mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA].rules_for(SINK_M_S)
+PX4_RULES = FIRMWARES[mavlink.MAV_AUTOPILOT_PX4].rules_for(SINK_M_S)
 ALL = [*PX4_RULES, *ARDUPILOT_RULES]
 SPELLED = [(rule, spelling) for rule in ALL for spelling in rule.spellings]
 ARDUCOPTER_46 = {
