@@ -5,18 +5,20 @@ from dataclasses import replace
 import numpy as np
 
 from companion.autopilots.driver import AutopilotView
+from companion.conditions import update_held
 from companion.config import CompanionConfig
-from companion.decisions import Progress
+from companion.decisions import Decision, Progress, decide
 from companion.pad import HEADING_UNKNOWN, PadPath
 from companion.phases import Phase
 from companion.planning.guidance import ReferenceState
-from companion.situation import Drone, Situation
+from companion.situation import Drone, Situation, approach
 from link.geodesy import Datum
 from link.local_frame import LocalFrame, Projection
 from link.messages import Vector3
 
 CONFIG = CompanionConfig()
 NOW_NS = 1_795_000_000_000_000_000
+TICK_NS = 20_000_000
 PAD_ENU_M = np.array([3.0, -2.0, 1.5])
 GEAR_M = CONFIG.touchdown.gear_height_m
 FLIES = AutopilotView(
@@ -107,3 +109,16 @@ def progress(phase: Phase, in_phase_s: float = 1.0) -> Progress:
 
 def later(facts: Situation, by_ns: int) -> Situation:
     return replace(facts, t_ns=facts.t_ns + by_ns)
+
+
+def first_decision(phase: Phase, facts: Situation, limit_s: float) -> tuple[Decision | None, int]:
+    """Return the first decision on facts that stay as they are, and after how many ticks it came."""
+    held: dict[str, int] = {}
+    ticks = 0
+    for ticks in range(round(limit_s * 1e9 / TICK_NS) + 1):
+        now = later(facts, ticks * TICK_NS)
+        held = update_held(held, phase, now, approach(now), CONFIG)
+        decision = decide(progress(phase, 0.0), now, held, CONFIG)
+        if decision is not None:
+            return decision, ticks
+    return None, ticks

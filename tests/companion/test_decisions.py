@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from companion.conditions import (
@@ -17,20 +17,21 @@ from companion.conditions import (
     update_held,
 )
 from companion.contradiction import CONTRADICTING
-from companion.decisions import Decision, decide
+from companion.decisions import decide
 from companion.ground import SEEN_TOO_NEAR
 from companion.pad import NOT_DESCRIBED
 from companion.pad_reach import cone_radius_m
-from companion.passing import vehicle_passes
 from companion.phases import Event, Phase
-from companion.situation import Situation, approach, stands
+from companion.situation import Situation, approach
 from companion.timed import Test as Condition
 from link.messages import Vector3
 from tests.companion.facts import (
     CONFIG,
     NOW_NS,
+    TICK_NS,
     braking_pad,
     drone_at,
+    first_decision,
     later,
     pad_at,
     progress,
@@ -39,7 +40,6 @@ from tests.companion.facts import (
 )
 from tests.companion.world import FLYING, LANDING
 
-TICK_NS = 20_000_000
 HALF_M = pad_at().half_width_m
 OVER_PAD_M = 2.0 * CONFIG.descent.cone_radius_at_pad_m
 HIGH_M = CONFIG.descent.align_height_m
@@ -86,19 +86,6 @@ def _moving(speed_m_s: float) -> Situation:
 CASES = [(test, phase) for test in ABORT_TESTS for phase in Phase if phase in test.phases]
 
 
-def _first_decision(phase: Phase, facts: Situation, limit_s: float) -> tuple[Decision | None, int]:
-    """Return the first decision on facts that stay as they are, and after how many ticks it came."""
-    held: dict[str, int] = {}
-    ticks = 0
-    for ticks in range(round(limit_s * 1e9 / TICK_NS) + 1):
-        now = later(facts, ticks * TICK_NS)
-        held = update_held(held, phase, now, approach(now), CONFIG)
-        decision = decide(progress(phase, 0.0), now, held, CONFIG)
-        if decision is not None:
-            return decision, ticks
-    return None, ticks
-
-
 def _before_the_next_phase(facts: Situation, phase: Phase) -> Situation:
     """The same with the drone beside the pad, so that an approach goes on from `phase` by nothing but an abort."""
     beside_m = {Phase.CHASE: 2.0, Phase.ALIGN: 0.5}.get(phase, 0.0) * CONFIG.descent.align_distance_m
@@ -115,7 +102,7 @@ def test_every_abort_test_is_tried_here() -> None:
 @pytest.mark.parametrize(("test", "phase"), CASES)
 def test_abort_fires_exactly_after_its_hold_time(test: Condition, phase: Phase) -> None:
     hold_s = test.hold_s(CONFIG)
-    decision, ticks = _first_decision(phase, _before_the_next_phase(UNSAFE[test.reason], phase), hold_s + 1.0)
+    decision, ticks = first_decision(phase, _before_the_next_phase(UNSAFE[test.reason], phase), hold_s + 1.0)
     assert decision == (Event.UNSAFE, test.reason)
     assert ticks == math.ceil(hold_s * 1e9 / TICK_NS - 1e-9)
 
@@ -134,7 +121,7 @@ def test_condition_that_breaks_off_for_one_step_begins_anew(test: Condition, pha
 
 @pytest.mark.parametrize("phase", LANDING)
 def test_nothing_aborts_while_all_is_well(phase: Phase) -> None:
-    decision, _ = _first_decision(phase, situation(), 3.0)
+    decision, _ = first_decision(phase, situation(), 3.0)
     assert decision is None or decision[0] not in {Event.UNSAFE, Event.TIME_LIMIT}
 
 
@@ -146,7 +133,7 @@ def test_below_the_commit_height_it_lands_rather_than_aborts(reason: str) -> Non
     assert unsafe.drone is not None
     drone = replace(drone_at(LOW_M, 0.1, speed, pad=unsafe.pad), attitude_known=unsafe.drone.attitude_known)
     low = replace(unsafe, drone=drone, reference=reference_at(LOW_M))
-    decision, _ = _first_decision(Phase.DESCEND, low, 3.0)
+    decision, _ = first_decision(Phase.DESCEND, low, 3.0)
     assert decision is None
 
 
@@ -156,7 +143,7 @@ def test_below_the_commit_height_it_does_not_land_where_nobody_knows_the_pad_to_
     relative = approach(blind)
     if blind.pad is not None and relative is not None and relative.height_m > LOW_M:
         blind = replace(blind, drone=drone_at(LOW_M, 0.1, (0.0, 0.0, -0.4), pad=blind.pad))
-    decision, _ = _first_decision(Phase.DESCEND, blind, 3.0)
+    decision, _ = first_decision(Phase.DESCEND, blind, 3.0)
     assert decision == (Event.UNSAFE, reason)
 
 
@@ -178,7 +165,7 @@ def test_descent_waits_for_what_passes(drifting: Situation, wanted: bool) -> Non
 def test_drone_beside_the_pad_below_the_commit_height_aborts_and_is_not_taken_for_landed() -> None:
     beside = situation(0.0, OVER_PAD_M + 0.05)
     beside = replace(beside, autopilot=replace(beside.autopilot, landed=True), reference=reference_at(-0.4))
-    decision, _ = _first_decision(Phase.DESCEND, beside, 3.0)
+    decision, _ = first_decision(Phase.DESCEND, beside, 3.0)
     assert decision == (Event.UNSAFE, "outside the descent cone")
 
 
@@ -194,20 +181,20 @@ def test_drone_that_is_stopped_while_the_pad_drives_on_has_landed_and_does_not_c
         drone=drone_at(0.0, 0.3, (-4.0, -1.0, 0.0), pad=pad_at((4.0, 1.0, 0.0))),
         reference=reference_at(-CONFIG.touchdown.blocked_depth_m - 0.01),
     )
-    decision, ticks = _first_decision(Phase.DESCEND, _jolted(stopped), 1.0)
+    decision, ticks = first_decision(Phase.DESCEND, _jolted(stopped), 1.0)
     assert decision is not None
     assert (decision[0], ticks) == (Event.CONTACT, 0)
-    unexplained, _ = _first_decision(Phase.DESCEND, stopped, CONFIG.abort.near_speed_hold_s + 0.02)
+    unexplained, _ = first_decision(Phase.DESCEND, stopped, CONFIG.abort.near_speed_hold_s + 0.02)
     assert unexplained == (Event.UNSAFE, "too fast against the pad")
 
 
 def test_jolt_with_the_pad_in_the_range_finders_sight_needs_no_sunken_setpoint() -> None:
     stopped = _jolted(replace(situation(0.0), reference=reference_at(0.05), range_height_m=0.03))
-    decision, _ = _first_decision(Phase.DESCEND, stopped, 0.0)
+    decision, _ = first_decision(Phase.DESCEND, stopped, 0.0)
     assert decision is not None
     assert decision[0] is Event.CONTACT
     far = replace(stopped, range_height_m=CONFIG.touchdown.range_height_max_m + 0.01)
-    assert _first_decision(Phase.DESCEND, far, 0.0)[0] is None
+    assert first_decision(Phase.DESCEND, far, 0.0)[0] is None
 
 
 @pytest.mark.parametrize(("seen_last_m", "wanted"), [(0.0, Event.CONTACT), (0.15, Event.CONTACT), (0.16, Event.UNSAFE)])
@@ -222,11 +209,11 @@ def test_drone_that_is_stopped_after_its_range_finder_fell_blind_has_landed_wher
         reference=reference_at(-0.2),  # it follows its setpoint: no other sign speaks for a contact
         range_carried_m=seen_last_m,
     )
-    decision, _ = _first_decision(Phase.DESCEND, _jolted(stopped), 1.0)
+    decision, _ = first_decision(Phase.DESCEND, _jolted(stopped), 1.0)
     assert decision is not None
     assert decision[0] is wanted
     in_sight = replace(stopped, range_height_m=2.0)
-    assert _first_decision(Phase.DESCEND, _jolted(in_sight), 1.0)[0] == (Event.UNSAFE, "too fast against the pad")
+    assert first_decision(Phase.DESCEND, _jolted(in_sight), 1.0)[0] == (Event.UNSAFE, "too fast against the pad")
 
 
 @pytest.mark.parametrize(("driven_s", "wanted"), [(0.0, Event.CONTACT), (0.055, Event.CONTACT), (0.16, Event.UNSAFE)])
@@ -242,7 +229,7 @@ def test_what_has_stopped_the_drone_was_the_pad_where_it_was_before_it_drove_on(
         reference=reference_at(0.0),
         range_height_m=0.02,
     )
-    decision, _ = _first_decision(Phase.DESCEND, _jolted(stopped), 1.0)
+    decision, _ = first_decision(Phase.DESCEND, _jolted(stopped), 1.0)
     assert decision is not None
     assert decision[0] is wanted
 
@@ -274,7 +261,7 @@ def test_drone_that_the_pad_stops_beside_the_cone_has_landed_though_the_stop_end
 
 def test_jolt_in_the_air_is_no_contact() -> None:
     sinking = replace(situation(LOW_M), drone=drone_at(LOW_M, 0.1, (0.0, 0.0, -0.4), pad=pad_at()))
-    decision, _ = _first_decision(Phase.DESCEND, _jolted(replace(sinking, reference=reference_at(LOW_M))), 1.0)
+    decision, _ = first_decision(Phase.DESCEND, _jolted(replace(sinking, reference=reference_at(LOW_M))), 1.0)
     assert decision is None
 
 
@@ -299,90 +286,11 @@ def test_landing_goes_on_exactly_after_the_hold_time(event: Event, test: Conditi
     if test.reason == HARD_CONTACT:
         facts = _jolted(facts)
     hold_s = test.hold_s(CONFIG)
-    decision, ticks = _first_decision(phase, facts, hold_s + 1.0)
+    decision, ticks = first_decision(phase, facts, hold_s + 1.0)
     assert decision is not None
     assert decision[0] is event
     assert decision[1].startswith(test.reason)
     assert ticks == math.ceil(hold_s * 1e9 / TICK_NS - 1e-9)
-
-
-def test_vehicle_that_stands_is_not_taken_for_one_that_passes() -> None:
-    standing = situation(3.0, 2.0, pad=pad_at((0.2, 0.0, 0.0)))
-    assert vehicle_passes(standing, CONFIG) is None
-    decision, _ = _first_decision(Phase.WAITING, standing, CONFIG.chase.parked_wait_s - 0.1)
-    assert decision is None
-
-
-def test_vehicle_is_chased_once_it_has_driven_for_the_hold_time_and_not_for_a_jump_of_its_estimate() -> None:
-    passing = situation(HIGH_M, 2.0, pad=pad_at((4.0, 1.0, 0.0)))
-    hold_s = CONFIG.chase.driving_hold_s
-    jumped, _ = _first_decision(Phase.WAITING, passing, hold_s - 2.0 * TICK_NS * 1e-9)
-    assert jumped is None
-    decision, ticks = _first_decision(Phase.WAITING, passing, hold_s + 1.0)
-    assert decision is not None
-    assert decision[0] is Event.VEHICLE_PASSES
-    assert ticks == math.ceil(hold_s * 1e9 / TICK_NS - 1e-9)
-
-
-def test_vehicle_that_stands_far_away_is_not_chased() -> None:
-    far = situation(3.0, CONFIG.chase.passing_distance_m + 0.1, pad=pad_at((0.0, 0.0, 0.0)))
-    decision, _ = _first_decision(Phase.WAITING, far, 2.0 * CONFIG.chase.parked_wait_s)
-    assert decision is None
-
-
-@given(
-    speed_m_s=st.floats(0.5, 20.0),
-    course_rad=st.floats(-math.pi, math.pi),
-    beside_m=st.floats(-0.9, 0.9),
-    height_m=st.floats(HIGH_M, 10.0),
-)
-@settings(max_examples=100, deadline=None)
-def test_chase_starts_when_even_acceleration_meets_the_vehicle(
-    speed_m_s: float, course_rad: float, beside_m: float, height_m: float
-) -> None:
-    # A drone that accelerates at a from rest has v after v / a and covered v^2 / (2 a); the vehicle covered v^2 / a.
-    lead_m = speed_m_s**2 / (2.0 * CONFIG.chase.start_acceleration_m_s2)
-    along = np.array([math.cos(course_rad), math.sin(course_rad), 0.0])
-    across = np.array([-along[1], along[0], 0.0])
-    velocity = (speed_m_s * along).tolist()
-    pad = pad_at((velocity[0], velocity[1], 0.0))
-    drone = drone_at(height_m, pad=pad)
-
-    def passes(to_go_m: float) -> bool:
-        offset = to_go_m * along + beside_m * CONFIG.chase.passing_distance_m * across
-        there = replace(drone, position_enu_m=drone.position_enu_m + offset)
-        return vehicle_passes(replace(situation(pad=pad), drone=there), CONFIG) is not None
-
-    assert not passes(lead_m + 0.05)
-    assert passes(lead_m - 0.05)
-    assert passes(0.0)
-    # One that is past is caught up with while the drone can fly so much faster.
-    faster_m_s = min(CONFIG.limits.speed_max_m_s - speed_m_s, CONFIG.chase.catch_up_speed_m_s)
-    past_m = max(CONFIG.chase.catch_up_s * faster_m_s, CONFIG.chase.passing_distance_m)
-    assert passes(-past_m + 0.05)
-    assert not passes(-past_m - 0.05)
-
-
-def test_vehicle_that_is_past_is_let_go_by_the_limit_that_the_autopilot_lowers() -> None:
-    pad = pad_at((10.0, 0.0, 0.0))
-    behind = drone_at(HIGH_M, -20.0, pad=pad)
-    facts = replace(situation(pad=pad), drone=behind)
-    limits = CONFIG.limits.flight_limits()
-    assert vehicle_passes(replace(facts, limits=limits), CONFIG) is not None
-    assert vehicle_passes(replace(facts, limits=replace(limits, speed_max_m_s=11.6)), CONFIG) is None
-
-
-def test_vehicle_that_passes_too_far_beside_is_not_chased() -> None:
-    pad = pad_at((5.0, 0.0, 0.0))
-    drone = drone_at(3.0, pad=pad)
-    far_m = CONFIG.chase.passing_distance_m + 0.1
-    beside = replace(drone, position_enu_m=drone.position_enu_m + np.array([0.0, far_m, 0.0]))
-    assert vehicle_passes(replace(situation(pad=pad), drone=beside), CONFIG) is None
-
-
-def test_drone_below_the_roof_does_not_begin_a_chase() -> None:
-    assert vehicle_passes(situation(0.5), CONFIG) is None
-    assert vehicle_passes(situation(HIGH_M), CONFIG) is not None
 
 
 @pytest.mark.parametrize(
@@ -465,25 +373,3 @@ def test_pad_that_was_not_described_is_not_landed_on_and_it_is_said_why() -> Non
     held = update_held(aligned, Phase.ALIGN, facts, approach(facts), CONFIG)
     assert "aligned" not in held
     assert decide(late, facts, held, CONFIG) == (Event.TIME_LIMIT, NOT_DESCRIBED)
-
-
-@pytest.mark.parametrize(
-    ("speed_m_s", "std_m_s", "expected"),
-    [
-        (0.2, 0.1, True),
-        (0.4, 0.1, False),
-        (0.4, 0.5, True),
-        (0.8, 0.5, False),
-        (0.4, math.inf, False),
-        (0.2, math.inf, True),
-    ],
-)
-def test_vehicle_stands_as_far_as_its_speed_is_known(speed_m_s: float, std_m_s: float, *, expected: bool) -> None:
-    facts = replace(situation(pad=pad_at((speed_m_s, 0.0, 0.0))), speed_std_m_s=std_m_s)
-    assert stands(facts, CONFIG.chase) is expected
-    assert ("vehicle stands" in update_held({}, Phase.WAITING, facts, approach(facts), CONFIG)) is expected
-    assert ("vehicle drives" in update_held({}, Phase.WAITING, facts, approach(facts), CONFIG)) is not expected
-
-
-def test_vehicle_that_is_not_known_does_not_stand() -> None:
-    assert not stands(replace(situation(), pad=None), CONFIG.chase)

@@ -13,11 +13,10 @@ from companion.step_data import StepMemory
 from companion.sway import Sway, felt, sways
 from companion.targets import pad_aim
 from companion.waiting import waits_at_m, waits_for_calm
-from tests.companion.facts import GEAR_M, NOW_NS, pad_at, reference_at, situation
+from tests.companion.facts import GEAR_M, NOW_NS, TICK_NS, pad_at, reference_at, situation
 
 CONFIG = CompanionConfig()
 DESCENT = CONFIG.descent
-TICK_NS = 20_000_000
 STEADY_RAD = math.radians(17.0)
 TOO_MUCH_RAD = math.atan(math.tan(STEADY_RAD) + (DESCENT.sway_max_m_s2 + 0.2) / GRAVITY_M_S2)
 NOT_YET_RAD = math.atan(math.tan(STEADY_RAD) + (DESCENT.sway_max_m_s2 - 0.2) / GRAVITY_M_S2)

@@ -19,7 +19,7 @@ from companion.targets import is_unseen, pad_aim
 from scenarios.config import PatternConfig
 from tests.companion.estimation.driving import DEGRADED, NOMINAL, Sensors, circle
 from tests.companion.estimation.rides import arrivals, estimator, now_ns
-from tests.companion.facts import GEAR_M, later, pad_at, progress, reference_at, situation
+from tests.companion.facts import GEAR_M, TICK_NS, later, pad_at, progress, reference_at, situation
 
 CONFIG = CompanionConfig()
 HIGH_M = CONFIG.descent.align_height_m
@@ -28,7 +28,6 @@ VAGUE_M = CONFIG.descent.unseen_std_max_m + 0.01
 SURE_M = CONFIG.descent.unseen_std_max_m - 0.01
 PLAIN = replace(DEGRADED, pad_rate_hz=10.0, pad_delay_s=0.15, frame_offset_m=1.2)
 RTK = replace(NOMINAL, pad_rate_hz=30.0, frame_offset_m=0.5)
-TICK_NS = 20_000_000
 
 
 def above(height_m: float, std_m: float, *, is_coarse: bool) -> Situation:

@@ -14,11 +14,21 @@ from companion.surprise import Surprise
 from companion.transitions import transitions
 from companion.waiting import waited_s, waits_at_m, why_held_up
 from link.messages import Vector3
-from tests.companion.facts import CONFIG, GEAR_M, NOW_NS, braking_pad, drone_at, later, pad_at, progress, situation
+from tests.companion.facts import (
+    CONFIG,
+    GEAR_M,
+    NOW_NS,
+    TICK_NS,
+    braking_pad,
+    drone_at,
+    later,
+    pad_at,
+    progress,
+    situation,
+)
 from tests.companion.world import PAD_HEIGHT_M, Flight, reached
 
 DESCENT = CONFIG.descent
-TICK_NS = 20_000_000
 WAITING_M = DESCENT.waiting_height_m
 SURPRISED = Surprise(surprised_ns=NOW_NS)
 KNOWN = Surprise(speed_std_m_s=0.05)
