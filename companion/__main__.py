@@ -108,7 +108,7 @@ def companion(
         from companion.loop_options import Links, LoopOptions
 
         if folder is not None:
-            from companion.record_folder import recording_sink
+            from companion.recording.folder import recording_sink
 
             recorder = BackgroundRecorder(recording_sink(folder, settings, keys, system_id=system_id, dry_run=dry_run))
             stack.callback(recorder.close)

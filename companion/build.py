@@ -8,7 +8,7 @@ from companion.node import CompanionNode
 from companion.pad import turned_lever
 from companion.planning.guidance import PlanRequest, ReferenceState, Target
 from companion.planning.kinds import make_guidance
-from companion.recording_node import RecordingNode
+from companion.recording.node import RecordingNode
 from companion.step_data import System
 from link.keys import Keys
 from link.mavlink.session import MavlinkSession

@@ -8,9 +8,9 @@ Where nobody subscribes to them nothing is encoded.
 from collections.abc import Iterator
 
 from companion.node import CompanionNode
-from companion.node_records import link_record, step_record
-from companion.record_messages import LONG_EVERY, link_message, own_message, vehicle_messages
-from companion.records import LinkRecord, StepRecord
+from companion.recording.messages import LONG_EVERY, link_message, own_message, vehicle_messages
+from companion.recording.node_records import link_record, step_record
+from companion.recording.records import LinkRecord, StepRecord
 from link import cdr
 from link.keys import Keys
 from link.messages import BodyTruth

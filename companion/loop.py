@@ -14,7 +14,7 @@ from companion.onlookers import Onlooker, onlookers
 from companion.own_start import OwnStart, check_autopilot
 from companion.pad_question import PadQuestion
 from companion.phases import Phase
-from companion.recording_node import RecordingNode
+from companion.recording.node import RecordingNode
 from companion.timings import Timings
 from link import cdr
 from link.clock import Clock, ClockTick, SimulatedClock, SystemClock

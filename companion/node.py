@@ -5,7 +5,7 @@ The wire loop, the lockstep campaigns and the tests all run this one.
 
 from dataclasses import replace
 
-from companion.autopilot_link import CLOCK_SET_NS, AutopilotLink
+from companion.autopilots.link import CLOCK_SET_NS, AutopilotLink
 from companion.data import Measurement, VehicleEstimate
 from companion.estimation.buffered import BufferHealth
 from companion.estimation.factory import make_estimator

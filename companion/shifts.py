@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from companion.autopilots.driver import AutopilotView, DriverMemory
-from companion.contradiction import Contradictions
 from companion.data import Array
-from companion.fix_stamps import FixStamps
-from companion.reference import Tracking
+from companion.landing.reference import Tracking
+from companion.monitors.contradiction import Contradictions
+from companion.monitors.fix_stamps import FixStamps
+from companion.monitors.surprise import Surprise
+from companion.monitors.sway import Sway
 from companion.step_data import StepMemory
-from companion.surprise import Surprise
-from companion.sway import Sway
 
 
 def in_present_frame(memory: StepMemory, view: AutopilotView) -> StepMemory:

@@ -4,28 +4,28 @@ Pure: the same memory, inputs and system give the same result, in flight, in sim
 """
 
 from companion.autopilots.driver import AutopilotCommand, Desire
-from companion.conditions import HELD_UP
 from companion.config import CompanionConfig
-from companion.contact import may_force_motors_off, signs_of
-from companion.contradiction import counted
-from companion.course import watched, without_contradicted_heading
 from companion.data import Forecast, OwnState
-from companion.fix_stamps import with_newest
-from companion.flying import fly, has_free_place, setpoint
-from companion.ground import ground_enu_m, is_road_elsewhere
+from companion.landing.conditions import HELD_UP
+from companion.landing.flying import fly, has_free_place, setpoint
+from companion.landing.reference import compare
+from companion.landing.status import landing_status
+from companion.landing.targets import HORIZON_OFFSETS_S
+from companion.landing.timed import holds
+from companion.landing.transitions import transitions
+from companion.monitors.contact import may_force_motors_off, signs_of
+from companion.monitors.contradiction import counted
+from companion.monitors.course import watched, without_contradicted_heading
+from companion.monitors.fix_stamps import with_newest
+from companion.monitors.ground import ground_enu_m, is_road_elsewhere
+from companion.monitors.pad_height import pad_raised_m, with_pad_raised
+from companion.monitors.surprise import looked_back
 from companion.pad import PadPath, pad_path
-from companion.pad_height import pad_raised_m, with_pad_raised
 from companion.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
 from companion.planning.requests import are_finite
-from companion.reference import compare
 from companion.shifts import in_present_frame
 from companion.situation import Situation, drone_now, range_carried_m, range_height_m
-from companion.status import landing_status
 from companion.step_data import StepInputs, StepMemory, StepOutputs, System
-from companion.surprise import looked_back
-from companion.targets import HORIZON_OFFSETS_S
-from companion.timed import holds
-from companion.transitions import transitions
 from link.frames import yaw_of
 from link.records import replace
 

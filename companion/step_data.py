@@ -8,16 +8,16 @@ from typing import Any
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, AutopilotView, Driver, DriverMemory
 from companion.config import CompanionConfig
-from companion.contradiction import Contradictions
-from companion.course import CourseWatch
 from companion.data import Array, FlightLimits, Measurement, OwnState, Setpoint
 from companion.estimation.estimator import Estimator
-from companion.fix_stamps import FixStamps
+from companion.landing.reference import Tracking
+from companion.monitors.contradiction import Contradictions
+from companion.monitors.course import CourseWatch
+from companion.monitors.fix_stamps import FixStamps
+from companion.monitors.surprise import Surprise
+from companion.monitors.sway import Sway
 from companion.phases import Phase
 from companion.planning.guidance import Guidance, PlanResult, ReferenceState
-from companion.reference import Tracking
-from companion.surprise import Surprise
-from companion.sway import Sway
 from link.messages import Command, CommandReply, LandingStatus, PadGeometry, Vector3
 
 

@@ -3,8 +3,8 @@
 from rich.console import Console
 
 from companion.node import CompanionNode
-from companion.node_records import link_record
-from companion.records import LinkRecord
+from companion.recording.node_records import link_record
+from companion.recording.records import LinkRecord
 from link.messages import LandingStatus
 from link.recorder import BackgroundRecorder
 from link.screen import Screen

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from companion.autopilot_state import AutopilotState
+from companion.autopilots.state import AutopilotState
 from companion.data import Array, Measurement, OwnState, Quantity
 from link import cdr
 from link.frames import rotate, yaw_of

@@ -10,8 +10,8 @@ from typing import Any
 
 from companion.build import build_node
 from companion.node import CompanionNode
-from companion.record_folder import recording_sink
-from companion.records import InputRecord
+from companion.recording.folder import recording_sink
+from companion.recording.records import InputRecord
 from link.keys import Keys
 from link.recorder import BackgroundRecorder
 from link.units import NS_PER_S

@@ -11,9 +11,9 @@ from typing import Any
 from companion.build import build_node
 from companion.config import CompanionConfig
 from companion.node import CompanionNode
-from companion.record_folder import CONFIG_NAME, STEM
-from companion.record_sink import CompanionSink
-from companion.records import InputKind, InputRecord
+from companion.recording.folder import CONFIG_NAME, STEM
+from companion.recording.records import InputKind, InputRecord
+from companion.recording.sink import CompanionSink
 from link import json_payloads
 from link.errors import UserError
 from link.keys import Keys

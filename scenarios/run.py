@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from companion.record_folder import recording_sink
+from companion.recording.folder import recording_sink
 from link.errors import UserError
 from link.keys import Keys
 from link.recorder import DirectRecorder

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from companion.config import CompanionConfig
-from companion.record_folder import STEM as COMPANION
+from companion.recording.folder import STEM as COMPANION
 from link.errors import UserError
 from link.keys import Keys
 from link.local_frame import LocalFrame, Projection

@@ -3,10 +3,10 @@
 import statistics
 from collections import Counter, deque
 
+from companion.autopilots.local_origin import geoid_height_m
+from companion.autopilots.sensor_messages import battery_share, is_of_first_battery
 from companion.check.assessment import FIRMWARES, MOTION
 from companion.check.observation import AutopilotFacts
-from companion.local_origin import geoid_height_m
-from companion.sensor_messages import battery_share, is_of_first_battery
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import Event, LinkFound, MessageReceived, ParameterMissing, ParameterRead
 from link.mavlink.session import MavlinkSession

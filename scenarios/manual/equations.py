@@ -35,14 +35,14 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
             "companion.planning.qp",
             "companion.planning.mpc_report",
             "companion.planning.pn",
-            "companion.reference",
-            "companion.targets",
+            "companion.landing.reference",
+            "companion.landing.targets",
         ),
     ),
     (
         "When it has landed",
         "The autopilot's own land detector is made for the ground.",
-        ("companion.contact",),
+        ("companion.monitors.contact",),
     ),
     (
         "How the simulated drone flies",

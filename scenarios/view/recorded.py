@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from companion.record_folder import STEM as COMPANION
-from companion.records import InputKind
+from companion.recording.folder import STEM as COMPANION
+from companion.recording.records import InputKind
 from link import json_payloads
 from link.errors import UserError
 from link.keys import Keys

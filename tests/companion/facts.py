@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from companion.autopilots.driver import AutopilotView
-from companion.conditions import update_held
 from companion.config import CompanionConfig
-from companion.decisions import Decision, Progress, decide
+from companion.landing.conditions import update_held
+from companion.landing.decisions import Decision, Progress, decide
 from companion.pad import HEADING_UNKNOWN, PadPath
 from companion.phases import Phase
 from companion.planning.guidance import ReferenceState

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from companion.config import CompanionConfig
+from companion.landing.transitions import transitions
 from companion.phases import Phase
 from companion.step_data import StepInputs, StepMemory
-from companion.transitions import transitions
 from link.messages import Command
 from tests.companion.facts import FLIES, NOW_NS, drone_at, pad_at, reference_at, situation
 

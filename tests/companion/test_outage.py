@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from companion.decisions import decide
+from companion.landing.decisions import decide
 from companion.phases import Event, Phase
 from tests.companion.facts import CONFIG, progress, situation
 from tests.companion.world import Flight, reached

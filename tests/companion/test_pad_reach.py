@@ -6,12 +6,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.conditions import is_over_pad
-from companion.contact import Verdict, signs_of, verdict
+from companion.landing.conditions import is_over_pad
+from companion.landing.targets import is_unseen
+from companion.monitors.contact import Verdict, signs_of, verdict
 from companion.pad_reach import cone_radius_at_pad_m, cone_radius_m, over_pad_radius_m, unseen_std_max_m
 from companion.phases import Phase
 from companion.situation import Situation, approach
-from companion.targets import is_unseen
 from link.messages import Command
 from tests.companion.facts import CONFIG, pad_at, reference_at, situation
 from tests.companion.world import PAD, Flight

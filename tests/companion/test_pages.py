@@ -8,9 +8,9 @@ import pytest
 
 from companion.check.assessment import FIRMWARES
 from companion.check.rules import ParameterRule
-from companion.conditions import ABORT_TESTS, ALIGNMENT_LOST, STRAYS
 from companion.config import CompanionConfig
-from companion.feasibility import OBSTACLES
+from companion.landing.conditions import ABORT_TESTS, ALIGNMENT_LOST, STRAYS
+from companion.landing.feasibility import OBSTACLES
 from link.mavlink.dialect import mavlink
 
 SINK_M_S = CompanionConfig().descent.descent_rate_max_m_s

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.autopilot_state import AutopilotState, heard
 from companion.autopilots.px4 import Px4Driver
+from companion.autopilots.state import AutopilotState, heard
 from companion.data import RangeReading
 from companion.situation import Drone, range_carried_m
 from link.mavlink.clock_map import ClockMap, RoundTrip, with_round_trip, with_system_time

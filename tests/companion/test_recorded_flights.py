@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import pytest
 
-from companion.autopilot_link import AutopilotLink
+from companion.autopilots.link import AutopilotLink
 from link.mavlink.session import MavlinkSession
 from tests.link.mavlink.tlog_frames import frames_of
 

@@ -7,15 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.conditions import update_held
 from companion.config import CompanionConfig
 from companion.data import Quantity
-from companion.decisions import decide
 from companion.estimation.config import EstimatorKind
+from companion.landing.conditions import update_held
+from companion.landing.decisions import decide
+from companion.landing.targets import is_unseen, pad_aim
 from companion.pad import PadPath, pad_path
 from companion.phases import Event, Phase
 from companion.situation import Situation, approach
-from companion.targets import is_unseen, pad_aim
 from scenarios.config import PatternConfig
 from tests.companion.estimation.driving import DEGRADED, NOMINAL, Sensors, circle
 from tests.companion.estimation.rides import arrivals, estimator, now_ns

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from companion.autopilot_state import AutopilotState
 from companion.autopilots.driver import NO_AUTOPILOT
+from companion.autopilots.state import AutopilotState
 from companion.data import Quantity
 from companion.vehicle_inputs import (
     fix_measurement,

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from companion.conditions import ABORT_TESTS, ALIGNMENT_LOST, STRAYS
+from companion.landing.conditions import ABORT_TESTS, ALIGNMENT_LOST, STRAYS
 from companion.phases import TRANSITIONS, Event, Phase
 from link.mavlink.dialect import mavlink
 from link.messages import Command

@@ -8,7 +8,7 @@ import pytest
 from rosbags.highlevel import AnyReader
 
 from companion.config import CompanionConfig
-from companion.record_folder import recording_sink
+from companion.recording.folder import recording_sink
 from link.errors import UserError
 from link.keys import Keys
 from link.mcap_reader import read_messages, recording_files

@@ -1,0 +1,242 @@
+"""The companion's conversation with the autopilot: streams, origin and parameters asked for, messages read."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import chain
+
+from companion.autopilots.choice import driver_for
+from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver
+from companion.autopilots.kinds import AutopilotKind
+from companion.autopilots.limit_questions import LimitQuestions, named
+from companion.autopilots.state import AutopilotState, heard, put_off
+from companion.data import FlightLimits, Setpoint
+from link.mavlink.dialect import Message, mavlink
+from link.mavlink.events import (
+    AutopilotRestarted,
+    CommandAcknowledged,
+    CommandTimedOut,
+    Event,
+    LinkFound,
+    LinkLost,
+    LinkRegained,
+    MessageReceived,
+    ParameterMissing,
+)
+from link.mavlink.parameters import parameter_value
+from link.mavlink.session import MavlinkSession
+
+_STREAMS_HZ = {
+    mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: 10.0,
+    mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: 2.0,
+    mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: 1.0,  # tells the geoid's height
+    mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: 1.0,
+    mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: 20.0,
+}
+_MOTION_IDS = (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED)
+_ASK_ORIGIN_NS = 1_000_000_000
+_ASK_KNOWN_ORIGIN_NS = 5_000_000_000
+_TEXT_SIZE = 50  # of a STATUSTEXT
+CLOCK_SET_NS = 200_000_000
+"""More than the map to UTC is ever refined by at once: beyond it the clock was set."""
+_LimitsAsked = tuple[FlightLimits, Driver, Mapping[str, float]]
+_WAITED_SHARE = 0.9  # of the autopilot's time-out; the rest is for the way there and back
+_WAITED_MIN_S = 0.5  # a shorter time-out cannot be told from a late message
+
+
+class AutopilotLink:
+    """The MAVLink session of a companion, without I/O.
+
+    Args:
+        session: to the autopilot.
+        motion_rate_hz: of the drone's position and attitude.
+        stops_unused_streams: ask the autopilot not to send what the companion does not read.
+        kind: of the autopilot.
+        geoid_height_m: of mean sea level above the ellipsoid, until the autopilot's receiver tells it.
+    """
+
+    def __init__(
+        self,
+        session: MavlinkSession,
+        motion_rate_hz: float = 50.0,
+        *,
+        stops_unused_streams: bool = True,
+        kind: AutopilotKind = AutopilotKind.AUTO,
+        geoid_height_m: float | None = None,
+    ) -> None:
+        self.session = session
+        self._kind = kind
+        self._stops_unused = stops_unused_streams
+        self._motion_rate_hz = motion_rate_hz
+        self._geoid_height_m = geoid_height_m
+        self.state = AutopilotState(geoid_height_m=geoid_height_m)
+        self.driver: Driver | None = None
+        self.bad_setpoints = 0
+        self._acknowledgements: list[tuple[int, int]] = []
+        self._unanswered: dict[int, int] = {}
+        self._origin_asked_ns: int | None = None
+        self._limits: tuple[_LimitsAsked, FlightLimits] | None = None
+        self._heard_ns: int | None = None
+        self._polled_ns: int | None = None
+        self._questions = LimitQuestions()
+        self._times: tuple[int, int] | None = None
+
+    def receive(self, data: bytes, local_ns: int) -> None:
+        """Take bytes of the transport.
+
+        Raises:
+            UserError: the autopilot is of a kind that cannot be flown.
+        """
+        self._take(self.session.receive(data, local_ns), local_ns)
+
+    def poll(self, local_ns: int) -> None:
+        """Do what is due by now."""
+        self._take(self.session.poll(local_ns), local_ns)
+        if self._is_out_of_touch(local_ns):
+            self._set_link(up=False)  # until a heartbeat says what the autopilot does now
+        self._polled_ns = local_ns
+        self._ask_for_origin(local_ns)
+        if self.driver is not None:
+            for name in self._questions.due(self.driver, self.state.parameters.keys(), local_ns):
+                self.session.read_parameter(name, local_ns)
+
+    def take_acknowledgements(self) -> tuple[tuple[int, int], ...]:
+        """Return (command, MAV_RESULT) received since the last call."""
+        taken, self._acknowledgements = tuple(self._acknowledgements), []
+        return taken
+
+    def take_texts(self) -> tuple[str, ...]:
+        """Return the autopilot's texts since the last call."""
+        texts, self.state = self.state.texts, replace(self.state, texts=())
+        return texts
+
+    def limits(self, wanted: FlightLimits) -> FlightLimits:
+        """Return `wanted` cut to the autopilot's own limits, as far as they are known."""
+        if self.driver is None:
+            return wanted
+        asked = (wanted, self.driver, self.state.parameters)
+        if self._limits is None or any(now is not then for now, then in zip(asked, self._limits[0], strict=True)):
+            self._limits = (asked, self.driver.limits(wanted, self.state.parameters))
+        return self._limits[1]
+
+    def send_setpoint(self, setpoint: Setpoint, local_ns: int) -> None:
+        """Send a setpoint for the flight; one that the message cannot hold is counted and left out."""
+        target = self.session.target_system_id
+        if self.driver is None or target is None:
+            return
+        boot_ns = self.session.clock.local_to_boot_ns(local_ns) or 0
+        try:
+            message = self.driver.setpoint_message(setpoint, boot_ns // 1_000_000, target)
+        except ValueError:
+            self.bad_setpoints += 1
+            return
+        self.session.send(message)
+
+    def send_commands(self, commands: tuple[AutopilotCommand, ...], local_ns: int) -> None:
+        """Send commands; their acknowledgements come back by `take_acknowledgements`.
+
+        One that would have to wait for the answer to an earlier one of its kind is left out: sent later, it could
+        meet another situation, as a disarm that is meant for the pad and arrives after a bounce.
+        """
+        for command in commands:
+            if command.command not in self._unanswered:
+                ticket = self.session.command(command.command, command.parameters, local_ns, attempts=1)
+                self._unanswered[command.command] = ticket
+
+    def send_text(self, text: str) -> None:
+        """Tell the pilot; what is longer than a STATUSTEXT is cut."""
+        cut = f"Decklander {text}".encode("ascii", "replace")[:_TEXT_SIZE]
+        self.session.send(mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_INFO, cut))
+
+    def _take(self, events: list[Event], local_ns: int) -> None:
+        self._follow_clock(local_ns)
+        for event in events:
+            match event:
+                case MessageReceived() if self.driver is not None:
+                    self._heard_ns = local_ns
+                    self._hear(event.message, self.driver)
+                case LinkFound():
+                    self.driver = driver_for(event.autopilot, event.vehicle_type, self._kind)
+                    self._ask_for_streams(self.driver, local_ns)
+                case LinkLost() | LinkRegained():
+                    self._set_link(up=isinstance(event, LinkRegained))
+                case AutopilotRestarted():
+                    self._start_over()
+                case CommandAcknowledged():
+                    if event.result != mavlink.MAV_RESULT_IN_PROGRESS:
+                        self._answered(event.command, event.ticket)
+                    self._acknowledgements.append((event.command, event.result))
+                case CommandTimedOut():
+                    self._answered(event.command, event.ticket)
+                case ParameterMissing():
+                    self._questions.unanswered(event.name, local_ns)
+
+    def _hear(self, message: Message, driver: Driver) -> None:
+        if message.get_type() == "PARAM_VALUE":
+            self._hear_parameter(message, driver)
+        shift = self.state.view.frame_shift_enu_m
+        self.state = heard(self.state, message, self.session.clock, driver)
+        if self.state.view.frame_shift_enu_m != shift:
+            self._origin_asked_ns = None  # it has probably moved, too
+
+    def _hear_parameter(self, message: Message, driver: Driver) -> None:
+        """Take a limit that was asked for or that somebody else has changed: autopilots tell everybody."""
+        value = parameter_value(message, driver.autopilot_id)
+        if value is not None and any(message.param_id in names for names in named(driver)):
+            self.state = replace(self.state, parameters={**self.state.parameters, message.param_id: float(value)})
+
+    def _start_over(self) -> None:
+        """Forget what the autopilot told before its restart, except for its parameters."""
+        view = AutopilotView(link_up=True, armed=False, in_control=False, failsafe=False, restarted=True)
+        old = self.state.view
+        view = replace(view, origin_count=old.origin_count + 1, frame_shift_enu_m=old.frame_shift_enu_m)
+        parameters, geoid_m = self.state.parameters, self._geoid_height_m
+        self.state = AutopilotState(view=view, parameters=parameters, geoid_height_m=geoid_m)
+        self._origin_asked_ns = None
+
+    def _answered(self, command: int, ticket: int | None) -> None:
+        if self._unanswered.get(command) == ticket:
+            self._unanswered.pop(command, None)
+
+    def _set_link(self, *, up: bool) -> None:
+        self.state = replace(self.state, view=replace(self.state.view, link_up=up))
+
+    @property
+    def timeout_s(self) -> float:
+        """For how long the autopilot goes on without a setpoint."""
+        if self.driver is None:
+            return 0.0
+        return self.state.parameters.get(self.driver.timeout_parameter, self.driver.timeout_default_s)
+
+    def _is_out_of_touch(self, local_ns: int) -> bool:
+        """Return whether the autopilot may have given up on setpoints, since it is silent or since we stood still."""
+        if self.driver is None or self._heard_ns is None or self._polled_ns is None:
+            return False
+        apart_s = (local_ns - min(self._heard_ns, self._polled_ns)) * 1e-9
+        return apart_s > max(_WAITED_SHARE * self.timeout_s, _WAITED_MIN_S)
+
+    def _ask_for_streams(self, driver: Driver, local_ns: int) -> None:
+        motion_hz = dict.fromkeys(_MOTION_IDS, self._motion_rate_hz)
+        unused_hz = dict.fromkeys(driver.unused_streams if self._stops_unused else (), 0.0)
+        for message_id, rate_hz in (motion_hz | _STREAMS_HZ | dict(driver.mode_streams_hz) | unused_hz).items():
+            self.session.request_interval(message_id, rate_hz, local_ns)
+        for name in chain(*named(driver)):
+            self.session.read_parameter(name, local_ns)
+
+    def _follow_clock(self, local_ns: int) -> None:
+        """Put off the times of what has been reported, once UTC was set: what comes next has the new time."""
+        utc_ns = self.session.clock.local_to_utc_ns(local_ns)
+        if self._times is not None:
+            then_local_ns, then_utc_ns = self._times
+            set_by_ns = utc_ns - then_utc_ns - (local_ns - then_local_ns)
+            if abs(set_by_ns) > CLOCK_SET_NS:
+                self.state = put_off(self.state, set_by_ns)
+        self._times = local_ns, utc_ns
+
+    def _ask_for_origin(self, local_ns: int) -> None:
+        """Ask until it is known, and from time to time after, since it can be moved."""
+        if self.driver is None or not self.session.link_up:
+            return
+        period_ns = _ASK_ORIGIN_NS if self.state.view.frame is None else _ASK_KNOWN_ORIGIN_NS
+        if self._origin_asked_ns is None or local_ns - self._origin_asked_ns >= period_ns:
+            self._origin_asked_ns = local_ns
+            self.session.request_message(mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN, local_ns)

@@ -1,0 +1,208 @@
+"""The autopilot's messages folded into what the companion's step wants to know of it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import isfinite
+from types import MappingProxyType
+
+from companion.autopilots.driver import NO_AUTOPILOT, AutopilotView, Driver
+from companion.autopilots.local_origin import above_ellipsoid, geoid_height_m, is_same, origin_above_sea
+from companion.autopilots.own_reports import HISTORY_NS, carried, is_plausible, with_report
+from companion.autopilots.sensor_messages import with_sensor
+from companion.autopilots.velocity_bias import velocity_bias, without
+from companion.data import OwnState
+from link.frames import enu_from_ned, flu_from_frd, normalized, quaternion_enu_flu_from_ned_frd
+from link.geodesy import Datum
+from link.local_frame import LocalFrame, Projection
+from link.mavlink.clock_map import ClockMap
+from link.mavlink.dialect import Message, mavlink
+from link.messages import Quaternion, Vector3
+from link.records import replace
+
+_AHEAD_NS = 100_000_000  # how far a report is carried beyond the newest one
+_FAILSAFE_STATES = (mavlink.MAV_STATE_CRITICAL, mavlink.MAV_STATE_EMERGENCY)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AutopilotState:
+    """What the messages so far have told.
+
+    Attributes:
+        view: for the step.
+        history: the drone's states of the last second, oldest first.
+        orientation_wxyz: q_WB of the newest attitude.
+        angular_velocity_flu_rad_s: with it.
+        attitude_boot_ms: when that was, on the autopilot's clock.
+        origin_msl: the origin with its altitude above mean sea level, as it is sent.
+        geoid_height_m: of mean sea level above the ellipsoid, None until the autopilot's receiver tells it.
+        parameters: those read, by name.
+        texts: what it said and nobody has taken yet.
+    """
+
+    view: AutopilotView = NO_AUTOPILOT
+    history: tuple[OwnState, ...] = ()
+    orientation_wxyz: Quaternion | None = None
+    angular_velocity_flu_rad_s: Vector3 = (0.0, 0.0, 0.0)
+    attitude_boot_ms: int = 0
+    origin_msl: Datum | None = None
+    geoid_height_m: float | None = None
+    parameters: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    texts: tuple[str, ...] = ()
+
+    @property
+    def own(self) -> OwnState | None:
+        """The newest state of the drone."""
+        return self.history[-1] if self.history else None
+
+    def own_at(self, t_ns: int) -> OwnState | None:
+        """The state at `t_ns`: the nearest report carried there by its own rates; None beyond what they span."""
+        if not self.history or t_ns < self.history[0].t_ns or t_ns > self.history[-1].t_ns + _AHEAD_NS:
+            return None
+        return carried(min(self.history, key=lambda own: abs(own.t_ns - t_ns)), t_ns)
+
+
+def heard(state: AutopilotState, message: Message, clock: ClockMap, driver: Driver) -> AutopilotState:
+    """Return the state after `message` of the autopilot; unknown and unusable messages change nothing."""
+    match message.get_type():
+        case "LOCAL_POSITION_NED":
+            state = _position(state, message, clock)
+        case "ATTITUDE_QUATERNION":
+            state = _attitude(state, message)
+        case "HEARTBEAT":
+            state = _heartbeat(state, message, driver)
+        case "CURRENT_MODE":
+            state = _current_mode(state, message, driver)
+        case "EXTENDED_SYS_STATE":
+            taking_off = message.landed_state == mavlink.MAV_LANDED_STATE_TAKEOFF
+            view = replace(state.view, landed=_landed(message.landed_state), taking_off=taking_off)
+            state = replace(state, view=view)
+        case "GPS_GLOBAL_ORIGIN":
+            state = _placed(replace(state, origin_msl=origin_above_sea(message) or state.origin_msl), driver.projection)
+        case "GPS_RAW_INT":
+            height_m = geoid_height_m(state.geoid_height_m, message)
+            state = _placed(replace(state, geoid_height_m=height_m), driver.projection)
+        case "DISTANCE_SENSOR" | "BATTERY_STATUS":
+            up_m = None if state.own is None else state.own.position_enu_m[2]
+            state = replace(state, view=with_sensor(state.view, message, clock, up_m))
+        case "STATUSTEXT" | "EVENT":
+            state = _said(state, message, driver)
+        case _:
+            pass
+    return state
+
+
+def put_off(state: AutopilotState, by_ns: int) -> AutopilotState:
+    """Return the state with the times of all reports put off by `by_ns`, for a UTC that was set by as much."""
+    history = tuple(replace(own, t_ns=own.t_ns + by_ns) for own in state.history)
+    seen = state.view.range_down
+    seen = None if seen is None else replace(seen, t_ns=seen.t_ns + by_ns)
+    return replace(state, history=history, view=replace(state.view, range_down=seen))
+
+
+def _said(state: AutopilotState, message: Message, driver: Driver) -> AutopilotState:
+    """Take a text, or an event in words."""
+    refusal = driver.refusal(message)
+    if refusal is not None and not state.view.armed:
+        state = replace(state, view=replace(state.view, refusal=refusal))
+    text = refusal if message.get_type() == "EVENT" else f"{message.text}"
+    return state if text is None else replace(state, texts=(*state.texts, text))
+
+
+def _position(state: AutopilotState, message: Message, clock: ClockMap) -> AutopilotState:
+    t_ns = clock.boot_to_utc_ns(message.time_boot_ms * 1_000_000)
+    values = (message.x, message.y, message.z, message.vx, message.vy, message.vz)
+    if t_ns is None or state.orientation_wxyz is None or not is_plausible(values[:3], values[3:]):
+        return state
+    position, reported = enu_from_ned(values[:3]), enu_from_ned(values[3:])
+    bias = velocity_bias(state.own, t_ns, position, reported)
+    own = OwnState(
+        t_ns=t_ns,
+        position_enu_m=position,
+        velocity_enu_m_s=without(reported, bias),
+        velocity_bias_enu_m_s=bias,
+        orientation_wxyz=state.orientation_wxyz,
+        angular_velocity_flu_rad_s=state.angular_velocity_flu_rad_s,
+        attitude_age_s=max(0.0, (message.time_boot_ms - state.attitude_boot_ms) * 1e-3),
+    )
+    if state.history and t_ns <= state.history[-1].t_ns:
+        if state.history[-1].t_ns - t_ns <= HISTORY_NS:
+            return state
+        state = replace(state, history=())  # not late: the clock was set back
+    return _reported(state, own)
+
+
+def _reported(state: AutopilotState, own: OwnState) -> AutopilotState:
+    """Add the drone's newest report to the history; with one that flying cannot explain the local frame has moved."""
+    history, jump = with_report(state.history, own)
+    state = replace(state, history=history)
+    if jump is None:
+        return state
+    (x, y, z), (dx, dy, dz), seen = state.view.frame_shift_enu_m, jump, state.view.range_down
+    seen = None if seen is None else replace(seen, up_m=None)
+    return replace(state, view=replace(state.view, frame_shift_enu_m=(x + dx, y + dy, z + dz), range_down=seen))
+
+
+def _attitude(state: AutopilotState, message: Message) -> AutopilotState:
+    q = (message.q1, message.q2, message.q3, message.q4)
+    rates = (message.rollspeed, message.pitchspeed, message.yawspeed)
+    if not all(map(isfinite, (*q, *rates))) or sum(part * part for part in q) < 0.5:
+        return state
+    orientation = normalized(quaternion_enu_flu_from_ned_frd(q))
+    return replace(
+        state,
+        orientation_wxyz=orientation,
+        angular_velocity_flu_rad_s=flu_from_frd(rates),
+        attitude_boot_ms=message.time_boot_ms,
+    )
+
+
+def _heartbeat(state: AutopilotState, message: Message, driver: Driver) -> AutopilotState:
+    armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
+    in_control = driver.is_in_control(message.base_mode, message.custom_mode)
+    reports = message.system_status in _FAILSAFE_STATES
+    # Nothing follows setpoints in an emergency, whatever its mode.
+    warns = reports and message.system_status != mavlink.MAV_STATE_EMERGENCY
+    warns = warns and in_control and driver.follows_in_failsafe
+    view = replace(
+        state.view,
+        link_up=True,
+        armed=armed,
+        refusal=None if armed else state.view.refusal,
+        in_control=in_control,
+        failsafe=reports and not warns,
+        warns=warns,
+        restarted=state.view.restarted and not in_control,
+    )
+    return replace(state, view=view)
+
+
+def _current_mode(state: AutopilotState, message: Message, driver: Driver) -> AutopilotState:
+    """Take the mode; another one than was last asked for is a failsafe's, long before the heartbeat says so."""
+    custom = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
+    in_control = driver.is_in_control(custom, message.custom_mode)
+    overruled = not in_control and driver.is_in_control(custom, message.intended_custom_mode)
+    return replace(state, view=replace(state.view, in_control=in_control, overruled=overruled))
+
+
+def _landed(landed_state: int) -> bool | None:
+    if landed_state == mavlink.MAV_LANDED_STATE_UNDEFINED:
+        return None
+    return bool(landed_state == mavlink.MAV_LANDED_STATE_ON_GROUND)
+
+
+def _placed(state: AutopilotState, projection: Projection) -> AutopilotState:
+    """Put the origin above the ellipsoid; a moved one is counted, since the local frame has then moved."""
+    if state.origin_msl is None:
+        return state
+    origin = above_ellipsoid(state.origin_msl, state.geoid_height_m)
+    known, geoid_known = state.view.frame, state.geoid_height_m is not None
+    if known is not None and known.projection is projection and is_same(origin, known.origin):
+        return replace(state, view=replace(state.view, geoid_known=geoid_known))
+    # The newest report stays, for the next one tells by how much the drone's own position jumps with the origin.
+    view = replace(
+        state.view,
+        frame=LocalFrame(origin=origin, projection=projection),
+        geoid_known=geoid_known,
+        origin_count=state.view.origin_count + 1,
+    )
+    return replace(state, view=view, history=state.history[-1:])

@@ -1,0 +1,110 @@
+"""What a descent stays above the pad for, how low it may go meanwhile, and for how long it has; pure."""
+
+from companion.config import CompanionConfig
+from companion.landing.conditions import must_wait
+from companion.landing.targets import changes_speed
+from companion.monitors.surprise import drives_unevenly, may_surprise
+from companion.monitors.sway import sways
+from companion.phases import Phase
+from companion.situation import Approach, Situation, approach, stands
+from companion.step_data import StepMemory
+from link.records import replace
+
+_HELD_UP_M = 0.1  # above the height of waiting, down to which a descent sinks whether it is to wait or not
+
+
+def waits_at_m(memory: StepMemory, situation: Situation, config: CompanionConfig) -> float | None:
+    """Return how high above the pad a descent waits for now, None for one that goes on."""
+    if _awaited(memory, situation, config) is not None:
+        return _waiting_height_m(situation, config)
+    if not waits_for_calm(memory, situation, config):
+        return None
+    # Where only the detector places the pad, nothing corrects a drone that stays as low as it is blind.
+    is_blind = situation.pad is not None and situation.pad.is_coarse
+    return _waiting_height_m(situation, config) if is_blind else config.descent.commit_height_m
+
+
+def _waiting_height_m(situation: Situation, config: CompanionConfig) -> float:
+    is_coarse = situation.pad is not None and situation.pad.is_coarse
+    return config.descent.waiting_height_coarse_m if is_coarse else config.descent.waiting_height_m
+
+
+def why_held_up(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str | None:
+    """Return what a descent waits for that has come as low as it may, None for one that goes on."""
+    relative = approach(situation)
+    if relative is None or relative.height_m > _waiting_height_m(situation, config) + _HELD_UP_M:
+        return None
+    return _awaited(memory, situation, config)
+
+
+def with_wait_counted(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
+    """Return the memory with the time for which this descent has waited above a vehicle that drives unpredictably."""
+    since_ns, t_ns = memory.waits_since_ns, situation.t_ns
+    if _unpredictable(memory, situation, config) is not None:
+        return memory if since_ns is not None else replace(memory, waits_since_ns=t_ns)
+    if since_ns is None:
+        return memory
+    return replace(memory, waits_since_ns=None, waited_s=waited_s(memory, t_ns))
+
+
+def waited_s(memory: StepMemory, t_ns: int) -> float:
+    """Return for how long this descent has waited above a vehicle that has surprised."""
+    return memory.waited_s + (0.0 if memory.waits_since_ns is None else (t_ns - memory.waits_since_ns) * 1e-9)
+
+
+def _unpredictable(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str | None:
+    """Return what a vehicle has lately done that nobody could expect, None of one that stands or drives evenly."""
+    if not _may_wait(memory, situation, config) or stands(situation, config.chase):
+        return None
+    if may_surprise(memory.surprise, situation.t_ns, config.descent):
+        return "the vehicle's speed has surprised"
+    uneven = drives_unevenly(memory.surprise, situation.fix_age_s, config.descent)
+    return "the vehicle's speed changes all the time" if uneven else None
+
+
+def _may_wait(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
+    """Return whether this is a descent that is not committed yet."""
+    relative = approach(situation)
+    return memory.phase is Phase.DESCEND and relative is not None and relative.height_m > config.descent.commit_height_m
+
+
+def _awaited(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str | None:
+    relative = approach(situation)
+    if relative is None or not _may_wait(memory, situation, config):
+        return None
+    unpredictable = _unpredictable(memory, situation, config)
+    if unpredictable is not None:
+        return unpredictable
+    if must_wait(situation, relative, config):
+        brakes = situation.pad is not None and changes_speed(situation.pad, config.descent)
+        return "the vehicle brakes or speeds up" if brakes else "the drone is not over the pad"
+    if _is_off_centre(situation, relative, config):
+        return f"farther than {config.descent.aligned_distance_m:g} m from the pad's centre"
+    if _is_unsettled(memory, relative, config):
+        return f"faster than {config.descent.waiting_speed_m_s:g} m/s against the pad"
+    return None
+
+
+def _is_off_centre(situation: Situation, relative: Approach, config: CompanionConfig) -> bool:
+    """Return whether the drone has to come nearer the centre first, while it may still see the pad.
+
+    What it makes up for in the last second is speed against the pad, and where fixes are coarse nothing corrects it.
+    """
+    if situation.pad is None or not situation.pad.is_coarse or relative.height_m < config.descent.centred_height_m:
+        return False
+    return relative.distance_m > config.descent.aligned_distance_m
+
+
+def _is_unsettled(memory: StepMemory, relative: Approach, config: CompanionConfig) -> bool:
+    """Return whether the drone has to become slower against the pad first, as far as that speed is known."""
+    known_m_s = config.descent.waiting_speed_stds * memory.surprise.speed_std_m_s
+    return relative.speed_m_s > max(config.descent.waiting_speed_m_s, known_m_s)
+
+
+def waits_for_calm(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
+    """Return whether a leaning drone is still high enough above the pad to wait until it has come upright."""
+    relative, drone = approach(situation), situation.drone
+    if memory.phase is not Phase.DESCEND or relative is None or drone is None:
+        return False
+    lowest_m = relative.height_m - config.touchdown.foot_radius_m * drone.lean
+    return lowest_m > config.descent.sway_height_m and sways(memory.sway, situation.t_ns, config.descent)

@@ -1,0 +1,99 @@
+"""The end of a companion's recording: its records, as messages, with the times of a clock that knows UTC."""
+
+from collections import deque
+from collections.abc import Iterable
+from typing import Protocol
+
+from companion.recording.messages import LONG_EVERY, input_messages, link_message, step_messages, step_time_message
+from companion.recording.records import InputRecord, LinkRecord, Record, StepRecord, StepTimeRecord
+from link.keys import Keys
+from link.ros_records import RosMessage
+
+_EARLY_MAX = 2_000  # inputs that wait for UTC to become known: about five seconds of them
+
+
+class MessageStore(Protocol):
+    """Where messages are kept."""
+
+    def add(self, message: RosMessage, log_ns: int) -> None:
+        """Add a message that was recorded at `log_ns`.
+
+        Raises:
+            OSError: it is not written.
+        """
+
+    def close(self) -> None:
+        """Complete what was written.
+
+        Raises:
+            OSError: it is not complete.
+        """
+
+
+class CompanionSink:
+    """Writes records of a `RecordingNode`.
+
+    The first ones wait until the companion's clock is mapped to UTC, so that the whole recording stands in UTC.
+
+    Args:
+        store: of the messages.
+        keys: of the Zenoh contract.
+    """
+
+    def __init__(self, store: MessageStore, keys: Keys) -> None:
+        self._store = store
+        self._keys = keys
+        self._early: deque[Record] | None = deque()
+        self._utc_from_local_ns = 0
+        self._last_local_ns = 0
+        self._steps = 0
+
+    def write(self, record: Record) -> None:
+        """Write one record.
+
+        Raises:
+            OSError: it is not written.
+        """
+        if isinstance(record, StepRecord):
+            self._utc_from_local_ns = record.inputs.t_ns - record.local_ns
+        if self._early is None:
+            self._write(record)
+            return
+        self._early.append(record)
+        if (isinstance(record, StepRecord) and record.utc_known) or len(self._early) >= _EARLY_MAX:
+            self._write_early()
+
+    def close(self) -> None:
+        """Write what waits and complete the store.
+
+        Raises:
+            OSError: it is not complete.
+        """
+        self._write_early()
+        self._store.close()
+
+    def _write_early(self) -> None:
+        early, self._early = self._early or deque(), None
+        locals_ns = [record.local_ns for record in early if isinstance(record, InputRecord) and record.local_ns]
+        self._last_local_ns = min(locals_ns, default=0)  # for what came before the loop first told the time
+        for record in early:
+            self._write(record)
+
+    def _write(self, record: Record) -> None:
+        match record:
+            case InputRecord():
+                self._last_local_ns = record.local_ns or self._last_local_ns
+                self._add(input_messages(record, self._keys), self._last_local_ns + self._utc_from_local_ns)
+            case StepRecord():
+                is_long = self._steps % LONG_EVERY == 0
+                self._steps += 1
+                messages = step_messages(record, self._keys, long=is_long)
+                self._add(messages, record.local_ns + self._utc_from_local_ns)
+            case LinkRecord():
+                self._add([link_message(record, self._keys)], self._last_local_ns + self._utc_from_local_ns)
+            case StepTimeRecord():
+                self._add([step_time_message(record, self._keys)], self._last_local_ns + self._utc_from_local_ns)
+
+    def _add(self, messages: Iterable[RosMessage], log_ns: int) -> None:
+        for message in messages:
+            self._store.add(message, max(log_ns, 0))

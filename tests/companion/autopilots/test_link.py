@@ -1,0 +1,155 @@
+"""The conversation with the autopilot: no command is ever late, and a restart begins anew."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from companion.autopilots.driver import AutopilotCommand
+from companion.autopilots.link import AutopilotLink
+from companion.config import CompanionConfig
+from companion.data import Setpoint
+from link.mavlink.dialect import mavlink
+from link.mavlink.session import MavlinkSession
+from tests.companion.peer import FakePx4
+from tests.link.mavlink.fake_autopilot import MS, START_NS
+
+DISARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
+PLAIN = AutopilotCommand(command=DISARM, parameters=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+FORCED = AutopilotCommand(command=DISARM, parameters=(0.0, 21196.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+RETRY_S = 0.5
+
+
+class Talk:
+    """A link and a PX4 that exchange bytes every 5 ms."""
+
+    def __init__(self, autopilot: FakePx4) -> None:
+        self.link, self.autopilot, self.t_ns = AutopilotLink(MavlinkSession(1)), autopilot, START_NS
+        self.run(1.5)
+
+    def run(self, duration_s: float) -> None:
+        for _ in range(round(duration_s * 200)):
+            self.t_ns += 5 * MS
+            self.autopilot.tick(self.t_ns)
+            for data in self.autopilot.take_output():
+                self.link.receive(data, self.t_ns)
+            self.link.poll(self.t_ns)
+            for frame in self.link.session.take_output():
+                self.autopilot.receive(frame, self.t_ns)
+
+    def utc_ahead_ns(self) -> int:
+        return self.link.session.clock.local_to_utc_ns(self.t_ns) - self.t_ns
+
+    def is_armed(self) -> bool:
+        return self.link.state.view.armed
+
+    def is_up(self) -> bool:
+        return self.link.state.view.link_up
+
+    def disarms(self) -> list[float]:
+        return [message.param2 for message in self.autopilot.commands(DISARM)]
+
+
+def test_unanswered_disarm_leaves_no_others_behind_it_for_a_later_situation() -> None:
+    talk = Talk(FakePx4(results={DISARM: ()}))
+    talk.link.send_commands((PLAIN,), talk.t_ns)
+    for _ in range(4):
+        talk.run(0.1)
+        talk.link.send_commands((FORCED,), talk.t_ns)
+    talk.run(5.0 * RETRY_S)
+    assert talk.disarms() == [0.0]
+
+
+def test_next_disarm_goes_out_once_the_first_has_run_out_of_time() -> None:
+    talk = Talk(FakePx4(results={DISARM: ()}))
+    talk.link.send_commands((PLAIN,), talk.t_ns)
+    talk.run(RETRY_S + 0.1)
+    talk.link.send_commands((PLAIN,), talk.t_ns)
+    talk.run(0.1)
+    assert talk.disarms() == [0.0, 0.0]
+
+
+def test_answer_frees_the_way_and_is_told_once() -> None:
+    talk = Talk(FakePx4(results={DISARM: (mavlink.MAV_RESULT_TEMPORARILY_REJECTED,)}))
+    talk.link.send_commands((PLAIN,), talk.t_ns)
+    talk.run(0.1)
+    answers = [answer for answer in talk.link.take_acknowledgements() if answer[0] == DISARM]
+    assert answers == [(DISARM, mavlink.MAV_RESULT_TEMPORARILY_REJECTED)]
+    assert talk.link.take_acknowledgements() == ()
+    talk.link.send_commands((FORCED,), talk.t_ns)
+    talk.run(0.1)
+    assert talk.disarms() == [0.0, 21196.0]
+
+
+def test_setpoint_that_is_not_finite_is_counted_and_not_sent() -> None:
+    talk = Talk(FakePx4())
+    for bad in (math.nan, math.inf, 1e39):
+        setpoint = Setpoint(
+            t_ns=talk.t_ns,
+            position_enu_m=(0.0, bad, 1.0),
+            velocity_enu_m_s=None,
+            acceleration_enu_m_s2=None,
+            yaw_rad=0.0,
+        )
+        talk.link.send_setpoint(setpoint, talk.t_ns)
+    talk.run(0.1)
+    assert talk.link.bad_setpoints == 3
+    assert not talk.autopilot.setpoints()
+
+
+def test_restarted_autopilot_is_taken_for_disarmed_and_its_old_places_are_forgotten() -> None:
+    talk = Talk(FakePx4(armed=True))
+    talk.run(1.0)
+    count = talk.link.state.view.origin_count
+    assert talk.is_armed()
+    talk.autopilot.armed = False
+    talk.autopilot.restart(talk.t_ns)
+    talk.run(4.0)
+    assert not talk.is_armed()
+    assert talk.link.state.view.restarted
+    assert talk.link.state.view.origin_count > count
+    assert talk.link.state.own is not None
+
+
+def test_silent_autopilot_is_said_to_be_lost_and_found_again() -> None:
+    talk = Talk(FakePx4())
+    assert talk.is_up()
+    talk.autopilot.mute = True
+    talk.run(4.0)
+    assert not talk.is_up()
+    talk.autopilot.mute = False
+    talk.run(1.5)
+    assert talk.is_up()
+
+
+def test_limits_follow_each_change_of_the_autopilots_parameters_and_of_what_is_wanted() -> None:
+    talk, wanted = Talk(FakePx4()), CompanionConfig().limits.flight_limits()
+    for speed_m_s in (7.0, 3.0):
+        known = {**talk.link.state.parameters, "MPC_XY_VEL_MAX": speed_m_s}
+        talk.link.state = replace(talk.link.state, parameters=known)
+        assert talk.link.limits(wanted).speed_max_m_s == speed_m_s
+        assert talk.link.limits(replace(wanted, speed_max_m_s=1.5)).speed_max_m_s == 1.5
+
+
+@pytest.mark.parametrize("set_by_s", [-30.0, -0.9, -0.7, 0.7, 30.0])
+def test_drone_is_never_taken_for_silent_when_utc_is_set(set_by_s: float) -> None:
+    talk = Talk(FakePx4())
+    talk.run(4.0)  # by then the clocks' drift is known
+    before_ns = talk.utc_ahead_ns()
+    talk.autopilot.utc_set_by_ns = round(set_by_s * 1e9)
+    for _ in range(600):
+        talk.run(0.005)
+        own = talk.link.state.own
+        assert own is not None
+        assert abs(talk.utc_ahead_ns() + talk.t_ns - own.t_ns) < 50 * MS
+    assert talk.utc_ahead_ns() - before_ns == pytest.approx(set_by_s * 1e9, abs=10 * MS)
+
+
+def test_limit_that_was_not_told_is_asked_for_until_it_is() -> None:
+    talk = Talk(FakePx4(parameters={"MPC_Z_VEL_MAX_UP": (2.0, mavlink.MAV_PARAM_TYPE_REAL32)}))
+    talk.run(10.0)
+    wanted = CompanionConfig().limits.flight_limits()
+    assert talk.link.limits(wanted).speed_max_m_s == wanted.speed_max_m_s
+    talk.autopilot.parameters["MPC_XY_VEL_MAX"] = (7.0, mavlink.MAV_PARAM_TYPE_REAL32)
+    talk.run(8.0)
+    assert talk.link.limits(wanted).speed_max_m_s == 7.0

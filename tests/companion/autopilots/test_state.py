@@ -1,0 +1,257 @@
+"""The autopilot's messages as the step sees them; what is absurd changes nothing."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from companion.autopilots.ardupilot import ArduPilotDriver
+from companion.autopilots.driver import Driver
+from companion.autopilots.px4 import Px4Driver
+from companion.autopilots.state import AutopilotState, heard
+from link.frames import quaternion_ned_frd_from_enu_flu
+from link.local_frame import Projection
+from link.mavlink.clock_map import ClockMap, with_round_trip, with_system_time
+from link.mavlink.clock_map import RoundTrip as Trip
+from link.mavlink.dialect import Message, mavlink
+from link.messages import Vector3
+from tests.companion.world import START_NS
+
+DRIVER = Px4Driver()
+BOOT_MS = 50_000
+_TRIP = Trip(sent_ns=START_NS, received_ns=START_NS + 1_000_000, boot_ns=BOOT_MS * 1_000_000)
+CLOCK = with_system_time(with_round_trip(ClockMap(), _TRIP), BOOT_MS * 1_000_000, START_NS)
+LEVEL = mavlink.MAVLink_attitude_quaternion_message(BOOT_MS, 1.0, 0.0, 0.0, 0.0, 0.1, 0.2, 0.3)
+
+
+def _hear(*messages: Message, state: AutopilotState | None = None) -> AutopilotState:
+    state = AutopilotState() if state is None else state
+    for message in messages:
+        state = heard(state, message, CLOCK, DRIVER)
+    return state
+
+
+def _at(after_ms: int, place_ned_m: Vector3, velocity_ned_m_s: Vector3 = (0.0, 0.0, 0.0)) -> Message:
+    return mavlink.MAVLink_local_position_ned_message(BOOT_MS + after_ms, *place_ned_m, *velocity_ned_m_s)
+
+
+def _origin(latitude_1e7: int, longitude_1e7: int, altitude_mm: int) -> Message:
+    return mavlink.MAVLink_gps_global_origin_message(latitude_1e7, longitude_1e7, altitude_mm)
+
+
+def test_position_is_turned_to_enu_and_stamped_in_utc() -> None:
+    state = _hear(LEVEL, _at(20, (1.0, 2.0, -3.0), (0.1, 0.2, -0.3)))
+    assert state.own is not None
+    assert state.own.position_enu_m == pytest.approx((2.0, 1.0, 3.0))
+    assert state.own.velocity_enu_m_s == pytest.approx((0.2, 0.1, 0.3))
+    assert state.own.angular_velocity_flu_rad_s == pytest.approx((0.1, -0.2, -0.3))
+    assert abs(state.own.t_ns - (START_NS + 20_000_000)) < 1_000_000
+
+
+@given(yaw_rad=st.floats(-3.1, 3.1))
+def test_attitude_is_the_one_that_was_sent(yaw_rad: float) -> None:
+    q = (math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2))
+    w, x, y, z = quaternion_ned_frd_from_enu_flu(q)
+    state = _hear(mavlink.MAVLink_attitude_quaternion_message(BOOT_MS, w, x, y, z, 0.0, 0.0, 0.0))
+    assert state.orientation_wxyz is not None
+    assert abs(np.dot(state.orientation_wxyz, q)) == pytest.approx(1.0, abs=1e-9)
+
+
+def test_position_without_an_attitude_is_not_yet_a_state() -> None:
+    assert _hear(_at(0, (0.0, 0.0, 0.0))).own is None
+
+
+def test_age_of_the_attitude_is_told_with_each_position() -> None:
+    state = _hear(LEVEL, _at(20, (0.0, 0.0, 0.0)), _at(700, (0.4, 0.0, 0.0)))
+    assert [own.attitude_age_s for own in state.history] == pytest.approx([0.02, 0.7])
+    newer = mavlink.MAVLink_attitude_quaternion_message(BOOT_MS + 715, 1.0, 0.0, 0.0, 0.0, 0.1, 0.2, 0.3)
+    (*_, newest) = _hear(newer, _at(710, (0.4, 0.0, 0.0)), state=state).history
+    assert newest.attitude_age_s == 0.0
+
+
+def test_late_and_doubled_positions_are_passed_over() -> None:
+    state = _hear(LEVEL, _at(0, (0.0, 0.0, 0.0)), _at(40, (0.4, 0.0, 0.0)))
+    assert _hear(_at(20, (0.2, 0.0, 0.0)), _at(40, (9.0, 0.0, 0.0)), state=state).own == state.own
+
+
+def test_clock_that_was_set_back_does_not_silence_the_drone() -> None:
+    state = _hear(LEVEL, _at(40_000, (0.0, 0.0, 0.0)))
+    after = _hear(_at(0, (0.1, 0.0, 0.0)), state=state)
+    assert after.own is not None
+    assert len(after.history) == 1
+    assert after.own.position_enu_m == pytest.approx((0.0, 0.1, 0.0))
+
+
+def test_jump_that_flying_cannot_explain_is_a_shift_of_the_frame() -> None:
+    state = _hear(LEVEL, _at(0, (0.0, 0.0, 0.0), (10.0, 0.0, 0.0)), _at(20, (0.2, 0.0, 0.0), (10.0, 0.0, 0.0)))
+    assert state.view.frame_shift_enu_m == (0.0, 0.0, 0.0)
+    jumped = _hear(_at(40, (5.4, -3.0, 0.5), (10.0, 0.0, 0.0)), state=state)
+    assert jumped.view.frame_shift_enu_m == pytest.approx((-3.0, 5.0, -0.5))
+    back = _hear(_at(60, (0.6, 0.0, 0.0), (10.0, 0.0, 0.0)), state=jumped)
+    assert back.view.frame_shift_enu_m == pytest.approx((0.0, 0.0, 0.0))
+
+
+@given(gap_ms=st.integers(4, 900), braking=st.floats(0.0, 8.0), speed=st.floats(0.0, 20.0))
+def test_hard_flying_over_a_gap_in_the_link_is_no_shift(gap_ms: int, braking: float, speed: float) -> None:
+    gap_s = gap_ms * 1e-3
+    place = (speed * gap_s - 0.5 * braking * gap_s**2, 0.0, 0.0)
+    state = _hear(LEVEL, _at(0, (0.0, 0.0, 0.0), (speed, 0.0, 0.0)), _at(gap_ms, place))
+    assert state.view.frame_shift_enu_m == (0.0, 0.0, 0.0)
+
+
+def test_moved_origin_is_counted_and_a_repeated_one_is_not() -> None:
+    state = _hear(_origin(475_000_000, 80_000_000, 400_000), _origin(475_000_000, 80_000_000, 400_000))
+    assert state.view.origin_count == 1
+    moved = _hear(_origin(475_000_020, 80_000_000, 400_000), state=state)
+    assert moved.view.origin_count == 2
+    assert _hear(_origin(475_000_000, 80_000_000, 401_000), state=state).view.origin_count == 2
+
+
+@pytest.mark.parametrize(
+    ("driver", "projection"), [(Px4Driver(), Projection.PX4), (ArduPilotDriver(), Projection.ARDUPILOT)]
+)
+def test_frame_is_laid_out_as_the_driver_says(driver: Driver, projection: Projection) -> None:
+    state = heard(AutopilotState(), _origin(475_000_000, 80_000_000, 400_000), CLOCK, driver)
+    assert state.view.frame is not None
+    assert state.view.frame.projection is projection
+
+
+def test_the_same_origin_of_another_kind_of_autopilot_is_another_frame() -> None:
+    state = _hear(_origin(475_000_000, 80_000_000, 400_000))
+    other = heard(state, _origin(475_000_000, 80_000_000, 400_000), CLOCK, ArduPilotDriver())
+    assert other.view.frame is not None
+    assert other.view.frame.projection is Projection.ARDUPILOT
+    assert other.view.origin_count == 2
+
+
+def test_origin_off_the_earth_is_no_origin() -> None:
+    assert _hear(_origin(910_000_000, 0, 0), _origin(0, 1_900_000_000, 0)).view.frame is None
+
+
+def _receiver(fix: int, msl_mm: int, ellipsoid_mm: int) -> Message:
+    return mavlink.MAVLink_gps_raw_int_message(
+        0, fix, 475_000_000, 80_000_000, msl_mm, 1, 1, 0, 0, 9, alt_ellipsoid=ellipsoid_mm
+    )
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_origins_altitude_is_above_the_ellipsoid_whatever_comes_first(first: int) -> None:
+    told = [_origin(475_000_000, 80_000_000, 400_000), _receiver(3, 410_000, 457_300)]
+    state = _hear(told[first], told[1 - first])
+    assert state.view.frame is not None
+    assert state.view.frame.origin.altitude_m == pytest.approx(447.3)
+    again = _hear(_receiver(3, 430_000, 477_500), state=state)
+    assert again.view == state.view
+
+
+@pytest.mark.parametrize("receiver", [_receiver(1, 0, 47_000), _receiver(3, 400_000, 0), _receiver(3, 0, 900_000)])
+def test_receiver_that_does_not_know_the_geoid_says_nothing(receiver: Message) -> None:
+    state = _hear(_origin(475_000_000, 80_000_000, 400_000), receiver)
+    assert state.view.frame is not None
+    assert state.view.frame.origin.altitude_m == 400.0
+    assert not state.view.geoid_known
+
+
+@pytest.mark.parametrize("geoid_mm", [-32_400, -950, -3, 0, 600, 990, 47_300])
+def test_first_geoid_height_is_taken_whatever_it_is(geoid_mm: int) -> None:
+    state = _hear(_origin(475_000_000, 80_000_000, 400_000), _receiver(3, 410_000, 410_000 + geoid_mm))
+    assert state.view.frame is not None
+    assert state.view.geoid_known
+    assert state.view.frame.origin.altitude_m == pytest.approx(400.0 + geoid_mm * 1e-3, abs=0.05)
+
+
+def test_later_geoid_height_counts_when_it_is_another_one() -> None:
+    state = _hear(_origin(475_000_000, 80_000_000, 400_000), _receiver(3, 410_000, 410_600))
+    near = _hear(_receiver(3, 410_000, 411_500), state=state)
+    assert near.view == state.view
+    other = _hear(_receiver(3, 410_000, 411_700), state=state)
+    assert other.view.frame is not None
+    assert other.view.frame.origin.altitude_m == pytest.approx(401.7)
+
+
+OFFBOARD, LOITER, GUIDED, RTL = 0x0006_0000, 0x0304_0000, 4, 6
+
+
+@pytest.mark.parametrize(
+    ("driver", "mode", "status", "failsafe", "warns"),
+    [
+        (Px4Driver(), OFFBOARD, 3, False, False),
+        (Px4Driver(), OFFBOARD, 4, False, False),
+        (Px4Driver(), OFFBOARD, 5, True, False),
+        (Px4Driver(), OFFBOARD, 6, True, False),
+        (Px4Driver(), LOITER, 5, True, False),
+        (ArduPilotDriver(), GUIDED, 4, False, False),
+        (ArduPilotDriver(), GUIDED, 5, False, True),
+        (ArduPilotDriver(), GUIDED, 6, True, False),
+        (ArduPilotDriver(), RTL, 5, True, False),
+    ],
+)
+def test_failsafe_is_read_off_the_heartbeat(
+    driver: Driver, mode: int, status: int, *, failsafe: bool, warns: bool
+) -> None:
+    heartbeat = mavlink.MAVLink_heartbeat_message(2, driver.autopilot_id, 0x91, mode, status, 3)
+    view = heard(AutopilotState(), heartbeat, CLOCK, driver).view
+    assert (view.failsafe, view.warns) == (failsafe, warns)
+    assert view.armed
+    assert view.in_control is (mode in (OFFBOARD, GUIDED))
+
+
+def test_mode_is_known_from_the_quicker_message() -> None:
+    state = _hear(mavlink.MAVLink_heartbeat_message(2, 12, 0x91, 0x0006_0000, 4, 3))
+    state = _hear(mavlink.MAVLink_current_mode_message(0, 0x0003_0000, 0x0003_0000), state=state)
+    assert not state.view.in_control
+
+
+@pytest.mark.parametrize(
+    ("flown", "asked", "overruled"),
+    [(0x0304_0000, 0x0006_0000, True), (0x0304_0000, 0x0304_0000, False), (0x0006_0000, 0x0006_0000, False)],
+)
+def test_mode_that_nobody_asked_for_is_a_failsafes(flown: int, asked: int, overruled: bool) -> None:
+    state = _hear(mavlink.MAVLink_current_mode_message(0, flown, asked))
+    assert state.view.overruled is overruled
+
+
+@pytest.mark.parametrize(("landed_state", "landed"), [(0, None), (1, True), (2, False), (3, False), (4, False)])
+def test_landed_is_unknown_until_said(landed_state: int, landed: bool | None) -> None:
+    assert _hear(mavlink.MAVLink_extended_sys_state_message(0, landed_state)).view.landed is landed
+
+
+any_float = st.one_of(st.floats(width=32), st.sampled_from([math.nan, math.inf, -math.inf, 3e38]))
+uint32 = st.integers(0, 2**32 - 1)
+messages = st.one_of(
+    st.builds(mavlink.MAVLink_local_position_ned_message, uint32, *[any_float] * 6),
+    st.builds(mavlink.MAVLink_attitude_quaternion_message, uint32, *[any_float] * 7),
+    st.builds(mavlink.MAVLink_heartbeat_message, *[st.integers(0, 255)] * 3, uint32, *[st.integers(0, 255)] * 2),
+    st.builds(mavlink.MAVLink_current_mode_message, st.integers(0, 255), uint32, uint32),
+    st.builds(mavlink.MAVLink_extended_sys_state_message, st.integers(0, 255), st.integers(0, 255)),
+    st.builds(mavlink.MAVLink_gps_global_origin_message, *[st.integers(-(2**31), 2**31 - 1)] * 3),
+)
+
+
+@given(told=st.lists(messages, max_size=12))
+@settings(max_examples=300, deadline=None)
+def test_no_message_whatever_makes_the_state_absurd(told: list[Message]) -> None:
+    state = _hear(LEVEL, *told)
+    for own in state.history:
+        assert np.isfinite((*own.position_enu_m, *own.velocity_enu_m_s, *own.angular_velocity_flu_rad_s)).all()
+        assert np.linalg.norm(own.orientation_wxyz) == pytest.approx(1.0)
+        assert max(map(abs, own.position_enu_m)) < 1e6
+    times = [own.t_ns for own in state.history]
+    assert times == sorted(set(times))
+    assert np.isfinite(state.view.frame_shift_enu_m).all()
+
+
+def test_stop_within_one_report_is_a_jolt_and_hard_braking_is_none() -> None:
+    places_m = (0.0, 0.1, 0.2, 0.3, 0.4, 0.45)  # as far as the velocities lead
+    stopped = _hear(
+        LEVEL, *(_at(20 * k, (x, 0.0, -1.0), (5.0 if k < 5 else 0.0, 0.0, 0.0)) for k, x in enumerate(places_m))
+    )
+    assert stopped.own is not None
+    assert stopped.own.jolt_m_s2 == pytest.approx(5.0 / 0.06)
+    braking = _hear(
+        LEVEL, *(_at(20 * k, (0.1 * k - 0.002 * k**2, 0.0, -1.0), (5.0 - 0.2 * k, 0.0, 0.0)) for k in range(6))
+    )
+    assert braking.own is not None
+    assert braking.own.jolt_m_s2 == pytest.approx(10.0)

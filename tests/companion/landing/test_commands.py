@@ -1,0 +1,99 @@
+"""Answers to operators over every pair of command and phase."""
+
+import itertools
+from dataclasses import replace
+
+import pytest
+
+from companion.landing.commands import answer
+from companion.landing.feasibility import HEIGHTS_APART
+from companion.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
+from companion.situation import Situation
+from link.messages import Command
+from tests.companion.facts import CONFIG, drone_at, pad_at, situation
+
+PAIRS = list(itertools.product(Command, Phase))
+STARTABLE = {Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD}
+
+
+@pytest.mark.parametrize(("command", "phase"), PAIRS)
+def test_accepted_command_changes_the_phase_or_is_said_during_the_climb(command: Command, phase: Phase) -> None:
+    event, reply = answer(command, phase, situation(), CONFIG)
+    if event is not None:
+        assert reply.accepted
+        assert next_phase(phase, event) is not phase
+    elif reply.accepted:
+        assert phase is Phase.ABORT
+    else:
+        assert reply.reason
+
+
+@pytest.mark.parametrize("phase", Phase)
+def test_start_is_accepted_where_a_landing_can_begin_only(phase: Phase) -> None:
+    _, reply = answer(Command.START, phase, situation(), CONFIG)
+    assert reply.accepted == (phase in STARTABLE)
+
+
+@pytest.mark.parametrize("phase", Phase)
+@pytest.mark.parametrize("command", [Command.ABORT, Command.HOLD])
+def test_landing_can_be_broken_off_until_contact(phase: Phase, command: Command) -> None:
+    _, reply = answer(command, phase, situation(), CONFIG)
+    breakable = LANDING_PHASES | {Phase.TAKEOFF, Phase.WAITING, Phase.ABORT}
+    assert reply.accepted == (phase in breakable)
+    assert phase in FLYING_PHASES or not reply.accepted
+
+
+@pytest.mark.parametrize("command", [Command.ABORT, Command.HOLD])
+def test_take_off_is_called_off_before_the_motors_turn_and_held_after(command: Command) -> None:
+    facts = situation()
+    on_the_ground = replace(facts, autopilot=replace(facts.autopilot, armed=False))
+    assert answer(command, Phase.TAKEOFF, on_the_ground, CONFIG)[0] is Event.CALLED_OFF
+    event, _ = answer(command, Phase.TAKEOFF, facts, CONFIG)
+    assert event is not None
+    assert next_phase(Phase.TAKEOFF, event) is Phase.HOLD
+
+
+def test_start_says_what_is_missing() -> None:
+    facts = situation()
+    view, drone = facts.autopilot, facts.drone
+    assert drone is not None
+    for missing, reason in (
+        (replace(facts, autopilot=replace(view, link_up=False)), "no autopilot is connected"),
+        (replace(facts, autopilot=replace(view, frame=None)), "the autopilot has no origin yet"),
+        (replace(facts, autopilot=replace(view, geoid_known=False)), HEIGHTS_APART),
+        (replace(facts, drone=None), "the autopilot reports no local position yet"),
+        (replace(facts, drone=replace(drone, attitude_known=False)), "the autopilot's attitude is too old"),
+        (replace(facts, autopilot=replace(view, failsafe=True)), "the autopilot is in failsafe"),
+    ):
+        event, reply = answer(Command.START, Phase.IDLE, missing, CONFIG)
+        assert event is None
+        assert reply.reason == reason
+
+
+def _on(beside_m: float, height_m: float, *, speed_m_s: float, armed: bool) -> Situation:
+    """A drone at rest somewhere about the pad of a vehicle."""
+    pad = pad_at((speed_m_s, 0.0, 0.0))
+    facts = situation(pad=pad)
+    view = replace(facts.autopilot, armed=armed, landed=not armed)
+    return replace(facts, drone=drone_at(height_m, beside_m, pad=pad), autopilot=view)
+
+
+@pytest.mark.parametrize("phase", [Phase.SECURED, Phase.IDLE, Phase.PILOT])
+def test_start_on_the_roof_of_a_vehicle_that_drives_is_refused(phase: Phase) -> None:
+    event, reply = answer(Command.START, phase, _on(0.3, 0.0, speed_m_s=5.0, armed=False), CONFIG)
+    assert event is None
+    assert reply.reason == "the drone stands on the vehicle, which drives at 5.0 m/s: stop it first"
+
+
+@pytest.mark.parametrize(
+    "facts",
+    [
+        _on(0.3, 0.0, speed_m_s=0.0, armed=False),
+        _on(8.0, 0.0, speed_m_s=5.0, armed=False),
+        _on(2.0, -1.5, speed_m_s=5.0, armed=False),
+        _on(0.3, 0.5, speed_m_s=5.0, armed=True),
+    ],
+    ids=["standing vehicle", "beside it", "on the road", "in the air"],
+)
+def test_start_anywhere_else_is_not(facts: Situation) -> None:
+    assert answer(Command.START, Phase.IDLE, facts, CONFIG)[1].accepted

@@ -1,0 +1,375 @@
+"""The tests of the phases: each fires after its hold time and not before, and in the order of their weight."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from companion.landing.conditions import (
+    ABORT_TESTS,
+    DISPUTED_CONTACT,
+    ENTRY_TESTS,
+    HARD_CONTACT,
+    must_wait,
+    update_held,
+)
+from companion.landing.decisions import decide
+from companion.landing.timed import Test as Condition
+from companion.monitors.contradiction import CONTRADICTING
+from companion.monitors.ground import SEEN_TOO_NEAR
+from companion.pad import NOT_DESCRIBED
+from companion.pad_reach import cone_radius_m
+from companion.phases import Event, Phase
+from companion.situation import Situation, approach
+from link.messages import Vector3
+from tests.companion.facts import (
+    CONFIG,
+    NOW_NS,
+    TICK_NS,
+    braking_pad,
+    drone_at,
+    first_decision,
+    later,
+    pad_at,
+    progress,
+    reference_at,
+    situation,
+)
+from tests.companion.world import FLYING, LANDING
+
+HALF_M = pad_at().half_width_m
+OVER_PAD_M = 2.0 * CONFIG.descent.cone_radius_at_pad_m
+HIGH_M = CONFIG.descent.align_height_m
+NEAR_M = 0.9 * CONFIG.abort.near_height_m
+LOW_M = 0.5 * CONFIG.descent.commit_height_m
+
+# What makes each abort test true, everything else being in order; in the descent, above the commit height.
+UNSAFE: dict[str, Situation] = {
+    "vehicle data too old": replace(situation(), fix_age_s=CONFIG.abort.fix_age_max_s + 0.01),
+    "vehicle position too uncertain": situation(pad=pad_at(std_m=CONFIG.abort.position_std_max_m + 0.01)),
+    "vehicle's link lost": replace(
+        situation(), vehicle_alive=False, fix_age_s=CONFIG.abort.alive_lost_fix_age_max_s + 0.01
+    ),
+    "vehicle's clock is ahead": replace(situation(), fix_age_on_arrival_s=-CONFIG.abort.fix_ahead_max_s - 0.01),
+    "own position too old": replace(situation(), drone=None),
+    "own attitude too old": replace(situation(), drone=replace(drone_at(1.5, pad=pad_at()), attitude_known=False)),
+    "vehicle heading unknown": situation(pad=pad_at(placed=False)),
+    "setpoint not followed": replace(situation(), tracking_error_m=CONFIG.abort.tracking_error_max_m + 0.01),
+    "outside the descent cone": situation(NEAR_M, cone_radius_m(NEAR_M, HALF_M, CONFIG) + 0.01),
+    "too fast against the pad": replace(
+        situation(),
+        drone=drone_at(NEAR_M, 0.0, (CONFIG.abort.near_speed_max_m_s + 0.01, 0.0, 0.0), pad=pad_at()),
+    ),
+    "too far from the start": replace(
+        situation(), waiting_point_enu_m=np.array([CONFIG.limits.range_max_m + 10.0, 0.0, 5.0])
+    ),
+    "vehicle faster than the limit": replace(
+        situation(), limits=replace(CONFIG.limits.flight_limits(), speed_max_m_s=4.1)
+    ),
+    CONTRADICTING: replace(situation(), rejected_share=CONFIG.abort.rejected_share_max + 0.01),
+    SEEN_TOO_NEAR: replace(situation(), range_height_m=0.5),
+    "below the pad without contact": situation(-CONFIG.descent.press_depth_m - CONFIG.touchdown.height_max_m - 0.01),
+}
+# Below the commit height these still count: without them nobody knows where the pad is.
+BLIND = {"own position too old", "vehicle heading unknown", "below the pad without contact"}
+# These cannot be true of a drone that is committed: it is over the pad and hardly moves against it.
+UNFIT = {"outside the descent cone", "too fast against the pad"}
+
+
+def _moving(speed_m_s: float) -> Situation:
+    return replace(situation(), drone=drone_at(HIGH_M, 0.0, (0.0, speed_m_s, 0.0), pad=pad_at()))
+
+
+CASES = [(test, phase) for test in ABORT_TESTS for phase in Phase if phase in test.phases]
+
+
+def _before_the_next_phase(facts: Situation, phase: Phase) -> Situation:
+    """The same with the drone beside the pad, so that an approach goes on from `phase` by nothing but an abort."""
+    beside_m = {Phase.CHASE: 2.0, Phase.ALIGN: 0.5}.get(phase, 0.0) * CONFIG.descent.align_distance_m
+    if facts.drone is None:
+        return facts
+    place = facts.drone.position_enu_m + np.array([beside_m, 0.0, 0.0])
+    return replace(facts, drone=replace(facts.drone, position_enu_m=place))
+
+
+def test_every_abort_test_is_tried_here() -> None:
+    assert {test.reason for test in ABORT_TESTS} == set(UNSAFE)
+
+
+@pytest.mark.parametrize(("test", "phase"), CASES)
+def test_abort_fires_exactly_after_its_hold_time(test: Condition, phase: Phase) -> None:
+    hold_s = test.hold_s(CONFIG)
+    decision, ticks = first_decision(phase, _before_the_next_phase(UNSAFE[test.reason], phase), hold_s + 1.0)
+    assert decision == (Event.UNSAFE, test.reason)
+    assert ticks == math.ceil(hold_s * 1e9 / TICK_NS - 1e-9)
+
+
+@pytest.mark.parametrize(("test", "phase"), [(test, phase) for test, phase in CASES if test.hold_s(CONFIG) > 0.0])
+def test_condition_that_breaks_off_for_one_step_begins_anew(test: Condition, phase: Phase) -> None:
+    hold_ticks = math.ceil(test.hold_s(CONFIG) * 1e9 / TICK_NS - 1e-9)
+    held: dict[str, int] = {}
+    for ticks in range(4 * hold_ticks):
+        is_break = ticks % hold_ticks == hold_ticks - 1
+        now = later(situation() if is_break else UNSAFE[test.reason], ticks * TICK_NS)
+        held = update_held(held, phase, now, approach(now), CONFIG)
+        decision = decide(progress(phase, 0.0), now, held, CONFIG)
+        assert decision is None or decision[0] is not Event.UNSAFE
+
+
+@pytest.mark.parametrize("phase", LANDING)
+def test_nothing_aborts_while_all_is_well(phase: Phase) -> None:
+    decision, _ = first_decision(phase, situation(), 3.0)
+    assert decision is None or decision[0] not in {Event.UNSAFE, Event.TIME_LIMIT}
+
+
+@pytest.mark.parametrize("reason", sorted(set(UNSAFE) - BLIND - UNFIT))
+def test_below_the_commit_height_it_lands_rather_than_aborts(reason: str) -> None:
+    unsafe = UNSAFE[reason]
+    assert unsafe.pad is not None
+    speed: Vector3 = (0.9 * CONFIG.abort.near_speed_max_m_s, 0.0, -0.4)
+    assert unsafe.drone is not None
+    drone = replace(drone_at(LOW_M, 0.1, speed, pad=unsafe.pad), attitude_known=unsafe.drone.attitude_known)
+    low = replace(unsafe, drone=drone, reference=reference_at(LOW_M))
+    decision, _ = first_decision(Phase.DESCEND, low, 3.0)
+    assert decision is None
+
+
+@pytest.mark.parametrize("reason", sorted(BLIND))
+def test_below_the_commit_height_it_does_not_land_where_nobody_knows_the_pad_to_be(reason: str) -> None:
+    blind = UNSAFE[reason]
+    relative = approach(blind)
+    if blind.pad is not None and relative is not None and relative.height_m > LOW_M:
+        blind = replace(blind, drone=drone_at(LOW_M, 0.1, (0.0, 0.0, -0.4), pad=blind.pad))
+    decision, _ = first_decision(Phase.DESCEND, blind, 3.0)
+    assert decision == (Event.UNSAFE, reason)
+
+
+@pytest.mark.parametrize(
+    ("drifting", "wanted"),
+    [
+        (situation(HIGH_M, cone_radius_m(HIGH_M, HALF_M, CONFIG) - 0.01), False),
+        (situation(HIGH_M, cone_radius_m(HIGH_M, HALF_M, CONFIG) + 0.01), True),
+        (_moving(CONFIG.abort.near_speed_max_m_s - 0.01), False),
+        (_moving(CONFIG.abort.near_speed_max_m_s + 0.01), True),
+        (situation(pad=braking_pad(CONFIG.descent.speed_change_max_m_s2 - 0.01)), False),
+        (situation(pad=braking_pad(CONFIG.descent.speed_change_max_m_s2 + 0.01)), True),
+    ],
+)
+def test_descent_waits_for_what_passes(drifting: Situation, wanted: bool) -> None:
+    assert must_wait(drifting, approach(drifting), CONFIG) is wanted
+
+
+def test_drone_beside_the_pad_below_the_commit_height_aborts_and_is_not_taken_for_landed() -> None:
+    beside = situation(0.0, OVER_PAD_M + 0.05)
+    beside = replace(beside, autopilot=replace(beside.autopilot, landed=True), reference=reference_at(-0.4))
+    decision, _ = first_decision(Phase.DESCEND, beside, 3.0)
+    assert decision == (Event.UNSAFE, "outside the descent cone")
+
+
+def _jolted(facts: Situation) -> Situation:
+    """The same with a drone whose velocity has just changed faster than flying can."""
+    assert facts.drone is not None
+    return replace(facts, drone=replace(facts.drone, jolt_m_s2=CONFIG.touchdown.jolt_m_s2 + 0.1))
+
+
+def test_drone_that_is_stopped_while_the_pad_drives_on_has_landed_and_does_not_climb_away() -> None:
+    stopped = replace(
+        situation(0.0),
+        drone=drone_at(0.0, 0.3, (-4.0, -1.0, 0.0), pad=pad_at((4.0, 1.0, 0.0))),
+        reference=reference_at(-CONFIG.touchdown.blocked_depth_m - 0.01),
+    )
+    decision, ticks = first_decision(Phase.DESCEND, _jolted(stopped), 1.0)
+    assert decision is not None
+    assert (decision[0], ticks) == (Event.CONTACT, 0)
+    unexplained, _ = first_decision(Phase.DESCEND, stopped, CONFIG.abort.near_speed_hold_s + 0.02)
+    assert unexplained == (Event.UNSAFE, "too fast against the pad")
+
+
+def test_jolt_with_the_pad_in_the_range_finders_sight_needs_no_sunken_setpoint() -> None:
+    stopped = _jolted(replace(situation(0.0), reference=reference_at(0.05), range_height_m=0.03))
+    decision, _ = first_decision(Phase.DESCEND, stopped, 0.0)
+    assert decision is not None
+    assert decision[0] is Event.CONTACT
+    far = replace(stopped, range_height_m=CONFIG.touchdown.range_height_max_m + 0.01)
+    assert first_decision(Phase.DESCEND, far, 0.0)[0] is None
+
+
+@pytest.mark.parametrize(("seen_last_m", "wanted"), [(0.0, Event.CONTACT), (0.15, Event.CONTACT), (0.16, Event.UNSAFE)])
+def test_drone_that_is_stopped_after_its_range_finder_fell_blind_has_landed_where_it_was_sinking_to(
+    seen_last_m: float, wanted: Event
+) -> None:
+    pad = pad_at((4.0, 1.0, 0.0))
+    stopped = replace(
+        situation(-0.3),
+        drone=drone_at(-0.3, 0.2, (-4.0, -1.0, -0.25), pad=pad),
+        pad=pad,
+        reference=reference_at(-0.2),  # it follows its setpoint: no other sign speaks for a contact
+        range_carried_m=seen_last_m,
+    )
+    decision, _ = first_decision(Phase.DESCEND, _jolted(stopped), 1.0)
+    assert decision is not None
+    assert decision[0] is wanted
+    in_sight = replace(stopped, range_height_m=2.0)
+    assert first_decision(Phase.DESCEND, _jolted(in_sight), 1.0)[0] == (Event.UNSAFE, "too fast against the pad")
+
+
+@pytest.mark.parametrize(("driven_s", "wanted"), [(0.0, Event.CONTACT), (0.055, Event.CONTACT), (0.16, Event.UNSAFE)])
+def test_what_has_stopped_the_drone_was_the_pad_where_it_was_before_it_drove_on(driven_s: float, wanted: Event) -> None:
+    pad = pad_at((8.0, 0.0, 0.0))
+    before = drone_at(0.02, 0.0, (-8.0, 0.0, 0.0), pad=pad)
+    # Beside the pad's centre at the contact; the pad drives on eastwards, and the drone falls behind.
+    place = before.position_enu_m + np.array([-0.3 - 8.0 * driven_s, 0.45, 0.0])
+    stopped = replace(
+        situation(0.02),
+        drone=replace(before, position_enu_m=place, age_s=0.0),
+        pad=pad,
+        reference=reference_at(0.0),
+        range_height_m=0.02,
+    )
+    decision, _ = first_decision(Phase.DESCEND, _jolted(stopped), 1.0)
+    assert decision is not None
+    assert decision[0] is wanted
+
+
+def test_drone_that_the_pad_stops_beside_the_cone_has_landed_though_the_stop_ends_its_commitment() -> None:
+    beside_m = cone_radius_m(0.05, HALF_M, CONFIG) + 0.1
+    assert beside_m < OVER_PAD_M
+    pad = pad_at((4.0, 1.0, 0.0))
+    sinking = replace(
+        situation(0.05),
+        drone=drone_at(0.05, beside_m, (0.0, 0.0, -0.4), pad=pad),
+        pad=pad,
+        reference=reference_at(0.0),
+        range_height_m=0.05,
+    )
+    stopped = _jolted(replace(sinking, drone=drone_at(0.05, beside_m, (-4.0, -1.0, -0.3), pad=pad)))
+    held: dict[str, int] = {}
+    ticks = 2 * math.ceil(CONFIG.abort.cone_hold_s * 1e9 / TICK_NS)
+    for tick in range(ticks):
+        now = later(sinking, tick * TICK_NS)
+        held = update_held(held, Phase.DESCEND, now, approach(now), CONFIG)
+        assert decide(progress(Phase.DESCEND, 0.0), now, held, CONFIG) is None
+    now = later(stopped, ticks * TICK_NS)
+    held = update_held(held, Phase.DESCEND, now, approach(now), CONFIG)
+    decision = decide(progress(Phase.DESCEND, 0.0), now, held, CONFIG)
+    assert decision is not None
+    assert decision[0] is Event.CONTACT
+
+
+def test_jolt_in_the_air_is_no_contact() -> None:
+    sinking = replace(situation(LOW_M), drone=drone_at(LOW_M, 0.1, (0.0, 0.0, -0.4), pad=pad_at()))
+    decision, _ = first_decision(Phase.DESCEND, _jolted(replace(sinking, reference=reference_at(LOW_M))), 1.0)
+    assert decision is None
+
+
+@pytest.mark.parametrize(("event", "test"), ENTRY_TESTS)
+def test_landing_goes_on_exactly_after_the_hold_time(event: Event, test: Condition) -> None:
+    (phase,) = test.phases
+    match event:
+        case Event.VEHICLE_PASSES:
+            facts = situation(3.0, 2.0, pad=pad_at((0.0, 0.0, 0.0)))
+        case Event.ALIGNED:
+            facts = situation()
+        case Event.OUT_OF_ALIGNMENT if test.reason == "not over the pad in time":
+            facts = situation(HIGH_M, cone_radius_m(HIGH_M, HALF_M, CONFIG) + 0.01)
+        case Event.OUT_OF_ALIGNMENT if test.reason == "alignment lost":
+            facts = situation(HIGH_M, 2.0 * CONFIG.descent.align_distance_m + 0.01)
+        case Event.OUT_OF_ALIGNMENT:
+            facts = situation(pad=replace(pad_at(std_m=CONFIG.descent.unseen_std_max_m + 0.01), is_coarse=True))
+        case _:
+            facts = replace(situation(0.0), reference=reference_at(-CONFIG.touchdown.blocked_depth_m - 0.01))
+    if test.reason == DISPUTED_CONTACT:
+        facts = replace(facts, range_height_m=2.0)
+    if test.reason == HARD_CONTACT:
+        facts = _jolted(facts)
+    hold_s = test.hold_s(CONFIG)
+    decision, ticks = first_decision(phase, facts, hold_s + 1.0)
+    assert decision is not None
+    assert decision[0] is event
+    assert decision[1].startswith(test.reason)
+    assert ticks == math.ceil(hold_s * 1e9 / TICK_NS - 1e-9)
+
+
+@pytest.mark.parametrize(
+    ("phase", "limit_s"),
+    [
+        (Phase.CHASE, CONFIG.chase.time_limit_s),
+        (Phase.ALIGN, CONFIG.descent.align_time_limit_s),
+        (Phase.DESCEND, CONFIG.descent.time_limit_s),
+        (Phase.TAKEOFF, CONFIG.takeoff.time_limit_s),
+    ],
+)
+def test_time_limit_is_kept(phase: Phase, limit_s: float) -> None:
+    facts = situation(HIGH_M, 0.3)
+    assert decide(progress(phase, limit_s - 0.01), facts, {}, CONFIG) is None or phase is Phase.CHASE
+    late = decide(progress(phase, limit_s + 0.01), facts, {}, CONFIG)
+    assert late is not None
+    assert late[0] is Event.TIME_LIMIT
+
+
+def test_time_limit_does_not_end_a_landing_that_is_committed() -> None:
+    late = progress(Phase.DESCEND, CONFIG.descent.time_limit_s + 1.0)
+    low_m, high_m = 0.5 * CONFIG.descent.commit_height_m, 1.1 * CONFIG.descent.commit_height_m
+    assert decide(late, situation(low_m), {}, CONFIG) is None
+    assert decide(late, situation(high_m), {}, CONFIG) == (Event.TIME_LIMIT, "descend took longer than 30 s")
+
+
+@given(
+    phase=st.sampled_from(FLYING),
+    reason=st.sampled_from(sorted(UNSAFE)),
+    in_phase_s=st.floats(0.0, 100.0),
+)
+def test_pilot_comes_before_everything(phase: Phase, reason: str, in_phase_s: float) -> None:
+    facts = UNSAFE[reason]
+    facts = replace(facts, autopilot=replace(facts.autopilot, in_control=False))
+    held = {test.reason: NOW_NS - 10**12 for test in ABORT_TESTS}
+    decision = decide(progress(phase, in_phase_s), facts, held, CONFIG)
+    assert decision == (Event.PILOT_TOOK_OVER, "mode changed by the pilot")
+
+
+def test_mode_that_the_autopilot_changed_by_itself_is_not_said_to_be_the_pilots() -> None:
+    facts = situation(HIGH_M)
+    facts = replace(facts, autopilot=replace(facts.autopilot, in_control=False, overruled=True))
+    assert decide(progress(Phase.ALIGN), facts, {}, CONFIG) == (Event.PILOT_TOOK_OVER, "autopilot failsafe")
+
+
+def test_restart_is_not_said_to_be_the_pilots() -> None:
+    facts = situation(HIGH_M)
+    facts = replace(facts, autopilot=replace(facts.autopilot, in_control=False, armed=False, restarted=True))
+    assert decide(progress(Phase.ALIGN), facts, {}, CONFIG) == (Event.PILOT_TOOK_OVER, "autopilot restarted")
+
+
+def test_retries_are_counted_down_to_a_hold() -> None:
+    high = situation(CONFIG.abort.height_m)
+    for retries in range(CONFIG.abort.retries_max):
+        decision = decide(replace(progress(Phase.ABORT), retries=retries), high, {}, CONFIG)
+        assert decision == (Event.CLEAR, f"retry {retries + 1} of {CONFIG.abort.retries_max}")
+    last = replace(progress(Phase.ABORT), retries=CONFIG.abort.retries_max)
+    assert decide(last, high, {}, CONFIG) == (Event.CLEAR_TO_HOLD, "no retry left")
+
+
+def test_bounce_is_seen_above_its_height_only() -> None:
+    facts = situation(CONFIG.touchdown.lost_height_m - 0.01)
+    assert decide(progress(Phase.TOUCHDOWN), facts, {}, CONFIG) is None
+    decision = decide(progress(Phase.TOUCHDOWN), situation(CONFIG.touchdown.lost_height_m + 0.01), {}, CONFIG)
+    assert decision is not None
+    assert decision[0] is Event.CONTACT_LOST
+
+
+def test_drone_that_slid_off_the_pad_is_not_pressed_down_any_longer() -> None:
+    lowest_m = -CONFIG.descent.press_depth_m - CONFIG.touchdown.height_max_m
+    assert decide(progress(Phase.TOUCHDOWN), situation(lowest_m + 0.01), {}, CONFIG) is None
+    decision = decide(progress(Phase.TOUCHDOWN), situation(lowest_m - 0.01, 2.0), {}, CONFIG)
+    assert decision == (Event.CONTACT_LOST, "below the pad after contact")
+
+
+def test_pad_that_was_not_described_is_not_landed_on_and_it_is_said_why() -> None:
+    facts = situation(pad=replace(pad_at(), unplaced=NOT_DESCRIBED))
+    late = progress(Phase.ALIGN, CONFIG.descent.align_time_limit_s + 1.0)
+    aligned = {"aligned": NOW_NS - 10**12}
+    held = update_held(aligned, Phase.ALIGN, facts, approach(facts), CONFIG)
+    assert "aligned" not in held
+    assert decide(late, facts, held, CONFIG) == (Event.TIME_LIMIT, NOT_DESCRIBED)

@@ -1,0 +1,115 @@
+"""Just above the pad the drone is levelled, so that it does not touch down with one foot."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from companion.config import CompanionConfig
+from companion.data import OwnState
+from companion.landing.levelling import limits_now
+from companion.phases import Phase
+from companion.situation import Situation, drone_now
+from companion.step_data import StepInputs, StepMemory
+from tests.companion.facts import NOW_NS, drone_at, pad_at, situation
+
+CONFIG = CompanionConfig()
+LIMITS = CONFIG.limits.flight_limits()
+INPUTS = StepInputs(t_ns=NOW_NS, limits=LIMITS)
+LEVEL_M_S2 = CONFIG.touchdown.level_acceleration_min_m_s2
+DESCENDS = replace(StepMemory(), phase=Phase.DESCEND)
+
+
+def acceleration_max(height_m: float, lean: float, memory: StepMemory = DESCENDS) -> float:
+    here = situation(height_m)
+    assert here.drone is not None
+    leaning = replace(here, drone=replace(here.drone, lean=lean))
+    return limits_now(memory, leaning, INPUTS, CONFIG).acceleration_max_m_s2
+
+
+@pytest.mark.parametrize(
+    ("height_m", "lean", "levels"),
+    [(0.07, 0.0, True), (0.09, 0.0, False), (0.17, 0.5, True), (0.19, 0.5, False), (1.0, 0.9, False)],
+)
+def test_a_leaning_drone_is_levelled_as_much_higher_as_its_lowest_foot_hangs_down(
+    height_m: float, lean: float, *, levels: bool
+) -> None:
+    assert acceleration_max(height_m, lean) == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
+
+
+@pytest.mark.parametrize(
+    ("turns_m_s2", "level_m_s2"),
+    [
+        (0.0, CONFIG.touchdown.level_acceleration_min_m_s2),
+        (1.25, CONFIG.touchdown.level_share * 1.25),
+        (4.0, CONFIG.touchdown.level_acceleration_max_m_s2),
+    ],
+    ids=["straight on", "a circle of 20 m at 5 m/s", "harder than it may lean"],
+)
+def test_a_drone_above_a_turning_pad_is_levelled_by_a_share_of_that_turn(turns_m_s2: float, level_m_s2: float) -> None:
+    pad = pad_at()
+    turn = np.tile([0.6 * turns_m_s2, -0.8 * turns_m_s2, 0.0], (len(pad.offset_s), 1))
+    here = situation(0.05, pad=replace(pad, acceleration_enu_m_s2=turn))
+    assert limits_now(DESCENDS, here, INPUTS, CONFIG).acceleration_max_m_s2 == pytest.approx(level_m_s2)
+
+
+def _sinking(height_m: float, sink_m_s: float) -> Situation:
+    here = situation(height_m)
+    return replace(here, drone=drone_at(height_m, 0.0, (0.0, 0.0, -sink_m_s), pad=pad_at()))
+
+
+@pytest.mark.parametrize(("sink_m_s", "late_s", "levels"), [(0.4, 0.08, True), (0.4, 0.0, False), (0.2, 0.08, False)])
+def test_a_drone_is_levelled_earlier_by_what_its_setpoints_may_be_late(
+    sink_m_s: float, late_s: float, *, levels: bool
+) -> None:
+    facts = _sinking(CONFIG.touchdown.level_height_m + 0.025, sink_m_s)  # 0.4 m/s for 0.08 s are 32 mm
+    inputs = replace(INPUTS, link_delay_std_s=late_s / CONFIG.touchdown.level_late_stds)
+    limit_m_s2 = limits_now(DESCENDS, facts, inputs, CONFIG).acceleration_max_m_s2
+    assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
+
+
+@pytest.mark.parametrize(
+    ("estimated_m", "seen_m", "beside_m", "levels"),
+    [
+        (0.3, 0.05, 0.0, True),
+        (0.05, 0.3, 0.0, False),
+        (0.05, None, 0.0, True),
+        (0.05, 1.6, 0.0, True),
+        (0.05, 0.3, 0.7, True),
+    ],
+    ids=["nearer than estimated", "farther", "nothing seen", "the road is seen", "not above the pad"],
+)
+def test_the_height_to_be_levelled_at_is_what_a_range_finder_has_just_seen_of_the_pad(
+    estimated_m: float, seen_m: float | None, beside_m: float, *, levels: bool
+) -> None:
+    facts = replace(situation(estimated_m, beside_m), range_height_m=seen_m, range_carried_m=seen_m)
+    limit_m_s2 = limits_now(DESCENDS, facts, INPUTS, CONFIG).acceleration_max_m_s2
+    assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
+
+
+def test_nothing_but_a_descent_and_its_abort_is_levelled() -> None:
+    assert acceleration_max(0.05, 0.0, replace(DESCENDS, phase=Phase.ALIGN)) == LIMITS.acceleration_max_m_s2
+
+
+@pytest.mark.parametrize(("height_m", "lean", "levels"), [(0.4, 0.0, True), (0.44, 0.0, False), (0.5, 0.5, True)])
+def test_a_drone_that_breaks_off_climbs_before_it_leans(height_m: float, lean: float, *, levels: bool) -> None:
+    limit_m_s2 = acceleration_max(height_m, lean, replace(DESCENDS, phase=Phase.ABORT))
+    assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
+
+
+@pytest.mark.parametrize(
+    ("orientation_wxyz", "lean"),
+    [((1.0, 0.0, 0.0, 0.0), 0.0), ((0.9659258, 0.2588190, 0.0, 0.0), 0.5), ((0.7071068, 0.0, 0.0, 0.7071068), 0.0)],
+    ids=["level", "rolled by 30 degrees", "turned"],
+)
+def test_lean_is_the_sine_of_the_tilt(orientation_wxyz: tuple[float, float, float, float], lean: float) -> None:
+    own = OwnState(
+        t_ns=NOW_NS,
+        position_enu_m=(0.0, 0.0, 5.0),
+        velocity_enu_m_s=(0.0, 0.0, 0.0),
+        orientation_wxyz=orientation_wxyz,
+        angular_velocity_flu_rad_s=(0.0, 0.0, 0.0),
+    )
+    drone = drone_now(own, NOW_NS, 0.0, 1.0)
+    assert drone is not None
+    assert drone.lean == pytest.approx(lean, abs=1e-6)

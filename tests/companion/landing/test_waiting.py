@@ -1,0 +1,178 @@
+"""A descent says what it waits for and its time stands still meanwhile; neither waiting nor straying is without end."""
+
+from dataclasses import replace
+
+import pytest
+
+from companion.landing.decisions import decide
+from companion.landing.status import landing_status
+from companion.landing.transitions import transitions
+from companion.landing.waiting import waited_s, waits_at_m, why_held_up
+from companion.monitors.surprise import Surprise
+from companion.phases import Event, Phase
+from companion.shifts import at_other_time
+from companion.situation import Situation
+from companion.step_data import StepMemory
+from link.messages import Vector3
+from tests.companion.facts import (
+    CONFIG,
+    GEAR_M,
+    NOW_NS,
+    TICK_NS,
+    braking_pad,
+    drone_at,
+    later,
+    pad_at,
+    progress,
+    situation,
+)
+from tests.companion.world import PAD_HEIGHT_M, Flight, reached
+
+DESCENT = CONFIG.descent
+WAITING_M = DESCENT.waiting_height_m
+SURPRISED = Surprise(surprised_ns=NOW_NS)
+KNOWN = Surprise(speed_std_m_s=0.05)
+STRAYING = situation(DESCENT.align_height_m, 2.0)
+
+
+def _moving(height_m: float, speed_m_s: float) -> Situation:
+    return replace(situation(), drone=drone_at(height_m, 0.0, (0.0, speed_m_s, 0.0), pad=pad_at()))
+
+
+@pytest.mark.parametrize(
+    ("facts", "surprise", "reason"),
+    [
+        (situation(WAITING_M), KNOWN, "aligned"),
+        (situation(WAITING_M), SURPRISED, "waits above the pad: the vehicle's speed has surprised"),
+        (situation(WAITING_M, 0.8), KNOWN, "waits above the pad: the drone is not over the pad"),
+        (situation(WAITING_M, pad=braking_pad(2.0)), KNOWN, "waits above the pad: the vehicle brakes or speeds up"),
+        (_moving(WAITING_M, 0.5), KNOWN, "waits above the pad: faster than 0.4 m/s against the pad"),
+        (situation(DESCENT.align_height_m), SURPRISED, "aligned"),
+        (situation(0.9 * DESCENT.commit_height_m), SURPRISED, "aligned"),
+    ],
+    ids=["goes on", "surprised", "beside", "brakes", "unsettled", "still sinking", "committed"],
+)
+def test_status_says_what_a_descent_waits_for(facts: Situation, surprise: Surprise, reason: str) -> None:
+    memory = StepMemory(phase=Phase.DESCEND, reason="aligned", surprise=surprise)
+    assert landing_status(memory, facts, CONFIG).reason == reason
+
+
+def _kept_surprised(flight: Flight, duration_s: float) -> None:
+    """Fly on above a vehicle that surprises in every step."""
+    for _ in range(round(duration_s * 1e9 / TICK_NS)):
+        flight.memory = replace(flight.memory, surprise=Surprise(surprised_ns=flight.t_ns))
+        flight.step()
+        if flight.phase is not Phase.DESCEND:
+            return
+
+
+def test_descent_that_waits_comes_to_rest_at_its_height() -> None:
+    flight = reached(Phase.DESCEND)
+    _kept_surprised(flight, 5.0)
+    for _ in range(10):
+        _kept_surprised(flight, 0.5)
+        feet_m = flight.own.position_enu_m[2] - GEAR_M - PAD_HEIGHT_M
+        assert feet_m == pytest.approx(WAITING_M, abs=0.03)
+
+
+def test_descent_outlasts_its_time_limit_above_a_vehicle_that_surprises_and_then_lands() -> None:
+    flight = reached(Phase.DESCEND)
+    _kept_surprised(flight, DESCENT.time_limit_s + 5.0)
+    assert flight.phase is Phase.DESCEND
+    flight.run_until(Phase.SECURED, limit_s=DESCENT.surprise_hold_s + 10.0)
+    assert Phase.ABORT not in flight.history
+    assert flight.memory.waited_s == 0.0
+
+
+def test_descent_above_a_vehicle_that_surprises_for_ever_is_broken_off() -> None:
+    flight = reached(Phase.DESCEND)
+    limit_s = DESCENT.time_limit_s + DESCENT.surprise_wait_max_s
+    _kept_surprised(flight, limit_s - 1.0)
+    assert flight.phase is Phase.DESCEND
+    _kept_surprised(flight, 2.0)
+    assert (flight.phase, flight.memory.reason) == (Phase.ABORT, "descend took longer than 30 s")
+
+
+def test_time_of_waiting_is_put_off_with_the_clock() -> None:
+    memory = StepMemory(waits_since_ns=NOW_NS, waited_s=2.0, interrupted_ns=NOW_NS - 10)
+    moved = at_other_time(memory, 10**12)
+    assert waited_s(moved, NOW_NS + 10**12 + 10**9) == pytest.approx(3.0)
+    assert moved.interrupted_ns == NOW_NS - 10 + 10**12
+    assert at_other_time(StepMemory(), 10**12).waits_since_ns is None
+
+
+def _after(memory: StepMemory, facts: Situation, limit_s: float) -> tuple[StepMemory, Situation]:
+    """Decide on facts that stay as they are until the phase changes."""
+    inputs, phase = Flight().inputs(), memory.phase
+    for _ in range(round(limit_s * 1e9 / TICK_NS)):
+        facts = later(facts, TICK_NS)
+        memory, _ = transitions(memory, facts, replace(inputs, t_ns=facts.t_ns), CONFIG)
+        if memory.phase is not phase:
+            return memory, facts
+    raise AssertionError(f"still in {phase.value} after {limit_s} s")
+
+
+def test_approach_that_strays_again_and_again_is_broken_off() -> None:
+    memory, facts = StepMemory(phase=Phase.DESCEND, phase_since_ns=NOW_NS), situation()
+    for _ in range(DESCENT.strays_max):
+        memory, facts = _after(memory, replace(STRAYING, t_ns=facts.t_ns), DESCENT.stray_hold_s + 0.1)
+        assert memory.phase is Phase.ALIGN
+        memory, facts = _after(memory, replace(situation(), t_ns=facts.t_ns), 1.0)
+        assert memory.phase is Phase.DESCEND
+    memory, facts = _after(memory, replace(STRAYING, t_ns=facts.t_ns), DESCENT.stray_hold_s + 0.1)
+    assert (memory.phase, memory.reason) == (Phase.ABORT, "not over the pad in time")
+    assert memory.strays == 0
+
+
+def test_approach_that_loses_its_alignment_again_and_again_is_broken_off() -> None:
+    memory, facts = StepMemory(phase=Phase.ALIGN, phase_since_ns=NOW_NS), situation()
+    far = situation(2.0, 2.0 * DESCENT.align_distance_m + 0.1)
+    for _ in range(DESCENT.strays_max):
+        memory, facts = _after(memory, replace(far, t_ns=facts.t_ns), 1.0)
+        assert (memory.phase, memory.reason) == (Phase.CHASE, "alignment lost")
+        memory, facts = _after(memory, replace(situation(2.0, 1.0), t_ns=facts.t_ns), 1.0)
+        assert memory.phase is Phase.ALIGN
+    memory, facts = _after(memory, replace(far, t_ns=facts.t_ns), 1.0)
+    assert (memory.phase, memory.reason) == (Phase.ABORT, "alignment lost")
+    assert memory.losses == 0
+
+
+@pytest.mark.parametrize(
+    ("strays", "event"), [(DESCENT.strays_max - 1, Event.OUT_OF_ALIGNMENT), (DESCENT.strays_max, Event.UNSAFE)]
+)
+def test_straying_is_unsafe_once_it_has_been_aligned_again_for_so_often(strays: int, event: Event) -> None:
+    held = {"not over the pad in time": NOW_NS - 10**10}
+    decision = decide(replace(progress(Phase.DESCEND), strays=strays), STRAYING, held, CONFIG)
+    assert decision == (event, "not over the pad in time")
+
+
+@pytest.mark.parametrize(
+    ("age_s", "velocity", "waits"),
+    [(0.5, (5.0, 1.0, 0.0), True), (0.1, (5.0, 1.0, 0.0), False), (0.5, (0.1, 0.1, 0.0), False)],
+    ids=["late data", "fresh data", "stands"],
+)
+def test_descent_waits_above_an_uneven_driver_of_whom_is_told_late(
+    age_s: float, velocity: Vector3, *, waits: bool
+) -> None:
+    memory = StepMemory(phase=Phase.DESCEND, surprise=Surprise(unevenness_m_s2=0.7))
+    here = replace(situation(WAITING_M + 0.05, pad=pad_at(velocity)), fix_age_s=age_s)
+    assert waits_at_m(memory, here, CONFIG) == (WAITING_M if waits else None)
+    assert why_held_up(memory, here, CONFIG) == ("the vehicle's speed changes all the time" if waits else None)
+
+
+@pytest.mark.parametrize(
+    ("beside_m", "height_m", "is_coarse", "waits"),
+    [
+        (DESCENT.aligned_distance_m + 0.01, 0.9, True, True),
+        (DESCENT.aligned_distance_m - 0.01, 0.9, True, False),
+        (DESCENT.aligned_distance_m + 0.01, 0.9, False, False),
+        (DESCENT.aligned_distance_m + 0.01, 0.95 * DESCENT.centred_height_m, True, False),
+    ],
+    ids=["beside", "centred", "placed by fixes", "already below"],
+)
+def test_descent_onto_a_pad_that_only_the_detector_places_is_centred_while_it_is_seen(
+    beside_m: float, height_m: float, *, is_coarse: bool, waits: bool
+) -> None:
+    memory = StepMemory(phase=Phase.DESCEND, surprise=Surprise(speed_std_m_s=0.05))
+    here = situation(height_m, beside_m, replace(pad_at(), is_coarse=is_coarse))
+    assert waits_at_m(memory, here, CONFIG) == (DESCENT.waiting_height_coarse_m if waits else None)

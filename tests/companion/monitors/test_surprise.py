@@ -1,0 +1,238 @@
+"""A vehicle that has done what its late data did not let expect is landed on while it stands, or has driven evenly."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from companion.config import CompanionConfig
+from companion.data import VehicleEstimate
+from companion.estimation.config import EstimatorKind
+from companion.landing.waiting import waits_at_m
+from companion.monitors.surprise import Surprise, drives_unevenly, looked_back, may_surprise
+from companion.phases import Phase
+from companion.shifts import at_other_time
+from companion.step_data import StepMemory
+from link.messages import Vector3
+from tests.companion.estimation.driving import (
+    DEGRADED,
+    NOMINAL,
+    Drive,
+    Sensors,
+    brake,
+    circle,
+    random_drive,
+    sense,
+    straight,
+)
+from tests.companion.estimation.rides import estimator, now_ns
+from tests.companion.facts import NOW_NS, drone_at, pad_at, situation
+from tests.companion.world import PAD_HEIGHT_M, Flight, KnownVehicle
+
+CONFIG = CompanionConfig()
+DESCENT = CONFIG.descent
+LATE = replace(DEGRADED, delay_s=0.5)
+TICK_S = 0.02
+BEGUN_S = 2.0  # until then an estimate may be surprised by what it has not known yet
+
+
+def after(truth: Drive, sensors: Sensors, seed: int, until_s: float) -> Surprise:
+    """What has been noticed of a drive, asked at 50 Hz, when each measurement has come when it comes."""
+    chosen, waiting = estimator(EstimatorKind.IMM), sense(truth, sensors, seed)[::-1]
+    memory: Any = None
+    surprise = Surprise()
+    for i in range(round(until_s / TICK_S)):
+        batch = []
+        while waiting and waiting[-1][0] <= now_ns(i * TICK_S):
+            batch.append(waiting.pop()[1])
+        memory = chosen.fuse(memory, batch)
+        surprise = looked_back(surprise, chosen, memory, now_ns(i * TICK_S), DESCENT)
+    return surprise
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("truth", [straight(7.0), circle(5.0)], ids=["straight", "circle"])
+def test_even_driving_surprises_nobody_however_late_it_is_told(truth: Drive, seed: int) -> None:
+    assert (after(truth, LATE, seed, 15.0).surprised_ns or 0) < now_ns(BEGUN_S)
+
+
+@pytest.mark.parametrize(("sensors", "surprises"), [(LATE, True), (NOMINAL, False)], ids=["late", "nominal"])
+def test_hard_brake_surprises_who_is_told_late(sensors: Sensors, *, surprises: bool) -> None:
+    found = after(brake(), sensors, 3, brake().length_s)
+    assert ((found.surprised_ns or 0) > now_ns(BEGUN_S)) is surprises
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize(
+    ("truth", "uneven"),
+    [(straight(7.0), False), (circle(5.0), False), (random_drive(1), True), (random_drive(2), True)],
+    ids=["straight", "circle", "uneven", "uneven as well"],
+)
+def test_driver_who_changes_speed_time_and_again_is_told_from_an_even_one(
+    truth: Drive, seed: int, *, uneven: bool
+) -> None:
+    found = after(truth, LATE, seed, 18.0)
+    assert drives_unevenly(found, LATE.delay_s, DESCENT) is uneven
+    assert not drives_unevenly(found, DESCENT.uneven_age_s, DESCENT)
+    assert not drives_unevenly(found, None, DESCENT)
+
+
+def test_uneven_driving_is_told_from_the_last_seconds_only() -> None:
+    """Speeds of 4 and 5 m/s in turn, 2 s each, and an even 5 m/s afterwards, over a fix every tenth of a second."""
+    surprise, t_ns = Surprise(), NOW_NS
+    for i in range(400):
+        told: Any = Told(4.0 if i < 200 and i // 20 % 2 else 5.0, 0.01)
+        surprise = looked_back(surprise, told, t_ns, t_ns, DESCENT)
+        t_ns += 100_000_000
+        if i == 199:
+            assert surprise.unevenness_m_s2 == pytest.approx(0.5, rel=0.05)
+    assert surprise.unevenness_m_s2 == 0.0
+
+
+def test_speeds_before_and_after_an_outage_are_not_compared() -> None:
+    surprise, t_ns = Surprise(), NOW_NS
+    for speed_m_s in (1.0, 9.0):
+        told: Any = Told(speed_m_s, 0.01)
+        for _ in range(22):
+            surprise = looked_back(surprise, told, t_ns, t_ns, DESCENT)
+            t_ns += 100_000_000
+        t_ns, surprise = t_ns + 10_000_000_000, replace(surprise, beliefs=())
+    assert len(surprise.driven) == 42
+    assert surprise.unevenness_m_s2 == 0.0
+
+
+@pytest.mark.parametrize(
+    ("off_m_s", "std_m_s", "surprises"),
+    [(0.8, 0.2, True), (0.6, 0.2, False), (0.8, 0.5, False), (1.3, 0.5, True)],
+    ids=["wrong", "nearly right", "vague, as was said", "wrong beyond what was said"],
+)
+def test_belief_surprises_by_more_than_it_was_said_to_be_off(
+    off_m_s: float, std_m_s: float, *, surprises: bool
+) -> None:
+    told: Any = Told(5.0, 0.01)
+    found = looked_back(Surprise(beliefs=((NOW_NS, 5.0 + off_m_s, std_m_s),)), told, NOW_NS, NOW_NS, DESCENT)
+    assert (found.surprised_ns is not None) is surprises
+
+
+def test_surprise_holds_for_its_time_and_no_longer() -> None:
+    surprise = Surprise(surprised_ns=NOW_NS)
+    hold_ns = round(DESCENT.surprise_hold_s * 1e9)
+    assert may_surprise(surprise, NOW_NS + hold_ns - 1, DESCENT)
+    assert not may_surprise(surprise, NOW_NS + hold_ns + 1, DESCENT)
+    assert not may_surprise(Surprise(), NOW_NS, DESCENT)
+
+
+def test_beliefs_end_with_the_estimate_that_they_were() -> None:
+    surprise = Surprise(beliefs=((NOW_NS, 5.0, 0.1),), speed_std_m_s=0.1, surprised_ns=NOW_NS)
+    found = looked_back(surprise, estimator(EstimatorKind.IMM), None, NOW_NS, DESCENT)
+    assert found == Surprise(surprised_ns=NOW_NS)
+
+
+class Told:
+    """An estimator that tells one speed, and how well it knows it."""
+
+    def __init__(self, speed_m_s: float, variance_m2_s2: float) -> None:
+        self.speed_m_s, self.variance_m2_s2 = speed_m_s, variance_m2_s2
+
+    def newest_fix_ns(self, memory: int) -> int:
+        return memory
+
+    def estimate(self, _memory: int, t_ns: int) -> VehicleEstimate:
+        covariance = np.diag([0.0] * 3 + [self.variance_m2_s2, 0.0] + [0.0] * 4)
+        velocity = np.array([0.6 * self.speed_m_s, -0.8 * self.speed_m_s, 0.0])
+        return VehicleEstimate(
+            t_ns=t_ns,
+            position_enu_m=np.zeros(3),
+            velocity_enu_m_s=velocity,
+            acceleration_enu_m_s2=np.zeros(3),
+            covariance=covariance,
+            yaw_rad=None,
+            yaw_rate_rad_s=None,
+        )
+
+
+@pytest.mark.parametrize(
+    ("variance_m2_s2", "std_m_s"),
+    [(0.04, 0.2), (4.0, math.inf), (-1e-18, 0.0)],
+    ids=["known", "no longer known", "rounded below nothing"],
+)
+def test_speed_is_as_uncertain_as_it_is_told_and_unknown_once_it_is_lost(variance_m2_s2: float, std_m_s: float) -> None:
+    told: Any = Told(5.0, variance_m2_s2)
+    found = looked_back(Surprise(speed_std_m_s=0.1), told, NOW_NS - 10, NOW_NS, DESCENT)
+    assert found.speed_std_m_s == pytest.approx(std_m_s)
+
+
+def test_surprise_outlasts_a_clock_that_is_set() -> None:
+    surprise = Surprise(
+        beliefs=((NOW_NS, 5.0, 0.1),),
+        speed_std_m_s=0.1,
+        surprised_ns=NOW_NS,
+        driven=((NOW_NS, 5.0),),
+        unevenness_m_s2=0.5,
+    )
+    by_ns = 7_000_000_000
+    assert at_other_time(StepMemory(surprise=surprise), by_ns).surprise == replace(
+        surprise, beliefs=(), driven=(), surprised_ns=NOW_NS + by_ns
+    )
+    assert at_other_time(StepMemory(), by_ns).surprise == Surprise()
+
+
+@dataclass(frozen=True)
+class Braking(KnownVehicle):
+    """Drives at 4 m/s as far as the data tell, and has stood in hindsight."""
+
+    def estimate(self, memory: int | None, t_ns: int) -> VehicleEstimate | None:
+        return None if memory is None else Told(4.0 if t_ns > memory else 0.0, 0.01).estimate(memory, t_ns)
+
+
+@pytest.mark.parametrize("kind", [Braking, KnownVehicle])
+def test_step_looks_back_at_what_it_has_believed(kind: type[KnownVehicle]) -> None:
+    flight = Flight(vehicle=kind((-20.0, 0.4, PAD_HEIGHT_M), (4.0, 0.0, 0.0)))
+    flight.run(0.1)
+    flight.sends_fixes = False
+    flight.run(0.5)
+    flight.sends_fixes = True
+    flight.run(0.1)
+    assert may_surprise(flight.memory.surprise, flight.t_ns, DESCENT) is (kind is Braking)
+
+
+@pytest.mark.parametrize(
+    ("speed_m_s", "std_m_s", "waits"),
+    [
+        (DESCENT.waiting_speed_m_s - 0.01, 0.05, False),
+        (DESCENT.waiting_speed_m_s + 0.01, 0.05, True),
+        (DESCENT.waiting_speed_m_s + 0.01, 0.3, False),
+        (DESCENT.waiting_speed_m_s + 0.01, math.inf, False),
+        (CONFIG.abort.near_speed_max_m_s + 0.01, math.inf, True),
+    ],
+    ids=["settled", "too fast", "hardly known", "not known", "too fast by far"],
+)
+def test_descent_waits_until_the_drone_has_settled_as_far_as_that_is_known(
+    speed_m_s: float, std_m_s: float, *, waits: bool
+) -> None:
+    pad = pad_at()
+    here = replace(situation(0.9), drone=drone_at(0.9, 0.0, (0.6 * speed_m_s, -0.8 * speed_m_s, 0.0), pad=pad))
+    memory = StepMemory(phase=Phase.DESCEND, surprise=Surprise(speed_std_m_s=std_m_s))
+    assert waits_at_m(memory, here, CONFIG) == (DESCENT.waiting_height_m if waits else None)
+
+
+@pytest.mark.parametrize(
+    ("phase", "height_m", "velocity", "surprised", "waits"),
+    [
+        (Phase.DESCEND, 0.9, (5.0, 1.0, 0.0), True, True),
+        (Phase.DESCEND, 0.9, (5.0, 1.0, 0.0), False, False),
+        (Phase.DESCEND, 0.9, (0.1, 0.1, 0.0), True, False),
+        (Phase.DESCEND, 0.9 * DESCENT.commit_height_m, (5.0, 1.0, 0.0), True, False),
+        (Phase.CHASE, 0.9, (5.0, 1.0, 0.0), True, False),
+    ],
+    ids=["drives", "has not surprised", "stands", "committed", "chase"],
+)
+def test_descent_waits_above_a_driving_vehicle_that_has_surprised(
+    phase: Phase, height_m: float, velocity: Vector3, *, surprised: bool, waits: bool
+) -> None:
+    surprise = Surprise(surprised_ns=NOW_NS - 10 if surprised else None)
+    memory = StepMemory(phase=phase, surprise=surprise)
+    waiting_m = waits_at_m(memory, situation(height_m, pad=pad_at(velocity)), CONFIG)
+    assert waiting_m == (DESCENT.waiting_height_m if waits else None)
