@@ -19,16 +19,8 @@ from link.cli import (
     run_app,
 )
 from link.errors import UserError
-from scenarios import (
-    bench_commands,
-    campaign_commands,
-    faults_command,
-    fly_commands,
-    fuzz_command,
-    record_commands,
-    report_commands,
-    view_commands,
-)
+from scenarios.commands import bench, campaign, faults, fly, fuzz, replay, report
+from scenarios.commands import view as view_command
 
 app = make_app("Experiments: run landings, score them on ground truth, and report.")
 
@@ -71,11 +63,11 @@ def run_command(
 ) -> int:
     """Run a landing and score it on ground truth; exit code 1 when it does not land."""
     from scenarios.catalogue import load_scenario
-    from scenarios.report_line import Reporter
+    from scenarios.commands.run_lines import Reporter
     from scenarios.run import RunOptions, run_folder, run_in_lockstep, run_over_wire
 
     scenario = load_scenario(name if firmware is None else f"{name}+firmware={firmware}")
-    view_port = view_commands.port_of_run(lockstep=lockstep, as_json=as_json) if view else None
+    view_port = view_command.port_of_run(lockstep=lockstep, as_json=as_json) if view else None
     folder = run_folder(out, scenario.name)
     options = RunOptions(seed=seed, speed=speed, folder=folder, record=record, view_port=view_port)
     with Reporter(scenario, folder, as_json=as_json) as reporter:
@@ -133,7 +125,7 @@ def command_command(
     from link.keys import Keys
     from link.messages import Command
     from link.zenoh_options import zenoh_options
-    from scenarios.operator_command import send_command
+    from scenarios.commands.operator import send_command
 
     try:
         wanted = Command(command)
@@ -146,14 +138,8 @@ def command_command(
     return 0 if reply.accepted else 1
 
 
-campaign_commands.register(app)
-bench_commands.register(app)
-fuzz_command.register(app)
-faults_command.register(app)
-report_commands.register(app)
-record_commands.register(app)
-fly_commands.register(app)
-view_commands.register(app)
+for command in (campaign, bench, fuzz, faults, report, replay, fly, view_command):
+    command.register(app)
 
 
 def main() -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from link.memory_link import MemoryLink
 from scenarios.config import ChannelConfig, Scenario
 from scenarios.disturbances import Span, outages_ns
-from scenarios.noise import named_rng
+from scenarios.sensors.noise import named_rng
 
 _SEPARATOR = b"\0"
 

@@ -10,7 +10,7 @@ from pydantic import Field
 from companion.config import CompanionConfig
 from link.messages import PadGeometry, Vector3
 from link.toml_config import StrictModel
-from scenarios.track_config import NotNegative, Positive, TrackConfig
+from scenarios.tracks.config import NotNegative, Positive, TrackConfig
 from sim_autopilot.config import DatumConfig, DroneConfig
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]

@@ -1,7 +1,7 @@
 """When what happens once in a run happens: an outage, a gust, a step of the autopilot's origin."""
 
 from scenarios.config import ChannelConfig, Scenario
-from scenarios.noise import named_rng
+from scenarios.sensors.noise import named_rng
 
 Span = tuple[int, int]
 

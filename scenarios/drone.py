@@ -5,7 +5,7 @@ import math
 from link.messages import Vector3
 from scenarios.config import Scenario
 from scenarios.disturbances import instant_s
-from scenarios.noise import named_rng
+from scenarios.sensors.noise import named_rng
 from sim_autopilot.config import OwnStateConfig, SimAutopilotConfig, StartConfig, VehicleConfig, WindConfig
 
 

@@ -13,10 +13,10 @@ from link.keys import Keys
 from link.memory_link import MemoryLink
 from link.messages import Command
 from link.recorder import Recorder
-from scenarios.accuracy import PERIOD_NS, PHASES, Nis, antenna_truth, estimate_error
 from scenarios.channels import Channels, channels_of
 from scenarios.config import Scenario
 from scenarios.recording import EndWatch, Recording
+from scenarios.scoring.accuracy import PERIOD_NS, PHASES, Nis, antenna_truth, estimate_error
 from scenarios.simulation import Simulation, SimulationOutputs
 
 START_NS = 1_767_225_600_000_000_000

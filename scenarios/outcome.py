@@ -5,12 +5,12 @@ from pathlib import Path
 from typing import Any
 
 from link.errors import UserError
-from scenarios.accuracy import accuracy_table
 from scenarios.config import Scenario
 from scenarios.drone import mean_wind_enu_m_s
 from scenarios.recording import Recording
-from scenarios.score import Score, Tier, score
-from scenarios.touchdown import ScoreRules, rules_of
+from scenarios.scoring.accuracy import accuracy_table
+from scenarios.scoring.score import Score, Tier, score
+from scenarios.scoring.touchdown import ScoreRules, rules_of
 
 _DIGITS = 6  # a micrometre, a microsecond
 LANDED = frozenset({Tier.S1, Tier.S2, Tier.S3})

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from companion.phases import FLYING_PHASES, Phase
 from link.messages import BodyTruth, LandingStatus, RotorTruth
 from link.units import NS_PER_S
-from scenarios.accuracy import EstimateError, Nis
+from scenarios.scoring.accuracy import EstimateError, Nis
 
 _AFTER_MOTORS_OFF_NS = 2_500_000_000  # the score looks at the drone 2 s after
 _AFTER_GIVING_UP_NS = 10_000_000_000  # for a drone that aborts to brake, and to be seen airborne and stable

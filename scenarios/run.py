@@ -22,9 +22,9 @@ from scenarios.lockstep import Lockstep
 from scenarios.outcome import result_table, write_json, write_text
 from scenarios.processes import MODULES, ProcessGroup, Program, free_tcp_endpoint, free_udp_port
 from scenarios.recording import EndWatch, Recording
+from scenarios.recordings.truth_file import TruthFile
+from scenarios.recordings.watcher import Watcher
 from scenarios.stopwatch import quantiles_ms, timed_steps
-from scenarios.truth_file import TruthFile
-from scenarios.watcher import Watcher
 
 _POLL_S = 0.02
 _COMPANION_TIMING = "companion.json"

@@ -15,10 +15,10 @@ from link.frames import conjugate, quaternion_from_roll_pitch_yaw, rotate, wrap_
 from link.messages import BodyTruth, Quaternion, Vector3
 from link.records import replace
 from scenarios.config import VehicleConfig
-from scenarios.course import Course, Roughness
-from scenarios.profiles import Motion
-from scenarios.roads import RoadPoint
-from scenarios.track_config import Departure
+from scenarios.tracks.config import Departure
+from scenarios.tracks.course import Course, Roughness
+from scenarios.tracks.profiles import Motion
+from scenarios.tracks.roads import RoadPoint
 from sim_autopilot.data import Deck
 
 _BRAKE_REACH_M = 3.0  # the vehicle brakes for a drone over its roof, not for one that waits ahead

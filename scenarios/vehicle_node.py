@@ -11,9 +11,9 @@ from link.keys import Keys
 from link.messages import BodyTruth, Fix, FixVelocity, PadGeometry, PadSighting, VehicleImu
 from link.publication import Publication
 from scenarios.config import Scenario
-from scenarios.noise import named_rng
-from scenarios.sensors import Mounting, SensorSuite
-from scenarios.tracks import course_of
+from scenarios.sensors.noise import named_rng
+from scenarios.sensors.sensors import Mounting, SensorSuite
+from scenarios.tracks.tracks import course_of
 from scenarios.vehicle import VehicleInputs, VehicleMemory, VehiclePlan, VehicleState, vehicle_step, vehicle_truth
 from sim_autopilot.config import DatumConfig
 

@@ -26,9 +26,9 @@ HOMES = {
     "osqp": {"companion/planning/qp.py"},
     "daqp": {"companion/planning/qp.py"},
     "filterpy": {"companion/estimation/lkf.py", "companion/estimation/ukf.py"},
-    "polars": {"scenarios/landings_file.py"},
+    "polars": {"scenarios/campaigns/landings_file.py"},
     "viser": {f"scenarios/view/{name}.py" for name in ("page", "panel", "scene")},
-    "distributed": {"scenarios/dask_pool.py"},
+    "distributed": {"scenarios/campaigns/dask_pool.py"},
 }
 
 

@@ -17,7 +17,7 @@ from link.payload_checks import PayloadError
 from link.ros_records import fields_of
 from link.toml_config import validated
 from scenarios.config import Scenario
-from scenarios.truth_file import STEM as TRUTH
+from scenarios.recordings.truth_file import STEM as TRUTH
 from scenarios.view.history import History
 from scenarios.view.state import StateReader, ViewState
 

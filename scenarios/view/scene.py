@@ -11,7 +11,7 @@ import viser
 
 from companion.config import DescentConfig
 from link.messages import PadGeometry, Quaternion, Vector3
-from scenarios.roads import Road
+from scenarios.tracks.roads import Road
 from scenarios.view.shapes import (
     Array,
     Pose,

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from link.frames import quaternion_from_roll_pitch_yaw, rotate
 from link.messages import Quaternion, Vector3
-from scenarios.roads import Road
+from scenarios.tracks.roads import Road
 from scenarios.view.state import ForecastPath, ViewState
 
 Array = NDArray[np.float64]

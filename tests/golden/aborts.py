@@ -15,7 +15,7 @@ from link.messages import Command
 from link.toml_config import merged, validated
 from scenarios.catalogue import load_scenario
 from scenarios.config import Scenario
-from scenarios.fault_flight import FaultFlight
+from scenarios.faults.flight import FaultFlight
 from tests.golden.wrong_data import velocity_is_in_ned
 
 SEED = 1

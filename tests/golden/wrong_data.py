@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from link import cdr
 from link.messages import FixVelocity
-from scenarios.fault_flight import FaultFlight
+from scenarios.faults.flight import FaultFlight
 
 
 def velocity_is_in_ned(flight: FaultFlight) -> None:

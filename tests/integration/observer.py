@@ -9,8 +9,8 @@ from link.zenoh_session import ZenohOptions, ZenohSession, open_session
 from scenarios.catalogue import load_scenario
 from scenarios.outcome import scored
 from scenarios.recording import EndWatch, Recording
-from scenarios.score import Score
-from scenarios.watcher import Watcher
+from scenarios.recordings.watcher import Watcher
+from scenarios.scoring.score import Score
 from tests.integration.programs import until
 
 SCENARIO = load_scenario("straight_5")

@@ -10,7 +10,7 @@ from link.keys import Keys
 from link.mavlink.transports import Transport, open_transport
 from link.zenoh_session import ZenohOptions, ZenohSession, open_session
 from scenarios.outcome import LANDED
-from scenarios.score import Tier
+from scenarios.scoring.score import Tier
 from tests.integration.observer import Observer
 from tests.integration.programs import Program, Programs, until
 

@@ -6,7 +6,7 @@ from link.errors import UserError
 from scenarios.catalogue import list_scenarios, load_scenario
 from scenarios.lockstep import Lockstep
 from scenarios.simulation import STEP_NS
-from scenarios.track_config import MovingTrack, WaypointsTrack
+from scenarios.tracks.config import MovingTrack, WaypointsTrack
 from tests.scenarios.presets import list_presets
 
 BENCHMARK = [

@@ -4,7 +4,7 @@ import pytest
 
 from companion.phases import Phase
 from scenarios.catalogue import load_scenario
-from scenarios.fault_flight import FaultFlight
+from scenarios.faults.flight import FaultFlight
 
 pytestmark = pytest.mark.slow
 

@@ -8,7 +8,7 @@ from scenarios.catalogue import load_scenario
 from scenarios.config import Scenario
 from scenarios.lockstep import Lockstep
 from scenarios.outcome import result_table
-from scenarios.track_config import WaypointsTrack
+from scenarios.tracks.config import WaypointsTrack
 from scenarios.vehicle_node import datum_of
 
 _EAST_M, _NORTH_M = 900.0, -450.0

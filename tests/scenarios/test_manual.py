@@ -21,7 +21,7 @@ from scenarios.manual.phase_chart import FROM_ANYWHERE, PLACES, arrows, phase_ch
 from scenarios.manual.settings import keys_of, tables_of
 from scenarios.manual.units import unit_of
 from scenarios.outcome import scored
-from scenarios.score import Tier
+from scenarios.scoring.score import Tier
 from sim_autopilot.config import SimAutopilotConfig
 from tests.scenarios.presets import list_presets
 

@@ -15,14 +15,14 @@ from link.mcap_reader import read_messages, recording_files
 from link.recorder import BackgroundRecorder
 from link.toml_config import merged, validated
 from scenarios.catalogue import load_scenario
-from scenarios.figures import draw_figures
-from scenarios.html_report import write_report
 from scenarios.lockstep import Lockstep
 from scenarios.outcome import result_table
-from scenarios.replay import Flight, read_flights, replay
+from scenarios.recordings.replay import Flight, read_flights, replay
+from scenarios.reports.figures import draw_figures
+from scenarios.reports.html_report import write_report
+from scenarios.reports.run_data import read_run
+from scenarios.reports.run_shown import distances, heights
 from scenarios.run import RunOptions, run_in_lockstep
-from scenarios.run_data import read_run
-from scenarios.run_shown import distances, heights
 from scenarios.view.recorded import RecordedSource
 
 pytestmark = pytest.mark.slow

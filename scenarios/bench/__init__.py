@@ -1,0 +1,1 @@
+"""How fast the programs are, each figure against its budget."""

@@ -1,0 +1,93 @@
+"""What recording costs a companion's step: one flight's inputs given to two nodes, with and without, step by step.
+
+The thread of the steps and the recorder's are told apart by their processor time; both nodes meet the same machine.
+"""
+
+import statistics
+import time
+from pathlib import Path
+from typing import Any
+
+from companion.build import build_node
+from companion.node import CompanionNode
+from companion.recording.folder import recording_sink
+from companion.recording.records import InputRecord
+from link.keys import Keys
+from link.recorder import BackgroundRecorder
+from link.units import NS_PER_S
+from scenarios.config import Scenario
+from scenarios.lockstep import Lockstep
+from scenarios.recordings.replay import give
+
+_LOOK_S = 0.001
+_BLOCK = 25  # steps, after which the recorder catches up: in flight it has most of the time for itself
+
+
+class _Inputs:
+    """Keeps what went into a companion."""
+
+    dropped = 0
+
+    def __init__(self) -> None:
+        self.records: list[InputRecord] = []
+
+    def put(self, record: Any) -> None:
+        if isinstance(record, InputRecord):
+            self.records.append(record)
+
+    def close(self) -> None:
+        pass
+
+
+def recording_cost(scenario: Scenario, seed: int, folder: Path) -> dict[str, float]:
+    """Measure a flight's recording.
+
+    Args:
+        scenario: what is flown.
+        seed: of everything random.
+        folder: for the recording.
+
+    Returns:
+        `step_ratio`: a step's processor time with recording over that without, the median of all steps;
+        `writer_cpu_share`: of a core, for the recorder's thread, over the flight's duration; `dropped` records.
+    """
+    inputs = _Inputs()
+    flight = Lockstep(scenario, seed, recorder=inputs)
+    flight.run()
+    recorder = BackgroundRecorder(recording_sink(folder, scenario.system.companion, Keys()))
+    nodes = [build_node(scenario.system.companion, Keys(), recorder=one) for one in (None, recorder)]
+    began_ns = time.process_time_ns() - time.thread_time_ns()
+    steps = _steps(inputs.records, nodes, recorder)
+    recorder.close()
+    writer_s = (time.process_time_ns() - time.thread_time_ns() - began_ns) / NS_PER_S
+    return {
+        "step_ratio": round(statistics.median(recorded / plain for plain, recorded in steps), 4),
+        "writer_cpu_share": round(writer_s / flight.recording.elapsed_s, 4),
+        "dropped": recorder.dropped,
+    }
+
+
+def _steps(
+    records: list[InputRecord], nodes: list[CompanionNode], recorder: BackgroundRecorder
+) -> list[tuple[int, int]]:
+    """Return each step's processor time, ns, of both nodes; which of them is first changes from step to step."""
+    steps: list[tuple[int, int]] = []
+    spent_ns = [0, 0]
+    for record in records:
+        before = nodes[0].inputs
+        for index in (0, 1) if len(steps) % 2 else (1, 0):
+            began_ns = time.thread_time_ns()
+            give(nodes[index], record)
+            spent_ns[index] += time.thread_time_ns() - began_ns
+        if nodes[0].inputs is before:
+            continue
+        steps.append((spent_ns[0], spent_ns[1]))
+        spent_ns = [0, 0]
+        if len(steps) % _BLOCK == 0:
+            _let_catch_up(recorder)
+    return steps
+
+
+def _let_catch_up(recorder: BackgroundRecorder) -> None:
+    while recorder.waiting:
+        time.sleep(_LOOK_S)

@@ -1,0 +1,1 @@
+"""Many landings of some cells: flown, kept, summed up and compared."""

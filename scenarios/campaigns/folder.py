@@ -1,0 +1,217 @@
+"""A campaign's folder: what is flown, and the rows as they come, so that nothing done is lost.
+
+`campaign.json` says what is flown, `landings.jsonl` takes a line for each landing when it is done, and from these
+come `landings.parquet`, which only cells, seeds and sources decide, and `timing.parquet`. These two are read
+where there are no lines; beside them they may lack what was flown by a process that was killed.
+"""
+
+import fcntl
+import json
+import os
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+from pydantic import Field, model_validator
+
+from link.errors import UserError
+from link.toml_config import StrictModel, validated
+from scenarios.campaigns.landing_task import Flown, Row, Task
+from scenarios.campaigns.landings_file import as_written, read_rows, write_rows
+from scenarios.config import Scenario
+from scenarios.outcome import write_json
+
+_PLAN, _JOURNAL, _LANDINGS, _TIMING = "campaign.json", "landings.jsonl", "landings.parquet", "timing.parquet"
+
+
+class Plan(StrictModel):
+    """What a campaign flies: each cell with the same seeds."""
+
+    cells: Annotated[list[str], Field(min_length=1)]
+    first_seed: Annotated[int, Field(ge=0)]
+    seeds: Annotated[int, Field(ge=1)]
+    versions: dict[str, str]
+    scenarios: dict[str, Scenario]
+
+    @model_validator(mode="after")
+    def _every_cell_has_its_scenario(self) -> Self:
+        if set(self.cells) != set(self.scenarios) or len(self.cells) != len(self.scenarios):
+            raise ValueError("each cell needs one scenario, and each scenario one cell")
+        return self
+
+    def tasks(self) -> list[Task]:
+        """Return all landings, the cells in turns: they advance together, and so the remaining time can be told."""
+        seeds = range(self.first_seed, self.first_seed + self.seeds)
+        return [Task(cell=cell, seed=seed) for seed in seeds for cell in self.cells]
+
+
+def create_folder(path: Path | None, plan: Plan) -> Path:
+    """Make the folder of a new campaign, `runs/<time>-campaign` if not told otherwise.
+
+    Raises:
+        UserError: it holds something already, or cannot be made.
+    """
+    folder = path or Path("runs") / f"{datetime.now(UTC):%Y%m%dT%H%M%S}-{os.getpid()}-campaign"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if any(folder.iterdir()):
+            raise UserError(f"{folder}: not empty; choose another --out, or go on with --resume")
+        write_json(folder / _PLAN, plan.model_dump(mode="json"))
+    except OSError as error:
+        raise UserError(f"{folder}: cannot be made ({error.strerror}); choose another --out") from None
+    return folder
+
+
+def read_plan(folder: Path) -> Plan:
+    """Return what the campaign in `folder` flies.
+
+    Raises:
+        UserError: there is none, or it does not fit.
+    """
+    path = folder / _PLAN
+    try:
+        table = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read ({error.strerror}); is this a campaign's folder?") from None
+    except ValueError:
+        raise UserError(f"{path}: not valid JSON") from None
+    return validated(Plan, table, source=str(path))
+
+
+def read_landings(folder: Path) -> list[Row]:
+    """Return the rows of the campaign in `folder`; of one that was killed, or still goes on, those that are done.
+
+    Raises:
+        UserError: there are none.
+    """
+    read_plan(folder)
+    if (folder / _LANDINGS).exists() and not (folder / _JOURNAL).exists():
+        return read_rows(folder / _LANDINGS)
+    rows = [flown.row for flown in _written_down(folder)]
+    if not rows:
+        raise UserError(f"{folder}: no landing is done; go on with: scenarios campaign --resume {folder}")
+    return as_written(rows)
+
+
+def read_timing(folder: Path) -> list[Row]:
+    """Return how long the landings of the campaign in `folder` took to compute, by cell and seed.
+
+    Raises:
+        UserError: nobody wrote it down.
+    """
+    if not (folder / _JOURNAL).exists():
+        return read_rows(folder / _TIMING)
+    return as_written([_timing(flown) for flown in _written_down(folder)])
+
+
+def missing_landings(folder: Path) -> str | None:
+    """Return a line that says what of a campaign is not done yet, None when nothing is missing or it is no campaign.
+
+    Raises:
+        UserError: nothing is done.
+    """
+    if not (folder / _PLAN).exists():
+        return None
+    done, planned = len(read_landings(folder)), len(read_plan(folder).tasks())
+    if done >= planned:
+        return None
+    return f"{done} of {planned} landings are done; go on with: scenarios campaign --resume {folder}"
+
+
+def _written_down(folder: Path) -> Collection[Flown]:
+    """Return the newest line of each landing in the journal; the one at which a process was interrupted is left out.
+
+    The Parquet files are written from it, but only when a campaign ends by itself.
+    """
+    path = folder / _JOURNAL
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        return ()
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read ({error.strerror})") from None
+    return {_task_of(one.row): one for one in _lines(data[: data.rfind(b"\n") + 1])}.values()
+
+
+class Journal:
+    """The rows of a campaign that is being flown; to be had from `open_journal`.
+
+    Args:
+        folder: of the campaign.
+        done: what was flown before, by task.
+        descriptor: of the open file.
+    """
+
+    def __init__(self, folder: Path, done: dict[Task, Flown], descriptor: int) -> None:
+        self._folder = folder
+        self._done = done
+        self._descriptor = descriptor
+
+    @property
+    def done(self) -> dict[Task, Flown]:
+        """What is flown."""
+        return dict(self._done)
+
+    def add(self, flown: Flown) -> None:
+        """Write a landing down."""
+        os.write(
+            self._descriptor,
+            (json.dumps({"wall_s": flown.wall_s, "times": dict(flown.times)} | flown.row) + "\n").encode(),
+        )
+        self._done[_task_of(flown.row)] = flown
+
+    def write_results(self) -> None:
+        """Write the Parquet files of what is flown, if anything is."""
+        if not self._done:
+            return
+        write_rows(self._folder / _LANDINGS, [flown.row for flown in self._done.values()])
+        write_rows(self._folder / _TIMING, [_timing(flown) for flown in self._done.values()])
+
+
+@contextmanager
+def open_journal(folder: Path) -> Iterator[Journal]:
+    """Open the journal of the campaign in `folder` for one writer; rows that are errors count as not done.
+
+    Raises:
+        UserError: another process writes into it, or it cannot be opened.
+    """
+    path = folder / _JOURNAL
+    try:
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o644)
+    except OSError as error:
+        raise UserError(f"{path}: cannot be opened ({error.strerror})") from None
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield Journal(folder, _read_journal(path, descriptor), descriptor)
+    except BlockingIOError:
+        raise UserError(f"{folder}: another campaign is writing here") from None
+    finally:
+        os.close(descriptor)
+
+
+def _read_journal(path: Path, descriptor: int) -> dict[Task, Flown]:
+    """Return what was flown; the line at which the last process was interrupted is cut off."""
+    data = path.read_bytes()
+    whole = data.rfind(b"\n") + 1
+    os.ftruncate(descriptor, whole)
+    return {_task_of(one.row): one for one in _lines(data[:whole]) if one.row["error"] is None}
+
+
+def _lines(data: bytes) -> list[Flown]:
+    lines = [json.loads(line) for line in data.splitlines()]
+    return [Flown(wall_s=line.pop("wall_s"), times=line.pop("times", {}), row=line) for line in lines]
+
+
+def _timing(flown: Flown) -> Row:
+    times = {"wall_s": flown.wall_s, **flown.times}
+    return _key(flown.row) | {name: round(value, 6) for name, value in times.items()}
+
+
+def _key(row: Row) -> dict[str, Any]:
+    return {"cell": row["cell"], "seed": row["seed"]}
+
+
+def _task_of(row: Row) -> Task:
+    return Task(**_key(row))

@@ -1,0 +1,71 @@
+"""A campaign's rows as Parquet: columns in a fixed order and type, rows by cell and seed."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import polars as pl
+
+from link.errors import UserError
+from scenarios.campaigns.landing_task import Row
+
+_FIRST = ("cell", "seed", "error")
+_TYPES: dict[str, pl.DataType] = {
+    "cell": pl.String(),
+    "seed": pl.Int64(),
+    "error": pl.String(),
+    "tier": pl.String(),
+    "reason": pl.String(),
+    "ended": pl.String(),
+    "on_pad": pl.Boolean(),
+    "s2_quality": pl.Boolean(),
+    "aborts": pl.Int64(),
+    "retries": pl.Int64(),
+    "nees_count": pl.Int64(),
+    "nis_dof": pl.Int64(),
+}
+"""Columns that are no decimal numbers, so that one without any value has its type too."""
+
+
+def write_rows(path: Path, rows: Sequence[Row]) -> None:
+    """Write rows into a Parquet file, at once or not at all; the same rows in any order make the same file."""
+    frame = _frame(rows)
+    unfinished = path.with_suffix(".unfinished")
+    frame.write_parquet(unfinished, compression="zstd", statistics=False)
+    unfinished.replace(path)
+
+
+def read_rows(path: Path) -> list[Row]:
+    """Return the rows of a Parquet file.
+
+    Raises:
+        UserError: there is none, or it cannot be read.
+    """
+    try:
+        return pl.read_parquet(path, glob=False).to_dicts()
+    except (OSError, pl.exceptions.PolarsError) as error:
+        raise UserError(f"{path}: cannot be read ({str(error).splitlines()[0]})") from None
+
+
+def as_written(rows: Sequence[Row]) -> list[Row]:
+    """Return rows as they would be read back from a file that they were written into."""
+    return _frame(rows).to_dicts()
+
+
+def _frame(rows: Sequence[Row]) -> pl.DataFrame:
+    ordered = sorted(rows, key=lambda row: (row["cell"], row["seed"]))
+    names = sorted({name for row in rows for name in row})
+    columns = [*(name for name in _FIRST if name in names), *(name for name in names if name not in _FIRST)]
+    return pl.DataFrame({name: _column(name, ordered) for name in columns})
+
+
+def _column(name: str, rows: Sequence[Row]) -> pl.Series:
+    values = [row.get(name) for row in rows]
+    return pl.Series(name, values, dtype=_TYPES.get(name) or _type_of(values), strict=True)
+
+
+def _type_of(values: Sequence[object]) -> pl.DataType:
+    """Return the type of a column by its first value; a whole number may be followed by others."""
+    first = next((value for value in values if value is not None), 0.0)
+    if isinstance(first, bool):
+        return pl.Boolean()
+    return pl.String() if isinstance(first, str) else pl.Float64()

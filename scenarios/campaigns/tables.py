@@ -1,0 +1,147 @@
+"""Summaries and comparisons for people: framed on a terminal, plain columns elsewhere."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TextIO
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+
+from scenarios.scoring.score import Tier
+
+_PLAIN_WIDTH = 1000  # nothing is wrapped where a program may read it
+_DEG = 180.0 / math.pi
+_UNITS = {
+    "horizontal_error_m": ("error", "m", 1.0, 3),
+    "relative_speed_m_s": ("speed", "m/s", 1.0, 2),
+    "sink_rate_m_s": ("sink", "m/s", 1.0, 2),
+    "tilt_over_trim_rad": ("tilt", "deg", _DEG, 1),
+    "time_to_contact_s": ("time", "s", 1.0, 1),
+    "tilt_rad": ("raw tilt", "deg", _DEG, 1),
+    "position_rmse_m": ("estimate", "m", 1.0, 3),
+    "velocity_rmse_m_s": ("estimate", "m/s", 1.0, 3),
+}
+"""Of each measure: heading, unit shown, factor to it, digits."""
+
+Cell = Mapping[str, Any]
+Column = tuple[str, Callable[[Cell], str]]
+
+
+def print_summary(summary: Mapping[str, Any], out: TextIO) -> None:
+    """Print a campaign's summary: what was reached, the shares, and the contacts."""
+    cells: Sequence[Cell] = summary["cells"]
+    reached: list[Column] = [("seeds", lambda cell: str(cell["seeds"])), *(_tier_column(tier) for tier in Tier)]
+    reached += [(name, _count_of(name)) for name in ("aborts", "retries")]
+    if any(cell["errors"] for cell in cells):
+        reached.append(("errors", _count_of("errors")))
+    console = _console(out)
+    _print(console, "Landings", reached, cells)
+    shares = [(f"{heading} [%]", _share_of(name)) for name, heading in _SHARES.items()]
+    _print(console, "Shares (95 % intervals)", shares, cells)
+    contact: list[Column] = [("contacts", _count_of("contacts"))]
+    contact += [(f"{_UNITS[name][0]} [{_UNITS[name][1]}]", _measure_of(name)) for name in _UNITS]
+    title = "At contact (median, 95th percentile; tilt over trim), and the estimate's error in the descent"
+    _print(console, title, contact, cells)
+    consistency: list[Column] = [("NEES", _band_of("nees")), ("NIS per dof", _band_of("nis_per_dof"))]
+    _print(console, "The estimate's consistency (95 % band)", consistency, cells)
+    if all("planner_ms" in cell for cell in cells):
+        _print(console, "Computing (medians over landings; the planner's max is the worst of all)", _COMPUTING, cells)
+
+
+def print_comparison(comparison: Mapping[str, Any], out: TextIO) -> None:
+    """Print a comparison of two campaigns A and B."""
+    console = _console(out)
+    cells: Sequence[Cell] = comparison["cells"]
+    shares: list[Column] = [("pairs", lambda cell: str(cell["pairs"]))]
+    shares += [(_SHARES[name], _mcnemar_of(name)) for name in _SHARES]
+    _print(console, "A, B, and McNemar's exact p (pairs that only A, only B reached)", shares, cells)
+    measures: list[Column] = [(f"{_UNITS[name][0]} [{_UNITS[name][1]}]", _difference_of(name)) for name in _UNITS]
+    _print(console, "Median of B - A over pairs with contact (95 % bootstrap interval)", measures, cells)
+    for difference in comparison["differences"]:
+        console.print(f"{difference['key']}: {difference['a']} | {difference['b']}", markup=False, soft_wrap=True)
+    unpaired = comparison["unpaired"]
+    if unpaired["a"] or unpaired["b"]:
+        console.print(f"without a pair: {unpaired['a']} of A, {unpaired['b']} of B")
+
+
+def _time_of(table: str, name: str) -> Callable[[Cell], str]:
+    return lambda cell: "-" if cell[table][name] is None else f"{cell[table][name]:.2f}"
+
+
+_COMPUTING: tuple[Column, ...] = (
+    *((f"planner {name} [ms]", _time_of("planner_ms", name)) for name in ("median", "p99", "max")),
+    ("wall [s]", _time_of("computing", "wall_s")),
+    ("CPU [s]", _time_of("computing", "cpu_s")),
+)
+
+_SHARES = {"s1_or_better": "S1 or better", "s2_quality": "S2 quality", "unsafe": "unsafe"}
+
+
+def _console(out: TextIO) -> Console:
+    is_terminal = out.isatty()
+    return Console(file=out, highlight=False, width=None if is_terminal else _PLAIN_WIDTH, no_color=not is_terminal)
+
+
+def _print(console: Console, title: str, columns: Sequence[Column], cells: Sequence[Cell]) -> None:
+    framed = console.is_terminal
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD if framed else None, pad_edge=framed)
+    table.add_column("cell", overflow="fold")
+    for heading, _ in columns:
+        table.add_column(heading.replace("[", "\\["), justify="right", no_wrap=True)
+    for cell in cells:
+        table.add_row(cell["cell"], *(text(cell) for _, text in columns))
+    console.print(table)
+
+
+def _tier_column(tier: Tier) -> Column:
+    return tier.value, lambda cell: str(cell["tiers"][tier.value])
+
+
+def _count_of(name: str) -> Callable[[Cell], str]:
+    return lambda cell: str(cell[name])
+
+
+def _share_of(name: str) -> Callable[[Cell], str]:
+    def text(cell: Cell) -> str:
+        share = cell[name]
+        return f"{100.0 * share['share']:.1f} ({100.0 * share['low']:.1f} to {100.0 * share['high']:.1f})"
+
+    return text
+
+
+def _measure_of(name: str) -> Callable[[Cell], str]:
+    def text(cell: Cell) -> str:
+        return f"{_number(name, cell[name]['median'])}  {_number(name, cell[name]['p95'])}"
+
+    return text
+
+
+def _band_of(name: str) -> Callable[[Cell], str]:
+    def text(cell: Cell) -> str:
+        found = cell[name]
+        return "-" if found["mean"] is None else f"{found['mean']:.2f} ({found['low']:.2f} to {found['high']:.2f})"
+
+    return text
+
+
+def _mcnemar_of(name: str) -> Callable[[Cell], str]:
+    def text(cell: Cell) -> str:
+        found = cell[name]
+        return f"{found['a']:.1%}  {found['b']:.1%}  p={found['p']:.2g} ({found['only_a']}, {found['only_b']})"
+
+    return text
+
+
+def _difference_of(name: str) -> Callable[[Cell], str]:
+    def text(cell: Cell) -> str:
+        found = cell[name]
+        low, high = _number(name, found["low"]), _number(name, found["high"])
+        return f"{_number(name, found['difference'])} ({low} to {high})"
+
+    return text
+
+
+def _number(name: str, value: float | None) -> str:
+    _, _, factor, digits = _UNITS[name]
+    return "-" if value is None else f"{value * factor:.{digits}f}"

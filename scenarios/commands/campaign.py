@@ -1,0 +1,173 @@
+"""The commands about campaigns: `campaign`, `table` and `compare`."""
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from link.errors import UserError
+
+if TYPE_CHECKING:
+    from scenarios.campaigns.campaign import Where
+    from scenarios.campaigns.folder import Plan
+    from scenarios.campaigns.landing_task import Row
+
+_ERRORS_SHOWN = 5
+_SEEDS, _FIRST_SEED = 100, 1
+
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
+FolderArgument = Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="Folder of a campaign.")]
+
+
+def register(app: typer.Typer) -> None:
+    """Add `campaign` and `compare` to `app`; `table` is also about the report, and in `scenarios.commands.report`."""
+    app.command("campaign")(campaign_command)
+    app.command("compare")(compare_command)
+
+
+def campaign_command(
+    cells: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="CELL...", help="Scenarios, such as straight_5+sensors=nominal+wind=moderate."),
+    ] = None,
+    *,
+    seeds: Annotated[
+        int | None, typer.Option("--seeds", min=1, metavar="N", help="Landings of each cell [default: 100].")
+    ] = None,
+    first_seed: Annotated[
+        int | None, typer.Option("--first-seed", min=0, metavar="N", help="The others follow [default: 1].")
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option("--scheduler", metavar="tcp://HOST:8786", help="Of an existing Dask cluster.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="The campaign's folder [default: in runs].")
+    ] = None,
+    resume: Annotated[
+        Path | None, typer.Option("--resume", metavar="DIR", help="Go on with what is missing or failed there.")
+    ] = None,
+    config: Annotated[
+        Path | None, typer.Option("--config", metavar="FILE", help="The companion's configuration for all cells.")
+    ] = None,
+    as_json: JsonOption = False,
+) -> int:
+    """Fly each cell with many seeds and print the summary; exit code 1 when a landing raised an error."""
+    from scenarios.campaigns.campaign import Where, check_same_versions, make_plan
+    from scenarios.campaigns.folder import create_folder, read_plan
+
+    where = Where(workers=workers, scheduler=scheduler)
+    if workers is not None and scheduler is not None:
+        raise UserError("--workers is about local processes: leave it out with --scheduler")
+    if resume is not None:
+        if cells or any(one is not None for one in (config, out, seeds, first_seed)):
+            raise UserError(
+                f"{resume} says what is flown: leave out cells, --config, --out, --seeds and --first-seed with --resume"
+            )
+        plan = read_plan(resume)
+        check_same_versions(plan)
+        return _fly(resume, plan, where, as_json=as_json)
+    if not cells:
+        raise UserError("no cell is given; `scenarios list` shows the scenarios")
+    plan = make_plan(
+        cells,
+        first_seed=_FIRST_SEED if first_seed is None else first_seed,
+        seeds=_SEEDS if seeds is None else seeds,
+        config=config,
+    )
+    if scheduler is not None:
+        from scenarios.campaigns.dask_pool import check_scheduler
+
+        check_scheduler(scheduler)  # before there is a folder of a campaign that cannot begin
+    return _fly(create_folder(out, plan), plan, where, as_json=as_json)
+
+
+def table_command(folder: FolderArgument, *, as_json: JsonOption = False, markdown: bool = False) -> None:
+    """Print a campaign's summary again."""
+    from scenarios.campaigns.folder import read_landings, read_timing
+
+    say_missing(folder)
+    if markdown and not as_json:
+        from scenarios.campaigns.markdown import write_markdown
+        from scenarios.campaigns.summary import summarize
+
+        write_markdown(summarize(read_landings(folder)), sys.stdout)
+        return
+    _print_summary(read_landings(folder), read_timing(folder), as_json=as_json)
+
+
+def compare_command(
+    first: FolderArgument,
+    second: FolderArgument,
+    *,
+    apart_from: Annotated[
+        str | None,
+        typer.Option("--apart-from", metavar="OPTION", help="Of the cells, in which they differ, such as system."),
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Compare two campaigns on the same cells and seeds."""
+    from scenarios.campaigns.compare import compare_campaigns
+    from scenarios.campaigns.tables import print_comparison
+
+    comparison = compare_campaigns(first, second, apart_from)
+    for folder in (first, second):
+        say_missing(folder)
+    if as_json:
+        _print_json(comparison)
+    else:
+        print_comparison(comparison, sys.stdout)
+
+
+def say_missing(folder: Path) -> None:
+    """Say, beside the results, when a campaign was broken off or still goes on."""
+    from scenarios.campaigns.folder import missing_landings
+
+    text = missing_landings(folder)
+    if text is not None:
+        _note(text)
+
+
+def _fly(folder: Path, plan: "Plan", where: "Where", *, as_json: bool) -> int:
+    from scenarios.campaigns.campaign import fly_campaign
+    from scenarios.campaigns.folder import read_timing
+    from scenarios.campaigns.progress import CampaignProgress
+
+    _note(f"campaign in {folder}")
+    try:
+        with CampaignProgress() as progress:
+            rows = fly_campaign(folder, plan, where, progress.update)
+    except KeyboardInterrupt:
+        _note(f"what is done is kept; go on with: scenarios campaign --resume {folder}")
+        raise
+    _print_summary(rows, read_timing(folder), as_json=as_json)
+    failed = [row for row in rows if row["error"] is not None]
+    for row in failed[:_ERRORS_SHOWN]:
+        _note(f"{row['cell']}, seed {row['seed']}: {row['error']}")
+    if len(failed) > _ERRORS_SHOWN:
+        _note(f"{len(failed) - _ERRORS_SHOWN} further errors; all are in {folder / 'landings.parquet'}")
+    return 1 if failed else 0
+
+
+def _print_summary(rows: Sequence["Row"], times: Sequence["Row"], *, as_json: bool) -> None:
+    from scenarios.campaigns.summary import summarize
+    from scenarios.campaigns.tables import print_summary
+
+    summary = summarize(rows, times)
+    if as_json:
+        _print_json(summary)
+    else:
+        print_summary(summary, sys.stdout)
+
+
+def _print_json(table: Mapping[str, Any]) -> None:
+    sys.stdout.write(json.dumps(table, indent=2, allow_nan=False) + "\n")
+
+
+def _note(text: str) -> None:
+    sys.stderr.write(f"{text}\n")

@@ -1,0 +1,81 @@
+"""The command `faults`."""
+
+import json
+import math
+import sys
+from contextlib import closing
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from link.errors import UserError
+
+if TYPE_CHECKING:
+    from scenarios.faults.trial import Ended
+
+_WIDTHS = {
+    "firmware": 11,
+    "fault": 32,
+    "phase": 11,
+    "ended": 18,
+    "tier": 8,
+    "motors": 8,
+    "tilt_max_deg": 14,
+    "right": 7,
+}
+
+
+def register(app: typer.Typer) -> None:
+    """Add `faults` to `app`."""
+    app.command("faults")(faults_command)
+
+
+def faults_command(
+    *,
+    workers: Annotated[
+        int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
+    ] = None,
+    firmware: Annotated[
+        str | None, typer.Option("--firmware", metavar="px4|ardupilot", help="Only this one [default: both].")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+) -> int:
+    """Let every fault happen in every phase of a landing; exit code 1 when a reaction is not as expected."""
+    from scenarios.faults.matrix import EXPECTED, FIRMWARES
+    from scenarios.faults.trial import fly_case, lost
+    from scenarios.pool import core_count, run_tasks
+
+    if firmware is not None and firmware not in FIRMWARES:
+        raise UserError(f"--firmware is one of {', '.join(FIRMWARES)}, not '{firmware}'")
+    cases = [case for case in EXPECTED if firmware in {None, case.firmware}]
+    with closing(run_tasks(fly_case, cases, workers=workers or core_count(), lost=lost)) as results:
+        found = {ended.case: ended for ended in results}
+    rows = [_row(found[case]) for case in cases]
+    if as_json:
+        sys.stdout.write(json.dumps({"cases": rows}, indent=2) + "\n")
+    else:
+        sys.stdout.write(_line({name: name for name in (*_WIDTHS, "reason")}))
+        sys.stdout.writelines(_line(row | {"right": "yes" if row["right"] else "NO"}) for row in rows)
+        sys.stdout.write(f"{sum(row['right'] for row in rows)} of {len(rows)} are right\n")
+    return 0 if all(row["right"] for row in rows) else 1
+
+
+def _row(ended: "Ended") -> dict[str, Any]:
+    return {
+        "firmware": ended.case.firmware,
+        "fault": ended.case.fault.value,
+        "phase": ended.case.phase.value,
+        "ended": ended.phase.value,
+        "reason": ended.reason,
+        "tier": ended.tier.value,
+        "judged": ended.judged,
+        "motors": "off" if ended.motors_off else "on",
+        "tilt_max_deg": round(math.degrees(ended.tilt_max_rad), 1),
+        "setpoints_when_out": ended.setpoints,
+        "taken_back": ended.taken_back,
+        "right": ended.is_right,
+    }
+
+
+def _line(row: dict[str, Any]) -> str:
+    return "".join(f"{row[name]!s:{width}}" for name, width in _WIDTHS.items()) + f"{row['reason']}\n"

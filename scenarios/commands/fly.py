@@ -1,0 +1,50 @@
+"""`scenarios fly`: a landing with an autopilot's own simulation."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+_NAME = "Scenario whose track, sensors and companion are used; `scenarios list` shows them."
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("fly")(fly_command)
+
+
+def fly_command(
+    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help=_NAME)],
+    *,
+    mavlink: Annotated[
+        str, typer.Option("--mavlink", metavar="DEVICE", help="Where the autopilot meets the companion.")
+    ] = "udpin:127.0.0.1:14540",
+    watch: Annotated[
+        str, typer.Option("--watch", metavar="DEVICE", help="A second link, on which the simulation tells its truth.")
+    ] = "udpin:127.0.0.1:14550",
+    ship: Annotated[
+        float | None,
+        typer.Option("--ship", min=0.1, metavar="M_S", help="Land on ArduPilot's simulated ship at this speed."),
+    ] = None,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Of the vehicle's sensors.")] = 1,
+    record: Annotated[
+        bool, typer.Option("--record", help="Record the companion and the truth, as MCAP, into the run's folder.")
+    ] = False,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the run's folder is made.")] = Path("runs"),
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+) -> int:
+    """Land with PX4's or ArduPilot's own simulation, which runs already; exit code 1 when it does not land.
+
+    The vehicle drives by the place where the simulated drone stands, its pad at the height of the ground.
+    """
+    from scenarios.catalogue import load_scenario
+    from scenarios.commands.run_lines import Reporter
+    from scenarios.firmware.fly import FlyOptions, fly
+    from scenarios.run import run_folder
+
+    scenario = load_scenario(name)
+    folder = run_folder(out, scenario.name)
+    options = FlyOptions(mavlink=mavlink, watch=watch, ship_speed_m_s=ship, seed=seed, folder=folder, record=record)
+    with Reporter(scenario, folder, as_json=as_json) as reporter:
+        outcome = fly(scenario, options, reporter.progress)
+    return reporter.conclude(outcome)

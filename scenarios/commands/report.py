@@ -1,0 +1,87 @@
+"""The commands that show results: `table`, `figures` and `report`, of runs, campaigns and the source report."""
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from scenarios.commands.campaign import JsonOption, say_missing, table_command
+
+_REPORT = "report"
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands to `app`."""
+    app.command("table")(report_or_campaign_table)
+    app.command("figures")(figures_command)
+    app.command("report")(html_command)
+
+
+def report_or_campaign_table(
+    what: Annotated[str, typer.Argument(metavar="report|CAMPAIGN", help="The report, or a campaign's folder.")],
+    *,
+    seeds: Annotated[
+        int, typer.Option("--seeds", min=1, metavar="N", help="Flights of each case of the report.")
+    ] = 100,
+    workers: Annotated[
+        int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
+    ] = None,
+    markdown: Annotated[
+        bool, typer.Option("--markdown", help="Print tables as docs/report.md and docs/benchmark.md have them.")
+    ] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Print the report's outcomes, published against measured; or a campaign's summary again."""
+    if what != _REPORT:
+        table_command(Path(what), as_json=as_json, markdown=markdown)
+        return
+    from scenarios.source_report.table import fly_report, print_report, write_markdown
+
+    table = fly_report(seeds, workers)
+    if as_json:
+        sys.stdout.write(json.dumps(table, indent=2, allow_nan=False) + "\n")
+    elif markdown:
+        write_markdown(table, sys.stdout)
+    else:
+        print_report(table, sys.stdout)
+
+
+def figures_command(
+    what: Annotated[
+        str,
+        typer.Argument(metavar="report|RUN|CAMPAIGN", help="The source report, or the folder of a run or campaign."),
+    ],
+    *,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Where they are written [default: in the folder].")
+    ] = None,
+) -> None:
+    """Draw figures as PNG and SVG: of a run, of a campaign, or the source report's, measured."""
+    from scenarios.reports.figures import draw_figures
+
+    if what == _REPORT:
+        from scenarios.source_report.figures import draw_report
+
+        files = draw_report(out or Path("runs/figures"))
+    else:
+        files = draw_figures(Path(what), out)
+        say_missing(Path(what))
+    for file in files:
+        sys.stdout.write(f"{file}\n")
+
+
+def html_command(
+    what: Annotated[Path, typer.Argument(metavar="RUN|CAMPAIGN", help="Folder of a run or campaign.")],
+    *,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="FILE", help="The page [default: report.html in the folder].")
+    ] = None,
+) -> None:
+    """Write a run or a campaign as one page that opens offline: verdict, figures, tables, configuration, versions."""
+    from scenarios.reports.html_report import write_report
+
+    page = write_report(what, out)
+    say_missing(what)
+    sys.stdout.write(f"{page}\n")

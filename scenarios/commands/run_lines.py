@@ -1,0 +1,110 @@
+"""What a person sees of a run: progress while it lasts, the score at its end."""
+
+import json
+import sys
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from link.messages import LandingStatus
+from link.screen import Screen
+from link.status_rows import Row
+from scenarios.config import Scenario
+from scenarios.outcome import LANDED
+from scenarios.recording import Recording
+from scenarios.run import RunOutcome
+from scenarios.scoring.score import Tier
+
+_PLAIN_EVERY_S = 2.0  # simulated, between lines that are not overwritten
+
+
+class Reporter:
+    """Shows a run: a panel on a terminal, plain lines elsewhere.
+
+    Args:
+        scenario: what is flown.
+        folder: of the run.
+        as_json: show nothing but the result, as JSON.
+    """
+
+    def __init__(self, scenario: Scenario, folder: Path, *, as_json: bool) -> None:
+        self._scenario = scenario
+        self._folder = folder
+        self._as_json = as_json
+        self._screen = Screen(f"{scenario.name} in {folder}") if sys.stdout.isatty() and not as_json else None
+        self._phase = ""
+        self._shown_s = 0.0
+
+    def __enter__(self) -> Self:
+        if not self._as_json:
+            sys.stdout.write(f"{self._scenario.name}: {self._scenario.description}\n")
+        if self._screen is not None:
+            self._screen.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._screen is not None:
+            self._screen.stop()
+
+    def progress(self, recording: Recording, factor: float) -> None:
+        """Show how far the run is."""
+        status = recording.status
+        if self._as_json or status is None:
+            return
+        is_new, self._phase = status.phase != self._phase, status.phase
+        line = _progress_line(recording, status, factor)
+        if self._screen is not None:
+            if is_new:
+                self._screen.write_above(line)
+            self._screen.show(status, _run_rows(recording, status, factor))
+        elif is_new or recording.elapsed_s - self._shown_s >= _PLAIN_EVERY_S:
+            self._shown_s = recording.elapsed_s
+            sys.stdout.write(f"{line}\n")
+            sys.stdout.flush()
+
+    def conclude(self, outcome: RunOutcome) -> int:
+        """Show the result and return the exit code: 0 for a landing, 1 for anything else."""
+        if self._as_json:
+            table = {**outcome.result, "folder": str(self._folder), "timing": outcome.timing}
+            sys.stdout.write(json.dumps(table, indent=2) + "\n")
+        else:
+            sys.stdout.write("\n".join(_score_lines(outcome.result, outcome.timing)) + f"\n{self._folder}\n")
+        return 0 if Tier(outcome.result["tier"]) in LANDED else 1
+
+
+def _progress_line(recording: Recording, status: LandingStatus, factor: float) -> str:
+    parts = [f"{recording.elapsed_s:6.1f} s", f"{factor:5.2f}x", f"{status.phase:16}"]
+    if status.relative_position_enu_m is not None and status.relative_velocity_enu_m_s is not None:
+        x_m, y_m, z_m = status.relative_position_enu_m
+        vx_m_s, vy_m_s, _ = status.relative_velocity_enu_m_s
+        parts.append(f"distance {(x_m**2 + y_m**2) ** 0.5:6.2f} m  height {z_m:5.2f} m")
+        parts.append(f"relative speed {(vx_m_s**2 + vy_m_s**2) ** 0.5:5.2f} m/s")
+    parts.append(status.reason)
+    return "  ".join(parts)
+
+
+def _run_rows(recording: Recording, status: LandingStatus, factor: float) -> list[Row]:
+    return [
+        ("time, pace", f"{recording.elapsed_s:.1f} s, {factor:.2f}x"),
+        ("bad bytes, bad payloads", f"{status.mavlink_bad_bytes}, {status.zenoh_bad_payloads}"),
+    ]
+
+
+def _score_lines(result: dict[str, Any], timing: dict[str, Any]) -> list[str]:
+    lines = ["", f"tier {result['tier']}: {result['reason']}"]
+    shown = (
+        ("horizontal_error_m", "horizontal error", "m", 1.0),
+        ("relative_speed_m_s", "relative speed", "m/s", 1.0),
+        ("sink_rate_m_s", "sink rate", "m/s", 1.0),
+        ("tilt_over_trim_rad", "tilt over trim", "deg", 57.29577951308232),
+        ("time_to_contact_s", "time from the vehicle's passing to contact", "s", 1.0),
+        ("motors_off_s", "motors off after contact", "s", 1.0),
+        ("slid_m", "slid", "m", 1.0),
+    )
+    for key, label, unit, scale in shown:
+        if result.get(key) is not None:
+            lines.append(f"  {label:44}{result[key] * scale:8.3f} {unit}")
+    lines.append(f"  {'real-time factor':44}{timing['real_time_factor']:8.3f}")
+    return lines

@@ -1,0 +1,129 @@
+"""What goes wrong in which phase of a landing, and how that should end with each firmware."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+from companion.phases import Phase
+from scenarios.config import FirmwareName
+from scenarios.scoring.score import Tier
+
+FIRMWARES: tuple[FirmwareName, ...] = ("px4", "ardupilot")
+PHASES = (
+    Phase.TAKEOFF,
+    Phase.WAITING,
+    Phase.CHASE,
+    Phase.ALIGN,
+    Phase.DESCEND,
+    Phase.TOUCHDOWN,
+    Phase.ABORT,
+    Phase.HOLD,
+)
+
+
+class Fault(Enum):
+    """What goes wrong."""
+
+    PILOT = "pilot changes mode"
+    RESTART = "autopilot restarts"
+    SILENT = "link silent for 2 s"
+    LOST = "link silent for good"
+    ORIGIN = "origin moved"
+    ESTIMATE = "estimator reset"
+    PARAMETER = "speed limit lowered"
+    VEHICLE = "vehicle's data stop"
+    COMPANION = "companion killed and restarted"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """A fault in a phase, with a firmware."""
+
+    fault: Fault
+    phase: Phase
+    firmware: FirmwareName = "px4"
+
+
+class End(Enum):
+    """Where the drone truly is in the end."""
+
+    HOVERS = "hovers"  # clear of everything, upright and steady, and has touched nothing
+    LANDED = "landed"  # on the pad, at least as gently as S1 asks, and still armed at worst
+    FALLEN = "fallen"  # its motors stand still: in the air they were stopped by the fault itself
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Expected:
+    """How a flight may end: the companion's phase, and the drone on ground truth."""
+
+    phase: Phase
+    ends: frozenset[End]
+
+    def allows(self, tier: Tier, *, motors_off: bool) -> bool:
+        """Return whether a flight of `tier` that ended with the motors on or off is one of the ends."""
+        return any(_is_end(end, tier, motors_off=motors_off) for end in self.ends)
+
+
+def _is_end(end: End, tier: Tier, *, motors_off: bool) -> bool:
+    match end:
+        case End.HOVERS:
+            return tier is Tier.ABORT and not motors_off
+        case End.LANDED:
+            return tier in {Tier.S1, Tier.S2, Tier.S3}
+        case End.FALLEN:
+            return motors_off
+
+
+def _expected(phase: Phase, *ends: End) -> Expected:
+    return Expected(phase=phase, ends=frozenset(ends))
+
+
+_LANDS = _expected(Phase.SECURED, End.LANDED)
+_HOLDS = _expected(Phase.HOLD, End.HOVERS)
+_WAITS = _expected(Phase.WAITING, End.HOVERS)
+_IS_OUT = _expected(Phase.PILOT, End.HOVERS)
+_IS_OUT_ON_PAD = _expected(Phase.PILOT, End.LANDED)
+_IS_IDLE = _expected(Phase.IDLE, End.HOVERS)
+_IS_IDLE_ON_PAD = _expected(Phase.IDLE, End.LANDED)
+_FALLS = _expected(Phase.PILOT, End.FALLEN)
+
+_BEFORE = (Phase.TAKEOFF, Phase.WAITING)
+_APPROACH = (Phase.CHASE, Phase.ALIGN, Phase.DESCEND)
+_BROKEN_OFF = (Phase.ABORT, Phase.HOLD)  # by an operator, so that nothing is tried again
+_IN_THE_AIR = (*_BEFORE, *_APPROACH, *_BROKEN_OFF)
+_ON_THE_PAD = (Phase.TOUCHDOWN,)
+
+_Rows = dict[Case, Expected]
+
+
+def _rows(firmware: FirmwareName, fault: Fault, *parts: tuple[tuple[Phase, ...], Expected]) -> _Rows:
+    return {
+        Case(fault=fault, phase=phase, firmware=firmware): expected for phases, expected in parts for phase in phases
+    }
+
+
+def _matrix(firmware: FirmwareName, silent: tuple[tuple[tuple[Phase, ...], Expected], ...]) -> _Rows:
+    """Return all rows of a firmware; only a short silence ends otherwise with the one than with the other."""
+    goes_on = (((*_BEFORE, *_APPROACH, *_ON_THE_PAD), _LANDS), (_BROKEN_OFF, _HOLDS))
+    breaks_off = ((_BEFORE, _WAITS), (_APPROACH, _HOLDS), (_ON_THE_PAD, _LANDS), (_BROKEN_OFF, _HOLDS))
+    lets_go = ((_IN_THE_AIR, _IS_OUT), (_ON_THE_PAD, _IS_OUT_ON_PAD))
+    return {
+        **_rows(firmware, Fault.PILOT, *lets_go),
+        **_rows(firmware, Fault.RESTART, (_IN_THE_AIR, _FALLS), (_ON_THE_PAD, _LANDS)),
+        **_rows(firmware, Fault.SILENT, *silent),
+        **_rows(firmware, Fault.LOST, *lets_go),
+        **_rows(firmware, Fault.ORIGIN, *goes_on),
+        **_rows(firmware, Fault.ESTIMATE, *goes_on),
+        **_rows(firmware, Fault.PARAMETER, *breaks_off),
+        **_rows(firmware, Fault.VEHICLE, *breaks_off),
+        **_rows(firmware, Fault.COMPANION, (_IN_THE_AIR, _IS_IDLE), (_ON_THE_PAD, _IS_IDLE_ON_PAD)),
+    }
+
+
+# PX4 holds the last setpoint and is set to wait for 3 s. ArduCopter carries it on, so that it is to wait for 1 s only,
+# and 2 s of silence are as good as the end of the link.
+EXPECTED: Mapping[Case, Expected] = {
+    **_matrix("px4", (((*_BEFORE, *_APPROACH, *_ON_THE_PAD), _LANDS), (_BROKEN_OFF, _HOLDS))),
+    **_matrix("ardupilot", ((_IN_THE_AIR, _IS_OUT), (_ON_THE_PAD, _IS_OUT_ON_PAD))),
+}
+"""How each case should end."""

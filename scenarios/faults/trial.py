@@ -1,0 +1,197 @@
+"""One case of the fault matrix, flown in lockstep until it is over.
+
+Judged on ground truth and by what goes over the link, never by what the companion believes.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import acos, hypot
+
+from companion.phases import Phase
+from link.mavlink.dialect import Message, mavlink
+from scenarios.catalogue import load_scenario
+from scenarios.config import FirmwareName, Scenario
+from scenarios.faults.flight import FaultFlight
+from scenarios.faults.matrix import EXPECTED, Case, Fault
+from scenarios.outcome import scored
+from scenarios.scoring.score import Tier
+
+SCENARIO = "straight_5"
+SEED = 1
+_PARAMETERS: Mapping[FirmwareName, Mapping[str, float]] = {"px4": {}, "ardupilot": {"GUID_TIMEOUT": 1.0}}
+"""Beside those of the scenario, as `companion check` advises them."""
+_PILOTS_MODES: Mapping[FirmwareName, float] = {"px4": 3.0, "ardupilot": 17.0}  # POSCTL, BRAKE: neither needs sticks
+_SPEED_LIMITS: Mapping[FirmwareName, tuple[bytes, float]] = {  # less than the vehicle's 5 m/s
+    "px4": (b"MPC_XY_VEL_MAX", 4.0),
+    "ardupilot": (b"WPNAV_SPEED", 400.0),
+}
+_ORIGIN_MOVED_ENU_M = (30.0, -20.0, 4.0)
+_ESTIMATE_RESET_ENU_M = (3.0, -2.0, 1.0)
+_SILENT_S = 2.0
+_AIRBORNE_M = 2.0  # of the drone above the road: a take-off that is under way, high enough to hover there
+_DELAY_S: Mapping[Phase, float] = {Phase.TAKEOFF: 0.0, Phase.TOUCHDOWN: 0.0}  # the latter: before the motors stop
+_SHORT_S = 0.3
+_LIMIT_S = 25.0
+_DECIDED_S = 4.0  # a phase that is kept for so long is the one it ends in; the autopilot's time-out is 3 s at most
+_AT_REST_S = 1.5
+_AT_REST_M_S = 0.3
+_TO_REST_S = 15.0
+_MOTORS_OFF_RAD_S = 50.0
+_TAKEN_S = 0.2  # for the companion to hear that it is out
+_OUT = frozenset({Phase.PILOT, Phase.IDLE})
+_LASTING = _OUT | {Phase.SECURED, Phase.HOLD}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ended:
+    """How a flight did end.
+
+    Attributes:
+        case: what went wrong.
+        phase: of the companion, in the end.
+        reason: of it, as it was told.
+        tier: on ground truth.
+        judged: why.
+        motors_off: in the end, on ground truth.
+        tilt_max_rad: largest tilt of the drone since the fault.
+        setpoints: that were sent although the companion was out.
+        taken_back: the autopilot followed setpoints again although the companion was out.
+    """
+
+    case: Case
+    phase: Phase
+    reason: str
+    tier: Tier
+    judged: str
+    motors_off: bool
+    tilt_max_rad: float
+    setpoints: int
+    taken_back: bool
+
+    @property
+    def is_right(self) -> bool:
+        """Whether it is what is expected, and nobody was fought with."""
+        expected = EXPECTED[self.case]
+        ended_right = self.phase is expected.phase and expected.allows(self.tier, motors_off=self.motors_off)
+        return ended_right and not (self.setpoints or self.taken_back)
+
+
+def scenario_of(firmware: FirmwareName) -> Scenario:
+    """Return what is flown with `firmware`."""
+    scenario = load_scenario(SCENARIO)
+    parameters = {**scenario.system.parameters.get(firmware, {}), **_PARAMETERS[firmware]}
+    system = scenario.system.model_copy(update={"parameters": {**scenario.system.parameters, firmware: parameters}})
+    return scenario.model_copy(update={"firmware": firmware, "system": system})
+
+
+def fly_case(case: Case) -> Ended:
+    """Fly until the case is over."""
+    flight = FaultFlight(scenario_of(case.firmware), SEED)
+    flight.fly_to(case.phase)
+    return fly_on(flight, case)
+
+
+def fly_on(flight: FaultFlight, case: Case) -> Ended:
+    """Let the case's fault happen in a flight that has just come to its phase, and fly until it is over."""
+    while case.phase is Phase.TAKEOFF and flight.height_m < _AIRBORNE_M:
+        flight.step()
+    flight.fly(_DELAY_S.get(case.phase, _SHORT_S))
+    began = len(flight.recording.drone)
+    _INJECT[case.fault](flight)
+    setpoints, taken_back = _fly_until_decided(flight)
+    _fly_to_rest(flight)
+    score = scored(flight.scenario, SEED, flight.recording)
+    return Ended(
+        case=case,
+        phase=flight.phase,
+        reason=flight.recording.statuses[-1].reason,
+        tier=score.tier,
+        judged=score.reason,
+        motors_off=_are_motors_off(flight),
+        tilt_max_rad=max(acos(_upright(one.orientation_wxyz)) for one in flight.recording.drone[began:]),
+        setpoints=setpoints,
+        taken_back=taken_back,
+    )
+
+
+def lost(case: Case, why: str) -> Ended:
+    """Return what stands for a case whose process ended."""
+    return Ended(
+        case=case,
+        phase=Phase.IDLE,
+        reason=why,
+        tier=Tier.UNSAFE,
+        judged=why,
+        motors_off=False,
+        tilt_max_rad=0.0,
+        setpoints=0,
+        taken_back=True,
+    )
+
+
+def _fly_until_decided(flight: FaultFlight) -> tuple[int, bool]:
+    """Go on until a lasting phase has been kept; return the setpoints sent and whether they were flown when out."""
+    phase, since_s, sent = flight.phase, flight.recording.elapsed_s, flight.setpoints
+    end_s, has_left, taken_back = since_s + _LIMIT_S, False, False
+    while (now_s := flight.recording.elapsed_s) < end_s:
+        flight.step()
+        if flight.phase is not phase:
+            phase, since_s, has_left = flight.phase, now_s, False
+        if phase not in _OUT or now_s - since_s < _TAKEN_S:
+            sent = flight.setpoints
+        else:
+            has_left = has_left or not flight.follows_setpoints
+            taken_back = taken_back or (has_left and flight.follows_setpoints)
+        if phase in _LASTING and now_s - since_s > _DECIDED_S:
+            break
+    return flight.setpoints - sent, taken_back
+
+
+def _fly_to_rest(flight: FaultFlight) -> None:
+    """Go on until the drone hovers or its motors stand still, for what the autopilot does by itself takes its time."""
+    now_s = flight.recording.elapsed_s
+    end_s, moved_s = now_s + _TO_REST_S, now_s
+    while flight.recording.elapsed_s < end_s and flight.recording.elapsed_s - moved_s < _AT_REST_S:
+        flight.step()
+        if hypot(*flight.recording.drone[-1].velocity_flu_m_s) > _AT_REST_M_S and not _are_motors_off(flight):
+            moved_s = flight.recording.elapsed_s
+
+
+def _are_motors_off(flight: FaultFlight) -> bool:
+    return max(flight.recording.rotors[-1].speed_rad_s) < _MOTORS_OFF_RAD_S
+
+
+def _upright(q: tuple[float, float, float, float]) -> float:
+    """Return the cosine of the tilt of an orientation."""
+    _, x, y, _ = q
+    return max(-1.0, min(1.0, 1.0 - 2.0 * (x * x + y * y)))
+
+
+def _command(number: int, *parameters: float) -> Message:
+    return mavlink.MAVLink_command_long_message(1, 1, number, 0, *(*parameters, *[0.0] * (7 - len(parameters))))
+
+
+def _change_mode(flight: FaultFlight) -> None:
+    flight.tell(_command(mavlink.MAV_CMD_DO_SET_MODE, 1.0, _PILOTS_MODES[flight.scenario.firmware]))
+
+
+def _lower_speed_limit(flight: FaultFlight) -> None:
+    name, value = _SPEED_LIMITS[flight.scenario.firmware]
+    flight.tell(mavlink.MAVLink_param_set_message(1, 1, name, value, mavlink.MAV_PARAM_TYPE_REAL32))
+
+
+def _silence_vehicle(flight: FaultFlight) -> None:
+    flight.vehicle_is_silent = True
+
+
+_INJECT: Mapping[Fault, Callable[[FaultFlight], None]] = {
+    Fault.PILOT: _change_mode,
+    Fault.RESTART: lambda flight: flight.simulation.autopilot.restart(),
+    Fault.SILENT: lambda flight: flight.cut_link(_SILENT_S),
+    Fault.LOST: lambda flight: flight.cut_link(),
+    Fault.ORIGIN: lambda flight: flight.set_origin(_ORIGIN_MOVED_ENU_M),
+    Fault.ESTIMATE: lambda flight: flight.simulation.autopilot.reset_estimator(_ESTIMATE_RESET_ENU_M),
+    Fault.PARAMETER: _lower_speed_limit,
+    Fault.VEHICLE: _silence_vehicle,
+    Fault.COMPANION: lambda flight: flight.restart_companion(),
+}

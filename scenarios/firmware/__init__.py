@@ -1,0 +1,1 @@
+"""Landings with a firmware's own simulation."""

@@ -1,0 +1,1 @@
+"""The recordings of runs: written while they last, and replayed."""

@@ -1,0 +1,200 @@
+"""Replay: what a recorded companion was given, given to one of now, and what both made of it compared."""
+
+import math
+import tomllib
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from companion.build import build_node
+from companion.config import CompanionConfig
+from companion.node import CompanionNode
+from companion.recording.folder import CONFIG_NAME, STEM
+from companion.recording.records import InputKind, InputRecord
+from companion.recording.sink import CompanionSink
+from link import json_payloads
+from link.errors import UserError
+from link.keys import Keys
+from link.mcap_reader import RecordingHead, read_head, read_messages, recordings
+from link.messages import Command, PadGeometry
+from link.recorder import DirectRecorder
+from link.ros_records import RosMessage, fields_of
+from link.toml_config import validated
+from scenarios.recordings.comparison import Comparison, FieldDifference
+
+OUTPUTS = ("own", "step", "setpoint", "estimate", "forecast", "plan")
+"""The topics that are compared; what else is recorded goes in, or is of the clocks and links of its time."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Replay:
+    """What came of a replay.
+
+    Attributes:
+        steps: that were recorded.
+        fields: values compared.
+        differences: largest first; empty when all are equal.
+        missing_inputs: that the recording has lost, so that no replay of it can be exact.
+    """
+
+    steps: int
+    fields: int
+    differences: tuple[FieldDifference, ...]
+    missing_inputs: int
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the result as a table of plain values; `largest` is null where it is no number."""
+        rows = [
+            {**asdict(one), "largest": one.largest if math.isfinite(one.largest) else None} for one in self.differences
+        ]
+        return {**asdict(self), "equal": not self.differences, "differences": rows}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Flight:
+    """A companion's recording, read: its inputs in order, and its output messages by topic."""
+
+    head: RecordingHead
+    keys: Keys
+    inputs: tuple[InputRecord, ...]
+    outputs: dict[str, list[RosMessage]]
+
+    @property
+    def config(self) -> CompanionConfig:
+        """The companion's configuration."""
+        table = tomllib.loads(self.head.attachments[CONFIG_NAME])
+        return validated(CompanionConfig, table, source=f"{CONFIG_NAME} of the recording")
+
+
+class _MessageLists:
+    """A store of messages in memory, by topic."""
+
+    def __init__(self) -> None:
+        self.by_topic: dict[str, list[RosMessage]] = defaultdict(list)
+
+    def add(self, message: RosMessage, _: int) -> None:
+        """Keep a message."""
+        self.by_topic[message.topic].append(message)
+
+    def close(self) -> None:
+        """Do nothing: it is complete at any time."""
+
+
+def read_flights(folder: Path) -> Iterator[tuple[str, Flight]]:
+    """Return the companion's recordings in `folder` with their names: one for each time that it was started.
+
+    Raises:
+        UserError: there is none.
+    """
+    found = recordings(folder, STEM)
+    for files in found:
+        yield folder.name if len(found) == 1 else f"{folder.name}/{files[0].name}", _read(files)
+
+
+def _read(files: list[Path]) -> Flight:
+    head = read_head(files[0])
+    if CONFIG_NAME not in head.attachments:
+        raise UserError(f"{files[0]}: holds no configuration; it is no recording of a companion's")
+    keys = Keys(head.metadata["namespace"], head.metadata["vehicle"], head.metadata["drone"])
+    wanted = {keys.record(name) for name in OUTPUTS}
+    outputs: dict[str, list[RosMessage]] = defaultdict(list)
+    inputs: list[InputRecord] = []
+    for recorded in read_messages(files):
+        message = recorded.message
+        if message.topic in wanted:
+            outputs[message.topic].append(message)
+        elif message.topic == keys.record("input"):
+            inputs.append(_input(message))
+    return Flight(head=head, keys=keys, inputs=tuple(inputs), outputs=dict(outputs))
+
+
+def replay(flight: Flight, config: CompanionConfig | None = None) -> Replay:
+    """Give the inputs of `flight` to a companion of now and compare.
+
+    Args:
+        flight: as recorded.
+        config: in place of the recorded one.
+    """
+    flown = outputs_of(flight, flight.config if config is None else config)
+    comparison = Comparison()
+    for name in OUTPUTS:
+        topic = flight.keys.record(name)
+        comparison.compare(name, flight.outputs.get(topic, []), flown.get(topic, []))
+    sequences = [record.sequence for record in flight.inputs]
+    expected = sequences[-1] + 1 if sequences else 0
+    return Replay(
+        steps=len(flight.outputs.get(flight.keys.record("step"), [])),
+        fields=comparison.fields,
+        differences=comparison.differences(),
+        missing_inputs=expected - len(sequences),
+    )
+
+
+def outputs_of(flight: Flight, config: CompanionConfig) -> dict[str, list[RosMessage]]:
+    """Return the messages that a companion of now records when it gets the inputs of `flight`."""
+    store = _MessageLists()
+    recorder = DirectRecorder(CompanionSink(store, flight.keys))
+    node = build_node(
+        config,
+        flight.keys,
+        system_id=int(flight.head.metadata["system_id"]),
+        dry_run=flight.head.metadata["dry_run"] == "true",
+        recorder=recorder,
+    )
+    for record in flight.inputs:
+        give(node, record)
+    recorder.close()
+    return store.by_topic
+
+
+def give(node: CompanionNode, record: InputRecord) -> None:
+    """Give a recorded input to a node, and take what a poll brings, as the loop would."""
+    match record.kind:
+        case InputKind.MAVLINK:
+            node.receive_mavlink(record.data, record.local_ns)
+        case InputKind.SAMPLE:
+            node.receive_sample(record.key, record.data)
+        case InputKind.PAD:
+            node.receive_pad(json_payloads.decode(PadGeometry, record.data))
+        case InputKind.ALIVE:
+            node.receive_liveliness(alive=bool(record.data[0]))
+        case InputKind.COMMAND:
+            node.request(Command(record.data.decode()))
+        case InputKind.LEAVE:
+            node.leave()
+        case InputKind.POLL:
+            node.poll(record.local_ns)
+            node.take_frames()
+            node.take_publications()
+            node.take_replies()
+            node.autopilot.take_texts()
+
+
+def _input(message: RosMessage) -> InputRecord:
+    fields = fields_of(message.payload, message.type_name)
+    return InputRecord(
+        sequence=int(fields["sequence"]),
+        kind=InputKind(fields["kind"]),
+        local_ns=int(fields["local_ns"]),
+        key=fields["key"],
+        data=bytes(fields["data"]),
+    )
+
+
+def text_lines(results: Iterable[tuple[str, Replay]], shown: int = 20) -> list[str]:
+    """Return the results as lines for people."""
+    lines: list[str] = []
+    for name, result in results:
+        verdict = "equal" if not result.differences else f"{len(result.differences)} fields differ"
+        lines.append(f"{name}: {result.steps} steps, {result.fields} values: {verdict}")
+        if result.missing_inputs:
+            lines.append(
+                f"  {result.missing_inputs} inputs are missing in the recording: it cannot be replayed exactly"
+            )
+        lines += [
+            f"  {one.field:44}{one.largest:12.4g}  in {one.count} messages, first in {one.first}"
+            for one in result.differences[:shown]
+        ]
+    return lines

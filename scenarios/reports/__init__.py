@@ -1,0 +1,1 @@
+"""Runs and campaigns as figures and pages."""

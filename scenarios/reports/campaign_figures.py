@@ -1,0 +1,80 @@
+"""The figures of a campaign: where its landings touched down, and how the errors add up, by cell."""
+
+import math
+import textwrap
+from collections.abc import Sequence
+from itertools import cycle
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+
+from scenarios.campaigns.folder import Plan
+from scenarios.campaigns.landing_task import Row
+from scenarios.reports.figure_files import DARK, LIGHT, MIDDLE, STYLES
+from scenarios.reports.run_figures import draw_pad
+
+_TITLE_WIDTH = 34  # characters over a panel
+_COLUMNS_MAX = 3
+_S1_M, _S2_M = 0.5, 0.3  # horizontal errors that the tiers allow, as scenarios.scoring.score has them
+
+
+def campaign_figures(plan: Plan, rows: Sequence[Row]) -> dict[str, Figure]:
+    """Return the figures by the names of their files."""
+    with mpl.rc_context(STYLES):
+        return {"touchdowns": _touchdowns(plan, rows), "errors": _errors(plan, rows)}
+
+
+def _touchdowns(plan: Plan, rows: Sequence[Row]) -> Figure:
+    """The contacts on the pad's outline, one panel a cell."""
+    columns = min(len(plan.cells), _COLUMNS_MAX)
+    lines = math.ceil(len(plan.cells) / columns)
+    figure = Figure(figsize=(0.6 + 3.6 * columns, 0.3 + 3.8 * lines), layout="constrained")
+    grid = figure.subplots(lines, columns, squeeze=False)
+    for axes in grid.flat[len(plan.cells) :]:
+        axes.set_visible(False)
+    for axes, cell in zip(grid.flat, plan.cells, strict=False):
+        draw_pad(axes, plan.scenarios[cell].vehicle.pad_size_m)
+        touched = [row for row in rows if row["cell"] == cell and row.get("contact_forward_m") is not None]
+        for secured, marker in ((True, "o"), (False, "x")):
+            chosen = [row for row in touched if (row["tier"] == "S3") is secured]
+            if chosen:
+                axes.plot(
+                    [-row["contact_left_m"] for row in chosen],
+                    [row["contact_forward_m"] for row in chosen],
+                    color=DARK,
+                    marker=marker,
+                    markersize=4,
+                    alpha=0.6,
+                    linestyle="none",
+                    label=f"{'S3' if secured else 'other'} ({len(chosen)})",
+                )
+        if touched:
+            axes.legend(loc="upper right", fontsize=8)
+        axes.set_title(textwrap.fill(cell.replace("+", " +"), _TITLE_WIDTH), fontsize=9)
+    return figure
+
+
+def _errors(plan: Plan, rows: Sequence[Row]) -> Figure:
+    """Share of the landings whose contact is within a distance of the pad's centre."""
+    figure = Figure(figsize=(7.5, 5.0), layout="constrained")
+    axes = figure.subplots()
+    styles = cycle([(DARK, "-"), (DARK, "--"), (MIDDLE, "-"), (DARK, ":"), (MIDDLE, "--"), (LIGHT, "-"), (DARK, "-.")])
+    reach_m = _S1_M
+    for cell, (grey, dashes) in zip(plan.cells, styles, strict=False):
+        flown = [row for row in rows if row["cell"] == cell]
+        errors_m = np.sort([row["horizontal_error_m"] for row in flown if row.get("horizontal_error_m") is not None])
+        share = np.arange(1, len(errors_m) + 1) / max(len(flown), 1)
+        if len(errors_m):
+            reach_m = max(reach_m, float(errors_m[-1]))
+            axes.step(
+                [0.0, *errors_m, 10.0], [0.0, *share, share[-1]], where="post", color=grey, linestyle=dashes, label=cell
+            )
+    for limit_m, tier in ((_S2_M, "S2"), (_S1_M, "S1")):
+        axes.axvline(limit_m, color=LIGHT, linewidth=0.8)
+        axes.text(limit_m, 1.01, tier, ha="center", va="bottom", fontsize=8)
+    axes.set(xlim=(0.0, 1.05 * min(reach_m, 3.0)), ylim=(0.0, 1.0))
+    axes.set(xlabel="horizontal error at contact [m]", ylabel="share of landings flown")
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="lower right")
+    return figure

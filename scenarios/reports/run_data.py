@@ -1,0 +1,178 @@
+"""A recorded run as arrays for figures: truth, what the companion believed, its phases; seconds from the start.
+
+Frames: W world ENU; V the vehicle's body. Where a companion's recording has no truth beside it, there are no figures.
+"""
+
+import json
+import tomllib
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from companion.config import CompanionConfig
+from companion.recording.folder import STEM as COMPANION
+from link.errors import UserError
+from link.keys import Keys
+from link.local_frame import LocalFrame, Projection
+from link.mcap_reader import RecordingHead, read_head, read_messages, recording_files
+from link.ros_records import fields_of
+from link.toml_config import validated
+from link.units import NS_PER_S
+from scenarios.config import Scenario
+from scenarios.recordings.truth_file import STEM as TRUTH
+from scenarios.recordings.truth_file import read_truth
+from scenarios.scoring.truth_log import TruthLog, truth_log
+from scenarios.vehicle_node import datum_of
+from sim_autopilot.local_places import Origin, local_from_world
+
+Array = NDArray[np.float64]
+Fields = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PhaseSpan:
+    """A phase and when it lasted."""
+
+    phase: str
+    reason: str
+    from_s: float
+    to_s: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class EstimateTrack:
+    """The companion's estimate of the antenna against the truth at the same instants.
+
+    Attributes:
+        t_s: (n,).
+        error_m: (n, 3) in the local frame that the drone flies in.
+        std_m: (n, 3).
+    """
+
+    t_s: Array
+    error_m: Array
+    std_m: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RunData:
+    """A run.
+
+    Attributes:
+        name: of its folder.
+        result: as `result.json` has it.
+        scenario: that was flown.
+        config: of the companion.
+        head: of the truth's recording, with the versions.
+        log: the truth.
+        t_s: (n,) its times.
+        vehicle_velocity_enu_m_s: (n, 3).
+        antenna_enu_m: (n, 3) true position of the vehicle's antenna.
+        phases: in their order.
+        estimate: None when the companion estimated nothing.
+    """
+
+    name: str
+    result: dict[str, Any]
+    scenario: Scenario
+    config: CompanionConfig
+    head: RecordingHead
+    log: TruthLog
+    t_s: Array
+    vehicle_velocity_enu_m_s: Array
+    antenna_enu_m: Array
+    phases: tuple[PhaseSpan, ...]
+    estimate: EstimateTrack | None
+
+
+def read_run(folder: Path) -> RunData:
+    """Return the run in `folder`.
+
+    Raises:
+        UserError: it is not one, or was not recorded.
+    """
+    result_path = folder / "result.json"
+    try:
+        result = json.loads(result_path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        raise UserError(f"{result_path}: cannot be read; is this the folder of a run that ended?") from None
+    truth_head = read_head(recording_files(folder, TRUTH)[0])
+    head = read_head(recording_files(folder, COMPANION)[0])
+    scenario = validated(Scenario, tomllib.loads(truth_head.attachments["scenario.toml"]), source="scenario.toml")
+    config = validated(CompanionConfig, tomllib.loads(head.attachments["companion.toml"]), source="companion.toml")
+    keys = Keys(head.metadata["namespace"], head.metadata["vehicle"], head.metadata["drone"])
+    truth = read_truth(folder, keys)
+    log = truth_log(truth.drone, truth.vehicle, truth.rotors)
+    start_ns = int(log.t_ns[0])
+    t_s = (log.t_ns - start_ns) / NS_PER_S
+    antenna = log.vehicle_position_enu_m + _turned(log, scenario.vehicle.antenna_flu_m)
+    steps, estimates = _beliefs(folder, keys)
+    return RunData(
+        name=folder.resolve().name,
+        result=result,
+        scenario=scenario,
+        config=config,
+        head=truth_head,
+        log=log,
+        t_s=t_s,
+        vehicle_velocity_enu_m_s=np.gradient(log.vehicle_position_enu_m, t_s, axis=0),
+        antenna_enu_m=antenna,
+        phases=_phases(steps, start_ns, float(t_s[-1])),
+        estimate=_estimate(estimates, start_ns, t_s, _in_local_frame(antenna, scenario)),
+    )
+
+
+def _turned(log: TruthLog, vector_flu: tuple[float, float, float]) -> Array:
+    """Return a vector of V in W, (n, 3): R_WV is R_WB times the inverse of R_VB."""
+    rotation_wv = log.rotation @ np.swapaxes(log.rotation_vb, 1, 2)
+    return np.asarray(rotation_wv @ np.array(vector_flu))
+
+
+def _in_local_frame(positions_enu_m: Array, scenario: Scenario) -> Array:
+    """Return places in W (n, 3) as the scenario's firmware lays them out about the datum, its origin at boot."""
+    datum = datum_of(scenario.datum)
+    origin = Origin(world=datum, frame=LocalFrame(origin=datum, projection=Projection(scenario.firmware)))
+    return np.array([local_from_world(origin, (x, y, z)) for x, y, z in positions_enu_m.tolist()])
+
+
+def _beliefs(folder: Path, keys: Keys) -> tuple[list[Fields], list[Fields]]:
+    """Return the fields of the steps and of the estimates."""
+    found: dict[str, list[Fields]] = {keys.record("step"): [], keys.record("estimate"): []}
+    for recorded in read_messages(recording_files(folder, COMPANION)):
+        message = recorded.message
+        if message.topic in found:
+            found[message.topic].append(fields_of(message.payload, message.type_name))
+    return found[keys.record("step")], found[keys.record("estimate")]
+
+
+def _time_s(fields: Fields, start_ns: int) -> float:
+    t_ns = int(fields["header.stamp.sec"]) * 1_000_000_000 + int(fields["header.stamp.nanosec"])
+    return (t_ns - start_ns) / NS_PER_S
+
+
+def _phases(steps: list[Fields], start_ns: int, end_s: float) -> tuple[PhaseSpan, ...]:
+    changes: list[tuple[float, str, str]] = []
+    for fields in steps:
+        t_s = _time_s(fields, start_ns)
+        if t_s >= 0.0 and (not changes or changes[-1][1] != fields["phase"]):
+            changes.append((t_s, fields["phase"], fields["reason"]))
+    closed = [*changes, (end_s, "", "")]
+    return tuple(
+        PhaseSpan(phase=phase, reason=reason, from_s=from_s, to_s=to_s)
+        for (from_s, phase, reason), (to_s, _, _) in pairwise(closed)
+    )
+
+
+def _estimate(estimates: list[Fields], start_ns: int, t_s: Array, antenna: Array) -> EstimateTrack | None:
+    if not estimates:
+        return None
+    times_s = np.array([_time_s(fields, start_ns) for fields in estimates])
+    inside = (times_s >= 0.0) & (times_s <= t_s[-1])
+    position = np.array([fields["position_m"] for fields in estimates])
+    true = np.stack([np.interp(times_s, t_s, column) for column in antenna.T], axis=1)
+    variance = np.array([np.diag(fields["covariance"].reshape(9, 9))[:3] for fields in estimates])
+    return EstimateTrack(t_s=times_s[inside], error_m=(position - true)[inside], std_m=np.sqrt(variance[inside]))

@@ -1,0 +1,1 @@
+"""What a landing was worth, from ground truth alone."""

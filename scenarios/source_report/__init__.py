@@ -1,0 +1,1 @@
+"""The source report's cases flown and shown as it did."""

@@ -1,0 +1,1 @@
+"""What vehicles drive: roads, the speed along them, and the tracks made of both."""

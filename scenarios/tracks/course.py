@@ -1,0 +1,50 @@
+"""What a vehicle drives: the road, the speed along it, its roughness and what the vehicle reacts to."""
+
+import math
+from dataclasses import dataclass
+
+from scenarios.tracks.profiles import Profile
+from scenarios.tracks.roads import Road
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wave:
+    """A sine along the road."""
+
+    amplitude: float
+    wavelength_m: float
+    phase_rad: float
+
+    def at(self, s_m: float) -> tuple[float, float, float]:
+        """Return the value at `s_m` and its first two derivatives by arc length."""
+        number_per_m = 2.0 * math.pi / self.wavelength_m
+        angle_rad = number_per_m * s_m + self.phase_rad
+        value = self.amplitude * math.sin(angle_rad)
+        return value, number_per_m * self.amplitude * math.cos(angle_rad), -(number_per_m**2) * value
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Roughness:
+    """How the body heaves (m), rolls and pitches (rad) along the road."""
+
+    heave: Wave
+    roll: Wave
+    pitch: Wave
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BrakeEvent:
+    """Emergency braking when the drone is `height_above_roof_m` or less above the roof."""
+
+    deceleration_m_s2: float
+    height_above_roof_m: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Course:
+    """What a vehicle drives; `brake` and `roughness` are None where the track has none."""
+
+    road: Road
+    profile: Profile
+    roughness: Roughness | None = None
+    brake: BrakeEvent | None = None

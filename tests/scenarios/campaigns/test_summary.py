@@ -1,0 +1,119 @@
+import json
+from io import StringIO
+from typing import Any
+
+import numpy as np
+import pytest
+
+from scenarios.campaigns.landing_task import Row, Task, failed
+from scenarios.campaigns.summary import MEASURES, summarize
+from scenarios.campaigns.tables import print_summary
+from scenarios.scoring.score import Tier
+
+
+def row(seed: int, tier: str = "S3", cell: str = "straight_5", **values: Any) -> Row:
+    contact = dict.fromkeys(MEASURES, 0.1 * seed) if tier in {"S1", "S2", "S3"} else {}
+    base = {"cell": cell, "seed": seed, "error": None, "tier": tier, "s2_quality": False, "aborts": 0, "retries": 0}
+    return base | contact | values
+
+
+ROWS = [
+    row(1, s2_quality=True),
+    row(2, "S3", aborts=2, retries=2),
+    row(3, "S2", s2_quality=True),
+    row(4, "S1"),
+    row(5, "abort", aborts=4, retries=3),
+    row(6, "unsafe"),
+    row(1, cell="circle_5"),
+]
+
+
+def cell(name: str, rows: list[Row] = ROWS) -> dict[str, Any]:
+    return next(one for one in summarize(rows)["cells"] if one["cell"] == name)
+
+
+def test_summary_counts_each_landing_for_its_best_tier() -> None:
+    assert cell("straight_5")["tiers"] == {"S3": 2, "S2": 1, "S1": 1, "S0": 0, "abort": 1, "unsafe": 1}
+    assert cell("straight_5")["seeds"] == 6
+
+
+def test_summary_begins_with_what_scripts_rely_on() -> None:
+    assert list(cell("straight_5"))[: 3 + len(MEASURES)] == ["cell", "seeds", "tiers", *MEASURES]
+    assert list(cell("straight_5")["tiers"]) == [tier.value for tier in Tier]
+    assert all(list(cell("straight_5")[name]) == ["median", "p95"] for name in MEASURES)
+
+
+def test_summary_counts_secured_landings_for_s2_only_by_their_contact() -> None:
+    assert cell("straight_5")["s1_or_better"]["share"] == pytest.approx(4 / 6, abs=1e-6)
+    assert cell("straight_5")["s2_quality"]["share"] == pytest.approx(2 / 6, abs=1e-6)
+    assert cell("straight_5")["unsafe"]["share"] == pytest.approx(1 / 6, abs=1e-6)
+
+
+def test_summary_takes_its_measures_over_contacts_only() -> None:
+    errors_m = [0.1, 0.2, 0.3, 0.4]
+    expected = {"median": pytest.approx(np.median(errors_m)), "p95": pytest.approx(np.percentile(errors_m, 95))}
+    assert cell("straight_5")["horizontal_error_m"] == expected
+    assert cell("straight_5")["contacts"] == 4
+
+
+def test_summary_without_contacts_has_no_measures() -> None:
+    assert cell("static", [row(1, "abort", "static")])["sink_rate_m_s"] == {"median": None, "p95": None}
+
+
+def test_summary_adds_up_wave_offs() -> None:
+    assert (cell("straight_5")["aborts"], cell("straight_5")["retries"]) == (6, 5)
+
+
+def test_error_counts_as_a_landing_that_failed() -> None:
+    rows = [row(1), failed(Task(cell="straight_5", seed=2), "ValueError: wrong")]
+    found = cell("straight_5", rows)
+    assert (found["seeds"], found["errors"], sum(found["tiers"].values())) == (2, 1, 1)
+    assert found["s1_or_better"]["share"] == 0.5
+
+
+def test_summary_does_not_depend_on_the_order_of_rows() -> None:
+    assert json.dumps(summarize(ROWS)) == json.dumps(summarize(ROWS[::-1]))
+
+
+def test_table_outside_a_terminal_is_plain_and_one_line_a_cell() -> None:
+    out = StringIO()
+    print_summary(summarize([*ROWS, row(7, cell="straight_5+sensors=nominal+wind=moderate+link=nominal")]), out)
+    lines = out.getvalue().splitlines()
+    assert "\x1b" not in out.getvalue()
+    assert out.getvalue().isascii()
+    assert sum(line.startswith("straight_5 ") for line in lines) == 4
+    assert sum(line.startswith("straight_5+sensors=nominal+wind=moderate+link=nominal ") for line in lines) == 4
+    assert "errors" not in out.getvalue()
+    assert "S1 or better [%]" in out.getvalue()
+    assert "66.7 (30.0 to 90.3)" in out.getvalue()  # of 4 of 6
+    assert "error [m]" in out.getvalue()
+
+
+def test_table_shows_errors_where_there_are_any() -> None:
+    out = StringIO()
+    print_summary(summarize([failed(Task(cell="straight_5", seed=1), "ValueError: wrong")]), out)
+    assert "errors" in out.getvalue()
+
+
+def test_summary_pools_consistency_and_shows_its_band() -> None:
+    rows = [row(seed, nees_mean=4.0 + seed, nis_sum=90.0 + 10.0 * seed, nis_dof=100) for seed in (1, 2, 3)]
+    found = cell("straight_5", rows)
+    assert (found["nees"]["mean"], found["nees"]["runs"], found["nees"]["dof"]) == (6.0, 3, 6)
+    # chi-square quantiles of 18 degrees of freedom, 8.231 and 31.526, over 3 runs
+    assert (found["nees"]["low"], found["nees"]["high"]) == pytest.approx((8.231 / 3.0, 31.526 / 3.0), abs=1e-3)
+    assert (found["nis_per_dof"]["mean"], found["nis_per_dof"]["dof"]) == (1.1, 300)
+
+
+def test_summary_has_computing_times_where_they_are_known() -> None:
+    times = [
+        {"cell": "straight_5", "seed": seed, "wall_s": 2.0 * seed, "cpu_s": 1.5, "planner_max_ms": 3.0 * seed}
+        for seed in (1, 2, 3)
+    ]
+    summary = summarize([row(1), row(1, cell="circle_5")], times)
+    circle, straight = summary["cells"]
+    assert "planner_ms" not in circle
+    assert straight["planner_ms"] == {"median": None, "p99": None, "max": 9.0}
+    assert straight["computing"] == {"wall_s": 4.0, "cpu_s": 1.5}
+    out = StringIO()
+    print_summary({"cells": [straight]}, out)
+    assert "planner max [ms]" in out.getvalue()

@@ -1,0 +1,69 @@
+"""Operators' commands, and that every command meets others over Zenoh by the same options."""
+
+import pytest
+import typer
+from typer.main import get_command
+
+from companion.__main__ import app as companion_app
+from link import json_payloads
+from link.errors import UserError
+from link.keys import Keys
+from link.messages import Command, CommandReply
+from link.zenoh_session import ZenohOptions, open_session
+from scenarios.__main__ import app as scenarios_app
+from scenarios.commands import operator as operator_command
+from scenarios.commands.operator import send_command
+from scenarios.ground_vehicle import app as vehicle_app
+from scenarios.processes import free_tcp_endpoint
+from sim_autopilot.__main__ import app as autopilot_app
+
+KEYS = Keys()
+ZENOH = ["--mode", "--connect", "--listen", "--multicast-scouting", "--zenoh-config"]
+
+
+def options_of(app: typer.Typer, name: str | None) -> dict[str, bool]:
+    """Return the names of a command's options, and whether each may be given several times."""
+    command = get_command(app)
+    if name is not None:
+        command = command.commands[name]  # type: ignore[attr-defined]  # a group has commands
+    return {option: getattr(one, "multiple", False) for one in command.params for option in one.opts}
+
+
+@pytest.mark.parametrize(
+    ("app", "name"),
+    [
+        (companion_app, None),
+        (companion_app, "check"),
+        (vehicle_app, None),
+        (autopilot_app, None),
+        (scenarios_app, "world"),
+        (scenarios_app, "command"),
+        (scenarios_app, "view"),
+    ],
+)
+def test_all_that_meet_others_over_zenoh_take_the_same_options(app: typer.Typer, name: str | None) -> None:
+    options = options_of(app, name)
+    assert [option for option in ZENOH if option not in options] == []
+    assert {option: options[option] for option in ("-e", "-l", "-m")} == {"-e": True, "-l": True, "-m": False}
+
+
+@pytest.mark.slow
+def test_operator_who_listens_reaches_a_companion_that_connects() -> None:
+    endpoint = free_tcp_endpoint()
+    asked: list[bytes] = []
+
+    def answer(payload: bytes) -> bytes:
+        asked.append(payload)
+        return json_payloads.encode(CommandReply(accepted=False, reason="too windy"))
+
+    with open_session(ZenohOptions(connect=("tcp/127.0.0.1:1", endpoint))) as companion:
+        companion.serve(KEYS.landing_command, answer)
+        reply = send_command(Command.HOLD, KEYS, ZenohOptions(listen=(endpoint,)))
+    assert reply == CommandReply(accepted=False, reason="too windy")
+    assert json_payloads.decode(Command, asked[-1]) is Command.HOLD
+
+
+def test_operator_whom_nobody_answers_is_told_where_was_looked(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(operator_command, "_MEETING_S", 0.1)
+    with pytest.raises(UserError, match=r"no companion answers on .*landing/command at tcp/127\.0\.0\.1:1:"):
+        send_command(Command.START, KEYS, ZenohOptions(connect=("tcp/127.0.0.1:1",)))

@@ -1,0 +1,98 @@
+"""The estimate against the truth: the frame it is compared in, and what NEES and NIS of a fair filter are."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from companion.data import VehicleEstimate
+from link.frames import quaternion_from_yaw
+from link.geodesy import Datum, geodetic_from_enu
+from link.local_frame import LocalFrame, Projection
+from scenarios.campaigns.intervals import mean_band
+from scenarios.scoring.accuracy import EstimateError, Nis, Truth, accuracy_table, antenna_truth, estimate_error
+from scenarios.vehicle import VehicleState
+from sim_autopilot.local_places import Origin
+from sim_autopilot.memory import initial_memory
+from tests.sim_autopilot.pilot import DATUM, START_NS, px4
+
+TRUTH = Truth(position_enu_m=(10.0, -4.0, 1.6), velocity_enu_m_s=(5.0, 1.0, 0.0))
+
+
+def estimate_of(position: np.ndarray, velocity: np.ndarray, covariance: np.ndarray) -> VehicleEstimate:
+    return VehicleEstimate(
+        t_ns=START_NS,
+        position_enu_m=position,
+        velocity_enu_m_s=velocity,
+        acceleration_enu_m_s2=np.zeros(3),
+        covariance=covariance,
+        yaw_rad=None,
+        yaw_rate_rad_s=None,
+    )
+
+
+def test_antenna_is_seen_from_the_frame_and_with_the_error_that_the_drone_flies_by() -> None:
+    vehicle = VehicleState(
+        t_ns=START_NS,
+        position_enu_m=(100.0, 50.0, 0.0),
+        velocity_enu_m_s=(0.0, 5.0, 0.0),
+        acceleration_enu_m_s2=(0.0, 0.0, 0.0),
+        orientation_wxyz=quaternion_from_yaw(0.5 * math.pi),
+        angular_velocity_flu_rad_s=(0.0, 0.0, 0.4),
+        yaw_rad=0.5 * math.pi,
+        yaw_rate_rad_s=0.4,
+    )
+    memory = initial_memory(px4(position_enu_m=(3.0, 4.0, 0.12)), START_NS)
+    believed = replace(memory.now, position_enu_m=(3.5, 4.0, 0.12))
+    latitude_rad, longitude_rad, altitude_m = geodetic_from_enu(DATUM, (3.0, -4.0, 0.0))
+    moved = Datum(latitude_rad=latitude_rad, longitude_rad=longitude_rad, altitude_m=altitude_m)
+    frame = LocalFrame(origin=moved, projection=Projection.TANGENT_PLANE)
+    origin = Origin(world=DATUM, frame=frame, position_enu_m=(3.0, -4.0, 0.0), resets=1)
+    truth = antenna_truth(vehicle, (-1.2, 0.5, 1.6), replace(memory, now=believed, origin=origin))
+    # lever (-0.5, -1.2, 1.6) in W, error (0.5, 0, 0), frame moved by (3, -4, 0); w x lever = 0.4 (1.2, -0.5)
+    assert truth.position_enu_m == pytest.approx((100.0 - 0.5 + 0.5 - 3.0, 50.0 - 1.2 + 4.0, 1.6), abs=1e-3)
+    assert truth.velocity_enu_m_s == pytest.approx((0.48, 5.0 - 0.2, 0.0))
+
+
+def test_nees_of_errors_drawn_from_the_covariance_lies_in_its_band() -> None:
+    rng = np.random.default_rng(8)
+    root = rng.normal(size=(9, 9))
+    covariance = root @ root.T + 0.1 * np.eye(9)
+    place, speed = np.array(TRUTH.position_enu_m), np.array(TRUTH.velocity_enu_m_s)
+    total, runs = 0.0, 400
+    for _ in range(runs):
+        error = rng.multivariate_normal(np.zeros(9), covariance)
+        estimate = estimate_of(place + error[:3], speed + error[3:6], covariance)
+        total += estimate_error(estimate, TRUTH, in_descent=True).nees
+    low, high = mean_band(6 * runs)
+    assert low is not None
+    assert high is not None
+    assert 6.0 * low < total / runs < 6.0 * high
+
+
+def test_band_of_a_mean_is_that_of_chi_square() -> None:
+    expected = [float(stats.chi2.ppf(level, 120)) / 120 for level in (0.025, 0.975)]
+    assert mean_band(120) == pytest.approx(tuple(expected))
+    assert mean_band(0) == (None, None)
+
+
+def test_accuracy_takes_its_errors_from_the_descent_and_nees_from_all() -> None:
+    errors = [
+        EstimateError(in_descent=False, position_m=9.0, velocity_m_s=9.0, nees=1.0),
+        EstimateError(in_descent=True, position_m=0.3, velocity_m_s=0.1, nees=5.0),
+        EstimateError(in_descent=True, position_m=0.4, velocity_m_s=0.7, nees=9.0),
+    ]
+    assert accuracy_table(errors, Nis(total=30.0, dof=25)) == {
+        "position_rmse_m": pytest.approx(math.sqrt(0.125)),
+        "velocity_rmse_m_s": pytest.approx(0.5),
+        "nees_mean": pytest.approx(5.0),
+        "nees_count": 3,
+        "nis_sum": 30.0,
+        "nis_dof": 25,
+    }
+
+
+def test_run_without_estimates_has_no_accuracy() -> None:
+    assert set(accuracy_table([], None).values()) == {None}
