@@ -10,23 +10,23 @@ from link.geodesy import Datum
 from link.local_frame import LocalFrame
 from link.mavlink.dialect import Message
 from link.messages import Vector3
-from sim_autopilot.chart import Chart, chart_at
-from sim_autopilot.climb import Climb
 from sim_autopilot.data import Array, Deck, PlantState, Reference
 from sim_autopilot.firmware.firmware import Firmware
-from sim_autopilot.flight import ModeFlight, begin
-from sim_autopilot.guided import Guided, begin_guided
-from sim_autopilot.land_detector import Landing
+from sim_autopilot.flight.climb import Climb
+from sim_autopilot.flight.flight import ModeFlight, begin
+from sim_autopilot.flight.land_detector import Landing
+from sim_autopilot.flight.modes import Modes
 from sim_autopilot.local_places import Origin
-from sim_autopilot.modes import Modes
 from sim_autopilot.own_state import NO_ERROR, OwnStateModel
 from sim_autopilot.parameters import Values, default_values
 from sim_autopilot.plant import PlantConfig, PlantMemory, initial_plant
 from sim_autopilot.services import Services
-from sim_autopilot.setpoints import NO_SETPOINTS, Setpoints
+from sim_autopilot.setpoints.guided import Guided, begin_guided
+from sim_autopilot.setpoints.setpoints import NO_SETPOINTS, Setpoints
 from sim_autopilot.settings import FlightSettings
 from sim_autopilot.snapshot import Snapshot, take_snapshot
-from sim_autopilot.streams import Streams, default_streams
+from sim_autopilot.telemetry.chart import Chart, chart_at
+from sim_autopilot.telemetry.streams import Streams, default_streams
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,7 +9,7 @@ from link.mavlink.dialect import Message
 from link.messages import Vector3
 from sim_autopilot.local_places import local_from_world, world_from_local
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
-from sim_autopilot.telemetry_motion import gps_global_origin
+from sim_autopilot.telemetry.motion import gps_global_origin
 
 
 def move_origin(

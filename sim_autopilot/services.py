@@ -2,18 +2,18 @@
 
 from dataclasses import dataclass
 
-from sim_autopilot.failsafes import NOTHING_NOTICED, Watch
-from sim_autopilot.failures import NO_FAILURES, Failures
-from sim_autopilot.fence import Fence
-from sim_autopilot.follow import Leader
-from sim_autopilot.ftp_state import NO_FTP, Ftp
-from sim_autopilot.gripper import AT_REST, Gripper
-from sim_autopilot.log_stream import LogStream
-from sim_autopilot.logs import NO_LOGS, Logs
-from sim_autopilot.manual import Sticks
-from sim_autopilot.mission_flight import NO_PROGRESS, Progress
-from sim_autopilot.mission_library import NO_LIBRARY, Library
-from sim_autopilot.precision_landing import Target
+from sim_autopilot.commands.gripper import AT_REST, Gripper
+from sim_autopilot.files.ftp_state import NO_FTP, Ftp
+from sim_autopilot.files.log_stream import LogStream
+from sim_autopilot.files.logs import NO_LOGS, Logs
+from sim_autopilot.flight.follow import Leader
+from sim_autopilot.flight.manual import Sticks
+from sim_autopilot.flight.precision_landing import Target
+from sim_autopilot.missions.fence import Fence
+from sim_autopilot.missions.flight import NO_PROGRESS, Progress
+from sim_autopilot.missions.library import NO_LIBRARY, Library
+from sim_autopilot.safety.failsafes import NOTHING_NOTICED, Watch
+from sim_autopilot.safety.failures import NO_FAILURES, Failures
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

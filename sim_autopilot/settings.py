@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 from link.messages import Vector3
 from sim_autopilot.control.kinds import PositionGains
-from sim_autopilot.failsafes import NO_FAILSAFES, FailsafeSettings
-from sim_autopilot.follow import BEHIND, FollowSettings
-from sim_autopilot.modes import Event, Mode
-from sim_autopilot.stick_feel import PX4_STICKS, StickFeel
+from sim_autopilot.flight.follow import BEHIND, FollowSettings
+from sim_autopilot.flight.modes import Event, Mode
+from sim_autopilot.flight.stick_feel import PX4_STICKS, StickFeel
+from sim_autopilot.safety.failsafes import NO_FAILSAFES, FailsafeSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,17 +9,16 @@ import numpy as np
 
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
-from sim_autopilot.arming import disarm, should_disarm
-from sim_autopilot.chart import near
-from sim_autopilot.events import failsafe_texts, tell
-from sim_autopilot.failsafes_step import keep_watch, mind_lost_sticks
-from sim_autopilot.failures import stopped
-from sim_autopilot.files_step import log_flight, send_log, send_on
-from sim_autopilot.flight import is_takeoff_complete
-from sim_autopilot.incoming import take
-from sim_autopilot.land_detector import detect_landing
-from sim_autopilot.log_stream_step import stream_log
-from sim_autopilot.manual import are_held
+from sim_autopilot.commands.incoming import take
+from sim_autopilot.commands.reboot import rebooted
+from sim_autopilot.files.log_stream_step import stream_log
+from sim_autopilot.files.step import log_flight, send_log, send_on
+from sim_autopilot.flight.flight import is_takeoff_complete
+from sim_autopilot.flight.land_detector import detect_landing
+from sim_autopilot.flight.manual import are_held
+from sim_autopilot.flight.mode_change import change_mode
+from sim_autopilot.flight.modes import Event, Mode
+from sim_autopilot.flight.steering import over_target, steer
 from sim_autopilot.memory import (
     AutopilotConfig,
     AutopilotInputs,
@@ -27,20 +26,21 @@ from sim_autopilot.memory import (
     AutopilotOutputs,
 )
 from sim_autopilot.memory_links import at_link, text_links
-from sim_autopilot.missions_step import advance_mission, pass_transfer
-from sim_autopilot.mode_change import change_mode
-from sim_autopilot.modes import Event, Mode
+from sim_autopilot.missions.step import advance_mission, pass_transfer
 from sim_autopilot.origin import step_origin
 from sim_autopilot.parameters import parameter_message
 from sim_autopilot.plant import asked_tilt_rad, fly
-from sim_autopilot.reboot import rebooted
-from sim_autopilot.setpoints import are_fresh
+from sim_autopilot.safety.arming import disarm, should_disarm
+from sim_autopilot.safety.failsafes_step import keep_watch, mind_lost_sticks
+from sim_autopilot.safety.failures import stopped
+from sim_autopilot.setpoints.setpoints import are_fresh
 from sim_autopilot.snapshot import take_snapshot
-from sim_autopilot.steering import over_target, steer
-from sim_autopilot.streams import due_messages
-from sim_autopilot.telemetry import build_message
-from sim_autopilot.telemetry_status import heartbeat
-from sim_autopilot.tidings import announcement, changes_told
+from sim_autopilot.telemetry.builders import build_message
+from sim_autopilot.telemetry.chart import near
+from sim_autopilot.telemetry.events import failsafe_texts, tell
+from sim_autopilot.telemetry.status import heartbeat
+from sim_autopilot.telemetry.streams import due_messages
+from sim_autopilot.telemetry.tidings import announcement, changes_told
 
 _LISTED_A_STEP = 10
 """Parameters of a list sent in 10 ms: all of them within a second or two, as the real ones send them over UDP."""

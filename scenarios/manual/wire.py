@@ -17,9 +17,9 @@ from link.ros_records import DEFINITIONS, PACKAGE
 from scenarios.manual.markdown import block, code, page, table
 from scenarios.manual.types_in_words import type_in_words
 from scenarios.manual.units import unit_of
+from sim_autopilot.commands.incoming import HANDLED
 from sim_autopilot.firmware.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.px4 import PX4
-from sim_autopilot.incoming import HANDLED
 
 KEYS = Keys(namespace="{ns}", vehicle="{vehicle}", drone="{drone}")
 MESSAGE_NAMES: Mapping[int, str] = {number: one.msgname for number, one in mavlink.mavlink_map.items()}

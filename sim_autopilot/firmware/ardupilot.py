@@ -8,7 +8,10 @@ from types import MappingProxyType
 
 from link.local_frame import Projection
 from link.mavlink.dialect import mavlink
-from sim_autopilot.file_store import Shown
+from sim_autopilot.files.flight_log import ARDUPILOT_LOGS
+from sim_autopilot.files.ftp_state import ARDUPILOT_FTP
+from sim_autopilot.files.parameter_file import PATH, packed
+from sim_autopilot.files.store import Shown
 from sim_autopilot.firmware.ardupilot_parameters import OBEYED, flight_settings
 from sim_autopilot.firmware.ardupilot_streams import CONTACT_STREAMS, SILENT_MESSAGES, STREAM_GROUPS, STREAMS
 from sim_autopilot.firmware.firmware import (
@@ -24,11 +27,8 @@ from sim_autopilot.firmware.firmware import (
 from sim_autopilot.firmware.identity import Identity
 from sim_autopilot.firmware.plain_answers import ARDUCOPTER_ANSWERS
 from sim_autopilot.firmware.stored_parameters import whole_list
-from sim_autopilot.flight_log import ARDUPILOT_LOGS
-from sim_autopilot.ftp_state import ARDUPILOT_FTP
-from sim_autopilot.mission_rules import ARDUCOPTER_MISSIONS
-from sim_autopilot.modes import Mode
-from sim_autopilot.parameter_file import PATH, packed
+from sim_autopilot.flight.modes import Mode
+from sim_autopilot.missions.rules import ARDUCOPTER_MISSIONS
 from sim_autopilot.parameters import Parameter, Values
 
 _STICK_FLAGS = (

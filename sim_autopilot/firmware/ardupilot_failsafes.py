@@ -5,9 +5,9 @@ one of three cells whose voltage falls evenly.
 """
 
 from link.mavlink.dialect import mavlink
-from sim_autopilot.failsafes import FailsafeSettings
-from sim_autopilot.modes import Event, Mode
+from sim_autopilot.flight.modes import Event, Mode
 from sim_autopilot.parameters import Parameter, Values
+from sim_autopilot.safety.failsafes import FailsafeSettings
 
 _EMPTY_PART = 9.9 / 12.6
 """Of the full voltage, three cells' usual."""

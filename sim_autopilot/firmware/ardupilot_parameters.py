@@ -11,9 +11,9 @@ from link.messages import Vector3
 from sim_autopilot.control.kinds import PositionGains
 from sim_autopilot.firmware.ardupilot_failsafes import PARAMETERS as FAILSAFE_PARAMETERS
 from sim_autopilot.firmware.ardupilot_failsafes import battery_v, failsafe_settings
+from sim_autopilot.flight.stick_feel import StickFeel
 from sim_autopilot.parameters import Parameter, Values
 from sim_autopilot.settings import FlightSettings, LandingSettings, PathLimits
-from sim_autopilot.stick_feel import StickFeel
 
 _INT8, _INT16, _INT32 = mavlink.MAV_PARAM_TYPE_INT8, mavlink.MAV_PARAM_TYPE_INT16, mavlink.MAV_PARAM_TYPE_INT32
 _UNLIMITED_M_S = 100.0

@@ -4,15 +4,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from link.local_frame import Projection
-from sim_autopilot.file_store import Shown
+from sim_autopilot.files.flight_log import PX4_LOGS, LogRules
+from sim_autopilot.files.ftp_state import PX4_FTP, FtpRules
+from sim_autopilot.files.store import Shown
 from sim_autopilot.firmware.identity import Identity
-from sim_autopilot.flight_log import PX4_LOGS, LogRules
-from sim_autopilot.ftp_state import PX4_FTP, FtpRules
-from sim_autopilot.mission_rules import PX4_MISSIONS, MissionRules
-from sim_autopilot.modes import Mode
+from sim_autopilot.flight.modes import Mode
+from sim_autopilot.missions.rules import PX4_MISSIONS, MissionRules
 from sim_autopilot.parameters import Parameter, Values
 from sim_autopilot.settings import FlightSettings
-from sim_autopilot.streams import Stream
+from sim_autopilot.telemetry.streams import Stream
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

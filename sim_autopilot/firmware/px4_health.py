@@ -5,7 +5,7 @@ Source: PX4's source (vehicle_status, px4::enums::health_component_t).
 
 from collections.abc import Mapping
 
-from sim_autopilot.modes import Mode
+from sim_autopilot.flight.modes import Mode
 
 MODE_STATES: Mapping[Mode, tuple[int, str]] = {
     Mode.MANUAL: (0, "manual"),

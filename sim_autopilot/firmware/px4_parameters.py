@@ -5,12 +5,12 @@ Source: PX4 parameter reference, with the defaults of its own simulation.
 
 from math import radians
 
-from sim_autopilot.failsafes import FailsafeSettings
-from sim_autopilot.follow import FollowSettings
-from sim_autopilot.modes import Event, Mode
+from sim_autopilot.flight.follow import FollowSettings
+from sim_autopilot.flight.modes import Event, Mode
+from sim_autopilot.flight.stick_feel import StickFeel
 from sim_autopilot.parameters import Parameter, Values, within_ranges
+from sim_autopilot.safety.failsafes import FailsafeSettings
 from sim_autopilot.settings import FlightSettings
-from sim_autopilot.stick_feel import StickFeel
 
 _LOSS_EVENTS = {
     0: Event.LOST_TO_POSITION,

@@ -5,12 +5,19 @@ import pytest
 
 from link.frames import roll_pitch_yaw_of
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.failsafes import NOTHING_NOTICED, FailsafeSettings, Watch, watch_battery, watch_fence, watch_station
 from sim_autopilot.firmware.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.ardupilot_failsafes import failsafe_settings
+from sim_autopilot.flight.modes import Event, Mode
 from sim_autopilot.memory import AutopilotConfig
-from sim_autopilot.modes import Event, Mode
 from sim_autopilot.parameters import default_values
+from sim_autopilot.safety.failsafes import (
+    NOTHING_NOTICED,
+    FailsafeSettings,
+    Watch,
+    watch_battery,
+    watch_fence,
+    watch_station,
+)
 from tests.sim_autopilot.copter import ALT_HOLD, GUIDED, LOITER, RTL, ardupilot, copter_in_the_air, mode
 from tests.sim_autopilot.pilot import Pilot, arm
 from tests.sim_autopilot.planner import EAST_M, LATITUDE, LONGITUDE, NORTH_M

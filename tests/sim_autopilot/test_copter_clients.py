@@ -5,7 +5,7 @@ from math import degrees, inf, nan
 import pytest
 
 from link.mavlink.dialect import mavlink
-from sim_autopilot.missions import RALLY
+from sim_autopilot.missions.items import RALLY
 from tests.sim_autopilot.copter import AUTO, GUIDED, ardupilot, copter_in_the_air, every, heartbeat, mode
 from tests.sim_autopilot.pilot import VELOCITY_ONLY, Pilot, arm, command, setpoint
 from tests.sim_autopilot.planner import RELATIVE, download, item, plan_messages, upload

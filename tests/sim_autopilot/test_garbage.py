@@ -11,7 +11,7 @@ from link.mavlink.checksum import with_checksum
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.layout import field_offsets
-from sim_autopilot.incoming import HANDLED
+from sim_autopilot.commands.incoming import HANDLED
 from sim_autopilot.memory import AutopilotConfig
 from sim_autopilot.node import AutopilotNode
 from tests.sim_autopilot.copter import ardupilot

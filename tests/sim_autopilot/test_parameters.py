@@ -7,7 +7,7 @@ from link.mavlink.parameters import parameter_on_wire, parameter_value
 from sim_autopilot.firmware.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.px4 import PX4
 from sim_autopilot.firmware.px4_parameters import OBEYED
-from sim_autopilot.modes import Event
+from sim_autopilot.flight.modes import Event
 from sim_autopilot.parameters import default_values
 from tests.sim_autopilot.copter import ardupilot
 from tests.sim_autopilot.pilot import Pilot, px4

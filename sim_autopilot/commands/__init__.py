@@ -1,0 +1,1 @@
+"""What each incoming message changes, and how it is answered."""

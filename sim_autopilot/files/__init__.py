@@ -1,0 +1,1 @@
+"""Files and logs: MAVLink FTP, the log service and the log stream."""

@@ -1,0 +1,50 @@
+"""Going somewhere by command: DO_REPOSITION and DO_CHANGE_SPEED."""
+
+from dataclasses import replace
+from math import hypot, isfinite, radians
+
+from link.geodesy import Datum, enu_from_geodetic
+from link.mavlink.dialect import mavlink
+from link.messages import Vector3
+from sim_autopilot.flight.flight import go_to
+from sim_autopilot.flight.travel import Goal
+from sim_autopilot.memory import AutopilotMemory
+
+_ABOVE_HOME = frozenset({mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT})
+_REACH_M = 1e5
+
+
+def place_asked(memory: AutopilotMemory, datum: Datum, frame: int, place: tuple[float, float, float]) -> Vector3 | None:
+    """Return a place of latitude, longitude (degrees) and altitude in W; what is not finite is where the drone is.
+
+    None is a place beyond reach or on no globe.
+    """
+    latitude_deg, longitude_deg, altitude_m = place
+    x, y, z = memory.now.position_enu_m
+    if isfinite(latitude_deg) and isfinite(longitude_deg):
+        try:
+            x, y, high = enu_from_geodetic(datum, radians(latitude_deg), radians(longitude_deg), datum.altitude_m)
+        except ValueError:
+            return None
+        if hypot(x, y, high) > _REACH_M:
+            return None
+    if isfinite(altitude_m):
+        z = altitude_m + (memory.home_enu_m[2] if frame in _ABOVE_HOME else -datum.altitude_m)
+    return x, y, z
+
+
+def reposition(memory: AutopilotMemory, place: Vector3, yaw_rad: float | None, speed_m_s: float) -> AutopilotMemory:
+    """Return the memory of a drone in hold that goes to `place` in W; a speed that is not positive is the usual one."""
+    if not speed_m_s > 0.0:
+        asked_m_s = memory.flight.speed_m_s
+        speed_m_s = memory.settings.cruise_m_s if asked_m_s is None else asked_m_s
+    goal = Goal(position_enu_m=place, speed_m_s=speed_m_s, yaw_rad=yaw_rad)
+    return replace(memory, flight=go_to(memory.flight, goal, memory.now))
+
+
+def with_speed(memory: AutopilotMemory, speed_m_s: float) -> AutopilotMemory:
+    """Return the memory of a drone that goes on to where it is going, and with its mission, at `speed_m_s`."""
+    goal, services = memory.flight.goal, memory.services
+    goal = None if goal is None else replace(goal, speed_m_s=speed_m_s)
+    memory = replace(memory, flight=replace(memory.flight, goal=goal, speed_m_s=speed_m_s))
+    return replace(memory, services=replace(services, mission=replace(services.mission, speed_m_s=speed_m_s)))

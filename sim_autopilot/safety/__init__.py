@@ -1,0 +1,1 @@
+"""Arming, failsafes and injected failures."""

@@ -1,0 +1,1 @@
+"""Setpoints, and what each firmware makes of them."""

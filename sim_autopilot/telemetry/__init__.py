@@ -1,0 +1,1 @@
+"""What the autopilot tells of itself, and when."""
