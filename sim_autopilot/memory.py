@@ -25,8 +25,8 @@ from sim_autopilot.setpoints.guided import Guided, begin_guided
 from sim_autopilot.setpoints.setpoints import NO_SETPOINTS, Setpoints
 from sim_autopilot.settings import FlightSettings
 from sim_autopilot.snapshot import Snapshot, take_snapshot
+from sim_autopilot.streams import Streams, default_streams
 from sim_autopilot.telemetry.chart import Chart, chart_at
-from sim_autopilot.telemetry.streams import Streams, default_streams
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from sim_autopilot.memory import AutopilotMemory, LinkMemory
-from sim_autopilot.telemetry.streams import Streams
+from sim_autopilot.streams import Streams
 
 
 def at_link(memory: AutopilotMemory, link: int) -> AutopilotMemory:

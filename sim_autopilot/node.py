@@ -21,8 +21,8 @@ from sim_autopilot.routing import Routes, target_of
 from sim_autopilot.signing_setup import last_setup, link_signings
 from sim_autopilot.snapshot import take_snapshot
 from sim_autopilot.step import autopilot_step
+from sim_autopilot.streams import shortest_interval_ns
 from sim_autopilot.telemetry.status import ping_answer, timesync_answer
-from sim_autopilot.telemetry.streams import shortest_interval_ns
 
 STEP_NS = 10_000_000
 """What a step advances, unless a stream is faster."""

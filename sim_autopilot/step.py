@@ -11,14 +11,14 @@ from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 from sim_autopilot.commands.incoming import take
 from sim_autopilot.commands.reboot import rebooted
-from sim_autopilot.files.log_stream_step import stream_log
-from sim_autopilot.files.step import log_flight, send_log, send_on
+from sim_autopilot.files_step import log_flight, send_log, send_on
 from sim_autopilot.flight.flight import is_takeoff_complete
 from sim_autopilot.flight.land_detector import detect_landing
 from sim_autopilot.flight.manual import are_held
 from sim_autopilot.flight.mode_change import change_mode
 from sim_autopilot.flight.modes import Event, Mode
 from sim_autopilot.flight.steering import over_target, steer
+from sim_autopilot.log_stream_step import stream_log
 from sim_autopilot.memory import (
     AutopilotConfig,
     AutopilotInputs,
@@ -35,11 +35,11 @@ from sim_autopilot.safety.failsafes_step import keep_watch, mind_lost_sticks
 from sim_autopilot.safety.failures import stopped
 from sim_autopilot.setpoints.setpoints import are_fresh
 from sim_autopilot.snapshot import take_snapshot
+from sim_autopilot.streams import due_messages
 from sim_autopilot.telemetry.builders import build_message
 from sim_autopilot.telemetry.chart import near
 from sim_autopilot.telemetry.events import failsafe_texts, tell
 from sim_autopilot.telemetry.status import heartbeat
-from sim_autopilot.telemetry.streams import due_messages
 from sim_autopilot.telemetry.tidings import announcement, changes_told
 
 _LISTED_A_STEP = 10

@@ -1,6 +1,7 @@
-"""The one direction of imports between the packages, and the one home of each library."""
+"""The one direction of imports between the packages and between their folders, and the one home of each library."""
 
 import ast
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -64,3 +65,22 @@ def test_library_has_one_home(library: str) -> None:
     }
     assert users
     assert users <= HOMES[library]
+
+
+def folder_arrows(package: str) -> dict[str, set[str]]:
+    """For each folder of a package those that its files import from; modules beside the folders do not count."""
+    folders = {path.parent.name for path in (ROOT / package).glob("*/__init__.py")}
+    arrows: dict[str, set[str]] = {folder: set() for folder in folders}
+    for folder in folders:
+        for path in (ROOT / package / folder).rglob("*.py"):
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(f"{package}."):
+                    arrows[folder].add(str(node.module).split(".")[1])
+        arrows[folder] = arrows[folder] & folders - {folder}
+    return arrows
+
+
+@pytest.mark.parametrize("package", sorted(MAY_IMPORT))
+def test_folders_of_a_package_import_each_other_in_one_direction(package: str) -> None:
+    order = list(TopologicalSorter(folder_arrows(package)).static_order())
+    assert order

@@ -30,8 +30,8 @@ from sim_autopilot.commands.stream_commands import (
     request_version,
     set_interval,
 )
-from sim_autopilot.files.log_stream_step import start_log_stream, stop_log_stream
 from sim_autopilot.flight.modes import Mode
+from sim_autopilot.log_stream_step import start_log_stream, stop_log_stream
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, Later
 from sim_autopilot.missions.step import mission_current, mission_items, set_current
 from sim_autopilot.requests import ACCEPTED, DENIED, UNSUPPORTED, Answer, Handler, Request, acknowledgement

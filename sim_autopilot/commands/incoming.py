@@ -18,15 +18,15 @@ from sim_autopilot.commands.incoming_setpoints import (
 )
 from sim_autopilot.commands.mode_request import try_mode
 from sim_autopilot.commands.shell import take_typed
-from sim_autopilot.files.log_stream_step import take_logging_ack
-from sim_autopilot.files.step import LOG_IDS, take_ftp, take_log_request
+from sim_autopilot.files_step import LOG_IDS, take_ftp, take_log_request
 from sim_autopilot.flight.manual import sticks_from_message
+from sim_autopilot.log_stream_step import take_logging_ack
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
 from sim_autopilot.missions.step import mission_current, set_current, take_plan
 from sim_autopilot.missions.transfer import MESSAGE_IDS
 from sim_autopilot.origin import move_origin
 from sim_autopilot.requests import is_for_us, is_ours, request_from_message
-from sim_autopilot.telemetry.streams import with_interval
+from sim_autopilot.streams import with_interval
 
 Result = tuple[AutopilotMemory, tuple[Message, ...]]
 Handler = Callable[[AutopilotMemory, Message, AutopilotConfig], Result]

@@ -3,12 +3,12 @@
 from dataclasses import replace
 
 from link.mavlink.dialect import mavlink
+from sim_autopilot.firmware.component_metadata import PROTOCOL_VERSION
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.requests import ACCEPTED, Answer, Request
+from sim_autopilot.streams import Stream, with_interval
 from sim_autopilot.telemetry.available_modes import available_modes
 from sim_autopilot.telemetry.builders import build_message
-from sim_autopilot.telemetry.component_metadata import PROTOCOL_VERSION
-from sim_autopilot.telemetry.streams import Stream, with_interval
 
 _DEFAULT_RATE = 0
 _STOP = -1

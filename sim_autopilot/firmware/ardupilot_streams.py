@@ -6,7 +6,7 @@ Source: ArduCopter's own table of stream groups, as far as the stand-in can buil
 from types import MappingProxyType
 
 from link.mavlink.dialect import mavlink
-from sim_autopilot.telemetry.streams import Stream
+from sim_autopilot.streams import Stream
 
 _POSITION_S = 41.4
 """After boot the estimator begins to use GPS, and LOCAL_POSITION_NED begins to exist."""

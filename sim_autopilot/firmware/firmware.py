@@ -12,7 +12,7 @@ from sim_autopilot.flight.modes import Mode
 from sim_autopilot.missions.rules import PX4_MISSIONS, MissionRules
 from sim_autopilot.parameters import Parameter, Values
 from sim_autopilot.settings import FlightSettings
-from sim_autopilot.telemetry.streams import Stream
+from sim_autopilot.streams import Stream
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

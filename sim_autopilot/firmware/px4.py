@@ -10,6 +10,16 @@ from types import MappingProxyType
 from link.local_frame import Projection
 from link.mavlink.dialect import mavlink
 from sim_autopilot.files.store import Shown
+from sim_autopilot.firmware.actuator_metadata import ACTUATORS_PATH
+from sim_autopilot.firmware.component_metadata import (
+    GENERAL_PATH,
+    PARAMETERS_PATH,
+    actuators_file,
+    events_file,
+    general_file,
+    parameters_file,
+)
+from sim_autopilot.firmware.event_metadata import EVENTS_PATH
 from sim_autopilot.firmware.firmware import (
     Firmware,
     ModeCode,
@@ -40,16 +50,6 @@ from sim_autopilot.firmware.px4_streams import SILENT_MESSAGES, STREAMS
 from sim_autopilot.firmware.stored_parameters import whole_list
 from sim_autopilot.flight.modes import Mode
 from sim_autopilot.parameters import Parameter, Values
-from sim_autopilot.telemetry.actuator_metadata import ACTUATORS_PATH
-from sim_autopilot.telemetry.component_metadata import (
-    GENERAL_PATH,
-    PARAMETERS_PATH,
-    actuators_file,
-    events_file,
-    general_file,
-    parameters_file,
-)
-from sim_autopilot.telemetry.event_metadata import EVENTS_PATH
 
 _AUTO_FLAGS = (
     mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED

@@ -4,8 +4,8 @@ Source: measured on that simulation.
 """
 
 from link.mavlink.dialect import mavlink
-from sim_autopilot.telemetry.component_metadata import COMPONENT_METADATA, PROTOCOL_VERSION
-from sim_autopilot.telemetry.streams import Stream
+from sim_autopilot.firmware.component_metadata import COMPONENT_METADATA, PROTOCOL_VERSION
+from sim_autopilot.streams import Stream
 
 STREAMS = (
     Stream(message_id=mavlink.MAVLINK_MSG_ID_HEARTBEAT, rate_hz=1.0, fixed=True),

@@ -4,11 +4,11 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from link.mavlink.dialect import Message, mavlink
+from sim_autopilot.firmware.component_metadata import COMPONENT_METADATA, PROTOCOL_VERSION
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
 from sim_autopilot.missions.step import mission_current
+from sim_autopilot.streams import Stream
 from sim_autopilot.telemetry import ardupilot, asked, motion, sensors, status, versions
-from sim_autopilot.telemetry.component_metadata import COMPONENT_METADATA, PROTOCOL_VERSION
-from sim_autopilot.telemetry.streams import Stream
 
 Builder = Callable[[AutopilotMemory, AutopilotConfig], Message | None]
 

@@ -2,9 +2,9 @@
 
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.files.ftp_handlers import checksum
-from sim_autopilot.files.step import shown_files
+from sim_autopilot.files_step import shown_files
+from sim_autopilot.firmware.component_metadata import COMPONENT_METADATA, GENERAL_PATH, PROTOCOL_VERSION
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
-from sim_autopilot.telemetry.component_metadata import COMPONENT_METADATA, GENERAL_PATH, PROTOCOL_VERSION
 from sim_autopilot.telemetry.status import boot_ms
 
 _MAVLINK = (200, 100, 203)

@@ -3,7 +3,7 @@
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 from sim_autopilot.files.log_stream import LogStream, begun_stream, streamed, wants_row, with_acknowledged, with_row
-from sim_autopilot.files.step import log_row
+from sim_autopilot.files_step import log_row
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.requests import ACCEPTED, UNSUPPORTED, Answer, Request, acknowledgement, is_ours
 

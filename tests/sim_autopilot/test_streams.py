@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim_autopilot.telemetry.streams import Stream, Streams, default_streams, due_messages, with_interval
+from sim_autopilot.streams import Stream, Streams, default_streams, due_messages, with_interval
 
 STEP_NS = 10_000_000
 

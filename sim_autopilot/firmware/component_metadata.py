@@ -10,10 +10,10 @@ from functools import cache
 
 from link.mavlink.dialect import mavlink
 from sim_autopilot.files.ftp_handlers import checksum
+from sim_autopilot.firmware.actuator_metadata import ACTUATORS_PATH, actuators_description
+from sim_autopilot.firmware.event_metadata import EVENTS_PATH, events_description
 from sim_autopilot.flight.modes import Mode
 from sim_autopilot.parameters import Parameter
-from sim_autopilot.telemetry.actuator_metadata import ACTUATORS_PATH, actuators_description
-from sim_autopilot.telemetry.event_metadata import EVENTS_PATH, events_description
 
 GENERAL_PATH = "etc/extras/component_general.json.xz"
 PARAMETERS_PATH = "etc/extras/parameters.json.xz"
