@@ -121,6 +121,7 @@ class DescentConfig(StrictModel):
     # A vehicle whose speed has changed like that in the last 15 s, and whose data are older than this, is waited above,
     # too: what it does in the last second is known too late. An even driver shows 0.1 m/s^2, `random` 0.7.
     uneven_acceleration_m_s2: Positive = 0.35
+    winding_acceleration_m_s2: Positive = 0.8  # to the side; `figure_eight` shows 0.6 at 5 m/s and 1.2 at 7
     uneven_age_s: NotNegative = 0.3
     surprise_hold_s: NotNegative = 20.0  # `stop_and_go` brakes again 15 s later
     surprise_wait_max_s: NotNegative = 60.0  # for which it waits so without its time limit running: three surprises
@@ -191,6 +192,9 @@ class AbortConfig(StrictModel):
     near_speed_hold_s: NotNegative = 0.06
     alive_lost_fix_age_max_s: NotNegative = 0.5  # in place of `fix_age_max_s` once the vehicle's token is lost
     height_m: Positive = 5.0  # above the pad, or above where the abort began without a vehicle
+    # For so long vehicle and autopilot are heard without a break before the next approach: a retry is soon lost to an
+    # outage that goes on, or to another one.
+    heard_hold_s: NotNegative = 1.0
     time_limit_s: Positive = 10.0
     retries_max: Annotated[int, Field(ge=0, le=20)] = 3
 

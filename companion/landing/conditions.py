@@ -7,6 +7,7 @@ import math
 from functools import cache
 
 from companion.config import CompanionConfig, LandingStyle
+from companion.landing.silence import HEARD, attitude_unknown, fix_too_old, own_unknown
 from companion.landing.targets import changes_speed, chase_floor_m, is_unseen, is_vague
 from companion.landing.timed import Held, Test
 from companion.monitors.contact import Verdict, does_not_fall, is_stopped_by_pad, signs_of, verdict
@@ -20,11 +21,6 @@ from companion.situation import Approach, Situation, approach, stands
 CONTACT = "contact"
 DISPUTED_CONTACT = "contact against the range finder"
 HARD_CONTACT = "hard contact"
-
-
-def fix_too_old(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
-    """Return whether the vehicle has been silent for too long."""
-    return s.pad is None or s.fix_age_s is None or s.fix_age_s > c.abort.fix_age_max_s
 
 
 def is_uncertain(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
@@ -49,16 +45,6 @@ def _token_lost(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
 def is_stamped_ahead(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
     """Return whether the newest fix came before it was taken: the vehicle's clock, or ours, is wrong."""
     return s.fix_age_on_arrival_s is not None and s.fix_age_on_arrival_s < -c.abort.fix_ahead_max_s
-
-
-def own_unknown(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
-    """Return whether nobody knows where the drone is."""
-    return s.drone is None
-
-
-def attitude_unknown(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
-    """Return whether nobody knows which way the drone looks and leans: sightings of the pad are turned by it."""
-    return s.drone is not None and not s.drone.attitude_known
 
 
 def not_placed(s: Situation, _: Approach | None, __: CompanionConfig) -> bool:
@@ -246,5 +232,5 @@ def update_held(
 
 @cache
 def _tests_in(phase: Phase, others: tuple[Test, ...]) -> tuple[Test, ...]:
-    tests = (*others, *ABORT_TESTS, *(test for _, test in ENTRY_TESTS), HELD_UP, DRIVES)
+    tests = (*others, *ABORT_TESTS, *(test for _, test in ENTRY_TESTS), HEARD, HELD_UP, DRIVES)
     return tuple(test for test in tests if phase in test.phases)

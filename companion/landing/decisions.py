@@ -11,8 +11,6 @@ from companion.landing.conditions import (
     ENTRY_TESTS,
     STOPPED_BY_PAD,
     STRAYS,
-    attitude_unknown,
-    fix_too_old,
     is_out_of_range,
     is_over_pad,
     is_uncertain,
@@ -22,6 +20,7 @@ from companion.landing.conditions import (
 )
 from companion.landing.feasibility import obstacle
 from companion.landing.passing import vehicle_passes
+from companion.landing.silence import HEARD, attitude_unknown, fix_too_old
 from companion.landing.timed import Held, holds
 from companion.monitors.contact import described, signs_of
 from companion.phases import FLYING_PHASES, Event, Phase
@@ -200,7 +199,8 @@ def _climbed(progress: Progress, s: Situation, held: Held, config: CompanionConf
     relative = approach(s)
     in_phase_s = (s.t_ns - progress.since_ns) * 1e-9
     high = relative is not None and relative.height_m > 0.8 * config.abort.height_m
-    if (fix_too_old(s, None, config) or not high) and in_phase_s < config.abort.time_limit_s:
+    ready = high and holds(HEARD, held, s.t_ns, config)
+    if not ready and in_phase_s < config.abort.time_limit_s:
         return None
     why_not = _no_retry(progress, s, held, config)
     if why_not is None and progress.is_interrupted:

@@ -8,7 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from companion.config import CompanionConfig
-from companion.landing.conditions import fix_too_old, is_stamped_ahead
+from companion.landing.conditions import is_stamped_ahead
+from companion.landing.silence import fix_too_old
 from companion.landing.targets import chase_floor_m
 from companion.landing.timed import Held, Test, holds
 from companion.monitors.contradiction import CONTRADICTING, contradicts_itself

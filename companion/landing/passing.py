@@ -3,7 +3,8 @@
 import math
 
 from companion.config import CompanionConfig
-from companion.landing.conditions import fix_too_old, is_too_low
+from companion.landing.conditions import is_too_low
+from companion.landing.silence import fix_too_old
 from companion.phases import Event
 from companion.situation import Situation, stands
 

@@ -9,14 +9,12 @@ from companion.landing.conditions import (
     ALIGNMENT_LOST,
     HARD_CONTACT,
     STRAYS,
-    attitude_unknown,
-    fix_too_old,
-    own_unknown,
     update_held,
 )
 from companion.landing.decisions import Progress, decide
 from companion.landing.feasibility import OBSTACLE_TESTS, obstacle
 from companion.landing.reference import Tracking
+from companion.landing.silence import SILENCES
 from companion.landing.targets import stopping_point
 from companion.landing.waiting import waited_s, with_wait_counted
 from companion.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
@@ -29,8 +27,7 @@ from link.records import replace
 BRAKING_M_S2 = 2.0
 """Deceleration that the place to stop at is taken from."""
 
-_SILENCES = (fix_too_old, own_unknown, attitude_unknown)
-_OUTAGES = frozenset(test.reason for test in ABORT_TESTS if test.is_true in _SILENCES)
+_OUTAGES = frozenset(test.reason for test in ABORT_TESTS if test.is_true in SILENCES)
 
 
 def transitions(

@@ -3,7 +3,7 @@
 from companion.config import CompanionConfig
 from companion.landing.conditions import must_wait
 from companion.landing.targets import changes_speed
-from companion.monitors.surprise import drives_unevenly, may_surprise
+from companion.monitors.surprise import drives_unevenly, may_surprise, winds
 from companion.monitors.sway import sways
 from companion.phases import Phase
 from companion.situation import Approach, Situation, approach, stands
@@ -58,8 +58,9 @@ def _unpredictable(memory: StepMemory, situation: Situation, config: CompanionCo
         return None
     if may_surprise(memory.surprise, situation.t_ns, config.descent):
         return "the vehicle's speed has surprised"
-    uneven = drives_unevenly(memory.surprise, situation.fix_age_s, config.descent)
-    return "the vehicle's speed changes all the time" if uneven else None
+    if drives_unevenly(memory.surprise, situation.fix_age_s, config.descent):
+        return "the vehicle's speed changes all the time"
+    return "the road winds" if winds(memory.surprise, situation.fix_age_s, config.descent) else None
 
 
 def _may_wait(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:

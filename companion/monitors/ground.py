@@ -25,13 +25,17 @@ _COARSE_OFF_M = 0.7  # twice what over poor receivers the estimates of both heig
 def ground_enu_m(ground: Array | None, phase: Phase, s: Situation) -> Array | None:
     """Return (3,) a place of the ground in W, None while none is known.
 
+    A drone that was not heard of in flight knows none any more: its local frame may have moved meanwhile.
+
     Args:
         ground: so far; in flight it stays, for what is below may be a roof.
         phase: of the landing.
         s: the facts.
     """
     relative = approach(s)
-    if phase in FLYING_PHASES or s.drone is None:
+    if phase in FLYING_PHASES:
+        return None if s.drone is None else ground
+    if s.drone is None:
         return ground
     if relative is not None and relative.distance_m < VEHICLE_M:
         return ground

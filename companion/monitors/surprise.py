@@ -4,12 +4,13 @@ What is known of a vehicle is as old as its data: 0.1 s over a good link, 0.6 s 
 is a guess, which can be checked once the data of that moment are there. A guess that was off by nearly the speed that a
 contact may have against the pad means that a contact at that moment would have been too fast. A vehicle that has braked
 or started like that will again (a bus, a queue of cars), so it is landed on only while it stands, or has driven for
-some time as expected. Only its speed is asked about: the beginning of a curve surprises as well, but once it is known
-it lasts. With fresh data even an emergency brake surprises by little.
+some time as expected. Only its speed is asked about. With fresh data even an emergency brake surprises by little.
 
 A driver who changes speed time and again surprises by less each time, but goes on doing so: by 0.3 m/s in the half
-second that such data are late for one of 0.8 m/s^2, of which the tails do the harm. That is told from the speeds that
-were driven, long before a belief is found to be wrong.
+second that such data are late for one of 0.8 m/s^2, of which the tails do the harm. That is told from the velocities
+that were driven, long before a belief is found to be wrong. So is a road that bends one way and the other: a curve
+that is known may last, but where the next one begins, with a radius of 16 m at 7 m/s, the vehicle is 1.6 m/s off to the
+side when that is told.
 """
 
 import math
@@ -32,8 +33,11 @@ _APART_MAX_S = 4.0  # farther apart there was an outage
 Belief = tuple[int, float, float]
 """UTC ns, the horizontal speed that was believed then, m/s, and its standard deviation, m/s."""
 
-Driven = tuple[int, float]
-"""UTC ns, and the horizontal speed at that time, m/s."""
+Driven = tuple[int, float, float]
+"""UTC ns, and the velocity east and north at that time, m/s."""
+
+Change = tuple[float, float]
+"""The mean acceleration along and to the left from one such velocity to one 2 s later, m/s^2."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,15 +48,19 @@ class Surprise:
         beliefs: not checked yet, oldest first.
         speed_std_m_s: of the newest of all; infinite while the speed is not known.
         surprised_ns: when the newest wrong one was held; None when none was.
-        driven: what the speed was at the times of beliefs that have been checked, oldest first.
-        unevenness_m_s2: root mean square of its change from each to the one 2 s later, as an acceleration.
+        driven: what the velocity was at the times of beliefs that have been checked, oldest first.
+        changes: up to each of them that has one 2 s before it, oldest first; None over an outage.
+        unevenness_m_s2: root mean square of the accelerations along.
+        winding_m_s2: likewise, of how the acceleration to the left differs from the one 2 s before.
     """
 
     beliefs: tuple[Belief, ...] = ()
     speed_std_m_s: float = math.inf
     surprised_ns: int | None = None
     driven: tuple[Driven, ...] = ()
+    changes: tuple[Change | None, ...] = ()
     unevenness_m_s2: float = 0.0
+    winding_m_s2: float = 0.0
 
 
 def looked_back(surprise: Surprise, estimator: Estimator, memory: object, t_ns: int, config: DescentConfig) -> Surprise:
@@ -78,7 +86,8 @@ def looked_back(surprise: Surprise, estimator: Estimator, memory: object, t_ns: 
         if off_m_s > max(config.surprise_speed_m_s, _SURPRISE_STDS * std_m_s):
             surprise = replace(surprise, surprised_ns=max(then_ns, surprise.surprised_ns or then_ns))
         if _std_m_s(known) < _SURE_STD_MAX_M_S:
-            surprise = _with_driven(surprise, (then_ns, _speed_m_s(known)))
+            east_m_s, north_m_s = known.velocity_enu_m_s[:2].tolist()
+            surprise = _with_driven(surprise, (then_ns, east_m_s, north_m_s))
     if surprise.beliefs and t_ns - surprise.beliefs[-1][0] < _BELIEF_PERIOD_NS:
         return surprise
     now = estimator.estimate(memory, t_ns)
@@ -100,19 +109,50 @@ def drives_unevenly(surprise: Surprise, fix_age_s: float | None, config: Descent
 
     Over fresh data it does not matter.
     """
-    is_late = fix_age_s is not None and fix_age_s > config.uneven_age_s
-    return is_late and surprise.unevenness_m_s2 > config.uneven_acceleration_m_s2
+    return _is_late(fix_age_s, config) and surprise.unevenness_m_s2 > config.uneven_acceleration_m_s2
+
+
+def winds(surprise: Surprise, fix_age_s: float | None, config: DescentConfig) -> bool:
+    """Return whether the road of such a vehicle will have bent by when that is told, likewise."""
+    return _is_late(fix_age_s, config) and surprise.winding_m_s2 > config.winding_acceleration_m_s2
+
+
+def _is_late(fix_age_s: float | None, config: DescentConfig) -> bool:
+    return fix_age_s is not None and fix_age_s > config.uneven_age_s
 
 
 def _with_driven(surprise: Surprise, newest: Driven) -> Surprise:
     driven = (*surprise.driven, newest)[-_DRIVEN_KEPT:]
-    squares = [
-        ((speed_m_s - before_m_s) / passed_s) ** 2
-        for (before_ns, before_m_s), (t_ns, speed_m_s) in zip(driven, driven[_APART:], strict=False)
-        if (passed_s := (t_ns - before_ns) * 1e-9) < _APART_MAX_S
+    if len(driven) <= _APART:
+        return replace(surprise, driven=driven)
+    changes = (*surprise.changes, _change_m_s2(driven[-1 - _APART], newest))[_APART - _DRIVEN_KEPT :]
+    along_m_s2 = [change[0] for change in changes if change is not None]
+    bends_m_s2 = [
+        later[1] - before[1]
+        for before, later in zip(changes, changes[_APART:], strict=False)
+        if before is not None and later is not None
     ]
-    unevenness_m_s2 = math.sqrt(sum(squares) / len(squares)) if squares else 0.0
-    return replace(surprise, driven=driven, unevenness_m_s2=unevenness_m_s2)
+    return replace(
+        surprise,
+        driven=driven,
+        changes=changes,
+        unevenness_m_s2=_root_mean_square(along_m_s2),
+        winding_m_s2=_root_mean_square(bends_m_s2),
+    )
+
+
+def _change_m_s2(before: Driven, then: Driven) -> Change | None:
+    passed_s = (then[0] - before[0]) * 1e-9
+    if passed_s > _APART_MAX_S:
+        return None
+    speed_m_s, later_m_s = math.hypot(*before[1:]), math.hypot(*then[1:])
+    turned_rad = math.atan2(before[1] * then[2] - before[2] * then[1], before[1] * then[1] + before[2] * then[2])
+    # By the lower speed: a vehicle that departs has had no direction before.
+    return (later_m_s - speed_m_s) / passed_s, min(speed_m_s, later_m_s) * turned_rad / passed_s
+
+
+def _root_mean_square(values: list[float]) -> float:
+    return math.sqrt(sum(value * value for value in values) / len(values)) if values else 0.0
 
 
 def _speed_m_s(estimate: VehicleEstimate) -> float:

@@ -8,6 +8,7 @@ from companion.autopilots.driver import AutopilotView
 from companion.config import CompanionConfig
 from companion.landing.conditions import update_held
 from companion.landing.decisions import Decision, Progress, decide
+from companion.landing.silence import HEARD
 from companion.pad import HEADING_UNKNOWN, PadPath
 from companion.phases import Phase
 from companion.planning.guidance import ReferenceState
@@ -90,6 +91,10 @@ def situation(height_m: float = 1.5, beside_m: float = 0.0, pad: PadPath | None 
         tracking_error_m=0.05,
         waiting_point_enu_m=np.array([0.0, 0.0, 5.0]),
     )
+
+
+LONG_HEARD = {HEARD.reason: NOW_NS - round(1e9 * CONFIG.abort.heard_hold_s)}
+"""Vehicle and autopilot, for as long as another approach asks for."""
 
 
 def progress(phase: Phase, in_phase_s: float = 1.0) -> Progress:

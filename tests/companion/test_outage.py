@@ -5,9 +5,11 @@ from dataclasses import replace
 
 import pytest
 
+from companion.landing.conditions import update_held
 from companion.landing.decisions import decide
 from companion.phases import Event, Phase
-from tests.companion.facts import CONFIG, progress, situation
+from companion.situation import approach
+from tests.companion.facts import CONFIG, LONG_HEARD, NOW_NS, TICK_NS, drone_at, pad_at, progress, situation
 from tests.companion.world import Flight, reached
 
 GOES_ON = "heard again: the same approach goes on"
@@ -76,7 +78,7 @@ def test_chase_that_outages_break_off_again_and_again_takes_no_longer_than_any_o
 
 def test_interrupted_approach_goes_on_without_a_retry_left() -> None:
     last = replace(progress(Phase.ABORT), retries=CONFIG.abort.retries_max, is_interrupted=True)
-    assert decide(last, situation(CONFIG.abort.height_m), {}, CONFIG) == (Event.CLEAR, GOES_ON)
+    assert decide(last, situation(CONFIG.abort.height_m), LONG_HEARD, CONFIG) == (Event.CLEAR, GOES_ON)
 
 
 def test_interrupted_approach_ends_where_the_operator_or_the_vehicle_ends_it() -> None:
@@ -86,3 +88,34 @@ def test_interrupted_approach_ends_where_the_operator_or_the_vehicle_ends_it() -
     ended = decide(replace(interrupted, may_retry=False), high, {}, CONFIG)
     assert ended == (Event.CLEAR_TO_HOLD, "broken off by the operator")
     assert decide(interrupted, silent, {}, CONFIG) == (Event.CLEAR_TO_HOLD, "no vehicle data")
+
+
+HIGH = situation(CONFIG.abort.height_m)
+SILENT = {
+    "no vehicle data": replace(HIGH, fix_age_s=CONFIG.abort.fix_age_max_s + 0.1),
+    "own position too old": replace(HIGH, drone=None),
+    "own attitude too old": replace(
+        HIGH, drone=replace(drone_at(CONFIG.abort.height_m, pad=pad_at()), attitude_known=False)
+    ),
+}
+
+
+@pytest.mark.parametrize("silence", SILENT)
+def test_climb_waits_for_who_is_silent_as_long_as_it_may(silence: str) -> None:
+    facts, limit_s = SILENT[silence], CONFIG.abort.time_limit_s
+    assert decide(progress(Phase.ABORT, limit_s - 0.1), facts, {}, CONFIG) is None
+    assert decide(progress(Phase.ABORT, limit_s + 0.1), facts, {}, CONFIG) == (Event.CLEAR_TO_HOLD, silence)
+
+
+@pytest.mark.parametrize("silence", SILENT)
+def test_next_approach_begins_when_all_have_been_heard_without_a_break(silence: str) -> None:
+    t_ns = NOW_NS
+    held: dict[str, int] = {}
+    break_ns, hold_ns = NOW_NS + 5 * TICK_NS, round(1e9 * CONFIG.abort.heard_hold_s)
+    while True:
+        facts = replace(SILENT[silence] if t_ns == break_ns else HIGH, t_ns=t_ns)
+        held = update_held(held, Phase.ABORT, facts, approach(facts), CONFIG)
+        if decide(progress(Phase.ABORT), facts, held, CONFIG) is not None:
+            break
+        t_ns += TICK_NS
+    assert t_ns == break_ns + TICK_NS + hold_ns

@@ -27,6 +27,7 @@ from companion.situation import Situation, approach
 from link.messages import Vector3
 from tests.companion.facts import (
     CONFIG,
+    LONG_HEARD,
     NOW_NS,
     TICK_NS,
     braking_pad,
@@ -345,10 +346,10 @@ def test_restart_is_not_said_to_be_the_pilots() -> None:
 def test_retries_are_counted_down_to_a_hold() -> None:
     high = situation(CONFIG.abort.height_m)
     for retries in range(CONFIG.abort.retries_max):
-        decision = decide(replace(progress(Phase.ABORT), retries=retries), high, {}, CONFIG)
+        decision = decide(replace(progress(Phase.ABORT), retries=retries), high, LONG_HEARD, CONFIG)
         assert decision == (Event.CLEAR, f"retry {retries + 1} of {CONFIG.abort.retries_max}")
     last = replace(progress(Phase.ABORT), retries=CONFIG.abort.retries_max)
-    assert decide(last, high, {}, CONFIG) == (Event.CLEAR_TO_HOLD, "no retry left")
+    assert decide(last, high, LONG_HEARD, CONFIG) == (Event.CLEAR_TO_HOLD, "no retry left")
 
 
 def test_bounce_is_seen_above_its_height_only() -> None:

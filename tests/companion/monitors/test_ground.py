@@ -41,6 +41,13 @@ def test_height_that_is_told_vaguely_may_be_farther_off() -> None:
     assert is_road_elsewhere(False, Phase.WAITING, near(30.0, 10.0, vague), CONFIG)
 
 
+@pytest.mark.parametrize(("phase", "is_known"), [(Phase.ALIGN, False), (Phase.ABORT, False), (Phase.IDLE, True)])
+def test_ground_is_not_known_after_an_outage_in_flight(phase: Phase, *, is_known: bool) -> None:
+    silent = replace(situation(), drone=None)
+    assert (ground_enu_m(PAD_ENU_M, phase, silent) is not None) is is_known
+    assert ground_enu_m(PAD_ENU_M, phase, situation()) is not None
+
+
 def test_in_flight_it_is_not_forgotten_of_a_vehicle_that_leaves() -> None:
     far = near(3.3, 28.0)
     assert not is_road_elsewhere(False, Phase.WAITING, far, CONFIG)

@@ -11,7 +11,7 @@ from companion.config import CompanionConfig
 from companion.data import VehicleEstimate
 from companion.estimation.config import EstimatorKind
 from companion.landing.waiting import waits_at_m
-from companion.monitors.surprise import Surprise, drives_unevenly, looked_back, may_surprise
+from companion.monitors.surprise import Surprise, drives_unevenly, looked_back, may_surprise, winds
 from companion.phases import Phase
 from companion.shifts import at_other_time
 from companion.step_data import StepMemory
@@ -23,6 +23,7 @@ from tests.companion.estimation.driving import (
     Sensors,
     brake,
     circle,
+    figure_eight,
     random_drive,
     sense,
     straight,
@@ -77,6 +78,27 @@ def test_driver_who_changes_speed_time_and_again_is_told_from_an_even_one(
     assert drives_unevenly(found, LATE.delay_s, DESCENT) is uneven
     assert not drives_unevenly(found, DESCENT.uneven_age_s, DESCENT)
     assert not drives_unevenly(found, None, DESCENT)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize(
+    ("truth", "winding"),
+    [
+        (straight(7.0), False),
+        (circle(8.0), False),
+        (figure_eight(4.17), False),
+        (figure_eight(7.0), True),
+        (random_drive(1), False),
+    ],
+    ids=["straight", "circle", "slow bends", "fast bends", "uneven"],
+)
+def test_road_that_bends_hard_one_way_and_the_other_is_told_from_a_circle(
+    truth: Drive, seed: int, *, winding: bool
+) -> None:
+    found = after(truth, LATE, seed, 18.0)
+    assert winds(found, LATE.delay_s, DESCENT) is winding
+    assert not winds(found, DESCENT.uneven_age_s, DESCENT)
+    assert not winds(found, None, DESCENT)
 
 
 def test_uneven_driving_is_told_from_the_last_seconds_only() -> None:
@@ -169,12 +191,13 @@ def test_surprise_outlasts_a_clock_that_is_set() -> None:
         beliefs=((NOW_NS, 5.0, 0.1),),
         speed_std_m_s=0.1,
         surprised_ns=NOW_NS,
-        driven=((NOW_NS, 5.0),),
+        driven=((NOW_NS, 3.0, 4.0),),
+        changes=((0.5, 0.0),),
         unevenness_m_s2=0.5,
     )
     by_ns = 7_000_000_000
     assert at_other_time(StepMemory(surprise=surprise), by_ns).surprise == replace(
-        surprise, beliefs=(), driven=(), surprised_ns=NOW_NS + by_ns
+        surprise, beliefs=(), driven=(), changes=(), surprised_ns=NOW_NS + by_ns
     )
     assert at_other_time(StepMemory(), by_ns).surprise == Surprise()
 
