@@ -6,11 +6,11 @@ import numpy as np
 
 from companion.autopilots.driver import AutopilotView, DriverMemory
 from companion.data import Array
-from companion.landing.reference import Tracking
 from companion.monitors.contradiction import Contradictions
 from companion.monitors.fix_stamps import FixStamps
 from companion.monitors.surprise import Surprise
 from companion.monitors.sway import Sway
+from companion.reference import Tracking
 from companion.step_data import StepMemory
 
 

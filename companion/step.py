@@ -8,7 +8,6 @@ from companion.config import CompanionConfig
 from companion.data import Forecast, OwnState
 from companion.landing.conditions import HELD_UP
 from companion.landing.flying import fly, has_free_place, setpoint
-from companion.landing.reference import compare
 from companion.landing.status import landing_status
 from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.landing.timed import holds
@@ -23,6 +22,7 @@ from companion.monitors.surprise import looked_back
 from companion.pad import PadPath, pad_path
 from companion.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
 from companion.planning.requests import are_finite
+from companion.reference import compare
 from companion.shifts import in_present_frame
 from companion.situation import Situation, drone_now, range_carried_m, range_height_m
 from companion.step_data import StepInputs, StepMemory, StepOutputs, System

@@ -10,7 +10,6 @@ from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, Autopilo
 from companion.config import CompanionConfig
 from companion.data import Array, FlightLimits, Measurement, OwnState, Setpoint
 from companion.estimation.estimator import Estimator
-from companion.landing.reference import Tracking
 from companion.monitors.contradiction import Contradictions
 from companion.monitors.course import CourseWatch
 from companion.monitors.fix_stamps import FixStamps
@@ -18,6 +17,7 @@ from companion.monitors.surprise import Surprise
 from companion.monitors.sway import Sway
 from companion.phases import Phase
 from companion.planning.guidance import Guidance, PlanResult, ReferenceState
+from companion.reference import Tracking
 from link.messages import Command, CommandReply, LandingStatus, PadGeometry, Vector3
 
 

@@ -9,7 +9,15 @@ from companion.config import CompanionConfig
 from companion.data import Setpoint
 from companion.landing.conditions import CONTACT, DISPUTED_CONTACT
 from companion.landing.levelling import limits_now
-from companion.landing.reference import (
+from companion.landing.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
+from companion.landing.transitions import BRAKING_M_S2
+from companion.landing.waiting import waits_at_m
+from companion.monitors.sway import felt
+from companion.pad import PadPath
+from companion.pad_reach import over_pad_radius_m
+from companion.phases import FLYING_PHASES, LANDING_PHASES, Phase
+from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
+from companion.reference import (
     Tracking,
     by_velocity,
     carried,
@@ -19,14 +27,6 @@ from companion.landing.reference import (
     remember,
     setpoint_at,
 )
-from companion.landing.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
-from companion.landing.transitions import BRAKING_M_S2
-from companion.landing.waiting import waits_at_m
-from companion.monitors.sway import felt
-from companion.pad import PadPath
-from companion.pad_reach import over_pad_radius_m
-from companion.phases import FLYING_PHASES, LANDING_PHASES, Phase
-from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
 from companion.situation import Situation, approach
 from companion.step_data import StepInputs, StepMemory, System
 from link.frames import wrap_angle

@@ -13,12 +13,12 @@ from companion.landing.conditions import (
 )
 from companion.landing.decisions import Progress, decide
 from companion.landing.feasibility import OBSTACLE_TESTS, obstacle
-from companion.landing.reference import Tracking
 from companion.landing.silence import SILENCES
 from companion.landing.targets import stopping_point
 from companion.landing.waiting import waited_s, with_wait_counted
 from companion.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
 from companion.planning.guidance import ReferenceState
+from companion.reference import Tracking
 from companion.situation import Situation, approach
 from companion.step_data import StepInputs, StepMemory
 from link.messages import Command, CommandReply

@@ -35,7 +35,7 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
             "companion.planning.qp",
             "companion.planning.mpc_report",
             "companion.planning.pn",
-            "companion.landing.reference",
+            "companion.reference",
             "companion.landing.targets",
         ),
     ),

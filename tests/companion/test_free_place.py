@@ -9,9 +9,9 @@ from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.driver import Driver
 from companion.autopilots.px4 import Px4Driver
 from companion.landing.flying import has_free_place, setpoint
-from companion.landing.reference import Tracking
 from companion.phases import Phase
 from companion.planning.guidance import ReferenceState
+from companion.reference import Tracking
 from companion.step_data import StepInputs, StepMemory
 from tests.companion.facts import CONFIG, NOW_NS, PAD_ENU_M
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from companion.data import Array, OwnState
-from companion.landing.reference import (
+from companion.planning.guidance import ReferenceState, Trajectory
+from companion.reference import (
     Tracking,
     by_velocity,
     carried,
@@ -17,7 +18,6 @@ from companion.landing.reference import (
     remember,
     setpoint_at,
 )
-from companion.planning.guidance import ReferenceState, Trajectory
 
 STEP_NS = 20_000_000
 
