@@ -123,6 +123,7 @@ class DescentConfig(StrictModel):
     uneven_acceleration_m_s2: Positive = 0.35
     winding_acceleration_m_s2: Positive = 0.8  # to the side; `figure_eight` shows 0.6 at 5 m/s and 1.2 at 7
     uneven_age_s: NotNegative = 0.3
+    stop_s: NotNegative = 4.0  # likewise, a vehicle that has stopped; `stop_and_go` departs after 3 s
     surprise_hold_s: NotNegative = 20.0  # `stop_and_go` brakes again 15 s later
     surprise_wait_max_s: NotNegative = 60.0  # for which it waits so without its time limit running: three surprises
     stray_hold_s: NotNegative = 3.0  # beside the cone or too fast, but high enough to be aligned again

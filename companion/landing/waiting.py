@@ -3,7 +3,7 @@
 from companion.config import CompanionConfig
 from companion.landing.conditions import must_wait
 from companion.landing.targets import changes_speed
-from companion.monitors.surprise import drives_unevenly, may_surprise, winds
+from companion.monitors.surprise import drives_unevenly, may_depart, may_surprise, winds
 from companion.monitors.sway import sways
 from companion.phases import Phase
 from companion.situation import Approach, Situation, approach, stands
@@ -54,13 +54,19 @@ def waited_s(memory: StepMemory, t_ns: int) -> float:
 
 def _unpredictable(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str | None:
     """Return what a vehicle has lately done that nobody could expect, None of one that stands or drives evenly."""
-    if not _may_wait(memory, situation, config) or stands(situation, config.chase):
+    if not _may_wait(memory, situation, config) or _stays(memory, situation, config):
         return None
     if may_surprise(memory.surprise, situation.t_ns, config.descent):
         return "the vehicle's speed has surprised"
     if drives_unevenly(memory.surprise, situation.fix_age_s, config.descent):
         return "the vehicle's speed changes all the time"
     return "the road winds" if winds(memory.surprise, situation.fix_age_s, config.descent) else None
+
+
+def _stays(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
+    """Return whether the vehicle stands and will do so for a while."""
+    departs = may_depart(memory.surprise, situation.fix_age_s, config.descent)
+    return stands(situation, config.chase) and not departs
 
 
 def _may_wait(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:

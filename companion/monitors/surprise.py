@@ -4,7 +4,8 @@ What is known of a vehicle is as old as its data: 0.1 s over a good link, 0.6 s 
 is a guess, which can be checked once the data of that moment are there. A guess that was off by nearly the speed that a
 contact may have against the pad means that a contact at that moment would have been too fast. A vehicle that has braked
 or started like that will again (a bus, a queue of cars), so it is landed on only while it stands, or has driven for
-some time as expected. Only its speed is asked about. With fresh data even an emergency brake surprises by little.
+some time as expected. Over late data it has to stand for some time, too, or it drives again before that is told. Only
+its speed is asked about. With fresh data even an emergency brake surprises by little.
 
 A driver who changes speed time and again surprises by less each time, but goes on doing so: by 0.3 m/s in the half
 second that such data are late for one of 0.8 m/s^2, of which the tails do the harm. That is told from the velocities
@@ -28,6 +29,7 @@ _KEPT = 30  # beliefs: of 3 s, longer than any data are awaited
 _SURE_STD_MAX_M_S = 0.3  # of a speed that was driven; one fix's is 0.1
 _DRIVEN_KEPT = 150  # speeds: of 15 s, five times as long as an uneven driver keeps an acceleration
 _APART = 20  # speeds that are compared: 2 s, over which a fix's error counts little
+_CREEPS_M_S = 0.5  # over poor data a parked vehicle seems to move by 0.3 m/s now and then
 _APART_MAX_S = 4.0  # farther apart there was an outage
 
 Belief = tuple[int, float, float]
@@ -115,6 +117,19 @@ def drives_unevenly(surprise: Surprise, fix_age_s: float | None, config: Descent
 def winds(surprise: Surprise, fix_age_s: float | None, config: DescentConfig) -> bool:
     """Return whether the road of such a vehicle will have bent by when that is told, likewise."""
     return _is_late(fix_age_s, config) and surprise.winding_m_s2 > config.winding_acceleration_m_s2
+
+
+def may_depart(surprise: Surprise, fix_age_s: float | None, config: DescentConfig) -> bool:
+    """Return whether such a vehicle, which has just stopped, will have departed by when that is told, likewise."""
+    return _is_late(fix_age_s, config) and _stood_s(surprise) < config.stop_s
+
+
+def _stood_s(surprise: Surprise) -> float:
+    """Return for how long the data show the vehicle standing, infinite where they show nothing else."""
+    if not surprise.driven:
+        return math.inf
+    moved_ns = next((t_ns for t_ns, *v_m_s in reversed(surprise.driven) if math.hypot(*v_m_s) > _CREEPS_M_S), None)
+    return math.inf if moved_ns is None else (surprise.driven[-1][0] - moved_ns) * 1e-9
 
 
 def _is_late(fix_age_s: float | None, config: DescentConfig) -> bool:

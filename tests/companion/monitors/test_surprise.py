@@ -11,7 +11,7 @@ from companion.config import CompanionConfig
 from companion.data import VehicleEstimate
 from companion.estimation.config import EstimatorKind
 from companion.landing.waiting import waits_at_m
-from companion.monitors.surprise import Surprise, drives_unevenly, looked_back, may_surprise, winds
+from companion.monitors.surprise import Surprise, drives_unevenly, looked_back, may_depart, may_surprise, winds
 from companion.phases import Phase
 from companion.shifts import at_other_time
 from companion.step_data import StepMemory
@@ -23,6 +23,7 @@ from tests.companion.estimation.driving import (
     Sensors,
     brake,
     circle,
+    drive,
     figure_eight,
     random_drive,
     sense,
@@ -173,6 +174,28 @@ class Told:
             yaw_rad=None,
             yaw_rate_rad_s=None,
         )
+
+
+STOP_S = 10.0 + 10.0 / 6.0
+"""When `brake` stands."""
+
+
+@pytest.mark.parametrize(
+    ("until_s", "departs"),
+    [(9.0, True), (STOP_S + 1.5, True), (STOP_S + 3.5, True), (STOP_S + 6.0, False)],
+    ids=["drives", "has stopped", "stands for as long as a bus", "parks"],
+)
+def test_vehicle_that_has_just_stopped_may_depart_before_that_is_told(until_s: float, *, departs: bool) -> None:
+    stays = drive(20.0, lambda t_s: min(max(10.0 - 6.0 * (t_s - 10.0), 0.0), 10.0), lambda _: 0.0)
+    found = after(stays, LATE, 3, until_s)
+    assert may_depart(found, LATE.delay_s, DESCENT) is departs
+    assert not may_depart(found, DESCENT.uneven_age_s, DESCENT)
+    assert not may_depart(found, None, DESCENT)
+
+
+def test_vehicle_that_has_not_driven_is_parked() -> None:
+    assert not may_depart(Surprise(), LATE.delay_s, DESCENT)
+    assert not may_depart(after(straight(0.0), LATE, 3, 8.0), LATE.delay_s, DESCENT)
 
 
 @pytest.mark.parametrize(
