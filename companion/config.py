@@ -118,6 +118,7 @@ class DescentConfig(StrictModel):
     # So far off, in hindsight, the vehicle's speed may have been believed; S1 asks for 1.0 m/s at contact. Beyond
     # it the descent waits until the vehicle stands, or has driven as expected for as long as from one stop to the next.
     surprise_speed_m_s: Positive = 0.7
+    hard_brake_m_s2: Positive = 1.6  # over 2 s: surprises the drone, however fresh the data; `random` 0.7
     # A vehicle whose speed has changed like that in the last 15 s, and whose data are older than this, is waited above,
     # too: what it does in the last second is known too late. An even driver shows 0.1 m/s^2, `random` 0.7.
     uneven_acceleration_m_s2: Positive = 0.35

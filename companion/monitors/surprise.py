@@ -5,7 +5,8 @@ is a guess, which can be checked once the data of that moment are there. A guess
 contact may have against the pad means that a contact at that moment would have been too fast. A vehicle that has braked
 or started like that will again (a bus, a queue of cars), so it is landed on only while it stands, or has driven for
 some time as expected. Over late data it has to stand for some time, too, or it drives again before that is told. Only
-its speed is asked about. With fresh data even an emergency brake surprises by little.
+its speed is asked about. With fresh data even an emergency brake surprises by little, but it takes the drone half a
+second to brake as hard: a vehicle that is seen to brake hard counts as one that has surprised.
 
 A driver who changes speed time and again surprises by less each time, but goes on doing so: by 0.3 m/s in the half
 second that such data are late for one of 0.8 m/s^2, of which the tails do the harm. That is told from the velocities
@@ -90,6 +91,8 @@ def looked_back(surprise: Surprise, estimator: Estimator, memory: object, t_ns: 
         if _std_m_s(known) < _SURE_STD_MAX_M_S:
             east_m_s, north_m_s = known.velocity_enu_m_s[:2].tolist()
             surprise = _with_driven(surprise, (then_ns, east_m_s, north_m_s))
+            if _brakes_hard(surprise, config):
+                surprise = replace(surprise, surprised_ns=max(then_ns, surprise.surprised_ns or then_ns))
     if surprise.beliefs and t_ns - surprise.beliefs[-1][0] < _BELIEF_PERIOD_NS:
         return surprise
     now = estimator.estimate(memory, t_ns)
@@ -164,6 +167,11 @@ def _change_m_s2(before: Driven, then: Driven) -> Change | None:
     turned_rad = math.atan2(before[1] * then[2] - before[2] * then[1], before[1] * then[1] + before[2] * then[2])
     # By the lower speed: a vehicle that departs has had no direction before.
     return (later_m_s - speed_m_s) / passed_s, min(speed_m_s, later_m_s) * turned_rad / passed_s
+
+
+def _brakes_hard(surprise: Surprise, config: DescentConfig) -> bool:
+    newest = surprise.changes[-1] if surprise.changes else None
+    return newest is not None and newest[0] < -config.hard_brake_m_s2
 
 
 def _root_mean_square(values: list[float]) -> float:

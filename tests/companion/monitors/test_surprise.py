@@ -60,9 +60,18 @@ def test_even_driving_surprises_nobody_however_late_it_is_told(truth: Drive, see
     assert (after(truth, LATE, seed, 15.0).surprised_ns or 0) < now_ns(BEGUN_S)
 
 
-@pytest.mark.parametrize(("sensors", "surprises"), [(LATE, True), (NOMINAL, False)], ids=["late", "nominal"])
-def test_hard_brake_surprises_who_is_told_late(sensors: Sensors, *, surprises: bool) -> None:
-    found = after(brake(), sensors, 3, brake().length_s)
+def braking(by_m_s2: float) -> Drive:
+    """Slows down from 10 to 6 m/s after 8 s."""
+    return drive(16.0, lambda t_s: min(max(10.0 - by_m_s2 * (t_s - 8.0), 6.0), 10.0), lambda _: 0.0)
+
+
+@pytest.mark.parametrize(
+    ("sensors", "truth", "surprises"),
+    [(LATE, brake(), True), (NOMINAL, brake(), True), (NOMINAL, braking(2.0), True), (NOMINAL, braking(1.0), False)],
+    ids=["hard, late", "hard", "as hard as the drone can follow late", "soft"],
+)
+def test_hard_brake_surprises(sensors: Sensors, truth: Drive, *, surprises: bool) -> None:
+    found = after(truth, sensors, 3, truth.length_s)
     assert ((found.surprised_ns or 0) > now_ns(BEGUN_S)) is surprises
 
 
