@@ -86,7 +86,8 @@ def _driver_at_other_time(memory: DriverMemory, by_ns: int) -> DriverMemory:
 
 
 def _surprise_at_other_time(surprise: Surprise, by_ns: int) -> Surprise:
-    return replace(surprise, beliefs=(), driven=(), changes=(), surprised_ns=_put_off(surprise.surprised_ns, by_ns))
+    driving = replace(surprise.driving, driven=(), changes=())
+    return replace(surprise, beliefs=(), driving=driving, surprised_ns=_put_off(surprise.surprised_ns, by_ns))
 
 
 def _tracking_at_other_time(tracking: Tracking, by_ns: int) -> Tracking:

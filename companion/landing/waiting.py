@@ -3,7 +3,8 @@
 from companion.config import CompanionConfig
 from companion.landing.conditions import must_wait
 from companion.landing.targets import changes_speed
-from companion.monitors.surprise import drives_unevenly, may_depart, may_surprise, winds
+from companion.monitors.driving import drives_unevenly, may_depart, winds
+from companion.monitors.surprise import may_surprise
 from companion.monitors.sway import sways
 from companion.phases import Phase
 from companion.situation import Approach, Situation, approach, stands
@@ -58,14 +59,14 @@ def _unpredictable(memory: StepMemory, situation: Situation, config: CompanionCo
         return None
     if may_surprise(memory.surprise, situation.t_ns, config.descent):
         return "the vehicle's speed has surprised"
-    if drives_unevenly(memory.surprise, situation.fix_age_s, config.descent):
+    if drives_unevenly(memory.surprise.driving, situation.fix_age_s, config.descent):
         return "the vehicle's speed changes all the time"
-    return "the road winds" if winds(memory.surprise, situation.fix_age_s, config.descent) else None
+    return "the road winds" if winds(memory.surprise.driving, situation.fix_age_s, config.descent) else None
 
 
 def _stays(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
     """Return whether the vehicle stands and will do so for a while."""
-    departs = may_depart(memory.surprise, situation.fix_age_s, config.descent)
+    departs = may_depart(memory.surprise.driving, situation.fix_age_s, config.descent)
     return stands(situation, config.chase) and not departs
 
 

@@ -7,40 +7,25 @@ or started like that will again (a bus, a queue of cars), so it is landed on onl
 some time as expected. Over late data it has to stand for some time, too, or it drives again before that is told. Only
 its speed is asked about. With fresh data even an emergency brake surprises by little, but it takes the drone half a
 second to brake as hard: a vehicle that is seen to brake hard counts as one that has surprised.
-
-A driver who changes speed time and again surprises by less each time, but goes on doing so: by 0.3 m/s in the half
-second that such data are late for one of 0.8 m/s^2, of which the tails do the harm. That is told from the velocities
-that were driven, long before a belief is found to be wrong. So is a road that bends one way and the other: a curve
-that is known may last, but where the next one begins, with a radius of 16 m at 7 m/s, the vehicle is 1.6 m/s off to the
-side when that is told.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from companion.config import DescentConfig
 from companion.data import VehicleEstimate
 from companion.estimation.estimator import Estimator
+from companion.monitors.driving import Driving, brakes_hard, with_velocity
 from link.records import replace
 
 _BELIEF_PERIOD_NS = 100_000_000
 _KNOWN_STD_MAX_M_S = 1.0  # of a velocity that is a belief: in its first second an estimate knows no acceleration
 _SURPRISE_STDS = 2.5  # less was said to be possible: through an outage of 2 s a belief is off by 1 m/s
 _KEPT = 30  # beliefs: of 3 s, longer than any data are awaited
-_SURE_STD_MAX_M_S = 0.3  # of a speed that was driven; one fix's is 0.1
-_DRIVEN_KEPT = 150  # speeds: of 15 s, five times as long as an uneven driver keeps an acceleration
-_APART = 20  # speeds that are compared: 2 s, over which a fix's error counts little
-_CREEPS_M_S = 0.5  # over poor data a parked vehicle seems to move by 0.3 m/s now and then
-_APART_MAX_S = 4.0  # farther apart there was an outage
+_SURE_STD_MAX_M_S = 0.3  # of a velocity that was driven; one fix's is 0.1
 
 Belief = tuple[int, float, float]
 """UTC ns, the horizontal speed that was believed then, m/s, and its standard deviation, m/s."""
-
-Driven = tuple[int, float, float]
-"""UTC ns, and the velocity east and north at that time, m/s."""
-
-Change = tuple[float, float]
-"""The mean acceleration along and to the left from one such velocity to one 2 s later, m/s^2."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,19 +36,13 @@ class Surprise:
         beliefs: not checked yet, oldest first.
         speed_std_m_s: of the newest of all; infinite while the speed is not known.
         surprised_ns: when the newest wrong one was held; None when none was.
-        driven: what the velocity was at the times of beliefs that have been checked, oldest first.
-        changes: up to each of them that has one 2 s before it, oldest first; None over an outage.
-        unevenness_m_s2: root mean square of the accelerations along.
-        winding_m_s2: likewise, of how the acceleration to the left differs from the one 2 s before.
+        driving: how it has driven up to the times of the beliefs that have been checked.
     """
 
     beliefs: tuple[Belief, ...] = ()
     speed_std_m_s: float = math.inf
     surprised_ns: int | None = None
-    driven: tuple[Driven, ...] = ()
-    changes: tuple[Change | None, ...] = ()
-    unevenness_m_s2: float = 0.0
-    winding_m_s2: float = 0.0
+    driving: Driving = field(default_factory=Driving)
 
 
 def looked_back(surprise: Surprise, estimator: Estimator, memory: object, t_ns: int, config: DescentConfig) -> Surprise:
@@ -86,13 +65,12 @@ def looked_back(surprise: Surprise, estimator: Estimator, memory: object, t_ns: 
         if known is None or not _is_known(known):
             continue
         off_m_s = abs(_speed_m_s(known) - speed_m_s)
-        if off_m_s > max(config.surprise_speed_m_s, _SURPRISE_STDS * std_m_s):
+        is_sure = _std_m_s(known) < _SURE_STD_MAX_M_S
+        if is_sure:
+            surprise = replace(surprise, driving=with_velocity(surprise.driving, then_ns, known.velocity_enu_m_s))
+        is_wrong = off_m_s > max(config.surprise_speed_m_s, _SURPRISE_STDS * std_m_s)
+        if is_wrong or (is_sure and brakes_hard(surprise.driving, config)):
             surprise = replace(surprise, surprised_ns=max(then_ns, surprise.surprised_ns or then_ns))
-        if _std_m_s(known) < _SURE_STD_MAX_M_S:
-            east_m_s, north_m_s = known.velocity_enu_m_s[:2].tolist()
-            surprise = _with_driven(surprise, (then_ns, east_m_s, north_m_s))
-            if _brakes_hard(surprise, config):
-                surprise = replace(surprise, surprised_ns=max(then_ns, surprise.surprised_ns or then_ns))
     if surprise.beliefs and t_ns - surprise.beliefs[-1][0] < _BELIEF_PERIOD_NS:
         return surprise
     now = estimator.estimate(memory, t_ns)
@@ -107,75 +85,6 @@ def may_surprise(surprise: Surprise, t_ns: int, config: DescentConfig) -> bool:
     """Return whether a driving vehicle is to be expected to do at `t_ns` what it has done."""
     since_ns = surprise.surprised_ns
     return since_ns is not None and (t_ns - since_ns) * 1e-9 < config.surprise_hold_s
-
-
-def drives_unevenly(surprise: Surprise, fix_age_s: float | None, config: DescentConfig) -> bool:
-    """Return whether a vehicle, whose newest fix is `fix_age_s` old, will have changed its speed by when that is told.
-
-    Over fresh data it does not matter.
-    """
-    return _is_late(fix_age_s, config) and surprise.unevenness_m_s2 > config.uneven_acceleration_m_s2
-
-
-def winds(surprise: Surprise, fix_age_s: float | None, config: DescentConfig) -> bool:
-    """Return whether the road of such a vehicle will have bent by when that is told, likewise."""
-    return _is_late(fix_age_s, config) and surprise.winding_m_s2 > config.winding_acceleration_m_s2
-
-
-def may_depart(surprise: Surprise, fix_age_s: float | None, config: DescentConfig) -> bool:
-    """Return whether such a vehicle, which has just stopped, will have departed by when that is told, likewise."""
-    return _is_late(fix_age_s, config) and _stood_s(surprise) < config.stop_s
-
-
-def _stood_s(surprise: Surprise) -> float:
-    """Return for how long the data show the vehicle standing, infinite where they show nothing else."""
-    if not surprise.driven:
-        return math.inf
-    moved_ns = next((t_ns for t_ns, *v_m_s in reversed(surprise.driven) if math.hypot(*v_m_s) > _CREEPS_M_S), None)
-    return math.inf if moved_ns is None else (surprise.driven[-1][0] - moved_ns) * 1e-9
-
-
-def _is_late(fix_age_s: float | None, config: DescentConfig) -> bool:
-    return fix_age_s is not None and fix_age_s > config.uneven_age_s
-
-
-def _with_driven(surprise: Surprise, newest: Driven) -> Surprise:
-    driven = (*surprise.driven, newest)[-_DRIVEN_KEPT:]
-    if len(driven) <= _APART:
-        return replace(surprise, driven=driven)
-    changes = (*surprise.changes, _change_m_s2(driven[-1 - _APART], newest))[_APART - _DRIVEN_KEPT :]
-    along_m_s2 = [change[0] for change in changes if change is not None]
-    bends_m_s2 = [
-        later[1] - before[1]
-        for before, later in zip(changes, changes[_APART:], strict=False)
-        if before is not None and later is not None
-    ]
-    return replace(
-        surprise,
-        driven=driven,
-        changes=changes,
-        unevenness_m_s2=_root_mean_square(along_m_s2),
-        winding_m_s2=_root_mean_square(bends_m_s2),
-    )
-
-
-def _change_m_s2(before: Driven, then: Driven) -> Change | None:
-    passed_s = (then[0] - before[0]) * 1e-9
-    if passed_s > _APART_MAX_S:
-        return None
-    speed_m_s, later_m_s = math.hypot(*before[1:]), math.hypot(*then[1:])
-    turned_rad = math.atan2(before[1] * then[2] - before[2] * then[1], before[1] * then[1] + before[2] * then[2])
-    # By the lower speed: a vehicle that departs has had no direction before.
-    return (later_m_s - speed_m_s) / passed_s, min(speed_m_s, later_m_s) * turned_rad / passed_s
-
-
-def _brakes_hard(surprise: Surprise, config: DescentConfig) -> bool:
-    newest = surprise.changes[-1] if surprise.changes else None
-    return newest is not None and newest[0] < -config.hard_brake_m_s2
-
-
-def _root_mean_square(values: list[float]) -> float:
-    return math.sqrt(sum(value * value for value in values) / len(values)) if values else 0.0
 
 
 def _speed_m_s(estimate: VehicleEstimate) -> float:

@@ -8,6 +8,7 @@ from companion.landing.decisions import decide
 from companion.landing.status import landing_status
 from companion.landing.transitions import transitions
 from companion.landing.waiting import waited_s, waits_at_m, why_held_up
+from companion.monitors.driving import Driving
 from companion.monitors.surprise import Surprise
 from companion.phases import Event, Phase
 from companion.shifts import at_other_time
@@ -154,7 +155,7 @@ def test_straying_is_unsafe_once_it_has_been_aligned_again_for_so_often(strays: 
 def test_descent_waits_above_an_uneven_driver_of_whom_is_told_late(
     age_s: float, velocity: Vector3, *, waits: bool
 ) -> None:
-    memory = StepMemory(phase=Phase.DESCEND, surprise=Surprise(unevenness_m_s2=0.7))
+    memory = StepMemory(phase=Phase.DESCEND, surprise=Surprise(driving=Driving(unevenness_m_s2=0.7)))
     here = replace(situation(WAITING_M + 0.05, pad=pad_at(velocity)), fix_age_s=age_s)
     assert waits_at_m(memory, here, CONFIG) == (WAITING_M if waits else None)
     assert why_held_up(memory, here, CONFIG) == ("the vehicle's speed changes all the time" if waits else None)

@@ -11,7 +11,8 @@ from companion.config import CompanionConfig
 from companion.data import VehicleEstimate
 from companion.estimation.config import EstimatorKind
 from companion.landing.waiting import waits_at_m
-from companion.monitors.surprise import Surprise, drives_unevenly, looked_back, may_depart, may_surprise, winds
+from companion.monitors.driving import Driving, drives_unevenly, may_depart, winds
+from companion.monitors.surprise import Surprise, looked_back, may_surprise
 from companion.phases import Phase
 from companion.shifts import at_other_time
 from companion.step_data import StepMemory
@@ -85,9 +86,9 @@ def test_driver_who_changes_speed_time_and_again_is_told_from_an_even_one(
     truth: Drive, seed: int, *, uneven: bool
 ) -> None:
     found = after(truth, LATE, seed, 18.0)
-    assert drives_unevenly(found, LATE.delay_s, DESCENT) is uneven
-    assert not drives_unevenly(found, DESCENT.uneven_age_s, DESCENT)
-    assert not drives_unevenly(found, None, DESCENT)
+    assert drives_unevenly(found.driving, LATE.delay_s, DESCENT) is uneven
+    assert not drives_unevenly(found.driving, DESCENT.uneven_age_s, DESCENT)
+    assert not drives_unevenly(found.driving, None, DESCENT)
 
 
 @pytest.mark.parametrize("seed", [1, 2])
@@ -106,9 +107,9 @@ def test_road_that_bends_hard_one_way_and_the_other_is_told_from_a_circle(
     truth: Drive, seed: int, *, winding: bool
 ) -> None:
     found = after(truth, LATE, seed, 18.0)
-    assert winds(found, LATE.delay_s, DESCENT) is winding
-    assert not winds(found, DESCENT.uneven_age_s, DESCENT)
-    assert not winds(found, None, DESCENT)
+    assert winds(found.driving, LATE.delay_s, DESCENT) is winding
+    assert not winds(found.driving, DESCENT.uneven_age_s, DESCENT)
+    assert not winds(found.driving, None, DESCENT)
 
 
 def test_uneven_driving_is_told_from_the_last_seconds_only() -> None:
@@ -119,8 +120,8 @@ def test_uneven_driving_is_told_from_the_last_seconds_only() -> None:
         surprise = looked_back(surprise, told, t_ns, t_ns, DESCENT)
         t_ns += 100_000_000
         if i == 199:
-            assert surprise.unevenness_m_s2 == pytest.approx(0.5, rel=0.05)
-    assert surprise.unevenness_m_s2 == 0.0
+            assert surprise.driving.unevenness_m_s2 == pytest.approx(0.5, rel=0.05)
+    assert surprise.driving.unevenness_m_s2 == 0.0
 
 
 def test_speeds_before_and_after_an_outage_are_not_compared() -> None:
@@ -131,8 +132,8 @@ def test_speeds_before_and_after_an_outage_are_not_compared() -> None:
             surprise = looked_back(surprise, told, t_ns, t_ns, DESCENT)
             t_ns += 100_000_000
         t_ns, surprise = t_ns + 10_000_000_000, replace(surprise, beliefs=())
-    assert len(surprise.driven) == 42
-    assert surprise.unevenness_m_s2 == 0.0
+    assert len(surprise.driving.driven) == 42
+    assert surprise.driving.unevenness_m_s2 == 0.0
 
 
 @pytest.mark.parametrize(
@@ -197,14 +198,14 @@ STOP_S = 10.0 + 10.0 / 6.0
 def test_vehicle_that_has_just_stopped_may_depart_before_that_is_told(until_s: float, *, departs: bool) -> None:
     stays = drive(20.0, lambda t_s: min(max(10.0 - 6.0 * (t_s - 10.0), 0.0), 10.0), lambda _: 0.0)
     found = after(stays, LATE, 3, until_s)
-    assert may_depart(found, LATE.delay_s, DESCENT) is departs
-    assert not may_depart(found, DESCENT.uneven_age_s, DESCENT)
-    assert not may_depart(found, None, DESCENT)
+    assert may_depart(found.driving, LATE.delay_s, DESCENT) is departs
+    assert not may_depart(found.driving, DESCENT.uneven_age_s, DESCENT)
+    assert not may_depart(found.driving, None, DESCENT)
 
 
 def test_vehicle_that_has_not_driven_is_parked() -> None:
-    assert not may_depart(Surprise(), LATE.delay_s, DESCENT)
-    assert not may_depart(after(straight(0.0), LATE, 3, 8.0), LATE.delay_s, DESCENT)
+    assert not may_depart(Driving(), LATE.delay_s, DESCENT)
+    assert not may_depart(after(straight(0.0), LATE, 3, 8.0).driving, LATE.delay_s, DESCENT)
 
 
 @pytest.mark.parametrize(
@@ -223,13 +224,11 @@ def test_surprise_outlasts_a_clock_that_is_set() -> None:
         beliefs=((NOW_NS, 5.0, 0.1),),
         speed_std_m_s=0.1,
         surprised_ns=NOW_NS,
-        driven=((NOW_NS, 3.0, 4.0),),
-        changes=((0.5, 0.0),),
-        unevenness_m_s2=0.5,
+        driving=Driving(driven=((NOW_NS, 3.0, 4.0),), changes=((0.5, 0.0),), unevenness_m_s2=0.5),
     )
     by_ns = 7_000_000_000
     assert at_other_time(StepMemory(surprise=surprise), by_ns).surprise == replace(
-        surprise, beliefs=(), driven=(), changes=(), surprised_ns=NOW_NS + by_ns
+        surprise, beliefs=(), driving=Driving(unevenness_m_s2=0.5), surprised_ns=NOW_NS + by_ns
     )
     assert at_other_time(StepMemory(), by_ns).surprise == Surprise()
 
