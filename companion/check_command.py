@@ -113,7 +113,7 @@ class _Question:
 def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
     from companion.check.assessment import assessed
 
-    vehicle = session.listen(asked.duration_s, asked.zenoh, asked.keys)
+    vehicle = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.chase)
     return assessed(session.reader.facts(), vehicle, asked.speed_m_s, asked.config)
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from companion.check.observation import VehicleFacts
 from companion.check.reading import Reader
 from companion.check.vehicle_reading import VehicleReader
+from companion.config import ChaseConfig
 from companion.pad_question import PadQuestion
 from link.errors import UserError
 from link.keys import Keys
@@ -76,13 +77,13 @@ class CheckSession:
                 raise UserError(f"no heartbeat of an autopilot within {timeout_s:g} s on {self._device}: {advice}")
             self.turn()
 
-    def listen(self, duration_s: float, zenoh: ZenohSession, keys: Keys) -> VehicleFacts:
+    def listen(self, duration_s: float, zenoh: ZenohSession, keys: Keys, config: ChaseConfig) -> VehicleFacts:
         """Count messages for `duration_s`, read all parameters, and return what the vehicle told meanwhile.
 
         A vehicle that is heard and has not answered for its pad is listened to for some seconds more.
         """
         self.reader.count_anew(time.time_ns())
-        vehicle = VehicleReader(keys.fix)
+        vehicle = VehicleReader(keys.fix, config)
         inboxes = Inboxes(
             fix=zenoh.subscribe(keys.fix),
             velocity=zenoh.subscribe(keys.fix_velocity),

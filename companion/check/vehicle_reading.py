@@ -12,7 +12,6 @@ from link.frames import yaw_of
 from link.messages import Fix, FixVelocity, VehicleImu
 from link.payload_checks import PayloadError
 
-_COURSE_SPEED_MIN_M_S = ChaseConfig().course_speed_min_m_s
 _HEADING_AGE_MAX_NS = 300_000_000
 _COMPARED_MIN = 5
 
@@ -22,10 +21,12 @@ class VehicleReader:
 
     Args:
         key: of its fixes.
+        config: from which speed on it has a course.
     """
 
-    def __init__(self, key: str) -> None:
+    def __init__(self, key: str, config: ChaseConfig) -> None:
         self._key = key
+        self._course_speed_min_m_s = config.course_speed_min_m_s
         self._arrived_ns: list[int] = []
         self._ages_s: list[float] = []
         self._std_m: float | None = None
@@ -56,7 +57,7 @@ class VehicleReader:
         except PayloadError:
             return
         east_m_s, north_m_s, _ = message.velocity_enu_m_s
-        if self._heading is None or math.hypot(east_m_s, north_m_s) < _COURSE_SPEED_MIN_M_S:
+        if self._heading is None or math.hypot(east_m_s, north_m_s) < self._course_speed_min_m_s:
             return
         heard_ns, yaw_rad = self._heading
         if abs(message.t_ns - heard_ns) <= _HEADING_AGE_MAX_NS:

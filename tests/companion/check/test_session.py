@@ -10,6 +10,7 @@ from companion.check import session as session_module
 from companion.check.observation import VehicleFacts
 from companion.check.reading import Reader
 from companion.check.session import CheckSession, open_check
+from companion.config import ChaseConfig
 from link import cdr, json_payloads
 from link.errors import UserError
 from link.inbox import Inbox, Sample
@@ -93,7 +94,7 @@ def listened(monkeypatch: pytest.MonkeyPatch, world: World, duration_s: float) -
     monkeypatch.setattr(Reader, "listened_s", property(lambda _: world.now_s - began_s))
     anything: Any = world
     session = CheckSession(Reader(MavlinkSession(1, target_system_id=1)), anything, "test")
-    return session.listen(duration_s, anything, KEYS), world.now_s - began_s
+    return session.listen(duration_s, anything, KEYS, ChaseConfig()), world.now_s - began_s
 
 
 def test_pad_is_asked_for_until_the_vehicle_has_heard_the_question(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from companion.check.vehicle_reading import VehicleReader
+from companion.config import ChaseConfig
 from companion.pad_question import PadQuestion
 from link import cdr
 from link.frames import quaternion_from_yaw
@@ -13,6 +14,7 @@ from link.messages import FixVelocity, VehicleImu
 
 START_NS = 1_795_000_000_000_000_000
 PERIOD_NS = 100_000_000
+CONFIG = ChaseConfig()
 
 
 class Nobody:
@@ -25,8 +27,10 @@ class Nobody:
 NOT_ASKED = PadQuestion(Nobody(), "decklander/vehicle/pad")
 
 
-def _after_a_drive(course_rad: float, off_rad: float, speed_m_s: float, imu_late_ns: int = 0) -> VehicleReader:
-    reader = VehicleReader("decklander/vehicle/fix")
+def _after_a_drive(
+    course_rad: float, off_rad: float, speed_m_s: float, imu_late_ns: int = 0, config: ChaseConfig = CONFIG
+) -> VehicleReader:
+    reader = VehicleReader("decklander/vehicle/fix", config)
     for k in range(10):
         t_ns = START_NS + k * PERIOD_NS
         velocity = (speed_m_s * math.cos(course_rad), speed_m_s * math.sin(course_rad), 0.0)
@@ -49,8 +53,14 @@ def test_nothing_is_compared_at_rest_or_long_after() -> None:
     assert _after_a_drive(0.3, 1.0, 4.0, imu_late_ns=10**9).facts(NOT_ASKED).heading_off_rad is None
 
 
+def test_course_begins_at_the_speed_that_the_configuration_says() -> None:
+    later = CONFIG.model_copy(update={"course_speed_min_m_s": 5.0})
+    assert _after_a_drive(0.3, 1.0, 4.0, config=later).facts(NOT_ASKED).heading_off_rad is None
+    assert _after_a_drive(0.3, 1.0, 6.0, config=later).facts(NOT_ASKED).heading_off_rad is not None
+
+
 def test_what_cannot_be_read_is_left_out() -> None:
-    reader = VehicleReader("decklander/vehicle/fix")
+    reader = VehicleReader("decklander/vehicle/fix", CONFIG)
     reader.imu(b"no imu")
     reader.velocity(b"no velocity")
     assert reader.facts(NOT_ASKED).heading_off_rad is None
