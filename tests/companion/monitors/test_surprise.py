@@ -4,55 +4,34 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
 import pytest
 
 from companion.config import CompanionConfig
 from companion.data import VehicleEstimate
 from companion.estimation.config import EstimatorKind
 from companion.landing.waiting import waits_at_m
-from companion.monitors.driving import Driving, drives_unevenly, may_depart, winds
+from companion.monitors.driving import Driving
 from companion.monitors.surprise import Surprise, looked_back, may_surprise
 from companion.phases import Phase
 from companion.shifts import at_other_time
 from companion.step_data import StepMemory
 from link.messages import Vector3
 from tests.companion.estimation.driving import (
-    DEGRADED,
     NOMINAL,
     Drive,
     Sensors,
     brake,
     circle,
     drive,
-    figure_eight,
-    random_drive,
-    sense,
     straight,
 )
 from tests.companion.estimation.rides import estimator, now_ns
 from tests.companion.facts import NOW_NS, drone_at, pad_at, situation
+from tests.companion.monitors.hindsight import DESCENT, LATE, Told, after
 from tests.companion.world import PAD_HEIGHT_M, Flight, KnownVehicle
 
 CONFIG = CompanionConfig()
-DESCENT = CONFIG.descent
-LATE = replace(DEGRADED, delay_s=0.5)
-TICK_S = 0.02
 BEGUN_S = 2.0  # until then an estimate may be surprised by what it has not known yet
-
-
-def after(truth: Drive, sensors: Sensors, seed: int, until_s: float) -> Surprise:
-    """What has been noticed of a drive, asked at 50 Hz, when each measurement has come when it comes."""
-    chosen, waiting = estimator(EstimatorKind.IMM), sense(truth, sensors, seed)[::-1]
-    memory: Any = None
-    surprise = Surprise()
-    for i in range(round(until_s / TICK_S)):
-        batch = []
-        while waiting and waiting[-1][0] <= now_ns(i * TICK_S):
-            batch.append(waiting.pop()[1])
-        memory = chosen.fuse(memory, batch)
-        surprise = looked_back(surprise, chosen, memory, now_ns(i * TICK_S), DESCENT)
-    return surprise
 
 
 @pytest.mark.parametrize("seed", [1, 2])
@@ -74,66 +53,6 @@ def braking(by_m_s2: float) -> Drive:
 def test_hard_brake_surprises(sensors: Sensors, truth: Drive, *, surprises: bool) -> None:
     found = after(truth, sensors, 3, truth.length_s)
     assert ((found.surprised_ns or 0) > now_ns(BEGUN_S)) is surprises
-
-
-@pytest.mark.parametrize("seed", [1, 2])
-@pytest.mark.parametrize(
-    ("truth", "uneven"),
-    [(straight(7.0), False), (circle(5.0), False), (random_drive(1), True), (random_drive(2), True)],
-    ids=["straight", "circle", "uneven", "uneven as well"],
-)
-def test_driver_who_changes_speed_time_and_again_is_told_from_an_even_one(
-    truth: Drive, seed: int, *, uneven: bool
-) -> None:
-    found = after(truth, LATE, seed, 18.0)
-    assert drives_unevenly(found.driving, LATE.delay_s, DESCENT) is uneven
-    assert not drives_unevenly(found.driving, DESCENT.uneven_age_s, DESCENT)
-    assert not drives_unevenly(found.driving, None, DESCENT)
-
-
-@pytest.mark.parametrize("seed", [1, 2])
-@pytest.mark.parametrize(
-    ("truth", "winding"),
-    [
-        (straight(7.0), False),
-        (circle(8.0), False),
-        (figure_eight(4.17), False),
-        (figure_eight(7.0), True),
-        (random_drive(1), False),
-    ],
-    ids=["straight", "circle", "slow bends", "fast bends", "uneven"],
-)
-def test_road_that_bends_hard_one_way_and_the_other_is_told_from_a_circle(
-    truth: Drive, seed: int, *, winding: bool
-) -> None:
-    found = after(truth, LATE, seed, 18.0)
-    assert winds(found.driving, LATE.delay_s, DESCENT) is winding
-    assert not winds(found.driving, DESCENT.uneven_age_s, DESCENT)
-    assert not winds(found.driving, None, DESCENT)
-
-
-def test_uneven_driving_is_told_from_the_last_seconds_only() -> None:
-    """Speeds of 4 and 5 m/s in turn, 2 s each, and an even 5 m/s afterwards, over a fix every tenth of a second."""
-    surprise, t_ns = Surprise(), NOW_NS
-    for i in range(400):
-        told: Any = Told(4.0 if i < 200 and i // 20 % 2 else 5.0, 0.01)
-        surprise = looked_back(surprise, told, t_ns, t_ns, DESCENT)
-        t_ns += 100_000_000
-        if i == 199:
-            assert surprise.driving.unevenness_m_s2 == pytest.approx(0.5, rel=0.05)
-    assert surprise.driving.unevenness_m_s2 == 0.0
-
-
-def test_speeds_before_and_after_an_outage_are_not_compared() -> None:
-    surprise, t_ns = Surprise(), NOW_NS
-    for speed_m_s in (1.0, 9.0):
-        told: Any = Told(speed_m_s, 0.01)
-        for _ in range(22):
-            surprise = looked_back(surprise, told, t_ns, t_ns, DESCENT)
-            t_ns += 100_000_000
-        t_ns, surprise = t_ns + 10_000_000_000, replace(surprise, beliefs=())
-    assert len(surprise.driving.driven) == 42
-    assert surprise.driving.unevenness_m_s2 == 0.0
 
 
 @pytest.mark.parametrize(
@@ -161,51 +80,6 @@ def test_beliefs_end_with_the_estimate_that_they_were() -> None:
     surprise = Surprise(beliefs=((NOW_NS, 5.0, 0.1),), speed_std_m_s=0.1, surprised_ns=NOW_NS)
     found = looked_back(surprise, estimator(EstimatorKind.IMM), None, NOW_NS, DESCENT)
     assert found == Surprise(surprised_ns=NOW_NS)
-
-
-class Told:
-    """An estimator that tells one speed, and how well it knows it."""
-
-    def __init__(self, speed_m_s: float, variance_m2_s2: float) -> None:
-        self.speed_m_s, self.variance_m2_s2 = speed_m_s, variance_m2_s2
-
-    def newest_fix_ns(self, memory: int) -> int:
-        return memory
-
-    def estimate(self, _memory: int, t_ns: int) -> VehicleEstimate:
-        covariance = np.diag([0.0] * 3 + [self.variance_m2_s2, 0.0] + [0.0] * 4)
-        velocity = np.array([0.6 * self.speed_m_s, -0.8 * self.speed_m_s, 0.0])
-        return VehicleEstimate(
-            t_ns=t_ns,
-            position_enu_m=np.zeros(3),
-            velocity_enu_m_s=velocity,
-            acceleration_enu_m_s2=np.zeros(3),
-            covariance=covariance,
-            yaw_rad=None,
-            yaw_rate_rad_s=None,
-        )
-
-
-STOP_S = 10.0 + 10.0 / 6.0
-"""When `brake` stands."""
-
-
-@pytest.mark.parametrize(
-    ("until_s", "departs"),
-    [(9.0, True), (STOP_S + 1.5, True), (STOP_S + 3.5, True), (STOP_S + 6.0, False)],
-    ids=["drives", "has stopped", "stands for as long as a bus", "parks"],
-)
-def test_vehicle_that_has_just_stopped_may_depart_before_that_is_told(until_s: float, *, departs: bool) -> None:
-    stays = drive(20.0, lambda t_s: min(max(10.0 - 6.0 * (t_s - 10.0), 0.0), 10.0), lambda _: 0.0)
-    found = after(stays, LATE, 3, until_s)
-    assert may_depart(found.driving, LATE.delay_s, DESCENT) is departs
-    assert not may_depart(found.driving, DESCENT.uneven_age_s, DESCENT)
-    assert not may_depart(found.driving, None, DESCENT)
-
-
-def test_vehicle_that_has_not_driven_is_parked() -> None:
-    assert not may_depart(Driving(), LATE.delay_s, DESCENT)
-    assert not may_depart(after(straight(0.0), LATE, 3, 8.0).driving, LATE.delay_s, DESCENT)
 
 
 @pytest.mark.parametrize(
