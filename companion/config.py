@@ -123,6 +123,9 @@ class DescentConfig(StrictModel):
     # too: what it does in the last second is known too late. An even driver shows 0.1 m/s^2, `random` 0.7.
     uneven_acceleration_m_s2: Positive = 0.35
     winding_acceleration_m_s2: Positive = 0.8  # to the side; `figure_eight` shows 0.6 at 5 m/s and 1.2 at 7
+    # A drone leans into a curve and levels in its last 0.3 s, which over such links comes 0.1 s early or late; with the
+    # 6 degrees by which it sways there S1's 15 over trim are left for a curve of this.
+    turning_acceleration_m_s2: Positive = 2.4
     uneven_age_s: NotNegative = 0.3
     stop_s: NotNegative = 4.0  # likewise, a vehicle that has stopped; `stop_and_go` departs after 3 s
     surprise_hold_s: NotNegative = 20.0  # `stop_and_go` brakes again 15 s later

@@ -3,7 +3,7 @@
 from companion.config import CompanionConfig
 from companion.landing.conditions import must_wait
 from companion.landing.targets import changes_speed
-from companion.monitors.driving import drives_unevenly, may_depart, winds
+from companion.monitors.driving import drives_unevenly, may_depart, turns_hard, winds
 from companion.monitors.surprise import may_surprise
 from companion.monitors.sway import sways
 from companion.phases import Phase
@@ -61,6 +61,8 @@ def _unpredictable(memory: StepMemory, situation: Situation, config: CompanionCo
         return "the vehicle's speed has surprised"
     if drives_unevenly(memory.surprise.driving, situation.fix_age_s, config.descent):
         return "the vehicle's speed changes all the time"
+    if turns_hard(memory.surprise.driving, situation.fix_age_s, config.descent):
+        return "the road turns hard"
     return "the road winds" if winds(memory.surprise.driving, situation.fix_age_s, config.descent) else None
 
 

@@ -1,9 +1,10 @@
-"""How the vehicle has driven lately, from velocities that its data have confirmed: evenly, winding, braking; pure.
+"""How the vehicle has driven lately, from velocities that its data have confirmed: evenly, turning, braking; pure.
 
 A driver who changes speed time and again surprises by less each time than one who brakes (`surprise.py`), but goes on
 doing so: by 0.3 m/s in the half second that poor data are late for one of 0.8 m/s^2, of which the tails do the harm. So
 does a road that bends one way and the other: a curve that is known may last, but where the next one begins, with a
-radius of 16 m at 7 m/s, the vehicle is 1.6 m/s off to the side when that is told. Both show in the velocities that were
+radius of 16 m at 7 m/s, the vehicle is 1.6 m/s off to the side when that is told; and in the sharpest curves a drone
+leans so far that it has to come level at the right tenth of a second. All of these show in the velocities that were
 driven, long before a belief of the vehicle's speed is found to be wrong.
 """
 
@@ -82,6 +83,13 @@ def drives_unevenly(driving: Driving, fix_age_s: float | None, config: DescentCo
 def winds(driving: Driving, fix_age_s: float | None, config: DescentConfig) -> bool:
     """Return whether the road of such a vehicle will have bent by when that is told, likewise."""
     return _is_late(fix_age_s, config) and driving.winding_m_s2 > config.winding_acceleration_m_s2
+
+
+def turns_hard(driving: Driving, fix_age_s: float | None, config: DescentConfig) -> bool:
+    """Return whether such a vehicle turns harder than the drone, over such links, comes level in time to touch it."""
+    newest = driving.changes[-1] if driving.changes else None
+    is_hard = newest is not None and abs(newest[1]) > config.turning_acceleration_m_s2
+    return is_hard and _is_late(fix_age_s, config)
 
 
 def may_depart(driving: Driving, fix_age_s: float | None, config: DescentConfig) -> bool:

@@ -33,6 +33,9 @@ DESCENT = CONFIG.descent
 WAITING_M = DESCENT.waiting_height_m
 SURPRISED = Surprise(surprised_ns=NOW_NS)
 KNOWN = Surprise(speed_std_m_s=0.05)
+UNEVEN = replace(KNOWN, driving=Driving(unevenness_m_s2=2.0 * DESCENT.uneven_acceleration_m_s2))
+WINDING = replace(KNOWN, driving=Driving(winding_m_s2=2.0 * DESCENT.winding_acceleration_m_s2))
+TURNING = replace(KNOWN, driving=Driving(changes=((0.0, -1.5 * DESCENT.turning_acceleration_m_s2),)))
 STRAYING = situation(DESCENT.align_height_m, 2.0)
 
 
@@ -56,6 +59,22 @@ def _moving(height_m: float, speed_m_s: float) -> Situation:
 def test_status_says_what_a_descent_waits_for(facts: Situation, surprise: Surprise, reason: str) -> None:
     memory = StepMemory(phase=Phase.DESCEND, reason="aligned", surprise=surprise)
     assert landing_status(memory, facts, CONFIG).reason == reason
+
+
+@pytest.mark.parametrize(
+    ("surprise", "reason"),
+    [
+        (UNEVEN, "the vehicle's speed changes all the time"),
+        (WINDING, "the road winds"),
+        (TURNING, "the road turns hard"),
+    ],
+    ids=["uneven", "winding", "turning"],
+)
+def test_only_over_late_data_a_descent_waits_for_another_road_or_driver(surprise: Surprise, reason: str) -> None:
+    memory = StepMemory(phase=Phase.DESCEND, reason="aligned", surprise=surprise)
+    driving, late_s = situation(WAITING_M), 2.0 * DESCENT.uneven_age_s
+    assert why_held_up(memory, replace(driving, fix_age_s=late_s), CONFIG) == reason
+    assert why_held_up(memory, replace(driving, fix_age_s=0.5 * DESCENT.uneven_age_s), CONFIG) is None
 
 
 def _kept_surprised(flight: Flight, duration_s: float) -> None:

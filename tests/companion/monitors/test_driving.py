@@ -1,11 +1,12 @@
-"""An uneven driver, a winding road and a vehicle that has just stopped are told by the velocities that were driven."""
+"""An uneven driver, a winding road, a hard turn and a stop are told by the velocities that were driven."""
 
+import math
 from dataclasses import replace
 from typing import Any
 
 import pytest
 
-from companion.monitors.driving import Driving, drives_unevenly, may_depart, winds
+from companion.monitors.driving import Driving, drives_unevenly, may_depart, turns_hard, winds
 from companion.monitors.surprise import Surprise, looked_back
 from tests.companion.estimation.driving import (
     Drive,
@@ -53,6 +54,29 @@ def test_road_that_bends_hard_one_way_and_the_other_is_told_from_a_circle(
     assert winds(found.driving, LATE.delay_s, DESCENT) is winding
     assert not winds(found.driving, DESCENT.uneven_age_s, DESCENT)
     assert not winds(found.driving, None, DESCENT)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("side", [1.0, -1.0], ids=["left", "right"])
+@pytest.mark.parametrize(
+    ("speed_m_s", "radius_m", "hard"),
+    [(7.0, math.inf, False), (5.0, 20.0, False), (6.0, 20.0, False), (8.0, 20.0, True), (5.0, 8.0, True)],
+    ids=["straight", "1.25 m/s^2", "1.8 m/s^2", "3.2 m/s^2", "a junction"],
+)
+def test_curve_in_which_the_drone_leans_far_is_told_over_late_data_only(
+    speed_m_s: float, radius_m: float, side: float, seed: int, *, hard: bool
+) -> None:
+    curve = drive(18.0, lambda _: speed_m_s, lambda _: side / radius_m)
+    found = after(curve, LATE, seed, 18.0)
+    assert turns_hard(found.driving, LATE.delay_s, DESCENT) is hard
+    assert not turns_hard(found.driving, DESCENT.uneven_age_s, DESCENT)
+    assert not turns_hard(found.driving, None, DESCENT)
+
+
+def test_curve_is_over_when_the_road_is_straight_again() -> None:
+    corner = drive(20.0, lambda _: 6.0, lambda t_s: 0.1 if 8.0 <= t_s < 12.0 else 0.0)
+    assert turns_hard(after(corner, LATE, 1, 11.5).driving, LATE.delay_s, DESCENT)
+    assert not turns_hard(after(corner, LATE, 1, 16.0).driving, LATE.delay_s, DESCENT)
 
 
 def test_uneven_driving_is_told_from_the_last_seconds_only() -> None:
