@@ -29,6 +29,7 @@ class Event(Enum):
     """What may move the landing from one phase to another."""
 
     START = "start"  # an operator's command
+    START_AGAIN = "start again"  # likewise, while the autopilot's mode is not the companion's or its motors are off
     ABORT = "abort"  # an operator's command
     HOLD = "hold"  # an operator's command
     AT_WAITING_POINT = "at waiting point"
@@ -76,6 +77,7 @@ TRANSITIONS: dict[tuple[Phase, Event], Phase] = {
     (Phase.SECURED, Event.START): Phase.TAKEOFF,
     (Phase.PILOT, Event.START): Phase.TAKEOFF,
     (Phase.HOLD, Event.START): Phase.WAITING,
+    (Phase.HOLD, Event.START_AGAIN): Phase.TAKEOFF,
     (Phase.TAKEOFF, Event.AT_WAITING_POINT): Phase.WAITING,
     (Phase.TAKEOFF, Event.TIME_LIMIT): Phase.HOLD,
     (Phase.TAKEOFF, Event.REFUSED): Phase.IDLE,

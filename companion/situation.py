@@ -7,8 +7,8 @@ from functools import lru_cache
 import numpy as np
 
 from companion.autopilots.driver import AutopilotView
-from companion.config import ChaseConfig
 from companion.data import Array, FlightLimits, OwnState, RangeReading
+from companion.landing_config import ChaseConfig
 from companion.pad import PadPath
 from companion.planning.guidance import ReferenceState
 from link.frames import rotate

@@ -6,7 +6,7 @@ Pure: the same memory, inputs and system give the same result, in flight, in sim
 from companion.autopilots.driver import AutopilotCommand, Desire
 from companion.config import CompanionConfig
 from companion.data import Forecast, OwnState
-from companion.landing.conditions import HELD_UP
+from companion.landing.contact_tests import HELD_UP
 from companion.landing.flying import fly, has_free_place, setpoint
 from companion.landing.status import landing_status
 from companion.landing.targets import HORIZON_OFFSETS_S

@@ -98,8 +98,7 @@ class StepMemory:
         reason: why it began.
         retries: landings aborted since the start.
         interrupted_ns: when the chase began that an outage has broken off; None when an abort counts.
-        strays: alignments that this approach has begun anew since it strayed.
-        losses: chases that it has begun anew since its alignment was lost.
+        begun_anew: how often this approach has been aligned or chased again, by the reason.
         waits_since_ns: when it began to wait above a vehicle that has surprised; None while it does not.
         waited_s: for how long it has done so before, in this phase.
         may_retry: no operator has broken the landing off since the start.
@@ -135,8 +134,7 @@ class StepMemory:
     reason: str = "waiting for a start"
     retries: int = 0
     interrupted_ns: int | None = None
-    strays: int = 0
-    losses: int = 0
+    begun_anew: Mapping[str, int] = field(default_factory=dict)
     waits_since_ns: int | None = None
     waited_s: float = 0.0
     may_retry: bool = True

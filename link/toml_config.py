@@ -5,9 +5,9 @@ import json
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeVar, get_args
+from typing import Annotated, Any, TypeVar, get_args
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
@@ -15,6 +15,10 @@ from link.errors import UserError
 
 Location = tuple[int | str, ...]
 Fields = Mapping[str, FieldInfo]
+
+Positive = Annotated[float, Field(gt=0.0, le=1e4)]
+NotNegative = Annotated[float, Field(ge=0.0, le=1e4)]
+"""Lengths, times, speeds and their kin: what is beyond the bound was meant in another unit."""
 
 _BOUNDS = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most"}
 

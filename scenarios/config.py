@@ -9,8 +9,8 @@ from pydantic import Field
 
 from companion.config import CompanionConfig
 from link.messages import PadGeometry, Vector3
-from link.toml_config import StrictModel
-from scenarios.tracks.config import NotNegative, Positive, TrackConfig
+from link.toml_config import NotNegative, Positive, StrictModel
+from scenarios.tracks.config import TrackConfig
 from sim_autopilot.config import DatumConfig, DroneConfig
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]

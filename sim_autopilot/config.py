@@ -9,7 +9,7 @@ from pydantic import Field
 from link.errors import UserError
 from link.geodesy import Datum
 from link.messages import Vector3
-from link.toml_config import StrictModel
+from link.toml_config import NotNegative, Positive, StrictModel
 from sim_autopilot.control.kinds import ControllerKind
 from sim_autopilot.firmware.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.px4 import PX4
@@ -21,9 +21,6 @@ from sim_autopilot.physics.airframe import ARDUCOPTER_AIRFRAME, BENCHMARK_AIRFRA
 from sim_autopilot.physics.contact import GEAR_HEIGHT_M
 from sim_autopilot.physics.wind import Gust, Turbulence, WindModel
 from sim_autopilot.plant import PlantConfig
-
-Positive = Annotated[float, Field(gt=0.0, le=1e4)]
-NotNegative = Annotated[float, Field(ge=0.0, le=1e4)]
 
 _FIRMWARES = {"px4": PX4, "ardupilot": ARDUPILOT}
 _AIRFRAMES = {"report": REPORT_AIRFRAME, "benchmark": BENCHMARK_AIRFRAME, "arducopter": ARDUCOPTER_AIRFRAME}

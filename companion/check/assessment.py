@@ -10,7 +10,8 @@ from companion.check.findings import Finding, Level, passed
 from companion.check.observation import AutopilotFacts, VehicleFacts
 from companion.check.px4_rules import PX4_RULES, PX4_SINK
 from companion.check.rules import ParameterRule, Spelling, judged, names_of, sink_rule
-from companion.config import AbortConfig, ChaseConfig, CompanionConfig
+from companion.config import CompanionConfig
+from companion.landing_config import AbortConfig, ChaseConfig
 from link.mavlink.dialect import mavlink
 
 

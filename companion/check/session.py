@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from companion.check.observation import VehicleFacts
 from companion.check.reading import Reader
 from companion.check.vehicle_reading import VehicleReader
-from companion.config import ChaseConfig
+from companion.landing_config import ChaseConfig
 from companion.pad_question import PadQuestion
 from link.errors import UserError
 from link.keys import Keys

@@ -5,7 +5,7 @@ import math
 import statistics
 
 from companion.check.observation import VehicleFacts
-from companion.config import ChaseConfig
+from companion.landing_config import ChaseConfig
 from companion.pad_question import PadQuestion
 from link import cdr
 from link.frames import yaw_of

@@ -9,10 +9,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from link.toml_config import StrictModel
-
-Positive = Annotated[float, Field(gt=0.0, le=1e4)]
-NotNegative = Annotated[float, Field(ge=0.0, le=1e4)]
+from link.toml_config import NotNegative, Positive, StrictModel
 
 
 class EstimatorKind(Enum):

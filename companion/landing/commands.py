@@ -28,6 +28,9 @@ def answer(
     event = _EVENTS[command]
     if phase is Phase.TAKEOFF and command is not Command.START and not situation.autopilot.armed:
         event = Event.CALLED_OFF  # on the ground there is nothing to hold
+    flies = situation.autopilot.in_control and situation.autopilot.armed
+    if phase is Phase.HOLD and command is Command.START and not flies:
+        event = Event.START_AGAIN  # called off before the autopilot gave control: it has to be asked for again
     if phase is Phase.ABORT and command is not Command.START:
         return None, CommandReply(accepted=True, reason="")  # the climb goes on, but to no retry
     if next_phase(phase, event) is phase:

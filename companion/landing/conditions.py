@@ -4,23 +4,21 @@ A condition with a hold time must have been true without a break for that long.
 """
 
 import math
+from collections.abc import Callable, Mapping
 from functools import cache
 
-from companion.config import CompanionConfig, LandingStyle
+from companion.config import CompanionConfig
+from companion.landing.contact_tests import HELD_UP, LIFTED, MISSED, STOPPED_BY_PAD, TOUCHED, TOUCHED_BY_DISPUTE
 from companion.landing.silence import HEARD, attitude_unknown, fix_too_old, own_unknown
 from companion.landing.targets import changes_speed, chase_floor_m, is_unseen, is_vague
 from companion.landing.timed import Held, Test
-from companion.monitors.contact import Verdict, does_not_fall, is_stopped_by_pad, signs_of, verdict
+from companion.landing_config import LandingStyle
 from companion.monitors.contradiction import CONTRADICTING, contradicts_itself
 from companion.monitors.ground import SEEN_TOO_NEAR, is_seen_too_near
 from companion.pad import HEADING_UNKNOWN
 from companion.pad_reach import cone_radius_m, over_pad_radius_m
 from companion.phases import LANDING_PHASES, NEAR_PHASES, Event, Phase
 from companion.situation import Approach, Situation, approach, stands
-
-CONTACT = "contact"
-DISPUTED_CONTACT = "contact against the range finder"
-HARD_CONTACT = "hard contact"
 
 
 def is_uncertain(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
@@ -86,11 +84,6 @@ def _too_fast_near_pad(_: Situation, a: Approach | None, c: CompanionConfig) -> 
     return a is not None and a.height_m < c.abort.near_height_m and a.speed_m_s > c.abort.near_speed_max_m_s
 
 
-def missed_pad(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
-    """Return whether the drone is lower than anything that presses it onto the pad could bring it."""
-    return a is not None and a.height_m < -c.descent.press_depth_m - c.touchdown.height_max_m
-
-
 def is_out_of_range(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
     """Return whether the drone is farther from the waiting point than it may go."""
     if s.drone is None or s.waiting_point_enu_m is None:
@@ -122,7 +115,7 @@ ABORT_TESTS = (
     Test(CONTRADICTING, LANDING_PHASES, contradicts_itself, lambda _: 0.0),
     Test("vehicle faster than the limit", LANDING_PHASES, _outruns, lambda c: c.chase.driving_hold_s),
     Test("too far from the start", LANDING_PHASES, is_out_of_range, lambda _: 0.0),
-    Test("below the pad without contact", frozenset({Phase.DESCEND}), missed_pad, lambda _: 0.0),
+    *MISSED,
 )
 
 
@@ -153,35 +146,17 @@ def _drives(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
     return s.pad is not None and not stands(s, c.chase)
 
 
-def _in_contact(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
-    return verdict(signs_of(s), c) is Verdict.CONTACT
-
-
-def _in_hard_contact(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
-    """Return whether what was touched stops the drone: a moment later the pad may be gone."""
-    jolt_m_s2 = None if s.drone is None else s.drone.jolt_m_s2
-    return jolt_m_s2 is not None and jolt_m_s2 > c.touchdown.jolt_m_s2 and is_stopped_by_pad(signs_of(s), c)
-
-
-def _does_not_fall(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
-    return does_not_fall(signs_of(s), c)
-
-
-def _in_disputed_contact(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
-    return verdict(signs_of(s), c) is not Verdict.AIRBORNE
-
-
 STRAYS = Test("not over the pad in time", frozenset({Phase.DESCEND}), _strays_above, lambda c: c.descent.stray_hold_s)
 """Costs no approach at first, for nothing was near."""
-
-STOPPED_BY_PAD = Test(HARD_CONTACT, frozenset({Phase.DESCEND}), _in_hard_contact, lambda _: 0.0)
-"""What stops the drone ends its commitment to land as well: this is asked before the tests that abort."""
 
 ALIGNMENT_LOST = Test("alignment lost", frozenset({Phase.ALIGN}), _is_far_off, lambda _: 0.0)
 """Is counted as strays are."""
 
-HELD_UP = Test("held up", frozenset({Phase.TOUCHDOWN}), _does_not_fall, lambda c: c.touchdown.stopped_hold_s)
-"""Completes the evidence of a hard contact."""
+TO_BE_SEEN = Test("pad to be seen again", frozenset({Phase.DESCEND}), _must_be_seen_above, lambda _: 0.0)
+"""Is counted, too; without a hold time, or it slips below."""
+
+NOT_SEEN = Test("pad not seen", frozenset({Phase.ALIGN}), must_be_seen, lambda c: c.descent.unseen_hold_s)
+"""Likewise."""
 
 # A vehicle that stands may be about to depart, so it is landed on only after it has stood for a while.
 ENTRY_TESTS = (
@@ -190,24 +165,23 @@ ENTRY_TESTS = (
         Test("vehicle stands", frozenset({Phase.WAITING}), _stands_nearby, lambda c: c.chase.parked_wait_s),
     ),
     (Event.ALIGNED, Test("aligned", frozenset({Phase.ALIGN}), _aligned, lambda c: c.descent.aligned_hold_s)),
-    (  # without a hold time, or it slips below
-        Event.OUT_OF_ALIGNMENT,
-        Test("pad to be seen again", frozenset({Phase.DESCEND}), _must_be_seen_above, lambda _: 0.0),
-    ),
+    (Event.OUT_OF_ALIGNMENT, TO_BE_SEEN),
     (Event.OUT_OF_ALIGNMENT, STRAYS),
     (Event.OUT_OF_ALIGNMENT, ALIGNMENT_LOST),
-    (
-        Event.OUT_OF_ALIGNMENT,
-        Test("pad not seen", frozenset({Phase.ALIGN}), must_be_seen, lambda c: c.descent.unseen_hold_s),
-    ),
-    (Event.CONTACT, Test(CONTACT, frozenset({Phase.DESCEND}), _in_contact, lambda c: c.touchdown.hold_s)),
+    (Event.OUT_OF_ALIGNMENT, NOT_SEEN),
+    (Event.CONTACT, TOUCHED),
     (Event.CONTACT, STOPPED_BY_PAD),
-    (
-        Event.CONTACT,
-        Test(DISPUTED_CONTACT, frozenset({Phase.DESCEND}), _in_disputed_contact, lambda c: c.touchdown.disputed_hold_s),
-    ),
+    (Event.CONTACT, TOUCHED_BY_DISPUTE),
 )
 
+
+MAY_BEGIN_ANEW: Mapping[str, Callable[[CompanionConfig], int]] = {
+    STRAYS.reason: lambda c: c.descent.strays_max,
+    ALIGNMENT_LOST.reason: lambda c: c.descent.strays_max,
+    TO_BE_SEEN.reason: lambda c: c.descent.unseen_max,
+    NOT_SEEN.reason: lambda c: c.descent.unseen_max,
+}
+"""How often in one approach each is aligned or chased again for; then it is unsafe."""
 
 DRIVES = Test("vehicle drives", frozenset({Phase.WAITING}), _drives, lambda c: c.chase.driving_hold_s)
 """Without this no vehicle is taken to pass."""
@@ -232,5 +206,5 @@ def update_held(
 
 @cache
 def _tests_in(phase: Phase, others: tuple[Test, ...]) -> tuple[Test, ...]:
-    tests = (*others, *ABORT_TESTS, *(test for _, test in ENTRY_TESTS), HEARD, HELD_UP, DRIVES)
+    tests = (*others, *ABORT_TESTS, *(test for _, test in ENTRY_TESTS), HEARD, HELD_UP, LIFTED, DRIVES)
     return tuple(test for test in tests if phase in test.phases)

@@ -1,27 +1,27 @@
 """Which event a step's facts amount to: who is in command, what is unsafe, what takes too long, what comes next."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from companion.config import CompanionConfig, LandingStyle
+from companion.config import CompanionConfig
 from companion.landing.conditions import (
     ABORT_TESTS,
-    ALIGNMENT_LOST,
     DRIVES,
     ENTRY_TESTS,
-    STOPPED_BY_PAD,
-    STRAYS,
+    MAY_BEGIN_ANEW,
     is_out_of_range,
     is_over_pad,
     is_uncertain,
-    missed_pad,
     must_be_seen,
     not_placed,
 )
+from companion.landing.contact_tests import LIFTED, MISSED, STOPPED_BY_PAD, missed_pad
 from companion.landing.feasibility import obstacle
 from companion.landing.passing import vehicle_passes
 from companion.landing.silence import HEARD, attitude_unknown, fix_too_old
-from companion.landing.timed import Held, holds
+from companion.landing.timed import Held, Test, holds
+from companion.landing_config import LandingStyle
 from companion.monitors.contact import described, signs_of
 from companion.phases import FLYING_PHASES, Event, Phase
 from companion.situation import Situation, approach
@@ -40,8 +40,7 @@ class Progress:
     was_in_control: bool  # the autopilot's mode has been the companion's since the start
     was_armed: bool  # and its motors were armed in that mode
     is_interrupted: bool  # what was broken off goes on, at no cost
-    strays: int  # of this approach
-    losses: int  # of its alignment, likewise
+    begun_anew: Mapping[str, int]  # how often in this approach, by the reason
     waited_s: float  # in this phase, above a vehicle that has surprised
 
 
@@ -59,19 +58,20 @@ def decide(progress: Progress, situation: Situation, held: Held, config: Compani
     # What the pad stops is fast against a pad that drives on: it would be taken for unsafe in the same step.
     if holds(STOPPED_BY_PAD, held, situation.t_ns, config):
         return Event.CONTACT, _with_evidence(Event.CONTACT, STOPPED_BY_PAD.reason, situation)
-    # On the pad and committed, cutting the approach short is the more dangerous way.
+    # On the pad and committed, cutting the approach short is the more dangerous way, unless there is no pad.
     committed = progress.phase is Phase.DESCEND and _is_committed(situation, config)
-    broken_off = None if committed else _broken_off(progress, situation, held, config)
+    broken_off = _unsafe(MISSED if committed else ABORT_TESTS, situation, held, config)
+    if broken_off is None and not committed:
+        broken_off = _time_limit(progress, situation, config)
     return _going_on(progress, situation, held, config) if broken_off is None else broken_off
 
 
-def _broken_off(progress: Progress, s: Situation, held: Held, config: CompanionConfig) -> Decision | None:
-    """Return what is unsafe, or takes too long."""
-    for test in ABORT_TESTS:
+def _unsafe(tests: tuple[Test, ...], s: Situation, held: Held, config: CompanionConfig) -> Decision | None:
+    for test in tests:
         if holds(test, held, s.t_ns, config):
             unplaced = s.pad.unplaced if s.pad is not None and test.is_true is not_placed else None
             return Event.UNSAFE, unplaced or test.reason
-    return _time_limit(progress, s, config)
+    return None
 
 
 def _going_on(progress: Progress, s: Situation, held: Held, config: CompanionConfig) -> Decision | None:
@@ -80,8 +80,8 @@ def _going_on(progress: Progress, s: Situation, held: Held, config: CompanionCon
         return None
     for event, test in ENTRY_TESTS:
         if holds(test, held, s.t_ns, config):
-            again = {STRAYS.reason: progress.strays, ALIGNMENT_LOST.reason: progress.losses}.get(test.reason, -1)
-            if again >= config.descent.strays_max:
+            at_most = MAY_BEGIN_ANEW.get(test.reason)
+            if at_most is not None and progress.begun_anew.get(test.reason, 0) >= at_most(config):
                 return Event.UNSAFE, test.reason
             return event, _with_evidence(event, test.reason, s)
     if progress.phase is Phase.WAITING and not holds(DRIVES, held, s.t_ns, config):
@@ -158,7 +158,7 @@ def _advance(progress: Progress, s: Situation, held: Held, config: CompanionConf
         case Phase.CHASE:
             return _over_pad(s, config)
         case Phase.TOUCHDOWN:
-            return _on_the_pad(s, config)
+            return _on_the_pad(s, held, config)
         case Phase.ABORT:
             return _climbed(progress, s, held, config)
         case _:
@@ -184,11 +184,12 @@ def _over_pad(s: Situation, config: CompanionConfig) -> Decision | None:
     return None
 
 
-def _on_the_pad(s: Situation, config: CompanionConfig) -> Decision | None:
+def _on_the_pad(s: Situation, held: Held, config: CompanionConfig) -> Decision | None:
     if not s.autopilot.armed:
         return Event.MOTORS_OFF, "motors are off on the pad"
     relative = approach(s)
-    if relative is not None and relative.height_m > config.touchdown.lost_height_m:
+    is_lost = relative is not None and relative.height_m > config.touchdown.lost_height_m
+    if relative is not None and (is_lost or holds(LIFTED, held, s.t_ns, config)):
         return Event.CONTACT_LOST, f"{relative.height_m:.1f} m above the pad after contact"
     if missed_pad(s, relative, config):
         return Event.CONTACT_LOST, "below the pad after contact"
@@ -219,6 +220,7 @@ def _no_retry(progress: Progress, s: Situation, held: Held, config: CompanionCon
         "no vehicle data": fix_too_old(s, None, config),
         "own position too old": s.drone is None,
         "own attitude too old": attitude_unknown(s, None, config),
+        "vehicle or autopilot heard of with breaks only": not holds(HEARD, held, s.t_ns, config),
         unplaced or "pad placed": unplaced is not None,
         "too far from the start": is_out_of_range(s, None, config),
         known[1] if known is not None else "": known is not None,

@@ -118,7 +118,9 @@ def _is_elsewhere(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
 
 
 def _elsewhere(s: Situation, _: CompanionConfig) -> str:
-    above_m = road_above_ground_m(s) or 0.0
+    above_m = road_above_ground_m(s)
+    if above_m is None:  # an outage has taken the ground's height
+        return "the vehicle's road was said to be far above or below the ground: land, mend its altitude, start again"
     side = "above" if above_m > 0.0 else "below"
     where = f"{abs(above_m):.1f} m {side} the ground {road_distance_m(s):.0f} m from it"
     return f"the vehicle's road is said to be {where}: let drone and vehicle tell altitudes of one kind"

@@ -7,7 +7,7 @@ import numpy as np
 from companion.autopilots.velocity_bias import as_seen_with
 from companion.config import CompanionConfig
 from companion.data import Setpoint
-from companion.landing.conditions import CONTACT, DISPUTED_CONTACT
+from companion.landing.contact_tests import CONTACT, DISPUTED_CONTACT
 from companion.landing.levelling import limits_now
 from companion.landing.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
 from companion.landing.transitions import BRAKING_M_S2

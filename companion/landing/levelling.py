@@ -6,8 +6,9 @@ turns less than the pad does, and takes the speed against it that it gains so.
 
 import math
 
-from companion.config import CompanionConfig, TouchdownConfig
+from companion.config import CompanionConfig
 from companion.data import FlightLimits
+from companion.landing_config import TouchdownConfig
 from companion.pad_reach import over_pad_radius_m
 from companion.phases import Phase
 from companion.situation import Approach, Situation, approach

@@ -1,8 +1,9 @@
 """The landing's status for the world, from a step's memory and facts."""
 
-from companion.config import CompanionConfig, DescentConfig
+from companion.config import CompanionConfig
 from companion.landing.targets import sink_stretches
 from companion.landing.waiting import why_held_up
+from companion.landing_config import DescentConfig
 from companion.phases import Phase
 from companion.situation import Approach, Situation, approach
 from companion.step_data import StepMemory

@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from companion.config import CompanionConfig, DescentConfig, LandingStyle
+from companion.config import CompanionConfig
 from companion.data import Array
+from companion.landing_config import DescentConfig, LandingStyle
 from companion.pad import PadPath
 from companion.pad_reach import unseen_std_max_m
 from companion.phases import Phase

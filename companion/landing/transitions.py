@@ -4,13 +4,8 @@ import numpy as np
 
 from companion.config import CompanionConfig
 from companion.landing.commands import answer
-from companion.landing.conditions import (
-    ABORT_TESTS,
-    ALIGNMENT_LOST,
-    HARD_CONTACT,
-    STRAYS,
-    update_held,
-)
+from companion.landing.conditions import ABORT_TESTS, update_held
+from companion.landing.contact_tests import HARD_CONTACT
 from companion.landing.decisions import Progress, decide
 from companion.landing.feasibility import OBSTACLE_TESTS, obstacle
 from companion.landing.silence import SILENCES
@@ -51,8 +46,7 @@ def transitions(
         was_in_control=memory.was_in_control,
         was_armed=memory.was_armed,
         is_interrupted=memory.interrupted_ns is not None,
-        strays=memory.strays,
-        losses=memory.losses,
+        begun_anew=memory.begun_anew,
         waited_s=waited_s(memory, situation.t_ns),
     )
     held = update_held(memory.held, memory.phase, situation, approach(situation), config, others=OBSTACLE_TESTS)
@@ -107,16 +101,16 @@ def _counted(
     since_ns = memory.phase_since_ns
     in_time = (situation.t_ns - since_ns) * 1e-9 < config.chase.time_limit_s
     is_outage = event is Event.UNSAFE and memory.phase is Phase.CHASE and reason in _OUTAGES and in_time
-    strays = memory.strays + 1 if reason == STRAYS.reason else memory.strays
-    losses = memory.losses + 1 if reason == ALIGNMENT_LOST.reason else memory.losses
+    begun_anew = memory.begun_anew
+    if event is Event.OUT_OF_ALIGNMENT:
+        begun_anew = {**begun_anew, reason: begun_anew.get(reason, 0) + 1}
     goes_on = {memory.phase, next_phase(memory.phase, event)} <= LANDING_PHASES
     return replace(
         memory,
         phase_since_ns=situation.t_ns if resumed_ns is None else resumed_ns,
-        retries=0 if event is Event.START else retries,
+        retries=0 if event in (Event.START, Event.START_AGAIN) else retries,
         interrupted_ns=since_ns if is_outage else None,
-        strays=strays if goes_on else 0,
-        losses=losses if goes_on else 0,
+        begun_anew=begun_anew if goes_on else {},
         waits_since_ns=None,
         waited_s=0.0,
     )

@@ -13,7 +13,8 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
-from companion.config import CompanionConfig, TouchdownConfig
+from companion.config import CompanionConfig
+from companion.landing_config import TouchdownConfig
 from companion.pad_reach import over_pad_radius_m
 from companion.situation import Approach, Situation, approach
 from link.records import replace

@@ -11,8 +11,8 @@ driven, long before a belief of the vehicle's speed is found to be wrong.
 import math
 from dataclasses import dataclass
 
-from companion.config import DescentConfig
 from companion.data import Array
+from companion.landing_config import DescentConfig
 from link.records import replace
 
 _DRIVEN_KEPT = 150  # velocities: of 15 s, five times as long as an uneven driver keeps an acceleration

@@ -12,9 +12,9 @@ second to brake as hard: a vehicle that is seen to brake hard counts as one that
 import math
 from dataclasses import dataclass, field
 
-from companion.config import DescentConfig
 from companion.data import VehicleEstimate
 from companion.estimation.estimator import Estimator
+from companion.landing_config import DescentConfig
 from companion.monitors.driving import Driving, brakes_hard, with_velocity
 from link.records import replace
 

@@ -9,9 +9,9 @@ with one foot. Only more lean than the mean counts: a drone that comes upright, 
 import math
 from dataclasses import dataclass
 
-from companion.config import DescentConfig
 from companion.data import OwnState
 from companion.gravity import GRAVITY_M_S2
+from companion.landing_config import DescentConfig
 from link.frames import rotate
 
 _UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady

@@ -8,10 +8,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from link.toml_config import StrictModel
+from link.toml_config import NotNegative, Positive, StrictModel
 
-Positive = Annotated[float, Field(gt=0.0, le=1e4)]
-NotNegative = Annotated[float, Field(ge=0.0, le=1e4)]
 Waypoint = tuple[float, float]
 
 

@@ -106,8 +106,7 @@ def progress(phase: Phase, in_phase_s: float = 1.0) -> Progress:
         was_in_control=True,
         was_armed=True,
         is_interrupted=False,
-        strays=0,
-        losses=0,
+        begun_anew={},
         waited_s=0.0,
     )
 

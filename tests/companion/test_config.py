@@ -50,6 +50,28 @@ def test_mistake_is_one_line_that_names_file_and_key(tmp_path: Path, text: str, 
 
 
 @pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("[takeoff]\nrefused_after_s = 90.0\n", r"takeoff\.time_limit_s = 60\.0 .* more than refused_after_s, 90"),
+        ("[takeoff]\ntime_limit_s = 30.0\n", r"takeoff\.time_limit_s = 30\.0 .* more than refused_after_s, 30"),
+        (
+            "[touchdown]\npress_acceleration_m_s2 = 3.0\n",
+            r"touchdown\.press_acceleration_m_s2 = 3\.0 .* more than falling_acceleration_m_s2, 3\.5",
+        ),
+        (
+            "[touchdown]\nfalling_acceleration_m_s2 = 6.0\n",
+            r"touchdown\.try_acceleration_m_s2 = 5\.0 .* more than falling_acceleration_m_s2, 6",
+        ),
+    ],
+    ids=["refusal never told", "time limit too short", "press is no fall", "fall harder than the press"],
+)
+def test_numbers_that_do_not_go_together_are_refused(tmp_path: Path, text: str, said: str) -> None:
+    with pytest.raises(UserError, match=said) as error:
+        load_config(_file(tmp_path, text), CompanionConfig)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
     "text", ["total_max_mb = 100.0\n", "file_max_mb = 3000.0\n", "file_max_mb = 50\ntotal_max_mb = 49"]
 )
 def test_recording_whose_files_together_may_take_less_than_one_is_refused(tmp_path: Path, text: str) -> None:

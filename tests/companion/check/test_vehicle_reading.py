@@ -5,7 +5,7 @@ import math
 import pytest
 
 from companion.check.vehicle_reading import VehicleReader
-from companion.config import ChaseConfig
+from companion.landing_config import ChaseConfig
 from companion.pad_question import PadQuestion
 from link import cdr
 from link.frames import quaternion_from_yaw

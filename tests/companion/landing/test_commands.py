@@ -9,8 +9,9 @@ from companion.landing.commands import answer
 from companion.landing.feasibility import HEIGHTS_APART
 from companion.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
 from companion.situation import Situation
-from link.messages import Command
+from link.messages import Command, CommandReply
 from tests.companion.facts import CONFIG, drone_at, pad_at, situation
+from tests.companion.world import PAD_HEIGHT_M, SET_MODE, Flight, KnownVehicle, own_state
 
 PAIRS = list(itertools.product(Command, Phase))
 STARTABLE = {Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD}
@@ -97,3 +98,30 @@ def test_start_on_the_roof_of_a_vehicle_that_drives_is_refused(phase: Phase) -> 
 )
 def test_start_anywhere_else_is_not(facts: Situation) -> None:
     assert answer(Command.START, Phase.IDLE, facts, CONFIG)[1].accepted
+
+
+def test_control_that_was_never_given_is_asked_for_again_by_the_next_start() -> None:
+    """A pilot hovers; start, and hold before the autopilot has changed its mode."""
+    flight = Flight(vehicle=KnownVehicle((-60.0, 0.4, PAD_HEIGHT_M), (2.0, 0.0, 0.0)), refuses=frozenset({SET_MODE}))
+    flight.view = replace(flight.view, armed=True, landed=False)
+    flight.own = own_state(flight.t_ns, (0.0, 0.0, 6.5))
+    flight.run(0.1)
+    flight.step(Command.START)
+    flight.run(0.3)
+    flight.step(Command.HOLD)
+    assert (flight.phase, flight.view.in_control) == (Phase.HOLD, False)
+    flight.refuses = frozenset()
+    flight.commands.clear()
+    assert flight.step(Command.START).reply == CommandReply(accepted=True, reason="")
+    assert flight.phase is Phase.TAKEOFF
+    flight.run_until(Phase.WAITING, limit_s=5.0)
+    assert flight.told(SET_MODE)
+    assert flight.view.in_control
+
+
+def test_drone_that_holds_under_control_waits_where_it_hovers_after_a_start() -> None:
+    flight = Flight(vehicle=KnownVehicle((-60.0, 0.4, PAD_HEIGHT_M), (2.0, 0.0, 0.0)))
+    flight.start_and_reach(Phase.WAITING)
+    flight.step(Command.HOLD)
+    flight.step(Command.START)
+    assert flight.history[-3:] == [Phase.WAITING, Phase.HOLD, Phase.WAITING]

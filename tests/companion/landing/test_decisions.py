@@ -8,14 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.landing.conditions import (
-    ABORT_TESTS,
-    DISPUTED_CONTACT,
-    ENTRY_TESTS,
-    HARD_CONTACT,
-    must_wait,
-    update_held,
-)
+from companion.landing.conditions import ABORT_TESTS, ENTRY_TESTS, must_wait, update_held
+from companion.landing.contact_tests import DISPUTED_CONTACT, HARD_CONTACT
 from companion.landing.decisions import decide
 from companion.landing.timed import Test as Condition
 from companion.monitors.contradiction import CONTRADICTING
@@ -73,9 +67,10 @@ UNSAFE: dict[str, Situation] = {
     CONTRADICTING: replace(situation(), rejected_share=CONFIG.abort.rejected_share_max + 0.01),
     SEEN_TOO_NEAR: replace(situation(), range_height_m=0.5),
     "below the pad without contact": situation(-CONFIG.descent.press_depth_m - CONFIG.touchdown.height_max_m - 0.01),
+    "nothing touched": situation(-CONFIG.touchdown.missed_depth_m - 0.01),
 }
 # Below the commit height these still count: without them nobody knows where the pad is.
-BLIND = {"own position too old", "vehicle heading unknown", "below the pad without contact"}
+BLIND = {"own position too old", "vehicle heading unknown", "below the pad without contact", "nothing touched"}
 # These cannot be true of a drone that is committed: it is over the pad and hardly moves against it.
 UNFIT = {"outside the descent cone", "too fast against the pad"}
 
@@ -358,6 +353,13 @@ def test_bounce_is_seen_above_its_height_only() -> None:
     decision = decide(progress(Phase.TOUCHDOWN), situation(CONFIG.touchdown.lost_height_m + 0.01), {}, CONFIG)
     assert decision is not None
     assert decision[0] is Event.CONTACT_LOST
+
+
+def test_drone_that_stays_above_the_pad_after_contact_has_left_it() -> None:
+    height_m = CONFIG.touchdown.height_max_m + 0.01
+    decision, ticks = first_decision(Phase.TOUCHDOWN, situation(height_m), CONFIG.touchdown.lost_hold_s + 1.0)
+    assert decision == (Event.CONTACT_LOST, "0.4 m above the pad after contact")
+    assert ticks == math.ceil(CONFIG.touchdown.lost_hold_s * 1e9 / TICK_NS - 1e-9)
 
 
 def test_drone_that_slid_off_the_pad_is_not_pressed_down_any_longer() -> None:

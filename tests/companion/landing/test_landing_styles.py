@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from companion.config import CompanionConfig, LandingStyle
+from companion.config import CompanionConfig
+from companion.landing_config import LandingStyle
 from companion.phases import Phase
 from companion.step_data import StepOutputs
 from link.frames import yaw_of

@@ -107,6 +107,15 @@ def test_climb_waits_for_who_is_silent_as_long_as_it_may(silence: str) -> None:
     assert decide(progress(Phase.ABORT, limit_s + 0.1), facts, {}, CONFIG) == (Event.CLEAR_TO_HOLD, silence)
 
 
+def test_vehicle_that_is_heard_of_now_and_then_is_not_approached_again() -> None:
+    """One fix each 1.3 s: never a second without a break, and one just in time for the end of the climb."""
+    limit_s = CONFIG.abort.time_limit_s
+    heard = {"heard": NOW_NS - round(0.5e9 * CONFIG.abort.heard_hold_s)}
+    assert decide(progress(Phase.ABORT, limit_s - 0.1), HIGH, heard, CONFIG) is None
+    ended = decide(progress(Phase.ABORT, limit_s + 0.1), HIGH, heard, CONFIG)
+    assert ended == (Event.CLEAR_TO_HOLD, "vehicle or autopilot heard of with breaks only")
+
+
 @pytest.mark.parametrize("silence", SILENT)
 def test_next_approach_begins_when_all_have_been_heard_without_a_break(silence: str) -> None:
     t_ns = NOW_NS

@@ -141,7 +141,7 @@ def test_approach_that_strays_again_and_again_is_broken_off() -> None:
         assert memory.phase is Phase.DESCEND
     memory, facts = _after(memory, replace(STRAYING, t_ns=facts.t_ns), DESCENT.stray_hold_s + 0.1)
     assert (memory.phase, memory.reason) == (Phase.ABORT, "not over the pad in time")
-    assert memory.strays == 0
+    assert not memory.begun_anew
 
 
 def test_approach_that_loses_its_alignment_again_and_again_is_broken_off() -> None:
@@ -154,7 +154,23 @@ def test_approach_that_loses_its_alignment_again_and_again_is_broken_off() -> No
         assert memory.phase is Phase.ALIGN
     memory, facts = _after(memory, replace(far, t_ns=facts.t_ns), 1.0)
     assert (memory.phase, memory.reason) == (Phase.ABORT, "alignment lost")
-    assert memory.losses == 0
+    assert not memory.begun_anew
+
+
+def test_approach_to_a_pad_that_is_lost_from_sight_again_and_again_is_broken_off() -> None:
+    memory, facts = StepMemory(phase=Phase.DESCEND, phase_since_ns=NOW_NS), situation()
+    unseen = replace(pad_at(std_m=0.5), is_coarse=True)
+    for _ in range(DESCENT.unseen_max):
+        memory, facts = _after(memory, replace(situation(pad=unseen), t_ns=facts.t_ns), 0.1)
+        assert (memory.phase, memory.reason) == (Phase.ALIGN, "pad to be seen again")
+        memory, facts = _after(memory, replace(situation(pad=unseen), t_ns=facts.t_ns), DESCENT.unseen_hold_s + 0.1)
+        assert (memory.phase, memory.reason) == (Phase.CHASE, "pad not seen")
+        memory, facts = _after(memory, replace(situation(), t_ns=facts.t_ns), 0.1)
+        memory, facts = _after(memory, replace(situation(), t_ns=facts.t_ns), 1.0)
+        assert memory.phase is Phase.DESCEND
+    memory, facts = _after(memory, replace(situation(pad=unseen), t_ns=facts.t_ns), 0.1)
+    assert (memory.phase, memory.reason) == (Phase.ABORT, "pad to be seen again")
+    assert not memory.begun_anew
 
 
 @pytest.mark.parametrize(
@@ -162,7 +178,9 @@ def test_approach_that_loses_its_alignment_again_and_again_is_broken_off() -> No
 )
 def test_straying_is_unsafe_once_it_has_been_aligned_again_for_so_often(strays: int, event: Event) -> None:
     held = {"not over the pad in time": NOW_NS - 10**10}
-    decision = decide(replace(progress(Phase.DESCEND), strays=strays), STRAYING, held, CONFIG)
+    decision = decide(
+        replace(progress(Phase.DESCEND), begun_anew={"not over the pad in time": strays}), STRAYING, held, CONFIG
+    )
     assert decision == (event, "not over the pad in time")
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from companion.landing.feasibility import OBSTACLES, obstacle
 from companion.monitors.ground import ground_enu_m, is_road_elsewhere, is_seen_too_near
 from companion.pad import PadPath
 from companion.phases import Phase
@@ -109,6 +110,14 @@ def test_start_beside_a_vehicle_with_other_altitudes_is_refused_with_the_numbers
         "the vehicle's road is said to be 30.0 m below the ground 12 m from it: "
         "let drone and vehicle tell altitudes of one kind"
     )
+
+
+def test_ground_that_an_outage_has_taken_is_not_told_in_numbers() -> None:
+    facts = replace(near(30.0, 10.0), ground_enu_m=None, is_road_elsewhere=True)
+    held = {one.test.reason: 0 for one in OBSTACLES if one.test.is_true(facts, approach(facts), CONFIG)}
+    told = obstacle(held, facts, CONFIG)
+    assert told is not None
+    assert told[1].endswith("land, mend its altitude, start again")
 
 
 def test_vehicle_with_other_altitudes_that_comes_near_is_not_chased() -> None:
