@@ -7,7 +7,7 @@ from typing import Generic, TypeVar
 from companion.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
 from companion.estimation.config import BufferConfig
 from companion.estimation.delay_buffer import DelayBuffer, fuse
-from companion.estimation.filter_step import QUANTITIES, FilterModel, Tally
+from companion.estimation.filter_step import QUANTITIES, FilterModel, Tally, is_forgotten
 
 S = TypeVar("S")
 
@@ -47,12 +47,12 @@ class BufferedEstimator(Generic[S]):
         return fuse(self.model, self.config, memory, measurements)
 
     def estimate(self, memory: DelayBuffer[S] | None, t_ns: int) -> VehicleEstimate | None:
-        """Return the vehicle at `t_ns`, or None before the first fix."""
+        """Return the vehicle at `t_ns`, or None before the first fix and long after the last."""
         state = self._state_at(memory, t_ns)
         return None if state is None else self.model.describe(state, t_ns)
 
     def forecast(self, memory: DelayBuffer[S] | None, t_ns: int, offset_s: Array) -> Forecast | None:
-        """Return the vehicle at `t_ns + offset_s`, `offset_s` (n,) not falling, or None before the first fix."""
+        """Return the vehicle at `t_ns + offset_s`, `offset_s` (n,) not falling, or None as `estimate` does."""
         state = self._state_at(memory, t_ns)
         return None if state is None else self.model.forecast(state, t_ns, offset_s)
 
@@ -84,4 +84,6 @@ class BufferedEstimator(Generic[S]):
         snapshot = memory.before(t_ns)
         if snapshot.state is None or t_ns <= snapshot.t_ns:
             return snapshot.state
+        if is_forgotten(self.config, snapshot, t_ns):
+            return None
         return self.model.predict(snapshot.state, (t_ns - snapshot.t_ns) * 1e-9)

@@ -28,6 +28,8 @@ class BufferConfig(StrictModel):
     # wide, 58 for three components: an emergency brake is no outlier; None gates nothing
     gate_probability: Annotated[float, Field(gt=0.5, lt=1.0)] | None = 0.999999999999
     recover_after_s: Positive = 0.15  # of nothing but rejections of one quantity; the second fix at 10 Hz
+    # What a filter knows of a vehicle that has been silent for so long is worth nothing, and costs more in every step.
+    forget_after_s: Annotated[float, Field(gt=0.0, le=600.0)] = 60.0
     late_in_a_row_max: Annotated[int, Field(ge=1, le=10_000)] = 20  # then the clock is taken to have jumped
 
 

@@ -18,10 +18,10 @@ class Estimator(Protocol):
         """Return the memory after `measurements`; late ones are fused at their own time, outliers are gated."""
 
     def estimate(self, memory: Any, t_ns: int) -> VehicleEstimate | None:
-        """Return the vehicle at `t_ns`, or None before the first fix."""
+        """Return the vehicle at `t_ns`, or None before the first fix and long after the last."""
 
     def forecast(self, memory: Any, t_ns: int, offset_s: Array) -> Forecast | None:
-        """Return the vehicle at `t_ns + offset_s`, `offset_s` (n,), or None before the first fix."""
+        """Return the vehicle at `t_ns + offset_s`, `offset_s` (n,), or None as `estimate` does."""
 
     def newest_fix_ns(self, memory: Any) -> int | None:
         """Return the time at which the newest accepted position was taken."""

@@ -87,12 +87,17 @@ def nis_threshold(gate_probability: float | None, dof: int) -> float:
     return math.inf if gate_probability is None else _chi2_quantile(gate_probability, dof)
 
 
+def is_forgotten(config: BufferConfig, snapshot: Snapshot[S], t_ns: int) -> bool:
+    """Return whether at `t_ns` the filter has heard nothing for so long that it begins anew: a stamp of 0, say."""
+    return t_ns - snapshot.t_ns > config.forget_after_s * 1e9
+
+
 def step(
     model: FilterModel[S], config: BufferConfig, snapshot: Snapshot[S], measurement: Measurement
 ) -> tuple[Snapshot[S], float | None]:
     """Predict to the measurement, then fuse it, gate it, or recover on it."""
     t_ns = measurement.t_ns
-    if snapshot.state is None:
+    if snapshot.state is None or is_forgotten(config, snapshot, t_ns):
         return _start(model, snapshot, measurement), None
     state = snapshot.state
     if t_ns > snapshot.t_ns:

@@ -19,6 +19,8 @@ from link.mavlink.clock_line import ClockLine, ClockPair, fit_clock_line
 
 # Before this (2009-02-13) a unix time is a clock that was never set, not a date; PX4 draws the line here too.
 UNIX_TIME_MIN_NS = 1_234_567_890 * 10**9
+# After this (2038-01-18) a stamp of ROS 2 has no room for it.
+UNIX_TIME_MAX_NS = 2_147_400_000 * 10**9
 
 # With fewer pairs the drift is a guess, and a simulation at several times real time would look like endless steps.
 _STEP_PAIRS_MIN = 5
@@ -156,13 +158,13 @@ def with_system_time(
     Args:
         clock: what was known.
         boot_ns: its time since boot.
-        unix_ns: its UTC; one before `UNIX_TIME_MIN_NS` (0 is the usual "unknown") is passed over.
+        unix_ns: its UTC; passed over before `UNIX_TIME_MIN_NS` (0 is the usual "unknown") and after `UNIX_TIME_MAX_NS`.
         config: how clocks are followed.
 
     Returns:
         What is known now.
     """
-    if unix_ns < UNIX_TIME_MIN_NS:
+    if not UNIX_TIME_MIN_NS <= unix_ns <= UNIX_TIME_MAX_NS:
         return clock
     line, pairs = clock.boot_to_utc, clock.system_times
     if len(pairs) >= _STEP_PAIRS_MIN and _is_step(line, boot_ns, unix_ns, config.system_time_std_ns, config):

@@ -1,12 +1,14 @@
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from companion.data import Measurement, Quantity
+from companion.estimation.buffered import BufferedEstimator
 from companion.estimation.config import BufferConfig, LkfConfig
 from companion.estimation.delay_buffer import DelayBuffer, fuse
-from companion.estimation.filter_step import nis_threshold
+from companion.estimation.filter_step import FilterModel, nis_threshold
 from companion.estimation.gaussian import Gaussian
 from companion.estimation.lkf import LkfModel
 from companion.estimation.lkf_noise import WhiteJerkNoise
@@ -108,3 +110,50 @@ def test_gate_is_the_chi_square_quantile_of_printed_tables() -> None:
     assert nis_threshold(0.95, 1) == pytest.approx(3.841, abs=5e-4)
     assert nis_threshold(0.99, 3) == pytest.approx(11.345, abs=5e-4)
     assert nis_threshold(None, 3) == np.inf
+
+
+FORGOTTEN_S = CONFIG.forget_after_s + 0.1
+
+
+@dataclass(frozen=True)
+class Counted:
+    """The model, which tells over how long it has been asked to predict."""
+
+    asked_s: list[float]
+
+    def predict(self, state: Gaussian, dt_s: float) -> Gaussian:
+        self.asked_s.append(dt_s)
+        return MODEL.predict(state, dt_s)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(MODEL, name)
+
+
+@pytest.mark.parametrize(
+    "silent_s", [FORGOTTEN_S, 3600.0, now_ns(0.0) * 1e-9], ids=["just too long", "hour", "stamp 0"]
+)
+def test_vehicle_that_was_silent_for_long_is_forgotten_and_its_next_fix_begins_anew(silent_s: float) -> None:
+    counted = Counted([])
+    estimator = BufferedEstimator(model=cast(FilterModel[Gaussian], counted), config=CONFIG)
+    before, now = fix(-silent_s, 5.0), fix(0.0, 1.0)
+    memory = estimator.fuse(None, [before])
+    assert estimator.estimate(memory, now.t_ns) is None
+    assert estimator.forecast(memory, now.t_ns, np.array([0.0, 0.2])) is None
+    memory = estimator.fuse(memory, [now])
+    assert memory is not None
+    assert memory.newest.state is not None
+    assert np.array_equal(memory.newest.state.mean, MODEL.start(now).mean)
+    assert memory.newest.tally.fused == 2
+    assert not counted.asked_s
+
+
+def test_vehicle_that_was_silent_for_a_while_is_not_forgotten() -> None:
+    estimator = BufferedEstimator(model=MODEL, config=CONFIG)
+    memory = estimator.fuse(None, [fix(0.0), fix(0.1)])
+    assert estimator.estimate(memory, now_ns(CONFIG.forget_after_s)) is not None
+
+
+def test_velocity_after_a_long_silence_waits_for_a_place() -> None:
+    buffer = run([fix(0.0), fix(FORGOTTEN_S, 1.0, Quantity.VELOCITY)])
+    assert buffer.newest.state is None
+    assert run([fix(0.0), fix(FORGOTTEN_S, 1.0, Quantity.VELOCITY), fix(FORGOTTEN_S + 0.1)]).newest.state is not None

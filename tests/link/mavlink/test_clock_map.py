@@ -96,6 +96,12 @@ def test_local_time_is_taken_for_utc_until_utc_is_known() -> None:
     assert with_system_time(clock, boot_at(t_ns, 0.02), t_ns + UTC_AHEAD_NS).is_utc_known
 
 
+@pytest.mark.parametrize("unix_ns", [2**31 * S, (2**64 - 1) * 1000], ids=["no room in a stamp", "all bits"])
+def test_utc_of_another_age_is_passed_over(unix_ns: int) -> None:
+    clock, t_ns = exchanged(0.02, (0.001, 0.001), 3.0, seed=1)
+    assert with_system_time(clock, boot_at(t_ns, 0.02), unix_ns) is clock
+
+
 def test_an_empty_map_knows_only_local_time() -> None:
     clock = ClockMap()
     assert clock.local_to_utc_ns(LOCAL_NS) == LOCAL_NS
