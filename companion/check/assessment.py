@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from companion.autopilots.choice import MULTIROTORS
 from companion.autopilots.kinds import AutopilotKind
 from companion.check.ardupilot_rules import ARDUPILOT_RULES, ARDUPILOT_SINK
 from companion.check.findings import Finding, Level, passed
@@ -105,6 +106,9 @@ def _when(is_true: bool, otherwise: Level) -> Level:
 
 
 def _firmware(seen: AutopilotFacts, wanted: AutopilotKind) -> Finding:
+    if seen.vehicle_type not in MULTIROTORS:
+        text = f"MAV_TYPE {seen.vehicle_type}, which is no multirotor"
+        return _graded("firmware", text, Level.FAIL, "connect to a multirotor, or set the autopilot's airframe to one")
     if seen.autopilot_id not in FIRMWARES:
         return _graded("firmware", f"MAV_AUTOPILOT {seen.autopilot_id}", Level.FAIL, "connect PX4 or ArduPilot")
     firmware = FIRMWARES[seen.autopilot_id]

@@ -11,6 +11,7 @@ class AutopilotFacts:
 
     Attributes:
         autopilot_id: MAV_AUTOPILOT.
+        vehicle_type: MAV_TYPE.
         version: major, minor, patch.
         can_arm: its own word on whether it would.
         has_origin: of its local frame.
@@ -27,6 +28,7 @@ class AutopilotFacts:
     """
 
     autopilot_id: int
+    vehicle_type: int
     version: tuple[int, int, int] | None = None
     can_arm: bool | None = None
     has_origin: bool = False

@@ -93,12 +93,14 @@ class Reader:
         Raises:
             ValueError: no autopilot was heard.
         """
-        if self.session.autopilot is None:
+        autopilot, vehicle_type = self.session.autopilot, self.session.vehicle_type
+        if autopilot is None or vehicle_type is None:
             raise ValueError("no autopilot was heard")
         clock = self.session.clock
         std_ns = clock.local_to_boot_std_ns(self._t_ns)
         return AutopilotFacts(
-            autopilot_id=self.session.autopilot,
+            autopilot_id=autopilot,
+            vehicle_type=vehicle_type,
             version=self._version(),
             can_arm=self._can_arm(),
             has_origin="GPS_GLOBAL_ORIGIN" in self._newest,

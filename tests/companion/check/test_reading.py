@@ -13,13 +13,18 @@ def battery(number: int, percent: int) -> Message:
     return mavlink.MAVLink_battery_status_message(number, 0, 0, 2500, [0] * 10, -1, -1, -1, percent)
 
 
-def heard(*messages: Message) -> Reader:
+def heard(*messages: Message, vehicle_type: int = mavlink.MAV_TYPE_QUADROTOR) -> Reader:
     """A reader that has found a PX4 and heard `messages` of it."""
     reader, autopilot = Reader(MavlinkSession(1)), MavlinkCodec(1, 1)
-    heartbeat = mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4, 0, 0, 3, 3)
+    heartbeat = mavlink.MAVLink_heartbeat_message(vehicle_type, mavlink.MAV_AUTOPILOT_PX4, 0, 0, 3, 3)
     for k, message in enumerate((heartbeat, *messages)):
         reader.receive(autopilot.encode(message), START_NS + k * MS)
     return reader
+
+
+def test_facts_tell_what_vehicle_the_heartbeat_is_of() -> None:
+    for vehicle_type in (mavlink.MAV_TYPE_HEXAROTOR, mavlink.MAV_TYPE_FIXED_WING):
+        assert heard(vehicle_type=vehicle_type).facts().vehicle_type == vehicle_type
 
 
 @pytest.mark.parametrize(
