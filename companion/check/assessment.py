@@ -191,6 +191,9 @@ def _range_finder(seen: AutopilotFacts) -> Finding:
 
 
 def _vehicle(seen: VehicleFacts, config: CompanionConfig) -> list[Finding]:
+    if seen.rate_hz <= 0.0 and seen.fix_refused_why is not None:
+        advice = f"see what the vehicle publishes on {seen.key}, and whether its receiver has a fix"
+        return [_graded("vehicle", f"refused: {seen.fix_refused_why}", Level.FAIL, advice)]
     if seen.rate_hz <= 0.0:
         advice = "start the ground vehicle, or check --ns, --vehicle and -e"
         return [_graded("vehicle", f"nothing on {seen.key}", Level.WARN, advice)]

@@ -51,6 +51,7 @@ class VehicleFacts:
     Attributes:
         key: that its fixes were expected on.
         rate_hz: of its fixes.
+        fix_refused_why: what was wrong with the last one that was refused, None where none was.
         age_s: median from a fix's stamp to its arrival.
         std_m: the largest standard deviation, of any axis, that a fix states.
         has_velocity: it sends its velocity as well.
@@ -61,6 +62,7 @@ class VehicleFacts:
 
     key: str
     rate_hz: float = 0.0
+    fix_refused_why: str | None = None
     age_s: float | None = None
     std_m: float | None = None
     has_velocity: bool = False

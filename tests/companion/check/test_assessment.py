@@ -96,6 +96,7 @@ def test_what_the_companion_would_not_fly_fails_by_its_type(vehicle_type: int) -
     ("changed", "line", "level"),
     [
         ({"rate_hz": 0.0}, "vehicle", Level.WARN),
+        ({"rate_hz": 0.0, "fix_refused_why": "the receiver has no fix"}, "vehicle", Level.FAIL),
         ({"rate_hz": 1.0}, "vehicle fixes", Level.WARN),
         ({"age_s": 2.0}, "vehicle age", Level.FAIL),
         ({"age_s": -3600.0}, "vehicle age", Level.FAIL),
