@@ -4,7 +4,7 @@ import statistics
 from collections import Counter, deque
 
 from companion.autopilots.local_origin import geoid_height_m
-from companion.autopilots.sensor_messages import battery_share, is_of_first_battery
+from companion.autopilots.sensor_messages import battery_share, is_of_first_battery, looks_down
 from companion.check.assessment import FIRMWARES, MOTION
 from companion.check.observation import AutopilotFacts
 from link.mavlink.dialect import Message, mavlink
@@ -111,7 +111,7 @@ class Reader:
             clock_std_s=None if std_ns is None else std_ns * 1e-9,
             rates_hz={name: self._counts[name] / self.listened_s for name in MOTION} if self.listened_s else {},
             latency_s=statistics.median(self._latencies_s) if self._latencies_s else None,
-            has_range_finder=self._has_range_finder(),
+            has_range_finder="DISTANCE_SENSOR" in self._newest,
             battery_share=self._battery_share(),
             parameters=dict(self._parameters),
         )
@@ -143,6 +143,8 @@ class Reader:
         name = message.get_type()
         if name == "BATTERY_STATUS" and not is_of_first_battery(message):
             return
+        if name == "DISTANCE_SENSOR" and not looks_down(message):
+            return
         self._newest[name] = message
         if name == "PARAM_VALUE":
             self.parameter_types[message.param_id] = message.param_type
@@ -167,10 +169,6 @@ class Reader:
     def _geoid_height_m(self) -> float | None:
         message = self._newest.get("GPS_RAW_INT")
         return None if message is None else geoid_height_m(None, message)
-
-    def _has_range_finder(self) -> bool:
-        message = self._newest.get("DISTANCE_SENSOR")
-        return message is not None and message.orientation == mavlink.MAV_SENSOR_ROTATION_PITCH_270
 
     def _battery_share(self) -> float | None:
         message = self._newest.get("BATTERY_STATUS")

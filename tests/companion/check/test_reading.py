@@ -8,6 +8,9 @@ from link.mavlink.dialect import Message, mavlink
 from link.mavlink.session import MavlinkSession
 from tests.link.mavlink.fake_autopilot import MS, START_NS
 
+DOWN = mavlink.MAV_SENSOR_ROTATION_PITCH_270
+FORWARD, RIGHT = mavlink.MAV_SENSOR_ROTATION_NONE, mavlink.MAV_SENSOR_ROTATION_YAW_90
+
 
 def battery(number: int, percent: int) -> Message:
     return mavlink.MAVLink_battery_status_message(number, 0, 0, 2500, [0] * 10, -1, -1, -1, percent)
@@ -33,6 +36,20 @@ def test_facts_tell_what_vehicle_the_heartbeat_is_of() -> None:
 )
 def test_only_the_first_battery_counts_as_in_flight(told: list[tuple[int, int]], share: float | None) -> None:
     assert heard(*(battery(*one) for one in told)).facts().battery_share == share
+
+
+def distance(orientation: int) -> Message:
+    return mavlink.MAVLink_distance_sensor_message(1000, 20, 1200, 300, 0, 0, orientation, 0)
+
+
+@pytest.mark.parametrize(
+    ("orientations", "found"),
+    [((DOWN, FORWARD, RIGHT), True), ((FORWARD, DOWN), True), ((DOWN,), True), ((FORWARD, RIGHT), False), ((), False)],
+)
+def test_range_finder_downwards_is_found_among_sectors_around_the_drone(
+    orientations: tuple[int, ...], *, found: bool
+) -> None:
+    assert heard(*map(distance, orientations)).facts().has_range_finder is found
 
 
 @pytest.mark.parametrize(
