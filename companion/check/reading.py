@@ -8,7 +8,15 @@ from companion.autopilots.sensor_messages import battery_share, is_of_first_batt
 from companion.check.assessment import FIRMWARES, MOTION
 from companion.check.observation import AutopilotFacts
 from link.mavlink.dialect import Message, mavlink
-from link.mavlink.events import Event, LinkFound, MessageReceived, ParameterMissing, ParameterRead
+from link.mavlink.events import (
+    CommandAcknowledged,
+    CommandTimedOut,
+    Event,
+    LinkFound,
+    MessageReceived,
+    ParameterMissing,
+    ParameterRead,
+)
 from link.mavlink.session import MavlinkSession
 
 _RATE_HZ = 50.0
@@ -46,6 +54,7 @@ class Reader:
         self._found_ns: int | None = None
         self._counted_from_ns = 0
         self._asked_ns = 0
+        self._unanswered: dict[int, int] = {}  # message ids that were asked for, by their tickets
         self._t_ns = 0
 
     @property
@@ -75,8 +84,8 @@ class Reader:
         if self._found_ns is not None and t_ns - self._asked_ns >= _ASK_AGAIN_NS:
             self._asked_ns = t_ns
             for message_id in _ONCE:
-                if _name(message_id) not in self._newest:
-                    self.session.request_message(message_id, t_ns)
+                if _name(message_id) not in self._newest and message_id not in self._unanswered.values():
+                    self._unanswered[self.session.request_message(message_id, t_ns)] = message_id
 
     def read_again(self, name: str, t_ns: int) -> None:
         """Ask for a parameter's present value."""
@@ -123,6 +132,10 @@ class Reader:
                     self._hear(event.message, event.t_ns)
                 case LinkFound():
                     self._ask(event)
+                case CommandAcknowledged(result=mavlink.MAV_RESULT_IN_PROGRESS):
+                    pass
+                case CommandAcknowledged(ticket=ticket) | CommandTimedOut(ticket=ticket) if ticket is not None:
+                    self._unanswered.pop(ticket, None)
                 case ParameterRead():
                     self._parameters[event.name] = float(event.value)
                     self._outstanding.discard(event.name)

@@ -6,7 +6,8 @@ from companion.check.reading import Reader
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.session import MavlinkSession
-from tests.link.mavlink.fake_autopilot import MS, START_NS
+from tests.companion.peer import FakePx4
+from tests.link.mavlink.fake_autopilot import MS, START_NS, S
 
 DOWN = mavlink.MAV_SENSOR_ROTATION_PITCH_270
 FORWARD, RIGHT = mavlink.MAV_SENSOR_ROTATION_NONE, mavlink.MAV_SENSOR_ROTATION_YAW_90
@@ -58,3 +59,27 @@ def test_range_finder_downwards_is_found_among_sectors_around_the_drone(
 def test_geoid_is_read_off_the_receiver_as_in_flight(fix: int, ellipsoid_mm: int, height_m: float | None) -> None:
     receiver = mavlink.MAVLink_gps_raw_int_message(0, fix, 1, 1, 400_000, 1, 1, 0, 0, 9, alt_ellipsoid=ellipsoid_mm)
     assert heard(receiver).facts().geoid_height_m == (None if height_m is None else pytest.approx(height_m))
+
+
+def test_what_is_asked_for_once_waits_for_an_answer_before_it_is_asked_for_again() -> None:
+    ask = mavlink.MAV_CMD_REQUEST_MESSAGE
+    reader, autopilot, t_ns = Reader(MavlinkSession(1)), FakePx4(results={ask: ()}), START_NS
+
+    def run(duration_s: float) -> int:
+        """Return how often the autopilot was asked."""
+        nonlocal t_ns
+        before = len(autopilot.commands(ask))
+        for _ in range(round(duration_s * S / (5 * MS))):
+            t_ns += 5 * MS
+            autopilot.tick(t_ns)
+            for data in autopilot.take_output():
+                reader.receive(data, t_ns)
+            reader.poll(t_ns)
+            for frame in reader.session.take_output():
+                autopilot.receive(frame, t_ns)
+        return len(autopilot.commands(ask)) - before
+
+    assert run(20.0) > 20
+    autopilot.results = {}
+    assert run(0.9) <= 4
+    assert reader.facts().has_origin
