@@ -2,25 +2,41 @@
 
 The messages are those of the recording, by steps: at 50 steps a second, the default, `own` comes 25 times a second,
 `estimate` and `forecast` 10 times, `link` once.
-Where nobody subscribes to them nothing is encoded.
+A topic that nobody subscribes to is not encoded.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 
 from companion.node import CompanionNode
-from companion.recording.messages import LONG_EVERY, link_message, own_message, vehicle_messages
+from companion.recording.messages import (
+    LONG_EVERY,
+    estimate_message,
+    estimate_of,
+    forecast_message,
+    forecast_of,
+    link_message,
+    own_message,
+)
 from companion.recording.node_records import link_record, step_record
 from companion.recording.records import LinkRecord, StepRecord
 from link import cdr
 from link.keys import Keys
 from link.messages import BodyTruth
 from link.recorder import BackgroundRecorder
-from link.ros_records import RosMessage, typestore
+from link.ros_records import PACKAGE, RosMessage, typestore
 from link.zenoh_session import ZenohSession
 
 _OWN_EVERY = 2  # steps
 _LINK_EVERY = 50
 _CAPACITY = 100  # records; a view wants the newest only
+_TYPES = {
+    "own": cdr.ROS_TYPES[BodyTruth],
+    "estimate": f"{PACKAGE}/VehicleEstimate",
+    "forecast": f"{PACKAGE}/Forecast",
+    "link": f"{PACKAGE}/LinkStatistics",
+}
+_Make = Callable[[], RosMessage | None]
 
 
 class LiveState:
@@ -57,24 +73,42 @@ class _Sink:
         typestore()  # not in flight: it takes a while to load
         self._zenoh = zenoh
         self._keys = keys
-        self._own_encoding = cdr.encoding_of(BodyTruth)
 
     def write(self, record: tuple[StepRecord | LinkRecord, int]) -> None:
-        """Publish what a record says, if anybody listens."""
-        if not self._zenoh.is_heard(self._keys.record("own"), self._own_encoding):
-            return
-        for message in self._messages(*record):
-            self._zenoh.publish(message.topic, message.payload, f"application/cdr;{message.type_name}")
+        """Publish what a record says, each topic if anybody listens to it."""
+        for name, make in self._due(*record):
+            encoding = f"application/cdr;{_TYPES[name]}"
+            if not self._zenoh.is_heard(self._keys.record(name), encoding):
+                continue
+            message = make()
+            if message is not None:
+                self._zenoh.publish(message.topic, message.payload, encoding)
 
     def close(self) -> None:
         """Do nothing: the session belongs to the loop."""
 
-    def _messages(self, record: StepRecord | LinkRecord, step: int) -> Iterator[RosMessage]:
+    def _due(self, record: StepRecord | LinkRecord, step: int) -> Iterator[tuple[str, _Make]]:
+        """Return the topics that a record is for, each with what makes its message."""
         if isinstance(record, LinkRecord):
-            yield link_message(record, self._keys)
+            yield "link", partial(link_message, record, self._keys)
             return
-        if record.inputs.own is not None and step % _OWN_EVERY == 0:
-            yield own_message(record.inputs.own, self._keys)
-        if step % LONG_EVERY:
-            return
-        yield from vehicle_messages(record, self._keys)
+        if step % _OWN_EVERY == 0:
+            yield "own", partial(_own, record, self._keys)
+        if step % LONG_EVERY == 0:
+            yield "estimate", partial(_estimate, record, self._keys)
+            yield "forecast", partial(_forecast, record, self._keys)
+
+
+def _own(record: StepRecord, keys: Keys) -> RosMessage | None:
+    own = record.inputs.own
+    return None if own is None else own_message(own, keys)
+
+
+def _estimate(record: StepRecord, keys: Keys) -> RosMessage | None:
+    estimate = estimate_of(record)
+    return None if estimate is None else estimate_message(estimate, keys)
+
+
+def _forecast(record: StepRecord, keys: Keys) -> RosMessage | None:
+    forecast = forecast_of(record)
+    return None if forecast is None else forecast_message(forecast, keys)

@@ -11,11 +11,12 @@ from companion.command_desk import CommandDesk
 from companion.loop_options import Links, LoopOptions
 from companion.node import CompanionNode
 from companion.onlookers import Onlooker, onlookers
-from companion.own_start import OwnStart, check_autopilot
+from companion.own_start import OwnStart
 from companion.pad_question import PadQuestion
 from companion.phases import Phase
 from companion.recording.node import RecordingNode
 from companion.timings import Timings
+from companion.unheard import check_autopilot
 from link import cdr
 from link.clock import Clock, ClockTick, SimulatedClock, SystemClock
 from link.errors import UserError

@@ -4,7 +4,6 @@ from companion.node import CompanionNode
 from companion.phases import Phase
 from link.errors import UserError
 from link.keys import Keys
-from link.mavlink.session import MavlinkSession
 from link.messages import Command, CommandReply
 
 
@@ -56,26 +55,3 @@ class OwnStart:
             raise UserError(
                 f"the vehicle did not describe its pad on {keys.pad} within {timeout_s:g} s: let it answer there"
             )
-
-
-def check_autopilot(session: MavlinkSession, device: str, timeout_s: float) -> None:
-    """See to it that an autopilot was heard.
-
-    Raises:
-        UserError: none was.
-    """
-    if session.autopilot is None:
-        raise UserError(
-            f"no heartbeat of an autopilot within {timeout_s:g} s on {device}: "
-            f"{_seen(session)}; check --mavlink and the autopilot's port"
-        )
-
-
-def _seen(session: MavlinkSession) -> str:
-    codec = session.statistics.codec
-    if not codec.bytes_received:
-        return "nothing was received"
-    others = ", ".join(map(str, sorted(session.other_system_ids)))
-    if others:
-        return f"autopilots of system {others} were heard, see --system-id"
-    return f"{codec.bytes_received} bytes received, {codec.messages_received} messages, none of them its heartbeat"

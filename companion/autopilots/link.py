@@ -33,6 +33,7 @@ _STREAMS_HZ = {
     mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: 20.0,
 }
 _MOTION_IDS = (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED)
+_ASK = mavlink.MAV_CMD_REQUEST_MESSAGE
 _ASK_ORIGIN_NS = 1_000_000_000
 _ASK_KNOWN_ORIGIN_NS = 5_000_000_000
 _TEXT_SIZE = 50  # of a STATUSTEXT
@@ -233,10 +234,13 @@ class AutopilotLink:
         self._times = local_ns, utc_ns
 
     def _ask_for_origin(self, local_ns: int) -> None:
-        """Ask until it is known, and from time to time after, since it can be moved."""
-        if self.driver is None or not self.session.link_up:
+        """Ask until it is known, and from time to time after, since it can be moved.
+
+        While a question is unanswered there is no other: it runs out of time later than the next would be due.
+        """
+        if self.driver is None or not self.session.link_up or _ASK in self._unanswered:
             return
         period_ns = _ASK_ORIGIN_NS if self.state.view.frame is None else _ASK_KNOWN_ORIGIN_NS
         if self._origin_asked_ns is None or local_ns - self._origin_asked_ns >= period_ns:
             self._origin_asked_ns = local_ns
-            self.session.request_message(mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN, local_ns)
+            self._unanswered[_ASK] = self.session.request_message(mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN, local_ns)

@@ -28,11 +28,15 @@ def battery_share(message: Message) -> float | None:
     return percent / 100.0 if percent >= 0 else None
 
 
+def looks_down(message: Message) -> bool:
+    """Return whether a DISTANCE_SENSOR is of a range finder downwards; others are sectors around the drone."""
+    return bool(message.orientation == mavlink.MAV_SENSOR_ROTATION_PITCH_270)
+
+
 def _range_reading(message: Message, clock: ClockMap, up_m: float | None) -> RangeReading | None:
     """Return what a range finder that looks down sees; at or beyond its range's ends it sees nothing."""
     t_ns = clock.boot_to_utc_ns(message.time_boot_ms * 1_000_000)
     is_within = message.min_distance < message.current_distance < message.max_distance
-    looks_down = message.orientation == mavlink.MAV_SENSOR_ROTATION_PITCH_270
-    if t_ns is None or not (is_within and looks_down) or message.signal_quality == _INVALID:
+    if t_ns is None or not (is_within and looks_down(message)) or message.signal_quality == _INVALID:
         return None
     return RangeReading(t_ns=t_ns, distance_m=message.current_distance * _CM, up_m=up_m)

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from companion.autopilots.choice import MULTIROTORS
 from companion.autopilots.kinds import AutopilotKind
 from companion.check.ardupilot_rules import ARDUPILOT_RULES, ARDUPILOT_SINK
 from companion.check.findings import Finding, Level, passed
@@ -106,6 +107,9 @@ def _when(is_true: bool, otherwise: Level) -> Level:
 
 
 def _firmware(seen: AutopilotFacts, wanted: AutopilotKind) -> Finding:
+    if seen.vehicle_type not in MULTIROTORS:
+        text = f"MAV_TYPE {seen.vehicle_type}, which is no multirotor"
+        return _graded("firmware", text, Level.FAIL, "connect to a multirotor, or set the autopilot's airframe to one")
     if seen.autopilot_id not in FIRMWARES:
         return _graded("firmware", f"MAV_AUTOPILOT {seen.autopilot_id}", Level.FAIL, "connect PX4 or ArduPilot")
     firmware = FIRMWARES[seen.autopilot_id]
@@ -188,6 +192,9 @@ def _range_finder(seen: AutopilotFacts) -> Finding:
 
 
 def _vehicle(seen: VehicleFacts, config: CompanionConfig) -> list[Finding]:
+    if seen.rate_hz <= 0.0 and seen.fix_refused_why is not None:
+        advice = f"see what the vehicle publishes on {seen.key}, and whether its receiver has a fix"
+        return [_graded("vehicle", f"refused: {seen.fix_refused_why}", Level.FAIL, advice)]
     if seen.rate_hz <= 0.0:
         advice = "start the ground vehicle, or check --ns, --vehicle and -e"
         return [_graded("vehicle", f"nothing on {seen.key}", Level.WARN, advice)]

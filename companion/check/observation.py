@@ -11,6 +11,7 @@ class AutopilotFacts:
 
     Attributes:
         autopilot_id: MAV_AUTOPILOT.
+        vehicle_type: MAV_TYPE.
         version: major, minor, patch.
         can_arm: its own word on whether it would.
         has_origin: of its local frame.
@@ -27,6 +28,7 @@ class AutopilotFacts:
     """
 
     autopilot_id: int
+    vehicle_type: int
     version: tuple[int, int, int] | None = None
     can_arm: bool | None = None
     has_origin: bool = False
@@ -49,6 +51,7 @@ class VehicleFacts:
     Attributes:
         key: that its fixes were expected on.
         rate_hz: of its fixes.
+        fix_refused_why: what was wrong with the last one that was refused, None where none was.
         age_s: median from a fix's stamp to its arrival.
         std_m: the largest standard deviation, of any axis, that a fix states.
         has_velocity: it sends its velocity as well.
@@ -59,6 +62,7 @@ class VehicleFacts:
 
     key: str
     rate_hz: float = 0.0
+    fix_refused_why: str | None = None
     age_s: float | None = None
     std_m: float | None = None
     has_velocity: bool = False

@@ -4,11 +4,19 @@ import statistics
 from collections import Counter, deque
 
 from companion.autopilots.local_origin import geoid_height_m
-from companion.autopilots.sensor_messages import battery_share, is_of_first_battery
+from companion.autopilots.sensor_messages import battery_share, is_of_first_battery, looks_down
 from companion.check.assessment import FIRMWARES, MOTION
 from companion.check.observation import AutopilotFacts
 from link.mavlink.dialect import Message, mavlink
-from link.mavlink.events import Event, LinkFound, MessageReceived, ParameterMissing, ParameterRead
+from link.mavlink.events import (
+    CommandAcknowledged,
+    CommandTimedOut,
+    Event,
+    LinkFound,
+    MessageReceived,
+    ParameterMissing,
+    ParameterRead,
+)
 from link.mavlink.session import MavlinkSession
 
 _RATE_HZ = 50.0
@@ -46,6 +54,7 @@ class Reader:
         self._found_ns: int | None = None
         self._counted_from_ns = 0
         self._asked_ns = 0
+        self._unanswered: dict[int, int] = {}  # message ids that were asked for, by their tickets
         self._t_ns = 0
 
     @property
@@ -75,8 +84,8 @@ class Reader:
         if self._found_ns is not None and t_ns - self._asked_ns >= _ASK_AGAIN_NS:
             self._asked_ns = t_ns
             for message_id in _ONCE:
-                if _name(message_id) not in self._newest:
-                    self.session.request_message(message_id, t_ns)
+                if _name(message_id) not in self._newest and message_id not in self._unanswered.values():
+                    self._unanswered[self.session.request_message(message_id, t_ns)] = message_id
 
     def read_again(self, name: str, t_ns: int) -> None:
         """Ask for a parameter's present value."""
@@ -93,12 +102,14 @@ class Reader:
         Raises:
             ValueError: no autopilot was heard.
         """
-        if self.session.autopilot is None:
+        autopilot, vehicle_type = self.session.autopilot, self.session.vehicle_type
+        if autopilot is None or vehicle_type is None:
             raise ValueError("no autopilot was heard")
         clock = self.session.clock
         std_ns = clock.local_to_boot_std_ns(self._t_ns)
         return AutopilotFacts(
-            autopilot_id=self.session.autopilot,
+            autopilot_id=autopilot,
+            vehicle_type=vehicle_type,
             version=self._version(),
             can_arm=self._can_arm(),
             has_origin="GPS_GLOBAL_ORIGIN" in self._newest,
@@ -109,7 +120,7 @@ class Reader:
             clock_std_s=None if std_ns is None else std_ns * 1e-9,
             rates_hz={name: self._counts[name] / self.listened_s for name in MOTION} if self.listened_s else {},
             latency_s=statistics.median(self._latencies_s) if self._latencies_s else None,
-            has_range_finder=self._has_range_finder(),
+            has_range_finder="DISTANCE_SENSOR" in self._newest,
             battery_share=self._battery_share(),
             parameters=dict(self._parameters),
         )
@@ -121,6 +132,10 @@ class Reader:
                     self._hear(event.message, event.t_ns)
                 case LinkFound():
                     self._ask(event)
+                case CommandAcknowledged(result=mavlink.MAV_RESULT_IN_PROGRESS):
+                    pass
+                case CommandAcknowledged(ticket=ticket) | CommandTimedOut(ticket=ticket) if ticket is not None:
+                    self._unanswered.pop(ticket, None)
                 case ParameterRead():
                     self._parameters[event.name] = float(event.value)
                     self._outstanding.discard(event.name)
@@ -140,6 +155,8 @@ class Reader:
     def _hear(self, message: Message, t_ns: int) -> None:
         name = message.get_type()
         if name == "BATTERY_STATUS" and not is_of_first_battery(message):
+            return
+        if name == "DISTANCE_SENSOR" and not looks_down(message):
             return
         self._newest[name] = message
         if name == "PARAM_VALUE":
@@ -165,10 +182,6 @@ class Reader:
     def _geoid_height_m(self) -> float | None:
         message = self._newest.get("GPS_RAW_INT")
         return None if message is None else geoid_height_m(None, message)
-
-    def _has_range_finder(self) -> bool:
-        message = self._newest.get("DISTANCE_SENSOR")
-        return message is not None and message.orientation == mavlink.MAV_SENSOR_ROTATION_PITCH_270
 
     def _battery_share(self) -> float | None:
         message = self._newest.get("BATTERY_STATUS")

@@ -8,7 +8,7 @@ from companion.check.reading import Reader
 from companion.check.vehicle_reading import VehicleReader
 from companion.landing_config import ChaseConfig
 from companion.pad_question import PadQuestion
-from link.errors import UserError
+from companion.unheard import check_autopilot
 from link.keys import Keys
 from link.mavlink.parameters import parameter_set_message
 from link.mavlink.session import MavlinkSession
@@ -72,9 +72,7 @@ class CheckSession:
         end_s = time.monotonic() + timeout_s if timeout_s else float("inf")
         while self.reader.session.autopilot is None:
             if time.monotonic() > end_s:
-                others = ", ".join(map(str, sorted(self.reader.session.other_system_ids)))
-                advice = f"autopilots of system {others} were heard, see --system-id" if others else "check --mavlink"
-                raise UserError(f"no heartbeat of an autopilot within {timeout_s:g} s on {self._device}: {advice}")
+                check_autopilot(self.reader.session, self._device, timeout_s)
             self.turn()
 
     def listen(self, duration_s: float, zenoh: ZenohSession, keys: Keys, config: ChaseConfig) -> VehicleFacts:

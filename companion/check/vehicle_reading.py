@@ -29,6 +29,7 @@ class VehicleReader:
         self._course_speed_min_m_s = config.course_speed_min_m_s
         self._arrived_ns: list[int] = []
         self._ages_s: list[float] = []
+        self._fix_refused_why: str | None = None
         self._std_m: float | None = None
         self._has_velocity = False
         self._heading: tuple[int, float] | None = None
@@ -38,7 +39,8 @@ class VehicleReader:
         """Take a fix that arrived at local time `arrived_ns`, UTC `utc_ns` where that is known."""
         try:
             fix = cdr.decode(Fix, payload)
-        except PayloadError:
+        except PayloadError as error:
+            self._fix_refused_why = str(error)
             return
         self._arrived_ns.append(arrived_ns)
         if utc_ns is not None:
@@ -83,6 +85,7 @@ class VehicleReader:
         return VehicleFacts(
             key=self._key,
             rate_hz=(len(self._arrived_ns) - 1) / span_s if span_s > 0.0 else 0.0,
+            fix_refused_why=self._fix_refused_why,
             age_s=statistics.median(self._ages_s) if self._ages_s else None,
             std_m=self._std_m,
             has_velocity=self._has_velocity,

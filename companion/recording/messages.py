@@ -51,28 +51,31 @@ def step_messages(record: StepRecord, keys: Keys, *, long: bool) -> Iterator[Ros
         yield _setpoint(outputs.setpoint, keys)
     if not long:
         return
-    yield from vehicle_messages(record, keys, path=True)
+    yield from _vehicle_messages(record, keys)
     if outputs.plan is not None:
         yaw_rad = 0.0 if outputs.setpoint is None else outputs.setpoint.yaw_rad
         yield _plan(outputs.plan, t_ns, keys)
         yield plan_path_message(outputs.plan.trajectory, t_ns, yaw_rad, keys)
 
 
-def vehicle_messages(record: StepRecord, keys: Keys, *, path: bool = False) -> Iterator[RosMessage]:
-    """Return the vehicle now and over the horizon as a step knew it, nothing before the first fix.
-
-    A step itself looks only as far ahead as its phase needs. With `path` the horizon comes in both forms.
-    """
-    t_ns = record.inputs.t_ns
-    estimate = record.estimator.estimate(record.estimator_memory, t_ns)
+def _vehicle_messages(record: StepRecord, keys: Keys) -> Iterator[RosMessage]:
+    estimate = estimate_of(record)
     if estimate is not None:
         yield estimate_message(estimate, keys)
-    forecast = record.estimator.forecast(record.estimator_memory, t_ns, HORIZON_OFFSETS_S)
-    if forecast is None:
-        return
-    yield forecast_message(forecast, keys)
-    if path:
+    forecast = forecast_of(record)
+    if forecast is not None:
+        yield forecast_message(forecast, keys)
         yield forecast_path_message(forecast, keys)
+
+
+def estimate_of(record: StepRecord) -> VehicleEstimate | None:
+    """Return the vehicle as a step knew it, None before the first fix."""
+    return record.estimator.estimate(record.estimator_memory, record.inputs.t_ns)
+
+
+def forecast_of(record: StepRecord) -> Forecast | None:
+    """Return the vehicle over the horizon as a step knew it; the step looked only as far ahead as its phase needs."""
+    return record.estimator.forecast(record.estimator_memory, record.inputs.t_ns, HORIZON_OFFSETS_S)
 
 
 def link_message(record: LinkRecord, keys: Keys) -> RosMessage:

@@ -83,6 +83,11 @@ class MavlinkSession:
         return self._peer.autopilot
 
     @property
+    def vehicle_type(self) -> int | None:
+        """MAV_TYPE of its heartbeat, None before the first one."""
+        return self._peer.vehicle_type
+
+    @property
     def statistics(self) -> SessionStatistics:
         """The counters as they stand."""
         return SessionStatistics(

@@ -2,10 +2,12 @@
 
 import io
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from rich.console import Console
 
+from companion import live_state
 from companion.live_state import LiveState
 from companion.terminal import Terminal
 from link.keys import Keys
@@ -75,6 +77,40 @@ def test_view_that_listens_is_told_and_one_that_does_not_costs_no_message(
     assert set(samples) == {KEYS.record(name) for name in ("own", "estimate", "forecast", "link")}
     forecast = fields_of(samples[KEYS.record("forecast")], "decklander_msgs/msg/Forecast")
     assert len(forecast["position_m"]) == 3 * len(forecast["offset_s"]) > 0
+
+
+class Listener:
+    """A session whose only listener wants some keys; keeps the keys that are published, by their encodings."""
+
+    def __init__(self, *wanted: str) -> None:
+        self._wanted = wanted
+        self.published: dict[str, str] = {}
+
+    def is_heard(self, key: str, _: str) -> bool:
+        return key in self._wanted
+
+    def publish(self, key: str, payload: bytes, encoding: str) -> None:
+        assert fields_of(payload, encoding.removeprefix("application/cdr;"))
+        self.published[key] = encoding
+
+
+def encoded_for_nobody(record: object, _: Keys) -> None:
+    raise AssertionError(f"{record} was encoded, and nobody listens")
+
+
+@pytest.mark.parametrize("name", ["own", "estimate", "forecast", "link"])
+def test_who_listens_to_one_topic_is_told_that_one_and_nothing_else_is_encoded(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for other in {"own", "estimate", "forecast", "link"} - {name}:
+        monkeypatch.setattr(live_state, f"{other}_message", encoded_for_nobody)
+    setup, listener = Setup(), Listener(KEYS.record(name))
+    setup.run(2.0)
+    session: Any = listener
+    live = LiveState(session, KEYS)
+    told(live, setup)
+    live.close()
+    assert set(listener.published) == {KEYS.record(name)}
 
 
 def test_terminal_shows_what_the_node_waits_for_and_its_links() -> None:

@@ -14,6 +14,7 @@ from link.mavlink.session import MavlinkSession
 from tests.companion.peer import FakePx4
 from tests.link.mavlink.fake_autopilot import MS, START_NS
 
+ASK = mavlink.MAV_CMD_REQUEST_MESSAGE
 DISARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
 PLAIN = AutopilotCommand(command=DISARM, parameters=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
 FORCED = AutopilotCommand(command=DISARM, parameters=(0.0, 21196.0, 0.0, 0.0, 0.0, 0.0, 0.0))
@@ -153,3 +154,23 @@ def test_limit_that_was_not_told_is_asked_for_until_it_is() -> None:
     talk.autopilot.parameters["MPC_XY_VEL_MAX"] = (7.0, mavlink.MAV_PARAM_TYPE_REAL32)
     talk.run(8.0)
     assert talk.link.limits(wanted).speed_max_m_s == 7.0
+
+
+def test_origin_is_asked_for_one_question_at_a_time_while_none_is_answered() -> None:
+    talk = Talk(FakePx4(results={ASK: ()}))
+    talk.run(20.0)
+    unanswered = len(talk.autopilot.commands(ASK))
+    assert unanswered > 20  # it goes on asking
+    talk.autopilot.results = {}
+    talk.run(0.9)
+    assert talk.link.state.view.frame is not None
+    assert len(talk.autopilot.commands(ASK)) - unanswered <= 2
+
+
+def test_origin_that_is_refused_is_asked_for_again_each_second() -> None:
+    talk = Talk(FakePx4(results={ASK: (mavlink.MAV_RESULT_TEMPORARILY_REJECTED,)}))
+    talk.run(8.5)
+    assert len(talk.autopilot.commands(ASK)) == 10
+    talk.autopilot.results = {}
+    talk.run(1.1)
+    assert talk.link.state.view.frame is not None

@@ -6,17 +6,20 @@ from typing import Any
 
 import pytest
 
+from companion.autopilots.choice import driver_for
 from companion.check.assessment import MOTION, assessed, is_ready
 from companion.check.changes import advised_values
 from companion.check.findings import Level
 from companion.check.observation import AutopilotFacts, VehicleFacts
 from companion.config import CompanionConfig
+from link.errors import UserError
 from link.mavlink.dialect import mavlink
 from link.toml_config import validated
 from tests.companion.check.test_rules import ARDUCOPTER_46, PX4_DEFAULTS
 
 GOOD = AutopilotFacts(
     autopilot_id=mavlink.MAV_AUTOPILOT_PX4,
+    vehicle_type=mavlink.MAV_TYPE_QUADROTOR,
     version=(1, 16, 0),
     can_arm=True,
     has_origin=True,
@@ -77,10 +80,23 @@ def test_autopilot_amiss_is_told(changed: dict[str, Any], line: str, level: Leve
     assert by_name[line].advice
 
 
+@pytest.mark.parametrize("vehicle_type", range(50))
+def test_what_the_companion_would_not_fly_fails_by_its_type(vehicle_type: int) -> None:
+    by_name = {one.name: one for one in assessed(replace(GOOD, vehicle_type=vehicle_type), VEHICLE, 10.0, CONFIG)}
+    try:
+        driver_for(GOOD.autopilot_id, vehicle_type)
+    except UserError:
+        assert by_name["firmware"].level is Level.FAIL
+        assert f"MAV_TYPE {vehicle_type}" in by_name["firmware"].found
+    else:
+        assert by_name["firmware"].level is Level.PASS
+
+
 @pytest.mark.parametrize(
     ("changed", "line", "level"),
     [
         ({"rate_hz": 0.0}, "vehicle", Level.WARN),
+        ({"rate_hz": 0.0, "fix_refused_why": "the receiver has no fix"}, "vehicle", Level.FAIL),
         ({"rate_hz": 1.0}, "vehicle fixes", Level.WARN),
         ({"age_s": 2.0}, "vehicle age", Level.FAIL),
         ({"age_s": -3600.0}, "vehicle age", Level.FAIL),

@@ -6,20 +6,29 @@ from companion.check.reading import Reader
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.session import MavlinkSession
-from tests.link.mavlink.fake_autopilot import MS, START_NS
+from tests.companion.peer import FakePx4
+from tests.link.mavlink.fake_autopilot import MS, START_NS, S
+
+DOWN = mavlink.MAV_SENSOR_ROTATION_PITCH_270
+FORWARD, RIGHT = mavlink.MAV_SENSOR_ROTATION_NONE, mavlink.MAV_SENSOR_ROTATION_YAW_90
 
 
 def battery(number: int, percent: int) -> Message:
     return mavlink.MAVLink_battery_status_message(number, 0, 0, 2500, [0] * 10, -1, -1, -1, percent)
 
 
-def heard(*messages: Message) -> Reader:
+def heard(*messages: Message, vehicle_type: int = mavlink.MAV_TYPE_QUADROTOR) -> Reader:
     """A reader that has found a PX4 and heard `messages` of it."""
     reader, autopilot = Reader(MavlinkSession(1)), MavlinkCodec(1, 1)
-    heartbeat = mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4, 0, 0, 3, 3)
+    heartbeat = mavlink.MAVLink_heartbeat_message(vehicle_type, mavlink.MAV_AUTOPILOT_PX4, 0, 0, 3, 3)
     for k, message in enumerate((heartbeat, *messages)):
         reader.receive(autopilot.encode(message), START_NS + k * MS)
     return reader
+
+
+def test_facts_tell_what_vehicle_the_heartbeat_is_of() -> None:
+    for vehicle_type in (mavlink.MAV_TYPE_HEXAROTOR, mavlink.MAV_TYPE_FIXED_WING):
+        assert heard(vehicle_type=vehicle_type).facts().vehicle_type == vehicle_type
 
 
 @pytest.mark.parametrize(
@@ -30,9 +39,47 @@ def test_only_the_first_battery_counts_as_in_flight(told: list[tuple[int, int]],
     assert heard(*(battery(*one) for one in told)).facts().battery_share == share
 
 
+def distance(orientation: int) -> Message:
+    return mavlink.MAVLink_distance_sensor_message(1000, 20, 1200, 300, 0, 0, orientation, 0)
+
+
+@pytest.mark.parametrize(
+    ("orientations", "found"),
+    [((DOWN, FORWARD, RIGHT), True), ((FORWARD, DOWN), True), ((DOWN,), True), ((FORWARD, RIGHT), False), ((), False)],
+)
+def test_range_finder_downwards_is_found_among_sectors_around_the_drone(
+    orientations: tuple[int, ...], *, found: bool
+) -> None:
+    assert heard(*map(distance, orientations)).facts().has_range_finder is found
+
+
 @pytest.mark.parametrize(
     ("fix", "ellipsoid_mm", "height_m"), [(3, 400_000, 0.0), (3, 447_300, 47.3), (3, 0, None), (1, 447_300, None)]
 )
 def test_geoid_is_read_off_the_receiver_as_in_flight(fix: int, ellipsoid_mm: int, height_m: float | None) -> None:
     receiver = mavlink.MAVLink_gps_raw_int_message(0, fix, 1, 1, 400_000, 1, 1, 0, 0, 9, alt_ellipsoid=ellipsoid_mm)
     assert heard(receiver).facts().geoid_height_m == (None if height_m is None else pytest.approx(height_m))
+
+
+def test_what_is_asked_for_once_waits_for_an_answer_before_it_is_asked_for_again() -> None:
+    ask = mavlink.MAV_CMD_REQUEST_MESSAGE
+    reader, autopilot, t_ns = Reader(MavlinkSession(1)), FakePx4(results={ask: ()}), START_NS
+
+    def run(duration_s: float) -> int:
+        """Return how often the autopilot was asked."""
+        nonlocal t_ns
+        before = len(autopilot.commands(ask))
+        for _ in range(round(duration_s * S / (5 * MS))):
+            t_ns += 5 * MS
+            autopilot.tick(t_ns)
+            for data in autopilot.take_output():
+                reader.receive(data, t_ns)
+            reader.poll(t_ns)
+            for frame in reader.session.take_output():
+                autopilot.receive(frame, t_ns)
+        return len(autopilot.commands(ask)) - before
+
+    assert run(20.0) > 20
+    autopilot.results = {}
+    assert run(0.9) <= 4
+    assert reader.facts().has_origin

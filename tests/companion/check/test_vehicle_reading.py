@@ -1,8 +1,10 @@
 """What a check gathers from a vehicle's samples."""
 
 import math
+from typing import Any
 
 import pytest
+from rosbags.typesys.stores import ros2_humble as ros
 
 from companion.check.vehicle_reading import VehicleReader
 from companion.landing_config import ChaseConfig
@@ -10,7 +12,7 @@ from companion.pad_question import PadQuestion
 from link import cdr
 from link.frames import quaternion_from_yaw
 from link.inbox import Inbox
-from link.messages import FixVelocity, VehicleImu
+from link.messages import Fix, FixVelocity, VehicleImu
 
 START_NS = 1_795_000_000_000_000_000
 PERIOD_NS = 100_000_000
@@ -57,6 +59,29 @@ def test_course_begins_at_the_speed_that_the_configuration_says() -> None:
     later = CONFIG.model_copy(update={"course_speed_min_m_s": 5.0})
     assert _after_a_drive(0.3, 1.0, 4.0, config=later).facts(NOT_ASKED).heading_off_rad is None
     assert _after_a_drive(0.3, 1.0, 6.0, config=later).facts(NOT_ASKED).heading_off_rad is not None
+
+
+def _without_a_fix() -> bytes:
+    fix = Fix(t_ns=START_NS, latitude_rad=0.8, longitude_rad=0.1, altitude_m=400.0)
+    message: Any = cdr.typestore().deserialize_cdr(cdr.encode(fix), cdr.ROS_TYPES[Fix])
+    message.status.status = ros.sensor_msgs__msg__NavSatStatus.STATUS_NO_FIX
+    return bytes(cdr.typestore().serialize_cdr(message, cdr.ROS_TYPES[Fix]))
+
+
+@pytest.mark.parametrize(
+    ("payload", "why"),
+    [
+        (_without_a_fix(), "the receiver has no fix"),
+        (cdr.encode(FixVelocity(t_ns=START_NS, velocity_enu_m_s=(1.0, 0.0, 0.0))), "not a sensor_msgs/msg/NavSatFix"),
+    ],
+)
+def test_fixes_that_are_refused_are_told_with_the_cause(payload: bytes, why: str) -> None:
+    reader = VehicleReader("decklander/vehicle/fix", CONFIG)
+    for k in range(10):
+        reader.fix(payload, START_NS + k * PERIOD_NS, START_NS + k * PERIOD_NS)
+    facts = reader.facts(NOT_ASKED)
+    assert facts.rate_hz == 0.0
+    assert why in (facts.fix_refused_why or "")
 
 
 def test_what_cannot_be_read_is_left_out() -> None:
