@@ -38,10 +38,10 @@ def test_no_simulated_clock_names_its_key() -> None:
 def test_no_vehicle_fix_names_its_key() -> None:
     port, endpoint = free_udp_port(), free_tcp_endpoint()
     with Programs() as programs:
-        companion = ("--mavlink", f"udpin:127.0.0.1:{port}", "-l", endpoint, "--vehicle", "car", "--timeout", "3")
-        watched = programs.start("companion", *companion, "--start")
-        programs.start("sim-autopilot", "--mavlink", f"udpout:127.0.0.1:{port}", "-e", endpoint, "--vehicle", "car")
-        said = last_line(watched)
+        autopilot = ("--mavlink", f"udpout:127.0.0.1:{port}", "-l", endpoint, "--vehicle", "car")
+        programs.start("sim-autopilot", *autopilot).err.wait_for("ready")
+        companion = ("--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint, "--vehicle", "car", "--timeout", "3")
+        said = last_line(programs.start("companion", *companion, "--start"))
     assert "no vehicle fix on decklander/car/fix within 3 s: start the vehicle" in said
     assert "--vehicle" in said
 
