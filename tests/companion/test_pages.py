@@ -9,9 +9,9 @@ import pytest
 from companion.check.assessment import FIRMWARES
 from companion.check.rules import ParameterRule
 from companion.config import CompanionConfig
-from companion.landing.conditions import ABORT_TESTS, ALIGNMENT_LOST, STRAYS
 from companion.landing.feasibility import OBSTACLES
 from link.mavlink.dialect import mavlink
+from tests.golden.reasons import TESTS
 
 SINK_M_S = CompanionConfig().descent.descent_rate_max_m_s
 ARDUPILOT_RULES = FIRMWARES[mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA].rules_for(SINK_M_S)
@@ -26,7 +26,7 @@ def rows(page: str) -> list[list[str]]:
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("|")]
 
 
-@pytest.mark.parametrize("reason", [test.reason for test in (*ABORT_TESTS, STRAYS, ALIGNMENT_LOST)])
+@pytest.mark.parametrize("reason", [test.reason for test in TESTS])
 def test_each_abort_is_explained(reason: str) -> None:
     told = [row for row in rows("safety.md") if reason in row[0] and len(row) == 3]
     assert told

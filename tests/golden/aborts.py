@@ -8,8 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from companion.landing.conditions import ABORT_TESTS, ALIGNMENT_LOST, STRAYS
-from companion.phases import TRANSITIONS, Event, Phase
+from companion.phases import Phase
 from link.mavlink.dialect import mavlink
 from link.messages import Command
 from link.toml_config import merged, validated
@@ -78,29 +77,6 @@ def _fly_until(flight: FaultFlight, phase: Phase, limit_s: float) -> None:
         flight.step()
 
 
-def reasons() -> frozenset[str]:
-    """Return each reason that leads into an abort, without its numbers, from the companion's own tables."""
-    found: set[str] = set()
-    for (phase, event), after in TRANSITIONS.items():
-        if after is Phase.ABORT:
-            found |= _reasons_of(phase, event)
-    return frozenset(found)
-
-
-def _reasons_of(phase: Phase, event: Event) -> set[str]:
-    match event:
-        case Event.UNSAFE:
-            return {test.reason for test in (*ABORT_TESTS, STRAYS, ALIGNMENT_LOST) if phase in test.phases}
-        case Event.TIME_LIMIT:
-            return {f"{phase.value} took longer than # s"}
-        case Event.ABORT | Event.HOLD:
-            return {f"commanded: {event.value}"}
-        case Event.CONTACT_LOST:
-            return {"# m above the pad after contact"}
-        case _:
-            raise ValueError(f"{event.value} leads from {phase.value} into an abort for an unknown reason")
-
-
 def _vehicle_falls_silent(flight: FaultFlight) -> None:
     flight.vehicle_is_silent = True
 
@@ -161,6 +137,7 @@ def _operator(command: Command) -> Fault:
 
 
 _ARDUPILOT = "straight_5+firmware=ardupilot"
+_POOR_SENSORS = "straight_5+sensors=degraded"
 
 ABORTS: dict[str, Abort] = {
     "vehicle_silent": Abort(reason="vehicle data too old", phase=Phase.ALIGN, fault=_vehicle_falls_silent),
@@ -226,6 +203,17 @@ ABORTS: dict[str, Abort] = {
     ),
     "outrun": Abort(reason="vehicle faster than the limit", phase=Phase.ALIGN, fault=_limit_is_lowered),
     "below_pad": Abort(reason="below the pad without contact", fault=_pad_is_described(forward_m=0.0, up_m=_RAISED_M)),
+    "nothing_touched": Abort(reason="nothing touched", fault=_pad_is_described(forward_m=0.0, up_m=_LOWER_M)),
+    "to_be_seen_again": Abort(
+        reason="pad to be seen again",
+        scenario=_POOR_SENSORS,
+        companion={"descent": {"unseen_max": 0, "unseen_std_max_m": 0.14}},
+    ),
+    "not_seen": Abort(
+        reason="pad not seen",
+        scenario=_POOR_SENSORS,
+        companion={"descent": {"unseen_max": 0, "unseen_std_max_m": 0.1, "unseen_hold_s": 0.5, "aligned_hold_s": 20.0}},
+    ),
     "seen_too_near": Abort(
         reason="range finder sees less room than there is to the pad",
         phase=Phase.ALIGN,

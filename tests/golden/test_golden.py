@@ -17,7 +17,8 @@ from scenarios.catalogue import load_scenario
 from scenarios.lockstep import Lockstep
 from scenarios.outcome import result_table, scored
 from scenarios.recording import Recording
-from tests.golden.aborts import ABORTS, SEED, Abort, fly, reasons
+from tests.golden.aborts import ABORTS, SEED, Abort, fly
+from tests.golden.reasons import reasons
 
 FOLDER = Path(__file__).parent
 Golden = dict[str, Any]
