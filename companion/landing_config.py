@@ -111,7 +111,7 @@ class DescentConfig(StrictModel):
     surprise_wait_max_s: NotNegative = 60.0  # for which it waits so without its time limit running: three surprises
     stray_hold_s: NotNegative = 3.0  # beside the cone or too fast, but high enough to be aligned again
     strays_max: Annotated[int, Field(ge=0, le=20)] = 3  # so often in one approach, as retries: a gust may last
-    # Likewise an approach to a pad that has to be seen (again): over poor links with dropouts it takes up to 3 more.
+    # Likewise an approach to a pad that has to be seen (again): 3 times at most in 60 landings over poor links.
     unseen_max: Annotated[int, Field(ge=0, le=100)] = 10
     commit_height_m: Positive = 0.35  # below this it lands rather than aborts
     # Standard deviation up to which a pad is landed on that the vehicle's fixes are too coarse to place: half of what

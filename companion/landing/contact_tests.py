@@ -39,7 +39,7 @@ def missed_pad(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
 
 
 def _is_sunk(_: Situation, a: Approach | None, c: CompanionConfig) -> bool:
-    """Return whether the drone is where it is only for as long as it takes to believe in a contact."""
+    """Return whether the drone is so low that it stands on the pad, which is soon believed, or has none below it."""
     return a is not None and a.height_m < -c.touchdown.missed_depth_m
 
 
