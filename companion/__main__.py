@@ -9,8 +9,8 @@ from typing import Annotated
 
 import typer
 
-from companion.autopilots.kinds import AutopilotKind
-from companion.check_command import ConfigOption, DeviceOption, SigningKeyOption, SystemIdOption, check
+from companion.check.command import ConfigOption, DeviceOption, SigningKeyOption, SystemIdOption, check
+from companion.config.autopilot_kind import AutopilotKind
 from link.cli import (
     ConnectOption,
     DroneOption,
@@ -75,7 +75,7 @@ def companion(
     """Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot."""
     if context.invoked_subcommand is not None:
         return
-    from companion.config import CompanionConfig
+    from companion.config.companion import CompanionConfig
     from link.toml_config import dump_toml, load_config
 
     settings = load_config(config, CompanionConfig)
@@ -103,9 +103,9 @@ def companion(
         endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config)
         transport = stack.enter_context(open_transport(mavlink))
         zenoh = stack.enter_context(open_session(endpoints))
-        from companion.build import build_node
-        from companion.loop import run
-        from companion.loop_options import Links, LoopOptions
+        from companion.runtime.build import build_node
+        from companion.runtime.loop import run
+        from companion.runtime.loop_options import Links, LoopOptions
 
         if folder is not None:
             from companion.recording.folder import recording_sink

@@ -4,28 +4,28 @@ Pure: the same memory, inputs and system give the same result, in flight, in sim
 """
 
 from companion.autopilots.driver import AutopilotCommand, Desire
-from companion.config import CompanionConfig
-from companion.data import Forecast, OwnState
+from companion.config.companion import CompanionConfig
+from companion.core.data import Forecast, OwnState
+from companion.integrity.contradictions import counted
+from companion.integrity.course import watched, without_contradicted_heading
+from companion.integrity.fix_stamps import with_newest
+from companion.integrity.ground import ground_enu_m, is_road_elsewhere
+from companion.integrity.pad_height import pad_raised_m, with_pad_raised
+from companion.landing.condition import holds
+from companion.landing.contact import may_force_motors_off, signs_of
 from companion.landing.contact_tests import HELD_UP
 from companion.landing.flying import fly, has_free_place, setpoint
+from companion.landing.shifts import in_present_frame
 from companion.landing.status import landing_status
+from companion.landing.step_data import StepInputs, StepMemory, StepOutputs, System
 from companion.landing.targets import HORIZON_OFFSETS_S
-from companion.landing.timed import holds
 from companion.landing.transitions import transitions
-from companion.monitors.contact import may_force_motors_off, signs_of
-from companion.monitors.contradiction import counted
-from companion.monitors.course import watched, without_contradicted_heading
-from companion.monitors.fix_stamps import with_newest
-from companion.monitors.ground import ground_enu_m, is_road_elsewhere
-from companion.monitors.pad_height import pad_raised_m, with_pad_raised
-from companion.monitors.surprise import looked_back
-from companion.pad import PadPath, pad_path
-from companion.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
+from companion.landing.virtual_model import compare
 from companion.planning.requests import are_finite
-from companion.reference import compare
-from companion.shifts import in_present_frame
-from companion.situation import Situation, drone_now, range_carried_m, range_height_m
-from companion.step_data import StepInputs, StepMemory, StepOutputs, System
+from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
+from companion.situation.situation import Situation, drone_now, range_carried_m, range_height_m
+from companion.vehicle.pad import PadPath, pad_path
+from companion.vehicle.surprise import looked_back
 from link.frames import yaw_of
 from link.records import replace
 

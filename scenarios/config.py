@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
 from link.messages import PadGeometry, Vector3
 from link.toml_config import NotNegative, Positive, StrictModel
 from scenarios.tracks.config import TrackConfig

@@ -5,10 +5,10 @@ Same scenario, seed and configuration: the same bytes, so the same result.
 
 from collections.abc import Sequence
 
-from companion.build import build_node
-from companion.config import CompanionConfig
-from companion.node import CompanionNode
-from companion.phases import Phase
+from companion.config.companion import CompanionConfig
+from companion.runtime.build import build_node
+from companion.runtime.node import CompanionNode
+from companion.situation.phases import Phase
 from link.keys import Keys
 from link.memory_link import MemoryLink
 from link.messages import Command

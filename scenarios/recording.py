@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from companion.phases import FLYING_PHASES, Phase
+from companion.situation.phases import FLYING_PHASES, Phase
 from link.messages import BodyTruth, LandingStatus, RotorTruth
 from link.units import NS_PER_S
 from scenarios.scoring.accuracy import EstimateError, Nis

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-import companion.node
+import companion.runtime.node
 import sim_autopilot.node
 from companion.planning.mpc import Mpc
 from companion.planning.mpc_report import ReportMpc
@@ -14,7 +14,7 @@ from companion.planning.qp import DaqpSolver
 
 _STEPS: Mapping[str, Sequence[tuple[object, str]]] = {
     "autopilot_step": ((sim_autopilot.node, "autopilot_step"),),
-    "companion_step": ((companion.node, "companion_step"),),
+    "companion_step": ((companion.runtime.node, "companion_step"),),
     "planner": ((Mpc, "plan"), (ReportMpc, "plan"), (ProportionalNavigation, "plan")),
     "solver": ((DaqpSolver, "call"),),
 }

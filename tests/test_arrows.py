@@ -26,7 +26,7 @@ HOMES = {
     "mcap": {"link/mcap_reader.py", "link/mcap_writer.py"},
     "osqp": {"companion/planning/qp.py"},
     "daqp": {"companion/planning/qp.py"},
-    "filterpy": {"companion/estimation/lkf.py", "companion/estimation/ukf.py"},
+    "filterpy": {"companion/vehicle/lkf.py", "companion/vehicle/ukf.py"},
     "polars": {"scenarios/campaigns/landings_file.py"},
     "viser": {f"scenarios/view/{name}.py" for name in ("page", "panel", "scene")},
     "distributed": {"scenarios/campaigns/dask_pool.py"},

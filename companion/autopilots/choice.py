@@ -2,8 +2,8 @@
 
 from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.driver import Driver
-from companion.autopilots.kinds import AutopilotKind
 from companion.autopilots.px4 import Px4Driver
+from companion.config.autopilot_kind import AutopilotKind
 from link.errors import UserError
 from link.mavlink.dialect import mavlink
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
-from companion.data import FlightLimits, RangeReading, Setpoint
+from companion.core.data import FlightLimits, RangeReading, Setpoint
 from link.local_frame import LocalFrame, Projection
 from link.mavlink.dialect import Message
 from link.messages import Vector3

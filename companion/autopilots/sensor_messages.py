@@ -1,7 +1,7 @@
 """What the autopilot's sensors beside its estimator say: range finder and battery, from their messages."""
 
 from companion.autopilots.driver import AutopilotView
-from companion.data import RangeReading
+from companion.core.data import RangeReading
 from link.mavlink.clock_map import ClockMap
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace

@@ -1,6 +1,6 @@
 """SET_POSITION_TARGET_LOCAL_NED from a setpoint in ENU; shared by all drivers."""
 
-from companion.data import Setpoint
+from companion.core.data import Setpoint
 from link.frames import ned_from_enu, yaw_ned_from_enu
 from link.mavlink.dialect import Message, mavlink
 

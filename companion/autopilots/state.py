@@ -10,7 +10,7 @@ from companion.autopilots.local_origin import above_ellipsoid, geoid_height_m, i
 from companion.autopilots.own_reports import HISTORY_NS, carried, is_plausible, with_report
 from companion.autopilots.sensor_messages import with_sensor
 from companion.autopilots.velocity_bias import velocity_bias, without
-from companion.data import OwnState
+from companion.core.data import OwnState
 from link.frames import enu_from_ned, flu_from_frd, normalized, quaternion_enu_flu_from_ned_frd
 from link.geodesy import Datum
 from link.local_frame import LocalFrame, Projection

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from companion.gravity import GRAVITY_M_S2
+from companion.core.gravity import GRAVITY_M_S2
 
 _STATED_MIN = 0.1  # m/s or degrees; a limit below this cannot be flown with
 _TILT_SHARE = 0.7  # of the tilt limit left to planned acceleration; the rest is for drag and wind

@@ -10,7 +10,7 @@ their stamps cancels.
 
 from math import hypot
 
-from companion.data import OwnState, Setpoint
+from companion.core.data import OwnState, Setpoint
 from link.messages import Vector3
 from link.records import replace
 

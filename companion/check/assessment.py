@@ -5,14 +5,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from companion.autopilots.choice import MULTIROTORS
-from companion.autopilots.kinds import AutopilotKind
 from companion.check.ardupilot_rules import ARDUPILOT_RULES, ARDUPILOT_SINK
 from companion.check.findings import Finding, Level, passed
 from companion.check.observation import AutopilotFacts, VehicleFacts
 from companion.check.px4_rules import PX4_RULES, PX4_SINK
 from companion.check.rules import ParameterRule, Spelling, judged, names_of, sink_rule
-from companion.config import CompanionConfig
-from companion.landing_config import AbortConfig, ChaseConfig
+from companion.config.autopilot_kind import AutopilotKind
+from companion.config.companion import CompanionConfig
+from companion.config.landing import AbortConfig, ChaseConfig
 from link.mavlink.dialect import mavlink
 
 

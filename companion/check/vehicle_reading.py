@@ -5,8 +5,8 @@ import math
 import statistics
 
 from companion.check.observation import VehicleFacts
-from companion.landing_config import ChaseConfig
-from companion.pad_question import PadQuestion
+from companion.config.landing import ChaseConfig
+from companion.runtime.pad_question import PadQuestion
 from link import cdr
 from link.frames import yaw_of
 from link.messages import Fix, FixVelocity, VehicleImu

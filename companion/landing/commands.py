@@ -2,11 +2,11 @@
 
 import math
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
+from companion.integrity.ground import VEHICLE_M
 from companion.landing.feasibility import HEIGHTS_APART
-from companion.monitors.ground import VEHICLE_M
-from companion.phases import Event, Phase, next_phase
-from companion.situation import Situation, approach, stands
+from companion.situation.phases import Event, Phase, next_phase
+from companion.situation.situation import Situation, approach, stands
 from link.messages import Command, CommandReply
 
 _ON_ROOF_M = 1.0  # above or below it: the road is farther below

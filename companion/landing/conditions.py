@@ -7,18 +7,18 @@ import math
 from collections.abc import Callable, Mapping
 from functools import cache
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
+from companion.config.landing import LandingStyle
+from companion.integrity.contradictions import CONTRADICTING, contradicts_itself
+from companion.integrity.ground import SEEN_TOO_NEAR, is_seen_too_near
+from companion.landing.condition import Held, Test
 from companion.landing.contact_tests import HELD_UP, LIFTED, MISSED, STOPPED_BY_PAD, TOUCHED, TOUCHED_BY_DISPUTE
 from companion.landing.silence import HEARD, attitude_unknown, fix_too_old, own_unknown
 from companion.landing.targets import changes_speed, chase_floor_m, is_unseen, is_vague
-from companion.landing.timed import Held, Test
-from companion.landing_config import LandingStyle
-from companion.monitors.contradiction import CONTRADICTING, contradicts_itself
-from companion.monitors.ground import SEEN_TOO_NEAR, is_seen_too_near
-from companion.pad import HEADING_UNKNOWN
-from companion.pad_reach import cone_radius_m, over_pad_radius_m
-from companion.phases import LANDING_PHASES, NEAR_PHASES, Event, Phase
-from companion.situation import Approach, Situation, approach, stands
+from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Event, Phase
+from companion.situation.situation import Approach, Situation, approach, stands
+from companion.vehicle.pad import HEADING_UNKNOWN
+from companion.vehicle.pad_reach import cone_radius_m, over_pad_radius_m
 
 
 def is_uncertain(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:

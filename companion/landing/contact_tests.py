@@ -1,10 +1,10 @@
 """The tests of a contact with the pad: touched, stopped by it, missed, left again; pure."""
 
-from companion.config import CompanionConfig
-from companion.landing.timed import Test
-from companion.monitors.contact import Verdict, does_not_fall, is_stopped_by_pad, signs_of, verdict
-from companion.phases import Phase
-from companion.situation import Approach, Situation
+from companion.config.companion import CompanionConfig
+from companion.landing.condition import Test
+from companion.landing.contact import Verdict, does_not_fall, is_stopped_by_pad, signs_of, verdict
+from companion.situation.phases import Phase
+from companion.situation.situation import Approach, Situation
 
 CONTACT = "contact"
 DISPUTED_CONTACT = "contact against the range finder"

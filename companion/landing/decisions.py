@@ -4,7 +4,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
+from companion.config.landing import LandingStyle
+from companion.landing.condition import Held, Test, holds
 from companion.landing.conditions import (
     ABORT_TESTS,
     DRIVES,
@@ -16,15 +18,13 @@ from companion.landing.conditions import (
     must_be_seen,
     not_placed,
 )
+from companion.landing.contact import described, signs_of
 from companion.landing.contact_tests import LIFTED, MISSED, STOPPED_BY_PAD, missed_pad
 from companion.landing.feasibility import obstacle
 from companion.landing.passing import vehicle_passes
 from companion.landing.silence import HEARD, attitude_unknown, fix_too_old
-from companion.landing.timed import Held, Test, holds
-from companion.landing_config import LandingStyle
-from companion.monitors.contact import described, signs_of
-from companion.phases import FLYING_PHASES, Event, Phase
-from companion.situation import Situation, approach
+from companion.situation.phases import FLYING_PHASES, Event, Phase
+from companion.situation.situation import Situation, approach
 
 Decision = tuple[Event, str]
 

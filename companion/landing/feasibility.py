@@ -7,16 +7,16 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
+from companion.integrity.contradictions import CONTRADICTING, contradicts_itself
+from companion.integrity.ground import road_above_ground_m, road_distance_m
+from companion.landing.condition import Held, Test, holds
 from companion.landing.conditions import is_stamped_ahead
 from companion.landing.silence import fix_too_old
 from companion.landing.targets import chase_floor_m
-from companion.landing.timed import Held, Test, holds
-from companion.monitors.contradiction import CONTRADICTING, contradicts_itself
-from companion.monitors.ground import road_above_ground_m, road_distance_m
-from companion.pad_reach import is_too_small
-from companion.phases import Phase
-from companion.situation import Approach, Situation, approach
+from companion.situation.phases import Phase
+from companion.situation.situation import Approach, Situation, approach
+from companion.vehicle.pad_reach import is_too_small
 
 SPEED_SHARE_MIN = 1.15
 """Of the vehicle's speed: with less there is nothing to catch up with, and no landing is begun."""

@@ -5,19 +5,15 @@ import math
 import numpy as np
 
 from companion.autopilots.velocity_bias import as_seen_with
-from companion.config import CompanionConfig
-from companion.data import Setpoint
+from companion.config.companion import CompanionConfig
+from companion.core.data import Setpoint
 from companion.landing.contact_tests import CONTACT, DISPUTED_CONTACT
 from companion.landing.levelling import limits_now
+from companion.landing.step_data import StepInputs, StepMemory, System
+from companion.landing.sway import felt
 from companion.landing.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
 from companion.landing.transitions import BRAKING_M_S2
-from companion.landing.waiting import waits_at_m
-from companion.monitors.sway import felt
-from companion.pad import PadPath
-from companion.pad_reach import over_pad_radius_m
-from companion.phases import FLYING_PHASES, LANDING_PHASES, Phase
-from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
-from companion.reference import (
+from companion.landing.virtual_model import (
     Tracking,
     by_velocity,
     carried,
@@ -27,8 +23,12 @@ from companion.reference import (
     remember,
     setpoint_at,
 )
-from companion.situation import Situation, approach
-from companion.step_data import StepInputs, StepMemory, System
+from companion.landing.waiting import waits_at_m
+from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
+from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
+from companion.situation.situation import Situation, approach
+from companion.vehicle.pad import PadPath
+from companion.vehicle.pad_reach import over_pad_radius_m
 from link.frames import wrap_angle
 from link.records import replace
 

@@ -6,13 +6,13 @@ turns less than the pad does, and takes the speed against it that it gains so.
 
 import math
 
-from companion.config import CompanionConfig
-from companion.data import FlightLimits
-from companion.landing_config import TouchdownConfig
-from companion.pad_reach import over_pad_radius_m
-from companion.phases import Phase
-from companion.situation import Approach, Situation, approach
-from companion.step_data import StepInputs, StepMemory
+from companion.config.companion import CompanionConfig
+from companion.config.landing import TouchdownConfig
+from companion.core.data import FlightLimits
+from companion.landing.step_data import StepInputs, StepMemory
+from companion.situation.phases import Phase
+from companion.situation.situation import Approach, Situation, approach
+from companion.vehicle.pad_reach import over_pad_radius_m
 from link.records import replace
 
 _SEEN_OFF_MAX_M = 1.0  # what a range finder sees farther off is not the pad: a roof is 1.5 m above the road

@@ -2,11 +2,11 @@
 
 import math
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
 from companion.landing.conditions import is_too_low
 from companion.landing.silence import fix_too_old
-from companion.phases import Event
-from companion.situation import Situation, stands
+from companion.situation.phases import Event
+from companion.situation.situation import Situation, stands
 
 
 def vehicle_passes(s: Situation, config: CompanionConfig) -> tuple[Event, str] | None:

@@ -1,9 +1,9 @@
 """Whether the vehicle or the autopilot has fallen silent; pure."""
 
-from companion.config import CompanionConfig
-from companion.landing.timed import Test
-from companion.phases import Phase
-from companion.situation import Approach, Situation
+from companion.config.companion import CompanionConfig
+from companion.landing.condition import Test
+from companion.situation.phases import Phase
+from companion.situation.situation import Approach, Situation
 
 
 def fix_too_old(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:

@@ -1,12 +1,12 @@
 """The landing's status for the world, from a step's memory and facts."""
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
+from companion.config.landing import DescentConfig
+from companion.landing.step_data import StepMemory
 from companion.landing.targets import sink_stretches
 from companion.landing.waiting import why_held_up
-from companion.landing_config import DescentConfig
-from companion.phases import Phase
-from companion.situation import Approach, Situation, approach
-from companion.step_data import StepMemory
+from companion.situation.phases import Phase
+from companion.situation.situation import Approach, Situation, approach
 from link.messages import LandingStatus
 
 _WAITING_FOR_PAD = frozenset({Phase.WAITING, Phase.CHASE, Phase.ALIGN})

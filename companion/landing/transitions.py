@@ -2,20 +2,20 @@
 
 import numpy as np
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
 from companion.landing.commands import answer
 from companion.landing.conditions import ABORT_TESTS, update_held
 from companion.landing.contact_tests import HARD_CONTACT
 from companion.landing.decisions import Progress, decide
 from companion.landing.feasibility import OBSTACLE_TESTS, obstacle
 from companion.landing.silence import SILENCES
+from companion.landing.step_data import StepInputs, StepMemory
 from companion.landing.targets import stopping_point
+from companion.landing.virtual_model import Tracking
 from companion.landing.waiting import waited_s, with_wait_counted
-from companion.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
 from companion.planning.guidance import ReferenceState
-from companion.reference import Tracking
-from companion.situation import Situation, approach
-from companion.step_data import StepInputs, StepMemory
+from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
+from companion.situation.situation import Situation, approach
 from link.messages import Command, CommandReply
 from link.records import replace
 

@@ -1,14 +1,14 @@
 """What a descent stays above the pad for, how low it may go meanwhile, and for how long it has; pure."""
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
 from companion.landing.conditions import must_wait
+from companion.landing.step_data import StepMemory
+from companion.landing.sway import sways
 from companion.landing.targets import changes_speed
-from companion.monitors.driving import drives_unevenly, may_depart, turns_hard, winds
-from companion.monitors.surprise import may_surprise
-from companion.monitors.sway import sways
-from companion.phases import Phase
-from companion.situation import Approach, Situation, approach, stands
-from companion.step_data import StepMemory
+from companion.situation.phases import Phase
+from companion.situation.situation import Approach, Situation, approach, stands
+from companion.vehicle.driving import drives_unevenly, may_depart, turns_hard, winds
+from companion.vehicle.surprise import may_surprise
 from link.records import replace
 
 _HELD_UP_M = 0.1  # above the height of waiting, down to which a descent sinks whether it is to wait or not

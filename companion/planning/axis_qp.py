@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import solve_continuous_are
 
-from companion.data import Array
+from companion.config.planning import MpcConfig
+from companion.core.data import Array
+from companion.planning.compiled import kept
 from companion.planning.condensed import AxisModel
-from companion.planning.config import MpcConfig
-from companion.planning.kept import kept
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

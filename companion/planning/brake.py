@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from companion.data import Array, FlightLimits
+from companion.core.data import Array, FlightLimits
 from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Target, Trajectory
 from companion.planning.intercept import fastest_way, way_at
 

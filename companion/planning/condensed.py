@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from companion.data import Array
+from companion.core.data import Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Protocol
 
-from companion.data import Array, FlightLimits
+from companion.core.data import Array, FlightLimits
 
 
 class PlanStatus(Enum):

@@ -7,9 +7,9 @@ import math
 
 import numpy as np
 
-from companion.data import Array
+from companion.core.data import Array
+from companion.planning.compiled import kept
 from companion.planning.intercept import TINY
-from companion.planning.kept import kept
 
 EXCESS_WEIGHT = 1e3
 """Metres that each m/s or m/s^2 over a limit counts for when the axes are turned: more than any distance."""

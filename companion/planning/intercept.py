@@ -9,8 +9,8 @@ import math
 
 import numpy as np
 
-from companion.data import Array
-from companion.planning.kept import kept
+from companion.core.data import Array
+from companion.planning.compiled import kept
 
 Rates = tuple[float, float, float, float, float]
 

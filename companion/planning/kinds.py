@@ -2,7 +2,7 @@
 
 from typing import assert_never
 
-from companion.planning.config import GuidanceConfig, GuidanceKind
+from companion.config.planning import GuidanceConfig, GuidanceKind
 from companion.planning.guidance import Guidance
 from companion.planning.mpc import Mpc
 from companion.planning.mpc_report import ReportMpc

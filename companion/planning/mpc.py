@@ -10,11 +10,11 @@ from functools import lru_cache, partial
 
 import numpy as np
 
-from companion.data import Array
+from companion.config.planning import MpcConfig
+from companion.core.data import Array
 from companion.planning.axis_qp import make_axis_problem
 from companion.planning.brake import brake
 from companion.planning.condensed import forced_response, free_response, make_axis_model
-from companion.planning.config import MpcConfig
 from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Trajectory
 from companion.planning.programmes import Numbers, PlainLimits, Posed, Statics, bound_minor, plan_of, pose
 from companion.planning.qp import Programme, make_solver

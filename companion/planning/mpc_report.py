@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from companion.data import Array
+from companion.config.planning import ReportMpcConfig, ReportReading, SolverKind
+from companion.core.data import Array
 from companion.planning.brake import brake
-from companion.planning.config import ReportMpcConfig, ReportReading, SolverKind
 from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Trajectory
 from companion.planning.qp import Programme, QpSolution, make_solver
 from companion.planning.requests import has_finite_target, with_finite_state

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from companion.data import Array, FlightLimits
+from companion.config.planning import PnConfig
+from companion.core.data import Array, FlightLimits
 from companion.planning.brake import brake
-from companion.planning.config import PnConfig
 from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Trajectory
 from companion.planning.requests import has_finite_target, with_finite_state
 from companion.planning.resample import make_resampler

@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from companion.data import Array
+from companion.core.data import Array
 from companion.planning.axis_qp import slopes_of
+from companion.planning.compiled import kept
 from companion.planning.envelope import major_bounds, minor_bounds, vertical_bounds
 from companion.planning.horizon import turned_horizon
 from companion.planning.intercept import approach
-from companion.planning.kept import kept
 from companion.planning.qp import Problem
 from companion.planning.resample import resampled_line, resampled_path
 

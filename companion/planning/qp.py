@@ -10,10 +10,10 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from companion.data import Array
-from companion.planning.config import SolverKind
+from companion.config.planning import SolverKind
+from companion.core.data import Array
+from companion.planning.compiled import kept
 from companion.planning.guidance import PlanStatus
-from companion.planning.kept import kept
 from companion.planning.requests import are_finite
 
 QpSolution = tuple[PlanStatus, Array | None, int]

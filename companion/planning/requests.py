@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from companion.data import Array
+from companion.core.data import Array
 from companion.planning.guidance import PlanRequest, ReferenceState
 
 

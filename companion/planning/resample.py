@@ -10,9 +10,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from companion.data import Array
+from companion.core.data import Array
+from companion.planning.compiled import kept
 from companion.planning.guidance import Target
-from companion.planning.kept import kept
 
 VALUE, SLOPE, SLOPE_ENDING, LINEAR, LINEAR_ENDING = range(5)
 """Weights of a sampled value and of a sampled derivative (s) in an interpolated value, and of a linear interpolation;

@@ -4,7 +4,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from platform import machine, python_version
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
 from companion.recording.sink import CompanionSink
 from link.keys import Keys
 from link.mcap_writer import McapRecording, RecordingSpec

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from companion.data import Forecast, OwnState, Setpoint, VehicleEstimate
+from companion.core.data import Forecast, OwnState, Setpoint, VehicleEstimate
 from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.planning.guidance import PlanResult
 from companion.recording.paths import forecast_path_message, plan_path_message

@@ -3,7 +3,7 @@
 A path holds places and headings only; times, speeds, accelerations and deviations are in `Forecast` and `Trajectory`.
 """
 
-from companion.data import Array, Forecast
+from companion.core.data import Array, Forecast
 from companion.planning.guidance import Trajectory
 from link import cdr
 from link.keys import Keys

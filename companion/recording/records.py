@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
-from companion.estimation.estimator import Estimator
-from companion.step_data import StepInputs, StepOutputs
+from companion.landing.step_data import StepInputs, StepOutputs
+from companion.vehicle.estimator import Estimator
 from link.mavlink.statistics import SessionStatistics
 
 

@@ -8,10 +8,10 @@ import time
 from pathlib import Path
 from typing import Any
 
-from companion.build import build_node
-from companion.node import CompanionNode
 from companion.recording.folder import recording_sink
 from companion.recording.records import InputRecord
+from companion.runtime.build import build_node
+from companion.runtime.node import CompanionNode
 from link.keys import Keys
 from link.recorder import BackgroundRecorder
 from link.units import NS_PER_S

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
 from link.errors import UserError
 from link.toml_config import load_config, merged, read_toml, validated
 from scenarios.campaigns.dask_pool import fly_on_dask

@@ -8,7 +8,7 @@ from itertools import pairwise
 from threading import Lock
 from typing import Any
 
-from companion.phases import LANDING_PHASES, Phase
+from companion.situation.phases import LANDING_PHASES, Phase
 from link.errors import UserError
 from scenarios.config import Scenario
 from scenarios.lockstep import Lockstep

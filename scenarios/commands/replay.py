@@ -24,7 +24,7 @@ def replay_command(
     as_json: JsonOption = False,
 ) -> int:
     """Give a recording's inputs to the companion again and compare every output; exit code 1 when one differs."""
-    from companion.config import CompanionConfig
+    from companion.config.companion import CompanionConfig
     from link.toml_config import load_config
     from scenarios.recordings.replay import read_flights, replay, text_lines
 

@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from math import degrees, inf
 
-from companion.build import build_node
-from companion.phases import Phase
+from companion.runtime.build import build_node
+from companion.situation.phases import Phase
 from link.geodesy import geodetic_from_enu
 from link.keys import Keys
 from link.mavlink.codec import MavlinkCodec

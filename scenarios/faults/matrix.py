@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from companion.phases import Phase
+from companion.situation.phases import Phase
 from scenarios.config import FirmwareName
 from scenarios.scoring.score import Tier
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import acos, hypot
 
-from companion.phases import Phase
+from companion.situation.phases import Phase
 from link.mavlink.dialect import Message, mavlink
 from scenarios.catalogue import load_scenario
 from scenarios.config import FirmwareName, Scenario

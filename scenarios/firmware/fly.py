@@ -6,7 +6,7 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from companion.phases import Phase
+from companion.situation.phases import Phase
 from link import json_payloads
 from link.errors import UserError
 from link.geodesy import Datum

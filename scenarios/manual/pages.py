@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from types import MappingProxyType
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
 from scenarios.config import Scenario
 from scenarios.manual.commands import commands_page
 from scenarios.manual.equations import equations_page

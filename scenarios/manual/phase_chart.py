@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
-from companion.phases import FLYING_PHASES, TRANSITIONS, Event, Phase
+from companion.situation.phases import FLYING_PHASES, TRANSITIONS, Event, Phase
 from scenarios.manual.field_comments import comments_of
 from scenarios.manual.markdown import page, table
 
@@ -62,9 +62,9 @@ BENDS: Mapping[tuple[Phase, Phase], tuple[float, float, float]] = MappingProxyTy
 FROM_ANYWHERE = Event.PILOT_TOOK_OVER
 """Comes from every flying phase to the same one; said in words, not by an arrow from each."""
 
-TEXT = """Each arrow is a row of the one table of transitions (`companion/phases.py`), from which this page is made
-when the manual is built. An event that is not listed for a phase leaves it as it is. [Safety](safety.md) says
-what each reason to abort means."""
+TEXT = """Each arrow is a row of the one table of transitions (`companion/situation/phases.py`). This page is made from
+it when the manual is built. An event that is not listed for a phase leaves it as it is. [Safety](safety.md) says what
+each reason to abort means."""
 
 
 def phases_page(figure: str) -> str:

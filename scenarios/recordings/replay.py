@@ -8,12 +8,12 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from companion.build import build_node
-from companion.config import CompanionConfig
-from companion.node import CompanionNode
+from companion.config.companion import CompanionConfig
 from companion.recording.folder import CONFIG_NAME, STEM
 from companion.recording.records import InputKind, InputRecord
 from companion.recording.sink import CompanionSink
+from companion.runtime.build import build_node
+from companion.runtime.node import CompanionNode
 from link import json_payloads
 from link.errors import UserError
 from link.keys import Keys

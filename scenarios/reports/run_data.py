@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
 from companion.recording.folder import STEM as COMPANION
 from link.errors import UserError
 from link.keys import Keys

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from companion.data import Array, VehicleEstimate
-from companion.phases import Phase
+from companion.core.data import Array, VehicleEstimate
+from companion.situation.phases import Phase
 from link.frames import rotate
 from link.local_frame import scale_of
 from link.messages import Vector3

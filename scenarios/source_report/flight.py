@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from companion.landing_config import LandingStyle
+from companion.config.landing import LandingStyle
 from link.errors import UserError
 from scenarios.catalogue import load_scenario
 from scenarios.config import Scenario

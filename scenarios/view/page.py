@@ -10,7 +10,7 @@ from typing import Self
 
 import viser
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
 from scenarios.vehicle_node import plan_of
 from scenarios.view.live import LiveSource
 from scenarios.view.panel import Panel

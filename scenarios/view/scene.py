@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import viser
 
-from companion.landing_config import DescentConfig
+from companion.config.landing import DescentConfig
 from link.messages import PadGeometry, Quaternion, Vector3
 from scenarios.tracks.roads import Road
 from scenarios.view.shapes import (

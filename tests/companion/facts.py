@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 
 from companion.autopilots.driver import AutopilotView
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
 from companion.landing.conditions import update_held
 from companion.landing.decisions import Decision, Progress, decide
 from companion.landing.silence import HEARD
-from companion.pad import HEADING_UNKNOWN, PadPath
-from companion.phases import Phase
 from companion.planning.guidance import ReferenceState
-from companion.situation import Drone, Situation, approach
+from companion.situation.phases import Phase
+from companion.situation.situation import Drone, Situation, approach
+from companion.vehicle.pad import HEADING_UNKNOWN, PadPath
 from link.geodesy import Datum
 from link.local_frame import LocalFrame, Projection
 from link.messages import Vector3

@@ -4,9 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache
 
-from companion.build import build_node
-from companion.config import CompanionConfig
-from companion.node import CompanionNode
+from companion.config.companion import CompanionConfig
+from companion.runtime.build import build_node
+from companion.runtime.node import CompanionNode
 from link import cdr
 from link.keys import Keys
 from link.local_frame import geodetic_from_local

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from companion.__main__ import app
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
 from link.cli import run_app
 from link.toml_config import load_config
 
@@ -85,7 +85,7 @@ def test_mistake_is_one_line_and_exit_code_2(arguments: tuple[str, ...], named: 
 def test_mistake_is_told_before_the_numerics_are_loaded(
     arguments: tuple[str, ...], named: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setitem(sys.modules, "companion.build", None)  # whoever imports it now, fails
+    monkeypatch.setitem(sys.modules, "companion.runtime.build", None)  # whoever imports it now, fails
     assert run_app("companion", app, ["--mavlink", "udpin:127.0.0.1:0", *arguments]) == 2
     assert named in capsys.readouterr().err
 

@@ -5,8 +5,8 @@ from types import ModuleType
 
 import pytest
 
-from companion.estimation import kept as estimation
-from companion.planning import kept as planning
+from companion.planning import compiled as planning
+from companion.vehicle import compiled as estimation
 
 
 @pytest.mark.parametrize("package", [estimation, planning])

@@ -8,7 +8,7 @@ import pytest
 
 from companion.check.assessment import FIRMWARES
 from companion.check.rules import ParameterRule
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
 from companion.landing.feasibility import OBSTACLES
 from link.mavlink.dialect import mavlink
 from tests.golden.reasons import TESTS

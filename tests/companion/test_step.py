@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from companion.phases import LANDING_PHASES, Phase
+from companion.situation.phases import LANDING_PHASES, Phase
 from link.messages import Command, PadGeometry
 from tests.companion.world import (
     CONFIG,

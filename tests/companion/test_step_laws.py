@@ -9,10 +9,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from companion.autopilots.driver import AutopilotView
-from companion.data import Array, Forecast
-from companion.phases import Phase
+from companion.core.data import Array, Forecast
+from companion.landing.step_data import StepMemory
+from companion.situation.phases import Phase
 from companion.step import companion_step
-from companion.step_data import StepMemory
 from link.messages import Command
 from tests.companion.world import (
     CONFIG,

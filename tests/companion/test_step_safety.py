@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from companion.phases import Phase
+from companion.situation.phases import Phase
 from companion.step import companion_step
 from link.messages import Command
 from tests.companion.world import (

@@ -9,13 +9,13 @@ import numpy as np
 
 from companion.autopilots.driver import AutopilotView
 from companion.autopilots.px4 import Px4Driver
-from companion.config import CompanionConfig
-from companion.data import Array, Forecast, Measurement, OwnState, Quantity, VehicleEstimate
-from companion.estimation.buffered import BufferHealth
-from companion.phases import FLYING_PHASES, LANDING_PHASES, Phase
+from companion.config.companion import CompanionConfig
+from companion.core.data import Array, Forecast, Measurement, OwnState, Quantity, VehicleEstimate
+from companion.landing.step_data import StepInputs, StepMemory, StepOutputs, System
 from companion.planning.kinds import make_guidance
+from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.step import companion_step
-from companion.step_data import StepInputs, StepMemory, StepOutputs, System
+from companion.vehicle.buffered import BufferHealth
 from link.frames import quaternion_from_yaw
 from link.geodesy import Datum
 from link.local_frame import LocalFrame, Projection

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from companion.phases import Phase
+from companion.situation.phases import Phase
 from link.mavlink.dialect import mavlink
 from link.messages import Command
 from link.toml_config import merged, validated

@@ -1,7 +1,7 @@
 """The reasons for which a landing can be broken off, from the companion's own tables."""
 
 from companion.landing.conditions import ABORT_TESTS, ALIGNMENT_LOST, NOT_SEEN, STRAYS, TO_BE_SEEN
-from companion.phases import TRANSITIONS, Event, Phase
+from companion.situation.phases import TRANSITIONS, Event, Phase
 
 TESTS = (*ABORT_TESTS, STRAYS, ALIGNMENT_LOST, TO_BE_SEEN, NOT_SEEN)
 """What makes an approach unsafe."""

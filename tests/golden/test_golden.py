@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from companion.phases import Phase
+from companion.situation.phases import Phase
 from scenarios.catalogue import load_scenario
 from scenarios.lockstep import Lockstep
 from scenarios.outcome import result_table, scored

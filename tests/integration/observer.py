@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from companion.phases import Phase
+from companion.situation.phases import Phase
 from link.keys import Keys
 from link.zenoh_session import ZenohOptions, ZenohSession, open_session
 from scenarios.catalogue import load_scenario

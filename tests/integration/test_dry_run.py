@@ -2,7 +2,7 @@
 
 import pytest
 
-from companion.phases import Phase
+from companion.situation.phases import Phase
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.transports import open_transport

@@ -2,7 +2,7 @@
 
 import pytest
 
-from companion.phases import Phase
+from companion.situation.phases import Phase
 from link.frames import rotate
 from scenarios.processes import free_tcp_endpoint, free_udp_port
 from tests.integration.observer import Observer, observer

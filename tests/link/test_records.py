@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from companion.step_data import StepMemory
+from companion.landing.step_data import StepMemory
 from link.messages import BodyTruth
 from link.records import maker, replace
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from companion.phases import Phase
+from companion.situation.phases import Phase
 from scenarios.catalogue import load_scenario
 from scenarios.faults.flight import FaultFlight
 

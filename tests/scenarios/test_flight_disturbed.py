@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from companion.build import build_node
-from companion.node import CompanionNode
-from companion.phases import Phase
+from companion.runtime.build import build_node
+from companion.runtime.node import CompanionNode
+from companion.situation.phases import Phase
 from link.keys import Keys
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink

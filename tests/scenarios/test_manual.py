@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from companion.config import CompanionConfig
-from companion.phases import TRANSITIONS, Phase
+from companion.config.companion import CompanionConfig
+from companion.situation.phases import TRANSITIONS, Phase
 from link.cdr import ROS_TYPES
 from link.toml_config import StrictModel
 from scenarios.catalogue import list_scenarios, load_scenario

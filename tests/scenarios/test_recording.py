@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from rosbags.highlevel import AnyReader
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
 from companion.recording.folder import recording_sink
 from link.errors import UserError
 from link.keys import Keys

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, AutopilotView, Desire, DriverMemory
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
 from link.mavlink.dialect import mavlink
 from tests.companion.world import START_NS, STEP_NS
 

@@ -7,8 +7,8 @@ import pytest
 
 from companion.autopilots.driver import AutopilotCommand
 from companion.autopilots.link import AutopilotLink
-from companion.config import CompanionConfig
-from companion.data import Setpoint
+from companion.config.companion import CompanionConfig
+from companion.core.data import Setpoint
 from link.mavlink.dialect import mavlink
 from link.mavlink.session import MavlinkSession
 from tests.companion.peer import FakePx4

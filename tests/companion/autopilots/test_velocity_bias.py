@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from companion.autopilots.velocity_bias import as_seen_with, velocity_bias, without
-from companion.data import OwnState, Setpoint
+from companion.core.data import OwnState, Setpoint
 from link.messages import Vector3
 
 REPORT_NS = 20_000_000

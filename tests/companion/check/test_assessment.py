@@ -11,7 +11,7 @@ from companion.check.assessment import MOTION, assessed, is_ready
 from companion.check.changes import advised_values
 from companion.check.findings import Level
 from companion.check.observation import AutopilotFacts, VehicleFacts
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
 from link.errors import UserError
 from link.mavlink.dialect import mavlink
 from link.toml_config import validated

@@ -10,7 +10,7 @@ from companion.check import session as session_module
 from companion.check.observation import VehicleFacts
 from companion.check.reading import Reader
 from companion.check.session import CheckSession, open_check
-from companion.landing_config import ChaseConfig
+from companion.config.landing import ChaseConfig
 from link import cdr, json_payloads
 from link.errors import UserError
 from link.inbox import Inbox, Sample

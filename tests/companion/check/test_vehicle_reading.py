@@ -7,8 +7,8 @@ import pytest
 from rosbags.typesys.stores import ros2_humble as ros
 
 from companion.check.vehicle_reading import VehicleReader
-from companion.landing_config import ChaseConfig
-from companion.pad_question import PadQuestion
+from companion.config.landing import ChaseConfig
+from companion.runtime.pad_question import PadQuestion
 from link import cdr
 from link.frames import quaternion_from_yaw
 from link.inbox import Inbox

@@ -7,8 +7,8 @@ import pytest
 
 from companion.landing.commands import answer
 from companion.landing.feasibility import HEIGHTS_APART
-from companion.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
-from companion.situation import Situation
+from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
+from companion.situation.situation import Situation
 from link.messages import Command, CommandReply
 from tests.companion.facts import CONFIG, drone_at, pad_at, situation
 from tests.companion.world import PAD_HEIGHT_M, SET_MODE, Flight, KnownVehicle, own_state

@@ -8,16 +8,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from companion.integrity.contradictions import CONTRADICTING
+from companion.integrity.ground import SEEN_TOO_NEAR
+from companion.landing.condition import Test as Condition
 from companion.landing.conditions import ABORT_TESTS, ENTRY_TESTS, must_wait, update_held
 from companion.landing.contact_tests import DISPUTED_CONTACT, HARD_CONTACT
 from companion.landing.decisions import decide
-from companion.landing.timed import Test as Condition
-from companion.monitors.contradiction import CONTRADICTING
-from companion.monitors.ground import SEEN_TOO_NEAR
-from companion.pad import NOT_DESCRIBED
-from companion.pad_reach import cone_radius_m
-from companion.phases import Event, Phase
-from companion.situation import Situation, approach
+from companion.situation.phases import Event, Phase
+from companion.situation.situation import Situation, approach
+from companion.vehicle.pad import NOT_DESCRIBED
+from companion.vehicle.pad_reach import cone_radius_m
 from link.messages import Vector3
 from tests.companion.facts import (
     CONFIG,

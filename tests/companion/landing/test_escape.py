@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
+from companion.landing.step_data import StepInputs, StepMemory
 from companion.landing.transitions import transitions
-from companion.phases import Phase
-from companion.step_data import StepInputs, StepMemory
+from companion.situation.phases import Phase
 from link.messages import Command
 from tests.companion.facts import FLIES, NOW_NS, drone_at, pad_at, reference_at, situation
 

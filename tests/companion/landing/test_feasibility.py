@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
 from companion.landing.conditions import ABORT_TESTS
 from companion.landing.feasibility import OBSTACLES
-from companion.phases import Phase
+from companion.situation.phases import Phase
 from link.messages import Command
 from tests.companion.world import CONFIG, PAD_HEIGHT_M, START_NS, Flight, KnownVehicle
 

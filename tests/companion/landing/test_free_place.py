@@ -9,10 +9,10 @@ from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.driver import Driver
 from companion.autopilots.px4 import Px4Driver
 from companion.landing.flying import has_free_place, setpoint
-from companion.phases import Phase
+from companion.landing.step_data import StepInputs, StepMemory
+from companion.landing.virtual_model import Tracking
 from companion.planning.guidance import ReferenceState
-from companion.reference import Tracking
-from companion.step_data import StepInputs, StepMemory
+from companion.situation.phases import Phase
 from tests.companion.facts import CONFIG, NOW_NS, PAD_ENU_M
 
 LIMITS = CONFIG.limits.flight_limits()

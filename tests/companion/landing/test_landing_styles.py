@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from companion.config import CompanionConfig
-from companion.landing_config import LandingStyle
-from companion.phases import Phase
-from companion.step_data import StepOutputs
+from companion.config.companion import CompanionConfig
+from companion.config.landing import LandingStyle
+from companion.landing.step_data import StepOutputs
+from companion.situation.phases import Phase
 from link.frames import yaw_of
 from tests.companion.world import CONFIG, PAD_HEIGHT_M, Flight
 

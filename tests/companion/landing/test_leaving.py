@@ -2,7 +2,7 @@
 
 import pytest
 
-from companion.phases import Phase
+from companion.situation.phases import Phase
 from tests.companion.world import DISARM, FLYING, SET_MODE, Flight, reached
 
 LOITER = 4.0, 3.0  # PX4's main and sub mode, the second and third parameter of the command

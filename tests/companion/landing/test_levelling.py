@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from companion.config import CompanionConfig
-from companion.data import OwnState
+from companion.config.companion import CompanionConfig
+from companion.core.data import OwnState
 from companion.landing.levelling import limits_now
-from companion.phases import Phase
-from companion.situation import Situation, drone_now
-from companion.step_data import StepInputs, StepMemory
+from companion.landing.step_data import StepInputs, StepMemory
+from companion.situation.phases import Phase
+from companion.situation.situation import Situation, drone_now
 from tests.companion.facts import NOW_NS, drone_at, pad_at, situation
 
 CONFIG = CompanionConfig()

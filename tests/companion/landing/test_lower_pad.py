@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 
 import pytest
 
-from companion.phases import Phase
-from companion.step_data import StepOutputs
+from companion.landing.step_data import StepOutputs
+from companion.situation.phases import Phase
 from tests.companion.world import CONFIG, GEAR_M, Flight
 
 DEPTHS_M = (0.5, 0.8, 1.4)

@@ -7,8 +7,8 @@ import pytest
 
 from companion.landing.conditions import update_held
 from companion.landing.decisions import decide
-from companion.phases import Event, Phase
-from companion.situation import approach
+from companion.situation.phases import Event, Phase
+from companion.situation.situation import approach
 from tests.companion.facts import CONFIG, LONG_HEARD, NOW_NS, TICK_NS, drone_at, pad_at, progress, situation
 from tests.companion.world import Flight, reached
 

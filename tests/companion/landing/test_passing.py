@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from companion.landing.conditions import update_held
 from companion.landing.passing import vehicle_passes
-from companion.phases import Event, Phase
-from companion.situation import approach, stands
+from companion.situation.phases import Event, Phase
+from companion.situation.situation import approach, stands
 from tests.companion.facts import CONFIG, TICK_NS, drone_at, first_decision, pad_at, situation
 
 HIGH_M = CONFIG.descent.align_height_m

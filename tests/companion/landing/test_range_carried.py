@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from companion.autopilots.px4 import Px4Driver
 from companion.autopilots.state import AutopilotState, heard
-from companion.data import RangeReading
-from companion.situation import Drone, range_carried_m
+from companion.core.data import RangeReading
+from companion.situation.situation import Drone, range_carried_m
 from link.mavlink.clock_map import ClockMap, RoundTrip, with_round_trip, with_system_time
 from link.mavlink.dialect import Message, mavlink
 from tests.companion.facts import NOW_NS

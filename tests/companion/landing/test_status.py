@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from companion.landing.status import landing_status
-from companion.phases import Phase
-from companion.step_data import StepMemory
+from companion.landing.step_data import StepMemory
+from companion.situation.phases import Phase
 from link import json_payloads
 from link.messages import LandingStatus
 from tests.companion.facts import CONFIG, drone_at, pad_at, situation

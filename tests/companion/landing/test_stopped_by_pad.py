@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from companion.data import RangeReading
-from companion.phases import Phase
+from companion.core.data import RangeReading
+from companion.situation.phases import Phase
 from link.messages import Vector3
 from tests.companion.world import CONFIG, DISARM, GEAR_M, STEP_NS, Flight, reached
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from companion.config import CompanionConfig
+from companion.config.companion import CompanionConfig
+from companion.config.landing import DescentConfig
 from companion.landing.targets import HORIZON_OFFSETS_S, hover_aim, pad_aim, sink_profile, stopping_point
-from companion.landing_config import DescentConfig
-from companion.pad import PadPath
-from companion.phases import Phase
 from companion.planning.guidance import ReferenceState
+from companion.situation.phases import Phase
+from companion.vehicle.pad import PadPath
 
 CONFIG = CompanionConfig()
 DESCENT = DescentConfig()

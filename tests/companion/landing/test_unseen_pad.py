@@ -7,19 +7,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.config import CompanionConfig
-from companion.data import Quantity
-from companion.estimation.config import EstimatorKind
+from companion.config.companion import CompanionConfig
+from companion.config.estimation import EstimatorKind
+from companion.core.data import Quantity
 from companion.landing.conditions import update_held
 from companion.landing.decisions import decide
 from companion.landing.targets import is_unseen, pad_aim
-from companion.pad import PadPath, pad_path
-from companion.phases import Event, Phase
-from companion.situation import Situation, approach
+from companion.situation.phases import Event, Phase
+from companion.situation.situation import Situation, approach
+from companion.vehicle.pad import PadPath, pad_path
 from scenarios.config import PatternConfig
-from tests.companion.estimation.driving import DEGRADED, NOMINAL, Sensors, circle
-from tests.companion.estimation.rides import arrivals, estimator, now_ns
 from tests.companion.facts import GEAR_M, TICK_NS, later, pad_at, progress, reference_at, situation
+from tests.companion.vehicle.drives import DEGRADED, NOMINAL, Sensors, circle
+from tests.companion.vehicle.rides import arrivals, estimator, now_ns
 
 CONFIG = CompanionConfig()
 HIGH_M = CONFIG.descent.align_height_m

@@ -5,15 +5,15 @@ from dataclasses import replace
 import pytest
 
 from companion.landing.decisions import decide
+from companion.landing.shifts import at_other_time
 from companion.landing.status import landing_status
+from companion.landing.step_data import StepMemory
 from companion.landing.transitions import transitions
 from companion.landing.waiting import waited_s, waits_at_m, why_held_up
-from companion.monitors.driving import Driving
-from companion.monitors.surprise import Surprise
-from companion.phases import Event, Phase
-from companion.shifts import at_other_time
-from companion.situation import Situation
-from companion.step_data import StepMemory
+from companion.situation.phases import Event, Phase
+from companion.situation.situation import Situation
+from companion.vehicle.driving import Driving
+from companion.vehicle.surprise import Surprise
 from link.messages import Vector3
 from tests.companion.facts import (
     CONFIG,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from companion.data import Array, FlightLimits
+from companion.core.data import Array, FlightLimits
 from companion.planning.guidance import Guidance, PlanRequest, PlanResult, PlanStatus, ReferenceState, Target
 
 LIMITS = FlightLimits(

@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
-from companion.data import Array
+from companion.config.planning import MpcConfig
+from companion.core.data import Array
 from companion.planning.axis_qp import make_axis_problem, slopes_of, terminal_cost
 from companion.planning.condensed import AxisModel, make_axis_model
-from companion.planning.config import MpcConfig
 
 MOVES_S: Array = np.array([0.02, 0.05, 0.13, 0.37, 0.61])
 

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from companion.data import Array
+from companion.config.planning import MpcConfig
+from companion.core.data import Array
 from companion.planning.axis_qp import make_axis_problem, slopes_of
 from companion.planning.condensed import make_axis_model
-from companion.planning.config import MpcConfig
 from companion.planning.envelope import (
     MINOR_SHARE_MIN,
     bound_rows,

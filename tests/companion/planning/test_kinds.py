@@ -1,6 +1,6 @@
 import pytest
 
-from companion.planning.config import GuidanceConfig, GuidanceKind
+from companion.config.planning import GuidanceConfig, GuidanceKind
 from companion.planning.guidance import PlanStatus
 from companion.planning.kinds import make_guidance
 from companion.planning.mpc import Mpc

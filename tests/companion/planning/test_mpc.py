@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from companion.data import Array
-from companion.planning.config import MpcConfig, SolverKind
+from companion.config.planning import MpcConfig, SolverKind
+from companion.core.data import Array
 from companion.planning.guidance import PlanResult, PlanStatus, ReferenceState, Target
 from companion.planning.mpc import Mpc
 from tests.companion.planning.cases import (

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from companion.data import Array, FlightLimits
-from companion.planning.config import MpcConfig
+from companion.config.planning import MpcConfig
+from companion.core.data import Array, FlightLimits
 from companion.planning.mpc import Mpc
 from tests.companion.planning.cases import LIMITS, circle, fly, norm, state_at, straight
 

@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from companion.data import Array
-from companion.planning.config import ReportMpcConfig, ReportReading
+from companion.config.planning import ReportMpcConfig, ReportReading
+from companion.core.data import Array
 from companion.planning.guidance import PlanStatus
 from companion.planning.mpc_report import NUMBERS, STEP_S, ReportMpc, euler_predictions
 from tests.companion.planning.cases import fly, request_of, state_at, straight, target_of

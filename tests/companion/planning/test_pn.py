@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from companion.planning.config import PnConfig
+from companion.config.planning import PnConfig
 from companion.planning.guidance import PlanStatus
 from companion.planning.pn import ProportionalNavigation, advance
 from tests.companion.planning.cases import (

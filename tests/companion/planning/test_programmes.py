@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from companion.data import Array, FlightLimits
+from companion.config.planning import MpcConfig
+from companion.core.data import Array, FlightLimits
 from companion.planning import horizon, qp, resample
-from companion.planning.config import MpcConfig
 from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, Target
 from companion.planning.mpc import Mpc
 from companion.planning.programmes import bound_minor, plan_of, pose, total_of

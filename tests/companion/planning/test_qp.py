@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
-from companion.data import Array
-from companion.planning.config import SolverKind
+from companion.config.planning import SolverKind
+from companion.core.data import Array
 from companion.planning.guidance import PlanStatus
 from companion.planning.qp import DAQP_STATUS, DaqpSolver, OsqpSolver, Programme, QpSolution, QpSolver, make_solver
 

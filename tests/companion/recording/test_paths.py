@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from companion.data import Forecast
+from companion.core.data import Forecast
 from companion.planning.guidance import Trajectory
 from companion.recording.paths import forecast_path_message, plan_path_message
 from link import cdr

@@ -13,7 +13,7 @@ import polars as pl
 import psutil  # type: ignore[import-untyped]  # it has no annotations
 import pytest
 
-from companion.phases import Phase
+from companion.situation.phases import Phase
 from link.errors import UserError
 from scenarios.campaigns.campaign import Where, fly_campaign, make_plan
 from scenarios.campaigns.folder import Plan, create_folder, open_journal, read_plan

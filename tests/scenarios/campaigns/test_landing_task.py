@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from companion.phases import Phase
+from companion.situation.phases import Phase
 from link.errors import UserError
 from scenarios.campaigns import landing_task
 from scenarios.campaigns.landing_task import Flights, Task, row_of, wave_offs

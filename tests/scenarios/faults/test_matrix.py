@@ -2,7 +2,7 @@
 
 import pytest
 
-from companion.phases import Phase
+from companion.situation.phases import Phase
 from link.messages import Command
 from scenarios.faults.flight import FaultFlight
 from scenarios.faults.matrix import EXPECTED, FIRMWARES, PHASES, Case, Fault

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from companion.data import VehicleEstimate
+from companion.core.data import VehicleEstimate
 from link.frames import quaternion_from_yaw
 from link.geodesy import Datum, geodetic_from_enu
 from link.local_frame import LocalFrame, Projection

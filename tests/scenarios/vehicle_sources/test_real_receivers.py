@@ -17,7 +17,7 @@ from typing import TypeVar
 
 import pytest
 
-from companion.vehicle_inputs import fix_measurement, imu_measurements, velocity_measurements
+from companion.vehicle.inputs import fix_measurement, imu_measurements, velocity_measurements
 from link import cdr, json_payloads
 from link.frames import yaw_of
 from link.geodesy import Datum

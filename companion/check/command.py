@@ -1,0 +1,154 @@
+"""The `companion check` command."""
+
+import json
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from link.cli import (
+    ConnectOption,
+    ListenOption,
+    ModeOption,
+    MulticastOption,
+    NamespaceOption,
+    VehicleOption,
+    ZenohConfigOption,
+)
+from link.errors import UserError
+
+if TYPE_CHECKING:
+    from companion.check.findings import Finding
+    from companion.check.session import CheckSession
+    from companion.config.companion import CompanionConfig
+    from link.keys import Keys
+    from link.zenoh_session import ZenohSession
+
+_FAILED = 1
+
+DeviceOption = Annotated[
+    str,
+    typer.Option(
+        "--mavlink", metavar="DEVICE", help="udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT or /dev/ttyX,BAUD."
+    ),
+]
+ConfigOption = Annotated[Path | None, typer.Option("--config", metavar="FILE", help="Configuration in TOML.")]
+SigningKeyOption = Annotated[
+    Path | None,
+    typer.Option("--signing-key", metavar="FILE", help="Sign MAVLink with this key: 32 bytes or 64 hex digits."),
+]
+SystemIdOption = Annotated[int, typer.Option("--system-id", min=1, max=255, help="MAVLink system id of the drone.")]
+
+
+def check(
+    mavlink: DeviceOption = "udpin:127.0.0.1:14540",
+    speed_max: Annotated[
+        float, typer.Option("--speed-max", metavar="M_S", min=0.0, max=50.0, help="Of the vehicle to be landed on.")
+    ] = 5.0,
+    duration: Annotated[float, typer.Option("--duration", min=1.0, help="Seconds that rates are counted for.")] = 4.0,
+    timeout: Annotated[float, typer.Option("--timeout", min=0.0, help="Seconds without an autopilot.")] = 30.0,
+    set_values: Annotated[bool, typer.Option("--set", help="Write the advised parameters, after asking.")] = False,
+    yes: Annotated[bool, typer.Option("--yes", help="Write without asking.")] = False,
+    keep_file: Annotated[
+        Path, typer.Option("--keep", metavar="FILE", help="Where --set keeps the parameters before it.")
+    ] = Path("parameters_before.json"),
+    restore: Annotated[
+        Path | None, typer.Option("--restore", metavar="FILE", help="Write back what --set kept there, and end.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    config: ConfigOption = None,
+    system_id: SystemIdOption = 1,
+    signing_key: SigningKeyOption = None,
+    namespace: NamespaceOption = "decklander",
+    vehicle: VehicleOption = "vehicle",
+    mode: ModeOption = None,
+    connect: ConnectOption = None,
+    listen: ListenOption = None,
+    multicast: MulticastOption = None,
+    zenoh_config: ZenohConfigOption = None,
+) -> int:
+    """Read the autopilot and the vehicle, and say what to change before a landing; exit code 1 when something fails."""
+    from companion.check.changes import kept
+    from companion.check.session import open_check
+    from companion.config.companion import CompanionConfig
+    from link.keys import Keys
+    from link.mavlink.signing import read_key
+    from link.mavlink.transports import open_transport
+    from link.toml_config import load_config
+    from link.zenoh_options import zenoh_options
+    from link.zenoh_session import open_session
+
+    settings = load_config(config, CompanionConfig)
+    key = None if signing_key is None else read_key(signing_key)
+    back = None if restore is None else kept(restore)
+    options = zenoh_options(mode, connect, listen, multicast, zenoh_config)
+    with open_transport(mavlink) as transport, open_session(options) as zenoh:
+        session = open_check(transport, mavlink, system_id=system_id, signing_key=key)
+        session.find(timeout)
+        if back is not None:
+            _write(session, back)
+            return 0
+        keys = Keys(namespace, vehicle, "drone")
+        ask = _Question(zenoh=zenoh, keys=keys, duration_s=duration, speed_m_s=speed_max, config=settings)
+        findings = _look(session, ask)
+        if set_values:
+            _set(session, findings, keep_file, asks=not yes)
+            findings = _look(session, ask)
+    return _show(findings, speed_max, as_json=as_json)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Question:
+    """What is looked at, and what for."""
+
+    zenoh: "ZenohSession"
+    keys: "Keys"
+    duration_s: float
+    speed_m_s: float
+    config: "CompanionConfig"
+
+
+def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
+    from companion.check.assessment import assessed
+
+    vehicle = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.chase)
+    return assessed(session.reader.facts(), vehicle, asked.speed_m_s, asked.config)
+
+
+def _show(findings: "list[Finding]", speed_m_s: float, *, as_json: bool) -> int:
+    from companion.check.assessment import is_ready
+    from companion.check.table import as_table, print_table
+
+    if as_json:
+        sys.stdout.write(json.dumps(as_table(findings, speed_m_s), indent=2) + "\n")
+    else:
+        print_table(findings, speed_m_s)
+    return 0 if is_ready(findings) else _FAILED
+
+
+def _set(session: "CheckSession", findings: "list[Finding]", keep_file: Path, *, asks: bool) -> None:
+    """Keep the present values, then write the advised ones."""
+    from companion.check.changes import advised_values, keep
+
+    advised = advised_values(findings)
+    if not advised:
+        return
+    known = session.reader.facts().parameters
+    for name, value in advised.items():
+        typer.echo(f"{name}: {known[name]:g} -> {value:g}", err=True)
+    if asks:
+        typer.confirm(f"write these {len(advised)} parameters?", abort=True, err=True)
+    keep(keep_file, {name: known[name] for name in advised})
+    typer.echo(f"the values before are in {keep_file}: companion check --restore {keep_file}", err=True)
+    _write(session, advised)
+
+
+def _write(session: "CheckSession", values: dict[str, float]) -> None:
+    for name, value in values.items():
+        if session.read_parameter(name) is None:
+            raise UserError(f"{name} is not known to this autopilot: nothing more was written")
+        if not session.set_parameter(name, value):
+            raise UserError(f"{name} was not set to {value:g}: the autopilot refuses it; set it in a ground station")
+        typer.echo(f"{name} = {value:g}", err=True)

@@ -1,0 +1,90 @@
+"""The companion's configuration: one TOML file, validated once, every value with its unit and source."""
+
+from typing import Annotated
+
+from pydantic import Field, ValidationInfo, field_validator
+
+from companion.config.autopilot_kind import AutopilotKind
+from companion.config.estimation import EstimatorConfig
+from companion.config.landing import (
+    AbortConfig,
+    ChaseConfig,
+    DescentConfig,
+    LandingStyle,
+    TakeoffConfig,
+    TouchdownConfig,
+)
+from companion.config.planning import GuidanceConfig
+from companion.core.data import FlightLimits
+from link.toml_config import NotNegative, Positive, StrictModel
+
+
+class LimitsConfig(StrictModel):
+    """What the planner may ask at most; the autopilot's own parameters can only lower it.
+
+    The acceleration leaves half of a 45 degree tilt (9.8 m/s^2) to drag, wind and feedback.
+    """
+
+    speed_max_m_s: Positive = 30.0  # of the benchmark's airframe
+    climb_max_m_s: Positive = 3.0  # PX4 MPC_Z_VEL_MAX_UP
+    descent_max_m_s: Positive = 1.5  # PX4 MPC_Z_VEL_MAX_DN
+    acceleration_max_m_s2: Positive = 5.0
+    vertical_acceleration_max_m_s2: Positive = 3.0
+    jerk_max_m_s3: Positive = 20.0
+    range_max_m: Positive = 2000.0  # from the waiting point, where an abort begins; it ends v^2 / 4 + 2 v farther
+    landing_time_s: Positive = 15.0  # from the chase's beginning to the pad, for the way that takes
+    battery_min_share: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.2  # below this no landing is begun
+
+    def flight_limits(self) -> FlightLimits:
+        """Return the planner's part of them."""
+        names = FlightLimits.__dataclass_fields__
+        return FlightLimits(**{name: value for name, value in self.model_dump().items() if name in names})
+
+
+class RecordingConfig(StrictModel):
+    """The recording of a flight; see docs/recording.md."""
+
+    folder: str | None = None  # where it is written, none where there is no folder; `--record` stands above it
+    file_max_mb: Positive = 256.0  # after which a new file is begun
+    # Of all files in the folder, earlier starts' too; the oldest are deleted.
+    total_max_mb: Annotated[float, Field(gt=0.0, le=1e6, validate_default=True)] = 2000.0
+
+    @field_validator("total_max_mb")
+    @classmethod
+    def _has_room_for_a_file(cls, value: float, info: ValidationInfo) -> float:
+        file_max_mb = info.data.get("file_max_mb")
+        if file_max_mb is not None and value < file_max_mb:
+            raise ValueError(f"it must be file_max_mb, {file_max_mb:g}, or more, for one file is always kept")
+        return value
+
+
+class CompanionConfig(StrictModel):
+    """Everything that can be set about the companion."""
+
+    step_rate_hz: Annotated[float, Field(ge=10.0, le=200.0)] = 50.0
+    autopilot: AutopilotKind = AutopilotKind.AUTO  # any other than the one named is refused
+    # Of mean sea level above the ellipsoid, where the autopilot's receiver does not tell it; none: then no start.
+    geoid_height_m: Annotated[float, Field(ge=-120.0, le=120.0)] | None = None
+    stops_unused_streams: bool = True  # on the companion's own link; false where others listen on it, too
+    status_rate_hz: Annotated[float, Field(ge=0.5, le=50.0)] = 10.0
+    setpoint_lead_s: Annotated[float, Field(ge=0.0, le=0.5)] = (
+        0.03  # half a period of holding plus the way to the motors
+    )
+    # So far a link's jitter may move the place that a landing drone is asked for: 0.1 m leans the benchmark's by 5
+    # degrees. Beyond that it is asked for velocities, which make up for what it is off its place by a gain.
+    place_jitter_max_m: NotNegative = 0.1
+    place_gain_hz: Positive = 1.0  # as PX4's MPC_XY_P, 0.95; the delay of a poor link leaves no room for more
+    yaw_rate_max_rad_s: Positive = 0.8  # ArduCopter slews at 60 degrees a second
+    position_only: bool = False  # leave velocity and acceleration out of the setpoints, as the source report does
+    corrects_lag: bool = True  # learn how far the autopilot trails its setpoints, and lead by it
+    follows_heading: bool = True  # turn with the vehicle; False keeps the heading of the start
+    landing: LandingStyle = LandingStyle.STAGED
+    limits: LimitsConfig = LimitsConfig()
+    takeoff: TakeoffConfig = TakeoffConfig()
+    chase: ChaseConfig = ChaseConfig()
+    descent: DescentConfig = DescentConfig()
+    touchdown: TouchdownConfig = TouchdownConfig()
+    abort: AbortConfig = AbortConfig()
+    estimator: EstimatorConfig = EstimatorConfig()
+    guidance: GuidanceConfig = GuidanceConfig()
+    recording: RecordingConfig = RecordingConfig()

@@ -1,0 +1,1 @@
+"""What all parts of the companion hand to each other, in SI units and W."""

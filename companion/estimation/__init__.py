@@ -1,1 +1,0 @@
-"""Where the vehicle is, and where it will be."""

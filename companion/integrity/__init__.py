@@ -1,0 +1,1 @@
+"""Whether what is told can be believed: stamps, contradictions, courses and heights."""

@@ -1,0 +1,201 @@
+"""Whether the drone stands on the pad, decided by signs that come from different sources; pure.
+
+Three things must agree: the place (the estimates of drone and vehicle say that the feet are at the pad's height, over
+the pad), the standstill (against the pad the drone neither moves up or down nor falls, although its setpoint presses
+down), and the support (the setpoint has sunk below the drone, or the autopilot says that it has landed). Each fails
+for another fault: a wrong height of the vehicle or a stuck place is contradicted by a drone that still follows its
+setpoint, a stuck autopilot's word by the height. A drone's own height that is wrong shifts place and support in
+opposite directions. A range finder is believed when it agrees; when it sees the pad far below, all else has to agree
+for so long that a drone pressed downwards in the air would have fallen.
+"""
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+from companion.config.companion import CompanionConfig
+from companion.config.landing import TouchdownConfig
+from companion.situation.situation import Approach, Situation, approach
+from companion.vehicle.pad_reach import over_pad_radius_m
+from link.records import replace
+
+_JOLT_S = 0.06  # three reports at 50 Hz
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Signs:
+    """What is known of a contact; None where it is not.
+
+    Attributes:
+        height_m: of the feet above the pad, by the estimates of drone and vehicle.
+        distance_m: horizontal, from the pad's centre.
+        climb_m_s: upwards against the pad.
+        acceleration_up_m_s2: of the drone.
+        setpoint_below_m: how far the setpoint has sunk below the drone.
+        range_height_m: of the feet above what the range finder sees.
+        range_carried_m: likewise, from when it last saw something, by what the drone has sunk since.
+        landed: the autopilot's own word.
+        pad_half_width_m: from the pad's centre to its nearest edge.
+        passed_m: least horizontal distance from the pad's centre within the time that a jolt is seen for.
+    """
+
+    height_m: float | None
+    distance_m: float | None
+    climb_m_s: float | None
+    acceleration_up_m_s2: float | None
+    setpoint_below_m: float | None
+    range_height_m: float | None
+    landed: bool | None
+    range_carried_m: float | None = None
+    passed_m: float | None = None
+    pad_half_width_m: float = math.inf
+
+
+class Verdict(Enum):
+    """What the signs amount to."""
+
+    AIRBORNE = "airborne"
+    DISPUTED = "disputed"  # a contact but for the range finder
+    CONTACT = "contact"
+
+
+def signs_of(s: Situation) -> Signs:
+    """Return the signs in a step's facts."""
+    relative = approach(s)
+    drone, reference = s.drone, s.reference
+    sunk = None if drone is None or reference is None else drone.position_enu_m[2] - reference.position_enu_m[2]
+    return Signs(
+        height_m=None if relative is None else relative.height_m,
+        distance_m=relative.distance_m
+        if relative is not None and s.pad is not None and s.pad.unplaced is None
+        else None,
+        climb_m_s=None if relative is None else relative.climb_m_s,
+        acceleration_up_m_s2=None if drone is None else drone.acceleration_up_m_s2,
+        setpoint_below_m=None if sunk is None else float(sunk),
+        range_height_m=s.range_height_m,
+        landed=s.autopilot.landed,
+        range_carried_m=s.range_carried_m,
+        pad_half_width_m=math.inf if s.pad is None else s.pad.half_width_m,
+        passed_m=None if relative is None or drone is None else _passed_m(relative, _JOLT_S + drone.age_s),
+    )
+
+
+def verdict(signs: Signs, config: CompanionConfig, *, is_pressed: bool = False) -> Verdict:
+    """Return what the signs amount to; what is unknown or no number speaks for the air.
+
+    Args:
+        signs: now.
+        config: all numbers.
+        is_pressed: the drone has been pressed down for so long that in the air it would sink at 2 m/s by now.
+    """
+    stands = _stands(signs, config.touchdown) or (is_pressed and _stands_pressed(signs, config.touchdown))
+    if not (_is_at_pad(signs, config) and stands and _is_supported(signs, config.touchdown)):
+        return Verdict.AIRBORNE
+    seen_m = signs.range_height_m
+    return Verdict.CONTACT if seen_m is None or seen_m <= config.touchdown.range_height_max_m else Verdict.DISPUTED
+
+
+def is_stopped_by_pad(signs: Signs, config: CompanionConfig) -> bool:
+    """Return whether a jolt came from the pad: it is where the drone is, and the range finder or all signs say so.
+
+    One that sees nothing any more is asked what it saw last: no flying explains the jolt, and it was sinking onto that.
+    """
+    # By the report that shows the stop a pad that drives on is up to half a metre farther than it was at the contact.
+    if signs.distance_m is not None and signs.passed_m is not None:
+        signs = replace(signs, distance_m=min(signs.distance_m, signs.passed_m))
+    seen_m = signs.range_carried_m if signs.range_height_m is None else signs.range_height_m
+    touches = seen_m is not None and seen_m <= config.touchdown.range_height_max_m
+    return _is_at_pad(signs, config) and (touches or verdict(signs, config) is Verdict.CONTACT)
+
+
+def does_not_fall(signs: Signs, config: CompanionConfig) -> bool:
+    """Return whether a drone that is pressed down is held up, by whatever has stopped it."""
+    return signs.acceleration_up_m_s2 is not None and _is_no_fall(signs.acceleration_up_m_s2, config.touchdown)
+
+
+def may_force_motors_off(
+    signs: Signs, since_contact_s: float, config: CompanionConfig, *, stopped_and_held: bool = False
+) -> bool:
+    """Return whether the evidence is complete: the motors may be stopped though the autopilot refuses.
+
+    Args:
+        signs: now, all of them anew; that there was a contact is not enough.
+        since_contact_s: for how long a contact has been believed.
+        config: all numbers.
+        stopped_and_held: the contact was a jolt from the pad, and the drone was pressed down for long enough since
+            without falling. The pad may be gone then, and the stop itself makes estimated speeds wrong for seconds.
+    """
+    if signs.height_m is None or not signs.height_m < config.descent.commit_height_m:
+        return False
+    if stopped_and_held:
+        return True
+    # Without accelerations in its setpoints an autopilot is not pressed down so hard that it would fall.
+    is_pressed = since_contact_s >= config.touchdown.stopped_hold_s and not config.position_only
+    match verdict(signs, config, is_pressed=is_pressed):
+        case Verdict.CONTACT:
+            return True
+        case Verdict.DISPUTED:
+            return since_contact_s >= config.touchdown.disputed_hold_s
+        case Verdict.AIRBORNE:
+            return False
+
+
+def described(signs: Signs) -> str:
+    """Return the signs for a log."""
+    parts = [
+        _part(signs.height_m, "m over the pad"),
+        _part(signs.setpoint_below_m, "m above the setpoint"),
+        _part(signs.climb_m_s, "m/s up"),
+        _part(signs.acceleration_up_m_s2, "m/s2 up"),
+        _part(signs.range_height_m, "m by range finder"),
+        {None: "", True: "autopilot landed", False: "autopilot not landed"}[signs.landed],
+    ]
+    return ", ".join(part for part in parts if part)
+
+
+def _part(value: float | None, unit: str) -> str:
+    return "" if value is None else f"{value:.2f} {unit}"
+
+
+def _passed_m(relative: Approach, within_s: float) -> float:
+    """Return the least horizontal distance of a drone that has moved against the pad as it does now."""
+    (x, y, _), (vx, vy, _) = relative.position_enu_m, relative.velocity_enu_m_s
+    speed_squared = vx * vx + vy * vy
+    nearest_s = (x * vx + y * vy) / speed_squared if speed_squared > 0.0 else 0.0
+    ago_s = min(max(nearest_s, 0.0), max(within_s, 0.0))
+    return math.hypot(x - vx * ago_s, y - vy * ago_s)
+
+
+def _is_at_pad(signs: Signs, config: CompanionConfig) -> bool:
+    if signs.height_m is None or signs.distance_m is None:
+        return False
+    lowest_m = -config.descent.press_depth_m - config.touchdown.height_max_m
+    is_low = lowest_m <= signs.height_m <= config.touchdown.height_max_m
+    return is_low and signs.distance_m < over_pad_radius_m(signs.pad_half_width_m, config)
+
+
+def _stands(signs: Signs, config: TouchdownConfig) -> bool:
+    if signs.climb_m_s is None or not abs(signs.climb_m_s) < config.blocked_speed_m_s:
+        return False
+    return signs.acceleration_up_m_s2 is None or _is_no_fall(signs.acceleration_up_m_s2, config)
+
+
+def _stands_pressed(signs: Signs, config: TouchdownConfig) -> bool:
+    """Return whether a drone that is pressed down stands, although speeds are not known well enough to show it.
+
+    Over poor data the difference of two climb rates is off by 0.2 m/s. The range finder has to see the pad for it.
+    """
+    seen_m, climb_m_s = signs.range_height_m, signs.climb_m_s
+    if seen_m is None or climb_m_s is None or not seen_m <= config.range_height_max_m:
+        return False
+    falls = signs.acceleration_up_m_s2 is not None and not _is_no_fall(signs.acceleration_up_m_s2, config)
+    return abs(climb_m_s) < config.pressed_speed_m_s and not falls
+
+
+def _is_no_fall(acceleration_up_m_s2: float, config: TouchdownConfig) -> bool:
+    return acceleration_up_m_s2 > -config.falling_acceleration_m_s2
+
+
+def _is_supported(signs: Signs, config: TouchdownConfig) -> bool:
+    sunk = signs.setpoint_below_m is not None and signs.setpoint_below_m > config.blocked_depth_m
+    return sunk or signs.landed is True

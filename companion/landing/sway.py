@@ -1,0 +1,51 @@
+"""How much harder the drone leans than a moment ago, judged just above the pad; pure.
+
+The horizontal part of the thrust, as an acceleration, is `g tan(tilt)`. Its mean over the last second is what steady
+flight with the vehicle needs: its acceleration in a curve, and what holds against the air. What the drone leans beyond
+that, a gust, a hurried correction or a noisy estimate asks for, and it passes; a drone that touched down so would do it
+with one foot. Only more lean than the mean counts: a drone that comes upright, or stands on the pad, does not sway.
+"""
+
+import math
+from dataclasses import dataclass
+
+from companion.config.landing import DescentConfig
+from companion.core.data import OwnState
+from companion.core.gravity import GRAVITY_M_S2
+from link.frames import rotate
+
+_UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady
+_MEAN_S = 1.0  # longer than a gust's beginning, shorter than the turn of a curve
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sway:
+    """What has been seen of it.
+
+    Attributes:
+        t_ns: of the newest report that was taken, 0 before the first.
+        mean_enu_m_s2: (2,) horizontal thrust over the last second.
+        swayed_ns: when the drone last leaned too hard; 0 when it never did.
+    """
+
+    t_ns: int = 0
+    mean_enu_m_s2: tuple[float, float] = (0.0, 0.0)
+    swayed_ns: int = 0
+
+
+def felt(sway: Sway, own: OwnState, config: DescentConfig) -> Sway:
+    """Return the sway after the drone's newest report `own`; an older one changes nothing."""
+    if own.t_ns <= sway.t_ns:
+        return sway
+    x, y, up = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
+    per_up = GRAVITY_M_S2 / max(up, _UPRIGHT_MIN)
+    share = -math.expm1(-(own.t_ns - sway.t_ns) * 1e-9 / _MEAN_S) if sway.t_ns else 1.0
+    mean_x, mean_y = sway.mean_enu_m_s2
+    mean = (mean_x + share * (per_up * x - mean_x), mean_y + share * (per_up * y - mean_y))
+    is_too_much = per_up * math.hypot(x, y) - math.hypot(*mean) > config.sway_max_m_s2
+    return Sway(t_ns=own.t_ns, mean_enu_m_s2=mean, swayed_ns=own.t_ns if is_too_much else sway.swayed_ns)
+
+
+def sways(sway: Sway, t_ns: int, config: DescentConfig) -> bool:
+    """Return whether the drone leans too hard at `t_ns`, or did a moment ago."""
+    return sway.swayed_ns > 0 and (t_ns - sway.swayed_ns) * 1e-9 < config.calm_hold_s

@@ -1,0 +1,79 @@
+"""A companion from its configuration."""
+
+import numpy as np
+
+from companion.config.companion import CompanionConfig
+from companion.landing.step_data import System
+from companion.planning.guidance import PlanRequest, ReferenceState, Target
+from companion.planning.kinds import make_guidance
+from companion.runtime.node import CompanionNode
+from companion.runtime.recorded_node import RecordingNode
+from companion.vehicle.factory import make_estimator
+from companion.vehicle.pad import turned_lever
+from link.keys import Keys
+from link.mavlink.session import MavlinkSession
+from link.mavlink.session_config import SessionConfig
+from link.mavlink.signing import Signing
+from link.recorder import Recorder
+
+
+def warm_up(system: System) -> None:
+    """Let everything that is compiled at its first use be compiled now: no step of a flight may wait for it.
+
+    The estimators see to their own kernels when they are made.
+    """
+    offset_s = np.arange(0.0, 4.01, 0.2)
+    ahead = np.column_stack([30.0 + 8.0 * offset_s, 2.0 * offset_s, np.full_like(offset_s, 2.0)])
+    zero = np.zeros(3)
+    memory, state = None, ReferenceState(position_enu_m=zero, velocity_enu_m_s=zero, acceleration_enu_m_s2=zero)
+    for position in (ahead, ahead - ahead[0]):
+        target = Target(
+            offset_s=offset_s,
+            position_enu_m=position,
+            velocity_enu_m_s=np.tile([8.0, 2.0, 0.0], (len(offset_s), 1)),
+            acceleration_enu_m_s2=np.zeros((len(offset_s), 3)),
+        )
+        request = PlanRequest(
+            state=state,
+            target=target,
+            limits=system.config.limits.flight_limits(),
+            floor_enu_m=np.zeros_like(offset_s),
+            dt_s=1.0 / system.config.step_rate_hz,
+        )
+        memory, _ = system.guidance.plan(memory, request)
+    turned_lever(np.zeros_like(offset_s), offset_s, 1.0, 0.0)
+
+
+def build_node(
+    config: CompanionConfig,
+    keys: Keys,
+    *,
+    system_id: int = 1,
+    dry_run: bool = False,
+    records_input: bool = False,
+    recorder: Recorder | None = None,
+    signing_key: bytes | None = None,
+) -> CompanionNode:
+    """Return a companion that has seen nothing yet.
+
+    Args:
+        config: all its numbers.
+        keys: of the Zenoh contract.
+        system_id: MAVLink's, of the autopilot that is flown and, on the same drone, of the companion.
+        dry_run: send neither setpoints nor commands.
+        records_input: keep received frames for a recording of the link.
+        recorder: takes all that goes in and out, None where nothing is recorded.
+        signing_key: 32 bytes shared with the autopilot; None sends unsigned and takes everything.
+    """
+    system = System(
+        config=config,
+        estimator=make_estimator(config.estimator),
+        guidance=make_guidance(config.guidance.kind, config.guidance),
+    )
+    warm_up(system)
+    signing = None if signing_key is None else Signing(signing_key)
+    settings = SessionConfig(records_input=records_input)
+    session = MavlinkSession(system_id, target_system_id=system_id, config=settings, signing=signing)
+    if recorder is not None:
+        return RecordingNode(system, keys, session, recorder, dry_run=dry_run)
+    return CompanionNode(system, keys, session, dry_run=dry_run)

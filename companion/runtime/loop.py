@@ -1,0 +1,232 @@
+"""The wire loop of the companion: sockets and clocks around the node, nothing else."""
+
+import signal
+import time
+from collections.abc import Callable
+from contextlib import ExitStack
+
+import structlog
+
+from companion.runtime.command_desk import CommandDesk
+from companion.runtime.loop_options import Links, LoopOptions
+from companion.runtime.node import CompanionNode
+from companion.runtime.onlookers import Onlooker, onlookers
+from companion.runtime.own_start import OwnStart
+from companion.runtime.pad_question import PadQuestion
+from companion.runtime.recorded_node import RecordingNode
+from companion.runtime.timings import Timings
+from companion.runtime.unheard import check_autopilot
+from companion.situation.phases import Phase
+from link import cdr
+from link.clock import Clock, ClockTick, SimulatedClock, SystemClock
+from link.errors import UserError
+from link.mavlink.tlog import TlogFrames, TlogSink
+from link.payload_checks import PayloadError
+from link.real_time import spare_present_objects
+from link.recorder import BackgroundRecorder, Recorder
+from link.service import Service
+
+_WAIT_MAX_S = 0.005  # for bytes; Zenoh samples wait no longer than this
+_LEAVE_MAX_S = 1.5  # a mode may be confirmed by the next heartbeat only
+
+
+def run(node: CompanionNode, links: Links, options: LoopOptions) -> Timings:
+    """Run until interrupted.
+
+    Raises:
+        UserError: no autopilot, no vehicle or no simulated clock within the time-out.
+    """
+    with ExitStack() as stack:
+        tlog: Recorder | None = None
+        if options.tlog is not None:
+            tlog = BackgroundRecorder(TlogSink(options.tlog))
+            stack.callback(tlog.close)
+        lookers = onlookers(stack, links.zenoh, links.keys, options.device)
+        return _Loop(node, links, options, tlog, lookers).run()
+
+
+class _Loop:
+    def __init__(
+        self,
+        node: CompanionNode,
+        links: Links,
+        options: LoopOptions,
+        tlog: Recorder | None,
+        lookers: list[Onlooker],
+    ) -> None:
+        self._node = node
+        self._keys = keys = links.keys
+        self._transport = links.transport
+        self._zenoh = zenoh = links.zenoh
+        self._options = options
+        self._tlog = tlog
+        self._onlookers = lookers
+        self._log = structlog.get_logger("companion")
+        self._service = Service()
+        self._desk = CommandDesk()
+        self._timings = Timings()
+        self._inbox = zenoh.subscribe(keys.fix)
+        self._inboxes = [self._inbox, *(zenoh.subscribe(key) for key in (keys.fix_velocity, keys.imu, keys.pad_pose))]
+        self._ticks = zenoh.subscribe(keys.clock) if options.use_sim_time else None
+        self._alive = zenoh.watch_alive(keys.alive)
+        self._stopping = False
+        self._start = OwnStart(wanted=options.start)
+        self._fix_seen = False
+        self._was_alive = False
+        self._pad_question = PadQuestion(zenoh, keys.pad)
+        self._link_was_up: bool | None = None
+
+    def run(self) -> Timings:
+        """Run until a signal comes."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self._stop)
+        clock = self._clock()
+        self._zenoh.serve(self._keys.landing_command, self._desk.handle)
+        spare_present_objects()
+        self._log.info("ready", device=self._options.device)
+        while not self._stopping:
+            self._turn(clock)
+        self._service.stopping()
+        self._leave(clock)
+        self._send_rest()
+        self._service.close()
+        return self._timings
+
+    def _stop(self, *_: object) -> None:
+        self._stopping = True
+
+    def _clock(self) -> Clock:
+        if self._ticks is None:
+            return SystemClock()
+        clock = SimulatedClock()
+        self._wait_for(lambda: self._tick(clock), f"no simulated clock on {self._keys.clock}")
+        return clock
+
+    def _tick(self, clock: SimulatedClock) -> bool:
+        if self._ticks is not None:
+            for sample in self._ticks.take():
+                try:
+                    self._node.bad_payloads += not clock.tick(cdr.decode(ClockTick, sample.payload).t_ns)
+                except PayloadError:
+                    self._node.bad_payloads += 1
+        return clock.ready
+
+    def _wait_for(self, is_there: Callable[[], bool], message: str) -> None:
+        started_s = time.monotonic()
+        while not is_there() and not self._stopping:
+            if self._options.timeout_s and time.monotonic() - started_s > self._options.timeout_s:
+                raise UserError(
+                    f"{message} within {self._options.timeout_s:g} s: start the simulation, or check --ns and -e"
+                )
+            time.sleep(0.01)
+
+    def _turn(self, clock: Clock) -> None:
+        """Wait for bytes, take what has come, step if due, send."""
+        self._service.alive(time.monotonic_ns())
+        if isinstance(clock, SimulatedClock):
+            self._tick(clock)
+        data = self._transport.receive(min(_WAIT_MAX_S, clock.wall_s(_WAIT_MAX_S)))
+        received_s = time.perf_counter()
+        local_ns = clock.now_ns()
+        if data:
+            self._node.receive_mavlink(data, local_ns)
+            self._record(self._node.autopilot.session.take_input(), local_ns)
+        self._take_samples()
+        if self._start.commanded(self._desk.pass_on(self._node, local_ns)):
+            self._log.info("start called off")
+        stepped = self._node.poll(local_ns)
+        self._send_frames(local_ns)
+        if stepped:
+            self._note_time(time.perf_counter() - received_s)
+            for onlooker in self._onlookers:
+                onlooker.tell(self._node, local_ns)
+            self._after_step()
+
+    def _note_time(self, state_to_setpoint_s: float) -> None:
+        self._timings.state_to_setpoint_s.append(state_to_setpoint_s)
+        if isinstance(self._node, RecordingNode):
+            self._node.record_step_time(state_to_setpoint_s)
+
+    def _take_samples(self) -> None:
+        for inbox in self._inboxes:
+            for sample in inbox.take():
+                self._fix_seen = self._fix_seen or inbox is self._inbox
+                self._node.receive_sample(sample.key, sample.payload)
+        self._node.receive_liveliness(alive=self._alive.alive)
+
+    def _send_frames(self, local_ns: int) -> None:
+        frames = self._node.take_frames()
+        for frame in frames:
+            self._transport.send(frame)
+        self._record(frames, local_ns)
+
+    def _record(self, frames: list[bytes], local_ns: int) -> None:
+        if self._tlog is not None and frames:
+            utc_ns = self._node.autopilot.session.clock.local_to_utc_ns(local_ns)
+            self._tlog.put(TlogFrames(frames, utc_ns))
+
+    def _after_step(self) -> None:
+        """Publish, reply, log; and see to what is still missing."""
+        for publication in self._node.take_publications():
+            self._zenoh.publish(publication.key, publication.payload, publication.encoding)
+        self._desk.answer(self._start.answered(self._node.take_replies()))
+        outputs = self._node.outputs
+        if outputs is not None and outputs.text is not None:
+            self._log.info(outputs.status.phase, reason=outputs.status.reason)
+            self._service.status(f"{outputs.status.phase}: {outputs.status.reason}")
+        for text in self._node.autopilot.take_texts():
+            self._log.info("autopilot", text=text)
+        self._say_link()
+        self._ask_for_pad()
+        self._start.follow(self._node, fix_seen=self._fix_seen)
+        self._check_time_out()
+
+    def _say_link(self) -> None:
+        """Say when the autopilot is found, lost and found again."""
+        is_up = self._node.autopilot.session.link_up
+        if is_up and not self._link_was_up:
+            self._log.info("autopilot found" if self._link_was_up is None else "autopilot found again")
+            self._service.ready()
+        elif self._link_was_up and not is_up:
+            self._log.warning("autopilot lost")
+        self._link_was_up = is_up if is_up or self._link_was_up is not None else None
+
+    def _ask_for_pad(self) -> None:
+        """Ask the vehicle for its pad until it has answered, and again when it has come back: it may be another one."""
+        question, alive = self._pad_question, self._alive.alive
+        if alive and not self._was_alive:
+            question.ask_anew()
+        self._was_alive = alive
+        bad, why = question.bad_answers, question.refused_why
+        pad = question.poll(time.monotonic(), asks=alive or self._fix_seen)
+        self._node.bad_payloads += question.bad_answers - bad
+        if question.refused_why != why:
+            self._log.warning("the vehicle's description of its pad is refused", why=question.refused_why)
+        if pad is not None:
+            self._node.receive_pad(pad)
+
+    def _check_time_out(self) -> None:
+        """Say what is missing when nothing has come within the time-out; not once a flight has begun."""
+        waited_s = time.perf_counter() - self._timings.started_s
+        if (
+            not self._options.timeout_s
+            or waited_s < self._options.timeout_s
+            or self._node.memory.phase is not Phase.IDLE
+        ):
+            return
+        timeout_s = self._options.timeout_s
+        check_autopilot(self._node.autopilot.session, self._options.device, timeout_s)
+        self._start.check_vehicle(self._keys, timeout_s, fix_seen=self._fix_seen, pad_known=self._node.pad_known)
+
+    def _leave(self, clock: Clock) -> None:
+        """Hand a flying drone over to its autopilot, which may take setpoints that stop for a fault or fly on."""
+        if not self._node.flies:
+            return
+        self._node.leave()
+        until_s = time.monotonic() + _LEAVE_MAX_S
+        while self._node.flies and time.monotonic() < until_s:
+            self._turn(clock)
+
+    def _send_rest(self) -> None:
+        for frame in self._node.take_frames():
+            self._transport.send(frame)

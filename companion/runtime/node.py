@@ -1,0 +1,238 @@
+"""The companion without I/O: bytes and payloads in, bytes and payloads out, on any clock.
+
+The wire loop, the lockstep campaigns and the tests all run this one.
+"""
+
+from dataclasses import replace
+
+from companion.autopilots.link import CLOCK_SET_NS, AutopilotLink
+from companion.core.data import Measurement, VehicleEstimate
+from companion.landing.shifts import at_other_time
+from companion.landing.step_data import StepInputs, StepMemory, StepOutputs, System
+from companion.runtime.publishing import plan_publication, status_publication
+from companion.situation.phases import FLYING_PHASES
+from companion.step import companion_step
+from companion.vehicle.buffered import BufferHealth
+from companion.vehicle.factory import make_estimator
+from companion.vehicle.inputs import measurements_of
+from link.keys import Keys
+from link.mavlink.session import MavlinkSession
+from link.messages import LEVER_MAX_M, Command, CommandReply, PadGeometry
+from link.payload_checks import PayloadError
+from link.publication import Publication
+
+_MOTION_RATE_MIN_HZ = 50.0
+_EARLY = 0.75  # of a period: a new state of the drone starts the next step from here on
+_LATE = 2.0  # periods without a new state after which the step is made without one
+_FUTURE_MAX_NS = 500_000_000  # a stamp farther ahead comes from a clock that is wrong
+_LINK_DELAY_MAX_S = 0.3  # a longer way is not led for: the model is too uncertain so far ahead
+_PLAN_EVERY = 2  # statuses
+
+
+class CompanionNode:
+    """A companion.
+
+    Args:
+        system: configuration, estimator and guidance law.
+        keys: of the Zenoh contract.
+        session: to the autopilot.
+        dry_run: send neither setpoints nor commands.
+    """
+
+    def __init__(self, system: System, keys: Keys, session: MavlinkSession, *, dry_run: bool = False) -> None:
+        self.autopilot = AutopilotLink(
+            session,
+            motion_rate_hz=max(system.config.step_rate_hz, _MOTION_RATE_MIN_HZ),
+            stops_unused_streams=system.config.stops_unused_streams,
+            kind=system.config.autopilot,
+            geoid_height_m=system.config.geoid_height_m,
+        )
+        self._dry_run = dry_run
+        self._limits_wanted = system.config.limits.flight_limits()
+        self.memory = StepMemory()
+        self.inputs: StepInputs | None = None
+        self.outputs: StepOutputs | None = None
+        self.bad_payloads = 0
+        self.system = system
+        self._keys = keys
+        self._measurements: list[Measurement] = []
+        self._pad: PadGeometry | None = None
+        self._vehicle_alive: bool | None = None
+        self._command: Command | None = None
+        self._leaving = False
+        self._replies: list[CommandReply] = []
+        self._publications: list[Publication] = []
+        self._stepped_ns: int | None = None
+        self._stepped_own_ns: int | None = None
+        self._t_ns = 0
+        self._status_ns = 0
+        self._statuses = 0
+
+    @property
+    def pad_known(self) -> bool:
+        """Whether the vehicle has described its pad."""
+        return self._pad is not None
+
+    def vehicle_estimate(self, t_ns: int) -> VehicleEstimate | None:
+        """Return the vehicle at `t_ns` (UTC) as the last step knew it, None before the first fix."""
+        return self.system.estimator.estimate(self.memory.estimator, t_ns)
+
+    def estimator_health(self) -> BufferHealth:
+        """Return what became of the measurements, and whether they agree with the estimator."""
+        return self.system.estimator.health(self.memory.estimator)
+
+    def receive_mavlink(self, data: bytes, local_ns: int) -> None:
+        """Take bytes of the autopilot's link.
+
+        Raises:
+            UserError: the autopilot is of a kind that cannot be flown.
+        """
+        self.autopilot.receive(data, local_ns)
+
+    def receive_sample(self, key: str, payload: bytes) -> None:
+        """Take a Zenoh sample; what cannot be decoded, is absurd or comes from the future is counted and dropped."""
+        try:
+            measurements = measurements_of(key, payload, self._keys, self.autopilot.state)
+        except PayloadError:
+            self.bad_payloads += 1
+            return
+        newest_ns = self._t_ns + _FUTURE_MAX_NS
+        self._measurements += [measurement for measurement in measurements if measurement.t_ns <= newest_ns]
+        # Before UTC is known a stamp ahead of the companion's own clock says nothing about who is wrong.
+        if self.autopilot.session.clock.is_utc_known and any(one.t_ns > newest_ns for one in measurements):
+            self.bad_payloads += 1
+
+    def receive_pad(self, pad: PadGeometry) -> None:
+        """Take the vehicle's description of its pad; the estimator needs the lever arm for sightings of the pad."""
+        if not all(abs(part_m) <= LEVER_MAX_M for part_m in pad.antenna_to_pad_m):
+            self.bad_payloads += 1
+            return
+        self._pad = pad
+        estimator = make_estimator(self.system.config.estimator, pad.antenna_to_pad_m)
+        self.system = replace(self.system, estimator=estimator)
+
+    def is_ready_to_start(self) -> bool:
+        """Return whether a start would be accepted now."""
+        state = self.autopilot.state
+        placed = state.view.frame is not None and state.view.geoid_known
+        return state.view.link_up and placed and state.own is not None
+
+    def receive_liveliness(self, *, alive: bool) -> None:
+        """Take the state of the vehicle's liveliness token; one that never was is not lost."""
+        if alive or self._vehicle_alive is not None:
+            self._vehicle_alive = alive
+
+    def request(self, command: Command) -> None:
+        """Take an operator's command; its reply follows the next step."""
+        self._command = command
+
+    def leave(self) -> None:
+        """Ask the autopilot, from the next step on, to hover by itself; on the pad it switches its motors off first."""
+        self._leaving = True
+
+    @property
+    def flies(self) -> bool:
+        """Whether motors turn at this companion's command."""
+        view = self.autopilot.state.view
+        steers = not self._dry_run and self.memory.phase in FLYING_PHASES
+        return steers and view.link_up and view.armed and view.in_control
+
+    def poll(self, local_ns: int) -> bool:
+        """Do what is due; return whether a step was made."""
+        self.autopilot.poll(local_ns)
+        if not self.is_due(local_ns):
+            return False
+        self._step(local_ns)
+        return True
+
+    def take_frames(self) -> list[bytes]:
+        """Return the MAVLink frames to be sent, once."""
+        return self.autopilot.session.take_output()
+
+    def take_publications(self) -> list[Publication]:
+        """Return what is to be put on Zenoh, once."""
+        taken, self._publications = self._publications, []
+        return taken
+
+    def take_replies(self) -> list[CommandReply]:
+        """Return the replies to operators' commands, once, in their order."""
+        taken, self._replies = self._replies, []
+        return taken
+
+    def is_due(self, local_ns: int) -> bool:
+        """Return whether it is time for a step: one follows each new state of the drone, and waits no longer than that.
+
+        What is asked for by `request` while this is true is in the step of the next `poll`.
+        """
+        if self._stepped_ns is None:
+            return True
+        own = self.autopilot.state.own
+        periods = (local_ns - self._stepped_ns) * 1e-9 * self.system.config.step_rate_hz
+        is_new = own is not None and own.t_ns != self._stepped_own_ns
+        return periods >= (_EARLY if is_new else _LATE)
+
+    def _step(self, local_ns: int) -> None:
+        state = self.autopilot.state
+        self._set_time(local_ns)
+        inputs = StepInputs(
+            t_ns=self._t_ns,
+            limits=self.autopilot.limits(self._limits_wanted),
+            own=state.own,
+            autopilot=state.view,
+            driver=self.autopilot.driver,
+            acknowledgements=self.autopilot.take_acknowledgements(),
+            measurements=tuple(self._measurements),
+            vehicle_alive=self._vehicle_alive,
+            pad=self._pad,
+            command=self._command,
+            leaving=self._leaving,
+            timeout_s=self.autopilot.timeout_s,
+            link_delay_s=min(self.autopilot.session.clock.one_way_s, _LINK_DELAY_MAX_S),
+            link_delay_std_s=self.autopilot.session.clock.one_way_std_s,
+        )
+        self._measurements, self._command = [], None
+        self._stepped_ns, self._stepped_own_ns = local_ns, None if state.own is None else state.own.t_ns
+        self.inputs = inputs
+        self.memory, self.outputs = companion_step(self.memory, inputs, self.system)
+        self._send(self.outputs, local_ns)
+
+    def _set_time(self, local_ns: int) -> None:
+        """Take the time of this step.
+
+        The map to UTC is refined all the time, and the step's own time never goes back with it. Where UTC is set,
+        or becomes known, all times of the memory are set with it: the flight goes on as if nothing had happened.
+        """
+        utc_ns = self.autopilot.session.clock.local_to_utc_ns(local_ns)
+        if self._stepped_ns is not None:
+            set_by_ns = utc_ns - (self._t_ns + local_ns - self._stepped_ns)
+            if abs(set_by_ns) > CLOCK_SET_NS:
+                self.memory = at_other_time(self.memory, set_by_ns)
+                self._t_ns += set_by_ns
+                self._status_ns += set_by_ns
+        self._t_ns = max(self._t_ns + 1, utc_ns)
+
+    def _send(self, outputs: StepOutputs, local_ns: int) -> None:
+        if not self._dry_run:
+            if outputs.setpoint is not None:
+                self.autopilot.send_setpoint(outputs.setpoint, local_ns)
+            self.autopilot.send_commands(outputs.commands, local_ns)
+        if outputs.text is not None:
+            self.autopilot.send_text(outputs.text)
+        if outputs.reply is not None:
+            self._replies.append(outputs.reply)
+        period_ns = 1e9 / self.system.config.status_rate_hz
+        if outputs.text is not None or self._t_ns - self._status_ns >= period_ns:
+            self._publish(outputs)
+
+    def _publish(self, outputs: StepOutputs) -> None:
+        self._status_ns = self._t_ns
+        self._statuses += 1
+        status = replace(
+            outputs.status,
+            mavlink_bad_bytes=self.autopilot.session.statistics.codec.bad_bytes,
+            zenoh_bad_payloads=self.bad_payloads,
+        )
+        self._publications.append(status_publication(self._keys, status))
+        if outputs.plan is not None and self._statuses % _PLAN_EVERY == 0:
+            plan = plan_publication(self._keys, outputs.plan, self._t_ns, self.memory.yaw_setpoint_rad)
+            self._publications.append(plan)

@@ -1,0 +1,98 @@
+"""A companion that records all that goes into it and what its steps make of that."""
+
+from companion.landing.step_data import System
+from companion.recording.records import InputKind, InputRecord, StepTimeRecord
+from companion.runtime.node import CompanionNode
+from companion.runtime.node_records import link_record, step_record
+from link import json_payloads
+from link.keys import Keys
+from link.mavlink.session import MavlinkSession
+from link.messages import Command, PadGeometry
+from link.recorder import Recorder
+
+_LINK_NS = 1_000_000_000  # between two records of the counters
+
+
+class RecordingNode(CompanionNode):
+    """A `CompanionNode` with a recorder; what it does is the same.
+
+    Args:
+        system: configuration, estimator and guidance law.
+        keys: of the Zenoh contract.
+        session: to the autopilot.
+        recorder: takes the records.
+        dry_run: send neither setpoints nor commands.
+    """
+
+    def __init__(
+        self, system: System, keys: Keys, session: MavlinkSession, recorder: Recorder, *, dry_run: bool = False
+    ) -> None:
+        super().__init__(system, keys, session, dry_run=dry_run)
+        self._recorder = recorder
+        self._sequence = 0
+        self._local_ns = 0
+        self._link_ns: int | None = None
+        self._recorded_alive: bool | None = None
+
+    def receive_mavlink(self, data: bytes, local_ns: int) -> None:
+        """Take bytes of the autopilot's link.
+
+        Raises:
+            UserError: the autopilot is of a kind that cannot be flown.
+        """
+        self._local_ns = local_ns
+        self._record(InputKind.MAVLINK, data)
+        super().receive_mavlink(data, local_ns)
+
+    def receive_sample(self, key: str, payload: bytes) -> None:
+        """Take a Zenoh sample."""
+        self._record(InputKind.SAMPLE, payload, key)
+        super().receive_sample(key, payload)
+
+    def receive_pad(self, pad: PadGeometry) -> None:
+        """Take the vehicle's description of its pad."""
+        self._record(InputKind.PAD, json_payloads.encode(pad))
+        super().receive_pad(pad)
+
+    def receive_liveliness(self, *, alive: bool) -> None:
+        """Take the state of the vehicle's liveliness token; only its changes are recorded."""
+        if alive is not self._recorded_alive:
+            self._recorded_alive = alive
+            self._record(InputKind.ALIVE, bytes([alive]))
+        super().receive_liveliness(alive=alive)
+
+    def request(self, command: Command) -> None:
+        """Take an operator's command."""
+        self._record(InputKind.COMMAND, command.value.encode())
+        super().request(command)
+
+    def leave(self) -> None:
+        """Ask the autopilot, from the next step on, to hover by itself."""
+        self._record(InputKind.LEAVE, b"")
+        super().leave()
+
+    def poll(self, local_ns: int) -> bool:
+        """Do what is due; return whether a step was made."""
+        self._local_ns = local_ns
+        self._record(InputKind.POLL, b"")
+        stepped = super().poll(local_ns)
+        record = step_record(self, local_ns) if stepped else None
+        if record is not None:
+            self._recorder.put(record)
+            self._record_link(record.inputs.t_ns)
+        return stepped
+
+    def record_step_time(self, state_to_setpoint_s: float) -> None:
+        """Take how long the loop needed for the last step."""
+        if self.inputs is not None:
+            self._recorder.put(StepTimeRecord(t_ns=self.inputs.t_ns, state_to_setpoint_s=state_to_setpoint_s))
+
+    def _record(self, kind: InputKind, data: bytes, key: str = "") -> None:
+        self._recorder.put(InputRecord(sequence=self._sequence, kind=kind, local_ns=self._local_ns, key=key, data=data))
+        self._sequence += 1
+
+    def _record_link(self, t_ns: int) -> None:
+        if self._link_ns is not None and abs(t_ns - self._link_ns) < _LINK_NS:
+            return
+        self._link_ns = t_ns
+        self._recorder.put(link_record(self, t_ns, self._recorder.dropped))

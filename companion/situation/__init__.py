@@ -1,0 +1,1 @@
+"""What is known in one step, and the phases of a landing that decide on it."""

@@ -1,0 +1,186 @@
+"""The facts of one step that the phases decide on, put together from the estimate, the pad and the drone."""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from companion.autopilots.driver import AutopilotView
+from companion.config.landing import ChaseConfig
+from companion.core.data import Array, FlightLimits, OwnState, RangeReading
+from companion.planning.guidance import ReferenceState
+from companion.vehicle.pad import PadPath
+from link.frames import rotate
+from link.messages import Vector3
+
+_RANGE_AGE_MAX_S = 0.3
+_LAST_SEEN_AGE_MAX_S = 3.0  # own heights wander by some millimetres a second
+_UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which a range finder does not look down
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Drone:
+    """The drone now, carried forward from its last report.
+
+    Attributes:
+        position_enu_m: (3,) in W.
+        velocity_enu_m_s: (3,) in W.
+        yaw_rad: heading of B about W's z.
+        age_s: of the report.
+        acceleration_up_m_s2: from the last reports, None before there are enough.
+        jolt_m_s2: size of the horizontal acceleration, likewise.
+        lean: sine of its tilt.
+        attitude_known: no older than a report may be.
+    """
+
+    position_enu_m: Array
+    velocity_enu_m_s: Array
+    yaw_rad: float
+    age_s: float
+    acceleration_up_m_s2: float | None = None
+    jolt_m_s2: float | None = None
+    lean: float = 0.0
+    attitude_known: bool = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Situation:
+    """What is known in this step; None where it is not.
+
+    Attributes:
+        t_ns: now, UTC.
+        autopilot: as its messages tell.
+        drone: now.
+        pad: now and over the horizon.
+        feet_offset_m: of the drone's reported position above its feet.
+        fix_age_s: since the newest accepted fix was taken.
+        fix_age_on_arrival_s: of the newest accepted fix when it was taken in.
+        vehicle_alive: its liveliness token; None when it never showed one.
+        reference: the virtual model that the setpoints follow.
+        tracking_error_m: distance of the drone from where it was asked to be at that time.
+        waiting_point_enu_m: (3,) in W.
+        range_height_m: of the feet above what a range finder sees below, None without a fresh reading.
+        range_carried_m: the last such height less what the drone has sunk since, for it may be too near to be seen.
+        speed_std_m_s: of the vehicle's horizontal velocity; infinite while that is not known.
+        ground_enu_m: (3,) where the drone stood, or what its range finder saw before the flight.
+        is_road_elsewhere: the vehicle is said to be higher or lower than any hill puts it.
+        rejected_share: of the vehicle's measurements of the last seconds, 0 to 1.
+        limits: of the flight, the autopilot's own included.
+        speed_limited_by: the autopilot's parameters that may bound the speed.
+    """
+
+    t_ns: int
+    autopilot: AutopilotView
+    drone: Drone | None
+    pad: PadPath | None
+    feet_offset_m: float
+    fix_age_s: float | None
+    vehicle_alive: bool | None
+    reference: ReferenceState | None
+    tracking_error_m: float
+    waiting_point_enu_m: Array | None
+    fix_age_on_arrival_s: float | None = None
+    range_height_m: float | None = None
+    range_carried_m: float | None = None
+    speed_std_m_s: float = math.inf
+    ground_enu_m: Array | None = None
+    is_road_elsewhere: bool = False
+    rejected_share: float = 0.0
+    limits: FlightLimits | None = None
+    speed_limited_by: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Approach:
+    """The drone against the pad: its feet from the pad's centre, in W and in four numbers."""
+
+    position_enu_m: Vector3
+    velocity_enu_m_s: Vector3
+    distance_m: float  # horizontal
+    speed_m_s: float  # horizontal
+    height_m: float  # of the feet above the pad
+    climb_m_s: float  # upwards against the pad
+    pad_half_width_m: float = math.inf  # from its centre to its nearest edge
+
+
+@lru_cache(maxsize=1)  # the tests, the decisions and the limits of a step all ask for it
+def approach(situation: Situation) -> Approach | None:
+    """Return the drone against the pad, None unless both are known."""
+    drone, pad = situation.drone, situation.pad
+    if drone is None or pad is None:
+        return None
+    (x, y, z), (vx, vy, vz) = drone.position_enu_m.tolist(), drone.velocity_enu_m_s.tolist()
+    (pad_x, pad_y, pad_z), (pad_vx, pad_vy, pad_vz) = pad.position_enu_m[0].tolist(), pad.velocity_enu_m_s[0].tolist()
+    position = (x - pad_x, y - pad_y, z - situation.feet_offset_m - pad_z)
+    velocity = (vx - pad_vx, vy - pad_vy, vz - pad_vz)
+    return Approach(
+        position_enu_m=position,
+        velocity_enu_m_s=velocity,
+        distance_m=math.hypot(position[0], position[1]),
+        speed_m_s=math.hypot(velocity[0], velocity[1]),
+        height_m=position[2],
+        climb_m_s=velocity[2],
+        pad_half_width_m=pad.half_width_m,
+    )
+
+
+def drone_now(own: OwnState | None, t_ns: int, yaw_rad: float, age_max_s: float) -> Drone | None:
+    """Return the drone at `t_ns`, carried forward at its reported velocity; None when the report is too old."""
+    if own is None:
+        return None
+    age_s = (t_ns - own.t_ns) * 1e-9
+    if abs(age_s) > age_max_s:
+        return None
+    velocity = np.array(own.velocity_enu_m_s)
+    position = np.array(own.position_enu_m) + velocity * age_s
+    return Drone(
+        position_enu_m=position,
+        velocity_enu_m_s=velocity,
+        yaw_rad=yaw_rad,
+        age_s=age_s,
+        acceleration_up_m_s2=own.acceleration_up_m_s2,
+        jolt_m_s2=own.jolt_m_s2,
+        attitude_known=age_s + own.attitude_age_s <= age_max_s,
+        lean=math.hypot(*rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))[:2]),
+    )
+
+
+def range_height_m(own: OwnState | None, seen: RangeReading | None, sensor_height_m: float, t_ns: int) -> float | None:
+    """Return the height of the drone's feet above what its range finder sees below.
+
+    Args:
+        own: the drone's newest report, for its tilt.
+        seen: the newest reading.
+        sensor_height_m: of the range finder above the feet.
+        t_ns: now.
+    """
+    if own is None or seen is None or abs(t_ns - seen.t_ns) * 1e-9 > _RANGE_AGE_MAX_S:
+        return None
+    _, _, upright = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
+    return seen.distance_m * upright - sensor_height_m if upright > _UPRIGHT_MIN else None
+
+
+def range_carried_m(drone: Drone | None, seen: RangeReading | None, sensor_height_m: float, t_ns: int) -> float | None:
+    """Return the last height of the drone's feet that was seen, less what the drone has sunk since.
+
+    A range finder sees nothing nearer than its range begins, and where the drone stands it may never see again.
+
+    Args:
+        drone: now.
+        seen: the last reading within the range.
+        sensor_height_m: of the range finder above the feet.
+        t_ns: now.
+    """
+    if drone is None or seen is None or seen.up_m is None or abs(t_ns - seen.t_ns) * 1e-9 > _LAST_SEEN_AGE_MAX_S:
+        return None
+    return seen.distance_m - sensor_height_m + float(drone.position_enu_m[2]) - seen.up_m
+
+
+def stands(situation: Situation, config: ChaseConfig) -> bool:
+    """Return whether the vehicle is known and stands, as far as its speed is known."""
+    if situation.pad is None:
+        return False
+    std_m_s = situation.speed_std_m_s
+    unsure_m_s = config.parked_speed_stds * std_m_s if math.isfinite(std_m_s) else 0.0
+    return math.hypot(*situation.pad.velocity_enu_m_s[0, :2].tolist()) < max(config.parked_speed_m_s, unsure_m_s)

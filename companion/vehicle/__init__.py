@@ -1,0 +1,1 @@
+"""The vehicle: where it is, where it will be, where its pad is, and how it drives."""

@@ -1,0 +1,73 @@
+"""Makes the estimator that a configuration names."""
+
+from functools import lru_cache
+from typing import Any, assert_never
+
+import numpy as np
+
+from companion.config.estimation import EstimatorConfig, EstimatorKind
+from companion.core.data import Measurement, Quantity
+from companion.vehicle.buffered import BufferedEstimator
+from companion.vehicle.imm import ImmModel
+from link.messages import Vector3
+
+AnyEstimator = BufferedEstimator[Any]  # each has its own memory, which only it reads
+
+
+def make_estimator(
+    config: EstimatorConfig, antenna_to_pad_m: Vector3 = (0.0, 0.0, 0.0), kind: EstimatorKind | None = None
+) -> AnyEstimator:
+    """Return an estimator; all of them fulfil `companion.vehicle.estimator.Estimator`.
+
+    The lever arm is not part of the memory: when the vehicle tells it later, make the estimator again and go on with
+    the same memory. The first call for a kind compiles its kernels, once per machine (some 20 s), so that no later
+    step waits for it.
+
+    Args:
+        config: all numbers.
+        antenna_to_pad_m: from the vehicle's antenna to its pad's centre in V, for sightings of the pad.
+        kind: which one, instead of the one that the configuration names.
+    """
+    kind = config.kind if kind is None else kind
+    _warm_up(kind)
+    return _make(config, antenna_to_pad_m, kind)
+
+
+@lru_cache
+def _warm_up(kind: EstimatorKind) -> None:
+    """Do once all that an estimator can be asked."""
+    estimator = _make(EstimatorConfig(), (1.0, 0.0, 0.0), kind)
+    sizes = {Quantity.HEADING: 1, Quantity.YAW_RATE: 1}
+    memory: Any = None
+    for i, quantity in enumerate((*Quantity, *Quantity)):
+        n = sizes.get(quantity, 3)
+        measurement = Measurement(t_ns=i * 10**8, quantity=quantity, value=np.full(n, 0.1), covariance=np.eye(n))
+        memory = estimator.fuse(memory, [measurement])
+    now_ns = 10**9
+    estimator.estimate(memory, now_ns)
+    estimator.forecast(memory, now_ns, np.array([0.0, 1.0]))
+
+
+def _make(config: EstimatorConfig, antenna_to_pad_m: Vector3, kind: EstimatorKind) -> AnyEstimator:
+    match kind:
+        case EstimatorKind.LKF_REPORT | EstimatorKind.LKF:
+            return _linear(config, kind)
+        case EstimatorKind.UKF:
+            from companion.vehicle.ukf import UkfModel  # noqa: PLC0415 (as in `_linear`)
+
+            return BufferedEstimator(model=UkfModel(config=config.ukf, point_config=config.lkf), config=config.buffer)
+        case EstimatorKind.IMM:
+            model = ImmModel(config=config.imm, antenna_to_pad_m=antenna_to_pad_m)
+            return BufferedEstimator(model=model, config=config.buffer)
+        case _:
+            assert_never(kind)
+
+
+def _linear(config: EstimatorConfig, kind: EstimatorKind) -> AnyEstimator:
+    from companion.vehicle.lkf import LkfModel  # noqa: PLC0415 (filterpy costs 0.4 s and 60 MB to load)
+    from companion.vehicle.lkf_noise import ReportNoise, WhiteJerkNoise  # noqa: PLC0415 (with it)
+
+    if kind is EstimatorKind.LKF_REPORT:
+        ungated = config.buffer.model_copy(update={"gate_probability": None})
+        return BufferedEstimator(model=LkfModel(noise=ReportNoise(config=config.lkf_report)), config=ungated)
+    return BufferedEstimator(model=LkfModel(noise=WhiteJerkNoise(config=config.lkf)), config=config.buffer)

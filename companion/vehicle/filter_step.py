@@ -1,0 +1,168 @@
+"""One measurement and one filter: predicted to its time, then fused, gated, or recovered on; pure.
+
+Outliers are gated by their normalised innovation squared (NIS); when one quantity is rejected for too long, the filter
+is told to recover on the new data.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Generic, Protocol, TypeVar
+
+from scipy.special import gammaincinv
+
+from companion.config.estimation import BufferConfig
+from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
+
+S = TypeVar("S")
+
+QUANTITIES = tuple(Quantity)
+RANK = {quantity: rank for rank, quantity in enumerate(QUANTITIES)}
+_NEVER: tuple[int | None, ...] = (None,) * len(QUANTITIES)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Update(Generic[S]):
+    """A filter's answer to a measurement: the state after it, and how well it fitted.
+
+    Attributes:
+        state: the filter with the measurement in it.
+        nis: normalised innovation squared.
+        gate_nis: what the gate judges; the same unless the filter weighs several models.
+        dof: its degrees of freedom.
+    """
+
+    state: S
+    nis: float
+    gate_nis: float
+    dof: int
+
+
+class FilterModel(Protocol[S]):
+    """A recursive filter as pure functions of its state."""
+
+    def start(self, fix: Measurement) -> S:
+        """Return the state after a first position."""
+
+    def predict(self, state: S, dt_s: float) -> S:
+        """Return the state `dt_s` later."""
+
+    def update(self, state: S, measurement: Measurement) -> Update[S] | None:
+        """Return the state after `measurement`, or None when this filter has no use for it."""
+
+    def recover(self, state: S, measurement: Measurement) -> S:
+        """Return a state open to `measurement`, after many like it were rejected."""
+
+    def describe(self, state: S, t_ns: int) -> VehicleEstimate:
+        """Return the state as the rest of the companion reads it."""
+
+    def forecast(self, state: S, t_ns: int, offset_s: Array) -> Forecast:
+        """Return the future of a state that holds at `t_ns`."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tally:
+    """What happened to the measurements up to a moment; tuples run over `QUANTITIES`."""
+
+    fused: int = 0
+    gated: int = 0
+    recoveries: int = 0
+    nis_sum: float = 0.0
+    nis_dof: int = 0
+    accepted_ns: tuple[int | None, ...] = _NEVER
+    rejected_since_ns: tuple[int | None, ...] = _NEVER
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Snapshot(Generic[S]):
+    """The filter at `t_ns`; the state is None until the first position."""
+
+    t_ns: int
+    state: S | None
+    tally: Tally
+
+
+def nis_threshold(gate_probability: float | None, dof: int) -> float:
+    """Return the NIS above which a measurement of `dof` components is an outlier (chi-square quantile)."""
+    return math.inf if gate_probability is None else _chi2_quantile(gate_probability, dof)
+
+
+def is_forgotten(config: BufferConfig, snapshot: Snapshot[S], t_ns: int) -> bool:
+    """Return whether at `t_ns` the filter has heard nothing for so long that it begins anew: a stamp of 0, say."""
+    return t_ns - snapshot.t_ns > config.forget_after_s * 1e9
+
+
+def step(
+    model: FilterModel[S], config: BufferConfig, snapshot: Snapshot[S], measurement: Measurement
+) -> tuple[Snapshot[S], float | None]:
+    """Predict to the measurement, then fuse it, gate it, or recover on it."""
+    t_ns = measurement.t_ns
+    if snapshot.state is None or is_forgotten(config, snapshot, t_ns):
+        return _start(model, snapshot, measurement), None
+    state = snapshot.state
+    if t_ns > snapshot.t_ns:
+        state = model.predict(state, (t_ns - snapshot.t_ns) * 1e-9)
+    update = model.update(state, measurement)
+    if update is None:
+        return Snapshot(t_ns=t_ns, state=state, tally=snapshot.tally), None
+    rank = RANK[measurement.quantity]
+    nis_per_dof = update.nis / update.dof
+    if update.gate_nis <= nis_threshold(config.gate_probability, update.dof):
+        return Snapshot(t_ns=t_ns, state=update.state, tally=_accepted(snapshot.tally, rank, t_ns, update)), nis_per_dof
+    since_ns = snapshot.tally.rejected_since_ns[rank]
+    if since_ns is None or t_ns - since_ns < config.recover_after_s * 1e9:
+        return Snapshot(t_ns=t_ns, state=state, tally=_rejected(snapshot.tally, rank, t_ns)), nis_per_dof
+    return _recover(model, Snapshot(t_ns=t_ns, state=state, tally=snapshot.tally), measurement), nis_per_dof
+
+
+def _start(model: FilterModel[S], snapshot: Snapshot[S], measurement: Measurement) -> Snapshot[S]:
+    """Start on a position; anything else waits for one."""
+    tally = snapshot.tally
+    if measurement.quantity is not Quantity.POSITION:
+        return Snapshot(t_ns=measurement.t_ns, state=None, tally=tally)
+    accepted = _put(tally.accepted_ns, RANK[Quantity.POSITION], measurement.t_ns)
+    started = replace(tally, fused=tally.fused + 1, accepted_ns=accepted)
+    return Snapshot(t_ns=measurement.t_ns, state=model.start(measurement), tally=started)
+
+
+def _recover(model: FilterModel[S], snapshot: Snapshot[S], measurement: Measurement) -> Snapshot[S]:
+    """Open the filter to data that it has rejected for too long, and fuse them."""
+    if snapshot.state is None:
+        return snapshot
+    state = model.recover(snapshot.state, measurement)
+    update = model.update(state, measurement)
+    rank = RANK[measurement.quantity]
+    tally = replace(
+        snapshot.tally,
+        recoveries=snapshot.tally.recoveries + 1,
+        accepted_ns=_put(snapshot.tally.accepted_ns, rank, measurement.t_ns),
+        rejected_since_ns=_NEVER,
+    )
+    return Snapshot(t_ns=measurement.t_ns, state=state if update is None else update.state, tally=tally)
+
+
+def _accepted(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
+    return Tally(
+        fused=tally.fused + 1,
+        gated=tally.gated,
+        recoveries=tally.recoveries,
+        nis_sum=tally.nis_sum + update.nis,
+        nis_dof=tally.nis_dof + update.dof,
+        accepted_ns=_put(tally.accepted_ns, rank, t_ns),
+        rejected_since_ns=_put(tally.rejected_since_ns, rank, None),
+    )
+
+
+def _rejected(tally: Tally, rank: int, t_ns: int) -> Tally:
+    since_ns = tally.rejected_since_ns[rank]
+    since = _put(tally.rejected_since_ns, rank, t_ns if since_ns is None else since_ns)
+    return replace(tally, gated=tally.gated + 1, rejected_since_ns=since)
+
+
+def _put(values: tuple[int | None, ...], index: int, value: int | None) -> tuple[int | None, ...]:
+    return (*values[:index], value, *values[index + 1 :])
+
+
+@lru_cache(maxsize=64)
+def _chi2_quantile(probability: float, dof: int) -> float:
+    return float(2.0 * gammaincinv(0.5 * dof, probability))  # scipy.stats would take 37 MB for this one function

@@ -1,0 +1,233 @@
+"""The default estimator: two interacting turning models with the offset between the two receivers' frames.
+
+State, motion and units are in `imm_kernels`, what sensors read in `imm_sensors`, the interaction in `imm_mixing`.
+The vehicle's fixes are in the frame of its own receiver and dated by its own clock; sightings of the pad are in the
+drone's. The difference of the frames is three states with a slow random walk, that of the clocks is one, so that the
+estimate is right for the drone, and stays right when the sightings end. What a receiver states as its error beyond
+some decimetres is slow (Gauss-Markov) rather than white, and is let into that walk; the drone's own place then wanders
+as well, and from one sighting to the next nothing tells how far.
+"""
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import assert_never
+
+import numpy as np
+from numpy.typing import NDArray
+
+from companion.config.estimation import ImmConfig
+from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
+from companion.vehicle import imm_forecast as forecasts
+from companion.vehicle import imm_kernels as kernels
+from companion.vehicle import imm_mixing as mixing
+from companion.vehicle import imm_sensors as sensors
+from companion.vehicle.filter_step import Update
+from companion.vehicle.gaussian import wrapped
+from companion.vehicle.imm_numbers import Numbers, noises_with, numbers_of
+from link.messages import Vector3
+
+KINDS = {
+    Quantity.POSITION: sensors.POSITION,
+    Quantity.VELOCITY: sensors.VELOCITY,
+    Quantity.HEADING: sensors.HEADING,
+    Quantity.YAW_RATE: sensors.YAW_RATE,
+    Quantity.PAD: sensors.PAD,
+}
+UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
+PLACE = np.array([0, 1, 8])  # indices of the position
+MOVES = np.array([2, 3, 4, 5, 9, 11])  # of what a velocity tells about
+OFFSET = np.array([12, 13, 14])
+CURVATURE, HEADING = 6, 7
+CLOCK = kernels.CLOCK
+CLIMB_STD_M_S = 1.0  # at the start: a grade of 5 % at 20 m/s
+
+IndexArray = NDArray[np.intp]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ImmState:
+    """Both modes and the slow part of the fixes' variance."""
+
+    modes: mixing.Modes
+    fix_bias_variance_m2: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ImmModel:
+    """The filter as a model for the delay buffer.
+
+    Attributes:
+        config: its numbers.
+        antenna_to_pad_m: lever arm in V; the vehicle turns about the pad's centre, and sightings are of it.
+        numbers: the same as the kernels take them, derived.
+    """
+
+    config: ImmConfig
+    antenna_to_pad_m: Vector3 = (0.0, 0.0, 0.0)
+    numbers: Numbers = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Derive the kernels' numbers."""
+        object.__setattr__(self, "numbers", numbers_of(self.config, self.antenna_to_pad_m))
+
+    def start(self, fix: Measurement) -> ImmState:
+        """Return the state after a first position: anything may be true of the rest."""
+        white, bias_variance = self._split(fix.covariance)
+        mean = np.zeros(kernels.SIZE)
+        mean[PLACE] = fix.value
+        covariance = np.diag(self._prior_variances())
+        covariance[np.ix_(PLACE, PLACE)] = white
+        covariance[CLOCK, CLOCK] = self.config.clock_std_s**2 if bias_variance else 0.0
+        offset = (self.config.frame_offset_std_m**2 + bias_variance) * np.eye(3)
+        covariances = _with_common_step(np.stack([covariance, covariance]), offset)
+        dwell_s = self.numbers.dwell_s
+        modes = (np.stack([mean, mean]), covariances, dwell_s / dwell_s.sum())
+        return ImmState(modes=modes, fix_bias_variance_m2=bias_variance)
+
+    def predict(self, state: ImmState, dt_s: float) -> ImmState:
+        """Return the state `dt_s` later."""
+        motion = self._motion(state)
+        modes = mixing.predict_modes(state.modes, dt_s, self._noises(state), self.numbers.dwell_s, motion)
+        return ImmState(modes=modes, fix_bias_variance_m2=state.fix_bias_variance_m2)
+
+    def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState]:
+        """Return the state after any quantity."""
+        R, bias_variance = measurement.covariance, state.fix_bias_variance_m2
+        if measurement.quantity is Quantity.POSITION:
+            R, bias_variance = self._split(R)
+        reading = (KINDS[measurement.quantity], _own(measurement.value), _own(R))
+        modes, nis, gate_nis = mixing.take_reading(state.modes, reading, self.numbers.lever_m, self.numbers.course)
+        updated = ImmState(modes=modes, fix_bias_variance_m2=bias_variance)
+        return Update(state=updated, nis=nis, gate_nis=gate_nis, dof=len(measurement.value))
+
+    def recover(self, state: ImmState, measurement: Measurement) -> ImmState:
+        """Open what `measurement` contradicts.
+
+        A sighting that contradicts everything means that the drone's frame has stepped: place and offset move
+        together. A fix that does is the receiver's step if the place is known from sightings, else a new start.
+        """
+        match measurement.quantity:
+            case Quantity.PAD:
+                step = self._step_size(state, measurement) ** 2 * np.eye(3)
+                means, covariances, weights = state.modes
+                return replace(state, modes=(means, _with_common_step(covariances, step), weights))
+            case Quantity.POSITION:
+                step_m = self._step_size(state, measurement)
+                if self._placed_by_sightings(state):
+                    return _opened(state, OFFSET, np.full(3, step_m**2))
+                return self._restarted(state, measurement)
+            case Quantity.VELOCITY:
+                return _opened(state, MOVES, self._prior_variances()[MOVES])
+            case Quantity.HEADING:
+                return _opened(state, np.array([HEADING]), np.array([UNKNOWN_HEADING_VARIANCE]))
+            case Quantity.YAW_RATE:
+                return _opened(state, np.array([CURVATURE]), np.array([self.config.curvature_std_rad_m**2]))
+            case _:
+                assert_never(measurement.quantity)
+
+    def describe(self, state: ImmState, t_ns: int) -> VehicleEstimate:
+        """Return the mixture of both modes."""
+        x, P = mixing.combine(*state.modes)
+        motion = self._motion(state)
+        G = forecasts.kinematics_jacobian(x, motion)
+        position, velocity, acceleration = forecasts.kinematics(x[None], motion)
+        covariance = G @ P @ G.T
+        known = self._heading_known(state)
+        return VehicleEstimate(
+            t_ns=t_ns,
+            position_enu_m=position[0],
+            velocity_enu_m_s=velocity[0],
+            acceleration_enu_m_s2=acceleration[0],
+            covariance=0.5 * (covariance + covariance.T),
+            yaw_rad=wrapped(float(x[HEADING])) if known else None,
+            yaw_rate_rad_s=float(x[CURVATURE] * math.hypot(x[2], x[3])) if known else None,
+        )
+
+    def forecast(self, state: ImmState, t_ns: int, offset_s: Array) -> Forecast:
+        """Return the future along the present curvature, with an acceleration that fades and stops at standstill."""
+        position, velocity, acceleration, yaw, std = forecasts.forecast_modes(
+            state.modes, _own(offset_s), self._noises(state), self._motion(state)
+        )
+        return Forecast(
+            t_ns=t_ns,
+            offset_s=offset_s,
+            position_enu_m=position,
+            velocity_enu_m_s=velocity,
+            acceleration_enu_m_s2=acceleration,
+            yaw_rad=yaw if self._heading_known(state) else None,
+            position_std_m=std,
+            is_coarse=state.fix_bias_variance_m2 > 0.0,
+        )
+
+    def _split(self, fix_covariance: Array) -> tuple[Array, float]:
+        """A fix's covariance as its white part (3, 3) and the variance of the slow rest, m^2."""
+        stated = float(fix_covariance.diagonal().max())
+        white = min(stated, self.config.fix_white_std_max_m**2)
+        return fix_covariance * (white / stated), stated - white
+
+    def _motion(self, state: ImmState) -> Array:
+        """The motion's numbers, (8,), as `imm_mixing` has them; the lever arm is zero while the heading is unknown."""
+        return mixing.with_direction(self.numbers.motion, state.modes, float(self.numbers.course[2]))
+
+    def _noises(self, state: ImmState) -> Array:
+        """Both modes' noise, (2, 9), as `imm_kernels.process_noise` takes it."""
+        walk_m2_s = 2.0 * state.fix_bias_variance_m2 / self.config.fix_bias_time_s
+        receiver_m2_s = self.config.frame_offset_walk_m2_s + walk_m2_s
+        return noises_with(self.numbers, receiver_m2_s, self.config.own_walk_share * walk_m2_s)
+
+    def _prior_variances(self) -> Array:
+        """Of every state but position, offset and clock, (16,)."""
+        config = self.config
+        speed, acceleration = config.initial_speed_std_m_s**2, config.initial_acceleration_std_m_s2**2
+        heave = config.heave_std_m**2
+        heave_rate = heave * float(self.numbers.motion[1]) ** 2
+        curvature = config.curvature_std_rad_m**2
+        moving = [speed, speed, acceleration, acceleration, curvature, UNKNOWN_HEADING_VARIANCE]
+        vertical = [0.0, CLIMB_STD_M_S**2, heave, heave_rate]
+        return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0])
+
+    def _heading_known(self, state: ImmState) -> bool:
+        return mixing.is_heading_known(state.modes, self.config.heading_known_std_rad**2)
+
+    def _step_size(self, state: ImmState, measurement: Measurement) -> float:
+        """How far, m, a measured place is from the expected one; at least the prior of the offset."""
+        means, _, weights = state.modes
+        expected, _ = sensors.observe(KINDS[measurement.quantity], weights @ means, self.numbers.lever_m, False)
+        return max(float(np.linalg.norm(measurement.value - expected)), self.config.frame_offset_std_m)
+
+    def _placed_by_sightings(self, state: ImmState) -> bool:
+        """Whether the place is known better than the fixes alone could tell it in the drone's frame."""
+        _, covariances, weights = state.modes
+        variance = float(weights @ covariances[:, 0, 0])
+        return variance < 0.25 * (self.config.frame_offset_std_m**2 + state.fix_bias_variance_m2)
+
+    def _restarted(self, state: ImmState, fix: Measurement) -> ImmState:
+        """A new start at `fix` that keeps offset, heading and clock."""
+        x, P = mixing.combine(*state.modes)
+        means, covariances, weights = self.start(fix).modes
+        means[:, PLACE] += x[OFFSET]
+        means[:, OFFSET] = x[OFFSET]
+        for kept in (HEADING, CLOCK):
+            means[:, kept], covariances[:, kept, kept] = x[kept], P[kept, kept]
+        return replace(state, modes=(means, covariances, weights))
+
+
+def _own(array: Array) -> Array:
+    """A plain copy: kernels are compiled anew for read-only or strided arrays, which takes seconds."""
+    return np.array(array, dtype=np.float64, order="C")
+
+
+def _opened(state: ImmState, indices: IndexArray, variances: Array) -> ImmState:
+    means, covariances, weights = state.modes
+    opened = covariances.copy()
+    opened[:, indices, indices] += variances
+    return replace(state, modes=(means, opened, weights))
+
+
+def _with_common_step(covariances: Array, step: Array) -> Array:
+    """Add `step` (3, 3), m^2, to position and offset as one unknown that moves both."""
+    moved = covariances.copy()
+    for rows in (PLACE, OFFSET):
+        for columns in (PLACE, OFFSET):
+            moved[:, rows[:, None], columns] += step
+    return moved

@@ -1,0 +1,66 @@
+"""What the interacting turning models tell: the antenna's motion now and over the horizon, compiled.
+
+`motion` (8,) is as `imm_mixing` has it, with the lever arm at its end.
+"""
+
+import numpy as np
+
+from companion.core.data import Array
+from companion.vehicle.compiled import kept
+from companion.vehicle.imm_kernels import SIZE
+from companion.vehicle.imm_mixing import Modes, combine, glide
+from companion.vehicle.imm_sensors import antenna_velocity, horizontal_acceleration
+
+
+@kept
+def kinematics(states: Array, motion: Array) -> tuple[Array, Array, Array]:
+    """Return the antenna's position and velocity and the pad's acceleration in W, each (n, 3), of `states` (n, 16)."""
+    n = len(states)
+    position, velocity, acceleration = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
+    for i in range(n):
+        x = states[i]
+        position[i, 0], position[i, 1], position[i, 2] = x[0], x[1], x[8] + x[10]
+        velocity[i], _ = antenna_velocity(x, motion[5:8])
+        acceleration[i, :2], _ = horizontal_acceleration(x)
+        acceleration[i, 2] = -(motion[1] ** 2) * x[10] - 2.0 * motion[2] * motion[1] * x[11]
+    return position, velocity, acceleration
+
+
+@kept
+def kinematics_jacobian(x: Array, motion: Array) -> Array:
+    """Return the Jacobian `(9, 16)` of position, velocity and acceleration."""
+    G = np.zeros((9, SIZE))
+    G[0, 0], G[1, 1], G[2, 8], G[2, 10] = 1.0, 1.0, 1.0, 1.0
+    _, G[3:6] = antenna_velocity(x, motion[5:8])
+    _, G[6:8, 2:7] = horizontal_acceleration(x)
+    G[8, 10], G[8, 11] = -(motion[1] ** 2), -2.0 * motion[2] * motion[1]
+    return G
+
+
+@kept
+def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) -> tuple[Array, Array]:
+    """Return the means `(n, 16)` and the position variances `(n, 3)` at `offset_s` (n,), not falling."""
+    n = len(offset_s)
+    means, variances = np.empty((n, SIZE)), np.empty((n, 3))
+    passed_s = 0.0
+    for i in range(n):
+        ahead_s = offset_s[i] - passed_s
+        if ahead_s > 0.0:
+            x, P = glide(x, P, ahead_s, noise, motion)
+            passed_s = offset_s[i]
+        means[i] = x
+        variances[i, 0], variances[i, 1] = P[0, 0], P[1, 1]
+        variances[i, 2] = P[8, 8] + P[10, 10] + 2.0 * P[8, 10]
+    return means, variances
+
+
+@kept
+def forecast_modes(
+    modes: Modes, offset_s: Array, noises: Array, motion: Array
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Return the mixture's position, velocity, acceleration (n, 3), heading (n,) and position's deviation (n, 3)."""
+    x, P = combine(modes[0], modes[1], modes[2])
+    noise = modes[2][0] * noises[0] + modes[2][1] * noises[1]
+    means, variances = horizon(x, P, offset_s, noise, motion)
+    position, velocity, acceleration = kinematics(means, motion)
+    return position, velocity, acceleration, means[:, 7].copy(), np.sqrt(variances)

@@ -1,0 +1,222 @@
+"""Compiled steps of two interacting turning models that differ in their noise only (Blom and Bar-Shalom 1988).
+
+`Modes` are means (2, 16), covariances (2, 16, 16) and probabilities (2,). Between measurements the vehicle may change
+from one mode to the other as a continuous Markov chain with the given mean dwell times. `motion` (8,) is the time
+constant of the acceleration, s, the heave's angular frequency, rad/s, damping and standard deviation, m, the time
+constant of the clock's difference, s, and the lever arm (3,) from the antenna to the pad in V, m.
+"""
+
+import math
+
+import numpy as np
+
+from companion.core.data import Array
+from companion.vehicle.compiled import kept
+from companion.vehicle.imm_kernels import CLOCK, SIZE, advance, correct, heave_step, process_noise
+from companion.vehicle.imm_sensors import (
+    COURSE,
+    HEADING,
+    PAD,
+    POSITION,
+    VELOCITY,
+    observe,
+    turned,
+)
+from companion.vehicle.small_matrices import carried_through, inverse_of
+
+Modes = tuple[Array, Array, Array]
+
+WEIGHT_MIN = 1e-12  # a mode that rounding has ruled out could never come back
+STEP_MAX_S = 0.1  # 0.04 rad in the tightest of the benchmark's curves
+
+
+@kept
+def switching(dwell_s: Array, dt_s: float) -> Array:
+    """Return the probabilities `(2, 2)` of having gone from row to column after `dt_s`."""
+    mixed = 1.0 - math.exp(-dt_s * (1.0 / dwell_s[0] + 1.0 / dwell_s[1]))
+    long_run = dwell_s / dwell_s.sum()
+    return mixed * np.stack((long_run, long_run)) + (1.0 - mixed) * np.eye(2)
+
+
+@kept
+def combine(means: Array, covariances: Array, weights: Array) -> tuple[Array, Array]:
+    """Return mean and covariance of the mixture."""
+    mean = weights[0] * means[0] + weights[1] * means[1]
+    between = means[0] - means[1]
+    spread = weights[0] * weights[1] * np.outer(between, between)
+    return mean, weights[0] * covariances[0] + weights[1] * covariances[1] + spread
+
+
+@kept
+def mix(modes: Modes, changes: Array) -> Modes:
+    """Return the filter after the modes may have changed with probabilities `changes` (2, 2)."""
+    means, covariances, weights = modes
+    after = weights[0] * changes[0] + weights[1] * changes[1]
+    mixed_means, mixed_covariances = np.empty_like(means), np.empty_like(covariances)
+    for j in range(2):
+        share = weights * changes[:, j] / after[j]
+        mixed_means[j], mixed_covariances[j] = combine(means, covariances, share)
+    return mixed_means, mixed_covariances, after
+
+
+@kept
+def shifted(x: Array, P: Array, lever: Array, sign: float) -> tuple[Array, Array]:
+    """Return mean and covariance with the position moved by `sign` times `lever` (3,) of V, which the heading turns."""
+    arm_x, arm_y = turned(lever, x[7])
+    y, S = x.copy(), P.copy()
+    y[0] += sign * arm_x
+    y[1] += sign * arm_y
+    for i in range(SIZE):
+        S[0, i] -= sign * arm_y * S[7, i]
+        S[1, i] += sign * arm_x * S[7, i]
+    for i in range(SIZE):
+        S[i, 0] -= sign * arm_y * S[i, 7]
+        S[i, 1] += sign * arm_x * S[i, 7]
+    return y, S
+
+
+@kept
+def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple[Array, Array]:
+    """Return mean and covariance of one mode `dt_s` later, in equal steps.
+
+    It is the pad's centre that moves as `advance` says, and the antenna swings about it.
+
+    Args:
+        x: mean (16,).
+        P: covariance (16, 16).
+        dt_s: time to pass.
+        noise: (9,) as `process_noise` takes it.
+        motion: (8,), see the module; a lever arm of zero where it has no known direction.
+    """
+    steps = max(math.ceil(dt_s / STEP_MAX_S - 1e-9), 1)
+    step_s = dt_s / steps
+    heave, heave_noise = heave_step(step_s, motion[1], motion[2], motion[3])
+    clock_left = math.exp(-step_s / motion[4])
+    x, P = shifted(x, P, motion[5:8], 1.0)
+    for _ in range(steps):
+        Q = process_noise(x, step_s, noise, heave_noise)
+        x, F = advance(x, step_s, motion[0], heave)
+        x[CLOCK] *= clock_left
+        F[CLOCK, CLOCK] = clock_left
+        P = carried_through(F, P) + Q
+    x, P = shifted(x, P, motion[5:8], -1.0)
+    return x, 0.5 * (P + P.T)
+
+
+@kept
+def is_heading_known(modes: Modes, known_variance: float) -> bool:
+    """Return whether the heading of the mixture is known better than `known_variance`, rad^2."""
+    _, covariances, weights = modes
+    return bool(weights[0] * covariances[0, 7, 7] + weights[1] * covariances[1, 7, 7] < known_variance)
+
+
+@kept
+def with_direction(motion: Array, modes: Modes, known_variance: float) -> Array:
+    """Return `motion` without its lever arm where the heading is not known better than `known_variance`, rad^2."""
+    directed = motion.copy()
+    if not is_heading_known(modes, known_variance):
+        directed[5:8] = 0.0
+    return directed
+
+
+@kept
+def predict_modes(modes: Modes, dt_s: float, noises: Array, dwell_s: Array, motion: Array) -> Modes:
+    """Return the filter `dt_s` later; `noises` (2, 9), `dwell_s` (2,), `motion` as `with_direction` has it."""
+    means, covariances, weights = mix(modes, switching(dwell_s, dt_s))
+    for j in range(2):
+        means[j], covariances[j] = glide(means[j], covariances[j], dt_s, noises[j], motion)
+    return means, covariances, weights
+
+
+@kept
+def residual_of(kind: int, value: Array, expected: Array) -> Array:
+    """Return measured minus expected, the short way round for angles."""
+    residual = value - expected
+    if kind in (HEADING, COURSE):
+        residual[0] = (residual[0] + math.pi) % (2.0 * math.pi) - math.pi
+    return residual
+
+
+@kept
+def update_modes(
+    modes: Modes, reading: tuple[int, Array, Array], lever: Array, sees_heading: bool
+) -> tuple[Modes, float, float]:
+    """Return the filter after a measurement, the mixture's NIS, and the smaller of the modes' NIS.
+
+    The mixture's NIS tells consistency; an outlier is what even the mode with the wider noise does not expect.
+    What a measurement says for either mode counts as that of one component: receivers state the errors of their axes as
+    independent, but where they are one and the same (a common delay, a reflection) it would count m times over.
+
+    Args:
+        modes: the filter.
+        reading: kind as `observe` takes it, value (m,), covariance (m, m).
+        lever: (3,) from the antenna to the pad in V, m.
+        sees_heading: whether the heading is known, so that the lever arm has a direction.
+    """
+    means, covariances, weights = modes
+    kind, value, R = reading
+    m = len(value)
+    xs, Ps = np.empty_like(means), np.empty_like(covariances)
+    fits, nis = np.empty(2), np.empty(2)
+    residuals, spreads = np.empty((2, m)), np.empty((2, m, m))
+    for j in range(2):
+        expected, H = observe(kind, means[j], lever, sees_heading)
+        residuals[j] = residual_of(kind, value, expected)
+        spreads[j] = carried_through(H, covariances[j]) + R
+        xs[j], Ps[j], nis[j], fits[j] = correct(means[j], covariances[j], residuals[j], H, R)
+    likelihood = np.maximum(weights, WEIGHT_MIN) * np.exp((fits - fits.max()) / m)
+    after = likelihood / likelihood.sum()
+    residual, spread = combine(residuals, spreads, weights)
+    inverse, _ = inverse_of(spread)
+    mixture_nis = (residual * inverse * residual.reshape(m, 1)).sum()
+    return (xs, Ps, after), float(mixture_nis), float(nis.min())
+
+
+@kept
+def align_modes(
+    means: Array, covariances: Array, speed_min_m_s: float, course_variance: float, known_variance: float
+) -> tuple[Array, Array]:
+    """Return the modes after the rule that a driving vehicle heads where it goes.
+
+    Nothing is learnt while it is slow, while the course itself is vague, or when it drives backwards.
+    """
+    xs, Ps = means.copy(), covariances.copy()
+    lever, zero = np.zeros(3), np.zeros(1)
+    for j in range(2):
+        x, P = means[j], covariances[j]
+        speed = math.hypot(x[2], x[3])
+        if speed < speed_min_m_s or P[2, 2] + P[3, 3] > (0.3 * speed) ** 2:
+            continue
+        known = P[7, 7] < known_variance
+        expected, H = observe(COURSE, x, lever, False)
+        residual = residual_of(COURSE, zero, expected)
+        if known and abs(residual[0]) > 1.0:
+            continue
+        R = np.array([[course_variance if known else min(course_variance, 0.01)]])
+        xs[j], Ps[j], _, _ = correct(x, P, residual, H, R)
+    return xs, Ps
+
+
+@kept
+def take_reading(
+    modes: Modes, reading: tuple[int, Array, Array], lever: Array, course: Array
+) -> tuple[Modes, float, float]:
+    """Return what `update_modes` does, with the heading judged and, after a fix or a velocity, aligned.
+
+    Args:
+        modes: the filter.
+        reading: kind as `observe` takes it, value (m,), covariance (m, m).
+        lever: (3,) from the antenna to the pad in V, m.
+        course: (3,) `align_modes`' speed, m/s, and variances of course and known heading, rad^2.
+    """
+    kind, value, R = reading
+    known = is_heading_known(modes, course[2])
+    if kind == PAD and not known:
+        arm2 = math.hypot(lever[0], lever[1]) ** 2
+        R = R.copy()
+        R[0, 0] += arm2
+        R[1, 1] += arm2
+    (means, covariances, weights), nis, gate_nis = update_modes(modes, (kind, value, R), lever, known)
+    if kind in (POSITION, VELOCITY):
+        means, covariances = align_modes(means, covariances, course[0], course[1], course[2])
+    return (means, covariances, weights), nis, gate_nis

@@ -1,0 +1,71 @@
+"""A configuration of the interacting models as their kernels take it: plain arrays, derived once."""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from companion.config.estimation import ImmConfig, ImmModeConfig
+from companion.core.data import Array
+from companion.vehicle.imm_kernels import CLOCK_NOISE
+from link.messages import Vector3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Numbers:
+    """A configuration as the kernels take it.
+
+    Attributes:
+        motion: (8,) as `imm_mixing` has it.
+        dwell_s: (2,) of both modes.
+        noises: (2, 9) as `imm_kernels.process_noise` takes them, but for the two wanderings, which depend on the state.
+        lever_m: (3,) from the antenna to the pad in V.
+        course: (3,) as `imm_mixing.take_reading` takes it.
+    """
+
+    motion: Array
+    dwell_s: Array
+    noises: Array
+    lever_m: Array
+    course: Array
+
+
+def numbers_of(config: ImmConfig, antenna_to_pad_m: Vector3) -> Numbers:
+    """Return the numbers of `config` with the lever arm (3,) in V from the antenna to the pad, m."""
+    heave = (2.0 * math.pi * config.heave_frequency_hz, config.heave_damping, config.heave_std_m)
+    modes = (config.steady, config.manoeuvre)
+    return Numbers(
+        motion=np.array([config.acceleration_decay_s, *heave, config.clock_time_s, *antenna_to_pad_m]),
+        dwell_s=np.array([mode.dwell_s for mode in modes]),
+        noises=np.array([_noise(config, mode) for mode in modes]),
+        lever_m=np.array(antenna_to_pad_m),
+        course=np.array([config.course_speed_min_m_s, config.course_std_rad**2, config.heading_known_std_rad**2]),
+    )
+
+
+@lru_cache(maxsize=4)  # it changes with a fix's stated error only
+def noises_with(numbers: Numbers, receiver_m2_s: float, own_m2_s: float) -> Array:
+    """Return both modes' noise (2, 9) with the wandering of the vehicle's receiver and of the drone's own place.
+
+    Where the drone's own place does not wander, fixes have corrections, and are dated without an error.
+    """
+    noises = numbers.noises.copy()
+    noises[:, 6], noises[:, 7] = receiver_m2_s, own_m2_s
+    if not own_m2_s:
+        noises[:, CLOCK_NOISE] = 0.0
+    return noises
+
+
+def _noise(config: ImmConfig, mode: ImmModeConfig) -> tuple[float, ...]:
+    return (
+        mode.jerk_psd_m2_s5,
+        config.side_jerk_psd_m2_s5,
+        mode.lateral_acceleration_psd_m2_s5,
+        config.curvature_speed_min_m_s,
+        config.heading_psd_rad2_s,
+        config.climb_psd_m2_s3,
+        0.0,
+        0.0,
+        2.0 * config.clock_std_s**2 / config.clock_time_s,
+    )

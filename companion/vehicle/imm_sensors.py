@@ -1,0 +1,110 @@
+"""What the sensors read of the turning model's state, which `imm_kernels` describes, compiled.
+
+The vehicle's own sensors read the state as it was `c` earlier, for their clock is ahead by `c`; a tenth of a second at
+most, over which the acceleration is taken as even. The pad is seen from the drone and dated by the drone's clock.
+"""
+
+import math
+
+import numpy as np
+
+from companion.core.data import Array
+from companion.vehicle.compiled import kept
+from companion.vehicle.imm_kernels import CLOCK, SIZE
+
+POSITION, VELOCITY, HEADING, YAW_RATE, PAD, COURSE = range(6)
+
+
+@kept
+def course(x: Array) -> tuple[float, float, float]:
+    """Return the horizontal speed, m/s, and its direction as a unit vector, (0, 0) at rest."""
+    speed = math.hypot(x[2], x[3])
+    return (speed, x[2] / speed, x[3] / speed) if speed > 1e-6 else (speed, 0.0, 0.0)
+
+
+@kept
+def horizontal_acceleration(x: Array) -> tuple[Array, Array]:
+    """Return the horizontal acceleration (2,), m/s^2, of `x` and its Jacobian (2, 5) by `v`, `b` and `k`."""
+    speed, ux, uy = course(x)
+    k = x[6]
+    G = np.zeros((2, 5))
+    G[0, 0], G[0, 1], G[0, 2], G[0, 4] = -k * ux * x[3], -k * (uy * x[3] + speed), 1.0, -speed * x[3]
+    G[1, 0], G[1, 1], G[1, 3], G[1, 4] = k * (ux * x[2] + speed), k * uy * x[2], 1.0, speed * x[2]
+    return np.array([x[4] - k * speed * x[3], x[5] + k * speed * x[2]]), G
+
+
+@kept
+def turned(lever: Array, yaw_rad: float) -> tuple[float, float]:
+    """Return the horizontal part of `lever` (3,) in V, turned by the heading into W, m."""
+    c, s = math.cos(yaw_rad), math.sin(yaw_rad)
+    return c * lever[0] - s * lever[1], s * lever[0] + c * lever[1]
+
+
+@kept
+def antenna_velocity(x: Array, lever: Array) -> tuple[Array, Array]:
+    """Return the antenna's velocity (3,), m/s, and its Jacobian (3, 16).
+
+    The pad's centre goes where the road goes; behind it by `lever` the antenna swings out as the vehicle turns.
+
+    Args:
+        x: state (16,).
+        lever: (3,) from the antenna to the pad in V, m, zero where it has no known direction.
+    """
+    speed, ux, uy = course(x)
+    arm_x, arm_y = turned(lever, x[7])
+    w = x[6] * speed
+    z, H = np.array([x[2] + w * arm_y, x[3] - w * arm_x, x[9] + x[11]]), np.zeros((3, SIZE))
+    H[0, 2], H[0, 3] = 1.0 + x[6] * ux * arm_y, x[6] * uy * arm_y
+    H[1, 2], H[1, 3] = -x[6] * ux * arm_x, 1.0 - x[6] * uy * arm_x
+    H[2, 9], H[2, 11] = 1.0, 1.0
+    H[0, 6], H[1, 6] = speed * arm_y, -speed * arm_x
+    H[0, 7], H[1, 7] = w * arm_x, w * arm_y
+    return z, H
+
+
+@kept
+def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Array, Array]:
+    """Return what a sensor reads at `x`, `(m,)`, and its Jacobian `(m, 16)`.
+
+    Args:
+        kind: POSITION, VELOCITY, HEADING, YAW_RATE, PAD, or COURSE (the course minus the heading).
+        x: state (16,).
+        lever: (3,) from the antenna to the pad in V, m.
+        sees_heading: whether the heading is known, so that the lever arm has a direction.
+    """
+    speed, ux, uy = course(x)
+    m = 1 if kind in (HEADING, YAW_RATE, COURSE) else 3
+    z, H = np.zeros(m), np.zeros((m, SIZE))
+    if kind in (POSITION, PAD):
+        z[0], z[1], z[2] = x[0], x[1], x[8] + x[10]
+        H[0, 0], H[1, 1], H[2, 8], H[2, 10] = 1.0, 1.0, 1.0, 1.0
+    if kind == POSITION:
+        late, change = antenna_velocity(x, lever if sees_heading else np.zeros(3))
+        z -= x[12:15] + x[CLOCK] * late
+        H -= x[CLOCK] * change
+        H[:, CLOCK] = -late
+        H[0, 12], H[1, 13], H[2, 14] = -1.0, -1.0, -1.0
+    elif kind == PAD:
+        arm_x, arm_y = turned(lever, x[7])
+        z[0] += arm_x
+        z[1] += arm_y
+        z[2] += lever[2]
+        if sees_heading:
+            H[0, 7], H[1, 7] = -arm_y, arm_x
+    elif kind == VELOCITY:
+        z, H = antenna_velocity(x, lever if sees_heading else np.zeros(3))
+        late, change = horizontal_acceleration(x)
+        z[:2] -= x[CLOCK] * late
+        H[:2, CLOCK] = -late
+        H[:2, 2:7] -= x[CLOCK] * change
+    elif kind == HEADING:
+        z[0], H[0, 7] = x[7] - x[CLOCK] * x[6] * speed, 1.0
+        H[0, 6], H[0, CLOCK] = -x[CLOCK] * speed, -x[6] * speed
+        H[0, 2], H[0, 3] = -x[CLOCK] * x[6] * ux, -x[CLOCK] * x[6] * uy
+    elif kind == YAW_RATE:
+        z[0], H[0, 6] = x[6] * speed, speed
+        H[0, 2], H[0, 3] = x[6] * ux, x[6] * uy
+    elif kind == COURSE:
+        z[0], H[0, 7] = math.atan2(x[3], x[2]) - x[7], -1.0
+        H[0, 2], H[0, 3] = -x[3] / speed**2, x[2] / speed**2
+    return z, H

@@ -1,0 +1,175 @@
+"""From the vehicle's messages to measurements in the drone's local frame W."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from companion.autopilots.state import AutopilotState
+from companion.core.data import Array, Measurement, OwnState, Quantity
+from link import cdr
+from link.frames import rotate, yaw_of
+from link.keys import Keys
+from link.local_frame import LocalFrame, local_from_geodetic, scale_of
+from link.messages import Fix, FixVelocity, Matrix3, PadSighting, VehicleImu
+from link.payload_checks import PayloadError
+
+# Taken when a message states no covariance: plain GNSS and a low-cost attitude sensor.
+_POSITION_STD_M = 1.5
+_VELOCITY_STD_M_S = 0.3
+_VERTICAL_VELOCITY_STD_M_S = 100.0  # of one that is not measured: says nothing
+_HEADING_STD_RAD = 0.1
+_YAW_RATE_STD_RAD_S = 0.02
+
+# No sensor is better than this; a smaller stated variance (0 for one axis is not rare) is a singular one to a filter.
+_STD_MIN = {
+    Quantity.POSITION: 0.005,
+    Quantity.VELOCITY: 0.01,
+    Quantity.HEADING: 0.002,
+    Quantity.YAW_RATE: 0.001,
+    Quantity.PAD: 0.002,
+}
+_ATTITUDE_AGE_MAX_S = 0.15  # of a drone that turns at 0.5 rad/s: what it sees 5 m away is then 0.4 m off
+_STD_MAX = 1e4  # says nothing at all
+# Beyond these a message is wrong, or of a vehicle that nobody lands on.
+_VALUE_MAX = {
+    Quantity.POSITION: 1e5,
+    Quantity.VELOCITY: 100.0,
+    Quantity.HEADING: 10.0,
+    Quantity.YAW_RATE: 10.0,
+    Quantity.PAD: 1e5,
+}
+
+
+def measurements_of(key: str, payload: bytes, keys: Keys, state: AutopilotState) -> list[Measurement]:
+    """Return what a Zenoh sample of the vehicle measures, nothing of one that is no measurement or too early.
+
+    Args:
+        key: that it was put on.
+        payload: CDR.
+        keys: of the Zenoh contract.
+        state: of the autopilot, for its local frame W and the drone's place when it saw the pad.
+
+    Raises:
+        PayloadError: it cannot be decoded, or is absurd.
+    """
+    return [plausible(measurement) for measurement in _decoded(key, payload, keys, state)]
+
+
+def _decoded(key: str, payload: bytes, keys: Keys, state: AutopilotState) -> tuple[Measurement, ...]:
+    frame = state.view.frame
+    if key == keys.fix:
+        fix = cdr.decode(Fix, payload)
+        return () if frame is None else (fix_measurement(fix, frame),)
+    if key == keys.fix_velocity:
+        velocity = cdr.decode(FixVelocity, payload)
+        return () if frame is None else velocity_measurements(velocity, frame)
+    if key == keys.imu:
+        return imu_measurements(cdr.decode(VehicleImu, payload))
+    if key == keys.pad_pose:
+        sighting = cdr.decode(PadSighting, payload)
+        own_then = state.own_at(sighting.t_ns)
+        if own_then is None or own_then.attitude_age_s > _ATTITUDE_AGE_MAX_S:
+            return ()
+        return (sighting_measurement(sighting, own_then),)
+    return ()
+
+
+def _matrix(covariance: Matrix3 | None, std: float) -> Array:
+    if covariance is None:
+        return np.eye(3) * std**2
+    return np.array(covariance).reshape(3, 3)
+
+
+def plausible(measurement: Measurement) -> Measurement:
+    """Return the measurement as a filter can take it: its variance not below what sensors can do.
+
+    Raises:
+        PayloadError: a number is absurd.
+    """
+    quantity, covariance = measurement.quantity, measurement.covariance
+    value_max, covariance_max = _VALUE_MAX[quantity], _STD_MAX**2
+    if not all(abs(value) < value_max for value in measurement.value.tolist()):
+        raise PayloadError(f"the {quantity.value} {measurement.value.tolist()} is absurd")
+    if not all(abs(value) < covariance_max for value in covariance.ravel().tolist()):
+        raise PayloadError(f"the covariance {covariance.tolist()} of the {quantity.value} is absurd")
+    least = _STD_MIN[quantity] ** 2
+    if _least_variance(covariance) >= least:
+        return measurement
+    return replace(measurement, covariance=covariance + least * np.eye(len(covariance)))
+
+
+def _least_variance(covariance: Array) -> float:
+    """Return the variance (smallest eigenvalue) of the best known direction; sensors mostly state a diagonal."""
+    variances = covariance.diagonal().tolist()
+    if np.count_nonzero(covariance) == np.count_nonzero(variances):
+        return float(min(variances))
+    return float(np.linalg.eigvalsh(covariance)[0])
+
+
+def fix_measurement(fix: Fix, frame: LocalFrame) -> Measurement:
+    """Return the antenna's position in W, which is the autopilot's `frame`."""
+    position = local_from_geodetic(frame, fix.latitude_rad, fix.longitude_rad, fix.altitude_m)
+    return Measurement(
+        t_ns=fix.t_ns,
+        quantity=Quantity.POSITION,
+        value=np.array(position),
+        covariance=_matrix(fix.covariance_enu_m2, _POSITION_STD_M),
+    )
+
+
+def velocity_measurements(message: FixVelocity, frame: LocalFrame) -> tuple[Measurement, ...]:
+    """Return the velocity in W, which is the autopilot's `frame`, and, where the message has it, the yaw rate."""
+    covariance = _matrix(message.velocity_covariance_enu_m2_s2, _VELOCITY_STD_M_S)
+    if not message.is_vertical_measured:
+        covariance[2, :] = covariance[:, 2] = 0.0
+        covariance[2, 2] = _VERTICAL_VELOCITY_STD_M_S**2
+    velocity = Measurement(
+        t_ns=message.t_ns,
+        quantity=Quantity.VELOCITY,
+        value=np.array(message.velocity_enu_m_s) * scale_of(frame),
+        covariance=covariance,
+    )
+    if message.yaw_rate_rad_s is None:
+        return (velocity,)
+    return (velocity, _yaw_rate(message.t_ns, message.yaw_rate_rad_s, message.yaw_rate_variance_rad2_s2))
+
+
+def imu_measurements(message: VehicleImu) -> tuple[Measurement, ...]:
+    """Return the heading and the yaw rate, as far as the message has them."""
+    found: list[Measurement] = []
+    if message.orientation_wxyz is not None:
+        covariance = message.orientation_covariance_rad2
+        variance = _HEADING_STD_RAD**2 if covariance is None else covariance[8]
+        found.append(_scalar(message.t_ns, Quantity.HEADING, yaw_of(message.orientation_wxyz), variance))
+    if message.angular_velocity_flu_rad_s is not None:
+        rate_covariance = message.angular_velocity_covariance_rad2_s2
+        rate_variance = None if rate_covariance is None else rate_covariance[8]
+        found.append(_yaw_rate(message.t_ns, message.angular_velocity_flu_rad_s[2], rate_variance))
+    return tuple(found)
+
+
+def sighting_measurement(sighting: PadSighting, own_then: OwnState) -> Measurement:
+    """Return the pad's centre in W.
+
+    Args:
+        sighting: in the drone's body frame at its stamp.
+        own_then: the drone at that stamp.
+    """
+    offset = rotate(own_then.orientation_wxyz, sighting.position_flu_m)
+    turn = np.column_stack(
+        [rotate(own_then.orientation_wxyz, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))]
+    )
+    return Measurement(
+        t_ns=sighting.t_ns,
+        quantity=Quantity.PAD,
+        value=np.array(own_then.position_enu_m) + np.array(offset),
+        covariance=turn @ np.array(sighting.position_covariance_m2).reshape(3, 3) @ turn.T,
+    )
+
+
+def _yaw_rate(t_ns: int, rate_rad_s: float, variance: float | None) -> Measurement:
+    return _scalar(t_ns, Quantity.YAW_RATE, rate_rad_s, _YAW_RATE_STD_RAD_S**2 if variance is None else variance)
+
+
+def _scalar(t_ns: int, quantity: Quantity, value: float, variance: float) -> Measurement:
+    return Measurement(t_ns=t_ns, quantity=quantity, value=np.array([value]), covariance=np.array([[variance]]))

@@ -1,0 +1,104 @@
+"""The landing pad now and over the horizon, from the forecast of the vehicle's antenna."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from companion.core.data import Array, Forecast
+from companion.vehicle.compiled import kept
+from link.messages import PadGeometry
+
+HEADING_UNKNOWN = "vehicle heading unknown"
+NOT_DESCRIBED = "the vehicle has not described its pad"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PadPath:
+    """The pad's centre in W; row 0 is the present.
+
+    Attributes:
+        offset_s: (n,) seconds from now, the first is 0.
+        position_enu_m: (n, 3).
+        velocity_enu_m_s: (n, 3).
+        acceleration_enu_m_s2: (n, 3).
+        yaw_rad: heading of the vehicle now, None when unknown.
+        position_std_m: (n, 3).
+        is_coarse: the vehicle's fixes alone are too coarse to land by: only what the drone sees of the pad places it.
+        half_width_m: from its centre to the nearest edge; infinite until it is described.
+        height_m: of its surface above the vehicle's road.
+        needs_heading: it is beside the antenna.
+        unplaced: why the pad's place is not known, in words; None when it is. Until then it is not landed on.
+    """
+
+    offset_s: Array
+    position_enu_m: Array
+    velocity_enu_m_s: Array
+    acceleration_enu_m_s2: Array
+    yaw_rad: float | None
+    position_std_m: Array
+    is_coarse: bool = False
+    half_width_m: float = math.inf
+    height_m: float = 0.0
+    needs_heading: bool = False
+    unplaced: str | None = None
+
+
+def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
+    """Return where the pad will be.
+
+    The lever arm from the antenna turns with the vehicle's heading. With an unknown heading its horizontal
+    part is left out and the pad is not placed: it can be followed, but not landed on. Nor can one that the vehicle has
+    not described; the antenna is followed then.
+
+    Args:
+        forecast: of the antenna, its first offset 0.
+        pad: the vehicle's own description, None until it has answered.
+    """
+    lever_x_m, lever_y_m, lever_z_m = pad.antenna_to_pad_m if pad is not None else (0.0, 0.0, 0.0)
+    position = forecast.position_enu_m + np.array([0.0, 0.0, lever_z_m])
+    velocity = forecast.velocity_enu_m_s
+    is_beside = bool(lever_x_m or lever_y_m)
+    if forecast.yaw_rad is not None and is_beside:
+        arm, swing = turned_lever(forecast.yaw_rad, forecast.offset_s, lever_x_m, lever_y_m)
+        position += arm
+        velocity = velocity + swing
+    return PadPath(
+        offset_s=forecast.offset_s,
+        position_enu_m=position,
+        velocity_enu_m_s=velocity,
+        acceleration_enu_m_s2=forecast.acceleration_enu_m_s2,
+        yaw_rad=None if forecast.yaw_rad is None else float(forecast.yaw_rad[0]),
+        position_std_m=forecast.position_std_m,
+        is_coarse=forecast.is_coarse,
+        half_width_m=math.inf if pad is None else 0.5 * min(pad.size_m),
+        height_m=0.0 if pad is None else pad.height_m,
+        needs_heading=is_beside,
+        unplaced=NOT_DESCRIBED if pad is None else HEADING_UNKNOWN if is_beside and forecast.yaw_rad is None else None,
+    )
+
+
+@kept
+def turned_lever(yaw_rad: Array, offset_s: Array, lever_x_m: float, lever_y_m: float) -> tuple[Array, Array]:
+    """Return a horizontal lever arm of V in W over a horizon, and its rate of change, each (n, 3).
+
+    Args:
+        yaw_rad: (n,) of V, wrapped or not; n > 1.
+        offset_s: (n,) rising.
+        lever_x_m: forward in V.
+        lever_y_m: left in V.
+    """
+    n = len(yaw_rad)
+    turn_rad, step_s = np.empty(n - 1), np.diff(offset_s)
+    for i in range(n - 1):
+        turn_rad[i] = (yaw_rad[i + 1] - yaw_rad[i] + math.pi) % (2.0 * math.pi) - math.pi
+    arm, swing = np.zeros((n, 3)), np.zeros((n, 3))
+    for i in range(n):
+        c, s = math.cos(yaw_rad[i]), math.sin(yaw_rad[i])
+        arm[i, 0], arm[i, 1] = c * lever_x_m - s * lever_y_m, s * lever_x_m + c * lever_y_m
+        before, after = max(i - 1, 0), min(i, n - 2)
+        # of second order within, where the slopes to both sides are weighed by each other's step
+        share = step_s[before] / (step_s[before] + step_s[after])
+        rate = (1.0 - share) * turn_rad[before] / step_s[before] + share * turn_rad[after] / step_s[after]
+        swing[i, 0], swing[i, 1] = -rate * arm[i, 1], rate * arm[i, 0]
+    return arm, swing

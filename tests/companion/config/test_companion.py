@@ -1,0 +1,99 @@
+"""The configuration: what a file may say, and that a mistake in it is named."""
+
+from pathlib import Path
+
+import pytest
+
+from companion.config.companion import CompanionConfig
+from link.errors import UserError
+from link.toml_config import dump_toml, load_config
+
+
+def _file(folder: Path, text: str) -> Path:
+    path = folder / "companion.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_printed_configuration_reads_back_as_the_same(tmp_path: Path) -> None:
+    config = CompanionConfig()
+    assert load_config(_file(tmp_path, dump_toml(config)), CompanionConfig) == config
+
+
+def test_one_key_of_a_section_leaves_the_others_at_their_defaults(tmp_path: Path) -> None:
+    config = load_config(_file(tmp_path, "[abort]\nretries_max = 1\n"), CompanionConfig)
+    assert config.abort.retries_max == 1
+    assert config.abort.height_m == CompanionConfig().abort.height_m
+    assert config.descent == CompanionConfig().descent
+
+
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        ("[abort]\nretries = 1\n", "retries"),
+        ("[abort]\nretries_max = -1\n", "retries_max"),
+        ("[abort]\nfix_age_max_s = 0.0\n", "fix_age_max_s"),
+        ("[limits]\nspeed_max_m_s = nan\n", "speed_max_m_s"),
+        ("[limits]\nspeed_max_m_s = inf\n", "speed_max_m_s"),
+        ("step_rate_hz = 0.0\n", "step_rate_hz"),
+        ("[descent]\ncommit_height_m = 'low'\n", "commit_height_m"),
+        ("[landing]\nheight_m = 1.0\n", "landing"),
+    ],
+)
+def test_mistake_is_one_line_that_names_file_and_key(tmp_path: Path, text: str, key: str) -> None:
+    path = _file(tmp_path, text)
+    with pytest.raises(UserError) as error:
+        load_config(path, CompanionConfig)
+    assert key in str(error.value)
+    assert path.name in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("[takeoff]\nrefused_after_s = 90.0\n", r"takeoff\.time_limit_s = 60\.0 .* more than refused_after_s, 90"),
+        ("[takeoff]\ntime_limit_s = 30.0\n", r"takeoff\.time_limit_s = 30\.0 .* more than refused_after_s, 30"),
+        (
+            "[touchdown]\npress_acceleration_m_s2 = 3.0\n",
+            r"touchdown\.press_acceleration_m_s2 = 3\.0 .* more than falling_acceleration_m_s2, 3\.5",
+        ),
+        (
+            "[touchdown]\nfalling_acceleration_m_s2 = 6.0\n",
+            r"touchdown\.try_acceleration_m_s2 = 5\.0 .* more than falling_acceleration_m_s2, 6",
+        ),
+    ],
+    ids=["refusal never told", "time limit too short", "press is no fall", "fall harder than the press"],
+)
+def test_numbers_that_do_not_go_together_are_refused(tmp_path: Path, text: str, said: str) -> None:
+    with pytest.raises(UserError, match=said) as error:
+        load_config(_file(tmp_path, text), CompanionConfig)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "text", ["total_max_mb = 100.0\n", "file_max_mb = 3000.0\n", "file_max_mb = 50\ntotal_max_mb = 49"]
+)
+def test_recording_whose_files_together_may_take_less_than_one_is_refused(tmp_path: Path, text: str) -> None:
+    with pytest.raises(UserError, match=r"companion\.toml: recording\.total_max_mb = .* file_max_mb") as error:
+        load_config(_file(tmp_path, f"[recording]\n{text}"), CompanionConfig)
+    assert "\n" not in str(error.value)
+
+
+def test_recording_of_one_file_only_is_taken(tmp_path: Path) -> None:
+    config = load_config(_file(tmp_path, "[recording]\ntotal_max_mb = 256.0\n"), CompanionConfig)
+    assert config.recording.total_max_mb == config.recording.file_max_mb
+
+
+def test_limits_of_the_flight_are_those_of_the_file() -> None:
+    limits = CompanionConfig().limits
+    assert limits.flight_limits().descent_max_m_s == limits.descent_max_m_s
+
+
+def test_thresholds_of_the_landing_are_in_order() -> None:
+    config = CompanionConfig()
+    assert config.descent.touchdown_sink_rate_m_s < config.descent.descent_rate_max_m_s <= config.limits.descent_max_m_s
+    assert config.descent.commit_height_m < config.descent.align_height_m <= config.chase.height_m
+    assert config.touchdown.height_max_m < config.touchdown.lost_height_m < config.abort.height_m
+    assert config.touchdown.blocked_depth_m < config.descent.press_depth_m
+    assert config.descent.aligned_distance_m < config.descent.align_distance_m

@@ -1,0 +1,55 @@
+"""Data that contradict each other are counted over the last seconds, and told; outages and new beginnings are not."""
+
+from dataclasses import replace
+
+import pytest
+
+from companion.integrity.contradictions import Contradictions, counted
+from companion.landing.feasibility import obstacle
+from companion.vehicle.buffered import BufferHealth
+from tests.companion.facts import CONFIG, NOW_NS, situation
+
+HALF_NS = 500_000_000
+
+
+def health(fused: int, gated: int) -> BufferHealth:
+    return BufferHealth(
+        fused=fused, gated=gated, late=0, recoveries=0, nis_per_dof=None, nis_dof=0, recent_nis_per_dof=None
+    )
+
+
+def after(per_half_second: list[tuple[int, int]]) -> Contradictions:
+    """Count measurements that came accepted and rejected, half a second after half a second."""
+    counts, fused, gated = counted(Contradictions(), health(0, 0), NOW_NS), 0, 0
+    for k, (accepted, rejected) in enumerate(per_half_second):
+        fused, gated = fused + accepted, gated + rejected
+        assert counts.is_due(NOW_NS + (k + 1) * HALF_NS)
+        counts = counted(counts, health(fused, gated), NOW_NS + (k + 1) * HALF_NS)
+    return counts
+
+
+def test_share_is_of_the_last_ten_seconds() -> None:
+    assert after([(10, 0)] * 30 + [(6, 4)] * 20).rejected_share == pytest.approx(0.4)
+    assert after([(6, 4)] * 30 + [(10, 0)] * 20).rejected_share == 0.0
+    assert after([(10, 0)] * 5 + [(6, 4)] * 5).rejected_share == pytest.approx(0.2)
+
+
+def test_of_a_handful_nothing_is_said() -> None:
+    assert after([(1, 1)] * 5).rejected_share == 0.0
+
+
+def test_estimate_that_begins_anew_is_counted_anew() -> None:
+    before = after([(6, 4)] * 10)
+    assert counted(before, health(3, 0), NOW_NS + 10**10).rejected_share == 0.0
+
+
+def test_it_is_not_due_with_every_step() -> None:
+    counts = after([(10, 0)])
+    assert not counts.is_due(NOW_NS + HALF_NS + HALF_NS // 2)
+
+
+def test_it_keeps_a_landing_from_being_begun_and_is_told_with_the_share() -> None:
+    facts = replace(situation(), rejected_share=0.41)
+    known = obstacle({"vehicle data rejected": NOW_NS}, facts, CONFIG)
+    assert known is not None
+    assert known[1].startswith("vehicle data contradict themselves: 41 % of the last 10 s' measurements were rejected")

@@ -1,0 +1,158 @@
+"""Heights that cannot be: a road far off the ground beside it, a roof as high as the hover, less room than told."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from companion.integrity.ground import ground_enu_m, is_road_elsewhere, is_seen_too_near
+from companion.landing.feasibility import OBSTACLES, obstacle
+from companion.situation.phases import Phase
+from companion.situation.situation import Situation, approach
+from companion.vehicle.pad import PadPath
+from link.messages import Command
+from tests.companion.facts import CONFIG, GEAR_M, PAD_ENU_M, pad_at, situation
+from tests.companion.world import PAD, PAD_HEIGHT_M, Flight, KnownVehicle
+
+
+def near(sunk_m: float, away_m: float, pad: PadPath | None = None) -> Situation:
+    """A vehicle whose road is told to be `sunk_m` below ground that is `away_m` from it."""
+    pad = replace(pad_at() if pad is None else pad, height_m=PAD_HEIGHT_M)
+    return replace(situation(pad=pad), ground_enu_m=PAD_ENU_M + np.array([0.0, away_m, sunk_m - PAD_HEIGHT_M]))
+
+
+@pytest.mark.parametrize(
+    ("sunk_m", "away_m", "expected"),
+    [
+        (30.0, 10.0, True),
+        (4.0, 10.0, True),
+        (-30.0, 25.0, True),
+        (2.1, 10.0, False),  # a bank beside the road
+        (-3.1, 25.0, False),  # a steep street
+        (30.0, 31.0, False),
+    ],
+)
+def test_road_far_off_the_ground_beside_it_is_no_hill(sunk_m: float, away_m: float, expected: bool) -> None:
+    assert is_road_elsewhere(False, Phase.WAITING, near(sunk_m, away_m), CONFIG) is expected
+
+
+def test_height_that_is_told_vaguely_may_be_farther_off() -> None:
+    vague = replace(pad_at(std_m=3.0), is_coarse=True)
+    assert not is_road_elsewhere(False, Phase.WAITING, near(6.0, 10.0, vague), CONFIG)
+    assert is_road_elsewhere(False, Phase.WAITING, near(30.0, 10.0, vague), CONFIG)
+
+
+@pytest.mark.parametrize(("phase", "is_known"), [(Phase.ALIGN, False), (Phase.ABORT, False), (Phase.IDLE, True)])
+def test_ground_is_not_known_after_an_outage_in_flight(phase: Phase, *, is_known: bool) -> None:
+    silent = replace(situation(), drone=None)
+    assert (ground_enu_m(PAD_ENU_M, phase, silent) is not None) is is_known
+    assert ground_enu_m(PAD_ENU_M, phase, situation()) is not None
+
+
+def test_in_flight_it_is_not_forgotten_of_a_vehicle_that_leaves() -> None:
+    far = near(3.3, 28.0)
+    assert not is_road_elsewhere(False, Phase.WAITING, far, CONFIG)
+    assert is_road_elsewhere(True, Phase.WAITING, far, CONFIG)
+    assert not is_road_elsewhere(True, Phase.IDLE, far, CONFIG)
+    assert not is_road_elsewhere(True, Phase.WAITING, near(0.5, 10.0), CONFIG)
+
+
+def test_without_known_ground_nothing_is_said() -> None:
+    assert not is_road_elsewhere(False, Phase.WAITING, replace(near(30.0, 10.0), ground_enu_m=None), CONFIG)
+
+
+def test_ground_is_where_the_drone_stands_and_stays_in_flight() -> None:
+    facts = situation(-1.5, 8.0)
+    assert facts.drone is not None
+    standing = replace(facts, autopilot=replace(facts.autopilot, armed=False, landed=True))
+    ground = ground_enu_m(None, Phase.IDLE, standing)
+    assert ground is not None
+    np.testing.assert_allclose(ground, facts.drone.position_enu_m - np.array([0.0, 0.0, GEAR_M]))
+    assert ground_enu_m(ground, Phase.WAITING, situation(4.0, 20.0)) is ground
+
+
+def test_ground_of_a_drone_in_the_air_is_what_its_range_finder_sees() -> None:
+    facts = replace(situation(3.5, 8.0), range_height_m=5.0)
+    assert facts.drone is not None
+    ground = ground_enu_m(None, Phase.PILOT, facts)
+    assert ground is not None
+    assert ground[2] == pytest.approx(facts.drone.position_enu_m[2] - GEAR_M - 5.0)
+    assert ground_enu_m(None, Phase.PILOT, replace(facts, range_height_m=None)) is None
+
+
+def test_roof_that_the_drone_stands_on_is_no_ground() -> None:
+    facts = situation(0.0, 0.2)
+    standing = replace(facts, autopilot=replace(facts.autopilot, armed=False, landed=True))
+    assert ground_enu_m(None, Phase.IDLE, standing) is None
+
+
+@pytest.mark.parametrize(
+    ("seen_m", "beside_m", "expected"),
+    [(1.5, 0.0, False), (1.2, 0.0, False), (1.0, 0.0, True), (0.6, 8.0, False), (0.2, 8.0, True), (3.0, 8.0, False)],
+)
+def test_what_is_seen_nearer_than_the_pad_is_no_room(seen_m: float, beside_m: float, expected: bool) -> None:
+    facts = replace(situation(1.5, beside_m), range_height_m=seen_m)
+    assert is_seen_too_near(facts, approach(facts), CONFIG) is expected
+
+
+def _refused(flight: Flight) -> str:
+    flight.run(CONFIG.chase.driving_hold_s + 0.2)
+    reply = flight.step(Command.START).reply
+    assert reply is not None
+    assert not reply.accepted
+    assert flight.phase is Phase.IDLE
+    return reply.reason
+
+
+def test_start_beside_a_vehicle_with_other_altitudes_is_refused_with_the_numbers() -> None:
+    flight = Flight(vehicle=KnownVehicle((-12.0, 0.0, PAD_HEIGHT_M - 30.0), (0.0, 0.0, 0.0)))
+    assert _refused(flight) == (
+        "the vehicle's road is said to be 30.0 m below the ground 12 m from it: "
+        "let drone and vehicle tell altitudes of one kind"
+    )
+
+
+def test_ground_that_an_outage_has_taken_is_not_told_in_numbers() -> None:
+    facts = replace(near(30.0, 10.0), ground_enu_m=None, is_road_elsewhere=True)
+    held = {one.test.reason: 0 for one in OBSTACLES if one.test.is_true(facts, approach(facts), CONFIG)}
+    told = obstacle(held, facts, CONFIG)
+    assert told is not None
+    assert told[1].endswith("land, mend its altitude, start again")
+
+
+def test_vehicle_with_other_altitudes_that_comes_near_is_not_chased() -> None:
+    flight = Flight(vehicle=KnownVehicle((-60.0, 0.4, PAD_HEIGHT_M - 4.0), (4.0, 0.0, 0.0)))
+    flight.start_and_reach(Phase.WAITING)
+    outputs = flight.run(20.0)
+    assert Phase.CHASE not in flight.history
+    assert any("4.0 m below the ground" in (one.text or "") for one in outputs)
+
+
+def test_start_beside_a_roof_that_is_too_high_says_how_much_higher_to_wait() -> None:
+    flight = Flight(vehicle=KnownVehicle((-12.0, 0.0, 4.0), (0.0, 0.0, 0.0)), pad=replace(PAD, height_m=4.0))
+    assert _refused(flight) == (
+        "waiting 1.0 m above the pad, 1.2 m are needed: raise takeoff.waiting_height_m by 0.2 m or hover higher"
+    )
+
+
+def test_drone_that_hovers_too_low_says_so_while_it_waits() -> None:
+    flight = Flight(vehicle=KnownVehicle((-400.0, 0.0, 4.0), (8.0, 0.0, 0.0)), pad=replace(PAD, height_m=4.0))
+    flight.start_and_reach(Phase.WAITING)
+    flight.run(47.0)
+    assert flight.outputs is not None
+    assert "raise takeoff.waiting_height_m" in flight.outputs.status.reason
+
+
+def test_start_in_a_hold_waits_where_the_drone_hovers() -> None:
+    flight = Flight()
+    flight.start_and_reach(Phase.ALIGN)
+    flight.step(Command.ABORT)
+    flight.run_until(Phase.HOLD)
+    flight.run(5.0)
+    before = np.array(flight.own.position_enu_m)
+    flight.vehicle = KnownVehicle((500.0, 0.0, PAD_HEIGHT_M), (0.0, 0.0, 0.0))
+    flight.step(Command.START)
+    flight.run(8.0)
+    assert flight.phase is Phase.WAITING
+    assert float(np.linalg.norm(np.array(flight.own.position_enu_m) - before)) < 0.1
+    assert float(np.linalg.norm(before[:2])) > 3.0

@@ -1,0 +1,205 @@
+import math
+
+import numpy as np
+import pytest
+from filterpy.kalman import update as filterpy_update
+from scipy.integrate import solve_ivp
+from scipy.linalg import expm, solve_continuous_lyapunov
+from scipy.stats import multivariate_normal
+
+from companion.core.data import Array
+from companion.vehicle import imm_forecast as forecasts
+from companion.vehicle import imm_kernels as kernels
+from companion.vehicle import imm_mixing as mixing
+from companion.vehicle import imm_sensors as sensors
+
+TAU_S = 3.0
+MOTION = np.array([TAU_S, 2.0 * math.pi * 0.75, 0.3, 0.04, 180.0, -0.7, 0.1, 0.3])
+NOISE = np.array([12.0, 0.005, 20.0, 3.0, 1e-4, 0.01, 1e-5, 2e-3, 1e-7])
+LEVER = MOTION[5:8]
+HEAVE = np.array([[0.91, 0.08], [-1.7, 0.69]])
+
+
+def a_state(seed: int) -> Array:
+    rng = np.random.default_rng(seed)
+    x = rng.standard_normal(kernels.SIZE)
+    x[2:4] = rng.uniform(2.0, 9.0, 2)
+    x[4:6] = rng.uniform(-1.5, 1.5, 2)
+    x[6] = rng.uniform(-0.08, 0.08)
+    x[kernels.CLOCK] = rng.uniform(-0.1, 0.1)
+    return x
+
+
+def a_covariance(seed: int, n: int = kernels.SIZE) -> Array:
+    root = np.random.default_rng(seed).standard_normal((n, n))
+    return np.asarray(root @ root.T + 0.1 * np.eye(n))
+
+
+def motion(_: float, s: Array, curvature: float) -> Array:
+    """The module's equations as they stand, with `w = k |v|` at every instant."""
+    _, _, vx, vy, bx, by, _ = s
+    w = curvature * math.hypot(vx, vy)
+    return np.array([vx, vy, bx - w * vy, by + w * vx, -w * by - bx / TAU_S, w * bx - by / TAU_S, w])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_motion_solves_its_differential_equation(seed: int) -> None:
+    x = a_state(seed)
+    after, _ = kernels.advance(x, 0.1, TAU_S, HEAVE)
+    flow = solve_ivp(motion, (0.0, 0.1), [*x[:6], x[7]], args=(x[6],), rtol=1e-10, atol=1e-12).y[:, -1]
+    assert after[[0, 1, 2, 3, 4, 5, 7]] == pytest.approx(flow, abs=2e-3)
+
+
+def test_motion_without_acceleration_is_a_circle_exactly() -> None:
+    x = np.zeros(kernels.SIZE)
+    x[2], x[6] = 8.0, 1.0 / 20.0
+    after, _ = kernels.advance(x, 0.5, TAU_S, HEAVE)
+    turned = 8.0 * 0.5 / 20.0
+    assert after[:2] == pytest.approx([20.0 * math.sin(turned), 20.0 * (1.0 - math.cos(turned))], abs=1e-12)
+    assert after[7] == pytest.approx(turned)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_jacobian_is_the_derivative_of_the_motion(seed: int) -> None:
+    x = a_state(seed)
+    _, F = kernels.advance(x, 0.05, TAU_S, HEAVE)
+    numeric = np.empty((kernels.SIZE, kernels.SIZE))
+    for i in range(kernels.SIZE):
+        step = 1e-6 * np.eye(kernels.SIZE)[i]
+        up, down = kernels.advance(x + step, 0.05, TAU_S, HEAVE)[0], kernels.advance(x - step, 0.05, TAU_S, HEAVE)[0]
+        numeric[:, i] = (up - down) / 2e-6
+    assert pytest.approx(numeric, abs=2e-3) == F
+
+
+@pytest.mark.parametrize("kind", range(6))
+def test_jacobian_is_the_derivative_of_what_a_sensor_reads(kind: int) -> None:
+    x = a_state(7)
+    _, H = sensors.observe(kind, x, LEVER, True)
+    for i in range(kernels.SIZE):
+        step = 1e-6 * np.eye(kernels.SIZE)[i]
+        up, down = sensors.observe(kind, x + step, LEVER, True)[0], sensors.observe(kind, x - step, LEVER, True)[0]
+        assert H[:, i] == pytest.approx((up - down) / 2e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_kinematics_jacobian_is_the_derivative_of_the_kinematics(seed: int) -> None:
+    x = a_state(seed)
+    G = forecasts.kinematics_jacobian(x, MOTION)
+    numeric = np.empty((9, kernels.SIZE))
+    for i in range(kernels.SIZE):
+        around = np.hstack(forecasts.kinematics(x + 1e-6 * np.outer([1.0, -1.0], np.eye(kernels.SIZE)[i]), MOTION))
+        numeric[:, i] = (around[0] - around[1]) / 2e-6
+    assert pytest.approx(numeric, abs=1e-5) == G
+
+
+def test_braking_stops_where_the_fading_acceleration_stops_it() -> None:
+    x = np.zeros(kernels.SIZE)
+    x[2], x[4] = 0.4, -6.0
+    after, _ = kernels.advance(x, 0.1, TAU_S, HEAVE)
+    stop = solve_ivp(
+        lambda t, s: [s[1], -6.0 * math.exp(-t / TAU_S)],
+        (0.0, 0.1),
+        [0.0, 0.4],
+        events=_at_standstill,
+        rtol=1e-10,
+        atol=1e-12,
+    )
+    assert after[2:6] == pytest.approx(np.zeros(4), abs=1e-12)
+    assert stop.y_events is not None
+    assert after[0] == pytest.approx(stop.y_events[0][0][0], abs=1e-9)
+
+
+def _at_standstill(_: float, s: Array) -> float:
+    return float(s[1])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_update_equals_that_of_filterpy(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    x, P, R = rng.standard_normal(kernels.SIZE), a_covariance(seed), a_covariance(seed + 50, 3)
+    H, z = rng.standard_normal((3, kernels.SIZE)), rng.standard_normal(3)
+    mean, covariance, nis, log_likelihood = kernels.correct(x, P, z - H @ x, H, R)
+    other_mean, other_covariance, y, _, S, _ = filterpy_update(x, P, z, R, H, return_all=True)
+    assert mean == pytest.approx(other_mean)
+    assert covariance == pytest.approx(other_covariance)
+    assert nis == pytest.approx(y @ np.linalg.solve(S, y))
+    assert log_likelihood == pytest.approx(multivariate_normal.logpdf(y, cov=S))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_compiled_kernels_equal_their_python(seed: int) -> None:
+    x, P = a_state(seed), a_covariance(seed)
+    noise = kernels.process_noise(x, 0.07, NOISE, 1e-4 * np.eye(2))
+    assert noise == pytest.approx(kernels.process_noise.py_func(x, 0.07, NOISE, 1e-4 * np.eye(2)), rel=1e-12)
+    for mine, python in zip(
+        kernels.advance(x, 0.07, TAU_S, HEAVE), kernels.advance.py_func(x, 0.07, TAU_S, HEAVE), strict=True
+    ):
+        assert mine == pytest.approx(python, rel=1e-12, abs=1e-14)
+    for kind in range(6):
+        for mine, python in zip(
+            sensors.observe(kind, x, LEVER, True), sensors.observe.py_func(kind, x, LEVER, True), strict=True
+        ):
+            assert mine == pytest.approx(python, rel=1e-12)
+    glided, python_glided = mixing.glide(x, P, 0.33, NOISE, MOTION), mixing.glide.py_func(x, P, 0.33, NOISE, MOTION)
+    for mine, python in zip(glided, python_glided, strict=True):
+        assert mine == pytest.approx(python, rel=1e-9, abs=1e-12)
+
+
+def test_process_noise_is_positive_and_lies_along_the_track() -> None:
+    x = a_state(3)
+    assert np.linalg.eigvalsh(kernels.process_noise(x, 0.1, NOISE, 1e-6 * np.eye(2))).min() > -1e-15
+    Q = kernels.process_noise(x, 0.1, np.where(np.arange(9) == 2, 0.0, NOISE), 1e-6 * np.eye(2))
+    along = x[2:4] / np.hypot(*x[2:4])
+    across = np.array([-along[1], along[0]])
+    assert along @ Q[4:6, 4:6] @ along == pytest.approx(12.0 * 0.1)
+    assert across @ Q[4:6, 4:6] @ across == pytest.approx(0.005 * 0.1)
+
+
+def test_heave_is_a_damped_oscillator_of_the_given_steady_size() -> None:
+    w, damping, std = MOTION[1:4]
+    A = np.array([[0.0, 1.0], [-(w**2), -2.0 * damping * w]])
+    step, noise = kernels.heave_step(0.13, w, damping, std)
+    assert step == pytest.approx(expm(0.13 * A))
+    push = np.diag([0.0, 4.0 * damping * w**3 * std**2])
+    steady = solve_continuous_lyapunov(A, -push)
+    assert steady == pytest.approx(np.diag([std**2, (std * w) ** 2]))
+    assert step @ steady @ step.T + noise == pytest.approx(steady)
+
+
+def test_switching_is_a_markov_chain_in_continuous_time() -> None:
+    dwell = np.array([6.0, 1.0])
+    rates = np.array([[-1.0 / 6.0, 1.0 / 6.0], [1.0, -1.0]])
+    assert mixing.switching(dwell, 0.7) == pytest.approx(expm(0.7 * rates))
+
+
+def test_mixing_keeps_mean_and_covariance_of_the_mixture() -> None:
+    means, weights = np.stack([a_state(1), a_state(2)]), np.array([0.3, 0.7])
+    covariances = np.stack([a_covariance(1), a_covariance(2)])
+    before = mixing.combine(means, covariances, weights)
+    after = mixing.combine(*mixing.mix((means, covariances, weights), mixing.switching(np.array([6.0, 1.0]), 0.2)))
+    assert after[0] == pytest.approx(before[0])
+    assert after[1] == pytest.approx(before[1])
+
+
+def test_mode_that_was_ruled_out_comes_back() -> None:
+    means = np.stack([a_state(1), a_state(1)])
+    means[1, 0] += 3.0
+    covariances = np.stack([1e-2 * np.eye(kernels.SIZE), 1e-2 * np.eye(kernels.SIZE)])
+    value = sensors.observe(sensors.POSITION, means[1], LEVER, True)[0]
+    modes, reading = (means, covariances, np.array([1.0, 0.0])), (sensors.POSITION, value, 1e-4 * np.eye(3))
+    (_, _, weights), nis, gate_nis = mixing.update_modes(modes, reading, LEVER, True)
+    assert weights[1] > 0.99
+    assert nis > 100.0
+    assert gate_nis == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("axes", [1, 3])
+def test_measurement_tells_the_modes_apart_as_one_component_would(axes: int) -> None:
+    means = np.stack([a_state(2), a_state(2)])
+    covariances = np.stack([0.03 * np.eye(kernels.SIZE), 0.7 * np.eye(kernels.SIZE)])
+    kind = sensors.POSITION if axes == 3 else sensors.HEADING
+    expected, H = sensors.observe(kind, means[0], LEVER, True)
+    error, R, before = np.full(axes, 0.9), 0.01 * np.eye(axes), np.array([0.8, 0.2])
+    (_, _, after), _, _ = mixing.update_modes((means, covariances, before), (kind, expected + error, R), LEVER, True)
+    fits = [multivariate_normal.logpdf(error, cov=H @ P @ H.T + R) for P in covariances]
+    assert math.log(after[1] / after[0]) == pytest.approx(math.log(0.2 / 0.8) + (fits[1] - fits[0]) / axes)

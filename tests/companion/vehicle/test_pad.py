@@ -1,0 +1,80 @@
+"""The pad from the antenna: the lever arm turns with the heading, and its motion is that of a rigid body."""
+
+import math
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from companion.core.data import Array, Forecast
+from companion.vehicle.pad import HEADING_UNKNOWN, NOT_DESCRIBED, pad_path
+from link.frames import quaternion_from_yaw, rotate
+from link.messages import PadGeometry, Vector3
+from tests.companion.world import START_NS
+
+OFFSETS_S = np.arange(0.0, 2.01, 0.05)
+
+
+def _forecast(yaw_rad: Array | None) -> Forecast:
+    n = len(OFFSETS_S)
+    velocity = np.tile([3.0, -1.0, 0.1], (n, 1))
+    return Forecast(
+        t_ns=START_NS,
+        offset_s=OFFSETS_S,
+        position_enu_m=np.array([7.0, 2.0, 0.8]) + velocity * OFFSETS_S[:, None],
+        velocity_enu_m_s=velocity,
+        acceleration_enu_m_s2=np.zeros((n, 3)),
+        yaw_rad=yaw_rad,
+        position_std_m=np.full((n, 3), 0.1),
+    )
+
+
+def _pad(lever_flu_m: Vector3) -> PadGeometry:
+    return PadGeometry(size_m=(1.5, 1.2), height_m=1.5, antenna_to_pad_m=lever_flu_m)
+
+
+metres = st.floats(-3.0, 3.0)
+
+
+@given(lever=st.tuples(metres, metres, metres), yaw_rad=st.floats(-math.pi, math.pi), rate_rad_s=st.floats(-0.8, 0.8))
+@settings(max_examples=60, deadline=None)
+def test_lever_arm_rotates_with_the_heading(lever: Vector3, yaw_rad: float, rate_rad_s: float) -> None:
+    yaw = (yaw_rad + rate_rad_s * OFFSETS_S + math.pi) % (2.0 * math.pi) - math.pi
+    forecast = _forecast(yaw)
+    path = pad_path(forecast, _pad(lever))
+    expected = [rotate(quaternion_from_yaw(angle), lever) for angle in yaw.tolist()]
+    np.testing.assert_allclose(path.position_enu_m - forecast.position_enu_m, expected, atol=1e-9)
+    assert path.unplaced is None
+
+
+@given(lever=st.tuples(metres, metres, metres), yaw_rad=st.floats(-math.pi, math.pi), rate_rad_s=st.floats(-0.8, 0.8))
+@settings(max_examples=60, deadline=None)
+def test_velocity_is_the_derivative_of_the_position(lever: Vector3, yaw_rad: float, rate_rad_s: float) -> None:
+    path = pad_path(_forecast(yaw_rad + rate_rad_s * OFFSETS_S), _pad(lever))
+    moved = np.gradient(path.position_enu_m, OFFSETS_S, axis=0, edge_order=2)
+    np.testing.assert_allclose(path.velocity_enu_m_s[1:-1], moved[1:-1], atol=2e-3)
+
+
+def test_unknown_heading_leaves_a_horizontal_lever_arm_out_and_says_so() -> None:
+    forecast = _forecast(None)
+    path = pad_path(forecast, _pad((0.4, 0.0, 0.7)))
+    assert path.unplaced == HEADING_UNKNOWN
+    np.testing.assert_allclose(path.position_enu_m - forecast.position_enu_m, np.tile([0.0, 0.0, 0.7], (41, 1)))
+
+
+def test_vertical_lever_arm_needs_no_heading() -> None:
+    assert pad_path(_forecast(None), _pad((0.0, 0.0, 0.7))).unplaced is None
+
+
+def test_pad_that_was_not_described_is_followed_at_the_antenna_and_not_placed() -> None:
+    forecast = _forecast(np.zeros_like(OFFSETS_S))
+    path = pad_path(forecast, None)
+    assert path.unplaced == NOT_DESCRIBED
+    np.testing.assert_array_equal(path.position_enu_m, forecast.position_enu_m)
+
+
+def test_forecast_is_not_written_to() -> None:
+    forecast = _forecast(0.3 * OFFSETS_S)
+    before = forecast.position_enu_m.copy()
+    pad_path(forecast, _pad((1.0, -0.5, 0.2)))
+    np.testing.assert_array_equal(forecast.position_enu_m, before)
