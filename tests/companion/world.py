@@ -144,6 +144,10 @@ class Flight:
         return self.memory.progress.phase
 
     @property
+    def monotonic_ns(self) -> int:
+        return self.t_ns - UTC_AHEAD_NS
+
+    @property
     def reason(self) -> Reason:
         return self.memory.progress.cause.reason
 
@@ -163,7 +167,7 @@ class Flight:
     def inputs(self, command: Command | None = None) -> StepInputs:
         return StepInputs(
             t_ns=self.t_ns,
-            monotonic_ns=self.t_ns - UTC_AHEAD_NS,
+            monotonic_ns=self.monotonic_ns,
             limits=self.config.limits.flight_limits(),
             own=self.own,
             autopilot=self.view,

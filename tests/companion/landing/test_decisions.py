@@ -47,7 +47,7 @@ UNSAFE: dict[Reason, Situation] = {
     Reason.VEHICLE_DATA_OLD: changed(situation(), fix_age_s=CONFIG.abort.fix_age_max_s + 0.01),
     Reason.VEHICLE_UNCERTAIN: situation(pad=pad_at(std_m=CONFIG.abort.position_std_max_m + 0.01)),
     Reason.VEHICLE_LINK_LOST: changed(
-        situation(), vehicle_alive=False, fix_age_s=CONFIG.abort.alive_lost_fix_age_max_s + 0.01
+        situation(), is_alive=False, fix_age_s=CONFIG.abort.alive_lost_fix_age_max_s + 0.01
     ),
     Reason.VEHICLE_CLOCK_AHEAD: changed(situation(), fix_age_on_arrival_s=-CONFIG.abort.fix_ahead_max_s - 0.01),
     Reason.OWN_POSITION_OLD: replace(situation(), drone=None),

@@ -10,7 +10,7 @@ from companion.config.landing import LandingStyle
 from companion.landing.step_data import StepOutputs
 from companion.situation.phases import Phase
 from link.frames import yaw_of
-from tests.companion.world import CONFIG, PAD_HEIGHT_M, Flight
+from tests.companion.world import CONFIG, PAD_HEIGHT_M, UTC_AHEAD_NS, Flight
 
 DIRECT = CONFIG.model_copy(update={"landing": LandingStyle.DIRECT})
 
@@ -30,7 +30,9 @@ def test_direct_landing_chases_the_pads_centre_and_nothing_else() -> None:
     flight.run(12.0)
     assert flight.phase is Phase.CHASE
     assert flight.memory.model.reference is not None
-    wanted = flight.vehicle.at(flight.memory.model.reference_ns) + np.array([0.0, 0.0, DIRECT.touchdown.gear_height_m])
+    wanted = flight.vehicle.at(flight.memory.model.reference_ns + UTC_AHEAD_NS) + np.array(
+        [0.0, 0.0, DIRECT.touchdown.gear_height_m]
+    )
     assert flight.memory.model.reference.position_enu_m == pytest.approx(wanted, abs=0.05)
 
 

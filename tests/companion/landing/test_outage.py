@@ -81,7 +81,7 @@ def test_chase_that_outages_break_off_again_and_again_takes_no_longer_than_any_o
         assert flight.memory.progress.since_ns == begun_ns
         _own_is_late(flight)
         flight.run_until(Phase.CHASE)
-        assert flight.inputs().monotonic_ns - begun_ns < 60e9
+        assert flight.monotonic_ns - begun_ns < 60e9
         flight.step()
         flight.run_until(Phase.CHASE)
     assert flight.sentence == f"retry 1 of {CONFIG.abort.retries_max}"

@@ -51,10 +51,10 @@ def _stopped() -> Flight:
 def _forced_after_s(flight: Flight, *, falls_m_s2: float, limit_s: float = 2.0) -> float | None:
     """When the motors are forced off, since the contact."""
     contact_ns = flight.memory.progress.since_ns
-    while (flight.t_ns - contact_ns) * 1e-9 < limit_s and flight.phase is Phase.TOUCHDOWN:
+    while (flight.monotonic_ns - contact_ns) * 1e-9 < limit_s and flight.phase is Phase.TOUCHDOWN:
         _held(flight, falls_m_s2=falls_m_s2, jolt_m_s2=0.3)
         if (Phase.TOUCHDOWN, DISARM, 0.0, FORCED) in flight.commands:
-            return (flight.t_ns - STEP_NS - contact_ns) * 1e-9
+            return (flight.monotonic_ns - STEP_NS - contact_ns) * 1e-9
     return None
 
 

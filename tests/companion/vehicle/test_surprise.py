@@ -28,7 +28,7 @@ from tests.companion.vehicle.drives import (
 )
 from tests.companion.vehicle.hindsight import DESCENT, LATE, Told, after
 from tests.companion.vehicle.rides import estimator, now_ns
-from tests.companion.world import PAD_HEIGHT_M, UTC_AHEAD_NS, Flight, KnownVehicle
+from tests.companion.world import PAD_HEIGHT_M, Flight, KnownVehicle
 
 CONFIG = CompanionConfig()
 BEGUN_S = 2.0  # until then an estimate may be surprised by what it has not known yet
@@ -131,7 +131,7 @@ def test_step_looks_back_at_what_it_has_believed(kind: type[KnownVehicle]) -> No
     flight.run(0.5)
     flight.sends_fixes = True
     flight.run(0.1)
-    assert may_surprise(flight.memory.vehicle.surprise, flight.t_ns - UTC_AHEAD_NS, DESCENT) is (kind is Braking)
+    assert may_surprise(flight.memory.vehicle.surprise, flight.monotonic_ns, DESCENT) is (kind is Braking)
 
 
 @pytest.mark.parametrize(
