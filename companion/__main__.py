@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from companion.check.command import ConfigOption, DeviceOption, SigningKeyOption, SystemIdOption, check
-from companion.config.autopilot_kind import AutopilotKind
+from companion.config.companion import AutopilotKind
 from link.cli import (
     ConnectOption,
     DroneOption,
@@ -105,7 +105,7 @@ def companion(
         zenoh = stack.enter_context(open_session(endpoints))
         from companion.runtime.build import build_node
         from companion.runtime.loop import run
-        from companion.runtime.loop_options import Links, LoopOptions
+        from companion.runtime.options import Links, LoopOptions
 
         if folder is not None:
             from companion.recording.folder import recording_sink

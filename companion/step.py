@@ -5,11 +5,10 @@ Pure: the same memory, inputs and system give the same result, in flight, in sim
 
 from companion.autopilots.driver import AutopilotCommand, Desire
 from companion.config.companion import CompanionConfig
-from companion.core.data import Forecast, OwnState
+from companion.core.data import Forecast
 from companion.core.reasons import sentence
-from companion.integrity.contradictions import Contradictions, update_contradictions
+from companion.integrity.contradictions import Contradictions, FixStamps, update_contradictions, update_fix_stamps
 from companion.integrity.course import update_course, without_contradicted_heading
-from companion.integrity.fix_stamps import FixStamps, update_fix_stamps
 from companion.integrity.ground import is_road_elsewhere, update_ground
 from companion.integrity.pad_height import update_pad_raised_m, with_pad_raised
 from companion.landing.condition import holds
@@ -159,7 +158,8 @@ def _is_finite(forecast: Forecast) -> bool:
 def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, system: System) -> Situation:
     vehicle, touchdown = memory.vehicle, system.config.touchdown
     newest_ns = system.estimator.newest_fix_ns(vehicle.estimator)
-    drone = drone_now(inputs.own, inputs.t_ns, _own_yaw_rad(inputs.own), system.config.abort.own_age_max_s)
+    yaw_rad = 0.0 if inputs.own is None else yaw_of(inputs.own.orientation_wxyz)
+    drone = drone_now(inputs.own, inputs.t_ns, yaw_rad, system.config.abort.own_age_max_s)
     seen, sensor_m = inputs.autopilot.range_down, touchdown.range_finder_height_m
     return Situation(
         t_ns=inputs.t_ns,
@@ -203,10 +203,6 @@ def _look(
     places = replace(memory.places, ground_enu_m=update_ground(memory.places.ground_enu_m, phase, situation))
     memory = replace(memory, vehicle=vehicle, places=places)
     return memory, with_pad_raised(situation, vehicle.pad_raised_m)
-
-
-def _own_yaw_rad(own: OwnState | None) -> float:
-    return 0.0 if own is None else yaw_of(own.orientation_wxyz)
 
 
 def _drive(

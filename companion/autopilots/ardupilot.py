@@ -9,8 +9,10 @@ import math
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from companion.autopilots.asking import (
-    Asked,
+from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
+from companion.autopilots.limits import Named, acceleration_of_tilt_m_s2, stated
+from companion.autopilots.requests import (
+    Requested,
     arm,
     ask,
     ask_to_disarm,
@@ -19,9 +21,7 @@ from companion.autopilots.asking import (
     with_disarm_answer,
     without_disarm,
 )
-from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
 from companion.autopilots.setpoint_message import local_ned_setpoint
-from companion.autopilots.stated_limits import Named, acceleration_of_tilt_m_s2, stated
 from companion.core.data import FlightLimits, Setpoint
 from link.local_frame import Projection
 from link.mavlink.dialect import Message, mavlink
@@ -70,7 +70,7 @@ class ArduPilotDriver:
         kind, _, reason = f"{message.text}".partition(": ")
         return reason if kind in ("Arm", "PreArm") and reason else None
 
-    def act(self, memory: DriverMemory, view: AutopilotView, desire: Desire, monotonic_ns: int) -> Asked:
+    def act(self, memory: DriverMemory, view: AutopilotView, desire: Desire, monotonic_ns: int) -> Requested:
         """Return the commands that bring ArduCopter nearer to `desire`."""
         climbs = desire.takeoff_height_m is not None and not _is_airborne(view)
         memory = replace(memory, climbs_by_itself=climbs)

@@ -6,9 +6,9 @@ from itertools import chain
 
 from companion.autopilots.choice import driver_for
 from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver
-from companion.autopilots.limit_questions import LimitQuestions, named
+from companion.autopilots.limits import LimitQuestions, named
 from companion.autopilots.state import AutopilotState, heard, put_off
-from companion.config.autopilot_kind import AutopilotKind
+from companion.config.companion import AutopilotKind
 from companion.core.data import FlightLimits, Setpoint
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import (

@@ -6,11 +6,19 @@ Source: PX4 user guide, offboard mode; behaviour measured against its built-in q
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from companion.autopilots.asking import Asked, arm, ask, ask_to_disarm, set_mode, with_disarm_answer, without_disarm
 from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
+from companion.autopilots.limits import Named, acceleration_of_tilt_m_s2, stated
 from companion.autopilots.px4_events import refusal_of
+from companion.autopilots.requests import (
+    Requested,
+    arm,
+    ask,
+    ask_to_disarm,
+    set_mode,
+    with_disarm_answer,
+    without_disarm,
+)
 from companion.autopilots.setpoint_message import local_ned_setpoint
-from companion.autopilots.stated_limits import Named, acceleration_of_tilt_m_s2, stated
 from companion.core.data import FlightLimits, Setpoint
 from link.local_frame import Projection
 from link.mavlink.dialect import Message, mavlink
@@ -59,7 +67,7 @@ class Px4Driver:
         """Return what stands against arming, from an EVENT; a companion is sent no STATUSTEXT."""
         return refusal_of(message) if message.get_type() == "EVENT" else None
 
-    def act(self, memory: DriverMemory, view: AutopilotView, desire: Desire, monotonic_ns: int) -> Asked:
+    def act(self, memory: DriverMemory, view: AutopilotView, desire: Desire, monotonic_ns: int) -> Requested:
         """Return the commands that bring PX4 nearer to `desire`."""
         if not desire.control:
             if memory.streaming_since_ns is not None:

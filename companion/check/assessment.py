@@ -10,8 +10,7 @@ from companion.check.findings import Finding, Level, passed
 from companion.check.observation import AutopilotFacts, VehicleFacts
 from companion.check.px4_rules import PX4_RULES, PX4_SINK
 from companion.check.rules import ParameterRule, Spelling, judged, names_of, sink_rule
-from companion.config.autopilot_kind import AutopilotKind
-from companion.config.companion import CompanionConfig
+from companion.config.companion import AutopilotKind, CompanionConfig
 from companion.config.landing import AbortConfig, ChaseConfig
 from link.mavlink.dialect import mavlink
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from companion.check.findings import Finding, Level, passed
-from companion.core.gravity import GRAVITY_M_S2
+from companion.core.data import GRAVITY_M_S2
 
 SPEED_SHARE_ADVISED = 1.2
 """Of the vehicle's speed: the drone has to catch up and to correct. More than what a landing is refused for, so that a

@@ -3,12 +3,12 @@
 import time
 from dataclasses import dataclass
 
+from companion.autopilots.choice import check_autopilot
 from companion.check.observation import VehicleFacts
 from companion.check.reading import Reader
 from companion.check.vehicle_reading import VehicleReader
 from companion.config.landing import ChaseConfig
 from companion.runtime.pad_question import PadQuestion
-from companion.runtime.unheard import check_autopilot
 from link.keys import Keys
 from link.mavlink.parameters import parameter_set_message
 from link.mavlink.session import MavlinkSession

@@ -1,10 +1,10 @@
 """The companion's configuration: one TOML file, validated once, every value with its unit and source."""
 
+from enum import Enum
 from typing import Annotated
 
 from pydantic import Field, ValidationInfo, field_validator
 
-from companion.config.autopilot_kind import AutopilotKind
 from companion.config.estimation import EstimatorConfig
 from companion.config.landing import (
     AbortConfig,
@@ -17,6 +17,14 @@ from companion.config.landing import (
 from companion.config.planning import GuidanceConfig
 from companion.core.data import FlightLimits
 from link.toml_config import NotNegative, Positive, StrictModel
+
+
+class AutopilotKind(Enum):
+    """What a user says of the autopilot."""
+
+    AUTO = "auto"  # its heartbeat tells
+    PX4 = "px4"
+    ARDUPILOT = "ardupilot"
 
 
 class LimitsConfig(StrictModel):

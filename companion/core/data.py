@@ -140,3 +140,7 @@ class FlightLimits:
     acceleration_max_m_s2: float
     vertical_acceleration_max_m_s2: float
     jerk_max_m_s3: float
+
+
+GRAVITY_M_S2 = 9.81
+"""At mid latitudes; 9.780 at the equator to 9.832 at the poles (WGS 84)."""

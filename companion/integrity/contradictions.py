@@ -1,4 +1,6 @@
-"""Whether the vehicle's data contradict each other: how many of them the estimator has lately rejected; pure.
+"""Whether the vehicle's data contradict each other, or come from the future; pure.
+
+How many of them the estimator has lately rejected tells the one, how old the newest fix was when it came the other.
 
 A velocity with its axes exchanged, or stamps that jump, make the estimator reject what it has just believed, again and
 again: its estimate swings between the two. Outages and brakes have a few rejected, one after the other.
@@ -49,3 +51,29 @@ def update_contradictions(before: Contradictions, health: BufferHealth, t_ns: in
 def contradicts_itself(s: Situation, c: CompanionConfig) -> bool:
     """Return whether so many of the vehicle's measurements were rejected that nothing says which are right."""
     return s.vehicle.rejected_share > c.abort.rejected_share_max
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FixStamps:
+    """The newest accepted fix.
+
+    Attributes:
+        newest_ns: when it was taken, by its own stamp; None before the first.
+        age_on_arrival_s: of it in the step that took it in, never negative where both clocks are right.
+    """
+
+    newest_ns: int | None = None
+    age_on_arrival_s: float | None = None
+
+
+def update_fix_stamps(stamps: FixStamps, newest_ns: int | None, t_ns: int) -> FixStamps:
+    """Return the stamps with the newest fix as it is known at `t_ns`.
+
+    Args:
+        stamps: so far.
+        newest_ns: stamp of the newest accepted fix.
+        t_ns: now.
+    """
+    if newest_ns == stamps.newest_ns:
+        return stamps
+    return FixStamps(newest_ns=newest_ns, age_on_arrival_s=None if newest_ns is None else (t_ns - newest_ns) * 1e-9)

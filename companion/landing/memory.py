@@ -12,14 +12,13 @@ from types import MappingProxyType
 from companion.autopilots.driver import DriverMemory
 from companion.core.data import Array
 from companion.core.reasons import Cause, Reason
-from companion.integrity.contradictions import Contradictions
+from companion.integrity.contradictions import Contradictions, FixStamps
 from companion.integrity.course import CourseWatch
-from companion.integrity.fix_stamps import FixStamps
 from companion.landing.sway import Sway
 from companion.landing.virtual_model import Tracking
 from companion.planning.guidance import GuidanceMemory, ReferenceState
 from companion.situation.phases import Phase
-from companion.vehicle.estimator import EstimatorMemory
+from companion.vehicle.buffered import EstimatorMemory
 from companion.vehicle.surprise import Surprise
 from link.messages import Vector3
 

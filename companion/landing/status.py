@@ -1,4 +1,4 @@
-"""The landing's status for the world, from a step's memory and facts."""
+"""What the world is told of a step: the landing's status, and the plan thinned out."""
 
 from companion.config.companion import CompanionConfig
 from companion.config.landing import DescentConfig
@@ -7,9 +7,13 @@ from companion.landing.aborts import unplaced
 from companion.landing.memory import StepMemory
 from companion.landing.targets import sink_stretches
 from companion.landing.waiting import why_held_up
+from companion.planning.guidance import PlanResult
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation
-from link.messages import LandingStatus
+from link import cdr, json_payloads
+from link.keys import Keys
+from link.messages import LandingStatus, Plan, PlannedPose
+from link.publication import Publication
 
 _WAITING_FOR_PAD = frozenset({Phase.WAITING, Phase.CHASE, Phase.ALIGN})
 _NOT_BEGUN = frozenset({Phase.IDLE, Phase.WAITING})
@@ -52,3 +56,30 @@ def _time_to_contact_s(relative: Approach, descent: DescentConfig) -> float:
     stretches = sink_stretches(relative.height_m, descent)
     slow_s = max(stretches.slow_from_m, 0.0) / descent.touchdown_sink_rate_m_s
     return stretches.fast_s + stretches.slowing_s + slow_s
+
+
+_PLAN_POINTS = 2  # every so many points of the plan are published
+
+
+def status_publication(keys: Keys, status: LandingStatus) -> Publication:
+    """Return the status as JSON."""
+    return Publication(keys.landing_status, json_payloads.encode(status), "application/json")
+
+
+def plan_publication(keys: Keys, plan: PlanResult, t_ns: int, yaw_rad: float) -> Publication:
+    """Return the planned motion as a path.
+
+    Args:
+        keys: of the Zenoh contract.
+        plan: of a step.
+        t_ns: of that step, UTC.
+        yaw_rad: the heading that is flown, from East counter-clockwise.
+    """
+    trajectory = plan.trajectory
+    offsets_s = trajectory.offset_s[::_PLAN_POINTS].tolist()
+    points = zip(offsets_s, trajectory.position_enu_m[::_PLAN_POINTS].tolist(), strict=True)
+    poses = tuple(
+        PlannedPose(t_ns=t_ns + int(offset_s * 1e9), position_enu_m=(x, y, z), yaw_rad=yaw_rad)
+        for offset_s, (x, y, z) in points
+    )
+    return Publication(keys.landing_plan, cdr.encode(Plan(t_ns=t_ns, poses=poses)), cdr.encoding_of(Plan))

@@ -6,7 +6,7 @@ from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, Autopilo
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits, Measurement, OwnState, Setpoint
 from companion.planning.guidance import Guidance, PlanResult
-from companion.vehicle.estimator import Estimator
+from companion.vehicle.buffered import Estimator
 from link.messages import Command, CommandReply, LandingStatus, PadGeometry
 
 

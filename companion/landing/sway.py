@@ -10,8 +10,7 @@ import math
 from dataclasses import dataclass
 
 from companion.config.landing import DescentConfig
-from companion.core.data import OwnState
-from companion.core.gravity import GRAVITY_M_S2
+from companion.core.data import GRAVITY_M_S2, OwnState
 from link.frames import rotate
 
 _UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady

@@ -14,7 +14,7 @@ from scipy.linalg import solve_continuous_are
 
 from companion.config.planning import MpcConfig
 from companion.core.data import Array
-from companion.planning.compiled import kept
+from companion.planning.compiled import compiled_kernel
 from companion.planning.condensed import AxisModel
 
 
@@ -38,7 +38,7 @@ class AxisProblem:
     slack_weight: float
 
 
-@kept
+@compiled_kernel
 def slopes_of(weights: Array, x: Array, reference: Array, jerk: Array) -> Array:
     """Return the linear terms (3, m) of the axes' programmes over the moves; a slack has `AxisProblem.slack_weight`.
 

@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from companion.core.data import Array
-from companion.planning.compiled import kept
+from companion.planning.compiled import compiled_kernel
 
 Three = tuple[float, float, float]
 
@@ -24,7 +24,7 @@ AUTHORITY = 0.98
 """Share of the limits that the way back uses, so that the solver has room to follow it."""
 
 
-@kept
+@compiled_kernel
 def velocity_left(velocity: float, acceleration: float, braking: float, jerk: float, t_s: float) -> float:
     """Return the velocity at `t_s` when the acceleration goes to `-braking` at `jerk` and stays there."""
     turning = min(t_s, max((acceleration + braking) / jerk, 0.0))
@@ -32,7 +32,7 @@ def velocity_left(velocity: float, acceleration: float, braking: float, jerk: fl
     return turned + min(-braking, acceleration) * (t_s - turning)
 
 
-@kept
+@compiled_kernel
 def velocity_ceiling(
     bound_m_s: Array, velocity_m_s: float, acceleration_m_s2: float, braking_m_s2: float, jerk_m_s3: float, t_s: Array
 ) -> Array:
@@ -45,7 +45,7 @@ def velocity_ceiling(
     return ceiling
 
 
-@kept
+@compiled_kernel
 def acceleration_ceiling(bound_m_s2: Array, acceleration_m_s2: float, jerk_m_s3: float, t_s: Array) -> Array:
     """Return the upper bound (n,) at `t_s`, at least `bound_m_s2` (n,), that a state can keep."""
     ceiling = np.empty_like(bound_m_s2)
@@ -54,7 +54,7 @@ def acceleration_ceiling(bound_m_s2: Array, acceleration_m_s2: float, jerk_m_s3:
     return ceiling
 
 
-@kept
+@compiled_kernel
 def reachable_floor(
     floor_m: Array, x: Array, pull_m_s2: float, climb_m_s: float, jerk_m_s3: float, t_s: Array
 ) -> Array:
@@ -78,7 +78,7 @@ MINOR_PUSH_FACTOR = 1.1
 """How much more than its way's acceleration the minor axis gets, for the smoothing of the plan."""
 
 
-@kept
+@compiled_kernel
 def left(norm: float, used: Array) -> Array:
     """Return what is left of a norm limit beside `used` (k,)."""
     rest, least = np.empty_like(used), (MINOR_SHARE_MIN * norm) ** 2
@@ -87,7 +87,7 @@ def left(norm: float, used: Array) -> Array:
     return rest
 
 
-@kept
+@compiled_kernel
 def major_share(
     minor: Array, target_v: Array, target_a: Array, way: Three, norms: Three, node_s: Array, end_s: Array
 ) -> tuple[Array, Array, Array]:
@@ -120,7 +120,7 @@ def major_share(
     return left(norms[0], speed), left(norms[1], push), jerk
 
 
-@kept
+@compiled_kernel
 def minor_share(
     major: Array, jerk: Array, forced_v: Array, norms: Three, node_s: Array, move_s: Array
 ) -> tuple[Array, Array, Array]:
@@ -145,7 +145,7 @@ def minor_share(
     return left(norms[0], velocity), left(norms[1], push), left(norms[2], jerk[: len(move_s)])
 
 
-@kept
+@compiled_kernel
 def bound_rows(
     x: Array, down: Array, up: Array, push: Array, jerk: Array, floor: Array, node_s: Array, end_s: Array, rows: Bounds
 ) -> None:
@@ -188,7 +188,7 @@ def bound_rows(
         lower[acceleration + 2 * moves + node] = floor[node] - fallen
 
 
-@kept
+@compiled_kernel
 def major_bounds(
     state: Array, target_v: Array, target_a: Array, way: Three, norms: Three, node_s: Array, end_s: Array, rows: Bounds
 ) -> None:
@@ -197,7 +197,7 @@ def major_bounds(
     bound_rows(state[:, 0], speed, speed, push, jerk, np.empty(0), node_s, end_s, rows)
 
 
-@kept
+@compiled_kernel
 def minor_bounds(
     state: Array,
     major_jerk: Array,
@@ -213,7 +213,7 @@ def minor_bounds(
     bound_rows(state[:, 1], speed, speed, push, jerk, np.empty(0), node_s, end_s, rows)
 
 
-@kept
+@compiled_kernel
 def vertical_bounds(
     x: Array, floor_m: Array, limits: tuple[float, float, float, float], node_s: Array, end_s: Array, rows: Bounds
 ) -> None:

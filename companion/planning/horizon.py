@@ -8,14 +8,14 @@ import math
 import numpy as np
 
 from companion.core.data import Array
-from companion.planning.compiled import kept
+from companion.planning.compiled import compiled_kernel
 from companion.planning.intercept import TINY
 
 EXCESS_WEIGHT = 1e3
 """Metres that each m/s or m/s^2 over a limit counts for when the axes are turned: more than any distance."""
 
 
-@kept
+@compiled_kernel
 def needs(x: Array, target_v: Array, speed_max_m_s: float, acceleration_max_m_s2: float, time_s: float) -> Array:
     """Return four horizontal needs of motion as lengths (4, 2).
 
@@ -41,7 +41,7 @@ def needs(x: Array, target_v: Array, speed_max_m_s: float, acceleration_max_m_s2
     return lengths
 
 
-@kept
+@compiled_kernel
 def major_direction(lengths: Array) -> tuple[float, float]:
     """Return the unit vector along the principal direction of `lengths` (k, 2)."""
     xx, xy, yy = 0.0, 0.0, 0.0
@@ -53,7 +53,7 @@ def major_direction(lengths: Array) -> tuple[float, float]:
     return math.cos(angle), math.sin(angle)
 
 
-@kept
+@compiled_kernel
 def turned_horizon(
     state: tuple[Array, Array, Array],
     path: Array,

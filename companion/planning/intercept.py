@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from companion.core.data import Array
-from companion.planning.compiled import kept
+from companion.planning.compiled import compiled_kernel
 
 Rates = tuple[float, float, float, float, float]
 
@@ -37,7 +37,7 @@ SPLIT_SOFTNESS_S = 0.2
 """Splits whose summed times of both axes differ by less than this are mixed, so that the split does not jump."""
 
 
-@kept
+@compiled_kernel
 def fastest_way(
     error: float, rate: float, push: float, slowest: float, fastest: float
 ) -> tuple[float, float, float, float]:
@@ -63,7 +63,7 @@ def fastest_way(
     return way * cruise, first_s, cruise_s, last_s
 
 
-@kept
+@compiled_kernel
 def way_at(
     error: float, rate: float, way: tuple[float, float, float, float], t_s: float
 ) -> tuple[float, float, float, float]:
@@ -82,19 +82,19 @@ def way_at(
     return sums, error, rate, 0.0
 
 
-@kept
+@compiled_kernel
 def usable(push: float, target_push: float, fraction: float) -> float:
     """Return what an approach may use of an acceleration limit beside the target's own acceleration."""
     return max(fraction * push - TARGET_PUSH_SHARE * abs(target_push), PUSH_RESERVE * push)
 
 
-@kept
+@compiled_kernel
 def left_of(norm: float, used: float) -> float:
     """Return what one axis may use of a norm limit beside `used` on the other; never less than a fifth."""
     return math.sqrt(max(norm * norm - used * used, 0.04 * norm * norm))
 
 
-@kept
+@compiled_kernel
 def rate_bounds(target_v: Array, limits: Rates) -> tuple[Array, Array]:
     """Return the bounds (3,) of the velocity relative to a target's for `limits`, see `approach`."""
     slowest, fastest = np.empty(3), np.empty(3)
@@ -106,7 +106,7 @@ def rate_bounds(target_v: Array, limits: Rates) -> tuple[Array, Array]:
     return slowest, fastest
 
 
-@kept
+@compiled_kernel
 def split_norm(error: Array, rate: Array, target_v: Array, target_a: Array, limits: Rates, fraction: float) -> float:
     """Return the angle that splits the acceleration norm with the least sum of the times of both axes."""
     slowest, fastest = rate_bounds(target_v, limits)
@@ -126,7 +126,7 @@ def split_norm(error: Array, rate: Array, target_v: Array, target_a: Array, limi
     return mixed / total
 
 
-@kept
+@compiled_kernel
 def approach_push(error: float, rate: float, push: float, push_max: float, time_min_s: float) -> float:
     """Return the acceleration of the approach on one axis.
 
@@ -140,7 +140,7 @@ def approach_push(error: float, rate: float, push: float, push_max: float, time_
     return chosen
 
 
-@kept
+@compiled_kernel
 def approach(
     x: Array, node_s: Array, target: Array, floor: Array, limits: Rates, fraction: float, time_min_s: float
 ) -> tuple[float, Array, Array]:

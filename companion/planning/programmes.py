@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from companion.core.data import Array
 from companion.planning.axis_qp import slopes_of
-from companion.planning.compiled import kept
+from companion.planning.compiled import compiled_kernel
 from companion.planning.envelope import major_bounds, minor_bounds, vertical_bounds
 from companion.planning.horizon import turned_horizon
 from companion.planning.intercept import approach
@@ -81,7 +81,7 @@ of the target now and the direction of the major axis.
 """
 
 
-@kept
+@compiled_kernel
 def total_of(state: Path3, target: tuple[Array, Array, Array, Array]) -> float:
     """Return a number that is not finite if any of these is not, or is too large to be a place."""
     position, velocity, acceleration, floor = target
@@ -96,7 +96,7 @@ def total_of(state: Path3, target: tuple[Array, Array, Array, Array]) -> float:
     return total
 
 
-@kept
+@compiled_kernel
 def pose(
     state: Path3,
     target: tuple[Array, Array, Array, Array],
@@ -147,14 +147,14 @@ def pose(
     return math.isfinite(total_of(state, target) + sampling[1][0, 0, 0])
 
 
-@kept
+@compiled_kernel
 def put_linear(term: Array, slopes: Array, slack_weight: float) -> None:
     """Write a linear term (q,): `slopes` (m,) of the moves, then those of the slacks."""
     for i in range(len(term)):
         term[i] = slopes[i] if i < len(slopes) else slack_weight
 
 
-@kept
+@compiled_kernel
 def at_ends(acceleration: Array, end_node: NDArray[np.int64], move_s: Array) -> tuple[Array, Array]:
     """Return the accelerations (3, n + 1) now and at the ends of the blocks, (3, m + 1), and the mean jerks (3, m)."""
     ends, jerk = np.empty((3, len(end_node))), np.empty((3, len(move_s)))
@@ -166,7 +166,7 @@ def at_ends(acceleration: Array, end_node: NDArray[np.int64], move_s: Array) -> 
     return ends, jerk
 
 
-@kept
+@compiled_kernel
 def bound_minor(
     frame: Array, major_jerk: Array, forced_v: Array, limits: PlainLimits, plain_grid: PlainGrid, minor: Problem
 ) -> None:
@@ -176,7 +176,7 @@ def bound_minor(
     minor_bounds(frame[:3], major_jerk, forced_v, norms, grid.nodes_s[1:], grid.move_s, grid.end_s, minor[1:])
 
 
-@kept
+@compiled_kernel
 def plan_of(frame: Array, moves: tuple[Array, Array, Array], maps: Array, path: Array) -> float:
     """Write a plan, and return its largest slack.
 

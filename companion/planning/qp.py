@@ -12,7 +12,7 @@ import numpy as np
 
 from companion.config.planning import SolverKind
 from companion.core.data import Array
-from companion.planning.compiled import kept
+from companion.planning.compiled import compiled_kernel
 from companion.planning.guidance import PlanStatus
 from companion.planning.requests import are_finite
 
@@ -72,7 +72,7 @@ class Programme:
 _NO_FAULT, _NOT_FINITE, _CROSSED = range(3)
 
 
-@kept
+@compiled_kernel
 def is_finite(x: Array) -> bool:
     """Return whether all numbers of `x` (n,) are finite, none so large that the sum of their squares is not."""
     total = 0.0
@@ -81,7 +81,7 @@ def is_finite(x: Array) -> bool:
     return math.isfinite(total)
 
 
-@kept
+@compiled_kernel
 def fault_of(f: Array, lower: Array, upper: Array) -> int:
     """Return what is wrong with a linear term and bounds: nothing, a number that is not finite, or crossed bounds."""
     crossed = False

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from companion.core.data import Array
-from companion.planning.compiled import kept
+from companion.planning.compiled import compiled_kernel
 from companion.planning.guidance import Target
 
 VALUE, SLOPE, SLOPE_ENDING, LINEAR, LINEAR_ENDING = range(5)
@@ -69,7 +69,7 @@ class Resampler:
         return resampled_line(self.taken_line(samples), self.left, self.weights)
 
 
-@kept
+@compiled_kernel
 def resampled_path(path: tuple[Array, Array, Array], left: NDArray[np.int64], weights: Array) -> Array:
     """Return position, velocity and acceleration (3, k, 3) of samples (n, 3) at the nodes of a `Resampler`."""
     position, velocity, acceleration = path
@@ -87,7 +87,7 @@ def resampled_path(path: tuple[Array, Array, Array], left: NDArray[np.int64], we
     return resampled
 
 
-@kept
+@compiled_kernel
 def resampled_line(samples: Array, left: NDArray[np.int64], weights: Array) -> Array:
     """Return `samples` (n,) at the nodes (k,) of a `Resampler`, linear, and after the last one as that."""
     resampled = np.empty(len(left))

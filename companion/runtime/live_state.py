@@ -5,8 +5,11 @@ The messages are those of the recording, by steps: at 50 steps a second, the def
 A topic that nobody subscribes to is not encoded.
 """
 
+import sys
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from functools import partial
+from typing import Protocol
 
 from companion.recording.messages import (
     LONG_EVERY,
@@ -19,7 +22,7 @@ from companion.recording.messages import (
 )
 from companion.recording.records import LinkRecord, StepRecord
 from companion.runtime.node import CompanionNode
-from companion.runtime.node_records import link_record, step_record
+from companion.runtime.recorded_node import link_record, step_record
 from link import cdr
 from link.keys import Keys
 from link.messages import BodyTruth
@@ -112,3 +115,25 @@ def _estimate(record: StepRecord, keys: Keys) -> RosMessage | None:
 def _forecast(record: StepRecord, keys: Keys) -> RosMessage | None:
     forecast = forecast_of(record)
     return None if forecast is None else forecast_message(forecast, keys)
+
+
+class Onlooker(Protocol):
+    """Somebody who is told of each step; telling returns at once."""
+
+    def tell(self, node: CompanionNode, local_ns: int) -> None:
+        """Tell of the step that `node` made at `local_ns`."""
+
+    def close(self) -> None:
+        """End it."""
+
+
+def onlookers(stack: ExitStack, zenoh: ZenohSession, keys: Keys, device: str) -> list[Onlooker]:
+    """Return who looks on, to be closed with `stack`."""
+    found: list[Onlooker] = [LiveState(zenoh, keys)]
+    if sys.stdout.isatty():
+        from companion.runtime.terminal import Terminal  # noqa: PLC0415 (its library takes memory that a flight need not)
+
+        found.append(Terminal(device))
+    for one in found:
+        stack.callback(one.close)
+    return found

@@ -7,15 +7,14 @@ from contextlib import ExitStack
 
 import structlog
 
+from companion.autopilots.choice import check_autopilot
 from companion.runtime.command_desk import CommandDesk
-from companion.runtime.loop_options import Links, LoopOptions
+from companion.runtime.live_state import Onlooker, onlookers
 from companion.runtime.node import CompanionNode
-from companion.runtime.onlookers import Onlooker, onlookers
+from companion.runtime.options import Links, LoopOptions, Timings
 from companion.runtime.own_start import OwnStart
 from companion.runtime.pad_question import PadQuestion
 from companion.runtime.recorded_node import RecordingNode
-from companion.runtime.timings import Timings
-from companion.runtime.unheard import check_autopilot
 from companion.situation.phases import Phase
 from link import cdr
 from link.clock import Clock, ClockTick, SimulatedClock, SystemClock

@@ -3,13 +3,14 @@
 The wire loop, the lockstep campaigns and the tests all run this one.
 """
 
+import math
 from dataclasses import replace
 
 from companion.autopilots.link import CLOCK_SET_NS, AutopilotLink
 from companion.core.data import Measurement, VehicleEstimate
 from companion.landing.memory import StepMemory
+from companion.landing.status import plan_publication, status_publication
 from companion.landing.step_data import StepInputs, StepOutputs, System
-from companion.runtime.publishing import plan_publication, status_publication
 from companion.situation.phases import FLYING_PHASES, Phase
 from companion.step import companion_step
 from companion.vehicle.buffered import BufferHealth
@@ -65,6 +66,7 @@ class CompanionNode:
         self._stepped_ns: int | None = None
         self._stepped_own_ns: int | None = None
         self._t_ns = 0
+        self._monotonic_ns = 0
         self._utc_ahead_ns = 0  # of the monotonic clock, by what UTC has been set to
         self._status_ns: int | None = None
         self._statuses = 0
@@ -206,8 +208,8 @@ class CompanionNode:
     def _set_time(self, local_ns: int) -> None:
         """Take the time of this step.
 
-        The map to UTC is refined all the time, and the step's own time never goes back with it. Where UTC is set,
-        or becomes known, only UTC is: the monotonic time goes on, and the flight as if nothing had happened.
+        The map to UTC is refined all the time, and the step's own time never goes back with it. Where UTC is set, or
+        becomes known, only UTC is: the monotonic time goes on, and so does the flight.
         """
         utc_ns = self.autopilot.session.clock.local_to_utc_ns(local_ns)
         if self._stepped_ns is None:
@@ -218,10 +220,7 @@ class CompanionNode:
                 self._t_ns += set_by_ns
                 self._utc_ahead_ns += set_by_ns
         self._t_ns = max(self._t_ns + 1, utc_ns)
-
-    @property
-    def _monotonic_ns(self) -> int:
-        return self._t_ns - self._utc_ahead_ns
+        self._monotonic_ns = self._t_ns - self._utc_ahead_ns
 
     def _send(self, outputs: StepOutputs, local_ns: int) -> None:
         if not self._dry_run:
@@ -232,8 +231,8 @@ class CompanionNode:
             self.autopilot.send_text(outputs.text)
         if outputs.reply is not None:
             self._replies.append(outputs.reply)
-        period_ns = 1e9 / self.system.config.status_rate_hz
-        is_due = self._status_ns is None or self._monotonic_ns - self._status_ns >= period_ns
+        since_ns = math.inf if self._status_ns is None else self._monotonic_ns - self._status_ns
+        is_due = since_ns >= 1e9 / self.system.config.status_rate_hz
         if outputs.text is not None or is_due:
             self._publish(outputs)
 

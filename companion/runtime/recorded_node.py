@@ -1,14 +1,39 @@
 """A companion that records all that goes into it and what its steps make of that."""
 
 from companion.landing.step_data import System
-from companion.recording.records import InputKind, InputRecord, StepTimeRecord
+from companion.recording.records import InputKind, InputRecord, LinkRecord, StepRecord, StepTimeRecord
 from companion.runtime.node import CompanionNode
-from companion.runtime.node_records import link_record, step_record
 from link import json_payloads
 from link.keys import Keys
 from link.mavlink.session import MavlinkSession
 from link.messages import Command, PadGeometry
 from link.recorder import Recorder
+
+
+def step_record(node: CompanionNode, local_ns: int) -> StepRecord | None:
+    """Return the step that was made at `local_ns`, None before the first one."""
+    if node.inputs is None or node.outputs is None:
+        return None
+    clock = node.autopilot.session.clock
+    return StepRecord(
+        local_ns=local_ns,
+        utc_known=clock.is_utc_known and clock.local_to_boot is not None,
+        inputs=node.inputs,
+        outputs=node.outputs,
+        estimator=node.system.estimator,
+        estimator_memory=node.memory.vehicle.estimator,
+    )
+
+
+def link_record(node: CompanionNode, t_ns: int, records_dropped: int) -> LinkRecord:
+    """Return the counters of both links at `t_ns`."""
+    return LinkRecord(
+        t_ns=t_ns,
+        session=node.autopilot.session.statistics,
+        zenoh_bad_payloads=node.bad_payloads,
+        records_dropped=records_dropped,
+    )
+
 
 _LINK_NS = 1_000_000_000  # between two records of the counters
 

@@ -4,7 +4,7 @@ from rich.console import Console
 
 from companion.recording.records import LinkRecord
 from companion.runtime.node import CompanionNode
-from companion.runtime.node_records import link_record
+from companion.runtime.recorded_node import link_record
 from link.messages import LandingStatus
 from link.recorder import BackgroundRecorder
 from link.screen import Screen

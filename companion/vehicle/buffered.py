@@ -1,8 +1,12 @@
-"""Any filter model as the companion's estimator: the delay buffer in front, predictions behind."""
+"""The one interface of all estimators of the ground vehicle, and any filter model as one of them.
+
+An estimator is a pair of pure functions over its own immutable memory. Measurements are fused at the time they were
+taken, whatever order they arrive in: a delay buffer is in front, predictions are behind.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Generic, NewType, Protocol, TypeVar
 
 from companion.config.estimation import BufferConfig
 from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
@@ -37,7 +41,7 @@ class BufferHealth:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BufferedEstimator(Generic[S]):
-    """`companion.vehicle.estimator.Estimator` over a `FilterModel`; holds configuration only."""
+    """`companion.vehicle.buffered.Estimator` over a `FilterModel`; holds configuration only."""
 
     model: FilterModel[S]
     config: BufferConfig
@@ -87,3 +91,26 @@ class BufferedEstimator(Generic[S]):
         if is_forgotten(self.config, snapshot, t_ns):
             return None
         return self.model.predict(snapshot.state, (t_ns - snapshot.t_ns) * 1e-9)
+
+
+EstimatorMemory = NewType("EstimatorMemory", object)
+"""What an estimator remembers; only that estimator reads it."""
+
+
+class Estimator(Protocol):
+    """What the companion asks of an estimator; the memory is None until the first fix."""
+
+    def fuse(self, memory: EstimatorMemory | None, measurements: Sequence[Measurement]) -> EstimatorMemory | None:
+        """Return the memory after `measurements`; late ones are fused at their own time, outliers are gated."""
+
+    def estimate(self, memory: EstimatorMemory | None, t_ns: int) -> VehicleEstimate | None:
+        """Return the vehicle at `t_ns`, or None before the first fix and long after the last."""
+
+    def forecast(self, memory: EstimatorMemory | None, t_ns: int, offset_s: Array) -> Forecast | None:
+        """Return the vehicle at `t_ns + offset_s`, `offset_s` (n,), or None as `estimate` does."""
+
+    def newest_fix_ns(self, memory: EstimatorMemory | None) -> int | None:
+        """Return the time at which the newest accepted position was taken."""
+
+    def health(self, memory: EstimatorMemory | None) -> BufferHealth:
+        """Return the counters and the consistency of the memory."""

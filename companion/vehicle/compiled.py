@@ -15,4 +15,4 @@ FILES = (
 )
 """All that compiled functions of this package are in: they call each other across them."""
 
-kept = kept_kernel(file_digest(Path(__file__).with_name(name) for name in FILES))
+compiled_kernel = kept_kernel(file_digest(Path(__file__).with_name(name) for name in FILES))

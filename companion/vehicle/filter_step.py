@@ -9,10 +9,35 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Generic, Protocol, TypeVar
 
+import numpy as np
 from scipy.special import gammaincinv
 
 from companion.config.estimation import BufferConfig
 from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Gaussian:
+    """Mean `(n,)` and covariance `(n, n)`; which states and units, each filter says."""
+
+    mean: Array
+    covariance: Array
+
+
+def symmetric(matrix: Array) -> Array:
+    """Return the symmetric part of `(n, n)`, which rounding takes away."""
+    return 0.5 * (matrix + matrix.T)
+
+
+def squared_norm(innovation: Array, covariance: Array) -> float:
+    """Return the normalised innovation squared, NIS, of `(m,)` with covariance `(m, m)`."""
+    return float(innovation @ np.linalg.solve(covariance, innovation))
+
+
+def wrapped(angle_rad: float) -> float:
+    """Return the angle in [-pi, pi)."""
+    return (angle_rad + math.pi) % (2.0 * math.pi) - math.pi
+
 
 S = TypeVar("S")
 

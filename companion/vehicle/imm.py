@@ -21,8 +21,7 @@ from companion.vehicle import imm_forecast as forecasts
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_sensors as sensors
-from companion.vehicle.filter_step import Update
-from companion.vehicle.gaussian import wrapped
+from companion.vehicle.filter_step import Update, wrapped
 from companion.vehicle.imm_numbers import Numbers, noises_with, numbers_of
 from link.messages import Vector3
 

@@ -6,13 +6,13 @@
 import numpy as np
 
 from companion.core.data import Array
-from companion.vehicle.compiled import kept
+from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_kernels import SIZE
 from companion.vehicle.imm_mixing import Modes, combine, glide
 from companion.vehicle.imm_sensors import antenna_velocity, horizontal_acceleration
 
 
-@kept
+@compiled_kernel
 def kinematics(states: Array, motion: Array) -> tuple[Array, Array, Array]:
     """Return the antenna's position and velocity and the pad's acceleration in W, each (n, 3), of `states` (n, 16)."""
     n = len(states)
@@ -26,7 +26,7 @@ def kinematics(states: Array, motion: Array) -> tuple[Array, Array, Array]:
     return position, velocity, acceleration
 
 
-@kept
+@compiled_kernel
 def kinematics_jacobian(x: Array, motion: Array) -> Array:
     """Return the Jacobian `(9, 16)` of position, velocity and acceleration."""
     G = np.zeros((9, SIZE))
@@ -37,7 +37,7 @@ def kinematics_jacobian(x: Array, motion: Array) -> Array:
     return G
 
 
-@kept
+@compiled_kernel
 def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) -> tuple[Array, Array]:
     """Return the means `(n, 16)` and the position variances `(n, 3)` at `offset_s` (n,), not falling."""
     n = len(offset_s)
@@ -54,7 +54,7 @@ def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) ->
     return means, variances
 
 
-@kept
+@compiled_kernel
 def forecast_modes(
     modes: Modes, offset_s: Array, noises: Array, motion: Array
 ) -> tuple[Array, Array, Array, Array, Array]:

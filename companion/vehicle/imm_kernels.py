@@ -21,7 +21,7 @@ import math
 import numpy as np
 
 from companion.core.data import Array
-from companion.vehicle.compiled import kept
+from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.small_matrices import inverse_of, less_outer, times
 
 SIZE = 16
@@ -31,7 +31,7 @@ CLOCK = 15
 CLOCK_NOISE = 8  # its place in the noise
 
 
-@kept
+@compiled_kernel
 def standstill_s(v: Array, b: Array, tau_s: float, dt_s: float) -> float:
     """Return when, within `dt_s`, braking has used up the speed; a negative time if it does not."""
     speed2 = v[0] * v[0] + v[1] * v[1]
@@ -42,7 +42,7 @@ def standstill_s(v: Array, b: Array, tau_s: float, dt_s: float) -> float:
     return -tau_s * math.log(max(1.0 - speed2 / (braking * tau_s), 1e-12))
 
 
-@kept
+@compiled_kernel
 def advance(x: Array, dt_s: float, tau_s: float, heave: Array) -> tuple[Array, Array]:
     """Return the state `dt_s` later and its Jacobian `(16, 16)`.
 
@@ -102,7 +102,7 @@ def advance(x: Array, dt_s: float, tau_s: float, heave: Array) -> tuple[Array, A
     return y, F
 
 
-@kept
+@compiled_kernel
 def heave_step(dt_s: float, frequency_rad_s: float, damping: float, std_m: float) -> tuple[Array, Array]:
     """Return transition and noise, each (2, 2), of a damped oscillator driven by white noise to a steady `std_m`."""
     damped = frequency_rad_s * math.sqrt(1.0 - damping**2)
@@ -120,7 +120,7 @@ def heave_step(dt_s: float, frequency_rad_s: float, damping: float, std_m: float
     return A, noise
 
 
-@kept
+@compiled_kernel
 def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array) -> Array:
     """Return Q `(16, 16)` over `dt_s`.
 
@@ -165,7 +165,7 @@ def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array) -> Ar
     return Q
 
 
-@kept
+@compiled_kernel
 def correct(x: Array, P: Array, residual: Array, H: Array, R: Array) -> tuple[Array, Array, float, float]:
     """Return mean, covariance, NIS and log-likelihood after a measurement.
 

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from companion.core.data import Array
-from companion.vehicle.compiled import kept
+from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_kernels import CLOCK, SIZE, advance, correct, heave_step, process_noise
 from companion.vehicle.imm_sensors import (
     COURSE,
@@ -30,7 +30,7 @@ WEIGHT_MIN = 1e-12  # a mode that rounding has ruled out could never come back
 STEP_MAX_S = 0.1  # 0.04 rad in the tightest of the benchmark's curves
 
 
-@kept
+@compiled_kernel
 def switching(dwell_s: Array, dt_s: float) -> Array:
     """Return the probabilities `(2, 2)` of having gone from row to column after `dt_s`."""
     mixed = 1.0 - math.exp(-dt_s * (1.0 / dwell_s[0] + 1.0 / dwell_s[1]))
@@ -38,7 +38,7 @@ def switching(dwell_s: Array, dt_s: float) -> Array:
     return mixed * np.stack((long_run, long_run)) + (1.0 - mixed) * np.eye(2)
 
 
-@kept
+@compiled_kernel
 def combine(means: Array, covariances: Array, weights: Array) -> tuple[Array, Array]:
     """Return mean and covariance of the mixture."""
     mean = weights[0] * means[0] + weights[1] * means[1]
@@ -47,7 +47,7 @@ def combine(means: Array, covariances: Array, weights: Array) -> tuple[Array, Ar
     return mean, weights[0] * covariances[0] + weights[1] * covariances[1] + spread
 
 
-@kept
+@compiled_kernel
 def mix(modes: Modes, changes: Array) -> Modes:
     """Return the filter after the modes may have changed with probabilities `changes` (2, 2)."""
     means, covariances, weights = modes
@@ -59,7 +59,7 @@ def mix(modes: Modes, changes: Array) -> Modes:
     return mixed_means, mixed_covariances, after
 
 
-@kept
+@compiled_kernel
 def shifted(x: Array, P: Array, lever: Array, sign: float) -> tuple[Array, Array]:
     """Return mean and covariance with the position moved by `sign` times `lever` (3,) of V, which the heading turns."""
     arm_x, arm_y = turned(lever, x[7])
@@ -75,7 +75,7 @@ def shifted(x: Array, P: Array, lever: Array, sign: float) -> tuple[Array, Array
     return y, S
 
 
-@kept
+@compiled_kernel
 def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple[Array, Array]:
     """Return mean and covariance of one mode `dt_s` later, in equal steps.
 
@@ -103,14 +103,14 @@ def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple
     return x, 0.5 * (P + P.T)
 
 
-@kept
+@compiled_kernel
 def is_heading_known(modes: Modes, known_variance: float) -> bool:
     """Return whether the heading of the mixture is known better than `known_variance`, rad^2."""
     _, covariances, weights = modes
     return bool(weights[0] * covariances[0, 7, 7] + weights[1] * covariances[1, 7, 7] < known_variance)
 
 
-@kept
+@compiled_kernel
 def with_direction(motion: Array, modes: Modes, known_variance: float) -> Array:
     """Return `motion` without its lever arm where the heading is not known better than `known_variance`, rad^2."""
     directed = motion.copy()
@@ -119,7 +119,7 @@ def with_direction(motion: Array, modes: Modes, known_variance: float) -> Array:
     return directed
 
 
-@kept
+@compiled_kernel
 def predict_modes(modes: Modes, dt_s: float, noises: Array, dwell_s: Array, motion: Array) -> Modes:
     """Return the filter `dt_s` later; `noises` (2, 9), `dwell_s` (2,), `motion` as `with_direction` has it."""
     means, covariances, weights = mix(modes, switching(dwell_s, dt_s))
@@ -128,7 +128,7 @@ def predict_modes(modes: Modes, dt_s: float, noises: Array, dwell_s: Array, moti
     return means, covariances, weights
 
 
-@kept
+@compiled_kernel
 def residual_of(kind: int, value: Array, expected: Array) -> Array:
     """Return measured minus expected, the short way round for angles."""
     residual = value - expected
@@ -137,7 +137,7 @@ def residual_of(kind: int, value: Array, expected: Array) -> Array:
     return residual
 
 
-@kept
+@compiled_kernel
 def update_modes(
     modes: Modes, reading: tuple[int, Array, Array], lever: Array, sees_heading: bool
 ) -> tuple[Modes, float, float]:
@@ -172,7 +172,7 @@ def update_modes(
     return (xs, Ps, after), float(mixture_nis), float(nis.min())
 
 
-@kept
+@compiled_kernel
 def align_modes(
     means: Array, covariances: Array, speed_min_m_s: float, course_variance: float, known_variance: float
 ) -> tuple[Array, Array]:
@@ -197,7 +197,7 @@ def align_modes(
     return xs, Ps
 
 
-@kept
+@compiled_kernel
 def take_reading(
     modes: Modes, reading: tuple[int, Array, Array], lever: Array, course: Array
 ) -> tuple[Modes, float, float]:

@@ -9,20 +9,20 @@ import math
 import numpy as np
 
 from companion.core.data import Array
-from companion.vehicle.compiled import kept
+from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_kernels import CLOCK, SIZE
 
 POSITION, VELOCITY, HEADING, YAW_RATE, PAD, COURSE = range(6)
 
 
-@kept
+@compiled_kernel
 def course(x: Array) -> tuple[float, float, float]:
     """Return the horizontal speed, m/s, and its direction as a unit vector, (0, 0) at rest."""
     speed = math.hypot(x[2], x[3])
     return (speed, x[2] / speed, x[3] / speed) if speed > 1e-6 else (speed, 0.0, 0.0)
 
 
-@kept
+@compiled_kernel
 def horizontal_acceleration(x: Array) -> tuple[Array, Array]:
     """Return the horizontal acceleration (2,), m/s^2, of `x` and its Jacobian (2, 5) by `v`, `b` and `k`."""
     speed, ux, uy = course(x)
@@ -33,14 +33,14 @@ def horizontal_acceleration(x: Array) -> tuple[Array, Array]:
     return np.array([x[4] - k * speed * x[3], x[5] + k * speed * x[2]]), G
 
 
-@kept
+@compiled_kernel
 def turned(lever: Array, yaw_rad: float) -> tuple[float, float]:
     """Return the horizontal part of `lever` (3,) in V, turned by the heading into W, m."""
     c, s = math.cos(yaw_rad), math.sin(yaw_rad)
     return c * lever[0] - s * lever[1], s * lever[0] + c * lever[1]
 
 
-@kept
+@compiled_kernel
 def antenna_velocity(x: Array, lever: Array) -> tuple[Array, Array]:
     """Return the antenna's velocity (3,), m/s, and its Jacobian (3, 16).
 
@@ -62,7 +62,7 @@ def antenna_velocity(x: Array, lever: Array) -> tuple[Array, Array]:
     return z, H
 
 
-@kept
+@compiled_kernel
 def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Array, Array]:
     """Return what a sensor reads at `x`, `(m,)`, and its Jacobian `(m, 16)`.
 

@@ -11,8 +11,7 @@ import numpy as np
 from filterpy.kalman import predict, update
 
 from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
-from companion.vehicle.filter_step import Update
-from companion.vehicle.gaussian import Gaussian, squared_norm, symmetric
+from companion.vehicle.filter_step import Gaussian, Update, squared_norm, symmetric
 from companion.vehicle.lkf_noise import LkfNoise
 
 I3 = np.eye(3)

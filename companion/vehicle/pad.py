@@ -7,7 +7,7 @@ import numpy as np
 
 from companion.core.data import Array, Forecast
 from companion.core.reasons import Cause, Reason
-from companion.vehicle.compiled import kept
+from companion.vehicle.compiled import compiled_kernel
 from link.messages import PadGeometry
 
 HEADING_UNKNOWN, NOT_DESCRIBED = Cause(Reason.HEADING_UNKNOWN), Cause(Reason.PAD_NOT_DESCRIBED)
@@ -78,7 +78,7 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
     )
 
 
-@kept
+@compiled_kernel
 def turned_lever(yaw_rad: Array, offset_s: Array, lever_x_m: float, lever_y_m: float) -> tuple[Array, Array]:
     """Return a horizontal lever arm of V in W over a horizon, and its rate of change, each (n, 3).
 

@@ -9,10 +9,10 @@ import math
 import numpy as np
 
 from companion.core.data import Array
-from companion.vehicle.compiled import kept
+from companion.vehicle.compiled import compiled_kernel
 
 
-@kept
+@compiled_kernel
 def times(left: Array, right: Array) -> Array:
     """Return the product (m, n) of `left` (m, k), whose zeros are left out, and `right` (k, n)."""
     m, k = left.shape
@@ -27,13 +27,13 @@ def times(left: Array, right: Array) -> Array:
     return product
 
 
-@kept
+@compiled_kernel
 def carried_through(left: Array, covariance: Array) -> Array:
     """Return `left @ covariance @ left.T`, (m, m), of a symmetric `covariance` (n, n)."""
     return times(left, times(left, covariance).T)
 
 
-@kept
+@compiled_kernel
 def less_outer(matrix: Array, left: Array, right: Array) -> Array:
     """Return `matrix - left.T @ right`, (n, n), of `left` and `right`, each (m, n) with few rows."""
     difference = matrix.copy()
@@ -46,7 +46,7 @@ def less_outer(matrix: Array, left: Array, right: Array) -> Array:
     return difference
 
 
-@kept
+@compiled_kernel
 def inverse_of(covariance: Array) -> tuple[Array, float]:
     """Return the inverse (m, m) of a covariance, and the logarithm of its determinant, by Cholesky's factors.
 

@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 
 from companion.config.landing import DescentConfig
 from companion.core.data import VehicleEstimate
+from companion.vehicle.buffered import Estimator, EstimatorMemory
 from companion.vehicle.driving import Driving, brakes_hard, with_velocity
-from companion.vehicle.estimator import Estimator, EstimatorMemory
 from link.records import replace
 
 _BELIEF_PERIOD_NS = 100_000_000

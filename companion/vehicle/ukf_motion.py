@@ -10,12 +10,12 @@ import math
 import numpy as np
 
 from companion.core.data import Array
-from companion.vehicle.compiled import kept
+from companion.vehicle.compiled import compiled_kernel
 
 SIZE = 8
 
 
-@kept
+@compiled_kernel
 def drive(state: Array, dt_s: float, decay_s: float) -> Array:
     """Return the state (8,) after `dt_s` with an acceleration that fades with `decay_s`."""
     _, _, heading, speed, acceleration, curvature, _, climb = state
@@ -39,7 +39,7 @@ def drive(state: Array, dt_s: float, decay_s: float) -> Array:
     return after
 
 
-@kept
+@compiled_kernel
 def drive_all(states: Array, offset_s: Array, decay_s: float) -> Array:
     """Return `(n, k, 8)`: each of `states` (k, 8) at each of `offset_s` (n,)."""
     after = np.empty((len(offset_s), *states.shape))

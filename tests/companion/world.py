@@ -18,8 +18,7 @@ from companion.landing.step_data import StepInputs, StepOutputs, System
 from companion.planning.kinds import make_guidance
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.step import companion_step
-from companion.vehicle.buffered import BufferHealth
-from companion.vehicle.estimator import Estimator
+from companion.vehicle.buffered import BufferHealth, Estimator
 from link.frames import quaternion_from_yaw
 from link.geodesy import Datum
 from link.local_frame import LocalFrame, Projection

@@ -6,8 +6,7 @@ from dataclasses import replace
 import pytest
 
 from companion.config.companion import CompanionConfig
-from companion.core.data import OwnState
-from companion.core.gravity import GRAVITY_M_S2
+from companion.core.data import GRAVITY_M_S2, OwnState
 from companion.landing.memory import StepMemory
 from companion.landing.sway import Sway, is_swaying, update_sway
 from companion.landing.targets import pad_aim

@@ -5,7 +5,7 @@ import pytest
 
 from companion.core.data import Forecast
 from companion.planning.guidance import Trajectory
-from companion.recording.paths import forecast_path_message, plan_path_message
+from companion.recording.messages import forecast_path_message, plan_path_message
 from link import cdr
 from link.keys import Keys
 from link.messages import Plan

@@ -9,7 +9,7 @@ import pytest
 from companion.runtime import command_desk
 from companion.runtime.command_desk import CommandDesk
 from companion.runtime.node import CompanionNode
-from companion.runtime.timings import Timings
+from companion.runtime.options import Timings
 from link import json_payloads
 from link.messages import Command, CommandReply
 from tests.companion.peer import Setup

@@ -2,7 +2,7 @@
 
 import pytest
 
-from companion.runtime.unheard import check_autopilot
+from companion.autopilots.choice import check_autopilot
 from link.errors import UserError
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink

@@ -8,7 +8,7 @@ from companion.config.estimation import BufferConfig, EstimatorConfig, ImmConfig
 from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle.delay_buffer import DelayBuffer, fuse
-from companion.vehicle.gaussian import Gaussian
+from companion.vehicle.filter_step import Gaussian
 from companion.vehicle.imm import ImmModel, ImmState
 from companion.vehicle.imm_kernels import heave_step
 from companion.vehicle.imm_mixing import combine

@@ -8,8 +8,7 @@ from companion.config.estimation import BufferConfig, LkfConfig
 from companion.core.data import Measurement, Quantity
 from companion.vehicle.buffered import BufferedEstimator
 from companion.vehicle.delay_buffer import DelayBuffer, fuse
-from companion.vehicle.filter_step import FilterModel, nis_threshold
-from companion.vehicle.gaussian import Gaussian
+from companion.vehicle.filter_step import FilterModel, Gaussian, nis_threshold
 from companion.vehicle.lkf import LkfModel
 from companion.vehicle.lkf_noise import WhiteJerkNoise
 from tests.companion.vehicle.rides import now_ns

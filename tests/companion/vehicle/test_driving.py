@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
+from companion.vehicle.buffered import EstimatorMemory
 from companion.vehicle.driving import Driving, drives_unevenly, may_depart, turns_hard, winds
-from companion.vehicle.estimator import EstimatorMemory
 from companion.vehicle.surprise import Surprise, update_surprise
 from tests.companion.facts import NOW_NS
 from tests.companion.vehicle.drives import (

@@ -12,8 +12,8 @@ from companion.core.data import VehicleEstimate
 from companion.landing.memory import StepMemory
 from companion.landing.waiting import waits_at_m
 from companion.situation.phases import Phase
+from companion.vehicle.buffered import EstimatorMemory
 from companion.vehicle.driving import Driving
-from companion.vehicle.estimator import EstimatorMemory
 from companion.vehicle.surprise import Surprise, forget_beliefs, may_surprise, update_surprise
 from link.messages import Vector3
 from tests.companion.facts import NOW_NS, changed, drone_at, pad_at, situation

@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 from companion.config.estimation import LkfConfig, UkfConfig
 from companion.core.data import Array, Measurement, Quantity
-from companion.vehicle.gaussian import Gaussian
+from companion.vehicle.filter_step import Gaussian
 from companion.vehicle.ukf import Car, UkfModel
 from companion.vehicle.ukf_motion import drive, drive_all, kinematics, process_noise
 from tests.companion.vehicle.rides import now_ns

@@ -9,20 +9,20 @@ _DISARM_AGAIN_S = 0.2
 _CUSTOM_MODE_FLAG = 1.0  # MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
 _FORCE_DISARM = 21196.0  # MAVLink common, MAV_CMD_COMPONENT_ARM_DISARM, parameter 2
 
-Asked = tuple[DriverMemory, tuple[AutopilotCommand, ...]]
+Requested = tuple[DriverMemory, tuple[AutopilotCommand, ...]]
 
 
-def ask(memory: DriverMemory, command: AutopilotCommand, monotonic_ns: int, again_s: float = ASK_AGAIN_S) -> Asked:
+def ask(memory: DriverMemory, command: AutopilotCommand, monotonic_ns: int, again_s: float = ASK_AGAIN_S) -> Requested:
     """Return `command`, unless the same one, parameters included, was sent less than `again_s` ago."""
-    asked = dict(memory.asked_ns or {})
-    last_ns = asked.get(command)
+    asked_ns = dict(memory.asked_ns or {})
+    last_ns = asked_ns.get(command)
     if last_ns is not None and (monotonic_ns - last_ns) * 1e-9 < again_s:
         return memory, ()
-    asked[command] = monotonic_ns
-    return replace(memory, asked_ns=asked), (command,)
+    asked_ns[command] = monotonic_ns
+    return replace(memory, asked_ns=asked_ns), (command,)
 
 
-def ask_to_disarm(memory: DriverMemory, desire: Desire, monotonic_ns: int) -> Asked:
+def ask_to_disarm(memory: DriverMemory, desire: Desire, monotonic_ns: int) -> Requested:
     """Ask plainly; once that was refused, and only with the evidence complete, force it."""
     force = desire.force_disarm and memory.disarm_refusals > 0
     return ask(replace(memory, disarm_asked=True), arm(armed=False, force=force), monotonic_ns, _DISARM_AGAIN_S)

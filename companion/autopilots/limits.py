@@ -1,12 +1,42 @@
-"""Which of the autopilot's limits still have to be asked for; without I/O.
+"""Flight limits from an autopilot's parameters, and which of these still have to be asked for; without I/O.
 
 A limit that was never told is flown without, as if there were none, so what is known by none of its names is asked for
 again, for as long as that takes. Some firmware has no parameter of one name or another: then the question costs little.
 """
 
+import math
+from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
 
 from companion.autopilots.driver import Driver
+from companion.core.data import GRAVITY_M_S2
+
+_STATED_MIN = 0.1  # m/s or degrees; a limit below this cannot be flown with
+_TILT_SHARE = 0.7  # of the tilt limit left to planned acceleration; the rest is for drag and wind
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """One name of a parameter, and what one of its units is in m/s or degrees."""
+
+    name: str
+    unit: float = 1.0
+
+
+def stated(parameters: Mapping[str, float], names: Sequence[Named]) -> float:
+    """Return a limit by whichever of its names is known, infinity where none is or what it says cannot be meant."""
+    for named in names:
+        value = parameters.get(named.name, math.nan) * named.unit
+        if value >= _STATED_MIN:
+            return value
+    return math.inf
+
+
+def acceleration_of_tilt_m_s2(tilt_deg: float) -> float:
+    """Return the horizontal acceleration that may be planned under a tilt limit."""
+    return _TILT_SHARE * GRAVITY_M_S2 * math.tan(math.radians(tilt_deg))
+
 
 _ASK_AGAIN_NS = 5_000_000_000  # after six questions without an answer, as over a link that was silent
 

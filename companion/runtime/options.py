@@ -1,10 +1,15 @@
-"""How long a companion's loop takes, in wall seconds."""
+"""What the companion's wire loop is given: how it runs, what connects it with the world, where its times are kept."""
 
 import time
 from collections import deque
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import psutil  # type: ignore[import-untyped]  # it has no annotations
+
+from link.keys import Keys
+from link.mavlink.transports import Transport
+from link.zenoh_session import ZenohSession
 
 _DURATIONS_MAX = 200_000  # steps whose durations are kept, over an hour's worth
 
@@ -33,3 +38,31 @@ class Timings:
             "cpu_share": round((time.process_time() - self.started_cpu_s) / wall_s, 4),
             "memory_mb": round(psutil.Process().memory_info().rss / 1e6, 1),
         }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoopOptions:
+    """How the loop runs.
+
+    Attributes:
+        device: of the MAVLink link, for messages.
+        timeout_s: without an autopilot or, with `start`, a vehicle; 0 waits for ever.
+        start: start the landing without an operator.
+        use_sim_time: follow `{ns}/clock` instead of the system's clock.
+        tlog: file to record MAVLink into.
+    """
+
+    device: str
+    timeout_s: float
+    start: bool
+    use_sim_time: bool
+    tlog: Path | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Links:
+    """What connects the node with the world."""
+
+    keys: Keys
+    transport: Transport
+    zenoh: ZenohSession
