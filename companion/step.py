@@ -9,8 +9,7 @@ from companion.core.data import Forecast
 from companion.core.reasons import sentence
 from companion.integrity.contradictions import Contradictions, FixStamps, update_contradictions, update_fix_stamps
 from companion.integrity.course import update_course, without_contradicted_heading
-from companion.integrity.ground import is_road_elsewhere, update_ground
-from companion.integrity.pad_height import update_pad_raised_m, with_pad_raised
+from companion.integrity.heights import is_road_elsewhere, update_ground, update_pad_raised_m, with_pad_raised
 from companion.landing.condition import holds
 from companion.landing.contact import may_force_motors_off, signs_of
 from companion.landing.contact_conditions import HELD_UP

@@ -70,7 +70,7 @@ def check(
     zenoh_config: ZenohConfigOption = None,
 ) -> int:
     """Read the autopilot and the vehicle, and say what to change before a landing; exit code 1 when something fails."""
-    from companion.check.changes import kept
+    from companion.check.findings import kept
     from companion.check.session import open_check
     from companion.config.companion import CompanionConfig
     from link.keys import Keys
@@ -130,7 +130,7 @@ def _show(findings: "list[Finding]", speed_m_s: float, *, as_json: bool) -> int:
 
 def _set(session: "CheckSession", findings: "list[Finding]", keep_file: Path, *, asks: bool) -> None:
     """Keep the present values, then write the advised ones."""
-    from companion.check.changes import advised_values, keep
+    from companion.check.findings import advised_values, keep
 
     advised = advised_values(findings)
     if not advised:

@@ -4,7 +4,7 @@ import math
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason, sentence
-from companion.integrity.ground import VEHICLE_M
+from companion.integrity.heights import VEHICLE_M
 from companion.situation.phases import Event, Phase, next_phase
 from companion.situation.situation import Situation, vehicle_stands
 from link.messages import Command, CommandReply

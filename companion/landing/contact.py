@@ -16,7 +16,7 @@ from enum import Enum
 from companion.config.companion import CompanionConfig
 from companion.config.landing import TouchdownConfig
 from companion.situation.situation import Approach, Situation
-from companion.vehicle.pad_reach import over_pad_radius_m
+from companion.vehicle.pad import over_pad_radius_m
 from link.records import replace
 
 _JOLT_S = 0.06  # three reports at 50 Hz

@@ -8,14 +8,14 @@ import math
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
 from companion.integrity.contradictions import contradicts_itself
-from companion.integrity.ground import road_above_ground_m, road_distance_m
+from companion.integrity.heights import road_above_ground_m, road_distance_m
 from companion.landing.aborts import is_stamped_ahead
 from companion.landing.condition import Condition, cause_of, holds, is_fix_old
 from companion.landing.memory import Held
 from companion.landing.targets import chase_floor_m
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
-from companion.vehicle.pad_reach import is_too_small
+from companion.vehicle.pad import is_too_small
 
 SPEED_SHARE_MIN = 1.15
 """Of the vehicle's speed: with less there is nothing to catch up with, and no landing is begun."""

@@ -28,8 +28,7 @@ from companion.landing.waiting import waits_at_m
 from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.situation.situation import Situation
-from companion.vehicle.pad import PadPath
-from companion.vehicle.pad_reach import over_pad_radius_m
+from companion.vehicle.pad import PadPath, over_pad_radius_m
 from link.frames import wrap_angle
 from link.records import replace
 

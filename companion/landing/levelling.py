@@ -13,7 +13,7 @@ from companion.landing.memory import StepMemory
 from companion.landing.step_data import StepInputs
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation
-from companion.vehicle.pad_reach import over_pad_radius_m
+from companion.vehicle.pad import over_pad_radius_m
 from link.records import replace
 
 _SEEN_OFF_MAX_M = 1.0  # what a range finder sees farther off is not the pad: a roof is 1.5 m above the road

@@ -15,8 +15,7 @@ from companion.config.landing import DescentConfig, LandingStyle
 from companion.core.data import Array
 from companion.planning.guidance import ReferenceState, Target
 from companion.situation.phases import Phase
-from companion.vehicle.pad import PadPath
-from companion.vehicle.pad_reach import unseen_std_max_m
+from companion.vehicle.pad import PadPath, unseen_std_max_m
 
 HORIZON_OFFSETS_S: Array = np.arange(0.0, 4.01, 0.2)
 NO_FLOOR_M = -1e4

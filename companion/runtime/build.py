@@ -1,11 +1,16 @@
 """A companion from its configuration."""
 
+from typing import assert_never, cast
+
 import numpy as np
 
 from companion.config.companion import CompanionConfig
+from companion.config.planning import GuidanceConfig, GuidanceKind
 from companion.landing.step_data import System
-from companion.planning.guidance import GuidanceMemory, PlanRequest, ReferenceState, Target
-from companion.planning.kinds import make_guidance
+from companion.planning.guidance import Guidance, GuidanceMemory, PlanRequest, ReferenceState, Target
+from companion.planning.mpc import Mpc
+from companion.planning.mpc_report import ReportMpc
+from companion.planning.pn import ProportionalNavigation
 from companion.runtime.node import CompanionNode
 from companion.runtime.recorded_node import RecordingNode
 from companion.vehicle.factory import make_estimator
@@ -78,3 +83,20 @@ def build_node(
     if recorder is not None:
         return RecordingNode(system, keys, session, recorder, dry_run=dry_run)
     return CompanionNode(system, keys, session, dry_run=dry_run)
+
+
+def make_guidance(kind: GuidanceKind, config: GuidanceConfig) -> Guidance:
+    """Return the guidance law `kind` with its numbers from `config`."""
+    return cast("Guidance", _law(kind, config))  # each has its own memory, which only it reads
+
+
+def _law(kind: GuidanceKind, config: GuidanceConfig) -> Mpc | ReportMpc | ProportionalNavigation:
+    match kind:
+        case GuidanceKind.MPC:
+            return Mpc(config.mpc)
+        case GuidanceKind.MPC_REPORT:
+            return ReportMpc(config.mpc_report)
+        case GuidanceKind.PN:
+            return ProportionalNavigation(config.pn)
+        case _:
+            assert_never(kind)

@@ -64,8 +64,11 @@ def _make(config: EstimatorConfig, antenna_to_pad_m: Vector3, kind: EstimatorKin
 
 
 def _linear(config: EstimatorConfig, kind: EstimatorKind) -> Estimator:
-    from companion.vehicle.lkf import LkfModel  # noqa: PLC0415 (filterpy costs 0.4 s and 60 MB to load)
-    from companion.vehicle.lkf_noise import ReportNoise, WhiteJerkNoise  # noqa: PLC0415 (with it)
+    from companion.vehicle.lkf import (  # noqa: PLC0415 (filterpy costs 0.4 s and 60 MB to load)
+        LkfModel,
+        ReportNoise,
+        WhiteJerkNoise,
+    )
 
     if kind is EstimatorKind.LKF_REPORT:
         ungated = config.buffer.model_copy(update={"gate_probability": None})

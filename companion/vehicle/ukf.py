@@ -15,8 +15,7 @@ from filterpy.kalman import MerweScaledSigmaPoints, UnscentedKalmanFilter
 from companion.config.estimation import LkfConfig, UkfConfig
 from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
 from companion.vehicle.filter_step import Gaussian, Update, squared_norm, symmetric, wrapped
-from companion.vehicle.lkf import LkfModel
-from companion.vehicle.lkf_noise import WhiteJerkNoise
+from companion.vehicle.lkf import LkfModel, WhiteJerkNoise
 from companion.vehicle.ukf_motion import SIZE, drive, drive_all, kinematics, process_noise, track_variance
 
 STEP_MAX_S = 0.2  # 0.08 rad in the tightest of the benchmark's curves

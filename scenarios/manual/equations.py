@@ -16,7 +16,6 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
             "companion.vehicle.imm_kernels",
             "companion.vehicle.imm_mixing",
             "companion.vehicle.lkf",
-            "companion.vehicle.lkf_noise",
             "companion.vehicle.ukf",
             "companion.vehicle.ukf_motion",
             "companion.vehicle.pad",

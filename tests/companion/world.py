@@ -15,7 +15,7 @@ from companion.core.data import Array, Forecast, Measurement, OwnState, Quantity
 from companion.core.reasons import Reason, sentence
 from companion.landing.memory import StepMemory
 from companion.landing.step_data import StepInputs, StepOutputs, System
-from companion.planning.kinds import make_guidance
+from companion.runtime.build import make_guidance
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.step import companion_step
 from companion.vehicle.buffered import BufferHealth, Estimator

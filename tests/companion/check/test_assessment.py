@@ -8,8 +8,7 @@ import pytest
 
 from companion.autopilots.choice import driver_for
 from companion.check.assessment import MOTION, assessed, is_ready
-from companion.check.changes import advised_values
-from companion.check.findings import Level
+from companion.check.findings import Level, advised_values
 from companion.check.observation import AutopilotFacts, VehicleFacts
 from companion.config.companion import CompanionConfig
 from link.errors import UserError

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from companion.check.changes import keep, kept
+from companion.check.findings import keep, kept
 from link.errors import UserError
 
 

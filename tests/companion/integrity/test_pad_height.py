@@ -2,7 +2,7 @@
 
 import pytest
 
-from companion.integrity.pad_height import update_pad_raised_m, with_pad_raised
+from companion.integrity.heights import update_pad_raised_m, with_pad_raised
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from tests.companion.facts import CONFIG, changed, situation

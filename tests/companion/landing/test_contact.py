@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from companion.landing.contact import Verdict, may_force_motors_off, signs_of, signs_text, verdict
 from companion.situation.situation import Situation
-from companion.vehicle.pad_reach import over_pad_radius_m
+from companion.vehicle.pad import over_pad_radius_m
 from link.messages import Vector3
 from tests.companion.facts import CONFIG, GEAR_M, changed, drone_at, pad_at, reference_at, situation
 

@@ -15,8 +15,7 @@ from companion.landing.entries import ENTRIES, update_held
 from companion.landing.memory import Held
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
-from companion.vehicle.pad import NOT_DESCRIBED
-from companion.vehicle.pad_reach import cone_radius_m
+from companion.vehicle.pad import NOT_DESCRIBED, cone_radius_m
 from link.messages import Vector3
 from tests.companion.facts import (
     CONFIG,

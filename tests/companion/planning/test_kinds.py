@@ -2,10 +2,10 @@ import pytest
 
 from companion.config.planning import GuidanceConfig, GuidanceKind
 from companion.planning.guidance import PlanStatus
-from companion.planning.kinds import make_guidance
 from companion.planning.mpc import Mpc
 from companion.planning.mpc_report import ReportMpc
 from companion.planning.pn import ProportionalNavigation
+from companion.runtime.build import make_guidance
 from tests.companion.planning.cases import request_of, state_at, straight, target_of
 
 

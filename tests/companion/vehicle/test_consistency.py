@@ -12,8 +12,7 @@ from companion.vehicle.filter_step import Gaussian
 from companion.vehicle.imm import ImmModel, ImmState
 from companion.vehicle.imm_kernels import heave_step
 from companion.vehicle.imm_mixing import combine
-from companion.vehicle.lkf import LkfModel, transition
-from companion.vehicle.lkf_noise import WhiteJerkNoise
+from companion.vehicle.lkf import LkfModel, WhiteJerkNoise, transition
 from tests.companion.vehicle.rides import now_ns
 
 DT_S, STEPS, RUNS, SETTLED = 0.1, 150, 36, 60

@@ -9,8 +9,7 @@ from companion.core.data import Measurement, Quantity
 from companion.vehicle.buffered import BufferedEstimator
 from companion.vehicle.delay_buffer import DelayBuffer, fuse
 from companion.vehicle.filter_step import FilterModel, Gaussian, nis_threshold
-from companion.vehicle.lkf import LkfModel
-from companion.vehicle.lkf_noise import WhiteJerkNoise
+from companion.vehicle.lkf import LkfModel, WhiteJerkNoise
 from tests.companion.vehicle.rides import now_ns
 
 MODEL = LkfModel(noise=WhiteJerkNoise(config=LkfConfig()))

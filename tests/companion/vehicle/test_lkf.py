@@ -5,8 +5,7 @@ from scipy.linalg import solve_discrete_are
 from companion.config.estimation import LkfConfig, LkfReportConfig
 from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle.filter_step import Gaussian
-from companion.vehicle.lkf import LkfModel, transition
-from companion.vehicle.lkf_noise import LkfNoise, ReportNoise, WhiteJerkNoise
+from companion.vehicle.lkf import LkfModel, LkfNoise, ReportNoise, WhiteJerkNoise, transition
 from tests.companion.vehicle.rides import now_ns
 
 REPORT = LkfModel(noise=ReportNoise(config=LkfReportConfig()))

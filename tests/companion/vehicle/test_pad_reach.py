@@ -11,7 +11,7 @@ from companion.landing.contact import Verdict, signs_of, verdict
 from companion.landing.targets import is_unseen
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
-from companion.vehicle.pad_reach import cone_radius_at_pad_m, cone_radius_m, over_pad_radius_m, unseen_std_max_m
+from companion.vehicle.pad import cone_radius_at_pad_m, cone_radius_m, over_pad_radius_m, unseen_std_max_m
 from link.messages import Command
 from tests.companion.facts import CONFIG, pad_at, reference_at, situation
 from tests.companion.world import PAD, Flight

@@ -1,8 +1,9 @@
-"""The ground that the drone took off from, and whether the vehicle's road can be where it is said to be; pure.
+"""Whether the vehicle's road and pad can be as high as they are said to be; pure.
 
 Heights of drone and vehicle come from two receivers. One that tells heights above mean sea level instead of the
 ellipsoid, or goes by another geoid, puts the pad up to 100 m too high or too low, and a drone that believes in a pad
-that is too low flies into the vehicle. What the drone knows by itself is where it stood, or what a range finder sees.
+that is too low flies into the vehicle. What the drone knows by itself is where it stood, or what a range finder sees:
+by that the pad is raised, too, where the drone's own height wanders.
 """
 
 import math
@@ -11,9 +12,47 @@ import numpy as np
 
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array
-from companion.integrity.pad_height import RAISED_MAX_M
-from companion.situation.phases import FLYING_PHASES, Phase
-from companion.situation.situation import Situation
+from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
+from companion.situation.situation import Situation, with_pad
+from companion.vehicle.pad import over_pad_radius_m
+from link.records import replace
+
+RAISED_MAX_M = 1.0  # what is farther off is not the pad: a roof is 1.5 m above the road
+_SLEW_M_S = 0.5
+_OVER_PHASES = LANDING_PHASES | {Phase.TOUCHDOWN}
+
+
+def update_pad_raised_m(raised_m: float, phase: Phase, situation: Situation, config: CompanionConfig) -> float:
+    """Return by how much the pad is to be raised in the drone's frame.
+
+    Args:
+        raised_m: so far.
+        phase: of the landing; only over the pad the range finder sees it.
+        situation: with the pad where the vehicle says that it is.
+        config: all numbers.
+    """
+    if phase not in _OVER_PHASES or not config.touchdown.range_corrects_height:
+        return 0.0
+    relative, seen_m = situation.approach, situation.below.range_height_m
+    if relative is None or seen_m is None:
+        return raised_m
+    if relative.distance_m > over_pad_radius_m(relative.pad_half_width_m, config):
+        return raised_m
+    off_m = relative.height_m - seen_m
+    if abs(off_m) > RAISED_MAX_M:
+        return raised_m
+    step_m = _SLEW_M_S / config.step_rate_hz
+    return raised_m + min(max(off_m - raised_m, -step_m), step_m)
+
+
+def with_pad_raised(situation: Situation, raised_m: float) -> Situation:
+    """Return the facts with the pad raised."""
+    if situation.pad is None or not raised_m:
+        return situation
+    position = situation.pad.position_enu_m.copy()
+    position[:, 2] += raised_m
+    return with_pad(situation, replace(situation.pad, position_enu_m=position))
+
 
 VEHICLE_M = 3.0  # so near the pad what the drone stands on may be the vehicle
 _STDS = 2.0

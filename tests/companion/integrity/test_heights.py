@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from companion.core.reasons import sentence
-from companion.integrity.ground import (
+from companion.integrity.heights import (
     is_road_elsewhere,
     is_seen_too_near,
     update_ground,
