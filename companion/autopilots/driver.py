@@ -14,6 +14,17 @@ from link.messages import Vector3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class FrameMoves:
+    """How the local frame has moved since it was first set: what is known in it holds until this changes."""
+
+    origin_count: int = 0  # how often the origin was set or moved
+    shift_enu_m: Vector3 = (0.0, 0.0, 0.0)  # sum of the jumps of the drone's own position
+
+
+NO_MOVES = FrameMoves()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class AutopilotView:
     """The autopilot as its messages tell; None where it has not said yet."""
 
@@ -29,8 +40,7 @@ class AutopilotView:
     refusal: str | None = None  # what it last said against arming
     frame: LocalFrame | None = None  # W; its origin above the ellipsoid
     geoid_known: bool = False  # without it the height of that origin is one above the sea
-    origin_count: int = 0  # how often the origin was set or moved
-    frame_shift_enu_m: Vector3 = (0.0, 0.0, 0.0)  # sum of the jumps of the drone's own position
+    frame_moves: FrameMoves = NO_MOVES
     range_down: RangeReading | None = None
     battery_share: float | None = None  # left, 0 to 1
 

@@ -174,9 +174,9 @@ class AutopilotLink:
     def _hear(self, message: Message, driver: Driver) -> None:
         if message.get_type() == "PARAM_VALUE":
             self._hear_parameter(message, driver)
-        shift = self.state.view.frame_shift_enu_m
+        shift = self.state.view.frame_moves.shift_enu_m
         self.state = heard(self.state, message, self.session.clock, driver)
-        if self.state.view.frame_shift_enu_m != shift:
+        if self.state.view.frame_moves.shift_enu_m != shift:
             self._origin_asked_ns = None  # it has probably moved, too
 
     def _hear_parameter(self, message: Message, driver: Driver) -> None:
@@ -189,7 +189,8 @@ class AutopilotLink:
         """Forget what the autopilot told before its restart, except for its parameters."""
         view = AutopilotView(link_up=True, armed=False, in_control=False, failsafe=False, restarted=True)
         old = self.state.view
-        view = replace(view, origin_count=old.origin_count + 1, frame_shift_enu_m=old.frame_shift_enu_m)
+        moves = replace(old.frame_moves, origin_count=old.frame_moves.origin_count + 1)
+        view = replace(view, frame_moves=moves)
         parameters, geoid_m = self.state.parameters, self._geoid_height_m
         self.state = AutopilotState(view=view, parameters=parameters, geoid_height_m=geoid_m)
         self._origin_asked_ns = None

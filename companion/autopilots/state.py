@@ -137,9 +137,11 @@ def _reported(state: AutopilotState, own: OwnState) -> AutopilotState:
     state = replace(state, history=history)
     if jump is None:
         return state
-    (x, y, z), (dx, dy, dz), seen = state.view.frame_shift_enu_m, jump, state.view.range_down
+    moves, (dx, dy, dz), seen = state.view.frame_moves, jump, state.view.range_down
+    x, y, z = moves.shift_enu_m
     seen = None if seen is None else replace(seen, up_m=None)
-    return replace(state, view=replace(state.view, frame_shift_enu_m=(x + dx, y + dy, z + dz), range_down=seen))
+    moves = replace(moves, shift_enu_m=(x + dx, y + dy, z + dz))
+    return replace(state, view=replace(state.view, frame_moves=moves, range_down=seen))
 
 
 def _attitude(state: AutopilotState, message: Message) -> AutopilotState:
@@ -195,7 +197,7 @@ def _placed(state: AutopilotState, projection: Projection) -> AutopilotState:
     if state.origin_msl is None:
         return state
     origin = above_ellipsoid(state.origin_msl, state.geoid_height_m)
-    known, geoid_known = state.view.frame, state.geoid_height_m is not None
+    known, moves, geoid_known = state.view.frame, state.view.frame_moves, state.geoid_height_m is not None
     if known is not None and known.projection is projection and is_same(origin, known.origin):
         return replace(state, view=replace(state.view, geoid_known=geoid_known))
     # The newest report stays, for the next one tells by how much the drone's own position jumps with the origin.
@@ -203,6 +205,6 @@ def _placed(state: AutopilotState, projection: Projection) -> AutopilotState:
         state.view,
         frame=LocalFrame(origin=origin, projection=projection),
         geoid_known=geoid_known,
-        origin_count=state.view.origin_count + 1,
+        frame_moves=replace(moves, origin_count=moves.origin_count + 1),
     )
     return replace(state, view=view, history=state.history[-1:])

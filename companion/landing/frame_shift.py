@@ -19,16 +19,15 @@ def to_present_frame(memory: StepMemory, view: AutopilotView) -> StepMemory:
         view: of the autopilot now.
     """
     places = memory.places
-    jumped = view.frame_shift_enu_m != places.frame_shift_enu_m
-    if view.origin_count == places.origin_count and not jumped:
+    if view.frame_moves == places.frame_moves:
         return memory
-    vehicle, places = replace(memory.vehicle, estimator=None), replace(places, origin_count=view.origin_count)
-    if not jumped:
+    shift_enu_m, before_enu_m = view.frame_moves.shift_enu_m, places.frame_moves.shift_enu_m
+    vehicle, places = replace(memory.vehicle, estimator=None), replace(places, frame_moves=view.frame_moves)
+    if shift_enu_m == before_enu_m:
         return replace(memory, vehicle=vehicle, places=places)
-    by_enu_m = np.array(view.frame_shift_enu_m) - np.array(places.frame_shift_enu_m)
+    by_enu_m = np.array(shift_enu_m) - np.array(before_enu_m)
     places = replace(
         places,
-        frame_shift_enu_m=view.frame_shift_enu_m,
         waiting_point_enu_m=_moved(places.waiting_point_enu_m, by_enu_m),
         anchor_enu_m=_moved(places.anchor_enu_m, by_enu_m),
         ground_enu_m=_moved(places.ground_enu_m, by_enu_m),

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-from companion.autopilots.driver import DriverMemory
+from companion.autopilots.driver import NO_MOVES, DriverMemory, FrameMoves
 from companion.core.data import Array
 from companion.core.reasons import Cause, Reason
 from companion.integrity.contradictions import Contradictions, FixStamps
@@ -20,7 +20,6 @@ from companion.planning.guidance import GuidanceMemory, ReferenceState
 from companion.situation.phases import Phase
 from companion.vehicle.buffered import EstimatorMemory
 from companion.vehicle.surprise import Surprise
-from link.messages import Vector3
 
 Held = Mapping[Reason, int]
 """Since when (monotonic ns) each condition has been true, by its reason."""
@@ -132,15 +131,13 @@ class Places:
         waiting_point_enu_m: (3,) where the drone waits for the vehicle.
         anchor_enu_m: (3,) where a hover phase stays.
         ground_enu_m: (3,) of the ground.
-        origin_count: of the frame that they and the estimate are in.
-        frame_shift_enu_m: of that frame.
+        frame_moves: of the frame that they and the estimate are in.
     """
 
     waiting_point_enu_m: Array | None = None
     anchor_enu_m: Array | None = None
     ground_enu_m: Array | None = None
-    origin_count: int = 0
-    frame_shift_enu_m: Vector3 = (0.0, 0.0, 0.0)
+    frame_moves: FrameMoves = NO_MOVES
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

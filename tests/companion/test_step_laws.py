@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from companion.autopilots.driver import AutopilotView
+from companion.autopilots.driver import AutopilotView, FrameMoves
 from companion.core.data import Array, Forecast
 from companion.landing.memory import StepMemory
 from companion.situation.phases import Phase
@@ -37,7 +37,7 @@ views = st.builds(
     in_control=st.booleans(),
     failsafe=st.booleans(),
     landed=st.sampled_from([None, True, False]),
-    origin_count=st.integers(0, 3),
+    frame_moves=st.builds(FrameMoves, origin_count=st.integers(0, 3)),
 )
 
 
@@ -111,7 +111,7 @@ def test_disarm_is_forced_only_on_the_pad_and_after_a_refusal(  # noqa: PLR0917 
 def test_moved_origin_resets_the_estimate() -> None:
     flight = reached(Phase.CHASE)
     flight.sends_fixes = False
-    flight.view = replace(flight.view, origin_count=2)
+    flight.view = replace(flight.view, frame_moves=FrameMoves(origin_count=2))
     before = flight.memory.vehicle
     flight.step()
     assert (before.estimator is None, flight.memory.vehicle.estimator is None) == (False, True)
@@ -127,7 +127,7 @@ def test_local_frame_that_jumps_takes_the_setpoint_with_it(phase: Phase) -> None
     shift = (31.0, -17.0, 4.0)
     x, y, z = flight.own.position_enu_m
     flight.own = replace(flight.own, position_enu_m=(x + shift[0], y + shift[1], z + shift[2]))
-    flight.view = replace(flight.view, frame_shift_enu_m=shift)
+    flight.view = replace(flight.view, frame_moves=FrameMoves(origin_count=1, shift_enu_m=shift))
     after = flight.step().setpoint
     assert before is not None
     assert after is not None

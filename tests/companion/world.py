@@ -8,7 +8,7 @@ from typing import cast
 
 import numpy as np
 
-from companion.autopilots.driver import AutopilotView
+from companion.autopilots.driver import AutopilotView, FrameMoves
 from companion.autopilots.px4 import Px4Driver
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array, Forecast, Measurement, OwnState, Quantity, VehicleEstimate
@@ -129,7 +129,7 @@ class Flight:
             landed=True,
             frame=FRAME,
             geoid_known=True,
-            origin_count=1,
+            frame_moves=FrameMoves(origin_count=1),
         )
         self.own = own_state(START_NS, (0.0, 0.0, GEAR_M))
         self.history: list[Phase] = []

@@ -101,14 +101,14 @@ def test_setpoint_that_is_not_finite_is_counted_and_not_sent() -> None:
 def test_restarted_autopilot_is_taken_for_disarmed_and_its_old_places_are_forgotten() -> None:
     talk = Talk(FakePx4(armed=True))
     talk.run(1.0)
-    count = talk.link.state.view.origin_count
+    count = talk.link.state.view.frame_moves.origin_count
     assert talk.is_armed()
     talk.autopilot.armed = False
     talk.autopilot.restart(talk.t_ns)
     talk.run(4.0)
     assert not talk.is_armed()
     assert talk.link.state.view.restarted
-    assert talk.link.state.view.origin_count > count
+    assert talk.link.state.view.frame_moves.origin_count > count
     assert talk.link.state.own is not None
 
 

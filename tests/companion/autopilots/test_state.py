@@ -86,11 +86,11 @@ def test_clock_that_was_set_back_does_not_silence_the_drone() -> None:
 
 def test_jump_that_flying_cannot_explain_is_a_shift_of_the_frame() -> None:
     state = _hear(LEVEL, _at(0, (0.0, 0.0, 0.0), (10.0, 0.0, 0.0)), _at(20, (0.2, 0.0, 0.0), (10.0, 0.0, 0.0)))
-    assert state.view.frame_shift_enu_m == (0.0, 0.0, 0.0)
+    assert state.view.frame_moves.shift_enu_m == (0.0, 0.0, 0.0)
     jumped = _hear(_at(40, (5.4, -3.0, 0.5), (10.0, 0.0, 0.0)), state=state)
-    assert jumped.view.frame_shift_enu_m == pytest.approx((-3.0, 5.0, -0.5))
+    assert jumped.view.frame_moves.shift_enu_m == pytest.approx((-3.0, 5.0, -0.5))
     back = _hear(_at(60, (0.6, 0.0, 0.0), (10.0, 0.0, 0.0)), state=jumped)
-    assert back.view.frame_shift_enu_m == pytest.approx((0.0, 0.0, 0.0))
+    assert back.view.frame_moves.shift_enu_m == pytest.approx((0.0, 0.0, 0.0))
 
 
 @given(gap_ms=st.integers(4, 900), braking=st.floats(0.0, 8.0), speed=st.floats(0.0, 20.0))
@@ -98,15 +98,15 @@ def test_hard_flying_over_a_gap_in_the_link_is_no_shift(gap_ms: int, braking: fl
     gap_s = gap_ms * 1e-3
     place = (speed * gap_s - 0.5 * braking * gap_s**2, 0.0, 0.0)
     state = _hear(LEVEL, _at(0, (0.0, 0.0, 0.0), (speed, 0.0, 0.0)), _at(gap_ms, place))
-    assert state.view.frame_shift_enu_m == (0.0, 0.0, 0.0)
+    assert state.view.frame_moves.shift_enu_m == (0.0, 0.0, 0.0)
 
 
 def test_moved_origin_is_counted_and_a_repeated_one_is_not() -> None:
     state = _hear(_origin(475_000_000, 80_000_000, 400_000), _origin(475_000_000, 80_000_000, 400_000))
-    assert state.view.origin_count == 1
+    assert state.view.frame_moves.origin_count == 1
     moved = _hear(_origin(475_000_020, 80_000_000, 400_000), state=state)
-    assert moved.view.origin_count == 2
-    assert _hear(_origin(475_000_000, 80_000_000, 401_000), state=state).view.origin_count == 2
+    assert moved.view.frame_moves.origin_count == 2
+    assert _hear(_origin(475_000_000, 80_000_000, 401_000), state=state).view.frame_moves.origin_count == 2
 
 
 @pytest.mark.parametrize(
@@ -123,7 +123,7 @@ def test_the_same_origin_of_another_kind_of_autopilot_is_another_frame() -> None
     other = heard(state, _origin(475_000_000, 80_000_000, 400_000), CLOCK, ArduPilotDriver())
     assert other.view.frame is not None
     assert other.view.frame.projection is Projection.ARDUPILOT
-    assert other.view.origin_count == 2
+    assert other.view.frame_moves.origin_count == 2
 
 
 def test_origin_off_the_earth_is_no_origin() -> None:
@@ -240,7 +240,7 @@ def test_no_message_whatever_makes_the_state_absurd(told: list[Message]) -> None
         assert max(map(abs, own.position_enu_m)) < 1e6
     times = [own.t_ns for own in state.history]
     assert times == sorted(set(times))
-    assert np.isfinite(state.view.frame_shift_enu_m).all()
+    assert np.isfinite(state.view.frame_moves.shift_enu_m).all()
 
 
 def test_stop_within_one_report_is_a_jolt_and_hard_braking_is_none() -> None:

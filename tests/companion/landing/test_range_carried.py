@@ -64,7 +64,7 @@ def test_what_was_seen_long_ago_or_in_another_frame_is_not_carried_on() -> None:
     assert _carried_m(_hear(*seen), 1.5, 2.9) is not None
     assert _carried_m(_hear(*seen), 1.5, 3.1) is None
     moved = _hear(*seen, _at(20, 1.7, 50.0))
-    assert moved.view.frame_shift_enu_m != (0.0, 0.0, 0.0)
+    assert moved.view.frame_moves.shift_enu_m != (0.0, 0.0, 0.0)
     assert _carried_m(moved, 1.5, 0.1) is None
     assert moved.view.range_down is not None  # a distance is one in every frame
 
