@@ -7,7 +7,7 @@ from itertools import chain
 from companion.autopilots.choice import driver_for
 from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver
 from companion.autopilots.limits import LimitQuestions, named
-from companion.autopilots.state import AutopilotState, heard, put_off
+from companion.autopilots.state import AutopilotState, shift_reports, update_state
 from companion.config.companion import AutopilotKind
 from companion.core.data import FlightLimits, Setpoint
 from link.mavlink.dialect import Message, mavlink
@@ -175,7 +175,7 @@ class AutopilotLink:
         if message.get_type() == "PARAM_VALUE":
             self._hear_parameter(message, driver)
         shift = self.state.view.frame_moves.shift_enu_m
-        self.state = heard(self.state, message, self.session.clock, driver)
+        self.state = update_state(self.state, message, self.session.clock, driver)
         if self.state.view.frame_moves.shift_enu_m != shift:
             self._origin_asked_ns = None  # it has probably moved, too
 
@@ -231,7 +231,7 @@ class AutopilotLink:
             then_local_ns, then_utc_ns = self._times
             set_by_ns = utc_ns - then_utc_ns - (local_ns - then_local_ns)
             if abs(set_by_ns) > CLOCK_SET_NS:
-                self.state = put_off(self.state, set_by_ns)
+                self.state = shift_reports(self.state, set_by_ns)
         self._times = local_ns, utc_ns
 
     def _ask_for_origin(self, local_ns: int) -> None:

@@ -61,7 +61,7 @@ class AutopilotState:
         return carried(min(self.history, key=lambda own: abs(own.t_ns - t_ns)), t_ns)
 
 
-def heard(state: AutopilotState, message: Message, clock: ClockMap, driver: Driver) -> AutopilotState:
+def update_state(state: AutopilotState, message: Message, clock: ClockMap, driver: Driver) -> AutopilotState:
     """Return the state after `message` of the autopilot; unknown and unusable messages change nothing."""
     match message.get_type():
         case "LOCAL_POSITION_NED":
@@ -91,7 +91,7 @@ def heard(state: AutopilotState, message: Message, clock: ClockMap, driver: Driv
     return state
 
 
-def put_off(state: AutopilotState, by_ns: int) -> AutopilotState:
+def shift_reports(state: AutopilotState, by_ns: int) -> AutopilotState:
     """Return the state with the times of all reports put off by `by_ns`, for a UTC that was set by as much."""
     history = tuple(replace(own, t_ns=own.t_ns + by_ns) for own in state.history)
     seen = state.view.range_down

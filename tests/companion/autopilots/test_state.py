@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.driver import Driver
 from companion.autopilots.px4 import Px4Driver
-from companion.autopilots.state import AutopilotState, heard
+from companion.autopilots.state import AutopilotState, update_state
 from link.frames import quaternion_ned_frd_from_enu_flu
 from link.local_frame import Projection
 from link.mavlink.clock_map import ClockMap, with_round_trip, with_system_time
@@ -29,7 +29,7 @@ LEVEL = mavlink.MAVLink_attitude_quaternion_message(BOOT_MS, 1.0, 0.0, 0.0, 0.0,
 def _hear(*messages: Message, state: AutopilotState | None = None) -> AutopilotState:
     state = AutopilotState() if state is None else state
     for message in messages:
-        state = heard(state, message, CLOCK, DRIVER)
+        state = update_state(state, message, CLOCK, DRIVER)
     return state
 
 
@@ -113,14 +113,14 @@ def test_moved_origin_is_counted_and_a_repeated_one_is_not() -> None:
     ("driver", "projection"), [(Px4Driver(), Projection.PX4), (ArduPilotDriver(), Projection.ARDUPILOT)]
 )
 def test_frame_is_laid_out_as_the_driver_says(driver: Driver, projection: Projection) -> None:
-    state = heard(AutopilotState(), _origin(475_000_000, 80_000_000, 400_000), CLOCK, driver)
+    state = update_state(AutopilotState(), _origin(475_000_000, 80_000_000, 400_000), CLOCK, driver)
     assert state.view.frame is not None
     assert state.view.frame.projection is projection
 
 
 def test_the_same_origin_of_another_kind_of_autopilot_is_another_frame() -> None:
     state = _hear(_origin(475_000_000, 80_000_000, 400_000))
-    other = heard(state, _origin(475_000_000, 80_000_000, 400_000), CLOCK, ArduPilotDriver())
+    other = update_state(state, _origin(475_000_000, 80_000_000, 400_000), CLOCK, ArduPilotDriver())
     assert other.view.frame is not None
     assert other.view.frame.projection is Projection.ARDUPILOT
     assert other.view.frame_moves.origin_count == 2
@@ -192,7 +192,7 @@ def test_failsafe_is_read_off_the_heartbeat(
     driver: Driver, mode: int, status: int, *, failsafe: bool, warns: bool
 ) -> None:
     heartbeat = mavlink.MAVLink_heartbeat_message(2, driver.autopilot_id, 0x91, mode, status, 3)
-    view = heard(AutopilotState(), heartbeat, CLOCK, driver).view
+    view = update_state(AutopilotState(), heartbeat, CLOCK, driver).view
     assert (view.failsafe, view.warns) == (failsafe, warns)
     assert view.armed
     assert view.in_control is (mode in (OFFBOARD, GUIDED))

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from companion.autopilots.px4 import Px4Driver
-from companion.autopilots.state import AutopilotState, heard
+from companion.autopilots.state import AutopilotState, update_state
 from companion.core.data import RangeReading
 from companion.situation.situation import Drone, range_carried_m
 from link.mavlink.clock_map import ClockMap, RoundTrip, with_round_trip, with_system_time
@@ -36,7 +36,7 @@ def _range(after_ms: int, distance_cm: int, quality: int = 0) -> Message:
 def _hear(*messages: Message) -> AutopilotState:
     state = AutopilotState()
     for message in messages:
-        state = heard(state, message, CLOCK, Px4Driver())
+        state = update_state(state, message, CLOCK, Px4Driver())
     return state
 
 
