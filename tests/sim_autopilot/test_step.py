@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 from link.mavlink.dialect import Message, mavlink
-from link.mavlink.parameters import parameter_on_wire
 from sim_autopilot.memory import AutopilotInputs, initial_memory
 from sim_autopilot.node import STEP_NS
 from sim_autopilot.step import autopilot_step
@@ -315,16 +314,6 @@ def test_takeoff_goes_to_the_altitude_above_the_sea_that_the_command_says() -> N
     assert pilot.position[2] == pytest.approx(7.0, abs=0.3)
 
 
-def test_a_takeoff_to_no_higher_than_it_is_leaves_it_on_the_ground_until_it_disarms() -> None:
-    pilot = Pilot()
-    pilot.step(mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, 8, 0, 0, 4, 3))
-    pilot.acknowledged(arm())
-    assert pilot.acknowledged(command(mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 10.0)) == [ACCEPTED]
-    pilot.run_until(lambda: not pilot.is_armed(), 20.0)
-    assert pilot.position[2] < 0.2
-    assert "Already higher than takeoff altitude\t" in [text.text for text in pilot.all("STATUSTEXT")]
-
-
 def test_a_takeoff_in_the_air_climbs_by_the_parameters_height() -> None:
     pilot = Pilot()
     pilot.take_off(4.0)
@@ -363,12 +352,3 @@ def test_a_moved_origin_moves_the_local_frame_under_the_vehicle() -> None:
     assert pilot.last("GPS_GLOBAL_ORIGIN").latitude == latitude
     pilot.run(5.0, lambda _t: at(0.0, 0.0, -5.0))
     assert pilot.position[1] == pytest.approx(3.0, abs=0.1)
-
-
-def test_a_parameter_set_in_flight_limits_the_flight() -> None:
-    pilot = Pilot()
-    pilot.take_off()
-    wire = parameter_on_wire(2.0, mavlink.MAV_PARAM_TYPE_REAL32, mavlink.MAV_AUTOPILOT_PX4)
-    pilot.step(mavlink.MAVLink_param_set_message(1, 1, b"MPC_XY_VEL_MAX", wire, mavlink.MAV_PARAM_TYPE_REAL32))
-    pilot.run(6.0, lambda _t: at(0.0, 100.0, -5.0))
-    assert pilot.node.state.velocity_enu_m_s[0] == pytest.approx(2.0, abs=0.1)
