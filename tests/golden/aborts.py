@@ -1,4 +1,4 @@
-"""Flights that are broken off, one for each reason that the companion can have: what goes wrong in which phase.
+"""Flights that are broken off, one for each kind of reason that the companion can have: what goes wrong in which phase.
 
 A setting is tightened where no fault can be told from luck; everything else is what a link, an autopilot, a vehicle or
 an operator does. Nothing is tried again, and a flight is over a moment after the climb.
@@ -88,16 +88,8 @@ def _token_is_lost(flight: FaultFlight) -> None:
 
 
 def _own_position_stops(flight: FaultFlight) -> None:
-    _stream_stops(flight, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED)
-
-
-def _stream_stops(flight: FaultFlight, number: int) -> None:
-    interval = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL
+    number, interval = mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL
     flight.tell(mavlink.MAVLink_command_long_message(1, 1, interval, 0, number, -1.0, 0, 0, 0, 0, 0))
-
-
-def _own_attitude_stops(flight: FaultFlight) -> None:
-    _stream_stops(flight, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION)
 
 
 def _vehicles_clock_is_set(flight: FaultFlight) -> None:
@@ -152,7 +144,6 @@ ABORTS: dict[str, Abort] = {
     ),
     "token_lost": Abort(reason="vehicle's link lost", phase=Phase.CHASE, fault=_token_is_lost),
     "own_position_stops": Abort(reason="own position too old", phase=Phase.ALIGN, fault=_own_position_stops),
-    "own_attitude_stops": Abort(reason="own attitude too old", phase=Phase.ALIGN, fault=_own_attitude_stops),
     "clock_ahead": Abort(
         reason="vehicle's clock is ahead",
         companion={"descent": {"aligned_hold_s": 20.0}},
@@ -164,14 +155,6 @@ ABORTS: dict[str, Abort] = {
         scenario="static",
         vehicle=_ANTENNA_OVER_PAD,
         companion=_PARKED,
-        fault=_pad_is_described(forward_m=_BESIDE_M, up_m=0.0),
-    ),
-    "heading_unknown_for_long": Abort(
-        reason="vehicle heading unknown",
-        scenario="static",
-        vehicle=_ANTENNA_OVER_PAD,
-        companion=_PARKED | {"descent": {"align_time_limit_s": 1.0}},
-        phase=Phase.ALIGN,
         fault=_pad_is_described(forward_m=_BESIDE_M, up_m=0.0),
     ),
     "not_followed": Abort(  # flown for half a second later than it is: the drone is ahead of where it is asked to be
@@ -186,12 +169,6 @@ ABORTS: dict[str, Abort] = {
         companion={"descent": {"strays_max": 0, "stray_hold_s": 0.2}},
         fault=_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0),
     ),
-    "alignment_lost": Abort(
-        reason="alignment lost",
-        companion={"descent": {"strays_max": 0}},
-        phase=Phase.ALIGN,
-        fault=_pad_is_described(forward_m=10.0 * _BESIDE_M, up_m=0.0),
-    ),
     "contradicting": Abort(
         reason="vehicle data contradict themselves",
         companion={"descent": {"aligned_hold_s": 20.0, "strays_max": 20}},
@@ -204,11 +181,6 @@ ABORTS: dict[str, Abort] = {
     "outrun": Abort(reason="vehicle faster than the limit", phase=Phase.ALIGN, fault=_limit_is_lowered),
     "below_pad": Abort(reason="below the pad without contact", fault=_pad_is_described(forward_m=0.0, up_m=_RAISED_M)),
     "nothing_touched": Abort(reason="nothing touched", fault=_pad_is_described(forward_m=0.0, up_m=_LOWER_M)),
-    "to_be_seen_again": Abort(
-        reason="pad to be seen again",
-        scenario=_POOR_SENSORS,
-        companion={"descent": {"unseen_max": 0, "unseen_std_max_m": 0.14}},
-    ),
     "not_seen": Abort(
         reason="pad not seen",
         scenario=_POOR_SENSORS,
@@ -224,12 +196,6 @@ ABORTS: dict[str, Abort] = {
         phase=Phase.TOUCHDOWN,
         fault=_pad_is_described(forward_m=0.0, up_m=-_RAISED_M),
     ),
-    "chase_too_long": Abort(reason="chase took longer than # s", companion={"chase": {"time_limit_s": 0.2}}),
-    "align_too_long": Abort(reason="align took longer than # s", companion={"descent": {"align_time_limit_s": 0.2}}),
     "descent_too_long": Abort(reason="descend took longer than # s", companion={"descent": {"time_limit_s": 1.0}}),
-    "descent_too_long_ardupilot": Abort(
-        reason="descend took longer than # s", scenario=_ARDUPILOT, companion={"descent": {"time_limit_s": 1.0}}
-    ),
     "operator_aborts": Abort(reason="commanded: abort", phase=Phase.CHASE, fault=_operator(Command.ABORT)),
-    "operator_holds": Abort(reason="commanded: hold", fault=_operator(Command.HOLD)),
 }
