@@ -9,6 +9,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+import pytest
+
+FIRMWARES = [pytest.param(name, marks=pytest.mark.xdist_group(name)) for name in ("px4", "ardupilot")]
+"""The cases of one firmware's clients run one after the other, beside those of the other firmware."""
 SPEED = 4.0
 """Simulated seconds a second: the clients' setpoints, at 20 Hz of their own time, still come in time."""
 _READY_S = 90.0
