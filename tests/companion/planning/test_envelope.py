@@ -52,7 +52,7 @@ def test_rows_hold_exactly_where_the_plan_keeps_to_its_limits(*, has_floor: bool
     rng = np.random.default_rng(5)
     problem = make_axis_problem(MODEL, CONFIG, has_floor=has_floor)
     verdicts = []
-    for _ in range(300):
+    for _ in range(100):
         x = np.array([rng.uniform(1.0, 2.0), *rng.uniform(-0.4, 0.4, 2)])  # keeps all limits by itself
         down, up, push, most = (rng.uniform(0.9, 3.0, n) for n in (NODES, NODES, MOVES, MOVES))
         floor = rng.uniform(-4.0, -3.0, NODES) if has_floor else NO_FLOOR

@@ -85,7 +85,7 @@ def test_reports_chase_begins_with_the_departure() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("system", ["default", "ukf", "pn", "lqr_feedforward"])
+@pytest.mark.parametrize("system", ["ukf", "pn", "lqr_feedforward"])
 def test_each_selectable_part_lands_on_a_car_at_5_m_s(system: str) -> None:
     scenario = load_scenario(f"straight_5+system={system}")
     lockstep = Lockstep(scenario, 1)

@@ -130,10 +130,3 @@ def test_a_mission_that_is_not_there_is_not_started_nor_armed_for_nor_chosen_in_
     pilot.take_off()
     pilot.acknowledged(set_mode(4, 4))
     assert pilot.custom_mode() == OFFBOARD
-
-
-def test_a_mission_mode_is_chosen_on_the_ground() -> None:
-    pilot = planned(item(0, WAYPOINT, (0.0, 0.0, 5.0)))
-    pilot.acknowledged(arm())
-    pilot.acknowledged(set_mode(4, 4))
-    assert pilot.custom_mode() == MISSION
