@@ -10,6 +10,8 @@ from tests.sim_autopilot.copter import AUTO, GUIDED, ardupilot, copter_in_the_ai
 from tests.sim_autopilot.pilot import VELOCITY_ONLY, Pilot, arm, command, setpoint
 from tests.sim_autopilot.planner import RELATIVE, download, item, upload
 
+pytestmark = pytest.mark.slow
+
 FAILED, UNSUPPORTED, INVALID_PARAM2, INVALID_PARAM4 = 4, 3, 7, 9
 WAYPOINT, TAKEOFF, RETURN = 16, 22, 20
 NUMBERS = (0.0, 0.0, 0.0, 0.0)

@@ -1,9 +1,13 @@
 """What client programs of ArduCopter meet on the wire: how items are asked for, parts of a mission, texts, versions."""
 
+import pytest
+
 from link.mavlink.dialect import mavlink
 from tests.sim_autopilot.copter import AUTO, GUIDED, ardupilot, copter_in_the_air, mode
 from tests.sim_autopilot.pilot import Pilot, command
 from tests.sim_autopilot.planner import download, item, plan_messages, upload
+
+pytestmark = pytest.mark.slow
 
 WAYPOINT, SPEED = mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_DO_CHANGE_SPEED
 NUMBERS = (0.0, 0.0, 0.0, 0.0)

@@ -10,6 +10,8 @@ from tests.sim_autopilot.copter import GUIDED, ardupilot, mode
 from tests.sim_autopilot.pilot import Pilot, arm, command, px4
 from tests.sim_autopilot.planner import download, item, plan_messages, upload
 
+pytestmark = pytest.mark.slow
+
 WAYPOINT, SPEED, JUMP = mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_DO_CHANGE_SPEED, mavlink.MAV_CMD_DO_JUMP
 CORNER, CIRCLE = mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION, mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION
 FENCE, RALLY, ALL = 1, 2, 255

@@ -16,6 +16,8 @@ from tests.sim_autopilot.file_client import FileClient
 from tests.sim_autopilot.pilot import HOLD, Pilot, arm, command, setpoint
 from tests.sim_autopilot.planner import item, upload
 
+pytestmark = pytest.mark.slow
+
 REJECTED, DENIED, UNSUPPORTED = 1, 2, 3
 STATION = mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 0, 3)
 CALIBRATE = mavlink.MAV_CMD_PREFLIGHT_CALIBRATION

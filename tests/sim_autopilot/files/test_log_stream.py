@@ -2,8 +2,12 @@
 
 import struct
 
+import pytest
+
 from link.mavlink.dialect import Message, mavlink
 from tests.sim_autopilot.pilot import Pilot, command
+
+pytestmark = pytest.mark.slow
 
 START = command(mavlink.MAV_CMD_LOGGING_START)
 STOP = command(mavlink.MAV_CMD_LOGGING_STOP)

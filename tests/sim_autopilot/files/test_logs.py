@@ -3,12 +3,15 @@
 import struct
 from pathlib import Path
 
+import pytest
 from pymavlink.DFReader import DFReader_binary
 
 from link.mavlink.dialect import Message, mavlink
 from tests.sim_autopilot.copter import GUIDED, ardupilot, mode, take_off
 from tests.sim_autopilot.file_client import FileClient
 from tests.sim_autopilot.pilot import START_NS, Pilot, arm, px4
+
+pytestmark = pytest.mark.slow
 
 
 def flown(pilot: Pilot) -> Pilot:

@@ -8,6 +8,8 @@ from link.mavlink.dialect import Message, mavlink
 from tests.sim_autopilot.pilot import HOLD, Pilot, arm, px4, set_mode
 from tests.sim_autopilot.planner import EAST_M, LATITUDE, LONGITUDE, NORTH_M
 
+pytestmark = pytest.mark.slow
+
 FOLLOW = 0x08040000
 ABOVE_SEA_M = 89.0
 REJECTED = 1

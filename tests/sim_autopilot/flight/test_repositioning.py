@@ -6,6 +6,8 @@ from link.mavlink.dialect import mavlink
 from tests.sim_autopilot.pilot import HOLD, Pilot, command, set_mode
 from tests.sim_autopilot.planner import EAST_M, LATITUDE, LONGITUDE, NORTH_M
 
+pytestmark = pytest.mark.slow
+
 ACCEPTED, REJECTED, DENIED = 0, 1, 2
 REPOSITION = mavlink.MAV_CMD_DO_REPOSITION
 ABOVE_SEA_M = 89.0

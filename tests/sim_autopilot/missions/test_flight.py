@@ -6,6 +6,8 @@ from link.mavlink.dialect import Message, mavlink
 from tests.sim_autopilot.pilot import HOLD, OFFBOARD, RTL, Pilot, arm, command, px4, set_mode
 from tests.sim_autopilot.planner import item, upload
 
+pytestmark = pytest.mark.slow
+
 MISSION = 0x04040000
 WAYPOINT = mavlink.MAV_CMD_NAV_WAYPOINT
 LAND = mavlink.MAV_CMD_NAV_LAND

@@ -9,6 +9,8 @@ from sim_autopilot.safety.failures import NO_FAILURES, injected
 from tests.sim_autopilot.pilot import HOLD, LAND, RTL, Pilot, command, px4, set_mode
 from tests.sim_autopilot.planner import item, upload
 
+pytestmark = pytest.mark.slow
+
 ACCEPTED, UNSUPPORTED = 0, 3
 INJECT = mavlink.MAV_CMD_INJECT_FAILURE
 BATTERY, MOTOR, GPS, OFF = 100.0, 101.0, 4.0, 1.0
