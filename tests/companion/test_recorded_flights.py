@@ -50,6 +50,7 @@ def _replayed(name: str) -> Seen:
     return Seen(link, moments, texts)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["px4_offboard", "arducopter_guided"])
 def test_recording_holds_nothing_that_the_session_does_not_understand(name: str) -> None:
     codec = _replayed(name).link.session.statistics.codec

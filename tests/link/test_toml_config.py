@@ -194,6 +194,7 @@ def test_printed_configuration_is_read_back_the_same(tmp_path: Path) -> None:
     assert load_config(written(tmp_path, dump_toml(Config())), Config) == Config()
 
 
+@pytest.mark.slow
 @given(st.floats(min_value=1e-300, max_value=0.5), st.text(st.characters(codec="utf-8", exclude_characters="\r")))
 def test_every_number_and_text_survives_printing(tolerance: float, name: str) -> None:
     config = Config(name=name, guidance=Guidance(solver=Solver(tolerance=tolerance)))

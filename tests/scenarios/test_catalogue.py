@@ -65,6 +65,7 @@ def test_presets_in_a_name_replace_their_sections() -> None:
     assert scenario.firmware == "px4"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("option", "can_arm"), [("", True), ("+start=boot", False)])
 def test_autopilot_that_boots_is_not_there_within_its_first_second(option: str, can_arm: bool) -> None:
     lockstep = Lockstep(load_scenario(f"straight_5{option}"), 1)

@@ -92,6 +92,7 @@ def test_time_that_does_not_advance_publishes_nothing() -> None:
     assert node.step(START_NS - STEP_NS, None) == []
 
 
+@pytest.mark.slow
 def test_same_seed_publishes_the_same_bytes() -> None:
     scenario = load_scenario("random_5+sensors=degraded")
     runs = [published(VehicleNode(scenario, seed, KEYS), 3.0) for seed in (6, 6, 7)]

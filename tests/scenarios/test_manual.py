@@ -57,6 +57,7 @@ def test_reference_has_every_command() -> None:
     assert all(text.startswith(f"Usage: {name} ") for name, text in helps())
 
 
+@pytest.mark.slow
 def test_wire_reference_has_every_type_and_what_the_companion_sends() -> None:
     text = PAGES["reference/wire.md"]()
     for ros_type in ROS_TYPES.values():

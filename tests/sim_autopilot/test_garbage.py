@@ -81,6 +81,7 @@ def test_a_setpoint_that_cannot_be_flown_leaves_the_flight_undisturbed(garbage: 
     assert np.array_equal(pilot.position, undisturbed.position)
 
 
+@pytest.mark.slow
 def test_garbage_does_not_keep_offboard_alive() -> None:
     pilot = Pilot()
     pilot.take_off(5.0)
@@ -88,6 +89,7 @@ def test_garbage_does_not_keep_offboard_alive() -> None:
     assert pilot.custom_mode() != OFFBOARD
 
 
+@pytest.mark.slow
 def test_every_message_sent_twice_changes_nothing_but_the_answers() -> None:
     once, twice = Pilot(), Pilot()
     for pilot, copies in ((once, 1), (twice, 2)):

@@ -64,6 +64,7 @@ def test_sequence_numbers_have_no_gaps_on_any_link() -> None:
     assert all(codec.statistics.messages_received > 300 for codec in clients.codecs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate_hz", [1.0, 30.0, 125.0])
 def test_a_stream_is_as_fast_as_asked_and_evenly_spaced(rate_hz: float) -> None:
     clients = Clients(px4())

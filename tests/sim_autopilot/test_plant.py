@@ -146,6 +146,7 @@ def test_motors_on_again_in_the_air_catch_the_drone() -> None:
     assert flight.position_m[:, 2].min() > 30.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", list(ControllerKind))
 def test_take_off_from_the_ground_reaches_its_height_upright(kind: ControllerKind) -> None:
     config, yaw = PlantConfig(controller=kind), 0.4

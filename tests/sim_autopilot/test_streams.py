@@ -20,6 +20,7 @@ def counted(streams: Streams, steps: int) -> dict[int, int]:
     return counts
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate_hz", [0.5, 1.0, 3.0, 7.0, 29.0, 30.0, 33.0, 50.0, 60.0, 99.0, 100.0])
 def test_a_stream_keeps_its_rate_whether_or_not_it_divides_the_step_rate(rate_hz: float) -> None:
     streams = default_streams([Stream(message_id=1, rate_hz=rate_hz)])

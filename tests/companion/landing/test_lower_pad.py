@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, replace
 
+import pytest
+
 from companion.landing.step_data import StepOutputs
 from companion.situation.phases import Phase
 from tests.companion.world import CONFIG, GEAR_M, Flight
@@ -23,6 +25,7 @@ class LowerPad(Flight):
         self.vehicle = told
 
 
+@pytest.mark.slow
 def test_descent_that_touches_nothing_is_broken_off_each_time_until_no_retry_is_left() -> None:
     flight = LowerPad(lower_m=0.8)
     flight.start_and_reach(Phase.DESCEND)
@@ -33,12 +36,14 @@ def test_descent_that_touches_nothing_is_broken_off_each_time_until_no_retry_is_
     assert flight.memory.reason == "no retry left"
 
 
+@pytest.mark.slow
 def test_pad_that_is_a_hand_lower_is_landed_on() -> None:
     flight = LowerPad(lower_m=0.15)
     flight.start_and_reach(Phase.SECURED)
     assert Phase.ABORT not in flight.history
 
 
+@pytest.mark.slow
 def test_drone_stays_above_the_lower_deck_while_nothing_is_touched() -> None:
     flight = LowerPad(lower_m=1.4)
     flight.start_and_reach(Phase.DESCEND)

@@ -49,6 +49,7 @@ def test_covariance_is_symmetric_and_positive_after_every_step(kind: EstimatorKi
         assert estimate.covariance.diagonal()[:6].min() > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", [21, 22, 23])
 def test_order_of_arrival_leaves_no_trace_within_the_buffer(kind: EstimatorKind, seed: int) -> None:
@@ -116,6 +117,7 @@ def test_forecast_of_a_braking_vehicle_never_drives_backwards(kind: EstimatorKin
     assert (np.diff(forecast.position_enu_m @ along) > -1e-6).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [EstimatorKind.UKF, EstimatorKind.IMM])
 @pytest.mark.parametrize("seed", [71, 72])
 def test_heading_does_not_turn_while_the_vehicle_stands(kind: EstimatorKind, seed: int) -> None:

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -43,6 +44,7 @@ def test_message_is_what_pymavlink_makes_of_the_frame(message_id: int, payload: 
     assert repr(told(ours)) == repr(told(theirs))  # NaN equals nothing, not even itself
 
 
+@pytest.mark.slow
 def test_every_message_is_read_whole() -> None:
     for message_id in mavlink.mavlink_map:
         frame = framed(message_id, full_payload(message_id), version1=False)
@@ -69,6 +71,7 @@ def test_frame_of_a_message_is_the_one_that_pymavlink_packs(message_id: int, pay
     assert frame_of(message, sequence, 7, 191) == packed_by_pymavlink(message, sequence)
 
 
+@pytest.mark.slow
 def test_every_message_is_written_whole() -> None:
     for message_id in mavlink.mavlink_map:
         message = LISTENER.decode(framed(message_id, full_payload(message_id), version1=False))

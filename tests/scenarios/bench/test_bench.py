@@ -33,6 +33,7 @@ def test_nothing_timed_has_no_quantiles() -> None:
         quantiles_ms([])
 
 
+@pytest.mark.slow
 def test_stopwatch_times_every_step_and_is_gone_afterwards() -> None:
     callers = (vars(sim_autopilot.node), vars(companion.runtime.node))
     plain = (callers[0]["autopilot_step"], callers[1]["companion_step"])

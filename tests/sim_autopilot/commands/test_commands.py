@@ -35,6 +35,7 @@ def setpoints_for(pilot: Pilot, duration_s: float) -> None:
     pilot.run(duration_s, lambda _t: setpoint((0.0, 0.0, 5.0)))
 
 
+@pytest.mark.slow
 def test_an_unknown_command_is_unsupported() -> None:
     assert Pilot().acknowledged(command(mavlink.MAV_CMD_DO_FOLLOW)) == [UNSUPPORTED]
 
@@ -151,6 +152,7 @@ def test_the_heartbeat_stays_at_one_hertz_whatever_is_asked_for() -> None:
     assert len(pilot.all("HEARTBEAT")) == 5
 
 
+@pytest.mark.slow
 def test_a_takeoff_while_disarmed_is_accepted_and_begins_with_arming() -> None:
     pilot = Pilot()
     assert pilot.acknowledged(command(mavlink.MAV_CMD_NAV_TAKEOFF, *(nan,) * 7)) == [ACCEPTED]
@@ -183,6 +185,7 @@ def test_an_interval_that_cannot_be_fails(parameters: tuple[float, float]) -> No
     assert Pilot().acknowledged(command(SET_INTERVAL, *parameters)) == [FAILED]
 
 
+@pytest.mark.slow
 def test_every_message_it_knows_can_be_requested() -> None:
     pilot = Pilot()
     pilot.take_off(1.0)

@@ -51,6 +51,7 @@ def test_arducopters_parameter_file_holds_every_parameter(copter_files: FileClie
     assert values["SYSID_THISMAV"] == (2, 1)
 
 
+@pytest.mark.slow
 def test_px4_describes_its_parameters_in_a_file_whose_checksum_is_told(px4_files: FileClient) -> None:
     general = json.loads(lzma.decompress(px4_files.read(GENERAL)))
     (entry,) = (one for one in general["metadataTypes"] if one["type"] == 1)
@@ -106,6 +107,7 @@ def test_a_checksum_is_the_one_that_both_servers_reckon() -> None:
     assert checksum(b"123456789") == register
 
 
+@pytest.mark.slow
 def test_a_second_file_is_refused_as_each_firmware_says_until_the_first_was_idle(
     px4_files: FileClient, copter_files: FileClient
 ) -> None:

@@ -47,6 +47,7 @@ def test_wind_is_told_by_where_it_comes_from() -> None:
     assert told.direction == pytest.approx(180.0 + degrees(atan2(3.0, 4.0)))
 
 
+@pytest.mark.slow
 def test_the_battery_tells_the_current_that_empties_its_capacity_in_its_endurance() -> None:
     assert one(Pilot(ardupilot()), "BATTERY_STATUS").current_battery == 0
     pilot = copter_in_the_air(ardupilot(endurance_s=600.0))

@@ -41,6 +41,7 @@ def attitude(pilot: Pilot) -> Rotation:
     return Rotation.from_matrix(NED_FROM_ENU @ Rotation.from_quat((x, y, z, w)).as_matrix() @ FRD_FROM_FLU.T)
 
 
+@pytest.mark.slow
 def test_local_position_is_the_true_place_on_px4s_sphere_and_velocity_the_truth_in_ned(flying: Pilot) -> None:
     message, (_, velocity) = flying.last("LOCAL_POSITION_NED"), ned(flying)
     datum_deg = (degrees(DATUM.latitude_rad), degrees(DATUM.longitude_rad), DATUM.altitude_m)

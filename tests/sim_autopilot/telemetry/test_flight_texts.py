@@ -1,5 +1,7 @@
 """What PX4 says to ground stations as a flight goes on, in its words."""
 
+import pytest
+
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.event_ids import event_id
 from tests.sim_autopilot.pilot import Pilot, arm, px4, set_mode
@@ -53,6 +55,7 @@ def companion() -> Message:
     return mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_ONBOARD_CONTROLLER, 8, 0, 0, 4, 3)
 
 
+@pytest.mark.slow
 def test_a_companion_that_falls_silent_is_told_of_and_changes_nothing() -> None:
     pilot = watched()
     flown_by_mode(pilot)

@@ -27,6 +27,7 @@ def test_a_drone_at_rest_feels_its_weight_and_the_field_down() -> None:
     assert imu.zmag == pytest.approx(450, abs=2)
 
 
+@pytest.mark.slow
 def test_altitude_tells_heights_above_sea_origin_home_and_ground() -> None:
     pilot = Pilot()
     pilot.take_off(6.0)
