@@ -104,7 +104,6 @@ def here(places: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> Iterator[di
         signal.signal(number, handler)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("name", "line", "words"), MISTAKES, ids=[f"{name} {line}" for name, line, _ in MISTAKES])
 def test_a_mistake_is_one_line_that_names_it_and_exit_code_2(
     here: dict[str, str], capfd: pytest.CaptureFixture[str], name: str, line: str, words: list[str]
