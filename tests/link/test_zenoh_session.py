@@ -267,11 +267,8 @@ def test_port_in_use_is_the_users_mistake(endpoint: str) -> None:
     [
         ({"mode": "pear"}, "--mode 'pear' does not exist: choose peer, client, router"),
         ({"connect": ("127.0.0.1:7447",)}, "--connect '127.0.0.1:7447' is no endpoint: write it as tcp/127.0.0.1:7447"),
-        ({"connect": ("foo/127.0.0.1:7447",)}, "is no endpoint"),
         ({"connect": ("tcp/127.0.0.1",)}, "needs a host and a port from 1 to 65535"),
-        ({"connect": ("tcp/127.0.0.1:0",)}, "from 1 to 65535"),
         ({"listen": ("tcp/127.0.0.1:65536",)}, "--listen 'tcp/127.0.0.1:65536' needs a host and a port from 0"),
-        ({"listen": ("",)}, "is no endpoint"),
         ({"mode": "client"}, "add --connect tcp/127.0.0.1:7447"),
     ],
 )
