@@ -15,6 +15,8 @@ from companion.autopilots.link import AutopilotLink
 from link.mavlink.session import MavlinkSession
 from tests.link.mavlink.tlog_frames import frames_of
 
+pytestmark = pytest.mark.slow
+
 DATA = Path(__file__).parents[1] / "data"
 SYSTEM_ID = 1
 
@@ -50,7 +52,6 @@ def _replayed(name: str) -> Seen:
     return Seen(link, moments, texts)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["px4_offboard", "arducopter_guided"])
 def test_recording_holds_nothing_that_the_session_does_not_understand(name: str) -> None:
     codec = _replayed(name).link.session.statistics.codec
