@@ -23,11 +23,11 @@ demo: .venv/.complete
 check: lint
 	$(BIN)/pytest -q -n 2 -m "not slow and not wire"
 
-# What keeps time with the clock runs by itself, after the rest; clients of a stand-in, which mostly wait, two at a time.
+# What keeps time with the clock runs after the rest: what mostly waits two at a time, what takes both cores by itself.
 test: lint docs
 	$(BIN)/pytest -q -n 2 --dist worksteal -m "not wire"
-	$(BIN)/pytest -q -n 2 --dist loadgroup -m wire tests/conformance
-	$(BIN)/pytest -q -m wire --ignore tests/conformance
+	$(BIN)/pytest -q -n 2 --dist loadgroup -m "wire and not alone"
+	$(BIN)/pytest -q -m alone
 
 # The manual, in build/manual/index.html; needs no network. A warning, such as a broken link, fails it.
 docs: .venv/.complete

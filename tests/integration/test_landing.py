@@ -7,7 +7,7 @@ from scenarios.processes import free_tcp_endpoint, free_udp_port
 from tests.integration.observer import observer
 from tests.integration.programs import Programs
 
-pytestmark = pytest.mark.wire
+pytestmark = [pytest.mark.wire, pytest.mark.alone]
 
 SPEED = "5"
 

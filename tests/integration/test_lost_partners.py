@@ -8,7 +8,7 @@ from scenarios.processes import free_tcp_endpoint, free_udp_port
 from tests.integration.observer import Observer, observer
 from tests.integration.programs import Programs
 
-pytestmark = pytest.mark.wire
+pytestmark = [pytest.mark.wire, pytest.mark.alone]
 
 # What a drone that sinks when the abort comes may still sink: it plans with at least half of MPC_ACC_UP_MAX, and its
 # attitude and rotors lag behind the plan.

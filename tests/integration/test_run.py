@@ -11,7 +11,7 @@ import pytest
 
 from tests.integration.programs import Program, Programs, all_end, until
 
-pytestmark = pytest.mark.wire
+pytestmark = [pytest.mark.wire, pytest.mark.alone]
 
 NAMES = ("ground-vehicle", "sim-autopilot", "companion")
 

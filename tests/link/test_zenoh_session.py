@@ -137,6 +137,7 @@ def test_liveliness_notices_a_killed_process(endpoint: str) -> None:
 
 
 @pytest.mark.wire
+@pytest.mark.alone
 def test_a_peer_that_hangs_does_not_stall_the_sender(endpoint: str) -> None:
     code = (
         "import threading; from link.zenoh_session import *; "

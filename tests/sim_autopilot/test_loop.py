@@ -22,7 +22,7 @@ from link.zenoh_session import Inbox, ZenohOptions, ZenohSession, open_session
 from sim_autopilot.vehicle_view import VehicleView
 from tests.sim_autopilot.pilot import arm, set_mode, setpoint
 
-pytestmark = pytest.mark.wire
+pytestmark = [pytest.mark.wire, pytest.mark.alone]
 
 DEADLINE_S = 60.0
 KEYS = Keys("loop_test")
