@@ -26,7 +26,7 @@ check: lint
 # What keeps time with the clock runs after the rest: what mostly waits two at a time, what takes both cores by itself.
 test: lint docs
 	$(BIN)/pytest -q -n 2 --dist worksteal -m "not wire"
-	$(BIN)/pytest -q -n 2 --dist loadgroup -m "wire and not alone"
+	$(BIN)/pytest -q -n 2 --dist loadscope -m "wire and not alone"
 	$(BIN)/pytest -q -m alone
 
 # The manual, in build/manual/index.html; needs no network. A warning, such as a broken link, fails it.

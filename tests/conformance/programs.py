@@ -9,10 +9,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-import pytest
-
-FIRMWARES = [pytest.param(name, marks=pytest.mark.xdist_group(name)) for name in ("px4", "ardupilot")]
-"""The cases of one firmware's clients run one after the other, beside those of the other firmware."""
 SPEED = 4.0
 """Simulated seconds a second: the clients' setpoints, at 20 Hz of their own time, still come in time."""
 _READY_S = 90.0
@@ -36,12 +32,12 @@ def free_port(kind: socket.SocketKind) -> int:
 
 
 @contextmanager
-def stand_in(firmware: str) -> Iterator[StandIn]:
+def stand_in(firmware: str, speed: float = SPEED) -> Iterator[StandIn]:
     """Run `sim-autopilot` for as long as the block lasts."""
     here = StandIn(firmware=firmware, udp_port=free_port(socket.SOCK_DGRAM), tcp_port=free_port(socket.SOCK_STREAM))
     links = ("--mavlink", f"udpout:127.0.0.1:{here.udp_port}", "--mavlink", f"tcpin:127.0.0.1:{here.tcp_port}")
     zenoh = ("--listen", f"tcp/127.0.0.1:{free_port(socket.SOCK_STREAM)}")
-    command = [sys.executable, "-m", "sim_autopilot", "--firmware", firmware, "--instant", "--speed", str(SPEED)]
+    command = [sys.executable, "-m", "sim_autopilot", "--firmware", firmware, "--instant", "--speed", str(speed)]
     process = subprocess.Popen([*command, *links, *zenoh], stderr=subprocess.PIPE, text=True)
     try:
         assert process.stderr is not None
