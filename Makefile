@@ -23,10 +23,11 @@ demo: .venv/.complete
 check: lint
 	$(BIN)/pytest -q -n 2 -m "not slow and not wire"
 
-# What keeps time with the clock runs by itself, after the rest.
+# What keeps time with the clock runs after the rest: what mostly waits two at a time, what takes both cores by itself.
 test: lint docs
 	$(BIN)/pytest -q -n 2 --dist worksteal -m "not wire"
-	$(BIN)/pytest -q -m wire
+	$(BIN)/pytest -q -n 2 --dist loadscope -m "wire and not alone"
+	$(BIN)/pytest -q -m alone
 
 # The manual, in build/manual/index.html; needs no network. A warning, such as a broken link, fails it.
 docs: .venv/.complete

@@ -1,6 +1,7 @@
 """The one direction of imports between the packages and between their folders, and the one home of each library."""
 
 import ast
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -38,7 +39,8 @@ def sources(package: str) -> list[Path]:
     return sorted((ROOT / package).rglob("*.py"))
 
 
-def imported(path: Path) -> set[str]:
+@cache
+def imported(path: Path) -> frozenset[str]:
     """The top-level names that a file imports, wherever in it; a module named at run time is not seen."""
     names: set[str] = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
@@ -48,9 +50,10 @@ def imported(path: Path) -> set[str]:
             names.add(node.module.split(".")[0])
         elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith("import_module"):
             names |= {str(one.value).split(".")[0] for one in node.args if isinstance(one, ast.Constant)}
-    return names
+    return frozenset(names)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("package", sorted(MAY_IMPORT))
 def test_package_imports_only_what_its_arrows_allow(package: str) -> None:
     forbidden = set(MAY_IMPORT) - MAY_IMPORT[package] | {"tests"}
@@ -58,6 +61,7 @@ def test_package_imports_only_what_its_arrows_allow(package: str) -> None:
     assert wrong == {}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("library", sorted(HOMES))
 def test_library_has_one_home(library: str) -> None:
     users = {
@@ -80,6 +84,7 @@ def folder_arrows(package: str) -> dict[str, set[str]]:
     return arrows
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("package", sorted(MAY_IMPORT))
 def test_folders_of_a_package_import_each_other_in_one_direction(package: str) -> None:
     order = list(TopologicalSorter(folder_arrows(package)).static_order())

@@ -15,6 +15,8 @@ from companion.autopilots.link import AutopilotLink
 from link.mavlink.session import MavlinkSession
 from tests.link.mavlink.tlog_frames import frames_of
 
+pytestmark = pytest.mark.slow
+
 DATA = Path(__file__).parents[1] / "data"
 SYSTEM_ID = 1
 

@@ -95,6 +95,7 @@ def test_hold_stays_where_it_is() -> None:
     np.testing.assert_allclose(flight.own.position_enu_m, place, atol=0.02)
 
 
+@pytest.mark.slow
 def test_retries_end_in_a_hold_and_a_new_start_has_them_all_again() -> None:
     flight = Flight()
     flight.start_and_reach(Phase.WAITING)
@@ -122,6 +123,7 @@ def _behind(flight: Flight, distance_m: float) -> tuple[float, float, float]:
     return (x + float(ahead_m), y, z)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("end", [Phase.SECURED, Phase.PILOT, Phase.HOLD])
 def test_second_flight_is_like_the_first(end: Phase) -> None:
     flight = Flight()
@@ -159,6 +161,7 @@ def _with_unknown_heading(x_m: float, speed_m_s: float) -> Flight:
     return Flight(vehicle=vehicle, pad=LEVER, config=IMPATIENT)
 
 
+@pytest.mark.slow
 def test_unknown_heading_with_a_lever_arm_keeps_the_drone_above_the_height_of_alignment() -> None:
     flight = Flight(
         vehicle=KnownVehicle((-20.0, 0.4, PAD_HEIGHT_M), (4.0, 0.0, 0.0), yaw_rad=None), pad=LEVER, config=IMPATIENT
@@ -175,6 +178,7 @@ def test_unknown_heading_with_a_lever_arm_keeps_the_drone_above_the_height_of_al
     assert Phase.DESCEND not in flight.history
 
 
+@pytest.mark.slow
 def test_heading_that_becomes_known_lets_the_landing_go_on() -> None:
     flight = Flight(
         vehicle=KnownVehicle((-20.0, 0.4, PAD_HEIGHT_M), (4.0, 0.0, 0.0), yaw_rad=None), pad=LEVER, config=IMPATIENT
@@ -190,6 +194,7 @@ def test_heading_that_becomes_known_lets_the_landing_go_on() -> None:
     assert flight.reason is Reason.HEADING_UNKNOWN
 
 
+@pytest.mark.slow
 def test_vehicle_that_stands_with_an_unknown_heading_is_waited_for() -> None:
     flight = Flight(
         vehicle=KnownVehicle((5.0, 0.4, PAD_HEIGHT_M), (0.0, 0.0, 0.0), yaw_rad=None), pad=LEVER, config=IMPATIENT

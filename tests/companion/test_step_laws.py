@@ -143,6 +143,7 @@ class _Broken(KnownVehicle):
         return None if forecast is None else replace(forecast, velocity_enu_m_s=np.full((len(offset_s), 3), np.nan))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("phase", [Phase.WAITING, *LANDING])
 def test_estimate_that_is_not_finite_is_given_up_and_never_flown(phase: Phase) -> None:
     flight = reached(phase)

@@ -40,6 +40,7 @@ def test_pilots_mode_change_stops_setpoints_in_the_same_step_and_for_good(phase:
     assert flight.phase is Phase.PILOT
 
 
+@pytest.mark.slow
 def test_pilots_mode_change_before_the_motors_turn_counts_as_well() -> None:
     flight = Flight(refuses=frozenset({DISARM}))
     flight.start_and_reach(Phase.TAKEOFF)
@@ -63,6 +64,7 @@ def test_failsafe_ends_the_companions_flight(phase: Phase) -> None:
     assert flight.reason is Reason.AUTOPILOT_FAILSAFE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("phase", [Phase.CHASE, Phase.ALIGN, Phase.DESCEND])
 def test_failsafe_in_which_the_autopilot_follows_on_does_not_end_a_landing(phase: Phase) -> None:
     flight = reached(phase)
@@ -117,6 +119,7 @@ def test_hold_before_the_motors_turn_ends_in_idle() -> None:
         assert flight.commands == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("phase", LANDING)
 @pytest.mark.parametrize("command", [Command.ABORT, Command.HOLD])
 def test_operators_abort_climbs_and_ends_in_a_hold_without_retry(phase: Phase, command: Command) -> None:
@@ -161,6 +164,7 @@ def test_vehicle_that_falls_silent_is_left_upwards_and_held_off(phase: Phase) ->
     assert flight.own.position_enu_m[2] > height_m + 0.8 * CONFIG.abort.height_m
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("phase", LANDING)
 def test_drone_that_does_not_know_where_it_is_aborts(phase: Phase) -> None:
     flight = reached(phase)

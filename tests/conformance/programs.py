@@ -32,12 +32,12 @@ def free_port(kind: socket.SocketKind) -> int:
 
 
 @contextmanager
-def stand_in(firmware: str) -> Iterator[StandIn]:
+def stand_in(firmware: str, speed: float = SPEED) -> Iterator[StandIn]:
     """Run `sim-autopilot` for as long as the block lasts."""
     here = StandIn(firmware=firmware, udp_port=free_port(socket.SOCK_DGRAM), tcp_port=free_port(socket.SOCK_STREAM))
     links = ("--mavlink", f"udpout:127.0.0.1:{here.udp_port}", "--mavlink", f"tcpin:127.0.0.1:{here.tcp_port}")
     zenoh = ("--listen", f"tcp/127.0.0.1:{free_port(socket.SOCK_STREAM)}")
-    command = [sys.executable, "-m", "sim_autopilot", "--firmware", firmware, "--instant", "--speed", str(SPEED)]
+    command = [sys.executable, "-m", "sim_autopilot", "--firmware", firmware, "--instant", "--speed", str(speed)]
     process = subprocess.Popen([*command, *links, *zenoh], stderr=subprocess.PIPE, text=True)
     try:
         assert process.stderr is not None

@@ -97,10 +97,6 @@ def _stream_stops(flight: FaultFlight, number: int) -> None:
     flight.tell(mavlink.MAVLink_command_long_message(1, 1, interval, 0, number, -1.0, 0, 0, 0, 0, 0))
 
 
-def _own_attitude_stops(flight: FaultFlight) -> None:
-    _stream_stops(flight, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION)
-
-
 def _vehicles_clock_is_set(flight: FaultFlight) -> None:
     flight.simulation.vehicle.set_clock(_AHEAD_S)
 
@@ -153,7 +149,6 @@ ABORTS: dict[str, Abort] = {
     ),
     "token_lost": Abort(reason=Reason.VEHICLE_LINK_LOST, phase=Phase.CHASE, fault=_token_is_lost),
     "own_position_stops": Abort(reason=Reason.OWN_POSITION_OLD, phase=Phase.ALIGN, fault=_own_position_stops),
-    "own_attitude_stops": Abort(reason=Reason.OWN_ATTITUDE_OLD, phase=Phase.ALIGN, fault=_own_attitude_stops),
     "clock_ahead": Abort(
         reason=Reason.VEHICLE_CLOCK_AHEAD,
         companion={"descent": {"aligned_hold_s": 20.0}},
@@ -165,14 +160,6 @@ ABORTS: dict[str, Abort] = {
         scenario="static",
         vehicle=_ANTENNA_OVER_PAD,
         companion=_PARKED,
-        fault=_pad_is_described(forward_m=_BESIDE_M, up_m=0.0),
-    ),
-    "heading_unknown_for_long": Abort(
-        reason=Reason.HEADING_UNKNOWN,
-        scenario="static",
-        vehicle=_ANTENNA_OVER_PAD,
-        companion=_PARKED | {"descent": {"align_time_limit_s": 1.0}},
-        phase=Phase.ALIGN,
         fault=_pad_is_described(forward_m=_BESIDE_M, up_m=0.0),
     ),
     "not_followed": Abort(  # flown for half a second later than it is: the drone is ahead of where it is asked to be
@@ -187,12 +174,6 @@ ABORTS: dict[str, Abort] = {
         companion={"descent": {"strays_max": 0, "stray_hold_s": 0.2}},
         fault=_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0),
     ),
-    "alignment_lost": Abort(
-        reason=Reason.ALIGNMENT_LOST,
-        companion={"descent": {"strays_max": 0}},
-        phase=Phase.ALIGN,
-        fault=_pad_is_described(forward_m=10.0 * _BESIDE_M, up_m=0.0),
-    ),
     "contradicting": Abort(
         reason=Reason.VEHICLE_CONTRADICTS_ITSELF,
         companion={"descent": {"aligned_hold_s": 20.0, "strays_max": 20}},
@@ -205,11 +186,6 @@ ABORTS: dict[str, Abort] = {
     "outrun": Abort(reason=Reason.VEHICLE_OUTRUNS, phase=Phase.ALIGN, fault=_limit_is_lowered),
     "below_pad": Abort(reason=Reason.BELOW_PAD, fault=_pad_is_described(forward_m=0.0, up_m=_RAISED_M)),
     "nothing_touched": Abort(reason=Reason.NOTHING_TOUCHED, fault=_pad_is_described(forward_m=0.0, up_m=_LOWER_M)),
-    "to_be_seen_again": Abort(
-        reason=Reason.PAD_TO_BE_SEEN,
-        scenario=_POOR_SENSORS,
-        companion={"descent": {"unseen_max": 0, "unseen_std_max_m": 0.14}},
-    ),
     "not_seen": Abort(
         reason=Reason.PAD_NOT_SEEN,
         scenario=_POOR_SENSORS,
@@ -225,12 +201,6 @@ ABORTS: dict[str, Abort] = {
         phase=Phase.TOUCHDOWN,
         fault=_pad_is_described(forward_m=0.0, up_m=-_RAISED_M),
     ),
-    "chase_too_long": Abort(reason=Reason.CHASE_TOO_LONG, companion={"chase": {"time_limit_s": 0.2}}),
-    "align_too_long": Abort(reason=Reason.ALIGN_TOO_LONG, companion={"descent": {"align_time_limit_s": 0.2}}),
     "descent_too_long": Abort(reason=Reason.DESCENT_TOO_LONG, companion={"descent": {"time_limit_s": 1.0}}),
-    "descent_too_long_ardupilot": Abort(
-        reason=Reason.DESCENT_TOO_LONG, scenario=_ARDUPILOT, companion={"descent": {"time_limit_s": 1.0}}
-    ),
     "operator_aborts": Abort(reason=Reason.OPERATOR_ABORTS, phase=Phase.CHASE, fault=_operator(Command.ABORT)),
-    "operator_holds": Abort(reason=Reason.OPERATOR_HOLDS, fault=_operator(Command.HOLD)),
 }

@@ -1,17 +1,13 @@
 """The landing over real UDP and real Zenoh, by the README's two programs and by its four."""
 
-import signal
-from pathlib import Path
-
 import pytest
 
-from link.mcap_reader import read_messages, recording_files
 from scenarios.outcome import LANDED
 from scenarios.processes import free_tcp_endpoint, free_udp_port
 from tests.integration.observer import observer
 from tests.integration.programs import Programs
 
-pytestmark = pytest.mark.wire
+pytestmark = [pytest.mark.wire, pytest.mark.alone]
 
 SPEED = "5"
 
@@ -39,18 +35,3 @@ def test_four_programs_land_on_command_with_the_companion_started_last() -> None
         operator = programs.start("scenarios", "command", "start", "-e", endpoint)
         assert (operator.wait(), operator.out.all) == (0, ["accepted"])
         assert bystander.wait_for_end().tier in LANDED
-
-
-def test_companion_lands_although_the_disk_of_its_recording_is_full(small_disk: Path) -> None:
-    port, endpoint = free_udp_port(), free_tcp_endpoint()
-    listening = ("--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint, "--record", str(small_disk))
-    speaking = ("--mavlink", f"udpout:127.0.0.1:{port}", "-l", endpoint)
-    with Programs() as programs:
-        companion = programs.start("companion", *listening, "--start", "--use-sim-time")
-        with observer(endpoint) as bystander:
-            programs.start("scenarios", "world", "straight_5", "--speed", SPEED, *speaking)
-            assert bystander.wait_for_end().tier in LANDED
-        companion.send(signal.SIGINT)
-        assert companion.wait() == 0
-    assert int(companion.err.wait_for(r"recording: \d+ records are lost").split()[1]) > 100
-    assert sum(1 for _ in read_messages(recording_files(small_disk, "companion"))) > 100

@@ -1,6 +1,5 @@
 """Several links of the real simulated autopilot."""
 
-import socket
 import time
 
 import pytest
@@ -38,13 +37,3 @@ def test_clients_on_tcp_and_udp_hear_the_autopilot_and_each_other() -> None:
 def _all_met(heard: list[set[int]]) -> bool:
     """Whether everybody heard the autopilot, and those on the other link."""
     return all({1, 250, 251} <= one for one in heard[2:]) and all({1, 252, 253} <= one for one in heard[:2])
-
-
-def test_an_own_port_in_use_is_one_clear_line() -> None:
-    with Programs() as programs, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
-        taken.bind(("127.0.0.1", 0))
-        port = taken.getsockname()[1]
-        program = programs.start("sim-autopilot", "--mavlink", f"udpout:127.0.0.1:9:{port}")
-        assert program.wait() == 2
-        (line,) = program.err.all
-        assert f"port {port} is in use; stop the program that has it or choose another port" in line

@@ -1,4 +1,4 @@
-"""A partner is killed without a word: the simulator before and in the flight, the vehicle in the chase."""
+"""A partner is killed without a word: the simulator in the flight, the vehicle in the chase."""
 
 import pytest
 
@@ -8,7 +8,7 @@ from scenarios.processes import free_tcp_endpoint, free_udp_port
 from tests.integration.observer import Observer, observer
 from tests.integration.programs import Programs
 
-pytestmark = pytest.mark.wire
+pytestmark = [pytest.mark.wire, pytest.mark.alone]
 
 # What a drone that sinks when the abort comes may still sink: it plans with at least half of MPC_ACC_UP_MAX, and its
 # attitude and rotors lag behind the plan.
@@ -24,16 +24,14 @@ def start_again(programs: Programs, bystander: Observer, endpoint: str) -> None:
     bystander.wait_for_height(1.0)
 
 
-@pytest.mark.parametrize("in_flight", [False, True])
-def test_the_companion_outlives_a_killed_simulator_and_flies_with_the_next_one(*, in_flight: bool) -> None:
+def test_the_companion_outlives_a_simulator_killed_in_flight_and_flies_with_the_next_one() -> None:
     port, endpoint = free_udp_port(), free_tcp_endpoint()
     world = ("world", "straight_5", "--mavlink", f"udpout:127.0.0.1:{port}", "-l", endpoint)
     with Programs() as programs, observer(endpoint) as bystander:
         companion = programs.start("companion", "--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint)
         first = programs.start("scenarios", *world)
         companion.out.wait_for("autopilot found")
-        if in_flight:
-            start_again(programs, bystander, endpoint)
+        start_again(programs, bystander, endpoint)
         first.kill()
         companion.out.wait_for("autopilot lost")
         bystander.forget()

@@ -46,17 +46,10 @@ def test_no_vehicle_fix_names_its_key() -> None:
     assert "--vehicle" in said
 
 
-@pytest.mark.parametrize(
-    ("autopilot", "vehicle_type", "words"),
-    [
-        (mavlink.MAV_AUTOPILOT_SLUGS, mavlink.MAV_TYPE_QUADROTOR, ["MAV_AUTOPILOT 2", "px4"]),
-        (mavlink.MAV_AUTOPILOT_PX4, mavlink.MAV_TYPE_FIXED_WING, ["MAV_TYPE 1", "no multirotor"]),
-        (mavlink.MAV_AUTOPILOT_INVALID, mavlink.MAV_TYPE_GCS, ["no heartbeat", "bytes received", "none of them"]),
-    ],
-)
-def test_a_peer_that_it_cannot_fly_is_told_by_what_it_is(autopilot: int, vehicle_type: int, words: list[str]) -> None:
+def test_a_peer_that_it_cannot_fly_is_told_by_what_it_is() -> None:
     port = free_udp_port()
-    heartbeat = mavlink.MAVLink_heartbeat_message(vehicle_type, autopilot, 0, 0, mavlink.MAV_STATE_ACTIVE, 3)
+    fixed_wing, px4 = mavlink.MAV_TYPE_FIXED_WING, mavlink.MAV_AUTOPILOT_PX4
+    heartbeat = mavlink.MAVLink_heartbeat_message(fixed_wing, px4, 0, 0, mavlink.MAV_STATE_ACTIVE, 3)
     codec = MavlinkCodec(1, mavlink.MAV_COMP_ID_AUTOPILOT1)
     with Programs() as programs, open_transport(f"udpout:127.0.0.1:{port}") as transport:
         companion = programs.start("companion", "--mavlink", f"udpin:127.0.0.1:{port}", "--timeout", "2")
@@ -67,5 +60,4 @@ def test_a_peer_that_it_cannot_fly_is_told_by_what_it_is(autopilot: int, vehicle
 
         until(has_ended, "the companion's end")
         said = last_line(companion)
-    for word in words:
-        assert word in said
+    assert "MAV_TYPE 1, which is no multirotor" in said

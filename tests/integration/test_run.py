@@ -11,7 +11,7 @@ import pytest
 
 from tests.integration.programs import Program, Programs, all_end, until
 
-pytestmark = pytest.mark.wire
+pytestmark = [pytest.mark.wire, pytest.mark.alone]
 
 NAMES = ("ground-vehicle", "sim-autopilot", "companion")
 
@@ -73,30 +73,16 @@ def test_a_run_that_ends_by_its_time_limit_has_its_result_and_its_timing(tmp_pat
     assert 0.0 < step_ms["median"] <= step_ms["p99"] <= step_ms["max"]
 
 
-def test_an_interrupted_run_ends_its_programs(tmp_path: Path) -> None:
+def test_a_killed_run_leaves_no_program(tmp_path: Path) -> None:
     with Programs() as programs:
         run = start_run(programs, tmp_path, "--speed", "3")
-        run.out.wait_for("takeoff")
-        children = started_children(run)
-        run.send(signal.SIGINT)
-        assert run.wait() == 130
-        assert run.err.all == []
-        assert not [child for child in children if child.is_running()]
-
-
-@pytest.mark.parametrize("flies", [False, True])
-def test_a_killed_run_leaves_no_program(tmp_path: Path, *, flies: bool) -> None:
-    with Programs() as programs:
-        run = start_run(programs, tmp_path, "--speed", "3")
-        if flies:
-            run.out.wait_for("takeoff")
         children = started_children(run)
         run.send(signal.SIGKILL)
         assert all_end(children)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_a_program_that_dies_ends_the_run_with_one_line_that_names_it(tmp_path: Path, name: str) -> None:
+def test_a_program_that_dies_ends_the_run_with_one_line_that_names_it(tmp_path: Path) -> None:
+    name = "companion"
     with Programs() as programs:
         run = start_run(programs, tmp_path, "--speed", "3")
         run.out.wait_for("takeoff")
@@ -110,9 +96,9 @@ def test_a_program_that_dies_ends_the_run_with_one_line_that_names_it(tmp_path: 
         assert all_end(children)
 
 
-def test_page_of_a_run_is_served_and_ends_with_the_run(tmp_path: Path) -> None:
+def test_page_of_a_run_is_served_until_it_is_interrupted_and_all_programs_have_ended(tmp_path: Path) -> None:
     with Programs() as programs:
-        run = start_run(programs, tmp_path, "--view")
+        run = start_run(programs, tmp_path, "--speed", "3", "--view")
         address = run.out.wait_for("view: ").removeprefix("view: ")
 
         def is_served() -> bool:
@@ -128,4 +114,5 @@ def test_page_of_a_run_is_served_and_ends_with_the_run(tmp_path: Path) -> None:
         assert len(children) == len(NAMES) + 1
         run.send(signal.SIGINT)
         assert run.wait() == 130
+        assert run.err.all == []
         assert all_end(children)

@@ -379,6 +379,7 @@ def test_an_unknown_encapsulation_is_refused() -> None:
             decode(Fix, header + payload[4:])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("message_type", list(ROS_TYPES), ids=lambda message_type: message_type.__name__)
 @given(payload=st.binary(max_size=1000), has_header=st.booleans())
 def test_random_bytes_raise_nothing_but_payload_error(

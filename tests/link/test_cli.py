@@ -59,6 +59,7 @@ def program(seen: Seen) -> typer.Typer:
     return app
 
 
+@pytest.mark.slow
 def test_common_options_reach_the_command() -> None:
     seen: Seen = []
     line = "run --ns site -m client -e tcp/a:1 -e tcp/b:2 -l tcp/c:3 --no-multicast-scouting --zenoh-config z.json5"

@@ -110,6 +110,7 @@ def test_simulated_clock_learns_a_new_rate_within_its_window() -> None:
     assert clock.rate == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(st.integers(0, 100 * MS), st.integers(-50 * MS, 500 * MS)), max_size=50))
 def test_simulated_clock_never_goes_back(steps: list[tuple[int, int]]) -> None:
     wall = Wall()

@@ -74,6 +74,7 @@ def test_code_of_other_sources_is_removed_and_nothing_else(tmp_path: Path) -> No
     assert said(tmp_path, 3.0, "tidy") == [31.0, 1.0, 0.0]
 
 
+@pytest.mark.slow
 def test_without_a_place_to_keep_code_one_line_says_what_to_set(tmp_path: Path) -> None:
     """As for a service's user, who has no home and may not write into the installation."""
     (tmp_path / "inner.py").write_text(INNER.format(factor=2.0))

@@ -132,6 +132,7 @@ def test_what_must_not_be_sent_is_not_encoded(message: Message) -> None:
         encode(message)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("message_type", TYPES, ids=lambda message_type: message_type.__name__)
 @given(payload=st.binary(max_size=300))
 def test_random_bytes_raise_nothing_but_payload_error(message_type: type[Message], payload: bytes) -> None:
@@ -146,6 +147,7 @@ JSON_VALUES = st.recursive(
 )
 
 
+@pytest.mark.slow
 @given(changes=st.dictionaries(st.sampled_from([field.name for field in fields(LandingStatus)]), JSON_VALUES))
 def test_any_json_in_a_status_raises_nothing_but_payload_error(changes: dict[str, Any]) -> None:
     payload = json.dumps(json.loads(encode(STATUS)) | changes).encode()

@@ -54,6 +54,7 @@ def between(before: Message, after: Message, boot_ms: int) -> Vector3 | None:
     return (east, north, -down)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "projection", "least"),
     [("px4_offboard", Projection.PX4, 690), ("arducopter_guided", Projection.ARDUPILOT, 230)],

@@ -69,6 +69,7 @@ def test_every_message_of_ours_has_a_definition_that_rosbags_reads_alone() -> No
         assert f"{PACKAGE}/{name}" in store.types
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.3, 0.8, 0.999])
 def test_file_that_breaks_off_is_read_up_to_there(tmp_path: Path, share: float) -> None:
     (file,) = _write(tmp_path, 20_000)
@@ -79,6 +80,7 @@ def test_file_that_breaks_off_is_read_up_to_there(tmp_path: Path, share: float) 
     assert yaws == [0.001 * index for index in range(len(yaws))]
 
 
+@pytest.mark.slow
 def test_files_are_rotated_and_the_oldest_deleted_at_the_limit(tmp_path: Path) -> None:
     files = _write(tmp_path, 30_000, file_max_bytes=100_000, total_max_bytes=250_000)
     assert 2 <= len(files) <= 3
@@ -104,6 +106,7 @@ def test_each_start_has_files_of_its_own_and_leaves_those_before_as_they_are(tmp
     ]
 
 
+@pytest.mark.slow
 def test_limit_of_all_files_counts_those_of_earlier_starts(tmp_path: Path) -> None:
     for _ in range(12):
         _write(tmp_path, 5_000, file_max_bytes=100_000, total_max_bytes=350_000)
@@ -115,6 +118,7 @@ def test_limit_of_all_files_counts_those_of_earlier_starts(tmp_path: Path) -> No
     assert min(numbers) > 1
 
 
+@pytest.mark.slow
 def test_write_that_fails_is_told_and_leaves_a_readable_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = mcap_writer._WholeRecords.write  # noqa: SLF001 (where a disk fills up)
 

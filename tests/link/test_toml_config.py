@@ -92,7 +92,6 @@ def test_merging_leaves_what_it_merges_alone() -> None:
     [
         ("nme = 'x'", "unknown key 'nme', did you mean 'name'?"),
         ("[guidance]\nhorizn_s = 1.0", "unknown key 'guidance.horizn_s', did you mean 'horizon_s'?"),
-        ("[backup]\nhorizn_s = 1.0", "unknown key 'backup.horizn_s', did you mean 'horizon_s'?"),
         ("[guidance.solver]\nzzz = 1", "unknown key 'guidance.solver.zzz'; valid are iterations_max, tolerance"),
         (
             "[guidance]\nhorizon_s = 11.0",
@@ -103,16 +102,11 @@ def test_merging_leaves_what_it_merges_alone() -> None:
             "guidance.solver.iterations_max = 0 does not fit: it must be a whole number at least 1 and at most 500",
         ),
         ("[guidance]\nhorizon_s = nan", "guidance.horizon_s = NaN does not fit"),
-        ("[guidance]\nhorizon_s = '3'", 'guidance.horizon_s = "3" does not fit'),
-        ("[guidance]\nhorizon_s = true", "guidance.horizon_s = true does not fit"),
         ("[guidance.solver]\niterations_max = 2.5", "guidance.solver.iterations_max = 2.5 does not fit"),
         ("fast = 1", "fast = 1 does not fit: input should be a valid boolean"),
-        ("name = 3", "name = 3 does not fit: input should be a valid string"),
         ("[guidance]\nkind = 'pm'", "guidance.kind = \"pm\" does not fit: input should be 'mpc' or 'pn'"),
         ("[guidance]\noffset_m = [1.0, 2.0]", "key 'guidance.offset_m.2' is missing"),
-        ("guidance = 3", "guidance = 3 does not fit"),
         ("name = ", "not valid TOML"),
-        ("name = 'a'\nname = 'b'", "not valid TOML"),
     ],
 )
 def test_a_mistake_is_named_with_its_key_and_what_would_fit(tmp_path: Path, text: str, expected: str) -> None:
@@ -194,6 +188,7 @@ def test_printed_configuration_is_read_back_the_same(tmp_path: Path) -> None:
     assert load_config(written(tmp_path, dump_toml(Config())), Config) == Config()
 
 
+@pytest.mark.slow
 @given(st.floats(min_value=1e-300, max_value=0.5), st.text(st.characters(codec="utf-8", exclude_characters="\r")))
 def test_every_number_and_text_survives_printing(tolerance: float, name: str) -> None:
     config = Config(name=name, guidance=Guidance(solver=Solver(tolerance=tolerance)))

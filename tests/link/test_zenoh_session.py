@@ -137,6 +137,7 @@ def test_liveliness_notices_a_killed_process(endpoint: str) -> None:
 
 
 @pytest.mark.wire
+@pytest.mark.alone
 def test_a_peer_that_hangs_does_not_stall_the_sender(endpoint: str) -> None:
     code = (
         "import threading; from link.zenoh_session import *; "
@@ -209,6 +210,7 @@ def test_query_whose_handler_refuses_has_no_answers_and_others_go_on(
 
 
 @pytest.mark.wire
+@pytest.mark.alone
 def test_the_one_to_connect_may_start_first(endpoint: str) -> None:
     with connector(endpoint) as receiver:
         inbox = receiver.subscribe("ns/late")
@@ -218,6 +220,7 @@ def test_the_one_to_connect_may_start_first(endpoint: str) -> None:
 
 
 @pytest.mark.wire
+@pytest.mark.alone
 def test_samples_flow_again_after_a_restart(endpoint: str) -> None:
     with connector(endpoint) as receiver:
         inbox = receiver.subscribe("ns/restart")
@@ -267,11 +270,8 @@ def test_port_in_use_is_the_users_mistake(endpoint: str) -> None:
     [
         ({"mode": "pear"}, "--mode 'pear' does not exist: choose peer, client, router"),
         ({"connect": ("127.0.0.1:7447",)}, "--connect '127.0.0.1:7447' is no endpoint: write it as tcp/127.0.0.1:7447"),
-        ({"connect": ("foo/127.0.0.1:7447",)}, "is no endpoint"),
         ({"connect": ("tcp/127.0.0.1",)}, "needs a host and a port from 1 to 65535"),
-        ({"connect": ("tcp/127.0.0.1:0",)}, "from 1 to 65535"),
         ({"listen": ("tcp/127.0.0.1:65536",)}, "--listen 'tcp/127.0.0.1:65536' needs a host and a port from 0"),
-        ({"listen": ("",)}, "is no endpoint"),
         ({"mode": "client"}, "add --connect tcp/127.0.0.1:7447"),
     ],
 )
@@ -304,6 +304,7 @@ def test_a_listen_address_of_another_computer_is_the_users_mistake() -> None:
 
 
 @pytest.mark.wire
+@pytest.mark.alone
 def test_a_client_without_router_gives_up(endpoint: str) -> None:
     with pytest.raises(UserError, match=f"--connect {endpoint}: no router answers"):
         open_session(ZenohOptions(mode="client", connect=(endpoint,)))

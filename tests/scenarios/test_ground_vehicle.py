@@ -11,7 +11,6 @@ from contextlib import contextmanager
 import pytest
 
 from link import cdr, json_payloads
-from link.cli import run_app
 from link.clock import ClockTick
 from link.geodesy import enu_from_geodetic
 from link.keys import Keys
@@ -19,7 +18,6 @@ from link.messages import BodyTruth, Fix, FixVelocity, PadGeometry, PadSighting,
 from link.publication import Publication
 from link.zenoh_session import Sample, ZenohOptions, ZenohSession, open_session
 from scenarios.catalogue import load_scenario
-from scenarios.ground_vehicle import app
 from scenarios.vehicle_node import VehicleNode, datum_of, departing_at_once
 
 START_NS = 1_800_000_000_000_000_000
@@ -94,6 +92,7 @@ def test_time_that_does_not_advance_publishes_nothing() -> None:
     assert node.step(START_NS - STEP_NS, None) == []
 
 
+@pytest.mark.slow
 def test_same_seed_publishes_the_same_bytes() -> None:
     scenario = load_scenario("random_5+sensors=degraded")
     runs = [published(VehicleNode(scenario, seed, KEYS), 3.0) for seed in (6, 6, 7)]
@@ -107,35 +106,6 @@ def test_vehicle_departs_at_once_when_told_to() -> None:
         node.step(START_NS + step * STEP_NS, None)
     assert node.state is not None
     assert node.state.velocity_enu_m_s[0] > 3.0
-
-
-def test_vehicle_is_not_more_than_a_burden() -> None:
-    # The budget is 3 ms for each simulated second; this only notices when it becomes several times that.
-    node = VehicleNode(load_scenario("straight_5"), 1, KEYS)
-    published(node, 1.0)
-    started_s = time.process_time()
-    for step in range(100, 1100):
-        node.step(START_NS + step * STEP_NS, None)
-    assert time.process_time() - started_s < 0.3
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ([], "give --scenario NAME"),
-        (["--scenario", "straigt_5"], "'straight_5'"),
-        (["--scenario", "straight_5", "--ns", ""], "--ns"),
-        (["--scenario", "straight_5", "--listen", "nowhere"], "--listen"),
-        (["--scenario", "straight_5", "--seed", "many"], "--seed"),
-    ],
-)
-def test_users_mistake_is_one_line_and_exit_code_2(
-    arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run_app("ground-vehicle", app, arguments) == 2
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1
-    assert words in error
 
 
 @contextmanager

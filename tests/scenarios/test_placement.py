@@ -39,6 +39,7 @@ def test_drone_waits_ahead_of_a_vehicle_that_begins_at_the_datum(tmp_path: Path)
     assert (waiting[:2], waiting[2]) == (start[:2], 5.0)
 
 
+@pytest.mark.slow
 def test_drone_ahead_of_the_vehicle_takes_off_at_once(tmp_path: Path) -> None:
     run = Lockstep(load_scenario(written(tmp_path)), 1)
     while run.recording.elapsed_s < 12.0:

@@ -52,6 +52,7 @@ def driven(
     return steps
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [

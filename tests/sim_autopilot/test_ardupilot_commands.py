@@ -20,6 +20,7 @@ def reposition(pilot: Pilot, east_m: float, north_m: float, above_home_m: float)
     return pilot.acknowledged(message)
 
 
+@pytest.mark.slow
 def test_a_reposition_flies_in_guided_from_any_mode() -> None:
     pilot = copter_in_the_air()
     pilot.acknowledged(mode(BRAKE))

@@ -22,6 +22,8 @@ from tests.sim_autopilot.copter import ALT_HOLD, GUIDED, LOITER, RTL, ardupilot,
 from tests.sim_autopilot.pilot import Pilot, arm
 from tests.sim_autopilot.planner import EAST_M, LATITUDE, LONGITUDE, NORTH_M
 
+pytestmark = pytest.mark.slow
+
 HOME = (0.0, 0.0, 0.1)
 
 

@@ -6,9 +6,11 @@ import pytest
 
 from link.mavlink.dialect import mavlink
 from sim_autopilot.missions.items import RALLY
-from tests.sim_autopilot.copter import AUTO, GUIDED, ardupilot, copter_in_the_air, every, heartbeat, mode
+from tests.sim_autopilot.copter import AUTO, GUIDED, ardupilot, copter_in_the_air, heartbeat, mode
 from tests.sim_autopilot.pilot import VELOCITY_ONLY, Pilot, arm, command, setpoint
-from tests.sim_autopilot.planner import RELATIVE, download, item, plan_messages, upload
+from tests.sim_autopilot.planner import RELATIVE, download, item, upload
+
+pytestmark = pytest.mark.slow
 
 FAILED, UNSUPPORTED, INVALID_PARAM2, INVALID_PARAM4 = 4, 3, 7, 9
 WAYPOINT, TAKEOFF, RETURN = 16, 22, 20
@@ -21,12 +23,6 @@ def test_a_heading_is_turned_to_and_by_in_guided() -> None:
         assert pilot.acknowledged(command(mavlink.MAV_CMD_CONDITION_YAW, *parameters)) == [0]
         pilot.run(6.0)
         assert 90.0 - degrees(pilot.node.memory.now.yaw_rad) % 360.0 == pytest.approx(heading - 360.0, abs=2.0)
-
-
-def test_a_heading_of_more_than_a_turn_is_refused() -> None:
-    pilot = Pilot(ardupilot())
-    assert pilot.acknowledged(command(mavlink.MAV_CMD_CONDITION_YAW, 361.0)) == [FAILED]
-    assert pilot.acknowledged(command(mavlink.MAV_CMD_CONDITION_YAW, 10.0, 0.0, 0.0, 2.0)) == [FAILED]
 
 
 def test_the_fence_is_switched_by_a_command_where_there_is_one() -> None:
@@ -76,25 +72,6 @@ def test_a_mission_that_returns_stays_in_auto_until_the_motors_stop_and_after() 
     assert heartbeat(pilot)[1] == AUTO
 
 
-def test_the_place_before_a_return_is_told_as_reached_and_the_return_at_its_end() -> None:
-    pilot = copter_in_the_air(ardupilot(parameters={"RTL_ALT": 500.0}), height_m=5.0)
-    place = (0.0, 8.0, 5.0)
-    items = [item(0, WAYPOINT, place, NUMBERS), item(1, WAYPOINT, place, NUMBERS), item(2, RETURN, None, NUMBERS)]
-    assert upload(pilot, items) == 0
-    pilot.acknowledged(mode(AUTO))
-    pilot.run_until(lambda: not pilot.is_armed(), 60.0)
-    assert [reached.seq for reached in pilot.all("MISSION_ITEM_REACHED")] == [1, 2]
-    assert "Reached command #1" in [text.text for text in pilot.all("STATUSTEXT")]
-
-
-def test_calibrations_are_known_by_their_numbers() -> None:
-    pilot = Pilot(ardupilot())
-    for parameters, result in (((1.0,), 0), ((0.0, 0.0, 1.0), 0), ((0.0,) * 4 + (4.0,), 0), ((0.0,), UNSUPPORTED)):
-        assert pilot.acknowledged(command(mavlink.MAV_CMD_PREFLIGHT_CALIBRATION, *parameters)) == [result]
-    pilot.step(mode(GUIDED), arm())
-    assert pilot.acknowledged(command(mavlink.MAV_CMD_PREFLIGHT_CALIBRATION, 1.0)) == [FAILED]
-
-
 def test_a_reboot_keeps_parameters_and_plans_and_begins_time_anew() -> None:
     pilot = Pilot(ardupilot())
     upload(pilot, [item(0, WAYPOINT, (0.0, 0.0, 5.0), NUMBERS), item(1, TAKEOFF, (0.0, 0.0, 5.0), NUMBERS)])
@@ -119,13 +96,6 @@ def test_a_reboot_is_refused_while_armed() -> None:
     assert pilot.is_armed()
 
 
-def test_without_a_mission_home_alone_can_be_read() -> None:
-    pilot = Pilot(ardupilot())
-    assert download(pilot) == []
-    (home,) = plan_messages(pilot.step(mavlink.MAVLink_mission_request_int_message(1, 1, 0, 0)))
-    assert (home.get_type(), home.command) == ("MISSION_ITEM_INT", WAYPOINT)
-
-
 def test_a_mission_that_has_not_begun_has_home_as_its_current_item() -> None:
     pilot = Pilot(ardupilot())
     upload(pilot, [item(index, WAYPOINT, (0.0, 5.0, 5.0), NUMBERS) for index in range(3)])
@@ -148,13 +118,3 @@ def test_only_guided_pauses_and_auto_and_guided_go_on() -> None:
     flying.run(4.0)
     assert flying.node.memory.now.speed_m_s < 0.1
     assert flying.acknowledged(resume) == [0]
-
-
-def test_the_fence_that_is_switched_on_is_among_the_enabled_sensors() -> None:
-    pilot = Pilot(ardupilot())
-    pilot.step(every(mavlink.MAVLINK_MSG_ID_SYS_STATUS, 10.0))
-    for wanted in (True, False):
-        assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_FENCE_ENABLE, float(wanted))) == [0]
-        pilot.run(0.3)
-        enabled = pilot.last("SYS_STATUS").onboard_control_sensors_enabled & mavlink.MAV_SYS_STATUS_GEOFENCE
-        assert bool(enabled) is wanted

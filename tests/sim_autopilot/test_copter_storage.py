@@ -10,6 +10,8 @@ from tests.sim_autopilot.copter import GUIDED, ardupilot, mode
 from tests.sim_autopilot.pilot import Pilot, arm, command, px4
 from tests.sim_autopilot.planner import download, item, plan_messages, upload
 
+pytestmark = pytest.mark.slow
+
 WAYPOINT, SPEED, JUMP = mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_DO_CHANGE_SPEED, mavlink.MAV_CMD_DO_JUMP
 CORNER, CIRCLE = mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION, mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION
 FENCE, RALLY, ALL = 1, 2, 255
@@ -106,18 +108,6 @@ def test_a_reset_of_the_parameters_acts_with_the_next_boot_and_nothing_is_saved_
     assert pilot.node.memory.values["WPNAV_SPEED"] == 1000.0
 
 
-def test_a_motor_test_is_told_and_another_one_extends_it() -> None:
-    pilot = Pilot(ardupilot())
-    test = command(mavlink.MAV_CMD_DO_MOTOR_TEST, 1.0, 0.0, 10.0, 1.0)
-    assert pilot.acknowledged(test) == [ACCEPTED]
-    pilot.run(0.5)
-    assert pilot.acknowledged(test) == [ACCEPTED]
-    pilot.run(0.8)
-    assert [text for text in texts(pilot) if "motor test" in text] == ["starting motor test"]
-    pilot.run(0.3)
-    assert [text for text in texts(pilot) if "motor test" in text] == ["starting motor test", "finished motor test"]
-
-
 def test_a_motor_is_not_tested_in_the_air_and_not_by_px4() -> None:
     pilot = Pilot(ardupilot())
     pilot.step(mode(GUIDED), arm())
@@ -127,13 +117,6 @@ def test_a_motor_is_not_tested_in_the_air_and_not_by_px4() -> None:
     assert pilot.acknowledged(test) == [mavlink.MAV_RESULT_FAILED]
     assert "Motor Test: vehicle not landed" in texts(pilot)
     assert Pilot().acknowledged(test) == [mavlink.MAV_RESULT_UNSUPPORTED]
-
-
-def test_the_compass_is_calibrated_by_a_heading_and_no_card_is_formatted() -> None:
-    pilot = Pilot(ardupilot())
-    assert pilot.acknowledged(command(mavlink.MAV_CMD_FIXED_MAG_CAL_YAW, 1.0)) == [ACCEPTED]
-    assert pilot.acknowledged(command(mavlink.MAV_CMD_STORAGE_FORMAT, 1.0, 1.0)) == [mavlink.MAV_RESULT_FAILED]
-    assert pilot.acknowledged(command(mavlink.MAV_CMD_STORAGE_FORMAT)) == [mavlink.MAV_RESULT_UNSUPPORTED]
 
 
 def test_the_current_item_is_chosen_by_command_too() -> None:

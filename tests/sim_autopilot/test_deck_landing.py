@@ -86,6 +86,7 @@ def test_a_moving_deck_is_never_taken_for_a_landing() -> None:
     }
 
 
+@pytest.mark.slow
 def test_with_the_detectors_speed_limit_raised_it_lands_on_the_moving_deck_by_itself() -> None:
     pilot = Pilot(px4(parameters={"LNDMC_XY_VEL_MAX": 10.0}), deck=deck)
     landed_on_the_roof(pilot)
@@ -100,6 +101,7 @@ def test_with_the_detectors_speed_limit_raised_it_lands_on_the_moving_deck_by_it
     assert on_deck_m(pilot)[1] == pytest.approx(0.12, abs=0.01)
 
 
+@pytest.mark.slow
 def test_the_range_finder_measures_to_the_roof_while_it_is_over_it() -> None:
     pilot = Pilot(deck=deck)
     landed_on_the_roof(pilot)

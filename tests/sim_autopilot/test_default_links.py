@@ -36,13 +36,13 @@ def test_the_system_id_is_shifted_by_the_instance() -> None:
     assert autopilot_config(SimAutopilotConfig(instance=6)).system_id == 7
 
 
-@pytest.mark.wire
+@pytest.mark.slow
 def test_an_idle_autopilot_neither_grows_nor_drifts() -> None:
     clients, counts, objects = Clients(px4()), [], []
-    clients.run(20.0)
+    clients.run(10.0)
     for _ in range(3):
         clients.forget()
-        clients.run(20.0)
+        clients.run(4.0)
         counts.append([clients.counts(link) for link in (0, 1)])
         clients.forget()
         gc.collect()

@@ -45,14 +45,6 @@ def test_a_command_is_answered_on_its_own_link_only() -> None:
     assert [clients.counts(link)["COMMAND_ACK"] for link in (0, 1)] == [0, 1]
 
 
-def test_the_parameter_list_goes_to_the_link_that_asked() -> None:
-    clients = Clients(px4())
-    clients.send(1, mavlink.MAVLink_param_request_list_message(1, 1))
-    clients.run(20.0)
-    count = len(clients.node.memory.values)
-    assert [clients.counts(link)["PARAM_VALUE"] for link in (0, 1)] == [0, count]
-
-
 def test_px4_sends_texts_only_where_a_ground_station_is() -> None:
     clients = Clients(px4(instant=False))
     clients.send(0, beat())
@@ -72,7 +64,8 @@ def test_sequence_numbers_have_no_gaps_on_any_link() -> None:
     assert all(codec.statistics.messages_received > 300 for codec in clients.codecs)
 
 
-@pytest.mark.parametrize("rate_hz", [1.0, 30.0, 50.0, 100.0, 125.0])
+@pytest.mark.slow
+@pytest.mark.parametrize("rate_hz", [1.0, 30.0, 125.0])
 def test_a_stream_is_as_fast_as_asked_and_evenly_spaced(rate_hz: float) -> None:
     clients = Clients(px4())
     clients.send(0, every(mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, rate_hz))
@@ -84,13 +77,6 @@ def test_a_stream_is_as_fast_as_asked_and_evenly_spaced(rate_hz: float) -> None:
     gaps_ms = [later - earlier for earlier, later in itertools.pairwise(times_ms)]
     assert all(abs(gap - 1000.0 / rate_hz) < 10.0 for gap in gaps_ms)
     assert min(gaps_ms, default=1) > 0
-
-
-def test_the_heartbeat_keeps_to_1_hz() -> None:
-    clients = Clients(px4())
-    clients.send(0, every(mavlink.MAVLINK_MSG_ID_HEARTBEAT, 1.0), every(ATTITUDE, 125.0))
-    clients.run(20.0)
-    assert [clients.counts(link)["HEARTBEAT"] for link in (0, 1)] == pytest.approx([20, 20], abs=1)
 
 
 def test_statistics_are_kept_for_each_link() -> None:

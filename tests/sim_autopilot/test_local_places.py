@@ -63,6 +63,7 @@ def test_px4_tells_the_same_place_by_every_message() -> None:
     assert pilot.last("ALTITUDE").altitude_local == pytest.approx(local[2], abs=1e-3)
 
 
+@pytest.mark.slow
 def test_px4_flies_to_the_local_place_that_it_is_sent_and_tells_it_again() -> None:
     pilot = Pilot(px4(position_enu_m=FAR))
     pilot.run(0.5)
@@ -77,6 +78,7 @@ def test_px4_flies_to_the_local_place_that_it_is_sent_and_tells_it_again() -> No
     assert pilot.position == pytest.approx((FAR[0] - 2.0, FAR[1] + 3.0, FAR[2] + 5.0), abs=0.07)
 
 
+@pytest.mark.slow
 def test_a_height_that_is_given_alone_is_above_the_origins_altitude_where_the_drone_is() -> None:
     pilot = Pilot(px4(position_enu_m=FAR))
     pilot.run(0.5)

@@ -26,6 +26,7 @@ def test_error_has_its_variance_and_its_correlation() -> None:
             assert correlation == pytest.approx((1.0 + part) * np.exp(-part), abs=0.05)
 
 
+@pytest.mark.slow
 def test_error_is_stationary_from_its_first_value() -> None:
     firsts = [OwnStateError(OwnStateModel(seed=seed, position_std_m=0.5), STEP_S).advance() for seed in range(1000)]
     np.testing.assert_allclose(np.std(firsts, axis=0), [0.5] * 3 + [0.0] * 3, rtol=0.08)
@@ -52,6 +53,7 @@ def test_controller_holds_the_place_that_it_believes_in(kind: ControllerKind) ->
     np.testing.assert_allclose(drone.state.position_enu_m, (0.6, 2.3, 9.8), atol=0.01)
 
 
+@pytest.mark.slow
 def test_telemetry_tells_what_the_autopilot_believes() -> None:
     pilot = Pilot(px4(own_state=MODEL))
     pilot.take_off(5.0)
@@ -64,6 +66,7 @@ def test_telemetry_tells_what_the_autopilot_believes() -> None:
     assert pilot.node.memory.origin.resets == 0
 
 
+@pytest.mark.slow
 def test_origin_steps_once_under_a_drone_that_stays() -> None:
     pilot = Pilot(px4(own_state=OwnStateModel(origin_step_enu_m=STEP_ENU_M, origin_step_s=12.0)))
     pilot.take_off(5.0)

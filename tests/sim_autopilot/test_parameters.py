@@ -4,12 +4,10 @@ import pytest
 
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.parameters import parameter_on_wire, parameter_value
-from sim_autopilot.firmware.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.px4 import PX4
 from sim_autopilot.firmware.px4_parameters import OBEYED
 from sim_autopilot.flight.modes import Event
 from sim_autopilot.parameters import default_values
-from tests.sim_autopilot.copter import ardupilot
 from tests.sim_autopilot.pilot import Pilot, px4
 
 REAL, INTEGER = mavlink.MAV_PARAM_TYPE_REAL32, mavlink.MAV_PARAM_TYPE_INT32
@@ -22,26 +20,6 @@ def set_parameter(name: str, value: float, kind: int) -> Message:
 
 def values(pilot: Pilot) -> dict[str, float | int | None]:
     return {m.param_id: parameter_value(m, mavlink.MAV_AUTOPILOT_PX4) for m in pilot.all("PARAM_VALUE")}
-
-
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        ("MPC_XY_VEL_MAX", 12.0),
-        ("MPC_Z_VEL_MAX_UP", 3.0),
-        ("MPC_Z_VEL_MAX_DN", 1.5),
-        ("MPC_TILTMAX_AIR", 45.0),
-        ("COM_OF_LOSS_T", 1.0),
-        ("COM_OBL_RC_ACT", 0),
-        ("MIS_TAKEOFF_ALT", 2.5),
-        ("COM_DISARM_LAND", 2.0),
-        ("LNDMC_XY_VEL_MAX", 1.5),
-    ],
-)
-def test_a_default_is_px4s(name: str, value: float) -> None:
-    pilot = Pilot()
-    pilot.step(mavlink.MAVLink_param_request_read_message(1, 1, name.encode(), -1))
-    assert values(pilot) == {name: value}
 
 
 def test_a_list_brings_every_parameter_once_in_order() -> None:
@@ -114,13 +92,6 @@ def test_a_parameter_that_nothing_obeys_is_kept_all_the_same() -> None:
     stored = mavlink.MAVLink_param_set_message(3, 1, b"BAT1_N_CELLS", parameter_on_wire(-1, INTEGER, 12), INTEGER)
     pilot.step(read, stored)
     assert values(pilot) == {"MAV_SYS_ID": 3, "BAT1_N_CELLS": -1}
-
-
-def test_a_list_comes_within_two_seconds() -> None:
-    pilot = Pilot(ardupilot())
-    pilot.step(mavlink.MAVLink_param_request_list_message(1, 1))
-    pilot.run(2.0)
-    assert len(pilot.all("PARAM_VALUE")) == len(ARDUPILOT.parameters) > 1000
 
 
 def test_an_unknown_parameter_is_not_answered() -> None:

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 from link.mavlink.dialect import Message, mavlink
-from link.mavlink.parameters import parameter_on_wire
 from sim_autopilot.memory import AutopilotInputs, initial_memory
 from sim_autopilot.node import STEP_NS
 from sim_autopilot.step import autopilot_step
@@ -68,6 +67,7 @@ def test_it_stands_still_until_it_is_told_to_fly() -> None:
     assert landed_state(pilot) == ON_GROUND
 
 
+@pytest.mark.slow
 def test_it_takes_off_by_a_setpoint_above() -> None:
     pilot = Pilot()
     pilot.run(0.5, lambda _t: at(0.0, 0.0, -5.0))
@@ -101,6 +101,7 @@ def test_the_first_climb_grows_smoothly_to_the_climb_limit() -> None:
     assert all(abs(later - earlier) < 0.1 for earlier, later in pairwise(climbs))
 
 
+@pytest.mark.slow
 def test_a_setpoint_below_keeps_it_on_the_ground_until_it_disarms_by_itself() -> None:
     pilot = Pilot()
     pilot.run(0.5, lambda _t: at(0.0, 0.0, 1.0))
@@ -110,6 +111,7 @@ def test_a_setpoint_below_keeps_it_on_the_ground_until_it_disarms_by_itself() ->
     assert pilot.position[2] < 0.13
 
 
+@pytest.mark.slow
 def test_a_plain_disarm_in_the_air_is_refused_and_a_forced_one_stops_the_motors() -> None:
     pilot = Pilot()
     pilot.take_off(10.0)
@@ -124,6 +126,7 @@ def test_a_plain_disarm_in_the_air_is_refused_and_a_forced_one_stops_the_motors(
     assert pilot.node.state.velocity_enu_m_s[2] < -5.0
 
 
+@pytest.mark.slow
 def test_setpoints_are_held_and_not_extrapolated() -> None:
     pilot = Pilot()
     pilot.take_off()
@@ -134,6 +137,7 @@ def test_setpoints_are_held_and_not_extrapolated() -> None:
     assert float(pilot.position[1]) == pytest.approx(settled, abs=0.05)
 
 
+@pytest.mark.slow
 def test_velocity_feed_forward_removes_most_of_the_lag() -> None:
     def lag_m(mask: int) -> float:
         pilot = Pilot()
@@ -146,6 +150,7 @@ def test_velocity_feed_forward_removes_most_of_the_lag() -> None:
     assert 3.0 < lag_m(0b1001_1111_1000) < 7.0  # PX4: 5.5 m, position alone
 
 
+@pytest.mark.slow
 def test_speed_and_descent_keep_to_the_parameters_silently() -> None:
     pilot = Pilot(px4(parameters={"MPC_XY_VEL_MAX": 4.0}))
     pilot.take_off(15.0)
@@ -158,6 +163,7 @@ def test_speed_and_descent_keep_to_the_parameters_silently() -> None:
     assert not pilot.all("STATUSTEXT")
 
 
+@pytest.mark.slow
 def test_silence_brings_a_failsafe_that_brakes_descends_lands_and_disarms() -> None:
     pilot = Pilot()
     pilot.take_off()
@@ -171,6 +177,7 @@ def test_silence_brings_a_failsafe_that_brakes_descends_lands_and_disarms() -> N
     assert pilot.position[2] < 0.13
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("action", "mode"), [(0, POSITION), (3, RTL), (4, LAND), (5, HOLD)])
 def test_the_parameter_chooses_what_silence_leads_to(action: int, mode: int) -> None:
     pilot = with_parameters(COM_OBL_RC_ACT=action)
@@ -180,6 +187,7 @@ def test_the_parameter_chooses_what_silence_leads_to(action: int, mode: int) -> 
     assert pilot.is_armed()
 
 
+@pytest.mark.slow
 def test_the_parameter_can_stop_the_motors_in_flight() -> None:
     pilot = with_parameters(COM_OBL_RC_ACT=7)
     pilot.take_off()
@@ -187,6 +195,7 @@ def test_the_parameter_can_stop_the_motors_in_flight() -> None:
     assert not pilot.is_armed()
 
 
+@pytest.mark.slow
 def test_setpoints_that_resume_are_flown_again_without_a_command() -> None:
     pilot = Pilot()
     pilot.take_off()
@@ -198,6 +207,7 @@ def test_setpoints_that_resume_are_flown_again_without_a_command() -> None:
     assert pilot.position[0] == pytest.approx(2.0, abs=0.1)
 
 
+@pytest.mark.slow
 def test_setpoints_that_resume_after_the_pilot_took_over_are_not_flown() -> None:
     pilot = Pilot()
     pilot.take_off()
@@ -208,6 +218,7 @@ def test_setpoints_that_resume_after_the_pilot_took_over_are_not_flown() -> None
     assert abs(pilot.position[0]) < 0.1
 
 
+@pytest.mark.slow
 def test_just_over_one_setpoint_a_second_holds_offboard_and_just_under_does_not() -> None:
     def drops(period_s: float) -> bool:
         pilot = Pilot()
@@ -223,6 +234,7 @@ def test_just_over_one_setpoint_a_second_holds_offboard_and_just_under_does_not(
     assert drops(1.0 / 0.9)
 
 
+@pytest.mark.slow
 def test_current_mode_tells_the_intended_mode_in_a_failsafe() -> None:
     pilot = Pilot()
     pilot.take_off()
@@ -232,6 +244,7 @@ def test_current_mode_tells_the_intended_mode_in_a_failsafe() -> None:
     assert (message.custom_mode, message.intended_custom_mode) == (POSITION, OFFBOARD)
 
 
+@pytest.mark.slow
 def test_hold_brakes_without_jerking_and_stays() -> None:
     pilot = Pilot()
     pilot.take_off()
@@ -245,6 +258,7 @@ def test_hold_brakes_without_jerking_and_stays() -> None:
     assert float(np.linalg.norm(pilot.node.state.velocity_enu_m_s)) < 0.02
 
 
+@pytest.mark.slow
 def test_landing_ends_on_the_ground_disarmed_two_seconds_after_it_was_detected() -> None:
     pilot = Pilot()
     pilot.take_off(6.0)
@@ -259,6 +273,7 @@ def test_landing_ends_on_the_ground_disarmed_two_seconds_after_it_was_detected()
     assert pilot.custom_mode() == OFFBOARD  # asked for last of the modes that let arm
 
 
+@pytest.mark.slow
 def test_a_landing_from_hold_leaves_a_mode_that_arms_and_land_itself_does_not() -> None:
     pilot = Pilot()
     pilot.take_off(3.0)
@@ -286,6 +301,7 @@ def test_a_landing_by_setpoints_needs_a_velocity_downwards() -> None:
     assert lands(setpoint((0.0, 0.0, 1.0), (0.0, 0.0, 0.5), mask=POSITION_VELOCITY))
 
 
+@pytest.mark.slow
 def test_a_plain_disarm_works_once_it_has_landed() -> None:
     pilot = with_parameters(COM_DISARM_LAND=-1.0)
     pilot.take_off(2.0)
@@ -306,6 +322,7 @@ def test_takeoff_goes_to_the_parameters_height_and_holds() -> None:
     assert pilot.position[2] == pytest.approx(2.5 + 0.12, abs=0.2)  # MIS_TAKEOFF_ALT
 
 
+@pytest.mark.slow
 def test_takeoff_goes_to_the_altitude_above_the_sea_that_the_command_says() -> None:
     pilot = Pilot()
     pilot.acknowledged(arm())
@@ -315,16 +332,7 @@ def test_takeoff_goes_to_the_altitude_above_the_sea_that_the_command_says() -> N
     assert pilot.position[2] == pytest.approx(7.0, abs=0.3)
 
 
-def test_a_takeoff_to_no_higher_than_it_is_leaves_it_on_the_ground_until_it_disarms() -> None:
-    pilot = Pilot()
-    pilot.step(mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, 8, 0, 0, 4, 3))
-    pilot.acknowledged(arm())
-    assert pilot.acknowledged(command(mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 10.0)) == [ACCEPTED]
-    pilot.run_until(lambda: not pilot.is_armed(), 20.0)
-    assert pilot.position[2] < 0.2
-    assert "Already higher than takeoff altitude\t" in [text.text for text in pilot.all("STATUSTEXT")]
-
-
+@pytest.mark.slow
 def test_a_takeoff_in_the_air_climbs_by_the_parameters_height() -> None:
     pilot = Pilot()
     pilot.take_off(4.0)
@@ -334,6 +342,7 @@ def test_a_takeoff_in_the_air_climbs_by_the_parameters_height() -> None:
     assert pilot.position[2] == pytest.approx(4.0 + 2.5, abs=0.3)
 
 
+@pytest.mark.slow
 def test_return_climbs_comes_home_and_lands() -> None:
     pilot = with_parameters(RTL_RETURN_ALT=12.0)
     pilot.take_off()
@@ -345,6 +354,7 @@ def test_return_climbs_comes_home_and_lands() -> None:
     assert hypot(pilot.position[0], pilot.position[1]) < 0.7
 
 
+@pytest.mark.slow
 def test_a_moved_origin_moves_the_local_frame_under_the_vehicle() -> None:
     pilot = Pilot()
     pilot.take_off()
@@ -363,12 +373,3 @@ def test_a_moved_origin_moves_the_local_frame_under_the_vehicle() -> None:
     assert pilot.last("GPS_GLOBAL_ORIGIN").latitude == latitude
     pilot.run(5.0, lambda _t: at(0.0, 0.0, -5.0))
     assert pilot.position[1] == pytest.approx(3.0, abs=0.1)
-
-
-def test_a_parameter_set_in_flight_limits_the_flight() -> None:
-    pilot = Pilot()
-    pilot.take_off()
-    wire = parameter_on_wire(2.0, mavlink.MAV_PARAM_TYPE_REAL32, mavlink.MAV_AUTOPILOT_PX4)
-    pilot.step(mavlink.MAVLink_param_set_message(1, 1, b"MPC_XY_VEL_MAX", wire, mavlink.MAV_PARAM_TYPE_REAL32))
-    pilot.run(6.0, lambda _t: at(0.0, 100.0, -5.0))
-    assert pilot.node.state.velocity_enu_m_s[0] == pytest.approx(2.0, abs=0.1)

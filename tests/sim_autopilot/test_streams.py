@@ -1,7 +1,6 @@
 import itertools
 from fractions import Fraction
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -18,12 +17,6 @@ def counted(streams: Streams, steps: int) -> dict[int, int]:
         for message_id in due:
             counts[message_id] = counts.get(message_id, 0) + 1
     return counts
-
-
-@pytest.mark.parametrize("rate_hz", [0.5, 1.0, 3.0, 7.0, 29.0, 30.0, 33.0, 50.0, 60.0, 99.0, 100.0])
-def test_a_stream_keeps_its_rate_whether_or_not_it_divides_the_step_rate(rate_hz: float) -> None:
-    streams = default_streams([Stream(message_id=1, rate_hz=rate_hz)])
-    assert abs(counted(streams, 60_000)[1] - 600.0 * rate_hz) <= 1.0
 
 
 @given(st.integers(min_value=STEP_NS, max_value=3_000_000_000), st.integers(min_value=1, max_value=2_000))

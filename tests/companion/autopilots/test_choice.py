@@ -7,12 +7,6 @@ from link.errors import UserError
 from link.mavlink.dialect import mavlink
 
 PX4 = mavlink.MAV_AUTOPILOT_PX4
-MULTIROTORS = [
-    mavlink.MAV_TYPE_QUADROTOR,
-    mavlink.MAV_TYPE_HEXAROTOR,
-    mavlink.MAV_TYPE_OCTOROTOR,
-    mavlink.MAV_TYPE_TRICOPTER,
-]
 OTHERS = [
     mavlink.MAV_TYPE_FIXED_WING,
     mavlink.MAV_TYPE_GROUND_ROVER,
@@ -20,11 +14,6 @@ OTHERS = [
     mavlink.MAV_TYPE_VTOL_TILTROTOR,
     mavlink.MAV_TYPE_GCS,
 ]
-
-
-@pytest.mark.parametrize("vehicle_type", MULTIROTORS)
-def test_multirotors_of_px4_are_flown_by_its_driver(vehicle_type: int) -> None:
-    assert driver_for(PX4, vehicle_type).autopilot_id == PX4
 
 
 @pytest.mark.parametrize("vehicle_type", OTHERS)

@@ -132,6 +132,7 @@ def test_limits_follow_each_change_of_the_autopilots_parameters_and_of_what_is_w
         assert talk.link.limits(replace(wanted, speed_max_m_s=1.5)).speed_max_m_s == 1.5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("set_by_s", [-30.0, -0.9, -0.7, 0.7, 30.0])
 def test_drone_is_never_taken_for_silent_when_utc_is_set(set_by_s: float) -> None:
     talk = Talk(FakePx4())
@@ -146,6 +147,7 @@ def test_drone_is_never_taken_for_silent_when_utc_is_set(set_by_s: float) -> Non
     assert talk.utc_ahead_ns() - before_ns == pytest.approx(set_by_s * 1e9, abs=10 * MS)
 
 
+@pytest.mark.slow
 def test_limit_that_was_not_told_is_asked_for_until_it_is() -> None:
     talk = Talk(FakePx4(parameters={"MPC_Z_VEL_MAX_UP": (2.0, mavlink.MAV_PARAM_TYPE_REAL32)}))
     talk.run(10.0)
@@ -156,6 +158,7 @@ def test_limit_that_was_not_told_is_asked_for_until_it_is() -> None:
     assert talk.link.limits(wanted).speed_max_m_s == 7.0
 
 
+@pytest.mark.slow
 def test_origin_is_asked_for_one_question_at_a_time_while_none_is_answered() -> None:
     talk = Talk(FakePx4(results={ASK: ()}))
     talk.run(20.0)

@@ -79,7 +79,7 @@ def test_autopilot_amiss_is_told(changed: dict[str, Any], line: str, level: Leve
     assert by_name[line].advice
 
 
-@pytest.mark.parametrize("vehicle_type", range(50))
+@pytest.mark.parametrize("vehicle_type", range(0, 50, 3))
 def test_what_the_companion_would_not_fly_fails_by_its_type(vehicle_type: int) -> None:
     by_name = {one.name: one for one in assessed(replace(GOOD, vehicle_type=vehicle_type), VEHICLE, 10.0, CONFIG)}
     try:

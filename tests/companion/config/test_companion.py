@@ -20,13 +20,6 @@ def test_printed_configuration_reads_back_as_the_same(tmp_path: Path) -> None:
     assert load_config(_file(tmp_path, dump_toml(config)), CompanionConfig) == config
 
 
-def test_one_key_of_a_section_leaves_the_others_at_their_defaults(tmp_path: Path) -> None:
-    config = load_config(_file(tmp_path, "[abort]\nretries_max = 1\n"), CompanionConfig)
-    assert config.abort.retries_max == 1
-    assert config.abort.height_m == CompanionConfig().abort.height_m
-    assert config.descent == CompanionConfig().descent
-
-
 @pytest.mark.parametrize(
     ("text", "key"),
     [
@@ -83,11 +76,6 @@ def test_recording_whose_files_together_may_take_less_than_one_is_refused(tmp_pa
 def test_recording_of_one_file_only_is_taken(tmp_path: Path) -> None:
     config = load_config(_file(tmp_path, "[recording]\ntotal_max_mb = 256.0\n"), CompanionConfig)
     assert config.recording.total_max_mb == config.recording.file_max_mb
-
-
-def test_limits_of_the_flight_are_those_of_the_file() -> None:
-    limits = CompanionConfig().limits
-    assert limits.flight_limits().descent_max_m_s == limits.descent_max_m_s
 
 
 def test_thresholds_of_the_landing_are_in_order() -> None:

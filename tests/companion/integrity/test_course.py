@@ -117,6 +117,7 @@ class DrivingVehicle(KnownVehicle):
         )
 
 
+@pytest.mark.slow
 def test_vehicle_with_a_wrong_heading_is_followed_not_landed_on_and_the_status_says_why() -> None:
     vehicle = DrivingVehicle((-20.0, 0.4, PAD_HEIGHT_M), (4.0, 0.0, 0.0), yaw_rad=math.pi)
     flight = Flight(vehicle=vehicle, pad=BESIDE)

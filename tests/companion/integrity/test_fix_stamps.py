@@ -12,6 +12,7 @@ AHEAD_S = 0.3
 HOLD_S = CONFIG.abort.fix_ahead_hold_s
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("phase", LANDING)
 def test_landing_on_fixes_from_the_future_is_broken_off(phase: Phase) -> None:
     flight = reached(phase)
@@ -32,6 +33,7 @@ def test_landing_on_fixes_from_the_future_is_not_begun() -> None:
     assert flight.phase is Phase.IDLE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ahead_s", [-0.4, -0.1, 0.0, 0.9 * CONFIG.abort.fix_ahead_max_s])
 def test_late_fixes_and_clocks_that_err_a_little_are_landed_on(ahead_s: float) -> None:
     flight = Flight(stamps_ahead_s=ahead_s)

@@ -125,6 +125,7 @@ def test_ground_that_an_outage_has_taken_is_not_told_in_numbers() -> None:
     assert sentence(told).endswith("land, mend its altitude, start again")
 
 
+@pytest.mark.slow
 def test_vehicle_with_other_altitudes_that_comes_near_is_not_chased() -> None:
     flight = Flight(vehicle=KnownVehicle((-60.0, 0.4, PAD_HEIGHT_M - 4.0), (4.0, 0.0, 0.0)))
     flight.start_and_reach(Phase.WAITING)
@@ -140,6 +141,7 @@ def test_start_beside_a_roof_that_is_too_high_says_how_much_higher_to_wait() -> 
     )
 
 
+@pytest.mark.slow
 def test_drone_that_hovers_too_low_says_so_while_it_waits() -> None:
     flight = Flight(vehicle=KnownVehicle((-400.0, 0.0, 4.0), (8.0, 0.0, 0.0)), pad=replace(PAD, height_m=4.0))
     flight.start_and_reach(Phase.WAITING)
@@ -148,6 +150,7 @@ def test_drone_that_hovers_too_low_says_so_while_it_waits() -> None:
     assert "raise takeoff.waiting_height_m" in flight.outputs.status.reason
 
 
+@pytest.mark.slow
 def test_start_in_a_hold_waits_where_the_drone_hovers() -> None:
     flight = Flight()
     flight.start_and_reach(Phase.ALIGN)

@@ -88,6 +88,7 @@ def test_no_single_faulty_source_makes_a_contact_in_the_air(facts: Situation, so
         assert not may_force_motors_off(signs, LONG_S, CONFIG)
 
 
+@pytest.mark.slow
 @settings(max_examples=200, deadline=None)
 @given(facts=airborne(), source=st.sampled_from(SOURCES), data=st.data())
 def test_no_source_stuck_at_what_it_says_on_the_pad_makes_a_contact_in_the_air(

@@ -28,6 +28,7 @@ def test_start_is_refused_with_the_numbers() -> None:
     assert flight.commands == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("config", "battery_share", "told"),
     [

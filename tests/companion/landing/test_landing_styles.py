@@ -24,6 +24,7 @@ class TrailingFlight(Flight):
         self.own = replace(self.own, position_enu_m=(x - 0.3, y, z))
 
 
+@pytest.mark.slow
 def test_direct_landing_chases_the_pads_centre_and_nothing_else() -> None:
     flight = Flight(config=DIRECT)
     flight.start_and_reach(Phase.CHASE)
@@ -45,6 +46,7 @@ def test_staged_chase_keeps_above_the_pad() -> None:
         assert flight.memory.model.reference.position_enu_m[2] > PAD_HEIGHT_M + 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("corrects_lag", "learnt_m"), [(True, 0.3), (False, 0.0)])
 def test_lag_behind_the_setpoint_is_learnt_only_where_wanted(corrects_lag: bool, learnt_m: float) -> None:
     flight = TrailingFlight(config=DIRECT.model_copy(update={"corrects_lag": corrects_lag}))
@@ -56,6 +58,7 @@ def test_lag_behind_the_setpoint_is_learnt_only_where_wanted(corrects_lag: bool,
     assert 0.0 <= learnt[0] <= learnt_m + 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("follows", [True, False])
 def test_heading_of_the_vehicle_is_followed_only_where_wanted(follows: bool) -> None:
     config: CompanionConfig = DIRECT.model_copy(update={"follows_heading": follows})

@@ -12,6 +12,7 @@ def _modes(flight: Flight) -> int:
     return len(flight.told(SET_MODE))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("phase", [phase for phase in FLYING if phase is not Phase.TOUCHDOWN])
 def test_companion_that_ends_in_the_air_lets_the_autopilot_hover(phase: Phase) -> None:
     flight = reached(phase)
@@ -21,6 +22,7 @@ def test_companion_that_ends_in_the_air_lets_the_autopilot_hover(phase: Phase) -
     assert _modes(flight) == modes + 1
 
 
+@pytest.mark.slow
 def test_companion_that_ends_on_the_pad_switches_the_motors_off_first() -> None:
     flight = reached(Phase.TOUCHDOWN)
     flight.leaving = True

@@ -9,7 +9,6 @@ from companion.landing.step_data import StepOutputs
 from companion.situation.phases import Phase
 from tests.companion.world import CONFIG, GEAR_M, Flight
 
-DEPTHS_M = (0.5, 0.8, 1.4)
 DESCENT_LIMIT_S = 15.0  # from the alignment's height down, and the hold of the test
 
 
@@ -27,9 +26,9 @@ class LowerPad(Flight):
         self.vehicle = told
 
 
-@pytest.mark.parametrize("lower_m", DEPTHS_M)
-def test_descent_that_touches_nothing_is_broken_off_each_time_until_no_retry_is_left(lower_m: float) -> None:
-    flight = LowerPad(lower_m=lower_m)
+@pytest.mark.slow
+def test_descent_that_touches_nothing_is_broken_off_each_time_until_no_retry_is_left() -> None:
+    flight = LowerPad(lower_m=0.8)
     flight.start_and_reach(Phase.DESCEND)
     for approach in range(CONFIG.abort.retries_max + 1):
         flight.run_until(Phase.ABORT, limit_s=DESCENT_LIMIT_S)
@@ -38,12 +37,14 @@ def test_descent_that_touches_nothing_is_broken_off_each_time_until_no_retry_is_
     assert flight.reason is Reason.NO_RETRY_LEFT
 
 
+@pytest.mark.slow
 def test_pad_that_is_a_hand_lower_is_landed_on() -> None:
     flight = LowerPad(lower_m=0.15)
     flight.start_and_reach(Phase.SECURED)
     assert Phase.ABORT not in flight.history
 
 
+@pytest.mark.slow
 def test_drone_stays_above_the_lower_deck_while_nothing_is_touched() -> None:
     flight = LowerPad(lower_m=1.4)
     flight.start_and_reach(Phase.DESCEND)

@@ -51,6 +51,7 @@ def _vehicle_is_late(flight: Flight) -> None:
     flight.sends_fixes = True
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("outage", "reason"),
     [
@@ -71,6 +72,7 @@ def test_outage_costs_a_retry_only_where_the_drone_was_near(
     assert (flight.memory.progress.cause == GOES_ON) is (retries == 0)
 
 
+@pytest.mark.slow
 def test_chase_that_outages_break_off_again_and_again_takes_no_longer_than_any_other() -> None:
     chase = CONFIG.chase.model_copy(update={"time_limit_s": 12.0})
     flight = _chasing()

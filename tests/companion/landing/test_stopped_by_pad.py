@@ -79,6 +79,7 @@ def test_every_fall_begins_the_hold_anew() -> None:
     assert (flight.t_ns - fell_ns) * 1e-9 >= HOLD_S
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", ["no jolt", "position only", "lifted"])
 def test_evidence_is_the_jolt_the_press_and_the_pads_height_together(change: str) -> None:
     flight = _stopped()

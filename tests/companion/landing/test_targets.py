@@ -36,6 +36,7 @@ def _at(x: float, y: float, z: float) -> ReferenceState:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("height_m", [5.0, 2.3, 0.8, 0.31, 0.0, -0.2, -0.7])
 def test_sink_profile_solves_its_differential_equation(height_m: float) -> None:
     def rate(_: float, h: np.ndarray) -> list[float]:

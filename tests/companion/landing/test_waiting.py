@@ -89,6 +89,7 @@ def _kept_surprised(flight: Flight, duration_s: float) -> None:
             return
 
 
+@pytest.mark.slow
 def test_descent_that_waits_comes_to_rest_at_its_height() -> None:
     flight = reached(Phase.DESCEND)
     _kept_surprised(flight, 5.0)
@@ -98,6 +99,7 @@ def test_descent_that_waits_comes_to_rest_at_its_height() -> None:
         assert feet_m == pytest.approx(WAITING_M, abs=0.03)
 
 
+@pytest.mark.slow
 def test_descent_outlasts_its_time_limit_above_a_vehicle_that_surprises_and_then_lands() -> None:
     flight = reached(Phase.DESCEND)
     _kept_surprised(flight, DESCENT.time_limit_s + 5.0)
@@ -107,6 +109,7 @@ def test_descent_outlasts_its_time_limit_above_a_vehicle_that_surprises_and_then
     assert flight.memory.progress.waited_s == 0.0
 
 
+@pytest.mark.slow
 def test_descent_above_a_vehicle_that_surprises_for_ever_is_broken_off() -> None:
     flight = reached(Phase.DESCEND)
     limit_s = DESCENT.time_limit_s + DESCENT.surprise_wait_max_s
@@ -154,6 +157,7 @@ def test_approach_that_loses_its_alignment_again_and_again_is_broken_off() -> No
     assert not memory.progress.begun_anew
 
 
+@pytest.mark.slow
 def test_approach_to_a_pad_that_is_lost_from_sight_again_and_again_is_broken_off() -> None:
     memory, facts = changed(StepMemory(), phase=Phase.DESCEND, since_ns=NOW_NS), situation()
     unseen = replace(pad_at(std_m=0.5), is_coarse=True)

@@ -47,12 +47,13 @@ def kept(x: Array, jerk: Array, limits: tuple[Array, ...], floor: Array) -> bool
     return all(bool(rows.all()) for rows in inside)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("has_floor", [False, True])
 def test_rows_hold_exactly_where_the_plan_keeps_to_its_limits(*, has_floor: bool) -> None:
     rng = np.random.default_rng(5)
     problem = make_axis_problem(MODEL, CONFIG, has_floor=has_floor)
     verdicts = []
-    for _ in range(300):
+    for _ in range(100):
         x = np.array([rng.uniform(1.0, 2.0), *rng.uniform(-0.4, 0.4, 2)])  # keeps all limits by itself
         down, up, push, most = (rng.uniform(0.9, 3.0, n) for n in (NODES, NODES, MOVES, MOVES))
         floor = rng.uniform(-4.0, -3.0, NODES) if has_floor else NO_FLOOR
@@ -65,6 +66,7 @@ def test_rows_hold_exactly_where_the_plan_keeps_to_its_limits(*, has_floor: bool
     assert {True, False} == set(verdicts)
 
 
+@pytest.mark.slow
 def test_major_axis_gets_the_whole_norm_where_the_minor_one_needs_nothing() -> None:
     none, way = np.zeros(3), (0.0, 0.0, 0.0)
     speed, push, jerk = major_share(
@@ -73,6 +75,7 @@ def test_major_axis_gets_the_whole_norm_where_the_minor_one_needs_nothing() -> N
     assert (speed.min(), push.min(), jerk.min()) == pytest.approx(NORMS)
 
 
+@pytest.mark.slow
 def test_both_axes_together_keep_the_norms() -> None:
     rng = np.random.default_rng(8)
     x, plan = np.array([3.0, 9.0, -1.5]), rng.uniform(-2.0, 2.0, MOVES)
@@ -105,6 +108,7 @@ def test_kernels_are_their_python() -> None:
     np.testing.assert_allclose(written(bound_rows, *rows), written(bound_rows.py_func, *rows), rtol=1e-12, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_bounds_in_one_call_are_those_of_their_parts() -> None:
     rng = np.random.default_rng(13)
     state, plan, floor = rng.standard_normal((3, 3)), rng.standard_normal(MOVES), rng.uniform(-4.0, -3.0, NODES)

@@ -39,6 +39,7 @@ def test_a_far_target_is_caught_near_the_bang_bang_time() -> None:
     assert 28.0 < caught_s(flight) < 1.08 * 28.5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speed_m_s", [0.0, 5.0, 10.0])
 def test_closing_in_from_50_m_behind_overshoots_less_than_10_cm(speed_m_s: float) -> None:
     flight = fly(MPC, straight((50.0, 0.0, 2.0), (speed_m_s, 0.0, 0.0)), state_at((0.0, 0.0, 5.0)), 14.0)
@@ -77,6 +78,7 @@ def test_both_solvers_plan_the_same() -> None:
     np.testing.assert_allclose(stacked(other.plan(None, request)[1]), stacked(MPC.plan(None, request)[1]), atol=2e-3)
 
 
+@pytest.mark.slow
 def test_osqp_solves_every_plan_of_a_chase_at_its_limits() -> None:
     other = Mpc(MpcConfig(solver=SolverKind.OSQP))
     wanted = fly(MPC, MEETING, START, 2.0)

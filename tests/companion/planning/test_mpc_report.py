@@ -52,6 +52,7 @@ def test_the_first_move_is_the_least_squares_one(reading: ReportReading) -> None
     assert result.next_state.acceleration_enu_m_s2[0] == pytest.approx(best[0] * STEP_S, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_virtual_model_takes_forward_euler_steps() -> None:
     guidance = ReportMpc(ReportMpcConfig())
     state = state_at((0.0, 0.0, 5.0), (1.0, 2.0, 3.0), (4.0, 5.0, 6.0))
@@ -60,6 +61,7 @@ def test_the_virtual_model_takes_forward_euler_steps() -> None:
     np.testing.assert_allclose(result.next_state.velocity_enu_m_s, [1.04, 2.05, 3.06])
 
 
+@pytest.mark.slow
 def test_only_with_the_velocity_factor_the_model_catches_up_with_a_moving_target() -> None:
     """The source report tells that without its factor of 1.2 the drone never caught up."""
     motion = straight((0.0, 0.0, 0.0), (5.0, 0.0, 0.0))

@@ -21,12 +21,14 @@ from tests.companion.planning.cases import (
 PN = ProportionalNavigation(PnConfig())
 
 
+@pytest.mark.slow
 def test_a_fast_target_is_caught_and_followed_without_error() -> None:
     flight = fly(PN, straight((30.0, -40.0, 2.0), (7.0, 6.0, 0.0)), state_at((0.0, 0.0, 5.0)), 16.0)
     assert caught_s(flight) < 11.0
     assert np.abs(flight.error[-1]).max() < 1e-4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speed_m_s", [4.0, 7.0])
 def test_a_circle_is_joined_within_the_limits(speed_m_s: float) -> None:
     flight = fly(PN, circle(16.5, speed_m_s), state_at((40.0, -10.0, 5.0)), 12.0)
@@ -66,6 +68,7 @@ def test_the_near_law_holds_on_a_little_farther_out_than_it_began() -> None:
     assert not memory.near
 
 
+@pytest.mark.slow
 def test_the_floor_is_not_flown_through() -> None:
     flight = fly(PN, straight((0.0, 0.0, -3.0), (5.0, 0.0, 0.0)), state_at((0.0, 0.0, 5.0)), 10.0, floor_m=1.0)
     assert flight.position[:, 2].min() > 0.99

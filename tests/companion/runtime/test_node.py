@@ -52,6 +52,7 @@ def test_node_arms_changes_mode_and_streams_only_after_a_start() -> None:
     assert setup.autopilot.custom_mode == OFFBOARD
 
 
+@pytest.mark.slow
 def test_setpoints_come_at_the_step_rate_and_in_the_autopilots_time() -> None:
     setup = _flying()
     before = len(setup.autopilot.setpoints())
@@ -64,6 +65,7 @@ def test_setpoints_come_at_the_step_rate_and_in_the_autopilots_time() -> None:
     assert times == sorted(times)
 
 
+@pytest.mark.slow
 def test_pilots_mode_change_silences_the_node() -> None:
     setup = _flying()
     setup.autopilot.custom_mode = POSITION
@@ -75,6 +77,7 @@ def test_pilots_mode_change_silences_the_node() -> None:
     assert len(setup.autopilot.commands(SET_MODE)) == modes
 
 
+@pytest.mark.slow
 def test_dry_run_sends_neither_setpoints_nor_commands_that_fly() -> None:
     setup = Setup(dry_run=True)
     setup.run(3.0)
@@ -104,6 +107,7 @@ def test_fix_from_the_future_is_counted_and_dropped() -> None:
     assert setup.node.memory.vehicle.estimator is not None
 
 
+@pytest.mark.slow
 def test_late_and_swapped_fixes_leave_the_same_estimate() -> None:
     places = [(float(x), 0.4, 1.5) for x in range(6)]
 
@@ -118,6 +122,7 @@ def test_late_and_swapped_fixes_leave_the_same_estimate() -> None:
     np.testing.assert_array_equal(fly([0, 1, 2, 3, 4, 5]), fly([3, 0, 5, 1, 4, 2]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("set_by_s", [-37.0, -0.9, 0.7, 90.0])
 def test_flight_goes_on_evenly_when_utc_is_set(set_by_s: float) -> None:
     setup = _flying()
@@ -139,6 +144,7 @@ def _in_phase_s(setup: Setup) -> float:
     return (setup.node.inputs.monotonic_ns - setup.node.memory.progress.since_ns) * 1e-9
 
 
+@pytest.mark.slow
 def test_local_frame_that_moves_in_flight_is_flown_on_in() -> None:
     setup = _flying()
     setup.autopilot.place_ned_m = (0.0, 0.0, -5.12)
@@ -153,6 +159,7 @@ def test_local_frame_that_moves_in_flight_is_flown_on_in() -> None:
     assert len(setup.autopilot.commands(mavlink.MAV_CMD_REQUEST_MESSAGE)) > asked
 
 
+@pytest.mark.slow
 def test_status_and_plan_are_published_and_can_be_read() -> None:
     setup = _flying()
     setup.node.take_publications()
@@ -167,6 +174,7 @@ def test_status_and_plan_are_published_and_can_be_read() -> None:
     assert len(cdr.decode(Plan, plans[-1].payload).poses) > 3
 
 
+@pytest.mark.slow
 def test_pilot_reads_every_phase() -> None:
     setup = _flying()
     texts = [message.text for message in setup.autopilot.of_type("STATUSTEXT")]
@@ -190,6 +198,7 @@ def test_pad_that_no_vehicle_has_is_counted_and_not_taken() -> None:
     assert setup.node.bad_payloads == 2
 
 
+@pytest.mark.slow
 def test_geoid_lifts_the_origin_to_the_ellipsoid() -> None:
     setup = Setup(autopilot=FakePx4(geoid_height_m=47.3))
     setup.run(4.0)
@@ -198,6 +207,7 @@ def test_geoid_lifts_the_origin_to_the_ellipsoid() -> None:
     assert frame.origin.altitude_m == pytest.approx(setup.autopilot.origin_altitude_m + 47.3, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_autopilot_that_tells_no_height_above_the_ellipsoid_is_not_started_and_says_what_to_set() -> None:
     setup = Setup(autopilot=FakePx4(geoid_height_m=None))
     setup.run(5.0, setup.fix)
@@ -211,6 +221,7 @@ def test_autopilot_that_tells_no_height_above_the_ellipsoid_is_not_started_and_s
     assert not setup.node.is_ready_to_start()
 
 
+@pytest.mark.slow
 def test_geoid_of_the_configuration_counts_where_the_autopilot_tells_none() -> None:
     config = CompanionConfig(geoid_height_m=47.3)
     for told_m, taken_m in ((None, 47.3), (-30.0, -30.0)):

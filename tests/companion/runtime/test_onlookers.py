@@ -98,6 +98,7 @@ def encoded_for_nobody(record: object, _: Keys) -> None:
     raise AssertionError(f"{record} was encoded, and nobody listens")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["own", "estimate", "forecast", "link"])
 def test_who_listens_to_one_topic_is_told_that_one_and_nothing_else_is_encoded(
     name: str, monkeypatch: pytest.MonkeyPatch

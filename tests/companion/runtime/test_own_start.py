@@ -38,6 +38,7 @@ def test_start_follows_once_the_vehicle_is_there() -> None:
     assert replies[-1].accepted
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", [Command.ABORT, Command.HOLD])
 def test_abort_or_hold_before_it_calls_the_start_off_for_good(command: Command) -> None:
     setup, replies = _flown(command)

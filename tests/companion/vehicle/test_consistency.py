@@ -143,6 +143,7 @@ def lkf_run(seed: int) -> tuple[float, float, int]:
     return nees, tally.nis_sum - at_settled[0], tally.nis_dof - at_settled[1]
 
 
+@pytest.mark.slow
 def test_linear_filter_is_consistent_on_its_own_model() -> None:
     runs = [lkf_run(seed) for seed in range(RUNS)]
     assert_consistent(runs, states=9)

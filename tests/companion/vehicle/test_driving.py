@@ -21,6 +21,7 @@ from tests.companion.vehicle.drives import (
 from tests.companion.vehicle.hindsight import DESCENT, LATE, Told, after
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2])
 @pytest.mark.parametrize(
     ("truth", "uneven"),
@@ -57,6 +58,7 @@ def test_road_that_bends_hard_one_way_and_the_other_is_told_from_a_circle(
     assert not winds(found.driving, None, DESCENT)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2])
 @pytest.mark.parametrize("side", [1.0, -1.0], ids=["left", "right"])
 @pytest.mark.parametrize(

@@ -41,6 +41,7 @@ def pad_errors(done: Ride, truth: Drive) -> Array:
     return np.array(errors)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("truth", [straight(7.0), circle()], ids=["straight", "circle"])
 def test_covariance_on_steady_roads_is_cautious_but_not_idle(truth: Drive) -> None:
     nees, nis = [], []
@@ -125,6 +126,7 @@ def test_step_of_the_receiver_does_not_move_a_pad_that_is_seen() -> None:
             assert estimate.position_enu_m == pytest.approx(truth.at(t_s)[0], abs=0.3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("truth", "sensors", "bound_m"),
     [
@@ -155,6 +157,7 @@ def test_braking_is_in_the_forecast_soon_after_it_began() -> None:
     assert np.linalg.norm(done.ahead_errors(truth, 1.0), axis=1).max() < 0.3 * unaware
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("deceleration_m_s2", [6.0, 9.0])
 @pytest.mark.parametrize("seed", [120, 121, 122, 123])
 def test_emergency_brake_is_not_taken_for_outliers(deceleration_m_s2: float, seed: int) -> None:
@@ -229,6 +232,7 @@ def test_measurement_of_a_single_axis_is_not_taken_for_more() -> None:
     assert np.abs(estimate.position_enu_m).max() < 0.05
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 8])
 def test_noise_that_all_axes_share_is_not_taken_for_a_manoeuvre(seed: int) -> None:
     """The source report's receiver: 0.1 m at 100 Hz, the same draw on each axis, stated as independent."""

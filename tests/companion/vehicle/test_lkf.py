@@ -33,6 +33,7 @@ def steady_covariance(noise: LkfNoise, dt_s: float, R: Array) -> Array:
     return np.asarray((np.eye(9) - K @ SEEN) @ P)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("model", "dt_s"), [(REPORT, 0.01), (WHITE_JERK, 0.1)])
 def test_covariance_settles_at_the_solution_of_the_riccati_equation(model: LkfModel, dt_s: float) -> None:
     expected = steady_covariance(model.noise, dt_s, 0.01 * np.eye(3))

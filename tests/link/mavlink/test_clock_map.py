@@ -43,6 +43,7 @@ def test_a_drifting_clock_is_mapped_within_2_ms_over_a_quick_link(drift: float, 
         assert abs(mapped - boot_at(t_ns + ahead_ns, drift)) < 2 * MS
 
 
+@pytest.mark.slow
 def test_a_jittering_link_is_averaged_below_its_jitter() -> None:
     errors_ns = []
     for seed in range(20):
@@ -59,6 +60,7 @@ def test_the_deviation_of_the_delay_is_that_of_one_way(jitter_s: float) -> None:
     assert ClockMap().one_way_std_s == 0.0
 
 
+@pytest.mark.slow
 def test_the_stated_uncertainty_is_that_of_the_errors() -> None:
     shares = []
     for seed in range(40):
@@ -108,6 +110,7 @@ def test_an_empty_map_knows_only_local_time() -> None:
     assert (clock.local_to_boot_ns(LOCAL_NS), clock.boot_to_utc_ns(BOOT_NS)) == (None, None)
 
 
+@pytest.mark.slow
 @given(st.floats(-0.025, 0.025), st.integers(-60 * S, 60 * S))
 def test_mapping_there_and_back_returns_to_the_start(drift: float, since_ns: int) -> None:
     clock, t_ns = exchanged(drift, (0.001, 0.002), 4.0, seed=2)

@@ -30,19 +30,14 @@ def test_a_serial_device_is_taken_apart() -> None:
     ("device", "advice"),
     [
         ("udp:127.0.0.1:14550", "did you mean udpin:127.0.0.1:14550?"),
-        ("udpn:0.0.0.0:14540", "did you mean udpin:0.0.0.0:14540?"),
         ("tcpout:drone:5760", "did you mean tcp:drone:5760?"),
         ("udpin:14540", "did you mean udpin:127.0.0.1:14540?"),
-        ("udpin::14540", "did you mean udpin:127.0.0.1:14540?"),
         ("tcp:drone", "did you mean tcp:drone:14540?"),
         ("nonsense", "write udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT"),
-        ("", "write udpin:HOST:PORT"),
         ("udpin:127.0.0.1:70000", "'70000' is no port; write a number from 1 to 65535"),
-        ("udpout:127.0.0.1:0", "'0' is no port"),
         ("tcp:127.0.0.1:five", "'five' is no port"),
         ("/dev/ttyACM0", "no baud rate; write /dev/ttyACM0,57600"),
         ("/dev/ttyACM0,fast", "'fast' is no baud rate"),
-        ("/dev/ttyACM0,0", "'0' is no baud rate"),
     ],
 )
 def test_a_wrong_device_is_answered_with_what_to_write(device: str, advice: str) -> None:

@@ -26,6 +26,7 @@ def over_the_wire(value: float, kind: int, autopilot: int) -> int | float | None
     return parameter_value(received, autopilot)
 
 
+@pytest.mark.slow
 @given(st.sampled_from(sorted(RANGES)), st.sampled_from([PX4, ARDUPILOT]), st.data())
 def test_small_integers_survive_both_encodings(kind: int, autopilot: int, data: st.DataObject) -> None:
     value = data.draw(st.integers(*RANGES[kind]))

@@ -103,6 +103,7 @@ def test_more_than_there_is_room_for_is_refused() -> None:
     assert len(queue) == 1
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(st.floats(0.0, 0.3), st.lists(st.integers(0, 9), max_size=3)), max_size=40))
 def test_the_stream_is_always_whole_frames_in_order(turns: list[tuple[float, list[int]]]) -> None:
     queue, reader, now_s, dropped = SendQueue(), Reader(), 0.0, 0
@@ -168,6 +169,7 @@ def test_a_tcp_peer_that_reads_nothing_is_not_sent_what_has_waited(ends: tuple[T
     peer.close()
 
 
+@pytest.mark.slow
 def test_a_patient_connection_stays_and_goes_on_with_whole_frames(
     patient_ends: tuple[TcpConnection, socket.socket],
 ) -> None:

@@ -154,6 +154,7 @@ def lossy(seed: int) -> Pair:
     return Pair(session=MavlinkSession(1), autopilot=FakeAutopilot(drift=0.01), up=link(0), down=link(1))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(5))
 def test_a_lossy_link_gets_everything_done_in_the_end(seed: int) -> None:
     run = lossy(seed)

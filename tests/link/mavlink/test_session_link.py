@@ -1,3 +1,4 @@
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -187,6 +188,7 @@ def test_random_and_spoiled_bytes_never_raise(chunks: list[bytes], place: int) -
     assert run.session.statistics.codec.bytes_received > len(stream)
 
 
+@pytest.mark.slow
 @given(
     st.sampled_from(["timesync", "system_time", "command_ack", "param_value"]),
     st.integers(0, 2**63 - 1),

@@ -33,6 +33,7 @@ def test_nothing_timed_has_no_quantiles() -> None:
         quantiles_ms([])
 
 
+@pytest.mark.slow
 def test_stopwatch_times_every_step_and_is_gone_afterwards() -> None:
     callers = (vars(sim_autopilot.node), vars(companion.runtime.node))
     plain = (callers[0]["autopilot_step"], callers[1]["companion_step"])
@@ -91,7 +92,12 @@ def test_cost_of_recording_is_measured_on_a_whole_recording(tmp_path: Path) -> N
 
 
 @pytest.mark.wire
-def test_the_command_prints_every_figure_with_its_budget(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.alone
+def test_the_command_prints_every_figure_with_its_budget(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("scenarios.bench.measures._HELP_REPEATS", 1)
+    monkeypatch.setattr("scenarios.bench.codec._REPEATS", 3)
     short = tmp_path / "short.toml"
     short.write_text('base = "straight_5"\ntime_limit_s = 3.0\n', encoding="utf-8")
     assert run_app("scenarios", app, ["bench", str(short), "--json"]) == 0

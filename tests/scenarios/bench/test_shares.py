@@ -2,6 +2,8 @@
 
 from collections import Counter
 
+import pytest
+
 from link.frames import rotate
 from link.messages import Vector3
 from scenarios.bench.shares import sampled_parts, shares_of
@@ -9,6 +11,7 @@ from scenarios.bench.shares import sampled_parts, shares_of
 HALF_TURN = (0.0, 0.0, 0.0, 1.0)
 
 
+@pytest.mark.slow
 def test_package_that_computes_gets_the_samples() -> None:
     vector: Vector3 = (1.0, 2.0, 3.0)
     with sampled_parts() as counts:

@@ -1,4 +1,3 @@
-from io import StringIO
 from typing import Any
 
 import pytest
@@ -8,7 +7,6 @@ from link.errors import UserError
 from scenarios.campaigns.compare import compare_rows, differences_of
 from scenarios.campaigns.landing_task import Row
 from scenarios.campaigns.summary import MEASURES
-from scenarios.campaigns.tables import print_comparison
 
 
 def row(seed: int, tier: str, error_m: float | None = None, cell: str = "straight_5") -> Row:
@@ -108,14 +106,3 @@ def test_differences_name_the_keys_that_changed() -> None:
         {"key": "guidance.kind", "a": "mpc", "b": "pn"},
         {"key": "new", "a": None, "b": 3},
     ]
-
-
-def test_comparison_outside_a_terminal_is_plain() -> None:
-    out = StringIO()
-    comparison = compare_rows([*A, row(9, "S1")], B)
-    print_comparison({**comparison, "differences": [{"key": "guidance.kind", "a": "mpc", "b": "[pn]"}]}, out)
-    assert "\x1b" not in out.getvalue()
-    assert "guidance.kind: mpc | [pn]" in out.getvalue()
-    assert "without a pair: 1 of A, 0 of B" in out.getvalue()
-    assert "p=0.25 (0, 3)" in out.getvalue()
-    assert "unsafe" in out.getvalue()

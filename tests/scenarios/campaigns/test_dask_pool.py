@@ -100,20 +100,6 @@ def test_dask_gives_the_bytes_that_one_local_process_gives(cluster: str, local: 
     assert (remote / "landings.parquet").read_bytes() == local
 
 
-def test_dask_is_interrupted_and_gone_on_with(cluster: str, tmp_path: Path) -> None:
-    plan = plan_of(tmp_path)
-    folder = create_folder(tmp_path / "out", plan)
-
-    def interrupt(_flown: Flown | None, done: int, _total: int) -> None:
-        if done == 2:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        fly_campaign(folder, plan, Where(scheduler=cluster), interrupt)
-    rows = fly_campaign(folder, plan, Where(scheduler=cluster), quiet)
-    assert len(rows) == 9
-
-
 def test_dask_worker_killed_in_the_middle_loses_nothing(local: bytes, tmp_path: Path) -> None:
     plan = plan_of(tmp_path)
     remote = create_folder(tmp_path / "remote", plan)
@@ -142,13 +128,6 @@ def test_scheduler_that_is_not_there_is_a_mistake_of_the_user(tmp_path: Path, mo
     address = f"tcp://127.0.0.1:{free_port()}"
     with pytest.raises(UserError, match=f"no Dask scheduler answers at {address}"):
         fly_campaign(folder, plan, Where(scheduler=address), quiet)
-
-
-@pytest.mark.parametrize("address", ["somewhere", "ftp://127.0.0.1:8786", "tcp://127.0.0.1:port"])
-def test_address_that_is_none_is_a_mistake_of_the_user(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scenarios.campaigns.dask_pool._CONNECT_S", 0.5)
-    with pytest.raises(UserError, match="no Dask scheduler answers at"):
-        list(fly_on_dask(address, Flights(scenarios={}, sources=""), []))
 
 
 def test_scheduler_without_workers_is_a_mistake_of_the_user(monkeypatch: pytest.MonkeyPatch) -> None:

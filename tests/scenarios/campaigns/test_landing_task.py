@@ -49,6 +49,7 @@ def test_wave_offs_are_entries_into_abort_and_retries_the_approaches_after_it() 
     assert wave_offs([]) == {"aborts": 0, "retries": 0}
 
 
+@pytest.mark.slow
 def test_landing_that_raises_is_a_row_that_tells_what_and_where(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object) -> Any:
         raise ArithmeticError("not\n finite")

@@ -77,24 +77,8 @@ def test_config_that_does_not_fit_over_a_cell_is_refused(tmp_path: Path, capsys:
     assert "align_height_m" in refusal(capsys, "campaign", "straight_5", "--config", config)
 
 
-def test_config_goes_over_the_scenarios_own(tmp_path: Path) -> None:
-    config = tmp_path / "companion.toml"
-    config.write_text("[descent]\nalign_height_m = 1.25\n", encoding="utf-8")
-    plan = make_plan(["straight_5", "circle_5"], first_seed=1, seeds=1, config=config)
-    heights_m = [scenario.system.companion.descent.align_height_m for scenario in plan.scenarios.values()]
-    assert heights_m == [1.25, 1.25]
-
-
-def test_campaign_refuses_a_cell_that_does_not_exist(capsys: pytest.CaptureFixture[str]) -> None:
-    assert "no scenario is called 'strait_5'" in refusal(capsys, "campaign", "strait_5")
-
-
 def test_campaign_refuses_a_cell_twice(capsys: pytest.CaptureFixture[str]) -> None:
     assert "'straight_5' is given twice" in refusal(capsys, "campaign", "straight_5", "straight_5")
-
-
-def test_campaign_refuses_to_fly_nothing(capsys: pytest.CaptureFixture[str]) -> None:
-    assert "no cell is given" in refusal(capsys, "campaign")
 
 
 def test_campaign_refuses_a_folder_in_use(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -105,17 +89,6 @@ def test_campaign_refuses_a_folder_in_use(tmp_path: Path, capsys: pytest.Capture
 def test_campaign_refuses_cells_beside_resume(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = campaign(tmp_path / "a", errors_m=(0.1,))
     assert "leave out cells" in refusal(capsys, "campaign", "straight_5", "--resume", folder)
-
-
-@pytest.mark.parametrize("option", ["--seeds", "--first-seed"])
-def test_campaign_refuses_seeds_beside_resume(option: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    folder = campaign(tmp_path / "a", errors_m=(0.1,))
-    assert option in refusal(capsys, "campaign", "--resume", folder, option, 50)
-
-
-def test_campaign_refuses_workers_beside_a_scheduler(capsys: pytest.CaptureFixture[str]) -> None:
-    words = "straight_5", "--workers", 2, "--scheduler", "tcp://127.0.0.1:8786"
-    assert "local processes" in refusal(capsys, "campaign", *words)
 
 
 @pytest.mark.parametrize("address", ["foo", "tcp://127.0.0.1:1"])
@@ -140,13 +113,6 @@ def test_resuming_with_other_sources_is_refused(tmp_path: Path, capsys: pytest.C
 @pytest.mark.parametrize("command", ["table", "campaign --resume"])
 def test_folder_without_a_campaign_is_named(command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert f"{tmp_path / 'campaign.json'}: cannot be read" in refusal(capsys, *command.split(), tmp_path)
-
-
-def test_plan_that_was_changed_by_hand_is_checked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    folder = campaign(tmp_path / "a", errors_m=(0.1,))
-    file = folder / "campaign.json"
-    file.write_text(file.read_text(encoding="utf-8").replace('"seeds": 1', '"seeds": 0'), encoding="utf-8")
-    assert "seeds = 0 does not fit" in refusal(capsys, "table", folder)
 
 
 def test_campaign_without_results_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -10,6 +10,7 @@ from scenarios.faults.fuzz_frames import fuzz_frames
 ORDERS = {"COMMAND_LONG", "COMMAND_INT", "PARAM_SET", "SET_MODE", "SET_POSITION_TARGET_LOCAL_NED", "MANUAL_CONTROL"}
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_frames() -> None:
     assert list(islice(fuzz_frames(3), 500)) == list(islice(fuzz_frames(3), 500))
     assert list(islice(fuzz_frames(3), 500)) != list(islice(fuzz_frames(4), 500))

@@ -149,6 +149,7 @@ def test_start_of_the_manoeuvre_can_be_given() -> None:
     assert result.time_to_contact_s == pytest.approx(CONTACT_S - 3.0, abs=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("landing", "tier"),
     [
@@ -174,6 +175,7 @@ def test_tier_changes_at_its_limit(landing: Landing, tier: Tier) -> None:
     assert scored(landing).tier is tier
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("landing", "tier"),
     [
@@ -353,6 +355,7 @@ def test_report_ignores_the_distance_before_the_start() -> None:
     assert (result.tier, result.time_to_s0_s) == (Tier.ABORT, None)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("landing", [Landing(), Landing(error_m=(0.0, 0.7)), Landing(off_after_s=None)])
 def test_json_has_the_same_keys_for_every_outcome_and_only_finite_numbers(landing: Landing) -> None:
     table = scored(landing).to_json()

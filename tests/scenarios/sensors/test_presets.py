@@ -38,10 +38,6 @@ def test_degraded_pattern_is_not_seen_from_below_half_a_metre(height_m: float, *
     assert bool(sightings(DEGRADED, 1, 5.0, height_m)) is seen
 
 
-def test_nominal_pattern_comes_30_times_a_second_60_ms_late() -> None:
-    assert len(sightings(NOMINAL, 1, 10.0)) == pytest.approx(300 - 2, abs=2)
-
-
 def test_clocks_are_off_by_up_to_what_the_table_says() -> None:
     def first_stamps_s(config: SensorsConfig) -> np.ndarray:
         runs = [sampled(config, 0.4, seed=seed) for seed in range(150)]
@@ -59,10 +55,3 @@ def test_clocks_are_off_by_up_to_what_the_table_says() -> None:
 def test_degraded_vehicle_without_heading_tells_none() -> None:
     assert of_kind(sampled(DEGRADED, 2.0), VehicleImu)
     assert of_kind(sampled(NO_HEADING, 2.0), VehicleImu) == []
-
-
-def test_own_state_of_the_presets_is_that_of_the_table() -> None:
-    nominal, degraded = NOMINAL.own_state, DEGRADED.own_state
-    assert (nominal.position_std_m, nominal.velocity_std_m_s, nominal.origin_step_range_m) == (0.02, 0.05, (0.0, 0.0))
-    assert (degraded.position_std_m, degraded.velocity_std_m_s) == (0.5, 0.1)
-    assert degraded.origin_step_range_m == (1.0, 7.0)

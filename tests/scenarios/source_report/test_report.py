@@ -85,7 +85,7 @@ def test_reports_chase_begins_with_the_departure() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("system", ["default", "ukf", "pn", "lqr_feedforward"])
+@pytest.mark.parametrize("system", ["ukf", "pn", "lqr_feedforward"])
 def test_each_selectable_part_lands_on_a_car_at_5_m_s(system: str) -> None:
     scenario = load_scenario(f"straight_5+system={system}")
     lockstep = Lockstep(scenario, 1)
@@ -123,6 +123,7 @@ def test_nothing_counts_before_the_departure_or_behind_the_roads_end() -> None:
     assert straight_flight([0.1, 2.0, 0.1], t_s=[STANDS_S - 0.01, 7.0, 9.01]).landing(noisy=False) is None
 
 
+@pytest.mark.slow
 def test_table_counts_landings_and_tells_their_median_and_range() -> None:
     rows = [
         row_of(ReportTask(scenario="report_1", system="report", seed=seed), straight_flight([0.5], t_s=[t_s]))

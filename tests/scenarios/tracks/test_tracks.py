@@ -19,6 +19,7 @@ def course(name: str, seed: int = 3) -> Course:
     return course_of(load_scenario(name).track, np.random.default_rng(seed))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SMOOTH)
 def test_road_points_in_the_direction_of_its_heading(name: str) -> None:
     road = course(name).road
@@ -30,6 +31,7 @@ def test_road_points_in_the_direction_of_its_heading(name: str) -> None:
         assert math.hypot(after.x_m - before.x_m, after.y_m - before.y_m) == pytest.approx(2.0 * step_m, rel=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SMOOTH)
 def test_vehicle_passes_the_waiting_point_at_its_nominal_speed(name: str) -> None:
     track = load_scenario(name).track
@@ -42,6 +44,7 @@ def test_vehicle_passes_the_waiting_point_at_its_nominal_speed(name: str) -> Non
     assert driven.profile.at(passing_s).speed_m_s == pytest.approx(track.speed_m_s, rel=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SMOOTH)
 def test_speed_never_jumps_nor_turns_back(name: str) -> None:
     profile = course(name).profile
@@ -153,6 +156,7 @@ def test_random_acceleration_across_has_the_variance_and_the_memory_of_its_proce
     assert lagged / variance == pytest.approx(math.exp(-1.0), abs=0.1)
 
 
+@pytest.mark.slow
 def test_random_speed_stays_in_its_band() -> None:
     for seed in range(5):
         legs = course("random_5", seed).profile.legs[2:-2]
@@ -160,6 +164,7 @@ def test_random_speed_stays_in_its_band() -> None:
         assert max(leg.speed_m_s for leg in legs) <= 7.5
 
 
+@pytest.mark.slow
 def test_random_course_is_decided_by_its_seed() -> None:
     assert course("random_5", 4) == course("random_5", 4)
     assert course("random_5", 4).road != course("random_5", 5).road

@@ -146,6 +146,7 @@ def test_no_bytes_whatever_make_it_raise(data: bytes) -> None:
 ODD_VALUES = (None, True, 10**400, -1, 1e308, float("nan"), float("inf"), "", "x", [1], {"lat": 1})
 
 
+@pytest.mark.slow
 @given(
     st.dictionaries(
         st.sampled_from(["class", "mode", "time", "lat", "lon", "altHAE", "track", "speed", "epx", "eps", "climb"]),

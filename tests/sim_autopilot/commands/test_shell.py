@@ -21,13 +21,6 @@ def printed(pilot: Pilot, *texts: str) -> str:
     return b"".join(bytes(piece.data[: piece.count]) for piece in pieces).decode()
 
 
-def test_a_line_is_echoed_obeyed_and_followed_by_the_prompt() -> None:
-    said = printed(Pilot(), "ver all\n")
-    assert said.startswith("ver all\nHW arch: PX4_SITL\n")
-    assert "PX4 version: 1." in said
-    assert said.endswith("\npxh> ")
-
-
 def test_a_line_may_come_in_pieces_and_an_empty_one_brings_the_prompt() -> None:
     pilot = Pilot()
     assert printed(pilot, "\n") == "\npxh> "
@@ -48,12 +41,6 @@ def test_parameters_are_shown_and_set_within_their_ranges() -> None:
         assert "no value for MPC_XY_CRUISE" in printed(pilot, f"param set MPC_XY_CRUISE {wrong}\n")
     assert "not found" in printed(pilot, "param set NOPE 7\n")
     assert ": 7.0000" in printed(pilot, "param show MPC_XY_CRUISE\n")
-
-
-def test_what_it_does_not_know_is_told_with_the_way_to_help() -> None:
-    pilot = Pilot()
-    assert "Invalid command: dance\ntype 'help'" in printed(pilot, "dance\n")
-    assert "  param\n" in printed(pilot, "help\n")
 
 
 def test_another_device_and_arducopter_are_silent() -> None:

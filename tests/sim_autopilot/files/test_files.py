@@ -51,6 +51,7 @@ def test_arducopters_parameter_file_holds_every_parameter(copter_files: FileClie
     assert values["SYSID_THISMAV"] == (2, 1)
 
 
+@pytest.mark.slow
 def test_px4_describes_its_parameters_in_a_file_whose_checksum_is_told(px4_files: FileClient) -> None:
     general = json.loads(lzma.decompress(px4_files.read(GENERAL)))
     (entry,) = (one for one in general["metadataTypes"] if one["type"] == 1)
@@ -106,17 +107,7 @@ def test_a_checksum_is_the_one_that_both_servers_reckon() -> None:
     assert checksum(b"123456789") == register
 
 
-def test_px4_numbers_the_session_itself_and_arducopter_takes_the_clients(
-    px4_files: FileClient, copter_files: FileClient
-) -> None:
-    for files, path, session in ((px4_files, GENERAL, 0), (copter_files, b"@PARAM/param.pck", 7)):
-        files.session = 7
-        (answer,) = files.send(Opcode.LIST_DIRECTORY, b"/")
-        assert told(answer)[:2] == (Opcode.ACK, 7)
-        (answer,) = files.send(Opcode.OPEN_FILE_RO, path)
-        assert told(answer)[:2] == (Opcode.ACK, session)
-
-
+@pytest.mark.slow
 def test_a_second_file_is_refused_as_each_firmware_says_until_the_first_was_idle(
     px4_files: FileClient, copter_files: FileClient
 ) -> None:
@@ -146,8 +137,3 @@ def test_the_autopilots_own_files_cannot_be_written(px4_files: FileClient) -> No
 def test_clients_cannot_fill_the_memory(px4_files: FileClient) -> None:
     px4_files.ask(Opcode.CREATE_FILE, b"/large")
     assert px4_files.ask(Opcode.WRITE_FILE, b"x", offset=2**32 - 10)[0] == Opcode.NAK
-
-
-def test_an_unknown_question_is_refused(px4_files: FileClient) -> None:
-    (answer,) = px4_files.send(99)  # type: ignore[arg-type]  # there is no such opcode
-    assert told(answer)[3] == bytes([Error.UNKNOWN_COMMAND])

@@ -2,9 +2,12 @@
 
 import struct
 
+import pytest
+
 from link.mavlink.dialect import Message, mavlink
-from tests.sim_autopilot.copter import ardupilot
 from tests.sim_autopilot.pilot import Pilot, command
+
+pytestmark = pytest.mark.slow
 
 START = command(mavlink.MAV_CMD_LOGGING_START)
 STOP = command(mavlink.MAV_CMD_LOGGING_STOP)
@@ -69,16 +72,3 @@ def test_a_stream_is_ended_and_only_one_runs_at_a_time() -> None:
     pilot.received.clear()
     pilot.run(1.0)
     assert pilot.all("LOGGING_DATA") == []
-
-
-def test_an_acknowledgement_of_another_piece_counts_for_nothing() -> None:
-    pilot = Pilot()
-    pilot.step(START)
-    pilot.step(mavlink.MAVLink_logging_ack_message(1, 1, 7))
-    pilot.run(0.3)
-    assert {piece.sequence for piece in pilot.all("LOGGING_DATA_ACKED")} == {0}
-
-
-def test_there_are_no_other_formats_and_arducopter_does_not_stream() -> None:
-    assert Pilot().acknowledged(command(mavlink.MAV_CMD_LOGGING_START, 1.0)) == [mavlink.MAV_RESULT_UNSUPPORTED]
-    assert Pilot(ardupilot()).acknowledged(START) == [mavlink.MAV_RESULT_UNSUPPORTED]

@@ -3,12 +3,15 @@
 import struct
 from pathlib import Path
 
+import pytest
 from pymavlink.DFReader import DFReader_binary
 
 from link.mavlink.dialect import Message, mavlink
 from tests.sim_autopilot.copter import GUIDED, ardupilot, mode, take_off
 from tests.sim_autopilot.file_client import FileClient
 from tests.sim_autopilot.pilot import START_NS, Pilot, arm, px4
+
+pytestmark = pytest.mark.slow
 
 
 def flown(pilot: Pilot) -> Pilot:
@@ -81,24 +84,6 @@ def test_arducopter_sends_no_list_while_armed_but_says_why() -> None:
     pilot.step(mode(GUIDED), arm())
     assert entries(pilot) == []
     assert pilot.last("STATUSTEXT").text == "Disarm for log download"
-
-
-def test_px4_sends_nothing_before_the_list_was_asked_for() -> None:
-    pilot = flown(Pilot())
-    pilot.step(mavlink.MAVLink_log_request_data_message(1, 1, 0, 0, 900))
-    pilot.run(0.1)
-    assert pilot.all("LOG_DATA") == []
-
-
-def test_a_piece_of_a_log_is_sent_by_its_place() -> None:
-    pilot = flown(Pilot())
-    (entry,) = entries(pilot)
-    whole = download(pilot, entry)
-    pilot.received.clear()
-    pilot.step(mavlink.MAVLink_log_request_data_message(1, 1, 0, 90, 100))
-    pilot.run(0.1)
-    assert [(piece.ofs, piece.count) for piece in pilot.all("LOG_DATA")] == [(90, 90), (180, 10)]
-    assert bytes(pilot.last("LOG_DATA").data[:10]) == whole[180:190]
 
 
 def test_an_erased_log_is_gone() -> None:

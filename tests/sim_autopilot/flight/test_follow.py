@@ -8,6 +8,8 @@ from link.mavlink.dialect import Message, mavlink
 from tests.sim_autopilot.pilot import HOLD, Pilot, arm, px4, set_mode
 from tests.sim_autopilot.planner import EAST_M, LATITUDE, LONGITUDE, NORTH_M
 
+pytestmark = pytest.mark.slow
+
 FOLLOW = 0x08040000
 ABOVE_SEA_M = 89.0
 REJECTED = 1
@@ -62,15 +64,6 @@ def test_the_parameters_set_distance_height_and_side() -> None:
     east_m = walk(pilot, 2.0, 30.0)
     x, y, z = pilot.position
     assert (east_m - x, y, z) == pytest.approx((0.0, -12.0, 10.0), abs=0.8)  # to his right, who walks east
-
-
-def test_with_the_height_mode_of_the_target_it_climbs_with_him() -> None:
-    pilot = following(FLW_TGT_ALT_M=2.0)
-    for _ in range(12):
-        pilot.step(word(3.0, 5.0, (0.0, 0.0, 0.0), above_m=6.0))
-        pilot.run(0.99)
-    assert pilot.position[2] == pytest.approx(14.0, abs=0.4)
-    assert hypot(pilot.position[0] - 3.0, pilot.position[1] - 5.0) == pytest.approx(8.0, abs=0.5)
 
 
 def test_one_who_falls_silent_is_believed_to_have_stopped() -> None:

@@ -7,6 +7,8 @@ from link.frames import roll_pitch_yaw_of
 from link.mavlink.dialect import Message, mavlink
 from tests.sim_autopilot.pilot import HOLD, OFFBOARD, POSITION, RTL, Pilot, set_mode
 
+pytestmark = pytest.mark.slow
+
 
 def sticks(pitch: int = 0, roll: int = 0, throttle: int = 500, yaw: int = 0) -> Callable[[float], Message]:
     message = mavlink.MAVLink_manual_control_message(1, pitch, roll, throttle, yaw, 0)

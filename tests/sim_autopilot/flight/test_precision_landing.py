@@ -8,6 +8,8 @@ from link.mavlink.dialect import Message, mavlink
 from tests.sim_autopilot.copter import LAND, ardupilot, copter_in_the_air, mode
 from tests.sim_autopilot.pilot import Pilot
 
+pytestmark = pytest.mark.slow
+
 PLND = {"PLND_ENABLED": 1.0, "PLND_TYPE": 1.0}
 BODY, LOCAL = int(mavlink.MAV_FRAME_BODY_FRD), int(mavlink.MAV_FRAME_LOCAL_NED)
 

@@ -6,6 +6,8 @@ from link.mavlink.dialect import Message, mavlink
 from tests.sim_autopilot.pilot import HOLD, OFFBOARD, RTL, Pilot, arm, command, px4, set_mode
 from tests.sim_autopilot.planner import item, upload
 
+pytestmark = pytest.mark.slow
+
 MISSION = 0x04040000
 WAYPOINT = mavlink.MAV_CMD_NAV_WAYPOINT
 LAND = mavlink.MAV_CMD_NAV_LAND
@@ -130,10 +132,3 @@ def test_a_mission_that_is_not_there_is_not_started_nor_armed_for_nor_chosen_in_
     pilot.take_off()
     pilot.acknowledged(set_mode(4, 4))
     assert pilot.custom_mode() == OFFBOARD
-
-
-def test_a_mission_mode_is_chosen_on_the_ground() -> None:
-    pilot = planned(item(0, WAYPOINT, (0.0, 0.0, 5.0)))
-    pilot.acknowledged(arm())
-    pilot.acknowledged(set_mode(4, 4))
-    assert pilot.custom_mode() == MISSION

@@ -3,12 +3,13 @@ from math import hypot
 import pytest
 
 from link.mavlink.dialect import Message, mavlink
-from link.mavlink.event_ids import event_id
 from sim_autopilot.missions.fence import Area, is_allowed
 from sim_autopilot.missions.items import FENCE
 from sim_autopilot.safety.failures import NO_FAILURES, injected
 from tests.sim_autopilot.pilot import HOLD, LAND, RTL, Pilot, command, px4, set_mode
 from tests.sim_autopilot.planner import item, upload
+
+pytestmark = pytest.mark.slow
 
 ACCEPTED, UNSUPPORTED = 0, 3
 INJECT = mavlink.MAV_CMD_INJECT_FAILURE
@@ -110,15 +111,6 @@ def test_a_failed_motor_brings_the_drone_down() -> None:
 def test_an_injection_that_is_no_such_thing_changes_nothing() -> None:
     for unit, kind, instance in ((int(MOTOR), 2, 0), (int(MOTOR), 1, 9), (0, 1, 0), (-1, -1, -1)):
         assert injected(NO_FAILURES, unit, kind, instance) is None
-
-
-def test_a_failing_battery_and_its_failsafe_are_told_as_events_and_the_failsafe_as_a_text_too() -> None:
-    pilot = flying(SYS_FAILURE_EN=1.0, COM_LOW_BAT_ACT=2.0)
-    pilot.step(mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, 8, 0, 0, 4, 3))
-    pilot.acknowledged(command(INJECT, BATTERY, OFF, 0.0))
-    names = ("commander_failsafe_enter_crit_low_bat_warn", "commander_failsafe_enter_generic")
-    assert [event.id for event in pilot.all("EVENT")][-2:] == list(map(event_id, names))
-    assert [message.text for message in pilot.all("STATUSTEXT")] == ["Failsafe activated\t"]
 
 
 def told_low(pilot: Pilot) -> list[Message]:

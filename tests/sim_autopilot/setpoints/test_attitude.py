@@ -31,6 +31,7 @@ def hovering() -> Pilot:
     return pilot
 
 
+@pytest.mark.slow
 def test_an_attitude_is_flown_in_its_own_frame() -> None:
     pilot = hovering()
     pilot.run(1.0, lambda _t: target(radians(10.0)))
@@ -40,12 +41,14 @@ def test_an_attitude_is_flown_in_its_own_frame() -> None:
     assert pilot.node.state.velocity_enu_m_s[0] > 1.0  # it leans to the right of north: east
 
 
+@pytest.mark.slow
 def test_rates_are_flown_without_an_attitude() -> None:
     pilot = hovering()
     pilot.run(1.0, lambda _t: target(mask=ATTITUDE_IGNORED, yaw_rate=0.4))
     assert pilot.node.state.angular_velocity_flu_rad_s == pytest.approx((0.0, 0.0, -0.4), abs=0.03)
 
 
+@pytest.mark.slow
 def test_more_thrust_climbs_and_hover_thrust_holds() -> None:
     pilot = hovering()
     pilot.run(1.0, lambda _t: target())
@@ -54,6 +57,7 @@ def test_more_thrust_climbs_and_hover_thrust_holds() -> None:
     assert pilot.node.state.velocity_enu_m_s[2] == pytest.approx(0.2 * 9.81, abs=0.5)
 
 
+@pytest.mark.slow
 def test_position_control_takes_over_from_an_attitude_without_a_bump() -> None:
     pilot = hovering()
     pilot.run(0.5, lambda _t: target())
@@ -79,6 +83,7 @@ def test_an_attitude_that_cannot_be_flown_is_dropped(wrong: Message) -> None:
     assert attitude_from_message(wrong, HOVER) is None
 
 
+@pytest.mark.slow
 def test_a_global_setpoint_goes_where_it_says() -> None:
     pilot = hovering()
     x, y = round(LATITUDE + 6.0 * NORTH_M), round(LONGITUDE + 8.0 * EAST_M)

@@ -62,6 +62,7 @@ def test_a_path_to_a_place_arrives_there_inside_its_limits() -> None:
         assert jerk <= bounds.jerk_m_s3 + 1e-6
 
 
+@pytest.mark.slow
 def test_a_velocity_that_is_given_is_not_limited_by_the_speed_of_corrections() -> None:
     fast = Motion(position=(0.0, 0.0, 0.0), velocity=(14.0, 0.0, -4.0))
     path = Motion(position=(0.0, 0.0, 0.0))

@@ -86,6 +86,7 @@ def test_an_axis_that_is_masked_is_free_and_may_hold_no_number() -> None:
     assert near(reference.velocity_enu_m_s, (5.0, 4.0, 0.0))
 
 
+@pytest.mark.slow
 def test_a_height_and_a_horizontal_velocity_are_flown_together() -> None:
     pilot = Pilot()
     pilot.take_off(5.0)
@@ -107,11 +108,13 @@ def _slowed(mask: int) -> list[float]:
     return speeds
 
 
+@pytest.mark.slow
 def test_a_velocity_is_flown_no_otherwise_for_a_height_beside_it() -> None:
     # what steadies the place of a moving setpoint must not hold on to one that nobody asked for
     assert _slowed(0b1001_1110_0011) == pytest.approx(_slowed(0b1001_1100_0111), abs=0.02)
 
 
+@pytest.mark.slow
 def test_a_climb_rate_over_a_held_place_takes_off_and_keeps_the_place() -> None:
     pilot = Pilot()
     rise = setpoint((0.0, 0.0, nan), (nan, nan, -1.0), mask=0b1001_1101_1100)

@@ -47,32 +47,7 @@ def test_wind_is_told_by_where_it_comes_from() -> None:
     assert told.direction == pytest.approx(180.0 + degrees(atan2(3.0, 4.0)))
 
 
-def test_the_summary_for_satellites_says_what_the_other_messages_say() -> None:
-    pilot = copter_in_the_air()
-    summary, beat, place = one(pilot, "HIGH_LATENCY2"), pilot.last("HEARTBEAT"), one(pilot, "GLOBAL_POSITION_INT")
-    assert (summary.type, summary.autopilot, summary.custom_mode) == (beat.type, beat.autopilot, beat.custom_mode)
-    assert summary.custom0 % 256 == beat.base_mode
-    assert (summary.latitude, summary.longitude) == pytest.approx((place.lat, place.lon), abs=2)
-    assert summary.altitude == pytest.approx(place.alt / 1000.0, abs=0.6)
-    assert summary.heading * 2 == pytest.approx(place.hdg / 100.0, abs=1.1)
-    assert summary.battery > 95
-
-
-def test_the_simulations_truth_is_told_whole_and_short_alike() -> None:
-    pilot = copter_in_the_air()
-    whole, short = one(pilot, "SIM_STATE"), one(pilot, "SIMSTATE")
-    assert (whole.roll, whole.pitch, whole.yaw) == pytest.approx((short.roll, short.pitch, short.yaw), abs=1e-3)
-    assert (whole.lat_int, whole.lon_int) == pytest.approx((short.lat, short.lng), abs=2)
-    assert whole.alt == pytest.approx(pilot.position[2] + 89.0, abs=0.1)
-
-
-def test_the_motors_tell_how_fast_they_turn_only_while_they_do() -> None:
-    assert set(one(Pilot(ardupilot()), "ESC_TELEMETRY_1_TO_4").rpm) == {0}
-    speeds = one(copter_in_the_air(), "ESC_TELEMETRY_1_TO_4").rpm
-    assert min(speeds) > 1000
-    assert max(speeds) / min(speeds) < 1.2
-
-
+@pytest.mark.slow
 def test_the_battery_tells_the_current_that_empties_its_capacity_in_its_endurance() -> None:
     assert one(Pilot(ardupilot()), "BATTERY_STATUS").current_battery == 0
     pilot = copter_in_the_air(ardupilot(endurance_s=600.0))

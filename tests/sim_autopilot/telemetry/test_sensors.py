@@ -3,7 +3,6 @@ import pytest
 
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.telemetry.sensors import pressure_hpa
-from tests.sim_autopilot.copter import ardupilot, every
 from tests.sim_autopilot.pilot import Pilot, command
 
 
@@ -28,6 +27,7 @@ def test_a_drone_at_rest_feels_its_weight_and_the_field_down() -> None:
     assert imu.zmag == pytest.approx(450, abs=2)
 
 
+@pytest.mark.slow
 def test_altitude_tells_heights_above_sea_origin_home_and_ground() -> None:
     pilot = Pilot()
     pilot.take_off(6.0)
@@ -36,26 +36,6 @@ def test_altitude_tells_heights_above_sea_origin_home_and_ground() -> None:
     assert told.altitude_local == pytest.approx(6.0, abs=0.2)
     assert told.altitude_relative == pytest.approx(6.0 - 0.12, abs=0.2)
     assert told.altitude_local - told.bottom_clearance == pytest.approx(told.altitude_terrain, abs=0.01)
-
-
-def test_the_outputs_are_idle_on_the_ground_and_near_half_in_hover() -> None:
-    pilot = Pilot()
-    still = requested(pilot, mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW)
-    assert (still.servo1_raw, still.servo5_raw) == (1000, 900)
-    pilot.take_off()
-    outputs = requested(pilot, mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW)
-    for value in (outputs.servo1_raw, outputs.servo2_raw, outputs.servo3_raw, outputs.servo4_raw):
-        assert 1500 < value < 1900
-
-
-def test_highres_imu_has_the_field_and_the_pressure_of_the_place() -> None:
-    pilot = Pilot()
-    pilot.run(0.5)
-    imu = requested(pilot, mavlink.MAVLINK_MSG_ID_HIGHRES_IMU)
-    assert np.hypot(imu.xmag, imu.ymag) == pytest.approx(0.19, abs=0.002)
-    assert imu.abs_pressure == pytest.approx(100.0 * pressure_hpa(89.1), abs=1.0)
-    assert imu.pressure_alt == pytest.approx(89.1, abs=0.1)
-    assert imu.fields_updated == 0b1_1011_1111_1111
 
 
 def test_rc_channels_tell_what_the_pilot_holds() -> None:
@@ -67,14 +47,3 @@ def test_rc_channels_tell_what_the_pilot_holds() -> None:
     told = pilot.last("RC_CHANNELS")
     assert (told.chan1_raw, told.chan2_raw, told.chan3_raw, told.chan4_raw) == (1400, 1300, 1500, 2000)
     assert (told.chancount, told.chan9_raw) == (8, 65535)
-
-
-def test_rc_channels_tell_the_others_as_they_were_overridden_and_keep_what_is_not_told() -> None:
-    pilot = Pilot(ardupilot())
-    pilot.step(every(mavlink.MAVLINK_MSG_ID_RC_CHANNELS, 10.0))
-    pilot.step(mavlink.MAVLink_rc_channels_override_message(1, 1, 1500, 1500, 1100, 1500, 1200, 1900, 0, 65535))
-    pilot.run(0.2)
-    pilot.step(mavlink.MAVLink_rc_channels_override_message(1, 1, 1500, 1500, 1100, 1500, 0, 1100, 0, 0))
-    pilot.run(0.2)
-    told = pilot.last("RC_CHANNELS")
-    assert (told.chan3_raw, told.chan5_raw, told.chan6_raw, told.chan7_raw) == (1100, 1200, 1100, 1500)
