@@ -26,7 +26,7 @@ from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
 from companion.situation.situation import Situation, drone_now, range_carried_m, range_height_m
 from companion.vehicle.pad import PadPath, pad_path
 from companion.vehicle.surprise import looked_back
-from link.frames import yaw_of
+from link.frames.rotations import yaw_of
 from link.records import replace
 
 _DISARM_MAX_S = 1.0  # it takes 0.6 s where the plain one is refused; the companion waits for 1.5 s before it ends

@@ -12,7 +12,7 @@ from companion.autopilots.px4_events import refusal_of
 from companion.autopilots.setpoint_message import local_ned_setpoint
 from companion.autopilots.stated_limits import Named, acceleration_of_tilt_m_s2, stated
 from companion.core.data import FlightLimits, Setpoint
-from link.local_frame import Projection
+from link.frames.local_frame import Projection
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 

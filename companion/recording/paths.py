@@ -5,10 +5,10 @@ A path holds places and headings only; times, speeds, accelerations and deviatio
 
 from companion.core.data import Array, Forecast
 from companion.planning.guidance import Trajectory
-from link import cdr
-from link.keys import Keys
 from link.messages import Plan, PlannedPose
-from link.ros_records import RosMessage
+from link.payloads import cdr
+from link.payloads.decklander_msgs import RosMessage
+from link.zenoh.keys import Keys
 
 _POINTS_EVERY = 2  # of the horizon's
 

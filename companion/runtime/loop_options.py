@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from link.keys import Keys
 from link.mavlink.transports import Transport
-from link.zenoh_session import ZenohSession
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohSession
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

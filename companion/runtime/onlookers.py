@@ -6,8 +6,8 @@ from typing import Protocol
 
 from companion.runtime.live_state import LiveState
 from companion.runtime.node import CompanionNode
-from link.keys import Keys
-from link.zenoh_session import ZenohSession
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohSession
 
 
 class Onlooker(Protocol):

@@ -4,11 +4,11 @@ from companion.landing.step_data import System
 from companion.recording.records import InputKind, InputRecord, StepTimeRecord
 from companion.runtime.node import CompanionNode
 from companion.runtime.node_records import link_record, step_record
-from link import json_payloads
-from link.keys import Keys
 from link.mavlink.session import MavlinkSession
 from link.messages import Command, PadGeometry
-from link.recorder import Recorder
+from link.payloads import json_messages
+from link.recording.recorder import Recorder
+from link.zenoh.keys import Keys
 
 _LINK_NS = 1_000_000_000  # between two records of the counters
 
@@ -51,7 +51,7 @@ class RecordingNode(CompanionNode):
 
     def receive_pad(self, pad: PadGeometry) -> None:
         """Take the vehicle's description of its pad."""
-        self._record(InputKind.PAD, json_payloads.encode(pad))
+        self._record(InputKind.PAD, json_messages.encode(pad))
         super().receive_pad(pad)
 
     def receive_liveliness(self, *, alive: bool) -> None:

@@ -11,14 +11,14 @@ from typing import Any
 
 from companion.config.companion import CompanionConfig
 from link.errors import UserError
-from link.toml_config import load_config, merged, read_toml, validated
+from link.program.toml_config import load_config, merged, read_toml, validated
 from scenarios.campaigns.dask_pool import fly_on_dask
 from scenarios.campaigns.folder import Plan, open_journal
 from scenarios.campaigns.landing_task import Flights, Flown, Row, Task, failed
-from scenarios.catalogue import load_scenario
+from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import Scenario
-from scenarios.pool import core_count, run_tasks
-from scenarios.versions import versions
+from scenarios.processes.pool import core_count, run_tasks
+from scenarios.recordings.versions import versions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

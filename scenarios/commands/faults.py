@@ -43,7 +43,7 @@ def faults_command(
     """Let every fault happen in every phase of a landing; exit code 1 when a reaction is not as expected."""
     from scenarios.faults.matrix import EXPECTED, FIRMWARES
     from scenarios.faults.trial import fly_case, lost
-    from scenarios.pool import core_count, run_tasks
+    from scenarios.processes.pool import core_count, run_tasks
 
     if firmware is not None and firmware not in FIRMWARES:
         raise UserError(f"--firmware is one of {', '.join(FIRMWARES)}, not '{firmware}'")

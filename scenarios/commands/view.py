@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from link.cli import (
+from link.errors import UserError
+from link.program.cli import (
     ConnectOption,
     DroneOption,
     ListenOption,
@@ -17,7 +18,6 @@ from link.cli import (
     VehicleOption,
     ZenohConfigOption,
 )
-from link.errors import UserError
 
 if TYPE_CHECKING:
     from scenarios.view.live import LiveSource
@@ -47,7 +47,7 @@ def port_of_run(*, lockstep: bool, as_json: bool) -> int:
     Raises:
         UserError: there is nothing to see, or nothing to show it with.
     """
-    from scenarios.processes import free_tcp_port
+    from scenarios.processes.programs import free_tcp_port
 
     if lockstep:
         raise UserError("--lockstep is over at once: leave out --view, and give the run's folder to `scenarios view`")
@@ -89,10 +89,10 @@ def view_command(
         source = RecordedSource(recording)
         _show(source, source.road, host, port)
         return
-    from link.keys import Keys
-    from link.zenoh_options import zenoh_options
-    from link.zenoh_session import open_session
-    from scenarios.catalogue import load_scenario
+    from link.zenoh.keys import Keys
+    from link.zenoh.options import zenoh_options
+    from link.zenoh.session import open_session
+    from scenarios.catalogue.catalogue import load_scenario
     from scenarios.view.live import LiveSource
 
     drawn = None if road is None else Road(scenario=load_scenario(road), seed=seed)
@@ -103,7 +103,7 @@ def view_command(
 
 def _show(source: "LiveSource | RecordedSource", road: "Road | None", host: str, port: int) -> None:
     """Serve the page until a signal comes; it can fly the drone, so others are let in by a token only."""
-    from scenarios.processes import free_tcp_port
+    from scenarios.processes.programs import free_tcp_port
     from scenarios.view.gate import LOOPBACK, Gate
     from scenarios.view.page import Page
 

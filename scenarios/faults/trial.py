@@ -9,11 +9,11 @@ from math import acos, hypot
 
 from companion.situation.phases import Phase
 from link.mavlink.dialect import Message, mavlink
-from scenarios.catalogue import load_scenario
+from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import FirmwareName, Scenario
 from scenarios.faults.flight import FaultFlight
 from scenarios.faults.matrix import EXPECTED, Case, Fault
-from scenarios.outcome import scored
+from scenarios.recordings.result import scored
 from scenarios.scoring.score import Tier
 
 SCENARIO = "straight_5"

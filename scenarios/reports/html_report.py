@@ -17,7 +17,7 @@ from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]  # it ha
 from plotly.subplots import make_subplots  # type: ignore[import-untyped]  # it has no annotations
 
 from link.errors import UserError
-from link.toml_config import dump_toml
+from link.program.toml_config import dump_toml
 from scenarios.campaigns.folder import read_landings, read_plan
 from scenarios.campaigns.summary import summarize
 from scenarios.campaigns.tables import print_summary

@@ -12,7 +12,7 @@ from rich.progress import track
 from rich.table import Table
 
 from link.errors import UserError
-from scenarios.pool import core_count, run_tasks
+from scenarios.processes.pool import core_count, run_tasks
 from scenarios.source_report.cases import CASES, OVERSHOOT, SETTLING_S, PublishedCase
 from scenarios.source_report.flight import ReportTask, fly_row
 from scenarios.source_report.step_responses import step_rows

@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from link.toml_config import NotNegative, Positive, StrictModel
+from link.program.toml_config import NotNegative, Positive, StrictModel
 
 Waypoint = tuple[float, float]
 

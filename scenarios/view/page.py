@@ -11,7 +11,7 @@ from typing import Self
 import viser
 
 from companion.config.companion import CompanionConfig
-from scenarios.vehicle_node import plan_of
+from scenarios.simulation.vehicle_node import plan_of
 from scenarios.view.live import LiveSource
 from scenarios.view.panel import Panel
 from scenarios.view.recorded import RecordedSource, Road

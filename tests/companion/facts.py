@@ -13,8 +13,8 @@ from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
 from companion.situation.situation import Drone, Situation, approach
 from companion.vehicle.pad import HEADING_UNKNOWN, PadPath
-from link.geodesy import Datum
-from link.local_frame import LocalFrame, Projection
+from link.frames.geodesy import Datum
+from link.frames.local_frame import LocalFrame, Projection
 from link.messages import Vector3
 
 CONFIG = CompanionConfig()

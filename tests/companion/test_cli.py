@@ -9,8 +9,8 @@ import pytest
 
 from companion.__main__ import app
 from companion.config.companion import CompanionConfig
-from link.cli import run_app
-from link.toml_config import load_config
+from link.program.cli import run_app
+from link.program.toml_config import load_config
 
 OPTIONS = (
     "--mavlink",

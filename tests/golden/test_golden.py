@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 
 from companion.situation.phases import Phase
-from scenarios.catalogue import load_scenario
-from scenarios.lockstep import Lockstep
-from scenarios.outcome import result_table, scored
-from scenarios.recording import Recording
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.lockstep.lockstep import Lockstep
+from scenarios.recordings.recording import Recording
+from scenarios.recordings.result import result_table, scored
 from tests.golden.aborts import ABORTS, SEED, Abort, fly
 from tests.golden.reasons import reasons
 

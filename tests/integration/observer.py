@@ -4,11 +4,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from companion.situation.phases import Phase
-from link.keys import Keys
-from link.zenoh_session import ZenohOptions, ZenohSession, open_session
-from scenarios.catalogue import load_scenario
-from scenarios.outcome import scored
-from scenarios.recording import EndWatch, Recording
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohOptions, ZenohSession, open_session
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.recordings.recording import EndWatch, Recording
+from scenarios.recordings.result import scored
 from scenarios.recordings.watcher import Watcher
 from scenarios.scoring.score import Score
 from tests.integration.programs import until

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from link.mcap_reader import read_messages, recording_files
-from scenarios.outcome import LANDED
-from scenarios.processes import free_tcp_endpoint, free_udp_port
+from link.recording.mcap_reader import read_messages, recording_files
+from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
+from scenarios.recordings.result import LANDED
 from tests.integration.observer import observer
 from tests.integration.programs import Programs
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.processes import MODULES
+from scenarios.processes.programs import MODULES
 from tests.integration.programs import Programs
 
 pytestmark = pytest.mark.slow

@@ -8,12 +8,12 @@ import pytest
 from companion.runtime.build import build_node
 from companion.runtime.node import CompanionNode
 from companion.situation.phases import Phase
-from link.keys import Keys
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Command
-from scenarios.catalogue import load_scenario
-from scenarios.lockstep import Lockstep
+from link.zenoh.keys import Keys
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.lockstep.lockstep import Lockstep
 
 pytestmark = pytest.mark.slow
 

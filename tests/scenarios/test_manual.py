@@ -9,18 +9,18 @@ import pytest
 
 from companion.config.companion import CompanionConfig
 from companion.situation.phases import TRANSITIONS, Phase
-from link.cdr import ROS_TYPES
-from link.toml_config import StrictModel
-from scenarios.catalogue import list_scenarios, load_scenario
+from link.payloads.cdr import ROS_TYPES
+from link.program.toml_config import StrictModel
+from scenarios.catalogue.catalogue import list_scenarios, load_scenario
 from scenarios.config import Scenario
-from scenarios.lockstep import Lockstep
+from scenarios.lockstep.lockstep import Lockstep
 from scenarios.manual.commands import PROGRAMS, helps
 from scenarios.manual.field_comments import comments_of
 from scenarios.manual.pages import PAGES, with_links
 from scenarios.manual.phase_chart import FROM_ANYWHERE, PLACES, arrows, phase_chart
 from scenarios.manual.settings import keys_of, tables_of
-from scenarios.manual.units import unit_of
-from scenarios.outcome import scored
+from scenarios.manual.types_in_words import unit_of
+from scenarios.recordings.result import scored
 from scenarios.scoring.score import Tier
 from sim_autopilot.config import SimAutopilotConfig
 from tests.scenarios.presets import list_presets

@@ -9,8 +9,8 @@ from scipy.integrate import solve_ivp
 from companion.landing.status import landing_status
 from companion.landing.step_data import StepMemory
 from companion.situation.phases import Phase
-from link import json_payloads
 from link.messages import LandingStatus
+from link.payloads import json_messages
 from tests.companion.facts import CONFIG, drone_at, pad_at, situation
 
 MEMORY = StepMemory(phase=Phase.DESCEND, reason="aligned")
@@ -72,4 +72,4 @@ def test_status_of_every_phase_passes_its_own_schema() -> None:
     for phase in Phase:
         for facts in (situation(), replace(situation(), drone=None), replace(situation(), pad=None, fix_age_s=None)):
             status = landing_status(replace(MEMORY, phase=phase), facts, CONFIG)
-            assert json_payloads.decode(LandingStatus, json_payloads.encode(status)) == status
+            assert json_messages.decode(LandingStatus, json_messages.encode(status)) == status

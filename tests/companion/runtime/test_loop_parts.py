@@ -10,8 +10,8 @@ from companion.runtime import command_desk
 from companion.runtime.command_desk import CommandDesk
 from companion.runtime.node import CompanionNode
 from companion.runtime.timings import Timings
-from link import json_payloads
 from link.messages import Command, CommandReply
+from link.payloads import json_messages
 from tests.companion.peer import Setup
 
 ACCEPTED = CommandReply(accepted=True, reason="")
@@ -28,7 +28,7 @@ class Asker:
     def reply(self) -> CommandReply:
         self._thread.join(5.0)
         assert not self._thread.is_alive()
-        return json_payloads.decode(CommandReply, self._reply[0])
+        return json_messages.decode(CommandReply, self._reply[0])
 
 
 class TriedToTakeBack(Future[CommandReply]):
@@ -77,7 +77,7 @@ def asked(node: CompanionNode, monkeypatch: pytest.MonkeyPatch) -> list[Command]
 
 def test_reply_goes_to_who_asked(node: CompanionNode, asked: list[Command]) -> None:
     desk = CommandDesk()
-    asker = Asker(desk, json_payloads.encode(Command.START))
+    asker = Asker(desk, json_messages.encode(Command.START))
     _until(_passed_on(desk, node, asked))
     desk.answer([ACCEPTED])
     assert asker.reply() == ACCEPTED
@@ -86,9 +86,9 @@ def test_reply_goes_to_who_asked(node: CompanionNode, asked: list[Command]) -> N
 
 def test_commands_reach_the_node_one_at_a_time(node: CompanionNode, asked: list[Command]) -> None:
     desk = CommandDesk()
-    first = Asker(desk, json_payloads.encode(Command.START))
+    first = Asker(desk, json_messages.encode(Command.START))
     _until(_passed_on(desk, node, asked))
-    second = Asker(desk, json_payloads.encode(Command.ABORT))
+    second = Asker(desk, json_messages.encode(Command.ABORT))
     for _ in range(5):
         desk.pass_on(node, 0)
     assert asked == [Command.START]
@@ -112,7 +112,7 @@ def test_command_answered_by_a_refusal_is_not_done_later(
 ) -> None:
     monkeypatch.setattr(command_desk, "_REPLY_WAIT_S", 0.01)
     desk = CommandDesk()
-    assert not Asker(desk, json_payloads.encode(Command.START)).reply().accepted
+    assert not Asker(desk, json_messages.encode(Command.START)).reply().accepted
     desk.pass_on(node, 0)
     assert asked == []
 
@@ -123,7 +123,7 @@ def test_command_waits_at_the_desk_until_a_step_is_due(
     monkeypatch.setattr(command_desk, "_REPLY_WAIT_S", 0.01)
     monkeypatch.setattr(node, "is_due", lambda local_ns: local_ns >= 1)
     desk = CommandDesk()
-    asker = Asker(desk, json_payloads.encode(Command.START))
+    asker = Asker(desk, json_messages.encode(Command.START))
     desk.pass_on(node, 0)
     assert not asker.reply().accepted
     desk.pass_on(node, 1)

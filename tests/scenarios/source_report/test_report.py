@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scenarios.catalogue import load_scenario
-from scenarios.lockstep import Lockstep
-from scenarios.outcome import LANDED, scored
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.lockstep.lockstep import Lockstep
+from scenarios.recordings.result import LANDED, scored
 from scenarios.source_report.cases import CASES, STANDS_S
 from scenarios.source_report.figures import draw_report
 from scenarios.source_report.flight import ReportFlight, ReportTask, fly, row_of
