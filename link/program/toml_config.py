@@ -20,6 +20,9 @@ Positive = Annotated[float, Field(gt=0.0, le=1e4)]
 NotNegative = Annotated[float, Field(ge=0.0, le=1e4)]
 """Lengths, times, speeds and their kin: what is beyond the bound was meant in another unit."""
 
+_LINE_MAX = 200  # characters of what is said about a file
+_SOURCE_MAX, _VALUE_MAX = 100, 40  # of them, for the file's name and for a value
+_CUT = "..."
 _BOUNDS = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most"}
 
 
@@ -120,8 +123,9 @@ def _is_in(location: Location, table: Mapping[str, Any]) -> bool:
 
 
 def _sentence(details: ErrorDetails, location: Location, fields: Fields, source: str, further: int) -> str:
-    """Return one line that names the file, the key, the value and what would fit."""
-    key = ".".join(str(part) for part in location)
+    """Return one line of bounded length that names the file, the key, the value and what would fit."""
+    key = _key(location)
+    source = source if len(source) <= _SOURCE_MAX else _CUT + source[-_SOURCE_MAX:]
     if details["type"] == "extra_forbidden":
         text = f"{source}: unknown key '{key}'{_nearest(str(location[-1]), list(fields))}"
     elif details["type"] == "missing":
@@ -130,9 +134,25 @@ def _sentence(details: ErrorDetails, location: Location, fields: Fields, source:
         field = fields.get(str(location[-1])) if location else None
         is_ours = details["type"] == "value_error"  # a check of the model's own, beyond the range of one number
         expected = ("" if is_ours or field is None else _range_of(field)) or _lowered(details["msg"])
-        given = f"{key} = {json.dumps(details['input'], default=str)}" if location else "it"
-        text = f"{source}: {given} does not fit: {expected}"
-    return f"{' '.join(text.split())} ({further} more like this)" if further else " ".join(text.split())
+        text = f"{source}: {_given(key, details['input'])} does not fit: {expected}"
+    more = f" ({further} more like this)" if further else ""
+    return _cut(" ".join(text.split()), _LINE_MAX - len(more)) + more
+
+
+def _key(location: Location) -> str:
+    """Return a place in a file as people write it: `track.waypoints_m[3][0]`."""
+    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in location).removeprefix(".")
+
+
+def _given(key: str, value: object) -> str:
+    """Return a key with its value; a table or a list, which may be long, is named only."""
+    if not key or isinstance(value, Mapping | list | tuple):
+        return key or "it"
+    return f"{key} = {_cut(json.dumps(value, default=str), _VALUE_MAX)}"
+
+
+def _cut(text: str, length: int) -> str:
+    return text if len(text) <= length else text[: length - len(_CUT)] + _CUT
 
 
 def _lowered(message: str) -> str:

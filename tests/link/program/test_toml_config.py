@@ -3,12 +3,12 @@
 import tomllib
 from enum import Enum
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, model_validator
 
 from link.errors import UserError
 from link.program.toml_config import StrictModel, dump_toml, load_config, merged, validated
@@ -109,7 +109,7 @@ def test_merging_leaves_what_it_merges_alone() -> None:
         ("fast = 1", "fast = 1 does not fit: input should be a valid boolean"),
         ("name = 3", "name = 3 does not fit: input should be a valid string"),
         ("[guidance]\nkind = 'pm'", "guidance.kind = \"pm\" does not fit: input should be 'mpc' or 'pn'"),
-        ("[guidance]\noffset_m = [1.0, 2.0]", "key 'guidance.offset_m.2' is missing"),
+        ("[guidance]\noffset_m = [1.0, 2.0]", "key 'guidance.offset_m[2]' is missing"),
         ("guidance = 3", "guidance = 3 does not fit"),
         ("name = ", "not valid TOML"),
         ("name = 'a'\nname = 'b'", "not valid TOML"),
@@ -117,6 +117,47 @@ def test_merging_leaves_what_it_merges_alone() -> None:
 )
 def test_a_mistake_is_named_with_its_key_and_what_would_fit(tmp_path: Path, text: str, expected: str) -> None:
     assert complaint(tmp_path, text).startswith(expected)
+
+
+class Legs(StrictModel):
+    speeds_m_s: tuple[Annotated[float, Field(ge=0.0)], ...]
+
+    @model_validator(mode="after")
+    def _does_not_stand(self) -> Self:
+        if 0.0 in self.speeds_m_s:
+            raise ValueError(f"speeds_m_s[{self.speeds_m_s.index(0.0)}] must not be 0")
+        return self
+
+
+class Trip(StrictModel):
+    legs: Legs
+    name: str = ""
+
+
+@pytest.mark.parametrize(
+    ("wrong", "expected"),
+    [
+        (-3.5, "legs.speeds_m_s[1234] = -3.5 does not fit: input should be greater than or equal to 0"),
+        (0.0, "legs does not fit: speeds_m_s[1234] must not be 0"),
+        ("1" * 500, f'legs.speeds_m_s[1234] = "{"1" * 36}... does not fit: input should be a valid number'),
+    ],
+)
+def test_one_bad_number_in_a_long_list_is_told_by_its_place_in_one_short_line(wrong: object, expected: str) -> None:
+    speeds_m_s: list[object] = [1.25] * 4000
+    speeds_m_s[1234] = wrong
+    with pytest.raises(UserError) as caught:
+        validated(Trip, {"legs": {"speeds_m_s": speeds_m_s}}, source="x.toml")
+    assert str(caught.value) == f"x.toml: {expected}"
+
+
+@given(speeds_m_s=st.lists(st.text(min_size=100), min_size=2), source=st.text("abc/", max_size=300), name=st.integers())
+def test_whatever_is_wrong_in_a_file_is_one_line_of_at_most_200_characters(
+    speeds_m_s: list[str], source: str, name: int
+) -> None:
+    with pytest.raises(UserError) as caught:
+        validated(Trip, {"legs": {"speeds_m_s": speeds_m_s}, "name": name}, source=source)
+    assert len(str(caught.value).splitlines()) == 1
+    assert len(str(caught.value)) <= 200
 
 
 class Road(StrictModel):
