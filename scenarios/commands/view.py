@@ -63,11 +63,8 @@ def view_command(
     ] = None,
     *,
     port: Annotated[
-        int, typer.Option("--port", min=0, max=65535, help="Of the page; 0 is any free one.")
+        int, typer.Option("--port", min=0, max=65535, help="Of the page, on this machine only; 0 is any free one.")
     ] = DEFAULT_PORT,
-    host: Annotated[
-        str, typer.Option("--host", metavar="HOST", help="For other machines: behind a token, which is told.")
-    ] = "127.0.0.1",
     road: Annotated[
         str | None, typer.Option("--road", metavar="NAME|FILE", help="Draw the road of this scenario.")
     ] = None,
@@ -81,13 +78,16 @@ def view_command(
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
 ) -> None:
-    """Show a landing in the browser as it goes on, or play a recording."""
+    """Show a landing in the browser as it goes on, or play a recording.
+
+    From another machine: ssh -L 8080:127.0.0.1:8080 THIS_MACHINE, and http://127.0.0.1:8080 there.
+    """
     check_viser()
     from scenarios.view.recorded import RecordedSource, Road
 
     if recording is not None:
         source = RecordedSource(recording)
-        _show(source, source.road, host, port)
+        _show(source, source.road, port)
         return
     from link.zenoh.keys import Keys
     from link.zenoh.options import zenoh_options
@@ -98,18 +98,13 @@ def view_command(
     drawn = None if road is None else Road(scenario=load_scenario(road), seed=seed)
     keys = Keys(namespace, vehicle, drone)
     with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config)) as zenoh:
-        _show(LiveSource(zenoh, keys), drawn, host, port)
+        _show(LiveSource(zenoh, keys), drawn, port)
 
 
-def _show(source: "LiveSource | RecordedSource", road: "Road | None", host: str, port: int) -> None:
-    """Serve the page until a signal comes; it can fly the drone, so others are let in by a token only."""
+def _show(source: "LiveSource | RecordedSource", road: "Road | None", port: int) -> None:
+    """Serve the page until a signal comes."""
     from scenarios.processes.programs import free_tcp_port
-    from scenarios.view.gate import LOOPBACK, Gate
     from scenarios.view.page import Page
 
-    is_own = host in LOOPBACK
-    with (
-        Page(source, road) as page,
-        Gate(host, free_tcp_port(port) if is_own else port, page.port, with_token=not is_own) as gate,
-    ):
-        page.run(gate.address)
+    with Page(source, road, free_tcp_port(port)) as page:
+        page.run()

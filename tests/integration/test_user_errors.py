@@ -60,7 +60,6 @@ MISTAKES = [
     ("scenarios", "run straight_5+wnd=calm", ["'wnd=calm'", "wind"]),
     ("scenarios", "run none.toml", ["none.toml", "cannot be read"]),
     ("scenarios", "run scenario.toml", ["scenario.toml", "'time_limits_s'", "'time_limit_s'"]),
-    ("scenarios", "view -e tcp/127.0.0.1:1 --host 192.0.2.1", ["--host 192.0.2.1", "choose another"]),
     ("scenarios", "run base.toml", ["base.toml: base: ", "'strait_5'", "'straight_5'"]),
     ("scenarios", "world strait_5", ["'strait_5'", "'straight_5'"]),
     # configurations
