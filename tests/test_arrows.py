@@ -28,8 +28,9 @@ HOMES = {
     "daqp": {"companion/planning/qp.py"},
     "filterpy": {"companion/vehicle/lkf.py", "companion/vehicle/ukf.py"},
     "polars": {"scenarios/campaigns/landings_file.py"},
+    "loky": {"scenarios/processes/local_workers.py"},
     "viser": {f"scenarios/view/{name}.py" for name in ("page", "panel", "scene")},
-    "distributed": {"scenarios/campaigns/dask_pool.py"},
+    "distributed": {"scenarios/processes/dask_workers.py"},
 }
 
 

@@ -1,12 +1,14 @@
 import multiprocessing
 import os
+import signal
 from contextlib import closing
 from pathlib import Path
 
 import pytest
 
 from link.errors import UserError
-from scenarios.processes.pool import core_count, run_tasks
+from scenarios.processes.local_workers import LocalWorkers, core_count
+from scenarios.processes.pool import run_tasks
 from tests.scenarios.processes.pool_jobs import Doubling, Unloadable, threads_and_signals
 
 pytestmark = pytest.mark.slow
@@ -18,7 +20,7 @@ def lost(number: int, why: str) -> int:
 
 
 def doubled(job: Doubling, numbers: range, workers: int = 2) -> list[int]:
-    return sorted(run_tasks(job, numbers, workers=workers, lost=lost))
+    return sorted(run_tasks(LocalWorkers(job, workers), numbers, lost=lost))
 
 
 @pytest.mark.parametrize("workers", [1, 2, 5])
@@ -42,12 +44,12 @@ def test_task_that_always_kills_its_process_is_reported_and_stops_no_other() -> 
 
 def test_processes_killed_from_outside_lose_nothing() -> None:
     results = []
-    with closing(run_tasks(Doubling(), range(30), workers=2, lost=lost)) as stream:
+    with closing(run_tasks(LocalWorkers(Doubling(), 2), range(30), lost=lost)) as stream:
         for number in stream:
             results.append(number)
             if len(results) in {1, 10}:
                 for child in multiprocessing.active_children():
-                    child.kill()
+                    os.kill(child.pid or 0, signal.SIGKILL)
     assert sorted(results) == list(range(0, 60, 2))
 
 
@@ -58,12 +60,12 @@ def test_mistake_of_the_user_in_a_process_ends_the_pool() -> None:
 
 
 def test_processes_that_cannot_start_are_a_mistake_of_the_user() -> None:
-    with pytest.raises(UserError, match=r"before they are ready \(exit code 3\)"):
-        list(run_tasks(Unloadable(), range(10), workers=2, lost=lost))
+    with pytest.raises(UserError, match=r"before they are ready \(EXIT\(3\)\)"):
+        list(run_tasks(LocalWorkers(Unloadable(), 2), range(10), lost=lost))
 
 
 def test_closing_ends_the_processes() -> None:
-    stream = run_tasks(Doubling(), range(1000), workers=2, lost=lost)
+    stream = run_tasks(LocalWorkers(Doubling(), 2), range(1000), lost=lost)
     next(stream)
     assert multiprocessing.active_children()
     stream.close()
@@ -72,7 +74,7 @@ def test_closing_ends_the_processes() -> None:
 
 def test_processes_calculate_on_one_thread_and_do_not_see_ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
-    (seen,) = run_tasks(threads_and_signals, [0], workers=1, lost=lambda _, why: (why, False))
+    (seen,) = run_tasks(LocalWorkers(threads_and_signals, 1), [0], lost=lambda _, why: (why, False))
     assert seen == ("1", True)
     assert os.environ["OPENBLAS_NUM_THREADS"] == "7"
     assert threads_and_signals(0) == ("7", False)

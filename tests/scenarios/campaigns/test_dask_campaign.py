@@ -13,9 +13,10 @@ import pytest
 
 from link.errors import UserError
 from scenarios.campaigns.campaign import Where, fly_campaign, make_plan
-from scenarios.campaigns.dask_pool import fly_on_dask
 from scenarios.campaigns.folder import Plan, create_folder
-from scenarios.campaigns.landing_task import Flights, Flown
+from scenarios.campaigns.landing_task import Flights, Flown, Task
+from scenarios.processes.dask_workers import DaskWorkers
+from scenarios.processes.pool import run_tasks
 from tests.integration.programs import Lines
 from tests.scenarios.campaigns.short import failing_cell, short_cell
 
@@ -41,6 +42,12 @@ def program(*words: str, ready: str) -> Iterator["subprocess.Popen[str]"]:
         process.terminate()
         process.wait(DEADLINE_S)
         log.finish()
+
+
+def none_on(address: str) -> Iterator[int]:
+    """Do no tasks on a cluster."""
+    workers: DaskWorkers[int, int] = DaskWorkers(address, lambda _: abs)
+    return run_tasks(workers, [], lost=lambda task, _: task)
 
 
 def free_port() -> int:
@@ -131,12 +138,13 @@ def test_dask_worker_killed_in_the_middle_loses_nothing(local: bytes, tmp_path: 
 def test_dask_worker_with_other_sources_is_refused(cluster: str, tmp_path: Path) -> None:
     plan = plan_of(tmp_path)
     flights = Flights(scenarios=plan.scenarios, sources="0123456789ab")
+    workers: DaskWorkers[Task, Flown] = DaskWorkers(cluster, lambda _: flights)
     with pytest.raises(UserError, match="other sources"):
-        list(fly_on_dask(cluster, flights, plan.tasks()))
+        list(run_tasks(workers, plan.tasks(), lost=lambda task, why: pytest.fail(f"{task}: {why}")))
 
 
 def test_scheduler_that_is_not_there_is_a_mistake_of_the_user(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scenarios.campaigns.dask_pool._CONNECT_S", 0.5)
+    monkeypatch.setattr("scenarios.processes.dask_workers._CONNECT_S", 0.5)
     plan = plan_of(tmp_path)
     folder = create_folder(tmp_path / "out", plan)
     address = f"tcp://127.0.0.1:{free_port()}"
@@ -146,18 +154,18 @@ def test_scheduler_that_is_not_there_is_a_mistake_of_the_user(tmp_path: Path, mo
 
 @pytest.mark.parametrize("address", ["somewhere", "ftp://127.0.0.1:8786", "tcp://127.0.0.1:port"])
 def test_address_that_is_none_is_a_mistake_of_the_user(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scenarios.campaigns.dask_pool._CONNECT_S", 0.5)
+    monkeypatch.setattr("scenarios.processes.dask_workers._CONNECT_S", 0.5)
     with pytest.raises(UserError, match="no Dask scheduler answers at"):
-        list(fly_on_dask(address, Flights(scenarios={}, sources=""), []))
+        list(none_on(address))
 
 
 def test_scheduler_without_workers_is_a_mistake_of_the_user(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scenarios.campaigns.dask_pool._FIRST_WORKER_S", 0.5)
+    monkeypatch.setattr("scenarios.processes.dask_workers._FIRST_WORKER_S", 0.5)
     with scheduler() as address, pytest.raises(UserError, match="has no workers"):
-        list(fly_on_dask(address, Flights(scenarios={}, sources=""), []))
+        list(none_on(address))
 
 
 def test_missing_dask_is_a_mistake_of_the_user(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(UserError, match=r"install decklander\[dask\]"):
-        list(fly_on_dask("tcp://127.0.0.1:8786", Flights(scenarios={}, sources=""), []))
+        list(none_on("tcp://127.0.0.1:8786"))
