@@ -18,7 +18,7 @@ from typing import Any
 
 from link.errors import UserError
 from link.program.toml_config import merged, read_toml, validated
-from scenarios.catalogue.placement import placed
+from scenarios.catalogue.placement import keep_clear_of_vehicle
 from scenarios.config import Scenario
 
 Table = dict[str, Any]
@@ -56,7 +56,7 @@ def load_scenario(name_or_path: str) -> Scenario:
         table = _named(name) | {"name": name_or_path}
     for option in options:
         table |= _option(option, name_or_path)
-    return placed(validated(Scenario, _resolved(table, name_or_path), source=name_or_path))
+    return keep_clear_of_vehicle(validated(Scenario, _resolved(table, name_or_path), source=name_or_path))
 
 
 def _option(option: str, whole: str) -> Table:

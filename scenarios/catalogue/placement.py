@@ -16,7 +16,7 @@ _AHEAD_M = 3.0  # of the vehicle's front, for a drone that the wind shifts while
 _PLACES = frozenset({"drone_start_enu_m", "waiting_point_enu_m"})
 
 
-def placed(scenario: Scenario) -> Scenario:
+def keep_clear_of_vehicle(scenario: Scenario) -> Scenario:
     """Return `scenario` with a drone that does not begin inside the vehicle.
 
     Where the file names neither the drone's start nor the waiting point, both move ahead of the vehicle's front; the

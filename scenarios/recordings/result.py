@@ -16,7 +16,7 @@ _DIGITS = 6  # a micrometre, a microsecond
 LANDED = frozenset({Tier.S1, Tier.S2, Tier.S3})
 
 
-def scored(scenario: Scenario, seed: int, recording: Recording, rules: ScoreRules | None = None) -> Score:
+def score_run(scenario: Scenario, seed: int, recording: Recording, rules: ScoreRules | None = None) -> Score:
     """Return the score of a recording, on truth, by the scenario's rules unless others are given."""
     rules = rules or rules_of(scenario, wind_mean_enu_m_s=mean_wind_enu_m_s(scenario, seed))
     return score(recording.drone, recording.vehicle, recording.rotors, rules)
@@ -26,7 +26,7 @@ def result_table(
     scenario: Scenario, seed: int, recording: Recording, ended: str, rules: ScoreRules | None = None
 ) -> dict[str, Any]:
     """Return the result as a table of plain values, by the scenario's rules unless others are given."""
-    table = scored(scenario, seed, recording, rules).to_json()
+    table = score_run(scenario, seed, recording, rules).to_json()
     table |= accuracy_table(recording.estimate_errors, recording.nis)
     start_ns = recording.drone[0].t_ns
     times = {key: table.pop(key) for key in ("start_t_ns", "contact_t_ns")}

@@ -15,7 +15,7 @@ from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import Scenario
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.recordings.recording import EndWatch
-from scenarios.recordings.result import scored
+from scenarios.recordings.result import score_run
 from scenarios.scoring.score import Score
 from scenarios.scoring.touch import Flags
 from scenarios.scoring.truth_log import Array
@@ -112,7 +112,7 @@ def _flight(lockstep: Lockstep, scenario: Scenario, seed: int, drive_s: float, *
         vehicle_m=np.array([truth.position_enu_m for truth in recording.vehicle]),
         noise_m=np.array([white_error_m(fix, rng) for _ in recording.drone]),
         road_end_s=STANDS_S + drive_s,
-        score=scored(scenario, seed, recording) if scored_too else None,
+        score=score_run(scenario, seed, recording) if scored_too else None,
     )
 
 

@@ -20,7 +20,7 @@ from scenarios.manual.pages import PAGES, with_links
 from scenarios.manual.phase_chart import FROM_ANYWHERE, PLACES, arrows, phase_chart
 from scenarios.manual.settings import keys_of, tables_of
 from scenarios.manual.types_in_words import unit_of
-from scenarios.recordings.result import scored
+from scenarios.recordings.result import score_run
 from scenarios.scoring.score import Tier
 from sim_autopilot.config import SimAutopilotConfig
 from tests.scenarios.presets import list_presets
@@ -149,7 +149,7 @@ def test_example_scenario_lands(name: str, tmp_path: Path) -> None:
     scenario = load_scenario(str(tmp_path / name))
     run = Lockstep(scenario, 1)
     run.run()
-    assert scored(scenario, 1, run.recording).tier is Tier.S3
+    assert score_run(scenario, 1, run.recording).tier is Tier.S3
 
 
 @pytest.mark.slow
