@@ -14,7 +14,7 @@ setup: .venv/.complete
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
-	$(BIN)/python -m scenarios.warm_up
+	$(BIN)/python -m scenarios.lockstep.warm_up
 	touch $@
 
 demo: .venv/.complete

@@ -11,7 +11,8 @@ import typer
 
 from companion.check.command import ConfigOption, DeviceOption, SigningKeyOption, SystemIdOption, check
 from companion.config.companion import AutopilotKind
-from link.cli import (
+from link.errors import UserError
+from link.program.cli import (
     ConnectOption,
     DroneOption,
     ListenOption,
@@ -23,7 +24,6 @@ from link.cli import (
     make_app,
     run_app,
 )
-from link.errors import UserError
 
 app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.")
 app.command("check")(check)
@@ -76,7 +76,7 @@ def companion(
     if context.invoked_subcommand is not None:
         return
     from companion.config.companion import CompanionConfig
-    from link.toml_config import dump_toml, load_config
+    from link.program.toml_config import dump_toml, load_config
 
     settings = load_config(config, CompanionConfig)
     if autopilot is not None:
@@ -84,12 +84,12 @@ def companion(
     if print_config:
         sys.stdout.write(dump_toml(settings))
         return
-    from link.keys import Keys
     from link.mavlink.signing import read_key
     from link.mavlink.transports import open_transport
-    from link.recorder import BackgroundRecorder
-    from link.zenoh_options import zenoh_options
-    from link.zenoh_session import open_session
+    from link.recording.recorder import BackgroundRecorder
+    from link.zenoh.keys import Keys
+    from link.zenoh.options import zenoh_options
+    from link.zenoh.session import open_session
 
     keys = Keys(namespace, vehicle, drone)
     key = None if signing_key is None else read_key(signing_key)

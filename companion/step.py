@@ -34,7 +34,7 @@ from companion.situation.situation import (
 )
 from companion.vehicle.pad import PadPath, pad_path
 from companion.vehicle.surprise import forget_beliefs, update_surprise
-from link.frames import yaw_of
+from link.frames.rotations import yaw_of
 from link.records import replace
 
 _DISARM_MAX_S = 1.0  # it takes 0.6 s where the plain one is refused; the companion waits for 1.5 s before it ends

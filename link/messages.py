@@ -2,7 +2,7 @@
 
 Frames: W is the world (ENU about the datum), B the drone's body and V the vehicle's body (both FLU).
 Quaternions are Hamilton, order wxyz. `t_ns` is the UTC instant of measurement in nanoseconds.
-The wire forms (ROS 2 messages in CDR, JSON) live in `link.cdr` and `link.json_payloads`.
+The wire forms (ROS 2 messages in CDR, JSON) live in `link.payloads.cdr` and `link.payloads.json_messages`.
 """
 
 from dataclasses import dataclass

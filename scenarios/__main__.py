@@ -6,7 +6,8 @@ from typing import Annotated
 
 import typer
 
-from link.cli import (
+from link.errors import UserError
+from link.program.cli import (
     ConnectOption,
     DroneOption,
     ListenOption,
@@ -18,7 +19,6 @@ from link.cli import (
     make_app,
     run_app,
 )
-from link.errors import UserError
 from scenarios.commands import bench, campaign, faults, fly, fuzz, replay, report
 from scenarios.commands import view as view_command
 
@@ -34,7 +34,7 @@ def list_command(*, as_json: JsonOption = False) -> None:
     """List the scenarios."""
     import json
 
-    from scenarios.catalogue import list_scenarios
+    from scenarios.catalogue.catalogue import list_scenarios
 
     entries = list_scenarios()
     if as_json:
@@ -62,9 +62,9 @@ def run_command(
     as_json: JsonOption = False,
 ) -> int:
     """Run a landing and score it on ground truth; exit code 1 when it does not land."""
-    from scenarios.catalogue import load_scenario
+    from scenarios.catalogue.catalogue import load_scenario
     from scenarios.commands.run_lines import Reporter
-    from scenarios.run import RunOptions, run_folder, run_in_lockstep, run_over_wire
+    from scenarios.wire.run import RunOptions, run_folder, run_in_lockstep, run_over_wire
 
     scenario = load_scenario(name if firmware is None else f"{name}+firmware={firmware}")
     view_port = view_command.port_of_run(lockstep=lockstep, as_json=as_json) if view else None
@@ -95,12 +95,12 @@ def world_command(
     zenoh_config: ZenohConfigOption = None,
 ) -> None:
     """Run the simulated side of a scenario, the autopilot with the vehicle in it, in one process."""
-    from link.keys import Keys
     from link.mavlink.transports import open_transport
-    from link.zenoh_options import zenoh_options
-    from link.zenoh_session import open_session
-    from scenarios.catalogue import load_scenario
-    from scenarios.world import WorldLoop
+    from link.zenoh.keys import Keys
+    from link.zenoh.options import zenoh_options
+    from link.zenoh.session import open_session
+    from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.wire.world import WorldLoop
 
     scenario = load_scenario(name)
     keys = Keys(namespace, vehicle, drone)
@@ -122,9 +122,9 @@ def command_command(
     zenoh_config: ZenohConfigOption = None,
 ) -> int:
     """Send a command to the companion; exit code 1 when it is refused."""
-    from link.keys import Keys
     from link.messages import Command
-    from link.zenoh_options import zenoh_options
+    from link.zenoh.keys import Keys
+    from link.zenoh.options import zenoh_options
     from scenarios.commands.operator import send_command
 
     try:

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from companion.config.companion import CompanionConfig
 from link.messages import PadGeometry, Vector3
-from link.toml_config import NotNegative, Positive, StrictModel
+from link.program.toml_config import NotNegative, Positive, StrictModel
 from scenarios.tracks.config import TrackConfig
 from sim_autopilot.config import DatumConfig, DroneConfig
 

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
-from link.cli import (
+from link.errors import UserError
+from link.program.cli import (
     ConnectOption,
     DroneOption,
     ListenOption,
@@ -18,12 +19,11 @@ from link.cli import (
     make_app,
     run_app,
 )
-from link.errors import UserError
 
 if TYPE_CHECKING:
-    from link.keys import Keys
     from link.messages import PadGeometry
-    from link.zenoh_options import ZenohOptions
+    from link.zenoh.keys import Keys
+    from link.zenoh.options import ZenohOptions
     from scenarios.vehicle_sources.channel import OpenTransport
     from scenarios.vehicle_sources.receiver import Receiver
 
@@ -117,8 +117,8 @@ def ground_vehicle(
     zenoh_config: ZenohConfigOption = None,
 ) -> None:
     """Publish a ground vehicle over Zenoh: its position, velocity, heading and pad."""
-    from link.keys import Keys
-    from link.zenoh_options import zenoh_options
+    from link.zenoh.keys import Keys
+    from link.zenoh.options import zenoh_options
 
     if sum(one is not None for one in (scenario, gpsd, nmea, mavlink)) > 1:
         raise UserError("--scenario, --gpsd, --nmea and --mavlink are one vehicle each: give one of them")
@@ -180,8 +180,8 @@ def _source(gpsd: str | None, nmea: str | None, mavlink: str | None) -> _Source:
 
 def _listen(source: _Source, pad: "PadGeometry", keys: "Keys", options: "ZenohOptions") -> None:
     """Publish a real vehicle."""
-    from link.service import Service
-    from link.zenoh_session import open_session
+    from link.program.service import Service
+    from link.zenoh.session import open_session
     from scenarios.vehicle_sources.loop import ReceiverLoop
 
     with open_session(options) as zenoh:
@@ -192,10 +192,10 @@ def _listen(source: _Source, pad: "PadGeometry", keys: "Keys", options: "ZenohOp
 
 def _drive(simulation: _Simulation, keys: "Keys", options: "ZenohOptions") -> None:
     """Publish a scenario's vehicle."""
-    from link.zenoh_session import open_session
-    from scenarios.catalogue import load_scenario
-    from scenarios.vehicle_loop import VehicleLoop
-    from scenarios.vehicle_node import VehicleNode, departing_at_once
+    from link.zenoh.session import open_session
+    from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.simulation.vehicle_node import VehicleNode, departing_at_once
+    from scenarios.wire.vehicle_loop import VehicleLoop
 
     driven = load_scenario(simulation.scenario)
     node = VehicleNode(departing_at_once(driven) if simulation.departs_at_once else driven, simulation.seed, keys)

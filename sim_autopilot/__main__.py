@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from link.cli import (
+from link.program.cli import (
     EXIT_INTERRUPTED,
     EXIT_OK,
     ConnectOption,
@@ -80,7 +80,7 @@ def sim_autopilot(
     zenoh_config: ZenohConfigOption = None,
 ) -> int:
     """Simulate a quadrotor under an autopilot that speaks MAVLink."""
-    from link.toml_config import dump_toml, load_config
+    from link.program.toml_config import dump_toml, load_config
     from sim_autopilot.config import SimAutopilotConfig, autopilot_config, with_default_links
 
     given = _given(firmware=firmware, instance=instance, instant=instant, seed=seed)
@@ -92,8 +92,8 @@ def sim_autopilot(
     if print_config:
         sys.stdout.write(dump_toml(settings))
         return EXIT_OK
-    from link.keys import Keys
-    from link.zenoh_options import zenoh_options
+    from link.zenoh.keys import Keys
+    from link.zenoh.options import zenoh_options
     from sim_autopilot.run import RunOptions, run
 
     zenoh = zenoh_options(mode, connect, listen, multicast, zenoh_config)

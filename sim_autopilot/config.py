@@ -7,9 +7,9 @@ import numpy as np
 from pydantic import Field
 
 from link.errors import UserError
-from link.geodesy import Datum
+from link.frames.geodesy import Datum
 from link.messages import Vector3
-from link.toml_config import NotNegative, Positive, StrictModel
+from link.program.toml_config import NotNegative, Positive, StrictModel
 from sim_autopilot.control.kinds import ControllerKind
 from sim_autopilot.firmware.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.px4 import PX4

@@ -1,12 +1,12 @@
 """The autopilot's local frame: between W, which is a tangent plane, and the frame as the firmware lays it out.
 
-Both name the same point on the globe; away from the origin their metres differ (`link.local_frame`).
+Both name the same point on the globe; away from the origin their metres differ (`link.frames.local_frame`).
 """
 
 from dataclasses import dataclass
 
-from link.geodesy import Datum, enu_from_geodetic, geodetic_from_enu
-from link.local_frame import LocalFrame, geodetic_from_local, local_from_geodetic
+from link.frames.geodesy import Datum, enu_from_geodetic, geodetic_from_enu
+from link.frames.local_frame import LocalFrame, geodetic_from_local, local_from_geodetic
 from link.messages import Vector3
 
 _REACH_M = 1e5

@@ -8,13 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from link import cdr
-from link.clock import ClockTick, ScaledClock
-from link.keys import Keys
 from link.mavlink.transports import Transport
 from link.messages import BodyTruth, RotorTruth
-from link.real_time import spare_present_objects
-from link.zenoh_session import ZenohSession
+from link.payloads import cdr
+from link.program.clock import ClockTick, ScaledClock, spare_present_objects
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohSession
 from sim_autopilot.node import AutopilotNode
 from sim_autopilot.physics.wind import WindModel
 from sim_autopilot.truth import drone_truth, rotor_truth

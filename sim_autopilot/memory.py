@@ -6,8 +6,8 @@ from math import pi
 
 import numpy as np
 
-from link.geodesy import Datum
-from link.local_frame import LocalFrame
+from link.frames.geodesy import Datum
+from link.frames.local_frame import LocalFrame
 from link.mavlink.dialect import Message
 from link.messages import Vector3
 from sim_autopilot.data import Array, Deck, PlantState, Reference

@@ -6,7 +6,7 @@ The wire loop, the one-process world and campaigns in lockstep all drive this sa
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from link.geodesy import Datum, geodetic_from_enu
+from link.frames.geodesy import Datum, geodetic_from_enu
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.statistics import CodecStatistics

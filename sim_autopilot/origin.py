@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from link.geodesy import Datum, geodetic_from_enu
+from link.frames.geodesy import Datum, geodetic_from_enu
 from link.mavlink.dialect import Message
 from link.messages import Vector3
 from sim_autopilot.local_places import local_from_world, world_from_local

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 import structlog
 
-from link.keys import Keys
 from link.mavlink.transports import open_transport
-from link.zenoh_session import ZenohOptions, open_session
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohOptions, open_session
 from sim_autopilot.config import SimAutopilotConfig, wind_model
 from sim_autopilot.loop import Links, WireLoop
 from sim_autopilot.memory import AutopilotConfig

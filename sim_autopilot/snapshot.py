@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import hypot
 
-from link.frames import yaw_of
+from link.frames.rotations import yaw_of
 from link.messages import Quaternion, Vector3
 from sim_autopilot.data import Array, PlantState
 from sim_autopilot.own_state import NO_ERROR

@@ -1,6 +1,6 @@
 """The drone's true motion as the other programs of a simulation get it."""
 
-from link.frames import conjugate, rotate
+from link.frames.rotations import conjugate, rotate
 from link.messages import BodyTruth, RotorTruth
 from sim_autopilot.data import PlantState
 

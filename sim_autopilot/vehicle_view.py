@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from link import cdr, json_payloads
-from link.frames import rotate
-from link.keys import Keys
+from link.frames.rotations import rotate
 from link.messages import BodyTruth, PadGeometry
-from link.payload_checks import PayloadError
-from link.zenoh_session import Inbox, ZenohSession
+from link.payloads import cdr, json_messages
+from link.payloads.checks import PayloadError
+from link.zenoh.keys import Keys
+from link.zenoh.session import Inbox, ZenohSession
 from sim_autopilot.data import Deck
 
 _ASK_AGAIN_NS = 1_000_000_000
@@ -77,7 +77,7 @@ class VehicleView:
     def _learn_pad(self, t_ns: int) -> None:
         for sample in self._answers.take() if self._answers is not None else ():
             try:
-                pad = json_payloads.decode(PadGeometry, sample.payload)
+                pad = json_messages.decode(PadGeometry, sample.payload)
             except PayloadError:
                 self.bad_payloads += 1
                 continue

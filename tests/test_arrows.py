@@ -15,22 +15,23 @@ MAY_IMPORT = {
     "scenarios": {"scenarios", "companion", "sim_autopilot", "link"},
 }
 HOMES = {
-    "zenoh": {"link/zenoh_session.py"},
+    "zenoh": {"link/zenoh/session.py"},
     "pymavlink": {f"link/mavlink/{name}.py" for name in ("dialect", "draft_messages", "codec")},
     "rosbags": {
-        "link/cdr.py",
-        "link/ros_fields.py",
-        "link/ros_motion.py",
-        "link/ros_records.py",
-        "link/ros_sensors.py",
+        "link/payloads/cdr.py",
+        "link/payloads/ros_fields.py",
+        "link/payloads/ros_motion.py",
+        "link/payloads/decklander_msgs.py",
+        "link/payloads/ros_sensors.py",
     },
-    "mcap": {"link/mcap_reader.py", "link/mcap_writer.py"},
+    "mcap": {"link/recording/mcap_reader.py", "link/recording/mcap_writer.py"},
     "osqp": {"companion/planning/qp.py"},
     "daqp": {"companion/planning/qp.py"},
     "filterpy": {"companion/vehicle/lkf.py", "companion/vehicle/ukf.py"},
     "polars": {"scenarios/campaigns/landings_file.py"},
+    "loky": {"scenarios/processes/local_workers.py"},
     "viser": {f"scenarios/view/{name}.py" for name in ("page", "panel", "scene")},
-    "distributed": {"scenarios/campaigns/dask_pool.py"},
+    "distributed": {"scenarios/processes/dask_workers.py"},
 }
 
 

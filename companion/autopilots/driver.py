@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from companion.core.data import FlightLimits, RangeReading, Setpoint
-from link.local_frame import LocalFrame, Projection
+from link.frames.local_frame import LocalFrame, Projection
 from link.mavlink.dialect import Message
 from link.messages import Vector3
 

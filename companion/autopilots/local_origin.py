@@ -3,7 +3,7 @@
 from dataclasses import replace
 from math import radians
 
-from link.geodesy import Datum
+from link.frames.geodesy import Datum
 from link.mavlink.dialect import Message, mavlink
 
 _MOVED_RAD = 1e-8  # 6 cm; the field's resolution is 1e-7 degrees, 1 cm

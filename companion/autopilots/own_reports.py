@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import hypot
 
 from companion.core.data import OwnState
-from link.frames import multiply, normalized
+from link.frames.rotations import multiply, normalized
 from link.messages import Vector3
 from link.records import replace
 

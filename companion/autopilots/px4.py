@@ -20,7 +20,7 @@ from companion.autopilots.requests import (
 )
 from companion.autopilots.setpoint_message import local_ned_setpoint
 from companion.core.data import FlightLimits, Setpoint
-from link.local_frame import Projection
+from link.frames.local_frame import Projection
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 

@@ -1,7 +1,7 @@
 """SET_POSITION_TARGET_LOCAL_NED from a setpoint in ENU; shared by all drivers."""
 
 from companion.core.data import Setpoint
-from link.frames import ned_from_enu, yaw_ned_from_enu
+from link.frames.rotations import ned_from_enu, yaw_ned_from_enu
 from link.mavlink.dialect import Message, mavlink
 
 _IGNORE_PLACE = 0b0000_0000_0000_0011

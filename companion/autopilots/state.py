@@ -11,9 +11,9 @@ from companion.autopilots.own_reports import HISTORY_NS, carried, is_plausible, 
 from companion.autopilots.sensor_messages import with_sensor
 from companion.autopilots.velocity_bias import velocity_bias, without
 from companion.core.data import OwnState
-from link.frames import enu_from_ned, flu_from_frd, normalized, quaternion_enu_flu_from_ned_frd
-from link.geodesy import Datum
-from link.local_frame import LocalFrame, Projection
+from link.frames.geodesy import Datum
+from link.frames.local_frame import LocalFrame, Projection
+from link.frames.rotations import enu_from_ned, flu_from_frd, normalized, quaternion_enu_flu_from_ned_frd
 from link.mavlink.clock_map import ClockMap
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Quaternion, Vector3

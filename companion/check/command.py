@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from link.cli import (
+from link.errors import UserError
+from link.program.cli import (
     ConnectOption,
     ListenOption,
     ModeOption,
@@ -17,14 +18,13 @@ from link.cli import (
     VehicleOption,
     ZenohConfigOption,
 )
-from link.errors import UserError
 
 if TYPE_CHECKING:
     from companion.check.findings import Finding
     from companion.check.session import CheckSession
     from companion.config.companion import CompanionConfig
-    from link.keys import Keys
-    from link.zenoh_session import ZenohSession
+    from link.zenoh.keys import Keys
+    from link.zenoh.session import ZenohSession
 
 _FAILED = 1
 
@@ -73,12 +73,12 @@ def check(
     from companion.check.findings import kept
     from companion.check.session import open_check
     from companion.config.companion import CompanionConfig
-    from link.keys import Keys
     from link.mavlink.signing import read_key
     from link.mavlink.transports import open_transport
-    from link.toml_config import load_config
-    from link.zenoh_options import zenoh_options
-    from link.zenoh_session import open_session
+    from link.program.toml_config import load_config
+    from link.zenoh.keys import Keys
+    from link.zenoh.options import zenoh_options
+    from link.zenoh.session import open_session
 
     settings = load_config(config, CompanionConfig)
     key = None if signing_key is None else read_key(signing_key)

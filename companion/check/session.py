@@ -9,12 +9,12 @@ from companion.check.reading import Reader
 from companion.check.vehicle_reading import VehicleReader
 from companion.config.landing import ChaseConfig
 from companion.runtime.pad_question import PadQuestion
-from link.keys import Keys
 from link.mavlink.parameters import parameter_set_message
 from link.mavlink.session import MavlinkSession
 from link.mavlink.signing import Signing
 from link.mavlink.transport import Transport
-from link.zenoh_session import Inbox, ZenohSession
+from link.zenoh.keys import Keys
+from link.zenoh.session import Inbox, ZenohSession
 
 _WAIT_S = 0.005
 _PARAMETERS_MAX_S = 10.0

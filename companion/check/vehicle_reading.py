@@ -7,10 +7,10 @@ import statistics
 from companion.check.observation import VehicleFacts
 from companion.config.landing import ChaseConfig
 from companion.runtime.pad_question import PadQuestion
-from link import cdr
-from link.frames import yaw_of
+from link.frames.rotations import yaw_of
 from link.messages import Fix, FixVelocity, VehicleImu
-from link.payload_checks import PayloadError
+from link.payloads import cdr
+from link.payloads.checks import PayloadError
 
 _HEADING_AGE_MAX_NS = 300_000_000
 _COMPARED_MIN = 5

@@ -16,7 +16,7 @@ from companion.config.landing import (
 )
 from companion.config.planning import GuidanceConfig
 from companion.core.data import FlightLimits
-from link.toml_config import NotNegative, Positive, StrictModel
+from link.program.toml_config import NotNegative, Positive, StrictModel
 
 
 class AutopilotKind(Enum):

@@ -9,7 +9,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from link.toml_config import NotNegative, Positive, StrictModel
+from link.program.toml_config import NotNegative, Positive, StrictModel
 
 
 class EstimatorKind(Enum):

@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import Field, ValidationInfo, field_validator
 
-from link.toml_config import NotNegative, Positive, StrictModel
+from link.program.toml_config import NotNegative, Positive, StrictModel
 
 
 class LandingStyle(Enum):

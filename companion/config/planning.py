@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from link.toml_config import StrictModel
+from link.program.toml_config import StrictModel
 
 Positive = Annotated[float, Field(gt=0.0, le=1e6)]
 NotNegative = Annotated[float, Field(ge=0.0, le=1e6)]

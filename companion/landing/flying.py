@@ -29,7 +29,7 @@ from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.situation.situation import Situation
 from companion.vehicle.pad import PadPath, over_pad_radius_m
-from link.frames import wrap_angle
+from link.frames.rotations import wrap_angle
 from link.records import replace
 
 # A chase keeps its place: through an outage the drone then stops where it was last sent.

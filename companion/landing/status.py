@@ -10,10 +10,9 @@ from companion.landing.waiting import why_held_up
 from companion.planning.guidance import PlanResult
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation
-from link import cdr, json_payloads
-from link.keys import Keys
 from link.messages import LandingStatus, Plan, PlannedPose
-from link.publication import Publication
+from link.payloads import cdr, json_messages
+from link.zenoh.keys import Keys, Publication
 
 _WAITING_FOR_PAD = frozenset({Phase.WAITING, Phase.CHASE, Phase.ALIGN})
 _NOT_BEGUN = frozenset({Phase.IDLE, Phase.WAITING})
@@ -63,7 +62,7 @@ _PLAN_POINTS = 2  # every so many points of the plan are published
 
 def status_publication(keys: Keys, status: LandingStatus) -> Publication:
     """Return the status as JSON."""
-    return Publication(keys.landing_status, json_payloads.encode(status), "application/json")
+    return Publication(keys.landing_status, json_messages.encode(status), "application/json")
 
 
 def plan_publication(keys: Keys, plan: PlanResult, t_ns: int, yaw_rad: float) -> Publication:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from companion.config.landing import DescentConfig
 from companion.core.data import GRAVITY_M_S2, OwnState
-from link.frames import rotate
+from link.frames.rotations import rotate
 
 _UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady
 _MEAN_S = 1.0  # longer than a gust's beginning, shorter than the turn of a curve

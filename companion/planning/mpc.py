@@ -20,9 +20,6 @@ from companion.planning.programmes import Numbers, PlainLimits, Posed, Statics, 
 from companion.planning.qp import Programme, make_solver
 from companion.planning.requests import is_finite_state, limits_of, with_finite_state
 from companion.planning.resample import make_resampler
-from link.records import maker
-
-_made_state, _made_trajectory, _made_result = maker(ReferenceState), maker(Trajectory), maker(PlanResult)
 
 
 class Mpc:
@@ -88,13 +85,13 @@ class Mpc:
         """Return the plan in W: at 0, at the nodes, and at `dt_s`."""
         path = np.empty((3, len(self._nodes_s) + 1, 3))
         excess = plan_of(frame, moves, self._responses(dt_s), path)
-        return _made_result(
-            next_state=_made_state(
+        return PlanResult(
+            next_state=ReferenceState(
                 position_enu_m=path[0, -1],
                 velocity_enu_m_s=path[1, -1],
                 acceleration_enu_m_s2=path[2, -1],
             ),
-            trajectory=_made_trajectory(
+            trajectory=Trajectory(
                 offset_s=self._nodes_s,
                 position_enu_m=path[0, :-1],
                 velocity_enu_m_s=path[1, :-1],

@@ -6,9 +6,9 @@ from platform import machine, python_version
 
 from companion.config.companion import CompanionConfig
 from companion.recording.sink import CompanionSink
-from link.keys import Keys
-from link.mcap_writer import McapRecording, RecordingSpec
-from link.toml_config import dump_toml
+from link.program.toml_config import dump_toml
+from link.recording.mcap_writer import McapRecording, RecordingSpec
+from link.zenoh.keys import Keys
 
 STEM = "companion"
 CONFIG_NAME = "companion.toml"

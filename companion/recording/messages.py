@@ -6,12 +6,12 @@ from companion.core.data import Array, Forecast, OwnState, Setpoint, VehicleEsti
 from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.planning.guidance import PlanResult, Trajectory
 from companion.recording.records import InputRecord, LinkRecord, StepRecord, StepTimeRecord
-from link import cdr
-from link.frames import conjugate, rotate
-from link.keys import Keys
+from link.frames.rotations import conjugate, rotate
 from link.messages import BodyTruth, Fix, FixVelocity, PadSighting, Plan, PlannedPose, VehicleImu
-from link.payload_checks import PayloadError
-from link.ros_records import RosMessage, bytes_array, floats, ids_array, ros_message
+from link.payloads import cdr
+from link.payloads.checks import PayloadError
+from link.payloads.decklander_msgs import RosMessage, bytes_array, floats, ids_array, ros_message
+from link.zenoh.keys import Keys
 
 LONG_EVERY = 5
 """Forecast, plan and estimate are recorded every so many steps: 10 times a second at 50 of them."""

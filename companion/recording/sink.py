@@ -6,8 +6,8 @@ from typing import Protocol
 
 from companion.recording.messages import LONG_EVERY, input_messages, link_message, step_messages, step_time_message
 from companion.recording.records import InputRecord, LinkRecord, Record, StepRecord, StepTimeRecord
-from link.keys import Keys
-from link.ros_records import RosMessage
+from link.payloads.decklander_msgs import RosMessage
+from link.zenoh.keys import Keys
 
 _EARLY_MAX = 2_000  # inputs that wait for UTC to become known: about five seconds of them
 

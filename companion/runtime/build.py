@@ -15,11 +15,11 @@ from companion.runtime.node import CompanionNode
 from companion.runtime.recorded_node import RecordingNode
 from companion.vehicle.factory import make_estimator
 from companion.vehicle.pad import turned_lever
-from link.keys import Keys
 from link.mavlink.session import MavlinkSession
 from link.mavlink.session_config import SessionConfig
 from link.mavlink.signing import Signing
-from link.recorder import Recorder
+from link.recording.recorder import Recorder
+from link.zenoh.keys import Keys
 
 
 def warm_up(system: System) -> None:

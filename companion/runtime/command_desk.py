@@ -9,9 +9,9 @@ from collections import deque
 from concurrent.futures import Future
 
 from companion.runtime.node import CompanionNode
-from link import json_payloads
 from link.messages import Command, CommandReply
-from link.payload_checks import PayloadError
+from link.payloads import json_messages
+from link.payloads.checks import PayloadError
 
 _REPLY_WAIT_S = 2.0  # for the step to begin
 _STEP_WAIT_S = 0.5  # for it to end; together less than an operator's query waits
@@ -27,12 +27,12 @@ class CommandDesk:
     def handle(self, payload: bytes) -> bytes:
         """Answer a query; called from a thread of Zenoh's."""
         try:
-            command = json_payloads.decode(Command, payload)
+            command = json_messages.decode(Command, payload)
         except PayloadError as error:
-            return json_payloads.encode(CommandReply(accepted=False, reason=str(error)))
+            return json_messages.encode(CommandReply(accepted=False, reason=str(error)))
         reply: Future[CommandReply] = Future()
         self._waiting.put((command, reply))
-        return json_payloads.encode(awaited(reply))
+        return json_messages.encode(awaited(reply))
 
     def pass_on(self, node: CompanionNode, local_ns: int) -> Command | None:
         """Give the oldest command to the node, one at a time, if it makes a step now; return it."""

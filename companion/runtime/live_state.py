@@ -23,12 +23,12 @@ from companion.recording.messages import (
 from companion.recording.records import LinkRecord, StepRecord
 from companion.runtime.node import CompanionNode
 from companion.runtime.recorded_node import link_record, step_record
-from link import cdr
-from link.keys import Keys
 from link.messages import BodyTruth
-from link.recorder import BackgroundRecorder
-from link.ros_records import PACKAGE, RosMessage, typestore
-from link.zenoh_session import ZenohSession
+from link.payloads import cdr
+from link.payloads.decklander_msgs import PACKAGE, RosMessage, typestore
+from link.recording.recorder import BackgroundRecorder
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohSession
 
 _OWN_EVERY = 2  # steps
 _LINK_EVERY = 50

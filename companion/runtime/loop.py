@@ -16,14 +16,13 @@ from companion.runtime.own_start import OwnStart
 from companion.runtime.pad_question import PadQuestion
 from companion.runtime.recorded_node import RecordingNode
 from companion.situation.phases import Phase
-from link import cdr
-from link.clock import Clock, ClockTick, SimulatedClock, SystemClock
 from link.errors import UserError
 from link.mavlink.tlog import TlogFrames, TlogSink
-from link.payload_checks import PayloadError
-from link.real_time import spare_present_objects
-from link.recorder import BackgroundRecorder, Recorder
-from link.service import Service
+from link.payloads import cdr
+from link.payloads.checks import PayloadError
+from link.program.clock import Clock, ClockTick, SimulatedClock, SystemClock, spare_present_objects
+from link.program.service import Service
+from link.recording.recorder import BackgroundRecorder, Recorder
 
 _WAIT_MAX_S = 0.005  # for bytes; Zenoh samples wait no longer than this
 _LEAVE_MAX_S = 1.5  # a mode may be confirmed by the next heartbeat only

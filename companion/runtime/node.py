@@ -16,11 +16,10 @@ from companion.step import companion_step
 from companion.vehicle.buffered import BufferHealth
 from companion.vehicle.factory import make_estimator
 from companion.vehicle.inputs import measurements_of
-from link.keys import Keys
 from link.mavlink.session import MavlinkSession
 from link.messages import LEVER_MAX_M, Command, CommandReply, PadGeometry
-from link.payload_checks import PayloadError
-from link.publication import Publication
+from link.payloads.checks import PayloadError
+from link.zenoh.keys import Keys, Publication
 
 _MOTION_RATE_MIN_HZ = 50.0
 _EARLY = 0.75  # of a period: a new state of the drone starts the next step from here on

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import psutil  # type: ignore[import-untyped]  # it has no annotations
 
-from link.keys import Keys
 from link.mavlink.transports import Transport
-from link.zenoh_session import ZenohSession
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohSession
 
 _DURATIONS_MAX = 200_000  # steps whose durations are kept, over an hour's worth
 

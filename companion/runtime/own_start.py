@@ -3,8 +3,8 @@
 from companion.runtime.node import CompanionNode
 from companion.situation.phases import Phase
 from link.errors import UserError
-from link.keys import Keys
 from link.messages import Command, CommandReply
+from link.zenoh.keys import Keys
 
 
 class OwnStart:

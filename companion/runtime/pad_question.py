@@ -2,10 +2,10 @@
 
 from typing import Protocol
 
-from link import json_payloads
-from link.inbox import Inbox
 from link.messages import PadGeometry
-from link.payload_checks import PayloadError
+from link.payloads import json_messages
+from link.payloads.checks import PayloadError
+from link.zenoh.inbox import Inbox
 
 _AGAIN_S = 1.0
 
@@ -60,7 +60,7 @@ class PadQuestion:
         pad: PadGeometry | None = None
         for sample in () if self._answers is None else self._answers.take():
             try:
-                pad = json_payloads.decode(PadGeometry, sample.payload)
+                pad = json_messages.decode(PadGeometry, sample.payload)
                 self.is_answered = True
             except PayloadError as error:
                 self.bad_answers += 1

@@ -3,11 +3,11 @@
 from companion.landing.step_data import System
 from companion.recording.records import InputKind, InputRecord, LinkRecord, StepRecord, StepTimeRecord
 from companion.runtime.node import CompanionNode
-from link import json_payloads
-from link.keys import Keys
 from link.mavlink.session import MavlinkSession
 from link.messages import Command, PadGeometry
-from link.recorder import Recorder
+from link.payloads import json_messages as json_payloads
+from link.recording.recorder import Recorder
+from link.zenoh.keys import Keys
 
 
 def step_record(node: CompanionNode, local_ns: int) -> StepRecord | None:

@@ -6,9 +6,9 @@ from companion.recording.records import LinkRecord
 from companion.runtime.node import CompanionNode
 from companion.runtime.recorded_node import link_record
 from link.messages import LandingStatus
-from link.recorder import BackgroundRecorder
-from link.screen import Screen
-from link.status_rows import link_rows, number
+from link.program.screen import Screen
+from link.program.status_rows import link_rows, number
+from link.recording.recorder import BackgroundRecorder
 
 _EVERY = 25  # steps: twice a second
 _CAPACITY = 2  # a terminal that is stopped gets nothing, and holds nobody up

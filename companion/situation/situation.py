@@ -10,7 +10,7 @@ from companion.config.landing import ChaseConfig
 from companion.core.data import Array, FlightLimits, OwnState, RangeReading
 from companion.planning.guidance import ReferenceState
 from companion.vehicle.pad import PadPath
-from link.frames import rotate
+from link.frames.rotations import rotate
 from link.messages import Vector3
 
 _RANGE_AGE_MAX_S = 0.3

@@ -6,12 +6,12 @@ import numpy as np
 
 from companion.autopilots.state import AutopilotState
 from companion.core.data import Array, Measurement, OwnState, Quantity
-from link import cdr
-from link.frames import rotate, yaw_of
-from link.keys import Keys
-from link.local_frame import LocalFrame, local_from_geodetic, scale_of
+from link.frames.local_frame import LocalFrame, local_from_geodetic, scale_of
+from link.frames.rotations import rotate, yaw_of
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, VehicleImu
-from link.payload_checks import PayloadError
+from link.payloads import cdr
+from link.payloads.checks import PayloadError
+from link.zenoh.keys import Keys
 
 # Taken when a message states no covariance: plain GNSS and a low-cost attitude sensor.
 _POSITION_STD_M = 1.5

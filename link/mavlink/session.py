@@ -123,11 +123,8 @@ class MavlinkSession:
     def poll(self, t_ns: int) -> list[Event]:
         """Does what is due: heartbeat, clock questions, everything that has to be sent again, and looking for silence.
 
-        Args:
-            t_ns: local time now.
-
         Returns:
-            What has run out of time.
+            What has run out of time at local time `t_ns`.
         """
         if self._signing is not None:
             self._signing.advance(t_ns)
@@ -142,10 +139,7 @@ class MavlinkSession:
         return events
 
     def send(self, message: Message) -> None:
-        """Sends a message once.
-
-        Args:
-            message: with its target fields filled in, where it has any.
+        """Sends a message once, with its target fields filled in where it has any.
 
         Raises:
             ValueError: A field does not fit its type.
@@ -175,34 +169,17 @@ class MavlinkSession:
     def request_interval(self, message_id: int, rate_hz: float, t_ns: int) -> None:
         """Asks for a message at a rate until it is granted, and again after a restart or when it stays away.
 
-        Args:
-            message_id: which.
-            rate_hz: how often, 0 for never.
-            t_ns: local time now.
-
         Raises:
-            ValueError: The rate is negative or not finite.
+            ValueError: The rate is negative or not finite; 0 is for never.
         """
         self._streams.request(message_id, rate_hz, t_ns)
 
     def request_message(self, message_id: int, t_ns: int) -> int:
-        """Asks for a message once.
-
-        Args:
-            message_id: which.
-            t_ns: local time now.
-
-        Returns:
-            The ticket of the command.
-        """
+        """Asks for a message once, at local time `t_ns`, and gives the ticket of the command."""
         return self.command(mavlink.MAV_CMD_REQUEST_MESSAGE, (float(message_id),), t_ns)
 
     def read_parameter(self, name: str, t_ns: int) -> None:
-        """Asks for a parameter; ParameterRead or ParameterMissing follows.
-
-        Args:
-            name: of the parameter.
-            t_ns: local time now.
+        """Asks for a parameter, at local time `t_ns`; ParameterRead or ParameterMissing follows.
 
         Raises:
             ValueError: No parameter can have this name.

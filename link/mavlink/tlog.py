@@ -6,7 +6,7 @@ from types import TracebackType
 from typing import NamedTuple, Self
 
 from link.errors import UserError
-from link.recording_names import free_path
+from link.recording.file_names import free_path
 
 _TIME = struct.Struct(">Q")
 

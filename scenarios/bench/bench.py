@@ -7,16 +7,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from link.toml_config import merged
+from link.program.toml_config import merged
 from scenarios.bench.codec import codec_ratios
 from scenarios.bench.measures import first_heartbeats_s, full_speed_factor, help_times_s
 from scenarios.bench.recording import recording_cost
 from scenarios.bench.shares import sampled_parts, shares_of
 from scenarios.config import Scenario
-from scenarios.lockstep import Lockstep
-from scenarios.run import RunOptions, run_over_wire
-from scenarios.stopwatch import quantiles_ms, ratio_of, timed_steps
-from scenarios.warm_up import warm_process
+from scenarios.lockstep.lockstep import Lockstep
+from scenarios.lockstep.stopwatch import quantiles_ms, ratio_of, timed_steps
+from scenarios.lockstep.warm_up import warm_process
+from scenarios.wire.run import RunOptions, run_over_wire
 
 Table = dict[str, Any]
 Announce = Callable[[str], None]

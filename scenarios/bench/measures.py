@@ -7,16 +7,16 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from link import cdr
-from link.clock import ClockTick
 from link.errors import UserError
-from link.keys import Keys
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
 from link.mavlink.transports import open_transport
-from link.payload_checks import PayloadError
-from link.zenoh_session import Inbox, ZenohOptions, open_session
-from scenarios.processes import MODULES, ProcessGroup, Program, free_tcp_endpoint, free_udp_port
+from link.payloads import cdr
+from link.payloads.checks import PayloadError
+from link.program.clock import ClockTick
+from link.zenoh.keys import Keys
+from link.zenoh.session import Inbox, ZenohOptions, open_session
+from scenarios.processes.programs import MODULES, ProcessGroup, Program, free_tcp_endpoint, free_udp_port
 
 _DEADLINE_S = 60.0
 _POLL_S = 0.005

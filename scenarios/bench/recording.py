@@ -12,11 +12,11 @@ from companion.recording.folder import recording_sink
 from companion.recording.records import InputRecord
 from companion.runtime.build import build_node
 from companion.runtime.node import CompanionNode
-from link.keys import Keys
-from link.recorder import BackgroundRecorder
+from link.recording.recorder import BackgroundRecorder
 from link.units import NS_PER_S
+from link.zenoh.keys import Keys
 from scenarios.config import Scenario
-from scenarios.lockstep import Lockstep
+from scenarios.lockstep.lockstep import Lockstep
 from scenarios.recordings.replay import give
 
 _LOOK_S = 0.001

@@ -11,14 +11,15 @@ from typing import Any
 
 from companion.config.companion import CompanionConfig
 from link.errors import UserError
-from link.toml_config import load_config, merged, read_toml, validated
-from scenarios.campaigns.dask_pool import fly_on_dask
+from link.program.toml_config import load_config, merged, read_toml, validated
 from scenarios.campaigns.folder import Plan, open_journal
 from scenarios.campaigns.landing_task import Flights, Flown, Row, Task, failed
-from scenarios.catalogue import load_scenario
+from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import Scenario
-from scenarios.pool import core_count, run_tasks
-from scenarios.versions import versions
+from scenarios.processes.dask_workers import DaskWorkers
+from scenarios.processes.local_workers import LocalWorkers, core_count
+from scenarios.processes.pool import Workers, run_tasks
+from scenarios.recordings.versions import versions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -106,13 +107,13 @@ def fly_campaign(folder: Path, plan: Plan, where: Where, progress: Progress) -> 
 
 def _flown(plan: Plan, tasks: Sequence[Task], where: Where) -> Generator[Flown, None, None]:
     flights = Flights(scenarios=plan.scenarios, sources=plan.versions["sources"])
-    if where.scheduler is not None:
-        yield from fly_on_dask(where.scheduler, flights, tasks)
-        return
-    workers = core_count() if where.workers is None else where.workers
-    yield from run_tasks(
-        flights, tasks, workers=workers, lost=lambda task, why: Flown(row=failed(task, why), wall_s=0.0)
-    )
+    workers: Workers[Task, Flown]
+    if where.scheduler is None:
+        workers = LocalWorkers(flights, core_count() if where.workers is None else where.workers)
+    else:
+        jobs = {cell: flights.only(cell) for cell in plan.scenarios}
+        workers = DaskWorkers(where.scheduler, lambda task: jobs[task.cell])
+    return run_tasks(workers, tasks, lost=lambda task, why: Flown(row=failed(task, why), wall_s=0.0))
 
 
 def _with_companion(scenario: Scenario, table: Mapping[str, Any], source: str) -> Scenario:

@@ -17,11 +17,11 @@ from typing import Annotated, Any, Self
 from pydantic import Field, model_validator
 
 from link.errors import UserError
-from link.toml_config import StrictModel, validated
+from link.program.toml_config import StrictModel, validated
 from scenarios.campaigns.landing_task import Flown, Row, Task
 from scenarios.campaigns.landings_file import as_written, read_rows, write_rows
 from scenarios.config import Scenario
-from scenarios.outcome import write_json
+from scenarios.recordings.result import write_json
 
 _PLAN, _JOURNAL, _LANDINGS, _TIMING = "campaign.json", "landings.jsonl", "landings.parquet", "timing.parquet"
 

@@ -1,20 +1,16 @@
-"""The statistics of campaigns: shares with their intervals, and two variants on the same seeds.
+"""The statistics of campaigns: shares with their intervals, and two variants on the same seeds, by scipy.stats.
 
 Sources: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209; Q. McNemar, Psychometrika 12 (1947) 153, in its exact form;
 B. Efron, Ann. Statist. 7 (1979) 1, percentile interval.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from statistics import NormalDist
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.special import gammaincinv
+from scipy import stats
 
 _LEVEL = 0.95
-_Z = NormalDist().inv_cdf(0.5 + 0.5 * _LEVEL)
 _RESAMPLES = 4000
 _RESAMPLED_AT_ONCE = 1_000_000  # values, 8 MB
 _BOOTSTRAP_SEED = 20_260_101
@@ -41,19 +37,16 @@ def wilson(successes: int, trials: int) -> Interval:
     """
     if not 0 <= successes <= trials or trials == 0:
         raise ValueError(f"{successes} of {trials} is no share")
-    share, weight = successes / trials, _Z**2 / trials
-    middle = (share + 0.5 * weight) / (1.0 + weight)
-    half = math.sqrt(share * (1.0 - share) * weight + 0.25 * weight**2) / (1.0 + weight)
-    low = 0.0 if successes == 0 else middle - half
-    return Interval(value=share, low=low, high=1.0 if successes == trials else middle + half)
+    interval = stats.binomtest(successes, trials).proportion_ci(_LEVEL, method="wilson")
+    return Interval(value=successes / trials, low=float(interval.low), high=float(interval.high))
 
 
 def mean_band(dof: int) -> tuple[float, float] | tuple[None, None]:
     """Return between what the mean of `dof` squared normal numbers lies with 95 %, None of none (chi-square)."""
     if dof == 0:
         return None, None
-    low, high = (2.0 * float(gammaincinv(0.5 * dof, 0.5 + side * 0.5 * _LEVEL)) / dof for side in (-1.0, 1.0))
-    return low, high
+    low, high = stats.chi2.interval(_LEVEL, dof)
+    return float(low) / dof, float(high) / dof
 
 
 def mcnemar_p(only_first: int, only_second: int) -> float:
@@ -64,8 +57,7 @@ def mcnemar_p(only_first: int, only_second: int) -> float:
         only_second: pairs in which only the second did.
     """
     discordant = only_first + only_second
-    tail = sum(math.comb(discordant, k) for k in range(min(only_first, only_second) + 1))
-    return float(min(1.0, 2 * tail / 2**discordant))
+    return float(stats.binomtest(only_first, discordant).pvalue) if discordant else 1.0
 
 
 def median_difference(first: Sequence[float], second: Sequence[float]) -> Interval:
@@ -76,12 +68,16 @@ def median_difference(first: Sequence[float], second: Sequence[float]) -> Interv
         second: (n,) of the same unit.
     """
     differences = np.asarray(second, dtype=float) - np.asarray(first, dtype=float)
-    low, high = np.quantile(_resampled_medians(differences), [0.5 - 0.5 * _LEVEL, 0.5 + 0.5 * _LEVEL])
-    return Interval(value=float(np.median(differences)), low=float(low), high=float(high))
-
-
-def _resampled_medians(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    rng = np.random.default_rng(_BOOTSTRAP_SEED)
-    rows = max(1, _RESAMPLED_AT_ONCE // len(values))
-    counts = [min(rows, _RESAMPLES - done) for done in range(0, _RESAMPLES, rows)]
-    return np.concatenate([np.median(rng.choice(values, size=(count, len(values))), axis=1) for count in counts])
+    median = float(np.median(differences))
+    if len(differences) == 1:  # nothing to draw from
+        return Interval(value=median, low=median, high=median)
+    interval = stats.bootstrap(
+        (differences,),
+        np.median,
+        n_resamples=_RESAMPLES,
+        batch=max(1, _RESAMPLED_AT_ONCE // len(differences)),
+        confidence_level=_LEVEL,
+        method="percentile",
+        rng=np.random.default_rng(_BOOTSTRAP_SEED),
+    ).confidence_interval
+    return Interval(value=median, low=float(interval.low), high=float(interval.high))

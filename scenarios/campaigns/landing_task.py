@@ -11,12 +11,12 @@ from typing import Any
 from companion.situation.phases import LANDING_PHASES, Phase
 from link.errors import UserError
 from scenarios.config import Scenario
-from scenarios.lockstep import Lockstep
-from scenarios.outcome import result_table
-from scenarios.recording import Recording
-from scenarios.stopwatch import quantiles_ms, timed_steps
-from scenarios.versions import sources
-from scenarios.warm_up import warm_process
+from scenarios.lockstep.lockstep import Lockstep
+from scenarios.lockstep.stopwatch import quantiles_ms, timed_steps
+from scenarios.lockstep.warm_up import warm_process
+from scenarios.recordings.recording import Recording
+from scenarios.recordings.result import result_table
+from scenarios.recordings.versions import sources
 
 Row = dict[str, Any]
 """A landing's result by column: plain values, None where there is none; `error` tells why there is no result."""
@@ -54,7 +54,7 @@ class Flights:
 
     Attributes:
         scenarios: by cell.
-        sources: of the project, as `scenarios.versions` has them; a process with others refuses.
+        sources: of the project, as `scenarios.recordings.versions` has them; a process with others refuses.
     """
 
     scenarios: Mapping[str, Scenario]

@@ -7,7 +7,7 @@ import numpy as np
 
 from scenarios.campaigns.intervals import Interval, mean_band, wilson
 from scenarios.campaigns.landing_task import Row
-from scenarios.outcome import LANDED
+from scenarios.recordings.result import LANDED
 from scenarios.scoring.accuracy import NEES_DOF
 from scenarios.scoring.score import Tier
 

@@ -22,7 +22,7 @@ def bench_command(
 ) -> None:
     """Measure step times, speed, memory and start-up against their budgets; takes about a minute."""
     from scenarios.bench.bench import bench, text_lines
-    from scenarios.catalogue import load_scenario
+    from scenarios.catalogue.catalogue import load_scenario
 
     table = bench(load_scenario(name), seed, lambda what: _announce(what, as_json=as_json))
     text = json.dumps(table, indent=2) if as_json else "\n".join(text_lines(table))

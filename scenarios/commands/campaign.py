@@ -81,7 +81,7 @@ def campaign_command(
         config=config,
     )
     if scheduler is not None:
-        from scenarios.campaigns.dask_pool import check_scheduler
+        from scenarios.processes.dask_workers import check_scheduler
 
         check_scheduler(scheduler)  # before there is a folder of a campaign that cannot begin
     return _fly(create_folder(out, plan), plan, where, as_json=as_json)

@@ -43,12 +43,13 @@ def faults_command(
     """Let every fault happen in every phase of a landing; exit code 1 when a reaction is not as expected."""
     from scenarios.faults.matrix import EXPECTED, FIRMWARES
     from scenarios.faults.trial import fly_case, lost
-    from scenarios.pool import core_count, run_tasks
+    from scenarios.processes.local_workers import LocalWorkers, core_count
+    from scenarios.processes.pool import run_tasks
 
     if firmware is not None and firmware not in FIRMWARES:
         raise UserError(f"--firmware is one of {', '.join(FIRMWARES)}, not '{firmware}'")
     cases = [case for case in EXPECTED if firmware in {None, case.firmware}]
-    with closing(run_tasks(fly_case, cases, workers=workers or core_count(), lost=lost)) as results:
+    with closing(run_tasks(LocalWorkers(fly_case, workers or core_count()), cases, lost=lost)) as results:
         found = {ended.case: ended for ended in results}
     rows = [_row(found[case]) for case in cases]
     if as_json:

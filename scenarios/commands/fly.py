@@ -37,10 +37,10 @@ def fly_command(
 
     The vehicle drives by the place where the simulated drone stands, its pad at the height of the ground.
     """
-    from scenarios.catalogue import load_scenario
+    from scenarios.catalogue.catalogue import load_scenario
     from scenarios.commands.run_lines import Reporter
     from scenarios.firmware.fly import FlyOptions, fly
-    from scenarios.run import run_folder
+    from scenarios.wire.run import run_folder
 
     scenario = load_scenario(name)
     folder = run_folder(out, scenario.name)

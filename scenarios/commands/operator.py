@@ -2,11 +2,11 @@
 
 import time
 
-from link import json_payloads
 from link.errors import UserError
-from link.keys import Keys
 from link.messages import Command, CommandReply
-from link.zenoh_session import ZenohOptions, open_session
+from link.payloads import json_messages
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohOptions, open_session
 
 _MEETING_S = 5.0  # until the companion is found
 _ANSWER_S = 3.0
@@ -27,9 +27,9 @@ def send_command(command: Command, keys: Keys, options: ZenohOptions) -> Command
     with open_session(options) as zenoh:
         deadline_s = time.monotonic() + _MEETING_S
         while time.monotonic() < deadline_s:
-            answers = zenoh.query(keys.landing_command, json_payloads.encode(command), _ANSWER_S)
+            answers = zenoh.query(keys.landing_command, json_messages.encode(command), _ANSWER_S)
             if answers:
-                return json_payloads.decode(CommandReply, answers[0])
+                return json_messages.decode(CommandReply, answers[0])
             time.sleep(_TRY_AGAIN_S)
     where = ", ".join((*options.connect, *options.listen))
     at = f" at {where}" if where else ""

@@ -25,7 +25,7 @@ def replay_command(
 ) -> int:
     """Give a recording's inputs to the companion again and compare every output; exit code 1 when one differs."""
     from companion.config.companion import CompanionConfig
-    from link.toml_config import load_config
+    from link.program.toml_config import load_config
     from scenarios.recordings.replay import read_flights, replay, text_lines
 
     settings = None if config is None else load_config(config, CompanionConfig)

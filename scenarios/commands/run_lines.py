@@ -7,13 +7,13 @@ from types import TracebackType
 from typing import Any, Self
 
 from link.messages import LandingStatus
-from link.screen import Screen
-from link.status_rows import Row
+from link.program.screen import Screen
+from link.program.status_rows import Row
 from scenarios.config import Scenario
-from scenarios.outcome import LANDED
-from scenarios.recording import Recording
-from scenarios.run import RunOutcome
+from scenarios.recordings.recording import Recording
+from scenarios.recordings.result import LANDED
 from scenarios.scoring.score import Tier
+from scenarios.wire.run import RunOutcome
 
 _PLAIN_EVERY_S = 2.0  # simulated, between lines that are not overwritten
 

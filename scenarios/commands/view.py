@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from link.cli import (
+from link.errors import UserError
+from link.program.cli import (
     ConnectOption,
     DroneOption,
     ListenOption,
@@ -17,7 +18,6 @@ from link.cli import (
     VehicleOption,
     ZenohConfigOption,
 )
-from link.errors import UserError
 
 if TYPE_CHECKING:
     from scenarios.view.live import LiveSource
@@ -47,7 +47,7 @@ def port_of_run(*, lockstep: bool, as_json: bool) -> int:
     Raises:
         UserError: there is nothing to see, or nothing to show it with.
     """
-    from scenarios.processes import free_tcp_port
+    from scenarios.processes.programs import free_tcp_port
 
     if lockstep:
         raise UserError("--lockstep is over at once: leave out --view, and give the run's folder to `scenarios view`")
@@ -63,11 +63,8 @@ def view_command(
     ] = None,
     *,
     port: Annotated[
-        int, typer.Option("--port", min=0, max=65535, help="Of the page; 0 is any free one.")
+        int, typer.Option("--port", min=0, max=65535, help="Of the page, on this machine only; 0 is any free one.")
     ] = DEFAULT_PORT,
-    host: Annotated[
-        str, typer.Option("--host", metavar="HOST", help="For other machines: behind a token, which is told.")
-    ] = "127.0.0.1",
     road: Annotated[
         str | None, typer.Option("--road", metavar="NAME|FILE", help="Draw the road of this scenario.")
     ] = None,
@@ -81,35 +78,33 @@ def view_command(
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
 ) -> None:
-    """Show a landing in the browser as it goes on, or play a recording."""
+    """Show a landing in the browser as it goes on, or play a recording.
+
+    From another machine: ssh -L 8080:127.0.0.1:8080 THIS_MACHINE, and http://127.0.0.1:8080 there.
+    """
     check_viser()
     from scenarios.view.recorded import RecordedSource, Road
 
     if recording is not None:
         source = RecordedSource(recording)
-        _show(source, source.road, host, port)
+        _show(source, source.road, port)
         return
-    from link.keys import Keys
-    from link.zenoh_options import zenoh_options
-    from link.zenoh_session import open_session
-    from scenarios.catalogue import load_scenario
+    from link.zenoh.keys import Keys
+    from link.zenoh.options import zenoh_options
+    from link.zenoh.session import open_session
+    from scenarios.catalogue.catalogue import load_scenario
     from scenarios.view.live import LiveSource
 
     drawn = None if road is None else Road(scenario=load_scenario(road), seed=seed)
     keys = Keys(namespace, vehicle, drone)
     with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config)) as zenoh:
-        _show(LiveSource(zenoh, keys), drawn, host, port)
+        _show(LiveSource(zenoh, keys), drawn, port)
 
 
-def _show(source: "LiveSource | RecordedSource", road: "Road | None", host: str, port: int) -> None:
-    """Serve the page until a signal comes; it can fly the drone, so others are let in by a token only."""
-    from scenarios.processes import free_tcp_port
-    from scenarios.view.gate import LOOPBACK, Gate
+def _show(source: "LiveSource | RecordedSource", road: "Road | None", port: int) -> None:
+    """Serve the page until a signal comes."""
+    from scenarios.processes.programs import free_tcp_port
     from scenarios.view.page import Page
 
-    is_own = host in LOOPBACK
-    with (
-        Page(source, road) as page,
-        Gate(host, free_tcp_port(port) if is_own else port, page.port, with_token=not is_own) as gate,
-    ):
-        page.run(gate.address)
+    with Page(source, road, free_tcp_port(port)) as page:
+        page.run()

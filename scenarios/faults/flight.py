@@ -5,14 +5,14 @@ from math import degrees, inf
 
 from companion.runtime.build import build_node
 from companion.situation.phases import Phase
-from link.geodesy import geodetic_from_enu
-from link.keys import Keys
+from link.frames.geodesy import geodetic_from_enu
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Command, Vector3
+from link.zenoh.keys import Keys
 from scenarios.config import Scenario
-from scenarios.lockstep import Lockstep
-from scenarios.simulation import STEP_NS
+from scenarios.lockstep.lockstep import Lockstep
+from scenarios.simulation.simulation import STEP_NS
 
 _STEP_S = STEP_NS * 1e-9
 _REACHED_MAX_S = 60.0

@@ -18,7 +18,7 @@ from link.mavlink.dialect import Message, mavlink
 from link.mavlink.transport import Transport
 from link.mavlink.transports import open_transport
 from scenarios.faults.fuzz_frames import fuzz_frames
-from scenarios.processes import free_tcp_endpoint, free_udp_port
+from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from sim_autopilot.config import SimAutopilotConfig, autopilot_config
 from sim_autopilot.node import AutopilotNode
 

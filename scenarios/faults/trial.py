@@ -9,11 +9,11 @@ from math import acos, hypot
 
 from companion.situation.phases import Phase
 from link.mavlink.dialect import Message, mavlink
-from scenarios.catalogue import load_scenario
+from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import FirmwareName, Scenario
 from scenarios.faults.flight import FaultFlight
 from scenarios.faults.matrix import EXPECTED, Case, Fault
-from scenarios.outcome import scored
+from scenarios.recordings.result import score_run
 from scenarios.scoring.score import Tier
 
 SCENARIO = "straight_5"
@@ -100,7 +100,7 @@ def fly_on(flight: FaultFlight, case: Case) -> Ended:
     _INJECT[case.fault](flight)
     setpoints, taken_back = _fly_until_decided(flight)
     _fly_to_rest(flight)
-    score = scored(flight.scenario, SEED, flight.recording)
+    score = score_run(flight.scenario, SEED, flight.recording)
     return Ended(
         case=case,
         phase=flight.phase,

@@ -7,26 +7,25 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from companion.situation.phases import Phase
-from link import json_payloads
 from link.errors import UserError
-from link.geodesy import Datum
-from link.keys import Keys
+from link.frames.geodesy import Datum
 from link.mavlink.transports import Transport, open_transport
-from link.publication import Publication
-from link.toml_config import dump_toml
-from link.zenoh_session import ZenohOptions, ZenohSession, open_session
+from link.payloads import json_messages
+from link.program.toml_config import dump_toml
+from link.zenoh.keys import Keys, Publication
+from link.zenoh.session import ZenohOptions, ZenohSession, open_session
 from scenarios.config import Scenario
 from scenarios.firmware.ship import PARAMETERS, ship_at
 from scenarios.firmware.truth import DRAG_PER_MASS_HZ
 from scenarios.firmware.watch import FirmwareWatch
-from scenarios.outcome import result_table, write_json, write_text
-from scenarios.processes import MODULES, ProcessGroup, Program, free_tcp_endpoint
-from scenarios.recording import EndWatch, Recording
+from scenarios.processes.programs import MODULES, ProcessGroup, Program, free_tcp_endpoint
+from scenarios.recordings.recording import EndWatch, Recording
+from scenarios.recordings.result import result_table, write_json, write_text
 from scenarios.recordings.truth_file import TruthFile
 from scenarios.recordings.watcher import Watcher
-from scenarios.run import Progress, RunOutcome
 from scenarios.scoring.touchdown import rules_of
-from scenarios.vehicle_node import STEP_PERIOD_NS, VehicleNode, datum_of
+from scenarios.simulation.vehicle_node import STEP_PERIOD_NS, VehicleNode, datum_of
+from scenarios.wire.run import Progress, RunOutcome
 from sim_autopilot.config import DatumConfig
 
 _WAIT_S = 0.004  # for bytes
@@ -149,7 +148,7 @@ class _Flight:
         self._datum = datum_of(scenario.datum)
         self._stepped_ns = 0
         self._ship_sails = False
-        pad = json_payloads.encode(self._vehicle.pad)
+        pad = json_messages.encode(self._vehicle.pad)
         zenoh.serve(keys.pad, lambda _: pad)
         zenoh.declare_alive(keys.alive)
 

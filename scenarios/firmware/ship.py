@@ -7,10 +7,10 @@ height of the drone's home. Frames: W is ENU about the datum; V is the ship's bo
 import math
 from dataclasses import dataclass
 
-from link.frames import quaternion_from_yaw, wrap_angle, yaw_enu_from_ned
-from link.geodesy import Datum, enu_from_geodetic
+from link.frames.geodesy import Datum, enu_from_geodetic
+from link.frames.rotations import quaternion_from_yaw, wrap_angle, yaw_enu_from_ned
 from link.mavlink.dialect import Message
-from scenarios.vehicle import VehicleState
+from scenarios.simulation.vehicle import VehicleState
 
 SHIP_SYSTEM_ID = 17  # SIM_SHIP_SYSID
 PARAMETERS = {"SIM_SHIP_PSIZE": 1000.0, "SIM_SHIP_OFS_X": -40.0, "SIM_SHIP_OFS_Y": -1.5}

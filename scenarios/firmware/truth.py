@@ -8,7 +8,8 @@ late on a machine that keeps up; at 8 m/s each 10 ms would put the drone 8 cm be
 import math
 from dataclasses import dataclass
 
-from link.frames import (
+from link.frames.geodesy import Datum, enu_from_geodetic
+from link.frames.rotations import (
     conjugate,
     enu_from_ned,
     flu_from_frd,
@@ -16,7 +17,6 @@ from link.frames import (
     quaternion_enu_flu_from_ned_frd,
     rotate,
 )
-from link.geodesy import Datum, enu_from_geodetic
 from link.mavlink.dialect import Message, mavlink
 from link.messages import BodyTruth, Quaternion, RotorTruth, Vector3
 

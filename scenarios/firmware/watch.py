@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from link.errors import UserError
-from link.geodesy import Datum
+from link.frames.geodesy import Datum
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import LinkFound, MessageReceived

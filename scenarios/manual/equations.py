@@ -69,7 +69,7 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     (
         "What the simulated sensors see",
         "Each sample has noise, delay, jitter and loss of the scenario, and the stamp of when it was taken.",
-        ("scenarios.sensors.noise", "scenarios.sensors.sensors", "scenarios.disturbances"),
+        ("scenarios.simulation.noise", "scenarios.simulation.sensors", "scenarios.simulation.disturbances"),
     ),
 )
 """Sections: title, what they have in common, and the modules."""

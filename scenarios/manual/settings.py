@@ -10,11 +10,10 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from link.toml_config import StrictModel
+from link.program.toml_config import StrictModel
 from scenarios.manual.field_comments import comments_of
 from scenarios.manual.markdown import code, page, table
-from scenarios.manual.types_in_words import type_in_words
-from scenarios.manual.units import unit_of
+from scenarios.manual.types_in_words import type_in_words, unit_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""Types as a reader of the manual understands them."""
+"""Types and units as a reader of the manual understands them."""
 
 from enum import Enum
 from types import NoneType
@@ -11,6 +11,31 @@ _WORDS: dict[object, str] = {
     str: "text",
     NoneType: "none",
 }
+
+
+UNITS = {
+    "_m2_s5": "m²/s⁵",
+    "_m2_s4": "m²/s⁴",
+    "_m2_s3": "m²/s³",
+    "_rad2_s": "rad²/s",
+    "_m_s3": "m/s³",
+    "_m_s2": "m/s²",
+    "_rad_s": "rad/s",
+    "_rad_m": "rad/m",
+    "_1_s2": "1/s²",
+    "_1_s": "1/s",
+    "_m2_s": "m²/s",
+    "_m_s": "m/s",
+    "_m2": "m²",
+    "_rad": "rad",
+    "_deg": "degrees",
+    "_hz": "Hz",
+    "_mb": "MB",
+    "_ns": "ns",
+    "_m": "m",
+    "_s": "s",
+}
+"""The longer ones first: the first that fits is right; what a name ends with, and how people write it."""
 
 
 def type_in_words(annotation: Any) -> str:
@@ -36,3 +61,8 @@ def _in_parts(annotation: Any, origin: object, arguments: tuple[Any, ...]) -> st
 
 def _one_of(values: tuple[object, ...]) -> str:
     return ("one of " if len(values) > 1 else "") + ", ".join(f"`{one}`" for one in values)
+
+
+def unit_of(name: str) -> str:
+    """Return the unit of the value called `name`; empty where it has none."""
+    return next((unit for ending, unit in UNITS.items() if name.endswith(ending)), "")

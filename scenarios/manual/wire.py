@@ -9,14 +9,14 @@ from dataclasses import fields, is_dataclass
 from importlib import resources
 from importlib.resources.abc import Traversable
 
-from link import json_payloads, messages
-from link.cdr import ROS_TYPES
-from link.keys import Keys
+from link import messages
 from link.mavlink.dialect import mavlink
-from link.ros_records import DEFINITIONS, PACKAGE
+from link.payloads import json_messages
+from link.payloads.cdr import ROS_TYPES
+from link.payloads.decklander_msgs import DEFINITIONS, PACKAGE
+from link.zenoh.keys import Keys
 from scenarios.manual.markdown import block, code, page, table
-from scenarios.manual.types_in_words import type_in_words
-from scenarios.manual.units import unit_of
+from scenarios.manual.types_in_words import type_in_words, unit_of
 from sim_autopilot.commands.incoming import HANDLED
 from sim_autopilot.firmware.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.px4 import PX4
@@ -44,7 +44,7 @@ def wire_page() -> str:
         "In SI units, radians, east-north-up (W) and forward-left-up (B, V): this is what the programs make of them.",
         *(_message(name) for name in _described()),
         "### Schema of `landing/status`",
-        block(json.dumps(json_payloads.LANDING_STATUS_SCHEMA, indent=2)),
+        block(json.dumps(json_messages.LANDING_STATUS_SCHEMA, indent=2)),
         "### Messages of our own",
         f"Types `{PACKAGE}/...`, in [recordings](../recording.md) and for the [live view](../view.md).",
         *(f"**{name}**\n\n{block(definition)}" for name, definition in DEFINITIONS.items()),

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from link.ros_records import RosMessage, fields_of
+from link.payloads.decklander_msgs import RosMessage, fields_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

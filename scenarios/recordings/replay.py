@@ -14,14 +14,14 @@ from companion.recording.records import InputKind, InputRecord
 from companion.recording.sink import CompanionSink
 from companion.runtime.build import build_node
 from companion.runtime.node import CompanionNode
-from link import json_payloads
 from link.errors import UserError
-from link.keys import Keys
-from link.mcap_reader import RecordingHead, read_head, read_messages, recordings
 from link.messages import Command, PadGeometry
-from link.recorder import DirectRecorder
-from link.ros_records import RosMessage, fields_of
-from link.toml_config import validated
+from link.payloads import json_messages
+from link.payloads.decklander_msgs import RosMessage, fields_of
+from link.program.toml_config import validated
+from link.recording.mcap_reader import RecordingHead, read_head, read_messages, recordings
+from link.recording.recorder import DirectRecorder
+from link.zenoh.keys import Keys
 from scenarios.recordings.comparison import Comparison, FieldDifference
 
 OUTPUTS = ("own", "step", "setpoint", "estimate", "forecast", "plan")
@@ -157,7 +157,7 @@ def give(node: CompanionNode, record: InputRecord) -> None:
         case InputKind.SAMPLE:
             node.receive_sample(record.key, record.data)
         case InputKind.PAD:
-            node.receive_pad(json_payloads.decode(PadGeometry, record.data))
+            node.receive_pad(json_messages.decode(PadGeometry, record.data))
         case InputKind.ALIVE:
             node.receive_liveliness(alive=bool(record.data[0]))
         case InputKind.COMMAND:

@@ -3,17 +3,17 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from link import cdr
-from link.keys import Keys
-from link.mcap_reader import read_messages, recording_files
-from link.mcap_writer import McapRecording, RecordingSpec
 from link.messages import BodyTruth, RotorTruth
-from link.recorder import DirectRecorder
-from link.ros_records import RosMessage
-from link.toml_config import dump_toml
+from link.payloads import cdr
+from link.payloads.decklander_msgs import RosMessage
+from link.program.toml_config import dump_toml
+from link.recording.mcap_reader import read_messages, recording_files
+from link.recording.mcap_writer import McapRecording, RecordingSpec
+from link.recording.recorder import DirectRecorder
+from link.zenoh.keys import Keys
 from scenarios.config import Scenario
-from scenarios.recording import Recording
-from scenarios.versions import versions
+from scenarios.recordings.recording import Recording
+from scenarios.recordings.versions import versions
 
 STEM = "truth"
 

@@ -2,12 +2,12 @@
 
 from typing import TypeVar
 
-from link import cdr, json_payloads
-from link.keys import Keys
 from link.messages import BodyTruth, Command, LandingStatus, RotorTruth
-from link.payload_checks import PayloadError
-from link.zenoh_session import ZenohSession
-from scenarios.recording import Recording
+from link.payloads import cdr, json_messages
+from link.payloads.checks import PayloadError
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohSession
+from scenarios.recordings.recording import Recording
 
 _ANSWER_S = 3.0
 _CAPACITY = 20_000  # 200 s of truth at real time, should the watcher be held up
@@ -50,7 +50,7 @@ class Watcher:
 
     def break_off(self) -> None:
         """Call the landing off, as an operator would; what becomes of it shows in the status."""
-        self._zenoh.query(self._command_key, json_payloads.encode(Command.ABORT), _ANSWER_S)
+        self._zenoh.query(self._command_key, json_messages.encode(Command.ABORT), _ANSWER_S)
 
     def _add(self, kind: type[T], payload: bytes, *, is_drone: bool = True) -> None:
         try:
@@ -60,6 +60,6 @@ class Watcher:
 
     def _add_status(self, payload: bytes) -> None:
         try:
-            self.recording.add(json_payloads.decode(LandingStatus, payload))
+            self.recording.add(json_messages.decode(LandingStatus, payload))
         except PayloadError:
             self.bad_payloads += 1

@@ -16,17 +16,17 @@ from numpy.typing import NDArray
 from companion.config.companion import CompanionConfig
 from companion.recording.folder import STEM as COMPANION
 from link.errors import UserError
-from link.keys import Keys
-from link.local_frame import LocalFrame, Projection
-from link.mcap_reader import RecordingHead, read_head, read_messages, recording_files
-from link.ros_records import fields_of
-from link.toml_config import validated
+from link.frames.local_frame import LocalFrame, Projection
+from link.payloads.decklander_msgs import fields_of
+from link.program.toml_config import validated
+from link.recording.mcap_reader import RecordingHead, read_head, read_messages, recording_files
 from link.units import NS_PER_S
+from link.zenoh.keys import Keys
 from scenarios.config import Scenario
 from scenarios.recordings.truth_file import STEM as TRUTH
 from scenarios.recordings.truth_file import read_truth
 from scenarios.scoring.truth_log import TruthLog, truth_log
-from scenarios.vehicle_node import datum_of
+from scenarios.simulation.vehicle_node import datum_of
 from sim_autopilot.local_places import Origin, local_from_world
 
 Array = NDArray[np.float64]

@@ -13,10 +13,10 @@ import numpy as np
 
 from companion.core.data import Array, VehicleEstimate
 from companion.situation.phases import Phase
-from link.frames import rotate
-from link.local_frame import scale_of
+from link.frames.local_frame import scale_of
+from link.frames.rotations import rotate
 from link.messages import Vector3
-from scenarios.vehicle import VehicleState
+from scenarios.simulation.vehicle import VehicleState
 from sim_autopilot.local_places import local_from_world
 from sim_autopilot.memory import AutopilotMemory
 

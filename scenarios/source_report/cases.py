@@ -6,7 +6,7 @@ the vehicle stands for 5 s and then drives; places are the vehicle's. A landing 
 
 from dataclasses import dataclass
 
-from link.toml_config import StrictModel
+from link.program.toml_config import StrictModel
 
 STANDS_S = 5.0
 """How long the vehicle stands before it drives, and when the drone begins its landing."""

@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from link.errors import UserError
-from scenarios.catalogue import load_scenario
+from scenarios.catalogue.catalogue import load_scenario
 from scenarios.scoring.touch import Flags
 from scenarios.source_report.cases import LANDED_M, STANDS_S, Place
 from scenarios.source_report.flight import ReportFlight, ReportTask, fly

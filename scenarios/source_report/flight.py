@@ -11,16 +11,16 @@ import numpy as np
 
 from companion.config.landing import LandingStyle
 from link.errors import UserError
-from scenarios.catalogue import load_scenario
+from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import Scenario
-from scenarios.lockstep import Lockstep
-from scenarios.outcome import scored
-from scenarios.recording import EndWatch
+from scenarios.lockstep.lockstep import Lockstep
+from scenarios.recordings.recording import EndWatch
+from scenarios.recordings.result import score_run
 from scenarios.scoring.score import Score
 from scenarios.scoring.touch import Flags
 from scenarios.scoring.truth_log import Array
-from scenarios.sensors.noise import named_rng
-from scenarios.sensors.sensors import white_error_m
+from scenarios.simulation.noise import named_rng
+from scenarios.simulation.sensors import white_error_m
 from scenarios.source_report.cases import LANDED_M, STANDS_S, Place
 from scenarios.tracks.config import WaypointsTrack
 from scenarios.tracks.course import Course
@@ -112,7 +112,7 @@ def _flight(lockstep: Lockstep, scenario: Scenario, seed: int, drive_s: float, *
         vehicle_m=np.array([truth.position_enu_m for truth in recording.vehicle]),
         noise_m=np.array([white_error_m(fix, rng) for _ in recording.drone]),
         road_end_s=STANDS_S + drive_s,
-        score=scored(scenario, seed, recording) if scored_too else None,
+        score=score_run(scenario, seed, recording) if scored_too else None,
     )
 
 

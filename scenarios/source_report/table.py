@@ -12,7 +12,8 @@ from rich.progress import track
 from rich.table import Table
 
 from link.errors import UserError
-from scenarios.pool import core_count, run_tasks
+from scenarios.processes.local_workers import LocalWorkers, core_count
+from scenarios.processes.pool import run_tasks
 from scenarios.source_report.cases import CASES, OVERSHOOT, SETTLING_S, PublishedCase
 from scenarios.source_report.flight import ReportTask, fly_row
 from scenarios.source_report.step_responses import step_rows
@@ -39,7 +40,7 @@ def fly_report(seeds: int, workers: int | None) -> dict[str, Any]:
         for system in SYSTEMS
     ]
     console = Console(stderr=True)
-    with closing(run_tasks(fly_row, tasks, workers=workers or core_count(), lost=_lost)) as rows:
+    with closing(run_tasks(LocalWorkers(fly_row, workers or core_count()), tasks, lost=_lost)) as rows:
         flown = track(
             rows, "flights", total=len(tasks), console=console, transient=True, disable=not console.is_terminal
         )

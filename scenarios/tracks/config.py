@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from link.toml_config import NotNegative, Positive, StrictModel
+from link.program.toml_config import NotNegative, Positive, StrictModel
 
 Waypoint = tuple[float, float]
 
@@ -44,10 +44,14 @@ class WaypointsTrack(StrictModel):
     def _speeds_fit(self) -> Self:
         if len(self.speeds_m_s) != len(self.waypoints_m):
             raise ValueError("speeds_m_s needs as many values as waypoints_m")
-        if any(before + after == 0.0 for before, after in pairwise(self.speeds_m_s)):
-            raise ValueError("speeds_m_s must not be 0 at two neighbouring waypoints")
-        if any(before == after for before, after in pairwise(self.waypoints_m)):
-            raise ValueError("waypoints_m must not hold the same point twice in a row")
+        for place, (before_m_s, after_m_s) in enumerate(pairwise(self.speeds_m_s)):
+            if before_m_s + after_m_s == 0.0:
+                raise ValueError(
+                    f"speeds_m_s[{place}] and [{place + 1}], at neighbouring waypoints, must not both be 0"
+                )
+        for place, (point, after) in enumerate(pairwise(self.waypoints_m)):
+            if point == after:
+                raise ValueError(f"waypoints_m[{place}] and [{place + 1}] must not be the same point")
         return self
 
 

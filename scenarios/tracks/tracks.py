@@ -28,9 +28,8 @@ from scenarios.tracks.config import (
     WaypointsTrack,
 )
 from scenarios.tracks.course import BrakeEvent, Course, Roughness, Wave
-from scenarios.tracks.curved_roads import curve_through
 from scenarios.tracks.profiles import Profile, cruise_steps, profile_of, waypoint_steps
-from scenarios.tracks.roads import Piece, Point, Slope, advance, polyline, road_of
+from scenarios.tracks.roads import Piece, Point, Slope, advance, curve_through, polyline, road_of
 
 Steps = list[tuple[float, float]]
 _CURVE_STEP_M = 0.1  # pieces of a lane change: the heading is then within 0.1 mrad of the smooth curve

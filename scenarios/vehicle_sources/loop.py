@@ -6,16 +6,16 @@ from contextlib import ExitStack
 
 import structlog
 
-from link import cdr, json_payloads
-from link.cdr import encoding_of
 from link.errors import UserError
-from link.keys import Keys
 from link.mavlink.tcp_transport import TcpClientTransport
 from link.mavlink.transport import Transport
 from link.messages import Fix, FixVelocity, PadGeometry, VehicleImu
-from link.payload_checks import PayloadError
-from link.service import Service
-from link.zenoh_session import ZenohSession
+from link.payloads import cdr, json_messages
+from link.payloads.cdr import encoding_of
+from link.payloads.checks import PayloadError
+from link.program.service import Service
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohSession
 from scenarios.vehicle_sources.channel import FileTransport, OpenTransport
 from scenarios.vehicle_sources.health import Health
 from scenarios.vehicle_sources.receiver import Reading, Receiver
@@ -61,7 +61,7 @@ class ReceiverLoop:
         self._unsendable = self._fixes = 0
         self._began: tuple[int, float] | None = None  # a recording: its first stamp, and when that was told
         self._log = structlog.get_logger("ground-vehicle")
-        payload = json_payloads.encode(pad)
+        payload = json_messages.encode(pad)
         zenoh.serve(keys.pad, lambda _: payload)
         zenoh.declare_alive(keys.alive)
 

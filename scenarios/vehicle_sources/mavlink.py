@@ -8,7 +8,7 @@ Source: MAVLink common messages.
 
 from math import radians
 
-from link.frames import flu_from_frd, normalized, quaternion_enu_flu_from_ned_frd
+from link.frames.rotations import flu_from_frd, normalized, quaternion_enu_flu_from_ned_frd
 from link.mavlink.clock_map import UNIX_TIME_MIN_NS
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import LinkFound, MessageReceived

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from link.errors import UserError
 from link.messages import LEVER_MAX_M, PadGeometry
-from link.toml_config import StrictModel, load_config
+from link.program.toml_config import StrictModel, load_config
 
 _OPTIONS = {"size_m": "--pad-size", "height_m": "--pad-height", "antenna_to_pad_m": "--antenna-to-pad"}
 

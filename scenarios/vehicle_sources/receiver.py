@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from math import cos, isfinite, radians, sin
 from typing import Protocol
 
-from link.frames import quaternion_from_yaw, yaw_enu_from_ned
+from link.frames.rotations import quaternion_from_yaw, yaw_enu_from_ned
 from link.messages import Fix, FixVelocity, Matrix3, VehicleImu
 
 Reading = Fix | FixVelocity | VehicleImu

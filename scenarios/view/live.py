@@ -1,11 +1,11 @@
 """A landing as it goes on, off Zenoh; it only listens, and passes an operator's commands on."""
 
-from link import json_payloads
-from link.inbox import Inbox
-from link.keys import Keys
 from link.messages import Command, CommandReply
-from link.payload_checks import PayloadError
-from link.zenoh_session import ZenohSession
+from link.payloads import json_messages
+from link.payloads.checks import PayloadError
+from link.zenoh.inbox import Inbox
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohSession
 from scenarios.view.history import History
 from scenarios.view.state import StateReader, ViewState
 
@@ -55,11 +55,11 @@ class LiveSource:
 
     def send(self, command: Command) -> CommandReply:
         """Ask the companion and return its answer; one that is silent refuses."""
-        answers = self._zenoh.query(self._keys.landing_command, json_payloads.encode(command), _ANSWER_S)
+        answers = self._zenoh.query(self._keys.landing_command, json_messages.encode(command), _ANSWER_S)
         if not answers:
             return CommandReply(accepted=False, reason="no companion answers")
         try:
-            return json_payloads.decode(CommandReply, answers[0])
+            return json_messages.decode(CommandReply, answers[0])
         except PayloadError as error:
             return CommandReply(accepted=False, reason=f"its answer cannot be read: {error}")
 

@@ -1,17 +1,24 @@
-"""The page: the loop that shows a source 20 times a second until it is interrupted."""
+"""The page: the loop that shows a source 20 times a second until it is interrupted.
+
+The page can fly the drone. So it is served to this machine only, and its WebSocket takes no connection that a page of
+another site opens in a browser here.
+"""
 
 import io
+import re
 import signal
 import sys
 import time
 from contextlib import redirect_stdout
+from functools import partial
 from types import TracebackType
 from typing import Self
 
 import viser
+import websockets.asyncio.server
 
 from companion.config.companion import CompanionConfig
-from scenarios.vehicle_node import plan_of
+from scenarios.simulation.vehicle_node import plan_of
 from scenarios.view.live import LiveSource
 from scenarios.view.panel import Panel
 from scenarios.view.recorded import RecordedSource, Road
@@ -23,20 +30,23 @@ _TEXT_EVERY = 4
 _PLOTS_EVERY = 10
 _TRAIL_ROWS, _TRAIL_EVERY = 600, 3
 _STALE_S = 3.0
+_LOOPBACK = "127.0.0.1"
+_OWN_ORIGINS = (None, re.compile(r"http://(127\.0\.0\.1|localhost|\[::1\])(:[0-9]+)?"))
+"""Of the page by any name of loopback, at the port of a tunnel, too; what is no browser has none."""
 
 
 class Page:
-    """A page on a free port of loopback, until the end of a `with` block.
+    """A page on loopback, until the end of a `with` block.
 
     Args:
         source: what it shows.
         road: of the vehicle, where it is known.
+        port: where; a later one if it is taken, any free one if it is 0.
     """
 
-    def __init__(self, source: LiveSource | RecordedSource, road: Road | None) -> None:
+    def __init__(self, source: LiveSource | RecordedSource, road: Road | None, port: int) -> None:
         self._source = source
-        with redirect_stdout(io.StringIO()):  # it has a banner of its own
-            self._server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+        self._server = open_server(port)
         descent = CompanionConfig().descent if road is None else road.scenario.system.companion.descent
         self._scene = Scene(self._server, descent)
         if road is not None:
@@ -61,19 +71,15 @@ class Page:
             self._server.stop()
 
     @property
-    def port(self) -> int:
-        """Of loopback, where it is."""
-        return self._server.get_port()
+    def address(self) -> str:
+        """Where a browser finds it."""
+        return f"http://{_LOOPBACK}:{self._server.get_port()}"
 
-    def run(self, address: str) -> None:
-        """Show it until a signal comes.
-
-        Args:
-            address: where a browser finds it.
-        """
+    def run(self) -> None:
+        """Show it until a signal comes."""
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._stop)
-        sys.stdout.write(f"view: {address}\n")
+        sys.stdout.write(f"view: {self.address}\n")
         sys.stdout.flush()
         tick, due_s = 0, time.monotonic()
         while not self._stopping:
@@ -111,3 +117,17 @@ class Page:
         if status is not None and status.stamp_ns != self._stamp_ns:
             self._stamp_ns, self._stamp_seen_s = status.stamp_ns, now_s
         return now_s - self._stamp_seen_s > _STALE_S
+
+
+def open_server(port: int) -> viser.ViserServer:
+    """Return viser's server on loopback, at a later port if `port` is taken, at any free one if it is 0.
+
+    It takes WebSockets of its own page only: viser itself does not ask where a browser got the page from.
+    """
+    plain = websockets.asyncio.server.serve
+    websockets.asyncio.server.serve = partial(plain, origins=_OWN_ORIGINS)  # type: ignore[assignment,misc]  # for viser
+    try:
+        with redirect_stdout(io.StringIO()):  # it has a banner of its own
+            return viser.ViserServer(host=_LOOPBACK, port=port, verbose=False)
+    finally:
+        websockets.asyncio.server.serve = plain  # type: ignore[misc]  # for everybody else

@@ -10,7 +10,7 @@ import viser
 from viser import uplot
 
 from link.messages import Command, CommandReply
-from link.status_rows import link_rows, number, status_rows
+from link.program.status_rows import link_rows, number, status_rows
 from scenarios.view.history import NAMES, History
 from scenarios.view.recorded import RecordedSource
 from scenarios.view.scene import BLUE, FOLLOWED, GREEN, GREY, ORANGE, Scene

@@ -8,14 +8,14 @@ from pathlib import Path
 
 from companion.recording.folder import STEM as COMPANION
 from companion.recording.records import InputKind
-from link import json_payloads
 from link.errors import UserError
-from link.keys import Keys
-from link.mcap_reader import Recorded, read_head, read_messages, recording_files
 from link.messages import PadGeometry
-from link.payload_checks import PayloadError
-from link.ros_records import fields_of
-from link.toml_config import validated
+from link.payloads import json_messages
+from link.payloads.checks import PayloadError
+from link.payloads.decklander_msgs import fields_of
+from link.program.toml_config import validated
+from link.recording.mcap_reader import Recorded, read_head, read_messages, recording_files
+from link.zenoh.keys import Keys
 from scenarios.config import Scenario
 from scenarios.recordings.truth_file import STEM as TRUTH
 from scenarios.view.history import History
@@ -148,4 +148,4 @@ def _told_pad(payload: bytes, type_name: str) -> PadGeometry | None:
     fields = fields_of(payload, type_name)
     if fields["kind"] != InputKind.PAD:
         return None
-    return json_payloads.decode(PadGeometry, bytes(fields["data"]))
+    return json_messages.decode(PadGeometry, bytes(fields["data"]))

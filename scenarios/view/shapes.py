@@ -6,7 +6,7 @@ from itertools import combinations, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from link.frames import quaternion_from_roll_pitch_yaw, rotate
+from link.frames.rotations import quaternion_from_roll_pitch_yaw, rotate
 from link.messages import Quaternion, Vector3
 from scenarios.tracks.roads import Road
 from scenarios.view.state import ForecastPath, ViewState

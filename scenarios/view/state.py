@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from link import cdr, json_payloads
-from link.keys import Keys
 from link.messages import BodyTruth, LandingStatus, PadGeometry, Plan, Vector3
-from link.ros_records import PACKAGE, fields_of
+from link.payloads import cdr, json_messages
+from link.payloads.decklander_msgs import PACKAGE, fields_of
 from link.units import NS_PER_S
+from link.zenoh.keys import Keys
 
 Array = NDArray[np.float64]
 
@@ -95,7 +95,7 @@ class StateReader:
             keys.record("step"): _step,
             keys.landing_plan: _plan,
             keys.landing_status: _status,
-            keys.pad: lambda payload: {"pad": json_payloads.decode(PadGeometry, payload)},
+            keys.pad: lambda payload: {"pad": json_messages.decode(PadGeometry, payload)},
         }
 
     @property
@@ -128,7 +128,7 @@ def _own(payload: bytes) -> dict[str, Any]:
 
 
 def _status(payload: bytes) -> dict[str, Any]:
-    status = json_payloads.decode(LandingStatus, payload)
+    status = json_messages.decode(LandingStatus, payload)
     return {"t_ns": status.stamp_ns, "status": status, **_plan_over(status)}
 
 

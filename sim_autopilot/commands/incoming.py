@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from math import hypot, radians
 from types import MappingProxyType
 
-from link.geodesy import Datum, enu_from_geodetic
+from link.frames.geodesy import Datum, enu_from_geodetic
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 from sim_autopilot.commands.commands import obey

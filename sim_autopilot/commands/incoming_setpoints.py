@@ -2,7 +2,7 @@
 
 from math import isfinite
 
-from link.frames import enu_from_ned
+from link.frames.rotations import enu_from_ned
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 from sim_autopilot.data import Reference

@@ -6,7 +6,7 @@ Mode numbers, stream groups, texts: ArduCopter's documentation and source. Times
 from functools import partial
 from types import MappingProxyType
 
-from link.local_frame import Projection
+from link.frames.local_frame import Projection
 from link.mavlink.dialect import mavlink
 from sim_autopilot.files.flight_log import ARDUPILOT_LOGS
 from sim_autopilot.files.ftp_state import ARDUPILOT_FTP

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from link.local_frame import Projection
+from link.frames.local_frame import Projection
 from sim_autopilot.files.flight_log import PX4_LOGS, LogRules
 from sim_autopilot.files.ftp_state import PX4_FTP, FtpRules
 from sim_autopilot.files.store import Shown

@@ -7,7 +7,7 @@ Rates, times and answers: measured on that simulation.
 from functools import partial
 from types import MappingProxyType
 
-from link.local_frame import Projection
+from link.frames.local_frame import Projection
 from link.mavlink.dialect import mavlink
 from sim_autopilot.files.store import Shown
 from sim_autopilot.firmware.actuator_metadata import ACTUATORS_PATH

@@ -11,7 +11,7 @@ from math import atan2, cos, hypot, pi, sin
 
 import numpy as np
 
-from link.frames import wrap_angle
+from link.frames.rotations import wrap_angle
 from link.messages import Vector3
 from sim_autopilot.data import Reference
 from sim_autopilot.snapshot import Snapshot

@@ -8,7 +8,7 @@ that is too much. Neither knows of the true contact.
 from dataclasses import dataclass
 from math import hypot
 
-from link.frames import rotate
+from link.frames.rotations import rotate
 from sim_autopilot.data import Reference
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
 from sim_autopilot.settings import FlightSettings

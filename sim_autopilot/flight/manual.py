@@ -9,7 +9,7 @@ from math import cos, sin
 
 import numpy as np
 
-from link.frames import quaternion_from_roll_pitch_yaw
+from link.frames.rotations import quaternion_from_roll_pitch_yaw
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.data import Reference
 from sim_autopilot.flight.flight import ModeFlight

@@ -10,7 +10,7 @@ from math import hypot, isfinite, tan
 
 import numpy as np
 
-from link.frames import flu_from_frd, quaternion_from_roll_pitch_yaw, rotate
+from link.frames.rotations import flu_from_frd, quaternion_from_roll_pitch_yaw, rotate
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Quaternion, Vector3
 from sim_autopilot.data import Reference

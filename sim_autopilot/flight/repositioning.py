@@ -3,7 +3,7 @@
 from dataclasses import replace
 from math import hypot, isfinite, radians
 
-from link.geodesy import Datum, enu_from_geodetic
+from link.frames.geodesy import Datum, enu_from_geodetic
 from link.mavlink.dialect import mavlink
 from link.messages import Vector3
 from sim_autopilot.flight.flight import go_to

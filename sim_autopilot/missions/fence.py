@@ -6,7 +6,7 @@ Source: MAVLink mission protocol, fence items; PX4 GF_MAX_HOR_DIST and GF_MAX_VE
 from dataclasses import dataclass
 from math import hypot
 
-from link.geodesy import Datum
+from link.frames.geodesy import Datum
 from link.mavlink.dialect import mavlink
 from link.messages import Vector3
 from sim_autopilot.missions.items import Item, place_of

@@ -6,7 +6,7 @@ from enum import Enum
 from math import dist, hypot, isfinite, nan, pi, radians, tau
 from types import MappingProxyType
 
-from link.geodesy import Datum
+from link.frames.geodesy import Datum
 from link.mavlink.dialect import mavlink
 from link.messages import Vector3
 from sim_autopilot.flight.flight import Leg, ModeFlight, begin, climb_to, descend_here, go_to

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from math import isfinite, isinf, isnan, radians
 from types import MappingProxyType
 
-from link.geodesy import Datum, enu_from_geodetic
+from link.frames.geodesy import Datum, enu_from_geodetic
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from math import degrees
 
-from link.geodesy import geodetic_from_enu
+from link.frames.geodesy import geodetic_from_enu
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.flight.mode_change import change_mode
 from sim_autopilot.flight.modes import Event, Mode

@@ -4,7 +4,7 @@ from math import isfinite
 
 import numpy as np
 
-from link.frames import flu_from_frd, normalized, quaternion_enu_flu_from_ned_frd
+from link.frames.rotations import flu_from_frd, normalized, quaternion_enu_flu_from_ned_frd
 from link.mavlink.dialect import Message
 from sim_autopilot.data import AttitudeTarget, Reference
 from sim_autopilot.physics.airframe import GRAVITY_M_S2

@@ -2,9 +2,9 @@
 
 from math import hypot, radians
 
-from link.frames import ned_from_enu
-from link.geodesy import geodetic_from_enu
-from link.local_frame import local_from_geodetic
+from link.frames.geodesy import geodetic_from_enu
+from link.frames.local_frame import local_from_geodetic
+from link.frames.rotations import ned_from_enu
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
 from sim_autopilot.local_places import Origin

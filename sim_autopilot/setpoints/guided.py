@@ -6,7 +6,7 @@ from math import acos, atan2, hypot
 
 import numpy as np
 
-from link.frames import rotate
+from link.frames.rotations import rotate
 from link.messages import Vector3
 from link.records import replace
 from sim_autopilot.data import Reference

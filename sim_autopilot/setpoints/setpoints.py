@@ -9,7 +9,7 @@ from math import cos, isfinite, pi, sin
 
 import numpy as np
 
-from link.frames import enu_from_ned, ned_from_enu
+from link.frames.rotations import enu_from_ned, ned_from_enu
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
 from sim_autopilot.data import Array, Reference

@@ -5,7 +5,7 @@ The board is that of its simulation; the estimator has converged once positions 
 
 from math import atan2, degrees, hypot, pi
 
-from link.frames import frd_from_flu, yaw_ned_from_enu
+from link.frames.rotations import frd_from_flu, yaw_ned_from_enu
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
 from sim_autopilot.telemetry.chart import geodetic

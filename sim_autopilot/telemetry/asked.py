@@ -5,7 +5,7 @@ Fields and scales: MAVLink common and ArduPilot dialects; what is not there is t
 
 from math import atan2, degrees, hypot, nan, pi
 
-from link.frames import frd_from_flu, ned_from_enu, quaternion_ned_frd_from_enu_flu, yaw_ned_from_enu
+from link.frames.rotations import frd_from_flu, ned_from_enu, quaternion_ned_frd_from_enu_flu, yaw_ned_from_enu
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.safety.failsafes_step import charge_of

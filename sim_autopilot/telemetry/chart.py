@@ -6,8 +6,8 @@ Longitudes are kept in (-pi, pi], and their differences go the short way: a flig
 from dataclasses import dataclass
 from math import dist
 
-from link.frames import wrap_angle
-from link.geodesy import Datum, geodetic_from_enu
+from link.frames.geodesy import Datum, geodetic_from_enu
+from link.frames.rotations import wrap_angle
 from link.messages import Vector3
 
 _REACH_M = 20.0

@@ -2,7 +2,9 @@
 
 from math import atan2, degrees, hypot, pi
 
-from link.frames import (
+from link.frames.geodesy import geodetic_from_enu
+from link.frames.local_frame import local_from_geodetic
+from link.frames.rotations import (
     conjugate,
     frd_from_flu,
     ned_from_enu,
@@ -11,8 +13,6 @@ from link.frames import (
     rotate,
     yaw_ned_from_enu,
 )
-from link.geodesy import geodetic_from_enu
-from link.local_frame import local_from_geodetic
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
 from sim_autopilot.local_places import local_from_world

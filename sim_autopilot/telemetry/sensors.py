@@ -5,7 +5,7 @@ Pressure and temperature: ICAO standard atmosphere, troposphere.
 
 from math import degrees
 
-from link.frames import frd_from_flu, quaternion_ned_frd_from_enu_flu
+from link.frames.rotations import frd_from_flu, quaternion_ned_frd_from_enu_flu
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.flight.manual import sticks_in_effect
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory

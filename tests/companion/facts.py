@@ -15,8 +15,8 @@ from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
 from companion.situation.situation import Below, Drone, Situation, VehicleNews
 from companion.vehicle.pad import HEADING_UNKNOWN, PadPath
-from link.geodesy import Datum
-from link.local_frame import LocalFrame, Projection
+from link.frames.geodesy import Datum
+from link.frames.local_frame import LocalFrame, Projection
 from link.messages import Vector3
 
 R = TypeVar("R", Situation, StepMemory)

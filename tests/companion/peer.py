@@ -7,11 +7,11 @@ from functools import cache
 from companion.config.companion import CompanionConfig
 from companion.runtime.build import build_node
 from companion.runtime.node import CompanionNode
-from link import cdr
-from link.keys import Keys
-from link.local_frame import geodetic_from_local
+from link.frames.local_frame import geodetic_from_local
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Fix, Vector3
+from link.payloads import cdr
+from link.zenoh.keys import Keys
 from tests.companion.world import FRAME, ORIGIN, PAD_HEIGHT_M
 from tests.link.mavlink.fake_autopilot import MS, START_NS, UTC_AHEAD_NS, FakeAutopilot, S
 

@@ -7,8 +7,8 @@ import pytest
 
 from companion.__main__ import app
 from companion.config.companion import CompanionConfig
-from link.cli import run_app
-from link.toml_config import load_config
+from link.program.cli import run_app
+from link.program.toml_config import load_config
 
 
 def test_printed_configuration_is_the_default_and_can_be_read_back(

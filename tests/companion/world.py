@@ -19,9 +19,9 @@ from companion.runtime.build import make_guidance
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.step import companion_step
 from companion.vehicle.buffered import BufferHealth, Estimator
-from link.frames import quaternion_from_yaw
-from link.geodesy import Datum
-from link.local_frame import LocalFrame, Projection
+from link.frames.geodesy import Datum
+from link.frames.local_frame import LocalFrame, Projection
+from link.frames.rotations import quaternion_from_yaw
 from link.mavlink.dialect import mavlink
 from link.messages import Command, PadGeometry, Vector3
 

@@ -12,8 +12,8 @@ from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from link.mavlink.dialect import mavlink
 from link.messages import Command
-from link.toml_config import merged, validated
-from scenarios.catalogue import load_scenario
+from link.program.toml_config import merged, validated
+from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import Scenario
 from scenarios.faults.flight import FaultFlight
 from tests.golden.wrong_data import velocity_is_in_ned

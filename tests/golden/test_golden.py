@@ -13,10 +13,10 @@ import pytest
 
 from companion.core.reasons import Reason
 from companion.situation.phases import Phase
-from scenarios.catalogue import load_scenario
-from scenarios.lockstep import Lockstep
-from scenarios.outcome import result_table, scored
-from scenarios.recording import Recording
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.lockstep.lockstep import Lockstep
+from scenarios.recordings.recording import Recording
+from scenarios.recordings.result import result_table, score_run
 from tests.golden.aborts import ABORTS, SEED, Abort, fly
 from tests.golden.reasons import reasons
 
@@ -54,7 +54,7 @@ def _abort(abort: Abort) -> Golden:
     return {
         "scenario": abort.scenario,
         "seed": SEED,
-        "tier": scored(flight.scenario, SEED, flight.recording).tier.value,
+        "tier": score_run(flight.scenario, SEED, flight.recording).tier.value,
         "events": _events(flight.recording),
     }
 

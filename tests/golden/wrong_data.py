@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from link import cdr
 from link.messages import FixVelocity
+from link.payloads import cdr
 from scenarios.faults.flight import FaultFlight
 
 

@@ -4,11 +4,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from companion.situation.phases import Phase
-from link.keys import Keys
-from link.zenoh_session import ZenohOptions, ZenohSession, open_session
-from scenarios.catalogue import load_scenario
-from scenarios.outcome import scored
-from scenarios.recording import EndWatch, Recording
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohOptions, ZenohSession, open_session
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.recordings.recording import EndWatch, Recording
+from scenarios.recordings.result import score_run
 from scenarios.recordings.watcher import Watcher
 from scenarios.scoring.score import Score
 from tests.integration.programs import until
@@ -93,7 +93,7 @@ class Observer:
             return end.reason(self.recording) is not None
 
         until(is_over, f"the end of the run, last was {self.recording.status}")
-        return scored(SCENARIO, SEED, self.recording)
+        return score_run(SCENARIO, SEED, self.recording)
 
     @property
     def height_m(self) -> float:

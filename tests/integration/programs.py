@@ -15,7 +15,7 @@ from typing import IO, Self
 
 import psutil  # type: ignore[import-untyped]  # it has no annotations
 
-from scenarios.processes import MODULES
+from scenarios.processes.programs import MODULES
 
 DEADLINE_S = 90.0
 """Wall time for anything to happen; a loaded machine with two cores needs a tenth of it."""
@@ -64,7 +64,7 @@ class Program:
 
     def __init__(self, name: str, arguments: Sequence[str], folder: Path | None) -> None:
         # by the launcher, so that nothing is left behind even when the tests themselves are killed
-        command = [sys.executable, "-m", "scenarios.launch", str(os.getpid()), MODULES[name], *arguments]
+        command = [sys.executable, "-m", "scenarios.processes.launch", str(os.getpid()), MODULES[name], *arguments]
         self._process = subprocess.Popen(
             command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=folder
         )

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from scenarios.processes import free_tcp_endpoint, free_udp_port
+from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from tests.integration.programs import Programs
 
 pytestmark = [pytest.mark.wire, pytest.mark.alone]

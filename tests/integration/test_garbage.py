@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from link.keys import Keys
 from link.mavlink.transports import Transport, open_transport
-from link.zenoh_session import ZenohOptions, ZenohSession, open_session
-from scenarios.outcome import LANDED
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohOptions, ZenohSession, open_session
+from scenarios.recordings.result import LANDED
 from scenarios.scoring.score import Tier
 from tests.integration.observer import Observer
 from tests.integration.programs import Program, Programs, until

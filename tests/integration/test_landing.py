@@ -2,8 +2,8 @@
 
 import pytest
 
-from scenarios.outcome import LANDED
-from scenarios.processes import free_tcp_endpoint, free_udp_port
+from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
+from scenarios.recordings.result import LANDED
 from tests.integration.observer import observer
 from tests.integration.programs import Programs
 

@@ -3,8 +3,8 @@
 import pytest
 
 from companion.situation.phases import Phase
-from link.frames import rotate
-from scenarios.processes import free_tcp_endpoint, free_udp_port
+from link.frames.rotations import rotate
+from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from tests.integration.observer import Observer, observer
 from tests.integration.programs import Programs
 

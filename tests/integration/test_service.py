@@ -13,7 +13,7 @@ from typer.main import get_command
 
 from companion.__main__ import app as companion_app
 from scenarios.ground_vehicle import app as vehicle_app
-from scenarios.processes import free_tcp_endpoint, free_udp_port
+from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from tests.integration.programs import DEADLINE_S, Programs
 
 FOLDER = Path(__file__).parents[2] / "docs" / "systemd"
@@ -53,7 +53,7 @@ def test_the_companion_keeps_machine_code_where_its_user_may_write_and_its_insta
     assert Path(folder).parent == Path("/var/lib") / value(unit, "StateDirectory")
     installation = (FOLDER.parent / "safety.md").read_text(encoding="utf-8")
     user = value(unit, "User")
-    assert f"sudo -u {user} env NUMBA_CACHE_DIR={folder} .venv/bin/python -m scenarios.warm_up" in installation
+    assert f"sudo -u {user} env NUMBA_CACHE_DIR={folder} .venv/bin/python -m scenarios.lockstep.warm_up" in installation
 
 
 @pytest.mark.wire

@@ -11,8 +11,8 @@ import companion.__main__
 import scenarios.__main__
 import scenarios.ground_vehicle
 import sim_autopilot.__main__
-from link.cli import run_app
-from scenarios.processes import MODULES
+from link.program.cli import run_app
+from scenarios.processes.programs import MODULES
 from tests.integration.programs import Programs
 
 APPS = {

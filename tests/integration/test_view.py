@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Error, Page, sync_playwright
 from playwright.sync_api import TimeoutError as TooLateError
 
-from scenarios.processes import free_tcp_endpoint, free_udp_port
+from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from tests.integration.programs import DEADLINE_S, Program, Programs, until
 
 CHROMIUM = shutil.which("chromium")

@@ -9,7 +9,7 @@ import pytest
 from companion.autopilots.driver import FrameMoves
 from companion.landing.memory import Places, StepMemory
 from link.messages import BodyTruth
-from link.records import maker, replace
+from link.records import replace
 
 TRUTH = BodyTruth(
     t_ns=7,
@@ -55,22 +55,3 @@ def test_unknown_field_is_refused() -> None:
 def test_record_that_is_checked_when_it_is_made_is_refused() -> None:
     with pytest.raises(TypeError, match=r"dataclasses\.replace"):
         replace(Checked(width_m=1.0, height_m=2.0), width_m=-1.0)
-
-
-def test_made_record_is_that_of_its_constructor() -> None:
-    made = maker(BodyTruth)(**{field.name: getattr(TRUTH, field.name) for field in dataclasses.fields(TRUTH)})
-    assert made == TRUTH
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        made.t_ns = 8  # type: ignore[misc]  # (that is what is tried)
-
-
-def test_record_is_not_made_without_all_its_fields_nor_with_others() -> None:
-    wrong: dict[str, Any]
-    for wrong in ({"t_ns": 7}, dataclasses.asdict(TRUTH) | {"speed": 1.0}):
-        with pytest.raises(TypeError, match="made"):
-            maker(BodyTruth)(**wrong)
-
-
-def test_maker_of_a_record_that_is_checked_when_it_is_made_is_refused() -> None:
-    with pytest.raises(TypeError, match=r"dataclasses\.replace"):
-        maker(Checked)

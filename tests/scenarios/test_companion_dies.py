@@ -3,7 +3,7 @@
 import pytest
 
 from companion.situation.phases import Phase
-from scenarios.catalogue import load_scenario
+from scenarios.catalogue.catalogue import load_scenario
 from scenarios.faults.flight import FaultFlight
 
 pytestmark = pytest.mark.slow

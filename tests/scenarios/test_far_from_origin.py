@@ -2,14 +2,14 @@
 
 import pytest
 
-from link.geodesy import geodetic_from_enu
-from link.local_frame import local_from_geodetic
-from scenarios.catalogue import load_scenario
+from link.frames.geodesy import geodetic_from_enu
+from link.frames.local_frame import local_from_geodetic
+from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import Scenario
-from scenarios.lockstep import Lockstep
-from scenarios.outcome import result_table
+from scenarios.lockstep.lockstep import Lockstep
+from scenarios.recordings.result import result_table
+from scenarios.simulation.vehicle_node import datum_of
 from scenarios.tracks.config import WaypointsTrack
-from scenarios.vehicle_node import datum_of
 
 _EAST_M, _NORTH_M = 900.0, -450.0
 

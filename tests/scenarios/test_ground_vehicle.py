@@ -10,15 +10,14 @@ from contextlib import contextmanager
 
 import pytest
 
-from link import cdr, json_payloads
-from link.clock import ClockTick
-from link.geodesy import enu_from_geodetic
-from link.keys import Keys
+from link.frames.geodesy import enu_from_geodetic
 from link.messages import BodyTruth, Fix, FixVelocity, PadGeometry, PadSighting, VehicleImu
-from link.publication import Publication
-from link.zenoh_session import Sample, ZenohOptions, ZenohSession, open_session
-from scenarios.catalogue import load_scenario
-from scenarios.vehicle_node import VehicleNode, datum_of, departing_at_once
+from link.payloads import cdr, json_messages
+from link.program.clock import ClockTick
+from link.zenoh.keys import Keys, Publication
+from link.zenoh.session import Sample, ZenohOptions, ZenohSession, open_session
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.simulation.vehicle_node import VehicleNode, datum_of, departing_at_once
 
 START_NS = 1_800_000_000_000_000_000
 STEP_NS = 10_000_000
@@ -145,7 +144,7 @@ def test_program_publishes_shows_that_it_lives_and_tells_its_pad() -> None:
         until(session, lambda: bool(truths.take()))
         assert alive.alive
         pads = session.query(KEYS.pad, b"", timeout_s=5.0)
-        assert [json_payloads.decode(PadGeometry, pad) for pad in pads] == [load_scenario("straight_5").vehicle.pad]
+        assert [json_messages.decode(PadGeometry, pad) for pad in pads] == [load_scenario("straight_5").vehicle.pad]
         stamps_ns = [cdr.decode(Fix, sample.payload).t_ns for sample in received]
         assert abs(stamps_ns[-1] * 1e-9 - time.time()) < 5.0
         process.send_signal(signal.SIGINT)

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 import pytest
 from numba.core.dispatcher import Dispatcher
 
-from scenarios.catalogue import load_scenario
-from scenarios.lockstep import Lockstep
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.lockstep.lockstep import Lockstep
 
 
 def kernels_of_the_companion() -> Iterator[Dispatcher]:

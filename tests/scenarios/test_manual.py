@@ -9,16 +9,16 @@ import pytest
 
 from companion.config.companion import CompanionConfig
 from companion.situation.phases import TRANSITIONS, Phase
-from link.cdr import ROS_TYPES
-from link.toml_config import StrictModel
-from scenarios.catalogue import list_scenarios, load_scenario
+from link.payloads.cdr import ROS_TYPES
+from link.program.toml_config import StrictModel
+from scenarios.catalogue.catalogue import list_scenarios, load_scenario
 from scenarios.config import Scenario
-from scenarios.lockstep import Lockstep
+from scenarios.lockstep.lockstep import Lockstep
 from scenarios.manual.commands import PROGRAMS, helps
 from scenarios.manual.pages import PAGES
 from scenarios.manual.phase_chart import FROM_ANYWHERE, PLACES, arrows, phase_chart
 from scenarios.manual.settings import keys_of, tables_of
-from scenarios.outcome import scored
+from scenarios.recordings.result import score_run
 from scenarios.scoring.score import Tier
 from sim_autopilot.config import SimAutopilotConfig
 from tests.scenarios.presets import list_presets
@@ -105,7 +105,7 @@ def test_example_scenario_lands(name: str, tmp_path: Path) -> None:
     scenario = load_scenario(str(tmp_path / name))
     run = Lockstep(scenario, 1)
     run.run()
-    assert scored(scenario, 1, run.recording).tier is Tier.S3
+    assert score_run(scenario, 1, run.recording).tier is Tier.S3
 
 
 @pytest.mark.slow

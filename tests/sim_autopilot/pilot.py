@@ -5,7 +5,7 @@ from math import nan, radians
 
 import numpy as np
 
-from link.geodesy import Datum
+from link.frames.geodesy import Datum
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.data import Array, Deck

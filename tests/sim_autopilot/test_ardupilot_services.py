@@ -3,7 +3,7 @@ from math import cos, degrees, hypot, radians, sin
 
 import pytest
 
-from link.frames import roll_pitch_yaw_of
+from link.frames.rotations import roll_pitch_yaw_of
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.firmware.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.ardupilot_failsafes import failsafe_settings

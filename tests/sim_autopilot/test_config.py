@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from link.errors import UserError
-from link.toml_config import dump_toml, load_config
+from link.program.toml_config import dump_toml, load_config
 from sim_autopilot.config import SimAutopilotConfig, autopilot_config, wind_model
 from sim_autopilot.control.kinds import ControllerKind
 

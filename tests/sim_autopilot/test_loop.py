@@ -11,14 +11,14 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 
-from link import cdr, json_payloads
-from link.clock import ClockTick
-from link.keys import Keys
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.transports import Transport, open_transport
 from link.messages import BodyTruth, PadGeometry, RotorTruth
-from link.zenoh_session import Inbox, ZenohOptions, ZenohSession, open_session
+from link.payloads import cdr, json_messages
+from link.program.clock import ClockTick
+from link.zenoh.keys import Keys
+from link.zenoh.session import Inbox, ZenohOptions, ZenohSession, open_session
 from sim_autopilot.vehicle_view import VehicleView
 from tests.sim_autopilot.pilot import arm, set_mode, setpoint
 
@@ -171,7 +171,7 @@ def test_the_deck_has_the_vehicles_motion_and_its_pads_height(companion: Compani
         velocity_flu_m_s=(5.0, 0.0, 0.0),
         angular_velocity_flu_rad_s=(0.0, 0.0, 0.1),
     )
-    companion.zenoh.serve(KEYS.pad, lambda _query: json_payloads.encode(PAD))
+    companion.zenoh.serve(KEYS.pad, lambda _query: json_messages.encode(PAD))
     endpoint = companion.arguments[-1]
     with open_session(ZenohOptions(connect=(endpoint,))) as session:
         view, t_ns = VehicleView(session, KEYS, (4.2, 1.8), 1.5), truth.t_ns
@@ -195,7 +195,7 @@ def test_the_deck_has_the_vehicles_motion_and_its_pads_height(companion: Compani
 
 def test_help_loads_no_numerics() -> None:
     program = (
-        "import sys; from link.cli import run_app; from sim_autopilot.__main__ import app; "
+        "import sys; from link.program.cli import run_app; from sim_autopilot.__main__ import app; "
         "run_app('sim-autopilot', app, ['--help']); print({'numpy', 'numba', 'zenoh', 'pymavlink'} & set(sys.modules))"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

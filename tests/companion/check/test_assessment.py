@@ -13,7 +13,7 @@ from companion.check.observation import AutopilotFacts, VehicleFacts
 from companion.config.companion import CompanionConfig
 from link.errors import UserError
 from link.mavlink.dialect import mavlink
-from link.toml_config import validated
+from link.program.toml_config import validated
 from tests.companion.check.test_rules import ARDUCOPTER_46, PX4_DEFAULTS
 
 GOOD = AutopilotFacts(

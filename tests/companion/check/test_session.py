@@ -11,15 +11,15 @@ from companion.check.observation import VehicleFacts
 from companion.check.reading import Reader
 from companion.check.session import CheckSession, open_check
 from companion.config.landing import ChaseConfig
-from link import cdr, json_payloads
 from link.errors import UserError
-from link.inbox import Inbox, Sample
-from link.keys import Keys
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
 from link.mavlink.session import MavlinkSession
 from link.mavlink.signing import Signing
 from link.messages import Fix, PadGeometry
+from link.payloads import cdr, json_messages
+from link.zenoh.inbox import Inbox, Sample
+from link.zenoh.keys import Keys
 
 KEYS = Keys()
 KEY = bytes(range(32))
@@ -65,7 +65,7 @@ class World:
         assert timeout_s > 0.0
         inbox = Inbox(capacity=1, wake_up=WAKE_UP)
         if self._heard_from is not None and self._asked >= self._heard_from:
-            inbox.put(Sample(key, json_payloads.encode(PAD), 0))
+            inbox.put(Sample(key, json_messages.encode(PAD), 0))
         self._asked += 1
         return inbox
 

@@ -9,10 +9,10 @@ from rosbags.typesys.stores import ros2_humble as ros
 from companion.check.vehicle_reading import VehicleReader
 from companion.config.landing import ChaseConfig
 from companion.runtime.pad_question import PadQuestion
-from link import cdr
-from link.frames import quaternion_from_yaw
-from link.inbox import Inbox
+from link.frames.rotations import quaternion_from_yaw
 from link.messages import Fix, FixVelocity, VehicleImu
+from link.payloads import cdr
+from link.zenoh.inbox import Inbox
 
 START_NS = 1_795_000_000_000_000_000
 PERIOD_NS = 100_000_000

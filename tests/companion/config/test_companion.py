@@ -6,7 +6,7 @@ import pytest
 
 from companion.config.companion import CompanionConfig
 from link.errors import UserError
-from link.toml_config import dump_toml, load_config
+from link.program.toml_config import dump_toml, load_config
 
 
 def _file(folder: Path, text: str) -> Path:

@@ -9,7 +9,7 @@ from companion.config.companion import CompanionConfig
 from companion.config.landing import LandingStyle
 from companion.landing.step_data import StepOutputs
 from companion.situation.phases import Phase
-from link.frames import yaw_of
+from link.frames.rotations import yaw_of
 from tests.companion.world import CONFIG, PAD_HEIGHT_M, UTC_AHEAD_NS, Flight
 
 DIRECT = CONFIG.model_copy(update={"landing": LandingStyle.DIRECT})

@@ -10,8 +10,8 @@ from companion.core.reasons import Cause, Reason
 from companion.landing.memory import StepMemory
 from companion.landing.status import landing_status
 from companion.situation.phases import Phase
-from link import json_payloads
 from link.messages import LandingStatus
+from link.payloads import json_messages as json_payloads
 from tests.companion.facts import CONFIG, changed, drone_at, pad_at, situation
 
 MEMORY = changed(StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED))

@@ -6,9 +6,9 @@ import pytest
 from companion.core.data import Forecast
 from companion.planning.guidance import Trajectory
 from companion.recording.messages import forecast_path_message, plan_path_message
-from link import cdr
-from link.keys import Keys
 from link.messages import Plan
+from link.payloads import cdr
+from link.zenoh.keys import Keys
 
 T_NS = 1_767_225_600_000_000_007
 OFFSET_S = np.array([0.0, 0.1, 0.3, 0.6, 1.0])

@@ -10,8 +10,8 @@ from companion.runtime import command_desk
 from companion.runtime.command_desk import CommandDesk
 from companion.runtime.node import CompanionNode
 from companion.runtime.options import Timings
-from link import json_payloads
 from link.messages import Command, CommandReply
+from link.payloads import json_messages as json_payloads
 from tests.companion.peer import Setup
 
 ACCEPTED = CommandReply(accepted=True, reason="")

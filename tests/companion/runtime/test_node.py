@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from companion.config.companion import CompanionConfig
 from companion.situation.phases import Phase
 from companion.vehicle.delay_buffer import DelayBuffer
-from link import cdr, json_payloads
 from link.errors import UserError
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Command, Fix, FixVelocity, LandingStatus, PadGeometry, PadSighting, Plan, VehicleImu
+from link.payloads import cdr, json_messages
 from tests.companion.facts import changed
 from tests.companion.peer import KEYS, OFFBOARD, POSITION, FakePx4, Setup
 from tests.link.mavlink.fake_autopilot import S
@@ -168,7 +168,7 @@ def test_status_and_plan_are_published_and_can_be_read() -> None:
     statuses = [one for one in published if one.key == KEYS.landing_status]
     plans = [one for one in published if one.key == KEYS.landing_plan]
     assert 8 <= len(statuses) <= 12
-    status = json_payloads.decode(LandingStatus, statuses[-1].payload)
+    status = json_messages.decode(LandingStatus, statuses[-1].payload)
     assert status.phase == "takeoff"
     assert abs(status.stamp_ns - setup.utc_ns) < S
     assert len(cdr.decode(Plan, plans[-1].payload).poses) > 3

@@ -10,10 +10,10 @@ from rich.console import Console
 from companion.runtime import live_state
 from companion.runtime.live_state import LiveState
 from companion.runtime.terminal import Terminal
-from link.keys import Keys
-from link.ros_records import fields_of
-from link.zenoh_session import ZenohOptions, ZenohSession, open_session
-from scenarios.processes import free_tcp_endpoint
+from link.payloads.decklander_msgs import fields_of
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohOptions, ZenohSession, open_session
+from scenarios.processes.programs import free_tcp_endpoint
 from tests.companion.peer import Setup
 
 KEYS = Keys()

@@ -4,9 +4,9 @@ from types import SimpleNamespace
 from typing import Any
 
 from companion.runtime.pad_question import PadQuestion
-from link import json_payloads
-from link.inbox import Inbox, Sample
 from link.messages import LEVER_MAX_M, PadGeometry
+from link.payloads import json_messages
+from link.zenoh.inbox import Inbox, Sample
 from scenarios.vehicle_sources.pad import pad_geometry
 
 PAD = PadGeometry(size_m=(1.5, 1.2), height_m=1.6, antenna_to_pad_m=(LEVER_MAX_M, -0.1, 0.05))
@@ -41,7 +41,7 @@ def polled(question: PadQuestion, until_s: float) -> list[PadGeometry]:
 
 
 def test_lost_questions_are_asked_again_until_there_is_an_answer_and_no_more() -> None:
-    vehicle = Vehicle(None, None, json_payloads.encode(PAD))
+    vehicle = Vehicle(None, None, json_messages.encode(PAD))
     question = PadQuestion(vehicle, KEY)
     assert polled(question, 1.95) == []
     assert not question.is_answered
@@ -52,7 +52,7 @@ def test_lost_questions_are_asked_again_until_there_is_an_answer_and_no_more() -
 
 def test_vehicle_that_has_come_back_is_asked_anew() -> None:
     other = pad_geometry(None, size_m=(1.0, 1.0), height_m=0.5, antenna_to_pad_m=(0.0, 0.0, 0.0))
-    question = PadQuestion(Vehicle(json_payloads.encode(PAD), json_payloads.encode(other)), KEY)
+    question = PadQuestion(Vehicle(json_messages.encode(PAD), json_messages.encode(other)), KEY)
     assert polled(question, 2.0) == [PAD]
     question.ask_anew()
     assert not question.is_answered
@@ -67,7 +67,7 @@ def test_nobody_is_asked_while_there_is_nobody() -> None:
 
 
 def test_pad_further_from_the_antenna_than_any_vehicle_is_long_is_refused_with_the_reason() -> None:
-    question = PadQuestion(Vehicle(TOO_FAR, b"nonsense", json_payloads.encode(PAD)), KEY)
+    question = PadQuestion(Vehicle(TOO_FAR, b"nonsense", json_messages.encode(PAD)), KEY)
     assert polled(question, 0.95) == []
     assert question.bad_answers == 1
     assert question.refused_why is not None

@@ -20,13 +20,13 @@ from companion.vehicle.inputs import (
     sighting_measurement,
     velocity_measurements,
 )
-from link import cdr
-from link.frames import quaternion_from_roll_pitch_yaw
-from link.geodesy import geodetic_from_enu
-from link.keys import Keys
-from link.local_frame import LocalFrame, Projection, geodetic_from_local
+from link.frames.geodesy import geodetic_from_enu
+from link.frames.local_frame import LocalFrame, Projection, geodetic_from_local
+from link.frames.rotations import quaternion_from_roll_pitch_yaw
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, Vector3, VehicleImu
-from link.payload_checks import PayloadError
+from link.payloads import cdr
+from link.payloads.checks import PayloadError
+from link.zenoh.keys import Keys
 from tests.companion.world import FRAME, ORIGIN, START_NS, own_state
 
 COVARIANCE: Matrix3 = (0.04, 0.01, 0.0, 0.01, 0.09, 0.0, 0.0, 0.0, 0.25)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from companion.core.data import Array, Forecast
 from companion.vehicle.pad import HEADING_UNKNOWN, NOT_DESCRIBED, pad_path
-from link.frames import quaternion_from_yaw, rotate
+from link.frames.rotations import quaternion_from_yaw, rotate
 from link.messages import PadGeometry, Vector3
 from tests.companion.world import START_NS
 

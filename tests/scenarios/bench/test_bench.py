@@ -8,15 +8,15 @@ import pytest
 
 import companion.runtime.node
 import sim_autopilot.node
-from link.cli import run_app
+from link.program.cli import run_app
 from scenarios.__main__ import app
 from scenarios.bench.bench import Budget, text_lines
 from scenarios.bench.recording import recording_cost
-from scenarios.catalogue import load_scenario
-from scenarios.lockstep import Lockstep
-from scenarios.processes import MODULES
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.lockstep.lockstep import Lockstep
+from scenarios.lockstep.stopwatch import quantiles_ms, ratio_of, timed_steps
+from scenarios.processes.programs import MODULES
 from scenarios.recordings.replay import read_flights, replay
-from scenarios.stopwatch import quantiles_ms, ratio_of, timed_steps
 
 BUDGET = Budget(path=("a", "b"), label="a figure", unit="ms", limit=5.0)
 

@@ -4,7 +4,7 @@ from collections import Counter
 
 import pytest
 
-from link.frames import rotate
+from link.frames.rotations import rotate
 from link.messages import Vector3
 from scenarios.bench.shares import sampled_parts, shares_of
 

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from link.cli import make_app, run_app
+from link.program.cli import make_app, run_app
 from scenarios.commands import campaign as campaign_commands
 from scenarios.commands import report as report_commands
 

@@ -11,11 +11,11 @@ from companion.situation.phases import Phase
 from link.errors import UserError
 from scenarios.campaigns import landing_task
 from scenarios.campaigns.landing_task import Flights, Task, row_of, wave_offs
-from scenarios.catalogue import load_scenario
-from scenarios.recording import Recording
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.recordings.recording import Recording
+from scenarios.recordings.versions import sources, versions
 from scenarios.scoring.score import Score, Tier
 from scenarios.scoring.touchdown import Touchdown
-from scenarios.versions import sources, versions
 
 TASK = Task(cell="straight_5", seed=7)
 TABLE = MappingProxyType(

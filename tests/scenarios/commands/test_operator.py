@@ -5,16 +5,16 @@ import typer
 from typer.main import get_command
 
 from companion.__main__ import app as companion_app
-from link import json_payloads
 from link.errors import UserError
-from link.keys import Keys
 from link.messages import Command, CommandReply
-from link.zenoh_session import ZenohOptions, open_session
+from link.payloads import json_messages
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohOptions, open_session
 from scenarios.__main__ import app as scenarios_app
 from scenarios.commands import operator as operator_command
 from scenarios.commands.operator import send_command
 from scenarios.ground_vehicle import app as vehicle_app
-from scenarios.processes import free_tcp_endpoint
+from scenarios.processes.programs import free_tcp_endpoint
 from sim_autopilot.__main__ import app as autopilot_app
 
 KEYS = Keys()
@@ -54,13 +54,13 @@ def test_operator_who_listens_reaches_a_companion_that_connects() -> None:
 
     def answer(payload: bytes) -> bytes:
         asked.append(payload)
-        return json_payloads.encode(CommandReply(accepted=False, reason="too windy"))
+        return json_messages.encode(CommandReply(accepted=False, reason="too windy"))
 
     with open_session(ZenohOptions(connect=("tcp/127.0.0.1:1", endpoint))) as companion:
         companion.serve(KEYS.landing_command, answer)
         reply = send_command(Command.HOLD, KEYS, ZenohOptions(listen=(endpoint,)))
     assert reply == CommandReply(accepted=False, reason="too windy")
-    assert json_payloads.decode(Command, asked[-1]) is Command.HOLD
+    assert json_messages.decode(Command, asked[-1]) is Command.HOLD
 
 
 def test_operator_whom_nobody_answers_is_told_where_was_looked(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from link.frames import rotate
-from link.geodesy import Datum, enu_from_geodetic
+from link.frames.geodesy import Datum, enu_from_geodetic
+from link.frames.rotations import rotate
 from link.mavlink.dialect import mavlink
 from scenarios.firmware.ship import ShipReport, ship_at, ship_report
 from scenarios.firmware.truth import body_truth, motors_armed, rotor_truth, true_pose

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from link.geodesy import enu_from_geodetic
+from link.frames.geodesy import enu_from_geodetic
 from link.mavlink.dialect import Message, mavlink
 from scenarios.firmware.watch import FirmwareWatch
 from tests.link.mavlink.fake_autopilot import MS, START_NS, UTC_AHEAD_NS, FakeAutopilot, S

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from link.keys import Keys
-from link.mcap_writer import McapRecording
 from link.messages import BodyTruth
-from link.ros_records import RosMessage
-from scenarios.catalogue import load_scenario
-from scenarios.recording import Recording
+from link.payloads.decklander_msgs import RosMessage
+from link.recording.mcap_writer import McapRecording
+from link.zenoh.keys import Keys
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.recordings.recording import Recording
 from scenarios.recordings.truth_file import TruthFile, read_truth
 
 

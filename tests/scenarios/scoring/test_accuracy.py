@@ -8,12 +8,12 @@ import pytest
 from scipy import stats
 
 from companion.core.data import VehicleEstimate
-from link.frames import quaternion_from_yaw
-from link.geodesy import Datum, geodetic_from_enu
-from link.local_frame import LocalFrame, Projection
+from link.frames.geodesy import Datum, geodetic_from_enu
+from link.frames.local_frame import LocalFrame, Projection
+from link.frames.rotations import quaternion_from_yaw
 from scenarios.campaigns.intervals import mean_band
 from scenarios.scoring.accuracy import EstimateError, Nis, Truth, accuracy_table, antenna_truth, estimate_error
-from scenarios.vehicle import VehicleState
+from scenarios.simulation.vehicle import VehicleState
 from sim_autopilot.local_places import Origin
 from sim_autopilot.memory import initial_memory
 from tests.sim_autopilot.pilot import DATUM, START_NS, px4

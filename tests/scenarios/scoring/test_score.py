@@ -4,9 +4,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from link.frames import conjugate, quaternion_from_roll_pitch_yaw, rotate
+from link.frames.rotations import conjugate, quaternion_from_roll_pitch_yaw, rotate
 from link.messages import BodyTruth, RotorTruth, Vector3
-from scenarios.catalogue import load_scenario
+from scenarios.catalogue.catalogue import load_scenario
 from scenarios.scoring.score import Score, Tier, score
 from scenarios.scoring.touchdown import ScoreRules, rules_of
 from sim_autopilot.physics.contact import BLADE_REACH_M, CONTACT_POINTS_FLU_M

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scenarios.catalogue import load_scenario
-from scenarios.lockstep import Lockstep
-from scenarios.outcome import LANDED, scored
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.lockstep.lockstep import Lockstep
+from scenarios.recordings.result import LANDED, score_run
 from scenarios.source_report.cases import CASES, STANDS_S
 from scenarios.source_report.figures import draw_report
 from scenarios.source_report.flight import ReportFlight, ReportTask, fly, row_of
@@ -90,7 +90,7 @@ def test_each_selectable_part_lands_on_a_car_at_5_m_s(system: str) -> None:
     scenario = load_scenario(f"straight_5+system={system}")
     lockstep = Lockstep(scenario, 1)
     lockstep.run()
-    assert scored(scenario, 1, lockstep.recording).tier in LANDED
+    assert score_run(scenario, 1, lockstep.recording).tier in LANDED
 
 
 def straight_flight(distance_m: list[float], *, t_s: list[float], noise_m: float = 0.0) -> ReportFlight:

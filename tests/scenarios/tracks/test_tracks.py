@@ -4,7 +4,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from scenarios.catalogue import list_scenarios, load_scenario
+from scenarios.catalogue.catalogue import list_scenarios, load_scenario
 from scenarios.tracks.config import MovingTrack, RandomTrack
 from scenarios.tracks.course import Course
 from scenarios.tracks.profiles import profile_of, waypoint_steps

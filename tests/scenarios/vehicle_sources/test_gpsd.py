@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from link.frames import yaw_of
+from link.frames.rotations import yaw_of
 from link.messages import Fix, FixVelocity, VehicleImu
 from scenarios.vehicle_sources.gpsd import GpsdReceiver, utc_ns
 from tests.scenarios.vehicle_sources.sentences import ALTITUDE_M, LATITUDE_DEG, LONGITUDE_DEG, UTC_NS

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from link.frames import yaw_of
+from link.frames.rotations import yaw_of
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Fix, FixVelocity, VehicleImu

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from link.frames import yaw_of
+from link.frames.rotations import yaw_of
 from link.messages import Fix, FixVelocity, VehicleImu
 from scenarios.vehicle_sources.nmea import NmeaReceiver
 from scenarios.vehicle_sources.nmea_sentences import angle_rad, parse_sentence, time_of_day_ns

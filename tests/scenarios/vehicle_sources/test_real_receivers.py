@@ -18,13 +18,13 @@ from typing import TypeVar
 import pytest
 
 from companion.vehicle.inputs import fix_measurement, imu_measurements, velocity_measurements
-from link import cdr, json_payloads
-from link.frames import yaw_of
-from link.geodesy import Datum
-from link.keys import Keys
-from link.local_frame import LocalFrame, Projection
+from link.frames.geodesy import Datum
+from link.frames.local_frame import LocalFrame, Projection
+from link.frames.rotations import yaw_of
 from link.messages import Fix, FixVelocity, PadGeometry, VehicleImu
-from link.zenoh_session import Inbox, ZenohOptions, ZenohSession, open_session
+from link.payloads import cdr, json_messages
+from link.zenoh.keys import Keys
+from link.zenoh.session import Inbox, ZenohOptions, ZenohSession, open_session
 from tests.integration.programs import Program, Programs
 from tests.scenarios.vehicle_sources.sentences import (
     ALTITUDE_M,
@@ -160,7 +160,7 @@ def see_the_drive(car: Vehicle, line: Line) -> None:
     assert_is_the_drive(car)
     assert car.alive.alive
     (pad,) = car.session.query(KEYS.pad, b"", timeout_s=10.0)
-    assert json_payloads.decode(PadGeometry, pad) == PadGeometry(
+    assert json_messages.decode(PadGeometry, pad) == PadGeometry(
         size_m=(1.5, 1.2), height_m=1.6, antenna_to_pad_m=(0.8, -0.1, 0.05)
     )
     car.program.send(signal.SIGTERM)
@@ -238,6 +238,6 @@ def test_receivers_load_neither_simulation_nor_numerics() -> None:
     modules = ", ".join(
         f"scenarios.vehicle_sources.{name}" for name in ("loop", "pad", "channel", "nmea", "gpsd", "mavlink")
     )
-    heavy = '{"numba", "scipy", "polars", "matplotlib", "companion", "sim_autopilot", "scenarios.catalogue"}'
+    heavy = '{"numba", "scipy", "polars", "matplotlib", "companion", "sim_autopilot", "scenarios.catalogue.catalogue"}'
     script = f"import sys, scenarios.ground_vehicle, {modules}; sys.exit(bool({heavy} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", script], check=False, timeout=DEADLINE_S).returncode == 0

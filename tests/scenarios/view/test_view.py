@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from link import json_payloads
 from link.errors import UserError
-from link.frames import quaternion_from_roll_pitch_yaw, rotate
-from link.keys import Keys
+from link.frames.rotations import quaternion_from_roll_pitch_yaw, rotate
 from link.messages import BodyTruth, LandingStatus, PadGeometry, Vector3
-from link.payload_checks import PayloadError
+from link.payloads import json_messages
+from link.payloads.checks import PayloadError
+from link.zenoh.keys import Keys
 from scenarios.__main__ import app
 from scenarios.commands import view as view_commands
 from scenarios.tracks.roads import road_of
@@ -123,7 +123,7 @@ def test_bytes_that_are_no_message_are_refused_and_change_nothing(topic: str) ->
 
 def test_plan_is_forgotten_when_the_motors_are_off() -> None:
     reader, flown = StateReader(KEYS), ViewState(plan_enu_m=np.zeros((2, 3)))
-    on, off = (json_payloads.encode(status_with(armed=armed)) for armed in (True, False))
+    on, off = (json_messages.encode(status_with(armed=armed)) for armed in (True, False))
     assert reader.taken(flown, KEYS.landing_status, on).plan_enu_m is not None
     assert reader.taken(flown, KEYS.landing_status, off).plan_enu_m is None
 

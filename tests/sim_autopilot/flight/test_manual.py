@@ -3,7 +3,7 @@ from math import degrees, hypot
 
 import pytest
 
-from link.frames import roll_pitch_yaw_of
+from link.frames.rotations import roll_pitch_yaw_of
 from link.mavlink.dialect import Message, mavlink
 from tests.sim_autopilot.pilot import HOLD, OFFBOARD, POSITION, RTL, Pilot, set_mode
 

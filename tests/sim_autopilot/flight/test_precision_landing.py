@@ -3,7 +3,7 @@ from math import atan, hypot
 
 import pytest
 
-from link.frames import conjugate, frd_from_flu, rotate
+from link.frames.rotations import conjugate, frd_from_flu, rotate
 from link.mavlink.dialect import Message, mavlink
 from tests.sim_autopilot.copter import LAND, ardupilot, copter_in_the_air, mode
 from tests.sim_autopilot.pilot import Pilot

@@ -3,7 +3,7 @@ from math import cos, degrees, nan, radians, sin
 import numpy as np
 import pytest
 
-from link.frames import roll_pitch_yaw_of
+from link.frames.rotations import roll_pitch_yaw_of
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.setpoints.attitude import attitude_from_message
 from tests.sim_autopilot.pilot import OFFBOARD, POSITION_ONLY, Pilot

@@ -4,8 +4,8 @@ from math import inf, nan, pi
 import numpy as np
 import pytest
 
-from link.geodesy import Datum, geodetic_from_enu
-from link.local_frame import LocalFrame, Projection
+from link.frames.geodesy import Datum, geodetic_from_enu
+from link.frames.local_frame import LocalFrame, Projection
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.data import Array, Reference
 from sim_autopilot.local_places import Origin

@@ -1,0 +1,1 @@
+"""Where things are: rotations, geodetic coordinates, and the local frames of autopilots."""

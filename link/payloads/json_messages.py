@@ -1,0 +1,120 @@
+"""The messages that travel as JSON: pad geometry, commands with their replies, and the landing status.
+
+Reading is strict about types and finiteness. A command with a name too many is refused, for it might have been
+meant to change what the command does; reports may hold more than this version knows.
+"""
+
+from typing import Annotated, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from link.messages import LEVER_MAX_M, Command, CommandReply, LandingStatus, PadGeometry
+from link.payloads.checks import PayloadError
+
+__all__ = ["JSON_ENCODING", "LANDING_STATUS_SCHEMA", "PayloadError", "decode", "encode"]
+
+JSON_ENCODING = "application/json"
+
+Message = PadGeometry | Command | CommandReply | LandingStatus
+M = TypeVar("M", bound=Message)
+
+Coordinates = tuple[float, float, float]
+Count = Annotated[int, Field(ge=0)]
+Size = Annotated[float, Field(gt=0.0)]
+Lever = Annotated[float, Field(ge=-LEVER_MAX_M, le=LEVER_MAX_M)]
+
+
+class _Report(BaseModel):
+    model_config = ConfigDict(frozen=True, strict=True, allow_inf_nan=False, extra="ignore")
+
+
+class _PadGeometry(_Report):
+    size_m: tuple[Size, Size]
+    height_m: Annotated[float, Field(ge=0.0)]
+    antenna_to_pad_m: tuple[Lever, Lever, Lever]
+
+
+class _Command(_Report):
+    model_config = ConfigDict(extra="forbid")
+
+    command: Command
+
+
+class _CommandReply(_Report):
+    accepted: bool
+    reason: str
+
+
+class _LandingStatus(_Report):
+    """How the landing of the drone on the vehicle goes."""
+
+    model_config = ConfigDict(title="Landing status")
+
+    stamp_ns: Annotated[Count, Field(description="UTC of this status, ns")]
+    phase: Annotated[str, Field(description="phase of the landing")]
+    reason: Annotated[str, Field(description="why it waits, held off or aborted; empty if there is nothing to say")]
+    reason_code: Annotated[str, Field(description="the reason without its numbers, for programs")]
+    relative_position_enu_m: Annotated[
+        Coordinates | None,
+        Field(description="of the drone's feet from the pad's centre, east north up, m; null if unknown"),
+    ]
+    relative_velocity_enu_m_s: Annotated[
+        Coordinates | None, Field(description="drone against the pad, east north up, m/s; null if unknown")
+    ]
+    height_above_pad_m: Annotated[float | None, Field(description="m, of the feet; null if unknown")]
+    time_to_contact_s: Annotated[float | None, Field(description="s; null unless descending")]
+    mavlink_bad_bytes: Annotated[Count, Field(description="bytes from the autopilot that were no message")]
+    zenoh_bad_payloads: Annotated[Count, Field(description="payloads that were refused")]
+    armed: Annotated[bool, Field(description="whether the autopilot reports its motors armed")]
+    fix_age_s: Annotated[float | None, Field(description="s since the newest fix was taken; null before the first")]
+
+
+LANDING_STATUS_SCHEMA = {
+    "$schema": "https://json-schema.org/draft/2020-12/schema",
+    **_LandingStatus.model_json_schema(),
+}
+"""The JSON schema of `{ns}/{drone}/landing/status`."""
+
+_MODELS: dict[type[object], type[_Report]] = {
+    PadGeometry: _PadGeometry,
+    Command: _Command,
+    CommandReply: _CommandReply,
+    LandingStatus: _LandingStatus,
+}
+
+
+def encode(message: Message) -> bytes:
+    """Return `message` as a JSON payload.
+
+    Raises:
+        PayloadError: If it holds what must not be sent, such as a number that is not finite.
+    """
+    model = _MODELS[type(message)]
+    fields = {name: message if isinstance(message, Command) else getattr(message, name) for name in model.model_fields}
+    try:
+        return model.model_validate(fields).model_dump_json().encode()
+    except ValidationError as error:
+        raise _payload_error(error) from error
+
+
+def decode(message_type: type[M], payload: bytes) -> M:
+    """Return the message of type `message_type` that a JSON payload holds.
+
+    Raises:
+        PayloadError: If the bytes are not such a message.
+    """
+    try:
+        model = _MODELS[message_type].model_validate_json(payload)
+    except ValidationError as error:
+        raise _payload_error(error) from error
+    fields = {name: getattr(model, name) for name in type(model).model_fields}
+    message = fields["command"] if message_type is Command else message_type(**fields)
+    if not isinstance(message, message_type):
+        raise TypeError(f"the model of {message_type.__name__} gave a {type(message).__name__}")
+    return message
+
+
+def _payload_error(error: ValidationError) -> PayloadError:
+    first = error.errors(include_url=False, include_input=False)[0]
+    where = ".".join(str(part) for part in first["loc"])
+    return PayloadError(f"{where}: {first['msg']}" if where else first["msg"])

@@ -1,0 +1,216 @@
+"""Configuration in TOML: read once, checked against a model, printed back; mistakes name the file and the key."""
+
+import difflib
+import json
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any, TypeVar, get_args
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
+
+from link.errors import UserError
+
+Location = tuple[int | str, ...]
+Fields = Mapping[str, FieldInfo]
+
+Positive = Annotated[float, Field(gt=0.0, le=1e4)]
+NotNegative = Annotated[float, Field(ge=0.0, le=1e4)]
+"""Lengths, times, speeds and their kin: what is beyond the bound was meant in another unit."""
+
+_LINE_MAX = 200  # characters of what is said about a file
+_SOURCE_MAX, _VALUE_MAX = 100, 40  # of them, for the file's name and for a value
+_CUT = "..."
+_BOUNDS = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most"}
+
+
+class StrictModel(BaseModel):
+    """A table of a configuration: no unknown keys, no infinite numbers, never changed after it was read.
+
+    Nothing is converted: neither a text nor true is a number. A whole number is a number.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False, validate_default=True)
+
+
+Model = TypeVar("Model", bound=StrictModel)
+
+
+def load_config(path: Path | None, model: type[Model], overrides: Mapping[str, Any] | None = None) -> Model:
+    """Return the configuration in a file.
+
+    Args:
+        path: of the TOML file; None is an empty one.
+        model: what it must fit.
+        overrides: laid over the file's values, table by table; from the command line.
+
+    Raises:
+        UserError: the file cannot be read, is no TOML, or a key or value does not fit.
+    """
+    table = {} if path is None else read_toml(path)
+    above = overrides or {}
+    source = "the defaults" if path is None else str(path)
+    return _checked(model, merged(table, above), lambda location: "command line" if _is_in(location, above) else source)
+
+
+def validated(model: type[Model], table: Mapping[str, Any], *, source: str) -> Model:
+    """Return `table` as a `model`.
+
+    Raises:
+        UserError: with `source`, the first key that does not fit, its value and what would.
+    """
+    return _checked(model, table, lambda _: source)
+
+
+def merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
+    """Return `below` with the values of `above` laid over it, table by table; None leaves what is below."""
+    both = dict(below)
+    for key, value in above.items():
+        if value is None:
+            continue
+        under = both.get(key)
+        tables = isinstance(under, Mapping) and isinstance(value, Mapping)
+        both[key] = merged(under, value) if tables else value  # type: ignore[arg-type]  # both are mappings here
+    return both
+
+
+def dump_toml(model: StrictModel) -> str:
+    """Return the configuration as TOML that `load_config` reads back to the same; None values are left out."""
+    import tomli_w  # noqa: PLC0415 (only where a configuration is printed)
+
+    return tomli_w.dumps(model.model_dump(mode="json", exclude_none=True))
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Return the tables of a file.
+
+    Raises:
+        UserError: it cannot be read, or is no TOML.
+    """
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read ({error.strerror})") from None
+    except UnicodeDecodeError:
+        raise UserError(f"{path}: not UTF-8 text") from None
+    except tomllib.TOMLDecodeError as error:
+        raise UserError(f"{path}: not valid TOML ({error})") from None
+
+
+def _checked(model: type[Model], table: Mapping[str, Any], source_of: Callable[[Location], str]) -> Model:
+    try:
+        # as JSON, whose arrays and texts a strict model takes for tuples and enumerations
+        return model.model_validate_json(json.dumps(table, default=str))
+    except ValidationError as error:
+        # an unknown key goes first: misspelt, it is why another one is missing
+        details = sorted(error.errors(include_url=False), key=lambda one: one["type"] != "extra_forbidden")
+        location, fields = _place(details[0]["loc"], model)
+        raise UserError(_sentence(details[0], location, fields, source_of(location), len(details) - 1)) from None
+
+
+def _is_in(location: Location, table: Mapping[str, Any]) -> bool:
+    """Return whether the value at `location` comes from `table`."""
+    node: Any = table
+    for part in location:
+        if not isinstance(node, Mapping):
+            return True  # within a value that was given whole, such as a list
+        if node.get(str(part)) is None:
+            return False
+        node = node[str(part)]
+    return True
+
+
+def _sentence(details: ErrorDetails, location: Location, fields: Fields, source: str, further: int) -> str:
+    """Return one line of bounded length that names the file, the key, the value and what would fit."""
+    key = _key(location)
+    source = source if len(source) <= _SOURCE_MAX else _CUT + source[-_SOURCE_MAX:]
+    if details["type"] == "extra_forbidden":
+        text = f"{source}: unknown key '{key}'{_nearest(str(location[-1]), list(fields))}"
+    elif details["type"] == "missing":
+        text = f"{source}: key '{key}' is missing"
+    else:
+        field = fields.get(str(location[-1])) if location else None
+        is_ours = details["type"] == "value_error"  # a check of the model's own, beyond the range of one number
+        expected = ("" if is_ours or field is None else _range_of(field)) or _lowered(details["msg"])
+        text = f"{source}: {_given(key, details['input'])} does not fit: {expected}"
+    more = f" ({further} more like this)" if further else ""
+    return _cut(" ".join(text.split()), _LINE_MAX - len(more)) + more
+
+
+def _key(location: Location) -> str:
+    """Return a place in a file as people write it: `track.waypoints_m[3][0]`."""
+    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in location).removeprefix(".")
+
+
+def _given(key: str, value: object) -> str:
+    """Return a key with its value; a table or a list, which may be long, is named only."""
+    if not key or isinstance(value, Mapping | list | tuple):
+        return key or "it"
+    return f"{key} = {_cut(json.dumps(value, default=str), _VALUE_MAX)}"
+
+
+def _cut(text: str, length: int) -> str:
+    return text if len(text) <= length else text[: length - len(_CUT)] + _CUT
+
+
+def _lowered(message: str) -> str:
+    plain = message.removeprefix("Value error, ")
+    return plain[:1].lower() + plain[1:]
+
+
+def _range_of(field: FieldInfo) -> str:
+    """Return the range of a number in words, empty if it has none."""
+    bounds = [
+        f"{word} {getattr(limit, name)}"
+        for name, word in _BOUNDS.items()
+        for limit in field.metadata
+        if getattr(limit, name, None) is not None
+    ]
+    kind = "a whole number" if field.annotation is int else "a number"
+    return f"it must be {kind} {' and '.join(bounds)}" if bounds and field.annotation in {int, float} else ""
+
+
+def _nearest(name: str, known: list[str]) -> str:
+    """Return a hint to the nearest of the `known` names, or all of them when none is near."""
+    near = difflib.get_close_matches(name, known, n=1)
+    if near:
+        return f", did you mean '{near[0]}'?"
+    return f"; valid are {', '.join(known)}" if known else ""
+
+
+def _place(location: Location, model: type[BaseModel]) -> tuple[Location, Fields]:
+    """Return where in the file a mistake is, and the fields of the table that its last part is in.
+
+    Where a table's kind decides which model it must fit, the kind stands in pydantic's location, but not in the file.
+    """
+    kept: list[int | str] = []
+    beside: Fields = model.model_fields
+    below: Fields = beside
+    by_kind: Mapping[int | str, type[BaseModel]] = {}
+    for part in location:
+        if part in by_kind:
+            below, by_kind = by_kind[part].model_fields, {}
+            continue
+        kept.append(part)
+        beside = below
+        field = beside.get(part) if isinstance(part, str) else None
+        if field is not None:
+            models = list(_models_in(field.annotation))
+            below, by_kind = (models[0].model_fields if models else {}), _by_kind(models, field.discriminator)
+    return tuple(kept), beside
+
+
+def _by_kind(models: Sequence[type[BaseModel]], discriminator: object) -> Mapping[int | str, type[BaseModel]]:
+    """Return which model each value of the `discriminator`, a key of all of them, stands for."""
+    if not isinstance(discriminator, str):
+        return {}
+    return {kind: model for model in models for kind in get_args(model.model_fields[discriminator].annotation)}
+
+
+def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for argument in get_args(annotation):
+        yield from _models_in(argument)

@@ -1,0 +1,1 @@
+"""The scenarios by name, as TOML files, and how they are loaded."""

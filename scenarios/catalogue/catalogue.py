@@ -1,0 +1,155 @@
+"""The scenarios by name: TOML files in `scenarios/catalogue`, one per track, and presets of what goes with it.
+
+A name is a track and its speed rounded down (`straight_5`), perhaps with presets (`straight_5+sensors=nominal`).
+A file of one's own has the same keys, perhaps with presets behind its name as well (`own.toml+firmware=px4`); `base`
+names a scenario to start from. A section is a preset's name, or a
+table of values, in which `preset` names what the values change.
+"""
+
+import difflib
+import math
+import tomllib
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any
+
+from link.errors import UserError
+from link.program.toml_config import merged, read_toml, validated
+from scenarios.catalogue.placement import keep_clear_of_vehicle
+from scenarios.config import Scenario
+
+Table = dict[str, Any]
+_DEFAULT_PRESETS = {"sensors": "rtk", "wind": "calm", "link": "ideal", "vehicle": "car", "system": "default"}
+_PLAIN_OPTIONS = ("firmware", "start")
+_SUFFIX = ".toml"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Entry:
+    """A scenario of the catalogue in one line."""
+
+    name: str
+    description: str
+
+
+def list_scenarios() -> list[Entry]:
+    """Return the catalogue's scenarios in the order of their names."""
+    return [Entry(name=name, description=table["description"]) for name, table in sorted(_scenarios().items())]
+
+
+def load_scenario(name_or_path: str) -> Scenario:
+    """Return the scenario called `name_or_path`, or the one in that TOML file.
+
+    Raises:
+        UserError: no such scenario, preset or file, a file that does not fit, or a drone inside the vehicle.
+    """
+    # A folder may have a "+" in its name.
+    path, suffix, presets = name_or_path.rpartition(_SUFFIX)
+    name, *options = presets.split("+")
+    if suffix:
+        table = {"name": Path(path).name} | _file_table(Path(path + suffix + name))
+        table["name"] = "+".join((table["name"], *options))
+    else:
+        table = _named(name) | {"name": name_or_path}
+    for option in options:
+        table |= _option(option, name_or_path)
+    return keep_clear_of_vehicle(validated(Scenario, _resolved(table, name_or_path), source=name_or_path))
+
+
+def _option(option: str, whole: str) -> Table:
+    section, equals, preset = option.partition("=")
+    if not equals or section not in {*_DEFAULT_PRESETS, *_PLAIN_OPTIONS}:
+        raise UserError(
+            f"{whole}: '{option}' is none of {', '.join((*_DEFAULT_PRESETS, *_PLAIN_OPTIONS))} with =PRESET"
+        )
+    return {section: preset}
+
+
+def _named(name: str, place: str = "") -> Table:
+    """Return the catalogue's table called `name`; `place` is where the name stands, for the message."""
+    try:
+        return _scenarios()[name]
+    except KeyError:
+        raise _unknown("scenario", name, list(_scenarios()), "; `scenarios list` shows all", place) from None
+
+
+def _unknown(what: str, name: str, known: list[str], hint: str = "", place: str = "") -> UserError:
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
+    return UserError(f"{place}no {what} is called '{name}', the nearest is '{near[0]}'{hint}")
+
+
+@cache
+def _scenarios() -> dict[str, Table]:
+    """Return every scenario of the catalogue as its unresolved table, by name."""
+    tables = {
+        file.name.removesuffix(".toml"): _read(file) for file in _folder().iterdir() if file.name.endswith(".toml")
+    }
+    found: dict[str, Table] = {}
+    for track, table in tables.items():
+        whole = merged(tables[table["base"]], table) if "base" in table else table
+        found |= _at_speeds(track, {key: value for key, value in whole.items() if key != "base"})
+    return found
+
+
+def _at_speeds(track: str, table: Table) -> dict[str, Table]:
+    """Return the scenarios of one track, one for each of its speeds."""
+    speeds_m_s = table.pop("speeds_m_s", None)
+    if speeds_m_s is None:
+        return {track: table}
+    return {
+        f"{track}_{math.floor(speed_m_s)}": merged(
+            table,
+            {"description": f"{table['description']}, {speed_m_s:g} m/s", "track": {"speed_m_s": speed_m_s}},
+        )
+        for speed_m_s in speeds_m_s
+    }
+
+
+def _file_table(path: Path) -> Table:
+    """Return the table of a user's file, laid over its base."""
+    table = read_toml(path)
+    base = table.pop("base", None)
+    return table if base is None else merged(_named(str(base), f"{path}: base: "), table)
+
+
+def _resolved(table: Table, source: str) -> Table:
+    """Return `table` with the presets' values in place of their names."""
+    return table | {section: _section(section, table.get(section), source) for section in _DEFAULT_PRESETS}
+
+
+def _section(section: str, value: object, source: str) -> Table:
+    if value is None:
+        value = _DEFAULT_PRESETS[section]
+    values = dict(value) if isinstance(value, dict) else {"preset": value}
+    preset = values.pop("preset", None)
+    if preset is None:
+        return values
+    presets = _presets(section)
+    if preset not in presets:
+        raise _unknown(f"preset of {section} ({source})", str(preset), list(presets))
+    return merged(presets[preset], values)
+
+
+@cache
+def _presets(section: str) -> dict[str, Table]:
+    tables = _read(_folder() / "presets" / f"{section}.toml")
+    return {name: _on_base(table, tables) for name, table in tables.items()}
+
+
+def _on_base(table: Table, tables: Table) -> Table:
+    """Return `table` laid over the one that its `base` names."""
+    if "base" not in table:
+        return table
+    own = {key: value for key, value in table.items() if key != "base"}
+    return merged(_on_base(tables[table["base"]], tables), own)
+
+
+def _folder() -> Traversable:
+    return resources.files("scenarios") / "catalogue"
+
+
+def _read(file: Traversable) -> Table:
+    return tomllib.loads(file.read_text(encoding="utf-8"))

@@ -1,0 +1,54 @@
+"""Where the drone stands at the beginning, clear of a vehicle that begins in the same place.
+
+Frames: W is ENU about the datum; the vehicle's body is a box about the road's first point.
+"""
+
+import math
+
+from link.errors import UserError
+from link.messages import Vector3
+from scenarios.config import Scenario
+from scenarios.simulation.vehicle import VehicleMemory, VehicleState, vehicle_at
+from scenarios.simulation.vehicle_node import plan_of
+
+_DRONE_RADIUS_M = 0.5  # with its rotors
+_AHEAD_M = 3.0  # of the vehicle's front, for a drone that the wind shifts while it takes off
+_PLACES = frozenset({"drone_start_enu_m", "waiting_point_enu_m"})
+
+
+def keep_clear_of_vehicle(scenario: Scenario) -> Scenario:
+    """Return `scenario` with a drone that does not begin inside the vehicle.
+
+    Where the file names neither the drone's start nor the waiting point, both move ahead of the vehicle's front; the
+    waiting point keeps its height. A drone may begin on the roof.
+
+    Raises:
+        UserError: the file places the drone inside the vehicle.
+    """
+    vehicle = vehicle_at(VehicleMemory(), 0, plan_of(scenario, seed=0))
+    if not _is_inside(scenario.drone_start_enu_m, vehicle, scenario):
+        return scenario
+    if scenario.model_fields_set & _PLACES:
+        east_m, north_m, up_m = scenario.drone_start_enu_m
+        raise UserError(
+            f"{scenario.name}: the drone would begin inside the vehicle, at ({east_m:g}, {north_m:g}, {up_m:g}) m;"
+            " change drone_start_enu_m and waiting_point_enu_m, or where the road begins"
+        )
+    before_m = 0.5 * scenario.vehicle.length_m + _AHEAD_M
+    east_m = vehicle.position_enu_m[0] + before_m * math.cos(vehicle.yaw_rad)
+    north_m = vehicle.position_enu_m[1] + before_m * math.sin(vehicle.yaw_rad)
+    places = {
+        "drone_start_enu_m": (east_m, north_m, vehicle.position_enu_m[2]),
+        "waiting_point_enu_m": (east_m, north_m, scenario.waiting_point_enu_m[2]),
+    }
+    return scenario.model_copy(update=places)
+
+
+def _is_inside(drone_enu_m: Vector3, vehicle: VehicleState, scenario: Scenario) -> bool:
+    """Return whether a drone that stands at `drone_enu_m` is in the vehicle's box."""
+    east_m, north_m, up_m = (a - b for a, b in zip(drone_enu_m, vehicle.position_enu_m, strict=True))
+    along_m = east_m * math.cos(vehicle.yaw_rad) + north_m * math.sin(vehicle.yaw_rad)
+    aside_m = north_m * math.cos(vehicle.yaw_rad) - east_m * math.sin(vehicle.yaw_rad)
+    body = scenario.vehicle
+    over = abs(along_m) < 0.5 * body.length_m + _DRONE_RADIUS_M and abs(aside_m) < 0.5 * body.width_m + _DRONE_RADIUS_M
+    return over and up_m < body.roof_height_m

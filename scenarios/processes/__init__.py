@@ -1,0 +1,1 @@
+"""Programs and workers as processes, none of which is left behind."""

@@ -1,0 +1,98 @@
+"""Many tasks done by workers, here or on a cluster, in one loop; the death of any worker does not stop it.
+
+Who the workers are (`LocalWorkers`, `DaskWorkers`) shows neither in the results nor in what is asked of a job.
+"""
+
+from abc import ABC, abstractmethod
+from collections import Counter, deque
+from collections.abc import Callable, Generator, Iterable
+from concurrent.futures import CancelledError, Future
+from queue import SimpleQueue
+from types import TracebackType
+from typing import Generic, Self, TypeVar
+
+from link.errors import UserError
+
+_ATTEMPTS_MAX = 3  # a task that ended so many processes is given up
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
+
+
+class Workers(ABC, Generic[Task, Result]):
+    """Who does tasks, as long as a `with` block; its end ends what is not done.
+
+    Attributes:
+        places: how many tasks they take at once.
+    """
+
+    places: int
+
+    @abstractmethod
+    def __enter__(self) -> Self:
+        """Find them."""
+
+    @abstractmethod
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """End them, whatever they do."""
+
+    @abstractmethod
+    def submit(self, task: Task) -> "Future[Result]":
+        """Have a task done."""
+
+    @abstractmethod
+    def release(self, future: "Future[Result]") -> str | None:
+        """Take back the place of a task that has ended, and return how its worker died, None if it lives.
+
+        Raises:
+            UserError: workers end before they are ready.
+        """
+
+
+def run_tasks(
+    workers: Workers[Task, Result], tasks: Iterable[Task], *, lost: Callable[[Task, str], Result]
+) -> Generator[Result, None, None]:
+    """Yield the results of all tasks in the order in which they are ready.
+
+    To be closed (`contextlib.closing`) where it may not be exhausted: that ends the workers.
+
+    Args:
+        workers: who does them.
+        tasks: hashable, and can be pickled.
+        lost: what stands for the result of a task that failed, or ended its worker time and again; from task and why.
+
+    Raises:
+        UserError: raised by the job, or there are no workers.
+    """
+    waiting, losses = deque(tasks), Counter[Task]()
+    underway: dict[Future[Result], Task] = {}
+    ended: SimpleQueue[Future[Result]] = SimpleQueue()
+    with workers:
+        while waiting or underway:
+            while waiting and len(underway) < workers.places:
+                future = workers.submit(waiting[0])
+                underway[future] = waiting.popleft()
+                future.add_done_callback(ended.put)
+            future = ended.get()
+            task = underway.pop(future)
+            death = workers.release(future)
+            if death is None:
+                yield _result(future, task, lost)
+                continue
+            losses[task] += 1
+            if losses[task] < _ATTEMPTS_MAX:
+                waiting.appendleft(task)
+            else:
+                yield lost(task, f"its process died {_ATTEMPTS_MAX} times ({death})")
+
+
+def _result(future: "Future[Result]", task: Task, lost: Callable[[Task, str], Result]) -> Result:
+    match CancelledError() if future.cancelled() else future.exception():
+        case None:
+            return future.result()
+        case UserError() as error:
+            raise error
+        case error:
+            return lost(task, " ".join(f"{type(error).__name__}: {error}".split()))

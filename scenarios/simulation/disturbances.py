@@ -1,0 +1,29 @@
+"""When what happens once in a run happens: an outage, a gust, a step of the autopilot's origin."""
+
+from scenarios.config import ChannelConfig, Scenario
+from scenarios.simulation.noise import named_rng
+
+Span = tuple[int, int]
+
+
+def instant_s(scenario: Scenario, seed: int, name: str) -> float:
+    """Return when the disturbance `name` begins, in seconds since the start of the simulation."""
+    return float(named_rng(seed, f"{name} instant").uniform(*scenario.disturbed_between_s))
+
+
+def outages_ns(channel: ChannelConfig, scenario: Scenario, seed: int, name: str, start_ns: int) -> list[Span]:
+    """Return the outages of the link `name`, from start to end in UTC: one, or none where it never fails.
+
+    Args:
+        channel: of the link.
+        scenario: says when.
+        seed: draws instant and length.
+        name: of the link.
+        start_ns: UTC at the start of the simulation.
+    """
+    shortest_s, longest_s = channel.outage_range_s
+    if longest_s == 0.0:
+        return []
+    begin_ns = start_ns + round(instant_s(scenario, seed, f"{name} outage") * 1e9)
+    length_s = float(named_rng(seed, f"{name} outage").uniform(shortest_s, longest_s))
+    return [(begin_ns, begin_ns + round(length_s * 1e9))]

@@ -1,0 +1,69 @@
+"""The simulated drone of a scenario: the configuration that `sim-autopilot` takes, and the wind that it draws."""
+
+import math
+
+from link.messages import Vector3
+from scenarios.config import Scenario
+from scenarios.simulation.disturbances import instant_s
+from scenarios.simulation.noise import named_rng
+from sim_autopilot.config import OwnStateConfig, SimAutopilotConfig, StartConfig, VehicleConfig, WindConfig
+
+
+def sim_autopilot_config(scenario: Scenario, seed: int, *, instant: bool) -> SimAutopilotConfig:
+    """Return what the scenario's simulated autopilot is started with.
+
+    Args:
+        scenario: what is flown.
+        seed: of the wind.
+        instant: ready at once, without the seconds that a boot takes.
+    """
+    body = scenario.vehicle
+    return SimAutopilotConfig(
+        firmware=scenario.firmware,
+        instant=instant,
+        seed=seed,
+        datum=scenario.datum,
+        start=StartConfig(position_enu_m=scenario.drone_start_enu_m),
+        drone=scenario.system.drone,
+        wind=_wind(scenario, seed),
+        own_state=_own_state(scenario, seed),
+        vehicle=VehicleConfig(length_m=body.length_m, width_m=body.width_m, roof_height_m=body.roof_height_m),
+        parameters=scenario.system.parameters.get(scenario.firmware, {}),
+    )
+
+
+def _wind(scenario: Scenario, seed: int) -> WindConfig:
+    wind = scenario.wind
+    return WindConfig(
+        mean_m_s=wind.mean_m_s,
+        from_rad=_wind_from_rad(scenario, seed),
+        turbulence=wind.turbulence,
+        gust_m_s=wind.gust_m_s,
+        gust_from_rad=float(named_rng(seed, "gust").uniform(-math.pi, math.pi)),
+        gust_start_s=instant_s(scenario, seed, "gust"),
+        gust_duration_s=wind.gust_duration_s,
+    )
+
+
+def _own_state(scenario: Scenario, seed: int) -> OwnStateConfig:
+    own = scenario.sensors.own_state
+    rng = named_rng(seed, "origin step")
+    step_m, angle_rad = float(rng.uniform(*own.origin_step_range_m)), float(rng.uniform(-math.pi, math.pi))
+    return OwnStateConfig(
+        position_std_m=own.position_std_m,
+        velocity_std_m_s=own.velocity_std_m_s,
+        origin_step_enu_m=(step_m * math.cos(angle_rad), step_m * math.sin(angle_rad), 0.0) if step_m > 0.0 else None,
+        origin_step_s=instant_s(scenario, seed, "origin step"),
+    )
+
+
+def mean_wind_enu_m_s(scenario: Scenario, seed: int) -> Vector3:
+    """Return the mean wind of `scenario` with `seed`."""
+    from_rad, mean_m_s = _wind_from_rad(scenario, seed), scenario.wind.mean_m_s
+    return (-mean_m_s * math.cos(from_rad), -mean_m_s * math.sin(from_rad), 0.0)
+
+
+def _wind_from_rad(scenario: Scenario, seed: int) -> float:
+    if scenario.wind.from_rad is not None:
+        return scenario.wind.from_rad
+    return float(named_rng(seed, "wind").uniform(-math.pi, math.pi))

@@ -1,0 +1,106 @@
+"""Noise, loss and delay of the sensor models, each a small object that owns its own seeded generator."""
+
+import math
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+
+from link.messages import Vector3
+from scenarios.config import DelayConfig
+
+
+def named_rng(seed: int, name: str) -> np.random.Generator:
+    """Return the generator of `seed` that belongs to `name`; other names' generators are independent of it."""
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(zlib.crc32(name.encode()),)))
+
+
+def normal3(rng: np.random.Generator, std: float) -> Vector3:
+    """Return three independent normal values of standard deviation `std`."""
+    x, y, z = rng.standard_normal(3).tolist()
+    return std * x, std * y, std * z
+
+
+class GaussMarkov:
+    """A first-order Gauss-Markov process on each of three axes, stationary from its first value on."""
+
+    def __init__(self, rng: np.random.Generator, *, std: float, tau_s: float) -> None:
+        self._rng = rng
+        self._std = std
+        self._tau_s = tau_s
+        self._value = normal3(rng, std)
+
+    def step(self, elapsed_s: float) -> Vector3:
+        """Return the value `elapsed_s` after the one before, exact for any step."""
+        if self._std == 0.0:
+            return self._value
+        decay = math.exp(-elapsed_s / self._tau_s)
+        x, y, z = self._value
+        dx, dy, dz = normal3(self._rng, self._std * math.sqrt(1.0 - decay * decay))
+        self._value = (decay * x + dx, decay * y + dy, decay * z + dz)
+        return self._value
+
+
+class Dropouts:
+    """A two-state Markov chain that is off for `share` of the time, in dropouts of `mean_s` on average."""
+
+    def __init__(self, rng: np.random.Generator, *, share: float, mean_s: float) -> None:
+        self._rng = rng
+        self._to_on_hz = 1.0 / mean_s
+        self._to_off_hz = share / (1.0 - share) / mean_s if share < 1.0 else math.inf
+        self._off = bool(rng.random() < share)
+
+    def step(self, elapsed_s: float) -> bool:
+        """Return whether it is off `elapsed_s` after the step before."""
+        rate_hz = self._to_on_hz if self._off else self._to_off_hz
+        if self._rng.random() < -math.expm1(-rate_hz * elapsed_s):
+            self._off = not self._off
+        return self._off
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StampClock:
+    """A clock that was `offset_s` fast at `start_ns` and gains `drift` seconds in a second."""
+
+    start_ns: int
+    offset_s: float
+    drift: float
+
+    def stamp_ns(self, t_ns: int) -> int:
+        """Return what this clock shows at the true instant `t_ns`."""
+        return t_ns + round(self.offset_s * 1e9 + self.drift * (t_ns - self.start_ns))
+
+
+class SensorSchedule:
+    """When a sensor takes samples, which are lost, and when the others leave it.
+
+    It draws from a generator of its own, seeded by the sensor's name.
+    """
+
+    def __init__(self, config: DelayConfig, seed: int, name: str) -> None:
+        self._config = config
+        self._rng = named_rng(seed, f"{name} link")
+        self._period_ns = round(1e9 / config.rate_hz)
+        self._due_ns: int | None = None
+        self._taken_ns: int | None = None
+
+    def due(self, t_ns: int) -> bool:
+        """Return whether a sample is to be taken now."""
+        return self._due_ns is None or t_ns >= self._due_ns
+
+    def take(self, t_ns: int) -> float:
+        """Plan the next sample and return the seconds since the one before."""
+        if self._due_ns is None or t_ns - self._due_ns > self._period_ns:
+            self._due_ns = t_ns
+        self._due_ns += self._period_ns
+        elapsed_s = 0.0 if self._taken_ns is None else (t_ns - self._taken_ns) * 1e-9
+        self._taken_ns = t_ns
+        return elapsed_s
+
+    def release_ns(self, t_ns: int) -> int | None:
+        """Return when a sample taken at `t_ns` leaves, None if it is lost."""
+        loss, shift = map(float, self._rng.random(2))
+        if loss < self._config.loss:
+            return None
+        delay_s = self._config.delay_s + (2.0 * shift - 1.0) * self._config.jitter_s
+        return t_ns + round(max(0.0, delay_s) * 1e9)

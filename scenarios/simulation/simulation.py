@@ -1,0 +1,98 @@
+"""The simulated side of a run in one process, without I/O: the vehicle, the air and the autopilot with its drone.
+
+`scenarios world` puts sockets around it, a lockstep run puts it beside a companion.
+"""
+
+from dataclasses import dataclass
+from math import dist
+
+import numpy as np
+
+from link.messages import BodyTruth, RotorTruth
+from link.zenoh.keys import Keys, Publication
+from scenarios.config import Scenario
+from scenarios.simulation.drone import sim_autopilot_config
+from scenarios.simulation.vehicle import vehicle_deck, vehicle_truth
+from scenarios.simulation.vehicle_node import VehicleNode
+from sim_autopilot.config import autopilot_config, wind_model
+from sim_autopilot.node import STEP_NS, AutopilotNode
+from sim_autopilot.truth import drone_truth, rotor_truth
+
+__all__ = ["STEP_NS", "Simulation", "SimulationOutputs"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimulationOutputs:
+    """What one step of the simulated side brings.
+
+    Attributes:
+        mavlink: bytes of the autopilot.
+        publications: of the vehicle and its sensors.
+        drone: its truth at the end of the step.
+        rotors: likewise.
+        vehicle: likewise.
+    """
+
+    mavlink: bytes
+    publications: list[Publication]
+    drone: BodyTruth
+    rotors: RotorTruth
+    vehicle: BodyTruth
+
+
+class Simulation:
+    """The world of a scenario and a seed.
+
+    Args:
+        scenario: what is flown.
+        seed: of everything random.
+        keys: of the Zenoh contract.
+        start_ns: UTC at its beginning.
+        instant: the autopilot is ready at once.
+        publishes_truth: the vehicle's truth is among the publications.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        seed: int,
+        keys: Keys,
+        start_ns: int,
+        *,
+        instant: bool = False,
+        publishes_truth: bool = True,
+    ) -> None:
+        self.vehicle = VehicleNode(scenario, seed, keys, publishes_truth=publishes_truth)
+        settings = sim_autopilot_config(scenario, seed, instant=instant)
+        self.autopilot = AutopilotNode(autopilot_config(settings), start_ns)
+        self._body = scenario.vehicle
+        self._wind = wind_model(settings)
+        self._wind_enu_m_s = np.zeros(3)
+        self._drone = drone_truth(self.autopilot.state)
+
+    @property
+    def t_ns(self) -> int:
+        """UTC now."""
+        return self.autopilot.state.t_ns
+
+    def receive(self, data: bytes) -> bytes:
+        """Take bytes of a MAVLink link and return what is answered at once."""
+        return self.autopilot.receive(data, self.t_ns)[0]
+
+    def step(self) -> SimulationOutputs:
+        """Advance by `STEP_NS`."""
+        publications = self.vehicle.step(self.autopilot.next_ns, self._drone)
+        state = self.vehicle.state
+        if state is None:
+            raise ValueError("the vehicle has made no step")
+        airspeed_m_s = dist(self.autopilot.state.velocity_enu_m_s.tolist(), self._wind_enu_m_s.tolist())
+        self._wind_enu_m_s = self._wind.advance(self.autopilot.step_ns * 1e-9, airspeed_m_s)
+        (mavlink,) = self.autopilot.step(vehicle_deck(state, self._body), self._wind_enu_m_s)
+        self._drone = drone_truth(self.autopilot.state)
+        return SimulationOutputs(
+            mavlink=mavlink,
+            publications=publications,
+            drone=self._drone,
+            rotors=rotor_truth(self.autopilot.state),
+            vehicle=vehicle_truth(state),
+        )

@@ -1,0 +1,1 @@
+"""A run over real links, kept in time with the clock."""

@@ -1,0 +1,247 @@
+"""A run over the wire: three programs as processes, real UDP and real Zenoh, watched and scored."""
+
+import json
+import os
+import time
+from collections.abc import Callable
+from contextlib import closing, nullcontext
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from companion.recording.folder import recording_sink
+from link.errors import UserError
+from link.program.toml_config import dump_toml
+from link.recording.recorder import DirectRecorder
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohOptions, open_session
+from scenarios.config import Scenario
+from scenarios.lockstep.lockstep import Lockstep
+from scenarios.lockstep.stopwatch import quantiles_ms, timed_steps
+from scenarios.processes.programs import MODULES, ProcessGroup, Program, free_tcp_endpoint, free_udp_port
+from scenarios.recordings.recording import EndWatch, Recording
+from scenarios.recordings.result import result_table, write_json, write_text
+from scenarios.recordings.truth_file import TruthFile
+from scenarios.recordings.watcher import Watcher
+from scenarios.simulation.drone import sim_autopilot_config
+
+_POLL_S = 0.02
+_COMPANION_TIMING = "companion.json"
+_PROGRESS_S = 0.2
+_SETTLING_S = 1.0  # of wall time after the first truth, not counted in the real-time factor
+_FIRST_TRUTH_S = 60.0  # of wall time; the first start after an installation compiles the physics
+
+Progress = Callable[[Recording, float], None]
+"""Called a few times a second with what is recorded so far and the real-time factor."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunOptions:
+    """How a run is made.
+
+    Attributes:
+        seed: of everything random.
+        speed: simulated seconds per wall second.
+        folder: to be made for the run.
+        record: write what goes in and out of the companion, and the truth, as MCAP.
+        view_port: of a page that shows the landing; None for none.
+    """
+
+    seed: int
+    speed: float
+    folder: Path
+    record: bool = False
+    view_port: int | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunOutcome:
+    """What came of a run: the content of `result.json` and `timing.json`."""
+
+    result: dict[str, Any]
+    timing: dict[str, Any]
+
+
+def run_folder(parent: Path, name: str) -> Path:
+    """Make the folder of a run and let `latest` beside it point there.
+
+    Raises:
+        UserError: `parent` cannot be written.
+    """
+    try:
+        folder = _new_folder(parent, name)
+        link = parent / f".latest-{os.getpid()}"
+        link.symlink_to(folder.name)
+        link.replace(parent / "latest")
+    except OSError as error:
+        raise UserError(f"{parent}: no folder can be made there ({error.strerror}); choose another --out") from None
+    return folder
+
+
+def _new_folder(parent: Path, name: str) -> Path:
+    """Make a folder named by the time; where another run took this millisecond, by the next."""
+    while True:
+        folder = parent / f"{datetime.now(UTC).strftime('%Y%m%dT%H%M%S.%f')[:-3]}-{name}"
+        try:
+            folder.mkdir(parents=True)
+        except FileExistsError:
+            if not folder.is_dir():
+                raise
+        else:
+            return folder
+
+
+def run_over_wire(scenario: Scenario, options: RunOptions, progress: Progress) -> RunOutcome:
+    """Run a scenario to its end, score it on truth and write the run's folder.
+
+    Raises:
+        UserError: a program could not start or ended by itself.
+    """
+    keys = Keys()
+    endpoint = free_tcp_endpoint()
+    recording = Recording()
+    truth = TruthFile(options.folder, scenario, options.seed, keys) if options.record else None
+    with (
+        closing(truth) if truth is not None else nullcontext(),
+        # The watcher listens and the programs come to it, so that it misses nothing while they start.
+        open_session(ZenohOptions(listen=(endpoint,))) as zenoh,
+        ProcessGroup(_programs(scenario, options, endpoint), options.folder) as processes,
+        ProcessGroup(_view(options, endpoint), options.folder),  # not checked: a landing needs no page
+    ):
+        watcher = Watcher(zenoh, keys, recording)
+
+        def keep(recording: Recording, factor: float) -> None:
+            if truth is not None:
+                truth.take(recording)
+            progress(recording, factor)
+
+        ended, factor = _watch(watcher, processes, scenario, recording, keep)
+    result = result_table(scenario, options.seed, recording, ended)
+    timing = {"real_time_factor": round(factor, 4), "speed": options.speed, **_companion_timing(options.folder)}
+    return _written(options.folder, result, timing | _lost(truth))
+
+
+def _programs(scenario: Scenario, options: RunOptions, endpoint: str) -> list[Program]:
+    """Write each program's configuration into the folder and return how they are started."""
+    folder = options.folder
+    drone = sim_autopilot_config(scenario, options.seed, instant=False)
+    for name, config in (("scenario", scenario), ("sim-autopilot", drone), ("companion", scenario.system.companion)):
+        write_text(folder / f"{name}.toml", dump_toml(config))
+    port = free_udp_port()
+    arguments = {
+        "ground-vehicle": [
+            *("--scenario", str(folder / "scenario.toml"), "--seed", str(options.seed)),
+            *("--use-sim-time", "-e", endpoint),
+        ],
+        "sim-autopilot": [
+            *("--config", str(folder / "sim-autopilot.toml"), "--speed", str(options.speed)),
+            *("--mavlink", f"udpout:127.0.0.1:{port}", "-e", endpoint),
+        ],
+        "companion": [
+            *("--config", str(folder / "companion.toml"), "--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint),
+            *("--use-sim-time", "--start", "--tlog", str(folder / "flight.tlog")),
+            *("--timing", str(folder / _COMPANION_TIMING)),
+            *(("--record", str(folder)) if options.record else ()),
+        ],
+    }
+    return [Program(name=name, module=MODULES[name], arguments=words) for name, words in arguments.items()]
+
+
+def _view(options: RunOptions, endpoint: str) -> list[Program]:
+    """Return how the page is started, if it is."""
+    if options.view_port is None:
+        return []
+    road = ("--road", str(options.folder / "scenario.toml"), "--seed", str(options.seed))
+    words = ["view", "-e", endpoint, "--port", str(options.view_port), *road]
+    return [Program(name="view", module=MODULES["scenarios"], arguments=words)]
+
+
+class _Pace:
+    """Simulated seconds per wall second, once a simulator that starts late has caught up."""
+
+    def __init__(self) -> None:
+        self._seen_s: float | None = None
+        self._from = (0.0, 0.0)
+        self.factor = 0.0
+
+    def update(self, now_s: float, elapsed_s: float) -> None:
+        """Take the wall time and the simulated time since the first sample."""
+        if self._seen_s is None:
+            self._seen_s, self._from = now_s, (now_s, elapsed_s)
+        elif self._from[0] == self._seen_s and now_s - self._seen_s >= _SETTLING_S:
+            self._from = (now_s, elapsed_s)
+        if now_s > self._from[0]:
+            self.factor = (elapsed_s - self._from[1]) / (now_s - self._from[0])
+
+
+def _watch(
+    watcher: Watcher, processes: ProcessGroup, scenario: Scenario, recording: Recording, progress: Progress
+) -> tuple[str, float]:
+    """Return why the run ended and its real-time factor."""
+    end, pace = EndWatch(scenario.time_limit_s), _Pace()
+    began_s, shown_s = time.monotonic(), 0.0
+    while (reason := end.reason(recording)) is None:
+        time.sleep(_POLL_S)
+        processes.check()
+        watcher.take()
+        if end.must_break_off(recording):
+            watcher.break_off()
+        now_s = time.monotonic()
+        if recording.drone:
+            pace.update(now_s, recording.elapsed_s)
+        elif now_s - began_s > _FIRST_TRUTH_S:
+            raise UserError(f"no truth of the drone within {_FIRST_TRUTH_S:g} s: see the logs in the run's folder")
+        if now_s - shown_s >= _PROGRESS_S:
+            shown_s = now_s
+            progress(recording, pace.factor)
+    progress(recording, pace.factor)
+    return reason, pace.factor
+
+
+def _companion_timing(folder: Path) -> dict[str, Any]:
+    path = folder / _COMPANION_TIMING
+    if not path.exists():
+        return {}
+    table: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    path.unlink()
+    step_ms = {name: table.pop(f"state_to_setpoint_{name}_ms") for name in ("median", "p99", "max")}
+    return {"step_ms": {"companion": step_ms}, "companion": table}
+
+
+def run_in_lockstep(scenario: Scenario, options: RunOptions, progress: Progress) -> RunOutcome:
+    """Run a scenario in this process on a simulated clock, score it on truth and write the run's folder."""
+    write_text(options.folder / "scenario.toml", dump_toml(scenario))
+    recorder = _direct_recorder(scenario, options.folder) if options.record else None
+    truth = TruthFile(options.folder, scenario, options.seed, Keys()) if options.record else None
+    lockstep = Lockstep(scenario, options.seed, recorder=recorder)
+    with timed_steps() as durations_s:
+        began_s = time.monotonic()
+        ended = lockstep.run()
+        factor = lockstep.recording.elapsed_s / (time.monotonic() - began_s)
+    if recorder is not None:
+        recorder.close()
+    if truth is not None:
+        truth.take(lockstep.recording)
+        truth.close()
+    progress(lockstep.recording, factor)
+    result = result_table(scenario, options.seed, lockstep.recording, ended)
+    step_ms = {name: quantiles_ms(durations) for name, durations in durations_s.items() if durations}
+    timing = {"real_time_factor": round(factor, 4), "step_ms": step_ms}
+    return _written(options.folder, result, timing | _lost(truth, recorder))
+
+
+def _direct_recorder(scenario: Scenario, folder: Path) -> DirectRecorder:
+    return DirectRecorder(recording_sink(folder, scenario.system.companion, Keys()))
+
+
+def _lost(*recorders: DirectRecorder | TruthFile | None) -> dict[str, int]:
+    """Return how many records a failing disk has cost; nothing where nothing was recorded."""
+    dropped = [recorder.dropped for recorder in recorders if recorder is not None]
+    return {"records_dropped": sum(dropped)} if dropped else {}
+
+
+def _written(folder: Path, result: dict[str, Any], timing: dict[str, Any]) -> RunOutcome:
+    write_json(folder / "result.json", result)
+    write_json(folder / "timing.json", timing)
+    return RunOutcome(result=result, timing=timing)

@@ -1,0 +1,186 @@
+"""A flight's recording: complete, the same for the same seed, replayed exactly, and of no consequence to the flight."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rosbags.highlevel import AnyReader
+
+from companion.config.companion import CompanionConfig
+from companion.recording.folder import recording_sink
+from link.errors import UserError
+from link.program.toml_config import merged, validated
+from link.recording.mcap_reader import read_messages, recording_files
+from link.recording.recorder import BackgroundRecorder
+from link.zenoh.keys import Keys
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.lockstep.lockstep import Lockstep
+from scenarios.recordings.replay import Flight, read_flights, replay
+from scenarios.recordings.result import result_table
+from scenarios.reports.figures import draw_figures
+from scenarios.reports.html_report import write_report
+from scenarios.reports.run_data import read_run
+from scenarios.reports.run_shown import distances, heights
+from scenarios.view.recorded import RecordedSource
+from scenarios.wire.run import RunOptions, run_in_lockstep
+
+pytestmark = pytest.mark.slow
+SCENARIO = "straight_5+sensors=nominal"
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("run")
+    options = RunOptions(seed=2, speed=1.0, folder=folder, record=True)
+    run_in_lockstep(load_scenario(SCENARIO), options, lambda *_: None)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def flight(run: Path) -> Flight:
+    ((_, flight),) = read_flights(run)
+    return flight
+
+
+def test_every_topic_of_a_run_is_decoded_by_an_independent_reader(run: Path) -> None:
+    counts: dict[str, int] = {}
+    for file in [*recording_files(run, "companion"), *recording_files(run, "truth")]:
+        with AnyReader([file]) as reader:
+            for connection, _, raw in reader.messages():
+                reader.deserialize(raw, connection.msgtype)
+                counts[connection.topic] = counts.get(connection.topic, 0) + 1
+    named = {name.removeprefix("/decklander/") for name in counts}
+    assert named >= {"vehicle/fix", "vehicle/truth", "drone/truth", "drone/truth/rotors"}
+    inside = ("input", "own", "step", "setpoint", "estimate", "forecast", "forecast_path", "plan", "plan_path", "link")
+    assert named >= {f"drone/companion/{name}" for name in inside}
+    assert min(counts.values()) > 10
+
+
+def test_recording_stands_in_utc_from_its_first_message(run: Path) -> None:
+    times_ns = [recorded.log_ns for recorded in read_messages(recording_files(run, "companion"))]
+    assert (max(times_ns) - min(times_ns)) * 1e-9 < 60.0
+
+
+def test_replay_of_the_same_version_equals_the_flight_in_every_field(flight: Flight) -> None:
+    result = replay(flight)
+    assert result.steps > 500
+    assert result.fields > 20_000
+    assert result.differences == ()
+    assert result.missing_inputs == 0
+
+
+def test_companion_that_was_started_again_leaves_two_flights_that_are_replayed_apart(run: Path, tmp_path: Path) -> None:
+    (file,) = recording_files(run, "companion")
+    for name in ("companion_000.mcap", "companion_2_000.mcap"):
+        shutil.copy(file, tmp_path / name)
+    flights = dict(read_flights(tmp_path))
+    names = [f"{tmp_path.name}/companion_000.mcap", f"{tmp_path.name}/companion_2_000.mcap"]
+    assert list(flights) == names
+    results = [replay(flight) for flight in flights.values()]
+    assert [(result.differences, result.missing_inputs) for result in results] == [((), 0), ((), 0)]
+
+
+def test_replay_with_another_gain_names_the_fields_largest_difference_first(flight: Flight) -> None:
+    table = merged(flight.config.model_dump(mode="json"), {"descent": {"descent_gain_hz": 1.1}})
+    result = replay(flight, validated(CompanionConfig, table, source="test"))
+    named = [one.field for one in result.differences]
+    assert "setpoint.position_m" in named
+    assert "step.next_velocity_m_s" in named
+    assert "estimate.position_m" not in named
+    assert "own.pose.pose.position.x" not in named
+    sizes = [one.largest for one in result.differences]
+    assert sizes == sorted(sizes, reverse=True)
+
+
+def test_recording_is_the_same_for_the_same_seed_and_changes_no_result(run: Path, tmp_path: Path) -> None:
+    scenario = load_scenario(SCENARIO)
+    again = RunOptions(seed=2, speed=1.0, folder=tmp_path, record=True)
+    run_in_lockstep(scenario, again, lambda *_: None)
+    for name in ("companion_000.mcap", "truth_000.mcap", "result.json"):
+        assert tmp_path.joinpath(name).read_bytes() == run.joinpath(name).read_bytes()
+    plain = Lockstep(scenario, 2)
+    ended = plain.run()
+    recorded_result = run.joinpath("result.json").read_text(encoding="utf-8")
+    assert f'"horizontal_error_m": {result_table(scenario, 2, plain.recording, ended)["horizontal_error_m"]}' in (
+        recorded_result
+    )
+
+
+def test_figures_of_a_run_are_drawn_in_both_forms_and_twice_the_same(run: Path, tmp_path: Path) -> None:
+    once, again = draw_figures(run, tmp_path / "once"), draw_figures(run, tmp_path / "again")
+    stems = {"path_3d", "path_above", "motion", "funnel", "touchdown", "estimate"}
+    assert {file.name for file in once} == {f"{stem}.{form}" for stem in stems for form in ("png", "svg")}
+    assert [file.read_bytes() for file in once] == [file.read_bytes() for file in again]
+
+
+def test_run_as_arrays_agrees_with_its_result(run: Path) -> None:
+    data = read_run(run)
+    contact = int(np.searchsorted(data.t_s, data.result["contact_s"]))
+    assert distances(data)[contact] == pytest.approx(data.result["horizontal_error_m"], abs=0.02)
+    assert heights(data)[contact] == pytest.approx(0.0, abs=0.05)
+    assert data.phases[-1].phase == "secured"
+    assert data.estimate is not None
+    assert float(np.median(np.abs(data.estimate.error_m[-50:, 2]))) < 0.5
+
+
+def test_page_about_a_run_needs_nothing_from_elsewhere(run: Path, tmp_path: Path) -> None:
+    page = write_report(run, tmp_path / "report.html").read_text(encoding="utf-8")
+    outside_script = page.split("</script>", 1)[1]
+    for fetched in ('src="http', "src='http", '<link rel="stylesheet"', "@import"):
+        assert fetched not in outside_script
+    for told in ("S3: landed", "descent_gain_hz", "numpy", "<svg", "plotly-graph-div"):
+        assert told in outside_script
+
+
+def test_folder_without_a_recording_is_told(tmp_path: Path) -> None:
+    tmp_path.joinpath("result.json").write_text("{}", encoding="utf-8")
+    with pytest.raises(UserError, match="holds no recording"):
+        draw_figures(tmp_path, None)
+
+
+def test_full_disk_costs_records_and_not_the_landing(small_disk: Path) -> None:
+    scenario = load_scenario(SCENARIO)
+    recorder = BackgroundRecorder(recording_sink(small_disk, scenario.system.companion, Keys()))
+    lockstep = Lockstep(scenario, 2, recorder=recorder)
+    ended = lockstep.run()
+    recorder.close()
+    assert result_table(scenario, 2, lockstep.recording, ended)["tier"] == "S3"
+    assert recorder.dropped > 100
+    assert sum(1 for _ in read_messages(recording_files(small_disk, "companion"))) > 100
+
+
+def test_run_into_a_full_folder_ends_in_one_line_that_says_what_to_change(small_disk: Path) -> None:
+    options = RunOptions(seed=2, speed=1.0, folder=small_disk, record=True)
+    with pytest.raises(UserError, match=r"result\.json: cannot be written \(.+\); make room") as told:
+        run_in_lockstep(load_scenario(SCENARIO), options, lambda *_: None)
+    assert "\n" not in str(told.value)
+
+
+def test_view_of_a_recording_has_the_motion_the_phases_and_the_road(run: Path, flight: Flight) -> None:
+    source = RecordedSource(run)
+    source.advance(0.0)
+    halfway = source.advance(0.5 * source.duration_s)
+    assert source.position_s == pytest.approx(0.5 * source.duration_s)
+    end = source.advance(10.0 * source.duration_s)
+    assert source.position_s == source.duration_s
+    assert halfway.status is not None
+    assert end.status is not None
+    assert (halfway.status.phase, end.status.phase) == ("chase", "secured") or halfway.status.phase == "waiting"
+    assert all(value is not None for value in (halfway.drone_truth, halfway.estimate, halfway.forecast, halfway.pad))
+    assert halfway.link is not None
+    assert 0 < halfway.link.messages_received < flight.inputs[-1].sequence
+    assert source.road is not None
+    assert source.road.seed == 2
+
+
+def test_view_of_a_real_flight_needs_no_truth(run: Path, tmp_path: Path) -> None:
+    for file in recording_files(run, "companion"):
+        shutil.copy(file, tmp_path)
+    source = RecordedSource(tmp_path)
+    source.advance(0.0)
+    end = source.advance(source.duration_s)
+    assert (source.road, end.drone_truth) == (None, None)
+    assert end.pad is not None
+    assert end.drone is not None
+    assert np.isfinite(source.history.pad[-1]).all()

@@ -1,0 +1,193 @@
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from link.frames.rotations import rotate
+from link.messages import BodyTruth, Vector3
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.simulation.vehicle import (
+    VehicleInputs,
+    VehicleMemory,
+    VehiclePlan,
+    VehicleState,
+    vehicle_at,
+    vehicle_deck,
+    vehicle_step,
+    vehicle_truth,
+)
+from scenarios.simulation.vehicle_node import plan_of
+from tests.rotations import matrix_of
+
+START_NS = 1_800_000_000_000_000_000
+STEP_NS = 10_000_000
+HOVER = (0.1, -0.2, 5.3)
+
+
+def drone_at(t_ns: int, position_enu_m: Vector3) -> BodyTruth:
+    return BodyTruth(
+        t_ns=t_ns,
+        position_enu_m=position_enu_m,
+        orientation_wxyz=(1.0, 0.0, 0.0, 0.0),
+        velocity_flu_m_s=(0.0, 0.0, 0.0),
+        angular_velocity_flu_rad_s=(0.0, 0.0, 0.0),
+    )
+
+
+def driven(
+    plan: VehiclePlan,
+    positions: Iterable[Vector3 | None],
+    memory: VehicleMemory | None = None,
+    start_ns: int = START_NS,
+) -> list[tuple[VehicleMemory, VehicleState]]:
+    memory = memory or VehicleMemory()
+    steps = []
+    for index, position_enu_m in enumerate(positions):
+        t_ns = start_ns + index * STEP_NS
+        drone = None if position_enu_m is None else drone_at(t_ns, position_enu_m)
+        memory, state = vehicle_step(memory, VehicleInputs(t_ns=t_ns, drone=drone), plan)
+        steps.append((memory, state))
+    return steps
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name",
+    [
+        "straight_5",
+        "figure_eight_7",
+        "circle_8",
+        "stop_and_go_7",
+        "lane_change_7",
+        "random_7",
+        "rough_road_5",
+        "report_1",
+    ],
+)
+def test_velocity_acceleration_and_angular_velocity_are_the_derivatives_of_the_pose(name: str) -> None:
+    plan = plan_of(load_scenario(name), seed=2)
+    memory = VehicleMemory(departs_ns=START_NS)
+    step_ns = 20_000
+    step_s = step_ns * 1e-9
+    bad = 0
+    times_s = np.linspace(0.5123, 40.0, 157)
+    for t_s in times_s:
+        t_ns = START_NS + round(t_s * 1e9)
+        before, now, after = (vehicle_at(memory, t_ns + shift, plan) for shift in (-step_ns, 0, step_ns))
+        velocity = (np.array(after.position_enu_m) - np.array(before.position_enu_m)) / (2.0 * step_s)
+        acceleration = (np.array(after.velocity_enu_m_s) - np.array(before.velocity_enu_m_s)) / (2.0 * step_s)
+        turned = (matrix_of(after.orientation_wxyz) - matrix_of(before.orientation_wxyz)) / (2.0 * step_s)
+        cross = matrix_of(now.orientation_wxyz).T @ turned
+        rates = (cross[2, 1], cross[0, 2], cross[1, 0])
+        np.testing.assert_allclose(now.velocity_enu_m_s, velocity, atol=1e-4)
+        smooth = np.allclose(now.acceleration_enu_m_s2, acceleration, atol=1e-3) and np.allclose(
+            now.angular_velocity_flu_rad_s, rates, atol=1e-4
+        )
+        bad += not smooth
+    assert bad <= 2  # instants at which curvature or acceleration jumps
+
+
+def test_vehicle_stands_until_the_drone_has_hovered_for_a_second() -> None:
+    plan = plan_of(load_scenario("straight_5"), seed=1)
+    steps = driven(plan, [(0.0, 0.0, 2.0)] * 300 + [HOVER] * 301)
+    moving = [index for index, (_, state) in enumerate(steps) if state.velocity_enu_m_s[0] > 0.0]
+    assert moving[0] == 300 + 100 + 100 + 1  # hovers for 1 s, departs 1 s later
+
+
+def test_leaving_the_waiting_point_starts_the_hover_again() -> None:
+    plan = plan_of(load_scenario("straight_5"), seed=1)
+    steps = driven(plan, [HOVER] * 99 + [(0.0, 0.0, 7.51)] + [HOVER] * 102)
+    assert steps[99][0].hovers_since_ns is None
+    assert steps[-3][0].departs_ns is None
+    assert steps[-1][0].departs_ns is not None
+
+
+def test_vehicle_stays_without_a_drone() -> None:
+    plan = plan_of(load_scenario("straight_5"), seed=1)
+    steps = driven(plan, [None] * 1000)
+    assert steps[-1][1].position_enu_m == (-40.0, 0.0, 0.0)
+
+
+def test_vehicle_that_does_not_wait_departs_by_itself() -> None:
+    plan = plan_of(load_scenario("straight_5"), seed=1)
+    alone = replace(plan, departure=plan.departure.model_copy(update={"wait_for_drone": False}))
+    steps = driven(alone, [None] * 300)
+    assert steps[99][1].velocity_enu_m_s == (0.0, 0.0, 0.0)
+    assert steps[200][1].velocity_enu_m_s[0] == pytest.approx(2.0)
+
+
+def test_report_vehicle_stands_five_seconds_after_the_hover() -> None:
+    plan = plan_of(load_scenario("report_1"), seed=1)
+    steps = driven(plan, [HOVER] * 700)
+    memory, state = steps[-1]
+    assert memory.departs_ns == START_NS + 6_000_000_000
+    assert state.velocity_enu_m_s[0] == pytest.approx(0.25 * 0.99)
+
+
+def test_braking_vehicle_brakes_once_the_drone_is_low_and_then_stands() -> None:
+    plan = plan_of(load_scenario("brake_7"), seed=1)
+    assert plan.course.brake is not None
+    memory = VehicleMemory(departs_ns=START_NS - 20_000_000_000)
+    roof_m = 1.5 + plan.course.brake.height_above_roof_m
+    x_m = vehicle_at(memory, START_NS, plan).position_enu_m[0]
+    descent = [(x_m + 0.07 * i, 0.0, max(roof_m + 1.0 - 0.01 * i, roof_m - 0.5)) for i in range(400)]
+    steps = driven(plan, descent, memory)
+    brakes_ns = steps[-1][0].brakes_ns
+    assert brakes_ns == pytest.approx(START_NS + 100 * STEP_NS, abs=STEP_NS)
+    speeds_m_s = [state.velocity_enu_m_s[0] for _, state in steps]
+    assert speeds_m_s[100] == pytest.approx(7.0)
+    assert speeds_m_s[150] == pytest.approx(7.0 - 6.0 * 0.5, abs=0.07)
+    assert speeds_m_s[-1] == 0.0
+    assert steps[-1][1].position_enu_m[0] == pytest.approx(x_m + 7.0 + 49.0 / 12.0, abs=0.1)
+
+
+def test_braking_vehicle_does_not_brake_for_a_low_drone_beside_it() -> None:
+    plan = plan_of(load_scenario("brake_7"), seed=1)
+    memory = VehicleMemory(departs_ns=START_NS - 20_000_000_000)
+    x_m = vehicle_at(memory, START_NS, plan).position_enu_m[0]
+    steps = driven(plan, [(x_m + 0.07 * i, 3.5, 1.6) for i in range(100)], memory)
+    assert steps[-1][0].brakes_ns is None
+
+
+def test_step_is_a_function_of_its_arguments() -> None:
+    plan = plan_of(load_scenario("rough_road_5"), seed=7)
+    path = [HOVER] * 500
+    assert driven(plan, path) == driven(plan_of(load_scenario("rough_road_5"), seed=7), path)
+
+
+def test_truth_has_the_velocity_along_the_body() -> None:
+    plan = plan_of(load_scenario("circle_5"), seed=1)
+    state = vehicle_at(VehicleMemory(departs_ns=START_NS), START_NS + 17_000_000_000, plan)
+    truth = vehicle_truth(state)
+    assert truth.velocity_flu_m_s == pytest.approx((5.0, 0.0, 0.0), abs=1e-9)
+    assert truth.angular_velocity_flu_rad_s == pytest.approx((0.0, 0.0, 0.25), abs=1e-9)
+
+
+def test_climbing_vehicle_is_nose_up_along_the_road() -> None:
+    scenario = load_scenario("rough_road_5")
+    level = scenario.track.model_copy(update={"heave_m": 0.0, "roll_rad": 0.0, "pitch_rad": 0.0})
+    plan = plan_of(scenario.model_copy(update={"track": level}), seed=1)
+    state = vehicle_at(VehicleMemory(departs_ns=START_NS), START_NS + 30_000_000_000, plan)
+    nose = rotate(state.orientation_wxyz, (1.0, 0.0, 0.0))
+    assert nose[2] / nose[0] == pytest.approx(0.05)
+    assert state.velocity_enu_m_s[2] == pytest.approx(0.25)
+
+
+def test_rough_road_shakes_within_its_amplitudes() -> None:
+    plan = plan_of(load_scenario("rough_road_5"), seed=1)
+    memory = VehicleMemory(departs_ns=START_NS)
+    states = [vehicle_at(memory, START_NS + i * STEP_NS, plan) for i in range(300, 900)]
+    heave_m = np.array([state.position_enu_m[2] for state in states])
+    assert 0.095 < np.abs(heave_m).max() <= 0.1
+    tilt_rad = [math.acos(matrix_of(state.orientation_wxyz)[2, 2]) for state in states]
+    assert 0.05 < max(tilt_rad) < 0.0524 * math.sqrt(2.0) + 1e-6
+
+
+def test_deck_has_the_angular_velocity_in_the_world() -> None:
+    scenario = load_scenario("circle_5")
+    state = vehicle_at(VehicleMemory(departs_ns=START_NS), START_NS + 20_000_000_000, plan_of(scenario, seed=1))
+    deck = vehicle_deck(state, scenario.vehicle)
+    assert deck.angular_velocity_enu_rad_s == pytest.approx([0.0, 0.0, 0.25], abs=1e-9)
+    assert (deck.roof_size_m, deck.roof_height_m) == ((4.2, 1.8), 1.5)

@@ -1,0 +1,45 @@
+"""Who may talk to the page, which can fly the drone."""
+
+import socket
+from collections.abc import Iterator
+
+import pytest
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+from websockets.typing import Origin
+
+from scenarios.view.page import open_server
+
+WAIT_S = 20.0
+
+
+@pytest.fixture(scope="module")
+def port() -> Iterator[int]:
+    server = open_server(0)
+    yield server.get_port()
+    server.stop()
+
+
+def admits(port: int, origin: str | None) -> bool:
+    try:
+        with connect(f"ws://127.0.0.1:{port}", origin=None if origin is None else Origin(origin), open_timeout=WAIT_S):
+            return True
+    except InvalidStatus:
+        return False
+
+
+@pytest.mark.parametrize("origin", [None, "http://127.0.0.1:8080", "http://localhost:9000", "http://[::1]:8080"])
+def test_page_by_any_name_of_loopback_is_admitted(port: int, origin: str | None) -> None:
+    assert admits(port, origin)
+
+
+@pytest.mark.parametrize(
+    "origin", ["http://elsewhere", "http://127.0.0.1.elsewhere:8080", "https://elsewhere/127.0.0.1", "null"]
+)
+def test_page_of_another_site_is_refused(port: int, origin: str) -> None:
+    assert not admits(port, origin)
+
+
+def test_server_listens_on_loopback_only(port: int) -> None:
+    with socket.socket() as other:  # every other address of this machine is still to be had
+        other.bind(("127.0.0.2", port))
