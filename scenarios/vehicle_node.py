@@ -15,7 +15,7 @@ from scenarios.sensors.noise import named_rng
 from scenarios.sensors.sensors import Mounting, SensorSuite
 from scenarios.tracks.tracks import course_of
 from scenarios.vehicle import VehicleInputs, VehicleMemory, VehiclePlan, VehicleState, vehicle_step, vehicle_truth
-from sim_autopilot.config import DatumConfig
+from sim_autopilot.runtime.config import DatumConfig
 
 TRUTH_PERIOD_NS = 10_000_000  # 100 Hz, what the score asks for
 STEP_PERIOD_NS = 10_000_000  # the fastest sensor of the catalogue takes 100 samples a second

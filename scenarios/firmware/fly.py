@@ -27,7 +27,7 @@ from scenarios.recordings.watcher import Watcher
 from scenarios.run import Progress, RunOutcome
 from scenarios.scoring.touchdown import rules_of
 from scenarios.vehicle_node import STEP_PERIOD_NS, VehicleNode, datum_of
-from sim_autopilot.config import DatumConfig
+from sim_autopilot.runtime.config import DatumConfig
 
 _WAIT_S = 0.004  # for bytes
 _READY_S = 120.0  # of wall time for the autopilot's clock, receiver and truth

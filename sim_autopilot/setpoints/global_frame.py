@@ -7,7 +7,7 @@ from link.geodesy import geodetic_from_enu
 from link.local_frame import local_from_geodetic
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
-from sim_autopilot.local_places import Origin
+from sim_autopilot.core.local_frame import Origin
 
 _ABOVE_SEA = frozenset({mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT})
 _ABOVE_HOME = frozenset({mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT})

@@ -12,10 +12,10 @@ import numpy as np
 from link.frames import enu_from_ned, ned_from_enu
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
-from sim_autopilot.data import Array, Reference
-from sim_autopilot.local_places import Origin, local_from_world, world_from_local
+from sim_autopilot.core.data import Array, Reference
+from sim_autopilot.core.local_frame import Origin, local_from_world, world_from_local
+from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.setpoints.partial import Axes, given_by
-from sim_autopilot.snapshot import Snapshot
 
 _POSITION = 0b0000_0000_0000_0111
 _VELOCITY = 0b0000_0000_0011_1000

@@ -22,7 +22,7 @@ from scenarios.manual.settings import keys_of, tables_of
 from scenarios.manual.units import unit_of
 from scenarios.outcome import scored
 from scenarios.scoring.score import Tier
-from sim_autopilot.config import SimAutopilotConfig
+from sim_autopilot.runtime.config import SimAutopilotConfig
 from tests.scenarios.presets import list_presets
 
 ROOT = Path(__file__).parents[2]

@@ -6,7 +6,7 @@ import pytest
 
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.config import SimAutopilotConfig, autopilot_config, with_default_links
+from sim_autopilot.runtime.config import SimAutopilotConfig, autopilot_config, with_default_links
 from tests.sim_autopilot.clients import Clients, beat
 from tests.sim_autopilot.copter import ardupilot
 from tests.sim_autopilot.pilot import arm, command, px4
@@ -49,7 +49,7 @@ def test_the_parameter_list_goes_to_the_link_that_asked() -> None:
     clients = Clients(px4())
     clients.send(1, mavlink.MAVLink_param_request_list_message(1, 1))
     clients.run(20.0)
-    count = len(clients.node.memory.values)
+    count = len(clients.node.memory.tuning.values)
     assert [clients.counts(link)["PARAM_VALUE"] for link in (0, 1)] == [0, count]
 
 

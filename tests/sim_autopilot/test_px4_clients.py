@@ -9,10 +9,11 @@ import pytest
 
 from link.mavlink.dialect import mavlink
 from link.mavlink.event_ids import event_id
-from sim_autopilot.files.ftp_handlers import checksum
-from sim_autopilot.firmware.component_metadata import COMPONENT_METADATA, PROTOCOL_VERSION
-from sim_autopilot.firmware.px4_health import ARMING_SUMMARY, HEALTH_SUMMARY, MODE_STATES
-from sim_autopilot.flight.modes import Mode
+from sim_autopilot.core.modes import Mode
+from sim_autopilot.ground_station.files.ftp_handlers import checksum
+from sim_autopilot.ground_station.px4.component_metadata import COMPONENT_METADATA
+from sim_autopilot.ground_station.px4.health_bits import ARMING_SUMMARY, HEALTH_SUMMARY, MODE_STATES
+from sim_autopilot.telemetry.versions import PROTOCOL_VERSION
 from tests.sim_autopilot.file_client import FileClient
 from tests.sim_autopilot.pilot import HOLD, Pilot, arm, command, setpoint
 from tests.sim_autopilot.planner import item, upload
@@ -155,7 +156,7 @@ def test_the_outputs_that_are_described_have_their_parameters_and_drive_four_mot
     described = json.loads(lzma.decompress(FileClient(pilot).read(b"etc/extras/actuators.json.xz")))
     (subgroup,) = described["outputs_v1"][0]["subgroups"]
     (function,) = (one["name"] for one in subgroup["per-channel-parameters"])
-    values = pilot.node.memory.values
+    values = pilot.node.memory.tuning.values
     names = [function.replace("${i}", str(channel["param-index"])) for channel in subgroup["channels"]]
     driven = {str(round(values[name])) for name in names}
     assert driven == set(described["functions_v1"])

@@ -7,10 +7,10 @@ from itertools import pairwise
 
 import pytest
 
-from sim_autopilot.files.ftp_handlers import checksum
-from sim_autopilot.files.ftp_wire import DATA_MAX, Error, Opcode
-from sim_autopilot.firmware.ardupilot import ARDUPILOT
-from sim_autopilot.firmware.px4 import PX4
+from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
+from sim_autopilot.firmware.px4.px4 import PX4
+from sim_autopilot.ground_station.files.ftp_handlers import checksum
+from sim_autopilot.ground_station.files.ftp_wire import DATA_MAX, Error, Opcode
 from tests.sim_autopilot.copter import ardupilot
 from tests.sim_autopilot.file_client import FileClient, told
 from tests.sim_autopilot.pilot import Pilot
@@ -46,7 +46,7 @@ def unpacked(data: bytes) -> dict[str, tuple[int, float]]:
 
 def test_arducopters_parameter_file_holds_every_parameter(copter_files: FileClient) -> None:
     values = unpacked(copter_files.read(b"@PARAM/param.pck"))
-    assert list(values) == [parameter.name for parameter in ARDUPILOT.parameters]
+    assert list(values) == [parameter.name for parameter in ARDUPILOT.parameters.table]
     assert values["WPNAV_SPEED"] == (4, 1000.0)
     assert values["SYSID_THISMAV"] == (2, 1)
 
@@ -57,7 +57,7 @@ def test_px4_describes_its_parameters_in_a_file_whose_checksum_is_told(px4_files
     packed = px4_files.read(entry["uri"].removeprefix("mftp://").encode())
     assert checksum(packed) == entry["fileCrc"]
     described = {one["name"]: one for one in json.loads(lzma.decompress(packed))["parameters"]}
-    assert len(described) == len(PX4.parameters)
+    assert len(described) == len(PX4.parameters.table)
     assert described["MPC_XY_VEL_MAX"]["default"] == 12.0
 
 
