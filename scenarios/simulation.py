@@ -15,7 +15,7 @@ from scenarios.config import Scenario
 from scenarios.drone import sim_autopilot_config
 from scenarios.vehicle import vehicle_deck, vehicle_truth
 from scenarios.vehicle_node import VehicleNode
-from sim_autopilot.plant.truth import drone_truth, rotor_truth
+from sim_autopilot.plant.snapshot import drone_truth, rotor_truth
 from sim_autopilot.runtime.config import autopilot_config, wind_model
 from sim_autopilot.runtime.node import STEP_NS, AutopilotNode
 

@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from link.local_frame import LocalFrame
-from sim_autopilot.core.chart import chart_at
-from sim_autopilot.core.links import LinkMemory, Links
-from sim_autopilot.core.local_frame import Origin
+from sim_autopilot.core.links import LinkMemory, Links, Outbox
 from sim_autopilot.core.modes import Modes
 from sim_autopilot.core.parameters import Values, default_values
+from sim_autopilot.core.places import Origin, Places, chart_at
 from sim_autopilot.core.streams import default_streams
 from sim_autopilot.flight.flight import begin
 from sim_autopilot.flight.land_detector import Landing
@@ -20,8 +19,6 @@ from sim_autopilot.memory import (
     Course,
     Heard,
     MissionMemory,
-    Outbox,
-    Places,
     SafetyMemory,
     Tuning,
     World,
@@ -40,7 +37,7 @@ def initial_memory(config: AutopilotConfig, start_ns: int) -> AutopilotMemory:
     firmware = config.firmware
     parameters, mode = firmware.parameters, firmware.modes.boot
     values = default_values(parameters.table, {parameters.system_id: config.system_id, **config.parameters})
-    tuning = tuned(config, values)
+    tuning = tune(config, values)
     plant = initial_plant(config.plant, start_ns, np.array(config.position_enu_m), config.yaw_rad)
     now = take_snapshot(plant.state, config.plant.airframe, 0)
     frame = LocalFrame(origin=config.datum, projection=firmware.origin.projection)
@@ -74,14 +71,14 @@ def initial_memory(config: AutopilotConfig, start_ns: int) -> AutopilotMemory:
     )
 
 
-def tuned(config: AutopilotConfig, values: Values) -> Tuning:
+def tune(config: AutopilotConfig, values: Values) -> Tuning:
     """Return what parameter values amount to: the drone keeps to the envelope that they set."""
     settings = config.firmware.parameters.settings(values)
     plant_config = replace(config.plant, envelope=settings.envelope, gains=settings.gains)
     return Tuning(values=values, settings=settings, plant_config=plant_config)
 
 
-def restarted(memory: AutopilotMemory, config: AutopilotConfig) -> AutopilotMemory:
+def restart_in_place(memory: AutopilotMemory, config: AutopilotConfig) -> AutopilotMemory:
     """Return the autopilot booted anew where its drone is; nothing else is remembered."""
     state = memory.plant.state
     now = take_snapshot(state, config.plant.airframe, 0)
@@ -98,5 +95,5 @@ def reboot_if_due(memory: AutopilotMemory, config: AutopilotConfig) -> Autopilot
     if again_ns is None or memory.now.boot_ns < again_ns:
         return memory
     mission = MissionMemory(items=memory.mission.items, fence=memory.mission.fence)
-    booted = replace(restarted(memory, config), mission=mission, station=config.services.keep(memory.station))
+    booted = replace(restart_in_place(memory, config), mission=mission, station=config.services.keep(memory.station))
     return booted if memory.boot.forgets else replace(booted, tuning=memory.tuning)

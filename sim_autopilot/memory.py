@@ -8,12 +8,11 @@ from link.geodesy import Datum
 from link.mavlink.dialect import Message
 from link.messages import Vector3
 from link.records import replace
-from sim_autopilot.core.chart import Chart
 from sim_autopilot.core.data import Array, Deck, PlantState, Reference
-from sim_autopilot.core.links import LinkMemory, Links, with_link_at_hand
-from sim_autopilot.core.local_frame import Origin
+from sim_autopilot.core.links import Later, LinkMemory, Links, Outbox, with_link_at_hand
 from sim_autopilot.core.modes import Modes
 from sim_autopilot.core.parameters import Values
+from sim_autopilot.core.places import Places
 from sim_autopilot.core.settings import FlightSettings
 from sim_autopilot.flight.climb import Climb
 from sim_autopilot.flight.flight import ModeFlight
@@ -49,8 +48,7 @@ class AutopilotConfig:
         parameters: values that differ from the firmware's defaults.
         endurance_s: of motors running on one battery.
         own_state: how well it knows where it is.
-        links: of each MAVLink link the rates at which it streams by default, in Hz by message id; None for the
-            firmware's own.
+        links: of each MAVLink link the rates at which it streams, in Hz by message id; None for the firmware's own.
         services: what answers beside the flight.
     """
 
@@ -122,15 +120,6 @@ class Heard:
     leader: Leader | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Places:
-    """The local frame with its origin, where it was armed, and a chart for geodetic coordinates."""
-
-    origin: Origin
-    home_enu_m: Vector3
-    chart: Chart
-
-
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class World:
     """What is about the drone: the vehicle, for the range finder, and the air, for WIND_COV."""
@@ -154,22 +143,6 @@ class SafetyMemory:
 
     watch: Watch = NOTHING_NOTICED
     failures: Failures = NO_FAILURES
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Later:
-    """A message to be sent at `boot_ns`, on the links on which its target is."""
-
-    boot_ns: int
-    message: Message
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Outbox:
-    """Messages to be sent later, and how many events were told, as the 16 bits on the wire count them."""
-
-    later: tuple[Later, ...] = ()
-    events: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

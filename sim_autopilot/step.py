@@ -12,9 +12,9 @@ from link.records import replace
 from sim_autopilot.boot import reboot_if_due
 from sim_autopilot.commands.incoming import take
 from sim_autopilot.commands.origin import step_origin
-from sim_autopilot.core.chart import near
 from sim_autopilot.core.modes import Event, Mode
 from sim_autopilot.core.parameters import parameter_message
+from sim_autopilot.core.places import near
 from sim_autopilot.core.streams import due_messages
 from sim_autopilot.flight.flight import is_takeoff_complete
 from sim_autopilot.flight.land_detector import detect_landing

@@ -17,7 +17,7 @@ from link.frames import rotate
 from link.local_frame import scale_of
 from link.messages import Vector3
 from scenarios.vehicle import VehicleState
-from sim_autopilot.core.local_frame import local_from_world
+from sim_autopilot.core.places import local_from_world
 from sim_autopilot.memory import AutopilotMemory
 
 NEES_DOF = 6

@@ -21,8 +21,9 @@ from sim_autopilot.commands.requests import (
     request_from_message,
 )
 from sim_autopilot.commands.stream_commands import get_interval, request_message, request_version, set_interval
+from sim_autopilot.core.links import Later
 from sim_autopilot.core.modes import Mode
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, Later, with_later
+from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, with_later
 from sim_autopilot.missions.step import set_current
 from sim_autopilot.safety.arming import arm, arming_obstacle, disarm
 from sim_autopilot.telemetry.events import tell
@@ -44,10 +45,10 @@ def obey(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> 
     handler = config.firmware.commands.handlers.get(request.command)
     if handler is None:
         return memory, (acknowledgement(request, UNSUPPORTED),)
-    return answered(handler(memory, request, config), request, config)
+    return answer_command(handler(memory, request, config), request, config)
 
 
-def answered(answer: Answer, request: Request, config: AutopilotConfig) -> Result:
+def answer_command(answer: Answer, request: Request, config: AutopilotConfig) -> Result:
     """Return the memory after a command that a handler has obeyed, and its acknowledgement with what else is sent."""
     severity = config.firmware.texts.severity
     telling = tell(answer.memory, answer.text, severity, config) if answer.text else None

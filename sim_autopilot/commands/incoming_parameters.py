@@ -5,7 +5,7 @@ Source: https://mavlink.io/en/services/parameter.html.
 
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
-from sim_autopilot.boot import tuned
+from sim_autopilot.boot import tune
 from sim_autopilot.commands.requests import is_ours
 from sim_autopilot.core.parameters import find_index, is_type_right, parameter_message, values_after_set
 from sim_autopilot.core.status_texts import status_text
@@ -36,7 +36,7 @@ def read_parameter(memory: AutopilotMemory, message: Message, config: AutopilotC
 def with_value(memory: AutopilotMemory, name: str, value: float, config: AutopilotConfig) -> AutopilotMemory:
     """Return the memory with one parameter changed."""
     values = {**memory.tuning.values, name: value}
-    return replace(memory, tuning=tuned(config, values))
+    return replace(memory, tuning=tune(config, values))
 
 
 def set_parameter(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
@@ -49,6 +49,6 @@ def set_parameter(memory: AutopilotMemory, message: Message, config: AutopilotCo
     if not lenient and not is_type_right(parameters[index], message):
         return memory, ()
     values = values_after_set(parameters, index, memory.tuning.values, message, autopilot_id, lenient=lenient)
-    memory = replace(memory, tuning=tuned(config, values))
+    memory = replace(memory, tuning=tune(config, values))
     tells_index = config.firmware.parameters.tells_indices
     return memory, (parameter_message(parameters, index, values, autopilot_id, tells_index=tells_index),)

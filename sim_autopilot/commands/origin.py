@@ -7,7 +7,7 @@ import numpy as np
 from link.geodesy import Datum, geodetic_from_enu
 from link.mavlink.dialect import Message
 from link.messages import Vector3
-from sim_autopilot.core.local_frame import local_from_world, world_from_local
+from sim_autopilot.core.places import local_from_world, world_from_local
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.telemetry.motion import gps_global_origin
 

@@ -1,7 +1,8 @@
-"""What the autopilot remembers of its MAVLink links: what each streams, and which one is at hand."""
+"""What the autopilot remembers of its MAVLink links: what each streams, which is at hand, and what is to be sent."""
 
 from dataclasses import dataclass
 
+from link.mavlink.dialect import Message
 from link.records import replace
 from sim_autopilot.core.streams import Streams
 
@@ -44,3 +45,19 @@ def with_link_at_hand(links: Links, link: LinkMemory) -> Links:
     each = list(links.each)
     each[links.at_hand] = link
     return replace(links, each=tuple(each))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Later:
+    """A message to be sent at `boot_ns`, on the links on which its target is."""
+
+    boot_ns: int
+    message: Message
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outbox:
+    """Messages to be sent later, and how many events were told, as the 16 bits on the wire count them."""
+
+    later: tuple[Later, ...] = ()
+    events: int = 0

@@ -12,7 +12,7 @@ from sim_autopilot.ground_station.files.ftp_state import FtpRules
 from sim_autopilot.ground_station.files.ftp_wire import question_from_message
 from sim_autopilot.ground_station.files.store import Shown
 from sim_autopilot.ground_station.logs.flight_log import LogRules, Row
-from sim_autopilot.ground_station.logs.logs import Logs, asked_for, entries, is_due, logged, pieces, shown_logs
+from sim_autopilot.ground_station.logs.logs import Logs, begin_download, entries, is_due, logged, pieces, shown_logs
 from sim_autopilot.ground_station.memory import station_of, with_station
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.telemetry.motion import attitude, global_position_int, local_position_ned
@@ -90,7 +90,7 @@ def _list(memory: AutopilotMemory, message: Message, rules: LogRules) -> _Handle
 
 
 def _send(memory: AutopilotMemory, message: Message, rules: LogRules) -> _Handled:
-    return asked_for(station_of(memory).logs, memory.links.at_hand, message, rules), ()
+    return begin_download(station_of(memory).logs, memory.links.at_hand, message, rules), ()
 
 
 def _end(memory: AutopilotMemory, _message: Message, _rules: LogRules) -> _Handled:

@@ -7,8 +7,9 @@ deliverer, https://docs.px4.io/main/en/peripherals/gripper.html, and what its si
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 from sim_autopilot.commands.requests import ACCEPTED, DENIED, Answer, Request, acknowledgement
+from sim_autopilot.core.links import Later
 from sim_autopilot.ground_station.memory import Gripper, station_of, with_station
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, Later
+from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 
 _REJECTED = int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
 _IN_PROGRESS = int(mavlink.MAV_RESULT_IN_PROGRESS)

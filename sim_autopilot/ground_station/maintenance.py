@@ -8,8 +8,9 @@ from math import isfinite
 from link.mavlink.dialect import mavlink
 from link.records import replace
 from sim_autopilot.commands.requests import ACCEPTED, DENIED, UNSUPPORTED, Answer, Request
+from sim_autopilot.core.links import Later
 from sim_autopilot.core.status_texts import status_text
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, Later
+from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 
 _FAILED = int(mavlink.MAV_RESULT_FAILED)
 _LONGEST_TEST_S = 600.0

@@ -65,7 +65,7 @@ def with_station(memory: AutopilotMemory, station: StationMemory) -> AutopilotMe
     return replace(memory, station=station)
 
 
-def kept(station: StationMemory) -> StationMemory:
+def keep_stored(station: StationMemory) -> StationMemory:
     """Return what is stored over a reboot: plans, files and logs."""
     return StationMemory(
         library=replace(station.library, transfer=None),

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.commands.commands import answered
+from sim_autopilot.commands.commands import answer_command
 from sim_autopilot.commands.requests import Answer, Request, acknowledgement, is_for_us, is_ours, request_from_message
 from sim_autopilot.core.parameters import Parameter, Values
 from sim_autopilot.core.streams import Stream
@@ -21,7 +21,7 @@ from sim_autopilot.ground_station.files_and_logs import (
 )
 from sim_autopilot.ground_station.log_streaming import stream_log, take_logging_ack
 from sim_autopilot.ground_station.logs.flight_log import LogRules
-from sim_autopilot.ground_station.memory import EMPTY, StationMemory, kept
+from sim_autopilot.ground_station.memory import EMPTY, StationMemory, keep_stored
 from sim_autopilot.ground_station.missions.plans import pass_transfer, take_plan
 from sim_autopilot.ground_station.missions.rules import TransferRules
 from sim_autopilot.ground_station.missions.transfer import MESSAGE_IDS
@@ -66,7 +66,7 @@ class GroundStation:
 
     def keep(self, station: object) -> object:
         """Return what of it outlives a reboot."""
-        return kept(station) if isinstance(station, StationMemory) else station
+        return keep_stored(station) if isinstance(station, StationMemory) else station
 
     def handle(self, memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> "Result | None":
         """Return the memory after a message, and what answers it; None for one that is the flight's."""
@@ -102,7 +102,7 @@ class GroundStation:
             result = self.fixed_answers[message.command]
             return memory, () if result is None else (acknowledgement(request, result),)
         answer = handler(memory, request, config)
-        return None if answer is None else answered(answer, request, config)
+        return None if answer is None else answer_command(answer, request, config)
 
 
 _Service = Callable[[GroundStation, AutopilotMemory, Message, AutopilotConfig], Result]

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from math import hypot
 
-from link.frames import yaw_of
-from link.messages import Quaternion, Vector3
+from link.frames import conjugate, rotate, yaw_of
+from link.messages import BodyTruth, Quaternion, RotorTruth, Vector3
 from sim_autopilot.core.data import Array, PlantState
 from sim_autopilot.physics.airframe import Airframe
 from sim_autopilot.plant.own_state import NO_ERROR
@@ -53,3 +53,23 @@ def take_snapshot(state: PlantState, airframe: Airframe, boot_ns: int, own_error
         yaw_rad=yaw_of((w, x, y, z)),
         thrust_share=thrust_n / airframe.weight_n,
     )
+
+
+def drone_truth(state: PlantState) -> BodyTruth:
+    """Return the drone's pose in W and its velocities in B."""
+    w, x, y, z = state.orientation_wxyz.tolist()
+    px, py, pz = state.position_enu_m.tolist()
+    p, q, r = state.angular_velocity_flu_rad_s.tolist()
+    return BodyTruth(
+        t_ns=state.t_ns,
+        position_enu_m=(px, py, pz),
+        orientation_wxyz=(w, x, y, z),
+        velocity_flu_m_s=rotate(conjugate((w, x, y, z)), state.velocity_enu_m_s.tolist()),
+        angular_velocity_flu_rad_s=(p, q, r),
+    )
+
+
+def rotor_truth(state: PlantState) -> RotorTruth:
+    """Return the rotor speeds."""
+    a, b, c, d = state.rotor_speed_rad_s.tolist()
+    return RotorTruth(t_ns=state.t_ns, speed_rad_s=(a, b, c, d))

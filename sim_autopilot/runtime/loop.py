@@ -16,7 +16,7 @@ from link.messages import BodyTruth, RotorTruth
 from link.real_time import spare_present_objects
 from link.zenoh_session import ZenohSession
 from sim_autopilot.physics.wind import WindModel
-from sim_autopilot.plant.truth import drone_truth, rotor_truth
+from sim_autopilot.plant.snapshot import drone_truth, rotor_truth
 from sim_autopilot.runtime.node import AutopilotNode
 from sim_autopilot.runtime.vehicle_view import VehicleView
 

@@ -8,16 +8,16 @@ from collections.abc import Iterable, Sequence
 from link.geodesy import Datum, geodetic_from_enu
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
+from link.mavlink.signing import Signing, Streams
 from link.mavlink.statistics import CodecStatistics
 from link.messages import Vector3
-from sim_autopilot.boot import initial_memory, restarted
+from sim_autopilot.boot import initial_memory, restart_in_place
 from sim_autopilot.commands.origin import move_origin
 from sim_autopilot.core.data import Array, Deck, PlantState
 from sim_autopilot.core.streams import shortest_interval_ns
 from sim_autopilot.memory import AutopilotConfig, AutopilotInputs, AutopilotMemory
 from sim_autopilot.plant.own_state import NO_ERROR, OwnStateError
 from sim_autopilot.runtime.routing import Routes, target_of
-from sim_autopilot.runtime.signing_setup import last_setup, link_signings
 from sim_autopilot.step import autopilot_step
 from sim_autopilot.telemetry.status import ping_answer, timesync_answer
 
@@ -76,7 +76,7 @@ class AutopilotNode:
 
     def restart(self) -> None:
         """Boot anew where the drone is: nothing is remembered, and the motors stand still until they are armed."""
-        self._memory = restarted(self._memory, self._config)
+        self._memory = restart_in_place(self._memory, self._config)
         self._received.clear()
         self._step_ns = self._next_step_ns()
 
@@ -168,3 +168,27 @@ class AutopilotNode:
     def _next_step_ns(self) -> int:
         intervals_ns = (shortest_interval_ns(link.streams) for link in self._memory.links.each)
         return _FAST_STEP_NS if min(filter(None, intervals_ns), default=STEP_NS) < STEP_NS else STEP_NS
+
+
+_TRUSTED_LINK = 0  # a cable, by which a lost key can be replaced
+_TIMESTAMP_MAX = (1 << 48) - 1
+
+
+def last_setup(messages: Iterable[Message], system_id: int) -> Message | None:
+    """Return the last SETUP_SIGNING for us among `messages`."""
+    found = None
+    for message in messages:
+        if message.get_msgId() == mavlink.MAVLINK_MSG_ID_SETUP_SIGNING and message.target_system in {0, system_id}:
+            found = message
+    return found
+
+
+def link_signings(setup: Message, links: int) -> list[Signing | None]:
+    """Return how each link signs and checks after `setup`; a key of zeros ends it."""
+    key = bytes(setup.secret_key)
+    if not any(key):
+        return [None] * links
+    timestamp, streams = min(setup.initial_timestamp, _TIMESTAMP_MAX), Streams()
+    return [
+        Signing(key, link, timestamp, takes_unsigned=link == _TRUSTED_LINK, streams=streams) for link in range(links)
+    ]

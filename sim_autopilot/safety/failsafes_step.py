@@ -33,7 +33,7 @@ def keep_watch(memory: AutopilotMemory, config: AutopilotConfig) -> AutopilotMem
     if watch is not before:
         memory = watching(memory, watch)
     for event in (left, lost, low):
-        memory = after_failsafe(memory, event)
+        memory = react_to_failsafe(memory, event)
     return memory
 
 
@@ -51,14 +51,14 @@ def mind_lost_sticks(memory: AutopilotMemory, *, held: bool) -> AutopilotMemory:
         and hold_s is not None
     ):
         watch = replace(watch, sticks_lost_ns=boot_ns)
-        return after_failsafe(watching(memory, watch), Event.FAILSAFE_HOLD)
+        return react_to_failsafe(watching(memory, watch), Event.FAILSAFE_HOLD)
     if watch.sticks_lost_ns is None:
         return memory
     if not memory.modes.latched:
         return watching(memory, replace(watch, sticks_lost_ns=None))
     if hold_s is None or (boot_ns - watch.sticks_lost_ns) * 1e-9 < hold_s:
         return memory
-    return after_failsafe(watching(memory, replace(watch, sticks_lost_ns=None)), settings.takeover.lost_event)
+    return react_to_failsafe(watching(memory, replace(watch, sticks_lost_ns=None)), settings.takeover.lost_event)
 
 
 def watching(memory: AutopilotMemory, watch: Watch) -> AutopilotMemory:
@@ -66,7 +66,7 @@ def watching(memory: AutopilotMemory, watch: Watch) -> AutopilotMemory:
     return replace(memory, safety=replace(memory.safety, watch=watch))
 
 
-def after_failsafe(memory: AutopilotMemory, event: Event | None) -> AutopilotMemory:
+def react_to_failsafe(memory: AutopilotMemory, event: Event | None) -> AutopilotMemory:
     """Return the memory after a failsafe's event, None for one that only warns."""
     if event is None:
         return memory

@@ -11,7 +11,7 @@ from math import cos, isfinite, pi, sin
 
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
-from sim_autopilot.core.local_frame import Origin, world_from_local
+from sim_autopilot.core.places import Origin, world_from_local
 from sim_autopilot.plant.snapshot import Snapshot
 
 _POSITION = 0b0000_0000_0000_0111

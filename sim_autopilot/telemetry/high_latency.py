@@ -4,7 +4,7 @@ from math import atan2, degrees, hypot
 
 from link.frames import yaw_ned_from_enu
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.core.chart import geodetic
+from sim_autopilot.core.places import geodetic
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.safety.failsafes_step import charge_of
 from sim_autopilot.telemetry.motion import vfr_hud, wire_place

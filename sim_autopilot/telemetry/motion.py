@@ -15,8 +15,7 @@ from link.geodesy import geodetic_from_enu
 from link.local_frame import local_from_geodetic
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
-from sim_autopilot.core.chart import geodetic
-from sim_autopilot.core.local_frame import local_from_world
+from sim_autopilot.core.places import geodetic, local_from_world
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.telemetry.status import boot_ms

@@ -7,7 +7,7 @@ from math import degrees
 
 from link.frames import frd_from_flu, quaternion_ned_frd_from_enu_flu
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.core.chart import geodetic
+from sim_autopilot.core.places import geodetic
 from sim_autopilot.flight.manual import sticks_in_effect
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.telemetry.motion import height_over_surface_m

@@ -6,7 +6,7 @@ from math import atan2, cos, degrees, hypot, inf, nan, radians, sin
 import pytest
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.core.local_frame import local_from_world
+from sim_autopilot.core.places import local_from_world
 from sim_autopilot.memory import AutopilotConfig
 from sim_autopilot.physics.airframe import ARDUCOPTER_AIRFRAME
 from sim_autopilot.plant.plant import PlantConfig

@@ -4,10 +4,10 @@ from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.flight.land_detector import IN_AIR
 from sim_autopilot.memory import AutopilotMemory, Course, with_guided
-from sim_autopilot.setpoints.global_frame import local_setpoint
 from sim_autopilot.setpoints.guided import has_run_up, lifted, next_guided, on_the_ground, with_attitude, with_wish
 from sim_autopilot.setpoints.guided_attitude import attitude_wish
 from sim_autopilot.setpoints.guided_setpoint import STOP, wish_from_message
+from sim_autopilot.setpoints.setpoints import local_setpoint
 
 _FRAMES = frozenset(
     {

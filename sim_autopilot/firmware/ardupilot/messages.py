@@ -7,7 +7,7 @@ from math import atan2, degrees, hypot, pi
 
 from link.frames import frd_from_flu, yaw_ned_from_enu
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.core.chart import geodetic
+from sim_autopilot.core.places import geodetic
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
 from sim_autopilot.telemetry.motion import attitude, wire_place
 from sim_autopilot.telemetry.sensors import scaled_imu, scaled_pressure

@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 from link.frames import frd_from_flu, ned_from_enu, quaternion_ned_frd_from_enu_flu
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.core.chart import geodetic
+from sim_autopilot.core.places import geodetic
 from sim_autopilot.firmware.ardupilot import messages
 from sim_autopilot.firmware.ardupilot.messages import simstate
 from sim_autopilot.interfaces import Builder

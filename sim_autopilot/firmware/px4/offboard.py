@@ -7,8 +7,13 @@ from sim_autopilot.core.modes import Event
 from sim_autopilot.flight.mode_change import change_mode
 from sim_autopilot.memory import AutopilotMemory, Course
 from sim_autopilot.setpoints.attitude import attitude_from_message
-from sim_autopilot.setpoints.global_frame import local_setpoint
-from sim_autopilot.setpoints.setpoints import are_fresh, are_streaming, reference_from_message, with_setpoint
+from sim_autopilot.setpoints.setpoints import (
+    are_fresh,
+    are_streaming,
+    local_setpoint,
+    reference_from_message,
+    with_setpoint,
+)
 
 _FRAMES = frozenset({mavlink.MAV_FRAME_LOCAL_NED, mavlink.MAV_FRAME_BODY_NED})
 _STREAM_S = 0.0

@@ -37,11 +37,10 @@ from sim_autopilot.firmware.px4.events import (
     UNHEALTHY,
 )
 from sim_autopilot.firmware.px4.flight_texts import flight_texts
-from sim_autopilot.firmware.px4.links import LINKS
 from sim_autopilot.firmware.px4.modes import MODES
 from sim_autopilot.firmware.px4.offboard import Offboard
 from sim_autopilot.firmware.px4.parameters import OBEYED, flight_settings
-from sim_autopilot.firmware.px4.streams import SILENT_MESSAGES, STREAMS
+from sim_autopilot.firmware.px4.streams import LINKS, SILENT_MESSAGES, STREAMS
 from sim_autopilot.interfaces import CommandRules, Firmware, MissionRules, StreamRules
 
 _ARMING_S = 3.5

@@ -107,7 +107,7 @@ def entries(logs: Logs, first: int, last: int, rules: LogRules) -> tuple[Message
     )
 
 
-def asked_for(logs: Logs, link: int, request: Message, rules: LogRules) -> Logs:
+def begin_download(logs: Logs, link: int, request: Message, rules: LogRules) -> Logs:
     """Return the logs with a download begun, where there is such a log and such a place in it."""
     number, offset, count = request.id, request.ofs, request.count
     index = number - rules.first_id

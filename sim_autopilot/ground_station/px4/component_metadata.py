@@ -1,7 +1,8 @@
 """PX4's component metadata: files about parameters, events and actuators, as ground stations read them over FTP.
 
 Source: https://mavlink.io/en/services/component_information.html. Names, types and defaults of all parameters;
-ranges of those that the flight obeys, and the events that are sent.
+ranges of those that the flight obeys, the events that are sent, the four motors of the simulated quadrotor, and the
+sixteen outputs of its simulation.
 """
 
 import json
@@ -15,11 +16,14 @@ from sim_autopilot.firmware.px4.modes import MODES
 from sim_autopilot.firmware.px4.parameters import OBEYED
 from sim_autopilot.ground_station.files.ftp_handlers import checksum
 from sim_autopilot.ground_station.files.store import Shown
-from sim_autopilot.ground_station.px4.actuator_metadata import ACTUATORS_PATH, actuators_description
 from sim_autopilot.ground_station.px4.event_metadata import EVENTS_PATH, events_description
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.telemetry.status import boot_ms
 
+ACTUATORS_PATH = "etc/extras/actuators.json.xz"
+_MOTORS, _OUTPUTS = 4, 16
+_FIRST_MOTOR, _LAST_MOTOR = 101, 112
+"""The numbers of the functions that are motors; 0 is none."""
 GENERAL_PATH = "etc/extras/component_general.json.xz"
 PARAMETERS_PATH = "etc/extras/parameters.json.xz"
 COMPONENT_METADATA = 397
@@ -99,3 +103,25 @@ def _described(parameter: Parameter, obeyed: frozenset[str]) -> dict[str, str | 
 
 def _compressed(content: object) -> bytes:
     return lzma.compress(json.dumps(content, separators=(",", ":")).encode(), check=lzma.CHECK_CRC32)
+
+
+def actuators_description() -> dict[str, object]:
+    """Return which functions there are, which outputs, and what the mixer drives."""
+    motors = {str(_FIRST_MOTOR + place): {"label": f"Motor {place + 1}"} for place in range(_MOTORS)}
+    channels = [{"label": f"Channel {number}", "param-index": number} for number in range(1, _OUTPUTS + 1)]
+    function = {"label": "Function", "name": "PWM_MAIN_FUNC${i}", "function": "function"}
+    outputs = {"label": "SIM", "subgroups": [{"channels": channels, "per-channel-parameters": [function]}]}
+    motor = {
+        "function-min": _FIRST_MOTOR,
+        "function-max": _LAST_MOTOR,
+        "label-index-offset": 1,
+        "values": {"min": 0, "max": 1, "default-is-nan": True},
+    }
+    group = {"group-label": "Motors", "count": _MOTORS, "actuator-type": "motor", "required": True}
+    mixer = {"actuator-types": {"motor": motor}, "config": [{"title": "Multirotor", "actuators": [group]}]}
+    return {
+        "version": 1,
+        "functions_v1": {"0": {"label": "Disabled"}, **motors},
+        "outputs_v1": [outputs],
+        "mixer_v1": mixer,
+    }

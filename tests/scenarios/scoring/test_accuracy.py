@@ -15,7 +15,7 @@ from scenarios.campaigns.intervals import mean_band
 from scenarios.scoring.accuracy import EstimateError, Nis, Truth, accuracy_table, antenna_truth, estimate_error
 from scenarios.vehicle import VehicleState
 from sim_autopilot.boot import initial_memory
-from sim_autopilot.core.local_frame import Origin
+from sim_autopilot.core.places import Origin
 from tests.sim_autopilot.pilot import DATUM, START_NS, px4
 
 TRUTH = Truth(position_enu_m=(10.0, -4.0, 1.6), velocity_enu_m_s=(5.0, 1.0, 0.0))

@@ -12,7 +12,7 @@ from link.geodesy import Datum, enu_from_geodetic, geodetic_from_enu
 from link.local_frame import LocalFrame, Projection, local_from_geodetic
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
-from sim_autopilot.core.local_frame import Origin, local_from_world, world_from_local
+from sim_autopilot.core.places import Origin, local_from_world, world_from_local
 from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.px4.px4 import PX4
 from sim_autopilot.memory import AutopilotConfig

@@ -9,7 +9,7 @@ from link.local_frame import LocalFrame, Projection
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.boot import initial_memory
 from sim_autopilot.core.data import Array, Reference
-from sim_autopilot.core.local_frame import Origin
+from sim_autopilot.core.places import Origin
 from sim_autopilot.setpoints.setpoints import (
     NO_SETPOINTS,
     are_fresh,

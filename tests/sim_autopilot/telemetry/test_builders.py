@@ -8,8 +8,8 @@ from scipy.spatial.transform import Rotation
 from link.local_frame import LocalFrame, Projection, local_from_geodetic
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.core.chart import chart_at, geodetic, near
 from sim_autopilot.core.modes import Mode
+from sim_autopilot.core.places import chart_at, geodetic, near
 from sim_autopilot.firmware.px4.px4 import PX4
 from sim_autopilot.runtime.node import AutopilotNode
 from sim_autopilot.telemetry.builders import BUILDERS

@@ -6,7 +6,7 @@ import pytest
 
 from link.frames import wrap_angle
 from link.geodesy import Datum, geodetic_from_enu
-from sim_autopilot.core.chart import chart_at, geodetic, near
+from sim_autopilot.core.places import chart_at, geodetic, near
 
 OFFSETS_M = [(0.0, 0.0, 0.0), (13.0, -7.0, 4.0), (-15.0, 3.0, -2.0), (2.0, 18.0, 5.0)]
 

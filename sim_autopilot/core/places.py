@@ -1,16 +1,20 @@
-"""Geodetic coordinates of a moving drone at little cost: an exact point and its slopes, renewed every few metres.
+"""Where things are: the autopilot's local frame in W, home, and geodetic coordinates at little cost.
 
-Longitudes are kept in (-pi, pi], and their differences go the short way: a flight may cross the antimeridian.
+The local frame is laid out as the firmware does it; W is a tangent plane. Both name the same point on the globe, and
+away from the origin their metres differ (`link.local_frame`). A chart is an exact point and its slopes, renewed every
+few metres. Longitudes are kept in (-pi, pi], and their differences go the short way: a flight may cross the
+antimeridian.
 """
 
 from dataclasses import dataclass
 from math import dist
 
 from link.frames import wrap_angle
-from link.geodesy import Datum, geodetic_from_enu
+from link.geodesy import Datum, enu_from_geodetic, geodetic_from_enu
+from link.local_frame import LocalFrame, geodetic_from_local, local_from_geodetic
 from link.messages import Vector3
 
-_REACH_M = 20.0
+_CHART_REACH_M = 20.0
 """Within it the linear map is off by less than 20^2 / (2 * 6.4e6) m = 0.03 mm."""
 _STEP_M = 10.0
 
@@ -43,7 +47,7 @@ def chart_at(datum: Datum, position_enu_m: Vector3) -> Chart:
 
 def near(chart: Chart, position_enu_m: Vector3) -> Chart:
     """Return `chart`, or a new one where it does not reach."""
-    if dist(chart.base_enu_m, position_enu_m) < _REACH_M:
+    if dist(chart.base_enu_m, position_enu_m) < _CHART_REACH_M:
         return chart
     return chart_at(chart.datum, position_enu_m)
 
@@ -61,3 +65,37 @@ def geodetic(chart: Chart, position_enu_m: Vector3) -> Vector3:
 def _slope(base: Vector3, moved: Vector3) -> Vector3:
     latitude, longitude, altitude = (m - o for m, o in zip(moved, base, strict=True))
     return (latitude / _STEP_M, wrap_angle(longitude) / _STEP_M, altitude / _STEP_M)
+
+
+_REACH_M = 1e5
+"""No drone gets so far from its origin; a place beyond would be on the other side of the globe."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Origin:
+    """The autopilot's local frame, where its origin is in W, which is about `world`, and how often it was moved."""
+
+    world: Datum
+    frame: LocalFrame
+    position_enu_m: Vector3 = (0.0, 0.0, 0.0)
+    resets: int = 0
+
+
+def local_from_world(origin: Origin, position_enu_m: Vector3) -> Vector3:
+    """Return a place in W in the local frame, m, ENU."""
+    return local_from_geodetic(origin.frame, *geodetic_from_enu(origin.world, position_enu_m))
+
+
+def world_from_local(origin: Origin, position_enu_m: Vector3) -> Vector3:
+    """Return a place in the local frame in W, m, ENU; each part of what is beyond reach is cut to it."""
+    east_m, north_m, up_m = (max(-_REACH_M, min(_REACH_M, part_m)) for part_m in position_enu_m)
+    return enu_from_geodetic(origin.world, *geodetic_from_local(origin.frame, (east_m, north_m, up_m)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Places:
+    """The local frame with its origin, where it was armed, and a chart for geodetic coordinates."""
+
+    origin: Origin
+    home_enu_m: Vector3
+    chart: Chart
