@@ -1,4 +1,5 @@
 from math import nan, radians
+from operator import attrgetter
 
 import pytest
 
@@ -88,9 +89,9 @@ def test_a_value_that_is_no_number_leaves_the_parameter_and_tells_its_value() ->
 @pytest.mark.parametrize(
     ("name", "value", "kind", "setting", "flown"),
     [
-        ("MPC_XY_VEL_MAX", -1.0, REAL, "speed_max_m_s", 0.1),
-        ("MPC_XY_VEL_MAX", 1e9, REAL, "speed_max_m_s", 40.0),
-        ("COM_OBL_RC_ACT", 99, INTEGER, "setpoint_loss_event", Event.LOST_TO_POSITION),
+        ("MPC_XY_VEL_MAX", -1.0, REAL, "envelope.speed_max_m_s", 0.1),
+        ("MPC_XY_VEL_MAX", 1e9, REAL, "envelope.speed_max_m_s", 40.0),
+        ("COM_OBL_RC_ACT", 99, INTEGER, "setpoints.loss_event", Event.LOST_TO_POSITION),
     ],
 )
 def test_a_value_out_of_its_range_is_kept_and_told_and_the_flight_stays_within(
@@ -99,7 +100,7 @@ def test_a_value_out_of_its_range_is_kept_and_told_and_the_flight_stays_within(
     pilot = Pilot()
     pilot.step(set_parameter(name, value, kind))
     assert values(pilot) == {name: value}
-    assert getattr(pilot.node.memory.tuning.settings, setting) == flown
+    assert attrgetter(setting)(pilot.node.memory.tuning.settings) == flown
 
 
 def test_a_set_of_another_type_than_the_parameters_is_not_answered() -> None:
