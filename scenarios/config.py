@@ -11,7 +11,7 @@ from companion.config.companion import CompanionConfig
 from link.messages import PadGeometry, Vector3
 from link.program.toml_config import NotNegative, Positive, StrictModel
 from scenarios.tracks.config import TrackConfig
-from sim_autopilot.config import DatumConfig, DroneConfig
+from sim_autopilot.runtime.config import DatumConfig, DroneConfig
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 

@@ -44,6 +44,10 @@ _SpeedOption = Annotated[
     float, typer.Option("--speed", min=0.0, max=1000.0, help="Simulated seconds a second; 0: as fast as it can.")
 ]
 _InstantOption = Annotated[bool | None, typer.Option("--instant", help="Be ready to arm at once.", show_default=False)]
+_CoreOption = Annotated[
+    bool | None,
+    typer.Option("--core", help="Fly only: no files, logs, plans, calibration or shell.", show_default=False),
+]
 _DatumOption = Annotated[
     tuple[float, float, float] | None,
     typer.Option("--datum", metavar="LAT LON ALT", help="Origin of the world, degrees and metres."),
@@ -64,6 +68,7 @@ def sim_autopilot(
     instance: _InstanceOption = None,
     speed: _SpeedOption = 1.0,
     instant: _InstantOption = None,
+    core: _CoreOption = None,
     datum: _DatumOption = None,
     wind: _WindOption = None,
     turbulence: _TurbulenceOption = None,
@@ -81,9 +86,9 @@ def sim_autopilot(
 ) -> int:
     """Simulate a quadrotor under an autopilot that speaks MAVLink."""
     from link.program.toml_config import dump_toml, load_config
-    from sim_autopilot.config import SimAutopilotConfig, autopilot_config, with_default_links
+    from sim_autopilot.runtime.config import SimAutopilotConfig, autopilot_config, with_default_links
 
-    given = _given(firmware=firmware, instance=instance, instant=instant, seed=seed)
+    given = _given(firmware=firmware, instance=instance, instant=instant, core=core, seed=seed)
     if mavlink:
         given["links"] = [{"device": device} for device in mavlink]
     given |= {"wind": _given(mean_m_s=wind, turbulence=turbulence), "datum": _datum(datum)}
@@ -94,7 +99,7 @@ def sim_autopilot(
         return EXIT_OK
     from link.zenoh.keys import Keys
     from link.zenoh.options import zenoh_options
-    from sim_autopilot.run import RunOptions, run
+    from sim_autopilot.runtime.run import RunOptions, run
 
     zenoh = zenoh_options(mode, connect, listen, multicast, zenoh_config)
     devices = tuple(link.device for link in settings.links)

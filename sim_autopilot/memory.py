@@ -1,32 +1,36 @@
 """What the autopilot's step is told once, what it remembers, what comes in and what goes out."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import pi
 
-import numpy as np
-
 from link.frames.geodesy import Datum
-from link.frames.local_frame import LocalFrame
 from link.mavlink.dialect import Message
 from link.messages import Vector3
-from sim_autopilot.data import Array, Deck, PlantState, Reference
-from sim_autopilot.firmware.firmware import Firmware
+from link.records import replace
+from sim_autopilot.core.data import Array, Deck, PlantState, Reference
+from sim_autopilot.core.links import Later, LinkMemory, Links, Outbox, with_link_at_hand
+from sim_autopilot.core.modes import Modes
+from sim_autopilot.core.parameters import Values
+from sim_autopilot.core.places import Places
+from sim_autopilot.core.settings import FlightSettings
 from sim_autopilot.flight.climb import Climb
-from sim_autopilot.flight.flight import ModeFlight, begin
+from sim_autopilot.flight.flight import ModeFlight
+from sim_autopilot.flight.follow import Leader
 from sim_autopilot.flight.land_detector import Landing
-from sim_autopilot.flight.modes import Modes
-from sim_autopilot.local_places import Origin
-from sim_autopilot.own_state import NO_ERROR, OwnStateModel
-from sim_autopilot.parameters import Values, default_values
-from sim_autopilot.plant import PlantConfig, PlantMemory, initial_plant
-from sim_autopilot.services import Services
-from sim_autopilot.setpoints.guided import Guided, begin_guided
+from sim_autopilot.flight.manual import Sticks
+from sim_autopilot.flight.precision_landing import Target
+from sim_autopilot.interfaces import NO_SERVICES, Firmware, Services
+from sim_autopilot.missions.fence import Fence
+from sim_autopilot.missions.flight import NO_PROGRESS, Progress
+from sim_autopilot.missions.items import Item
+from sim_autopilot.plant.own_state import NO_ERROR, OwnStateModel
+from sim_autopilot.plant.plant import PlantConfig, PlantMemory
+from sim_autopilot.plant.snapshot import Snapshot
+from sim_autopilot.safety.failsafes import NOTHING_NOTICED, Watch
+from sim_autopilot.safety.failures import NO_FAILURES, Failures
+from sim_autopilot.setpoints.guided import Guided
 from sim_autopilot.setpoints.setpoints import NO_SETPOINTS, Setpoints
-from sim_autopilot.settings import FlightSettings
-from sim_autopilot.snapshot import Snapshot, take_snapshot
-from sim_autopilot.streams import Streams, default_streams
-from sim_autopilot.telemetry.chart import Chart, chart_at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,8 +48,8 @@ class AutopilotConfig:
         parameters: values that differ from the firmware's defaults.
         endurance_s: of motors running on one battery.
         own_state: how well it knows where it is.
-        links: of each MAVLink link the rates at which it streams by default, in Hz by message id; None for the
-            firmware's own.
+        links: of each MAVLink link the rates at which it streams, in Hz by message id; None for the firmware's own.
+        services: what answers beside the flight.
     """
 
     firmware: Firmware
@@ -59,23 +63,86 @@ class AutopilotConfig:
     endurance_s: float = 1200.0
     own_state: OwnStateModel = field(default_factory=OwnStateModel)
     links: tuple[Mapping[int, float] | None, ...] = (None,)
+    services: Services = NO_SERVICES
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LinkMemory:
-    """What belongs to one MAVLink link; see the attributes of the same names in `AutopilotMemory`."""
+class Boot:
+    """When it was booted (UTC), and when it boots again, in ns since then; whether that forgets all parameters."""
 
-    streams: Streams
-    listing: int | None = None
-    ground_station: bool = False
+    start_ns: int
+    again_ns: int | None = None
+    forgets: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Later:
-    """A message to be sent at `boot_ns`, on the links on which its target is."""
+class Tuning:
+    """The parameters' values, the flight settings that they amount to, and the drone with the envelope of these."""
 
-    boot_ns: int
-    message: Message
+    values: Values
+    settings: FlightSettings
+    plant_config: PlantConfig
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Course:
+    """What steering changes.
+
+    Attributes:
+        flight: what the mode remembers.
+        guided: what ArduCopter's GUIDED remembers.
+        climb: the lift-off under way.
+        landing: of the land detector.
+        following: what the flight controller was last told.
+    """
+
+    flight: ModeFlight
+    guided: Guided
+    climb: Climb | None
+    landing: Landing
+    following: Reference | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Heard:
+    """What others have said of where to fly.
+
+    Attributes:
+        setpoints: the companion's.
+        sticks: the pilot's, None before the first.
+        target: of a precision landing, None before the first sighting.
+        leader: who is followed, None before his first word.
+    """
+
+    setpoints: Setpoints = NO_SETPOINTS
+    sticks: Sticks | None = None
+    target: Target | None = None
+    leader: Leader | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class World:
+    """What is about the drone: the vehicle, for the range finder, and the air, for WIND_COV."""
+
+    deck: Deck | None = None
+    wind_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MissionMemory:
+    """The items of the mission, how far it is flown, and the fence in W."""
+
+    items: tuple[Item, ...] = ()
+    progress: Progress = NO_PROGRESS
+    fence: Fence = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SafetyMemory:
+    """What the failsafes have noticed, and what has failed on purpose."""
+
+    watch: Watch = NOTHING_NOTICED
+    failures: Failures = NO_FAILURES
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -83,60 +150,38 @@ class AutopilotMemory:
     """Everything that the autopilot knows from one step to the next.
 
     Attributes:
-        start_ns: UTC at boot.
+        boot: the last one and the next.
         plant: the drone.
         now: the same as the autopilot believes it to be, in plain numbers.
-        plant_config: with the envelope that the parameters set.
-        values: of the parameters.
-        settings: what these amount to.
+        tuning: by the parameters.
         modes: flown and intended.
-        flight: what the mode remembers.
-        guided: what ArduCopter's GUIDED remembers.
-        climb: the lift-off under way.
         armed_ns: when the motors were started, in ns since boot; None with the motors off.
-        landing: of the land detector.
-        setpoints: the companion's.
-        streams: what is sent unasked.
-        origin: of the local frame.
-        home_enu_m: where it was armed.
-        chart: for geodetic coordinates.
-        later: messages to be sent.
-        listing: index of the next parameter of a list under way.
-        ground_station: whether one was heard, or anybody at all where everybody counts: who gets texts.
-        link: number of the link at hand, whose are streams, listing and ground_station.
-        links: the same of every link, as it was when that was last at hand.
-        following: what the flight controller was last told.
-        deck: the vehicle, for the range finder.
-        wind_enu_m_s: the air, for WIND_COV.
-        services: of missions, battery, fence and the like.
+        course: what it flies.
+        heard: of where to fly.
+        places: origin, home and chart.
+        world: about the drone.
+        mission: and fence.
+        safety: failsafes and failures.
+        links: of MAVLink.
+        outbox: what is still to be sent.
+        station: the services' memory, which only they read.
     """
 
-    start_ns: int
+    boot: Boot
     plant: PlantMemory
     now: Snapshot
-    plant_config: PlantConfig
-    values: Values
-    settings: FlightSettings
+    tuning: Tuning
     modes: Modes
-    flight: ModeFlight
-    guided: Guided
-    climb: Climb | None
     armed_ns: int | None
-    landing: Landing
-    setpoints: Setpoints
-    streams: Streams
-    origin: Origin
-    home_enu_m: Vector3
-    chart: Chart
-    later: tuple[Later, ...]
-    listing: int | None
-    ground_station: bool
-    link: int
-    links: tuple[LinkMemory, ...]
-    following: Reference | None
-    deck: Deck | None
-    wind_enu_m_s: Vector3
-    services: Services
+    course: Course
+    heard: Heard
+    places: Places
+    world: World
+    mission: MissionMemory
+    safety: SafetyMemory
+    links: Links
+    outbox: Outbox
+    station: object
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -175,62 +220,31 @@ class AutopilotOutputs:
     state: PlantState
 
 
-def initial_memory(config: AutopilotConfig, start_ns: int) -> AutopilotMemory:
-    """Return an autopilot that starts at `start_ns`, disarmed, its drone at rest.
-
-    Raises:
-        ValueError: a parameter of `config` does not exist or is out of range.
-    """
-    firmware = config.firmware
-    values = default_values(firmware.parameters, {firmware.system_id_parameter: config.system_id, **config.parameters})
-    settings = firmware.settings(values)
-    plant = initial_plant(config.plant, start_ns, np.array(config.position_enu_m), config.yaw_rad)
-    now = take_snapshot(plant.state, config.plant.airframe, 0)
-    links = tuple(LinkMemory(streams=default_streams(firmware.streams.values(), rates)) for rates in config.links)
-    return AutopilotMemory(
-        start_ns=start_ns,
-        plant=plant,
-        now=now,
-        plant_config=limited(config.plant, settings),
-        values=values,
-        settings=settings,
-        modes=Modes(mode=firmware.boot_mode, intended=firmware.boot_mode),
-        flight=begin(firmware.boot_mode, now, now.position_enu_m, settings),
-        guided=begin_guided(now),
-        climb=None,
-        armed_ns=None,
-        landing=Landing(),
-        setpoints=NO_SETPOINTS,
-        streams=links[0].streams,
-        origin=Origin(world=config.datum, frame=LocalFrame(origin=config.datum, projection=firmware.projection)),
-        home_enu_m=now.position_enu_m,
-        chart=chart_at(config.datum, now.position_enu_m),
-        later=(),
-        listing=None,
-        ground_station=False,
-        link=0,
-        links=links,
-        following=None,
-        deck=None,
-        wind_enu_m_s=(0.0, 0.0, 0.0),
-        services=Services(),
-    )
-
-
 def has_passed(config: AutopilotConfig, memory: AutopilotMemory, since_boot_s: float) -> bool:
     """Return whether so much time has passed since boot, or need not."""
     return config.instant or memory.now.boot_ns * 1e-9 >= since_boot_s
 
 
-def limited(plant: PlantConfig, settings: FlightSettings) -> PlantConfig:
-    """Return `plant` with the envelope that the parameters set."""
-    envelope = replace(
-        plant.envelope,
-        speed_max_m_s=settings.speed_max_m_s,
-        climb_max_m_s=settings.climb_max_m_s,
-        descent_max_m_s=settings.descent_max_m_s,
-        braking_m_s2=settings.braking_m_s2,
-        tilt_max_rad=settings.tilt_max_rad,
-        yaw_rate_max_rad_s=settings.yaw_rate_max_rad_s,
-    )
-    return replace(plant, envelope=envelope, gains=settings.gains)
+def with_flight(memory: AutopilotMemory, flight: ModeFlight) -> AutopilotMemory:
+    """Return `memory` with another flight of its mode."""
+    return replace(memory, course=replace(memory.course, flight=flight))
+
+
+def with_guided(memory: AutopilotMemory, guided: Guided) -> AutopilotMemory:
+    """Return `memory` with another wish or path of GUIDED."""
+    return replace(memory, course=replace(memory.course, guided=guided))
+
+
+def with_link(memory: AutopilotMemory, link: LinkMemory) -> AutopilotMemory:
+    """Return `memory` with the link at hand changed."""
+    return replace(memory, links=with_link_at_hand(memory.links, link))
+
+
+def with_later(memory: AutopilotMemory, *later: Later) -> AutopilotMemory:
+    """Return `memory` with messages to be sent later."""
+    return replace(memory, outbox=replace(memory.outbox, later=(*memory.outbox.later, *later)))
+
+
+def at_link(memory: AutopilotMemory, link: int) -> AutopilotMemory:
+    """Return `memory` with link number `link` at hand."""
+    return memory if link == memory.links.at_hand else replace(memory, links=replace(memory.links, at_hand=link))

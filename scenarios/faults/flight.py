@@ -86,7 +86,7 @@ class FaultFlight(Lockstep):
 
     def set_origin(self, by_enu_m: Vector3) -> None:
         """Let a ground station move the autopilot's local frame under the drone."""
-        origin = self.simulation.autopilot.memory.origin
+        origin = self.simulation.autopilot.memory.places.origin
         latitude_rad, longitude_rad, altitude_m = geodetic_from_enu(origin.frame.origin, by_enu_m)
         latitude, longitude = (round(degrees(angle_rad) * 1e7) for angle_rad in (latitude_rad, longitude_rad))
         self.tell(mavlink.MAVLink_set_gps_global_origin_message(1, latitude, longitude, round(altitude_m * 1e3)))

@@ -19,8 +19,8 @@ from link.mavlink.transport import Transport
 from link.mavlink.transports import open_transport
 from scenarios.faults.fuzz_frames import fuzz_frames
 from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
-from sim_autopilot.config import SimAutopilotConfig, autopilot_config
-from sim_autopilot.node import AutopilotNode
+from sim_autopilot.runtime.config import SimAutopilotConfig, autopilot_config
+from sim_autopilot.runtime.node import AutopilotNode
 
 LINK_KINDS = ("udpin", "udpout", "tcpin", "serial")
 FIRMWARES = ("px4", "ardupilot")

@@ -26,7 +26,7 @@ from scenarios.recordings.watcher import Watcher
 from scenarios.scoring.touchdown import rules_of
 from scenarios.simulation.vehicle_node import STEP_PERIOD_NS, VehicleNode, datum_of
 from scenarios.wire.run import Progress, RunOutcome
-from sim_autopilot.config import DatumConfig
+from sim_autopilot.runtime.config import DatumConfig
 
 _WAIT_S = 0.004  # for bytes
 _READY_S = 120.0  # of wall time for the autopilot's clock, receiver and truth

@@ -6,14 +6,14 @@ from contextlib import contextmanager
 from typing import Any
 
 import companion.runtime.node
-import sim_autopilot.node
+import sim_autopilot.runtime.node
 from companion.planning.mpc import Mpc
 from companion.planning.mpc_report import ReportMpc
 from companion.planning.pn import ProportionalNavigation
 from companion.planning.qp import DaqpSolver
 
 _STEPS: Mapping[str, Sequence[tuple[object, str]]] = {
-    "autopilot_step": ((sim_autopilot.node, "autopilot_step"),),
+    "autopilot_step": ((sim_autopilot.runtime.node, "autopilot_step"),),
     "companion_step": ((companion.runtime.node, "companion_step"),),
     "planner": ((Mpc, "plan"), (ReportMpc, "plan"), (ProportionalNavigation, "plan")),
     "solver": ((DaqpSolver, "call"),),

@@ -12,7 +12,7 @@ from scenarios.manual.equations import equations_page
 from scenarios.manual.phase_chart import phase_chart, phases_page
 from scenarios.manual.settings import settings_page
 from scenarios.manual.wire import wire_page
-from sim_autopilot.config import SimAutopilotConfig
+from sim_autopilot.runtime.config import SimAutopilotConfig
 
 COMPANION = """The file is given as `companion --config FILE`; what it leaves out has its default, and an unknown
 or unfit key is refused with its name. `companion --print-config` prints all of it, as a file to start from.

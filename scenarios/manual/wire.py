@@ -18,8 +18,11 @@ from link.zenoh.keys import Keys
 from scenarios.manual.markdown import block, code, page, table
 from scenarios.manual.types_in_words import type_in_words, unit_of
 from sim_autopilot.commands.incoming import HANDLED
-from sim_autopilot.firmware.ardupilot import ARDUPILOT
-from sim_autopilot.firmware.px4 import PX4
+from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
+from sim_autopilot.firmware.px4.px4 import PX4
+from sim_autopilot.ground_station.ardupilot import ARDUPILOT_STATION
+from sim_autopilot.ground_station.px4.station import PX4_STATION
+from sim_autopilot.ground_station.station import HANDLED as SERVED
 
 KEYS = Keys(namespace="{ns}", vehicle="{vehicle}", drone="{drone}")
 MESSAGE_NAMES: Mapping[int, str] = {number: one.msgname for number, one in mavlink.mavlink_map.items()}
@@ -135,7 +138,11 @@ def _sources(folder: Traversable) -> Iterator[Traversable]:
 
 
 def _simulated() -> Iterator[tuple[str, ...]]:
-    streams = (PX4.streams, ARDUPILOT.streams)
-    for number in sorted({*streams[0], *streams[1], *HANDLED}):
+    streams = (
+        {**PX4.streams.messages, **PX4_STATION.streams},
+        {**ARDUPILOT.streams.messages, **ARDUPILOT_STATION.streams},
+    )
+    read = HANDLED | SERVED | {*PX4_STATION.messages, *ARDUPILOT_STATION.messages}
+    for number in sorted({*streams[0], *streams[1], *read}):
         rates = [f"{one[number].rate_hz:g}" if number in one else "" for one in streams]
-        yield MESSAGE_NAMES[number], f"{number}", *rates, "yes" if number in HANDLED else ""
+        yield MESSAGE_NAMES[number], f"{number}", *rates, "yes" if number in read else ""

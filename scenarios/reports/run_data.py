@@ -27,7 +27,7 @@ from scenarios.recordings.truth_file import STEM as TRUTH
 from scenarios.recordings.truth_file import read_truth
 from scenarios.scoring.truth_log import TruthLog, truth_log
 from scenarios.simulation.vehicle_node import datum_of
-from sim_autopilot.local_places import Origin, local_from_world
+from sim_autopilot.core.places import Origin, local_from_world
 
 Array = NDArray[np.float64]
 Fields = dict[str, Any]

@@ -17,7 +17,7 @@ from link.frames.local_frame import scale_of
 from link.frames.rotations import rotate
 from link.messages import Vector3
 from scenarios.simulation.vehicle import VehicleState
-from sim_autopilot.local_places import local_from_world
+from sim_autopilot.core.places import local_from_world
 from sim_autopilot.memory import AutopilotMemory
 
 NEES_DOF = 6
@@ -61,8 +61,8 @@ def antenna_truth(vehicle: VehicleState, antenna_flu_m: Vector3, autopilot: Auto
     position_m = np.array(vehicle.position_enu_m) + lever_m + own_error_m
     velocity_m_s = np.array(vehicle.velocity_enu_m_s) + np.cross(rate_rad_s, lever_m)
     return Truth(
-        position_enu_m=local_from_world(autopilot.origin, _vector3(position_m)),
-        velocity_enu_m_s=_vector3(velocity_m_s * scale_of(autopilot.origin.frame)),
+        position_enu_m=local_from_world(autopilot.places.origin, _vector3(position_m)),
+        velocity_enu_m_s=_vector3(velocity_m_s * scale_of(autopilot.places.origin.frame)),
     )
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from scenarios.scoring.touch import Box, Contact, Flags, Touches, contact_at, contact_starts
 from scenarios.scoring.truth_log import TruthLog
-from sim_autopilot.data import Surface
+from sim_autopilot.core.data import Surface
 
 Fault = tuple[int, str]
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenarios.scoring.truth_log import Array, TruthLog
-from sim_autopilot.data import Surface
+from sim_autopilot.core.data import Surface
 from sim_autopilot.physics.contact import CONTACT_POINTS_FLU_M, EDGE_M
 
 Flags = NDArray[np.bool_]

@@ -6,7 +6,7 @@ from link.messages import Vector3
 from scenarios.config import Scenario
 from scenarios.simulation.disturbances import instant_s
 from scenarios.simulation.noise import named_rng
-from sim_autopilot.config import OwnStateConfig, SimAutopilotConfig, StartConfig, VehicleConfig, WindConfig
+from sim_autopilot.runtime.config import OwnStateConfig, SimAutopilotConfig, StartConfig, VehicleConfig, WindConfig
 
 
 def sim_autopilot_config(scenario: Scenario, seed: int, *, instant: bool) -> SimAutopilotConfig:

@@ -14,9 +14,9 @@ from scenarios.config import Scenario
 from scenarios.simulation.drone import sim_autopilot_config
 from scenarios.simulation.vehicle import vehicle_deck, vehicle_truth
 from scenarios.simulation.vehicle_node import VehicleNode
-from sim_autopilot.config import autopilot_config, wind_model
-from sim_autopilot.node import STEP_NS, AutopilotNode
-from sim_autopilot.truth import drone_truth, rotor_truth
+from sim_autopilot.plant.snapshot import drone_truth, rotor_truth
+from sim_autopilot.runtime.config import autopilot_config, wind_model
+from sim_autopilot.runtime.node import STEP_NS, AutopilotNode
 
 __all__ = ["STEP_NS", "Simulation", "SimulationOutputs"]
 

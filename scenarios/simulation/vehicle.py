@@ -19,7 +19,7 @@ from scenarios.tracks.config import Departure
 from scenarios.tracks.course import Course, Roughness
 from scenarios.tracks.profiles import Motion
 from scenarios.tracks.roads import RoadPoint
-from sim_autopilot.data import Deck
+from sim_autopilot.core.data import Deck
 
 _BRAKE_REACH_M = 3.0  # the vehicle brakes for a drone over its roof, not for one that waits ahead
 _NO_WAVE = (0.0, 0.0, 0.0)

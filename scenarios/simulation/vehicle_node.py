@@ -21,7 +21,7 @@ from scenarios.simulation.vehicle import (
     vehicle_truth,
 )
 from scenarios.tracks.tracks import course_of
-from sim_autopilot.config import DatumConfig
+from sim_autopilot.runtime.config import DatumConfig
 
 TRUTH_PERIOD_NS = 10_000_000  # 100 Hz, what the score asks for
 STEP_PERIOD_NS = 10_000_000  # the fastest sensor of the catalogue takes 100 samples a second

@@ -21,7 +21,7 @@ from scenarios.source_report.cases import LANDED_M, STANDS_S, Place
 from scenarios.source_report.flight import ReportFlight, ReportTask, fly
 from scenarios.source_report.step_responses import AIRFRAMES, AXES, Curve, flown_curve, linear_curve
 from scenarios.tracks.tracks import course_of
-from sim_autopilot.control.kinds import ControllerKind
+from sim_autopilot.control.parameters import ControllerKind
 
 SEED = 1
 _DPI = 150

@@ -5,10 +5,11 @@ Source: https://mavlink.io/en/services/parameter.html.
 
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, limited
-from sim_autopilot.parameters import find_index, is_type_right, parameter_message, values_after_set
-from sim_autopilot.requests import is_ours
-from sim_autopilot.status_texts import status_text
+from sim_autopilot.boot import tune
+from sim_autopilot.commands.requests import is_ours
+from sim_autopilot.core.parameters import find_index, is_type_right, parameter_message, values_after_set
+from sim_autopilot.core.status_texts import status_text
+from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, with_link
 
 Result = tuple[AutopilotMemory, tuple[Message, ...]]
 
@@ -17,39 +18,37 @@ def list_parameters(memory: AutopilotMemory, message: Message, config: Autopilot
     """Begin to send all parameters on the link at hand."""
     if not is_ours(message, config):
         return memory, ()
-    banner = tuple(status_text(mavlink.MAV_SEVERITY_INFO, text) for text in config.firmware.banner)
-    return replace(memory, listing=0), banner
+    banner = tuple(status_text(mavlink.MAV_SEVERITY_INFO, text) for text in config.firmware.parameters.banner)
+    return with_link(memory, replace(memory.links.here, listing=0)), banner
 
 
 def read_parameter(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
     """Send one parameter."""
-    parameters = config.firmware.parameters
+    parameters = config.firmware.parameters.table
     index = find_index(parameters, message.param_id, message.param_index)
     if index is None or not is_ours(message, config):
         return memory, ()
-    tells_index = config.firmware.tells_indices or message.param_index >= 0
-    autopilot_id = config.firmware.autopilot_id
-    return memory, (parameter_message(parameters, index, memory.values, autopilot_id, tells_index=tells_index),)
+    tells_index = config.firmware.parameters.tells_indices or message.param_index >= 0
+    autopilot_id = config.firmware.identity.autopilot_id
+    return memory, (parameter_message(parameters, index, memory.tuning.values, autopilot_id, tells_index=tells_index),)
 
 
 def with_value(memory: AutopilotMemory, name: str, value: float, config: AutopilotConfig) -> AutopilotMemory:
     """Return the memory with one parameter changed."""
-    values = {**memory.values, name: value}
-    settings = config.firmware.settings(values)
-    return replace(memory, values=values, settings=settings, plant_config=limited(config.plant, settings))
+    values = {**memory.tuning.values, name: value}
+    return replace(memory, tuning=tune(config, values))
 
 
 def set_parameter(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
     """Set a parameter, and tell its value."""
-    parameters, autopilot_id = config.firmware.parameters, config.firmware.autopilot_id
+    parameters, autopilot_id = config.firmware.parameters.table, config.firmware.identity.autopilot_id
     index = find_index(parameters, message.param_id)
     if index is None or not is_ours(message, config):
         return memory, ()
-    lenient = config.firmware.lenient_parameters
+    lenient = config.firmware.parameters.lenient
     if not lenient and not is_type_right(parameters[index], message):
         return memory, ()
-    values = values_after_set(parameters, index, memory.values, message, autopilot_id, lenient=lenient)
-    settings = config.firmware.settings(values)
-    memory = replace(memory, values=values, settings=settings, plant_config=limited(config.plant, settings))
-    tells_index = config.firmware.tells_indices
+    values = values_after_set(parameters, index, memory.tuning.values, message, autopilot_id, lenient=lenient)
+    memory = replace(memory, tuning=tune(config, values))
+    tells_index = config.firmware.parameters.tells_indices
     return memory, (parameter_message(parameters, index, values, autopilot_id, tells_index=tells_index),)

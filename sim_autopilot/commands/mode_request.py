@@ -1,27 +1,25 @@
 """Asking for a mode, as operators do: refused where the firmware refuses, and remembered for when the motors stop."""
 
-from dataclasses import replace
-
+from link.records import replace
+from sim_autopilot.commands.requests import ACCEPTED, Answer, Handler, Request
+from sim_autopilot.core.modes import ASK_FOR, Mode
 from sim_autopilot.flight.mode_change import change_mode
-from sim_autopilot.flight.modes import ASK_FOR, Mode
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
-from sim_autopilot.missions.step import begin_mission, mission_items
-from sim_autopilot.requests import ACCEPTED, Answer, Handler, Request
-from sim_autopilot.safety.arming import may_fly_setpoints
+from sim_autopilot.missions.step import begin_mission
 
 
 def try_mode(memory: AutopilotMemory, mode: Mode, config: AutopilotConfig) -> tuple[AutopilotMemory, int]:
     """Return the memory in `mode`, or as it was, and the MAV_RESULT."""
     firmware = config.firmware
-    stale = mode is Mode.OFFBOARD and memory.armed_ns is not None and not may_fly_setpoints(memory, config)
-    if stale or mode not in firmware.modes:
-        return memory, firmware.results.mode_refused
+    stale = mode is Mode.OFFBOARD and memory.armed_ns is not None and not firmware.setpoints.may_begin(memory)
+    if stale or mode not in firmware.modes.codes:
+        return memory, firmware.commands.results.mode_refused
     if mode is Mode.MISSION:
-        if not mission_items(memory) and (memory.armed_ns is not None or not firmware.missions.waits_for_mission):
-            return memory, firmware.results.mode_refused
+        if not memory.mission.items and memory.armed_ns is not None:
+            return memory, firmware.commands.results.mode_refused
         memory = begin_mission(memory, config)
     memory = change_mode(memory, ASK_FOR[mode])
-    if firmware.leaves_landing_modes and mode not in firmware.unarmable_modes:
+    if firmware.modes.leaves_landing and mode not in firmware.modes.unarmable:
         memory = replace(memory, modes=replace(memory.modes, resting=mode))
     return memory, ACCEPTED
 
@@ -39,5 +37,5 @@ def mode_command(mode: Mode) -> Handler:
 
 def loiter(memory: AutopilotMemory, _request: Request, config: AutopilotConfig) -> Answer:
     """Ask for the mode that NAV_LOITER_UNLIM means."""
-    memory, result = try_mode(memory, config.firmware.loiter_mode, config)
+    memory, result = try_mode(memory, config.firmware.modes.loiter, config)
     return Answer(memory=memory, result=result)

@@ -1,14 +1,12 @@
 """The commands about messages: at which rate they stream, and to send one now."""
 
-from dataclasses import replace
-
 from link.mavlink.dialect import mavlink
-from sim_autopilot.firmware.component_metadata import PROTOCOL_VERSION
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
-from sim_autopilot.requests import ACCEPTED, Answer, Request
-from sim_autopilot.streams import Stream, with_interval
-from sim_autopilot.telemetry.available_modes import available_modes
-from sim_autopilot.telemetry.builders import build_message
+from link.records import replace
+from sim_autopilot.commands.requests import ACCEPTED, Answer, Request
+from sim_autopilot.core.streams import Stream, with_interval
+from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, with_link
+from sim_autopilot.telemetry.builders import build_message, stream_of
+from sim_autopilot.telemetry.versions import PROTOCOL_VERSION
 
 _DEFAULT_RATE = 0
 _STOP = -1
@@ -16,14 +14,14 @@ _STOP = -1
 
 def set_interval(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
     """Set the rate of a stream of the link at hand."""
-    if request.number(1) in config.firmware.silent_messages:
+    if request.number(1) in config.firmware.streams.silent:
         return Answer(memory=memory, result=ACCEPTED)
     stream, interval_us = _stream(request.number(1), config), request.number(2)
     if stream is None or stream.fixed or interval_us is None or interval_us < _STOP:
-        return Answer(memory=memory, result=config.firmware.results.no_such_stream)
-    boot_ns = memory.now.boot_ns
-    streams = with_interval(memory.streams, stream.message_id, _interval_ns(stream, interval_us, config), boot_ns)
-    return Answer(memory=replace(memory, streams=streams), result=ACCEPTED)
+        return Answer(memory=memory, result=config.firmware.commands.results.no_such_stream)
+    link, interval_ns = memory.links.here, _interval_ns(stream, interval_us, config)
+    streams = with_interval(link.streams, stream.message_id, interval_ns, memory.now.boot_ns)
+    return Answer(memory=with_link(memory, replace(link, streams=streams)), result=ACCEPTED)
 
 
 def _interval_ns(stream: Stream, interval_us: int, config: AutopilotConfig) -> int | None:
@@ -31,15 +29,15 @@ def _interval_ns(stream: Stream, interval_us: int, config: AutopilotConfig) -> i
         return None
     if interval_us == _DEFAULT_RATE:
         return round(1e9 / stream.rate_hz)
-    return max(interval_us * 1000, round(1e9 / config.firmware.stream_rate_max_hz))
+    return max(interval_us * 1000, round(1e9 / config.firmware.streams.rate_max_hz))
 
 
 def get_interval(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
     """Tell the rate of a stream."""
     stream = _stream(request.number(1), config)
     if stream is None:
-        return Answer(memory=memory, result=config.firmware.results.no_such_stream)
-    interval_ns = memory.streams.interval_ns.get(stream.message_id)
+        return Answer(memory=memory, result=config.firmware.commands.results.no_such_stream)
+    interval_ns = memory.links.here.streams.interval_ns.get(stream.message_id)
     interval_us = _STOP if interval_ns is None else min(interval_ns // 1000, 2**31 - 1)
     message = mavlink.MAVLink_message_interval_message(stream.message_id, interval_us)
     return Answer(memory=memory, result=ACCEPTED, messages=(message,))
@@ -47,16 +45,12 @@ def get_interval(memory: AutopilotMemory, request: Request, config: AutopilotCon
 
 def request_message(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
     """Send a message now."""
-    if config.firmware.lists_modes and request.number(1) == mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES:
-        modes = available_modes(request.number(2) or 0, config)
-        return Answer(
-            memory=memory, result=ACCEPTED if modes else config.firmware.results.no_such_message, messages=modes
-        )
-    if request.number(1) in config.firmware.silent_messages and config.firmware.guided:
+    rules = config.firmware.streams
+    if rules.answers_silent and request.number(1) in rules.silent:
         return Answer(memory=memory, result=ACCEPTED)
     stream = _stream(request.number(1), config)
     if stream is None:
-        return Answer(memory=memory, result=config.firmware.results.no_such_message)
+        return Answer(memory=memory, result=config.firmware.commands.results.no_such_message)
     message = build_message(stream, memory, config)
     return Answer(memory=memory, result=ACCEPTED, messages=() if message is None else (message,))
 
@@ -80,4 +74,4 @@ def request_flight(memory: AutopilotMemory, request: Request, config: AutopilotC
 
 
 def _stream(message_id: int | None, config: AutopilotConfig) -> Stream | None:
-    return None if message_id is None else config.firmware.streams.get(message_id)
+    return None if message_id is None else stream_of(message_id, config)

@@ -6,7 +6,7 @@ of turn rates alone kR is zero.
 
 from link.compiled import kernel
 from sim_autopilot.control.parameters import ATTITUDE, HAS_ATTITUDE, RATE, THRUST
-from sim_autopilot.data import Array
+from sim_autopilot.core.data import Array
 from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotation import fill_matrix
 

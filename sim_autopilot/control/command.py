@@ -6,7 +6,7 @@ from sim_autopilot.control.geometric import fill_geometric_wrench
 from sim_autopilot.control.lqr import GOAL, fill_feedforward_wrench, fill_report_wrench
 from sim_autopilot.control.outer_loop import bound_force, fill_acceleration, observe, steady, turn_heading
 from sim_autopilot.control.parameters import HAS_RATES, HEADING, RUNNING, VELOCITY
-from sim_autopilot.data import Array
+from sim_autopilot.core.data import Array
 from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotation import euler_angles
 from sim_autopilot.physics.rotors import fill_commands, fill_thrusts

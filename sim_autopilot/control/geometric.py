@@ -18,7 +18,7 @@ import numpy as np
 from link.compiled import kernel
 from sim_autopilot.control.outer_loop import approach_speed
 from sim_autopilot.control.parameters import HEADING, CascadeGains
-from sim_autopilot.data import Array
+from sim_autopilot.core.data import Array
 from sim_autopilot.physics.parameters import Record
 
 MOTOR_POLE_RAD_S = 60.0

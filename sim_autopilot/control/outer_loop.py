@@ -25,7 +25,7 @@ from sim_autopilot.control.parameters import (
     YAW,
     YAW_RATE,
 )
-from sim_autopilot.data import Array
+from sim_autopilot.core.data import Array
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
 from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotation import wrapped

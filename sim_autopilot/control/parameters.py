@@ -9,12 +9,22 @@ quaternion (4), rates (3).
 """
 
 from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim_autopilot.control.kinds import ControllerKind, Envelope
-from sim_autopilot.data import Array, AttitudeTarget, Reference
+from sim_autopilot.core.data import Array, AttitudeTarget, Reference
+from sim_autopilot.core.limits import Envelope
+
+
+class ControllerKind(Enum):
+    """The flight controllers by name."""
+
+    LQR = "lqr"  # the report's, published gains, the reference enters through integrators only
+    LQR_FEEDFORWARD = "lqr_feedforward"  # linear-quadratic gains with feed-forward and limits
+    GEOMETRIC = "geometric"  # tracking on SE(3)
+
 
 RUNNING = 0
 HEADING = 1

@@ -1,1 +1,1 @@
-"""The autopilot firmwares that can be stood in for, each as data."""
+"""The autopilot firmwares that can be stood in for, a folder each."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim_autopilot.data import Array, Reference
+from sim_autopilot.core.data import Array, Reference
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
 
 _RISE_ASKED_M = 0.1

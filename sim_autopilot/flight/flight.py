@@ -7,15 +7,15 @@ from math import hypot
 import numpy as np
 
 from link.messages import Vector3
-from sim_autopilot.data import Array, Reference
+from sim_autopilot.core.data import Array, Reference
+from sim_autopilot.core.modes import Mode, Modes
+from sim_autopilot.core.settings import FlightSettings
 from sim_autopilot.flight.follow import Chase
-from sim_autopilot.flight.modes import Mode, Modes
 from sim_autopilot.flight.orbit import Orbit, carried_round
 from sim_autopilot.flight.travel import Goal, Pace, moved
+from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.setpoints.partial import with_own_motion
 from sim_autopilot.setpoints.setpoints import Setpoints
-from sim_autopilot.settings import FlightSettings
-from sim_autopilot.snapshot import Snapshot
 
 _SINKING_M_S2 = 1.0
 """With which a descent begins."""
@@ -75,12 +75,12 @@ class ModeFlight:
 def begin(mode: Mode, now: Snapshot, home_enu_m: Vector3, settings: FlightSettings) -> ModeFlight:
     """Return the memory of a mode that begins."""
     start, velocity = np.array(now.position_enu_m), np.array(now.velocity_enu_m_s)
-    stop_s = hypot(*now.velocity_enu_m_s) / settings.braking_m_s2
+    stop_s = hypot(*now.velocity_enu_m_s) / settings.envelope.braking_m_s2
     place = start + 0.5 * stop_s * velocity
     leg = Leg.BRAKE
     if mode is Mode.TAKEOFF:
-        place[2] = start[2] + settings.takeoff_height_m
-    elif mode in RETURNING and _distance_m(now, home_enu_m) >= settings.return_distance_m:
+        place[2] = start[2] + settings.takeoff.height_m
+    elif mode in RETURNING and _distance_m(now, home_enu_m) >= settings.returning.distance_m:
         place[2] = max(place[2], home_enu_m[2] + _return_height_m(now, home_enu_m, settings))
         leg = Leg.CLIMB
     anchor = Reference(
@@ -120,8 +120,8 @@ def next_reference(
     if flight.leg is Leg.BRAKE and (mode is Mode.LAND or (mode is Mode.POSITION and modes.failsafe)):
         flight = descend_here(flight, now)
     if flight.leg is Leg.DESCEND:
-        low = now.position_enu_m[2] - home_enu_m[2] < settings.land_slow_below_m
-        rate_m_s = settings.land_descent_m_s if low else settings.land_approach_m_s
+        low = now.position_enu_m[2] - home_enu_m[2] < settings.land.slow_below_m
+        rate_m_s = settings.land.descent_m_s if low else settings.land.approach_m_s
         return _descend(flight, now, rate_m_s, elapsed_s)
     if flight.goal is not None:
         flight = replace(flight, anchor=moved(flight.anchor, flight.goal, pace_of(settings), elapsed_s))
@@ -132,10 +132,10 @@ def pace_of(settings: FlightSettings) -> Pace:
     """Return how fast places are approached."""
     limits = settings.path
     return Pace(
-        speed_m_s=settings.speed_max_m_s,
-        climb_m_s=settings.climb_max_m_s if limits is None else limits.climb_m_s,
-        descent_m_s=settings.descent_max_m_s if limits is None else limits.descent_m_s,
-        acceleration_m_s2=settings.braking_m_s2,
+        speed_m_s=settings.envelope.speed_max_m_s,
+        climb_m_s=settings.envelope.climb_max_m_s if limits is None else limits.climb_m_s,
+        descent_m_s=settings.envelope.descent_max_m_s if limits is None else limits.descent_m_s,
+        acceleration_m_s2=settings.envelope.braking_m_s2,
     )
 
 
@@ -171,7 +171,7 @@ def descend_here(flight: ModeFlight, now: Snapshot) -> ModeFlight:
 def is_takeoff_complete(flight: ModeFlight, now: Snapshot, settings: FlightSettings) -> bool:
     """Return whether a drone in the take-off mode has come near its height, to which the hold after it goes on."""
     target = flight.anchor.position_enu_m
-    return target is not None and now.position_enu_m[2] > float(target[2]) - settings.reached_height_m
+    return target is not None and now.position_enu_m[2] > float(target[2]) - settings.travel.reached_height_m
 
 
 def _braking(flight: ModeFlight, since_s: float) -> Reference:
@@ -188,21 +188,23 @@ def _return(flight: ModeFlight, now: Snapshot, home_enu_m: Vector3, settings: Fl
     height_m = float(_position(flight.anchor)[2])
     if flight.leg is Leg.BRAKE or (flight.leg is Leg.CLIMB and now.position_enu_m[2] > height_m - _REACHED_M):
         home = (home_enu_m[0], home_enu_m[1], height_m)
-        return go_to(flight, Goal(position_enu_m=home, speed_m_s=settings.return_m_s or settings.cruise_m_s), now)
+        return go_to(
+            flight, Goal(position_enu_m=home, speed_m_s=settings.returning.speed_m_s or settings.travel.cruise_m_s), now
+        )
     if flight.leg is Leg.CROSS and _distance_m(now, home_enu_m) < _REACHED_M:
         return replace(flight, leg=Leg.STAY, began_ns=now.boot_ns)
-    if flight.leg is Leg.STAY and (now.boot_ns - flight.began_ns) * 1e-9 >= settings.return_stay_s:
+    if flight.leg is Leg.STAY and (now.boot_ns - flight.began_ns) * 1e-9 >= settings.returning.stay_s:
         return descend_here(flight, now)
     return flight
 
 
 def _return_height_m(now: Snapshot, home_enu_m: Vector3, settings: FlightSettings) -> float:
     """Above home; within the cone it climbs less."""
-    least_m = max(_LOW_M, now.position_enu_m[2] - home_enu_m[2] + settings.return_climb_m)
-    height_m = max(settings.return_height_m, least_m)
-    if settings.return_slope <= 0.0:
+    least_m = max(_LOW_M, now.position_enu_m[2] - home_enu_m[2] + settings.returning.climb_m)
+    height_m = max(settings.returning.height_m, least_m)
+    if settings.returning.slope <= 0.0:
         return height_m
-    return min(height_m, max(settings.return_slope * _distance_m(now, home_enu_m), least_m))
+    return min(height_m, max(settings.returning.slope * _distance_m(now, home_enu_m), least_m))
 
 
 def _descend(flight: ModeFlight, now: Snapshot, rate_m_s: float, elapsed_s: float) -> tuple[ModeFlight, Reference]:

@@ -13,8 +13,9 @@ import numpy as np
 
 from link.frames.rotations import wrap_angle
 from link.messages import Vector3
-from sim_autopilot.data import Reference
-from sim_autopilot.snapshot import Snapshot
+from sim_autopilot.core.data import Reference
+from sim_autopilot.core.pilot_settings import FollowSettings
+from sim_autopilot.plant.snapshot import Snapshot
 
 _LOST_S = 3.0
 """Without a word he is believed to have stopped."""
@@ -25,31 +26,6 @@ _LEVEL_M = 3.0
 """Farther from its height than this the drone only climbs or sinks."""
 _TURNS_BEYOND_M = 1.0
 """Nearer to him than this the heading stays."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FollowSettings:
-    """What the FLW_TGT parameters amount to.
-
-    Attributes:
-        distance_m: horizontal, from him.
-        height_m: above home, or above him where `with_him`.
-        angle_rad: about him, clockwise from where he goes; pi is behind.
-        along_m_s: at most, on the circle about him.
-        smoothing: the part of a new position that is left out.
-        with_him: whether the height is his.
-    """
-
-    distance_m: float = 8.0
-    height_m: float = 8.0
-    angle_rad: float = pi
-    along_m_s: float = 5.0
-    smoothing: float = 0.1
-    with_him: bool = False
-
-
-BEHIND = FollowSettings()
-"""PX4's defaults."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

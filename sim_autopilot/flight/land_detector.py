@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from math import hypot
 
 from link.frames.rotations import rotate
-from sim_autopilot.data import Reference
+from sim_autopilot.core.data import Reference
+from sim_autopilot.core.settings import FlightSettings
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
-from sim_autopilot.settings import FlightSettings
-from sim_autopilot.snapshot import Snapshot
+from sim_autopilot.plant.snapshot import Snapshot
 
 _THRUST_SHARE_MAX = 0.9
 """Of the weight: with more the drone hovers."""
@@ -53,14 +53,14 @@ def detect_landing(
     if not _shows_signs(now, reference, settings) or _is_moved(now, settings, asked_tilt_rad):
         return IN_AIR
     since_ns = now.boot_ns if landing.signs_ns is None else landing.signs_ns
-    if (now.boot_ns - since_ns) * 1e-9 < settings.landed_after_s:
+    if (now.boot_ns - since_ns) * 1e-9 < settings.land_detector.after_s:
         return Landing(landed=False, signs_ns=since_ns)
     return Landing(landed=True, landed_ns=now.boot_ns)
 
 
 def _is_moved(now: Snapshot, settings: FlightSettings, asked_tilt_rad: float) -> bool:
     """Whether it leans on purpose, or accelerates, more than a landed drone does, where the firmware looks at that."""
-    tilt_rad, acceleration_m_s2 = settings.landed_tilt_max_rad, settings.landed_acceleration_max_m_s2
+    tilt_rad, acceleration_m_s2 = settings.land_detector.tilt_max_rad, settings.land_detector.acceleration_max_m_s2
     if tilt_rad is not None and asked_tilt_rad > tilt_rad:
         return True
     x, y, z = rotate(now.orientation_wxyz, now.specific_force_flu_m_s2)
@@ -70,8 +70,8 @@ def _is_moved(now: Snapshot, settings: FlightSettings, asked_tilt_rad: float) ->
 def _shows_signs(now: Snapshot, reference: Reference | None, settings: FlightSettings) -> bool:
     return bool(
         _asks_to_sink(reference, settings)
-        and abs(now.velocity_enu_m_s[2]) < settings.landed_sink_max_m_s
-        and now.speed_m_s < settings.landed_speed_max_m_s
+        and abs(now.velocity_enu_m_s[2]) < settings.land_detector.sink_max_m_s
+        and now.speed_m_s < settings.land_detector.speed_max_m_s
         and now.thrust_share < _THRUST_SHARE_MAX
     )
 
@@ -82,4 +82,4 @@ def _asks_to_sink(reference: Reference | None, settings: FlightSettings) -> bool
     if reference.attitude is not None:
         return reference.attitude.thrust_m_s2 < _IDLE_SHARE * GRAVITY_M_S2
     velocity = reference.velocity_enu_m_s
-    return velocity is not None and bool(velocity[2] <= -settings.landed_sink_asked_m_s)
+    return velocity is not None and bool(velocity[2] <= -settings.land_detector.sink_asked_m_s)

@@ -11,14 +11,14 @@ import numpy as np
 
 from link.frames.rotations import quaternion_from_roll_pitch_yaw
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.data import Reference
+from sim_autopilot.core.data import Reference
+from sim_autopilot.core.modes import Mode
+from sim_autopilot.core.pilot_settings import StickFeel
+from sim_autopilot.core.settings import FlightSettings
 from sim_autopilot.flight.flight import ModeFlight
-from sim_autopilot.flight.modes import Mode
-from sim_autopilot.flight.stick_feel import StickFeel
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
+from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.setpoints.attitude import attitude_reference, holding_thrust_m_s2
-from sim_autopilot.settings import FlightSettings
-from sim_autopilot.snapshot import Snapshot
 
 _FULL = 1000.0
 _UNSAID = 32767
@@ -125,14 +125,16 @@ def _led(  # noqa: PLR0917 (the arguments of its caller)
     yaw_rad = (now.yaw_rad if anchor.yaw_rad is None else anchor.yaw_rad) + yaw_rate * elapsed_s
     ahead, left = (_dead(stick, feel.dead_zone) * feel.speed_m_s for stick in (sticks.pitch, -sticks.roll))
     rise = _dead(sticks.throttle, feel.throttle_dead_zone)
-    climb_m_s = settings.climb_max_m_s if feel.climb_m_s is None else feel.climb_m_s
-    descent_m_s = settings.descent_max_m_s if feel.descent_m_s is None else feel.descent_m_s
+    climb_m_s = settings.envelope.climb_max_m_s if feel.climb_m_s is None else feel.climb_m_s
+    descent_m_s = settings.envelope.descent_max_m_s if feel.descent_m_s is None else feel.descent_m_s
     up = rise * (climb_m_s if rise > 0.0 else descent_m_s)
     c, s = cos(now.yaw_rad), sin(now.yaw_rad)
     wanted = np.array((c * ahead - s * left, s * ahead + c * left, up))
     at = np.array(now.position_enu_m)
     velocity = np.array(now.velocity_enu_m_s) if anchor.velocity_enu_m_s is None else anchor.velocity_enu_m_s
-    level, lift = (settings.braking_m_s2 if most is None else most for most in (feel.acceleration_m_s2, feel.lift_m_s2))
+    level, lift = (
+        settings.envelope.braking_m_s2 if most is None else most for most in (feel.acceleration_m_s2, feel.lift_m_s2)
+    )
     most = elapsed_s * np.array((level, level, lift))
     velocity = velocity + np.clip(wanted - velocity, -most, most)
     place = at if anchor.position_enu_m is None else anchor.position_enu_m + elapsed_s * velocity
@@ -156,7 +158,7 @@ def _holding_m_s2(anchor: Reference, now: Snapshot, level: float) -> float:
 
 def _thrust_m_s2(sticks: Sticks, settings: FlightSettings) -> float:
     """Specific thrust of the throttle stick, whose middle carries the drone."""
-    share, hover = 0.5 * (sticks.throttle + 1.0), settings.hover_share
+    share, hover = 0.5 * (sticks.throttle + 1.0), settings.setpoints.hover_share
     full_m_s2 = GRAVITY_M_S2 / hover
     if share <= 0.5:
         return GRAVITY_M_S2 * share / 0.5

@@ -1,9 +1,8 @@
 """Changing the mode: the table is asked, and a new mode begins where the drone is."""
 
-from dataclasses import replace
-
+from link.records import replace
+from sim_autopilot.core.modes import Event, Mode, react
 from sim_autopilot.flight.flight import begin
-from sim_autopilot.flight.modes import Event, Mode, react
 from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.setpoints.guided import begin_guided
 
@@ -15,6 +14,6 @@ def change_mode(memory: AutopilotMemory, event: Event) -> AutopilotMemory:
         return memory
     if modes.mode is memory.modes.mode and modes.latched is memory.modes.latched:
         return replace(memory, modes=modes)
-    flight = begin(modes.mode, memory.now, memory.home_enu_m, memory.settings)
-    guided = begin_guided(memory.now) if modes.mode is Mode.OFFBOARD else memory.guided
-    return replace(memory, modes=modes, flight=flight, guided=guided)
+    flight = begin(modes.mode, memory.now, memory.places.home_enu_m, memory.tuning.settings)
+    guided = begin_guided(memory.now) if modes.mode is Mode.OFFBOARD else memory.course.guided
+    return replace(memory, modes=modes, course=replace(memory.course, flight=flight, guided=guided))

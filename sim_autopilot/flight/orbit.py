@@ -11,9 +11,9 @@ from math import atan2, copysign, cos, hypot, isfinite, pi, sin, sqrt
 import numpy as np
 
 from link.messages import Vector3
-from sim_autopilot.data import Reference
+from sim_autopilot.core.data import Reference
 from sim_autopilot.flight.travel import Pace
-from sim_autopilot.snapshot import Snapshot
+from sim_autopilot.plant.snapshot import Snapshot
 
 _RADIUS_M, _SPEED_M_S = 10.0, 3.0
 """Of a command that does not say."""

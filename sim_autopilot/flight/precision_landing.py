@@ -13,10 +13,11 @@ import numpy as np
 from link.frames.rotations import flu_from_frd, quaternion_from_roll_pitch_yaw, rotate
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Quaternion, Vector3
-from sim_autopilot.data import Reference
+from sim_autopilot.core.data import Reference
+from sim_autopilot.core.limits import PathLimits
+from sim_autopilot.core.settings import PrecisionSettings
+from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.setpoints.path import Motion, Plane, carried_on, correction_speed, led_to_position
-from sim_autopilot.settings import LandingSettings, PathLimits
-from sim_autopilot.snapshot import Snapshot
 
 _LOST_S = 2.0
 _POSITION_GAIN, _VELOCITY_GAIN = 0.4, 0.1
@@ -69,7 +70,7 @@ def place_seen(message: Message, now: Snapshot, range_m: float) -> Vector3 | Non
     return px + x, py + y, pz + z
 
 
-def with_sighting(target: Target | None, place: Vector3, now_ns: int, settings: LandingSettings) -> Target:
+def with_sighting(target: Target | None, place: Vector3, now_ns: int, settings: PrecisionSettings) -> Target:
     """Return the target after it was seen at `place`."""
     elapsed_s = _GAP_MAX_S if target is None else (now_ns - target.seen_ns) * 1e-9
     if target is None or elapsed_s >= _GAP_MAX_S:
@@ -94,7 +95,7 @@ def is_acquired(target: Target | None, boot_ns: int) -> bool:
 
 
 def steered(  # noqa: PLR0917 (over what, from what, who, as told, within what, how long)
-    target: Target, reference: Reference, now: Snapshot, settings: LandingSettings, limits: PathLimits, dt_s: float
+    target: Target, reference: Reference, now: Snapshot, settings: PrecisionSettings, limits: PathLimits, dt_s: float
 ) -> tuple[Target, Reference]:
     """Return the target with its path `dt_s` later, and LAND's `reference` moved over it until then."""
     age_s = (now.boot_ns - target.seen_ns) * 1e-9
@@ -109,7 +110,7 @@ def steered(  # noqa: PLR0917 (over what, from what, who, as told, within what, 
 
 
 def _sinking(  # noqa: PLR0917 (from what, where, how far, how high, who, as told)
-    reference: Reference, path: Motion, away_m: float, above_m: float, now: Snapshot, settings: LandingSettings
+    reference: Reference, path: Motion, away_m: float, above_m: float, now: Snapshot, settings: PrecisionSettings
 ) -> Reference:
     down = 0.0 if reference.velocity_enu_m_s is None else float(reference.velocity_enu_m_s[2])
     height_m = now.position_enu_m[2] if reference.position_enu_m is None else float(reference.position_enu_m[2])

@@ -8,7 +8,7 @@ from link.mavlink.dialect import mavlink
 from link.messages import Vector3
 from sim_autopilot.flight.flight import go_to
 from sim_autopilot.flight.travel import Goal
-from sim_autopilot.memory import AutopilotMemory
+from sim_autopilot.memory import AutopilotMemory, with_flight
 
 _ABOVE_HOME = frozenset({mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT})
 _REACH_M = 1e5
@@ -29,22 +29,22 @@ def place_asked(memory: AutopilotMemory, datum: Datum, frame: int, place: tuple[
         if hypot(x, y, high) > _REACH_M:
             return None
     if isfinite(altitude_m):
-        z = altitude_m + (memory.home_enu_m[2] if frame in _ABOVE_HOME else -datum.altitude_m)
+        z = altitude_m + (memory.places.home_enu_m[2] if frame in _ABOVE_HOME else -datum.altitude_m)
     return x, y, z
 
 
 def reposition(memory: AutopilotMemory, place: Vector3, yaw_rad: float | None, speed_m_s: float) -> AutopilotMemory:
     """Return the memory of a drone in hold that goes to `place` in W; a speed that is not positive is the usual one."""
     if not speed_m_s > 0.0:
-        asked_m_s = memory.flight.speed_m_s
-        speed_m_s = memory.settings.cruise_m_s if asked_m_s is None else asked_m_s
+        asked_m_s = memory.course.flight.speed_m_s
+        speed_m_s = memory.tuning.settings.travel.cruise_m_s if asked_m_s is None else asked_m_s
     goal = Goal(position_enu_m=place, speed_m_s=speed_m_s, yaw_rad=yaw_rad)
-    return replace(memory, flight=go_to(memory.flight, goal, memory.now))
+    return with_flight(memory, go_to(memory.course.flight, goal, memory.now))
 
 
 def with_speed(memory: AutopilotMemory, speed_m_s: float) -> AutopilotMemory:
     """Return the memory of a drone that goes on to where it is going, and with its mission, at `speed_m_s`."""
-    goal, services = memory.flight.goal, memory.services
-    goal = None if goal is None else replace(goal, speed_m_s=speed_m_s)
-    memory = replace(memory, flight=replace(memory.flight, goal=goal, speed_m_s=speed_m_s))
-    return replace(memory, services=replace(services, mission=replace(services.mission, speed_m_s=speed_m_s)))
+    flight, mission = memory.course.flight, memory.mission
+    goal = None if flight.goal is None else replace(flight.goal, speed_m_s=speed_m_s)
+    memory = with_flight(memory, replace(flight, goal=goal, speed_m_s=speed_m_s))
+    return replace(memory, mission=replace(mission, progress=replace(mission.progress, speed_m_s=speed_m_s)))

@@ -9,7 +9,7 @@ from math import atan2, hypot, sqrt
 import numpy as np
 
 from link.messages import Vector3
-from sim_autopilot.data import Array, Reference
+from sim_autopilot.core.data import Array, Reference
 
 _SLOPE_PER_S = 1.5
 _TURNS_BEYOND_M = 1.0

@@ -9,12 +9,12 @@ from types import MappingProxyType
 from link.frames.geodesy import Datum
 from link.mavlink.dialect import mavlink
 from link.messages import Vector3
+from sim_autopilot.core.modes import Mode
+from sim_autopilot.core.settings import FlightSettings
 from sim_autopilot.flight.flight import Leg, ModeFlight, begin, climb_to, descend_here, go_to
-from sim_autopilot.flight.modes import Mode
 from sim_autopilot.flight.travel import Goal
 from sim_autopilot.missions.items import Item, place_of
-from sim_autopilot.settings import FlightSettings
-from sim_autopilot.snapshot import Snapshot
+from sim_autopilot.plant.snapshot import Snapshot
 
 _CLIMBED_M = 0.5
 _AT_M = 0.5
@@ -133,7 +133,7 @@ def _as_flown(item: Item, around: Surroundings) -> Item:
     time_s = 0.0
     if item.command == mavlink.MAV_CMD_NAV_LOITER_TURNS:
         radius_m = abs(item.number(3)) or _TURN_RADIUS_M
-        time_s = tau * radius_m * item.number(1) / around.settings.cruise_m_s
+        time_s = tau * radius_m * item.number(1) / around.settings.travel.cruise_m_s
     elif item.command == mavlink.MAV_CMD_NAV_SPLINE_WAYPOINT:
         time_s = item.number(1)
     return replace(item, command=command, parameters=(time_s, 0.0, 0.0, nan))
@@ -184,7 +184,7 @@ def _pursue(progress: Progress, item: Item, flight: ModeFlight, around: Surround
 def _rising(item: Item, goal: Goal, flight: ModeFlight, around: Surroundings) -> ModeFlight:
     height_m = goal.position_enu_m[2]
     if item.command != _TAKEOFF:
-        height_m = max(height_m, around.home_enu_m[2] + around.settings.takeoff_height_m)
+        height_m = max(height_m, around.home_enu_m[2] + around.settings.takeoff.height_m)
     return climb_to(flight, height_m, around.now)
 
 
@@ -200,7 +200,7 @@ def _goal(progress: Progress, item: Item, around: Surroundings) -> Goal:
         place = (*around.now.position_enu_m[:2], place[2])
     if item.command == _LAND:
         place = (place[0], place[1], max(place[2], around.now.position_enu_m[2]))
-    speed_m_s = around.settings.cruise_m_s if progress.speed_m_s is None else progress.speed_m_s
+    speed_m_s = around.settings.travel.cruise_m_s if progress.speed_m_s is None else progress.speed_m_s
     yaw_deg = item.number(4, nan)
     yaw_rad = pi / 2.0 - radians(yaw_deg) if isfinite(yaw_deg) else None
     return Goal(position_enu_m=place, speed_m_s=speed_m_s, yaw_rad=yaw_rad)
@@ -212,8 +212,8 @@ def _is_there(item: Item, goal: Goal, around: Surroundings) -> bool:
     if item.command == _LAND:
         return dist((x, y), (gx, gy)) < _AT_M
     wanted_m = item.number(2) if item.command == _WAYPOINT else 0.0
-    within_m = wanted_m if wanted_m > 0.0 else around.settings.reached_m
-    return hypot(x - gx, y - gy) < within_m and abs(z - gz) < around.settings.reached_height_m
+    within_m = wanted_m if wanted_m > 0.0 else around.settings.travel.reached_m
+    return hypot(x - gx, y - gy) < within_m and abs(z - gz) < around.settings.travel.reached_height_m
 
 
 def _is_done(progress: Progress, item: Item, around: Surroundings) -> bool:

@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 from link.compiled import kernel
-from sim_autopilot.data import Array, Surface
+from sim_autopilot.core.data import Array, Surface
 from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotation import fill_matrix, fill_turned
 

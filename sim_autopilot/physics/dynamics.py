@@ -7,7 +7,7 @@ State `y` (13,): p_WB m, q_WB wxyz, v_WB m/s, w_WB_B rad/s. World ENU, body FLU.
 import math
 
 from link.compiled import kernel
-from sim_autopilot.data import Array
+from sim_autopilot.core.data import Array
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
 from sim_autopilot.physics.parameters import Record
 

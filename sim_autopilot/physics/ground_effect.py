@@ -8,7 +8,7 @@ that the gain stays what it is there (4/3 in hover); above 8 R it is under 0.1 %
 import math
 
 from link.compiled import kernel
-from sim_autopilot.data import Array
+from sim_autopilot.core.data import Array
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
 from sim_autopilot.physics.contact import GROUND_FRAME, localise, over
 from sim_autopilot.physics.parameters import Record

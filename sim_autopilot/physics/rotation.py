@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from link.compiled import kernel
-from sim_autopilot.data import Array
+from sim_autopilot.core.data import Array
 
 
 @kernel

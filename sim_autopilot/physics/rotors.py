@@ -7,7 +7,7 @@ Rotor 1 is behind, 2 in front, 3 right, 4 left (the signs of eq. 5); thrusts in 
 import math
 
 from link.compiled import kernel
-from sim_autopilot.data import Array
+from sim_autopilot.core.data import Array
 from sim_autopilot.physics.parameters import Record
 
 ROTOR_X = (-1.0, 1.0, 0.0, 0.0)

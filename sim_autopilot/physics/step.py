@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from link.compiled import kernel
-from sim_autopilot.data import Array
+from sim_autopilot.core.data import Array
 from sim_autopilot.physics.contact import FRAME_SIZE, add_contact, fill_frame, update_anchors
 from sim_autopilot.physics.dynamics import STATE_SIZE, fill_derivative, fill_flight_forces, normalise
 from sim_autopilot.physics.ground_effect import fill_gains

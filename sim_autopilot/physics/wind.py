@@ -16,7 +16,7 @@ from enum import Enum
 
 import numpy as np
 
-from sim_autopilot.data import Array
+from sim_autopilot.core.data import Array
 
 FOOT_M = 0.3048
 KNOT_M_S = 1852.0 / 3600.0

@@ -2,42 +2,9 @@
 
 from dataclasses import dataclass, replace
 
-from sim_autopilot.flight.modes import Event, Mode
+from sim_autopilot.core.modes import Event
+from sim_autopilot.core.settings import FailsafeSettings
 from sim_autopilot.missions.fence import Fence, is_allowed, is_near_home
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FailsafeSettings:
-    """What the failsafes watch for and lead to; an event of None only warns.
-
-    Attributes:
-        battery_levels: remaining shares at which the battery is low, critical and in an emergency, falling.
-        battery_events: what each of them leads to.
-        station_lost_s: silence after which the ground station is lost.
-        station_event: what that leads to in the end.
-        station_system: whose heartbeats count; None takes those of every ground station.
-        station_spares: modes in which a lost ground station changes nothing.
-        hold_s: how long it holds before that; None not at all.
-        fence_event: what leaving the fence leads to.
-        reach_m: of the cylinder about home; 0 is none.
-        height_m: of the same.
-        areas_count: whether the uploaded areas do.
-    """
-
-    battery_levels: tuple[float, float, float] = (0.15, 0.07, 0.05)
-    battery_events: tuple[Event | None, Event | None, Event | None] = (None, None, None)
-    station_lost_s: float = 10.0
-    station_event: Event | None = None
-    station_system: int | None = None
-    station_spares: frozenset[Mode] = frozenset()
-    hold_s: float | None = 5.0
-    fence_event: Event | None = None
-    reach_m: float = 0.0
-    height_m: float = 0.0
-    areas_count: bool = True
-
-
-NO_FAILSAFES = FailsafeSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,10 +1,9 @@
 """The failsafes in the autopilot's step: what they see of it, and the mode changes they lead to."""
 
-from dataclasses import replace
-
+from link.records import replace
+from sim_autopilot.core.modes import Event
 from sim_autopilot.flight.manual import MANUAL_MODES
 from sim_autopilot.flight.mode_change import change_mode
-from sim_autopilot.flight.modes import Event
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.safety.arming import disarm
 from sim_autopilot.safety.failsafes import Watch, watch_battery, watch_fence, watch_station
@@ -15,7 +14,7 @@ def charge_of(memory: AutopilotMemory, config: AutopilotConfig) -> float:
 
     So does PX4's own simulation, and one that flies all day stays of use.
     """
-    if memory.services.failures.battery:
+    if memory.safety.failures.battery:
         return 0.0
     ran_s = 0.0 if memory.armed_ns is None else (memory.now.boot_ns - memory.armed_ns) * 1e-9
     return max(0.0, 1.0 - ran_s / config.endurance_s)
@@ -23,18 +22,18 @@ def charge_of(memory: AutopilotMemory, config: AutopilotConfig) -> float:
 
 def keep_watch(memory: AutopilotMemory, config: AutopilotConfig) -> AutopilotMemory:
     """Return the memory of a flying drone after battery, fence and ground station were looked at."""
-    if memory.armed_ns is None or memory.landing.landed:
+    if memory.armed_ns is None or memory.course.landing.landed:
         return memory
-    services, settings, now = memory.services, memory.settings.failsafes, memory.now
-    watch, low = watch_battery(services.watch, charge_of(memory, config), settings)
-    watch, left = watch_fence(watch, services.fence, now.position_enu_m, memory.home_enu_m, settings)
+    before, settings, now = memory.safety.watch, memory.tuning.settings.failsafes, memory.now
+    watch, low = watch_battery(before, charge_of(memory, config), settings)
+    watch, left = watch_fence(watch, memory.mission.fence, now.position_enu_m, memory.places.home_enu_m, settings)
     watch, lost = watch_station(watch, now.boot_ns, settings)
     if memory.modes.mode in settings.station_spares:
         lost = None
-    if watch is not services.watch:
-        memory = replace(memory, services=replace(services, watch=watch))
+    if watch is not before:
+        memory = watching(memory, watch)
     for event in (left, lost, low):
-        memory = acted(memory, event)
+        memory = react_to_failsafe(memory, event)
     return memory
 
 
@@ -43,25 +42,31 @@ def mind_lost_sticks(memory: AutopilotMemory, *, held: bool) -> AutopilotMemory:
 
     Sticks that come back do not end that; a mode that is asked for does.
     """
-    services, settings, boot_ns = memory.services, memory.settings, memory.now.boot_ns
-    watch, hold_s = services.watch, settings.failsafes.hold_s
-    if memory.modes.mode in MANUAL_MODES and not held and settings.sticks_lost_event is not None and hold_s is not None:
+    settings, boot_ns = memory.tuning.settings, memory.now.boot_ns
+    watch, hold_s = memory.safety.watch, settings.failsafes.hold_s
+    if (
+        memory.modes.mode in MANUAL_MODES
+        and not held
+        and settings.takeover.lost_event is not None
+        and hold_s is not None
+    ):
         watch = replace(watch, sticks_lost_ns=boot_ns)
-        return acted(_watching(memory, watch), Event.FAILSAFE_HOLD)
+        return react_to_failsafe(watching(memory, watch), Event.FAILSAFE_HOLD)
     if watch.sticks_lost_ns is None:
         return memory
     if not memory.modes.latched:
-        return _watching(memory, replace(watch, sticks_lost_ns=None))
+        return watching(memory, replace(watch, sticks_lost_ns=None))
     if hold_s is None or (boot_ns - watch.sticks_lost_ns) * 1e-9 < hold_s:
         return memory
-    return acted(_watching(memory, replace(watch, sticks_lost_ns=None)), settings.sticks_lost_event)
+    return react_to_failsafe(watching(memory, replace(watch, sticks_lost_ns=None)), settings.takeover.lost_event)
 
 
-def _watching(memory: AutopilotMemory, watch: Watch) -> AutopilotMemory:
-    return replace(memory, services=replace(memory.services, watch=watch))
+def watching(memory: AutopilotMemory, watch: Watch) -> AutopilotMemory:
+    """Return the memory with what the failsafes have noticed."""
+    return replace(memory, safety=replace(memory.safety, watch=watch))
 
 
-def acted(memory: AutopilotMemory, event: Event | None) -> AutopilotMemory:
+def react_to_failsafe(memory: AutopilotMemory, event: Event | None) -> AutopilotMemory:
     """Return the memory after a failsafe's event, None for one that only warns."""
     if event is None:
         return memory

@@ -6,7 +6,7 @@ Source: MAV_CMD_INJECT_FAILURE; which units answer: as PX4 was seen to do it.
 from dataclasses import dataclass, replace
 
 from link.mavlink.dialect import mavlink
-from sim_autopilot.plant import PlantMemory
+from sim_autopilot.plant.plant import PlantMemory
 
 _OK = int(mavlink.FAILURE_TYPE_OK)
 _OFF = int(mavlink.FAILURE_TYPE_OFF)

@@ -6,9 +6,9 @@ import numpy as np
 
 from link.frames.rotations import flu_from_frd, normalized, quaternion_enu_flu_from_ned_frd
 from link.mavlink.dialect import Message
-from sim_autopilot.data import AttitudeTarget, Reference
+from sim_autopilot.core.data import AttitudeTarget, Reference
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
-from sim_autopilot.snapshot import Snapshot
+from sim_autopilot.plant.snapshot import Snapshot
 
 _RATES = 0b0000_0111
 _NO_THRUST = 0b0100_0000

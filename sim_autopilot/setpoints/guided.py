@@ -9,7 +9,10 @@ import numpy as np
 from link.frames.rotations import rotate
 from link.messages import Vector3
 from link.records import replace
-from sim_autopilot.data import Reference
+from sim_autopilot.core.data import Reference
+from sim_autopilot.core.limits import PathLimits
+from sim_autopilot.core.settings import FlightSettings
+from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.setpoints.guided_attitude import AttitudeWish, attitude_flown, levelled
 from sim_autopilot.setpoints.guided_setpoint import STOP, Task, Wish
 from sim_autopilot.setpoints.path import (
@@ -22,8 +25,6 @@ from sim_autopilot.setpoints.path import (
     led_to_velocity,
     straight_speed,
 )
-from sim_autopilot.settings import FlightSettings, PathLimits
-from sim_autopilot.snapshot import Snapshot
 
 _SPOOL_S = 1.6
 """From the command until the throttle begins to rise; with TKOFF_SLEW_TIME 2 s it lifts off 3.6 s after the command."""
@@ -222,7 +223,7 @@ def _heading(guided: Guided, wish: Wish, now: Snapshot) -> float | None:
 
 def _blocked(now: Snapshot, settings: FlightSettings) -> Blocked | None:
     x, y, z = rotate(now.orientation_wxyz, (0.0, 0.0, 1.0))
-    if acos(max(-1.0, min(1.0, z))) < settings.tilt_max_rad - _LIMIT_MARGIN_RAD:
+    if acos(max(-1.0, min(1.0, z))) < settings.envelope.tilt_max_rad - _LIMIT_MARGIN_RAD:
         return None
     return Blocked(direction=(x, y), position=now.position_enu_m, velocity=now.velocity_enu_m_s)
 

@@ -13,11 +13,12 @@ import numpy as np
 from link.frames.rotations import flu_from_frd, quaternion_enu_flu_from_ned_frd, quaternion_from_roll_pitch_yaw, rotate
 from link.mavlink.dialect import Message
 from link.messages import Quaternion, Vector3
-from sim_autopilot.data import Reference
+from sim_autopilot.core.data import Reference
+from sim_autopilot.core.limits import PathLimits
+from sim_autopilot.core.settings import FlightSettings
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
+from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.setpoints.attitude import attitude_reference, holding_thrust_m_s2
-from sim_autopilot.settings import FlightSettings, PathLimits
-from sim_autopilot.snapshot import Snapshot
 
 _RATES = 0b0000_0111
 _NO_THRUST = 0b0100_0000
@@ -64,12 +65,12 @@ def attitude_wish(message: Message, settings: FlightSettings, limits: PathLimits
         return None
     share = max(0.0, min(1.0, message.thrust))
     speed_m_s = limits.climb_m_s if share > _HOLDS else limits.descent_m_s
-    by_thrust = settings.thrust_as_thrust
+    by_thrust = settings.setpoints.thrust_as_thrust
     return AttitudeWish(
         orientation_wxyz=None if q is None else quaternion_enu_flu_from_ned_frd(q),
         rates_flu_rad_s=flu_from_frd(rates),
         climb_m_s=0.0 if by_thrust else (share - _HOLDS) / _HOLDS * speed_m_s,
-        thrust_m_s2=GRAVITY_M_S2 * share / settings.hover_share if by_thrust else None,
+        thrust_m_s2=GRAVITY_M_S2 * share / settings.setpoints.hover_share if by_thrust else None,
     )
 
 

@@ -11,8 +11,8 @@ from math import cos, isfinite, pi, sin
 
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
-from sim_autopilot.local_places import Origin, world_from_local
-from sim_autopilot.snapshot import Snapshot
+from sim_autopilot.core.places import Origin, world_from_local
+from sim_autopilot.plant.snapshot import Snapshot
 
 _POSITION = 0b0000_0000_0000_0111
 _VELOCITY = 0b0000_0000_0011_1000

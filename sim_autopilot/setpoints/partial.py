@@ -9,8 +9,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from sim_autopilot.data import Array, Reference
-from sim_autopilot.snapshot import Snapshot
+from sim_autopilot.core.data import Array, Reference
+from sim_autopilot.plant.snapshot import Snapshot
 
 _POSITION, _VELOCITY, _ACCELERATION = 0, 3, 6
 Axes = tuple[bool, bool, bool]

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from math import copysign, hypot, sqrt
 
 from link.messages import Vector3
-from sim_autopilot.settings import PathLimits
+from sim_autopilot.core.limits import PathLimits
 
 Plane = tuple[float, float]
 

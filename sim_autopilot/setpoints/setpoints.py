@@ -5,17 +5,19 @@ that is flown (`partial_setpoints`), and every value used must be finite.
 """
 
 from dataclasses import dataclass
-from math import cos, isfinite, pi, sin
+from math import cos, hypot, isfinite, pi, radians, sin
 
 import numpy as np
 
+from link.frames.geodesy import geodetic_from_enu
+from link.frames.local_frame import local_from_geodetic
 from link.frames.rotations import enu_from_ned, ned_from_enu
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
-from sim_autopilot.data import Array, Reference
-from sim_autopilot.local_places import Origin, local_from_world, world_from_local
+from sim_autopilot.core.data import Array, Reference
+from sim_autopilot.core.places import Origin, local_from_world, world_from_local
+from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.setpoints.partial import Axes, given_by
-from sim_autopilot.snapshot import Snapshot
 
 _POSITION = 0b0000_0000_0000_0111
 _VELOCITY = 0b0000_0000_0011_1000
@@ -121,3 +123,47 @@ def _enu(x: float, y: float, z: float, body: bool, yaw_rad: float) -> Array:
         return np.array((y, x, -z))
     c, s = cos(yaw_rad), sin(yaw_rad)
     return np.array((c * x + s * y, s * x - c * y, -z))
+
+
+_ABOVE_SEA = frozenset({mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT})
+_ABOVE_HOME = frozenset({mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT})
+_ABOVE_TERRAIN = frozenset({mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT, mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT_INT})
+"""The ground is flat: as high as home."""
+_NO_POSITION = 0b111
+_REACH_M = 1e5
+
+
+def local_setpoint(
+    message: Message, origin: Origin, home_enu_m: Vector3, *, knows_terrain: bool = False
+) -> Message | None:
+    """Return the SET_POSITION_TARGET_LOCAL_NED of a global setpoint, None for a frame or a place that is not flown.
+
+    Args:
+        message: the setpoint.
+        origin: the autopilot's local frame.
+        home_enu_m: in W, what relative altitudes are above.
+        knows_terrain: whether altitudes above the ground are flown.
+    """
+    above_ground = _ABOVE_HOME | _ABOVE_TERRAIN if knows_terrain else _ABOVE_HOME
+    if message.coordinate_frame not in _ABOVE_SEA | above_ground:
+        return None
+    north = east = down = 0.0
+    if message.type_mask & _NO_POSITION != _NO_POSITION:
+        latitude_rad, longitude_rad = radians(message.lat_int * 1e-7), radians(message.lon_int * 1e-7)
+        altitude_m = message.alt
+        if message.coordinate_frame in above_ground:
+            altitude_m += geodetic_from_enu(origin.world, home_enu_m)[2]
+        north, east, down = ned_from_enu(local_from_geodetic(origin.frame, latitude_rad, longitude_rad, altitude_m))
+        if hypot(north, east) > _REACH_M:
+            return None
+    return mavlink.MAVLink_set_position_target_local_ned_message(
+        message.time_boot_ms,
+        message.target_system,
+        message.target_component,
+        mavlink.MAV_FRAME_LOCAL_NED,
+        message.type_mask,
+        north,
+        east,
+        down,
+        *(message.vx, message.vy, message.vz, message.afx, message.afy, message.afz, message.yaw, message.yaw_rate),
+    )

@@ -1,16 +1,14 @@
-"""The messages that the autopilot sends of itself: which builder makes which, and from when on it can."""
+"""The messages that an autopilot of any firmware sends of itself: which builder makes which, and from when on."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from types import MappingProxyType
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.firmware.component_metadata import COMPONENT_METADATA, PROTOCOL_VERSION
+from sim_autopilot.core.streams import Stream
+from sim_autopilot.interfaces import Builder
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
 from sim_autopilot.missions.step import mission_current
-from sim_autopilot.streams import Stream
-from sim_autopilot.telemetry import ardupilot, asked, motion, sensors, status, versions
-
-Builder = Callable[[AutopilotMemory, AutopilotConfig], Message | None]
+from sim_autopilot.telemetry import high_latency, motion, sensors, status, versions
 
 BUILDERS: Mapping[int, Builder] = MappingProxyType(
     {
@@ -34,9 +32,9 @@ BUILDERS: Mapping[int, Builder] = MappingProxyType(
         mavlink.MAVLINK_MSG_ID_CURRENT_MODE: status.current_mode,
         mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: status.battery_status,
         mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION: versions.autopilot_version,
-        PROTOCOL_VERSION: versions.protocol_version,
-        COMPONENT_METADATA: versions.component_metadata,
+        versions.PROTOCOL_VERSION: versions.protocol_version,
         mavlink.MAVLINK_MSG_ID_FLIGHT_INFORMATION: versions.flight_information,
+        mavlink.MAVLINK_MSG_ID_HIGH_LATENCY2: high_latency.high_latency2,
         mavlink.MAVLINK_MSG_ID_ATTITUDE: motion.attitude,
         mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: motion.attitude_quaternion,
         mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED: motion.local_position_ned,
@@ -50,34 +48,21 @@ BUILDERS: Mapping[int, Builder] = MappingProxyType(
         mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: motion.gps_raw_int,
         mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: motion.gps_global_origin,
         mavlink.MAVLINK_MSG_ID_HOME_POSITION: motion.home_position,
-        mavlink.MAVLINK_MSG_ID_AHRS: ardupilot.ahrs,
-        mavlink.MAVLINK_MSG_ID_AHRS2: ardupilot.ahrs2,
-        mavlink.MAVLINK_MSG_ID_EKF_STATUS_REPORT: ardupilot.ekf_status_report,
-        mavlink.MAVLINK_MSG_ID_WIND: ardupilot.wind,
-        mavlink.MAVLINK_MSG_ID_POWER_STATUS: ardupilot.power_status,
-        mavlink.MAVLINK_MSG_ID_MEMINFO: ardupilot.meminfo,
-        mavlink.MAVLINK_MSG_ID_HWSTATUS: ardupilot.hwstatus,
-        mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: ardupilot.nav_controller_output,
-        mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT: ardupilot.position_target_global,
-        mavlink.MAVLINK_MSG_ID_SIMSTATE: ardupilot.simstate,
-        mavlink.MAVLINK_MSG_ID_SCALED_IMU2: ardupilot.scaled_imu2,
-        mavlink.MAVLINK_MSG_ID_SCALED_IMU3: ardupilot.scaled_imu3,
-        mavlink.MAVLINK_MSG_ID_SCALED_PRESSURE2: ardupilot.scaled_pressure2,
-        mavlink.MAVLINK_MSG_ID_FENCE_STATUS: ardupilot.fence_status,
-        mavlink.MAVLINK_MSG_ID_SIM_STATE: asked.sim_state,
-        mavlink.MAVLINK_MSG_ID_HIGH_LATENCY2: asked.high_latency2,
-        mavlink.MAVLINK_MSG_ID_TERRAIN_REPORT: asked.terrain_report,
-        mavlink.MAVLINK_MSG_ID_AUTOPILOT_STATE_FOR_GIMBAL_DEVICE: asked.state_for_gimbal,
-        mavlink.MAVLINK_MSG_ID_RELAY_STATUS: asked.relay_status,
-        mavlink.MAVLINK_MSG_ID_ESC_TELEMETRY_1_TO_4: asked.esc_telemetry,
     }
 )
+
+
+def stream_of(message_id: int, config: AutopilotConfig) -> Stream | None:
+    """Return the stream of a message that can be sent, None for one that cannot."""
+    return config.firmware.streams.messages.get(message_id) or config.services.streams.get(message_id)
 
 
 def build_message(stream: Stream, memory: AutopilotMemory, config: AutopilotConfig) -> Message | None:
     """Return the message of `stream` as of now, None where there is nothing to tell yet."""
     if not has_passed(config, memory, stream.from_s):
         return None
-    if stream.message_id in config.firmware.contact_streams and not memory.ground_station:
+    rules, message_id = config.firmware.streams, stream.message_id
+    if message_id in rules.on_contact and not memory.links.here.ground_station:
         return None
-    return BUILDERS[stream.message_id](memory, config)
+    builder = BUILDERS.get(message_id) or rules.builders.get(message_id) or config.services.builders[message_id]
+    return builder(memory, config)

@@ -15,10 +15,9 @@ from link.frames.rotations import (
 )
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
-from sim_autopilot.local_places import local_from_world
+from sim_autopilot.core.places import geodetic, local_from_world
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
-from sim_autopilot.snapshot import Snapshot
-from sim_autopilot.telemetry.chart import geodetic
+from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.telemetry.status import boot_ms
 
 _NONE = (0.0, 0.0, 0.0)
@@ -44,13 +43,13 @@ _TWIST_COVARIANCE = _diagonal(_VELOCITY_VARIANCE_M2_S2, _ANGLE_VARIANCE_RAD2)
 
 
 def _local_ned(memory: AutopilotMemory, position_enu_m: Vector3) -> Vector3:
-    return ned_from_enu(local_from_world(memory.origin, position_enu_m))
+    return ned_from_enu(local_from_world(memory.places.origin, position_enu_m))
 
 
 def _own_ned(memory: AutopilotMemory) -> Vector3:
     """Return where the drone is, by the chart, which costs less."""
-    place = geodetic(memory.chart, memory.now.position_enu_m)
-    return ned_from_enu(local_from_geodetic(memory.origin.frame, *place))
+    place = geodetic(memory.places.chart, memory.now.position_enu_m)
+    return ned_from_enu(local_from_geodetic(memory.places.origin.frame, *place))
 
 
 def local_position_ned(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
@@ -90,7 +89,7 @@ def odometry(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
         *frd_from_flu(now.angular_velocity_flu_rad_s),
         _POSE_COVARIANCE,
         _TWIST_COVARIANCE,
-        memory.origin.resets % 256,
+        memory.places.origin.resets % 256,
         mavlink.MAV_ESTIMATOR_TYPE_AUTOPILOT,
         100,
     )
@@ -98,7 +97,7 @@ def odometry(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
 
 def position_target(memory: AutopilotMemory, _config: AutopilotConfig) -> Message | None:
     """Return POSITION_TARGET_LOCAL_NED: what is followed, None while nothing is."""
-    following = memory.following
+    following = memory.course.following
     if following is None:
         return None
     given = (following.position_enu_m, following.velocity_enu_m_s, following.acceleration_enu_m_s2)
@@ -135,7 +134,7 @@ def distance_sensor(memory: AutopilotMemory, _config: AutopilotConfig) -> Messag
 
 def height_over_surface_m(memory: AutopilotMemory) -> float:
     """Return how far the ground or the roof is below the centre of mass."""
-    state, deck = memory.plant.state, memory.deck  # it measures, so what the autopilot believes does not matter
+    state, deck = memory.plant.state, memory.world.deck  # it measures, so what the autopilot believes does not matter
     height_m = float(state.position_enu_m[2])
     if deck is None:
         return height_m
@@ -151,9 +150,9 @@ def height_over_surface_m(memory: AutopilotMemory) -> float:
 def vfr_hud(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     """Return VFR_HUD; without an airspeed sensor its airspeed is the ground speed."""
     now = memory.now
-    most = memory.plant_config.airframe.thrust_to_weight or 2.0
+    most = memory.tuning.plant_config.airframe.thrust_to_weight or 2.0
     throttle = round(min(100.0, 100.0 * now.thrust_share / most))
-    altitude_m = geodetic(memory.chart, now.position_enu_m)[2]
+    altitude_m = geodetic(memory.places.chart, now.position_enu_m)[2]
     heading = round(degrees(_heading_rad(now))) % 360
     speed = now.speed_m_s
     return mavlink.MAVLink_vfr_hud_message(speed, speed, heading, throttle, altitude_m, now.velocity_enu_m_s[2])
@@ -162,8 +161,8 @@ def vfr_hud(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
 def global_position_int(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     """Return GLOBAL_POSITION_INT."""
     now = memory.now
-    latitude, longitude, altitude = wire_place(geodetic(memory.chart, now.position_enu_m))
-    above_home_mm = round(1000.0 * (now.position_enu_m[2] - memory.home_enu_m[2]))
+    latitude, longitude, altitude = wire_place(geodetic(memory.places.chart, now.position_enu_m))
+    above_home_mm = round(1000.0 * (now.position_enu_m[2] - memory.places.home_enu_m[2]))
     velocity = (_int16(100.0 * v) for v in ned_from_enu(now.velocity_enu_m_s))
     heading = round(100.0 * degrees(_heading_rad(now))) % 36000
     return mavlink.MAVLink_global_position_int_message(
@@ -174,9 +173,9 @@ def global_position_int(memory: AutopilotMemory, _config: AutopilotConfig) -> Me
 def gps_raw_int(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return GPS_RAW_INT: no fix before the receiver has one."""
     now = memory.now
-    has_fix = config.instant or now.boot_ns * 1e-9 >= config.firmware.readiness.fix_s
-    fix = config.firmware.fix_type if has_fix else mavlink.GPS_FIX_TYPE_NO_FIX
-    place = wire_place(geodetic(memory.chart, now.position_enu_m))
+    has_fix = config.instant or now.boot_ns * 1e-9 >= config.firmware.condition.readiness.fix_s
+    fix = config.firmware.condition.fix_type if has_fix else mavlink.GPS_FIX_TYPE_NO_FIX
+    place = wire_place(geodetic(memory.places.chart, now.position_enu_m))
     north, east, _ = ned_from_enu(now.velocity_enu_m_s)
     speed = min(65534, round(100.0 * hypot(north, east)))
     course = round(100.0 * degrees(yaw_ned_from_enu(_course_rad(now)))) % 36000
@@ -188,7 +187,7 @@ def gps_raw_int(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
 def gps_global_origin(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     """Return GPS_GLOBAL_ORIGIN, about which LOCAL_POSITION_NED is."""
     now = memory.now
-    datum = memory.origin.frame.origin
+    datum = memory.places.origin.frame.origin
     place = wire_place((datum.latitude_rad, datum.longitude_rad, datum.altitude_m))
     return mavlink.MAVLink_gps_global_origin_message(*place, now.boot_ns // 1000)
 
@@ -196,8 +195,8 @@ def gps_global_origin(memory: AutopilotMemory, _config: AutopilotConfig) -> Mess
 def home_position(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return HOME_POSITION: where it was armed."""
     now = memory.now
-    place = wire_place(geodetic_from_enu(config.datum, memory.home_enu_m))
-    local = _local_ned(memory, memory.home_enu_m)
+    place = wire_place(geodetic_from_enu(config.datum, memory.places.home_enu_m))
+    local = _local_ned(memory, memory.places.home_enu_m)
     return mavlink.MAVLink_home_position_message(
         *place, *local, (1.0, 0.0, 0.0, 0.0), 0.0, 0.0, 0.0, now.boot_ns // 1000
     )

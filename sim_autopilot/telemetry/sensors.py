@@ -7,9 +7,9 @@ from math import degrees
 
 from link.frames.rotations import frd_from_flu, quaternion_ned_frd_from_enu_flu
 from link.mavlink.dialect import Message, mavlink
+from sim_autopilot.core.places import geodetic
 from sim_autopilot.flight.manual import sticks_in_effect
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
-from sim_autopilot.telemetry.chart import geodetic
 from sim_autopilot.telemetry.motion import height_over_surface_m
 from sim_autopilot.telemetry.status import boot_ms
 
@@ -35,7 +35,7 @@ _GAUSS_NORTH_DOWN = (0.19, 0.0, 0.45)
 
 
 def _altitude_m(memory: AutopilotMemory) -> float:
-    return geodetic(memory.chart, memory.now.position_enu_m)[2]
+    return geodetic(memory.places.chart, memory.now.position_enu_m)[2]
 
 
 def pressure_hpa(altitude_m: float) -> float:
@@ -47,14 +47,14 @@ def pressure_hpa(altitude_m: float) -> float:
 def altitude(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     """Return ALTITUDE."""
     now, above_sea_m = memory.now, _altitude_m(memory)
-    local_m = above_sea_m - memory.origin.frame.origin.altitude_m
+    local_m = above_sea_m - memory.places.origin.frame.origin.altitude_m
     clearance_m = height_over_surface_m(memory)
     return mavlink.MAVLink_altitude_message(
         now.boot_ns // 1000,
         above_sea_m,
         above_sea_m,
         local_m,
-        now.position_enu_m[2] - memory.home_enu_m[2],
+        now.position_enu_m[2] - memory.places.home_enu_m[2],
         local_m - clearance_m,
         clearance_m,
     )
@@ -107,7 +107,7 @@ def highres_imu(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
 
 def rc_channels(memory: AutopilotMemory, _config: AutopilotConfig) -> Message | None:
     """Return RC_CHANNELS: what the modes obey, in pulse widths; None where there is no receiver and nobody steers."""
-    sticks = sticks_in_effect(memory.services.sticks, memory.now.boot_ns, memory.settings.sticks)
+    sticks = sticks_in_effect(memory.heard.sticks, memory.now.boot_ns, memory.tuning.settings.sticks)
     if sticks is None:
         return None
     values = (sticks.roll, -sticks.pitch, sticks.throttle, sticks.yaw)
@@ -128,7 +128,7 @@ def raw_imu(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
 
 def _throttles(memory: AutopilotMemory) -> list[float]:
     """The share of its greatest speed that each rotor turns with."""
-    airframe = memory.plant_config.airframe
+    airframe = memory.tuning.plant_config.airframe
     most_rad_s = airframe.hover_speed_rad_s * (airframe.thrust_to_weight or 2.0) ** 0.5
     return [min(1.0, max(0.0, speed / most_rad_s)) for speed in memory.plant.state.rotor_speed_rad_s.tolist()]
 
@@ -162,11 +162,11 @@ def estimator_status(memory: AutopilotMemory, _config: AutopilotConfig) -> Messa
 
 def attitude_target(memory: AutopilotMemory, _config: AutopilotConfig) -> Message | None:
     """Return ATTITUDE_TARGET, None while the motors are off; the controller's own is taken as the attitude flown."""
-    if memory.following is None:
+    if memory.course.following is None:
         return None
     now = memory.now
     rates = frd_from_flu(now.angular_velocity_flu_rad_s)
-    most = memory.plant_config.airframe.thrust_to_weight or 2.0
+    most = memory.tuning.plant_config.airframe.thrust_to_weight or 2.0
     thrust = min(1.0, now.thrust_share / most)
     q = quaternion_ned_frd_from_enu_flu(now.orientation_wxyz)
     return mavlink.MAVLink_attitude_target_message(boot_ms(memory), 0, q, *rates, thrust)
@@ -174,7 +174,7 @@ def attitude_target(memory: AutopilotMemory, _config: AutopilotConfig) -> Messag
 
 def wind_cov(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     """Return WIND_COV of the air that the drone flies in."""
-    east, north, up = memory.wind_enu_m_s
+    east, north, up = memory.world.wind_enu_m_s
     altitude_m = _altitude_m(memory)
     return mavlink.MAVLink_wind_cov_message(
         memory.now.boot_ns // 1000, north, east, -up, 0.1, 0.1, altitude_m, 0.1, 0.1
@@ -184,7 +184,7 @@ def wind_cov(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
 def hil_state_quaternion(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     """Return HIL_STATE_QUATERNION, by which a simulation tells the truth."""
     now = memory.now
-    latitude, longitude, altitude_m = geodetic(memory.chart, now.position_enu_m)
+    latitude, longitude, altitude_m = geodetic(memory.places.chart, now.position_enu_m)
     east, north, up = now.velocity_enu_m_s
     velocity = (round(100.0 * v) for v in (north, east, -up))
     force = (max(-32767, min(32767, round(f * _MILLI_G_PER_M_S2))) for f in frd_from_flu(now.specific_force_flu_m_s2))

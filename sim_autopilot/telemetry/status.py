@@ -1,7 +1,7 @@
 """Messages about the autopilot's condition: mode, health, battery, clock, landed state."""
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.flight.modes import Mode
+from sim_autopilot.core.modes import Mode
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
 from sim_autopilot.safety.failsafes_step import charge_of
 from sim_autopilot.setpoints.guided import is_rising
@@ -27,11 +27,11 @@ def boot_ms(memory: AutopilotMemory) -> int:
 
 def heartbeat(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return the HEARTBEAT."""
-    code = config.firmware.modes[memory.modes.mode]
+    code = config.firmware.modes.codes[memory.modes.mode]
     armed = mavlink.MAV_MODE_FLAG_SAFETY_ARMED if memory.armed_ns is not None else 0
     return mavlink.MAVLink_heartbeat_message(
         mavlink.MAV_TYPE_QUADROTOR,
-        config.firmware.autopilot_id,
+        config.firmware.identity.autopilot_id,
         code.base_mode | armed,
         code.custom_mode,
         _system_status(memory, config),
@@ -40,19 +40,23 @@ def heartbeat(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
 
 
 def _system_status(memory: AutopilotMemory, config: AutopilotConfig) -> int:
-    statuses = config.firmware.statuses
+    statuses = config.firmware.condition.statuses
     if memory.armed_ns is not None:
         if memory.modes.failsafe:
             return statuses.failsafe
-        return statuses.armed if memory.landing.landed else statuses.flying
-    return statuses.standby if has_passed(config, memory, config.firmware.readiness.booted_s) else statuses.booting
+        return statuses.armed if memory.course.landing.landed else statuses.flying
+    return (
+        statuses.standby
+        if has_passed(config, memory, config.firmware.condition.readiness.booted_s)
+        else statuses.booting
+    )
 
 
 def sys_status(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return SYS_STATUS, whose health says whether it can arm."""
-    sensors, readiness = config.firmware.sensors, config.firmware.readiness
+    sensors, readiness = config.firmware.condition.sensors, config.firmware.condition.readiness
     control = sensors.control if memory.armed_ns is not None else 0
-    fenced = mavlink.MAV_SYS_STATUS_GEOFENCE if memory.values.get(_FENCE, 0.0) > 0.0 else 0
+    fenced = mavlink.MAV_SYS_STATUS_GEOFENCE if memory.tuning.values.get(_FENCE, 0.0) > 0.0 else 0
     health = sensors.health | control
     health |= sensors.fix_health if has_passed(config, memory, readiness.fix_s) else 0
     health |= sensors.arming_health if has_passed(config, memory, sensors.arming_s) else 0
@@ -84,18 +88,18 @@ def battery_status(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
         32767,
         (_millivolts(charge, memory), *(_UNKNOWN_MV,) * 9),
         _current_ca(memory, config),
-        _given_mah(memory, charge) if config.firmware.current_ca is None else 0,
+        _given_mah(memory, charge) if config.firmware.condition.current_ca is None else 0,
         -1,
         _percent(charge),
         0,
-        _CHARGE_STATES[memory.services.watch.level],
+        _CHARGE_STATES[memory.safety.watch.level],
     )
 
 
 def _current_ca(memory: AutopilotMemory, config: AutopilotConfig) -> int:
     """What the motors take, where that is measured."""
-    if config.firmware.current_ca is not None:
-        return config.firmware.current_ca
+    if config.firmware.condition.current_ca is not None:
+        return config.firmware.condition.current_ca
     return (
         0
         if memory.armed_ns is None
@@ -108,11 +112,11 @@ def _given_mah(memory: AutopilotMemory, charge: float) -> int:
 
 
 def _capacity_mah(memory: AutopilotMemory) -> float:
-    return max(0.0, memory.values["BATT_CAPACITY"])
+    return max(0.0, memory.tuning.values["BATT_CAPACITY"])
 
 
 def _millivolts(charge: float, memory: AutopilotMemory) -> int:
-    empty_v, full_v = memory.settings.battery_v
+    empty_v, full_v = memory.tuning.settings.simulation.battery_v
     return round(1000.0 * (empty_v + charge * (full_v - empty_v)))
 
 
@@ -144,13 +148,13 @@ def ping_answer(question: Message) -> Message:
 
 def extended_sys_state(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return EXTENDED_SYS_STATE."""
-    return mavlink.MAVLink_extended_sys_state_message(config.firmware.vtol_state, _landed_state(memory))
+    return mavlink.MAVLink_extended_sys_state_message(config.firmware.condition.vtol_state, _landed_state(memory))
 
 
 def _landed_state(memory: AutopilotMemory) -> int:
-    if memory.landing.landed:
+    if memory.course.landing.landed:
         return int(mavlink.MAV_LANDED_STATE_ON_GROUND)
-    if memory.modes.mode is Mode.TAKEOFF or (memory.modes.mode is Mode.OFFBOARD and is_rising(memory.guided)):
+    if memory.modes.mode is Mode.TAKEOFF or (memory.modes.mode is Mode.OFFBOARD and is_rising(memory.course.guided)):
         return int(mavlink.MAV_LANDED_STATE_TAKEOFF)
     if memory.modes.mode is Mode.LAND:
         return int(mavlink.MAV_LANDED_STATE_LANDING)
@@ -159,6 +163,6 @@ def _landed_state(memory: AutopilotMemory) -> int:
 
 def current_mode(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return CURRENT_MODE: the mode flown and the mode asked for."""
-    modes = config.firmware.modes
+    modes = config.firmware.modes.codes
     flown, asked = modes[memory.modes.mode].custom_mode, modes[memory.modes.intended].custom_mode
     return mavlink.MAVLink_current_mode_message(0, flown, asked)

@@ -31,8 +31,8 @@ from mavsdk.plugins.offboard import (
 from mavsdk.plugins.param import Param, ParamError, ParamResult
 from mavsdk.plugins.telemetry import FlightMode, LandedState, Telemetry
 
-from sim_autopilot.firmware.ardupilot import ARDUPILOT
-from sim_autopilot.firmware.px4 import PX4
+from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
+from sim_autopilot.firmware.px4.px4 import PX4
 from tests.conformance.programs import wait
 
 NORTH_DEG = 1.0 / 111_250.0
@@ -140,7 +140,7 @@ def streams_at_the_rates_asked_for(drone: SimpleNamespace) -> None:
 def lists_every_parameter(drone: SimpleNamespace) -> None:
     listed = drone.param.get_all_params()
     firmware = ARDUPILOT if drone.guided else PX4
-    assert len(listed.int_params) + len(listed.float_params) == len(firmware.parameters)
+    assert len(listed.int_params) + len(listed.float_params) == len(firmware.parameters.table)
 
 
 def sets_parameters(drone: SimpleNamespace) -> None:

@@ -39,7 +39,7 @@ def test_a_landing_a_kilometre_from_the_origin_is_as_good_as_one_beside_it(firmw
     assert result["position_rmse_m"] < 0.05  # of the estimate, in the frame that the drone flies in
 
     contact = run.recording.drone[-1].position_enu_m
-    frame = run.simulation.autopilot.memory.origin.frame
+    frame = run.simulation.autopilot.memory.places.origin.frame
     local = local_from_geodetic(frame, *geodetic_from_enu(datum_of(scenario.datum), contact))
     assert abs(local[0] - contact[0]) > beside_m  # without the projection it would have been flown so far beside
 

@@ -20,7 +20,7 @@ from scenarios.manual.phase_chart import FROM_ANYWHERE, PLACES, arrows, phase_ch
 from scenarios.manual.settings import keys_of, tables_of
 from scenarios.recordings.result import score_run
 from scenarios.scoring.score import Tier
-from sim_autopilot.config import SimAutopilotConfig
+from sim_autopilot.runtime.config import SimAutopilotConfig
 from tests.scenarios.presets import list_presets
 
 ROOT = Path(__file__).parents[2]

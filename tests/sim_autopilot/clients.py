@@ -6,7 +6,7 @@ from dataclasses import replace
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.memory import AutopilotConfig
-from sim_autopilot.node import AutopilotNode
+from sim_autopilot.runtime.node import AutopilotNode
 from tests.sim_autopilot.pilot import START_NS, STILL_AIR
 
 

@@ -1,7 +1,8 @@
 """ArduCopter for tests: the stand-in's configuration, its mode numbers, and a pilot that takes off in GUIDED."""
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.firmware.ardupilot import ARDUPILOT
+from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
+from sim_autopilot.ground_station.ardupilot import ARDUPILOT_STATION
 from sim_autopilot.memory import AutopilotConfig
 from tests.sim_autopilot.pilot import DATUM, Pilot, arm, command
 
@@ -10,9 +11,12 @@ POSHOLD, BRAKE, SMART_RTL = 16, 17, 21
 DRIFT, THROW, AVOID, NO_GPS, ZIGZAG = 11, 18, 19, 20, 24
 
 
+PLUGGED_IN = {"firmware": ARDUPILOT, "services": ARDUPILOT_STATION, "datum": DATUM, "instant": True}
+
+
 def ardupilot(**changes: object) -> AutopilotConfig:
     """The autopilot, ready at once."""
-    return AutopilotConfig(**({"firmware": ARDUPILOT, "datum": DATUM, "instant": True} | changes))  # type: ignore[arg-type]  # of any field
+    return AutopilotConfig(**(PLUGGED_IN | changes))  # type: ignore[arg-type]  # of any field
 
 
 def mode(number: int) -> Message:

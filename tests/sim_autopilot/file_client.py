@@ -3,7 +3,7 @@
 import struct
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.files.ftp_wire import DATA_MAX, Opcode
+from sim_autopilot.ground_station.files.ftp_wire import DATA_MAX, Opcode
 from tests.sim_autopilot.pilot import Pilot
 
 _HEAD = struct.Struct("<HBBBBBxI")

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim_autopilot.data import Array, Deck, Reference, Surface
-from sim_autopilot.plant import PlantConfig, PlantMemory, fly, initial_plant
+from sim_autopilot.core.data import Array, Deck, Reference, Surface
+from sim_autopilot.plant.plant import PlantConfig, PlantMemory, fly, initial_plant
 
 DT_S = 0.01
 CALM = np.zeros(3)

@@ -8,10 +8,11 @@ import numpy as np
 from link.frames.geodesy import Datum
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.data import Array, Deck
-from sim_autopilot.firmware.px4 import PX4
+from sim_autopilot.core.data import Array, Deck
+from sim_autopilot.firmware.px4.px4 import PX4
+from sim_autopilot.ground_station.px4.station import PX4_STATION
 from sim_autopilot.memory import AutopilotConfig
-from sim_autopilot.node import AutopilotNode
+from sim_autopilot.runtime.node import AutopilotNode
 
 START_NS = 1_795_000_000_000_000_000
 DATUM = Datum(latitude_rad=radians(52.4733), longitude_rad=radians(13.4017), altitude_m=89.0)
@@ -29,9 +30,12 @@ POSITION_VELOCITY = 0b1001_1100_0000
 VELOCITY_ONLY = 0b1001_1100_0111
 
 
+PLUGGED_IN = {"firmware": PX4, "services": PX4_STATION, "datum": DATUM, "instant": True}
+
+
 def px4(**changes: object) -> AutopilotConfig:
     """The autopilot that the tests fly, ready at once."""
-    return AutopilotConfig(**({"firmware": PX4, "datum": DATUM, "instant": True} | changes))  # type: ignore[arg-type]  # of any field
+    return AutopilotConfig(**(PLUGGED_IN | changes))  # type: ignore[arg-type]  # of any field
 
 
 def command(number: int, *parameters: float, system: int = 1, component: int = 1) -> Message:
@@ -129,7 +133,7 @@ class Pilot:
 
     def custom_mode(self) -> int:
         """The mode that the next heartbeat tells."""
-        config = PX4.modes[self.node.memory.modes.mode]
+        config = PX4.modes.codes[self.node.memory.modes.mode]
         return config.custom_mode
 
     def take_off(self, height_m: float = 5.0) -> None:

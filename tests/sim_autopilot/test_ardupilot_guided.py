@@ -6,10 +6,10 @@ from math import atan2, cos, degrees, hypot, inf, nan, radians, sin
 import pytest
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.local_places import local_from_world
+from sim_autopilot.core.places import local_from_world
 from sim_autopilot.memory import AutopilotConfig
 from sim_autopilot.physics.airframe import ARDUCOPTER_AIRFRAME
-from sim_autopilot.plant import PlantConfig
+from sim_autopilot.plant.plant import PlantConfig
 from tests.sim_autopilot.copter import (
     GUIDED,
     LAND,
@@ -86,7 +86,7 @@ def flown(course: Course, mask: int, duration_s: float, config: AutopilotConfig 
 def local_enu_m(pilot: Pilot) -> Vector:
     """Where the drone is in the frame that its setpoints are in."""
     east_m, north_m, up_m = pilot.position.tolist()
-    return local_from_world(pilot.node.memory.origin, (east_m, north_m, up_m))
+    return local_from_world(pilot.node.memory.places.origin, (east_m, north_m, up_m))
 
 
 def lag_m(speed_m_s: float, mask: int, duration_s: float, ramp_m_s2: float = inf) -> float:

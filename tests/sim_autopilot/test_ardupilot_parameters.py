@@ -3,8 +3,8 @@ from math import nan
 import pytest
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.firmware.ardupilot import ARDUPILOT
-from sim_autopilot.parameters import default_values
+from sim_autopilot.core.parameters import default_values
+from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
 from tests.sim_autopilot.copter import ardupilot
 from tests.sim_autopilot.pilot import DATUM, Pilot
 
@@ -33,7 +33,7 @@ def put(name: str, value: float, kind: int = REAL32) -> Message:
 def test_a_parameter_travels_as_a_plain_float_whatever_its_type(name: str, value: float, kind: int) -> None:
     (answer,) = answers(Pilot(ardupilot()), read(name))
     assert (answer.param_id, answer.param_value, answer.param_type) == (name, value, kind)
-    assert (answer.param_count, answer.param_index) == (len(ARDUPILOT.parameters), 65535)
+    assert (answer.param_count, answer.param_index) == (len(ARDUPILOT.parameters.table), 65535)
 
 
 def test_an_unknown_parameter_is_not_answered() -> None:
@@ -54,31 +54,31 @@ def test_parameters_set_in_flight_change_what_the_flight_keeps_to() -> None:
     pilot = Pilot(ardupilot())
     pilot.step(put("WPNAV_SPEED", 700.0), put("GUID_TIMEOUT", 1.5))
     pilot.step()
-    path = pilot.node.memory.settings.path
+    path = pilot.node.memory.tuning.settings.path
     assert path is not None
     assert (path.speed_m_s, path.timeout_s) == (7.0, 1.5)
 
 
 def test_absurd_values_leave_settings_that_can_be_flown() -> None:
     for value in (-1e30, 0.0, 1e30):
-        values = dict.fromkeys(default_values(ARDUPILOT.parameters, {}), value)
-        settings = ARDUPILOT.settings(values)
+        values = dict.fromkeys(default_values(ARDUPILOT.parameters.table, {}), value)
+        settings = ARDUPILOT.parameters.settings(values)
         assert settings.path is not None
         assert settings.path.acceleration_m_s2 > 0.0
         assert settings.path.jerk_m_s3 > 0.0
-        assert 0.1 < settings.tilt_max_rad < 1.5
-        assert settings.yaw_rate_max_rad_s > 0.0
+        assert 0.1 < settings.envelope.tilt_max_rad < 1.5
+        assert settings.envelope.yaw_rate_max_rad_s > 0.0
 
 
 def test_every_default_is_inside_its_own_range_and_fits_its_name() -> None:
-    for parameter in ARDUPILOT.parameters:
+    for parameter in ARDUPILOT.parameters.table:
         assert parameter.lowest <= parameter.default <= parameter.highest
         assert len(parameter.name) <= 16
-    assert len({parameter.name for parameter in ARDUPILOT.parameters}) == len(ARDUPILOT.parameters)
+    assert len({parameter.name for parameter in ARDUPILOT.parameters.table}) == len(ARDUPILOT.parameters.table)
 
 
 def test_the_origin_moves_no_more_once_it_is_there() -> None:
     pilot = Pilot(ardupilot())
     pilot.step(mavlink.MAVLink_set_gps_global_origin_message(1, 524_740_000, 134_020_000, 90_000))
     pilot.step()
-    assert pilot.node.memory.origin.frame.origin == DATUM
+    assert pilot.node.memory.places.origin.frame.origin == DATUM

@@ -5,19 +5,13 @@ import pytest
 
 from link.frames.rotations import roll_pitch_yaw_of
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.firmware.ardupilot import ARDUPILOT
-from sim_autopilot.firmware.ardupilot_failsafes import failsafe_settings
-from sim_autopilot.flight.modes import Event, Mode
+from sim_autopilot.core.modes import Event, Mode
+from sim_autopilot.core.parameters import default_values
+from sim_autopilot.core.settings import FailsafeSettings
+from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
+from sim_autopilot.firmware.ardupilot.failsafes import failsafe_settings
 from sim_autopilot.memory import AutopilotConfig
-from sim_autopilot.parameters import default_values
-from sim_autopilot.safety.failsafes import (
-    NOTHING_NOTICED,
-    FailsafeSettings,
-    Watch,
-    watch_battery,
-    watch_fence,
-    watch_station,
-)
+from sim_autopilot.safety.failsafes import NOTHING_NOTICED, Watch, watch_battery, watch_fence, watch_station
 from tests.sim_autopilot.copter import ALT_HOLD, GUIDED, LOITER, RTL, ardupilot, copter_in_the_air, mode
 from tests.sim_autopilot.pilot import Pilot, arm
 from tests.sim_autopilot.planner import EAST_M, LATITUDE, LONGITUDE, NORTH_M
@@ -37,7 +31,7 @@ def flying(config: AutopilotConfig | None = None, height_m: float = 10.0) -> Pil
 
 
 def settings(**parameters: float) -> FailsafeSettings:
-    return failsafe_settings(default_values(ARDUPILOT.parameters, parameters))
+    return failsafe_settings(default_values(ARDUPILOT.parameters.table, parameters))
 
 
 def test_loiter_flies_the_sticks_velocity_and_stops_when_they_are_centred() -> None:
@@ -108,7 +102,7 @@ def test_a_silent_or_wrong_attitude_levels_the_drone() -> None:
     roll, _, _ = roll_pitch_yaw_of(pilot.node.state.orientation_wxyz.tolist())
     assert abs(degrees(roll)) < 1.0
     pilot.step(attitude(mask=7 | 64))
-    assert pilot.node.memory.guided.attitude is None
+    assert pilot.node.memory.course.guided.attitude is None
 
 
 @pytest.mark.parametrize(("frame", "altitude_m"), [(5, 97.0), (6, 8.0), (11, 8.0)])
@@ -135,7 +129,7 @@ def test_a_lost_ground_station_acts_at_once_as_fs_gcs_enable_says(action: float,
 def test_only_heartbeats_of_sysid_mygcs_count() -> None:
     pilot = flying(ardupilot(parameters={"FS_GCS_ENABLE": 1.0, "SYSID_MYGCS": 7.0}), height_m=3.0)
     pilot.step(mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, 8, 0, 0, 4, 3))
-    assert pilot.node.memory.services.watch.station_ns is None
+    assert pilot.node.memory.safety.watch.station_ns is None
     own = flying(ardupilot(parameters={"FS_GCS_ENABLE": 1.0, "SYSID_MYGCS": 1.0}), height_m=3.0)
     own.step(mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_ONBOARD_CONTROLLER, 8, 0, 0, 4, 3))
     own.run(5.2)
@@ -160,7 +154,7 @@ def test_simulated_wind_and_voltage_are_changed_in_flight() -> None:
         pilot.step(mavlink.MAVLink_param_set_message(1, 1, name, value, mavlink.MAV_PARAM_TYPE_REAL32))
     pilot.run(4.0)
     roll, pitch, _ = roll_pitch_yaw_of(pilot.node.state.orientation_wxyz.tolist())
-    assert pilot.node.memory.wind_enu_m_s == pytest.approx((-6.0, 0.0, 0.0), abs=1e-9)  # out of the east
+    assert pilot.node.memory.world.wind_enu_m_s == pytest.approx((-6.0, 0.0, 0.0), abs=1e-9)  # out of the east
     assert degrees(roll) > 1.0  # its nose to the north, it leans into it
     assert abs(degrees(pitch)) < 0.5
     pilot.step(mavlink.MAVLink_param_set_message(1, 1, b"SIM_BATT_VOLTAGE", 10.4, mavlink.MAV_PARAM_TYPE_REAL32))
@@ -194,4 +188,4 @@ def test_a_return_climbs_into_its_cone_only_and_stays_over_home() -> None:
     assert pilot.position[2] > 0.7 * highest_m  # RTL_LOIT_TIME
     assert pilot.node.memory.modes.mode is Mode.RTL
     assert pilot.node.memory.modes.intended is not Mode.OFFBOARD
-    assert ARDUPILOT.modes[Mode.OFFBOARD].custom_mode == GUIDED
+    assert ARDUPILOT.modes.codes[Mode.OFFBOARD].custom_mode == GUIDED

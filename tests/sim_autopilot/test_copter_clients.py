@@ -31,7 +31,7 @@ def test_the_fence_is_switched_by_a_command_where_there_is_one() -> None:
     pilot = Pilot(ardupilot())
     for switch in (1.0, 0.0):
         assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_FENCE_ENABLE, switch)) == [0]
-        assert pilot.node.memory.values["FENCE_ENABLE"] == switch
+        assert pilot.node.memory.tuning.values["FENCE_ENABLE"] == switch
 
 
 def test_item_0_is_home_whatever_was_uploaded() -> None:
@@ -81,7 +81,7 @@ def test_a_reboot_keeps_parameters_and_plans_and_begins_time_anew() -> None:
     pilot.run(1.5)
     memory = pilot.node.memory
     assert memory.now.boot_ns < 2_000_000_000
-    assert memory.values["WPNAV_SPEED"] == 700.0
+    assert memory.tuning.values["WPNAV_SPEED"] == 700.0
     assert heartbeat(pilot)[1] == 0
     assert len(download(pilot)) == 2
     pilot.step(mode(GUIDED))

@@ -102,10 +102,10 @@ def test_a_reset_of_the_parameters_acts_with_the_next_boot_and_nothing_is_saved_
     storage = mavlink.MAV_CMD_PREFLIGHT_STORAGE
     assert [pilot.acknowledged(command(storage, wanted)) for wanted in (0.0, 1.0, 2.0)] == [[2], [2], [ACCEPTED]]
     assert "All parameters reset, reboot board" in texts(pilot)
-    assert pilot.node.memory.values["WPNAV_SPEED"] == 700.0
+    assert pilot.node.memory.tuning.values["WPNAV_SPEED"] == 700.0
     pilot.step(command(mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0))
     pilot.run(1.5)
-    assert pilot.node.memory.values["WPNAV_SPEED"] == 1000.0
+    assert pilot.node.memory.tuning.values["WPNAV_SPEED"] == 1000.0
 
 
 def test_a_motor_is_not_tested_in_the_air_and_not_by_px4() -> None:

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.data import Deck, Surface
+from sim_autopilot.core.data import Deck, Surface
 from tests.sim_autopilot.pilot import POSITION_VELOCITY, START_NS, Pilot, arm, px4, set_mode, setpoint
 
 SPEED_M_S = 5.0
@@ -94,7 +94,7 @@ def test_with_the_detectors_speed_limit_raised_it_lands_on_the_moving_deck_by_it
     def press(t_s: float) -> Message:
         return setpoint((vehicle_y_m(t_s), 0.0, 0.5 - ROOF_M), (SPEED_M_S, 0.0, 0.5), mask=POSITION_VELOCITY)
 
-    to_landed_s = 1.0 + pilot.run_until(lambda: pilot.node.memory.landing.landed, 5.0, press)
+    to_landed_s = 1.0 + pilot.run_until(lambda: pilot.node.memory.course.landing.landed, 5.0, press)
     to_disarmed_s = pilot.run_until(lambda: not pilot.is_armed(), 5.0, press)
     assert to_landed_s == pytest.approx(1.5, abs=0.5)  # measured on PX4
     assert to_disarmed_s == pytest.approx(2.0, abs=0.1)

@@ -13,7 +13,7 @@ from link.mavlink.dialect import Message, mavlink
 from link.mavlink.layout import field_offsets
 from sim_autopilot.commands.incoming import HANDLED
 from sim_autopilot.memory import AutopilotConfig
-from sim_autopilot.node import AutopilotNode
+from sim_autopilot.runtime.node import AutopilotNode
 from tests.sim_autopilot.copter import ardupilot
 from tests.sim_autopilot.pilot import OFFBOARD, START_NS, STILL_AIR, Pilot, arm, px4, setpoint
 

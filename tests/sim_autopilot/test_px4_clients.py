@@ -9,9 +9,9 @@ import pytest
 
 from link.mavlink.dialect import mavlink
 from link.mavlink.event_ids import event_id
-from sim_autopilot.files.ftp_handlers import checksum
-from sim_autopilot.firmware.px4_health import ARMING_SUMMARY, HEALTH_SUMMARY, MODE_STATES
-from sim_autopilot.flight.modes import Mode
+from sim_autopilot.core.modes import Mode
+from sim_autopilot.ground_station.files.ftp_handlers import checksum
+from sim_autopilot.ground_station.px4.health_bits import ARMING_SUMMARY, HEALTH_SUMMARY, MODE_STATES
 from tests.sim_autopilot.file_client import FileClient
 from tests.sim_autopilot.pilot import HOLD, Pilot, arm, command, setpoint
 from tests.sim_autopilot.planner import item, upload

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.memory import AutopilotInputs, initial_memory
-from sim_autopilot.node import STEP_NS
+from sim_autopilot.boot import initial_memory
+from sim_autopilot.memory import AutopilotInputs
+from sim_autopilot.runtime.node import STEP_NS
 from sim_autopilot.step import autopilot_step
 from tests.sim_autopilot.pilot import (
     DATUM,
@@ -266,7 +267,7 @@ def test_landing_ends_on_the_ground_disarmed_two_seconds_after_it_was_detected()
     pilot.run(1.0)
     assert landed_state(pilot) == mavlink.MAV_LANDED_STATE_LANDING
     pilot.run_until(lambda: pilot.position[2] < 0.13, 20.0)
-    to_landed_s = pilot.run_until(lambda: pilot.node.memory.landing.landed, 5.0)
+    to_landed_s = pilot.run_until(lambda: pilot.node.memory.course.landing.landed, 5.0)
     to_disarmed_s = pilot.run_until(lambda: not pilot.is_armed(), 5.0)
     assert to_landed_s == pytest.approx(1.5, abs=0.5)  # measured on PX4
     assert to_disarmed_s == pytest.approx(2.0, abs=0.05)  # COM_DISARM_LAND
@@ -306,7 +307,7 @@ def test_a_plain_disarm_works_once_it_has_landed() -> None:
     pilot = with_parameters(COM_DISARM_LAND=-1.0)
     pilot.take_off(2.0)
     pilot.step(set_mode(4, 6))
-    pilot.run_until(lambda: pilot.node.memory.landing.landed, 20.0)
+    pilot.run_until(lambda: pilot.node.memory.course.landing.landed, 20.0)
     pilot.run(5.0)
     assert pilot.is_armed()
     assert pilot.acknowledged(arm(armed=False)) == [ACCEPTED]
@@ -360,7 +361,7 @@ def test_a_moved_origin_moves_the_local_frame_under_the_vehicle() -> None:
     pilot.take_off()
     pilot.run(0.1)
     before, resets = pilot.last("LOCAL_POSITION_NED"), pilot.last("ODOMETRY").reset_counter
-    origin = pilot.node.memory.origin.frame.origin
+    origin = pilot.node.memory.places.origin.frame.origin
     # 3 m north: 3 / (a meridian's 111.2 km to a degree)
     latitude = round(np.degrees(origin.latitude_rad) * 1e7 + 3.0 / 111_250.0 * 1e7)
     longitude = round(np.degrees(origin.longitude_rad) * 1e7)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import companion.runtime.node
-import sim_autopilot.node
+import sim_autopilot.runtime.node
 from link.program.cli import run_app
 from scenarios.__main__ import app
 from scenarios.bench.bench import Budget, text_lines
@@ -35,7 +35,7 @@ def test_nothing_timed_has_no_quantiles() -> None:
 
 @pytest.mark.slow
 def test_stopwatch_times_every_step_and_is_gone_afterwards() -> None:
-    callers = (vars(sim_autopilot.node), vars(companion.runtime.node))
+    callers = (vars(sim_autopilot.runtime.node), vars(companion.runtime.node))
     plain = (callers[0]["autopilot_step"], callers[1]["companion_step"])
     run = Lockstep(load_scenario("straight_5"), 1)
     with timed_steps() as durations_s:

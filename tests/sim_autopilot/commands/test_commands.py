@@ -4,8 +4,8 @@ import pytest
 
 from link.mavlink.dialect import mavlink
 from link.mavlink.event_ids import event_id
-from sim_autopilot.firmware.px4 import PX4
-from sim_autopilot.flight.modes import Mode
+from sim_autopilot.core.modes import Mode
+from sim_autopilot.firmware.px4.px4 import PX4
 from tests.sim_autopilot.pilot import (
     HOLD,
     LAND,
@@ -73,7 +73,7 @@ def test_offboard_without_setpoints_is_accepted_first_and_refused_after() -> Non
 
 def test_disarmed_every_mode_can_be_chosen_but_offboard_does_not_arm_without_setpoints() -> None:
     pilot = Pilot()
-    for code in PX4.modes.values():
+    for code in PX4.modes.codes.values():
         assert pilot.acknowledged(set_mode(*code.request)) == [ACCEPTED, ACCEPTED]
         assert pilot.custom_mode() == code.custom_mode
     pilot.acknowledged(set_mode(6))
@@ -92,7 +92,7 @@ def test_disarmed_every_mode_can_be_chosen_but_offboard_does_not_arm_without_set
 def test_a_client_without_custom_modes_asks_by_flags(flags: int, mode: Mode) -> None:
     pilot = Pilot()
     assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_SET_MODE, float(flags))) == [ACCEPTED, ACCEPTED]
-    assert pilot.custom_mode() == PX4.modes[mode].custom_mode
+    assert pilot.custom_mode() == PX4.modes.codes[mode].custom_mode
 
 
 def test_offboard_is_entered_after_three_tenths_of_a_second_of_setpoints() -> None:
@@ -189,7 +189,7 @@ def test_an_interval_that_cannot_be_fails(parameters: tuple[float, float]) -> No
 def test_every_message_it_knows_can_be_requested() -> None:
     pilot = Pilot()
     pilot.take_off(1.0)
-    for message_id in PX4.streams.keys() - {mavlink.MAVLINK_MSG_ID_RC_CHANNELS}:
+    for message_id in PX4.streams.messages.keys() - {mavlink.MAVLINK_MSG_ID_RC_CHANNELS}:
         pilot.received.clear()
         assert pilot.acknowledged(command(REQUEST, float(message_id))) == [ACCEPTED]
         assert message_id in {message.get_msgId() for _, message in pilot.received}
@@ -214,7 +214,7 @@ def test_modes_are_listed_all_or_one_by_one() -> None:
     assert pilot.acknowledged(command(REQUEST, 435.0, 0.0)) == [ACCEPTED]
     listed = pilot.all("AVAILABLE_MODES")
     assert [mode.mode_index for mode in listed] == list(range(1, listed[0].number_modes + 1))
-    assert {mode.custom_mode for mode in listed} == {code.custom_mode for code in PX4.modes.values()}
+    assert {mode.custom_mode for mode in listed} == {code.custom_mode for code in PX4.modes.codes.values()}
     pilot.received.clear()
     assert pilot.acknowledged(command(REQUEST, 435.0, 3.0)) == [ACCEPTED]
     assert [mode.standard_mode for mode in pilot.all("AVAILABLE_MODES")] == [mavlink.MAV_STANDARD_MODE_POSITION_HOLD]

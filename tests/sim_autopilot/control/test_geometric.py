@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from sim_autopilot.control.geometric import MOTOR_POLE_RAD_S, PLACE_POLE_RAD_S, fill_wanted_attitude, geometric_gains
-from sim_autopilot.control.kinds import Envelope
 from sim_autopilot.control.lqr import measured_step
-from sim_autopilot.data import Array, Reference
-from sim_autopilot.plant import PlantConfig
+from sim_autopilot.core.data import Array, Reference
+from sim_autopilot.core.limits import Envelope
+from sim_autopilot.plant.plant import PlantConfig
 from tests.sim_autopilot.flights import flown, going, holding, hovering
 
 CONFIG = PlantConfig()

@@ -79,7 +79,7 @@ def test_words_that_are_no_numbers_or_from_nowhere_change_nothing() -> None:
     pilot.step(word(0.0, 10.0, (nan, 0.0, 0.0)))
     pilot.step(word(0.0, 10.0, (0.0, 0.0, 0.0), above_m=nan))
     pilot.step(word(3e6, 0.0, (0.0, 0.0, 0.0)))
-    assert pilot.node.memory.services.leader is None
+    assert pilot.node.memory.heard.leader is None
 
 
 def test_it_does_not_arm_in_follow_and_another_mode_ends_it() -> None:

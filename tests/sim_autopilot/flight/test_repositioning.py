@@ -92,7 +92,7 @@ def test_home_is_put_where_the_command_says() -> None:
     x, y = LATITUDE + 5 * NORTH_M, LONGITUDE + 3 * EAST_M
     there = command(mavlink.MAV_CMD_DO_SET_HOME, 0.0, 0.0, 0.0, 0.0, x * 1e-7, y * 1e-7, ABOVE_SEA_M + 2.0)
     assert pilot.acknowledged(there) == [ACCEPTED]
-    assert pilot.node.memory.home_enu_m == pytest.approx((3.0, 5.0, 2.0), abs=0.6)  # floats of the wire
+    assert pilot.node.memory.places.home_enu_m == pytest.approx((3.0, 5.0, 2.0), abs=0.6)  # floats of the wire
     assert pilot.last("HOME_POSITION").altitude == pytest.approx(91_000, abs=10)
     assert pilot.acknowledged(command(mavlink.MAV_CMD_DO_SET_HOME, 1.0)) == [ACCEPTED]
-    assert pilot.node.memory.home_enu_m == pytest.approx(tuple(pilot.position), abs=0.01)
+    assert pilot.node.memory.places.home_enu_m == pytest.approx(tuple(pilot.position), abs=0.01)

@@ -5,9 +5,9 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from sim_autopilot.data import Array
+from sim_autopilot.core.data import Array
 from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, GRAVITY_M_S2, REPORT_AIRFRAME
-from sim_autopilot.plant import PlantConfig, PlantMemory, fly
+from sim_autopilot.plant.plant import PlantConfig, PlantMemory, fly
 from tests.sim_autopilot.flights import CALM, at_rest, flown, holding, hovering
 
 WIND = np.array([4.0, -2.0, 1.0])

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from sim_autopilot.data import Array
+from sim_autopilot.core.data import Array
 from sim_autopilot.physics.wind import Gust, Turbulence, WindModel, dryden
 
 AIRSPEED_M_S = 10.0

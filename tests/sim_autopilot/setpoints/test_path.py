@@ -3,8 +3,9 @@ from math import hypot, sqrt
 
 import pytest
 
-from sim_autopilot.firmware.ardupilot import ARDUPILOT
-from sim_autopilot.parameters import default_values
+from sim_autopilot.core.limits import PathLimits
+from sim_autopilot.core.parameters import default_values
+from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
 from sim_autopilot.setpoints.path import (
     Blocked,
     Motion,
@@ -15,13 +16,12 @@ from sim_autopilot.setpoints.path import (
     square_root_law,
     straight_speed,
 )
-from sim_autopilot.settings import PathLimits
 
 DT_S = 0.01
 
 
 def limits() -> PathLimits:
-    path = ARDUPILOT.settings(default_values(ARDUPILOT.parameters, {})).path
+    path = ARDUPILOT.parameters.settings(default_values(ARDUPILOT.parameters.table, {})).path
     assert path is not None
     return path
 

@@ -7,9 +7,9 @@ import pytest
 from link.frames.geodesy import Datum, geodetic_from_enu
 from link.frames.local_frame import LocalFrame, Projection
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.data import Array, Reference
-from sim_autopilot.local_places import Origin
-from sim_autopilot.memory import initial_memory
+from sim_autopilot.boot import initial_memory
+from sim_autopilot.core.data import Array, Reference
+from sim_autopilot.core.places import Origin
 from sim_autopilot.setpoints.setpoints import (
     NO_SETPOINTS,
     are_fresh,

@@ -8,10 +8,10 @@ from scipy.spatial.transform import Rotation
 from link.frames.local_frame import LocalFrame, Projection, local_from_geodetic
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.firmware.px4 import PX4
-from sim_autopilot.flight.modes import Mode
-from sim_autopilot.node import AutopilotNode
-from sim_autopilot.telemetry.chart import chart_at, geodetic, near
+from sim_autopilot.core.modes import Mode
+from sim_autopilot.core.places import chart_at, geodetic, near
+from sim_autopilot.firmware.px4.px4 import PX4
+from sim_autopilot.runtime.node import AutopilotNode
 from tests.sim_autopilot.pilot import DATUM, START_NS, STILL_AIR, Pilot, command, px4, setpoint
 
 NED_FROM_ENU = np.array(((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, -1.0)))
@@ -24,7 +24,7 @@ def flying() -> Pilot:
     pilot = Pilot(px4(yaw_rad=0.4))
     pilot.take_off(8.0)
     pilot.run(1.0, lambda _t: setpoint((30.0, -17.0, -6.0), yaw=2.1))
-    for message_id in PX4.streams:
+    for message_id in PX4.streams.messages:
         pilot.step(command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(message_id), 10_000.0))
     pilot.run(0.1, lambda _t: setpoint((30.0, -17.0, -6.0), yaw=2.1))
     return pilot
@@ -133,7 +133,7 @@ def test_position_target_tells_what_is_followed(flying: Pilot) -> None:
     ],
 )
 def test_a_modes_codes_are_px4s(mode: Mode, base_mode: int, custom_mode: int) -> None:
-    assert (PX4.modes[mode].base_mode, PX4.modes[mode].custom_mode) == (base_mode, custom_mode)
+    assert (PX4.modes.codes[mode].base_mode, PX4.modes.codes[mode].custom_mode) == (base_mode, custom_mode)
 
 
 def test_the_heartbeat_is_a_px4_quadrotors() -> None:

@@ -1,0 +1,1 @@
+"""What all parts of the autopilot hand to each other: modes, settings, parameters, streams, and what a firmware is."""

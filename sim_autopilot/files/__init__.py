@@ -1,1 +1,0 @@
-"""Files and logs: MAVLink FTP, the log service and the log stream."""

@@ -1,0 +1,1 @@
+"""ArduCopter: modes, parameters, streams, failsafes, texts, and how it flies setpoints."""

@@ -1,0 +1,1 @@
+"""PX4: modes, parameters, streams, events, texts, and how it flies setpoints."""

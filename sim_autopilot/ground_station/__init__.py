@@ -1,0 +1,1 @@
+"""What only answers a ground station: files, logs, plans, calibration, shell. The stand-in flies without it, too."""

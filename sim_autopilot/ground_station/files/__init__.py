@@ -1,0 +1,1 @@
+"""MAVLink FTP and the files behind it."""

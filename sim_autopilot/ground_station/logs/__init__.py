@@ -1,0 +1,1 @@
+"""Logs of flights: kept, listed, sent and streamed."""

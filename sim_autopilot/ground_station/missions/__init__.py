@@ -1,0 +1,1 @@
+"""The mission protocol: plans uploaded, kept and downloaded."""

@@ -1,0 +1,1 @@
+"""What only PX4 tells a ground station: metadata, modes, health."""

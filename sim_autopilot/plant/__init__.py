@@ -1,0 +1,1 @@
+"""The drone under its flight controller, and how well it knows itself."""

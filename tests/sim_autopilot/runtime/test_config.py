@@ -1,0 +1,63 @@
+from math import pi, radians
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from link.errors import UserError
+from link.program.toml_config import dump_toml, load_config
+from sim_autopilot.control.parameters import ControllerKind
+from sim_autopilot.runtime.config import SimAutopilotConfig, autopilot_config, wind_model
+
+
+def loaded(tmp_path: Path, text: str) -> SimAutopilotConfig:
+    path = tmp_path / "sim.toml"
+    path.write_text(text, encoding="utf-8")
+    return load_config(path, SimAutopilotConfig)
+
+
+def test_a_printed_configuration_reads_back_the_same(tmp_path: Path) -> None:
+    text = "instance = 3\n[wind]\nmean_m_s = 5.0\nturbulence = 'light'\n[parameters]\nMPC_XY_VEL_MAX = 20.0\n"
+    config = loaded(tmp_path, text)
+    assert loaded(tmp_path, dump_toml(config)) == config
+
+
+def test_a_configuration_reaches_the_autopilot(tmp_path: Path) -> None:
+    config = autopilot_config(
+        loaded(
+            tmp_path,
+            "instance = 3\n[datum]\nlatitude_deg = 47.0\n[drone]\ncontroller = 'lqr'\n[start]\n"
+            "position_enu_m = [1.0, 2.0, 1.5]\nyaw_rad = 0.3\n[parameters]\nMPC_XY_VEL_MAX = 20.0\n",
+        )
+    )
+    assert config.system_id == 4
+    assert config.datum.latitude_rad == radians(47.0)
+    assert config.plant.controller is ControllerKind.LQR
+    assert config.position_enu_m == pytest.approx((1.0, 2.0, 1.62))
+    assert config.parameters == {"MPC_XY_VEL_MAX": 20.0}
+
+
+def test_an_unknown_firmware_parameter_is_one_clear_line(tmp_path: Path) -> None:
+    config = loaded(tmp_path, "[parameters]\nMPC_XY_VEL = 20.0\n")
+    with pytest.raises(UserError, match="parameters: no parameter MPC_XY_VEL; there is MPC_XY_VEL_MAX"):
+        autopilot_config(config)
+
+
+def test_an_unknown_key_is_named_with_the_file(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match=r"sim\.toml: unknown key 'instanse', did you mean 'instance'\?"):
+        loaded(tmp_path, "instanse = 1\n")
+
+
+def test_the_wind_blows_away_from_where_it_comes_from(tmp_path: Path) -> None:
+    config = loaded(tmp_path, f"[wind]\nmean_m_s = 5.0\nfrom_rad = {pi / 3.0}\n")
+    wind = wind_model(config).advance(0.01, 0.0)
+    assert np.allclose(wind, (-2.5, -5.0 * np.sin(pi / 3.0), 0.0))
+
+
+def test_the_seed_draws_the_winds_direction() -> None:
+    def wind(seed: int) -> tuple[float, ...]:
+        config = SimAutopilotConfig.model_validate({"seed": seed, "wind": {"mean_m_s": 5.0}})
+        return tuple(wind_model(config).advance(0.01, 0.0))
+
+    assert wind(1) == wind(1)
+    assert wind(1) != wind(2)
