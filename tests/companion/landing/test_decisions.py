@@ -68,7 +68,7 @@ UNSAFE: dict[Reason, Situation] = {
     Reason.NOTHING_TOUCHED: situation(-CONFIG.touchdown.missed_depth_m - 0.01),
 }
 # Below the commit height these still count: without them nobody knows where the pad is.
-BLIND = {Reason.OWN_POSITION_OLD, Reason.HEADING_UNKNOWN, Reason.BELOW_PAD, Reason.NOTHING_TOUCHED}
+BLIND = (Reason.OWN_POSITION_OLD, Reason.HEADING_UNKNOWN, Reason.BELOW_PAD, Reason.NOTHING_TOUCHED)
 # These cannot be true of a drone that is committed: it is over the pad and hardly moves against it.
 UNFIT = {Reason.OUTSIDE_CONE, Reason.TOO_FAST_NEAR_PAD}
 
@@ -119,7 +119,7 @@ def test_nothing_aborts_while_all_is_well(phase: Phase) -> None:
     assert decision is None or decision[0] not in {Event.UNSAFE, Event.TIME_LIMIT}
 
 
-@pytest.mark.parametrize("reason", [one for one in UNSAFE if one not in BLIND | UNFIT])
+@pytest.mark.parametrize("reason", [one for one in UNSAFE if one not in {*BLIND, *UNFIT}])
 def test_below_the_commit_height_it_lands_rather_than_aborts(reason: Reason) -> None:
     unsafe = UNSAFE[reason]
     assert unsafe.pad is not None
