@@ -10,7 +10,7 @@ Source: gpsd_json(5), protocol version 3.14.
 import json
 import re
 from datetime import datetime
-from math import isfinite, radians
+from math import radians
 from typing import Any
 
 from link.messages import Fix, FixVelocity, Matrix3
@@ -21,6 +21,7 @@ from scenarios.vehicle_sources.receiver import (
     are_positive,
     course_velocity,
     diagonal,
+    drop_implausible,
     heading_imu,
     is_repeated,
     stated_covariance,
@@ -232,7 +233,6 @@ def _number(report: Report, name: str) -> float | None:
     if isinstance(value, bool) or not isinstance(value, int | float):
         return None
     try:
-        number = float(value)
+        return drop_implausible(float(value))
     except OverflowError:
         return None
-    return number if isfinite(number) else None

@@ -5,9 +5,11 @@ Source: NMEA 0183 version 4.11; the checksum is the exclusive or of all bytes be
 
 from datetime import UTC, date, datetime
 from functools import reduce
-from math import isfinite, radians
+from math import radians
 from operator import xor
 from typing import NamedTuple
+
+from scenarios.vehicle_sources.receiver import drop_implausible
 
 NANOSECONDS_PER_DAY = 86_400 * 10**9
 _SECOND_MAX = 60  # a leap second
@@ -27,10 +29,9 @@ class Sentence(NamedTuple):
     def number(self, index: int) -> float | None:
         """Return a field as a number, None when it is empty or none."""
         try:
-            value = float(self.text(index))
+            return drop_implausible(float(self.text(index)))
         except ValueError:
             return None
-        return value if isfinite(value) else None
 
 
 def parse_sentence(line: bytes) -> Sentence | None:

@@ -17,6 +17,8 @@ ACCURACY_AGE_MAX_NS = 2_000_000_000
 
 _REPEATED_NS = 1_000_000_000
 
+_NUMBER_MAX = 1e7  # m, m/s or degrees; no receiver on or near the earth measures more
+
 _TILT_VARIANCE_RAD2 = 9.9  # pi squared: roll and pitch are not known at all
 
 
@@ -128,6 +130,11 @@ def heading_imu(t_ns: int, heading_rad: float, std_rad: float | None = None) -> 
 def is_repeated(t_ns: int, told_ns: int) -> bool:
     """Return whether an instant is not newer than the last one told; far before it, the receiver has set its clock."""
     return told_ns - _REPEATED_NS < t_ns <= told_ns
+
+
+def drop_implausible(value: float) -> float | None:
+    """Return a receiver's number, None where it is NaN or larger than anything that one measures."""
+    return value if abs(value) <= _NUMBER_MAX else None
 
 
 def are_positive(values: Sequence[float | None]) -> bool:

@@ -143,6 +143,22 @@ def test_no_bytes_whatever_make_it_raise(data: bytes) -> None:
     assert len(receiver.take(RECORDED_TPV, 0)) == 2
 
 
+@pytest.mark.parametrize("name", ["altHAE", "speed", "climb", "epx", "epv", "eps", "epd", "epc"])
+def test_a_number_that_no_receiver_measures_counts_as_unsaid(name: str) -> None:
+    stated = {"climb": 0.4, "epx": 3.0, "epy": 4.0, "epv": 5.0, "eps": 0.1, "epd": 3.0, "epc": 0.2, "altMSL": None}
+    readings = GpsdReceiver().take(tpv(**stated | {name: 1e308}), 0)
+    assert readings == GpsdReceiver().take(tpv(**stated | {name: None}), 0)
+
+
+@pytest.mark.parametrize("name", ["major", "minor", "orient", "alt"])
+def test_an_accuracy_that_no_receiver_has_is_no_accuracy(name: str) -> None:
+    gst = json.loads(RECORDED_GST) | {name: 1e308, "lat": None}
+    stated = tpv(time="2026-11-09T12:00:01.000Z")
+    fix = GpsdReceiver().take(json.dumps(gst).encode() + b"\n" + stated, 0)[0]
+    assert isinstance(fix, Fix)
+    assert fix.covariance_enu_m2 is None
+
+
 ODD_VALUES = (None, True, 10**400, -1, 1e308, float("nan"), float("inf"), "", "x", [1], {"lat": 1})
 
 

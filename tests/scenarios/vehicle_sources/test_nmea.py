@@ -90,6 +90,13 @@ def test_without_gst_the_accuracy_is_unknown() -> None:
     assert [fix.covariance_enu_m2 for fix in fixes(read(*epoch(0)[:2], epoch(1)[0]))] == [None]
 
 
+@pytest.mark.parametrize("stated", ["1e200,0.02,30.0,,,0.04", ",,,1e200,0.5,0.04", "0.03,0.02,30.0,,,1e200"])
+def test_an_accuracy_that_no_receiver_has_is_unknown(stated: str) -> None:
+    gga, rmc, _, _ = epoch(0)
+    told = fixes(read(gga, rmc, sentence(f"GNGST,120000.00,,{stated}"), epoch(1)[0]))
+    assert told[0].covariance_enu_m2 is None
+
+
 def test_an_old_statement_of_accuracy_no_longer_holds() -> None:
     later = [line for index in range(1, 13) for line in epoch(index)[:2]]
     covariances = [fix.covariance_enu_m2 for fix in fixes(read(*epoch(0), *later, epoch(13)[0]))]
