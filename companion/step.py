@@ -6,26 +6,36 @@ Pure: the same memory, inputs and system give the same result, in flight, in sim
 from companion.autopilots.driver import AutopilotCommand, Desire
 from companion.config.companion import CompanionConfig
 from companion.core.data import Forecast, OwnState
-from companion.integrity.contradictions import counted
-from companion.integrity.course import watched, without_contradicted_heading
-from companion.integrity.fix_stamps import with_newest
-from companion.integrity.ground import ground_enu_m, is_road_elsewhere
-from companion.integrity.pad_height import pad_raised_m, with_pad_raised
+from companion.core.reasons import sentence
+from companion.integrity.contradictions import Contradictions, update_contradictions
+from companion.integrity.course import update_course, without_contradicted_heading
+from companion.integrity.fix_stamps import FixStamps, update_fix_stamps
+from companion.integrity.ground import is_road_elsewhere, update_ground
+from companion.integrity.pad_height import update_pad_raised_m, with_pad_raised
 from companion.landing.condition import holds
 from companion.landing.contact import may_force_motors_off, signs_of
-from companion.landing.contact_tests import HELD_UP
+from companion.landing.contact_conditions import HELD_UP
 from companion.landing.flying import fly, has_free_place, setpoint
-from companion.landing.shifts import in_present_frame
+from companion.landing.frame_shift import to_present_frame
+from companion.landing.memory import ModelMemory, Progress, StepMemory, VehicleMemory
 from companion.landing.status import landing_status
-from companion.landing.step_data import StepInputs, StepMemory, StepOutputs, System
+from companion.landing.step_data import StepInputs, StepOutputs, System
 from companion.landing.targets import HORIZON_OFFSETS_S
-from companion.landing.transitions import transitions
-from companion.landing.virtual_model import compare
+from companion.landing.transitions import take_events
+from companion.landing.virtual_model import update_tracking
 from companion.planning.requests import are_finite
 from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
-from companion.situation.situation import Situation, drone_now, range_carried_m, range_height_m
+from companion.situation.situation import (
+    Below,
+    Situation,
+    VehicleNews,
+    drone_now,
+    range_carried_m,
+    range_height_m,
+    with_pad,
+)
 from companion.vehicle.pad import PadPath, pad_path
-from companion.vehicle.surprise import looked_back
+from companion.vehicle.surprise import forget_beliefs, update_surprise
 from link.frames import yaw_of
 from link.records import replace
 
@@ -41,30 +51,23 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
         inputs: what has been received since then.
         system: configuration, estimator and guidance law.
     """
-    memory = _estimate(memory, inputs, system)
-    memory, pad = _pad(memory, inputs, system)
-    course = watched(memory.course, pad, memory.surprise.speed_std_m_s, system.config)
-    situation = _situation(memory, pad, inputs, system)
-    raised_m = pad_raised_m(memory.pad_raised_m, memory.phase, situation, system.config)
-    memory = replace(
-        memory,
-        course=course,
-        pad_raised_m=raised_m,
-        ground_enu_m=ground_enu_m(memory.ground_enu_m, memory.phase, situation),
-        is_road_elsewhere=is_road_elsewhere(memory.is_road_elsewhere, memory.phase, situation, system.config),
-    )
-    situation = with_pad_raised(situation, memory.pad_raised_m)
-    before = memory
-    memory, reply = transitions(memory, situation, inputs, system.config)
-    if memory.phase in FOLLOWING_PHASES and before.phase not in FOLLOWING_PHASES:
-        memory, pad = _pad(memory, inputs, system)
-        situation = replace(situation, pad=pad)
+    memory = to_present_frame(memory, inputs.autopilot)
+    model, vehicle = _update_model(memory, inputs, system), _update_vehicle(memory.vehicle, inputs, system)
+    vehicle, pad = _pad(memory.progress.phase, vehicle, inputs, system)
+    memory = replace(memory, model=model, vehicle=vehicle)
+    memory, situation = _look(memory, _situation(memory, pad, inputs, system), pad, system.config)
+    before = memory.progress
+    memory, reply = take_events(memory, situation, inputs, system.config)
+    phase = memory.progress.phase
+    if phase in FOLLOWING_PHASES and before.phase not in FOLLOWING_PHASES:
+        vehicle, pad = _pad(phase, memory.vehicle, inputs, system)
+        memory, situation = replace(memory, vehicle=vehicle), with_pad(situation, pad)
     memory, plan = fly(memory, situation, inputs, system)
     memory, commands = _drive(memory, situation, inputs, system.config)
     outputs = StepOutputs(
         setpoint=setpoint(memory, inputs, system.config, plan),
         commands=commands,
-        text=_news(before, memory),
+        text=_news(before, memory.progress),
         reply=reply,
         status=landing_status(memory, situation, system.config),
         plan=plan,
@@ -72,42 +75,80 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
     return memory, outputs
 
 
-def _news(before: StepMemory, memory: StepMemory) -> str | None:
+def _news(before: Progress, now: Progress) -> str | None:
     """Return what the pilot is told of this step, None when there is nothing new."""
-    if memory.phase is not before.phase:
-        return f"{memory.phase.value}: {memory.reason}"
-    told = memory.obstacle
-    is_new = told is not None and (before.obstacle is None or before.obstacle[0] != told[0])
-    return f"{memory.phase.value}: {told[1]}" if told is not None and is_new else None
+    if now.phase is not before.phase:
+        return f"{now.phase.value}: {sentence(now.cause)}"
+    told = now.obstacle
+    is_new = told is not None and (before.obstacle is None or before.obstacle.reason is not told.reason)
+    return f"{now.phase.value}: {sentence(told)}" if told is not None and is_new else None
 
 
-def _estimate(memory: StepMemory, inputs: StepInputs, system: System) -> StepMemory:
-    """Fuse what the vehicle sent; when the local frame has moved, everything in it starts anew."""
-    memory = in_present_frame(memory, inputs.autopilot)
-    estimator, tracking = memory.estimator, memory.tracking
+def _update_model(memory: StepMemory, inputs: StepInputs, system: System) -> ModelMemory:
+    """Compare the virtual model with where the drone says that it was."""
+    model, own = memory.model, inputs.own
+    if own is None or model.reference is None:
+        return model
+    flies_place = memory.progress.phase in LANDING_PHASES and not has_free_place(memory, inputs, system.config)
+    learns = system.config.corrects_lag and flies_place
+    own_ns = inputs.monotonic_at(own.t_ns)
+    return replace(model, tracking=update_tracking(model.tracking, own_ns, own.position_enu_m, learns=learns))
+
+
+def _update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -> VehicleMemory:
+    """Fuse what the vehicle sent, and compare it with what was known before."""
+    vehicle = _in_present_utc(vehicle, inputs)
+    estimator, now_ns = vehicle.estimator, inputs.monotonic_ns
     if inputs.measurements:
         estimator = system.estimator.fuse(estimator, inputs.measurements)
-    if inputs.own is not None and memory.reference is not None:
-        flies_place = memory.phase in LANDING_PHASES and not has_free_place(memory, inputs, system.config)
-        learn = system.config.corrects_lag and flies_place
-        tracking = compare(tracking, inputs.own, learn=learn)
-    surprise = looked_back(memory.surprise, system.estimator, estimator, inputs.t_ns, system.config.descent)
-    stamps = with_newest(memory.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns)
-    if memory.contradictions.is_due(inputs.t_ns):
-        health = system.estimator.health(estimator)
-        memory = replace(memory, contradictions=counted(memory.contradictions, health, inputs.t_ns))
-    return replace(memory, estimator=estimator, tracking=tracking, surprise=surprise, fix_stamps=stamps)
+    contradictions = vehicle.contradictions
+    if contradictions.is_due(now_ns):
+        contradictions = update_contradictions(contradictions, system.estimator.health(estimator), now_ns)
+    return replace(
+        vehicle,
+        estimator=estimator,
+        surprise=update_surprise(
+            vehicle.surprise,
+            system.estimator,
+            estimator,
+            inputs.t_ns,
+            monotonic_ns=now_ns,
+            config=system.config.descent,
+        ),
+        fix_stamps=update_fix_stamps(vehicle.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns),
+        contradictions=contradictions,
+    )
 
 
-def _pad(memory: StepMemory, inputs: StepInputs, system: System) -> tuple[StepMemory, PadPath | None]:
+def _in_present_utc(vehicle: VehicleMemory, inputs: StepInputs) -> VehicleMemory:
+    """Forget what the vehicle's stamps have been compared with, once UTC was set.
+
+    The estimate keeps its times: they are the vehicle's, whose clock is another one, so that what was believed of it
+    cannot be checked any more.
+    """
+    utc_ahead_ns = inputs.t_ns - inputs.monotonic_ns
+    if utc_ahead_ns == vehicle.utc_ahead_ns:
+        return vehicle
+    return replace(
+        vehicle,
+        utc_ahead_ns=utc_ahead_ns,
+        surprise=forget_beliefs(vehicle.surprise),
+        fix_stamps=FixStamps(),
+        contradictions=Contradictions(),
+    )
+
+
+def _pad(
+    phase: Phase, vehicle: VehicleMemory, inputs: StepInputs, system: System
+) -> tuple[VehicleMemory, PadPath | None]:
     """Return the pad as far ahead as the phase looks; an estimate that is not finite is given up and starts anew."""
-    offset_s = HORIZON_OFFSETS_S if memory.phase in FOLLOWING_PHASES else _PRESENT_OFFSETS_S
-    forecast = system.estimator.forecast(memory.estimator, inputs.t_ns, offset_s)
+    offset_s = HORIZON_OFFSETS_S if phase in FOLLOWING_PHASES else _PRESENT_OFFSETS_S
+    forecast = system.estimator.forecast(vehicle.estimator, inputs.t_ns, offset_s)
     if forecast is None:
-        return memory, None
+        return vehicle, None
     if _is_finite(forecast):
-        return memory, without_contradicted_heading(pad_path(forecast, inputs.pad), memory.course)
-    return replace(memory, estimator=None), None
+        return vehicle, without_contradicted_heading(pad_path(forecast, inputs.pad), vehicle.course)
+    return replace(vehicle, estimator=None), None
 
 
 def _is_finite(forecast: Forecast) -> bool:
@@ -116,30 +157,52 @@ def _is_finite(forecast: Forecast) -> bool:
 
 
 def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, system: System) -> Situation:
-    newest_ns = system.estimator.newest_fix_ns(memory.estimator)
+    vehicle, touchdown = memory.vehicle, system.config.touchdown
+    newest_ns = system.estimator.newest_fix_ns(vehicle.estimator)
     drone = drone_now(inputs.own, inputs.t_ns, _own_yaw_rad(inputs.own), system.config.abort.own_age_max_s)
-    seen, sensor_m = inputs.autopilot.range_down, system.config.touchdown.range_finder_height_m
+    seen, sensor_m = inputs.autopilot.range_down, touchdown.range_finder_height_m
     return Situation(
         t_ns=inputs.t_ns,
+        monotonic_ns=inputs.monotonic_ns,
         autopilot=inputs.autopilot,
         drone=drone,
         pad=pad,
-        feet_offset_m=system.config.touchdown.gear_height_m,
-        fix_age_s=None if newest_ns is None else (inputs.t_ns - newest_ns) * 1e-9,
-        fix_age_on_arrival_s=memory.fix_stamps.age_on_arrival_s,
-        vehicle_alive=inputs.vehicle_alive,
-        reference=memory.reference,
-        tracking_error_m=memory.tracking.error_m,
-        waiting_point_enu_m=memory.waiting_point_enu_m,
-        speed_std_m_s=memory.surprise.speed_std_m_s,
-        ground_enu_m=memory.ground_enu_m,
-        is_road_elsewhere=memory.is_road_elsewhere,
-        rejected_share=memory.contradictions.rejected_share,
+        vehicle=VehicleNews(
+            fix_age_s=None if newest_ns is None else (inputs.t_ns - newest_ns) * 1e-9,
+            fix_age_on_arrival_s=vehicle.fix_stamps.age_on_arrival_s,
+            is_alive=inputs.vehicle_alive,
+            speed_std_m_s=vehicle.surprise.speed_std_m_s,
+            rejected_share=vehicle.contradictions.rejected_share,
+            is_road_elsewhere=vehicle.is_road_elsewhere,
+        ),
+        below=Below(
+            range_height_m=range_height_m(inputs.own, seen, sensor_m, inputs.t_ns),
+            range_carried_m=range_carried_m(drone, seen, sensor_m, inputs.t_ns),
+            ground_enu_m=memory.places.ground_enu_m,
+        ),
+        feet_offset_m=touchdown.gear_height_m,
+        reference=memory.model.reference,
+        tracking_error_m=memory.model.tracking.error_m,
+        waiting_point_enu_m=memory.places.waiting_point_enu_m,
         limits=inputs.limits,
         speed_limited_by=() if inputs.driver is None else inputs.driver.speed_parameters,
-        range_height_m=range_height_m(inputs.own, seen, sensor_m, inputs.t_ns),
-        range_carried_m=range_carried_m(drone, seen, sensor_m, inputs.t_ns),
     )
+
+
+def _look(
+    memory: StepMemory, situation: Situation, pad: PadPath | None, config: CompanionConfig
+) -> tuple[StepMemory, Situation]:
+    """Take what this step shows of the vehicle's course, of the pad's height and of the ground; raise the pad so."""
+    phase, vehicle = memory.progress.phase, memory.vehicle
+    vehicle = replace(
+        vehicle,
+        course=update_course(vehicle.course, pad, vehicle.surprise.speed_std_m_s, config),
+        pad_raised_m=update_pad_raised_m(vehicle.pad_raised_m, phase, situation, config),
+        is_road_elsewhere=is_road_elsewhere(vehicle.is_road_elsewhere, phase, situation, config),
+    )
+    places = replace(memory.places, ground_enu_m=update_ground(memory.places.ground_enu_m, phase, situation))
+    memory = replace(memory, vehicle=vehicle, places=places)
+    return memory, with_pad_raised(situation, vehicle.pad_raised_m)
 
 
 def _own_yaw_rad(own: OwnState | None) -> float:
@@ -152,32 +215,39 @@ def _drive(
     """Return the memory and the commands that bring the autopilot to what the phase needs."""
     if inputs.driver is None:
         return memory, ()
-    driver_memory = memory.driver
+    driver_memory = memory.control.driver
     for command, result in inputs.acknowledgements:
         driver_memory = inputs.driver.acknowledged(driver_memory, command, result)
     hands_over = inputs.leaving and not _finishes_disarm(memory, situation)
     desire = Desire(release=True) if hands_over else _desire(memory, situation, config)
-    driver_memory, commands = inputs.driver.act(driver_memory, inputs.autopilot, desire, inputs.t_ns)
-    if driver_memory is not memory.driver:
-        memory = replace(memory, driver=driver_memory)
+    driver_memory, commands = inputs.driver.act(driver_memory, inputs.autopilot, desire, inputs.monotonic_ns)
+    if driver_memory is not memory.control.driver:
+        memory = replace(memory, control=replace(memory.control, driver=driver_memory))
     return memory, commands
 
 
 def _finishes_disarm(memory: StepMemory, situation: Situation) -> bool:
     """Return whether the motors are being switched off: an autopilot that hovers by itself would leave the pad."""
-    return memory.phase is Phase.TOUCHDOWN and (situation.t_ns - memory.phase_since_ns) * 1e-9 < _DISARM_MAX_S
+    return memory.progress.phase is Phase.TOUCHDOWN and _in_phase_s(memory, situation) < _DISARM_MAX_S
+
+
+def _in_phase_s(memory: StepMemory, situation: Situation) -> float:
+    return (situation.monotonic_ns - memory.progress.since_ns) * 1e-9
 
 
 def _desire(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Desire:
-    match memory.phase:
+    progress = memory.progress
+    match progress.phase:
         case Phase.TAKEOFF:
             return Desire(control=True, armed=True, takeoff_height_m=config.takeoff.waiting_height_m)
         case Phase.TOUCHDOWN:
-            since_s = (situation.t_ns - memory.phase_since_ns) * 1e-9
             # Without accelerations in its setpoints an autopilot is not pressed down so hard that it would fall.
-            held_up = holds(HELD_UP, memory.held, situation.t_ns, config) and not config.position_only
+            held_up = holds(HELD_UP, progress.held, situation, config) and not config.position_only
             evidence = may_force_motors_off(
-                signs_of(situation), since_s, config, stopped_and_held=memory.stopped_by_pad and held_up
+                signs_of(situation),
+                _in_phase_s(memory, situation),
+                config,
+                stopped_and_held=progress.stopped_by_pad and held_up,
             )
             return Desire(armed=False, force_disarm=evidence)
         case _:

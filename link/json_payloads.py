@@ -53,6 +53,7 @@ class _LandingStatus(_Report):
     stamp_ns: Annotated[Count, Field(description="UTC of this status, ns")]
     phase: Annotated[str, Field(description="phase of the landing")]
     reason: Annotated[str, Field(description="why it waits, held off or aborted; empty if there is nothing to say")]
+    reason_code: Annotated[str, Field(description="the reason without its numbers, for programs")] = ""
     relative_position_enu_m: Annotated[
         Coordinates | None,
         Field(description="of the drone's feet from the pad's centre, east north up, m; null if unknown"),

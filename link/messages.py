@@ -137,12 +137,13 @@ class LandingStatus:
     """What the companion tells the world about the landing; None where it does not know.
 
     `relative_position_enu_m` is of the drone's feet from the pad's centre: east and north are those of the drone, up is
-    `height_above_pad_m`.
+    `height_above_pad_m`. `reason_code` names the reason without its numbers, for programs.
     """
 
     stamp_ns: int
     phase: str
     reason: str
+    reason_code: str = ""
     relative_position_enu_m: Vector3 | None
     relative_velocity_enu_m_s: Vector3 | None
     height_above_pad_m: float | None

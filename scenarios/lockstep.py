@@ -89,7 +89,7 @@ class Lockstep:
     def _command(self, node: CompanionNode) -> None:
         # As the companion's own start over the wire: again and again, until it is under way.
         if not self._started and node.is_ready_to_start():
-            self._started = node.memory.phase is not Phase.IDLE
+            self._started = node.phase is not Phase.IDLE
             if not self._started:
                 node.request(Command.START)
         if self._watch.must_break_off(self.recording):
@@ -97,14 +97,14 @@ class Lockstep:
 
     def _compare(self, node: CompanionNode, t_ns: int) -> None:
         """Compare the estimate with the truth, from time to time."""
-        if node.memory.phase not in PHASES or t_ns - self._compared_ns < PERIOD_NS:
+        if node.phase not in PHASES or t_ns - self._compared_ns < PERIOD_NS:
             return
         vehicle, estimate = self.simulation.vehicle.state, node.vehicle_estimate(t_ns)
         if vehicle is None or estimate is None:
             return
         self._compared_ns = t_ns
         truth = antenna_truth(vehicle, self._antenna_flu_m, self.simulation.autopilot.memory)
-        in_descent = node.memory.phase is Phase.DESCEND
+        in_descent = node.phase is Phase.DESCEND
         self.recording.estimate_errors.append(estimate_error(estimate, truth, in_descent=in_descent))
         health = node.estimator_health()
         if health.nis_per_dof is not None:

@@ -70,21 +70,21 @@ class ArduPilotDriver:
         kind, _, reason = f"{message.text}".partition(": ")
         return reason if kind in ("Arm", "PreArm") and reason else None
 
-    def act(self, memory: DriverMemory, view: AutopilotView, desire: Desire, t_ns: int) -> Asked:
+    def act(self, memory: DriverMemory, view: AutopilotView, desire: Desire, monotonic_ns: int) -> Asked:
         """Return the commands that bring ArduCopter nearer to `desire`."""
         climbs = desire.takeoff_height_m is not None and not _is_airborne(view)
         memory = replace(memory, climbs_by_itself=climbs)
         if desire.armed is False and view.armed:
-            return ask_to_disarm(memory, desire, t_ns)
+            return ask_to_disarm(memory, desire, monotonic_ns)
         memory = without_disarm(memory)
         if desire.release and view.in_control:
-            return ask(memory, set_mode(_BRAKE), t_ns)
+            return ask(memory, set_mode(_BRAKE), monotonic_ns)
         if desire.control and not view.in_control:
-            return ask(memory, set_mode(_GUIDED), t_ns)
+            return ask(memory, set_mode(_GUIDED), monotonic_ns)
         if desire.armed and not view.armed:
-            return ask(memory, arm(armed=True), t_ns)
+            return ask(memory, arm(armed=True), monotonic_ns)
         if climbs and desire.takeoff_height_m is not None and view.armed and view.landed is not False:
-            return ask(memory, take_off(desire.takeoff_height_m), t_ns, _TAKE_OFF_AGAIN_S)
+            return ask(memory, take_off(desire.takeoff_height_m), monotonic_ns, _TAKE_OFF_AGAIN_S)
         return memory, ()
 
     def acknowledged(self, memory: DriverMemory, command: int, result: int) -> DriverMemory:

@@ -12,20 +12,20 @@ _FORCE_DISARM = 21196.0  # MAVLink common, MAV_CMD_COMPONENT_ARM_DISARM, paramet
 Asked = tuple[DriverMemory, tuple[AutopilotCommand, ...]]
 
 
-def ask(memory: DriverMemory, command: AutopilotCommand, t_ns: int, again_s: float = ASK_AGAIN_S) -> Asked:
+def ask(memory: DriverMemory, command: AutopilotCommand, monotonic_ns: int, again_s: float = ASK_AGAIN_S) -> Asked:
     """Return `command`, unless the same one, parameters included, was sent less than `again_s` ago."""
     asked = dict(memory.asked_ns or {})
     last_ns = asked.get(command)
-    if last_ns is not None and (t_ns - last_ns) * 1e-9 < again_s:
+    if last_ns is not None and (monotonic_ns - last_ns) * 1e-9 < again_s:
         return memory, ()
-    asked[command] = t_ns
+    asked[command] = monotonic_ns
     return replace(memory, asked_ns=asked), (command,)
 
 
-def ask_to_disarm(memory: DriverMemory, desire: Desire, t_ns: int) -> Asked:
+def ask_to_disarm(memory: DriverMemory, desire: Desire, monotonic_ns: int) -> Asked:
     """Ask plainly; once that was refused, and only with the evidence complete, force it."""
     force = desire.force_disarm and memory.disarm_refusals > 0
-    return ask(replace(memory, disarm_asked=True), arm(armed=False, force=force), t_ns, _DISARM_AGAIN_S)
+    return ask(replace(memory, disarm_asked=True), arm(armed=False, force=force), monotonic_ns, _DISARM_AGAIN_S)
 
 
 def without_disarm(memory: DriverMemory) -> DriverMemory:

@@ -137,7 +137,7 @@ class Driver(Protocol):
         """Return what `message` says against arming, in words; None when it says nothing of the kind."""
 
     def act(
-        self, memory: DriverMemory, view: AutopilotView, desire: Desire, t_ns: int
+        self, memory: DriverMemory, view: AutopilotView, desire: Desire, monotonic_ns: int
     ) -> tuple[DriverMemory, tuple[AutopilotCommand, ...]]:
         """Return the commands that bring the autopilot nearer to `desire`, none while an earlier one is pending."""
 

@@ -59,22 +59,22 @@ class Px4Driver:
         """Return what stands against arming, from an EVENT; a companion is sent no STATUSTEXT."""
         return refusal_of(message) if message.get_type() == "EVENT" else None
 
-    def act(self, memory: DriverMemory, view: AutopilotView, desire: Desire, t_ns: int) -> Asked:
+    def act(self, memory: DriverMemory, view: AutopilotView, desire: Desire, monotonic_ns: int) -> Asked:
         """Return the commands that bring PX4 nearer to `desire`."""
         if not desire.control:
             if memory.streaming_since_ns is not None:
                 memory = replace(memory, streaming_since_ns=None)
         elif memory.streaming_since_ns is None:
-            memory = replace(memory, streaming_since_ns=t_ns)
+            memory = replace(memory, streaming_since_ns=monotonic_ns)
         if desire.armed is False and view.armed:
-            return ask_to_disarm(memory, desire, t_ns)
+            return ask_to_disarm(memory, desire, monotonic_ns)
         memory = without_disarm(memory)
         if desire.release and view.in_control:
-            return ask(memory, set_mode(_MAIN_MODE_AUTO, _SUB_MODE_LOITER), t_ns)
-        if desire.control and not view.in_control and _streamed_s(memory, t_ns) >= _STREAM_FIRST_S:
-            return ask(memory, set_mode(_MAIN_MODE_OFFBOARD), t_ns)
+            return ask(memory, set_mode(_MAIN_MODE_AUTO, _SUB_MODE_LOITER), monotonic_ns)
+        if desire.control and not view.in_control and _streamed_s(memory, monotonic_ns) >= _STREAM_FIRST_S:
+            return ask(memory, set_mode(_MAIN_MODE_OFFBOARD), monotonic_ns)
         if desire.armed and view.in_control and not view.armed:
-            return ask(memory, arm(armed=True), t_ns)
+            return ask(memory, arm(armed=True), monotonic_ns)
         return memory, ()
 
     def acknowledged(self, memory: DriverMemory, command: int, result: int) -> DriverMemory:
@@ -100,5 +100,5 @@ class Px4Driver:
         )
 
 
-def _streamed_s(memory: DriverMemory, t_ns: int) -> float:
-    return 0.0 if memory.streaming_since_ns is None else (t_ns - memory.streaming_since_ns) * 1e-9
+def _streamed_s(memory: DriverMemory, monotonic_ns: int) -> float:
+    return 0.0 if memory.streaming_since_ns is None else (monotonic_ns - memory.streaming_since_ns) * 1e-9

@@ -7,16 +7,15 @@ again: its estimate swings between the two. Outages and brakes have a few reject
 from dataclasses import dataclass
 
 from companion.config.companion import CompanionConfig
-from companion.situation.situation import Approach, Situation
+from companion.situation.situation import Situation
 from companion.vehicle.buffered import BufferHealth
 
-CONTRADICTING = "vehicle data contradict themselves"
 _EVERY_NS = 500_000_000
 _OVER = 20  # samples, of 10 s in all: a step of the drone's own frame has measurements of half a second rejected
 _LEAST = 20  # measurements that something is said of
 
 Sample = tuple[int, int, int]
-"""UTC ns, and how many measurements were accepted and rejected by then."""
+"""Monotonic ns, and how many measurements were accepted and rejected by then."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,7 +35,7 @@ class Contradictions:
         return not self.samples or t_ns - self.samples[-1][0] >= _EVERY_NS
 
 
-def counted(before: Contradictions, health: BufferHealth, t_ns: int) -> Contradictions:
+def update_contradictions(before: Contradictions, health: BufferHealth, t_ns: int) -> Contradictions:
     """Return the contradictions with what the estimator tells at `t_ns`; one that was begun anew is counted anew."""
     now = (t_ns, health.fused, health.gated)
     if before.samples and before.samples[-1][1] > health.fused:
@@ -47,6 +46,6 @@ def counted(before: Contradictions, health: BufferHealth, t_ns: int) -> Contradi
     return Contradictions(samples=samples, rejected_share=rejected / arrived if arrived >= _LEAST else 0.0)
 
 
-def contradicts_itself(s: Situation, _: Approach | None, c: CompanionConfig) -> bool:
+def contradicts_itself(s: Situation, c: CompanionConfig) -> bool:
     """Return whether so many of the vehicle's measurements were rejected that nothing says which are right."""
-    return s.rejected_share > c.abort.rejected_share_max
+    return s.vehicle.rejected_share > c.abort.rejected_share_max

@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 from companion.config.companion import CompanionConfig
+from companion.core.reasons import Cause, Reason
 from companion.vehicle.pad import PadPath
 from link.records import replace
 
@@ -39,7 +40,9 @@ class CourseWatch:
     off_rad: float | None = None
 
 
-def watched(watch: CourseWatch, pad: PadPath | None, speed_std_m_s: float, config: CompanionConfig) -> CourseWatch:
+def update_course(
+    watch: CourseWatch, pad: PadPath | None, speed_std_m_s: float, config: CompanionConfig
+) -> CourseWatch:
     """Return the watch after a step.
 
     Args:
@@ -86,4 +89,4 @@ def without_contradicted_heading(pad: PadPath, watch: CourseWatch) -> PadPath:
     """Return the pad, not placed where that takes a heading that the course contradicts."""
     if watch.off_rad is None or not pad.needs_heading or pad.unplaced is not None:
         return pad
-    return replace(pad, unplaced=f"vehicle heading is {math.degrees(watch.off_rad):.0f} degrees off its course")
+    return replace(pad, unplaced=Cause(Reason.HEADING_OFF_COURSE, (math.degrees(watch.off_rad),)))

@@ -16,7 +16,7 @@ class FixStamps:
     age_on_arrival_s: float | None = None
 
 
-def with_newest(stamps: FixStamps, newest_ns: int | None, t_ns: int) -> FixStamps:
+def update_fix_stamps(stamps: FixStamps, newest_ns: int | None, t_ns: int) -> FixStamps:
     """Return the stamps with the newest fix as it is known at `t_ns`.
 
     Args:

@@ -13,16 +13,15 @@ from companion.config.companion import CompanionConfig
 from companion.core.data import Array
 from companion.integrity.pad_height import RAISED_MAX_M
 from companion.situation.phases import FLYING_PHASES, Phase
-from companion.situation.situation import Approach, Situation, approach
+from companion.situation.situation import Situation
 
-SEEN_TOO_NEAR = "range finder sees less room than there is to the pad"
 VEHICLE_M = 3.0  # so near the pad what the drone stands on may be the vehicle
 _STDS = 2.0
 _LEAN_MAX = 0.4  # sine; a drone that leans more turns too fast for the attitude to be that of the reading
 _COARSE_OFF_M = 0.7  # twice what over poor receivers the estimates of both heights have been seen to differ by
 
 
-def ground_enu_m(ground: Array | None, phase: Phase, s: Situation) -> Array | None:
+def update_ground(ground: Array | None, phase: Phase, s: Situation) -> Array | None:
     """Return (3,) a place of the ground in W, None while none is known.
 
     A drone that was not heard of in flight knows none any more: its local frame may have moved meanwhile.
@@ -32,7 +31,7 @@ def ground_enu_m(ground: Array | None, phase: Phase, s: Situation) -> Array | No
         phase: of the landing.
         s: the facts.
     """
-    relative = approach(s)
+    relative = s.approach
     if phase in FLYING_PHASES:
         return None if s.drone is None else ground
     if s.drone is None:
@@ -40,7 +39,7 @@ def ground_enu_m(ground: Array | None, phase: Phase, s: Situation) -> Array | No
     if relative is not None and relative.distance_m < VEHICLE_M:
         return ground
     stands = not s.autopilot.armed or s.autopilot.landed is True
-    above_m = 0.0 if stands else s.range_height_m
+    above_m = 0.0 if stands else s.below.range_height_m
     if above_m is None:
         return ground
     return np.asarray(s.drone.position_enu_m - np.array([0.0, 0.0, s.feet_offset_m + above_m]))
@@ -48,16 +47,16 @@ def ground_enu_m(ground: Array | None, phase: Phase, s: Situation) -> Array | No
 
 def road_above_ground_m(s: Situation) -> float | None:
     """Return how far the vehicle's road is said to be above the ground that the drone knows."""
-    if s.ground_enu_m is None or s.pad is None:
+    if s.below.ground_enu_m is None or s.pad is None:
         return None
-    return float(s.pad.position_enu_m[0, 2] - s.pad.height_m - s.ground_enu_m[2])
+    return float(s.pad.position_enu_m[0, 2] - s.pad.height_m - s.below.ground_enu_m[2])
 
 
 def road_distance_m(s: Situation) -> float:
     """Return how far from that ground the vehicle is."""
-    if s.ground_enu_m is None or s.pad is None:
+    if s.below.ground_enu_m is None or s.pad is None:
         return math.inf
-    return math.hypot(*(s.pad.position_enu_m[0, :2] - s.ground_enu_m[:2]).tolist())
+    return math.hypot(*(s.pad.position_enu_m[0, :2] - s.below.ground_enu_m[:2]).tolist())
 
 
 def is_road_elsewhere(was: bool, phase: Phase, s: Situation, c: CompanionConfig) -> bool:
@@ -82,16 +81,17 @@ def _is_off_the_ground(s: Situation, c: CompanionConfig) -> bool:
     return abs(above_m) > max(c.chase.ground_step_max_m, unsure_m) + c.chase.ground_slope_max * distance_m
 
 
-def is_seen_too_near(s: Situation, a: Approach | None, c: CompanionConfig) -> bool:
+def is_seen_too_near(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the range finder sees something nearer than the pad and all that is about it may be.
 
     Over the pad, that is the pad, whose height is wrong then; before, the vehicle's side or whatever stands there.
     """
-    if s.pad is None or a is None or s.drone is None or s.range_height_m is None or s.drone.lean > _LEAN_MAX:
+    a, seen_m = s.approach, s.below.range_height_m
+    if s.pad is None or a is None or s.drone is None or seen_m is None or s.drone.lean > _LEAN_MAX:
         return False
     about_m = c.touchdown.range_off_max_m
     if c.touchdown.range_corrects_height:
         about_m = max(about_m, RAISED_MAX_M)
     if s.pad.is_coarse:
         about_m = max(about_m, _COARSE_OFF_M, _STDS * float(s.pad.position_std_m[0, 2]))
-    return a.height_m - s.range_height_m > about_m + c.chase.ground_slope_max * a.distance_m
+    return a.height_m - seen_m > about_m + c.chase.ground_slope_max * a.distance_m

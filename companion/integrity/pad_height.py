@@ -2,7 +2,7 @@
 
 from companion.config.companion import CompanionConfig
 from companion.situation.phases import LANDING_PHASES, Phase
-from companion.situation.situation import Situation, approach
+from companion.situation.situation import Situation, with_pad
 from companion.vehicle.pad_reach import over_pad_radius_m
 from link.records import replace
 
@@ -11,7 +11,7 @@ _SLEW_M_S = 0.5
 _OVER_PHASES = LANDING_PHASES | {Phase.TOUCHDOWN}
 
 
-def pad_raised_m(raised_m: float, phase: Phase, situation: Situation, config: CompanionConfig) -> float:
+def update_pad_raised_m(raised_m: float, phase: Phase, situation: Situation, config: CompanionConfig) -> float:
     """Return by how much the pad is to be raised in the drone's frame.
 
     Args:
@@ -22,7 +22,7 @@ def pad_raised_m(raised_m: float, phase: Phase, situation: Situation, config: Co
     """
     if phase not in _OVER_PHASES or not config.touchdown.range_corrects_height:
         return 0.0
-    relative, seen_m = approach(situation), situation.range_height_m
+    relative, seen_m = situation.approach, situation.below.range_height_m
     if relative is None or seen_m is None:
         return raised_m
     if relative.distance_m > over_pad_radius_m(relative.pad_half_width_m, config):
@@ -40,4 +40,4 @@ def with_pad_raised(situation: Situation, raised_m: float) -> Situation:
         return situation
     position = situation.pad.position_enu_m.copy()
     position[:, 2] += raised_m
-    return replace(situation, pad=replace(situation.pad, position_enu_m=position))
+    return with_pad(situation, replace(situation.pad, position_enu_m=position))

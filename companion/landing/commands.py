@@ -3,10 +3,10 @@
 import math
 
 from companion.config.companion import CompanionConfig
+from companion.core.reasons import Cause, Reason, sentence
 from companion.integrity.ground import VEHICLE_M
-from companion.landing.feasibility import HEIGHTS_APART
 from companion.situation.phases import Event, Phase, next_phase
-from companion.situation.situation import Situation, approach, stands
+from companion.situation.situation import Situation, vehicle_stands
 from link.messages import Command, CommandReply
 
 _ON_ROOF_M = 1.0  # above or below it: the road is farther below
@@ -14,7 +14,7 @@ _EVENTS = {Command.START: Event.START, Command.ABORT: Event.ABORT, Command.HOLD:
 
 
 def answer(
-    command: Command, phase: Phase, situation: Situation, config: CompanionConfig, obstacle: str | None = None
+    command: Command, phase: Phase, situation: Situation, config: CompanionConfig, obstacle: Cause | None = None
 ) -> tuple[Event | None, CommandReply]:
     """Return the event that the command amounts to, None when it changes no phase, and the reply.
 
@@ -34,35 +34,38 @@ def answer(
     if phase is Phase.ABORT and command is not Command.START:
         return None, CommandReply(accepted=True, reason="")  # the climb goes on, but to no retry
     if next_phase(phase, event) is phase:
-        return None, CommandReply(accepted=False, reason=f"nothing to {command.value} in phase {phase.value}")
+        return None, _refused(Cause(Reason.NOTHING_TO_DO, (command.value, phase.value)))
     missing = None
     if command is Command.START:
         missing = _missing_for_start(situation) or _rides_along(situation, config) or obstacle
     if missing is not None:
-        return None, CommandReply(accepted=False, reason=missing)
+        return None, _refused(missing)
     return event, CommandReply(accepted=True, reason="")
 
 
-def _rides_along(s: Situation, config: CompanionConfig) -> str | None:
+def _refused(why: Cause) -> CommandReply:
+    return CommandReply(accepted=False, reason=sentence(why))
+
+
+def _rides_along(s: Situation, config: CompanionConfig) -> Cause | None:
     """Return what is said of a drone that stands on a vehicle that drives: a take-off would begin at its speed."""
-    relative, is_airborne = approach(s), s.autopilot.armed and s.autopilot.landed is False
-    if relative is None or s.pad is None or is_airborne or stands(s, config.chase):
+    is_airborne = s.autopilot.armed and s.autopilot.landed is False
+    if s.approach is None or s.pad is None or is_airborne or vehicle_stands(s, config.chase):
         return None
-    if relative.distance_m > VEHICLE_M or abs(relative.height_m) > _ON_ROOF_M:
+    if s.approach.distance_m > VEHICLE_M or abs(s.approach.height_m) > _ON_ROOF_M:
         return None
-    speed_m_s = math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist())
-    return f"the drone stands on the vehicle, which drives at {speed_m_s:.1f} m/s: stop it first"
+    return Cause(Reason.RIDES_ALONG, (math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist()),))
 
 
-def _missing_for_start(situation: Situation) -> str | None:
+def _missing_for_start(situation: Situation) -> Cause | None:
     """Return the first thing that is missing for a start, None when nothing is."""
     view, drone = situation.autopilot, situation.drone
     missing = {
-        "no autopilot is connected": not view.link_up,
-        "the autopilot has no origin yet": view.frame is None,
-        HEIGHTS_APART: not view.geoid_known,
-        "the autopilot reports no local position yet": drone is None,
-        "the autopilot's attitude is too old": drone is not None and not drone.attitude_known,
-        "the autopilot is in failsafe": view.failsafe,
+        Reason.NO_AUTOPILOT: not view.link_up,
+        Reason.NO_ORIGIN: view.frame is None,
+        Reason.HEIGHTS_APART: not view.geoid_known,
+        Reason.NO_OWN_POSITION: drone is None,
+        Reason.NO_OWN_ATTITUDE: drone is not None and not drone.attitude_known,
+        Reason.IN_FAILSAFE: view.failsafe,
     }
-    return next((reason for reason, is_missing in missing.items() if is_missing), None)
+    return next((Cause(reason) for reason, is_missing in missing.items() if is_missing), None)

@@ -15,7 +15,7 @@ from enum import Enum
 
 from companion.config.companion import CompanionConfig
 from companion.config.landing import TouchdownConfig
-from companion.situation.situation import Approach, Situation, approach
+from companion.situation.situation import Approach, Situation
 from companion.vehicle.pad_reach import over_pad_radius_m
 from link.records import replace
 
@@ -61,7 +61,7 @@ class Verdict(Enum):
 
 def signs_of(s: Situation) -> Signs:
     """Return the signs in a step's facts."""
-    relative = approach(s)
+    relative = s.approach
     drone, reference = s.drone, s.reference
     sunk = None if drone is None or reference is None else drone.position_enu_m[2] - reference.position_enu_m[2]
     return Signs(
@@ -72,9 +72,9 @@ def signs_of(s: Situation) -> Signs:
         climb_m_s=None if relative is None else relative.climb_m_s,
         acceleration_up_m_s2=None if drone is None else drone.acceleration_up_m_s2,
         setpoint_below_m=None if sunk is None else float(sunk),
-        range_height_m=s.range_height_m,
+        range_height_m=s.below.range_height_m,
         landed=s.autopilot.landed,
-        range_carried_m=s.range_carried_m,
+        range_carried_m=s.below.range_carried_m,
         pad_half_width_m=math.inf if s.pad is None else s.pad.half_width_m,
         passed_m=None if relative is None or drone is None else _passed_m(relative, _JOLT_S + drone.age_s),
     )
@@ -140,7 +140,7 @@ def may_force_motors_off(
             return False
 
 
-def described(signs: Signs) -> str:
+def signs_text(signs: Signs) -> str:
     """Return the signs for a log."""
     parts = [
         _part(signs.height_m, "m over the pad"),

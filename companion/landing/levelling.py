@@ -9,9 +9,10 @@ import math
 from companion.config.companion import CompanionConfig
 from companion.config.landing import TouchdownConfig
 from companion.core.data import FlightLimits
-from companion.landing.step_data import StepInputs, StepMemory
+from companion.landing.memory import StepMemory
+from companion.landing.step_data import StepInputs
 from companion.situation.phases import Phase
-from companion.situation.situation import Approach, Situation, approach
+from companion.situation.situation import Approach, Situation
 from companion.vehicle.pad_reach import over_pad_radius_m
 from link.records import replace
 
@@ -24,11 +25,11 @@ def limits_now(memory: StepMemory, situation: Situation, inputs: StepInputs, con
     A drone that leans touches with its lowest foot, so it begins that much higher, and it begins earlier by as much as
     nearly every setpoint is late at most; one that breaks off climbs before it leans.
     """
-    limits, relative, drone = inputs.limits, approach(situation), situation.drone
-    if memory.phase not in (Phase.DESCEND, Phase.ABORT) or relative is None or drone is None:
+    limits, relative, drone = inputs.limits, situation.approach, situation.drone
+    if memory.progress.phase not in (Phase.DESCEND, Phase.ABORT) or relative is None or drone is None:
         return limits
     touchdown = config.touchdown
-    escape_m = 0.0 if memory.phase is Phase.DESCEND else config.descent.commit_height_m
+    escape_m = 0.0 if memory.progress.phase is Phase.DESCEND else config.descent.commit_height_m
     late_m = max(-relative.climb_m_s, 0.0) * touchdown.level_late_stds * inputs.link_delay_std_s
     if lowest_foot_m(situation, relative, config) > touchdown.level_height_m + late_m + escape_m:
         return limits
@@ -40,9 +41,9 @@ def limits_now(memory: StepMemory, situation: Situation, inputs: StepInputs, con
 def lowest_foot_m(situation: Situation, relative: Approach, config: CompanionConfig) -> float:
     """Return how high the lowest foot of a leaning drone is above the pad, by a range finder that has just seen it."""
     lean = 0.0 if situation.drone is None else situation.drone.lean
-    seen_m, height_m = situation.range_carried_m, relative.height_m
+    seen_m, height_m = situation.below.range_carried_m, relative.height_m
     is_over = relative.distance_m < over_pad_radius_m(relative.pad_half_width_m, config)
-    if situation.range_height_m is not None and seen_m is not None and is_over:
+    if situation.below.range_height_m is not None and seen_m is not None and is_over:
         height_m = seen_m if abs(seen_m - height_m) < _SEEN_OFF_MAX_M else height_m
     return height_m - config.touchdown.foot_radius_m * lean
 

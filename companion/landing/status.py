@@ -2,11 +2,13 @@
 
 from companion.config.companion import CompanionConfig
 from companion.config.landing import DescentConfig
-from companion.landing.step_data import StepMemory
+from companion.core.reasons import Cause, sentence
+from companion.landing.aborts import unplaced
+from companion.landing.memory import StepMemory
 from companion.landing.targets import sink_stretches
 from companion.landing.waiting import why_held_up
 from companion.situation.phases import Phase
-from companion.situation.situation import Approach, Situation, approach
+from companion.situation.situation import Approach, Situation
 from link.messages import LandingStatus
 
 _WAITING_FOR_PAD = frozenset({Phase.WAITING, Phase.CHASE, Phase.ALIGN})
@@ -16,12 +18,14 @@ _TIMED_PHASES = frozenset({Phase.ALIGN, Phase.DESCEND})
 
 def landing_status(memory: StepMemory, situation: Situation, config: CompanionConfig) -> LandingStatus:
     """Return the status; the counters of bad bytes are filled in by whoever counts them."""
-    relative = approach(situation)
-    timed = memory.phase in _TIMED_PHASES and relative is not None
+    relative, cause = situation.approach, _cause(memory, situation, config)
+    phase = memory.progress.phase
+    timed = phase in _TIMED_PHASES and relative is not None
     return LandingStatus(
         stamp_ns=situation.t_ns,
-        phase=memory.phase.value,
-        reason=_reason(memory, situation, config),
+        phase=phase.value,
+        reason=sentence(cause),
+        reason_code=cause.reason.name,
         relative_position_enu_m=None if relative is None else relative.position_enu_m,
         relative_velocity_enu_m_s=None if relative is None else relative.velocity_enu_m_s,
         height_above_pad_m=None if relative is None else relative.height_m,
@@ -29,18 +33,18 @@ def landing_status(memory: StepMemory, situation: Situation, config: CompanionCo
         mavlink_bad_bytes=0,
         zenoh_bad_payloads=0,
         armed=situation.autopilot.armed,
-        fix_age_s=situation.fix_age_s,
+        fix_age_s=situation.vehicle.fix_age_s,
     )
 
 
-def _reason(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str:
+def _cause(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause:
     """Return what the landing waits for, or why its phase began."""
-    if memory.phase in _WAITING_FOR_PAD and situation.pad is not None and situation.pad.unplaced is not None:
-        return situation.pad.unplaced
-    if memory.phase in _NOT_BEGUN and memory.obstacle is not None:
-        return memory.obstacle[1]
-    awaited = why_held_up(memory, situation, config)
-    return memory.reason if awaited is None else f"waits above the pad: {awaited}"
+    progress, not_placed = memory.progress, unplaced(situation)
+    if progress.phase in _WAITING_FOR_PAD and not_placed is not None:
+        return not_placed
+    if progress.phase in _NOT_BEGUN and progress.obstacle is not None:
+        return progress.obstacle
+    return why_held_up(memory, situation, config) or progress.cause
 
 
 def _time_to_contact_s(relative: Approach, descent: DescentConfig) -> float:

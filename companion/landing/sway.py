@@ -23,29 +23,29 @@ class Sway:
     """What has been seen of it.
 
     Attributes:
-        t_ns: of the newest report that was taken, 0 before the first.
+        t_ns: of the newest report that was taken, monotonic; None before the first.
         mean_enu_m_s2: (2,) horizontal thrust over the last second.
-        swayed_ns: when the drone last leaned too hard; 0 when it never did.
+        swayed_ns: when the drone last leaned too hard, monotonic; None when it never did.
     """
 
-    t_ns: int = 0
+    t_ns: int | None = None
     mean_enu_m_s2: tuple[float, float] = (0.0, 0.0)
-    swayed_ns: int = 0
+    swayed_ns: int | None = None
 
 
-def felt(sway: Sway, own: OwnState, config: DescentConfig) -> Sway:
-    """Return the sway after the drone's newest report `own`; an older one changes nothing."""
-    if own.t_ns <= sway.t_ns:
+def update_sway(sway: Sway, own: OwnState, own_ns: int, config: DescentConfig) -> Sway:
+    """Return the sway after the drone's newest report `own`, of `own_ns` (monotonic); an older one changes nothing."""
+    if sway.t_ns is not None and own_ns <= sway.t_ns:
         return sway
     x, y, up = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
     per_up = GRAVITY_M_S2 / max(up, _UPRIGHT_MIN)
-    share = -math.expm1(-(own.t_ns - sway.t_ns) * 1e-9 / _MEAN_S) if sway.t_ns else 1.0
+    share = 1.0 if sway.t_ns is None else -math.expm1(-(own_ns - sway.t_ns) * 1e-9 / _MEAN_S)
     mean_x, mean_y = sway.mean_enu_m_s2
     mean = (mean_x + share * (per_up * x - mean_x), mean_y + share * (per_up * y - mean_y))
     is_too_much = per_up * math.hypot(x, y) - math.hypot(*mean) > config.sway_max_m_s2
-    return Sway(t_ns=own.t_ns, mean_enu_m_s2=mean, swayed_ns=own.t_ns if is_too_much else sway.swayed_ns)
+    return Sway(t_ns=own_ns, mean_enu_m_s2=mean, swayed_ns=own_ns if is_too_much else sway.swayed_ns)
 
 
-def sways(sway: Sway, t_ns: int, config: DescentConfig) -> bool:
-    """Return whether the drone leans too hard at `t_ns`, or did a moment ago."""
-    return sway.swayed_ns > 0 and (t_ns - sway.swayed_ns) * 1e-9 < config.calm_hold_s
+def is_swaying(sway: Sway, monotonic_ns: int, config: DescentConfig) -> bool:
+    """Return whether the drone leans too hard at `monotonic_ns`, or did a moment ago."""
+    return sway.swayed_ns is not None and (monotonic_ns - sway.swayed_ns) * 1e-9 < config.calm_hold_s

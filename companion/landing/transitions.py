@@ -3,149 +3,159 @@
 import numpy as np
 
 from companion.config.companion import CompanionConfig
+from companion.core.reasons import Cause, Reason
+from companion.landing.aborts import ABORTS
 from companion.landing.commands import answer
-from companion.landing.conditions import ABORT_TESTS, update_held
-from companion.landing.contact_tests import HARD_CONTACT
-from companion.landing.decisions import Progress, decide
-from companion.landing.feasibility import OBSTACLE_TESTS, obstacle
-from companion.landing.silence import SILENCES
-from companion.landing.step_data import StepInputs, StepMemory
+from companion.landing.decisions import decide
+from companion.landing.entries import update_held
+from companion.landing.feasibility import OBSTACLES, obstacle
+from companion.landing.memory import NOTHING_HELD, ControlMemory, ModelMemory, Progress, StepMemory
+from companion.landing.step_data import StepInputs
 from companion.landing.targets import stopping_point
 from companion.landing.virtual_model import Tracking
-from companion.landing.waiting import waited_s, with_wait_counted
+from companion.landing.waiting import update_wait
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
-from companion.situation.situation import Situation, approach
+from companion.situation.situation import Situation
 from link.messages import Command, CommandReply
 from link.records import replace
 
 BRAKING_M_S2 = 2.0
 """Deceleration that the place to stop at is taken from."""
 
-_OUTAGES = frozenset(test.reason for test in ABORT_TESTS if test.is_true in SILENCES)
+_OUTAGES = frozenset(condition.reason for condition in ABORTS if condition.is_outage)
+_COMMANDED = {
+    Command.START: Cause(Reason.OPERATOR_STARTS),
+    Command.ABORT: Cause(Reason.OPERATOR_ABORTS),
+    Command.HOLD: Cause(Reason.OPERATOR_HOLDS),
+}
 
 
-def transitions(
+def take_events(
     memory: StepMemory, situation: Situation, inputs: StepInputs, config: CompanionConfig
 ) -> tuple[StepMemory, CommandReply | None]:
     """Take the operator's command, then the event of this step."""
     reply = None
     if inputs.command is not None:
-        known = obstacle(memory.held, situation, config)
-        event, reply = answer(inputs.command, memory.phase, situation, config, None if known is None else known[1])
+        progress = memory.progress
+        known = obstacle(progress.held, situation, config)
+        event, reply = answer(inputs.command, progress.phase, situation, config, known)
         if event is not None:
-            memory = _enter(memory, event, f"commanded: {inputs.command.value}", situation, config)
+            memory = _enter(memory, event, _COMMANDED[inputs.command], situation, config)
         if reply.accepted:
-            memory = replace(memory, may_retry=inputs.command is Command.START)
-    memory = with_wait_counted(memory, situation, config)
-    progress = Progress(
-        phase=memory.phase,
-        since_ns=memory.phase_since_ns,
-        retries=memory.retries,
-        may_retry=memory.may_retry,
-        was_in_control=memory.was_in_control,
-        was_armed=memory.was_armed,
-        is_interrupted=memory.interrupted_ns is not None,
-        begun_anew=memory.begun_anew,
-        waited_s=waited_s(memory, situation.t_ns),
-    )
-    held = update_held(memory.held, memory.phase, situation, approach(situation), config, others=OBSTACLE_TESTS)
-    memory = replace(memory, held=held, obstacle=_same_or_new(memory.obstacle, obstacle(held, situation, config)))
-    decision = decide(progress, situation, held, config)
+            may_retry = inputs.command is Command.START
+            memory = replace(memory, progress=replace(memory.progress, may_retry=may_retry))
+    progress = update_wait(memory, situation, config)
+    held = update_held(progress.held, progress.phase, situation, config, others=OBSTACLES)
+    known = _same_or_new(progress.obstacle, obstacle(held, situation, config))
+    memory = replace(memory, progress=replace(progress, held=held, obstacle=known))
+    decision = decide(memory.progress, memory.control, situation, config)
     if decision is not None:
         memory = _enter(memory, *decision, situation, config)
-    flies, view = memory.phase in FLYING_PHASES, inputs.autopilot
-    in_control = flies and (memory.was_in_control or view.in_control)
-    armed = in_control and (memory.was_armed or (view.in_control and view.armed))
-    if (in_control, armed) != (memory.was_in_control, memory.was_armed):
-        memory = replace(memory, was_in_control=in_control, was_armed=armed)
-    return memory, reply
+    return _update_control(memory, inputs), reply
 
 
-def _same_or_new(told: tuple[str, str] | None, now: tuple[str, str] | None) -> tuple[str, str] | None:
-    """Keep the sentence that was told as long as it is the same thing: its numbers change in every step."""
-    return told if told is not None and now is not None and told[0] == now[0] else now
-
-
-def _enter(memory: StepMemory, event: Event, reason: str, situation: Situation, config: CompanionConfig) -> StepMemory:
-    """Return the memory in the phase that `event` leads to, with what that phase needs at its beginning."""
-    phase = next_phase(memory.phase, event)
-    if phase is memory.phase:
+def _update_control(memory: StepMemory, inputs: StepInputs) -> StepMemory:
+    """Take note of whether the autopilot is the companion's, and armed so."""
+    control, view = memory.control, inputs.autopilot
+    flies = memory.progress.phase in FLYING_PHASES
+    in_control = flies and (control.was_in_control or view.in_control)
+    armed = in_control and (control.was_armed or (view.in_control and view.armed))
+    if (in_control, armed) == (control.was_in_control, control.was_armed):
         return memory
-    memory = _counted(memory, event, reason, situation, config)
-    # What makes an approach unsafe goes on from one of its phases to the next, and so does the time it has held.
-    held = memory.held if {memory.phase, phase} <= LANDING_PHASES else {}
-    stopped = event is Event.CONTACT and HARD_CONTACT in memory.held
-    memory = replace(memory, phase=phase, reason=reason, held=held, stopped_by_pad=stopped)
-    if phase is Phase.WAITING and event is Event.START:
-        return replace(memory, waiting_point_enu_m=memory.anchor_enu_m)  # it waits where it hovers
+    return replace(memory, control=replace(control, was_in_control=in_control, was_armed=armed))
+
+
+def _same_or_new(told: Cause | None, now: Cause | None) -> Cause | None:
+    """Keep the numbers that were told as long as it is for the same reason: they change in every step."""
+    return told if told is not None and now is not None and told.reason is now.reason else now
+
+
+def _enter(memory: StepMemory, event: Event, cause: Cause, situation: Situation, config: CompanionConfig) -> StepMemory:
+    """Return the memory in the phase that `event` leads to, with what that phase needs at its beginning."""
+    phase = next_phase(memory.progress.phase, event)
+    if phase is memory.progress.phase:
+        return memory
+    memory = replace(memory, progress=_progress_after(memory.progress, event, cause, situation.monotonic_ns, config))
+    model, places = memory.model, memory.places
+    if phase is Phase.WAITING and event is Event.START:  # it waits where it hovers
+        return replace(memory, places=replace(places, waiting_point_enu_m=places.anchor_enu_m))
     if phase is Phase.TAKEOFF:
         return _begin_flight(memory, situation, config)
     if phase not in FLYING_PHASES:
-        return replace(memory, reference=None, tracking=Tracking())
-    if phase in (Phase.HOLD, Phase.ABORT) and memory.reference is not None:
-        memory = replace(memory, anchor_enu_m=stopping_point(memory.reference, BRAKING_M_S2))
-    return _escaping(memory, situation, config) if phase is Phase.ABORT else memory
+        return replace(memory, model=replace(model, reference=None, tracking=Tracking()))
+    if phase in (Phase.HOLD, Phase.ABORT) and model.reference is not None:
+        memory = replace(memory, places=replace(places, anchor_enu_m=stopping_point(model.reference, BRAKING_M_S2)))
+    return replace(memory, model=_escaping(model, situation, config)) if phase is Phase.ABORT else memory
 
 
-def _counted(
-    memory: StepMemory, event: Event, reason: str, situation: Situation, config: CompanionConfig
-) -> StepMemory:
-    """Return the memory, still in the old phase, with what is counted over an approach and from the new phase on.
+def _progress_after(
+    before: Progress, event: Event, cause: Cause, monotonic_ns: int, config: CompanionConfig
+) -> Progress:
+    """Return the progress in the phase that `event` leads to, with what is counted over an approach and from there on.
 
     A chase that an outage broke off, before the drone was near, goes on after it: it costs no retry, nor does it get
     more time.
     """
-    resumed_ns = memory.interrupted_ns if event is Event.CLEAR else None
-    retries = memory.retries + 1 if event is Event.CLEAR and resumed_ns is None else memory.retries
-    since_ns = memory.phase_since_ns
-    in_time = (situation.t_ns - since_ns) * 1e-9 < config.chase.time_limit_s
-    is_outage = event is Event.UNSAFE and memory.phase is Phase.CHASE and reason in _OUTAGES and in_time
-    begun_anew = memory.begun_anew
+    phase = next_phase(before.phase, event)
+    resumed_ns = before.interrupted_ns if event is Event.CLEAR else None
+    retries = before.retries + 1 if event is Event.CLEAR and resumed_ns is None else before.retries
+    in_time = (monotonic_ns - before.since_ns) * 1e-9 < config.chase.time_limit_s
+    is_outage = event is Event.UNSAFE and before.phase is Phase.CHASE and cause.reason in _OUTAGES and in_time
+    begun_anew = before.begun_anew
     if event is Event.OUT_OF_ALIGNMENT:
-        begun_anew = {**begun_anew, reason: begun_anew.get(reason, 0) + 1}
-    goes_on = {memory.phase, next_phase(memory.phase, event)} <= LANDING_PHASES
-    return replace(
-        memory,
-        phase_since_ns=situation.t_ns if resumed_ns is None else resumed_ns,
+        begun_anew = {**begun_anew, cause.reason: begun_anew.get(cause.reason, 0) + 1}
+    # What makes an approach unsafe goes on from one of its phases to the next, and so does the time it has held.
+    goes_on = {before.phase, phase} <= LANDING_PHASES
+    return Progress(
+        phase=phase,
+        since_ns=monotonic_ns if resumed_ns is None else resumed_ns,
+        cause=cause,
         retries=0 if event in (Event.START, Event.START_AGAIN) else retries,
-        interrupted_ns=since_ns if is_outage else None,
+        interrupted_ns=before.since_ns if is_outage else None,
         begun_anew=begun_anew if goes_on else {},
-        waits_since_ns=None,
-        waited_s=0.0,
+        may_retry=before.may_retry,
+        stopped_by_pad=event is Event.CONTACT and Reason.HARD_CONTACT in before.held,
+        held=before.held if goes_on else NOTHING_HELD,
+        obstacle=before.obstacle,
     )
 
 
-def _escaping(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
+def _escaping(model: ModelMemory, situation: Situation, config: CompanionConfig) -> ModelMemory:
     """Let the virtual model sink no further towards a roof that is near: no plan of limited jerk turns it in time."""
-    reference, pad, limits, relative = memory.reference, situation.pad, situation.limits, approach(situation)
+    reference, pad, limits, relative = model.reference, situation.pad, situation.limits, situation.approach
     if reference is None or pad is None or limits is None or relative is None:
-        return memory
+        return model
     if relative.height_m > config.descent.waiting_height_m:
-        return memory
+        return model
     velocity, acceleration = reference.velocity_enu_m_s.copy(), reference.acceleration_enu_m_s2.copy()
     velocity[2] = max(velocity[2], pad.velocity_enu_m_s[0, 2])
     acceleration[2] = limits.vertical_acceleration_max_m_s2
     escaping = replace(reference, velocity_enu_m_s=velocity, acceleration_enu_m_s2=acceleration)
-    return replace(memory, reference=escaping, guidance=None)
+    return replace(model, reference=escaping, guidance=None)
 
 
 def _begin_flight(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
     """Start the virtual model where the drone is, and place the waiting point above it."""
-    if situation.drone is None:
-        return replace(memory, phase=Phase.IDLE, reason="the drone's position is not known")
-    position, zero = situation.drone.position_enu_m, np.zeros(3)
+    drone = situation.drone
+    if drone is None:
+        nowhere = replace(memory.progress, phase=Phase.IDLE, cause=Cause(Reason.DRONE_UNKNOWN))
+        return replace(memory, progress=nowhere)
+    position, zero = drone.position_enu_m, np.zeros(3)
     airborne = situation.autopilot.armed and situation.autopilot.landed is False
     climb_m = 0.0 if airborne else config.takeoff.waiting_height_m
-    return replace(
-        memory,
-        was_in_control=False,
-        was_armed=False,
+    model = replace(
+        memory.model,
         reference=ReferenceState(position_enu_m=position, velocity_enu_m_s=zero, acceleration_enu_m_s2=zero),
-        reference_ns=situation.t_ns,
+        reference_ns=situation.monotonic_ns,
         tracking=Tracking(),
         guidance=None,
-        anchor_enu_m=position,
-        waiting_point_enu_m=position + np.array([0.0, 0.0, climb_m]),
-        yaw_setpoint_rad=situation.drone.yaw_rad,
+        yaw_setpoint_rad=drone.yaw_rad,
+    )
+    waiting_point = position + np.array([0.0, 0.0, climb_m])
+    return replace(
+        memory,
+        control=ControlMemory(driver=memory.control.driver),
+        model=model,
+        places=replace(memory.places, anchor_enu_m=position, waiting_point_enu_m=waiting_point),
     )

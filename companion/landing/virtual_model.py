@@ -10,8 +10,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from companion.core.data import Array, OwnState, Setpoint
+from companion.core.data import Array, Setpoint
 from companion.planning.guidance import ReferenceState, Trajectory
+from link.messages import Vector3
 from link.records import replace
 
 _HISTORY_S = 0.6  # longer than any telemetry is late
@@ -26,43 +27,47 @@ class Tracking:
     """The model's recent past and the correction.
 
     Attributes:
-        past: (t_ns, position (3,) in W), oldest first.
+        past: (monotonic ns, position (3,) in W), oldest first.
         behind_enu_m: (3,) from the drone to the model at the time of the drone's newest report.
         error_m: length of that.
         correction_enu_m: (3,) added to the setpoints' position.
-        compared_ns: time of the newest report that was compared.
+        compared_ns: monotonic time of the newest report that was compared; None before the first.
     """
 
     past: tuple[tuple[int, Array], ...] = ()
     behind_enu_m: Array = field(default_factory=lambda: np.zeros(3))
     error_m: float = 0.0
     correction_enu_m: Array = field(default_factory=lambda: np.zeros(3))
-    compared_ns: int = 0
+    compared_ns: int | None = None
 
 
-def remember(tracking: Tracking, t_ns: int, reference: ReferenceState) -> Tracking:
-    """Return the tracking with the model's position at `t_ns` added."""
-    kept = tracking.past
-    while kept and (t_ns - kept[0][0]) * 1e-9 > _HISTORY_S:
-        kept = kept[1:]
-    return replace(tracking, past=(*kept, (t_ns, reference.position_enu_m)))
+def add_to_past(tracking: Tracking, t_ns: int, reference: ReferenceState) -> Tracking:
+    """Return the tracking with the model's position at the monotonic `t_ns` added."""
+    past = tracking.past
+    while past and (t_ns - past[0][0]) * 1e-9 > _HISTORY_S:
+        past = past[1:]
+    return replace(tracking, past=(*past, (t_ns, reference.position_enu_m)))
 
 
-def compare(tracking: Tracking, own: OwnState, *, learn: bool) -> Tracking:
+def update_tracking(tracking: Tracking, own_ns: int, position_enu_m: Vector3, *, learns: bool) -> Tracking:
     """Return the tracking after comparing the drone's report with the model at the same instant.
 
     Args:
         tracking: so far.
-        own: the drone's newest report.
-        learn: whether the lag is learnt from it.
+        own_ns: monotonic time of the drone's newest report.
+        position_enu_m: of the drone then.
+        learns: whether the lag is learnt from it.
     """
-    if own.t_ns <= tracking.compared_ns or len(tracking.past) < 2 or own.t_ns < tracking.past[0][0]:
+    before_ns = tracking.compared_ns
+    if before_ns is not None and own_ns <= before_ns:
         return tracking
-    difference = _position_at(tracking, own.t_ns) - np.array(own.position_enu_m)
+    if len(tracking.past) < 2 or own_ns < tracking.past[0][0]:
+        return tracking
+    difference = _position_at(tracking, own_ns) - np.array(position_enu_m)
     error_m = math.hypot(*difference.tolist())
-    since_s = (own.t_ns - tracking.compared_ns) * 1e-9 if tracking.compared_ns else 0.0
-    tracking = replace(tracking, behind_enu_m=difference, error_m=error_m, compared_ns=own.t_ns)
-    if not learn or error_m > _LEARNING_ERROR_MAX_M:
+    since_s = 0.0 if before_ns is None else (own_ns - before_ns) * 1e-9
+    tracking = replace(tracking, behind_enu_m=difference, error_m=error_m, compared_ns=own_ns)
+    if not learns or error_m > _LEARNING_ERROR_MAX_M:
         return tracking
     step = _CORRECTION_GAIN_HZ * min(since_s, _HISTORY_S) * difference * np.array([1.0, 1.0, 0.0])
     correction = tracking.correction_enu_m + step
@@ -84,7 +89,7 @@ def _position_at(tracking: Tracking, t_ns: int) -> Array:
     return later[1]
 
 
-def pressing(reference: ReferenceState, acceleration_m_s2: float, duration_s: float) -> ReferenceState:
+def press_down(reference: ReferenceState, acceleration_m_s2: float, duration_s: float) -> ReferenceState:
     """Return the model pressed down for `duration_s`, so that the thrust drops and the gear holds on to the pad."""
     faster_m_s = acceleration_m_s2 * duration_s
     return ReferenceState(
@@ -94,7 +99,7 @@ def pressing(reference: ReferenceState, acceleration_m_s2: float, duration_s: fl
     )
 
 
-def not_falling(reference: ReferenceState, lowest_enu_m: float, duration_s: float) -> ReferenceState:
+def limit_sink(reference: ReferenceState, lowest_enu_m: float, duration_s: float) -> ReferenceState:
     """Return the model for an autopilot that carries a setpoint on for `duration_s`, should no other follow.
 
     Without a downward acceleration, which would add up to several metres per second, and sinking no faster than what
@@ -111,7 +116,7 @@ def not_falling(reference: ReferenceState, lowest_enu_m: float, duration_s: floa
     )
 
 
-def carried(reference: ReferenceState, duration_s: float) -> ReferenceState:
+def extrapolate(reference: ReferenceState, duration_s: float) -> ReferenceState:
     """Return the model `duration_s` later (or, negative, earlier) at its present acceleration."""
     velocity, acceleration = reference.velocity_enu_m_s, reference.acceleration_enu_m_s2
     return replace(
@@ -121,7 +126,7 @@ def carried(reference: ReferenceState, duration_s: float) -> ReferenceState:
     )
 
 
-def planned(trajectory: Trajectory, offset_s: float) -> ReferenceState:
+def state_in_plan(trajectory: Trajectory, offset_s: float) -> ReferenceState:
     """Return the model `offset_s` after its plan was made; between two instants of a plan the jerk is constant."""
     last = len(trajectory.offset_s) - 2
     node = min(max(int(np.searchsorted(trajectory.offset_s, offset_s, side="right")) - 1, 0), last)
@@ -153,7 +158,7 @@ def setpoint_at(
     )
 
 
-def by_velocity(setpoint: Setpoint, behind_enu_m: Array, gain_hz: float) -> Setpoint:
+def free_place(setpoint: Setpoint, behind_enu_m: Array, gain_hz: float) -> Setpoint:
     """Return the setpoint with a free place: what the drone is off its place is made up for by the velocity asked for.
 
     Args:

@@ -1,12 +1,13 @@
 """What a descent stays above the pad for, how low it may go meanwhile, and for how long it has; pure."""
 
 from companion.config.companion import CompanionConfig
-from companion.landing.conditions import must_wait
-from companion.landing.step_data import StepMemory
-from companion.landing.sway import sways
+from companion.core.reasons import Cause, Reason
+from companion.landing.aborts import must_wait
+from companion.landing.memory import Progress, StepMemory
+from companion.landing.sway import is_swaying
 from companion.landing.targets import changes_speed
 from companion.situation.phases import Phase
-from companion.situation.situation import Approach, Situation, approach, stands
+from companion.situation.situation import Approach, Situation, vehicle_stands
 from companion.vehicle.driving import drives_unevenly, may_depart, turns_hard, winds
 from companion.vehicle.surprise import may_surprise
 from link.records import replace
@@ -30,68 +31,71 @@ def _waiting_height_m(situation: Situation, config: CompanionConfig) -> float:
     return config.descent.waiting_height_coarse_m if is_coarse else config.descent.waiting_height_m
 
 
-def why_held_up(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str | None:
+def why_held_up(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause | None:
     """Return what a descent waits for that has come as low as it may, None for one that goes on."""
-    relative = approach(situation)
+    relative = situation.approach
     if relative is None or relative.height_m > _waiting_height_m(situation, config) + _HELD_UP_M:
         return None
     return _awaited(memory, situation, config)
 
 
-def with_wait_counted(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
-    """Return the memory with the time for which this descent has waited above a vehicle that drives unpredictably."""
-    since_ns, t_ns = memory.waits_since_ns, situation.t_ns
+def update_wait(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Progress:
+    """Return the progress with the time for which this descent has waited above a vehicle that drives unpredictably."""
+    progress, now_ns = memory.progress, situation.monotonic_ns
     if _unpredictable(memory, situation, config) is not None:
-        return memory if since_ns is not None else replace(memory, waits_since_ns=t_ns)
-    if since_ns is None:
-        return memory
-    return replace(memory, waits_since_ns=None, waited_s=waited_s(memory, t_ns))
+        return progress if progress.waits_since_ns is not None else replace(progress, waits_since_ns=now_ns)
+    if progress.waits_since_ns is None:
+        return progress
+    return replace(progress, waits_since_ns=None, waited_s=waited_s(progress, now_ns))
 
 
-def waited_s(memory: StepMemory, t_ns: int) -> float:
+def waited_s(progress: Progress, monotonic_ns: int) -> float:
     """Return for how long this descent has waited above a vehicle that has surprised."""
-    return memory.waited_s + (0.0 if memory.waits_since_ns is None else (t_ns - memory.waits_since_ns) * 1e-9)
+    since_ns = progress.waits_since_ns
+    return progress.waited_s + (0.0 if since_ns is None else (monotonic_ns - since_ns) * 1e-9)
 
 
-def _unpredictable(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str | None:
+def _unpredictable(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause | None:
     """Return what a vehicle has lately done that nobody could expect, None of one that stands or drives evenly."""
     if not _may_wait(memory, situation, config) or _stays(memory, situation, config):
         return None
-    if may_surprise(memory.surprise, situation.t_ns, config.descent):
-        return "the vehicle's speed has surprised"
-    if drives_unevenly(memory.surprise.driving, situation.fix_age_s, config.descent):
-        return "the vehicle's speed changes all the time"
-    if turns_hard(memory.surprise.driving, situation.fix_age_s, config.descent):
-        return "the road turns hard"
-    return "the road winds" if winds(memory.surprise.driving, situation.fix_age_s, config.descent) else None
+    surprise, age_s = memory.vehicle.surprise, situation.vehicle.fix_age_s
+    if may_surprise(surprise, situation.monotonic_ns, config.descent):
+        return Cause(Reason.SPEED_SURPRISED)
+    if drives_unevenly(surprise.driving, age_s, config.descent):
+        return Cause(Reason.SPEED_UNEVEN)
+    if turns_hard(surprise.driving, age_s, config.descent):
+        return Cause(Reason.ROAD_TURNS_HARD)
+    return Cause(Reason.ROAD_WINDS) if winds(surprise.driving, age_s, config.descent) else None
 
 
 def _stays(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
     """Return whether the vehicle stands and will do so for a while."""
-    departs = may_depart(memory.surprise.driving, situation.fix_age_s, config.descent)
-    return stands(situation, config.chase) and not departs
+    departs = may_depart(memory.vehicle.surprise.driving, situation.vehicle.fix_age_s, config.descent)
+    return vehicle_stands(situation, config.chase) and not departs
 
 
 def _may_wait(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
     """Return whether this is a descent that is not committed yet."""
-    relative = approach(situation)
-    return memory.phase is Phase.DESCEND and relative is not None and relative.height_m > config.descent.commit_height_m
+    if memory.progress.phase is not Phase.DESCEND or situation.approach is None:
+        return False
+    return situation.approach.height_m > config.descent.commit_height_m
 
 
-def _awaited(memory: StepMemory, situation: Situation, config: CompanionConfig) -> str | None:
-    relative = approach(situation)
+def _awaited(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause | None:
+    relative = situation.approach
     if relative is None or not _may_wait(memory, situation, config):
         return None
     unpredictable = _unpredictable(memory, situation, config)
     if unpredictable is not None:
         return unpredictable
-    if must_wait(situation, relative, config):
+    if must_wait(situation, config):
         brakes = situation.pad is not None and changes_speed(situation.pad, config.descent)
-        return "the vehicle brakes or speeds up" if brakes else "the drone is not over the pad"
+        return Cause(Reason.SPEED_CHANGES if brakes else Reason.NOT_OVER_PAD)
     if _is_off_centre(situation, relative, config):
-        return f"farther than {config.descent.aligned_distance_m:g} m from the pad's centre"
+        return Cause(Reason.OFF_CENTRE, (config.descent.aligned_distance_m,))
     if _is_unsettled(memory, relative, config):
-        return f"faster than {config.descent.waiting_speed_m_s:g} m/s against the pad"
+        return Cause(Reason.UNSETTLED, (config.descent.waiting_speed_m_s,))
     return None
 
 
@@ -107,14 +111,16 @@ def _is_off_centre(situation: Situation, relative: Approach, config: CompanionCo
 
 def _is_unsettled(memory: StepMemory, relative: Approach, config: CompanionConfig) -> bool:
     """Return whether the drone has to become slower against the pad first, as far as that speed is known."""
-    known_m_s = config.descent.waiting_speed_stds * memory.surprise.speed_std_m_s
+    known_m_s = config.descent.waiting_speed_stds * memory.vehicle.surprise.speed_std_m_s
     return relative.speed_m_s > max(config.descent.waiting_speed_m_s, known_m_s)
 
 
 def waits_for_calm(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
     """Return whether a leaning drone is still high enough above the pad to wait until it has come upright."""
-    relative, drone = approach(situation), situation.drone
-    if memory.phase is not Phase.DESCEND or relative is None or drone is None:
+    relative, drone = situation.approach, situation.drone
+    if memory.progress.phase is not Phase.DESCEND or relative is None or drone is None:
         return False
     lowest_m = relative.height_m - config.touchdown.foot_radius_m * drone.lean
-    return lowest_m > config.descent.sway_height_m and sways(memory.sway, situation.t_ns, config.descent)
+    return lowest_m > config.descent.sway_height_m and is_swaying(
+        memory.model.sway, situation.monotonic_ns, config.descent
+    )

@@ -6,7 +6,7 @@ follow. SI units, world ENU (W). A law is a pure function over its own immutable
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any, Protocol
+from typing import NewType, Protocol
 
 from companion.core.data import Array, FlightLimits
 
@@ -90,10 +90,14 @@ class PlanResult:
     iterations: int
 
 
+GuidanceMemory = NewType("GuidanceMemory", object)
+"""What a guidance law remembers; only that law reads it."""
+
+
 class Guidance(Protocol):
     """What the companion asks of a guidance law; the memory is None at the first call."""
 
-    def plan(self, memory: Any, request: PlanRequest) -> tuple[Any, PlanResult]:
+    def plan(self, memory: GuidanceMemory | None, request: PlanRequest) -> tuple[GuidanceMemory, PlanResult]:
         """Return the memory and the plan for `request`.
 
         Raises:

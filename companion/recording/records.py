@@ -2,10 +2,9 @@
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any
 
 from companion.landing.step_data import StepInputs, StepOutputs
-from companion.vehicle.estimator import Estimator
+from companion.vehicle.estimator import Estimator, EstimatorMemory
 from link.mavlink.statistics import SessionStatistics
 
 
@@ -41,7 +40,7 @@ class StepRecord:
     inputs: StepInputs
     outputs: StepOutputs
     estimator: Estimator
-    estimator_memory: Any
+    estimator_memory: EstimatorMemory | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

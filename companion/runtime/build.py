@@ -4,7 +4,7 @@ import numpy as np
 
 from companion.config.companion import CompanionConfig
 from companion.landing.step_data import System
-from companion.planning.guidance import PlanRequest, ReferenceState, Target
+from companion.planning.guidance import GuidanceMemory, PlanRequest, ReferenceState, Target
 from companion.planning.kinds import make_guidance
 from companion.runtime.node import CompanionNode
 from companion.runtime.recorded_node import RecordingNode
@@ -25,7 +25,8 @@ def warm_up(system: System) -> None:
     offset_s = np.arange(0.0, 4.01, 0.2)
     ahead = np.column_stack([30.0 + 8.0 * offset_s, 2.0 * offset_s, np.full_like(offset_s, 2.0)])
     zero = np.zeros(3)
-    memory, state = None, ReferenceState(position_enu_m=zero, velocity_enu_m_s=zero, acceleration_enu_m_s2=zero)
+    state = ReferenceState(position_enu_m=zero, velocity_enu_m_s=zero, acceleration_enu_m_s2=zero)
+    memory: GuidanceMemory | None = None
     for position in (ahead, ahead - ahead[0]):
         target = Target(
             offset_s=offset_s,

@@ -208,11 +208,7 @@ class _Loop:
     def _check_time_out(self) -> None:
         """Say what is missing when nothing has come within the time-out; not once a flight has begun."""
         waited_s = time.perf_counter() - self._timings.started_s
-        if (
-            not self._options.timeout_s
-            or waited_s < self._options.timeout_s
-            or self._node.memory.phase is not Phase.IDLE
-        ):
+        if not self._options.timeout_s or waited_s < self._options.timeout_s or self._node.phase is not Phase.IDLE:
             return
         timeout_s = self._options.timeout_s
         check_autopilot(self._node.autopilot.session, self._options.device, timeout_s)

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from companion.autopilots.link import CLOCK_SET_NS, AutopilotLink
 from companion.core.data import Measurement, VehicleEstimate
-from companion.landing.shifts import at_other_time
-from companion.landing.step_data import StepInputs, StepMemory, StepOutputs, System
+from companion.landing.memory import StepMemory
+from companion.landing.step_data import StepInputs, StepOutputs, System
 from companion.runtime.publishing import plan_publication, status_publication
-from companion.situation.phases import FLYING_PHASES
+from companion.situation.phases import FLYING_PHASES, Phase
 from companion.step import companion_step
 from companion.vehicle.buffered import BufferHealth
 from companion.vehicle.factory import make_estimator
@@ -65,8 +65,14 @@ class CompanionNode:
         self._stepped_ns: int | None = None
         self._stepped_own_ns: int | None = None
         self._t_ns = 0
-        self._status_ns = 0
+        self._utc_ahead_ns = 0  # of the monotonic clock, by what UTC has been set to
+        self._status_ns: int | None = None
         self._statuses = 0
+
+    @property
+    def phase(self) -> Phase:
+        """Of the landing."""
+        return self.memory.progress.phase
 
     @property
     def pad_known(self) -> bool:
@@ -75,11 +81,11 @@ class CompanionNode:
 
     def vehicle_estimate(self, t_ns: int) -> VehicleEstimate | None:
         """Return the vehicle at `t_ns` (UTC) as the last step knew it, None before the first fix."""
-        return self.system.estimator.estimate(self.memory.estimator, t_ns)
+        return self.system.estimator.estimate(self.memory.vehicle.estimator, t_ns)
 
     def estimator_health(self) -> BufferHealth:
         """Return what became of the measurements, and whether they agree with the estimator."""
-        return self.system.estimator.health(self.memory.estimator)
+        return self.system.estimator.health(self.memory.vehicle.estimator)
 
     def receive_mavlink(self, data: bytes, local_ns: int) -> None:
         """Take bytes of the autopilot's link.
@@ -134,7 +140,7 @@ class CompanionNode:
     def flies(self) -> bool:
         """Whether motors turn at this companion's command."""
         view = self.autopilot.state.view
-        steers = not self._dry_run and self.memory.phase in FLYING_PHASES
+        steers = not self._dry_run and self.phase in FLYING_PHASES
         return steers and view.link_up and view.armed and view.in_control
 
     def poll(self, local_ns: int) -> bool:
@@ -176,6 +182,7 @@ class CompanionNode:
         self._set_time(local_ns)
         inputs = StepInputs(
             t_ns=self._t_ns,
+            monotonic_ns=self._monotonic_ns,
             limits=self.autopilot.limits(self._limits_wanted),
             own=state.own,
             autopilot=state.view,
@@ -200,16 +207,21 @@ class CompanionNode:
         """Take the time of this step.
 
         The map to UTC is refined all the time, and the step's own time never goes back with it. Where UTC is set,
-        or becomes known, all times of the memory are set with it: the flight goes on as if nothing had happened.
+        or becomes known, only UTC is: the monotonic time goes on, and the flight as if nothing had happened.
         """
         utc_ns = self.autopilot.session.clock.local_to_utc_ns(local_ns)
-        if self._stepped_ns is not None:
+        if self._stepped_ns is None:
+            self._utc_ahead_ns = utc_ns - local_ns
+        else:
             set_by_ns = utc_ns - (self._t_ns + local_ns - self._stepped_ns)
             if abs(set_by_ns) > CLOCK_SET_NS:
-                self.memory = at_other_time(self.memory, set_by_ns)
                 self._t_ns += set_by_ns
-                self._status_ns += set_by_ns
+                self._utc_ahead_ns += set_by_ns
         self._t_ns = max(self._t_ns + 1, utc_ns)
+
+    @property
+    def _monotonic_ns(self) -> int:
+        return self._t_ns - self._utc_ahead_ns
 
     def _send(self, outputs: StepOutputs, local_ns: int) -> None:
         if not self._dry_run:
@@ -221,11 +233,12 @@ class CompanionNode:
         if outputs.reply is not None:
             self._replies.append(outputs.reply)
         period_ns = 1e9 / self.system.config.status_rate_hz
-        if outputs.text is not None or self._t_ns - self._status_ns >= period_ns:
+        is_due = self._status_ns is None or self._monotonic_ns - self._status_ns >= period_ns
+        if outputs.text is not None or is_due:
             self._publish(outputs)
 
     def _publish(self, outputs: StepOutputs) -> None:
-        self._status_ns = self._t_ns
+        self._status_ns = self._monotonic_ns
         self._statuses += 1
         status = replace(
             outputs.status,
@@ -234,5 +247,5 @@ class CompanionNode:
         )
         self._publications.append(status_publication(self._keys, status))
         if outputs.plan is not None and self._statuses % _PLAN_EVERY == 0:
-            plan = plan_publication(self._keys, outputs.plan, self._t_ns, self.memory.yaw_setpoint_rad)
+            plan = plan_publication(self._keys, outputs.plan, self._t_ns, self.memory.model.yaw_setpoint_rad)
             self._publications.append(plan)

@@ -15,7 +15,7 @@ def step_record(node: CompanionNode, local_ns: int) -> StepRecord | None:
         inputs=node.inputs,
         outputs=node.outputs,
         estimator=node.system.estimator,
-        estimator_memory=node.memory.estimator,
+        estimator_memory=node.memory.vehicle.estimator,
     )
 
 

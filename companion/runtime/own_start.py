@@ -27,7 +27,7 @@ class OwnStart:
 
     def follow(self, node: CompanionNode, *, fix_seen: bool) -> None:
         """Ask for the start as soon as everything is there."""
-        self.pending = self.pending and node.memory.phase is Phase.IDLE
+        self.pending = self.pending and node.phase is Phase.IDLE
         if self.pending and fix_seen and node.pad_known and node.is_ready_to_start():
             node.request(Command.START)
 

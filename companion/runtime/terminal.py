@@ -33,7 +33,8 @@ class Terminal:
         if self._steps % _EVERY and (node.outputs is None or node.outputs.text is None):
             return
         if node.outputs is not None and node.inputs is not None:
-            error_m = None if node.memory.reference is None else node.memory.tracking.error_m
+            model = node.memory.model
+            error_m = None if model.reference is None else model.tracking.error_m
             record = link_record(node, node.inputs.t_ns, self._recorder.dropped)
             self._recorder.put((node.outputs.status, error_m, record))
 

@@ -1,8 +1,7 @@
 """The facts of one step that the phases decide on, put together from the estimate, the pad and the drone."""
 
 import math
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -44,53 +43,6 @@ class Drone:
     attitude_known: bool = True
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Situation:
-    """What is known in this step; None where it is not.
-
-    Attributes:
-        t_ns: now, UTC.
-        autopilot: as its messages tell.
-        drone: now.
-        pad: now and over the horizon.
-        feet_offset_m: of the drone's reported position above its feet.
-        fix_age_s: since the newest accepted fix was taken.
-        fix_age_on_arrival_s: of the newest accepted fix when it was taken in.
-        vehicle_alive: its liveliness token; None when it never showed one.
-        reference: the virtual model that the setpoints follow.
-        tracking_error_m: distance of the drone from where it was asked to be at that time.
-        waiting_point_enu_m: (3,) in W.
-        range_height_m: of the feet above what a range finder sees below, None without a fresh reading.
-        range_carried_m: the last such height less what the drone has sunk since, for it may be too near to be seen.
-        speed_std_m_s: of the vehicle's horizontal velocity; infinite while that is not known.
-        ground_enu_m: (3,) where the drone stood, or what its range finder saw before the flight.
-        is_road_elsewhere: the vehicle is said to be higher or lower than any hill puts it.
-        rejected_share: of the vehicle's measurements of the last seconds, 0 to 1.
-        limits: of the flight, the autopilot's own included.
-        speed_limited_by: the autopilot's parameters that may bound the speed.
-    """
-
-    t_ns: int
-    autopilot: AutopilotView
-    drone: Drone | None
-    pad: PadPath | None
-    feet_offset_m: float
-    fix_age_s: float | None
-    vehicle_alive: bool | None
-    reference: ReferenceState | None
-    tracking_error_m: float
-    waiting_point_enu_m: Array | None
-    fix_age_on_arrival_s: float | None = None
-    range_height_m: float | None = None
-    range_carried_m: float | None = None
-    speed_std_m_s: float = math.inf
-    ground_enu_m: Array | None = None
-    is_road_elsewhere: bool = False
-    rejected_share: float = 0.0
-    limits: FlightLimits | None = None
-    speed_limited_by: tuple[str, ...] = ()
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Approach:
     """The drone against the pad: its feet from the pad's centre, in W and in four numbers."""
@@ -104,15 +56,89 @@ class Approach:
     pad_half_width_m: float = math.inf  # from its centre to its nearest edge
 
 
-@lru_cache(maxsize=1)  # the tests, the decisions and the limits of a step all ask for it
-def approach(situation: Situation) -> Approach | None:
-    """Return the drone against the pad, None unless both are known."""
-    drone, pad = situation.drone, situation.pad
-    if drone is None or pad is None:
-        return None
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VehicleNews:
+    """How what the vehicle sends comes, and how far it can be believed; None where that is not known.
+
+    Attributes:
+        fix_age_s: since the newest accepted fix was taken.
+        fix_age_on_arrival_s: of the newest accepted fix when it was taken in.
+        is_alive: its liveliness token is there; None when it never showed one.
+        speed_std_m_s: of its horizontal velocity; infinite while that is not known.
+        rejected_share: of its measurements of the last seconds, 0 to 1.
+        is_road_elsewhere: it is said to be higher or lower than any hill puts it.
+    """
+
+    fix_age_s: float | None = None
+    fix_age_on_arrival_s: float | None = None
+    is_alive: bool | None = None
+    speed_std_m_s: float = math.inf
+    rejected_share: float = 0.0
+    is_road_elsewhere: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Below:
+    """What is below the drone.
+
+    Attributes:
+        range_height_m: of the feet above what a range finder sees, None without a fresh reading.
+        range_carried_m: the last such height less what the drone has sunk since, for it may be too near to be seen.
+        ground_enu_m: (3,) where the drone stood, or what its range finder saw before the flight; None while not known.
+    """
+
+    range_height_m: float | None = None
+    range_carried_m: float | None = None
+    ground_enu_m: Array | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Situation:
+    """What is known in this step; None where it is not.
+
+    Attributes:
+        t_ns: now, UTC.
+        monotonic_ns: now, for spans of time.
+        autopilot: as its messages tell.
+        drone: now.
+        pad: now and over the horizon.
+        vehicle: how its data come.
+        below: the drone.
+        feet_offset_m: of the drone's reported position above its feet.
+        reference: the virtual model that the setpoints follow.
+        tracking_error_m: distance of the drone from where it was asked to be at that time.
+        waiting_point_enu_m: (3,) in W.
+        limits: of the flight, the autopilot's own included.
+        speed_limited_by: the autopilot's parameters that may bound the speed.
+        approach: the drone against the pad, None unless both are known; follows from them.
+    """
+
+    t_ns: int
+    monotonic_ns: int
+    autopilot: AutopilotView
+    drone: Drone | None
+    pad: PadPath | None
+    vehicle: VehicleNews
+    below: Below
+    feet_offset_m: float
+    reference: ReferenceState | None
+    tracking_error_m: float
+    waiting_point_enu_m: Array | None
+    limits: FlightLimits | None = None
+    speed_limited_by: tuple[str, ...] = ()
+    approach: Approach | None = field(init=False)
+
+    def __post_init__(self) -> None:
+        approach = None
+        if self.drone is not None and self.pad is not None:
+            approach = _approach(self.drone, self.pad, self.feet_offset_m)
+        object.__setattr__(self, "approach", approach)
+
+
+def _approach(drone: Drone, pad: PadPath, feet_offset_m: float) -> Approach:
     (x, y, z), (vx, vy, vz) = drone.position_enu_m.tolist(), drone.velocity_enu_m_s.tolist()
     (pad_x, pad_y, pad_z), (pad_vx, pad_vy, pad_vz) = pad.position_enu_m[0].tolist(), pad.velocity_enu_m_s[0].tolist()
-    position = (x - pad_x, y - pad_y, z - situation.feet_offset_m - pad_z)
+    position = (x - pad_x, y - pad_y, z - feet_offset_m - pad_z)
     velocity = (vx - pad_vx, vy - pad_vy, vz - pad_vz)
     return Approach(
         position_enu_m=position,
@@ -123,6 +149,11 @@ def approach(situation: Situation) -> Approach | None:
         climb_m_s=velocity[2],
         pad_half_width_m=pad.half_width_m,
     )
+
+
+def with_pad(situation: Situation, pad: PadPath | None) -> Situation:
+    """Return the facts with another pad."""
+    return replace(situation, pad=pad)
 
 
 def drone_now(own: OwnState | None, t_ns: int, yaw_rad: float, age_max_s: float) -> Drone | None:
@@ -177,10 +208,10 @@ def range_carried_m(drone: Drone | None, seen: RangeReading | None, sensor_heigh
     return seen.distance_m - sensor_height_m + float(drone.position_enu_m[2]) - seen.up_m
 
 
-def stands(situation: Situation, config: ChaseConfig) -> bool:
+def vehicle_stands(situation: Situation, config: ChaseConfig) -> bool:
     """Return whether the vehicle is known and stands, as far as its speed is known."""
     if situation.pad is None:
         return False
-    std_m_s = situation.speed_std_m_s
+    std_m_s = situation.vehicle.speed_std_m_s
     unsure_m_s = config.parked_speed_stds * std_m_s if math.isfinite(std_m_s) else 0.0
     return math.hypot(*situation.pad.velocity_enu_m_s[0, :2].tolist()) < max(config.parked_speed_m_s, unsure_m_s)

@@ -1,23 +1,22 @@
 """Makes the estimator that a configuration names."""
 
 from functools import lru_cache
-from typing import Any, assert_never
+from typing import assert_never, cast
 
 import numpy as np
 
 from companion.config.estimation import EstimatorConfig, EstimatorKind
 from companion.core.data import Measurement, Quantity
 from companion.vehicle.buffered import BufferedEstimator
+from companion.vehicle.estimator import Estimator, EstimatorMemory
 from companion.vehicle.imm import ImmModel
 from link.messages import Vector3
-
-AnyEstimator = BufferedEstimator[Any]  # each has its own memory, which only it reads
 
 
 def make_estimator(
     config: EstimatorConfig, antenna_to_pad_m: Vector3 = (0.0, 0.0, 0.0), kind: EstimatorKind | None = None
-) -> AnyEstimator:
-    """Return an estimator; all of them fulfil `companion.vehicle.estimator.Estimator`.
+) -> Estimator:
+    """Return an estimator; each has its own memory, which only it reads.
 
     The lever arm is not part of the memory: when the vehicle tells it later, make the estimator again and go on with
     the same memory. The first call for a kind compiles its kernels, once per machine (some 20 s), so that no later
@@ -38,7 +37,7 @@ def _warm_up(kind: EstimatorKind) -> None:
     """Do once all that an estimator can be asked."""
     estimator = _make(EstimatorConfig(), (1.0, 0.0, 0.0), kind)
     sizes = {Quantity.HEADING: 1, Quantity.YAW_RATE: 1}
-    memory: Any = None
+    memory: EstimatorMemory | None = None
     for i, quantity in enumerate((*Quantity, *Quantity)):
         n = sizes.get(quantity, 3)
         measurement = Measurement(t_ns=i * 10**8, quantity=quantity, value=np.full(n, 0.1), covariance=np.eye(n))
@@ -48,26 +47,33 @@ def _warm_up(kind: EstimatorKind) -> None:
     estimator.forecast(memory, now_ns, np.array([0.0, 1.0]))
 
 
-def _make(config: EstimatorConfig, antenna_to_pad_m: Vector3, kind: EstimatorKind) -> AnyEstimator:
+def _make(config: EstimatorConfig, antenna_to_pad_m: Vector3, kind: EstimatorKind) -> Estimator:
     match kind:
         case EstimatorKind.LKF_REPORT | EstimatorKind.LKF:
             return _linear(config, kind)
         case EstimatorKind.UKF:
             from companion.vehicle.ukf import UkfModel  # noqa: PLC0415 (as in `_linear`)
 
-            return BufferedEstimator(model=UkfModel(config=config.ukf, point_config=config.lkf), config=config.buffer)
+            return _opaque(
+                BufferedEstimator(model=UkfModel(config=config.ukf, point_config=config.lkf), config=config.buffer)
+            )
         case EstimatorKind.IMM:
-            model = ImmModel(config=config.imm, antenna_to_pad_m=antenna_to_pad_m)
-            return BufferedEstimator(model=model, config=config.buffer)
+            imm = ImmModel(config=config.imm, antenna_to_pad_m=antenna_to_pad_m)
+            return _opaque(BufferedEstimator(model=imm, config=config.buffer))
         case _:
             assert_never(kind)
 
 
-def _linear(config: EstimatorConfig, kind: EstimatorKind) -> AnyEstimator:
+def _linear(config: EstimatorConfig, kind: EstimatorKind) -> Estimator:
     from companion.vehicle.lkf import LkfModel  # noqa: PLC0415 (filterpy costs 0.4 s and 60 MB to load)
     from companion.vehicle.lkf_noise import ReportNoise, WhiteJerkNoise  # noqa: PLC0415 (with it)
 
     if kind is EstimatorKind.LKF_REPORT:
         ungated = config.buffer.model_copy(update={"gate_probability": None})
-        return BufferedEstimator(model=LkfModel(noise=ReportNoise(config=config.lkf_report)), config=ungated)
-    return BufferedEstimator(model=LkfModel(noise=WhiteJerkNoise(config=config.lkf)), config=config.buffer)
+        return _opaque(BufferedEstimator(model=LkfModel(noise=ReportNoise(config=config.lkf_report)), config=ungated))
+    return _opaque(BufferedEstimator(model=LkfModel(noise=WhiteJerkNoise(config=config.lkf)), config=config.buffer))
+
+
+def _opaque(estimator: object) -> Estimator:
+    """Return the estimator to those who only hand its memory on."""
+    return cast("Estimator", estimator)

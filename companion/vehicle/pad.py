@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from companion.core.data import Array, Forecast
+from companion.core.reasons import Cause, Reason
 from companion.vehicle.compiled import kept
 from link.messages import PadGeometry
 
-HEADING_UNKNOWN = "vehicle heading unknown"
-NOT_DESCRIBED = "the vehicle has not described its pad"
+HEADING_UNKNOWN, NOT_DESCRIBED = Cause(Reason.HEADING_UNKNOWN), Cause(Reason.PAD_NOT_DESCRIBED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -28,7 +28,7 @@ class PadPath:
         half_width_m: from its centre to the nearest edge; infinite until it is described.
         height_m: of its surface above the vehicle's road.
         needs_heading: it is beside the antenna.
-        unplaced: why the pad's place is not known, in words; None when it is. Until then it is not landed on.
+        unplaced: why the pad's place is not known; None when it is. Until then it is not landed on.
     """
 
     offset_s: Array
@@ -41,7 +41,7 @@ class PadPath:
     half_width_m: float = math.inf
     height_m: float = 0.0
     needs_heading: bool = False
-    unplaced: str | None = None
+    unplaced: Cause | None = None
 
 
 def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:

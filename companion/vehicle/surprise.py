@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from companion.config.landing import DescentConfig
 from companion.core.data import VehicleEstimate
 from companion.vehicle.driving import Driving, brakes_hard, with_velocity
-from companion.vehicle.estimator import Estimator
+from companion.vehicle.estimator import Estimator, EstimatorMemory
 from link.records import replace
 
 _BELIEF_PERIOD_NS = 100_000_000
@@ -35,7 +35,7 @@ class Surprise:
     Attributes:
         beliefs: not checked yet, oldest first.
         speed_std_m_s: of the newest of all; infinite while the speed is not known.
-        surprised_ns: when the newest wrong one was held; None when none was.
+        surprised_ns: when the newest wrong one was held, monotonic; None when none was.
         driving: how it has driven up to the times of the beliefs that have been checked.
     """
 
@@ -45,14 +45,23 @@ class Surprise:
     driving: Driving = field(default_factory=Driving)
 
 
-def looked_back(surprise: Surprise, estimator: Estimator, memory: object, t_ns: int, config: DescentConfig) -> Surprise:
+def update_surprise(
+    surprise: Surprise,
+    estimator: Estimator,
+    memory: EstimatorMemory | None,
+    t_ns: int,
+    *,
+    monotonic_ns: int,
+    config: DescentConfig,
+) -> Surprise:
     """Return the surprise at `t_ns`: beliefs are checked whose time the vehicle's data have reached, and one is added.
 
     Args:
         surprise: so far.
         estimator: of the vehicle.
         memory: the estimator's own, after all that has arrived.
-        t_ns: now.
+        t_ns: now, UTC.
+        monotonic_ns: now, on the clock that is never set.
         config: what counts as wrong.
     """
     newest_ns = estimator.newest_fix_ns(memory)
@@ -70,7 +79,8 @@ def looked_back(surprise: Surprise, estimator: Estimator, memory: object, t_ns: 
             surprise = replace(surprise, driving=with_velocity(surprise.driving, then_ns, known.velocity_enu_m_s))
         is_wrong = off_m_s > max(config.surprise_speed_m_s, _SURPRISE_STDS * std_m_s)
         if is_wrong or (is_sure and brakes_hard(surprise.driving, config)):
-            surprise = replace(surprise, surprised_ns=max(then_ns, surprise.surprised_ns or then_ns))
+            wrong_ns, before_ns = then_ns - t_ns + monotonic_ns, surprise.surprised_ns
+            surprise = replace(surprise, surprised_ns=wrong_ns if before_ns is None else max(wrong_ns, before_ns))
     if surprise.beliefs and t_ns - surprise.beliefs[-1][0] < _BELIEF_PERIOD_NS:
         return surprise
     now = estimator.estimate(memory, t_ns)
@@ -81,10 +91,15 @@ def looked_back(surprise: Surprise, estimator: Estimator, memory: object, t_ns: 
     return replace(surprise, beliefs=beliefs, speed_std_m_s=std_m_s)
 
 
-def may_surprise(surprise: Surprise, t_ns: int, config: DescentConfig) -> bool:
-    """Return whether a driving vehicle is to be expected to do at `t_ns` what it has done."""
+def forget_beliefs(surprise: Surprise) -> Surprise:
+    """Return the surprise after UTC was set: what was believed has lost its time."""
+    return replace(surprise, beliefs=(), driving=replace(surprise.driving, driven=(), changes=()))
+
+
+def may_surprise(surprise: Surprise, monotonic_ns: int, config: DescentConfig) -> bool:
+    """Return whether a driving vehicle is to be expected to do at `monotonic_ns` what it has done."""
     since_ns = surprise.surprised_ns
-    return since_ns is not None and (t_ns - since_ns) * 1e-9 < config.surprise_hold_s
+    return since_ns is not None and (monotonic_ns - since_ns) * 1e-9 < config.surprise_hold_s
 
 
 def _speed_m_s(estimate: VehicleEstimate) -> float:

@@ -43,7 +43,7 @@ class FaultFlight(Lockstep):
     @property
     def phase(self) -> Phase:
         """The companion's."""
-        return self.companion.memory.phase
+        return self.companion.phase
 
     @property
     def follows_setpoints(self) -> bool:

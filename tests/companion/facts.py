@@ -1,22 +1,25 @@
 """Situations and progress for the tests of decisions: a drone, a pad, and what each test of a phase looks at."""
 
-from dataclasses import replace
+from dataclasses import fields, is_dataclass, replace
+from typing import Any, TypeVar
 
 import numpy as np
 
 from companion.autopilots.driver import AutopilotView
 from companion.config.companion import CompanionConfig
-from companion.landing.conditions import update_held
-from companion.landing.decisions import Decision, Progress, decide
-from companion.landing.silence import HEARD
+from companion.core.reasons import Reason
+from companion.landing.decisions import Decision, decide
+from companion.landing.entries import update_held
+from companion.landing.memory import ControlMemory, Held, Progress, StepMemory
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
-from companion.situation.situation import Drone, Situation, approach
+from companion.situation.situation import Below, Drone, Situation, VehicleNews
 from companion.vehicle.pad import HEADING_UNKNOWN, PadPath
 from link.geodesy import Datum
 from link.local_frame import LocalFrame, Projection
 from link.messages import Vector3
 
+R = TypeVar("R", Situation, StepMemory)
 CONFIG = CompanionConfig()
 NOW_NS = 1_795_000_000_000_000_000
 TICK_NS = 20_000_000
@@ -81,48 +84,65 @@ def situation(height_m: float = 1.5, beside_m: float = 0.0, pad: PadPath | None 
     pad = pad_at() if pad is None else pad
     return Situation(
         t_ns=NOW_NS,
+        monotonic_ns=NOW_NS,
         autopilot=FLIES,
         drone=drone_at(height_m, beside_m, pad=pad),
         pad=pad,
+        vehicle=VehicleNews(fix_age_s=0.1, is_alive=True),
+        below=Below(),
         feet_offset_m=GEAR_M,
-        fix_age_s=0.1,
-        vehicle_alive=True,
         reference=reference_at(height_m),
         tracking_error_m=0.05,
         waiting_point_enu_m=np.array([0.0, 0.0, 5.0]),
     )
 
 
-LONG_HEARD = {HEARD.reason: NOW_NS - round(1e9 * CONFIG.abort.heard_hold_s)}
+LONG_HEARD = {Reason.HEARD: NOW_NS - round(1e9 * CONFIG.abort.heard_hold_s)}
 """Vehicle and autopilot, for as long as another approach asks for."""
 
 
+IN_CONTROL = ControlMemory(was_in_control=True, was_armed=True)
+
+
 def progress(phase: Phase, in_phase_s: float = 1.0) -> Progress:
-    return Progress(
-        phase=phase,
-        since_ns=NOW_NS - round(in_phase_s * 1e9),
-        retries=0,
-        may_retry=True,
-        was_in_control=True,
-        was_armed=True,
-        is_interrupted=False,
-        begun_anew={},
-        waited_s=0.0,
-    )
+    return Progress(phase=phase, since_ns=NOW_NS - round(in_phase_s * 1e9))
+
+
+def changed(record: R, **changes: Any) -> R:
+    """The same record with other fields, its own or those of its groups."""
+    own = {name: value for name, value in changes.items() if name in _names(record)}
+    groups = {one.name: getattr(record, one.name) for one in fields(record) if is_dataclass(getattr(record, one.name))}
+    for name, value in ((name, value) for name, value in changes.items() if name not in own):
+        (group,) = (group for group, inner in groups.items() if name in _names(inner))
+        own[group] = replace(own.get(group, groups[group]), **{name: value})
+    return replace(record, **own)
+
+
+def _names(record: Any) -> set[str]:
+    return {one.name for one in fields(record)}
+
+
+def decided(now: Progress, facts: Situation, held: Held | None = None) -> Decision | None:
+    """What is decided by a companion that has the autopilot's control and, unless told, nothing that holds."""
+    return decide(replace(now, held=held or {}), IN_CONTROL, facts, CONFIG)
+
+
+def at_time(facts: Situation, t_ns: int) -> Situation:
+    return replace(facts, t_ns=t_ns, monotonic_ns=t_ns)
 
 
 def later(facts: Situation, by_ns: int) -> Situation:
-    return replace(facts, t_ns=facts.t_ns + by_ns)
+    return at_time(facts, facts.t_ns + by_ns)
 
 
 def first_decision(phase: Phase, facts: Situation, limit_s: float) -> tuple[Decision | None, int]:
     """Return the first decision on facts that stay as they are, and after how many ticks it came."""
-    held: dict[str, int] = {}
+    held: Held = {}
     ticks = 0
     for ticks in range(round(limit_s * 1e9 / TICK_NS) + 1):
         now = later(facts, ticks * TICK_NS)
-        held = update_held(held, phase, now, approach(now), CONFIG)
-        decision = decide(progress(phase, 0.0), now, held, CONFIG)
+        held = update_held(held, phase, now, CONFIG)
+        decision = decided(progress(phase, 0.0), now, held)
         if decision is not None:
             return decision, ticks
     return None, ticks

@@ -11,7 +11,7 @@ from companion.check.rules import ParameterRule
 from companion.config.companion import CompanionConfig
 from companion.landing.feasibility import OBSTACLES
 from link.mavlink.dialect import mavlink
-from tests.golden.reasons import TESTS
+from tests.golden.reasons import CONDITIONS
 
 SINK_M_S = CompanionConfig().descent.descent_rate_max_m_s
 ARDUPILOT_RULES = FIRMWARES[mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA].rules_for(SINK_M_S)
@@ -26,7 +26,7 @@ def rows(page: str) -> list[list[str]]:
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("|")]
 
 
-@pytest.mark.parametrize("reason", [test.reason for test in TESTS])
+@pytest.mark.parametrize("reason", [one.reason.value for one in CONDITIONS])
 def test_each_abort_is_explained(reason: str) -> None:
     told = [row for row in rows("safety.md") if reason in row[0] and len(row) == 3]
     assert told
@@ -36,7 +36,7 @@ def test_each_abort_is_explained(reason: str) -> None:
 def test_each_reason_for_no_retry_is_explained() -> None:
     cells = " ".join(row[0] for row in rows("safety.md"))
     for obstacle in OBSTACLES:
-        assert obstacle.test.reason in cells
+        assert f"`{obstacle.reason.name}`" in cells
 
 
 def test_the_aborts_limits_are_the_defaults() -> None:

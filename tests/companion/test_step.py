@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from companion.core.reasons import Reason
 from companion.situation.phases import LANDING_PHASES, Phase
 from link.messages import Command, PadGeometry
 from tests.companion.world import (
@@ -104,10 +105,10 @@ def test_retries_end_in_a_hold_and_a_new_start_has_them_all_again() -> None:
             flight.run_until(Phase.ALIGN)
             flight.own = replace(flight.own, t_ns=flight.t_ns - 10**9)
             flight.step()
-            assert flight.memory.reason == "own position too old"
+            assert flight.reason is Reason.OWN_POSITION_OLD
             flight.run_until(Phase.CHASE, Phase.HOLD)
             assert flight.phase is (Phase.CHASE if retry < CONFIG.abort.retries_max else Phase.HOLD)
-        assert flight.memory.reason == "no retry left"
+        assert flight.reason is Reason.NO_RETRY_LEFT
         assert flight.history[before:].count(Phase.ABORT) == CONFIG.abort.retries_max + 1
         flight.vehicle = replace(flight.vehicle, start_enu_m=_behind(flight, 20.0))
         flight.step(Command.START)
@@ -115,9 +116,9 @@ def test_retries_end_in_a_hold_and_a_new_start_has_them_all_again() -> None:
 
 def _behind(flight: Flight, distance_m: float) -> tuple[float, float, float]:
     """Where the vehicle started if it is now `distance_m` before the waiting point."""
-    assert flight.memory.waiting_point_enu_m is not None
+    assert flight.memory.places.waiting_point_enu_m is not None
     x, y, z = flight.vehicle.start_enu_m
-    ahead_m = flight.memory.waiting_point_enu_m[0] - distance_m - flight.vehicle.at(flight.t_ns)[0]
+    ahead_m = flight.memory.places.waiting_point_enu_m[0] - distance_m - flight.vehicle.at(flight.t_ns)[0]
     return (x + float(ahead_m), y, z)
 
 
@@ -143,7 +144,7 @@ def test_second_flight_is_like_the_first(end: Phase) -> None:
     flight.run_until(Phase.SECURED)
     expected = ORDER[2:] if end is Phase.HOLD else ORDER[1:]
     assert tuple(flight.history[before:]) == expected
-    assert flight.memory.retries == 0
+    assert flight.memory.progress.retries == 0
 
 
 def test_motors_that_the_autopilot_itself_switches_off_on_the_pad_end_the_landing() -> None:
@@ -170,7 +171,7 @@ def test_unknown_heading_with_a_lever_arm_keeps_the_drone_above_the_height_of_al
             lowest_m = min(lowest_m, flight.own.position_enu_m[2] - GEAR_M - PAD_HEIGHT_M)
             assert outputs.status.reason == "vehicle heading unknown"
     assert lowest_m > 0.9 * CONFIG.descent.align_height_m
-    assert flight.memory.reason == "vehicle heading unknown"
+    assert flight.reason is Reason.HEADING_UNKNOWN
     assert Phase.DESCEND not in flight.history
 
 
@@ -186,7 +187,7 @@ def test_heading_that_becomes_known_lets_the_landing_go_on() -> None:
     flight.vehicle = replace(flight.vehicle, yaw_rad=None)
     flight.step()
     assert flight.phase is Phase.ABORT
-    assert flight.memory.reason == "vehicle heading unknown"
+    assert flight.reason is Reason.HEADING_UNKNOWN
 
 
 def test_vehicle_that_stands_with_an_unknown_heading_is_waited_for() -> None:

@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 
 from companion.autopilots.driver import AutopilotView
 from companion.core.data import Array, Forecast
-from companion.landing.step_data import StepMemory
+from companion.landing.memory import StepMemory
 from companion.situation.phases import Phase
 from companion.step import companion_step
 from link.messages import Command
+from tests.companion.facts import changed
 from tests.companion.world import (
     CONFIG,
     DISARM,
@@ -95,13 +96,13 @@ def test_disarm_is_forced_only_on_the_pad_and_after_a_refusal(  # noqa: PLR0917 
         acknowledgements=tuple(acknowledged),
         autopilot=replace(flown.view, in_control=in_control),
     )
-    driver = replace(flown.memory.driver, asked_ns=None, disarm_asked=asked, disarm_refusals=refusals)
-    memory = replace(flown.memory, phase=phase, phase_since_ns=flown.t_ns, driver=driver, held={})
+    driver = replace(flown.memory.control.driver, asked_ns=None, disarm_asked=asked, disarm_refusals=refusals)
+    memory = changed(flown.memory, phase=phase, since_ns=inputs.monotonic_ns, driver=driver, held={})
     after, outputs = companion_step(memory, inputs, flown.system)
     forced = [one for one in outputs.commands if one.command == DISARM and one.parameters[1] != 0.0]
     refused = refusals > 0 or (asked and any(one == DISARM and result for one, result in acknowledged))
     if forced:
-        assert after.phase is Phase.TOUCHDOWN
+        assert after.progress.phase is Phase.TOUCHDOWN
         assert height_m < CONFIG.descent.commit_height_m + 1e-6
         assert abs(beside_m) < 2.0 * CONFIG.descent.cone_radius_at_pad_m + 1e-6
         assert refused
@@ -111,9 +112,9 @@ def test_moved_origin_resets_the_estimate() -> None:
     flight = reached(Phase.CHASE)
     flight.sends_fixes = False
     flight.view = replace(flight.view, origin_count=2)
-    assert flight.memory.estimator is not None
+    before = flight.memory.vehicle
     flight.step()
-    assert flight.memory.estimator is None
+    assert (before.estimator is None, flight.memory.vehicle.estimator is None) == (False, True)
     assert flight.phase is Phase.ABORT
 
 
@@ -133,7 +134,7 @@ def test_local_frame_that_jumps_takes_the_setpoint_with_it(phase: Phase) -> None
     np.testing.assert_allclose(np.subtract(after.position_enu_m, before.position_enu_m), shift, atol=0.02)
     flight.run(2.0)
     assert flight.phase is phase
-    assert flight.memory.tracking.error_m < 0.1
+    assert flight.memory.model.tracking.error_m < 0.1
 
 
 class _Broken(KnownVehicle):
@@ -196,8 +197,8 @@ def test_step_is_pure(phase: Phase) -> None:
 
 
 def _bytes(memory: StepMemory) -> bytes:
-    held = tuple(sorted(memory.held.items()))
-    return pickle.dumps((replace(memory, held={}), held))
+    held = tuple(sorted((one.name, since_ns) for one, since_ns in memory.progress.held.items()))
+    return pickle.dumps((changed(memory, held={}), held))
 
 
 def test_time_that_stands_still_does_not_move_the_setpoint() -> None:

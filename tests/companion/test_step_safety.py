@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from companion.step import companion_step
 from link.messages import Command
@@ -59,7 +60,7 @@ def test_failsafe_ends_the_companions_flight(phase: Phase) -> None:
     flight.view = replace(flight.view, failsafe=True)
     assert flight.step().setpoint is None
     assert flight.phase is Phase.PILOT
-    assert flight.memory.reason == "autopilot failsafe"
+    assert flight.reason is Reason.AUTOPILOT_FAILSAFE
 
 
 @pytest.mark.parametrize("phase", [Phase.CHASE, Phase.ALIGN, Phase.DESCEND])
@@ -78,12 +79,12 @@ def test_nothing_is_begun_while_the_autopilot_reports_a_failsafe() -> None:
     flight.run_until(Phase.ABORT)
     flight.sends_fixes = True
     flight.run_until(Phase.HOLD)
-    assert "reports a failsafe" in flight.memory.reason
+    assert "reports a failsafe" in flight.sentence
     flight.step()
     reply = flight.step(Command.START).reply
     assert reply is not None
     assert not reply.accepted
-    assert reply.reason == flight.memory.reason
+    assert reply.reason == flight.sentence
 
 
 def test_autopilot_that_never_gives_control_is_given_up() -> None:
@@ -91,7 +92,7 @@ def test_autopilot_that_never_gives_control_is_given_up() -> None:
     flight.start_and_reach(Phase.TAKEOFF)
     flight.run(IMPATIENT.takeoff.refused_after_s + 1.0)
     assert flight.phase is Phase.IDLE
-    assert flight.memory.reason == "the autopilot did not give control in time"
+    assert flight.reason is Reason.CONTROL_REFUSED
     asked = len(flight.commands)
     flight.run(5.0)
     assert len(flight.commands) == asked
@@ -125,7 +126,7 @@ def test_operators_abort_climbs_and_ends_in_a_hold_without_retry(phase: Phase, c
     assert reply.accepted
     flight.run_until(Phase.HOLD)
     assert flight.history[-2:] == [Phase.ABORT, Phase.HOLD]
-    assert flight.memory.reason == "broken off by the operator"
+    assert flight.reason is Reason.BROKEN_OFF
 
 
 def test_operator_can_end_the_retries_during_the_climb() -> None:
@@ -153,10 +154,10 @@ def test_vehicle_that_falls_silent_is_left_upwards_and_held_off(phase: Phase) ->
     flight = reached(phase)
     flight.sends_fixes = False
     flight.run_until(Phase.ABORT, limit_s=CONFIG.abort.fix_age_max_s + 0.1)
-    assert flight.memory.reason == "vehicle data too old"
+    assert flight.reason is Reason.VEHICLE_DATA_OLD
     height_m = flight.own.position_enu_m[2]
     flight.run_until(Phase.HOLD, limit_s=CONFIG.abort.time_limit_s + 0.1)
-    assert flight.memory.reason == "no vehicle data"
+    assert flight.sentence == "no vehicle data"
     assert flight.own.position_enu_m[2] > height_m + 0.8 * CONFIG.abort.height_m
 
 
@@ -165,7 +166,7 @@ def test_drone_that_does_not_know_where_it_is_aborts(phase: Phase) -> None:
     flight = reached(phase)
     flight.own_is_silent = True
     flight.run_until(Phase.ABORT, limit_s=CONFIG.abort.own_age_max_s + 0.1)
-    assert flight.memory.reason == "own position too old"
+    assert flight.reason is Reason.OWN_POSITION_OLD
     flight.run_until(Phase.HOLD, limit_s=CONFIG.abort.time_limit_s + 0.1)
     assert not [one for one in flight.told(DISARM) if one[2] == 0.0]
 
@@ -201,15 +202,15 @@ def test_motors_that_stop_in_the_air_end_the_companions_flight(phase: Phase) -> 
 
 def test_hold_time_of_an_abort_goes_on_through_the_phases_of_an_approach() -> None:
     flight = reached(Phase.ALIGN)
-    while "aligned" not in flight.memory.held:
+    while Reason.ALIGNED not in flight.memory.progress.held:
         flight.step()
     since_ns = flight.t_ns
     flight.vehicle = replace(flight.vehicle, std_m=CONFIG.abort.position_std_max_m + 0.1)
     while flight.phase in (Phase.ALIGN, Phase.DESCEND):
         flight.step()
     assert Phase.DESCEND in flight.history
-    assert flight.memory.reason == "vehicle position too uncertain"
-    assert flight.memory.phase_since_ns - since_ns < (CONFIG.abort.cone_hold_s + 0.05) * 1e9
+    assert flight.reason is Reason.VEHICLE_UNCERTAIN
+    assert flight.memory.progress.since_ns - since_ns < (CONFIG.abort.cone_hold_s + 0.05) * 1e9
 
 
 def test_drone_that_the_pad_has_left_after_contact_is_pressed_down_where_it_is() -> None:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cache
+from typing import cast
 
 import numpy as np
 
@@ -11,11 +12,14 @@ from companion.autopilots.driver import AutopilotView
 from companion.autopilots.px4 import Px4Driver
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array, Forecast, Measurement, OwnState, Quantity, VehicleEstimate
-from companion.landing.step_data import StepInputs, StepMemory, StepOutputs, System
+from companion.core.reasons import Reason, sentence
+from companion.landing.memory import StepMemory
+from companion.landing.step_data import StepInputs, StepOutputs, System
 from companion.planning.kinds import make_guidance
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.step import companion_step
 from companion.vehicle.buffered import BufferHealth
+from companion.vehicle.estimator import Estimator
 from link.frames import quaternion_from_yaw
 from link.geodesy import Datum
 from link.local_frame import LocalFrame, Projection
@@ -32,6 +36,7 @@ IMPATIENT = CONFIG.model_copy(
 )
 START_NS = 1_795_000_000_000_000_000
 STEP_NS = 20_000_000
+UTC_AHEAD_NS = START_NS - 77_000_000_000  # of the monotonic clock
 ORIGIN = Datum(latitude_rad=0.83, longitude_rad=0.14, altitude_m=400.0)
 FRAME = LocalFrame(origin=ORIGIN, projection=Projection.PX4)
 PAD_HEIGHT_M = 1.5
@@ -136,7 +141,15 @@ class Flight:
 
     @property
     def phase(self) -> Phase:
-        return self.memory.phase
+        return self.memory.progress.phase
+
+    @property
+    def reason(self) -> Reason:
+        return self.memory.progress.cause.reason
+
+    @property
+    def sentence(self) -> str:
+        return sentence(self.memory.progress.cause)
 
     def copy(self) -> "Flight":
         other = copy(self)
@@ -145,11 +158,12 @@ class Flight:
 
     @property
     def system(self) -> System:
-        return System(config=self.config, estimator=self.vehicle, guidance=self.guidance)
+        return System(config=self.config, estimator=cast("Estimator", self.vehicle), guidance=self.guidance)
 
     def inputs(self, command: Command | None = None) -> StepInputs:
         return StepInputs(
             t_ns=self.t_ns,
+            monotonic_ns=self.t_ns - UTC_AHEAD_NS,
             limits=self.config.limits.flight_limits(),
             own=self.own,
             autopilot=self.view,
@@ -183,7 +197,7 @@ class Flight:
             if self.phase in phases:
                 return
             self.step()
-        raise AssertionError(f"{phases} not reached in {limit_s} s: {self.history}, {self.memory.reason}")
+        raise AssertionError(f"{phases} not reached in {limit_s} s: {self.history}, {self.sentence}")
 
     def start_and_reach(self, phase: Phase) -> None:
         self.run(0.1)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from link.mavlink.dialect import mavlink
 from link.messages import Command
@@ -38,7 +39,7 @@ class Abort:
     """A flight that is to be broken off.
 
     Attributes:
-        reason: of the abort, without its numbers.
+        reason: of the abort.
         scenario: what is flown.
         companion: settings that differ.
         vehicle: likewise, of the vehicle.
@@ -46,7 +47,7 @@ class Abort:
         fault: what goes wrong, None where a setting alone breaks the flight off.
     """
 
-    reason: str
+    reason: Reason
     scenario: str = "straight_5"
     companion: Mapping[str, Any] = field(default_factory=dict)
     vehicle: Mapping[str, Any] = field(default_factory=dict)
@@ -140,34 +141,34 @@ _ARDUPILOT = "straight_5+firmware=ardupilot"
 _POOR_SENSORS = "straight_5+sensors=degraded"
 
 ABORTS: dict[str, Abort] = {
-    "vehicle_silent": Abort(reason="vehicle data too old", phase=Phase.ALIGN, fault=_vehicle_falls_silent),
+    "vehicle_silent": Abort(reason=Reason.VEHICLE_DATA_OLD, phase=Phase.ALIGN, fault=_vehicle_falls_silent),
     "vehicle_silent_ardupilot": Abort(
-        reason="vehicle data too old", scenario=_ARDUPILOT, phase=Phase.ALIGN, fault=_vehicle_falls_silent
+        reason=Reason.VEHICLE_DATA_OLD, scenario=_ARDUPILOT, phase=Phase.ALIGN, fault=_vehicle_falls_silent
     ),
     "vehicle_uncertain": Abort(
-        reason="vehicle position too uncertain",
+        reason=Reason.VEHICLE_UNCERTAIN,
         companion={"abort": {"fix_age_max_s": 20.0}, "descent": {"aligned_hold_s": 20.0}},
         phase=Phase.ALIGN,
         fault=_vehicle_falls_silent,
     ),
-    "token_lost": Abort(reason="vehicle's link lost", phase=Phase.CHASE, fault=_token_is_lost),
-    "own_position_stops": Abort(reason="own position too old", phase=Phase.ALIGN, fault=_own_position_stops),
-    "own_attitude_stops": Abort(reason="own attitude too old", phase=Phase.ALIGN, fault=_own_attitude_stops),
+    "token_lost": Abort(reason=Reason.VEHICLE_LINK_LOST, phase=Phase.CHASE, fault=_token_is_lost),
+    "own_position_stops": Abort(reason=Reason.OWN_POSITION_OLD, phase=Phase.ALIGN, fault=_own_position_stops),
+    "own_attitude_stops": Abort(reason=Reason.OWN_ATTITUDE_OLD, phase=Phase.ALIGN, fault=_own_attitude_stops),
     "clock_ahead": Abort(
-        reason="vehicle's clock is ahead",
+        reason=Reason.VEHICLE_CLOCK_AHEAD,
         companion={"descent": {"aligned_hold_s": 20.0}},
         phase=Phase.ALIGN,
         fault=_vehicles_clock_is_set,
     ),
     "heading_unknown": Abort(
-        reason="vehicle heading unknown",
+        reason=Reason.HEADING_UNKNOWN,
         scenario="static",
         vehicle=_ANTENNA_OVER_PAD,
         companion=_PARKED,
         fault=_pad_is_described(forward_m=_BESIDE_M, up_m=0.0),
     ),
     "heading_unknown_for_long": Abort(
-        reason="vehicle heading unknown",
+        reason=Reason.HEADING_UNKNOWN,
         scenario="static",
         vehicle=_ANTENNA_OVER_PAD,
         companion=_PARKED | {"descent": {"align_time_limit_s": 1.0}},
@@ -175,61 +176,61 @@ ABORTS: dict[str, Abort] = {
         fault=_pad_is_described(forward_m=_BESIDE_M, up_m=0.0),
     ),
     "not_followed": Abort(  # flown for half a second later than it is: the drone is ahead of where it is asked to be
-        reason="setpoint not followed",
+        reason=Reason.SETPOINT_NOT_FOLLOWED,
         companion={"setpoint_lead_s": 0.5, "corrects_lag": False, "abort": {"tracking_error_max_m": 1.0}},
     ),
     "outside_cone": Abort(
-        reason="outside the descent cone", fault=_when_low(_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0))
+        reason=Reason.OUTSIDE_CONE, fault=_when_low(_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0))
     ),
     "strays": Abort(
-        reason="not over the pad in time",
+        reason=Reason.STRAYS,
         companion={"descent": {"strays_max": 0, "stray_hold_s": 0.2}},
         fault=_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0),
     ),
     "alignment_lost": Abort(
-        reason="alignment lost",
+        reason=Reason.ALIGNMENT_LOST,
         companion={"descent": {"strays_max": 0}},
         phase=Phase.ALIGN,
         fault=_pad_is_described(forward_m=10.0 * _BESIDE_M, up_m=0.0),
     ),
     "contradicting": Abort(
-        reason="vehicle data contradict themselves",
+        reason=Reason.VEHICLE_CONTRADICTS_ITSELF,
         companion={"descent": {"aligned_hold_s": 20.0, "strays_max": 20}},
         phase=Phase.ALIGN,
         fault=velocity_is_in_ned,
     ),
     "too_far": Abort(
-        reason="too far from the start", companion={"limits": {"range_max_m": 6.0, "landing_time_s": 1.0}}
+        reason=Reason.TOO_FAR_FROM_START, companion={"limits": {"range_max_m": 6.0, "landing_time_s": 1.0}}
     ),
-    "outrun": Abort(reason="vehicle faster than the limit", phase=Phase.ALIGN, fault=_limit_is_lowered),
-    "below_pad": Abort(reason="below the pad without contact", fault=_pad_is_described(forward_m=0.0, up_m=_RAISED_M)),
-    "nothing_touched": Abort(reason="nothing touched", fault=_pad_is_described(forward_m=0.0, up_m=_LOWER_M)),
+    "outrun": Abort(reason=Reason.VEHICLE_OUTRUNS, phase=Phase.ALIGN, fault=_limit_is_lowered),
+    "below_pad": Abort(reason=Reason.BELOW_PAD, fault=_pad_is_described(forward_m=0.0, up_m=_RAISED_M)),
+    "nothing_touched": Abort(reason=Reason.NOTHING_TOUCHED, fault=_pad_is_described(forward_m=0.0, up_m=_LOWER_M)),
     "to_be_seen_again": Abort(
-        reason="pad to be seen again",
+        reason=Reason.PAD_TO_BE_SEEN,
         scenario=_POOR_SENSORS,
         companion={"descent": {"unseen_max": 0, "unseen_std_max_m": 0.14}},
     ),
     "not_seen": Abort(
-        reason="pad not seen",
+        reason=Reason.PAD_NOT_SEEN,
         scenario=_POOR_SENSORS,
         companion={"descent": {"unseen_max": 0, "unseen_std_max_m": 0.1, "unseen_hold_s": 0.5, "aligned_hold_s": 20.0}},
     ),
     "seen_too_near": Abort(
-        reason="range finder sees less room than there is to the pad",
+        reason=Reason.SEEN_TOO_NEAR,
         phase=Phase.ALIGN,
         fault=_pad_is_described(forward_m=0.0, up_m=-_LOWER_M),
     ),
     "contact_lost": Abort(
-        reason="# m above the pad after contact",
+        reason=Reason.ABOVE_AFTER_CONTACT,
         phase=Phase.TOUCHDOWN,
         fault=_pad_is_described(forward_m=0.0, up_m=-_RAISED_M),
     ),
-    "chase_too_long": Abort(reason="chase took longer than # s", companion={"chase": {"time_limit_s": 0.2}}),
-    "align_too_long": Abort(reason="align took longer than # s", companion={"descent": {"align_time_limit_s": 0.2}}),
-    "descent_too_long": Abort(reason="descend took longer than # s", companion={"descent": {"time_limit_s": 1.0}}),
+    "chase_too_long": Abort(reason=Reason.CHASE_TOO_LONG, companion={"chase": {"time_limit_s": 0.2}}),
+    "align_too_long": Abort(reason=Reason.ALIGN_TOO_LONG, companion={"descent": {"align_time_limit_s": 0.2}}),
+    "descent_too_long": Abort(reason=Reason.DESCENT_TOO_LONG, companion={"descent": {"time_limit_s": 1.0}}),
     "descent_too_long_ardupilot": Abort(
-        reason="descend took longer than # s", scenario=_ARDUPILOT, companion={"descent": {"time_limit_s": 1.0}}
+        reason=Reason.DESCENT_TOO_LONG, scenario=_ARDUPILOT, companion={"descent": {"time_limit_s": 1.0}}
     ),
-    "operator_aborts": Abort(reason="commanded: abort", phase=Phase.CHASE, fault=_operator(Command.ABORT)),
-    "operator_holds": Abort(reason="commanded: hold", fault=_operator(Command.HOLD)),
+    "operator_aborts": Abort(reason=Reason.OPERATOR_ABORTS, phase=Phase.CHASE, fault=_operator(Command.ABORT)),
+    "operator_holds": Abort(reason=Reason.OPERATOR_HOLDS, fault=_operator(Command.HOLD)),
 }

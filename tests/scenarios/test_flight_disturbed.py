@@ -41,7 +41,7 @@ class Disturbed(Lockstep):
 
     @property
     def phase(self) -> Phase:
-        return self.companion.memory.phase
+        return self.companion.phase
 
     def _advance_companion(self, t_ns: int) -> None:
         if self.vehicle_is_silent:

@@ -1,13 +1,12 @@
 """Data that contradict each other are counted over the last seconds, and told; outages and new beginnings are not."""
 
-from dataclasses import replace
-
 import pytest
 
-from companion.integrity.contradictions import Contradictions, counted
+from companion.core.reasons import Reason, sentence
+from companion.integrity.contradictions import Contradictions, update_contradictions
 from companion.landing.feasibility import obstacle
 from companion.vehicle.buffered import BufferHealth
-from tests.companion.facts import CONFIG, NOW_NS, situation
+from tests.companion.facts import CONFIG, NOW_NS, changed, situation
 
 HALF_NS = 500_000_000
 
@@ -20,11 +19,11 @@ def health(fused: int, gated: int) -> BufferHealth:
 
 def after(per_half_second: list[tuple[int, int]]) -> Contradictions:
     """Count measurements that came accepted and rejected, half a second after half a second."""
-    counts, fused, gated = counted(Contradictions(), health(0, 0), NOW_NS), 0, 0
+    counts, fused, gated = update_contradictions(Contradictions(), health(0, 0), NOW_NS), 0, 0
     for k, (accepted, rejected) in enumerate(per_half_second):
         fused, gated = fused + accepted, gated + rejected
         assert counts.is_due(NOW_NS + (k + 1) * HALF_NS)
-        counts = counted(counts, health(fused, gated), NOW_NS + (k + 1) * HALF_NS)
+        counts = update_contradictions(counts, health(fused, gated), NOW_NS + (k + 1) * HALF_NS)
     return counts
 
 
@@ -40,7 +39,7 @@ def test_of_a_handful_nothing_is_said() -> None:
 
 def test_estimate_that_begins_anew_is_counted_anew() -> None:
     before = after([(6, 4)] * 10)
-    assert counted(before, health(3, 0), NOW_NS + 10**10).rejected_share == 0.0
+    assert update_contradictions(before, health(3, 0), NOW_NS + 10**10).rejected_share == 0.0
 
 
 def test_it_is_not_due_with_every_step() -> None:
@@ -49,7 +48,9 @@ def test_it_is_not_due_with_every_step() -> None:
 
 
 def test_it_keeps_a_landing_from_being_begun_and_is_told_with_the_share() -> None:
-    facts = replace(situation(), rejected_share=0.41)
-    known = obstacle({"vehicle data rejected": NOW_NS}, facts, CONFIG)
+    facts = changed(situation(), rejected_share=0.41)
+    known = obstacle({Reason.MEASUREMENTS_REJECTED: NOW_NS}, facts, CONFIG)
     assert known is not None
-    assert known[1].startswith("vehicle data contradict themselves: 41 % of the last 10 s' measurements were rejected")
+    assert sentence(known).startswith(
+        "vehicle data contradict themselves: 41 % of the last 10 s' measurements were rejected"
+    )

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from companion.core.data import VehicleEstimate
-from companion.integrity.course import CourseWatch, watched, without_contradicted_heading
+from companion.core.reasons import sentence
+from companion.integrity.course import CourseWatch, update_course, without_contradicted_heading
 from companion.situation.phases import Phase
 from companion.vehicle.pad import PadPath
 from link.messages import PadGeometry
@@ -30,7 +31,7 @@ def driving(off_rad: float, speed_m_s: float = 5.0, lateral_m_s2: float = 0.0) -
 
 def after(watch: CourseWatch, pad: PadPath, duration_s: float = 6.0, *, std_m_s: float = STD_M_S) -> CourseWatch:
     for _ in range(round(duration_s / STEP_S)):
-        watch = watched(watch, pad, std_m_s, CONFIG)
+        watch = update_course(watch, pad, std_m_s, CONFIG)
     return watch
 
 
@@ -39,7 +40,8 @@ def test_pad_beside_the_antenna_is_not_placed_by_a_heading_that_is_off(degrees: 
     pad = driving(math.radians(degrees))
     watch = after(CourseWatch(), pad)
     placed = without_contradicted_heading(pad, watch)
-    assert placed.unplaced == f"vehicle heading is {abs(degrees):.0f} degrees off its course"
+    assert placed.unplaced is not None
+    assert sentence(placed.unplaced) == f"vehicle heading is {abs(degrees):.0f} degrees off its course"
 
 
 @pytest.mark.parametrize("degrees", [0.0, 5.0, -10.0])
@@ -53,7 +55,7 @@ def test_white_noise_of_a_cheap_heading_contradicts_nothing() -> None:
     rng = np.random.default_rng(5)
     watch = CourseWatch()
     for _ in range(round(60.0 / STEP_S)):
-        watch = watched(watch, driving(float(rng.normal(0.0, math.radians(10.0)))), STD_M_S, CONFIG)
+        watch = update_course(watch, driving(float(rng.normal(0.0, math.radians(10.0)))), STD_M_S, CONFIG)
         assert watch.off_rad is None
 
 
@@ -123,4 +125,4 @@ def test_vehicle_with_a_wrong_heading_is_followed_not_landed_on_and_the_status_s
     assert flight.phase is Phase.ALIGN
     assert outputs[-1].status.reason == "vehicle heading is 180 degrees off its course"
     flight.run_until(Phase.HOLD)
-    assert flight.memory.reason == "vehicle heading is 180 degrees off its course"
+    assert flight.sentence == "vehicle heading is 180 degrees off its course"

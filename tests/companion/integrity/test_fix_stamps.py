@@ -2,7 +2,8 @@
 
 import pytest
 
-from companion.integrity.fix_stamps import FixStamps, with_newest
+from companion.core.reasons import Reason
+from companion.integrity.fix_stamps import FixStamps, update_fix_stamps
 from companion.situation.phases import Phase
 from link.messages import Command
 from tests.companion.world import CONFIG, LANDING, START_NS, Flight, reached
@@ -16,9 +17,9 @@ def test_landing_on_fixes_from_the_future_is_broken_off(phase: Phase) -> None:
     flight = reached(phase)
     flight.stamps_ahead_s = AHEAD_S
     flight.run_until(Phase.ABORT, limit_s=HOLD_S + 0.1)
-    assert flight.memory.reason == "vehicle's clock is ahead"
+    assert flight.reason is Reason.VEHICLE_CLOCK_AHEAD
     flight.run_until(Phase.HOLD)
-    assert "0.30 s before their stamps" in flight.memory.reason
+    assert "0.30 s before their stamps" in flight.sentence
 
 
 def test_landing_on_fixes_from_the_future_is_not_begun() -> None:
@@ -47,9 +48,9 @@ def test_early_fixes_among_others_change_nothing() -> None:
 
 
 def test_age_is_that_of_the_step_which_took_the_fix_in() -> None:
-    first = with_newest(FixStamps(), START_NS, START_NS + 200_000_000)
+    first = update_fix_stamps(FixStamps(), START_NS, START_NS + 200_000_000)
     assert first.age_on_arrival_s == pytest.approx(0.2)
-    assert with_newest(first, START_NS, START_NS + 900_000_000) == first
-    second = with_newest(first, START_NS + 500_000_000, START_NS + 400_000_000)
+    assert update_fix_stamps(first, START_NS, START_NS + 900_000_000) == first
+    second = update_fix_stamps(first, START_NS + 500_000_000, START_NS + 400_000_000)
     assert second.age_on_arrival_s == pytest.approx(-0.1)
-    assert with_newest(second, None, START_NS) == FixStamps()
+    assert update_fix_stamps(second, None, START_NS) == FixStamps()

@@ -5,20 +5,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from companion.integrity.ground import ground_enu_m, is_road_elsewhere, is_seen_too_near
+from companion.core.reasons import sentence
+from companion.integrity.ground import (
+    is_road_elsewhere,
+    is_seen_too_near,
+    update_ground,
+)  # _elsewhere, is_seen_too_near
 from companion.landing.feasibility import OBSTACLES, obstacle
 from companion.situation.phases import Phase
-from companion.situation.situation import Situation, approach
+from companion.situation.situation import Situation
 from companion.vehicle.pad import PadPath
 from link.messages import Command
-from tests.companion.facts import CONFIG, GEAR_M, PAD_ENU_M, pad_at, situation
+from tests.companion.facts import CONFIG, GEAR_M, PAD_ENU_M, changed, pad_at, situation
 from tests.companion.world import PAD, PAD_HEIGHT_M, Flight, KnownVehicle
 
 
 def near(sunk_m: float, away_m: float, pad: PadPath | None = None) -> Situation:
     """A vehicle whose road is told to be `sunk_m` below ground that is `away_m` from it."""
     pad = replace(pad_at() if pad is None else pad, height_m=PAD_HEIGHT_M)
-    return replace(situation(pad=pad), ground_enu_m=PAD_ENU_M + np.array([0.0, away_m, sunk_m - PAD_HEIGHT_M]))
+    return changed(situation(pad=pad), ground_enu_m=PAD_ENU_M + np.array([0.0, away_m, sunk_m - PAD_HEIGHT_M]))
 
 
 @pytest.mark.parametrize(
@@ -45,8 +50,8 @@ def test_height_that_is_told_vaguely_may_be_farther_off() -> None:
 @pytest.mark.parametrize(("phase", "is_known"), [(Phase.ALIGN, False), (Phase.ABORT, False), (Phase.IDLE, True)])
 def test_ground_is_not_known_after_an_outage_in_flight(phase: Phase, *, is_known: bool) -> None:
     silent = replace(situation(), drone=None)
-    assert (ground_enu_m(PAD_ENU_M, phase, silent) is not None) is is_known
-    assert ground_enu_m(PAD_ENU_M, phase, situation()) is not None
+    assert (update_ground(PAD_ENU_M, phase, silent) is not None) is is_known
+    assert update_ground(PAD_ENU_M, phase, situation()) is not None
 
 
 def test_in_flight_it_is_not_forgotten_of_a_vehicle_that_leaves() -> None:
@@ -58,32 +63,32 @@ def test_in_flight_it_is_not_forgotten_of_a_vehicle_that_leaves() -> None:
 
 
 def test_without_known_ground_nothing_is_said() -> None:
-    assert not is_road_elsewhere(False, Phase.WAITING, replace(near(30.0, 10.0), ground_enu_m=None), CONFIG)
+    assert not is_road_elsewhere(False, Phase.WAITING, changed(near(30.0, 10.0), ground_enu_m=None), CONFIG)
 
 
 def test_ground_is_where_the_drone_stands_and_stays_in_flight() -> None:
     facts = situation(-1.5, 8.0)
     assert facts.drone is not None
     standing = replace(facts, autopilot=replace(facts.autopilot, armed=False, landed=True))
-    ground = ground_enu_m(None, Phase.IDLE, standing)
+    ground = update_ground(None, Phase.IDLE, standing)
     assert ground is not None
     np.testing.assert_allclose(ground, facts.drone.position_enu_m - np.array([0.0, 0.0, GEAR_M]))
-    assert ground_enu_m(ground, Phase.WAITING, situation(4.0, 20.0)) is ground
+    assert update_ground(ground, Phase.WAITING, situation(4.0, 20.0)) is ground
 
 
 def test_ground_of_a_drone_in_the_air_is_what_its_range_finder_sees() -> None:
-    facts = replace(situation(3.5, 8.0), range_height_m=5.0)
+    facts = changed(situation(3.5, 8.0), range_height_m=5.0)
     assert facts.drone is not None
-    ground = ground_enu_m(None, Phase.PILOT, facts)
+    ground = update_ground(None, Phase.PILOT, facts)
     assert ground is not None
     assert ground[2] == pytest.approx(facts.drone.position_enu_m[2] - GEAR_M - 5.0)
-    assert ground_enu_m(None, Phase.PILOT, replace(facts, range_height_m=None)) is None
+    assert update_ground(None, Phase.PILOT, changed(facts, range_height_m=None)) is None
 
 
 def test_roof_that_the_drone_stands_on_is_no_ground() -> None:
     facts = situation(0.0, 0.2)
     standing = replace(facts, autopilot=replace(facts.autopilot, armed=False, landed=True))
-    assert ground_enu_m(None, Phase.IDLE, standing) is None
+    assert update_ground(None, Phase.IDLE, standing) is None
 
 
 @pytest.mark.parametrize(
@@ -91,8 +96,8 @@ def test_roof_that_the_drone_stands_on_is_no_ground() -> None:
     [(1.5, 0.0, False), (1.2, 0.0, False), (1.0, 0.0, True), (0.6, 8.0, False), (0.2, 8.0, True), (3.0, 8.0, False)],
 )
 def test_what_is_seen_nearer_than_the_pad_is_no_room(seen_m: float, beside_m: float, expected: bool) -> None:
-    facts = replace(situation(1.5, beside_m), range_height_m=seen_m)
-    assert is_seen_too_near(facts, approach(facts), CONFIG) is expected
+    facts = changed(situation(1.5, beside_m), range_height_m=seen_m)
+    assert is_seen_too_near(facts, CONFIG) is expected
 
 
 def _refused(flight: Flight) -> str:
@@ -113,11 +118,11 @@ def test_start_beside_a_vehicle_with_other_altitudes_is_refused_with_the_numbers
 
 
 def test_ground_that_an_outage_has_taken_is_not_told_in_numbers() -> None:
-    facts = replace(near(30.0, 10.0), ground_enu_m=None, is_road_elsewhere=True)
-    held = {one.test.reason: 0 for one in OBSTACLES if one.test.is_true(facts, approach(facts), CONFIG)}
+    facts = changed(near(30.0, 10.0), ground_enu_m=None, is_road_elsewhere=True)
+    held = {one.reason: 0 for one in OBSTACLES if one.is_true(facts, CONFIG)}
     told = obstacle(held, facts, CONFIG)
     assert told is not None
-    assert told[1].endswith("land, mend its altitude, start again")
+    assert sentence(told).endswith("land, mend its altitude, start again")
 
 
 def test_vehicle_with_other_altitudes_that_comes_near_is_not_chased() -> None:

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from companion.landing.contact import Verdict, described, may_force_motors_off, signs_of, verdict
+from companion.landing.contact import Verdict, may_force_motors_off, signs_of, signs_text, verdict
 from companion.situation.situation import Situation
 from companion.vehicle.pad_reach import over_pad_radius_m
 from link.messages import Vector3
-from tests.companion.facts import CONFIG, GEAR_M, drone_at, pad_at, reference_at, situation
+from tests.companion.facts import CONFIG, GEAR_M, changed, drone_at, pad_at, reference_at, situation
 
 TOUCHDOWN, DESCENT = CONFIG.touchdown, CONFIG.descent
 ABSURD = st.one_of(st.floats(-1e6, 1e6), st.sampled_from([float("nan"), float("inf"), -float("inf"), 0.0, 1e30, -1e30]))
@@ -43,7 +43,7 @@ def airborne(draw: st.DrawFn) -> Situation:
     drone = replace(
         drone_at(height_m, beside_m, relative, pad=pad_at()), acceleration_up_m_s2=draw(st.floats(-3.0, 3.0))
     )
-    return replace(
+    return changed(
         situation(),
         drone=drone,
         reference=reference_at(height_m - sunk_m),
@@ -75,7 +75,7 @@ def with_fault(facts: Situation, source: str, value: float) -> Situation:
 
 def on_pad() -> Situation:
     """Standing on the pad, the setpoint half sunk into it, the autopilot not believing it."""
-    return replace(situation(0.0, 0.1), reference=reference_at(-0.5 * DESCENT.press_depth_m), range_height_m=0.01)
+    return changed(situation(0.0, 0.1), reference=reference_at(-0.5 * DESCENT.press_depth_m), range_height_m=0.01)
 
 
 @settings(max_examples=400, deadline=None)
@@ -116,12 +116,12 @@ def test_drone_that_stands_on_the_pad_is_in_contact_and_may_be_switched_off() ->
 @pytest.mark.parametrize("range_height_m", [None, 0.05])
 def test_range_finder_and_autopilots_word_are_not_needed(landed: bool | None, range_height_m: float | None) -> None:
     facts = on_pad()
-    facts = replace(facts, range_height_m=range_height_m, autopilot=replace(facts.autopilot, landed=landed))
+    facts = changed(facts, range_height_m=range_height_m, autopilot=replace(facts.autopilot, landed=landed))
     assert verdict(signs_of(facts), CONFIG) is Verdict.CONTACT
 
 
 def test_range_finder_that_sees_the_pad_far_below_puts_off_the_forced_disarm() -> None:
-    signs = signs_of(replace(on_pad(), range_height_m=TOUCHDOWN.range_height_max_m + 0.01))
+    signs = signs_of(changed(on_pad(), range_height_m=TOUCHDOWN.range_height_max_m + 0.01))
     assert verdict(signs, CONFIG) is Verdict.DISPUTED
     assert not may_force_motors_off(signs, TOUCHDOWN.disputed_hold_s - 0.01, CONFIG)
     assert may_force_motors_off(signs, TOUCHDOWN.disputed_hold_s, CONFIG)
@@ -144,7 +144,7 @@ def test_pressed_drone_whose_speeds_are_known_badly_is_switched_off_where_the_ra
     climb_m_s: float, range_height_m: float | None, since_s: float, *, is_forced: bool
 ) -> None:
     drone = drone_at(0.0, 0.0, (0.0, 0.0, climb_m_s), pad=pad_at())
-    signs = signs_of(replace(on_pad(), drone=drone, range_height_m=range_height_m))
+    signs = signs_of(changed(on_pad(), drone=drone, range_height_m=range_height_m))
     assert verdict(signs, CONFIG) is Verdict.AIRBORNE
     assert may_force_motors_off(signs, since_s, CONFIG) is is_forced
     assert not may_force_motors_off(signs, since_s, CONFIG.model_copy(update={"position_only": True}))
@@ -174,6 +174,6 @@ def test_contact_lacks_one_of_its_signs(facts: Situation) -> None:
 
 
 def test_decision_is_described_by_its_signs() -> None:
-    text = described(signs_of(on_pad()))
+    text = signs_text(signs_of(on_pad()))
     assert "0.01 m by range finder" in text
     assert "autopilot not landed" in text

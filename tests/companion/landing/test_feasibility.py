@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from companion.config.companion import CompanionConfig
-from companion.landing.conditions import ABORT_TESTS
+from companion.landing.aborts import ABORTS
 from companion.landing.feasibility import OBSTACLES
 from companion.situation.phases import Phase
 from link.messages import Command
@@ -64,4 +64,4 @@ def test_vehicle_that_slows_down_is_chased_after_all() -> None:
 
 def test_what_makes_a_landing_impossible_is_no_reason_to_break_one_off() -> None:
     # Held under one name, it would begin the climb of an abort anew in every step.
-    assert not {obstacle.test.reason for obstacle in OBSTACLES} & {test.reason for test in ABORT_TESTS}
+    assert not {obstacle.reason for obstacle in OBSTACLES} & {test.reason for test in ABORTS}

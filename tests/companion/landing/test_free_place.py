@@ -9,11 +9,12 @@ from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.driver import Driver
 from companion.autopilots.px4 import Px4Driver
 from companion.landing.flying import has_free_place, setpoint
-from companion.landing.step_data import StepInputs, StepMemory
+from companion.landing.memory import StepMemory
+from companion.landing.step_data import StepInputs
 from companion.landing.virtual_model import Tracking
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
-from tests.companion.facts import CONFIG, NOW_NS, PAD_ENU_M
+from tests.companion.facts import CONFIG, NOW_NS, PAD_ENU_M, changed
 
 LIMITS = CONFIG.limits.flight_limits()
 JITTER_S = 0.04
@@ -21,7 +22,8 @@ JITTER_S = 0.04
 
 def _memory(phase: Phase, speed_m_s: float = 8.0) -> StepMemory:
     """The drone is 0.3 m behind the virtual model, and a lag of 0.5 m has been learnt."""
-    return StepMemory(
+    return changed(
+        StepMemory(),
         phase=phase,
         reference=ReferenceState(
             position_enu_m=PAD_ENU_M,
@@ -35,7 +37,9 @@ def _memory(phase: Phase, speed_m_s: float = 8.0) -> StepMemory:
 
 def _inputs(std_s: float, driver: Driver | None = None) -> StepInputs:
     driver = Px4Driver() if driver is None else driver
-    return StepInputs(t_ns=NOW_NS, limits=LIMITS, driver=driver, link_delay_s=0.1, link_delay_std_s=std_s)
+    return StepInputs(
+        t_ns=NOW_NS, monotonic_ns=NOW_NS, limits=LIMITS, driver=driver, link_delay_s=0.1, link_delay_std_s=std_s
+    )
 
 
 @pytest.mark.parametrize(

@@ -29,9 +29,9 @@ def test_direct_landing_chases_the_pads_centre_and_nothing_else() -> None:
     flight.start_and_reach(Phase.CHASE)
     flight.run(12.0)
     assert flight.phase is Phase.CHASE
-    assert flight.memory.reference is not None
-    wanted = flight.vehicle.at(flight.memory.reference_ns) + np.array([0.0, 0.0, DIRECT.touchdown.gear_height_m])
-    assert flight.memory.reference.position_enu_m == pytest.approx(wanted, abs=0.05)
+    assert flight.memory.model.reference is not None
+    wanted = flight.vehicle.at(flight.memory.model.reference_ns) + np.array([0.0, 0.0, DIRECT.touchdown.gear_height_m])
+    assert flight.memory.model.reference.position_enu_m == pytest.approx(wanted, abs=0.05)
 
 
 def test_staged_chase_keeps_above_the_pad() -> None:
@@ -39,17 +39,17 @@ def test_staged_chase_keeps_above_the_pad() -> None:
     flight.start_and_reach(Phase.CHASE)
     while flight.phase is Phase.CHASE:
         flight.step()
-        assert flight.memory.reference is not None
-        assert flight.memory.reference.position_enu_m[2] > PAD_HEIGHT_M + 1.0
+        assert flight.memory.model.reference is not None
+        assert flight.memory.model.reference.position_enu_m[2] > PAD_HEIGHT_M + 1.0
 
 
 @pytest.mark.parametrize(("corrects_lag", "learnt_m"), [(True, 0.3), (False, 0.0)])
 def test_lag_behind_the_setpoint_is_learnt_only_where_wanted(corrects_lag: bool, learnt_m: float) -> None:
     flight = TrailingFlight(config=DIRECT.model_copy(update={"corrects_lag": corrects_lag}))
     flight.start_and_reach(Phase.CHASE)
-    before = flight.memory.tracking.correction_enu_m.copy()
+    before = flight.memory.model.tracking.correction_enu_m.copy()
     flight.run(1.0)
-    learnt = flight.memory.tracking.correction_enu_m - before
+    learnt = flight.memory.model.tracking.correction_enu_m - before
     assert bool(np.any(learnt != 0.0)) is corrects_lag
     assert 0.0 <= learnt[0] <= learnt_m + 1e-9
 
@@ -62,4 +62,4 @@ def test_heading_of_the_vehicle_is_followed_only_where_wanted(follows: bool) -> 
     flight.start_and_reach(Phase.CHASE)
     flight.run(4.0)
     wanted_rad = flight.vehicle.yaw_rad if follows else start_rad
-    assert flight.memory.yaw_setpoint_rad == pytest.approx(wanted_rad)
+    assert flight.memory.model.yaw_setpoint_rad == pytest.approx(wanted_rad)

@@ -8,16 +8,17 @@ import pytest
 from companion.config.companion import CompanionConfig
 from companion.core.data import OwnState
 from companion.landing.levelling import limits_now
-from companion.landing.step_data import StepInputs, StepMemory
+from companion.landing.memory import StepMemory
+from companion.landing.step_data import StepInputs
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation, drone_now
-from tests.companion.facts import NOW_NS, drone_at, pad_at, situation
+from tests.companion.facts import NOW_NS, changed, drone_at, pad_at, situation
 
 CONFIG = CompanionConfig()
 LIMITS = CONFIG.limits.flight_limits()
-INPUTS = StepInputs(t_ns=NOW_NS, limits=LIMITS)
+INPUTS = StepInputs(t_ns=NOW_NS, monotonic_ns=NOW_NS, limits=LIMITS)
 LEVEL_M_S2 = CONFIG.touchdown.level_acceleration_min_m_s2
-DESCENDS = replace(StepMemory(), phase=Phase.DESCEND)
+DESCENDS = changed(StepMemory(), phase=Phase.DESCEND)
 
 
 def acceleration_max(height_m: float, lean: float, memory: StepMemory = DESCENDS) -> float:
@@ -82,18 +83,18 @@ def test_a_drone_is_levelled_earlier_by_what_its_setpoints_may_be_late(
 def test_the_height_to_be_levelled_at_is_what_a_range_finder_has_just_seen_of_the_pad(
     estimated_m: float, seen_m: float | None, beside_m: float, *, levels: bool
 ) -> None:
-    facts = replace(situation(estimated_m, beside_m), range_height_m=seen_m, range_carried_m=seen_m)
+    facts = changed(situation(estimated_m, beside_m), range_height_m=seen_m, range_carried_m=seen_m)
     limit_m_s2 = limits_now(DESCENDS, facts, INPUTS, CONFIG).acceleration_max_m_s2
     assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
 
 
 def test_nothing_but_a_descent_and_its_abort_is_levelled() -> None:
-    assert acceleration_max(0.05, 0.0, replace(DESCENDS, phase=Phase.ALIGN)) == LIMITS.acceleration_max_m_s2
+    assert acceleration_max(0.05, 0.0, changed(DESCENDS, phase=Phase.ALIGN)) == LIMITS.acceleration_max_m_s2
 
 
 @pytest.mark.parametrize(("height_m", "lean", "levels"), [(0.4, 0.0, True), (0.44, 0.0, False), (0.5, 0.5, True)])
 def test_a_drone_that_breaks_off_climbs_before_it_leans(height_m: float, lean: float, *, levels: bool) -> None:
-    limit_m_s2 = acceleration_max(height_m, lean, replace(DESCENDS, phase=Phase.ABORT))
+    limit_m_s2 = acceleration_max(height_m, lean, changed(DESCENDS, phase=Phase.ABORT))
     assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import pytest
 
+from companion.core.reasons import Reason
 from companion.landing.step_data import StepOutputs
 from companion.situation.phases import Phase
 from tests.companion.world import CONFIG, GEAR_M, Flight
@@ -32,9 +33,9 @@ def test_descent_that_touches_nothing_is_broken_off_each_time_until_no_retry_is_
     flight.start_and_reach(Phase.DESCEND)
     for approach in range(CONFIG.abort.retries_max + 1):
         flight.run_until(Phase.ABORT, limit_s=DESCENT_LIMIT_S)
-        assert flight.memory.reason == "nothing touched"
+        assert flight.reason is Reason.NOTHING_TOUCHED
         flight.run_until(Phase.DESCEND if approach < CONFIG.abort.retries_max else Phase.HOLD)
-    assert flight.memory.reason == "no retry left"
+    assert flight.reason is Reason.NO_RETRY_LEFT
 
 
 def test_pad_that_is_a_hand_lower_is_landed_on() -> None:

@@ -8,11 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from companion.landing.conditions import update_held
-from companion.landing.passing import vehicle_passes
+from companion.core.reasons import Reason
+from companion.landing.decisions import vehicle_passes
+from companion.landing.entries import update_held
 from companion.situation.phases import Event, Phase
-from companion.situation.situation import approach, stands
-from tests.companion.facts import CONFIG, TICK_NS, drone_at, first_decision, pad_at, situation
+from companion.situation.situation import vehicle_stands
+from tests.companion.facts import CONFIG, TICK_NS, changed, drone_at, first_decision, pad_at, situation
 
 HIGH_M = CONFIG.descent.align_height_m
 
@@ -108,11 +109,11 @@ def test_drone_below_the_roof_does_not_begin_a_chase() -> None:
     ],
 )
 def test_vehicle_stands_as_far_as_its_speed_is_known(speed_m_s: float, std_m_s: float, *, expected: bool) -> None:
-    facts = replace(situation(pad=pad_at((speed_m_s, 0.0, 0.0))), speed_std_m_s=std_m_s)
-    assert stands(facts, CONFIG.chase) is expected
-    assert ("vehicle stands" in update_held({}, Phase.WAITING, facts, approach(facts), CONFIG)) is expected
-    assert ("vehicle drives" in update_held({}, Phase.WAITING, facts, approach(facts), CONFIG)) is not expected
+    facts = changed(situation(pad=pad_at((speed_m_s, 0.0, 0.0))), speed_std_m_s=std_m_s)
+    assert vehicle_stands(facts, CONFIG.chase) is expected
+    assert (Reason.VEHICLE_STANDS in update_held({}, Phase.WAITING, facts, CONFIG)) is expected
+    assert (Reason.VEHICLE_DRIVES in update_held({}, Phase.WAITING, facts, CONFIG)) is not expected
 
 
 def test_vehicle_that_is_not_known_does_not_stand() -> None:
-    assert not stands(replace(situation(), pad=None), CONFIG.chase)
+    assert not vehicle_stands(replace(situation(), pad=None), CONFIG.chase)

@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from companion.core.reasons import Cause, Reason
+from companion.landing.memory import StepMemory
 from companion.landing.status import landing_status
-from companion.landing.step_data import StepMemory
 from companion.situation.phases import Phase
 from link import json_payloads
 from link.messages import LandingStatus
-from tests.companion.facts import CONFIG, drone_at, pad_at, situation
+from tests.companion.facts import CONFIG, changed, drone_at, pad_at, situation
 
-MEMORY = StepMemory(phase=Phase.DESCEND, reason="aligned")
+MEMORY = changed(StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED))
 
 
 def test_fields_are_the_drone_against_the_pad() -> None:
@@ -29,7 +30,7 @@ def test_fields_are_the_drone_against_the_pad() -> None:
 
 
 def test_unknown_is_none() -> None:
-    facts = replace(situation(), drone=None, fix_age_s=None)
+    facts = changed(situation(), drone=None, fix_age_s=None)
     status = landing_status(MEMORY, facts, CONFIG)
     assert status.relative_position_enu_m is None
     assert status.relative_velocity_enu_m_s is None
@@ -58,18 +59,18 @@ def test_time_to_contact_is_that_of_the_sink_profile(height_m: float) -> None:
 def test_time_to_contact_is_zero_on_the_pad_and_told_while_descending_only() -> None:
     assert landing_status(MEMORY, situation(-0.1), CONFIG).time_to_contact_s == 0.0
     for phase in Phase:
-        timed = landing_status(replace(MEMORY, phase=phase), situation(), CONFIG).time_to_contact_s is not None
+        timed = landing_status(changed(MEMORY, phase=phase), situation(), CONFIG).time_to_contact_s is not None
         assert timed == (phase in {Phase.ALIGN, Phase.DESCEND})
 
 
 @pytest.mark.parametrize("phase", [Phase.WAITING, Phase.CHASE, Phase.ALIGN])
 def test_unknown_heading_is_named_as_what_the_landing_waits_for(phase: Phase) -> None:
     facts = situation(pad=pad_at(placed=False))
-    assert landing_status(replace(MEMORY, phase=phase), facts, CONFIG).reason == "vehicle heading unknown"
+    assert landing_status(changed(MEMORY, phase=phase), facts, CONFIG).reason == "vehicle heading unknown"
 
 
 def test_status_of_every_phase_passes_its_own_schema() -> None:
     for phase in Phase:
-        for facts in (situation(), replace(situation(), drone=None), replace(situation(), pad=None, fix_age_s=None)):
-            status = landing_status(replace(MEMORY, phase=phase), facts, CONFIG)
+        for facts in (situation(), replace(situation(), drone=None), changed(situation(), pad=None, fix_age_s=None)):
+            status = landing_status(changed(MEMORY, phase=phase), facts, CONFIG)
             assert json_payloads.decode(LandingStatus, json_payloads.encode(status)) == status

@@ -7,6 +7,7 @@ import pytest
 from companion.core.data import RangeReading
 from companion.situation.phases import Phase
 from link.messages import Vector3
+from tests.companion.facts import changed
 from tests.companion.world import CONFIG, DISARM, GEAR_M, STEP_NS, Flight, reached
 
 FORCED = 21196.0
@@ -43,13 +44,13 @@ def _stopped() -> Flight:
     flight.view = replace(flight.view, range_down=range_down)
     _held(flight, falls_m_s2=-3.0, jolt_m_s2=80.0)
     assert flight.phase is Phase.TOUCHDOWN
-    assert flight.memory.stopped_by_pad
+    assert flight.memory.progress.stopped_by_pad
     return flight
 
 
 def _forced_after_s(flight: Flight, *, falls_m_s2: float, limit_s: float = 2.0) -> float | None:
     """When the motors are forced off, since the contact."""
-    contact_ns = flight.memory.phase_since_ns
+    contact_ns = flight.memory.progress.since_ns
     while (flight.t_ns - contact_ns) * 1e-9 < limit_s and flight.phase is Phase.TOUCHDOWN:
         _held(flight, falls_m_s2=falls_m_s2, jolt_m_s2=0.3)
         if (Phase.TOUCHDOWN, DISARM, 0.0, FORCED) in flight.commands:
@@ -83,7 +84,7 @@ def test_evidence_is_the_jolt_the_press_and_the_pads_height_together(change: str
     flight = _stopped()
     match change:
         case "no jolt":
-            flight.memory = replace(flight.memory, stopped_by_pad=False)
+            flight.memory = changed(flight.memory, stopped_by_pad=False)
         case "position only":
             flight.config = CONFIG.model_copy(update={"position_only": True})
         case "lifted":

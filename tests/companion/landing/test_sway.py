@@ -8,12 +8,12 @@ import pytest
 from companion.config.companion import CompanionConfig
 from companion.core.data import OwnState
 from companion.core.gravity import GRAVITY_M_S2
-from companion.landing.step_data import StepMemory
-from companion.landing.sway import Sway, felt, sways
+from companion.landing.memory import StepMemory
+from companion.landing.sway import Sway, is_swaying, update_sway
 from companion.landing.targets import pad_aim
 from companion.landing.waiting import waits_at_m, waits_for_calm
 from companion.situation.phases import Phase
-from tests.companion.facts import GEAR_M, NOW_NS, TICK_NS, pad_at, reference_at, situation
+from tests.companion.facts import GEAR_M, NOW_NS, TICK_NS, changed, pad_at, reference_at, situation
 
 CONFIG = CompanionConfig()
 DESCENT = CONFIG.descent
@@ -34,36 +34,42 @@ def leaning(t_ns: int, tilt_rad: float, towards_rad: float = 0.4) -> OwnState:
     )
 
 
+def _newest_ns(sway: Sway) -> int:
+    assert sway.t_ns is not None
+    return sway.t_ns
+
+
 def after(tilt_rad: float, length_s: float, sway: Sway | None = None, turn_rad_s: float = 0.0) -> Sway:
     sway = Sway() if sway is None else sway
     start_ns = sway.t_ns or NOW_NS
     for i in range(1, round(length_s * 1e9 / TICK_NS) + 1):
-        own = leaning(start_ns + i * TICK_NS, tilt_rad, 0.4 + turn_rad_s * i * TICK_NS * 1e-9)
-        sway = felt(sway, own, DESCENT)
+        own_ns = start_ns + i * TICK_NS
+        own = leaning(own_ns, tilt_rad, 0.4 + turn_rad_s * i * TICK_NS * 1e-9)
+        sway = update_sway(sway, own, own_ns, DESCENT)
     return sway
 
 
 @pytest.mark.parametrize("turn_rad_s", [0.0, 0.4], ids=["wind or speed", "a circle of 20 m at 8 m/s"])
 def test_lean_that_lasts_is_no_sway(turn_rad_s: float) -> None:
-    assert after(STEADY_RAD, 4.0, turn_rad_s=turn_rad_s).swayed_ns == 0
+    assert after(STEADY_RAD, 4.0, turn_rad_s=turn_rad_s).swayed_ns is None
 
 
 @pytest.mark.parametrize(("tilt_rad", "is_sway"), [(TOO_MUCH_RAD, True), (NOT_YET_RAD, False), (0.0, False)])
 def test_lean_far_beyond_that_of_the_last_second_is_sway_at_once(tilt_rad: float, *, is_sway: bool) -> None:
     sway = after(tilt_rad, 0.02, after(STEADY_RAD, 4.0))
-    assert sways(sway, sway.t_ns, DESCENT) is is_sway
+    assert is_swaying(sway, _newest_ns(sway), DESCENT) is is_sway
 
 
 def test_sway_counts_until_the_drone_has_been_calm_for_a_while() -> None:
     sway = after(TOO_MUCH_RAD, 0.02, after(STEADY_RAD, 4.0))
     calm = after(STEADY_RAD, DESCENT.calm_hold_s + 0.1, sway)
-    assert sways(calm, sway.t_ns + round(0.9e9 * DESCENT.calm_hold_s), DESCENT)
-    assert not sways(calm, calm.t_ns, DESCENT)
+    assert is_swaying(calm, _newest_ns(sway) + round(0.9e9 * DESCENT.calm_hold_s), DESCENT)
+    assert not is_swaying(calm, _newest_ns(calm), DESCENT)
 
 
 def test_report_that_is_taken_again_changes_nothing() -> None:
     sway = after(STEADY_RAD, 1.0)
-    assert felt(sway, leaning(sway.t_ns, 0.6), DESCENT) is sway
+    assert update_sway(sway, leaning(_newest_ns(sway), 0.6), _newest_ns(sway), DESCENT) is sway
 
 
 @pytest.mark.parametrize(
@@ -83,16 +89,16 @@ def test_only_a_descent_that_can_still_be_stopped_waits(
     facts = situation(height_m)
     assert facts.drone is not None
     facts = replace(facts, drone=replace(facts.drone, lean=lean))
-    memory = replace(StepMemory(), phase=phase, sway=Sway(t_ns=NOW_NS, swayed_ns=NOW_NS))
+    memory = changed(StepMemory(), phase=phase, sway=Sway(t_ns=NOW_NS, swayed_ns=NOW_NS))
     assert waits_for_calm(memory, facts, CONFIG) is waits
-    assert not waits_for_calm(replace(memory, sway=Sway(t_ns=NOW_NS)), facts, CONFIG)
+    assert not waits_for_calm(changed(memory, sway=Sway(t_ns=NOW_NS)), facts, CONFIG)
 
 
 @pytest.mark.parametrize(
     ("is_coarse", "waiting_m"), [(False, DESCENT.commit_height_m), (True, DESCENT.waiting_height_coarse_m)]
 )
 def test_drone_that_leans_waits_no_lower_than_the_pad_is_known(waiting_m: float, *, is_coarse: bool) -> None:
-    memory = replace(StepMemory(), phase=Phase.DESCEND, sway=Sway(t_ns=NOW_NS, swayed_ns=NOW_NS))
+    memory = changed(StepMemory(), phase=Phase.DESCEND, sway=Sway(t_ns=NOW_NS, swayed_ns=NOW_NS))
     facts = situation(0.3, pad=replace(pad_at(), is_coarse=is_coarse))
     assert waits_at_m(memory, facts, CONFIG) == waiting_m
 

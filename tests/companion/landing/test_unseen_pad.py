@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.core.data import Quantity
-from companion.landing.conditions import update_held
-from companion.landing.decisions import decide
+from companion.landing.entries import update_held
+from companion.landing.memory import Held
 from companion.landing.targets import is_unseen, pad_aim
 from companion.situation.phases import Event, Phase
-from companion.situation.situation import Situation, approach
+from companion.situation.situation import Situation
 from companion.vehicle.pad import PadPath, pad_path
 from scenarios.config import PatternConfig
-from tests.companion.facts import GEAR_M, TICK_NS, later, pad_at, progress, reference_at, situation
+from tests.companion.facts import GEAR_M, TICK_NS, decided, later, pad_at, progress, reference_at, situation
 from tests.companion.vehicle.drives import DEGRADED, NOMINAL, Sensors, circle
 from tests.companion.vehicle.rides import arrivals, estimator, now_ns
 
@@ -36,11 +36,11 @@ def above(height_m: float, std_m: float, *, is_coarse: bool) -> Situation:
 
 def event_within(phase: Phase, facts: Situation, limit_s: float) -> Event | None:
     """The first event on facts that stay as they are."""
-    held: dict[str, int] = {}
+    held: Held = {}
     for tick in range(round(limit_s * 1e9 / TICK_NS) + 1):
         now = later(facts, tick * TICK_NS)
-        held = update_held(held, phase, now, approach(now), CONFIG)
-        decision = decide(progress(phase, 0.0), now, held, CONFIG)
+        held = update_held(held, phase, now, CONFIG)
+        decision = decided(progress(phase, 0.0), now, held)
         if decision is not None:
             return decision[0]
     return None

@@ -2,11 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol, TypeVar
 
 import numpy as np
 
 from companion.core.data import Array, FlightLimits
-from companion.planning.guidance import Guidance, PlanRequest, PlanResult, PlanStatus, ReferenceState, Target
+from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Target
 
 LIMITS = FlightLimits(
     speed_max_m_s=20.0,
@@ -19,6 +20,8 @@ LIMITS = FlightLimits(
 OFFSETS_S: Array = np.linspace(0.0, 3.0, 31)
 NO_FLOOR_M = -1e3
 DT_S = 0.02
+
+M = TypeVar("M")
 
 Motion = Callable[[Array], tuple[Array, Array, Array]]
 """Position, velocity, acceleration (n, 3) at times (n,)."""
@@ -92,8 +95,14 @@ def request_of(
     return PlanRequest(state=state, target=target, limits=limits, floor_enu_m=floor, dt_s=dt_s)
 
 
+class Law(Protocol[M]):
+    """A guidance law with a memory of its own."""
+
+    def plan(self, memory: M | None, request: PlanRequest) -> tuple[M, PlanResult]: ...
+
+
 def fly(
-    guidance: Guidance,
+    guidance: Law[M],
     motion: Motion,
     state: ReferenceState,
     duration_s: float,
@@ -104,7 +113,8 @@ def fly(
     noise_m: Callable[[float], Array] = lambda _: np.zeros(3),
 ) -> Flight:
     """Follow `motion`, forecast exactly but for `noise_m` on the positions; every plan must be solved."""
-    memory, states, results = None, [state], []
+    memory: M | None = None
+    states, results = [state], list[PlanResult]()
     times: Array = np.arange(round(duration_s / dt_s), dtype=np.float64) * dt_s
     for t_s in times:
         target = target_of(motion, float(t_s))

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -9,12 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from companion.config.companion import CompanionConfig
-from companion.landing.shifts import at_other_time
 from companion.situation.phases import Phase
+from companion.vehicle.delay_buffer import DelayBuffer
 from link import cdr, json_payloads
 from link.errors import UserError
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Command, Fix, FixVelocity, LandingStatus, PadGeometry, PadSighting, Plan, VehicleImu
+from tests.companion.facts import changed
 from tests.companion.peer import KEYS, OFFBOARD, POSITION, FakePx4, Setup
 from tests.link.mavlink.fake_autopilot import S
 
@@ -66,7 +68,7 @@ def test_pilots_mode_change_silences_the_node() -> None:
     setup = _flying()
     setup.autopilot.custom_mode = POSITION
     setup.run(0.1)  # CURRENT_MODE comes at 20 Hz
-    assert setup.node.memory.phase is Phase.PILOT
+    assert setup.node.phase is Phase.PILOT
     setpoints, modes = len(setup.autopilot.setpoints()), len(setup.autopilot.commands(SET_MODE))
     setup.run(5.0)
     assert len(setup.autopilot.setpoints()) == setpoints
@@ -78,7 +80,7 @@ def test_dry_run_sends_neither_setpoints_nor_commands_that_fly() -> None:
     setup.run(3.0)
     setup.node.request(Command.START)
     setup.run(3.0)
-    assert setup.node.memory.phase is Phase.TAKEOFF
+    assert setup.node.phase is Phase.TAKEOFF
     assert not setup.autopilot.setpoints()
     assert not setup.autopilot.commands(SET_MODE)
     assert not setup.autopilot.commands(ARM)
@@ -95,11 +97,11 @@ def test_fix_from_the_future_is_counted_and_dropped() -> None:
     setup.fix(late_s=-1.0)
     assert setup.node.bad_payloads == 1
     setup.run(0.1)
-    assert setup.node.memory.estimator is None
+    assert setup.node.memory.vehicle.estimator is None
     setup.fix(late_s=-0.3)
     setup.run(0.1)
     assert setup.node.bad_payloads == 1
-    assert setup.node.memory.estimator is not None
+    assert setup.node.memory.vehicle.estimator is not None
 
 
 def test_late_and_swapped_fixes_leave_the_same_estimate() -> None:
@@ -110,9 +112,8 @@ def test_late_and_swapped_fixes_leave_the_same_estimate() -> None:
         for i in order:
             setup.fix(places[i], late_s=1.0 - 0.1 * i)
         setup.run(0.05)
-        system = setup.node.memory.estimator
-        assert system is not None
-        return np.array([entry.measurement.t_ns for entry in system.entries])
+        memory = cast("DelayBuffer[object]", setup.node.memory.vehicle.estimator)
+        return np.array([entry.measurement.t_ns for entry in memory.entries])
 
     np.testing.assert_array_equal(fly([0, 1, 2, 3, 4, 5]), fly([3, 0, 5, 1, 4, 2]))
 
@@ -121,31 +122,21 @@ def test_late_and_swapped_fixes_leave_the_same_estimate() -> None:
 def test_flight_goes_on_evenly_when_utc_is_set(set_by_s: float) -> None:
     setup = _flying()
     setup.run(3.0)
-    phase, since_s, before = setup.node.memory.phase, _in_phase_s(setup), len(setup.autopilot.setpoints())
+    phase, since_s, before = setup.node.phase, _in_phase_s(setup), len(setup.autopilot.setpoints())
     setup.autopilot.utc_set_by_ns = round(set_by_s * S)
     setup.run(4.0)
     assert abs(setup.node.autopilot.session.clock.local_to_utc_ns(setup.t_ns) - setup.utc_ns) < S
     assert setup.node.outputs is not None
     assert abs(setup.node.outputs.status.stamp_ns - setup.utc_ns) < S
     assert setup.node.outputs.status.relative_position_enu_m is None
-    assert setup.node.memory.phase is phase
+    assert setup.node.phase is phase
     assert _in_phase_s(setup) == pytest.approx(since_s + 4.0, abs=0.3)
     assert len(setup.autopilot.setpoints()) - before > 190
 
 
 def _in_phase_s(setup: Setup) -> float:
-    status = setup.node.outputs
-    assert status is not None
-    return (status.status.stamp_ns - setup.node.memory.phase_since_ns) * 1e-9
-
-
-def test_memory_at_another_time_flies_the_same() -> None:
-    memory = _flying().node.memory
-    shifted = at_other_time(at_other_time(memory, 5 * S), -5 * S)
-    assert shifted.phase_since_ns == memory.phase_since_ns
-    assert shifted.reference_ns == memory.reference_ns
-    assert shifted.driver == memory.driver
-    assert at_other_time(memory, 5 * S).reference_ns == memory.reference_ns + 5 * S
+    assert setup.node.inputs is not None
+    return (setup.node.inputs.monotonic_ns - setup.node.memory.progress.since_ns) * 1e-9
 
 
 def test_local_frame_that_moves_in_flight_is_flown_on_in() -> None:
@@ -188,7 +179,7 @@ def test_bad_payloads_are_counted_and_change_nothing() -> None:
         setup.node.receive_sample(key, b"\x00\x01\x00\x00nonsense")
     setup.run(0.1)
     assert setup.node.bad_payloads == 4
-    assert setup.node.memory.estimator is None
+    assert setup.node.memory.vehicle.estimator is None
 
 
 def test_pad_that_no_vehicle_has_is_counted_and_not_taken() -> None:
@@ -291,7 +282,7 @@ def test_nothing_a_vehicle_says_makes_a_setpoint_absurd(
     setup = _flying()
     setup.node.receive_pad(PadGeometry(size_m=(1.0, 1.0), height_m=1.5, antenna_to_pad_m=lever))
     setup.fix()
-    setup.node.memory = replace(setup.node.memory, phase=Phase.CHASE)  # where the pad is followed
+    setup.node.memory = changed(setup.node.memory, phase=Phase.CHASE)  # where the pad is followed
     for key, message in samples:
         stamped = replace(message, t_ns=setup.utc_ns + message.t_ns)
         try:

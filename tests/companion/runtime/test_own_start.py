@@ -34,14 +34,14 @@ def _flown(command: Command | None, at_s: float = 1.0) -> tuple[Setup, list[Comm
 
 def test_start_follows_once_the_vehicle_is_there() -> None:
     setup, replies = _flown(None)
-    assert setup.node.memory.phase is Phase.TAKEOFF
+    assert setup.node.phase is Phase.TAKEOFF
     assert replies[-1].accepted
 
 
 @pytest.mark.parametrize("command", [Command.ABORT, Command.HOLD])
 def test_abort_or_hold_before_it_calls_the_start_off_for_good(command: Command) -> None:
     setup, replies = _flown(command)
-    assert setup.node.memory.phase is Phase.IDLE
+    assert setup.node.phase is Phase.IDLE
     assert not setup.autopilot.armed
     assert replies == [CommandReply(accepted=True, reason="the start that was to come is called off")]
 

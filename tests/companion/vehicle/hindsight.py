@@ -8,7 +8,7 @@ import numpy as np
 from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.core.data import VehicleEstimate
-from companion.vehicle.surprise import Surprise, looked_back
+from companion.vehicle.surprise import Surprise, update_surprise
 from tests.companion.vehicle.drives import (
     DEGRADED,
     Drive,
@@ -32,7 +32,8 @@ def after(truth: Drive, sensors: Sensors, seed: int, until_s: float) -> Surprise
         while waiting and waiting[-1][0] <= now_ns(i * TICK_S):
             batch.append(waiting.pop()[1])
         memory = chosen.fuse(memory, batch)
-        surprise = looked_back(surprise, chosen, memory, now_ns(i * TICK_S), DESCENT)
+        t_ns = now_ns(i * TICK_S)
+        surprise = update_surprise(surprise, chosen, memory, t_ns, monotonic_ns=t_ns, config=DESCENT)
     return surprise
 
 

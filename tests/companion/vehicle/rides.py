@@ -1,19 +1,19 @@
 """Runs an estimator through a drive and collects what a test wants to see."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from companion.config.estimation import EstimatorConfig, EstimatorKind
 from companion.core.data import Array, Measurement, VehicleEstimate
-from companion.vehicle.factory import AnyEstimator, make_estimator
+from companion.vehicle.estimator import Estimator, EstimatorMemory
+from companion.vehicle.factory import make_estimator
 from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, EPOCH_NS, Drive, Sensors, sense
 
 KINDS = tuple(EstimatorKind)
 
 
-def estimator(kind: EstimatorKind, config: EstimatorConfig | None = None) -> AnyEstimator:
+def estimator(kind: EstimatorKind, config: EstimatorConfig | None = None) -> Estimator:
     return make_estimator(EstimatorConfig() if config is None else config, ANTENNA_TO_PAD_M, kind)
 
 
@@ -29,7 +29,7 @@ class Ride:
     estimates: list[VehicleEstimate]
     ahead: Array
     ahead_std: Array
-    memory: Any
+    memory: EstimatorMemory | None
 
     def errors(self, truth: Drive) -> Array:
         return np.array([e.position_enu_m - truth.at(t)[0] for t, e in zip(self.t_s, self.estimates, strict=True)])
@@ -44,7 +44,7 @@ def arrivals(truth: Drive, sensors: Sensors, seed: int) -> list[Measurement]:
 
 
 def ride(
-    chosen: AnyEstimator,
+    chosen: Estimator,
     truth: Drive,
     sensors: Sensors,
     seed: int,
@@ -57,7 +57,7 @@ def ride(
     """Deliver the measurements when they arrive and ask at `rate_hz` from `from_s` on."""
     waiting = sense(truth, sensors, seed)[::-1]
     end_s = truth.length_s - ahead_s if until_s is None else until_s
-    memory: Any = None
+    memory: EstimatorMemory | None = None
     times, estimates, ahead, stds = [], [], [], []
     for i in range(round(end_s * rate_hz)):
         t_s = i / rate_hz

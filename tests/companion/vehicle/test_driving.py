@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 
 from companion.vehicle.driving import Driving, drives_unevenly, may_depart, turns_hard, winds
-from companion.vehicle.surprise import Surprise, looked_back
+from companion.vehicle.estimator import EstimatorMemory
+from companion.vehicle.surprise import Surprise, update_surprise
 from tests.companion.facts import NOW_NS
 from tests.companion.vehicle.drives import (
     Drive,
@@ -84,7 +85,7 @@ def test_uneven_driving_is_told_from_the_last_seconds_only() -> None:
     surprise, t_ns = Surprise(), NOW_NS
     for i in range(400):
         told: Any = Told(4.0 if i < 200 and i // 20 % 2 else 5.0, 0.01)
-        surprise = looked_back(surprise, told, t_ns, t_ns, DESCENT)
+        surprise = update_surprise(surprise, told, EstimatorMemory(t_ns), t_ns, monotonic_ns=t_ns, config=DESCENT)
         t_ns += 100_000_000
         if i == 199:
             assert surprise.driving.unevenness_m_s2 == pytest.approx(0.5, rel=0.05)
@@ -96,7 +97,7 @@ def test_speeds_before_and_after_an_outage_are_not_compared() -> None:
     for speed_m_s in (1.0, 9.0):
         told: Any = Told(speed_m_s, 0.01)
         for _ in range(22):
-            surprise = looked_back(surprise, told, t_ns, t_ns, DESCENT)
+            surprise = update_surprise(surprise, told, EstimatorMemory(t_ns), t_ns, monotonic_ns=t_ns, config=DESCENT)
             t_ns += 100_000_000
         t_ns, surprise = t_ns + 10_000_000_000, replace(surprise, beliefs=())
     assert len(surprise.driving.driven) == 42

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.landing.conditions import is_over_pad
+from companion.landing.aborts import is_over_pad
 from companion.landing.contact import Verdict, signs_of, verdict
 from companion.landing.targets import is_unseen
 from companion.situation.phases import Phase
-from companion.situation.situation import Situation, approach
+from companion.situation.situation import Situation
 from companion.vehicle.pad_reach import cone_radius_at_pad_m, cone_radius_m, over_pad_radius_m, unseen_std_max_m
 from link.messages import Command
 from tests.companion.facts import CONFIG, pad_at, reference_at, situation
@@ -43,7 +43,7 @@ def test_all_that_is_taken_for_a_small_pad_lies_on_it(half_width_m: float, heigh
 def test_what_is_beside_a_small_pad_is_no_contact_with_it(width_m: float, expected: Verdict) -> None:
     facts = standing(0.3, width_m)
     assert verdict(signs_of(facts), CONFIG) is expected
-    relative = approach(facts)
+    relative = facts.approach
     assert relative is not None
     assert is_over_pad(relative, CONFIG) is (expected is Verdict.CONTACT)
 

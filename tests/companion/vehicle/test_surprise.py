@@ -9,14 +9,14 @@ import pytest
 from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.core.data import VehicleEstimate
-from companion.landing.shifts import at_other_time
-from companion.landing.step_data import StepMemory
+from companion.landing.memory import StepMemory
 from companion.landing.waiting import waits_at_m
 from companion.situation.phases import Phase
 from companion.vehicle.driving import Driving
-from companion.vehicle.surprise import Surprise, looked_back, may_surprise
+from companion.vehicle.estimator import EstimatorMemory
+from companion.vehicle.surprise import Surprise, forget_beliefs, may_surprise, update_surprise
 from link.messages import Vector3
-from tests.companion.facts import NOW_NS, drone_at, pad_at, situation
+from tests.companion.facts import NOW_NS, changed, drone_at, pad_at, situation
 from tests.companion.vehicle.drives import (
     NOMINAL,
     Drive,
@@ -28,7 +28,7 @@ from tests.companion.vehicle.drives import (
 )
 from tests.companion.vehicle.hindsight import DESCENT, LATE, Told, after
 from tests.companion.vehicle.rides import estimator, now_ns
-from tests.companion.world import PAD_HEIGHT_M, Flight, KnownVehicle
+from tests.companion.world import PAD_HEIGHT_M, UTC_AHEAD_NS, Flight, KnownVehicle
 
 CONFIG = CompanionConfig()
 BEGUN_S = 2.0  # until then an estimate may be surprised by what it has not known yet
@@ -64,7 +64,14 @@ def test_belief_surprises_by_more_than_it_was_said_to_be_off(
     off_m_s: float, std_m_s: float, *, surprises: bool
 ) -> None:
     told: Any = Told(5.0, 0.01)
-    found = looked_back(Surprise(beliefs=((NOW_NS, 5.0 + off_m_s, std_m_s),)), told, NOW_NS, NOW_NS, DESCENT)
+    found = update_surprise(
+        Surprise(beliefs=((NOW_NS, 5.0 + off_m_s, std_m_s),)),
+        told,
+        EstimatorMemory(NOW_NS),
+        NOW_NS,
+        monotonic_ns=NOW_NS,
+        config=DESCENT,
+    )
     assert (found.surprised_ns is not None) is surprises
 
 
@@ -78,7 +85,7 @@ def test_surprise_holds_for_its_time_and_no_longer() -> None:
 
 def test_beliefs_end_with_the_estimate_that_they_were() -> None:
     surprise = Surprise(beliefs=((NOW_NS, 5.0, 0.1),), speed_std_m_s=0.1, surprised_ns=NOW_NS)
-    found = looked_back(surprise, estimator(EstimatorKind.IMM), None, NOW_NS, DESCENT)
+    found = update_surprise(surprise, estimator(EstimatorKind.IMM), None, NOW_NS, monotonic_ns=NOW_NS, config=DESCENT)
     assert found == Surprise(surprised_ns=NOW_NS)
 
 
@@ -89,7 +96,9 @@ def test_beliefs_end_with_the_estimate_that_they_were() -> None:
 )
 def test_speed_is_as_uncertain_as_it_is_told_and_unknown_once_it_is_lost(variance_m2_s2: float, std_m_s: float) -> None:
     told: Any = Told(5.0, variance_m2_s2)
-    found = looked_back(Surprise(speed_std_m_s=0.1), told, NOW_NS - 10, NOW_NS, DESCENT)
+    found = update_surprise(
+        Surprise(speed_std_m_s=0.1), told, EstimatorMemory(NOW_NS - 10), NOW_NS, monotonic_ns=NOW_NS, config=DESCENT
+    )
     assert found.speed_std_m_s == pytest.approx(std_m_s)
 
 
@@ -100,11 +109,10 @@ def test_surprise_outlasts_a_clock_that_is_set() -> None:
         surprised_ns=NOW_NS,
         driving=Driving(driven=((NOW_NS, 3.0, 4.0),), changes=((0.5, 0.0),), unevenness_m_s2=0.5),
     )
-    by_ns = 7_000_000_000
-    assert at_other_time(StepMemory(surprise=surprise), by_ns).surprise == replace(
-        surprise, beliefs=(), driving=Driving(unevenness_m_s2=0.5), surprised_ns=NOW_NS + by_ns
-    )
-    assert at_other_time(StepMemory(), by_ns).surprise == Surprise()
+    kept = replace(surprise, beliefs=(), driving=Driving(unevenness_m_s2=0.5))
+    assert forget_beliefs(surprise) == kept
+    assert may_surprise(kept, NOW_NS, DESCENT)
+    assert forget_beliefs(Surprise()) == Surprise()
 
 
 @dataclass(frozen=True)
@@ -123,7 +131,7 @@ def test_step_looks_back_at_what_it_has_believed(kind: type[KnownVehicle]) -> No
     flight.run(0.5)
     flight.sends_fixes = True
     flight.run(0.1)
-    assert may_surprise(flight.memory.surprise, flight.t_ns, DESCENT) is (kind is Braking)
+    assert may_surprise(flight.memory.vehicle.surprise, flight.t_ns - UTC_AHEAD_NS, DESCENT) is (kind is Braking)
 
 
 @pytest.mark.parametrize(
@@ -142,7 +150,7 @@ def test_descent_waits_until_the_drone_has_settled_as_far_as_that_is_known(
 ) -> None:
     pad = pad_at()
     here = replace(situation(0.9), drone=drone_at(0.9, 0.0, (0.6 * speed_m_s, -0.8 * speed_m_s, 0.0), pad=pad))
-    memory = StepMemory(phase=Phase.DESCEND, surprise=Surprise(speed_std_m_s=std_m_s))
+    memory = changed(StepMemory(), phase=Phase.DESCEND, surprise=Surprise(speed_std_m_s=std_m_s))
     assert waits_at_m(memory, here, CONFIG) == (DESCENT.waiting_height_m if waits else None)
 
 
@@ -161,6 +169,6 @@ def test_descent_waits_above_a_driving_vehicle_that_has_surprised(
     phase: Phase, height_m: float, velocity: Vector3, *, surprised: bool, waits: bool
 ) -> None:
     surprise = Surprise(surprised_ns=NOW_NS - 10 if surprised else None)
-    memory = StepMemory(phase=phase, surprise=surprise)
+    memory = changed(StepMemory(), phase=phase, surprise=surprise)
     waiting_m = waits_at_m(memory, situation(height_m, pad=pad_at(velocity)), CONFIG)
     assert waiting_m == (DESCENT.waiting_height_m if waits else None)

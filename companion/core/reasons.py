@@ -1,0 +1,138 @@
+"""Why the landing is where it is: each reason once, with the sentence that it is told by.
+
+What decides, counts or compares does so by the `Reason`; the sentence, with its numbers, is made where it is shown.
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class Reason(Enum):
+    """A reason; its value is the sentence, with a place for each of the values that go with it."""
+
+    __hash__ = object.__hash__  # by identity, as members compare: a name is hashed anew at every look-up
+
+    # The landing goes on.
+    WAITING_FOR_START = "waiting for a start"
+    OPERATOR_STARTS = "commanded: start"
+    AT_WAITING_POINT = "waiting for the vehicle"
+    VEHICLE_PASSES = "vehicle passes at {:.1f} m/s"
+    VEHICLE_STANDS = "vehicle stands"
+    VEHICLE_DRIVES = "vehicle drives"
+    OVER_PAD = "{:.1f} m from the pad"
+    ALIGNED = "aligned"
+    CONTACT = "contact: {}"
+    DISPUTED_CONTACT = "contact against the range finder: {}"
+    HARD_CONTACT = "hard contact: {}"
+    HELD_UP = "held up"
+    MOTORS_OFF = "motors are off on the pad"
+    HEARD = "heard"
+    HEARD_AGAIN = "heard again: the same approach goes on"
+    RETRY = "retry {} of {}"
+
+    # A descent stays above the pad for a while.
+    SPEED_SURPRISED = "waits above the pad: the vehicle's speed has surprised"
+    SPEED_UNEVEN = "waits above the pad: the vehicle's speed changes all the time"
+    ROAD_TURNS_HARD = "waits above the pad: the road turns hard"
+    ROAD_WINDS = "waits above the pad: the road winds"
+    SPEED_CHANGES = "waits above the pad: the vehicle brakes or speeds up"
+    NOT_OVER_PAD = "waits above the pad: the drone is not over the pad"
+    OFF_CENTRE = "waits above the pad: farther than {:g} m from the pad's centre"
+    UNSETTLED = "waits above the pad: faster than {:g} m/s against the pad"
+
+    # An approach is unsafe, or takes too long.
+    OPERATOR_ABORTS = "commanded: abort"
+    OPERATOR_HOLDS = "commanded: hold"
+    VEHICLE_DATA_OLD = "vehicle data too old"
+    VEHICLE_UNCERTAIN = "vehicle position too uncertain"
+    VEHICLE_LINK_LOST = "vehicle's link lost"
+    VEHICLE_CLOCK_AHEAD = "vehicle's clock is ahead"
+    VEHICLE_CONTRADICTS_ITSELF = "vehicle data contradict themselves"
+    VEHICLE_OUTRUNS = "vehicle faster than the limit"
+    OWN_POSITION_OLD = "own position too old"
+    OWN_ATTITUDE_OLD = "own attitude too old"
+    SETPOINT_NOT_FOLLOWED = "setpoint not followed"
+    OUTSIDE_CONE = "outside the descent cone"
+    TOO_FAST_NEAR_PAD = "too fast against the pad"
+    SEEN_TOO_NEAR = "range finder sees less room than there is to the pad"
+    TOO_FAR_FROM_START = "too far from the start"
+    BELOW_PAD = "below the pad without contact"
+    NOTHING_TOUCHED = "nothing touched"
+    STRAYS = "not over the pad in time"
+    ALIGNMENT_LOST = "alignment lost"
+    PAD_TO_BE_SEEN = "pad to be seen again"
+    PAD_NOT_SEEN = "pad not seen"
+    TAKEOFF_TOO_LONG = "takeoff took longer than {:g} s"
+    CHASE_TOO_LONG = "chase took longer than {:g} s"
+    ALIGN_TOO_LONG = "align took longer than {:g} s"
+    DESCENT_TOO_LONG = "descend took longer than {:g} s"
+    ABOVE_AFTER_CONTACT = "{:.1f} m above the pad after contact"
+    BELOW_AFTER_CONTACT = "below the pad after contact"
+
+    # Where on the vehicle the pad is, is not known.
+    PAD_NOT_DESCRIBED = "the vehicle has not described its pad"
+    HEADING_UNKNOWN = "vehicle heading unknown"
+    HEADING_OFF_COURSE = "vehicle heading is {:.0f} degrees off its course"
+
+    # No other approach is made.
+    BROKEN_OFF = "broken off by the operator"
+    NO_VEHICLE_DATA = "no vehicle data"
+    HEARD_WITH_BREAKS = "vehicle or autopilot heard of with breaks only"
+    NO_RETRY_LEFT = "no retry left"
+
+    # Another one is in command.
+    AUTOPILOT_LOST = "out of touch with the autopilot"
+    AUTOPILOT_FAILSAFE = "autopilot failsafe"
+    AUTOPILOT_RESTARTED = "autopilot restarted"
+    MODE_CHANGED = "mode changed by the pilot"
+    DISARMED = "disarmed"
+    CONTROL_REFUSED = "the autopilot did not give control in time"
+    ARMING_REFUSED = "the autopilot did not arm in time: {}"
+
+    # A landing on this vehicle cannot be done.
+    STAMPS_AHEAD = "vehicle's fixes come {:.2f} s before their stamps: set its clock by GNSS or NTP, or the autopilot's"
+    VEHICLE_TOO_FAST = "vehicle at {:.1f} m/s needs {:.1f} m/s, the limit is {:.1f}: raise {} or drive slower"
+    VEHICLE_TOO_FAR = (
+        "vehicle at {:.1f} m/s goes {:.0f} m in {:g} s, limits.range_max_m is {:g}: raise it or drive slower"
+    )
+    HEIGHTS_APART = (
+        "heights cannot be compared: the vehicle's are above the ellipsoid, and the autopilot tells its own above the "
+        "sea only (no alt_ellipsoid in GPS_RAW_INT): set geoid_height_m"
+    )
+    AUTOPILOT_WARNS = (
+        "the autopilot reports a failsafe (battery, radio, ground station): end its cause, see its own messages"
+    )
+    MEASUREMENTS_REJECTED = (
+        "vehicle data contradict themselves: {:.0f} % of the last 10 s' measurements were rejected: see the axes of "
+        "its velocity, its stamps, its receiver"
+    )
+    BATTERY_LOW = "battery at {:.0f} %, limits.battery_min_share is {:.0f} %: charge it"
+    PAD_TOO_SMALL = "pad is {:.2f} m wide, descent.pad_width_min_m is {:.2f}: use a larger pad"
+    ROAD_ELSEWHERE = "the vehicle's road {}"
+    ROOF_TOO_HIGH = (
+        "waiting {:.1f} m above the pad, {:.1f} m are needed: raise takeoff.waiting_height_m by {:.1f} m or hover "
+        "higher"
+    )
+
+    # A command is refused.
+    NOTHING_TO_DO = "nothing to {} in phase {}"
+    NO_AUTOPILOT = "no autopilot is connected"
+    NO_ORIGIN = "the autopilot has no origin yet"
+    NO_OWN_POSITION = "the autopilot reports no local position yet"
+    NO_OWN_ATTITUDE = "the autopilot's attitude is too old"
+    IN_FAILSAFE = "the autopilot is in failsafe"
+    RIDES_ALONG = "the drone stands on the vehicle, which drives at {:.1f} m/s: stop it first"
+    DRONE_UNKNOWN = "the drone's position is not known"
+
+
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """A reason with the values that its sentence tells, as they were when it was decided."""
+
+    reason: Reason
+    values: tuple[float | str, ...] = ()
+
+
+def sentence(cause: Cause) -> str:
+    """Return what is told of a cause."""
+    return cause.reason.value.format(*cause.values)

@@ -1,0 +1,151 @@
+"""What makes an approach unsafe: conditions of a step's facts, each with the time that it must hold; pure."""
+
+import math
+
+from companion.config.companion import CompanionConfig
+from companion.core.reasons import Cause, Reason
+from companion.integrity.contradictions import contradicts_itself
+from companion.integrity.ground import is_seen_too_near
+from companion.landing.condition import AUTOPILOT_SILENT, VEHICLE_SILENT, Condition, is_fix_old
+from companion.landing.contact_conditions import MISSED
+from companion.landing.targets import changes_speed, is_unseen, is_vague
+from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
+from companion.situation.situation import Approach, Situation
+from companion.vehicle.pad_reach import cone_radius_m, over_pad_radius_m
+
+_DESCENT = frozenset({Phase.DESCEND})
+
+
+def is_uncertain(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the pad is not known well enough to come near it."""
+    return s.pad is not None and is_vague(s.pad, c)
+
+
+def must_be_seen(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the pad has to be seen (again) before it is landed on."""
+    return s.pad is not None and is_unseen(s.pad, c)
+
+
+def _is_token_lost(s: Situation, c: CompanionConfig) -> bool:
+    age_s = s.vehicle.fix_age_s
+    return s.vehicle.is_alive is False and (age_s is None or age_s > c.abort.alive_lost_fix_age_max_s)
+
+
+def is_stamped_ahead(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the newest fix came before it was taken: the vehicle's clock, or ours, is wrong."""
+    age_s = s.vehicle.fix_age_on_arrival_s
+    return age_s is not None and age_s < -c.abort.fix_ahead_max_s
+
+
+def is_pad_unplaced(s: Situation, _: CompanionConfig) -> bool:
+    """Return whether nobody knows where on the vehicle the pad is: no heading is known, or no description."""
+    return s.pad is not None and s.pad.unplaced is not None
+
+
+def unplaced(s: Situation) -> Cause | None:
+    """Return why nobody knows it, None when the place is known or no vehicle is."""
+    return None if s.pad is None else s.pad.unplaced
+
+
+def _is_not_followed(s: Situation, c: CompanionConfig) -> bool:
+    return s.tracking_error_m > c.abort.tracking_error_max_m
+
+
+def _is_beside_cone(a: Approach, c: CompanionConfig) -> bool:
+    return a.distance_m > cone_radius_m(a.height_m, a.pad_half_width_m, c)
+
+
+def must_wait(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether a descent is to stay above the pad for now: what a change of the vehicle's speed does, passes."""
+    return strays(s, c) or (s.pad is not None and changes_speed(s.pad, c.descent))
+
+
+def _is_outside_cone(s: Situation, c: CompanionConfig) -> bool:
+    a = s.approach
+    return a is not None and a.height_m < c.abort.near_height_m and _is_beside_cone(a, c)
+
+
+def strays(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the drone leaves the cone above the pad, or moves against the pad too fast to touch it."""
+    a = s.approach
+    return a is not None and (_is_beside_cone(a, c) or a.speed_m_s > c.abort.near_speed_max_m_s)
+
+
+def is_over_pad(a: Approach, c: CompanionConfig) -> bool:
+    """Return whether the drone is so near the pad's centre that what it touches is the pad."""
+    return a.distance_m < over_pad_radius_m(a.pad_half_width_m, c)
+
+
+def _is_too_fast_near_pad(s: Situation, c: CompanionConfig) -> bool:
+    a = s.approach
+    return a is not None and a.height_m < c.abort.near_height_m and a.speed_m_s > c.abort.near_speed_max_m_s
+
+
+def is_out_of_range(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the drone is farther from the waiting point than it may go."""
+    if s.drone is None or s.waiting_point_enu_m is None:
+        return False
+    return math.hypot(*(s.drone.position_enu_m - s.waiting_point_enu_m)[:2].tolist()) > c.limits.range_max_m
+
+
+def _outruns(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the vehicle is faster than the drone may fly, since a limit was lowered or it drives faster."""
+    if s.limits is None or s.pad is None or is_fix_old(s, c):
+        return False
+    return math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist()) > s.limits.speed_max_m_s
+
+
+ABORTS = (
+    VEHICLE_SILENT,
+    Condition(
+        reason=Reason.VEHICLE_UNCERTAIN,
+        phases=NEAR_PHASES,
+        is_true=is_uncertain,
+        hold_s=lambda c: c.abort.cone_hold_s,
+    ),
+    Condition(reason=Reason.VEHICLE_LINK_LOST, phases=LANDING_PHASES, is_true=_is_token_lost),
+    Condition(
+        reason=Reason.VEHICLE_CLOCK_AHEAD,
+        phases=LANDING_PHASES,
+        is_true=is_stamped_ahead,
+        hold_s=lambda c: c.abort.fix_ahead_hold_s,
+    ),
+    *AUTOPILOT_SILENT,
+    Condition(
+        reason=Reason.HEADING_UNKNOWN,
+        phases=_DESCENT,
+        is_true=is_pad_unplaced,
+        cause=lambda s, _: unplaced(s) or Cause(Reason.HEADING_UNKNOWN),
+    ),
+    Condition(
+        reason=Reason.SETPOINT_NOT_FOLLOWED,
+        phases=LANDING_PHASES,
+        is_true=_is_not_followed,
+        hold_s=lambda c: c.abort.tracking_hold_s,
+    ),
+    Condition(
+        reason=Reason.OUTSIDE_CONE, phases=_DESCENT, is_true=_is_outside_cone, hold_s=lambda c: c.abort.cone_hold_s
+    ),
+    Condition(
+        reason=Reason.TOO_FAST_NEAR_PAD,
+        phases=_DESCENT,
+        is_true=_is_too_fast_near_pad,
+        hold_s=lambda c: c.abort.near_speed_hold_s,
+    ),
+    Condition(
+        reason=Reason.SEEN_TOO_NEAR,
+        phases=LANDING_PHASES,
+        is_true=is_seen_too_near,
+        hold_s=lambda c: c.touchdown.range_off_hold_s,
+    ),
+    Condition(reason=Reason.VEHICLE_CONTRADICTS_ITSELF, phases=LANDING_PHASES, is_true=contradicts_itself),
+    Condition(
+        reason=Reason.VEHICLE_OUTRUNS,
+        phases=LANDING_PHASES,
+        is_true=_outruns,
+        hold_s=lambda c: c.chase.driving_hold_s,
+    ),
+    Condition(reason=Reason.TOO_FAR_FROM_START, phases=LANDING_PHASES, is_true=is_out_of_range),
+    *MISSED,
+)
+"""What makes an approach unsafe, the first that holds first."""

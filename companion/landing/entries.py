@@ -1,0 +1,140 @@
+"""What leads from one phase of an approach to another, and what is waited for; conditions of a step's facts, pure."""
+
+import math
+from functools import cache
+
+from companion.config.companion import CompanionConfig
+from companion.config.landing import LandingStyle
+from companion.core.reasons import Reason
+from companion.landing.aborts import ABORTS, is_pad_unplaced, must_be_seen, strays
+from companion.landing.condition import HEARD, Condition, is_fix_old
+from companion.landing.contact_conditions import HELD_UP, LIFTED, STOPPED_BY_PAD, TOUCHED, TOUCHED_BY_DISPUTE
+from companion.landing.memory import Held
+from companion.landing.targets import chase_floor_m
+from companion.situation.phases import Event, Phase
+from companion.situation.situation import Situation, vehicle_stands
+
+_DESCENT = frozenset({Phase.DESCEND})
+_ALIGNMENT = frozenset({Phase.ALIGN})
+_WAITING = frozenset({Phase.WAITING})
+
+
+def _must_be_seen_above(s: Situation, c: CompanionConfig) -> bool:
+    return must_be_seen(s, c) and _is_above_commitment(s, c)
+
+
+def _strays_above(s: Situation, c: CompanionConfig) -> bool:
+    return _is_above_commitment(s, c) and strays(s, c)
+
+
+def _is_above_commitment(s: Situation, c: CompanionConfig) -> bool:
+    return s.approach is not None and s.approach.height_m > c.descent.commit_height_m
+
+
+def _is_aligned(s: Situation, c: CompanionConfig) -> bool:
+    if s.approach is None or is_pad_unplaced(s, c) or must_be_seen(s, c):
+        return False
+    is_over = s.approach.distance_m < c.descent.aligned_distance_m
+    return is_over and s.approach.speed_m_s < c.descent.aligned_speed_m_s
+
+
+def _is_far_off(s: Situation, c: CompanionConfig) -> bool:
+    if s.approach is None or c.landing is LandingStyle.DIRECT:
+        return False
+    return s.approach.distance_m > 2.0 * c.descent.align_distance_m
+
+
+def is_too_low(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the drone hovers so low that a chase would run into the vehicle's side."""
+    return s.approach is None or s.approach.height_m < chase_floor_m(c)
+
+
+def _stands_nearby(s: Situation, c: CompanionConfig) -> bool:
+    if s.drone is None or s.pad is None or is_pad_unplaced(s, c) or is_fix_old(s, c) or is_too_low(s, c):
+        return False
+    ahead = s.drone.position_enu_m[:2] - s.pad.position_enu_m[0, :2]
+    return vehicle_stands(s, c.chase) and math.hypot(*ahead.tolist()) < c.chase.passing_distance_m
+
+
+def _drives(s: Situation, c: CompanionConfig) -> bool:
+    return s.pad is not None and not vehicle_stands(s, c.chase)
+
+
+STRAYS = Condition(
+    reason=Reason.STRAYS,
+    phases=_DESCENT,
+    is_true=_strays_above,
+    hold_s=lambda c: c.descent.stray_hold_s,
+    anew_max=lambda c: c.descent.strays_max,
+)
+"""Costs no approach at first, for nothing was near."""
+
+ALIGNMENT_LOST = Condition(
+    reason=Reason.ALIGNMENT_LOST,
+    phases=_ALIGNMENT,
+    is_true=_is_far_off,
+    anew_max=lambda c: c.descent.strays_max,
+)
+
+TO_BE_SEEN = Condition(
+    reason=Reason.PAD_TO_BE_SEEN,
+    phases=_DESCENT,
+    is_true=_must_be_seen_above,
+    anew_max=lambda c: c.descent.unseen_max,
+)
+"""Without a hold time, or it slips below."""
+
+NOT_SEEN = Condition(
+    reason=Reason.PAD_NOT_SEEN,
+    phases=_ALIGNMENT,
+    is_true=must_be_seen,
+    hold_s=lambda c: c.descent.unseen_hold_s,
+    anew_max=lambda c: c.descent.unseen_max,
+)
+
+VEHICLE_STANDS = Condition(
+    reason=Reason.VEHICLE_STANDS,
+    phases=_WAITING,
+    is_true=_stands_nearby,
+    hold_s=lambda c: c.chase.parked_wait_s,
+)
+"""A vehicle that stands may be about to depart, so it is landed on only after it has stood for a while."""
+
+ALIGNED = Condition(
+    reason=Reason.ALIGNED, phases=_ALIGNMENT, is_true=_is_aligned, hold_s=lambda c: c.descent.aligned_hold_s
+)
+
+ENTRIES = (
+    (Event.VEHICLE_PASSES, VEHICLE_STANDS),
+    (Event.ALIGNED, ALIGNED),
+    (Event.OUT_OF_ALIGNMENT, TO_BE_SEEN),
+    (Event.OUT_OF_ALIGNMENT, STRAYS),
+    (Event.OUT_OF_ALIGNMENT, ALIGNMENT_LOST),
+    (Event.OUT_OF_ALIGNMENT, NOT_SEEN),
+    (Event.CONTACT, TOUCHED),
+    (Event.CONTACT, STOPPED_BY_PAD),
+    (Event.CONTACT, TOUCHED_BY_DISPUTE),
+)
+"""What leads to another phase of the approach."""
+
+DRIVES = Condition(
+    reason=Reason.VEHICLE_DRIVES, phases=_WAITING, is_true=_drives, hold_s=lambda c: c.chase.driving_hold_s
+)
+"""Without this no vehicle is taken to pass."""
+
+
+def update_held(
+    held: Held, phase: Phase, s: Situation, config: CompanionConfig, *, others: tuple[Condition, ...] = ()
+) -> Held:
+    """Return since when each condition of this phase has been true."""
+    return {
+        one.reason: held.get(one.reason, s.monotonic_ns)
+        for one in _conditions_in(phase, others)
+        if one.is_true(s, config)
+    }
+
+
+@cache
+def _conditions_in(phase: Phase, others: tuple[Condition, ...]) -> tuple[Condition, ...]:
+    entries = (condition for _, condition in ENTRIES)
+    return tuple(one for one in (*others, *ABORTS, *entries, HEARD, HELD_UP, LIFTED, DRIVES) if phase in one.phases)

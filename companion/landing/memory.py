@@ -1,0 +1,155 @@
+"""What a step remembers, in groups that live and are begun anew together.
+
+Spans of time are measured on the step's monotonic clock, which nobody sets; whatever is compared with a stamp of the
+vehicle's data is in UTC.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+from companion.autopilots.driver import DriverMemory
+from companion.core.data import Array
+from companion.core.reasons import Cause, Reason
+from companion.integrity.contradictions import Contradictions
+from companion.integrity.course import CourseWatch
+from companion.integrity.fix_stamps import FixStamps
+from companion.landing.sway import Sway
+from companion.landing.virtual_model import Tracking
+from companion.planning.guidance import GuidanceMemory, ReferenceState
+from companion.situation.phases import Phase
+from companion.vehicle.estimator import EstimatorMemory
+from companion.vehicle.surprise import Surprise
+from link.messages import Vector3
+
+Held = Mapping[Reason, int]
+"""Since when (monotonic ns) each condition has been true, by its reason."""
+
+NOTHING_HELD: Held = MappingProxyType({})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Progress:
+    """Where in the landing we are, for how long, and what is counted over it.
+
+    Attributes:
+        phase: of the landing.
+        since_ns: when it began, monotonic; a chase that goes on after an outage, when it began first.
+        cause: why it began.
+        retries: landings aborted since the start.
+        interrupted_ns: when the chase began that an outage has broken off; None when an abort counts.
+        begun_anew: how often this approach has been aligned or chased again, by the reason.
+        waits_since_ns: when it began to wait above a vehicle that has surprised; None while it does not.
+        waited_s: for how long it has done so before, in this phase.
+        may_retry: no operator has broken the landing off since the start.
+        stopped_by_pad: the contact was a jolt.
+        held: since when each condition of the phase has been true.
+        obstacle: what makes a landing impossible, as it was first told; None without one.
+    """
+
+    phase: Phase = Phase.IDLE
+    since_ns: int = 0
+    cause: Cause = field(default_factory=lambda: Cause(Reason.WAITING_FOR_START))
+    retries: int = 0
+    interrupted_ns: int | None = None
+    begun_anew: Mapping[Reason, int] = field(default_factory=dict)
+    waits_since_ns: int | None = None
+    waited_s: float = 0.0
+    may_retry: bool = True
+    stopped_by_pad: bool = False
+    held: Held = field(default_factory=lambda: NOTHING_HELD)
+    obstacle: Cause | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class VehicleMemory:
+    """What is known of the vehicle, and whether it can be believed.
+
+    Attributes:
+        estimator: the estimator's own memory.
+        surprise: how the vehicle drives against what was expected.
+        fix_stamps: whether its fixes come from the future.
+        contradictions: of its data.
+        course: how its heading compares with its course.
+        utc_ahead_ns: of the monotonic clock, when its stamps were last compared with UTC.
+        pad_raised_m: by the range finder, in the drone's frame.
+        is_road_elsewhere: it is said to be far above or below the ground.
+    """
+
+    estimator: EstimatorMemory | None = None
+    surprise: Surprise = field(default_factory=Surprise)
+    fix_stamps: FixStamps = field(default_factory=FixStamps)
+    contradictions: Contradictions = field(default_factory=Contradictions)
+    course: CourseWatch = field(default_factory=CourseWatch)
+    utc_ahead_ns: int = 0
+    pad_raised_m: float = 0.0
+    is_road_elsewhere: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ModelMemory:
+    """The virtual model that the setpoints follow, and how the drone follows it.
+
+    Attributes:
+        reference: the model, None while nothing is flown.
+        reference_ns: the model's time, monotonic.
+        guidance: the guidance law's own memory.
+        tracking: how the drone follows it.
+        sway: how hard the drone leans.
+        lowest_enu_m: height in W below which this step's plan does not go.
+        yaw_setpoint_rad: last one sent.
+    """
+
+    reference: ReferenceState | None = None
+    reference_ns: int = 0
+    guidance: GuidanceMemory | None = None
+    tracking: Tracking = field(default_factory=Tracking)
+    sway: Sway = field(default_factory=Sway)
+    lowest_enu_m: float = -math.inf
+    yaw_setpoint_rad: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ControlMemory:
+    """How the autopilot stands to the companion.
+
+    Attributes:
+        driver: the driver's memory.
+        was_in_control: the autopilot's mode has been the companion's since the start.
+        was_armed: and its motors were armed in that mode.
+    """
+
+    driver: DriverMemory = field(default_factory=DriverMemory)
+    was_in_control: bool = False
+    was_armed: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Places:
+    """Places in W, and which W that is.
+
+    Attributes:
+        waiting_point_enu_m: (3,) where the drone waits for the vehicle.
+        anchor_enu_m: (3,) where a hover phase stays.
+        ground_enu_m: (3,) of the ground.
+        origin_count: of the frame that they and the estimate are in.
+        frame_shift_enu_m: of that frame.
+    """
+
+    waiting_point_enu_m: Array | None = None
+    anchor_enu_m: Array | None = None
+    ground_enu_m: Array | None = None
+    origin_count: int = 0
+    frame_shift_enu_m: Vector3 = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class StepMemory:
+    """What a step hands to the next."""
+
+    progress: Progress = field(default_factory=Progress)
+    vehicle: VehicleMemory = field(default_factory=VehicleMemory)
+    model: ModelMemory = field(default_factory=ModelMemory)
+    control: ControlMemory = field(default_factory=ControlMemory)
+    places: Places = field(default_factory=Places)
