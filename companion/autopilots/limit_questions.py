@@ -13,7 +13,7 @@ _ASK_AGAIN_NS = 5_000_000_000  # after six questions without an answer, as over 
 
 def named(driver: Driver) -> tuple[tuple[str, ...], ...]:
     """Return the parameters that the flight depends on, each by all of its names."""
-    return (*driver.limit_names, (driver.timeout_parameter,))
+    return (*driver.limit_names, *driver.gain_names, (driver.timeout_parameter,))
 
 
 class LimitQuestions:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from companion.core.gravity import GRAVITY_M_S2
 
 _STATED_MIN = 0.1  # m/s or degrees; a limit below this cannot be flown with
-_TILT_SHARE = 0.7  # of the tilt limit left to planned acceleration; the rest is for drag and wind
+_TILT_SHARE = 0.85  # of the largest tilt's thrust; the rest is for gusts and for the autopilot's own corrections
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +27,15 @@ def stated(parameters: Mapping[str, float], names: Sequence[Named]) -> float:
     return math.inf
 
 
+def gain(parameters: Mapping[str, float], names: Sequence[str], default: float) -> float:
+    """Return a gain by whichever of its names is known, the firmware's default where none is or it is not positive."""
+    for name in names:
+        value = parameters.get(name, math.nan)
+        if value > 0.0 and math.isfinite(value):
+            return value
+    return default
+
+
 def acceleration_of_tilt_m_s2(tilt_deg: float) -> float:
-    """Return the horizontal acceleration that may be planned under a tilt limit."""
+    """Return the horizontal thrust by mass that may be planned with under a tilt limit."""
     return _TILT_SHARE * GRAVITY_M_S2 * math.tan(math.radians(tilt_deg))

@@ -183,7 +183,9 @@ class AbortConfig(StrictModel):
     rejected_share_max: Annotated[float, Field(gt=0.0, le=1.0)] = 0.2
     own_age_max_s: Positive = 0.5  # of the drone's own report; 25 of them in a row are missing then
     position_std_max_m: Positive = 1.5
-    tracking_error_max_m: Positive = 2.5  # of the drone behind its setpoint
+    # Of the drone's distance from its setpoint, in standard deviations of what gusts do to it by the autopilot's model
+    # and of the way that it makes while a setpoint is late by the link's jitter.
+    tracking_stds_max: Positive = 10.0
     tracking_hold_s: NotNegative = 1.0
     cone_hold_s: NotNegative = 0.3
     near_height_m: Positive = 0.4  # below this there is no time to wait; what is higher climbs back to wait

@@ -8,14 +8,16 @@ import math
 
 from companion.config.companion import CompanionConfig
 from companion.config.landing import TouchdownConfig
-from companion.core.data import FlightLimits
+from companion.core.data import Array, FlightLimits
 from companion.landing.memory import StepMemory
 from companion.landing.step_data import StepInputs
+from companion.planning.guidance import PlanRequest
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation
 from companion.vehicle.pad_reach import over_pad_radius_m
 from link.records import replace
 
+_LEFT_MIN_SHARE = 0.2  # of the tilt limit: with less no plan brakes, and a steady wind that needs more is not flown in
 _SEEN_OFF_MAX_M = 1.0  # what a range finder sees farther off is not the pad: a roof is 1.5 m above the road
 
 
@@ -36,6 +38,29 @@ def limits_now(memory: StepMemory, situation: Situation, inputs: StepInputs, con
     turns_m_s2 = 0.0 if situation.pad is None else math.hypot(*situation.pad.acceleration_enu_m_s2[0, :2].tolist())
     kept_m_s2 = min(_kept_m_s2(turns_m_s2, touchdown), limits.acceleration_max_m_s2)
     return replace(limits, acceleration_max_m_s2=kept_m_s2)
+
+
+def limit_tilt(request: PlanRequest, air_enu_m_s2: Array) -> FlightLimits:
+    """Return the limits with the acceleration that the largest tilt leaves in the direction in which it is needed.
+
+    Of the horizontal thrust by mass R some holds against the air, w. Along the unit vector d there is left
+    `-(d w) + sqrt(R^2 - w^2 + (d w)^2)`: less to go faster, more to brake.
+
+    Args:
+        request: of the plan; its target tells what is needed, in a second's time.
+        air_enu_m_s2: (2,) what holds against the air.
+    """
+    limits, state, target = request.limits, request.state, request.target
+    most_m_s2 = limits.tilt_acceleration_m_s2
+    if not math.isfinite(most_m_s2):
+        return limits
+    needed = target.acceleration_enu_m_s2[0] + target.velocity_enu_m_s[0] - state.velocity_enu_m_s
+    needed = (needed + target.position_enu_m[0] - state.position_enu_m)[:2]
+    size, (wx, wy) = math.hypot(*needed.tolist()), air_enu_m_s2.tolist()
+    along_m_s2 = float(needed @ air_enu_m_s2) / size if size > 0.0 else 0.0
+    left_m_s2 = math.sqrt(max(most_m_s2**2 - wx**2 - wy**2 + along_m_s2**2, 0.0)) - along_m_s2
+    left_m_s2 = max(left_m_s2, _LEFT_MIN_SHARE * most_m_s2)
+    return replace(limits, acceleration_max_m_s2=min(limits.acceleration_max_m_s2, left_m_s2))
 
 
 def lowest_foot_m(situation: Situation, relative: Approach, config: CompanionConfig) -> float:

@@ -17,7 +17,7 @@ from companion.integrity.course import CourseWatch
 from companion.integrity.fix_stamps import FixStamps
 from companion.landing.sway import Sway
 from companion.landing.virtual_model import Tracking
-from companion.planning.guidance import GuidanceMemory, ReferenceState
+from companion.planning.guidance import GuidanceMemory, ReferenceState, Trajectory
 from companion.situation.phases import Phase
 from companion.vehicle.estimator import EstimatorMemory
 from companion.vehicle.surprise import Surprise
@@ -94,6 +94,7 @@ class ModelMemory:
     Attributes:
         reference: the model, None while nothing is flown.
         reference_ns: the model's time, monotonic.
+        plan: the last one, from one period before the model's time on.
         guidance: the guidance law's own memory.
         tracking: how the drone follows it.
         sway: how hard the drone leans.
@@ -103,6 +104,7 @@ class ModelMemory:
 
     reference: ReferenceState | None = None
     reference_ns: int = 0
+    plan: Trajectory | None = None
     guidance: GuidanceMemory | None = None
     tracking: Tracking = field(default_factory=Tracking)
     sway: Sway = field(default_factory=Sway)
