@@ -91,9 +91,8 @@ def fly(
     )
     request = replace(request, limits=limit_tilt(request, model.tracking.air_enu_m_s2))
     guidance, plan = system.guidance.plan(model.guidance, request)
-    lowest_enu_m = float(aim.floor_enu_m[0])
     if inputs.driver is not None and inputs.driver.carries_setpoints_on:
-        plan = _kept_up(plan, reference, lowest_enu_m, inputs.timeout_s, period_s)
+        plan = _kept_up(plan, reference, float(aim.floor_enu_m[0]), inputs.timeout_s, period_s)
     model = ModelMemory(
         reference=plan.next_state,
         reference_ns=reference_ns,
@@ -101,7 +100,6 @@ def fly(
         guidance=guidance,
         tracking=add_to_past(model.tracking, reference_ns, plan.next_state),
         sway=model.sway,
-        lowest_enu_m=lowest_enu_m,
         yaw_setpoint_rad=_slewed_yaw_rad(memory, situation.pad, period_s, system.config),
     )
     return _update_anchor(replace(memory, model=model), situation, system.config), plan
@@ -191,6 +189,7 @@ def _to_lost_drone(memory: StepMemory, situation: Situation) -> StepMemory:
         memory.model,
         reference=reference,
         reference_ns=situation.monotonic_ns,
+        plan=None,
         guidance=None,
         tracking=Tracking(compared_ns=tracking.compared_ns),
     )

@@ -4,7 +4,6 @@ Spans of time are measured on the step's monotonic clock, which nobody sets; wha
 vehicle's data is in UTC.
 """
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -98,7 +97,6 @@ class ModelMemory:
         guidance: the guidance law's own memory.
         tracking: how the drone follows it.
         sway: how hard the drone leans.
-        lowest_enu_m: height in W below which this step's plan does not go.
         yaw_setpoint_rad: last one sent.
     """
 
@@ -108,7 +106,6 @@ class ModelMemory:
     guidance: GuidanceMemory | None = None
     tracking: Tracking = field(default_factory=Tracking)
     sway: Sway = field(default_factory=Sway)
-    lowest_enu_m: float = -math.inf
     yaw_setpoint_rad: float = 0.0
 
 
