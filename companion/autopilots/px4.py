@@ -103,14 +103,14 @@ class Px4Driver:
     def cascade(self, parameters: Mapping[str, float]) -> Cascade:
         """Return the horizontal gains, by default those of release 1.16.
 
-        A setpoint is held as it came: on average half a period of 20 ms, and the way to the motors is as long again.
+        A setpoint is held as it came: on average for half a period of 20 ms.
         """
         position, velocity, integral = self.gain_names
         return Cascade(
             position_per_s=gain(parameters, position, 0.95),
             velocity_per_s=gain(parameters, velocity, 1.8),
             integral_per_s2=gain(parameters, integral, 0.4),
-            lead_s=0.03,
+            lead_s=0.01,
         )
 
 

@@ -1,16 +1,20 @@
 """How a drone deviates from the path that its setpoints ask for: a model of the autopilot's cascade; pure numerics.
 
-Per axis the deviation e = p - p_path obeys the cascade of position, velocity and integral gain of the autopilot,
+Per axis the deviation e = p - p_path obeys the cascade of position, velocity and integral gain of the autopilot, behind
+the lag of the drone's attitude:
 
-    e'' = -Kv e' - Kv Kp e + u,        u' = -u / T - c a_path + w,        T = Kv / Ki
+    e'' = a + u - a_path
+    a' = (a_path - Kv e' - Kv Kp e - a) / tau
+    u' = -u / T - c a_path + w,        T = Kv / Ki
 
-u (m/s^2) pushes the drone off its path and is not made up for yet by the integrator: wind, a heavier frame, and drag,
-which grows by c for each m/s that the path gains. w is white noise, such that u alone has a given standard deviation.
-The path brings its own velocity and acceleration along, so a steady path makes no deviation.
-State per axis (3,): e (m), e' (m/s), u (m/s^2), in W. Measured are e and e'.
+a (m/s^2) is what the drone's lean accelerates it by. u (m/s^2) pushes it off its path and is not made up for yet by the
+integrator: wind, a heavier frame, and drag, which grows by c for each m/s that the path gains. w is white noise, such
+that u alone has a given standard deviation. A steady path makes no deviation.
+State per axis (4,): e (m), e' (m/s), a, u, in W. Measured are e and e'.
 Source: the position controllers of PX4 (mc_pos_control) and ArduPilot (AC_PosControl); Kalman and Bucy 1961.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,12 +26,17 @@ PUSH_STD_M_S2 = 0.5
 """Of what pushes a drone about: a gust of 3 m/s, moderate turbulence of MIL-F-8785C, at a drag of 0.17 per second."""
 DRAG_PER_S = 0.17
 """Drag by mass and airspeed of a multirotor of 1 to 2 kg; 0.1 to 0.35 are usual (Faessler et al. 2018, table I)."""
+ATTITUDE_LAG_S = 0.1
+"""From a wanted acceleration to the drone's: 0.05 s of motors and propellers, and as much of the rates' loop."""
 POSITION_STD_M = 0.04
 """Of a report's position beside the path: a receiver with corrections, and 4 ms of its date at 8 m/s."""
 VELOCITY_STD_M_S = 0.1
 """Likewise of its velocity."""
 REPORT_PERIOD_S = 0.02
-_ONE = np.eye(3)
+STATES = 4
+_ONE = np.eye(STATES)
+_PUSH = 3
+_STEP_MAX_S = 0.05
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,67 +65,78 @@ class ResponseModel:
 
     Attributes:
         cascade: as given.
-        covariance: (3, 3) of the estimated state, stationary.
-        spread: (3, 3) of the state of a drone that follows as the model says, stationary.
+        covariance: (4, 4) of the estimated state, stationary.
+        spread: (4, 4) of the state of a drone that follows as the model says, stationary.
     """
 
     def __init__(self, cascade: Cascade, offset_s: Array) -> None:
         stiffness = cascade.velocity_per_s * cascade.position_per_s
         forgets_hz = cascade.integral_per_s2 / cascade.velocity_per_s
+        turns_hz = 1.0 / ATTITUDE_LAG_S
         self.cascade = cascade
-        self._motion = np.array([[0.0, 1.0, 0.0], [-stiffness, -cascade.velocity_per_s, 1.0], [0.0, 0.0, -forgets_hz]])
-        noise = np.diag([0.0, 0.0, 2.0 * forgets_hz * PUSH_STD_M_S2**2])
+        self._motion = np.array(
+            [
+                [0.0, 1.0, 0.0, 0.0],
+                [0.0, 0.0, 1.0, 1.0],
+                [-turns_hz * stiffness, -turns_hz * cascade.velocity_per_s, -turns_hz, 0.0],
+                [0.0, 0.0, 0.0, -forgets_hz],
+            ]
+        )
+        self._asked = np.array([0.0, -1.0, turns_hz, -DRAG_PER_S])
+        noise = np.zeros((STATES, STATES))
+        noise[_PUSH, _PUSH] = 2.0 * forgets_hz * PUSH_STD_M_S2**2
         seen = _ONE[:2]
         report = np.diag([POSITION_STD_M**2, VELOCITY_STD_M_S**2]) * REPORT_PERIOD_S
         self.covariance: Array = solve_continuous_are(self._motion.T, seen.T, noise, report)
         self.spread: Array = solve_continuous_lyapunov(self._motion, -noise)
         self._gain = self.covariance @ seen.T @ np.linalg.inv(report)
         self._corrected = self._motion - self._gain @ seen
-        self._free, self._forced = _responses(self._motion, np.array([0.0, 0.0, -DRAG_PER_S]), offset_s)
+        self._free, self._forced = _responses(self._motion, self._asked, offset_s)
 
     def update(self, state: Array, measured: Array, acceleration_m_s2: Array, dt_s: float) -> Array:
-        """Return the state (3, k) of k axes after a report.
+        """Return the state (4, k) of k axes after a report.
 
         Args:
-            state: (3, k) `dt_s` earlier.
+            state: (4, k) `dt_s` earlier.
             measured: (2, k) position and velocity of the drone less those of the path.
             acceleration_m_s2: (k,) of the path.
-            dt_s: since the report before, a tenth of a second at most.
+            dt_s: since the report before.
         """
-        moved, push = _taylor(self._corrected, dt_s)
-        updated = moved @ state + push @ (self._gain @ measured)
-        updated[2] -= DRAG_PER_S * acceleration_m_s2 * dt_s
-        return np.asarray(updated)
+        driven = self._gain @ measured + np.outer(self._asked, acceleration_m_s2)
+        return _moved(self._corrected, state, driven, dt_s)
 
     def carry(self, state: Array, dt_s: float) -> Array:
-        """Return the state (3, k) a moment later without a report; exact to 1e-4 of it within a quarter of a second."""
-        moved, _ = _taylor(self._motion, dt_s)
-        return np.asarray(moved @ state)
+        """Return the state (4, k) a moment later on a steady path, without a report."""
+        return _moved(self._motion, state, np.zeros_like(state), dt_s)
 
     def predict(self, state: Array, acceleration_m_s2: Array) -> Array:
-        """Return the states (n, 3, k) at the model's offsets.
+        """Return the states (n, 4, k) at the model's offsets.
 
         Args:
-            state: (3, k) now.
+            state: (4, k) now.
             acceleration_m_s2: (n, k) of the path, each from its offset to the next.
         """
         return np.asarray(self._free @ state + self._forced @ acceleration_m_s2)
 
 
-def _taylor(motion: Array, dt_s: float) -> tuple[Array, Array]:
-    """Return the maps (3, 3) of a state and of a constant push over `dt_s`, to the third order."""
-    step = motion * dt_s
+def _moved(motion: Array, state: Array, driven: Array, dt_s: float) -> Array:
+    """Return the state (4, k) after `dt_s`, driven steadily by (4, k); to the third order in short steps."""
+    steps = max(1, math.ceil(dt_s / _STEP_MAX_S))
+    step = motion * (dt_s / steps)
     second = step @ step
-    return _ONE + step + 0.5 * second + second @ step / 6.0, (_ONE + 0.5 * step + second / 6.0) * dt_s
+    moved, push = _ONE + step + 0.5 * second + second @ step / 6.0, _ONE + 0.5 * step + second / 6.0
+    for _ in range(steps):
+        state = moved @ state + push @ driven * (dt_s / steps)
+    return state
 
 
-def _responses(motion: Array, pushed: Array, offset_s: Array) -> tuple[Array, Array]:
-    """Return the maps (n, 3, 3) of a state and (n, 3, n) of a push that is constant from each offset to the next."""
+def _responses(motion: Array, asked: Array, offset_s: Array) -> tuple[Array, Array]:
+    """Return the maps (n, 4, 4) of a state and (n, 4, n) of an input that is constant from each offset to the next."""
     count, spacing_s = len(offset_s), float(offset_s[1] - offset_s[0])
-    augmented = expm(np.block([[motion, pushed[:, np.newaxis]], [np.zeros((1, 4))]]) * spacing_s)
-    powers = np.array([np.linalg.matrix_power(augmented[:3, :3], power) for power in range(count)])
-    forced = np.zeros((count, 3, count))
+    augmented = expm(np.block([[motion, asked[:, np.newaxis]], [np.zeros((1, STATES + 1))]]) * spacing_s)
+    powers = np.array([np.linalg.matrix_power(augmented[:STATES, :STATES], power) for power in range(count)])
+    forced = np.zeros((count, STATES, count))
     for later in range(count):
         for earlier in range(later):
-            forced[later, :, earlier] = powers[later - 1 - earlier] @ augmented[:3, 3]
+            forced[later, :, earlier] = powers[later - 1 - earlier] @ augmented[:STATES, STATES]
     return powers, forced

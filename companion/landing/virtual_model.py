@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from companion.autopilots.response import ResponseModel
+from companion.autopilots.response import STATES, ResponseModel
 from companion.core.data import Array, OwnState, Setpoint
 from companion.core.gravity import GRAVITY_M_S2
 from companion.planning.guidance import ReferenceState, Trajectory
@@ -32,7 +32,7 @@ class Tracking:
         past: (monotonic ns, position (3,), velocity (3,) in W), oldest first.
         behind_enu_m: (3,) from the drone to the model at the time of the drone's newest report.
         error_m: length of that.
-        deviation: (3, 2) horizontal state of `ResponseModel` then: from the model to the drone, and what pushes it.
+        deviation: (4, 2) horizontal state of `ResponseModel` then: from the model to the drone, and what moves it.
         air_enu_m_s2: (2,) horizontal thrust by mass that holds against the air, a mean of the last second.
         compared_ns: monotonic time of the newest report that was compared; None before the first.
     """
@@ -40,7 +40,7 @@ class Tracking:
     past: tuple[tuple[int, Array, Array], ...] = ()
     behind_enu_m: Array = field(default_factory=lambda: np.zeros(3))
     error_m: float = 0.0
-    deviation: Array = field(default_factory=lambda: np.zeros((3, 2)))
+    deviation: Array = field(default_factory=lambda: np.zeros((STATES, 2)))
     air_enu_m_s2: Array = field(default_factory=lambda: np.zeros(2))
     compared_ns: int | None = None
 
@@ -81,10 +81,10 @@ def update_tracking(
         air_enu_m_s2=_updated_air(tracking.air_enu_m_s2, own, acceleration[:2], since_s),
     )
     if not estimates or response is None:
-        return replace(tracking, deviation=np.zeros((3, 2)))
+        return replace(tracking, deviation=np.zeros((STATES, 2)))
     measured = np.array([-behind[:2], np.array(own.velocity_enu_m_s[:2]) - velocity[:2]])
     if since_s > _BREAK_S:
-        return replace(tracking, deviation=np.vstack((measured, np.zeros(2))))
+        return replace(tracking, deviation=np.vstack((measured, np.zeros((STATES - 2, 2)))))
     return replace(tracking, deviation=response.update(tracking.deviation, measured, acceleration[:2], since_s))
 
 
