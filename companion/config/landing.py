@@ -154,6 +154,7 @@ class TouchdownConfig(StrictModel):
     level_share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.6
     level_acceleration_min_m_s2: Positive = 0.6  # 3.5 degrees
     level_acceleration_max_m_s2: Positive = 1.6  # 9 degrees; S2 allows 10 over trim
+    level_speed_max_m_s: Positive = 0.35  # that this may bring against the pad; S2 asks for 0.5 at contact
     # Downwards, while the signs of a contact hold, and once they are believed: nearly the whole weight on the gear.
     try_acceleration_m_s2: Annotated[float, Field(ge=0.0, le=9.0)] = 5.0
     press_acceleration_m_s2: Annotated[float, Field(ge=0.0, le=9.0)] = 9.0
