@@ -1,6 +1,7 @@
 """The signs of a contact: what agrees on the pad, and that nothing faulty alone cuts the motors in the air."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -59,7 +60,7 @@ def with_fault(facts: Situation, source: str, value: float) -> Situation:
     assert reference is not None
     flat, up = np.array([1.0, 1.0, 0.0]), np.array([0.0, 0.0, value])
     aside = np.array([value, value, drone.position_enu_m[2]])
-    faulty = {
+    faulty: dict[str, dict[str, Any]] = {
         "own height": {"drone": replace(drone, position_enu_m=drone.position_enu_m * flat + up)},
         "own velocity": {"drone": replace(drone, velocity_enu_m_s=drone.velocity_enu_m_s * flat + up)},
         "own acceleration": {"drone": replace(drone, acceleration_up_m_s2=value)},
@@ -70,7 +71,7 @@ def with_fault(facts: Situation, source: str, value: float) -> Situation:
         "autopilot's word": {"autopilot": replace(facts.autopilot, landed=value > 0.0)},
         "setpoint": {"reference": replace(reference, position_enu_m=reference.position_enu_m * flat + up)},
     }
-    return replace(facts, **faulty[source])  # type: ignore[arg-type]  # one of the fields, by name
+    return changed(facts, **faulty[source])
 
 
 def on_pad() -> Situation:

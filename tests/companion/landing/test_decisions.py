@@ -47,13 +47,13 @@ UNSAFE: dict[Reason, Situation] = {
     Reason.VEHICLE_DATA_OLD: changed(situation(), fix_age_s=CONFIG.abort.fix_age_max_s + 0.01),
     Reason.VEHICLE_UNCERTAIN: situation(pad=pad_at(std_m=CONFIG.abort.position_std_max_m + 0.01)),
     Reason.VEHICLE_LINK_LOST: changed(
-        situation(), vehicle_alive=False, fix_age_s=CONFIG.abort.alive_lost_fix_age_max_s + 0.01
+        situation(), is_alive=False, fix_age_s=CONFIG.abort.alive_lost_fix_age_max_s + 0.01
     ),
     Reason.VEHICLE_CLOCK_AHEAD: changed(situation(), fix_age_on_arrival_s=-CONFIG.abort.fix_ahead_max_s - 0.01),
     Reason.OWN_POSITION_OLD: replace(situation(), drone=None),
     Reason.OWN_ATTITUDE_OLD: replace(situation(), drone=replace(drone_at(1.5, pad=pad_at()), attitude_known=False)),
     Reason.HEADING_UNKNOWN: situation(pad=pad_at(placed=False)),
-    Reason.SETPOINT_NOT_FOLLOWED: replace(situation(), tracking_error_m=CONFIG.abort.tracking_error_max_m + 0.01),
+    Reason.SETPOINT_NOT_FOLLOWED: replace(situation(), tracking_error_m=situation().tracking_error_max_m + 0.01),
     Reason.OUTSIDE_CONE: situation(NEAR_M, cone_radius_m(NEAR_M, HALF_M, CONFIG) + 0.01),
     Reason.TOO_FAST_NEAR_PAD: replace(
         situation(),

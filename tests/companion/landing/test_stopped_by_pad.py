@@ -8,7 +8,7 @@ from companion.core.data import RangeReading
 from companion.situation.phases import Phase
 from link.messages import Vector3
 from tests.companion.facts import changed
-from tests.companion.world import CONFIG, DISARM, GEAR_M, STEP_NS, Flight, reached
+from tests.companion.world import CONFIG, DISARM, GEAR_M, STEP_NS, UTC_AHEAD_NS, Flight, reached
 
 FORCED = 21196.0
 HOLD_S = CONFIG.touchdown.stopped_hold_s
@@ -50,7 +50,7 @@ def _stopped() -> Flight:
 
 def _forced_after_s(flight: Flight, *, falls_m_s2: float, limit_s: float = 2.0) -> float | None:
     """When the motors are forced off, since the contact."""
-    contact_ns = flight.memory.progress.since_ns
+    contact_ns = flight.memory.progress.since_ns + UTC_AHEAD_NS
     while (flight.t_ns - contact_ns) * 1e-9 < limit_s and flight.phase is Phase.TOUCHDOWN:
         _held(flight, falls_m_s2=falls_m_s2, jolt_m_s2=0.3)
         if (Phase.TOUCHDOWN, DISARM, 0.0, FORCED) in flight.commands:
