@@ -3,6 +3,8 @@
 Pure: the same memory, inputs and system give the same result, in flight, in simulation and in replay.
 """
 
+import math
+
 from companion.autopilots.driver import AutopilotCommand, Desire
 from companion.config.companion import CompanionConfig
 from companion.core.data import Forecast
@@ -13,14 +15,16 @@ from companion.integrity.heights import is_road_elsewhere, update_ground, update
 from companion.landing.condition import holds
 from companion.landing.contact import may_force_motors_off, signs_of
 from companion.landing.contact_conditions import HELD_UP
-from companion.landing.flying import fly, has_free_place, setpoint
+from companion.landing.flying import fly
 from companion.landing.frame_shift import to_present_frame
 from companion.landing.memory import ModelMemory, Progress, StepMemory, VehicleMemory
+from companion.landing.setpoints import has_free_place, setpoint
 from companion.landing.status import landing_status
 from companion.landing.step_data import StepInputs, StepOutputs, System
 from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.landing.transitions import take_events
 from companion.landing.virtual_model import update_tracking
+from companion.planning.guidance import ReferenceState
 from companion.planning.requests import are_finite
 from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
 from companion.situation.situation import (
@@ -88,9 +92,9 @@ def _update_model(memory: StepMemory, inputs: StepInputs, system: System) -> Mod
     if own is None or model.reference is None:
         return model
     flies_place = memory.progress.phase in LANDING_PHASES and not has_free_place(memory, inputs, system.config)
-    learns = system.config.corrects_lag and flies_place
+    estimates = system.config.corrects_lag and flies_place
     own_ns = inputs.monotonic_at(own.t_ns)
-    return replace(model, tracking=update_tracking(model.tracking, own_ns, own.position_enu_m, learns=learns))
+    return replace(model, tracking=update_tracking(model.tracking, own_ns, own, inputs.response, estimates=estimates))
 
 
 def _update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -> VehicleMemory:
@@ -182,6 +186,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
         feet_offset_m=touchdown.gear_height_m,
         reference=memory.model.reference,
         tracking_error_m=memory.model.tracking.error_m,
+        tracking_error_max_m=_tracking_error_max_m(memory.model.reference, inputs, system.config),
         waiting_point_enu_m=memory.places.waiting_point_enu_m,
         limits=inputs.limits,
         speed_limited_by=() if inputs.driver is None else inputs.driver.speed_parameters,
@@ -202,6 +207,15 @@ def _look(
     places = replace(memory.places, ground_enu_m=update_ground(memory.places.ground_enu_m, phase, situation))
     memory = replace(memory, vehicle=vehicle, places=places)
     return memory, with_pad_raised(situation, vehicle.pad_raised_m)
+
+
+def _tracking_error_max_m(reference: ReferenceState | None, inputs: StepInputs, config: CompanionConfig) -> float:
+    """Return how far from its setpoint a drone may be that follows it."""
+    if inputs.response is None:
+        return math.inf
+    speed_m_s = 0.0 if reference is None else math.hypot(*reference.velocity_enu_m_s.tolist())
+    std_m = math.hypot(math.sqrt(inputs.response.spread[0, 0]), speed_m_s * inputs.link_delay_std_s)
+    return config.abort.tracking_stds_max * std_m
 
 
 def _drive(

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
-from companion.autopilots.limits import Named, acceleration_of_tilt_m_s2, stated
+from companion.autopilots.limits import Named, acceleration_of_tilt_m_s2, gain, stated
 from companion.autopilots.requests import (
     Requested,
     arm,
@@ -21,6 +21,7 @@ from companion.autopilots.requests import (
     with_disarm_answer,
     without_disarm,
 )
+from companion.autopilots.response import Cascade
 from companion.autopilots.setpoint_message import local_ned_setpoint
 from companion.core.data import FlightLimits, Setpoint
 from link.frames.local_frame import Projection
@@ -41,6 +42,9 @@ _CLIMB = (Named("WPNAV_SPEED_UP", _CENTI), Named("WP_SPD_UP"))
 _DESCENT = (Named("WPNAV_SPEED_DN", _CENTI), Named("WP_SPD_DN"))
 _JERK = (Named("PSC_JERK_XY"), Named("PSC_JERK_NE"))  # it follows no acceleration that changes faster
 _LIMITS = (_TILT, _TILT_BY_POSITION, _SPEED, _CLIMB, _DESCENT, _JERK)
+_POSITION_GAIN = ("PSC_POSXY_P", "PSC_NE_POS_P")
+_VELOCITY_GAIN = ("PSC_VELXY_P", "PSC_NE_VEL_P")
+_INTEGRAL_GAIN = ("PSC_VELXY_I", "PSC_NE_VEL_I")
 
 
 class ArduPilotDriver:
@@ -50,6 +54,7 @@ class ArduPilotDriver:
     autopilot_id: int = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
     projection = Projection.ARDUPILOT
     limit_names = tuple(tuple(named.name for named in names) for names in _LIMITS)
+    gain_names = (_POSITION_GAIN, _VELOCITY_GAIN, _INTEGRAL_GAIN)
     timeout_parameter = "GUID_TIMEOUT"
     timeout_default_s = 3.0
     carries_setpoints_on = True
@@ -100,14 +105,25 @@ class ArduPilotDriver:
         tilt_deg = stated(parameters, _TILT)
         tilt_deg = min(tilt_deg, _TILT_MAX_DEG) if math.isfinite(tilt_deg) else _TILT_DEG
         tilt_deg = min(tilt_deg, stated(parameters, _TILT_BY_POSITION))
-        acceleration_m_s2 = acceleration_of_tilt_m_s2(tilt_deg)
         return replace(
             wanted,
             speed_max_m_s=min(wanted.speed_max_m_s, stated(parameters, _SPEED)),
             climb_max_m_s=min(wanted.climb_max_m_s, stated(parameters, _CLIMB)),
             descent_max_m_s=min(wanted.descent_max_m_s, stated(parameters, _DESCENT)),
-            acceleration_max_m_s2=min(wanted.acceleration_max_m_s2, acceleration_m_s2),
+            tilt_acceleration_m_s2=acceleration_of_tilt_m_s2(tilt_deg),
             jerk_max_m_s3=min(wanted.jerk_max_m_s3, stated(parameters, _JERK)),
+        )
+
+    def cascade(self, parameters: Mapping[str, float]) -> Cascade:
+        """Return the horizontal gains, by default those of release 4.6.
+
+        A setpoint is carried on by its own velocity and acceleration, so that it needs no lead.
+        """
+        return Cascade(
+            position_per_s=gain(parameters, _POSITION_GAIN, 1.0),
+            velocity_per_s=gain(parameters, _VELOCITY_GAIN, 2.0),
+            integral_per_s2=gain(parameters, _INTEGRAL_GAIN, 1.0),
+            lead_s=0.0,
         )
 
 

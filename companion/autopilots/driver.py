@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
+from companion.autopilots.response import Cascade
 from companion.core.data import FlightLimits, RangeReading, Setpoint
 from link.frames.local_frame import LocalFrame, Projection
 from link.mavlink.dialect import Message
@@ -109,6 +110,10 @@ class Driver(Protocol):
         """Parameters that bound the flight, each by all of its names."""
 
     @property
+    def gain_names(self) -> tuple[tuple[str, ...], ...]:
+        """Parameters that `cascade` goes by, each by all of its names."""
+
+    @property
     def timeout_parameter(self) -> str:
         """Parameter that says for how many seconds without a setpoint it still waits for one."""
 
@@ -163,3 +168,6 @@ class Driver(Protocol):
 
     def limits(self, wanted: FlightLimits, parameters: Mapping[str, float]) -> FlightLimits:
         """Return `wanted` cut to what the autopilot's own parameters allow."""
+
+    def cascade(self, parameters: Mapping[str, float]) -> Cascade:
+        """Return the gains with which it follows setpoints, and how it takes them, from its own parameters."""

@@ -13,7 +13,7 @@ from companion.autopilots.driver import Driver
 from companion.core.data import GRAVITY_M_S2
 
 _STATED_MIN = 0.1  # m/s or degrees; a limit below this cannot be flown with
-_TILT_SHARE = 0.7  # of the tilt limit left to planned acceleration; the rest is for drag and wind
+_TILT_SHARE = 0.85  # of the largest tilt's thrust; the rest is for gusts and for the autopilot's own corrections
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,8 +33,17 @@ def stated(parameters: Mapping[str, float], names: Sequence[Named]) -> float:
     return math.inf
 
 
+def gain(parameters: Mapping[str, float], names: Sequence[str], default: float) -> float:
+    """Return a gain by whichever of its names is known, the firmware's default where none is or it is not positive."""
+    for name in names:
+        value = parameters.get(name, math.nan)
+        if value > 0.0 and math.isfinite(value):
+            return value
+    return default
+
+
 def acceleration_of_tilt_m_s2(tilt_deg: float) -> float:
-    """Return the horizontal acceleration that may be planned under a tilt limit."""
+    """Return the horizontal thrust by mass that may be planned with under a tilt limit."""
     return _TILT_SHARE * GRAVITY_M_S2 * math.tan(math.radians(tilt_deg))
 
 
@@ -43,7 +52,7 @@ _ASK_AGAIN_NS = 5_000_000_000  # after six questions without an answer, as over 
 
 def named(driver: Driver) -> tuple[tuple[str, ...], ...]:
     """Return the parameters that the flight depends on, each by all of its names."""
-    return (*driver.limit_names, (driver.timeout_parameter,))
+    return (*driver.limit_names, *driver.gain_names, (driver.timeout_parameter,))
 
 
 class LimitQuestions:

@@ -7,6 +7,7 @@ from itertools import chain
 from companion.autopilots.choice import driver_for
 from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver
 from companion.autopilots.limits import LimitQuestions, named
+from companion.autopilots.response import Cascade
 from companion.autopilots.state import AutopilotState, shift_reports, update_state
 from companion.config.companion import AutopilotKind
 from companion.core.data import FlightLimits, Setpoint
@@ -118,6 +119,11 @@ class AutopilotLink:
         if self._limits is None or any(now is not then for now, then in zip(asked, self._limits[0], strict=True)):
             self._limits = (asked, self.driver.limits(wanted, self.state.parameters))
         return self._limits[1]
+
+    @property
+    def cascade(self) -> Cascade | None:
+        """How the autopilot follows setpoints, by its parameters as far as they are known; None before it is found."""
+        return None if self.driver is None else self.driver.cascade(self.state.parameters)
 
     def send_setpoint(self, setpoint: Setpoint, local_ns: int) -> None:
         """Send a setpoint for the flight; one that the message cannot hold is counted and left out."""

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
-from companion.autopilots.limits import Named, acceleration_of_tilt_m_s2, stated
+from companion.autopilots.limits import Named, acceleration_of_tilt_m_s2, gain, stated
 from companion.autopilots.px4_events import refusal_of
 from companion.autopilots.requests import (
     Requested,
@@ -18,6 +18,7 @@ from companion.autopilots.requests import (
     with_disarm_answer,
     without_disarm,
 )
+from companion.autopilots.response import Cascade
 from companion.autopilots.setpoint_message import local_ned_setpoint
 from companion.core.data import FlightLimits, Setpoint
 from link.frames.local_frame import Projection
@@ -38,6 +39,7 @@ class Px4Driver:
     autopilot_id: int = mavlink.MAV_AUTOPILOT_PX4
     projection = Projection.PX4
     limit_names = (("MPC_XY_VEL_MAX",), ("MPC_Z_VEL_MAX_UP",), ("MPC_Z_VEL_MAX_DN",), ("MPC_TILTMAX_AIR",))
+    gain_names = (("MPC_XY_P",), ("MPC_XY_VEL_P_ACC",), ("MPC_XY_VEL_I_ACC",))
     timeout_parameter = "COM_OF_LOSS_T"
     timeout_default_s = 1.0
     carries_setpoints_on = False  # it holds them as they came
@@ -98,13 +100,25 @@ class Px4Driver:
         speed_m_s, climb_m_s, descent_m_s, tilt_deg = (
             stated(parameters, (Named(name),)) for (name,) in self.limit_names
         )
-        acceleration_m_s2 = acceleration_of_tilt_m_s2(min(tilt_deg, _TILT_MAX_DEG))
         return replace(
             wanted,
             speed_max_m_s=min(wanted.speed_max_m_s, speed_m_s),
             climb_max_m_s=min(wanted.climb_max_m_s, climb_m_s),
             descent_max_m_s=min(wanted.descent_max_m_s, descent_m_s),
-            acceleration_max_m_s2=min(wanted.acceleration_max_m_s2, acceleration_m_s2),
+            tilt_acceleration_m_s2=acceleration_of_tilt_m_s2(min(tilt_deg, _TILT_MAX_DEG)),
+        )
+
+    def cascade(self, parameters: Mapping[str, float]) -> Cascade:
+        """Return the horizontal gains, by default those of release 1.16.
+
+        A setpoint is held as it came: on average for half a period of 20 ms.
+        """
+        position, velocity, integral = self.gain_names
+        return Cascade(
+            position_per_s=gain(parameters, position, 0.95),
+            velocity_per_s=gain(parameters, velocity, 1.8),
+            integral_per_s2=gain(parameters, integral, 0.4),
+            lead_s=0.01,
         )
 
 

@@ -75,16 +75,15 @@ class CompanionConfig(StrictModel):
     geoid_height_m: Annotated[float, Field(ge=-120.0, le=120.0)] | None = None
     stops_unused_streams: bool = True  # on the companion's own link; false where others listen on it, too
     status_rate_hz: Annotated[float, Field(ge=0.5, le=50.0)] = 10.0
-    setpoint_lead_s: Annotated[float, Field(ge=0.0, le=0.5)] = (
-        0.03  # half a period of holding plus the way to the motors
-    )
+    # By which setpoints are ahead of the drone beside the link's delay; none: as the autopilot takes them.
+    setpoint_lead_s: Annotated[float, Field(ge=0.0, le=0.5)] | None = None
     # So far a link's jitter may move the place that a landing drone is asked for: 0.1 m leans the benchmark's by 5
     # degrees. Beyond that it is asked for velocities, which make up for what it is off its place by a gain.
     place_jitter_max_m: NotNegative = 0.1
     place_gain_hz: Positive = 1.0  # as PX4's MPC_XY_P, 0.95; the delay of a poor link leaves no room for more
     yaw_rate_max_rad_s: Positive = 0.8  # ArduCopter slews at 60 degrees a second
     position_only: bool = False  # leave velocity and acceleration out of the setpoints, as the source report does
-    corrects_lag: bool = True  # learn how far the autopilot trails its setpoints, and lead by it
+    corrects_lag: bool = True  # plan by how far the drone will be off its setpoints
     follows_heading: bool = True  # turn with the vehicle; False keeps the heading of the start
     landing: LandingStyle = LandingStyle.STAGED
     limits: LimitsConfig = LimitsConfig()

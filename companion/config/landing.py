@@ -154,6 +154,7 @@ class TouchdownConfig(StrictModel):
     level_share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.6
     level_acceleration_min_m_s2: Positive = 0.6  # 3.5 degrees
     level_acceleration_max_m_s2: Positive = 1.6  # 9 degrees; S2 allows 10 over trim
+    level_speed_max_m_s: Positive = 0.35  # that this may bring against the pad; S2 asks for 0.5 at contact
     # Downwards, while the signs of a contact hold, and once they are believed: nearly the whole weight on the gear.
     try_acceleration_m_s2: Annotated[float, Field(ge=0.0, le=9.0)] = 5.0
     press_acceleration_m_s2: Annotated[float, Field(ge=0.0, le=9.0)] = 9.0
@@ -183,7 +184,9 @@ class AbortConfig(StrictModel):
     rejected_share_max: Annotated[float, Field(gt=0.0, le=1.0)] = 0.2
     own_age_max_s: Positive = 0.5  # of the drone's own report; 25 of them in a row are missing then
     position_std_max_m: Positive = 1.5
-    tracking_error_max_m: Positive = 2.5  # of the drone behind its setpoint
+    # Of the drone's distance from its setpoint, in standard deviations of what gusts do to it by the autopilot's model
+    # and of the way that it makes while a setpoint is late by the link's jitter.
+    tracking_stds_max: Positive = 10.0
     tracking_hold_s: NotNegative = 1.0
     cone_hold_s: NotNegative = 0.3
     near_height_m: Positive = 0.4  # below this there is no time to wait; what is higher climbs back to wait

@@ -4,6 +4,7 @@ W is the autopilot's local frame turned to ENU: about its GPS_GLOBAL_ORIGIN, and
 Arrays are float64 and are never written in place. Unknown is None.
 """
 
+import math
 from dataclasses import dataclass
 from enum import Enum
 
@@ -132,7 +133,11 @@ class Setpoint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlightLimits:
-    """What the planner may ask of the drone; each a magnitude."""
+    """What the planner may ask of the drone; each a magnitude.
+
+    `tilt_acceleration_m_s2` is the horizontal thrust by mass of the largest tilt. What holds against the air is taken
+    from it; what is left bounds the acceleration, too.
+    """
 
     speed_max_m_s: float
     climb_max_m_s: float
@@ -140,6 +145,7 @@ class FlightLimits:
     acceleration_max_m_s2: float
     vertical_acceleration_max_m_s2: float
     jerk_max_m_s3: float
+    tilt_acceleration_m_s2: float = math.inf
 
 
 GRAVITY_M_S2 = 9.81

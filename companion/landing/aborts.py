@@ -47,8 +47,8 @@ def unplaced(s: Situation) -> Cause | None:
     return None if s.pad is None else s.pad.unplaced
 
 
-def _is_not_followed(s: Situation, c: CompanionConfig) -> bool:
-    return s.tracking_error_m > c.abort.tracking_error_max_m
+def _is_not_followed(s: Situation, _: CompanionConfig) -> bool:
+    return s.tracking_error_m > s.tracking_error_max_m
 
 
 def _is_beside_cone(a: Approach, c: CompanionConfig) -> bool:

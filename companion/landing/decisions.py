@@ -161,9 +161,8 @@ def _at_waiting_point(s: Situation, config: CompanionConfig) -> Decision | None:
 def vehicle_passes(s: Situation, config: CompanionConfig) -> Decision | None:
     """Return the event that starts the chase.
 
-    A moving vehicle is chased from the moment at which a drone that accelerates evenly to the vehicle's speed
-    v meets it: v / (2 a) before it passes. One that is past is let go when it is farther away than the passing
-    distance and would not be caught up with soon.
+    A moving vehicle is chased from the moment at which a drone that accelerates to its speed meets it. One that is past
+    is let go when it is farther away than the passing distance and would not be caught up with soon.
     """
     if s.drone is None or s.pad is None or is_fix_old(s, config) or is_too_low(s, config):
         return None
@@ -174,13 +173,23 @@ def vehicle_passes(s: Situation, config: CompanionConfig) -> Decision | None:
         return None
     to_go_m = float(ahead @ velocity) / speed_m_s
     beside_m = abs(float(ahead[0] * velocity[1] - ahead[1] * velocity[0])) / speed_m_s
-    lead_m = speed_m_s**2 / (2.0 * config.chase.start_acceleration_m_s2)
+    lead_m = _lead_m(speed_m_s, s, config)
     speed_max_m_s = config.limits.speed_max_m_s if s.limits is None else s.limits.speed_max_m_s
     faster_m_s = min(speed_max_m_s - speed_m_s, config.chase.catch_up_speed_m_s)
     past_m = max(config.chase.passing_distance_m, config.chase.catch_up_s * faster_m_s)
     if beside_m > config.chase.passing_distance_m or not -past_m < to_go_m < lead_m:
         return None
     return Event.VEHICLE_PASSES, Cause(Reason.VEHICLE_PASSES, (speed_m_s,))
+
+
+def _lead_m(speed_m_s: float, s: Situation, config: CompanionConfig) -> float:
+    """Return how far before it passes a vehicle is that a drone meets which accelerates from rest to its speed v.
+
+    It takes v / a + a / j for that, and is half of the way behind.
+    """
+    acceleration_m_s2 = config.chase.start_acceleration_m_s2
+    jerk_m_s3 = config.limits.jerk_max_m_s3 if s.limits is None else s.limits.jerk_max_m_s3
+    return 0.5 * speed_m_s * (speed_m_s / acceleration_m_s2 + acceleration_m_s2 / jerk_m_s3)
 
 
 def _over_pad(s: Situation, config: CompanionConfig) -> Decision | None:

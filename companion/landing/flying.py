@@ -1,14 +1,10 @@
-"""From the phase to the next state of the virtual model, and from that to the setpoint; pure."""
-
-import math
+"""From the phase to the next state of the virtual model; pure."""
 
 import numpy as np
 
-from companion.autopilots.velocity_bias import as_seen_with
 from companion.config.companion import CompanionConfig
-from companion.core.data import Setpoint
-from companion.core.reasons import Reason
-from companion.landing.levelling import limits_now
+from companion.core.data import FlightLimits
+from companion.landing.levelling import limit_tilt, limits_now
 from companion.landing.memory import ModelMemory, StepMemory
 from companion.landing.step_data import StepInputs, System
 from companion.landing.sway import update_sway
@@ -18,85 +14,21 @@ from companion.landing.virtual_model import (
     Tracking,
     add_to_past,
     extrapolate,
-    free_place,
     limit_sink,
-    press_down,
-    setpoint_at,
-    state_in_plan,
+    predict_deviation,
 )
 from companion.landing.waiting import waits_at_m
-from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
+from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState, Target
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.situation.situation import Situation
 from companion.vehicle.pad import PadPath, over_pad_radius_m
 from link.frames.rotations import wrap_angle
 from link.records import replace
 
-# A chase keeps its place: through an outage the drone then stops where it was last sent.
-_FREE_PLACE_PHASES = (Phase.ALIGN, Phase.DESCEND, Phase.TOUCHDOWN)
 _STEP_MAX_S = 0.1  # a longer pause does not let the virtual model jump
 
 
-def setpoint(
-    memory: StepMemory, inputs: StepInputs, config: CompanionConfig, plan: PlanResult | None = None
-) -> Setpoint | None:
-    """Return what the autopilot is to follow now, None while nothing is flown.
-
-    Args:
-        memory: after this step's plan.
-        inputs: of this step.
-        config: all numbers.
-        plan: of this step, None when there was nothing to plan.
-    """
-    model = memory.model
-    if model.reference is None or memory.control.driver.climbs_by_itself:
-        return None
-    ahead_s = inputs.link_delay_s + config.setpoint_lead_s
-    if plan is None:
-        reference = extrapolate(model.reference, (inputs.monotonic_ns - model.reference_ns) * 1e-9 + ahead_s)
-    else:
-        reference = state_in_plan(plan.trajectory, ahead_s)
-    if inputs.driver is not None and inputs.driver.carries_setpoints_on:
-        reference = limit_sink(reference, model.lowest_enu_m, inputs.timeout_s)
-    press_m_s2 = _press_m_s2(memory, config)
-    if press_m_s2 is not None:
-        reference = press_down(reference, press_m_s2, ahead_s)
-    wanted = setpoint_at(
-        reference,
-        model.tracking.correction_enu_m,
-        inputs.t_ns + round(ahead_s * 1e9),
-        model.yaw_setpoint_rad,
-        position_only=config.position_only,
-    )
-    if has_free_place(memory, inputs, config):
-        wanted = free_place(wanted, model.tracking.behind_enu_m, config.place_gain_hz)
-    return wanted if inputs.own is None else as_seen_with(wanted, inputs.own.velocity_bias_enu_m_s)
-
-
-def has_free_place(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) -> bool:
-    """Return whether the link's jitter would move the place that is asked for too far for a landing.
-
-    A setpoint is held as it came, so one that comes late by so much asks for a place that the vehicle has left.
-    """
-    reference, driver = memory.model.reference, inputs.driver
-    if memory.progress.phase not in _FREE_PLACE_PHASES or reference is None or config.position_only:
-        return False
-    if driver is None or not driver.holds_height_alone:
-        return False
-    speed_m_s = math.hypot(*reference.velocity_enu_m_s[:2].tolist())
-    return speed_m_s * inputs.link_delay_std_s > config.place_jitter_max_m
-
-
-def _press_m_s2(memory: StepMemory, config: CompanionConfig) -> float | None:
-    """Return the downward acceleration with which a drone is pressed on what it touches, None for one that flies."""
-    if memory.progress.phase is Phase.TOUCHDOWN:
-        return config.touchdown.press_acceleration_m_s2
-    held = memory.progress.held
-    touches = Reason.CONTACT in held or Reason.DISPUTED_CONTACT in held
-    return config.touchdown.try_acceleration_m_s2 if touches else None
-
-
-def _aim(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Aim:
+def _aim(memory: StepMemory, situation: Situation, limits: FlightLimits, config: CompanionConfig) -> Aim:
     """Return where the present phase wants the drone."""
     phase, reference, pad = memory.progress.phase, memory.model.reference, situation.pad
     anchor, waiting_point = memory.places.anchor_enu_m, memory.places.waiting_point_enu_m
@@ -105,9 +37,9 @@ def _aim(memory: StepMemory, situation: Situation, config: CompanionConfig) -> A
     match phase:
         case Phase.CHASE | Phase.ALIGN | Phase.DESCEND | Phase.TOUCHDOWN if pad is not None:
             lowest_m = waits_at_m(memory, situation, config)
-            return pad_aim(phase, pad, reference, situation.feet_offset_m, config, lowest_m=lowest_m)
+            return pad_aim(phase, pad, reference, situation.feet_offset_m, config, limits=limits, lowest_m=lowest_m)
         case Phase.ABORT if pad is not None and _is_fresh(situation, config):
-            return pad_aim(phase, pad, reference, situation.feet_offset_m, config)
+            return pad_aim(phase, pad, reference, situation.feet_offset_m, config, limits=limits)
         case Phase.ABORT:
             return hover_aim(anchor + np.array([0.0, 0.0, config.abort.height_m]))
         case Phase.TAKEOFF if not (situation.autopilot.armed and situation.autopilot.in_control):
@@ -133,7 +65,7 @@ def fly(
         own_ns = inputs.monotonic_at(inputs.own.t_ns)
         sway = update_sway(memory.model.sway, inputs.own, own_ns, system.config.descent)
         memory = replace(memory, model=replace(memory.model, sway=sway))
-    memory = _to_lost_drone(memory, situation, system.config)
+    memory = _to_lost_drone(memory, situation)
     model = memory.model
     if model.reference is None:
         return memory, None
@@ -145,28 +77,70 @@ def fly(
     memory = replace(memory, model=model)
     period_s = 1.0 / system.config.step_rate_hz
     reference_ns = inputs.monotonic_ns + round(period_s * 1e9)
-    aim = _aim(memory, situation, system.config)
+    aim = _aim(memory, situation, inputs.limits, system.config)
     if is_at_rest(reference, aim):  # there is nothing to plan
         tracking = add_to_past(model.tracking, reference_ns, reference)
         return replace(memory, model=replace(model, reference_ns=reference_ns, tracking=tracking)), None
     request = PlanRequest(
         state=reference,
-        target=aim.target,
+        target=_for_the_drone(aim.target, memory, inputs),
         limits=limits_now(memory, situation, inputs, system.config),
         floor_enu_m=aim.floor_enu_m,
         dt_s=period_s,
     )
+    request = replace(request, limits=limit_tilt(request, model.tracking.air_enu_m_s2))
     guidance, plan = system.guidance.plan(model.guidance, request)
+    if inputs.driver is not None and inputs.driver.carries_setpoints_on:
+        plan = _kept_up(plan, reference, float(aim.floor_enu_m[0]), inputs.timeout_s, period_s)
     model = ModelMemory(
         reference=plan.next_state,
         reference_ns=reference_ns,
+        plan=plan.trajectory,
         guidance=guidance,
         tracking=add_to_past(model.tracking, reference_ns, plan.next_state),
         sway=model.sway,
-        lowest_enu_m=float(aim.floor_enu_m[0]),
         yaw_setpoint_rad=_slewed_yaw_rad(memory, situation.pad, period_s, system.config),
     )
     return _update_anchor(replace(memory, model=model), situation, system.config), plan
+
+
+def _for_the_drone(target: Target, memory: StepMemory, inputs: StepInputs) -> Target:
+    """Return where the virtual model is wanted, so that the drone, which will be off it, is where the target is."""
+    tracking, plan, response = memory.model.tracking, memory.model.plan, inputs.response
+    if memory.progress.phase not in LANDING_PHASES or response is None or tracking.compared_ns is None:
+        return target
+    planned = np.zeros((len(target.offset_s), 2))
+    if plan is not None:
+        for axis in range(2):
+            planned[:, axis] = np.interp(target.offset_s, plan.offset_s, plan.acceleration_enu_m_s2[:, axis])
+    late_s = (inputs.monotonic_ns - tracking.compared_ns) * 1e-9
+    deviation = predict_deviation(tracking, response, late_s, planned)
+    position, velocity = target.position_enu_m.copy(), target.velocity_enu_m_s.copy()
+    position[:, :2] -= deviation[:, 0]
+    velocity[:, :2] -= deviation[:, 1]
+    return replace(target, position_enu_m=position, velocity_enu_m_s=velocity)
+
+
+def _kept_up(
+    plan: PlanResult, reference: ReferenceState, lowest_enu_m: float, timeout_s: float, period_s: float
+) -> PlanResult:
+    """Return the plan with a next state that may be carried on for the autopilot's time-out.
+
+    The virtual model itself is kept up, since the drone follows what is sent, and the next plan begins there.
+    """
+    limited = limit_sink(plan.next_state, lowest_enu_m, timeout_s)
+    if limited is plan.next_state:
+        return plan
+    state = extrapolate(replace(reference, acceleration_enu_m_s2=limited.acceleration_enu_m_s2), period_s)
+    horizontal = np.array([True, True, False])
+    return replace(
+        plan,
+        next_state=ReferenceState(
+            position_enu_m=np.where(horizontal, plan.next_state.position_enu_m, state.position_enu_m),
+            velocity_enu_m_s=np.where(horizontal, plan.next_state.velocity_enu_m_s, state.velocity_enu_m_s),
+            acceleration_enu_m_s2=limited.acceleration_enu_m_s2,
+        ),
+    )
 
 
 def _at_drone(
@@ -198,14 +172,14 @@ def _is_left_by_pad(memory: StepMemory, situation: Situation, config: CompanionC
     return relative.speed_m_s > config.abort.near_speed_max_m_s or relative.distance_m > left_m
 
 
-def _to_lost_drone(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
+def _to_lost_drone(memory: StepMemory, situation: Situation) -> StepMemory:
     """Return the memory with the virtual model where the drone is, once the drone has lost it outside of a landing.
 
     A drone that hovered through a silent link is not to be sent after a model that has flown on.
     """
     phase, drone, tracking = memory.progress.phase, situation.drone, memory.model.tracking
     lands = phase in LANDING_PHASES or phase is Phase.TOUCHDOWN
-    if lands or drone is None or tracking.error_m < config.abort.tracking_error_max_m:
+    if lands or drone is None or tracking.error_m < situation.tracking_error_max_m:
         return memory
     reference = ReferenceState(
         position_enu_m=drone.position_enu_m, velocity_enu_m_s=drone.velocity_enu_m_s, acceleration_enu_m_s2=np.zeros(3)
@@ -214,6 +188,7 @@ def _to_lost_drone(memory: StepMemory, situation: Situation, config: CompanionCo
         memory.model,
         reference=reference,
         reference_ns=situation.monotonic_ns,
+        plan=None,
         guidance=None,
         tracking=Tracking(compared_ns=tracking.compared_ns),
     )

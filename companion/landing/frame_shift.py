@@ -39,7 +39,7 @@ def _moved_model(model: ModelMemory, by_enu_m: Array) -> ModelMemory:
     reference, tracking = model.reference, model.tracking
     if reference is not None:
         reference = replace(reference, position_enu_m=reference.position_enu_m + by_enu_m)
-    past = tuple((t_ns, place + by_enu_m) for t_ns, place in tracking.past)
+    past = tuple((t_ns, place + by_enu_m, velocity) for t_ns, place, velocity in tracking.past)
     return replace(model, reference=reference, guidance=None, tracking=replace(tracking, past=past))
 
 

@@ -7,35 +7,61 @@ turns less than the pad does, and takes the speed against it that it gains so.
 import math
 
 from companion.config.companion import CompanionConfig
-from companion.config.landing import TouchdownConfig
-from companion.core.data import FlightLimits
+from companion.core.data import Array, FlightLimits
 from companion.landing.memory import StepMemory
 from companion.landing.step_data import StepInputs
+from companion.planning.guidance import PlanRequest
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation
 from companion.vehicle.pad import over_pad_radius_m
 from link.records import replace
 
+_LEFT_MIN_SHARE = 0.2  # of the tilt limit: with less no plan brakes, and a steady wind that needs more is not flown in
 _SEEN_OFF_MAX_M = 1.0  # what a range finder sees farther off is not the pad: a roof is 1.5 m above the road
 
 
 def limits_now(memory: StepMemory, situation: Situation, inputs: StepInputs, config: CompanionConfig) -> FlightLimits:
     """Return the limits of this step: just above the pad the drone turns less than the deck, to touch down level.
 
-    A drone that leans touches with its lowest foot, so it begins that much higher, and it begins earlier by as much as
-    nearly every setpoint is late at most; one that breaks off climbs before it leans.
+    A drone that leans touches with its lowest foot, so it begins that much higher. It begins earlier by the time that
+    turning takes at the largest jerk, and by as much as nearly every setpoint is late at most. One that breaks off
+    climbs before it leans.
     """
     limits, relative, drone = inputs.limits, situation.approach, situation.drone
     if memory.progress.phase not in (Phase.DESCEND, Phase.ABORT) or relative is None or drone is None:
         return limits
     touchdown = config.touchdown
     escape_m = 0.0 if memory.progress.phase is Phase.DESCEND else config.descent.commit_height_m
-    late_m = max(-relative.climb_m_s, 0.0) * touchdown.level_late_stds * inputs.link_delay_std_s
-    if lowest_foot_m(situation, relative, config) > touchdown.level_height_m + late_m + escape_m:
-        return limits
     turns_m_s2 = 0.0 if situation.pad is None else math.hypot(*situation.pad.acceleration_enu_m_s2[0, :2].tolist())
-    kept_m_s2 = min(_kept_m_s2(turns_m_s2, touchdown), limits.acceleration_max_m_s2)
+    kept_m_s2 = min(_kept_m_s2(turns_m_s2, limits.jerk_max_m_s3, config), limits.acceleration_max_m_s2)
+    takes_s = max(turns_m_s2 - kept_m_s2, 0.0) / limits.jerk_max_m_s3
+    early_m = max(-relative.climb_m_s, 0.0) * (takes_s + touchdown.level_late_stds * inputs.link_delay_std_s)
+    if lowest_foot_m(situation, relative, config) > touchdown.level_height_m + early_m + escape_m:
+        return limits
     return replace(limits, acceleration_max_m_s2=kept_m_s2)
+
+
+def limit_tilt(request: PlanRequest, air_enu_m_s2: Array) -> FlightLimits:
+    """Return the limits with the acceleration that the largest tilt leaves in the direction in which it is needed.
+
+    Of the horizontal thrust by mass R some holds against the air, w. Along the unit vector d there is left
+    `-(d w) + sqrt(R^2 - w^2 + (d w)^2)`: less to go faster, more to brake.
+
+    Args:
+        request: of the plan; its target tells what is needed, in a second's time.
+        air_enu_m_s2: (2,) what holds against the air.
+    """
+    limits, state, target = request.limits, request.state, request.target
+    most_m_s2 = limits.tilt_acceleration_m_s2
+    if not math.isfinite(most_m_s2):
+        return limits
+    needed = target.acceleration_enu_m_s2[0] + target.velocity_enu_m_s[0] - state.velocity_enu_m_s
+    needed = (needed + target.position_enu_m[0] - state.position_enu_m)[:2]
+    size, (wx, wy) = math.hypot(*needed.tolist()), air_enu_m_s2.tolist()
+    along_m_s2 = float(needed @ air_enu_m_s2) / size if size > 0.0 else 0.0
+    left_m_s2 = math.sqrt(max(most_m_s2**2 - wx**2 - wy**2 + along_m_s2**2, 0.0)) - along_m_s2
+    left_m_s2 = max(left_m_s2, _LEFT_MIN_SHARE * most_m_s2)
+    return replace(limits, acceleration_max_m_s2=min(limits.acceleration_max_m_s2, left_m_s2))
 
 
 def lowest_foot_m(situation: Situation, relative: Approach, config: CompanionConfig) -> float:
@@ -48,7 +74,15 @@ def lowest_foot_m(situation: Situation, relative: Approach, config: CompanionCon
     return height_m - config.touchdown.foot_radius_m * lean
 
 
-def _kept_m_s2(turns_m_s2: float, config: TouchdownConfig) -> float:
-    """Return what a level drone keeps of the pad's acceleration."""
-    kept_m_s2 = max(config.level_share * turns_m_s2, config.level_acceleration_min_m_s2)
-    return min(kept_m_s2, config.level_acceleration_max_m_s2)
+def _kept_m_s2(turns_m_s2: float, jerk_m_s3: float, config: CompanionConfig) -> float:
+    """Return what a level drone keeps of the pad's acceleration.
+
+    Turning less by x gains the drone x^2 / 2j against the pad while it changes, and x t in the time t that is left.
+    That bounds x.
+    """
+    touchdown = config.touchdown
+    left_s = touchdown.level_height_m / config.descent.touchdown_sink_rate_m_s
+    gained_m_s = touchdown.level_speed_max_m_s
+    less_m_s2 = math.sqrt((jerk_m_s3 * left_s) ** 2 + 2.0 * jerk_m_s3 * gained_m_s) - jerk_m_s3 * left_s
+    kept_m_s2 = max(touchdown.level_share * turns_m_s2, touchdown.level_acceleration_min_m_s2)
+    return max(min(kept_m_s2, touchdown.level_acceleration_max_m_s2), turns_m_s2 - less_m_s2)

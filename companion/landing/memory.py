@@ -4,7 +4,6 @@ Spans of time are measured on the step's monotonic clock, which nobody sets; wha
 vehicle's data is in UTC.
 """
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -16,7 +15,7 @@ from companion.integrity.contradictions import Contradictions, FixStamps
 from companion.integrity.course import CourseWatch
 from companion.landing.sway import Sway
 from companion.landing.virtual_model import Tracking
-from companion.planning.guidance import GuidanceMemory, ReferenceState
+from companion.planning.guidance import GuidanceMemory, ReferenceState, Trajectory
 from companion.situation.phases import Phase
 from companion.vehicle.buffered import EstimatorMemory
 from companion.vehicle.surprise import Surprise
@@ -92,19 +91,19 @@ class ModelMemory:
     Attributes:
         reference: the model, None while nothing is flown.
         reference_ns: the model's time, monotonic.
+        plan: the last one, from one period before the model's time on.
         guidance: the guidance law's own memory.
         tracking: how the drone follows it.
         sway: how hard the drone leans.
-        lowest_enu_m: height in W below which this step's plan does not go.
         yaw_setpoint_rad: last one sent.
     """
 
     reference: ReferenceState | None = None
     reference_ns: int = 0
+    plan: Trajectory | None = None
     guidance: GuidanceMemory | None = None
     tracking: Tracking = field(default_factory=Tracking)
     sway: Sway = field(default_factory=Sway)
-    lowest_enu_m: float = -math.inf
     yaw_setpoint_rad: float = 0.0
 
 

@@ -1,11 +1,13 @@
 """What the world is told of a step: the landing's status, and the plan thinned out."""
 
+import math
+from typing import NamedTuple
+
 from companion.config.companion import CompanionConfig
 from companion.config.landing import DescentConfig
 from companion.core.reasons import Cause, sentence
 from companion.landing.aborts import unplaced
 from companion.landing.memory import StepMemory
-from companion.landing.targets import sink_stretches
 from companion.landing.waiting import why_held_up
 from companion.planning.guidance import PlanResult
 from companion.situation.phases import Phase
@@ -52,7 +54,7 @@ def _cause(memory: StepMemory, situation: Situation, config: CompanionConfig) ->
 
 def _time_to_contact_s(relative: Approach, descent: DescentConfig) -> float:
     """Return how long the sink profile takes from the present height: fast, slowing down, slow."""
-    stretches = sink_stretches(relative.height_m, descent)
+    stretches = _sink_stretches(relative.height_m, descent)
     slow_s = max(stretches.slow_from_m, 0.0) / descent.touchdown_sink_rate_m_s
     return stretches.fast_s + stretches.slowing_s + slow_s
 
@@ -82,3 +84,32 @@ def plan_publication(keys: Keys, plan: PlanResult, t_ns: int, yaw_rad: float) ->
         for offset_s, (x, y, z) in points
     )
     return Publication(keys.landing_plan, cdr.encode(Plan(t_ns=t_ns, poses=poses)), cdr.encoding_of(Plan))
+
+
+class _SinkStretches(NamedTuple):
+    """A descent's three stretches one after the other: at the largest rate, slowing down exponentially, at the slowest.
+
+    Attributes:
+        fast_s: how long the first takes.
+        slowing_from_m: height over the pad at which the second begins.
+        slowing_s: how long it takes.
+        slow_from_m: height at which the third begins.
+    """
+
+    fast_s: float
+    slowing_from_m: float
+    slowing_s: float
+    slow_from_m: float
+
+
+def _sink_stretches(height_now_m: float, config: DescentConfig) -> _SinkStretches:
+    """Return how a descent from a height over the pad goes: it sinks at the height times the gain, within limits."""
+    fast_m_s, slow_m_s, gain_hz = config.descent_rate_max_m_s, config.touchdown_sink_rate_m_s, config.descent_gain_hz
+    slowing_from_m = min(height_now_m, fast_m_s / gain_hz)
+    slow_from_m = min(slowing_from_m, slow_m_s / gain_hz)
+    return _SinkStretches(
+        fast_s=max(height_now_m - slowing_from_m, 0.0) / fast_m_s,
+        slowing_from_m=slowing_from_m,
+        slowing_s=math.log(slowing_from_m / slow_from_m) / gain_hz if slowing_from_m > slow_from_m else 0.0,
+        slow_from_m=slow_from_m,
+    )

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, AutopilotView, Driver
+from companion.autopilots.response import ResponseModel
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits, Measurement, OwnState, Setpoint
 from companion.planning.guidance import Guidance, PlanResult
@@ -26,6 +27,7 @@ class StepInputs:
     Attributes:
         t_ns: now, UTC; it may be set.
         monotonic_ns: now, on a clock that goes as UTC does and is never set, for spans of time.
+        response: how the autopilot follows setpoints; None while none is connected.
         own: the drone's newest report, None before the first.
         autopilot: as its messages tell.
         driver: of the connected autopilot, None while none is connected.
@@ -44,6 +46,7 @@ class StepInputs:
     t_ns: int
     monotonic_ns: int
     limits: FlightLimits
+    response: ResponseModel | None = None
     own: OwnState | None = None
     autopilot: AutopilotView = NO_AUTOPILOT
     driver: Driver | None = None

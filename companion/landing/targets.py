@@ -6,13 +6,13 @@ its feet, which stand on the pad after the landing.
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from companion.config.companion import CompanionConfig
 from companion.config.landing import DescentConfig, LandingStyle
-from companion.core.data import Array
+from companion.core.data import Array, FlightLimits
+from companion.planning.descent_path import descent_path
 from companion.planning.guidance import ReferenceState, Target
 from companion.situation.phases import Phase
 from companion.vehicle.pad import PadPath, unseen_std_max_m
@@ -21,6 +21,7 @@ HORIZON_OFFSETS_S: Array = np.arange(0.0, 4.01, 0.2)
 NO_FLOOR_M = -1e4
 _AT_REST: Array = np.zeros((len(HORIZON_OFFSETS_S), 3))
 _NO_FLOOR: Array = np.full(len(HORIZON_OFFSETS_S), NO_FLOOR_M)
+_DESCENT_SHARE = 0.5  # of the vertical limits; the rest is for following the pad
 _SLOW_M_S = 0.5  # slower than this a vehicle has no direction to speak of
 _REST_M = 0.005
 _REST_MOTION = 0.01  # m/s and m/s^2
@@ -79,6 +80,7 @@ def pad_aim(
     feet_offset_m: float,
     config: CompanionConfig,
     *,
+    limits: FlightLimits,
     lowest_m: float | None = None,
 ) -> Aim:
     """Return the aim that follows the pad as `phase` (chase, align, descend, touchdown or abort) asks.
@@ -89,44 +91,62 @@ def pad_aim(
         reference: the virtual model now.
         feet_offset_m: of the reported position above the feet.
         config: heights and rates.
+        limits: of the flight.
         lowest_m: of the feet above the pad, where a descent waits; None for one that goes on.
     """
-    height_now_m = float(reference.position_enu_m[2] - pad.position_enu_m[0, 2]) - feet_offset_m
-    if lowest_m is None:
-        height, sink = _height_profile(phase, height_now_m, pad, reference, config)
-    else:  # no descent that ends there: to a target that sinks from wherever the drone is and soon stops it never gets
-        height, sink = np.full(len(pad.offset_s), lowest_m), np.zeros(len(pad.offset_s))
-    position = pad.position_enu_m.copy()
+    if phase in (Phase.DESCEND, Phase.TOUCHDOWN):
+        state = (
+            float(reference.position_enu_m[2] - pad.position_enu_m[0, 2]) - feet_offset_m,
+            float(reference.velocity_enu_m_s[2] - pad.velocity_enu_m_s[0, 2]),
+            float(reference.acceleration_enu_m_s2[2] - pad.acceleration_enu_m_s2[0, 2]),
+        )
+        height, rate, acceleration = _way_down(state, pad.offset_s, limits, config.descent, lowest_m)
+    else:
+        height, rate, acceleration = _height_m(phase, pad, reference, config), 0.0, 0.0
+    position, velocity, accelerated = (
+        path.copy() for path in (pad.position_enu_m, pad.velocity_enu_m_s, pad.acceleration_enu_m_s2)
+    )
     position[:, 2] += feet_offset_m + height
-    velocity = pad.velocity_enu_m_s.copy()
-    velocity[:, 2] -= sink
+    velocity[:, 2] += rate
+    accelerated[:, 2] += acceleration
     target = Target(
         offset_s=pad.offset_s,
         position_enu_m=position,
         velocity_enu_m_s=velocity,
-        acceleration_enu_m_s2=pad.acceleration_enu_m_s2,
+        acceleration_enu_m_s2=accelerated,
     )
     floor = pad.position_enu_m[:, 2] + feet_offset_m + _clearance_m(phase, config)
     return Aim(target=target, floor_enu_m=floor)
 
 
-def _height_profile(
-    phase: Phase, height_now_m: float, pad: PadPath, reference: ReferenceState, config: CompanionConfig
-) -> tuple[Array, Array]:
-    """Return the wanted height over the pad (n,) and the sink rate against it (n,)."""
-    n = len(pad.offset_s)
+def _way_down(
+    state: tuple[float, float, float],
+    offset_s: Array,
+    limits: FlightLimits,
+    descent: DescentConfig,
+    lowest_m: float | None,
+) -> Array:
+    """Return height over the pad, its rate and its acceleration (3, n) of a descent that the virtual model can fly."""
+    lowest_m = -descent.press_depth_m if lowest_m is None else lowest_m
+    return descent_path(
+        state,
+        (descent.descent_gain_hz, descent.descent_rate_max_m_s, descent.touchdown_sink_rate_m_s, lowest_m),
+        (_DESCENT_SHARE * limits.vertical_acceleration_max_m_s2, _DESCENT_SHARE * limits.jerk_max_m_s3),
+        offset_s,
+    )
+
+
+def _height_m(phase: Phase, pad: PadPath, reference: ReferenceState, config: CompanionConfig) -> float:
+    """Return the wanted height over the pad of a phase that does not land."""
     match phase:
-        case Phase.DESCEND | Phase.TOUCHDOWN:
-            return sink_profile(height_now_m, pad.offset_s, config.descent)
         case Phase.ABORT:
-            height_m = _unseen_height_m(config.abort.height_m, pad, config)
+            return _unseen_height_m(config.abort.height_m, pad, config)
         case Phase.ALIGN:
-            height_m = config.descent.align_height_m
+            return config.descent.align_height_m
         case _ if config.landing is LandingStyle.DIRECT:
-            height_m = 0.0
+            return 0.0
         case _:
-            height_m = _chase_height_m(pad, reference, config)
-    return np.full(n, height_m), np.zeros(n)
+            return _chase_height_m(pad, reference, config)
 
 
 def is_vague(pad: PadPath, config: CompanionConfig) -> bool:
@@ -165,57 +185,6 @@ def _chase_height_m(pad: PadPath, reference: ReferenceState, config: CompanionCo
     distance_m = math.hypot(*(reference.position_enu_m[:2] - pad.position_enu_m[0, :2]).tolist())
     beyond_m = max(distance_m - config.descent.align_distance_m, 0.0)
     return min(config.descent.align_height_m + 0.5 * beyond_m, config.chase.height_m)
-
-
-class SinkStretches(NamedTuple):
-    """A descent's three stretches one after the other: at the largest rate, slowing down exponentially, at the slowest.
-
-    Attributes:
-        fast_s: how long the first takes.
-        slowing_from_m: height over the pad at which the second begins.
-        slowing_s: how long it takes.
-        slow_from_m: height at which the third begins.
-    """
-
-    fast_s: float
-    slowing_from_m: float
-    slowing_s: float
-    slow_from_m: float
-
-
-def sink_stretches(height_now_m: float, config: DescentConfig) -> SinkStretches:
-    """Return how a descent from a height over the pad goes: it sinks at the height times the gain, within limits."""
-    fast_m_s, slow_m_s, gain_hz = config.descent_rate_max_m_s, config.touchdown_sink_rate_m_s, config.descent_gain_hz
-    slowing_from_m = min(height_now_m, fast_m_s / gain_hz)
-    slow_from_m = min(slowing_from_m, slow_m_s / gain_hz)
-    return SinkStretches(
-        fast_s=max(height_now_m - slowing_from_m, 0.0) / fast_m_s,
-        slowing_from_m=slowing_from_m,
-        slowing_s=math.log(slowing_from_m / slow_from_m) / gain_hz if slowing_from_m > slow_from_m else 0.0,
-        slow_from_m=slow_from_m,
-    )
-
-
-def sink_profile(height_now_m: float, offset_s: Array, config: DescentConfig) -> tuple[Array, Array]:
-    """Return height over the pad (n,) and sink rate (n,) of a descent that slows down to the touchdown rate.
-
-    The sink rate is proportional to the height, between the touchdown rate and the largest one; below the pad
-    it goes on at the touchdown rate to the press depth, where it ends.
-    """
-    fast_m_s, slow_m_s, gain_hz = config.descent_rate_max_m_s, config.touchdown_sink_rate_m_s, config.descent_gain_hz
-    fast_s, slowing_from_m, slowing_s, slow_from_m = sink_stretches(height_now_m, config)
-    slow_s = max(slow_from_m + config.press_depth_m, 0.0) / slow_m_s
-    in_slowing_s = np.clip(offset_s - fast_s, 0.0, slowing_s)
-    in_slow_s = np.clip(offset_s - fast_s - slowing_s, 0.0, slow_s)
-    height = (
-        height_now_m
-        - fast_m_s * np.minimum(offset_s, fast_s)
-        - slowing_from_m * (1.0 - np.exp(-gain_hz * in_slowing_s))
-        - slow_m_s * in_slow_s
-    )
-    ended = offset_s >= fast_s + slowing_s + slow_s
-    rate = np.where(ended, 0.0, np.clip(gain_hz * height, slow_m_s, fast_m_s))
-    return height, rate
 
 
 def changes_speed(pad: PadPath, config: DescentConfig) -> bool:

@@ -1,8 +1,7 @@
-"""The virtual model that the setpoints follow: its history, how well the drone follows it, and the correction.
+"""The virtual model that the setpoints follow: its history, and how the drone deviates from it.
 
-An autopilot follows a moving setpoint with a lag of its own (0.4 m with PX4 at 5 m/s). The lag shows as a
-lasting difference between the model and the drone at the same instant; its horizontal part is learnt slowly
-and added to the setpoints.
+The deviation is estimated by the model of the autopilot (`autopilots.response`) from the drone's reports, each beside
+the virtual model at the same instant. The plan then leads the virtual model to where the drone meets the pad.
 """
 
 import math
@@ -10,83 +9,115 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from companion.core.data import Array, Setpoint
+from companion.autopilots.response import STATES, ResponseModel
+from companion.core.data import GRAVITY_M_S2, Array, OwnState, Setpoint
 from companion.planning.guidance import ReferenceState, Trajectory
-from link.messages import Vector3
+from link.frames.rotations import rotate
 from link.records import replace
 
 _HISTORY_S = 0.6  # longer than any telemetry is late
-_CORRECTION_GAIN_HZ = 0.5  # slower than the autopilot's own position loop (about 1 rad/s) by a factor of two
-_CORRECTION_MAX_M = 1.5
+_UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady
+_AIR_MEAN_S = 1.0  # longer than a gust's beginning, shorter than a change of speed
 _CAUGHT_UP_MAX_M = 1.0  # made up for by velocity at a time; more would be a chase
-_LEARNING_ERROR_MAX_M = 1.0  # a larger difference is a transient, not a lag
+_BREAK_S = 0.25  # between two reports, after which the deviation is what the next one shows
+_ACCELERATION_MAX_M_S2 = 10.0  # of the model between two steps: it is set back at times, and that is no motion
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Tracking:
-    """The model's recent past and the correction.
+    """The model's recent past and the drone beside it.
 
     Attributes:
-        past: (monotonic ns, position (3,) in W), oldest first.
+        past: (monotonic ns, position (3,), velocity (3,) in W), oldest first.
         behind_enu_m: (3,) from the drone to the model at the time of the drone's newest report.
         error_m: length of that.
-        correction_enu_m: (3,) added to the setpoints' position.
+        deviation: (4, 2) horizontal state of `ResponseModel` then: from the model to the drone, and what moves it.
+        air_enu_m_s2: (2,) horizontal thrust by mass that holds against the air, a mean of the last second.
         compared_ns: monotonic time of the newest report that was compared; None before the first.
     """
 
-    past: tuple[tuple[int, Array], ...] = ()
+    past: tuple[tuple[int, Array, Array], ...] = ()
     behind_enu_m: Array = field(default_factory=lambda: np.zeros(3))
     error_m: float = 0.0
-    correction_enu_m: Array = field(default_factory=lambda: np.zeros(3))
+    deviation: Array = field(default_factory=lambda: np.zeros((STATES, 2)))
+    air_enu_m_s2: Array = field(default_factory=lambda: np.zeros(2))
     compared_ns: int | None = None
 
 
 def add_to_past(tracking: Tracking, t_ns: int, reference: ReferenceState) -> Tracking:
-    """Return the tracking with the model's position at the monotonic `t_ns` added."""
+    """Return the tracking with the model at the monotonic `t_ns` added."""
     past = tracking.past
     while past and (t_ns - past[0][0]) * 1e-9 > _HISTORY_S:
         past = past[1:]
-    return replace(tracking, past=(*past, (t_ns, reference.position_enu_m)))
+    return replace(tracking, past=(*past, (t_ns, reference.position_enu_m, reference.velocity_enu_m_s)))
 
 
-def update_tracking(tracking: Tracking, own_ns: int, position_enu_m: Vector3, *, learns: bool) -> Tracking:
+def update_tracking(
+    tracking: Tracking, own_ns: int, own: OwnState, response: ResponseModel | None, *, estimates: bool
+) -> Tracking:
     """Return the tracking after comparing the drone's report with the model at the same instant.
 
     Args:
         tracking: so far.
-        own_ns: monotonic time of the drone's newest report.
-        position_enu_m: of the drone then.
-        learns: whether the lag is learnt from it.
+        own_ns: monotonic time of the report.
+        own: the drone's newest report.
+        response: of the autopilot.
+        estimates: whether the drone flies freely after the model's place, so that its deviation is the autopilot's.
     """
     before_ns = tracking.compared_ns
     if before_ns is not None and own_ns <= before_ns:
         return tracking
     if len(tracking.past) < 2 or own_ns < tracking.past[0][0]:
         return tracking
-    difference = _position_at(tracking, own_ns) - np.array(position_enu_m)
-    error_m = math.hypot(*difference.tolist())
-    since_s = 0.0 if before_ns is None else (own_ns - before_ns) * 1e-9
-    tracking = replace(tracking, behind_enu_m=difference, error_m=error_m, compared_ns=own_ns)
-    if not learns or error_m > _LEARNING_ERROR_MAX_M:
-        return tracking
-    step = _CORRECTION_GAIN_HZ * min(since_s, _HISTORY_S) * difference * np.array([1.0, 1.0, 0.0])
-    correction = tracking.correction_enu_m + step
-    length_m = math.hypot(*correction.tolist())
-    if length_m > _CORRECTION_MAX_M:
-        correction = correction * (_CORRECTION_MAX_M / length_m)
-    return replace(tracking, correction_enu_m=correction)
+    position, velocity, acceleration = _model_at(tracking, own_ns)
+    behind = position - np.array(own.position_enu_m)
+    since_s = math.inf if before_ns is None else (own_ns - before_ns) * 1e-9
+    tracking = replace(
+        tracking,
+        behind_enu_m=behind,
+        error_m=math.hypot(*behind.tolist()),
+        compared_ns=own_ns,
+        air_enu_m_s2=_updated_air(tracking.air_enu_m_s2, own, acceleration[:2], since_s),
+    )
+    if not estimates or response is None:
+        return replace(tracking, deviation=np.zeros((STATES, 2)))
+    measured = np.array([-behind[:2], np.array(own.velocity_enu_m_s[:2]) - velocity[:2]])
+    if since_s > _BREAK_S:
+        return replace(tracking, deviation=np.vstack((measured, np.zeros((STATES - 2, 2)))))
+    return replace(tracking, deviation=response.update(tracking.deviation, measured, acceleration[:2], since_s))
 
 
-def _position_at(tracking: Tracking, t_ns: int) -> Array:
-    later = tracking.past[-1]
-    for entry in reversed(tracking.past):
-        if entry[0] <= t_ns:
-            if entry is later:
-                return entry[1]
-            share = (t_ns - entry[0]) / (later[0] - entry[0])
-            return np.asarray(entry[1] + share * (later[1] - entry[1]))
-        later = entry
-    return later[1]
+def _updated_air(air_enu_m_s2: Array, own: OwnState, acceleration_m_s2: Array, since_s: float) -> Array:
+    """Return the mean of what the drone leans beyond the model's acceleration."""
+    x, y, up = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
+    if up < _UPRIGHT_MIN:
+        return air_enu_m_s2
+    leans = np.array([x, y]) * (GRAVITY_M_S2 / up) - acceleration_m_s2
+    return np.asarray(air_enu_m_s2 - math.expm1(-since_s / _AIR_MEAN_S) * (leans - air_enu_m_s2))
+
+
+def _model_at(tracking: Tracking, t_ns: int) -> tuple[Array, Array, Array]:
+    """Return position, velocity and acceleration (3,) of the model at `t_ns`; after its newest place that one's."""
+    past = tracking.past
+    later = next((index for index in range(len(past) - 1, 0, -1) if past[index - 1][0] <= t_ns), 1)
+    (start_ns, start, start_velocity), (end_ns, end, end_velocity) = past[later - 1], past[later]
+    between_s = (end_ns - start_ns) * 1e-9
+    share = min(max((t_ns - start_ns) / (end_ns - start_ns), 0.0), 1.0)
+    acceleration = ((end_velocity - start_velocity) / between_s).clip(-_ACCELERATION_MAX_M_S2, _ACCELERATION_MAX_M_S2)
+    return start + share * (end - start), start_velocity + share * (end_velocity - start_velocity), acceleration
+
+
+def predict_deviation(tracking: Tracking, response: ResponseModel, late_s: float, planned: Array) -> Array:
+    """Return how far the drone will be off the model, (n, 2, 2): at the response's offsets, position and velocity.
+
+    Args:
+        tracking: with the deviation at the time of the newest report.
+        response: of the autopilot.
+        late_s: since that report.
+        planned: (n, 2) accelerations of the model at the offsets.
+    """
+    now = response.carry(tracking.deviation, min(late_s, _BREAK_S))
+    return response.predict(now, planned)[:, :2]
 
 
 def press_down(reference: ReferenceState, acceleration_m_s2: float, duration_s: float) -> ReferenceState:
@@ -102,18 +133,17 @@ def press_down(reference: ReferenceState, acceleration_m_s2: float, duration_s: 
 def limit_sink(reference: ReferenceState, lowest_enu_m: float, duration_s: float) -> ReferenceState:
     """Return the model for an autopilot that carries a setpoint on for `duration_s`, should no other follow.
 
-    Without a downward acceleration, which would add up to several metres per second, and sinking no faster than what
-    ends above `lowest_enu_m`: ArduCopter was flown into the road at 1.6 m/s from a chase whose companion had died.
+    Its acceleration upwards is at least such that this ends above `lowest_enu_m`: ArduCopter was flown into the road at
+    1.6 m/s from a chase whose companion had died.
     """
-    ax, ay, az = reference.acceleration_enu_m_s2
-    vx, vy, vz = reference.velocity_enu_m_s
-    above_m = max(float(reference.position_enu_m[2]) - lowest_enu_m, 0.0)
-    slowest_m_s = -above_m / duration_s if duration_s > 0.0 else -math.inf
-    return replace(
-        reference,
-        velocity_enu_m_s=np.array([vx, vy, max(vz, slowest_m_s)]),
-        acceleration_enu_m_s2=np.array([ax, ay, max(az, 0.0)]),
-    )
+    if duration_s <= 0.0:
+        return reference
+    above_m = float(reference.position_enu_m[2]) - lowest_enu_m
+    ax, ay, az = reference.acceleration_enu_m_s2.tolist()
+    least_m_s2 = -2.0 * (above_m + float(reference.velocity_enu_m_s[2]) * duration_s) / duration_s**2
+    if az >= least_m_s2:
+        return reference
+    return replace(reference, acceleration_enu_m_s2=np.array([ax, ay, least_m_s2]))
 
 
 def extrapolate(reference: ReferenceState, duration_s: float) -> ReferenceState:
@@ -142,11 +172,9 @@ def state_in_plan(trajectory: Trajectory, offset_s: float) -> ReferenceState:
     )
 
 
-def setpoint_at(
-    reference: ReferenceState, correction_enu_m: Array, t_ns: int, yaw_rad: float, *, position_only: bool
-) -> Setpoint:
-    """Return the setpoint that asks for `reference`, corrected, at `t_ns`."""
-    px, py, pz = (reference.position_enu_m + correction_enu_m).tolist()
+def setpoint_at(reference: ReferenceState, t_ns: int, yaw_rad: float, *, position_only: bool) -> Setpoint:
+    """Return the setpoint that asks for `reference` at `t_ns`."""
+    px, py, pz = reference.position_enu_m.tolist()
     vx, vy, vz = reference.velocity_enu_m_s.tolist()
     ax, ay, az = reference.acceleration_enu_m_s2.tolist()
     return Setpoint(

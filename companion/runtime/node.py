@@ -7,10 +7,12 @@ import math
 from dataclasses import replace
 
 from companion.autopilots.link import CLOCK_SET_NS, AutopilotLink
+from companion.autopilots.response import ResponseModel
 from companion.core.data import Measurement, VehicleEstimate
 from companion.landing.memory import StepMemory
 from companion.landing.status import plan_publication, status_publication
 from companion.landing.step_data import StepInputs, StepOutputs, System
+from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.situation.phases import FLYING_PHASES, Phase
 from companion.step import companion_step
 from companion.vehicle.buffered import BufferHealth
@@ -48,6 +50,7 @@ class CompanionNode:
             geoid_height_m=system.config.geoid_height_m,
         )
         self._dry_run = dry_run
+        self._response: ResponseModel | None = None
         self._limits_wanted = system.config.limits.flight_limits()
         self.memory = StepMemory()
         self.inputs: StepInputs | None = None
@@ -185,6 +188,7 @@ class CompanionNode:
             t_ns=self._t_ns,
             monotonic_ns=self._monotonic_ns,
             limits=self.autopilot.limits(self._limits_wanted),
+            response=self._present_response(),
             own=state.own,
             autopilot=state.view,
             driver=self.autopilot.driver,
@@ -220,6 +224,13 @@ class CompanionNode:
                 self._utc_ahead_ns += set_by_ns
         self._t_ns = max(self._t_ns + 1, utc_ns)
         self._monotonic_ns = self._t_ns - self._utc_ahead_ns
+
+    def _present_response(self) -> ResponseModel | None:
+        """Return the model of how the autopilot follows setpoints, made anew when its gains have changed."""
+        cascade = self.autopilot.cascade
+        if cascade is not None and (self._response is None or self._response.cascade != cascade):
+            self._response = ResponseModel(cascade, HORIZON_OFFSETS_S)
+        return self._response
 
     def _send(self, outputs: StepOutputs, local_ns: int) -> None:
         if not self._dry_run:

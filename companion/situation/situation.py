@@ -107,6 +107,7 @@ class Situation:
         feet_offset_m: of the drone's reported position above its feet.
         reference: the virtual model that the setpoints follow.
         tracking_error_m: distance of the drone from where it was asked to be at that time.
+        tracking_error_max_m: of a drone that follows its setpoints as its autopilot does in gusts over this link.
         waiting_point_enu_m: (3,) in W.
         limits: of the flight, the autopilot's own included.
         speed_limited_by: the autopilot's parameters that may bound the speed.
@@ -123,6 +124,7 @@ class Situation:
     feet_offset_m: float
     reference: ReferenceState | None
     tracking_error_m: float
+    tracking_error_max_m: float
     waiting_point_enu_m: Array | None
     limits: FlightLimits | None = None
     speed_limited_by: tuple[str, ...] = ()

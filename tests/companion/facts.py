@@ -93,6 +93,7 @@ def situation(height_m: float = 1.5, beside_m: float = 0.0, pad: PadPath | None 
         feet_offset_m=GEAR_M,
         reference=reference_at(height_m),
         tracking_error_m=0.05,
+        tracking_error_max_m=1.0,
         waiting_point_enu_m=np.array([0.0, 0.0, 5.0]),
     )
 

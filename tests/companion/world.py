@@ -8,13 +8,15 @@ from typing import cast
 
 import numpy as np
 
-from companion.autopilots.driver import AutopilotView, FrameMoves
+from companion.autopilots.driver import AutopilotView, Driver, FrameMoves
 from companion.autopilots.px4 import Px4Driver
+from companion.autopilots.response import Cascade, ResponseModel
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array, Forecast, Measurement, OwnState, Quantity, VehicleEstimate
 from companion.core.reasons import Reason, sentence
 from companion.landing.memory import StepMemory
 from companion.landing.step_data import StepInputs, StepOutputs, System
+from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.runtime.build import make_guidance
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.step import companion_step
@@ -103,6 +105,16 @@ def own_state(t_ns: int, position_enu_m: Vector3, velocity_enu_m_s: Vector3 = (0
     )
 
 
+@cache
+def _response(cascade: Cascade) -> ResponseModel:
+    return ResponseModel(cascade, HORIZON_OFFSETS_S)
+
+
+def response_of(driver: Driver) -> ResponseModel:
+    """How an autopilot with the firmware's default gains follows setpoints."""
+    return _response(driver.cascade({}))
+
+
 @dataclass
 class Flight:
     """The drone is where the last setpoint wanted it, but never below the pad; commands are obeyed unless refused."""
@@ -117,6 +129,8 @@ class Flight:
     alive: bool | None = True
     leaving: bool = False
     stamps_ahead_s: float = 0.0
+    driver: Driver = field(default_factory=Px4Driver)
+    timeout_s: float = 0.0
 
     def __post_init__(self) -> None:
         self.memory = StepMemory()
@@ -170,7 +184,9 @@ class Flight:
             limits=self.config.limits.flight_limits(),
             own=self.own,
             autopilot=self.view,
-            driver=Px4Driver(),
+            response=response_of(self.driver),
+            driver=self.driver,
+            timeout_s=self.timeout_s,
             acknowledgements=tuple(self.acknowledgements),
             measurements=(fix(self.t_ns + round(self.stamps_ahead_s * 1e9)),) if self.sends_fixes else (),
             vehicle_alive=self.alive,

@@ -164,7 +164,7 @@ ABORTS: dict[str, Abort] = {
     ),
     "not_followed": Abort(  # flown for half a second later than it is: the drone is ahead of where it is asked to be
         reason=Reason.SETPOINT_NOT_FOLLOWED,
-        companion={"setpoint_lead_s": 0.5, "corrects_lag": False, "abort": {"tracking_error_max_m": 1.0}},
+        companion={"setpoint_lead_s": 0.5, "corrects_lag": False, "abort": {"tracking_stds_max": 4.0}},
     ),
     "outside_cone": Abort(
         reason=Reason.OUTSIDE_CONE, fault=_when_low(_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0))

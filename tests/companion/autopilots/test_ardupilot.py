@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, AutopilotView, Desire, DriverMemory
+from companion.autopilots.limits import acceleration_of_tilt_m_s2
 from companion.config.companion import CompanionConfig
 from link.mavlink.dialect import mavlink
 from tests.companion.world import START_NS, STEP_NS
@@ -131,8 +132,8 @@ def test_refused_arming_is_read_from_its_text(text: str, reason: str | None) -> 
 def test_limits_are_read_by_the_names_of_old_and_new_releases(parameters: dict[str, float]) -> None:
     cut = DRIVER.limits(CompanionConfig().limits.flight_limits(), parameters)
     assert (cut.speed_max_m_s, cut.climb_max_m_s, cut.descent_max_m_s) == pytest.approx((7.0, 2.1, 1.1))
-    assert cut.acceleration_max_m_s2 == pytest.approx(0.7 * 9.81 * math.tan(math.radians(22.0)))
     assert cut.jerk_max_m_s3 == 5.0
+    assert cut.tilt_acceleration_m_s2 == pytest.approx(acceleration_of_tilt_m_s2(22.0))
 
 
 @pytest.mark.parametrize(
@@ -145,8 +146,8 @@ def test_limits_are_read_by_the_names_of_old_and_new_releases(parameters: dict[s
     ],
 )
 def test_smaller_of_the_two_tilt_limits_counts(parameters: dict[str, float], tilt_deg: float) -> None:
-    cut = DRIVER.limits(replace(CompanionConfig().limits.flight_limits(), acceleration_max_m_s2=100.0), parameters)
-    assert cut.acceleration_max_m_s2 == pytest.approx(0.7 * 9.81 * math.tan(math.radians(tilt_deg)))
+    cut = DRIVER.limits(CompanionConfig().limits.flight_limits(), parameters)
+    assert cut.tilt_acceleration_m_s2 == pytest.approx(acceleration_of_tilt_m_s2(tilt_deg))
 
 
 @given(st.dictionaries(st.sampled_from(LIMITS), st.floats()))
@@ -156,4 +157,17 @@ def test_no_parameter_whatever_takes_a_limit_away(parameters: dict[str, float]) 
     assert 0.0 < cut.speed_max_m_s <= wanted.speed_max_m_s
     assert 0.0 < cut.climb_max_m_s <= wanted.climb_max_m_s
     assert 0.0 < cut.descent_max_m_s <= wanted.descent_max_m_s
-    assert 0.0 < cut.acceleration_max_m_s2 <= wanted.acceleration_max_m_s2
+    assert cut.acceleration_max_m_s2 == wanted.acceleration_max_m_s2
+    assert 0.0 < cut.tilt_acceleration_m_s2 < math.inf
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    [
+        {"PSC_POSXY_P": 1.3, "PSC_VELXY_P": 3.1, "PSC_VELXY_I": 0.7},
+        {"PSC_NE_POS_P": 1.3, "PSC_NE_VEL_P": 3.1, "PSC_NE_VEL_I": 0.7},
+    ],
+)
+def test_gains_are_read_by_the_names_of_old_and_new_releases(parameters: dict[str, float]) -> None:
+    cascade = DRIVER.cascade(parameters)
+    assert (cascade.position_per_s, cascade.velocity_per_s, cascade.integral_per_s2) == (1.3, 3.1, 0.7)

@@ -52,7 +52,7 @@ UNSAFE: dict[Reason, Situation] = {
     Reason.OWN_POSITION_OLD: replace(situation(), drone=None),
     Reason.OWN_ATTITUDE_OLD: replace(situation(), drone=replace(drone_at(1.5, pad=pad_at()), attitude_known=False)),
     Reason.HEADING_UNKNOWN: situation(pad=pad_at(placed=False)),
-    Reason.SETPOINT_NOT_FOLLOWED: replace(situation(), tracking_error_m=CONFIG.abort.tracking_error_max_m + 0.01),
+    Reason.SETPOINT_NOT_FOLLOWED: replace(situation(), tracking_error_m=situation().tracking_error_max_m + 0.01),
     Reason.OUTSIDE_CONE: situation(NEAR_M, cone_radius_m(NEAR_M, HALF_M, CONFIG) + 0.01),
     Reason.TOO_FAST_NEAR_PAD: replace(
         situation(),

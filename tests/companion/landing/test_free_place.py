@@ -8,8 +8,8 @@ import pytest
 from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.driver import Driver
 from companion.autopilots.px4 import Px4Driver
-from companion.landing.flying import has_free_place, setpoint
 from companion.landing.memory import StepMemory
+from companion.landing.setpoints import has_free_place, setpoint
 from companion.landing.step_data import StepInputs
 from companion.landing.virtual_model import Tracking
 from companion.planning.guidance import ReferenceState
@@ -21,7 +21,7 @@ JITTER_S = 0.04
 
 
 def _memory(phase: Phase, speed_m_s: float = 8.0) -> StepMemory:
-    """The drone is 0.3 m behind the virtual model, and a lag of 0.5 m has been learnt."""
+    """The drone is 0.3 m behind the virtual model."""
     return changed(
         StepMemory(),
         phase=phase,
@@ -31,7 +31,7 @@ def _memory(phase: Phase, speed_m_s: float = 8.0) -> StepMemory:
             acceleration_enu_m_s2=np.zeros(3),
         ),
         reference_ns=NOW_NS,
-        tracking=Tracking(behind_enu_m=np.array([0.3, 0.0, 0.1]), correction_enu_m=np.array([0.5, 0.0, 0.0])),
+        tracking=Tracking(behind_enu_m=np.array([0.3, 0.0, 0.1])),
     )
 
 

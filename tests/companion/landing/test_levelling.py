@@ -1,15 +1,19 @@
-"""Just above the pad the drone is levelled, so that it does not touch down with one foot."""
+"""What the tilt leaves of the acceleration, and a drone that is levelled so as not to touch down with one foot."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from companion.config.companion import CompanionConfig
-from companion.core.data import OwnState
-from companion.landing.levelling import limits_now
+from companion.core.data import Array, OwnState
+from companion.landing.levelling import limit_tilt, limits_now
 from companion.landing.memory import StepMemory
 from companion.landing.step_data import StepInputs
+from companion.planning.guidance import PlanRequest, ReferenceState, Target
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation, drone_now
 from tests.companion.facts import NOW_NS, changed, drone_at, pad_at, situation
@@ -43,15 +47,27 @@ def test_a_leaning_drone_is_levelled_as_much_higher_as_its_lowest_foot_hangs_dow
     [
         (0.0, CONFIG.touchdown.level_acceleration_min_m_s2),
         (1.25, CONFIG.touchdown.level_share * 1.25),
-        (4.0, CONFIG.touchdown.level_acceleration_max_m_s2),
     ],
-    ids=["straight on", "a circle of 20 m at 5 m/s", "harder than it may lean"],
+    ids=["straight on", "a circle of 20 m at 5 m/s"],
 )
 def test_a_drone_above_a_turning_pad_is_levelled_by_a_share_of_that_turn(turns_m_s2: float, level_m_s2: float) -> None:
     pad = pad_at()
     turn = np.tile([0.6 * turns_m_s2, -0.8 * turns_m_s2, 0.0], (len(pad.offset_s), 1))
     here = situation(0.05, pad=replace(pad, acceleration_enu_m_s2=turn))
     assert limits_now(DESCENDS, here, INPUTS, CONFIG).acceleration_max_m_s2 == pytest.approx(level_m_s2)
+
+
+@pytest.mark.parametrize("jerk_m_s3", [5.0, 20.0])
+@pytest.mark.parametrize("turns_m_s2", [2.0, 3.2, 4.5])
+def test_turning_less_than_the_pad_brings_no_more_speed_than_it_may(turns_m_s2: float, jerk_m_s3: float) -> None:
+    pad = pad_at()
+    turn = np.tile([0.6 * turns_m_s2, -0.8 * turns_m_s2, 0.0], (len(pad.offset_s), 1))
+    here = situation(0.05, pad=replace(pad, acceleration_enu_m_s2=turn))
+    inputs = replace(INPUTS, limits=replace(INPUTS.limits, jerk_max_m_s3=jerk_m_s3))
+    less_m_s2 = turns_m_s2 - limits_now(DESCENDS, here, inputs, CONFIG).acceleration_max_m_s2
+    left_s = CONFIG.touchdown.level_height_m / CONFIG.descent.touchdown_sink_rate_m_s
+    gained_m_s = less_m_s2**2 / (2.0 * jerk_m_s3) + less_m_s2 * left_s
+    assert 0.0 < gained_m_s <= CONFIG.touchdown.level_speed_max_m_s + 1e-9
 
 
 def _sinking(height_m: float, sink_m_s: float) -> Situation:
@@ -114,3 +130,61 @@ def test_lean_is_the_sine_of_the_tilt(orientation_wxyz: tuple[float, float, floa
     drone = drone_now(own, NOW_NS, 0.0, 1.0)
     assert drone is not None
     assert drone.lean == pytest.approx(lean, abs=1e-6)
+
+
+sides = st.floats(-math.pi, math.pi)
+thrusts = st.floats(2.0, 9.0)
+shares = st.floats(0.0, 0.79)  # of the thrust to the side, which the air takes
+
+
+def _turned(length: float, angle_rad: float) -> Array:
+    return np.array([length * math.cos(angle_rad), length * math.sin(angle_rad)])
+
+
+def _left_m_s2(needed: Array, air_enu_m_s2: Array, tilt_m_s2: float) -> float:
+    """What is left of a drone's tilt that is wanted off where it is, by (2,)."""
+    offset_s = np.arange(0.0, 1.0, 0.2)
+    still = np.zeros((len(offset_s), 3))
+    request = PlanRequest(
+        state=ReferenceState(
+            position_enu_m=np.zeros(3), velocity_enu_m_s=np.zeros(3), acceleration_enu_m_s2=np.zeros(3)
+        ),
+        target=Target(
+            offset_s=offset_s,
+            position_enu_m=still + np.array([*needed, 0.7]),
+            velocity_enu_m_s=still,
+            acceleration_enu_m_s2=still,
+        ),
+        limits=replace(LIMITS, acceleration_max_m_s2=100.0, tilt_acceleration_m_s2=tilt_m_s2),
+        floor_enu_m=still[:, 2],
+        dt_s=0.02,
+    )
+    return limit_tilt(request, air_enu_m_s2).acceleration_max_m_s2
+
+
+@given(tilt_m_s2=thrusts, share=shares, to_rad=sides, air_rad=sides)
+def test_acceleration_and_what_holds_against_the_air_are_within_the_tilt_together(
+    tilt_m_s2: float, share: float, to_rad: float, air_rad: float
+) -> None:
+    air = _turned(share * tilt_m_s2, air_rad)
+    left_m_s2 = _left_m_s2(_turned(3.0, to_rad), air, tilt_m_s2)
+    assert math.hypot(*(_turned(left_m_s2, to_rad) + air).tolist()) == pytest.approx(tilt_m_s2)
+
+
+@given(tilt_m_s2=thrusts, to_rad=sides)
+def test_in_still_air_all_of_the_tilt_is_left(tilt_m_s2: float, to_rad: float) -> None:
+    assert _left_m_s2(_turned(3.0, to_rad), np.zeros(2), tilt_m_s2) == pytest.approx(tilt_m_s2)
+
+
+@given(tilt_m_s2=thrusts, share=st.floats(0.01, 3.0), air_rad=sides, off_rad=st.floats(-1.4, 1.4))
+def test_more_is_left_to_brake_than_to_go_faster(
+    tilt_m_s2: float, share: float, air_rad: float, off_rad: float
+) -> None:
+    air = _turned(share * tilt_m_s2, air_rad)
+    faster, slower = (_turned(3.0, air_rad + off_rad + turned_rad) for turned_rad in (0.0, math.pi))
+    assert _left_m_s2(slower, air, tilt_m_s2) > _left_m_s2(faster, air, tilt_m_s2) > 0.0
+
+
+def test_tilt_raises_no_limit_and_one_that_is_not_known_lowers_none() -> None:
+    for tilt_m_s2 in (101.0, math.inf):
+        assert _left_m_s2(np.array([2.0, 1.0]), np.array([-3.0, 4.0]), tilt_m_s2) == 100.0

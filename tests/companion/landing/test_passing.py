@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.integrate import cumulative_trapezoid, trapezoid
 
 from companion.core.reasons import Reason
 from companion.landing.decisions import vehicle_passes
@@ -42,18 +43,28 @@ def test_vehicle_that_stands_far_away_is_not_chased() -> None:
     assert decision is None
 
 
+def _vehicle_gains_m(speed_m_s: float) -> float:
+    """How much farther a vehicle gets than a drone that comes from rest to its speed by a ramp, a hold and a ramp."""
+    most_m_s2, jerk_m_s3 = CONFIG.chase.start_acceleration_m_s2, CONFIG.limits.jerk_max_m_s3
+    ramp_s = most_m_s2 / jerk_m_s3
+    end_s = speed_m_s / most_m_s2 + ramp_s
+    t_s = np.linspace(0.0, end_s, 4001)
+    acceleration = jerk_m_s3 * np.minimum(np.minimum(t_s, ramp_s), end_s - t_s)
+    speed = cumulative_trapezoid(acceleration, t_s, initial=0)
+    return speed_m_s * end_s - float(trapezoid(speed, t_s))
+
+
 @given(
-    speed_m_s=st.floats(0.5, 20.0),
+    speed_m_s=st.floats(1.0, 20.0),
     course_rad=st.floats(-math.pi, math.pi),
     beside_m=st.floats(-0.9, 0.9),
     height_m=st.floats(HIGH_M, 10.0),
 )
 @settings(max_examples=100, deadline=None)
-def test_chase_starts_when_even_acceleration_meets_the_vehicle(
+def test_chase_starts_when_a_drone_that_accelerates_meets_the_vehicle(
     speed_m_s: float, course_rad: float, beside_m: float, height_m: float
 ) -> None:
-    # A drone that accelerates at a from rest has v after v / a and covered v^2 / (2 a); the vehicle covered v^2 / a.
-    lead_m = speed_m_s**2 / (2.0 * CONFIG.chase.start_acceleration_m_s2)
+    lead_m = _vehicle_gains_m(speed_m_s)
     along = np.array([math.cos(course_rad), math.sin(course_rad), 0.0])
     across = np.array([-along[1], along[0], 0.0])
     velocity = (speed_m_s * along).tolist()

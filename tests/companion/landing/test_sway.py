@@ -9,10 +9,9 @@ from companion.config.companion import CompanionConfig
 from companion.core.data import GRAVITY_M_S2, OwnState
 from companion.landing.memory import StepMemory
 from companion.landing.sway import Sway, is_swaying, update_sway
-from companion.landing.targets import pad_aim
 from companion.landing.waiting import waits_at_m, waits_for_calm
 from companion.situation.phases import Phase
-from tests.companion.facts import GEAR_M, NOW_NS, TICK_NS, changed, pad_at, reference_at, situation
+from tests.companion.facts import NOW_NS, TICK_NS, changed, pad_at, situation
 
 CONFIG = CompanionConfig()
 DESCENT = CONFIG.descent
@@ -100,15 +99,3 @@ def test_drone_that_leans_waits_no_lower_than_the_pad_is_known(waiting_m: float,
     memory = changed(StepMemory(), phase=Phase.DESCEND, sway=Sway(t_ns=NOW_NS, swayed_ns=NOW_NS))
     facts = situation(0.3, pad=replace(pad_at(), is_coarse=is_coarse))
     assert waits_at_m(memory, facts, CONFIG) == waiting_m
-
-
-@pytest.mark.parametrize("height_m", [1.5, 0.5, 0.2])
-def test_descent_that_waits_ends_at_the_commit_height(height_m: float) -> None:
-    pad = pad_at()
-    aim = pad_aim(
-        Phase.DESCEND, pad, reference_at(height_m), GEAR_M, CONFIG, lowest_m=CONFIG.descent.commit_height_m
-    ).target
-    over_pad_m = aim.position_enu_m[:, 2] - pad.position_enu_m[:, 2] - GEAR_M
-    sink_m_s = pad.velocity_enu_m_s[:, 2] - aim.velocity_enu_m_s[:, 2]
-    assert over_pad_m.min() >= DESCENT.commit_height_m - 1e-9
-    assert sink_m_s[over_pad_m < DESCENT.commit_height_m + 1e-9] == pytest.approx(0.0)

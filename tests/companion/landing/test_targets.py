@@ -1,20 +1,20 @@
-"""The aims of the phases: the sink profile against its differential equation, hovering and following the pad."""
+"""The aims of the phases: hovering, following the pad, and the way down to it."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from companion.config.companion import CompanionConfig
-from companion.config.landing import DescentConfig
-from companion.landing.targets import HORIZON_OFFSETS_S, hover_aim, pad_aim, sink_profile, stopping_point
+from companion.landing.targets import HORIZON_OFFSETS_S, hover_aim, pad_aim, stopping_point
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
 from companion.vehicle.pad import PadPath
 
 CONFIG = CompanionConfig()
-DESCENT = DescentConfig()
+DESCENT = CONFIG.descent
+LIMITS = CONFIG.limits.flight_limits()
+FEET_M = 0.12
 
 
 def _pad_path(speed_m_s: float) -> PadPath:
@@ -36,27 +36,6 @@ def _at(x: float, y: float, z: float) -> ReferenceState:
     )
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("height_m", [5.0, 2.3, 0.8, 0.31, 0.0, -0.2, -0.7])
-def test_sink_profile_solves_its_differential_equation(height_m: float) -> None:
-    def rate(_: float, h: np.ndarray) -> list[float]:
-        if h[0] <= -DESCENT.press_depth_m:
-            return [0.0]
-        wanted = DESCENT.descent_gain_hz * h[0]
-        return [-min(max(wanted, DESCENT.touchdown_sink_rate_m_s), DESCENT.descent_rate_max_m_s)]
-
-    truth = solve_ivp(rate, (0.0, 4.0), [height_m], t_eval=HORIZON_OFFSETS_S, max_step=1e-3)
-    height, _ = sink_profile(height_m, HORIZON_OFFSETS_S, DESCENT)
-    np.testing.assert_allclose(height, truth.y[0], atol=2e-3)
-
-
-def test_sink_rate_is_never_above_the_largest_nor_below_the_touchdown_rate_before_the_end() -> None:
-    height, rate = sink_profile(4.0, HORIZON_OFFSETS_S, DESCENT)
-    before_the_end = height > -DESCENT.press_depth_m + 1e-9
-    assert np.all(rate[before_the_end] >= DESCENT.touchdown_sink_rate_m_s)
-    assert np.all(rate <= DESCENT.descent_rate_max_m_s)
-
-
 def test_hover_aim_stays_at_its_point() -> None:
     aim = hover_aim(np.array([1.0, 2.0, 3.0]))
     assert np.all(aim.target.position_enu_m == [1.0, 2.0, 3.0])
@@ -66,7 +45,7 @@ def test_hover_aim_stays_at_its_point() -> None:
 @pytest.mark.parametrize("phase", [Phase.CHASE, Phase.ALIGN, Phase.DESCEND, Phase.TOUCHDOWN, Phase.ABORT])
 def test_pad_aim_follows_the_pad_horizontally(phase: Phase) -> None:
     pad = _pad_path(5.0)
-    aim = pad_aim(phase, pad, _at(0.0, -2.0, 5.0), 0.12, CONFIG)
+    aim = pad_aim(phase, pad, _at(0.0, -2.0, 5.0), FEET_M, CONFIG, limits=LIMITS)
     np.testing.assert_array_equal(aim.target.position_enu_m[:, :2], pad.position_enu_m[:, :2])
     np.testing.assert_array_equal(aim.target.velocity_enu_m_s[:, :2], pad.velocity_enu_m_s[:, :2])
 
@@ -74,15 +53,15 @@ def test_pad_aim_follows_the_pad_horizontally(phase: Phase) -> None:
 @pytest.mark.parametrize("phase", [Phase.CHASE, Phase.ALIGN, Phase.ABORT])
 def test_phases_before_the_descent_keep_the_feet_above_the_pad(phase: Phase) -> None:
     pad = _pad_path(5.0)
-    aim = pad_aim(phase, pad, _at(0.0, -2.0, 5.0), 0.12, CONFIG)
-    assert np.all(aim.floor_enu_m > pad.position_enu_m[:, 2] + 0.12)
+    aim = pad_aim(phase, pad, _at(0.0, -2.0, 5.0), FEET_M, CONFIG, limits=LIMITS)
+    assert np.all(aim.floor_enu_m > pad.position_enu_m[:, 2] + FEET_M)
     assert np.all(aim.target.position_enu_m[:, 2] >= aim.floor_enu_m)
 
 
 def test_chase_comes_lower_as_the_distance_closes() -> None:
     pad = _pad_path(5.0)
-    far = pad_aim(Phase.CHASE, pad, _at(-20.0, -2.0, 5.0), 0.12, CONFIG).target.position_enu_m[0, 2]
-    near = pad_aim(Phase.CHASE, pad, _at(1.0, -2.0, 5.0), 0.12, CONFIG).target.position_enu_m[0, 2]
+    far = pad_aim(Phase.CHASE, pad, _at(-20.0, -2.0, 5.0), FEET_M, CONFIG, limits=LIMITS).target.position_enu_m[0, 2]
+    near = pad_aim(Phase.CHASE, pad, _at(1.0, -2.0, 5.0), FEET_M, CONFIG, limits=LIMITS).target.position_enu_m[0, 2]
     assert near < far
 
 
@@ -90,9 +69,60 @@ def test_chase_stays_high_over_a_vehicle_whose_place_is_vague() -> None:
     known = _pad_path(5.0)
     vague = replace(known, position_std_m=np.full_like(known.position_std_m, CONFIG.abort.position_std_max_m + 0.01))
     near = _at(3.1, -2.0, 1.5 + CONFIG.descent.align_height_m)
-    heights = [pad_aim(Phase.CHASE, pad, near, 0.12, CONFIG).target.position_enu_m[:, 2] for pad in (known, vague)]
-    np.testing.assert_allclose(heights[0], 1.5 + 0.12 + CONFIG.descent.align_height_m)
-    np.testing.assert_allclose(heights[1], 1.5 + 0.12 + CONFIG.chase.height_m)
+    heights = [
+        pad_aim(Phase.CHASE, pad, near, FEET_M, CONFIG, limits=LIMITS).target.position_enu_m[:, 2]
+        for pad in (known, vague)
+    ]
+    np.testing.assert_allclose(heights[0], 1.5 + FEET_M + CONFIG.descent.align_height_m)
+    np.testing.assert_allclose(heights[1], 1.5 + FEET_M + CONFIG.chase.height_m)
+
+
+def _over_pad(height_m: float, sink_m_s: float, pad: PadPath) -> ReferenceState:
+    up = np.array([0.0, 0.0, height_m + FEET_M])
+    return ReferenceState(
+        position_enu_m=pad.position_enu_m[0] + up,
+        velocity_enu_m_s=pad.velocity_enu_m_s[0] - np.array([0.0, 0.0, sink_m_s]),
+        acceleration_enu_m_s2=pad.acceleration_enu_m_s2[0],
+    )
+
+
+def _heaving_pad() -> PadPath:
+    pad = _pad_path(5.0)
+    rises = np.array([0.0, 0.0, 0.2])
+    return replace(
+        pad,
+        position_enu_m=pad.position_enu_m + rises * pad.offset_s[:, None],
+        velocity_enu_m_s=pad.velocity_enu_m_s + rises,
+    )
+
+
+@pytest.mark.parametrize("lowest_m", [None, DESCENT.commit_height_m])
+@pytest.mark.parametrize(("height_m", "sink_m_s"), [(1.5, 0.0), (0.9, 0.8), (0.2, -0.3)])
+def test_descent_begins_where_the_model_is_and_as_it_moves(
+    height_m: float, sink_m_s: float, lowest_m: float | None
+) -> None:
+    pad = _heaving_pad()
+    model = _over_pad(height_m, sink_m_s, pad)
+    aim = pad_aim(Phase.DESCEND, pad, model, FEET_M, CONFIG, limits=LIMITS, lowest_m=lowest_m).target
+    np.testing.assert_allclose(aim.position_enu_m[0, 2], model.position_enu_m[2])
+    np.testing.assert_allclose(aim.velocity_enu_m_s[0, 2], model.velocity_enu_m_s[2])
+
+
+@pytest.mark.parametrize("height_m", [1.5, 0.5, 0.2])
+def test_descent_that_waits_ends_at_the_height_where_it_is_to_wait(height_m: float) -> None:
+    pad, waits_m = _heaving_pad(), DESCENT.commit_height_m
+    aim = pad_aim(
+        Phase.DESCEND, pad, _over_pad(height_m, 0.0, pad), FEET_M, CONFIG, limits=LIMITS, lowest_m=waits_m
+    ).target
+    over_pad_m = aim.position_enu_m[:, 2] - pad.position_enu_m[:, 2] - FEET_M
+    assert over_pad_m.min() >= min(height_m, waits_m) - 0.02
+    assert over_pad_m[-1] == pytest.approx(waits_m, abs=0.05)
+
+
+def test_descent_that_goes_on_ends_below_the_pad() -> None:
+    pad = _heaving_pad()
+    aim = pad_aim(Phase.DESCEND, pad, _over_pad(1.5, 0.0, pad), FEET_M, CONFIG, limits=LIMITS).target
+    assert aim.position_enu_m[-1, 2] < pad.position_enu_m[-1, 2] + FEET_M
 
 
 def test_stopping_point_is_the_closed_form_of_even_braking() -> None:

@@ -22,6 +22,7 @@ from tests.companion.vehicle.drives import DEGRADED, NOMINAL, Sensors, circle
 from tests.companion.vehicle.rides import arrivals, estimator, now_ns
 
 CONFIG = CompanionConfig()
+LIMITS = CONFIG.limits.flight_limits()
 HIGH_M = CONFIG.descent.align_height_m
 LOW_M = 0.5 * CONFIG.descent.commit_height_m
 VAGUE_M = CONFIG.descent.unseen_std_max_m + 0.01
@@ -78,7 +79,9 @@ def test_chase_stays_high_until_it_sees_the_pad(std_m: float, *, aligns: bool) -
     facts = above(CONFIG.chase.height_m, std_m, is_coarse=True)
     assert facts.pad is not None
     event = event_within(Phase.CHASE, facts, 5.0)
-    height_m = pad_aim(Phase.CHASE, facts.pad, reference_at(HIGH_M), GEAR_M, CONFIG).target.position_enu_m[0, 2]
+    height_m = pad_aim(
+        Phase.CHASE, facts.pad, reference_at(HIGH_M), GEAR_M, CONFIG, limits=CONFIG.limits.flight_limits()
+    ).target.position_enu_m[0, 2]
     over_pad_m = height_m - facts.pad.position_enu_m[0, 2] - GEAR_M
     assert event is (Event.OVER_PAD if aligns else None)
     unsure_m = CONFIG.chase.unseen_height_stds * std_m
@@ -95,7 +98,9 @@ def wanted_over_unseen_m(phase: Phase, height_std_m: float, config: CompanionCon
     """How high above an unseen pad the drone is to fly whose height is known so well."""
     std_m = np.tile([VAGUE_M, VAGUE_M, height_std_m], (len(pad_at().offset_s), 1))
     pad = replace(pad_at(), is_coarse=True, position_std_m=std_m)
-    wanted_m = pad_aim(phase, pad, reference_at(HIGH_M), GEAR_M, config).target.position_enu_m[0, 2]
+    wanted_m = pad_aim(
+        phase, pad, reference_at(HIGH_M), GEAR_M, config, limits=CONFIG.limits.flight_limits()
+    ).target.position_enu_m[0, 2]
     return float(wanted_m - pad.position_enu_m[0, 2]) - GEAR_M
 
 

@@ -1,11 +1,15 @@
-"""The virtual model's tracking: lag is learnt, transients are not, the correction stays bounded."""
+"""The virtual model: the drone beside it, how far it may sink, and the setpoint that asks for it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from companion.core.data import Array, OwnState
+from companion.autopilots.px4 import Px4Driver
+from companion.core.data import GRAVITY_M_S2, Array, OwnState
 from companion.landing.virtual_model import (
     Tracking,
     add_to_past,
@@ -18,8 +22,12 @@ from companion.landing.virtual_model import (
     update_tracking,
 )
 from companion.planning.guidance import ReferenceState, Trajectory
+from link.messages import Quaternion
+from tests.companion.world import response_of
 
 STEP_NS = 20_000_000
+LEVEL: Quaternion = (1.0, 0.0, 0.0, 0.0)
+RESPONSE = response_of(Px4Driver())
 
 
 def _state(t_s: float, speed_m_s: float) -> ReferenceState:
@@ -30,53 +38,86 @@ def _state(t_s: float, speed_m_s: float) -> ReferenceState:
     )
 
 
-def _own(t_ns: int, x: float) -> OwnState:
+def _own(t_ns: int, x: float, speed_m_s: float = 5.0, orientation_wxyz: Quaternion = LEVEL) -> OwnState:
     return OwnState(
         t_ns=t_ns,
         position_enu_m=(x, 0.3, 4.0),
-        velocity_enu_m_s=(5.0, 0.0, 0.0),
-        orientation_wxyz=(1.0, 0.0, 0.0, 0.0),
+        velocity_enu_m_s=(speed_m_s, 0.0, 0.0),
+        orientation_wxyz=orientation_wxyz,
         angular_velocity_flu_rad_s=(0.0, 0.0, 0.0),
     )
 
 
-def _fly_with_lag(lag_m: float, steps: int, *, learn: bool = True) -> Tracking:
-    """The drone stays `lag_m` behind where its setpoint is, correction included, and reports 40 ms late."""
+def _fly_behind(lag_m: float, steps: int, *, estimates: bool = True) -> Tracking:
+    """The drone stays `lag_m` behind the model and reports 47 ms late."""
     tracking = Tracking()
     for i in range(1, steps):
         t_ns = i * STEP_NS
         tracking = add_to_past(tracking, t_ns, _state(t_ns * 1e-9, 5.0))
         reported_ns = t_ns - 2 * STEP_NS - 7_000_000
         if reported_ns > 0:
-            x = 5.0 * reported_ns * 1e-9 - lag_m + float(tracking.correction_enu_m[0])
-            tracking = update_tracking(tracking, reported_ns, (x, 0.3, 4.0), learns=learn)
+            own = _own(reported_ns, 5.0 * reported_ns * 1e-9 - lag_m)
+            tracking = update_tracking(tracking, reported_ns, own, RESPONSE, estimates=estimates)
     return tracking
 
 
-def test_lasting_lag_is_learnt() -> None:
-    tracking = _fly_with_lag(0.4, 1000)
-    np.testing.assert_allclose(tracking.correction_enu_m, [0.4, 0.0, 0.0], atol=0.01)
-    assert tracking.error_m < 0.01
-
-
-def test_nothing_is_learnt_unless_asked() -> None:
-    tracking = _fly_with_lag(0.4, 200, learn=False)
-    assert not np.any(tracking.correction_enu_m)
-    np.testing.assert_allclose(tracking.error_m, 0.4, atol=1e-6)
+def test_drone_is_compared_with_the_model_at_the_time_of_its_report() -> None:
+    tracking = _fly_behind(0.4, 200)
     np.testing.assert_allclose(tracking.behind_enu_m, [0.4, 0.0, 0.0], atol=1e-6)
+    np.testing.assert_allclose(tracking.error_m, 0.4, atol=1e-6)
 
 
-def test_transient_is_not_learnt() -> None:
-    assert not np.any(_fly_with_lag(3.0, 200).correction_enu_m)
+def test_lasting_deviation_is_estimated() -> None:
+    np.testing.assert_allclose(_fly_behind(0.4, 500).deviation[:2, 0], [-0.4, 0.0], atol=0.1)
 
 
-def test_correction_stays_bounded() -> None:
-    tracking = Tracking()
-    for i in range(1, 2000):
+def test_nothing_is_estimated_of_a_drone_that_does_not_fly_freely() -> None:
+    assert not np.any(_fly_behind(0.4, 200, estimates=False).deviation)
+
+
+def test_deviation_is_what_the_next_report_shows_after_a_break() -> None:
+    tracking = _fly_behind(0.4, 200)
+    assert tracking.compared_ns is not None
+    for i in range(200, 240):
         tracking = add_to_past(tracking, i * STEP_NS, _state(i * STEP_NS * 1e-9, 5.0))
-        x = 5.0 * (i - 1) * STEP_NS * 1e-9 - 0.9
-        tracking = update_tracking(tracking, (i - 1) * STEP_NS, (x, 0.3, 4.0), learns=True)
-    assert np.linalg.norm(tracking.correction_enu_m) <= 1.5 + 1e-9
+    t_ns = 238 * STEP_NS
+    tracking = update_tracking(tracking, t_ns, _own(t_ns, 5.0 * t_ns * 1e-9 + 0.7, 5.3), RESPONSE, estimates=True)
+    np.testing.assert_allclose(tracking.deviation[:2], [[0.7, 0.0], [0.3, 0.0]], atol=1e-6)
+    assert not np.any(tracking.deviation[2:])
+
+
+def test_report_that_was_compared_changes_nothing() -> None:
+    tracking = _fly_behind(0.4, 200)
+    assert tracking.compared_ns is not None
+    again = _own(tracking.compared_ns, 0.0)
+    assert update_tracking(tracking, tracking.compared_ns, again, RESPONSE, estimates=True) is tracking
+
+
+@pytest.mark.parametrize("lean_rad", [0.21, -0.13])
+def test_drone_that_leans_on_a_steady_path_holds_against_the_air(lean_rad: float) -> None:
+    leaning = (math.cos(lean_rad / 2.0), 0.0, math.sin(lean_rad / 2.0), 0.0)  # nose down: thrust forwards
+    tracking = Tracking()
+    for i in range(1, 400):
+        tracking = add_to_past(tracking, i * STEP_NS, _state(i * STEP_NS * 1e-9, 5.0))
+        own = _own(i * STEP_NS, 5.0 * i * STEP_NS * 1e-9, 5.0, leaning)
+        tracking = update_tracking(tracking, i * STEP_NS, own, RESPONSE, estimates=True)
+    np.testing.assert_allclose(tracking.air_enu_m_s2, [GRAVITY_M_S2 * math.tan(lean_rad), 0.0], atol=1e-6)
+
+
+def test_drone_that_leans_as_its_path_accelerates_holds_against_nothing() -> None:
+    speeding_m_s2 = 2.0
+    lean_rad = math.atan(speeding_m_s2 / GRAVITY_M_S2)
+    leaning = (math.cos(lean_rad / 2.0), 0.0, math.sin(lean_rad / 2.0), 0.0)
+    tracking = Tracking()
+    for i in range(1, 200):
+        t_s = i * STEP_NS * 1e-9
+        state = replace(
+            _state(t_s, speeding_m_s2 * t_s), position_enu_m=np.array([0.5 * speeding_m_s2 * t_s**2, 0.3, 4.0])
+        )
+        tracking = add_to_past(tracking, i * STEP_NS, state)
+        own = _own(i * STEP_NS, 0.5 * speeding_m_s2 * t_s**2, speeding_m_s2 * t_s, leaning)
+        tracking = update_tracking(tracking, i * STEP_NS, own, RESPONSE, estimates=True)
+    np.testing.assert_allclose(tracking.air_enu_m_s2, 0.0, atol=1e-6)
 
 
 def test_carried_is_the_closed_form_of_constant_acceleration() -> None:
@@ -91,36 +132,57 @@ def test_carried_is_the_closed_form_of_constant_acceleration() -> None:
     np.testing.assert_allclose(extrapolate(later, -0.05).position_enu_m, reference.position_enu_m, atol=1e-12)
 
 
-@pytest.mark.parametrize(("up_m_s2", "sent_m_s2"), [(-2.9, 0.0), (0.7, 0.7)])
-def test_model_that_is_carried_on_does_not_fall_faster(up_m_s2: float, sent_m_s2: float) -> None:
-    reference = ReferenceState(
-        position_enu_m=np.array([1.0, 2.0, 3.0]),
-        velocity_enu_m_s=np.array([4.0, 0.0, -0.7]),
+heights, rates, ups = st.floats(-3.0, 20.0), st.floats(-4.0, 4.0), st.floats(-10.0, 10.0)
+durations = st.floats(0.1, 5.0)
+
+
+def _moving(height_m: float, rate_m_s: float, up_m_s2: float) -> ReferenceState:
+    return ReferenceState(
+        position_enu_m=np.array([1.0, 2.0, height_m]),
+        velocity_enu_m_s=np.array([4.0, 0.0, rate_m_s]),
         acceleration_enu_m_s2=np.array([2.0, 1.0, up_m_s2]),
     )
-    sent = limit_sink(reference, 0.0, 3.0)
-    np.testing.assert_array_equal(sent.acceleration_enu_m_s2, [2.0, 1.0, sent_m_s2])
-    np.testing.assert_array_equal(sent.velocity_enu_m_s, reference.velocity_enu_m_s)
 
 
-@pytest.mark.parametrize(("lowest_m", "sent_m_s"), [(-2.0, -1.5), (0.6, -0.8), (3.5, 0.0), (-math.inf, -1.5)])
-def test_model_that_is_carried_on_ends_above_the_lowest_height(lowest_m: float, sent_m_s: float) -> None:
-    reference = ReferenceState(
-        position_enu_m=np.array([1.0, 2.0, 3.0]),
-        velocity_enu_m_s=np.array([4.0, 0.0, -1.5]),
-        acceleration_enu_m_s2=np.array([2.0, 1.0, 0.0]),
-    )
-    sent = limit_sink(reference, lowest_m, 3.0)
-    np.testing.assert_allclose(sent.velocity_enu_m_s, [4.0, 0.0, sent_m_s])
-    np.testing.assert_array_equal(sent.position_enu_m, reference.position_enu_m)
-    np.testing.assert_array_equal(limit_sink(reference, lowest_m, 0.0).velocity_enu_m_s, reference.velocity_enu_m_s)
+@given(heights, rates, ups, durations)
+def test_model_that_is_carried_on_ends_above_the_lowest_height(
+    height_m: float, rate_m_s: float, up_m_s2: float, duration_s: float
+) -> None:
+    limited = limit_sink(_moving(height_m, rate_m_s, up_m_s2), 0.6, duration_s)
+    assert extrapolate(limited, duration_s).position_enu_m[2] >= 0.6 - 1e-9
 
 
-def test_setpoint_is_the_model_with_the_correction() -> None:
-    setpoint = setpoint_at(_state(2.0, 5.0), np.array([0.1, 0.0, 0.0]), 50_000_000, 0.3, position_only=False)
-    np.testing.assert_allclose(setpoint.position_enu_m, [10.1, 0.3, 4.0])
+@given(heights, rates, ups, durations)
+def test_model_that_ends_above_the_lowest_height_is_left_alone(
+    height_m: float, rate_m_s: float, up_m_s2: float, duration_s: float
+) -> None:
+    reference = _moving(height_m, rate_m_s, up_m_s2)
+    lowest_m = float(extrapolate(reference, duration_s).position_enu_m[2]) - 1e-6
+    assert limit_sink(reference, lowest_m, duration_s) is reference
+
+
+@given(heights, rates, ups, durations)
+def test_nothing_but_the_acceleration_upwards_is_limited(
+    height_m: float, rate_m_s: float, up_m_s2: float, duration_s: float
+) -> None:
+    reference = _moving(height_m, rate_m_s, up_m_s2)
+    limited = limit_sink(reference, 0.6, duration_s)
+    np.testing.assert_array_equal(limited.position_enu_m, reference.position_enu_m)
+    np.testing.assert_array_equal(limited.velocity_enu_m_s, reference.velocity_enu_m_s)
+    np.testing.assert_array_equal(limited.acceleration_enu_m_s2[:2], reference.acceleration_enu_m_s2[:2])
+    assert limited.acceleration_enu_m_s2[2] >= up_m_s2
+
+
+def test_model_of_an_autopilot_that_carries_nothing_on_is_left_alone() -> None:
+    sinking = _moving(0.1, -2.0, -3.0)
+    assert limit_sink(sinking, 0.6, 0.0) is sinking
+
+
+def test_setpoint_is_the_model() -> None:
+    setpoint = setpoint_at(_state(2.0, 5.0), 50_000_000, 0.3, position_only=False)
+    assert setpoint.position_enu_m == (10.0, 0.3, 4.0)
     assert setpoint.velocity_enu_m_s == (5.0, 0.0, 0.0)
-    assert setpoint_at(_state(2.0, 5.0), np.zeros(3), 0, 0.3, position_only=True).velocity_enu_m_s is None
+    assert setpoint_at(_state(2.0, 5.0), 0, 0.3, position_only=True).velocity_enu_m_s is None
 
 
 def _cubic(t_s: Array) -> Trajectory:
@@ -159,10 +221,10 @@ def test_model_that_is_pressed_falls_as_if_nothing_held_it() -> None:
 def test_free_place_is_made_up_for_by_the_horizontal_velocity(
     behind_m: tuple[float, float, float], faster_m_s: tuple[float, float]
 ) -> None:
-    wanted = setpoint_at(_state(2.0, 5.0), np.zeros(3), 0, 0.3, position_only=False)
+    wanted = setpoint_at(_state(2.0, 5.0), 0, 0.3, position_only=False)
     free = free_place(wanted, np.array(behind_m), 1.5)
     assert free.is_place_free
     assert free.velocity_enu_m_s == pytest.approx((5.0 + faster_m_s[0], faster_m_s[1], 0.0))
     assert free.position_enu_m == wanted.position_enu_m
-    held = setpoint_at(_state(2.0, 5.0), np.zeros(3), 0, 0.3, position_only=True)
+    held = setpoint_at(_state(2.0, 5.0), 0, 0.3, position_only=True)
     assert free_place(held, np.array(behind_m), 1.5) is held

@@ -48,19 +48,19 @@ def _moving(height_m: float, speed_m_s: float) -> Situation:
 @pytest.mark.parametrize(
     ("facts", "surprise", "reason"),
     [
-        (situation(WAITING_M), KNOWN, "aligned"),
-        (situation(WAITING_M), SURPRISED, "waits above the pad: the vehicle's speed has surprised"),
-        (situation(WAITING_M, 0.8), KNOWN, "waits above the pad: the drone is not over the pad"),
-        (situation(WAITING_M, pad=braking_pad(2.0)), KNOWN, "waits above the pad: the vehicle brakes or speeds up"),
-        (_moving(WAITING_M, 0.5), KNOWN, "waits above the pad: faster than 0.4 m/s against the pad"),
-        (situation(DESCENT.align_height_m), SURPRISED, "aligned"),
-        (situation(0.9 * DESCENT.commit_height_m), SURPRISED, "aligned"),
+        (situation(WAITING_M), KNOWN, Reason.ALIGNED),
+        (situation(WAITING_M), SURPRISED, Reason.SPEED_SURPRISED),
+        (situation(WAITING_M, 0.8), KNOWN, Reason.NOT_OVER_PAD),
+        (situation(WAITING_M, pad=braking_pad(2.0)), KNOWN, Reason.SPEED_CHANGES),
+        (_moving(WAITING_M, 0.5), KNOWN, Reason.UNSETTLED),
+        (situation(DESCENT.align_height_m), SURPRISED, Reason.ALIGNED),
+        (situation(0.9 * DESCENT.commit_height_m), SURPRISED, Reason.ALIGNED),
     ],
     ids=["goes on", "surprised", "beside", "brakes", "unsettled", "still sinking", "committed"],
 )
-def test_status_says_what_a_descent_waits_for(facts: Situation, surprise: Surprise, reason: str) -> None:
+def test_status_says_what_a_descent_waits_for(facts: Situation, surprise: Surprise, reason: Reason) -> None:
     memory = changed(StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED), surprise=surprise)
-    assert landing_status(memory, facts, CONFIG).reason == reason
+    assert landing_status(memory, facts, CONFIG).reason_code == reason.name
 
 
 @pytest.mark.parametrize(

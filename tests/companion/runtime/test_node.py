@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from companion.autopilots.response import ResponseModel
 from companion.config.companion import CompanionConfig
 from companion.situation.phases import Phase
 from companion.vehicle.delay_buffer import DelayBuffer
@@ -142,6 +143,25 @@ def test_flight_goes_on_evenly_when_utc_is_set(set_by_s: float) -> None:
 def _in_phase_s(setup: Setup) -> float:
     assert setup.node.inputs is not None
     return (setup.node.inputs.monotonic_ns - setup.node.memory.progress.since_ns) * 1e-9
+
+
+def test_response_of_the_autopilot_is_made_anew_when_a_gain_changes_and_only_then() -> None:
+    setup = Setup(autopilot=FakePx4(parameters={"MPC_XY_P": (0.8, mavlink.MAV_PARAM_TYPE_REAL32)}))
+    setup.run(8.0)
+    before = _response(setup)
+    setup.run(1.0)
+    assert _response(setup) is before
+    assert before.cascade.position_per_s == pytest.approx(0.8)
+    setup.autopilot.parameters["MPC_XY_P"] = (1.3, mavlink.MAV_PARAM_TYPE_REAL32)
+    setup.autopilot.tell_parameter("MPC_XY_P")
+    setup.run(0.5)
+    assert _response(setup).cascade.position_per_s == pytest.approx(1.3)
+
+
+def _response(setup: Setup) -> ResponseModel:
+    assert setup.node.inputs is not None
+    assert setup.node.inputs.response is not None
+    return setup.node.inputs.response
 
 
 @pytest.mark.slow

@@ -1,0 +1,142 @@
+"""How a drone deviates from the path that its setpoints ask for: a model of the autopilot's cascade; pure numerics.
+
+Per axis the deviation e = p - p_path obeys the cascade of position, velocity and integral gain of the autopilot, behind
+the lag of the drone's attitude:
+
+    e'' = a + u - a_path
+    a' = (a_path - Kv e' - Kv Kp e - a) / tau
+    u' = -u / T - c a_path + w,        T = Kv / Ki
+
+a (m/s^2) is what the drone's lean accelerates it by. u (m/s^2) pushes it off its path and is not made up for yet by the
+integrator: wind, a heavier frame, and drag, which grows by c for each m/s that the path gains. w is white noise, such
+that u alone has a given standard deviation. A steady path makes no deviation.
+State per axis (4,): e (m), e' (m/s), a, u, in W. Measured are e and e'.
+Source: the position controllers of PX4 (mc_pos_control) and ArduPilot (AC_PosControl); Kalman and Bucy 1961.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import expm, solve_continuous_are, solve_continuous_lyapunov
+
+from companion.core.data import Array
+
+PUSH_STD_M_S2 = 0.5
+"""Of what pushes a drone about: a gust of 3 m/s, moderate turbulence of MIL-F-8785C, at a drag of 0.17 per second."""
+DRAG_PER_S = 0.17
+"""Drag by mass and airspeed of a multirotor of 1 to 2 kg; 0.1 to 0.35 are usual (Faessler et al. 2018, table I)."""
+ATTITUDE_LAG_S = 0.1
+"""From a wanted acceleration to the drone's: 0.05 s of motors and propellers, and as much of the rates' loop."""
+POSITION_STD_M = 0.04
+"""Of a report's position beside the path: a receiver with corrections, and 4 ms of its date at 8 m/s."""
+VELOCITY_STD_M_S = 0.1
+"""Likewise of its velocity."""
+REPORT_PERIOD_S = 0.02
+STATES = 4
+_ONE = np.eye(STATES)
+_PUSH = 3
+_STEP_MAX_S = 0.05
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cascade:
+    """The gains of a position controller along a horizontal axis, and how it takes setpoints.
+
+    Attributes:
+        position_per_s: velocity per position error.
+        velocity_per_s: acceleration per velocity error.
+        integral_per_s2: acceleration per integrated velocity error.
+        lead_s: by which a setpoint is to be ahead of the drone beside the link's delay: half of what it is held.
+    """
+
+    position_per_s: float
+    velocity_per_s: float
+    integral_per_s2: float
+    lead_s: float
+
+
+class ResponseModel:
+    """The model of one autopilot with constant matrices, which are made once.
+
+    Args:
+        cascade: of the autopilot.
+        offset_s: (n,) evenly spaced from 0, at which `predict` tells the deviation.
+
+    Attributes:
+        cascade: as given.
+        covariance: (4, 4) of the estimated state, stationary.
+        spread: (4, 4) of the state of a drone that follows as the model says, stationary.
+    """
+
+    def __init__(self, cascade: Cascade, offset_s: Array) -> None:
+        stiffness = cascade.velocity_per_s * cascade.position_per_s
+        forgets_hz = cascade.integral_per_s2 / cascade.velocity_per_s
+        turns_hz = 1.0 / ATTITUDE_LAG_S
+        self.cascade = cascade
+        self._motion = np.array(
+            [
+                [0.0, 1.0, 0.0, 0.0],
+                [0.0, 0.0, 1.0, 1.0],
+                [-turns_hz * stiffness, -turns_hz * cascade.velocity_per_s, -turns_hz, 0.0],
+                [0.0, 0.0, 0.0, -forgets_hz],
+            ]
+        )
+        self._asked = np.array([0.0, -1.0, turns_hz, -DRAG_PER_S])
+        noise = np.zeros((STATES, STATES))
+        noise[_PUSH, _PUSH] = 2.0 * forgets_hz * PUSH_STD_M_S2**2
+        seen = _ONE[:2]
+        report = np.diag([POSITION_STD_M**2, VELOCITY_STD_M_S**2]) * REPORT_PERIOD_S
+        self.covariance: Array = solve_continuous_are(self._motion.T, seen.T, noise, report)
+        self.spread: Array = solve_continuous_lyapunov(self._motion, -noise)
+        self._gain = self.covariance @ seen.T @ np.linalg.inv(report)
+        self._corrected = self._motion - self._gain @ seen
+        self._free, self._forced = _responses(self._motion, self._asked, offset_s)
+
+    def update(self, state: Array, measured: Array, acceleration_m_s2: Array, dt_s: float) -> Array:
+        """Return the state (4, k) of k axes after a report.
+
+        Args:
+            state: (4, k) `dt_s` earlier.
+            measured: (2, k) position and velocity of the drone less those of the path.
+            acceleration_m_s2: (k,) of the path.
+            dt_s: since the report before.
+        """
+        driven = self._gain @ measured + np.outer(self._asked, acceleration_m_s2)
+        return _moved(self._corrected, state, driven, dt_s)
+
+    def carry(self, state: Array, dt_s: float) -> Array:
+        """Return the state (4, k) a moment later on a steady path, without a report."""
+        return _moved(self._motion, state, np.zeros_like(state), dt_s)
+
+    def predict(self, state: Array, acceleration_m_s2: Array) -> Array:
+        """Return the states (n, 4, k) at the model's offsets.
+
+        Args:
+            state: (4, k) now.
+            acceleration_m_s2: (n, k) of the path, each from its offset to the next.
+        """
+        return np.asarray(self._free @ state + self._forced @ acceleration_m_s2)
+
+
+def _moved(motion: Array, state: Array, driven: Array, dt_s: float) -> Array:
+    """Return the state (4, k) after `dt_s`, driven steadily by (4, k); to the third order in short steps."""
+    steps = max(1, math.ceil(dt_s / _STEP_MAX_S))
+    step = motion * (dt_s / steps)
+    second = step @ step
+    moved, push = _ONE + step + 0.5 * second + second @ step / 6.0, _ONE + 0.5 * step + second / 6.0
+    for _ in range(steps):
+        state = moved @ state + push @ driven * (dt_s / steps)
+    return state
+
+
+def _responses(motion: Array, asked: Array, offset_s: Array) -> tuple[Array, Array]:
+    """Return the maps (n, 4, 4) of a state and (n, 4, n) of an input that is constant from each offset to the next."""
+    count, spacing_s = len(offset_s), float(offset_s[1] - offset_s[0])
+    augmented = expm(np.block([[motion, asked[:, np.newaxis]], [np.zeros((1, STATES + 1))]]) * spacing_s)
+    powers = np.array([np.linalg.matrix_power(augmented[:STATES, :STATES], power) for power in range(count)])
+    forced = np.zeros((count, STATES, count))
+    for later in range(count):
+        for earlier in range(later):
+            forced[later, :, earlier] = powers[later - 1 - earlier] @ augmented[:STATES, STATES]
+    return powers, forced

@@ -1,0 +1,113 @@
+"""The model of how a drone deviates from its path: against scipy's integrator, and as a filter of simulated reports."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from companion.autopilots.response import (
+    ATTITUDE_LAG_S,
+    DRAG_PER_S,
+    POSITION_STD_M,
+    PUSH_STD_M_S2,
+    REPORT_PERIOD_S,
+    STATES,
+    VELOCITY_STD_M_S,
+    Cascade,
+    ResponseModel,
+)
+from companion.core.data import Array
+
+OFFSET_S: Array = np.arange(0.0, 4.01, 0.2)
+CASCADES = {
+    "ardupilot": Cascade(position_per_s=1.0, velocity_per_s=2.0, integral_per_s2=1.0, lead_s=0.0),
+    "px4": Cascade(position_per_s=0.95, velocity_per_s=1.8, integral_per_s2=0.4, lead_s=0.03),
+}
+STATE: Array = np.array([[0.4, -0.1], [-0.3, 0.2], [-0.2, 0.7], [0.8, -0.5]])
+
+
+@pytest.fixture(params=sorted(CASCADES))
+def model(request: pytest.FixtureRequest) -> ResponseModel:
+    return ResponseModel(CASCADES[request.param], OFFSET_S)
+
+
+def integrated(cascade: Cascade, state: Array, accelerations: Array) -> Array:
+    """The module's equations, solved by scipy for one axis: (n, 4)."""
+
+    def rate(t_s: float, x: Array) -> list[float]:
+        a = accelerations[min(int(t_s / 0.2 + 1e-9), len(accelerations) - 1)]
+        wanted = a - cascade.velocity_per_s * (x[1] + cascade.position_per_s * x[0])
+        forgets = x[3] * cascade.integral_per_s2 / cascade.velocity_per_s
+        return [x[1], x[2] + x[3] - a, (wanted - x[2]) / ATTITUDE_LAG_S, -forgets - DRAG_PER_S * a]
+
+    solved = solve_ivp(rate, (0.0, 4.0), state, t_eval=OFFSET_S.clip(0.0, 4.0), rtol=1e-9, atol=1e-9, max_step=0.05)
+    return np.asarray(solved.y.T)
+
+
+def test_prediction_solves_the_differential_equation(model: ResponseModel) -> None:
+    accelerations = np.column_stack((np.sin(OFFSET_S), np.linspace(3.0, -1.0, len(OFFSET_S))))
+    predicted = model.predict(STATE, accelerations)
+    for axis in range(2):
+        expected = integrated(model.cascade, STATE[:, axis], accelerations[:, axis])
+        np.testing.assert_allclose(predicted[:, :, axis], expected, atol=2e-5)
+
+
+def test_carried_state_is_the_predicted_one(model: ResponseModel) -> None:
+    expected = model.predict(STATE, np.zeros((len(OFFSET_S), 2)))[1]
+    np.testing.assert_allclose(model.carry(STATE, 0.2), expected, atol=3e-3)
+
+
+def test_steady_path_makes_no_deviation(model: ResponseModel) -> None:
+    assert not model.predict(np.zeros((STATES, 1)), np.zeros((len(OFFSET_S), 1))).any()
+
+
+def test_a_constant_push_is_unlearnt(model: ResponseModel) -> None:
+    pushed = np.array([[0.0], [0.0], [0.0], [1.0]])
+    far = np.linalg.matrix_power(model.predict(np.eye(STATES), np.zeros((len(OFFSET_S), STATES)))[-1], 5) @ pushed
+    assert np.abs(far).max() < 0.02
+
+
+def drone(model: ResponseModel, seed: int, duration_s: float) -> tuple[Array, Array]:
+    """A drone that the model describes, and its reports: states (n, 4) and (n, 2), at the reports' rate."""
+    random, dt_s = np.random.default_rng(seed), REPORT_PERIOD_S
+    forgets_hz = model.cascade.integral_per_s2 / model.cascade.velocity_per_s
+    state, states, reports = np.zeros((STATES, 1)), [], []
+    for _ in range(round(duration_s / dt_s)):
+        state = model.carry(state, dt_s)
+        state[3] += random.normal() * PUSH_STD_M_S2 * np.sqrt(2.0 * forgets_hz * dt_s)
+        states.append(state[:, 0].copy())
+        reports.append(state[:2, 0] + random.normal(size=2) * (POSITION_STD_M, VELOCITY_STD_M_S))
+    return np.array(states), np.array(reports)
+
+
+def estimated(model: ResponseModel, reports: Array) -> Array:
+    """The filter's states (n, 4) after each report."""
+    state, states = np.zeros((STATES, 1)), []
+    for report in reports:
+        state = model.update(state, report[:, np.newaxis], np.zeros(1), REPORT_PERIOD_S)
+        states.append(state[:, 0])
+    return np.array(states)
+
+
+def test_estimate_errs_by_its_covariance(model: ResponseModel) -> None:
+    truth, reports = drone(model, 1, 200.0)
+    error = (estimated(model, reports) - truth)[500:]
+    ratio = error.std(axis=0) / np.sqrt(np.diag(model.covariance))
+    assert ratio == pytest.approx(np.ones(STATES), abs=0.2)
+
+
+def test_drone_spreads_as_far_as_the_model_says(model: ResponseModel) -> None:
+    truth, _ = drone(model, 2, 2000.0)
+    assert truth[500:].std(axis=0) / np.sqrt(np.diag(model.spread)) == pytest.approx(np.ones(STATES), abs=0.2)
+
+
+@pytest.mark.parametrize("dt_s", [0.004, 0.02, 0.1, 0.25])
+def test_estimate_that_the_reports_confirm_is_the_prediction(model: ResponseModel, dt_s: float) -> None:
+    fine_s = np.arange(0.0, dt_s + 1e-9, dt_s / 50)
+    accelerates = np.array([2.0, -0.7])
+    way = ResponseModel(model.cascade, fine_s).predict(STATE, np.tile(accelerates, (len(fine_s), 1)))
+    state = STATE
+    for earlier, later in pairwise(way):
+        state = model.update(state, 0.5 * (earlier + later)[:2], accelerates, dt_s / 50)
+    np.testing.assert_allclose(state, way[-1], atol=2e-3)
