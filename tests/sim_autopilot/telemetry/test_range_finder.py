@@ -1,0 +1,73 @@
+"""The range finder looks along the body's axis, not straight down: what it measures grows with the lean."""
+
+from dataclasses import replace
+from math import cos, radians, sin, tan
+
+import numpy as np
+import pytest
+
+from link.messages import Quaternion
+from sim_autopilot.core.data import Deck
+from sim_autopilot.telemetry.motion import distance_sensor
+from tests.sim_autopilot.pilot import START_NS, Pilot, px4
+
+ROOF_M = 1.5
+HALF_LENGTH_M = 2.25
+
+
+def rolled(angle_deg: float) -> Quaternion:
+    """Leaning to the right, so that the axis downwards points to the left, north here."""
+    half = 0.5 * radians(angle_deg)
+    return (cos(half), sin(half), 0.0, 0.0)
+
+
+def distance_m(height_m: float, lean_deg: float, deck: Deck | None, beside_m: float = 0.0) -> float:
+    """What a range finder `height_m` above the road tells."""
+    pilot = Pilot()
+    memory = pilot.node.memory
+    state = replace(
+        memory.plant.state,
+        t_ns=START_NS,
+        position_enu_m=np.array([0.0, beside_m, height_m]),
+        orientation_wxyz=np.array(rolled(lean_deg)),
+    )
+    memory = replace(memory, plant=replace(memory.plant, state=state), world=replace(memory.world, deck=deck))
+    return float(distance_sensor(memory, px4()).current_distance) / 100.0
+
+
+def a_deck() -> Deck:
+    return Deck(
+        t_ns=START_NS,
+        position_enu_m=np.zeros(3),
+        orientation_wxyz=np.array([1.0, 0.0, 0.0, 0.0]),
+        velocity_enu_m_s=np.zeros(3),
+        angular_velocity_enu_rad_s=np.zeros(3),
+        roof_size_m=(2.0 * HALF_LENGTH_M, 2.0),
+        roof_height_m=ROOF_M,
+    )
+
+
+@pytest.mark.parametrize("lean_deg", [0.0, 12.0, 27.0])
+def test_ground_is_farther_along_a_leaning_axis(lean_deg: float) -> None:
+    assert distance_m(8.0, lean_deg, None) == pytest.approx(8.0 / cos(radians(lean_deg)), abs=0.01)
+
+
+@pytest.mark.parametrize("lean_deg", [0.0, 8.0])
+def test_roof_below_is_seen_along_the_axis(lean_deg: float) -> None:
+    assert distance_m(6.0, lean_deg, a_deck()) == pytest.approx((6.0 - ROOF_M) / cos(radians(lean_deg)), abs=0.01)
+
+
+def test_a_drone_over_the_roof_that_leans_far_looks_past_it() -> None:
+    lean_deg = 25.0
+    assert (6.0 - ROOF_M) * tan(radians(lean_deg)) > 1.0
+    assert distance_m(6.0, lean_deg, a_deck()) == pytest.approx(6.0 / cos(radians(lean_deg)), abs=0.01)
+
+
+def test_a_drone_beside_the_roof_that_leans_away_from_it_sees_it() -> None:
+    side_m = [1.4 * side for side in (1.0, -1.0)]
+    seen = {round(distance_m(6.0, 20.0, a_deck(), beside_m), 1) for beside_m in side_m}
+    assert seen == {round((6.0 - ROOF_M) / cos(radians(20.0)), 1), round(6.0 / cos(radians(20.0)), 1)}
+
+
+def test_nothing_is_seen_upside_down() -> None:
+    assert distance_m(6.0, 120.0, None) == pytest.approx(100.0)
