@@ -11,6 +11,7 @@ from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
+from multiprocessing import resource_tracker as standard_resource_tracker
 from types import TracebackType
 from typing import Any, Self
 
@@ -113,7 +114,8 @@ def _start(job: Callable[[Any], Any]) -> _Worker:
 @contextmanager
 def _without_interrupt() -> Iterator[None]:
     """Let processes and threads started within not see Ctrl-C, which is this thread's to handle."""
-    resource_tracker.ensure_running()  # or starting it, with the first process, would lift the mask below
+    for tracker in (resource_tracker, standard_resource_tracker):
+        tracker.ensure_running()  # or starting it, with the first process, would lift the mask below
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

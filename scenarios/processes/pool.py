@@ -7,13 +7,14 @@ from abc import ABC, abstractmethod
 from collections import Counter, deque
 from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import CancelledError, Future
-from queue import SimpleQueue
+from queue import Empty, SimpleQueue
 from types import TracebackType
 from typing import Generic, Self, TypeVar
 
 from link.errors import UserError
 
 _ATTEMPTS_MAX = 3  # a task that ended so many processes is given up
+_WAIT_S = 1.0
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -75,7 +76,7 @@ def run_tasks(
                 future = workers.submit(waiting[0])
                 underway[future] = waiting.popleft()
                 future.add_done_callback(ended.put)
-            future = ended.get()
+            future = _next_ended(ended)
             task = underway.pop(future)
             death = workers.release(future)
             if death is None:
@@ -86,6 +87,18 @@ def run_tasks(
                 waiting.appendleft(task)
             else:
                 yield lost(task, f"its process died {_ATTEMPTS_MAX} times ({death})")
+
+
+def _next_ended(ended: "SimpleQueue[Future[Result]]") -> "Future[Result]":
+    """Wait for a future to end, and be woken by Ctrl-C.
+
+    Polars handles SIGINT with SA_RESTART and then as before: a wait without a limit would go on, unknown to Python.
+    """
+    while True:
+        try:
+            return ended.get(timeout=_WAIT_S)
+        except Empty:
+            continue
 
 
 def _result(future: "Future[Result]", task: Task, lost: Callable[[Task, str], Result]) -> Result:

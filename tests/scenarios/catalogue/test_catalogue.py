@@ -143,7 +143,7 @@ def test_file_with_a_base_changes_what_it_names(tmp_path: Path) -> None:
         ("speed = = 3\n", ["not valid TOML"]),
         (
             'base = "report_1"\n[track]\nspeeds_m_s = [0.0, 0.0]\n',
-            ["speeds_m_s must not be 0"],
+            ["speeds_m_s[0] and [1], at neighbouring waypoints, must not both be 0"],
         ),
     ],
 )

@@ -4,6 +4,7 @@ import os
 import signal
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 from link.errors import UserError
@@ -36,6 +37,13 @@ class Doubling:
 def threads_and_signals(_: int) -> tuple[str | None, bool]:
     """Return how many threads the process calculates on and whether Ctrl-C is kept from it."""
     return os.environ.get("OPENBLAS_NUM_THREADS"), signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+
+def interrupt_and_stay(_: int) -> int:
+    """Interrupt the process that waits for this one, and never be done."""
+    os.kill(os.getppid(), signal.SIGINT)
+    Event().wait()
+    return 0
 
 
 class Unloadable:

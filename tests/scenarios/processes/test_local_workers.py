@@ -9,7 +9,7 @@ import pytest
 from link.errors import UserError
 from scenarios.processes.local_workers import LocalWorkers, core_count
 from scenarios.processes.pool import run_tasks
-from tests.scenarios.processes.pool_jobs import Doubling, Unloadable, threads_and_signals
+from tests.scenarios.processes.pool_jobs import Doubling, Unloadable, interrupt_and_stay, threads_and_signals
 
 pytestmark = pytest.mark.slow
 
@@ -69,6 +69,16 @@ def test_closing_ends_the_processes() -> None:
     next(stream)
     assert multiprocessing.active_children()
     stream.close()
+    assert not multiprocessing.active_children()
+
+
+def test_ctrl_c_ends_a_wait_that_a_librarys_handler_lets_go_on() -> None:
+    signal.siginterrupt(signal.SIGINT, False)  # as polars has it: SA_RESTART
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            list(run_tasks(LocalWorkers(interrupt_and_stay, 1), [0], lost=lost))
+    finally:
+        signal.siginterrupt(signal.SIGINT, True)
     assert not multiprocessing.active_children()
 
 
