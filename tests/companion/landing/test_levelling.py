@@ -9,13 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from companion.config.companion import CompanionConfig
-from companion.core.data import Array, OwnState
+from companion.core.data import Array, FlightLimits, OwnState
 from companion.landing.levelling import limit_tilt, limits_now
 from companion.landing.memory import StepMemory
 from companion.landing.step_data import StepInputs
 from companion.planning.guidance import PlanRequest, ReferenceState, Target
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation, drone_now
+from companion.vehicle.pad import PadPath
 from tests.companion.facts import NOW_NS, changed, drone_at, pad_at, situation
 
 CONFIG = CompanionConfig()
@@ -47,27 +48,41 @@ def test_a_leaning_drone_is_levelled_as_much_higher_as_its_lowest_foot_hangs_dow
     [
         (0.0, CONFIG.touchdown.level_acceleration_min_m_s2),
         (1.25, CONFIG.touchdown.level_share * 1.25),
+        (2.8, CONFIG.touchdown.level_acceleration_max_m_s2),
     ],
-    ids=["straight on", "a circle of 20 m at 5 m/s"],
+    ids=["straight on", "a circle of 20 m at 5 m/s", "harder than it may lean"],
 )
 def test_a_drone_above_a_turning_pad_is_levelled_by_a_share_of_that_turn(turns_m_s2: float, level_m_s2: float) -> None:
-    pad = pad_at()
-    turn = np.tile([0.6 * turns_m_s2, -0.8 * turns_m_s2, 0.0], (len(pad.offset_s), 1))
-    here = situation(0.05, pad=replace(pad, acceleration_enu_m_s2=turn))
-    assert limits_now(DESCENDS, here, INPUTS, CONFIG).acceleration_max_m_s2 == pytest.approx(level_m_s2)
+    assert _levelled_m_s2(situation(0.05, pad=_turning(turns_m_s2))) == pytest.approx(level_m_s2)
 
 
-@pytest.mark.parametrize("jerk_m_s3", [5.0, 20.0])
-@pytest.mark.parametrize("turns_m_s2", [2.0, 3.2, 4.5])
-def test_turning_less_than_the_pad_brings_no_more_speed_than_it_may(turns_m_s2: float, jerk_m_s3: float) -> None:
-    pad = pad_at()
-    turn = np.tile([0.6 * turns_m_s2, -0.8 * turns_m_s2, 0.0], (len(pad.offset_s), 1))
-    here = situation(0.05, pad=replace(pad, acceleration_enu_m_s2=turn))
-    inputs = replace(INPUTS, limits=replace(INPUTS.limits, jerk_max_m_s3=jerk_m_s3))
-    less_m_s2 = turns_m_s2 - limits_now(DESCENDS, here, inputs, CONFIG).acceleration_max_m_s2
+@given(turns_m_s2=st.floats(0.0, 9.0), jerk_m_s3=st.floats(2.0, 40.0))
+def test_a_drone_that_is_levelled_gains_no_more_speed_against_the_pad_than_it_may(
+    turns_m_s2: float, jerk_m_s3: float
+) -> None:
+    limits = replace(LIMITS, jerk_max_m_s3=jerk_m_s3, acceleration_max_m_s2=100.0)
+    less_m_s2 = max(turns_m_s2 - _levelled_m_s2(situation(0.05, pad=_turning(turns_m_s2)), limits), 0.0)
     left_s = CONFIG.touchdown.level_height_m / CONFIG.descent.touchdown_sink_rate_m_s
-    gained_m_s = less_m_s2**2 / (2.0 * jerk_m_s3) + less_m_s2 * left_s
-    assert 0.0 < gained_m_s <= CONFIG.touchdown.level_speed_max_m_s + 1e-9
+    changes_s = less_m_s2 / jerk_m_s3
+    assert less_m_s2 * (0.5 * changes_s + left_s) <= CONFIG.touchdown.level_speed_max_m_s + 1e-9
+
+
+@pytest.mark.parametrize(("jerk_m_s3", "levels"), [(2.0, True), (20.0, False)])
+def test_a_drone_that_turns_slower_is_levelled_earlier(jerk_m_s3: float, *, levels: bool) -> None:
+    height_m, pad = CONFIG.touchdown.level_height_m + 0.1, _turning(2.5)
+    facts = replace(situation(height_m, pad=pad), drone=drone_at(height_m, 0.0, (0.0, 0.0, -0.4), pad=pad))
+    limits = replace(LIMITS, jerk_max_m_s3=jerk_m_s3)
+    assert (_levelled_m_s2(facts, limits) < LIMITS.acceleration_max_m_s2) is levels
+
+
+def _turning(turns_m_s2: float) -> PadPath:
+    pad = pad_at()
+    turn = np.tile([0.6 * turns_m_s2, -0.8 * turns_m_s2, 0.0], (len(pad.offset_s), 1))
+    return replace(pad, acceleration_enu_m_s2=turn)
+
+
+def _levelled_m_s2(facts: Situation, limits: FlightLimits = LIMITS) -> float:
+    return limits_now(DESCENDS, facts, replace(INPUTS, limits=limits), CONFIG).acceleration_max_m_s2
 
 
 def _sinking(height_m: float, sink_m_s: float) -> Situation:
