@@ -1,7 +1,7 @@
 """The estimators' numbers, each with its unit in its name and where it comes from.
 
 "Measured" stands for: chosen by the root mean square error over the benchmark's tracks with its `nominal` and
-`degraded` sensors, as `tests/companion/estimation/driving.py` simulates them.
+`degraded` sensors, as `tests/companion/vehicle/drives.py` simulates them.
 """
 
 from enum import Enum
