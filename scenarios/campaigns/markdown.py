@@ -6,6 +6,7 @@ from typing import Any, TextIO
 
 from scenarios.campaigns.intervals import wilson
 from scenarios.manual.markdown import code, table
+from scenarios.recordings.reason_counts import add_counts
 from scenarios.scoring.score import Tier
 
 Cell = Mapping[str, Any]
@@ -17,6 +18,11 @@ _MEASURES = (
     ("tilt over trim degrees", "tilt_over_trim_rad", _DEG, 1),
     ("passing to contact s", "time_to_contact_s", 1.0, 1),
 )
+_REASONS = {
+    "aborts_by_reason": "Approaches broken off, by reason",
+    "begun_anew_by_reason": "Approaches aligned or chased anew, by reason",
+    "not_landed_by_reason": "Ends of landings that were none, by reason",
+}
 _TIERS = (Tier.S3, Tier.S2, Tier.S1, Tier.S0, Tier.ABORT, Tier.UNSAFE)
 _HEAD = (
     "cell",
@@ -42,6 +48,10 @@ def write_markdown(summary: Mapping[str, Any], out: TextIO) -> None:
     if len(cells) > 1:
         rows.append(_total(cells))
     out.write(table(_HEAD, rows))
+    for name, what in _REASONS.items():
+        counts = add_counts(cell[name] for cell in cells)
+        if counts:
+            out.write(f"\n{what}: {', '.join(f'{code(reason)} {count}' for reason, count in counts.items())}.\n")
 
 
 def shared_options(names: Sequence[str]) -> list[str]:

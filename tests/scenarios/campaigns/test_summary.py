@@ -81,6 +81,38 @@ def test_table_outside_a_terminal_is_plain_and_one_line_a_cell() -> None:
     assert sum(line.startswith("straight_5+sensors=nominal+wind=moderate+link=nominal ") for line in lines) == 4
 
 
+WHY = [
+    row(1, aborts_by_reason="OUTSIDE_CONE 1", approaches=2, ended_reason_code="MOTORS_OFF"),
+    row(2, "abort", aborts_by_reason="SETPOINT_NOT_FOLLOWED 3, OUTSIDE_CONE 1", begun_anew_by_reason="STRAYS 2",
+        approaches=4, ended_reason_code="NO_RETRY_LEFT"),
+    row(1, cell="circle_5", aborts_by_reason="OUTSIDE_CONE 1", approaches=2, ended_reason_code="MOTORS_OFF"),
+]  # fmt: skip
+
+
+def test_summary_adds_up_the_reasons_of_a_cell() -> None:
+    found = cell("straight_5", WHY)
+    assert found["approaches"] == 6
+    assert list(found["aborts_by_reason"].items()) == [("SETPOINT_NOT_FOLLOWED", 3), ("OUTSIDE_CONE", 2)]
+    assert found["begun_anew_by_reason"] == {"STRAYS": 2}
+    assert found["not_landed_by_reason"] == {"NO_RETRY_LEFT": 1}
+
+
+def test_table_tells_the_reasons_by_cell_and_together() -> None:
+    out = StringIO()
+    print_summary(summarize(WHY), out)
+    told = [line.split() for line in out.getvalue().splitlines() if "OUTSIDE_CONE" in line]
+    straight = ["SETPOINT_NOT_FOLLOWED", "3,", "OUTSIDE_CONE", "2", "STRAYS", "2", "NO_RETRY_LEFT", "1"]
+    assert told[0] == ["circle_5", "2", "OUTSIDE_CONE", "1", "-", "-"]
+    assert told[1] == ["straight_5", "6", *straight]
+    assert told[2][:5] == ["all", "8", "OUTSIDE_CONE", "3,", "SETPOINT_NOT_FOLLOWED"]
+
+
+def test_table_without_reasons_has_no_part_for_them() -> None:
+    out = StringIO()
+    print_summary(summarize(ROWS), out)
+    assert "Why" not in out.getvalue()
+
+
 def test_summary_pools_consistency_and_shows_its_band() -> None:
     rows = [row(seed, nees_mean=4.0 + seed, nis_sum=90.0 + 10.0 * seed, nis_dof=100) for seed in (1, 2, 3)]
     found = cell("straight_5", rows)
