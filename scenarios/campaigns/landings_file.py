@@ -8,9 +8,10 @@ import polars as pl
 from link.errors import UserError
 from scenarios.campaigns.landing_task import Row
 
-_FIRST = ("cell", "seed", "error")
+_FIRST = ("cell", "firmware", "seed", "error")
 _TYPES: dict[str, pl.DataType] = {
     "cell": pl.String(),
+    "firmware": pl.String(),
     "seed": pl.Int64(),
     "error": pl.String(),
     "tier": pl.String(),

@@ -7,6 +7,7 @@ import numpy as np
 
 from scenarios.campaigns.intervals import Interval, mean_band, wilson
 from scenarios.campaigns.landing_task import Row
+from scenarios.catalogue.firmware_option import side_by_side
 from scenarios.recordings.reason_counts import counts_of, reasons_in
 from scenarios.recordings.result import LANDED
 from scenarios.scoring.accuracy import NEES_DOF
@@ -50,15 +51,16 @@ def is_unsafe(row: Row) -> bool:
 
 
 def summarize(rows: Iterable[Row], times: Iterable[Row] = ()) -> dict[str, Any]:
-    """Return the summary of a campaign, in the order of its cells, as plain values for JSON.
+    """Return the summary of a campaign, in the order of its cells with both firmwares of one side by side, for JSON.
 
     Args:
         rows: the landings.
         times: what they took to compute, where that is known.
     """
     cells, timing = _by_cell(rows), _by_cell(times)
+    ordered = sorted(cells, key=lambda cell: side_by_side(cell, cells[cell][0]["firmware"]))
     return {
-        "cells": [_summary_of(cell, cells[cell]) | _timing_of(timing.get(cell, ())) for cell in sorted(cells)],
+        "cells": [_summary_of(cell, cells[cell]) | _timing_of(timing.get(cell, ())) for cell in ordered],
     }
 
 
@@ -77,6 +79,7 @@ def _summary_of(cell: str, rows: Sequence[Row]) -> dict[str, Any]:
         "seeds": len(rows),
         "tiers": {tier.value: tiers.count(tier.value) for tier in Tier},
         **measures,
+        "firmware": rows[0]["firmware"],
         "s1_or_better": share_json(sum(map(is_s1_or_better, rows)), len(rows)),
         "s2_quality": share_json(sum(map(is_s2_quality, rows)), len(rows)),
         "unsafe": share_json(sum(map(is_unsafe, rows)), len(rows)),

@@ -8,6 +8,7 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
+from scenarios.catalogue.firmware_option import firmware_text
 from scenarios.recordings.reason_counts import add_counts, counts_text
 from scenarios.scoring.score import Tier
 
@@ -78,6 +79,7 @@ _COMPUTING: tuple[Column, ...] = (
     ("CPU [s]", _time_of("computing", "cpu_s")),
 )
 
+_HEAD = ("cell", "firmware")
 _WHY = "Why: approaches broken off, approaches aligned or chased anew, ends of landings that were none"
 _REASONS = {
     "aborts_by_reason": "broken off by",
@@ -96,11 +98,12 @@ def _console(out: TextIO) -> Console:
 def _print(console: Console, title: str, columns: Sequence[Column], cells: Sequence[Cell]) -> None:
     framed = console.is_terminal
     table = Table(title=title, title_justify="left", box=SIMPLE_HEAD if framed else None, pad_edge=framed)
-    table.add_column("cell", overflow="fold")
+    for heading in _HEAD:
+        table.add_column(heading, overflow="fold")
     for heading, _ in columns:
         table.add_column(heading.replace("[", "\\["), justify="right", no_wrap=True)
     for cell in cells:
-        table.add_row(cell["cell"], *(text(cell) for _, text in columns))
+        table.add_row(cell["cell"], cell["firmware"], *(text(cell) for _, text in columns))
     console.print(table)
 
 
@@ -111,13 +114,16 @@ def _print_reasons(console: Console, cells: Sequence[Cell]) -> None:
         return
     framed = console.is_terminal
     table = Table(title=_WHY, title_justify="left", box=SIMPLE_HEAD if framed else None, pad_edge=framed)
-    for heading in ("cell", "of", *_REASONS.values()):
+    for heading in (*_HEAD, "approaches", *_REASONS.values()):
         table.add_column(heading, overflow="fold")
     told = [cell for cell in cells if any(cell[name] for name in _REASONS)]
     if len(cells) > 1:
-        told.append({"cell": "all", "approaches": sum(cell["approaches"] for cell in cells)} | total)
+        firmware = firmware_text([cell["firmware"] for cell in cells])
+        approaches = sum(cell["approaches"] for cell in cells)
+        told.append({"cell": "all", "firmware": firmware, "approaches": approaches} | total)
     for cell in told:
-        table.add_row(cell["cell"], str(cell["approaches"]), *(counts_text(cell[name]) or "-" for name in _REASONS))
+        counts = (counts_text(cell[name]) or "-" for name in _REASONS)
+        table.add_row(cell["cell"], cell["firmware"], str(cell["approaches"]), *counts)
     console.print(table)
 
 

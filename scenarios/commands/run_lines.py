@@ -38,7 +38,7 @@ class Reporter:
 
     def __enter__(self) -> Self:
         if not self._as_json:
-            sys.stdout.write(f"{self._scenario.name}: {self._scenario.description}\n")
+            sys.stdout.write(f"{self._scenario.name}, {self._scenario.firmware}: {self._scenario.description}\n")
         if self._screen is not None:
             self._screen.start()
         return self

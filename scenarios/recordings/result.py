@@ -47,6 +47,7 @@ def result_table(
     status = recording.status
     return {
         "scenario": scenario.name,
+        "firmware": scenario.firmware,
         "seed": seed,
         **rounded,
         **relative,

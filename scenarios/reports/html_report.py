@@ -57,7 +57,7 @@ def _run_page(run: RunData) -> str:
     result = run.result
     return _page(
         "run.html",
-        title=f"{result['scenario']}, seed {result['seed']}",
+        title=f"{result['scenario']}, {run.scenario.firmware}, seed {result['seed']}",
         verdict=f"{result['tier']}: {result['reason']}",
         description=run.scenario.description,
         result=_known(result),

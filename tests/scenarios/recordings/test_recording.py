@@ -142,7 +142,15 @@ def test_page_about_a_run_needs_nothing_from_elsewhere(run: Path, tmp_path: Path
     outside_script = page.split("</script>", 1)[1]
     for fetched in ('src="http', "src='http", '<link rel="stylesheet"', "@import"):
         assert fetched not in outside_script
-    for told in ("S3: landed", "descent_gain_hz", "numpy", "<code>CONTACT</code>", "<svg", "plotly-graph-div"):
+    for told in (
+        "S3: landed",
+        "descent_gain_hz",
+        "numpy",
+        "<code>CONTACT</code>",
+        "px4, seed 2",
+        "<svg",
+        "plotly-graph-div",
+    ):
         assert told in outside_script
 
 
