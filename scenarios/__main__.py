@@ -63,10 +63,11 @@ def run_command(
 ) -> int:
     """Run a landing and score it on ground truth; exit code 1 when it does not land."""
     from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.firmware_option import with_firmware
     from scenarios.commands.run_lines import Reporter
     from scenarios.wire.run import RunOptions, run_folder, run_in_lockstep, run_over_wire
 
-    scenario = load_scenario(name if firmware is None else f"{name}+firmware={firmware}")
+    scenario = load_scenario(name if firmware is None else with_firmware(name, firmware))
     view_port = view_command.port_of_run(lockstep=lockstep, as_json=as_json) if view else None
     folder = run_folder(out, scenario.name)
     options = RunOptions(seed=seed, speed=speed, folder=folder, record=record, view_port=view_port)

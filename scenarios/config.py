@@ -3,7 +3,7 @@
 Presets and tracks live as TOML in `scenarios/catalogue`; the numbers of the sensor presets are the benchmark's.
 """
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from pydantic import Field
 
@@ -16,6 +16,7 @@ from sim_autopilot.runtime.config import DatumConfig, DroneConfig
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
 FirmwareName = Literal["px4", "ardupilot"]
+FIRMWARES: tuple[FirmwareName, ...] = get_args(FirmwareName)
 
 
 class DelayConfig(StrictModel):

@@ -96,6 +96,7 @@ def bench(scenario: Scenario, seed: int, announce: Announce) -> Table:
     announce("help")
     table = {
         "scenario": scenario.name,
+        "firmware": scenario.firmware,
         "seed": seed,
         "tier": wire.result["tier"],
         **merged(wire.timing, {"step_ms": lockstep.pop("step_ms")}),
@@ -128,7 +129,7 @@ def _lockstep(scenario: Scenario, seed: int) -> Table:
 
 def text_lines(table: Table) -> list[str]:
     """Return the table as lines for people."""
-    lines = [f"{table['scenario']}, seed {table['seed']}: tier {table['tier']}", ""]
+    lines = [f"{table['scenario']}, {table['firmware']}, seed {table['seed']}: tier {table['tier']}", ""]
     lines += [_budget_line(check) for check in table["budgets"]]
     lines += ["", f"{'step times, ms':44}{'median':>9}{'p99':>9}{'max':>9}"]
     for name, step in table["step_ms"].items():

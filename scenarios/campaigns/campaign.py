@@ -15,6 +15,7 @@ from link.program.toml_config import load_config, merged, read_toml, validated
 from scenarios.campaigns.folder import Plan, open_journal
 from scenarios.campaigns.landing_task import Flights, Flown, Row, Task, failed
 from scenarios.catalogue.catalogue import load_scenario
+from scenarios.catalogue.firmware_option import cells_with
 from scenarios.config import Scenario
 from scenarios.processes.dask_workers import DaskWorkers
 from scenarios.processes.local_workers import LocalWorkers, core_count
@@ -39,19 +40,22 @@ Progress = Callable[[Flown | None, int, int], None]
 """Called at the beginning and for each landing, with how many are done and how many there are."""
 
 
-def make_plan(cells: Sequence[str], *, first_seed: int, seeds: int, config: Path | None) -> Plan:
+def make_plan(
+    cells: Sequence[str], *, first_seed: int, seeds: int, config: Path | None, firmware: str | None = None
+) -> Plan:
     """Return what a campaign flies.
 
     Args:
         cells: names or files, as `load_scenario` takes them.
+        firmware: that each cell is flown with, `both` for each with both, None for the cell's own.
         first_seed: the others follow.
         seeds: how many.
         config: the companion's, laid over each scenario's own: only what it sets is changed.
 
     Raises:
-        UserError: no such cell, two of one name, or a configuration that does not fit.
+        UserError: no such cell or firmware, two cells of one name, or a configuration that does not fit.
     """
-    scenarios = [load_scenario(cell) for cell in cells]
+    scenarios = [load_scenario(cell) for cell in cells_with(cells, firmware)]
     names = [scenario.name for scenario in scenarios]
     double = next((name for name in names if names.count(name) > 1), None)
     if double is not None:
@@ -113,7 +117,11 @@ def _flown(plan: Plan, tasks: Sequence[Task], where: Where) -> Generator[Flown, 
     else:
         jobs = {cell: flights.only(cell) for cell in plan.scenarios}
         workers = DaskWorkers(where.scheduler, lambda task: jobs[task.cell])
-    return run_tasks(workers, tasks, lost=lambda task, why: Flown(row=failed(task, why), wall_s=0.0))
+    return run_tasks(
+        workers,
+        tasks,
+        lost=lambda task, why: Flown(row=failed(task, plan.scenarios[task.cell].firmware, why), wall_s=0.0),
+    )
 
 
 def _with_companion(scenario: Scenario, table: Mapping[str, Any], source: str) -> Scenario:

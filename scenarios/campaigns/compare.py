@@ -12,6 +12,7 @@ from scenarios.campaigns.folder import read_landings, read_plan
 from scenarios.campaigns.intervals import mcnemar_p, median_difference
 from scenarios.campaigns.landing_task import Row
 from scenarios.campaigns.summary import MEASURES, interval_json, is_s1_or_better, is_s2_quality, is_unsafe
+from scenarios.catalogue.firmware_option import firmware_text
 
 _DIGITS = 6
 _SHARES = {"s1_or_better": is_s1_or_better, "s2_quality": is_s2_quality, "unsafe": is_unsafe}
@@ -101,10 +102,17 @@ def _comparison(cell: str, pairs: Sequence[Pair]) -> dict[str, Any]:
     }
     return {
         "cell": cell,
+        "firmware": _firmware(pairs),
         "pairs": len(pairs),
         **shares,
         **{name: _measure_comparison(name, pairs) for name in MEASURES},
     }
+
+
+def _firmware(pairs: Sequence[Pair]) -> str:
+    """Return the firmware of the pairs, that of A and that of B where they differ."""
+    first, second = (firmware_text([pair[side]["firmware"] for pair in pairs]) for side in (0, 1))
+    return first if first == second else f"{first} | {second}"
 
 
 def _share_comparison(pairs: Sequence[tuple[bool, bool]]) -> dict[str, float | int]:

@@ -86,13 +86,18 @@ def read_landings(folder: Path) -> list[Row]:
     Raises:
         UserError: there are none.
     """
-    read_plan(folder)
+    plan = read_plan(folder)
     if (folder / _LANDINGS).exists() and not (folder / _JOURNAL).exists():
-        return read_rows(folder / _LANDINGS)
-    rows = [flown.row for flown in _written_down(folder)]
+        return [_with_firmware(row, plan) for row in read_rows(folder / _LANDINGS)]
+    rows = [_with_firmware(flown.row, plan) for flown in _written_down(folder)]
     if not rows:
         raise UserError(f"{folder}: no landing is done; go on with: scenarios campaign --resume {folder}")
     return as_written(rows)
+
+
+def _with_firmware(row: Row, plan: Plan) -> Row:
+    """Return a row that names its firmware, as those of earlier versions do not."""
+    return {"firmware": plan.scenarios[row["cell"]].firmware} | row
 
 
 def read_timing(folder: Path) -> list[Row]:
@@ -206,7 +211,8 @@ def _lines(data: bytes) -> list[Flown]:
 
 def _timing(flown: Flown) -> Row:
     times = {"wall_s": flown.wall_s, **flown.times}
-    return _key(flown.row) | {name: round(value, 6) for name, value in times.items()}
+    head = _key(flown.row) | {"firmware": flown.row.get("firmware")}
+    return head | {name: round(value, 6) for name, value in times.items()}
 
 
 def _key(row: Row) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from scenarios.config import Scenario
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.lockstep.stopwatch import quantiles_ms, timed_steps
 from scenarios.lockstep.warm_up import warm_process
+from scenarios.recordings.reason_counts import Approaches, abort_reasons, anew_reasons, counts_of, counts_text
 from scenarios.recordings.recording import Recording
 from scenarios.recordings.result import result_table
 from scenarios.recordings.versions import sources
@@ -22,6 +23,7 @@ Row = dict[str, Any]
 """A landing's result by column: plain values, None where there is none; `error` tells why there is no result."""
 
 _LANDING = frozenset(phase.value for phase in LANDING_PHASES)
+_NOT_FLAT = frozenset({"scenario", "seed", "phases_s", "approaches"})  # of a result's table, what a row has otherwise
 _ONE_AT_A_TIME = Lock()  # threads of one process would only share its interpreter
 
 
@@ -75,7 +77,7 @@ class Flights:
                 try:
                     row = fly(task, self.scenarios[task.cell])
                 except Exception as error:  # noqa: BLE001 (one landing's fault must not end a campaign, and is reported)
-                    row = failed(task, _where(error))
+                    row = failed(task, self.scenarios[task.cell].firmware, _where(error))
             wall_s, cpu_s = time.perf_counter() - began_s, time.process_time() - began_cpu_s
             return Flown(row=row, wall_s=wall_s, times={"cpu_s": cpu_s} | _planner_ms(durations_s["planner"]))
 
@@ -98,22 +100,23 @@ def fly(task: Task, scenario: Scenario) -> Row:
 
 
 def row_of(task: Task, table: Mapping[str, Any], recording: Recording) -> Row:
-    """Return a run's result as a row: the table without its nesting, and how often it waved off.
+    """Return a run's result as a row: the table without its nesting, how often it waved off, and why.
 
     Args:
         task: whose result it is; the cell stands for the table's scenario.
         table: as `result.json` has it.
         recording: of the run.
     """
-    values = {name: value for name, value in table.items() if name not in {"scenario", "seed", "phases_s"}}
+    values = {name: value for name, value in table.items() if name not in _NOT_FLAT}
     times_s = table["phases_s"]
     phases = {f"phase_{phase.name.lower()}_s": times_s.get(phase.value) for phase in Phase}
-    return _head(task) | values | wave_offs([status.phase for status in recording.statuses]) | phases
+    tried = approach_columns(table["approaches"])
+    return _head(task) | values | wave_offs([status.phase for status in recording.statuses]) | tried | phases
 
 
-def failed(task: Task, error: str) -> Row:
+def failed(task: Task, firmware: str, error: str) -> Row:
     """Return the row of a task that has no result."""
-    return _head(task) | {"error": error}
+    return _head(task) | {"firmware": firmware, "error": error}
 
 
 def wave_offs(phases: Sequence[str]) -> dict[str, int]:
@@ -122,6 +125,22 @@ def wave_offs(phases: Sequence[str]) -> dict[str, int]:
     return {
         "aborts": sum(after == Phase.ABORT.value != before for before, after in steps),
         "retries": sum(before == Phase.ABORT.value and after in _LANDING for before, after in steps),
+    }
+
+
+def approach_columns(approaches: Approaches) -> Row:
+    """Return how many approaches there were, and the names of the reasons that ended or delayed them.
+
+    Args:
+        approaches: as `result.json` has them.
+    """
+    aborts, anew = abort_reasons(approaches), anew_reasons(approaches)
+    return {
+        "approaches": len(approaches),
+        "first_abort": aborts[0] if aborts else None,
+        "last_abort": aborts[-1] if aborts else None,
+        "aborts_by_reason": counts_text(counts_of(aborts)),
+        "begun_anew_by_reason": counts_text(counts_of(anew)),
     }
 
 

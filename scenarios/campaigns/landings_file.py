@@ -8,18 +8,26 @@ import polars as pl
 from link.errors import UserError
 from scenarios.campaigns.landing_task import Row
 
-_FIRST = ("cell", "seed", "error")
+_FIRST = ("cell", "firmware", "seed", "error")
 _TYPES: dict[str, pl.DataType] = {
     "cell": pl.String(),
+    "firmware": pl.String(),
     "seed": pl.Int64(),
     "error": pl.String(),
     "tier": pl.String(),
     "reason": pl.String(),
     "ended": pl.String(),
+    "ended_reason_code": pl.String(),
+    "ended_reason": pl.String(),
+    "first_abort": pl.String(),
+    "last_abort": pl.String(),
+    "aborts_by_reason": pl.String(),
+    "begun_anew_by_reason": pl.String(),
     "on_pad": pl.Boolean(),
     "s2_quality": pl.Boolean(),
     "aborts": pl.Int64(),
     "retries": pl.Int64(),
+    "approaches": pl.Int64(),
     "nees_count": pl.Int64(),
     "nis_dof": pl.Int64(),
 }

@@ -5,7 +5,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any, TextIO
 
 from scenarios.campaigns.intervals import wilson
+from scenarios.catalogue.firmware_option import without_firmware
+from scenarios.config import FIRMWARES
 from scenarios.manual.markdown import code, table
+from scenarios.recordings.reason_counts import add_counts
 from scenarios.scoring.score import Tier
 
 Cell = Mapping[str, Any]
@@ -17,9 +20,15 @@ _MEASURES = (
     ("tilt over trim degrees", "tilt_over_trim_rad", _DEG, 1),
     ("passing to contact s", "time_to_contact_s", 1.0, 1),
 )
+_REASONS = {
+    "aborts_by_reason": "Approaches broken off, by reason",
+    "begun_anew_by_reason": "Approaches aligned or chased anew, by reason",
+    "not_landed_by_reason": "Ends of landings that were none, by reason",
+}
 _TIERS = (Tier.S3, Tier.S2, Tier.S1, Tier.S0, Tier.ABORT, Tier.UNSAFE)
 _HEAD = (
     "cell",
+    "firmware",
     "seeds",
     *(tier.value for tier in _TIERS),
     "failed",
@@ -32,31 +41,38 @@ _HEAD = (
 
 
 def write_markdown(summary: Mapping[str, Any], out: TextIO) -> None:
-    """Write a campaign's summary: what all cells share, then a row each, and all of them together."""
+    """Write a campaign's summary: what all cells share, then a row each, and all of each firmware together."""
     cells: Sequence[Cell] = summary["cells"]
     shared = shared_options([cell["cell"] for cell in cells])
     if shared:
         out.write(f"All with {code('+' + '+'.join(shared))}. ")
     out.write("Shares with Wilson's 95 % intervals; measures at contact as median, 95th percentile.\n\n")
     rows = [_row(cell, shared) for cell in cells]
-    if len(cells) > 1:
-        rows.append(_total(cells))
+    by_firmware = {one: [cell for cell in cells if cell["firmware"] == one] for one in FIRMWARES}
+    rows += [_total(one, flown) for one, flown in by_firmware.items() if len(flown) > 1]
     out.write(table(_HEAD, rows))
+    for firmware, flown in by_firmware.items():
+        for name, what in _REASONS.items():
+            counts = add_counts(cell[name] for cell in flown)
+            if counts:
+                told = ", ".join(f"{code(reason)} {count}" for reason, count in counts.items())
+                out.write(f"\n{what}, {firmware}: {told}.\n")
 
 
 def shared_options(names: Sequence[str]) -> list[str]:
-    """Return the options that all cells' names have, in the first one's order."""
-    first, *others = [name.split("+")[1:] for name in names] or [[]]
+    """Return the options that all cells' names have, in the first one's order; the firmware has its own column."""
+    first, *others = [without_firmware(name).split("+")[1:] for name in names] or [[]]
     return [option for option in first if all(option in other for other in others)]
 
 
 def _row(cell: Cell, shared: Sequence[str]) -> list[str]:
-    track, *options = cell["cell"].split("+")
+    track, *options = without_firmware(cell["cell"]).split("+")
     name = "+".join([track, *(option for option in options if option not in shared)])
     shares = [_share(cell[share]) for share in ("s1_or_better", "unsafe", "s2_quality")]
     nees = cell["nees"]["mean"]
     return [
         code(name),
+        cell["firmware"],
         str(cell["seeds"]),
         *(_count(cell["tiers"][tier.value]) for tier in _TIERS),
         _count(cell["errors"]),
@@ -66,14 +82,14 @@ def _row(cell: Cell, shared: Sequence[str]) -> list[str]:
     ]
 
 
-def _total(cells: Sequence[Cell]) -> list[str]:
+def _total(firmware: str, cells: Sequence[Cell]) -> list[str]:
     seeds = sum(cell["seeds"] for cell in cells)
     tiers = {tier: sum(cell["tiers"][tier.value] for cell in cells) for tier in _TIERS}
     landed, unsafe = tiers[Tier.S3] + tiers[Tier.S2] + tiers[Tier.S1], tiers[Tier.UNSAFE]
     shares = [wilson(count, seeds) for count in (landed, unsafe)]
     texts = [_share({"share": share.value, "low": share.low, "high": share.high}) for share in shares]
     counts = [*(tiers[tier] for tier in _TIERS), sum(cell["errors"] for cell in cells)]
-    return ["all", str(seeds), *map(_count, counts), *texts, *[""] * (len(_MEASURES) + 2)]
+    return ["all", firmware, str(seeds), *map(_count, counts), *texts, *[""] * (len(_MEASURES) + 2)]
 
 
 def _count(number: int) -> str:

@@ -7,6 +7,8 @@ import numpy as np
 
 from scenarios.campaigns.intervals import Interval, mean_band, wilson
 from scenarios.campaigns.landing_task import Row
+from scenarios.catalogue.firmware_option import side_by_side
+from scenarios.recordings.reason_counts import counts_of, reasons_in
 from scenarios.recordings.result import LANDED
 from scenarios.scoring.accuracy import NEES_DOF
 from scenarios.scoring.score import Tier
@@ -20,6 +22,7 @@ MEASURES = (
     "tilt_rad",
     "position_rmse_m",
     "velocity_rmse_m_s",
+    "pass_to_contact_s",
 )
 """What is summed up over all first contacts, wherever on the vehicle; the estimator's errors over all descents."""
 
@@ -48,15 +51,16 @@ def is_unsafe(row: Row) -> bool:
 
 
 def summarize(rows: Iterable[Row], times: Iterable[Row] = ()) -> dict[str, Any]:
-    """Return the summary of a campaign, in the order of its cells, as plain values for JSON.
+    """Return the summary of a campaign, in the order of its cells with both firmwares of one side by side, for JSON.
 
     Args:
         rows: the landings.
         times: what they took to compute, where that is known.
     """
     cells, timing = _by_cell(rows), _by_cell(times)
+    ordered = sorted(cells, key=lambda cell: side_by_side(cell, cells[cell][0]["firmware"]))
     return {
-        "cells": [_summary_of(cell, cells[cell]) | _timing_of(timing.get(cell, ())) for cell in sorted(cells)],
+        "cells": [_summary_of(cell, cells[cell]) | _timing_of(timing.get(cell, ())) for cell in ordered],
     }
 
 
@@ -75,6 +79,7 @@ def _summary_of(cell: str, rows: Sequence[Row]) -> dict[str, Any]:
         "seeds": len(rows),
         "tiers": {tier.value: tiers.count(tier.value) for tier in Tier},
         **measures,
+        "firmware": rows[0]["firmware"],
         "s1_or_better": share_json(sum(map(is_s1_or_better, rows)), len(rows)),
         "s2_quality": share_json(sum(map(is_s2_quality, rows)), len(rows)),
         "unsafe": share_json(sum(map(is_unsafe, rows)), len(rows)),
@@ -82,9 +87,20 @@ def _summary_of(cell: str, rows: Sequence[Row]) -> dict[str, Any]:
         "aborts": sum(row.get("aborts") or 0 for row in rows),
         "retries": sum(row.get("retries") or 0 for row in rows),
         "errors": sum(row["error"] is not None for row in rows),
+        "approaches": sum(row.get("approaches") or 0 for row in rows),
+        "aborts_by_reason": _reasons(rows, "aborts_by_reason"),
+        "begun_anew_by_reason": _reasons(rows, "begun_anew_by_reason"),
+        "not_landed_by_reason": counts_of(
+            row["ended_reason_code"] for row in rows if not is_s1_or_better(row) and row.get("ended_reason_code")
+        ),
         "nees": _nees(rows),
         "nis_per_dof": _nis(rows),
     }
+
+
+def _reasons(rows: Iterable[Row], name: str) -> dict[str, int]:
+    """Return the sum of a column's counts by reason."""
+    return counts_of(reason for row in rows for reason in reasons_in(row.get(name) or ""))
 
 
 def _nees(rows: Sequence[Row]) -> dict[str, float | int | None]:

@@ -8,6 +8,8 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
+from scenarios.catalogue.firmware_option import firmware_text
+from scenarios.recordings.reason_counts import add_counts, counts_text
 from scenarios.scoring.score import Tier
 
 _PLAIN_WIDTH = 1000  # nothing is wrapped where a program may read it
@@ -21,6 +23,7 @@ _UNITS = {
     "tilt_rad": ("raw tilt", "deg", _DEG, 1),
     "position_rmse_m": ("estimate", "m", 1.0, 3),
     "velocity_rmse_m_s": ("estimate", "m/s", 1.0, 3),
+    "pass_to_contact_s": ("from passing", "s", 1.0, 1),
 }
 """Of each measure: heading, unit shown, factor to it, digits."""
 
@@ -37,6 +40,7 @@ def print_summary(summary: Mapping[str, Any], out: TextIO) -> None:
         reached.append(("errors", _count_of("errors")))
     console = _console(out)
     _print(console, "Landings", reached, cells)
+    _print_reasons(console, cells)
     shares = [(f"{heading} [%]", _share_of(name)) for name, heading in _SHARES.items()]
     _print(console, "Shares (95 % intervals)", shares, cells)
     contact: list[Column] = [("contacts", _count_of("contacts"))]
@@ -75,6 +79,14 @@ _COMPUTING: tuple[Column, ...] = (
     ("CPU [s]", _time_of("computing", "cpu_s")),
 )
 
+_HEAD = ("cell", "firmware")
+_WHY = "Why: approaches broken off, approaches aligned or chased anew, ends of landings that were none"
+_REASONS = {
+    "aborts_by_reason": "broken off by",
+    "begun_anew_by_reason": "begun anew for",
+    "not_landed_by_reason": "not landed for",
+}
+
 _SHARES = {"s1_or_better": "S1 or better", "s2_quality": "S2 quality", "unsafe": "unsafe"}
 
 
@@ -86,11 +98,32 @@ def _console(out: TextIO) -> Console:
 def _print(console: Console, title: str, columns: Sequence[Column], cells: Sequence[Cell]) -> None:
     framed = console.is_terminal
     table = Table(title=title, title_justify="left", box=SIMPLE_HEAD if framed else None, pad_edge=framed)
-    table.add_column("cell", overflow="fold")
+    for heading in _HEAD:
+        table.add_column(heading, overflow="fold")
     for heading, _ in columns:
         table.add_column(heading.replace("[", "\\["), justify="right", no_wrap=True)
     for cell in cells:
-        table.add_row(cell["cell"], *(text(cell) for _, text in columns))
+        table.add_row(cell["cell"], cell["firmware"], *(text(cell) for _, text in columns))
+    console.print(table)
+
+
+def _print_reasons(console: Console, cells: Sequence[Cell]) -> None:
+    """Print why approaches and landings failed, cell by cell and together; nothing where none did."""
+    total = {name: add_counts(cell[name] for cell in cells) for name in _REASONS}
+    if not any(total.values()):
+        return
+    framed = console.is_terminal
+    table = Table(title=_WHY, title_justify="left", box=SIMPLE_HEAD if framed else None, pad_edge=framed)
+    for heading in (*_HEAD, "approaches", *_REASONS.values()):
+        table.add_column(heading, overflow="fold")
+    told = [cell for cell in cells if any(cell[name] for name in _REASONS)]
+    if len(cells) > 1:
+        firmware = firmware_text([cell["firmware"] for cell in cells])
+        approaches = sum(cell["approaches"] for cell in cells)
+        told.append({"cell": "all", "firmware": firmware, "approaches": approaches} | total)
+    for cell in told:
+        counts = (counts_text(cell[name]) or "-" for name in _REASONS)
+        table.add_row(cell["cell"], cell["firmware"], str(cell["approaches"]), *counts)
     console.print(table)
 
 

@@ -55,6 +55,9 @@ def campaign_command(
     config: Annotated[
         Path | None, typer.Option("--config", metavar="FILE", help="The companion's configuration for all cells.")
     ] = None,
+    firmware: Annotated[
+        str | None, typer.Option("--firmware", metavar="px4|ardupilot|both", help="Of each cell [default: its own].")
+    ] = None,
     as_json: JsonOption = False,
 ) -> int:
     """Fly each cell with many seeds and print the summary; exit code 1 when a landing raised an error."""
@@ -65,9 +68,10 @@ def campaign_command(
     if workers is not None and scheduler is not None:
         raise UserError("--workers is about local processes: leave it out with --scheduler")
     if resume is not None:
-        if cells or any(one is not None for one in (config, out, seeds, first_seed)):
+        if cells or any(one is not None for one in (config, out, seeds, first_seed, firmware)):
             raise UserError(
-                f"{resume} says what is flown: leave out cells, --config, --out, --seeds and --first-seed with --resume"
+                f"{resume} says what is flown: with --resume leave out cells, --config, --firmware, --out, --seeds and "
+                "--first-seed"
             )
         plan = read_plan(resume)
         check_same_versions(plan)
@@ -79,6 +83,7 @@ def campaign_command(
         first_seed=_FIRST_SEED if first_seed is None else first_seed,
         seeds=_SEEDS if seeds is None else seeds,
         config=config,
+        firmware=firmware,
     )
     if scheduler is not None:
         from scenarios.processes.dask_workers import check_scheduler

@@ -41,7 +41,8 @@ def faults_command(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> int:
     """Let every fault happen in every phase of a landing; exit code 1 when a reaction is not as expected."""
-    from scenarios.faults.matrix import EXPECTED, FIRMWARES
+    from scenarios.config import FIRMWARES
+    from scenarios.faults.matrix import EXPECTED
     from scenarios.faults.trial import fly_case, lost
     from scenarios.processes.local_workers import LocalWorkers, core_count
     from scenarios.processes.pool import run_tasks

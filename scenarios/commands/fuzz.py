@@ -40,7 +40,7 @@ def fuzz_command(
         if not as_json:
             verdict = "undisturbed" if result.is_good else "DISTURBED"
             sys.stdout.write(
-                f"{kind:7} {result.frames} frames, {result.known_messages} of them messages, "
+                f"{kind:7} {result.firmware}: {result.frames} frames, {result.known_messages} of them messages, "
                 f"{100.0 * result.received_share:g} % received; drift {result.drift_m:g} m, "
                 f"{result.not_finite} numbers not finite; {result.frames_a_second:g} frames/s: {verdict}\n"
             )

@@ -9,6 +9,7 @@ from typing import Any, Self
 from link.messages import LandingStatus
 from link.program.screen import Screen
 from link.program.status_rows import Row
+from scenarios.commands.approach_lines import approach_lines
 from scenarios.config import Scenario
 from scenarios.recordings.recording import Recording
 from scenarios.recordings.result import LANDED
@@ -37,7 +38,7 @@ class Reporter:
 
     def __enter__(self) -> Self:
         if not self._as_json:
-            sys.stdout.write(f"{self._scenario.name}: {self._scenario.description}\n")
+            sys.stdout.write(f"{self._scenario.name}, {self._scenario.firmware}: {self._scenario.description}\n")
         if self._screen is not None:
             self._screen.start()
         return self
@@ -100,11 +101,12 @@ def _score_lines(result: dict[str, Any], timing: dict[str, Any]) -> list[str]:
         ("sink_rate_m_s", "sink rate", "m/s", 1.0),
         ("tilt_over_trim_rad", "tilt over trim", "deg", 57.29577951308232),
         ("time_to_contact_s", "time from the vehicle's passing to contact", "s", 1.0),
+        ("pass_to_contact_s", "the same, from passing where the drone waited", "s", 1.0),
         ("motors_off_s", "motors off after contact", "s", 1.0),
         ("slid_m", "slid", "m", 1.0),
     )
     for key, label, unit, scale in shown:
         if result.get(key) is not None:
-            lines.append(f"  {label:44}{result[key] * scale:8.3f} {unit}")
-    lines.append(f"  {'real-time factor':44}{timing['real_time_factor']:8.3f}")
-    return lines
+            lines.append(f"  {label:46}{result[key] * scale:8.3f} {unit}")
+    lines.append(f"  {'real-time factor':46}{timing['real_time_factor']:8.3f}")
+    return [*lines, *approach_lines(result)]

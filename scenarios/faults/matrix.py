@@ -8,7 +8,6 @@ from companion.situation.phases import Phase
 from scenarios.config import FirmwareName
 from scenarios.scoring.score import Tier
 
-FIRMWARES: tuple[FirmwareName, ...] = ("px4", "ardupilot")
 PHASES = (
     Phase.TAKEOFF,
     Phase.WAITING,

@@ -16,7 +16,7 @@ from link.zenoh.keys import Keys, Publication
 from link.zenoh.session import ZenohOptions, ZenohSession, open_session
 from scenarios.config import Scenario
 from scenarios.firmware.ship import PARAMETERS, ship_at
-from scenarios.firmware.truth import DRAG_PER_MASS_HZ
+from scenarios.firmware.truth import DRAG_PER_MASS_HZ, NAMES
 from scenarios.firmware.watch import FirmwareWatch
 from scenarios.processes.programs import MODULES, ProcessGroup, Program, free_tcp_endpoint
 from scenarios.recordings.recording import EndWatch, Recording
@@ -68,7 +68,8 @@ def fly(scenario: Scenario, options: FlyOptions, progress: Progress) -> RunOutco
     with open_transport(options.watch) as transport, open_session(ZenohOptions(listen=(endpoint,))) as zenoh:
         watch = FirmwareWatch()
         datum = _datum(watch, transport)
-        placed = _placed(scenario, datum)
+        firmware = NAMES.get(watch.session.autopilot or 0, scenario.firmware)
+        placed = _placed(scenario, datum).model_copy(update={"firmware": firmware})
         write_text(options.folder / "scenario.toml", dump_toml(placed))
         write_text(options.folder / "companion.toml", dump_toml(placed.system.companion))
         flight = _Flight(placed, options, watch, keys, zenoh)

@@ -19,6 +19,7 @@ from link.frames.rotations import (
 )
 from link.mavlink.dialect import Message, mavlink
 from link.messages import BodyTruth, Quaternion, RotorTruth, Vector3
+from scenarios.config import FirmwareName
 
 TRUTH_STREAMS_HZ = {
     mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA: {
@@ -32,6 +33,12 @@ TRUTH_STREAMS_HZ = {
     },
 }
 """What to ask each firmware for, by MAV_AUTOPILOT."""
+
+NAMES: dict[int, FirmwareName] = {
+    mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA: "ardupilot",
+    mavlink.MAV_AUTOPILOT_PX4: "px4",
+}
+"""What a scenario calls the firmwares that tell their truth, by MAV_AUTOPILOT."""
 
 DATED_BY = {"SIM_STATE": "ATTITUDE"}
 """Messages without a time, and the one that is sent together with them, just before, at the same rate."""

@@ -1,15 +1,21 @@
 """From a recording to the run's result, as `result.json` has it: only what scenario and seed decide."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from link.errors import UserError
 from scenarios.config import Scenario
+from scenarios.recordings.approaches import Approach, approaches_of
 from scenarios.recordings.recording import Recording
 from scenarios.scoring.accuracy import accuracy_table
-from scenarios.scoring.score import Score, Tier, score
-from scenarios.scoring.touchdown import ScoreRules, rules_of
+from scenarios.scoring.passing import passing_ns
+from scenarios.scoring.score import Score, Tier, score, score_log
+from scenarios.scoring.touchdown import ScoreRules, Touchdown, rules_of
+from scenarios.scoring.truth_log import TruthLog, truth_log
 from scenarios.simulation.drone import mean_wind_enu_m_s
 
 _DIGITS = 6  # a micrometre, a microsecond
@@ -26,14 +32,41 @@ def result_table(
     scenario: Scenario, seed: int, recording: Recording, ended: str, rules: ScoreRules | None = None
 ) -> dict[str, Any]:
     """Return the result as a table of plain values, by the scenario's rules unless others are given."""
-    table = score_run(scenario, seed, recording, rules).to_json()
+    rules = rules or rules_of(scenario, wind_mean_enu_m_s=mean_wind_enu_m_s(scenario, seed))
+    log = truth_log(recording.drone, recording.vehicle, recording.rotors)
+    approaches = approaches_of(recording.statuses, log, rules.box.roof_height_m)
+    scored = score_log(log, rules)
+    table = scored.to_json()
     table |= accuracy_table(recording.estimate_errors, recording.nis)
+    table["pass_to_contact_s"] = _pass_to_contact_s(log, approaches, scored.touchdown)
     start_ns = recording.drone[0].t_ns
     times = {key: table.pop(key) for key in ("start_t_ns", "contact_t_ns")}
     relative = {key.removesuffix("_t_ns") + "_s": _since_s(value, start_ns) for key, value in times.items()}
     phases = {phase: round(t_s, 3) for phase, t_s in recording.phase_times_s().items()}
     rounded = {key: round(value, _DIGITS) if isinstance(value, float) else value for key, value in table.items()}
-    return {"scenario": scenario.name, "seed": seed, **rounded, **relative, "ended": ended, "phases_s": phases}
+    status = recording.status
+    return {
+        "scenario": scenario.name,
+        "firmware": scenario.firmware,
+        "seed": seed,
+        **rounded,
+        **relative,
+        "ended": ended,
+        "ended_reason_code": None if status is None else status.reason_code,
+        "ended_reason": None if status is None else status.reason,
+        "phases_s": phases,
+        "approaches": [approach.to_json(start_ns) for approach in approaches],
+    }
+
+
+def _pass_to_contact_s(log: TruthLog, approaches: Sequence[Approach], touchdown: Touchdown | None) -> float | None:
+    """Return the time from the vehicle's passing the place at which the drone waited for it to the first contact."""
+    if not approaches or touchdown is None:
+        return None
+    chase_ns = approaches[0].from_ns
+    waits = min(int(np.searchsorted(log.t_ns, chase_ns)), len(log.t_ns) - 1)
+    passed_ns = passing_ns(log, log.position_enu_m[waits, :2], chase_ns)
+    return None if passed_ns is None else (touchdown.contact_t_ns - passed_ns) * 1e-9
 
 
 def _since_s(value: Any, start_ns: int) -> float | None:

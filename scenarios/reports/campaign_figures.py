@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from scenarios.campaigns.folder import Plan
 from scenarios.campaigns.landing_task import Row
+from scenarios.catalogue.firmware_option import without_firmware
 from scenarios.reports.figure_files import DARK, LIGHT, MIDDLE, STYLES
 from scenarios.reports.run_figures import draw_pad
 
@@ -51,8 +52,12 @@ def _touchdowns(plan: Plan, rows: Sequence[Row]) -> Figure:
                 )
         if touched:
             axes.legend(loc="upper right", fontsize=8)
-        axes.set_title(textwrap.fill(cell.replace("+", " +"), _TITLE_WIDTH), fontsize=9)
+        axes.set_title(textwrap.fill(_name(plan, cell).replace("+", " +"), _TITLE_WIDTH), fontsize=9)
     return figure
+
+
+def _name(plan: Plan, cell: str) -> str:
+    return f"{without_firmware(cell)}, {plan.scenarios[cell].firmware}"
 
 
 def _errors(plan: Plan, rows: Sequence[Row]) -> Figure:
@@ -68,7 +73,12 @@ def _errors(plan: Plan, rows: Sequence[Row]) -> Figure:
         if len(errors_m):
             reach_m = max(reach_m, float(errors_m[-1]))
             axes.step(
-                [0.0, *errors_m, 10.0], [0.0, *share, share[-1]], where="post", color=grey, linestyle=dashes, label=cell
+                [0.0, *errors_m, 10.0],
+                [0.0, *share, share[-1]],
+                where="post",
+                color=grey,
+                linestyle=dashes,
+                label=_name(plan, cell),
             )
     for limit_m, tier in ((_S2_M, "S2"), (_S1_M, "S1")):
         axes.axvline(limit_m, color=LIGHT, linewidth=0.8)

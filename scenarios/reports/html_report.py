@@ -57,7 +57,7 @@ def _run_page(run: RunData) -> str:
     result = run.result
     return _page(
         "run.html",
-        title=f"{result['scenario']}, seed {result['seed']}",
+        title=f"{result['scenario']}, {run.scenario.firmware}, seed {result['seed']}",
         verdict=f"{result['tier']}: {result['reason']}",
         description=run.scenario.description,
         result=_known(result),
@@ -66,6 +66,7 @@ def _run_page(run: RunData) -> str:
         motion_chart=motion_chart(run),
         figures=_captioned(run_figures(run)),
         phases=run.phases,
+        approaches=result.get("approaches", ()),
         scenario=dump_toml(run.scenario),
         config=dump_toml(run.config),
         versions={key: value for key, value in run.head.metadata.items() if key != "seed"},
@@ -113,7 +114,7 @@ def _svg(figure: Figure, name: str) -> str:
 
 def _known(result: Mapping[str, Any]) -> dict[str, str]:
     """Return the rows of a result's table; what a run of its kind cannot know is left out."""
-    told_elsewhere = {"phases_s", "reason"}
+    told_elsewhere = {"phases_s", "reason", "approaches"}
     return {_label(k): _value(v) for k, v in result.items() if v is not None and k not in told_elsewhere}
 
 

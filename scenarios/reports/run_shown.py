@@ -35,7 +35,7 @@ def distances(run: RunData) -> Array:
 
 def title(run: RunData) -> str:
     """Return what stands above a figure."""
-    return f"{run.result['scenario']}, seed {run.result['seed']}: {run.result['tier']}"
+    return f"{run.result['scenario']}, {run.scenario.firmware}, seed {run.result['seed']}: {run.result['tier']}"
 
 
 def shown_spans(run: RunData) -> list[PhaseSpan]:

@@ -110,7 +110,11 @@ def score(
     Raises:
         ValueError: too few samples, or out of order.
     """
-    log = truth_log(drone, vehicle, rotors)
+    return score_log(truth_log(drone, vehicle, rotors), rules, started_ns=started_ns, faults=faults)
+
+
+def score_log(log: TruthLog, rules: ScoreRules, *, started_ns: int | None = None, faults: Sequence[str] = ()) -> Score:
+    """Return the score of a run by its truth; the arguments are those of `score`."""
     touched = touches(log, rules.box)
     start_ns = _passing_ns(log, rules) if started_ns is None else started_ns
     flight = flight_of(log, touched, rules.box)

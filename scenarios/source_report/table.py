@@ -12,6 +12,8 @@ from rich.progress import track
 from rich.table import Table
 
 from link.errors import UserError
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.catalogue.firmware_option import firmware_text
 from scenarios.processes.local_workers import LocalWorkers, core_count
 from scenarios.processes.pool import run_tasks
 from scenarios.source_report.cases import CASES, OVERSHOOT, SETTLING_S, PublishedCase
@@ -72,6 +74,7 @@ def _cell(case: PublishedCase, system: str, rows: Sequence[Row]) -> dict[str, An
     scores = [row["score"] for row in rows if row["score"] is not None]
     return {
         "scenario": case.scenario,
+        "firmware": load_scenario(case.scenario).firmware,
         "system": system,
         "seeds": len(rows),
         "published": {"outcome": case.outcome} | ({} if landing is None else landing.model_dump()),
@@ -106,7 +109,8 @@ def print_report(table: Mapping[str, Any], out: TextIO) -> None:
     """Print both tables: framed on a terminal, plain columns elsewhere."""
     framed = out.isatty()
     console = Console(file=out, highlight=False, width=None if framed else _PLAIN_WIDTH, no_color=not framed)
-    title = "Landings within 0.7 m before the road ends: median (smallest to largest) over the seeds"
+    flown = firmware_text([cell["firmware"] for cell in table["landings"]])
+    title = f"Landings within 0.7 m before the road ends, {flown}: median (smallest to largest) over the seeds"
     _print(console, title, _LANDING_HEADINGS, [_landing_cells(cell) for cell in table["landings"]])
     title = f"Unit steps: settling time to 2 % and overshoot (published overshoot: {OVERSHOOT})"
     _print(console, title, _STEP_HEADINGS, [_step_cells(row) for row in table["step_responses"]])

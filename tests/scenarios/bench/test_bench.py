@@ -73,7 +73,15 @@ def test_a_figure_that_could_not_be_measured_misses_its_budget_and_is_shown_as_a
     check = BUDGET.check({"c": 1.0})
     assert (check["value"], check["met"]) == (None, False)
     lockstep = {"cpu_s": 1.0, "cpu_shares": {"companion": 1.0}}
-    table = {"scenario": "s", "seed": 1, "tier": "S3", "budgets": [check], "step_ms": {}, "first_heartbeat_s": {}}
+    table = {
+        "scenario": "s",
+        "firmware": "px4",
+        "seed": 1,
+        "tier": "S3",
+        "budgets": [check],
+        "step_ms": {},
+        "first_heartbeat_s": {},
+    }
     table |= {"lockstep": lockstep, "recording": {"writer_cpu_share": 0.02, "dropped": 0}}
     line = next(line for line in text_lines(table) if "a figure" in line)
     assert line.split()[-6:] == ["-", "ms", "at", "most", "5", "missed"]

@@ -60,6 +60,8 @@ def test_rows_hold_every_phase_and_no_wall_clock(reference: Path) -> None:
     assert {f"phase_{phase.name.lower()}_s" for phase in Phase} < set(frame.columns)
     assert "wall_s" not in frame.columns
     assert frame["horizontal_error_m"].dtype == pl.Float64  # nobody made contact
+    assert set(frame["firmware"]) == {"px4"}
+    assert frame["aborts_by_reason"].dtype == frame["first_abort"].dtype == pl.String()
     assert frame["on_pad"].dtype == pl.Boolean
 
 
@@ -120,6 +122,7 @@ def test_landing_that_raises_is_a_row_and_makes_the_exit_code_1(
     assert code == 1
     by_cell = {cell["cell"]: cell for cell in json.loads(printed.out)["cells"]}
     assert (by_cell["failing"]["errors"], by_cell["failing"]["seeds"], by_cell["short"]["errors"]) == (2, 2, 0)
+    assert {cell["firmware"] for cell in by_cell.values()} == {"px4"}
     assert "failing, seed 2: ValueError: GPS_RAW_INT cannot be packed" in printed.err
     errors = pl.read_parquet(tmp_path / "out" / "landings.parquet").filter(cell="failing")["error"].to_list()
     assert all("codec.py" in error for error in errors)

@@ -11,7 +11,16 @@ from scenarios.campaigns.summary import MEASURES
 
 def row(seed: int, tier: str, error_m: float | None = None, cell: str = "straight_5") -> Row:
     measures = dict.fromkeys(MEASURES, error_m)
-    return {"cell": cell, "seed": seed, "error": None, "tier": tier, "s2_quality": tier == "S2", **measures}
+    firmware = "ardupilot" if "+firmware=ardupilot" in cell else "px4"
+    return {
+        "cell": cell,
+        "firmware": firmware,
+        "seed": seed,
+        "error": None,
+        "tier": tier,
+        "s2_quality": tier == "S2",
+        **measures,
+    }
 
 
 A = [row(1, "S2", 0.10), row(2, "S1", 0.30), row(3, "S1", 0.40), row(4, "abort"), row(5, "S2", 0.20)]
@@ -81,6 +90,13 @@ def test_cells_that_differ_in_one_option_are_paired_without_it() -> None:
         ("static", 1, 0),
         ("together", 2, 1),
     ]
+
+
+def test_comparison_names_the_firmwares_of_both() -> None:
+    first = [row(1, "S2", cell="circle_5"), row(1, "S2", cell="static")]
+    second = [row(1, "S2", cell="circle_5+firmware=ardupilot"), row(1, "S2", cell="static")]
+    cells = compare_rows(first, second, "firmware")["cells"]
+    assert [cell["firmware"] for cell in cells] == ["px4 | ardupilot", "px4", "px4 | px4, ardupilot"]
 
 
 @pytest.mark.parametrize("turned", [False, True])

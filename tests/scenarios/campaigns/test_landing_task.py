@@ -18,8 +18,20 @@ from scenarios.scoring.score import Score, Tier
 from scenarios.scoring.touchdown import Touchdown
 
 TASK = Task(cell="straight_5", seed=7)
-TABLE = MappingProxyType(
-    {"scenario": "straight_5", "seed": 7, "tier": "S2", "start_s": 1.0, "phases_s": {"takeoff": 0.5, "descend": 9.25}}
+TABLE: MappingProxyType[str, Any] = MappingProxyType(
+    {
+        "scenario": "straight_5",
+        "seed": 7,
+        "tier": "S2",
+        "start_s": 1.0,
+        "phases_s": {"takeoff": 0.5, "descend": 9.25},
+        "approaches": [
+            {"ended": "abort", "reason_code": "OUTSIDE_CONE", "begun_anew": [{"reason_code": "STRAYS"}] * 2},
+            {"ended": "abort", "reason_code": "SETPOINT_NOT_FOLLOWED", "begun_anew": []},
+            {"ended": "abort", "reason_code": "SETPOINT_NOT_FOLLOWED", "begun_anew": []},
+            {"ended": "touchdown", "reason_code": "CONTACT", "begun_anew": [{"reason_code": "PAD_NOT_SEEN"}]},
+        ],
+    }
 )
 FLIGHTS = Flights(scenarios={"straight_5": load_scenario("straight_5")}, sources=sources())
 
@@ -40,6 +52,19 @@ def test_row_is_the_result_without_nesting_with_a_column_for_each_phase() -> Non
     assert {name for name in row if name.startswith("phase_")} == {f"phase_{one.name.lower()}_s" for one in Phase}
     assert (row["phase_takeoff_s"], row["phase_descend_s"], row["phase_pilot_s"]) == (0.5, 9.25, None)
     assert not any(isinstance(value, dict | list) for value in row.values())
+
+
+def test_row_tells_why_approaches_were_broken_off_or_begun_anew() -> None:
+    row = row_of(TASK, TABLE, Recording())
+    assert row["approaches"] == 4
+    assert (row["first_abort"], row["last_abort"]) == ("OUTSIDE_CONE", "SETPOINT_NOT_FOLLOWED")
+    assert row["aborts_by_reason"] == "SETPOINT_NOT_FOLLOWED 2, OUTSIDE_CONE 1"
+    assert row["begun_anew_by_reason"] == "STRAYS 2, PAD_NOT_SEEN 1"
+
+
+def test_row_of_a_landing_at_once_has_no_reason() -> None:
+    row = row_of(TASK, {**TABLE, "approaches": TABLE["approaches"][3:]}, Recording())
+    assert (row["first_abort"], row["last_abort"], row["aborts_by_reason"]) == (None, None, "")
 
 
 def test_wave_offs_are_entries_into_abort_and_retries_the_approaches_after_it() -> None:

@@ -51,6 +51,28 @@ def test_each_cell_is_a_row_and_all_together_are_the_last() -> None:
     assert calm[at["horizontal error m"]] == "0.10, 0.10"
 
 
+def test_firmwares_of_a_cell_are_rows_one_under_the_other_and_have_each_its_own_line_of_totals() -> None:
+    names = [f"{cell}+firmware={firmware}" for firmware in ("ardupilot", "px4") for cell in (ROUGH, CALM)]
+    head, _, *lines = written(*(row(1, "S3", name) for name in names))
+    assert [line[head.index("cell")] for line in lines] == [
+        *["`circle_5+wind=calm`"] * 2,
+        *["`circle_5+wind=severe`"] * 2,
+        *["all"] * 2,
+    ]
+    assert [line[head.index("firmware")] for line in lines] == ["px4", "ardupilot"] * 3
+
+
+def test_reasons_are_told_below_the_table_by_firmware() -> None:
+    out = StringIO()
+    why = {"aborts_by_reason": "STRAYS 2"}
+    write_markdown(summarize([row(1, **why), row(2, **why), row(1, cell="static+firmware=ardupilot", **why)]), out)
+    assert out.getvalue().splitlines()[-3:] == [
+        "Approaches broken off, by reason, px4: `STRAYS` 4.",
+        "",
+        "Approaches broken off, by reason, ardupilot: `STRAYS` 2.",
+    ]
+
+
 def test_all_lines_of_the_table_have_as_many_cells() -> None:
     lines = written(row(1, "S3", CALM), row(1, "unsafe", ROUGH))
     assert len({len(line) for line in lines}) == 1

@@ -13,7 +13,17 @@ from scenarios.scoring.score import Tier
 
 def row(seed: int, tier: str = "S3", cell: str = "straight_5", **values: Any) -> Row:
     contact = dict.fromkeys(MEASURES, 0.1 * seed) if tier in {"S1", "S2", "S3"} else {}
-    base = {"cell": cell, "seed": seed, "error": None, "tier": tier, "s2_quality": False, "aborts": 0, "retries": 0}
+    firmware = "ardupilot" if cell.endswith("+firmware=ardupilot") else "px4"
+    base = {
+        "cell": cell,
+        "firmware": firmware,
+        "seed": seed,
+        "error": None,
+        "tier": tier,
+        "s2_quality": False,
+        "aborts": 0,
+        "retries": 0,
+    }
     return base | contact | values
 
 
@@ -49,6 +59,25 @@ def test_summary_counts_secured_landings_for_s2_only_by_their_contact() -> None:
     assert cell("straight_5")["unsafe"]["share"] == pytest.approx(1 / 6, abs=1e-6)
 
 
+def test_summary_has_both_firmwares_of_a_cell_side_by_side() -> None:
+    cells = ["straight_5+firmware=ardupilot", "circle_5+firmware=ardupilot", "straight_5", "circle_5+firmware=px4"]
+    found = summarize([row(1, cell=name) for name in cells])["cells"]
+    assert [(one["cell"], one["firmware"]) for one in found] == [
+        ("circle_5+firmware=px4", "px4"),
+        ("circle_5+firmware=ardupilot", "ardupilot"),
+        ("straight_5", "px4"),
+        ("straight_5+firmware=ardupilot", "ardupilot"),
+    ]
+
+
+def test_every_table_names_the_firmware_of_each_cell() -> None:
+    out = StringIO()
+    print_summary(summarize([row(1, cell="static+firmware=ardupilot", aborts_by_reason="STRAYS 1")]), out)
+    lines = [line.split() for line in out.getvalue().splitlines() if line.startswith("static")]
+    assert len(lines) == 5  # tables
+    assert all(line[:2] == ["static+firmware=ardupilot", "ardupilot"] for line in lines)
+
+
 def test_summary_takes_its_measures_over_contacts_only() -> None:
     errors_m = [0.1, 0.2, 0.3, 0.4]
     expected = {"median": pytest.approx(np.median(errors_m)), "p95": pytest.approx(np.percentile(errors_m, 95))}
@@ -61,7 +90,7 @@ def test_summary_without_contacts_has_no_measures() -> None:
 
 
 def test_error_counts_as_a_landing_that_failed() -> None:
-    rows = [row(1), failed(Task(cell="straight_5", seed=2), "ValueError: wrong")]
+    rows = [row(1), failed(Task(cell="straight_5", seed=2), "px4", "ValueError: wrong")]
     found = cell("straight_5", rows)
     assert (found["seeds"], found["errors"], sum(found["tiers"].values())) == (2, 1, 1)
     assert found["s1_or_better"]["share"] == 0.5
@@ -79,6 +108,38 @@ def test_table_outside_a_terminal_is_plain_and_one_line_a_cell() -> None:
     assert out.getvalue().isascii()
     assert sum(line.startswith("straight_5 ") for line in lines) == 4
     assert sum(line.startswith("straight_5+sensors=nominal+wind=moderate+link=nominal ") for line in lines) == 4
+
+
+WHY = [
+    row(1, aborts_by_reason="OUTSIDE_CONE 1", approaches=2, ended_reason_code="MOTORS_OFF"),
+    row(2, "abort", aborts_by_reason="SETPOINT_NOT_FOLLOWED 3, OUTSIDE_CONE 1", begun_anew_by_reason="STRAYS 2",
+        approaches=4, ended_reason_code="NO_RETRY_LEFT"),
+    row(1, cell="circle_5", aborts_by_reason="OUTSIDE_CONE 1", approaches=2, ended_reason_code="MOTORS_OFF"),
+]  # fmt: skip
+
+
+def test_summary_adds_up_the_reasons_of_a_cell() -> None:
+    found = cell("straight_5", WHY)
+    assert found["approaches"] == 6
+    assert list(found["aborts_by_reason"].items()) == [("SETPOINT_NOT_FOLLOWED", 3), ("OUTSIDE_CONE", 2)]
+    assert found["begun_anew_by_reason"] == {"STRAYS": 2}
+    assert found["not_landed_by_reason"] == {"NO_RETRY_LEFT": 1}
+
+
+def test_table_tells_the_reasons_by_cell_and_together() -> None:
+    out = StringIO()
+    print_summary(summarize(WHY), out)
+    told = [line.split() for line in out.getvalue().splitlines() if "OUTSIDE_CONE" in line]
+    straight = ["SETPOINT_NOT_FOLLOWED", "3,", "OUTSIDE_CONE", "2", "STRAYS", "2", "NO_RETRY_LEFT", "1"]
+    assert told[0] == ["circle_5", "px4", "2", "OUTSIDE_CONE", "1", "-", "-"]
+    assert told[1] == ["straight_5", "px4", "6", *straight]
+    assert told[2][:6] == ["all", "px4", "8", "OUTSIDE_CONE", "3,", "SETPOINT_NOT_FOLLOWED"]
+
+
+def test_table_without_reasons_has_no_part_for_them() -> None:
+    out = StringIO()
+    print_summary(summarize(ROWS), out)
+    assert "Why" not in out.getvalue()
 
 
 def test_summary_pools_consistency_and_shows_its_band() -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from scenarios.campaigns.campaign import make_plan
-from scenarios.campaigns.folder import create_folder, open_journal
+from scenarios.campaigns.folder import create_folder, open_journal, read_landings
 from scenarios.campaigns.landing_task import Flown, Row
 from scenarios.campaigns.summary import MEASURES
 from tests.scenarios.campaigns.short import scenarios, short_cell
@@ -79,6 +79,33 @@ def test_config_that_does_not_fit_over_a_cell_is_refused(tmp_path: Path, capsys:
 
 def test_campaign_refuses_a_cell_twice(capsys: pytest.CaptureFixture[str]) -> None:
     assert "'straight_5' is given twice" in refusal(capsys, "campaign", "straight_5", "straight_5")
+
+
+def test_campaign_flies_each_cell_with_both_firmwares() -> None:
+    plan = make_plan(["straight_5+wind=light", "static"], first_seed=1, seeds=2, config=None, firmware="both")
+    firmwares = {cell: plan.scenarios[cell].firmware for cell in plan.cells}
+    assert firmwares == {
+        "straight_5+wind=light+firmware=px4": "px4",
+        "straight_5+wind=light+firmware=ardupilot": "ardupilot",
+        "static+firmware=px4": "px4",
+        "static+firmware=ardupilot": "ardupilot",
+    }
+    assert len(plan.tasks()) == 8
+
+
+@pytest.mark.parametrize(
+    ("cell", "firmware", "told"),
+    [("static", "inav", "one of px4, ardupilot, both"), ("static+firmware=px4", "both", "names its firmware")],
+)
+def test_campaign_refuses_a_firmware_that_is_none_or_stands_twice(
+    cell: str, firmware: str, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert told in refusal(capsys, "campaign", cell, "--firmware", firmware)
+
+
+def test_rows_of_a_campaign_without_firmware_have_that_of_their_cell(tmp_path: Path) -> None:
+    folder = campaign(tmp_path / "a", errors_m=(0.1,))
+    assert [row["firmware"] for row in read_landings(folder)] == ["px4"]
 
 
 def test_campaign_refuses_a_folder_in_use(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -4,8 +4,9 @@ import pytest
 
 from companion.situation.phases import Phase
 from link.messages import Command
+from scenarios.config import FIRMWARES
 from scenarios.faults.flight import FaultFlight
-from scenarios.faults.matrix import EXPECTED, FIRMWARES, PHASES, Case, Fault
+from scenarios.faults.matrix import EXPECTED, PHASES, Case, Fault
 from scenarios.faults.trial import SEED, Ended, fly_case, scenario_of
 from scenarios.scoring.score import Tier
 

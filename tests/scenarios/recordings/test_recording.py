@@ -1,5 +1,6 @@
 """A flight's recording: complete, the same for the same seed, replayed exactly, and of no consequence to the flight."""
 
+import json
 import shutil
 from pathlib import Path
 
@@ -107,6 +108,18 @@ def test_recording_is_the_same_for_the_same_seed_and_changes_no_result(run: Path
     )
 
 
+def test_approach_of_a_run_ends_with_the_touchdown(run: Path) -> None:
+    result = json.loads(run.joinpath("result.json").read_text(encoding="utf-8"))
+    (approach,) = result["approaches"]
+    assert (approach["ended"], approach["reason_code"], approach["begun_anew"]) == ("touchdown", "CONTACT", [])
+    assert approach["from_s"] == result["phases_s"]["chase"]
+    assert approach["to_s"] == pytest.approx(result["contact_s"], abs=0.5)
+    assert approach["lowest_m"] == pytest.approx(0.0, abs=0.03)
+    assert result["ended_reason_code"] == "MOTORS_OFF"
+    # It waits at the scenario's own waiting point, to some decimetres.
+    assert result["pass_to_contact_s"] == pytest.approx(result["time_to_contact_s"], abs=0.2)
+
+
 def test_figures_of_a_run_are_drawn_in_both_forms_and_twice_the_same(run: Path, tmp_path: Path) -> None:
     once, again = draw_figures(run, tmp_path / "once"), draw_figures(run, tmp_path / "again")
     stems = {"path_3d", "path_above", "motion", "funnel", "touchdown", "estimate"}
@@ -129,7 +142,15 @@ def test_page_about_a_run_needs_nothing_from_elsewhere(run: Path, tmp_path: Path
     outside_script = page.split("</script>", 1)[1]
     for fetched in ('src="http', "src='http", '<link rel="stylesheet"', "@import"):
         assert fetched not in outside_script
-    for told in ("S3: landed", "descent_gain_hz", "numpy", "<svg", "plotly-graph-div"):
+    for told in (
+        "S3: landed",
+        "descent_gain_hz",
+        "numpy",
+        "<code>CONTACT</code>",
+        "px4, seed 2",
+        "<svg",
+        "plotly-graph-div",
+    ):
         assert told in outside_script
 
 

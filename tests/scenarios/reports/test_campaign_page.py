@@ -17,6 +17,7 @@ def test_page_and_figures_of_a_campaign_show_every_landing(tmp_path: Path) -> No
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "2 of 2 landings reached S3" in page
     assert "S3 (2)" in page
+    assert "straight_5, px4" in page
     assert len(re.findall("<svg", page)) == 2
     assert not re.findall(r'(?:src|href)="http', page)
     assert scenarios("figures", folder) == 0
