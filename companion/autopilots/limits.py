@@ -13,6 +13,7 @@ from companion.autopilots.driver import Driver
 from companion.core.data import GRAVITY_M_S2
 
 _STATED_MIN = 0.1  # m/s or degrees; a limit below this cannot be flown with
+_GAIN_FACTOR_MAX = 4.0  # about a default; the ranges that the firmwares state are narrower
 _TILT_SHARE = 0.85  # of the largest tilt's thrust; the rest is for gusts and for the autopilot's own corrections
 
 
@@ -34,11 +35,14 @@ def stated(parameters: Mapping[str, float], names: Sequence[Named]) -> float:
 
 
 def gain(parameters: Mapping[str, float], names: Sequence[str], default: float) -> float:
-    """Return a gain by whichever of its names is known, the firmware's default where none is or it is not positive."""
+    """Return a gain by whichever of its names is known, the firmware's default where none is or it is not positive.
+
+    A drone does not fly with gains far from the default; such a value is cut to where the cascade's model is stable.
+    """
     for name in names:
         value = parameters.get(name, math.nan)
         if value > 0.0 and math.isfinite(value):
-            return value
+            return min(max(value, default / _GAIN_FACTOR_MAX), default * _GAIN_FACTOR_MAX)
     return default
 
 

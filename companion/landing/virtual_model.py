@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from companion.autopilots.response import STATES, ResponseModel
+from companion.autopilots.response import LEANS, STATES, ResponseModel
 from companion.core.data import GRAVITY_M_S2, Array, OwnState, Setpoint
 from companion.planning.guidance import ReferenceState, Trajectory
 from link.frames.rotations import rotate
@@ -49,6 +49,8 @@ def add_to_past(tracking: Tracking, t_ns: int, reference: ReferenceState) -> Tra
     past = tracking.past
     while past and (t_ns - past[0][0]) * 1e-9 > _HISTORY_S:
         past = past[1:]
+    while past and past[-1][0] >= t_ns:  # a step that is made anew at the same time takes its place
+        past = past[:-1]
     return replace(tracking, past=(*past, (t_ns, reference.position_enu_m, reference.velocity_enu_m_s)))
 
 
@@ -77,10 +79,12 @@ def update_tracking(
         behind_enu_m=behind,
         error_m=math.hypot(*behind.tolist()),
         compared_ns=own_ns,
-        air_enu_m_s2=_updated_air(tracking.air_enu_m_s2, own, acceleration[:2], since_s),
     )
     if not estimates or response is None:
-        return replace(tracking, deviation=np.zeros((STATES, 2)))
+        air = _updated_air(tracking.air_enu_m_s2, own, acceleration[:2], since_s)
+        return replace(tracking, air_enu_m_s2=air, deviation=np.zeros((STATES, 2)))
+    air = _updated_air(tracking.air_enu_m_s2, own, tracking.deviation[LEANS], since_s)
+    tracking = replace(tracking, air_enu_m_s2=air)
     measured = np.array([-behind[:2], np.array(own.velocity_enu_m_s[:2]) - velocity[:2]])
     if since_s > _BREAK_S:
         return replace(tracking, deviation=np.vstack((measured, np.zeros((STATES - 2, 2)))))
@@ -88,7 +92,7 @@ def update_tracking(
 
 
 def _updated_air(air_enu_m_s2: Array, own: OwnState, acceleration_m_s2: Array, since_s: float) -> Array:
-    """Return the mean of what the drone leans beyond the model's acceleration."""
+    """Return the mean of what the drone leans beyond what accelerates it."""
     x, y, up = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
     if up < _UPRIGHT_MIN:
         return air_enu_m_s2

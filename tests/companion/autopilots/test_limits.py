@@ -3,15 +3,18 @@
 import math
 from itertools import chain
 
+import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.driver import Driver
 from companion.autopilots.limits import acceleration_of_tilt_m_s2
 from companion.autopilots.px4 import Px4Driver
+from companion.autopilots.response import ResponseModel
 from companion.core.data import GRAVITY_M_S2
+from companion.landing.targets import HORIZON_OFFSETS_S
 
 DRIVERS = (Px4Driver(), ArduPilotDriver())
 
@@ -26,3 +29,18 @@ def test_thrust_to_the_side_is_what_the_tilt_gives_less_a_reserve(tilt_deg: floa
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 0.0, -1.3])
 def test_gains_that_nothing_could_fly_with_are_taken_for_the_defaults(driver: Driver, value: float) -> None:
     assert driver.cascade(dict.fromkeys(chain(*driver.gain_names), value)) == driver.cascade({})
+
+
+@pytest.mark.parametrize("driver", DRIVERS, ids=["px4", "ardupilot"])
+@given(data=st.data())
+@settings(max_examples=50, deadline=None)
+def test_no_gains_whatever_are_without_a_model_that_settles(driver: Driver, data: st.DataObject) -> None:
+    names = st.sampled_from(tuple(chain(*driver.gain_names)))
+    parameters = data.draw(st.dictionaries(names, st.floats(width=32) | st.floats(0.0, 20.0)))
+    response = ResponseModel(driver.cascade(parameters), HORIZON_OFFSETS_S)
+    assert np.all(np.linalg.eigvalsh(response.spread) >= -1e-9)
+    assert np.all(np.linalg.eigvalsh(response.covariance) >= -1e-9)
+    states = len(response.spread)
+    start = np.vstack((np.ones((2, 1)), np.zeros((states - 2, 1))))
+    ends = response.predict(start, np.zeros((len(HORIZON_OFFSETS_S), 1)))[-1]
+    assert np.abs(ends[:2]).max() < 3.0
