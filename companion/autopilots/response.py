@@ -34,8 +34,6 @@ VELOCITY_STD_M_S = 0.1
 """Likewise of its velocity."""
 REPORT_PERIOD_S = 0.02
 STATES = 4
-LEANS = 2
-"""The state's row that tells by what the drone's lean accelerates it."""
 _ONE = np.eye(STATES)
 _PUSH = 3
 _STEP_MAX_S = 0.05

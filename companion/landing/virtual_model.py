@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from companion.autopilots.response import LEANS, STATES, ResponseModel
+from companion.autopilots.response import STATES, ResponseModel
 from companion.core.data import GRAVITY_M_S2, Array, OwnState, Setpoint
 from companion.planning.guidance import ReferenceState, Trajectory
 from link.frames.rotations import rotate
@@ -33,6 +33,7 @@ class Tracking:
         error_m: length of that.
         deviation: (4, 2) horizontal state of `ResponseModel` then: from the model to the drone, and what moves it.
         air_enu_m_s2: (2,) horizontal thrust by mass that holds against the air, a mean of the last second.
+        velocity_enu_m_s: (2,) horizontal velocity of the drone then.
         compared_ns: monotonic time of the newest report that was compared; None before the first.
     """
 
@@ -41,6 +42,7 @@ class Tracking:
     error_m: float = 0.0
     deviation: Array = field(default_factory=lambda: np.zeros((STATES, 2)))
     air_enu_m_s2: Array = field(default_factory=lambda: np.zeros(2))
+    velocity_enu_m_s: Array = field(default_factory=lambda: np.zeros(2))
     compared_ns: int | None = None
 
 
@@ -79,25 +81,25 @@ def update_tracking(
         behind_enu_m=behind,
         error_m=math.hypot(*behind.tolist()),
         compared_ns=own_ns,
+        air_enu_m_s2=_updated_air(tracking, own, since_s),
+        velocity_enu_m_s=np.array(own.velocity_enu_m_s[:2]),
     )
     if not estimates or response is None:
-        air = _updated_air(tracking.air_enu_m_s2, own, acceleration[:2], since_s)
-        return replace(tracking, air_enu_m_s2=air, deviation=np.zeros((STATES, 2)))
-    air = _updated_air(tracking.air_enu_m_s2, own, tracking.deviation[LEANS], since_s)
-    tracking = replace(tracking, air_enu_m_s2=air)
+        return replace(tracking, deviation=np.zeros((STATES, 2)))
     measured = np.array([-behind[:2], np.array(own.velocity_enu_m_s[:2]) - velocity[:2]])
     if since_s > _BREAK_S:
         return replace(tracking, deviation=np.vstack((measured, np.zeros((STATES - 2, 2)))))
     return replace(tracking, deviation=response.update(tracking.deviation, measured, acceleration[:2], since_s))
 
 
-def _updated_air(air_enu_m_s2: Array, own: OwnState, acceleration_m_s2: Array, since_s: float) -> Array:
-    """Return the mean of what the drone leans beyond what accelerates it."""
+def _updated_air(tracking: Tracking, own: OwnState, since_s: float) -> Array:
+    """Return the mean of what the drone leans beyond what accelerates it, by the change of its own velocity."""
     x, y, up = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
-    if up < _UPRIGHT_MIN:
-        return air_enu_m_s2
-    leans = np.array([x, y]) * (GRAVITY_M_S2 / up) - acceleration_m_s2
-    return np.asarray(air_enu_m_s2 - math.expm1(-since_s / _AIR_MEAN_S) * (leans - air_enu_m_s2))
+    if up < _UPRIGHT_MIN or not 0.0 < since_s < _BREAK_S:
+        return tracking.air_enu_m_s2
+    changed = (np.array(own.velocity_enu_m_s[:2]) - tracking.velocity_enu_m_s) / since_s
+    leans = np.array([x, y]) * (GRAVITY_M_S2 / up) - changed
+    return np.asarray(tracking.air_enu_m_s2 - math.expm1(-since_s / _AIR_MEAN_S) * (leans - tracking.air_enu_m_s2))
 
 
 def _model_at(tracking: Tracking, t_ns: int) -> tuple[Array, Array, Array]:
