@@ -73,12 +73,13 @@ def test_closing_ends_the_processes() -> None:
 
 
 def test_ctrl_c_ends_a_wait_that_a_librarys_handler_lets_go_on() -> None:
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a program tested in this process has its own
     signal.siginterrupt(signal.SIGINT, False)  # as polars has it: SA_RESTART
     try:
         with pytest.raises(KeyboardInterrupt):
             list(run_tasks(LocalWorkers(interrupt_and_stay, 1), [0], lost=lost))
     finally:
-        signal.siginterrupt(signal.SIGINT, True)
+        signal.signal(signal.SIGINT, before)
     assert not multiprocessing.active_children()
 
 
