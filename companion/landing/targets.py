@@ -11,6 +11,7 @@ import numpy as np
 
 from companion.config.companion import CompanionConfig
 from companion.config.landing import DescentConfig, LandingStyle
+from companion.config.planning import GuidanceKind
 from companion.core.data import Array, FlightLimits
 from companion.planning.descent_path import descent_path
 from companion.planning.guidance import ReferenceState, Target
@@ -100,7 +101,9 @@ def pad_aim(
             float(reference.velocity_enu_m_s[2] - pad.velocity_enu_m_s[0, 2]),
             float(reference.acceleration_enu_m_s2[2] - pad.acceleration_enu_m_s2[0, 2]),
         )
-        height, rate, acceleration = _way_down(state, pad.offset_s, limits, config.descent, lowest_m)
+        height, rate, acceleration = _way_down(
+            state, pad.offset_s, limits, config.descent, lowest_m, previews=config.guidance.kind is GuidanceKind.MPC
+        )
     else:
         height, rate, acceleration = _height_m(phase, pad, reference, config), 0.0, 0.0
     position, velocity, accelerated = (
@@ -125,9 +128,16 @@ def _way_down(
     limits: FlightLimits,
     descent: DescentConfig,
     lowest_m: float | None,
+    *,
+    previews: bool,
 ) -> Array:
     """Return height over the pad, its rate and its acceleration (3, n) of a descent that the virtual model can fly."""
     lowest_m = -descent.press_depth_m if lowest_m is None else lowest_m
+    if not previews:  # a law that looks at the present alone is given the rate that is wanted there
+        wanted_m_s = min(
+            max(descent.descent_gain_hz * state[0], descent.touchdown_sink_rate_m_s), descent.descent_rate_max_m_s
+        )
+        state = (state[0], -wanted_m_s if state[0] > lowest_m else 0.0, 0.0)
     return descent_path(
         state,
         (descent.descent_gain_hz, descent.descent_rate_max_m_s, descent.touchdown_sink_rate_m_s, lowest_m),

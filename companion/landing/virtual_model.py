@@ -18,6 +18,7 @@ from link.records import replace
 _HISTORY_S = 0.6  # longer than any telemetry is late
 _UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady
 _AIR_MEAN_S = 1.0  # longer than a gust's beginning, shorter than a change of speed
+_BRAKING_M_S2 = 1.0  # of a drone whose setpoints have stayed away: ArduPilot's WPNAV_ACCEL_Z by default
 _CAUGHT_UP_MAX_M = 1.0  # made up for by velocity at a time; more would be a chase
 _BREAK_S = 0.25  # between two reports, after which the deviation is what the next one shows
 _ACCELERATION_MAX_M_S2 = 10.0  # of the model between two steps: it is set back at times, and that is no motion
@@ -139,14 +140,22 @@ def press_down(reference: ReferenceState, acceleration_m_s2: float, duration_s: 
 def limit_sink(reference: ReferenceState, lowest_enu_m: float, duration_s: float) -> ReferenceState:
     """Return the model for an autopilot that carries a setpoint on for `duration_s`, should no other follow.
 
-    Its acceleration upwards is at least such that this ends above `lowest_enu_m`: ArduCopter was flown into the road at
-    1.6 m/s from a chase whose companion had died.
+    Its acceleration upwards is at least such that the drone, which then brakes, ends above `lowest_enu_m`: ArduCopter
+    was flown into the road at 1.6 m/s from a chase whose companion had died. The rate w at the end of the time T obeys
+    `h + (v + w) T / 2 - w^2 / 2A >= 0` with the height h, the rate v and the braking A.
     """
     if duration_s <= 0.0:
         return reference
     above_m = float(reference.position_enu_m[2]) - lowest_enu_m
     ax, ay, az = reference.acceleration_enu_m_s2.tolist()
-    least_m_s2 = -2.0 * (above_m + float(reference.velocity_enu_m_s[2]) * duration_s) / duration_s**2
+    climb_m_s, room_m = float(reference.velocity_enu_m_s[2]), 2.0 * above_m
+    room_m += climb_m_s * duration_s
+    if room_m >= 0.0:
+        brakes_m_s = _BRAKING_M_S2 * duration_s
+        end_m_s = 0.5 * (brakes_m_s - math.sqrt(brakes_m_s**2 + 4.0 * _BRAKING_M_S2 * room_m))
+    else:
+        end_m_s = -room_m / duration_s
+    least_m_s2 = (end_m_s - climb_m_s) / duration_s
     if az >= least_m_s2:
         return reference
     return replace(reference, acceleration_enu_m_s2=np.array([ax, ay, least_m_s2]))

@@ -134,6 +134,7 @@ def test_carried_is_the_closed_form_of_constant_acceleration() -> None:
 
 heights, rates, ups = st.floats(-3.0, 20.0), st.floats(-4.0, 4.0), st.floats(-10.0, 10.0)
 durations = st.floats(0.1, 5.0)
+BRAKES_M_S2 = 1.0  # ArduPilot's WPNAV_ACCEL_Z
 
 
 def _moving(height_m: float, rate_m_s: float, up_m_s2: float) -> ReferenceState:
@@ -145,11 +146,12 @@ def _moving(height_m: float, rate_m_s: float, up_m_s2: float) -> ReferenceState:
 
 
 @given(heights, rates, ups, durations)
-def test_model_that_is_carried_on_ends_above_the_lowest_height(
+def test_model_that_is_carried_on_and_then_brakes_ends_above_the_lowest_height(
     height_m: float, rate_m_s: float, up_m_s2: float, duration_s: float
 ) -> None:
-    limited = limit_sink(_moving(height_m, rate_m_s, up_m_s2), 0.6, duration_s)
-    assert extrapolate(limited, duration_s).position_enu_m[2] >= 0.6 - 1e-9
+    carried = extrapolate(limit_sink(_moving(height_m, rate_m_s, up_m_s2), 0.6, duration_s), duration_s)
+    sinks_m_s = max(-float(carried.velocity_enu_m_s[2]), 0.0)
+    assert carried.position_enu_m[2] - sinks_m_s**2 / (2.0 * BRAKES_M_S2) >= 0.6 - 1e-6
 
 
 @given(heights, rates, ups, durations)
@@ -157,7 +159,9 @@ def test_model_that_ends_above_the_lowest_height_is_left_alone(
     height_m: float, rate_m_s: float, up_m_s2: float, duration_s: float
 ) -> None:
     reference = _moving(height_m, rate_m_s, up_m_s2)
-    lowest_m = float(extrapolate(reference, duration_s).position_enu_m[2]) - 1e-6
+    carried = extrapolate(reference, duration_s)
+    sinks_m_s = max(-float(carried.velocity_enu_m_s[2]), 0.0)
+    lowest_m = float(carried.position_enu_m[2]) - sinks_m_s**2 / (2.0 * BRAKES_M_S2) - 1e-6
     assert limit_sink(reference, lowest_m, duration_s) is reference
 
 
