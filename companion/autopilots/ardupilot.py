@@ -41,8 +41,8 @@ _SPEED = (Named("WPNAV_SPEED", _CENTI), Named("WP_SPD"))
 _CLIMB = (Named("WPNAV_SPEED_UP", _CENTI), Named("WP_SPD_UP"))
 _DESCENT = (Named("WPNAV_SPEED_DN", _CENTI), Named("WP_SPD_DN"))
 # The rest is for its own corrections, which its shaping bounds together with what is asked for: with none left a path
-# that is late stays late, and a drone was seen to swing by 1.5 m about a pad at 5 m/s. Of 0.6, 0.8 and 1 this one did not
-# swing, and took less time than 0.6.
+# that is late stays late, and a drone was seen to swing by 1.5 m about a pad at 5 m/s. Of 0.6, 0.8 and 1 this one did
+# not swing, and took less time than 0.6.
 _JERK_SHARE = 0.8
 _JERK = (Named("PSC_JERK_XY"), Named("PSC_JERK_NE"))  # it follows no acceleration that changes faster
 _LIMITS = (_TILT, _TILT_BY_POSITION, _SPEED, _CLIMB, _DESCENT, _JERK)
