@@ -36,8 +36,8 @@ from companion.situation.situation import (
     range_height_m,
     with_pad,
 )
+from companion.vehicle.driving import forget_beliefs, update_surprise
 from companion.vehicle.pad import PadPath, pad_path
-from companion.vehicle.surprise import forget_beliefs, update_surprise
 from link.frames.rotations import yaw_of
 from link.records import replace
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from companion.config.companion import CompanionConfig
 from companion.situation.situation import Situation
-from companion.vehicle.buffered import BufferHealth
+from companion.vehicle.estimator import BufferHealth
 
 _EVERY_NS = 500_000_000
 _OVER = 20  # samples, of 10 s in all: a step of the drone's own frame has measurements of half a second rejected

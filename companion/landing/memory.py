@@ -17,8 +17,8 @@ from companion.landing.sway import Sway
 from companion.landing.virtual_model import Tracking
 from companion.planning.guidance import GuidanceMemory, ReferenceState, Trajectory
 from companion.situation.phases import Phase
-from companion.vehicle.buffered import EstimatorMemory
-from companion.vehicle.surprise import Surprise
+from companion.vehicle.driving import Surprise
+from companion.vehicle.estimator import EstimatorMemory
 
 Held = Mapping[Reason, int]
 """Since when (monotonic ns) each condition has been true, by its reason."""

@@ -7,7 +7,7 @@ from companion.autopilots.response import ResponseModel
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits, Measurement, OwnState, Setpoint
 from companion.planning.guidance import Guidance, PlanResult
-from companion.vehicle.buffered import Estimator
+from companion.vehicle.estimator import Estimator
 from link.messages import Command, CommandReply, LandingStatus, PadGeometry
 
 

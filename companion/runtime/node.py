@@ -15,7 +15,7 @@ from companion.landing.step_data import StepInputs, StepOutputs, System
 from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.situation.phases import FLYING_PHASES, Phase
 from companion.step import companion_step
-from companion.vehicle.buffered import BufferHealth
+from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.factory import make_estimator
 from companion.vehicle.inputs import measurements_of
 from link.mavlink.session import MavlinkSession

@@ -5,7 +5,7 @@ import pytest
 from companion.core.reasons import Reason, sentence
 from companion.integrity.contradictions import Contradictions, update_contradictions
 from companion.landing.feasibility import obstacle
-from companion.vehicle.buffered import BufferHealth
+from companion.vehicle.estimator import BufferHealth
 from tests.companion.facts import CONFIG, NOW_NS, changed, situation
 
 HALF_NS = 500_000_000

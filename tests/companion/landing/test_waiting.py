@@ -11,8 +11,7 @@ from companion.landing.transitions import take_events
 from companion.landing.waiting import waits_at_m, why_held_up
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
-from companion.vehicle.driving import Driving
-from companion.vehicle.surprise import Surprise
+from companion.vehicle.driving import Driving, Surprise
 from link.messages import Vector3
 from tests.companion.facts import (
     CONFIG,
