@@ -9,9 +9,15 @@ from companion.autopilots.driver import AutopilotCommand, Desire
 from companion.config.companion import CompanionConfig
 from companion.core.data import Forecast
 from companion.core.reasons import sentence
-from companion.integrity.contradictions import Contradictions, FixStamps, update_contradictions, update_fix_stamps
-from companion.integrity.course import update_course, without_contradicted_heading
 from companion.integrity.heights import is_road_elsewhere, update_ground, update_pad_raised_m, with_pad_raised
+from companion.integrity.vehicle_data import (
+    Contradictions,
+    FixStamps,
+    update_contradictions,
+    update_course,
+    update_fix_stamps,
+    without_contradicted_heading,
+)
 from companion.landing.condition import holds
 from companion.landing.contact import may_force_motors_off, signs_of
 from companion.landing.contact_conditions import HELD_UP

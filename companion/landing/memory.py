@@ -11,8 +11,7 @@ from types import MappingProxyType
 from companion.autopilots.driver import NO_MOVES, DriverMemory, FrameMoves
 from companion.core.data import Array
 from companion.core.reasons import Cause, Reason
-from companion.integrity.contradictions import Contradictions, FixStamps
-from companion.integrity.course import CourseWatch
+from companion.integrity.vehicle_data import Contradictions, CourseWatch, FixStamps
 from companion.landing.sway import Sway
 from companion.landing.virtual_model import Tracking
 from companion.planning.guidance import GuidanceMemory, ReferenceState, Trajectory
