@@ -20,6 +20,14 @@ class System:
     guidance: Guidance
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LinkDelay:
+    """How long a message takes, and by how much that differs from one to the next."""
+
+    mean_s: float = 0.0
+    std_s: float = 0.0
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class StepInputs:
     """What a step is told.
@@ -38,8 +46,7 @@ class StepInputs:
         pad: the vehicle's own description of its pad.
         command: an operator's wish.
         leaving: the companion is about to end, so the autopilot is to hover by itself, or to finish its disarm.
-        link_delay_s: from the companion to the autopilot.
-        link_delay_std_s: its standard deviation.
+        link_delay: from the companion to the autopilot.
         timeout_s: for how long the autopilot goes on without a setpoint.
     """
 
@@ -56,8 +63,7 @@ class StepInputs:
     pad: PadGeometry | None = None
     command: Command | None = None
     leaving: bool = False
-    link_delay_s: float = 0.0
-    link_delay_std_s: float = 0.0
+    link_delay: LinkDelay = LinkDelay()
     timeout_s: float = 0.0
 
     def monotonic_at(self, t_ns: int) -> int:
