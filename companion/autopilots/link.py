@@ -5,7 +5,7 @@ from dataclasses import replace
 from itertools import chain
 
 from companion.autopilots.choice import driver_for
-from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver
+from companion.autopilots.driver import STREAMS_HZ, AutopilotCommand, AutopilotView, Driver
 from companion.autopilots.limits import LimitQuestions, named
 from companion.autopilots.response import Cascade
 from companion.autopilots.state import AutopilotState, shift_reports, update_state
@@ -26,13 +26,6 @@ from link.mavlink.events import (
 from link.mavlink.parameters import parameter_value
 from link.mavlink.session import MavlinkSession
 
-_STREAMS_HZ = {
-    mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: 10.0,
-    mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: 2.0,
-    mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: 1.0,  # tells the geoid's height
-    mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: 1.0,
-    mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: 20.0,
-}
 _MOTION_IDS = (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED)
 _ASK = mavlink.MAV_CMD_REQUEST_MESSAGE
 _ASK_ORIGIN_NS = 1_000_000_000
@@ -225,7 +218,7 @@ class AutopilotLink:
     def _ask_for_streams(self, driver: Driver, local_ns: int) -> None:
         motion_hz = dict.fromkeys(_MOTION_IDS, self._motion_rate_hz)
         unused_hz = dict.fromkeys(driver.unused_streams if self._stops_unused else (), 0.0)
-        for message_id, rate_hz in (motion_hz | _STREAMS_HZ | dict(driver.mode_streams_hz) | unused_hz).items():
+        for message_id, rate_hz in (motion_hz | STREAMS_HZ | dict(driver.mode_streams_hz) | unused_hz).items():
             self.session.request_interval(message_id, rate_hz, local_ns)
         for name in chain(*named(driver)):
             self.session.read_parameter(name, local_ns)

@@ -8,18 +8,18 @@ from types import MappingProxyType
 
 from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
 from companion.autopilots.limits import Named, acceleration_of_tilt_m_s2, gain, stated
-from companion.autopilots.px4_events import refusal_of
-from companion.autopilots.requests import (
+from companion.autopilots.messages import (
     Requested,
     arm,
     ask,
     ask_to_disarm,
+    local_ned_setpoint,
     set_mode,
     with_disarm_answer,
     without_disarm,
 )
+from companion.autopilots.px4_events import refusal_of
 from companion.autopilots.response import Cascade
-from companion.autopilots.setpoint_message import local_ned_setpoint
 from companion.core.data import FlightLimits, Setpoint
 from link.frames.local_frame import Projection
 from link.mavlink.dialect import Message, mavlink

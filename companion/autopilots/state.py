@@ -7,9 +7,8 @@ from types import MappingProxyType
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotView, Driver
 from companion.autopilots.local_origin import above_ellipsoid, geoid_height_m, is_same, origin_above_sea
-from companion.autopilots.own_reports import HISTORY_NS, carried, is_plausible, with_report
+from companion.autopilots.own_reports import HISTORY_NS, carried, is_plausible, velocity_bias, with_report, without
 from companion.autopilots.sensor_messages import with_sensor
-from companion.autopilots.velocity_bias import velocity_bias, without
 from companion.core.data import OwnState
 from link.frames.geodesy import Datum
 from link.frames.local_frame import LocalFrame, Projection

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from companion.autopilots.velocity_bias import as_seen_with
+from companion.autopilots.own_reports import as_seen_with
 from companion.config.companion import CompanionConfig
 from companion.config.landing import DescentConfig
 from companion.core.data import Setpoint

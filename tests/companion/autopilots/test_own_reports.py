@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from companion.autopilots.velocity_bias import as_seen_with, velocity_bias, without
+from companion.autopilots.own_reports import as_seen_with, velocity_bias, without
 from companion.core.data import OwnState, Setpoint
 from link.messages import Vector3
 
