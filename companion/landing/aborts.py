@@ -4,10 +4,9 @@ import math
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
-from companion.integrity.contradictions import contradicts_itself
 from companion.integrity.heights import is_seen_too_near
-from companion.landing.condition import AUTOPILOT_SILENT, VEHICLE_SILENT, Condition, is_fix_old
-from companion.landing.contact_conditions import MISSED
+from companion.integrity.vehicle_data import contradicts_itself
+from companion.landing.conditions import AUTOPILOT_SILENT, MISSED, VEHICLE_SILENT, Condition, is_fix_old
 from companion.landing.targets import changes_speed, is_unseen, is_vague
 from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
 from companion.situation.situation import Approach, Situation

@@ -7,10 +7,10 @@ import math
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
-from companion.integrity.contradictions import contradicts_itself
 from companion.integrity.heights import road_above_ground_m, road_distance_m
+from companion.integrity.vehicle_data import contradicts_itself
 from companion.landing.aborts import is_stamped_ahead
-from companion.landing.condition import Condition, cause_of, holds, is_fix_old
+from companion.landing.conditions import Condition, cause_of, holds, is_fix_old
 from companion.landing.memory import Held
 from companion.landing.targets import chase_floor_m
 from companion.situation.phases import Phase
