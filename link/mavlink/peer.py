@@ -1,4 +1,4 @@
-"""Who is at the other end: our heartbeat and the autopilot's, which messages are its own, whether it is heard or restarted."""
+"""Who is at the other end: heartbeats, which messages are the autopilot's, and whether it is heard or has restarted."""
 
 from dataclasses import dataclass
 

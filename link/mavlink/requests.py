@@ -1,4 +1,4 @@
-"""What is asked of the autopilot until it answers or it has been enough: commands, one of a kind at a time, and parameters.
+"""What is asked of the autopilot until it answers or it has been enough: commands, one of a kind at a time; parameters.
 
 An acknowledgement names the command only, not which of several it answers. So two commands with the same id, such as
 two message intervals, are never under way together: the second waits for the end of the first.
