@@ -32,7 +32,7 @@ _BIAS_MAX_M_S = 1.0
 _NO_BIAS: Vector3 = (0.0, 0.0, 0.0)
 
 
-def carried(own: OwnState, t_ns: int) -> OwnState:
+def carry(own: OwnState, t_ns: int) -> OwnState:
     """Return the drone at `t_ns`, carried from a report at its velocity and angular velocity."""
     dt_s = (t_ns - own.t_ns) * 1e-9
     p, q, r = own.angular_velocity_flu_rad_s
@@ -40,12 +40,12 @@ def carried(own: OwnState, t_ns: int) -> OwnState:
     return replace(
         own,
         t_ns=t_ns,
-        position_enu_m=_moved(own, dt_s),
+        position_enu_m=_move(own, dt_s),
         orientation_wxyz=multiply(own.orientation_wxyz, turn),
     )
 
 
-def _moved(own: OwnState, dt_s: float) -> Vector3:
+def _move(own: OwnState, dt_s: float) -> Vector3:
     """Where the drone is `dt_s` after a report at its velocity."""
     (x, y, z), (vx, vy, vz) = own.position_enu_m, own.velocity_enu_m_s
     return (x + vx * dt_s, y + vy * dt_s, z + vz * dt_s)
@@ -100,7 +100,7 @@ def _jump(before: OwnState, own: OwnState) -> Vector3 | None:
     duration_s = (own.t_ns - before.t_ns) * 1e-9
     if duration_s > _JUMP_GAP_MAX_S:
         return None
-    expected = _moved(before, duration_s)
+    expected = _move(before, duration_s)
     dx, dy, dz = (now - then for now, then in zip(own.position_enu_m, expected, strict=True))
     return (dx, dy, dz) if hypot(dx, dy, dz) > _JUMP_MIN_M + 0.5 * _MANOEUVRE_M_S2 * duration_s**2 else None
 
@@ -147,7 +147,7 @@ def as_seen_with(setpoint: Setpoint, bias_enu_m_s: Vector3) -> Setpoint:
     return replace(setpoint, velocity_enu_m_s=(vx + bias_x, vy + bias_y, vz + bias_z))
 
 
-def without(velocity_enu_m_s: Vector3, bias_enu_m_s: Vector3) -> Vector3:
+def without_bias(velocity_enu_m_s: Vector3, bias_enu_m_s: Vector3) -> Vector3:
     """Return a reported velocity without its bias."""
     (vx, vy, vz), (bias_x, bias_y, bias_z) = velocity_enu_m_s, bias_enu_m_s
     return (vx - bias_x, vy - bias_y, vz - bias_z)

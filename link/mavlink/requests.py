@@ -93,7 +93,7 @@ class CommandSender:
         return [
             self._give_up(queue, t_ns)
             for queue in self._queues.values()
-            if queue and t_ns >= queue[0].due_ns and not self._sent_again(queue[0], t_ns)
+            if queue and t_ns >= queue[0].due_ns and not self._send_again(queue[0], t_ns)
         ]
 
     def drop_all(self, t_ns: int) -> list[CommandTimedOut]:
@@ -101,9 +101,9 @@ class CommandSender:
         dropped = [one for queue in self._queues.values() for one in queue]
         self._queues.clear()
         self.timed_out += len(dropped)
-        return [_timed_out(one, t_ns) for one in dropped]
+        return [_time_out(one, t_ns) for one in dropped]
 
-    def _sent_again(self, pending: _Command, t_ns: int) -> bool:
+    def _send_again(self, pending: _Command, t_ns: int) -> bool:
         if pending.in_progress or pending.attempts >= pending.attempts_max:
             return False
         self.retried += 1
@@ -112,7 +112,7 @@ class CommandSender:
 
     def _give_up(self, queue: deque[_Command], t_ns: int) -> CommandTimedOut:
         self.timed_out += 1
-        return _timed_out(self._finish(queue, t_ns), t_ns)
+        return _time_out(self._finish(queue, t_ns), t_ns)
 
     def _finish(self, queue: deque[_Command], t_ns: int) -> _Command:
         done = queue.popleft()
@@ -127,7 +127,7 @@ class CommandSender:
         pending.due_ns = t_ns + _COMMAND_RETRY_NS
 
 
-def _timed_out(pending: _Command, t_ns: int) -> CommandTimedOut:
+def _time_out(pending: _Command, t_ns: int) -> CommandTimedOut:
     return CommandTimedOut(t_ns=t_ns, command=pending.command, ticket=pending.ticket, attempts=pending.attempts)
 
 
@@ -177,7 +177,7 @@ class ParameterReader:
     def poll(self, t_ns: int) -> list[ParameterMissing]:
         """Asks again for what did not come and gives up what was asked for often enough."""
         due = [(name, question) for name, question in self._questions.items() if t_ns >= question.due_ns]
-        return [ParameterMissing(t_ns=t_ns, name=name) for name, question in due if not self._asked_again(name, t_ns)]
+        return [ParameterMissing(t_ns=t_ns, name=name) for name, question in due if not self._ask_again(name, t_ns)]
 
     def start_over(self, t_ns: int) -> None:
         """Asks for everything outstanding anew, as after a restart."""
@@ -185,7 +185,7 @@ class ParameterReader:
             self._questions[name] = _Question(attempts=1, due_ns=t_ns + _PARAMETER_RETRY_NS)
             self._send(name)
 
-    def _asked_again(self, name: str, t_ns: int) -> bool:
+    def _ask_again(self, name: str, t_ns: int) -> bool:
         question = self._questions[name]
         if question.attempts >= _PARAMETER_ATTEMPTS:
             del self._questions[name]

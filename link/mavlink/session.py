@@ -112,7 +112,7 @@ class MavlinkSession:
         for message in self._codec.decode(data):
             if self._peer.accepts(message):
                 events += self._peer.heard(message, t_ns)
-                events += self._restarted(message, t_ns)
+                events += self._watch_restart(message, t_ns)
                 events.append(MessageReceived(message, t_ns))
                 events += self._handle(message, t_ns)
             else:
@@ -211,7 +211,7 @@ class MavlinkSession:
             return [*self._parameters.received(message, self._peer.autopilot, t_ns)]
         return []
 
-    def _restarted(self, message: Message, t_ns: int) -> list[Event]:
+    def _watch_restart(self, message: Message, t_ns: int) -> list[Event]:
         boot_ns = boot_time_ns(message)
         restart = self._restarts.see(boot_ns, t_ns) if boot_ns else None
         return [] if restart is None else [restart, *self._start_over(restart)]
