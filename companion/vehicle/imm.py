@@ -116,15 +116,15 @@ class ImmModel:
                 return replace(state, modes=(means, _with_common_step(covariances, step), weights))
             case Quantity.POSITION:
                 step_m = self._step_size(state, measurement)
-                if self._placed_by_sightings(state):
-                    return _opened(state, OFFSET, np.full(3, step_m**2))
-                return self._restarted(state, measurement)
+                if self._is_placed_by_sightings(state):
+                    return _open(state, OFFSET, np.full(3, step_m**2))
+                return self._restart(state, measurement)
             case Quantity.VELOCITY:
-                return _opened(state, MOVES, self._prior_variances()[MOVES])
+                return _open(state, MOVES, self._prior_variances()[MOVES])
             case Quantity.HEADING:
-                return _opened(state, np.array([HEADING]), np.array([UNKNOWN_HEADING_VARIANCE]))
+                return _open(state, np.array([HEADING]), np.array([UNKNOWN_HEADING_VARIANCE]))
             case Quantity.YAW_RATE:
-                return _opened(state, np.array([CURVATURE]), np.array([self.config.curvature_std_rad_m**2]))
+                return _open(state, np.array([CURVATURE]), np.array([self.config.curvature_std_rad_m**2]))
             case _:
                 assert_never(measurement.quantity)
 
@@ -135,7 +135,7 @@ class ImmModel:
         G = forecasts.kinematics_jacobian(x, motion)
         position, velocity, acceleration = forecasts.kinematics(x[None], motion)
         covariance = G @ P @ G.T
-        known = self._heading_known(state)
+        known = self._is_heading_known(state)
         return VehicleEstimate(
             t_ns=t_ns,
             position_enu_m=position[0],
@@ -157,7 +157,7 @@ class ImmModel:
             position_enu_m=position,
             velocity_enu_m_s=velocity,
             acceleration_enu_m_s2=acceleration,
-            yaw_rad=yaw if self._heading_known(state) else None,
+            yaw_rad=yaw if self._is_heading_known(state) else None,
             position_std_m=std,
             is_coarse=state.fix_bias_variance_m2 > 0.0,
             yaw_std_rad=math.sqrt(mixing.heading_variance(state.modes)),
@@ -195,7 +195,7 @@ class ImmModel:
         vertical = [0.0, CLIMB_STD_M_S**2, heave, heave_rate]
         return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0])
 
-    def _heading_known(self, state: ImmState) -> bool:
+    def _is_heading_known(self, state: ImmState) -> bool:
         return mixing.is_heading_known(state.modes, self.config.heading_known_std_rad**2)
 
     def _step_size(self, state: ImmState, measurement: Measurement) -> float:
@@ -204,13 +204,13 @@ class ImmModel:
         expected, _ = sensors.observe(KINDS[measurement.quantity], weights @ means, self.numbers.lever_m, False)
         return max(float(np.linalg.norm(measurement.value - expected)), self.config.frame_offset_std_m)
 
-    def _placed_by_sightings(self, state: ImmState) -> bool:
+    def _is_placed_by_sightings(self, state: ImmState) -> bool:
         """Whether the place is known better than the fixes alone could tell it in the drone's frame."""
         _, covariances, weights = state.modes
         variance = float(weights @ covariances[:, 0, 0])
         return variance < 0.25 * (self.config.frame_offset_std_m**2 + state.fix_bias_variance_m2)
 
-    def _restarted(self, state: ImmState, fix: Measurement) -> ImmState:
+    def _restart(self, state: ImmState, fix: Measurement) -> ImmState:
         """A new start at `fix` that keeps offset, heading and clock."""
         x, P = mixing.combine(*state.modes)
         means, covariances, weights = self.start(fix).modes
@@ -226,7 +226,7 @@ def _own(array: Array) -> Array:
     return np.array(array, dtype=np.float64, order="C")
 
 
-def _opened(state: ImmState, indices: IndexArray, variances: Array) -> ImmState:
+def _open(state: ImmState, indices: IndexArray, variances: Array) -> ImmState:
     means, covariances, weights = state.modes
     opened = covariances.copy()
     opened[:, indices, indices] += variances

@@ -14,7 +14,8 @@ from scenarios.config import Scenario
 from scenarios.scoring.flight_faults import motors_off_index
 from scenarios.scoring.touch import Box, Contact
 from scenarios.scoring.truth_log import Array, TruthLog
-from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, GRAVITY_M_S2, REPORT_AIRFRAME
+from sim_autopilot.physics.airframe import GRAVITY_M_S2
+from sim_autopilot.runtime.config import airframe_of
 
 _MOTORS_OFF_MAX_S = 2.0
 _STAYS_S = 2.0
@@ -48,7 +49,7 @@ class ScoreRules:
 def rules_of(scenario: Scenario, *, wind_mean_enu_m_s: Vector3 = (0.0, 0.0, 0.0)) -> ScoreRules:
     """Return the rules of `scenario`; S0 is a tier where the pad lies on the road, as in the report."""
     vehicle = scenario.vehicle
-    airframe = REPORT_AIRFRAME if scenario.system.drone.airframe == "report" else BENCHMARK_AIRFRAME
+    airframe = airframe_of(scenario.system.drone)
     return ScoreRules(
         box=Box(
             roof_size_m=(vehicle.length_m, vehicle.width_m),
@@ -111,6 +112,12 @@ def landing_of(log: TruthLog, contact: Contact, rules: ScoreRules) -> Landing:
     )
 
 
+def trims_rad(velocity_enu_m_s: Array, rules: ScoreRules) -> Array:
+    """Return the tilts (n,) of steady flight at velocities (n, 3) in W in the mean wind, atan(drag / weight)."""
+    airspeed_m_s = np.linalg.norm(velocity_enu_m_s[:, :2] - np.array(rules.wind_mean_enu_m_s[:2]), axis=1)
+    return np.asarray(np.arctan(rules.drag_n_s_m * airspeed_m_s / (rules.mass_kg * GRAVITY_M_S2)))
+
+
 def _on_pad(position_v_m: Array, box: Box) -> bool:
     """Return whether a drone at `position_v_m` (3,) stands on the pad."""
     x_m, y_m, z_m = position_v_m
@@ -122,8 +129,7 @@ def _touchdown(log: TruthLog, contact: Contact, rules: ScoreRules) -> Touchdown:
     """Return the first contact's measures; velocity and attitude are those just before it."""
     k = contact.before
     velocity_v_m_s = log.velocity_v_m_s[k]
-    airspeed_m_s = math.dist(log.velocity_enu_m_s[k, :2], rules.wind_mean_enu_m_s[:2])
-    trim_rad = math.atan(rules.drag_n_s_m * airspeed_m_s / (rules.mass_kg * GRAVITY_M_S2))
+    trim_rad = float(trims_rad(log.velocity_enu_m_s[k : k + 1], rules)[0])
     tilt_rad = math.acos(min(1.0, max(-1.0, float(log.rotation_vb[k, 2, 2]))))
     return Touchdown(
         contact_t_ns=contact.t_ns,

@@ -7,7 +7,7 @@ from scipy import stats
 from companion.config.estimation import BufferConfig, EstimatorConfig, ImmConfig, ImmModeConfig, LkfConfig
 from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle import imm_kernels as kernels
-from companion.vehicle.delay_buffer import DelayBuffer, fuse
+from companion.vehicle.estimator import DelayBuffer, fuse
 from companion.vehicle.filter_step import Gaussian
 from companion.vehicle.imm import ImmModel, ImmState
 from companion.vehicle.imm_kernels import heave_step

@@ -127,6 +127,7 @@ def test_s2_quality_is_landed_within_the_limits_of_s2(tier: Tier, error_m: float
     result = Score(
         tier=tier,
         reason="",
+        margin=0.6,
         touchdown=contact,
         start_t_ns=0,
         time_to_contact_s=3.0,
