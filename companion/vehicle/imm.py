@@ -38,6 +38,8 @@ MOVES = np.array([2, 3, 4, 5, 9, 11])  # of what a velocity tells about
 OFFSET = np.array([12, 13, 14])
 CURVATURE, HEADING = 6, 7
 CLOCK = kernels.CLOCK
+TURNS = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
+TURN_AGE_MAX_S = 1.0  # of a sensor that is at work: several periods of the slowest
 CLIMB_STD_M_S = 1.0  # at the start: a grade of 5 % at 20 m/s
 
 IndexArray = NDArray[np.intp]
@@ -45,10 +47,11 @@ IndexArray = NDArray[np.intp]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ImmState:
-    """Both modes and the slow part of the fixes' variance."""
+    """Both modes, the slow part of the fixes' variance, and how long ago a sensor told the heading or the yaw rate."""
 
     modes: mixing.Modes
     fix_bias_variance_m2: float
+    turn_age_s: float = math.inf
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -87,7 +90,7 @@ class ImmModel:
         """Return the state `dt_s` later."""
         motion = self._motion(state)
         modes = mixing.predict_modes(state.modes, dt_s, self._noises(state), self.numbers.dwell_s, motion)
-        return ImmState(modes=modes, fix_bias_variance_m2=state.fix_bias_variance_m2)
+        return replace(state, modes=modes, turn_age_s=state.turn_age_s + dt_s)
 
     def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState]:
         """Return the state after any quantity."""
@@ -96,7 +99,8 @@ class ImmModel:
             R, bias_variance = self._split(R)
         reading = (KINDS[measurement.quantity], _own(measurement.value), _own(R))
         modes, nis, gate_nis = mixing.take_reading(state.modes, reading, self.numbers.lever_m, self.numbers.course)
-        updated = ImmState(modes=modes, fix_bias_variance_m2=bias_variance)
+        turn_age_s = 0.0 if measurement.quantity in TURNS else state.turn_age_s
+        updated = ImmState(modes=modes, fix_bias_variance_m2=bias_variance, turn_age_s=turn_age_s)
         return Update(state=updated, nis=nis, gate_nis=gate_nis, dof=len(measurement.value))
 
     def recover(self, state: ImmState, measurement: Measurement) -> ImmState:
@@ -156,6 +160,7 @@ class ImmModel:
             yaw_rad=yaw if self._is_heading_known(state) else None,
             position_std_m=std,
             is_coarse=state.fix_bias_variance_m2 > 0.0,
+            yaw_std_rad=math.sqrt(mixing.heading_variance(state.modes)),
         )
 
     def _split(self, fix_covariance: Array) -> tuple[Array, float]:
@@ -169,10 +174,15 @@ class ImmModel:
         return mixing.with_direction(self.numbers.motion, state.modes, float(self.numbers.course[2]))
 
     def _noises(self, state: ImmState) -> Array:
-        """Both modes' noise, (2, 9), as `imm_kernels.process_noise` takes it."""
+        """Both modes' noise, (2, 11), as `imm_kernels.process_noise` takes it."""
         walk_m2_s = 2.0 * state.fix_bias_variance_m2 / self.config.fix_bias_time_s
         receiver_m2_s = self.config.frame_offset_walk_m2_s + walk_m2_s
-        return noises_with(self.numbers, receiver_m2_s, self.config.own_walk_share * walk_m2_s)
+        return noises_with(
+            self.numbers,
+            receiver_m2_s,
+            self.config.own_walk_share * walk_m2_s,
+            turn_is_measured=state.turn_age_s < TURN_AGE_MAX_S,
+        )
 
     def _prior_variances(self) -> Array:
         """Of every state but position, offset and clock, (16,)."""
