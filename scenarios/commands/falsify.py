@@ -64,6 +64,7 @@ def _space_of(slice_name: str, seed: int, landings: int) -> "Space":
         UserError: there is no such slice, or a seed that is held back.
     """
     from scenarios.falsify.search import Space
+    from scenarios.falsify.space import searched
     from scenarios.worlds.seeds import check_seeds
     from scenarios.worlds.world import SLICES, draw_world, quantities
 
@@ -74,7 +75,7 @@ def _space_of(slice_name: str, seed: int, landings: int) -> "Space":
         )
     check_seeds(range(seed, seed + landings), held_back=False)  # a start has several landings at least
     return Space(
-        names=quantities(slice_name, seed),
+        names=searched(quantities(slice_name, seed)),
         draw=lambda seed, chosen: draw_world(slice_name, seed, chosen=chosen).scenario,
     )
 

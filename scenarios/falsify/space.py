@@ -18,6 +18,13 @@ Array = NDArray[np.float64]
 
 Z_MAX = 3.0
 _INSIDE_SHARE = 0.99
+_SLOTS = 4  # of the road's elements and the driver's events: more does not fit into the half minute of a landing
+
+
+def searched(names: Sequence[str]) -> tuple[str, ...]:
+    """Return those of a world's quantities that a search may choose: of what recurs, such as bends, the first ones."""
+    slots = ((name, name.rpartition(".")[2]) for name in names)
+    return tuple(name for name, slot in slots if not slot.isdigit() or int(slot) < _SLOTS)
 
 
 def radius_max(dimension: int) -> float:

@@ -1,8 +1,9 @@
 """One start of the search: CMA-ES from the medians with the population's own spread, by pycma.
 
 The first generation is therefore drawn as random worlds are. The covariance stays diagonal: a full one of so many
-quantities cannot be learnt from some hundred landings (Ros and Hansen 2008). What is asked for is always plausible; how
-far the strategy's own point is outside is added to its cost. A start is given up when it no longer gets better.
+quantities cannot be learnt from some hundred landings (Ros and Hansen 2008). A point that is not plausible is repaired
+before it is flown, and the strategy learns from the repaired one, so that its mean stays plausible too: what does not
+matter cannot use up the distance from the medians. A start is given up when it no longer gets better.
 
 Source: Hansen, The CMA Evolution Strategy: A Tutorial, arXiv 1604.00772.
 """
@@ -52,15 +53,12 @@ class Strategy:
 
     def ask(self) -> list[Array]:
         """Return the plausible points of the next generation."""
-        self._asked = self._cma.ask()
-        return [plausible(z) for z in self._asked]
+        self._asked = [plausible(z) for z in self._cma.ask()]
+        return self._asked
 
     def tell(self, margins: Sequence[float]) -> None:
         """Take the margins of the points last asked for, in their order."""
-        outside = [float(np.sum((z - plausible(z)) ** 2)) for z in self._asked]
-        self._cma.tell(
-            self._asked, [margin + _COST_OUTSIDE * far for margin, far in zip(margins, outside, strict=True)]
-        )
+        self._cma.tell(self._asked, list(margins))
         if min(margins) < self._best - _BETTER:
             self._best, self._generations_since = min(margins), 0
         else:

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from scenarios.falsify.space import Z_MAX, plausible, radius_max, uniforms
+from scenarios.falsify.space import Z_MAX, plausible, radius_max, searched, uniforms
 
 
 def test_radius_is_that_which_99_of_100_drawn_worlds_keep_within() -> None:
@@ -33,3 +33,8 @@ def test_uniform_numbers_are_those_of_the_normal_table() -> None:
     assert chosen["a"] == 0.5
     assert chosen["b"] == pytest.approx(0.841344746)
     assert chosen["c"] == pytest.approx(0.050502583)
+
+
+def test_search_chooses_what_is_drawn_once_and_the_first_of_what_recurs() -> None:
+    names = ("wind.mean_m_s", "road.radius_m.0", "road.radius_m.3", "road.radius_m.4", "driver.event.12")
+    assert searched(names) == ("wind.mean_m_s", "road.radius_m.0", "road.radius_m.3")

@@ -31,7 +31,7 @@ def test_same_seed_asks_for_the_same_whatever_else_draws_random_numbers() -> Non
             points = strategy.ask()
             strategy.tell([float(z @ z) for z in points])
         asked.append(np.array(points))
-    assert np.array_equal(*asked)
+    assert np.array_equal(asked[0], asked[1])
 
 
 def test_failure_that_random_worlds_meet_once_in_a_hundred_thousand_is_reached_within_300() -> None:
