@@ -6,9 +6,9 @@ the configured radius is what a drone in gusts is to keep to.
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array, Forecast
@@ -19,8 +19,7 @@ from link.messages import PadGeometry
 HEADING_UNKNOWN, NOT_DESCRIBED = Cause(Reason.HEADING_UNKNOWN), Cause(Reason.PAD_NOT_DESCRIBED)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PadPath:
+class PadPath(Struct, frozen=True, kw_only=True, eq=False):
     """The pad's centre in W; row 0 is the present.
 
     Attributes:

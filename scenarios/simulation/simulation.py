@@ -3,10 +3,10 @@
 `scenarios world` puts sockets around it, a lockstep run puts it beside a companion.
 """
 
-from dataclasses import dataclass
 from math import dist
 
 import numpy as np
+from msgspec import Struct
 
 from link.messages import BodyTruth, RotorTruth
 from link.zenoh.keys import Keys, Publication
@@ -21,8 +21,7 @@ from sim_autopilot.runtime.node import STEP_NS, AutopilotNode
 __all__ = ["STEP_NS", "Simulation", "SimulationOutputs"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SimulationOutputs:
+class SimulationOutputs(Struct, frozen=True, kw_only=True):
     """What one step of the simulated side brings.
 
     Attributes:

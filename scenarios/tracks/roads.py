@@ -8,10 +8,10 @@ piece of zero curvature, a circle's arc one piece, any smooth curve many short o
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from msgspec import Struct
 from scipy.interpolate import CubicSpline
 
 Point = tuple[float, float]
@@ -19,8 +19,7 @@ _STRAIGHT_PER_M = 1e-9  # below this curvature the chord and the arc agree to do
 _ARCS_PER_CHORD = 64  # of 0.1 to 0.3 m on the report's road, which is then within 0.1 mm of the spline
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Piece:
+class Piece(Struct, frozen=True, kw_only=True):
     """A stretch of constant curvature that starts at `s_m` in `x_m`, `y_m` with `heading_rad`."""
 
     s_m: float
@@ -30,8 +29,7 @@ class Piece:
     curvature_per_m: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RoadPoint:
+class RoadPoint(Struct, frozen=True, kw_only=True):
     """Where the road is and how it bends; the height is `grade` integrated, with its two derivatives by arc length."""
 
     x_m: float
@@ -43,8 +41,7 @@ class RoadPoint:
     grade_change_per_m: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Slope:
+class Slope(Struct, frozen=True, kw_only=True):
     """A grade (height per horizontal length) that sets in linearly over `transition_m` from `start_s_m` on."""
 
     grade: float = 0.0
@@ -62,8 +59,7 @@ class Slope:
         return self.grade * (along_m - 0.5 * self.transition_m), self.grade, 0.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Road:
+class Road(Struct, frozen=True, kw_only=True):
     """A road of `length_m`; a closed one repeats from `loop_s_m`, an open one goes on straight behind its end.
 
     Attributes:
