@@ -147,11 +147,11 @@ def update_course(
     return (
         watch
         if compared_s < _COURSE_OVER_S
-        else _judged(watch, config.chase.heading_off_max_rad + slip_rad + unsure_rad)
+        else _judge(watch, config.chase.heading_off_max_rad + slip_rad + unsure_rad)
     )
 
 
-def _judged(watch: CourseWatch, off_max_rad: float) -> CourseWatch:
+def _judge(watch: CourseWatch, off_max_rad: float) -> CourseWatch:
     off_rad = abs(math.atan2(watch.off_sin, watch.off_cos))
     within_rad = off_max_rad if watch.off_rad is None else _BACK_WITHIN * off_max_rad
     if off_rad <= within_rad:

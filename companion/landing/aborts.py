@@ -41,7 +41,7 @@ def is_pad_unplaced(s: Situation, _: CompanionConfig) -> bool:
     return s.pad is not None and s.pad.unplaced is not None
 
 
-def unplaced(s: Situation) -> Cause | None:
+def why_unplaced(s: Situation) -> Cause | None:
     """Return why nobody knows it, None when the place is known or no vehicle is."""
     return None if s.pad is None else s.pad.unplaced
 
@@ -114,7 +114,7 @@ ABORTS = (
         reason=Reason.HEADING_UNKNOWN,
         phases=_DESCENT,
         is_true=is_pad_unplaced,
-        cause=lambda s, _: unplaced(s) or Cause(Reason.HEADING_UNKNOWN),
+        cause=lambda s, _: why_unplaced(s) or Cause(Reason.HEADING_UNKNOWN),
     ),
     Condition(
         reason=Reason.SETPOINT_NOT_FOLLOWED,

@@ -12,7 +12,7 @@ from companion.landing.aborts import (
     is_pad_unplaced,
     is_uncertain,
     must_be_seen,
-    unplaced,
+    why_unplaced,
 )
 from companion.landing.conditions import (
     HEARD,
@@ -42,7 +42,7 @@ def decide(progress: Progress, control: ControlMemory, s: Situation, config: Com
     # By then the autopilot's own failsafe acts. PX4 would go back into OFFBOARD with the first setpoint that arrives.
     if progress.phase in FLYING_PHASES and not s.autopilot.link_up:
         return Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_LOST)
-    taken = _control_taken(progress.phase, control, s)
+    taken = _find_taken_control(progress.phase, control, s)
     if taken is not None:
         return taken
     # What the pad stops is fast against a pad that drives on: it would be taken for unsafe in the same step.
@@ -53,7 +53,7 @@ def decide(progress: Progress, control: ControlMemory, s: Situation, config: Com
     broken_off = _unsafe(MISSED if committed else ABORTS, s, progress.held, config)
     if broken_off is None and not committed:
         broken_off = _time_limit(progress, control, s, config)
-    return _going_on(progress, s, config) if broken_off is None else broken_off
+    return _go_on(progress, s, config) if broken_off is None else broken_off
 
 
 def _unsafe(conditions: tuple[Condition, ...], s: Situation, held: Held, config: CompanionConfig) -> Decision | None:
@@ -63,7 +63,7 @@ def _unsafe(conditions: tuple[Condition, ...], s: Situation, held: Held, config:
     return None
 
 
-def _going_on(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
+def _go_on(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
     """Return the landing's own next event; a vehicle out of reach is waited beside, not chased."""
     if progress.phase is Phase.WAITING and obstacle(progress.held, s, config) is not None:
         return None
@@ -88,7 +88,7 @@ def _is_committed(s: Situation, config: CompanionConfig) -> bool:
     )
 
 
-def _control_taken(phase: Phase, control: ControlMemory, s: Situation) -> Decision | None:
+def _find_taken_control(phase: Phase, control: ControlMemory, s: Situation) -> Decision | None:
     if phase not in FLYING_PHASES or not control.was_in_control:
         return None
     if s.autopilot.failsafe or s.autopilot.overruled:
@@ -121,7 +121,7 @@ def _time_limit(progress: Progress, control: ControlMemory, s: Situation, config
     limit_s = _longest_s(progress.phase, config)
     waits_s = min(waited_s(progress, s.monotonic_ns), config.descent.surprise_wait_max_s)
     if limit_s is not None and in_phase_s - waits_s > limit_s:
-        not_placed = unplaced(s) if progress.phase is Phase.ALIGN else None
+        not_placed = why_unplaced(s) if progress.phase is Phase.ALIGN else None
         return Event.TIME_LIMIT, not_placed or Cause(TOO_LONG[progress.phase], (limit_s,))
     return None
 
@@ -152,7 +152,7 @@ def _advance(progress: Progress, s: Situation, config: CompanionConfig) -> Decis
         case Phase.TOUCHDOWN:
             return _on_the_pad(s, progress.held, config)
         case Phase.ABORT:
-            return _climbed(progress, s, config)
+            return _end_climb(progress, s, config)
         case _:
             return None
 
@@ -187,7 +187,7 @@ def _on_the_pad(s: Situation, held: Held, config: CompanionConfig) -> Decision |
     return None
 
 
-def _climbed(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
+def _end_climb(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
     in_phase_s = (s.monotonic_ns - progress.since_ns) * 1e-9
     high = s.approach is not None and s.approach.height_m > 0.8 * config.abort.height_m
     ready = high and holds(HEARD, progress.held, s, config)
@@ -211,7 +211,7 @@ def _no_retry(progress: Progress, s: Situation, config: CompanionConfig) -> Caus
         Reason.HEARD_WITH_BREAKS: not holds(HEARD, progress.held, s, config),
     }
     first = next((Cause(reason) for reason, holds_now in known.items() if holds_now), None)
-    first = first or unplaced(s)
+    first = first or why_unplaced(s)
     if first is None and is_out_of_range(s, config):
         first = Cause(Reason.TOO_FAR_FROM_START)
     first = first or obstacle(progress.held, s, config)

@@ -166,14 +166,14 @@ def to_present_frame(memory: StepMemory, view: AutopilotView) -> StepMemory:
     by_enu_m = np.array(shift_enu_m) - np.array(before_enu_m)
     places = replace(
         places,
-        waiting_point_enu_m=_moved(places.waiting_point_enu_m, by_enu_m),
-        anchor_enu_m=_moved(places.anchor_enu_m, by_enu_m),
-        ground_enu_m=_moved(places.ground_enu_m, by_enu_m),
+        waiting_point_enu_m=_move(places.waiting_point_enu_m, by_enu_m),
+        anchor_enu_m=_move(places.anchor_enu_m, by_enu_m),
+        ground_enu_m=_move(places.ground_enu_m, by_enu_m),
     )
-    return replace(memory, vehicle=vehicle, places=places, model=_moved_model(memory.model, by_enu_m))
+    return replace(memory, vehicle=vehicle, places=places, model=_move_model(memory.model, by_enu_m))
 
 
-def _moved_model(model: ModelMemory, by_enu_m: Array) -> ModelMemory:
+def _move_model(model: ModelMemory, by_enu_m: Array) -> ModelMemory:
     reference, tracking = model.reference, model.tracking
     if reference is not None:
         reference = replace(reference, position_enu_m=reference.position_enu_m + by_enu_m)
@@ -181,5 +181,5 @@ def _moved_model(model: ModelMemory, by_enu_m: Array) -> ModelMemory:
     return replace(model, reference=reference, guidance=None, tracking=replace(tracking, past=past))
 
 
-def _moved(point_enu_m: Array | None, by_enu_m: Array) -> Array | None:
+def _move(point_enu_m: Array | None, by_enu_m: Array) -> Array | None:
     return None if point_enu_m is None else point_enu_m + by_enu_m

@@ -3,12 +3,12 @@
 import math
 from typing import NamedTuple
 
-from companion.autopilots.velocity_bias import as_seen_with
+from companion.autopilots.own_reports import as_seen_with
 from companion.config.companion import CompanionConfig
 from companion.config.landing import DescentConfig
 from companion.core.data import Setpoint
 from companion.core.reasons import Cause, Reason, sentence
-from companion.landing.aborts import unplaced
+from companion.landing.aborts import why_unplaced
 from companion.landing.memory import Progress, StepMemory
 from companion.landing.step_data import StepInputs
 from companion.landing.virtual_model import extrapolate, free_place, press_down, setpoint_at, state_in_plan
@@ -111,7 +111,7 @@ def landing_status(memory: StepMemory, situation: Situation, config: CompanionCo
 
 def _cause(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause:
     """Return what the landing waits for, or why its phase began."""
-    progress, not_placed = memory.progress, unplaced(situation)
+    progress, not_placed = memory.progress, why_unplaced(situation)
     if progress.phase in _WAITING_FOR_PAD and not_placed is not None:
         return not_placed
     if progress.phase in _NOT_BEGUN and progress.obstacle is not None:

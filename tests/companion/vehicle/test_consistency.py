@@ -83,10 +83,13 @@ def wander(x: Array, rng: np.random.Generator) -> Array:
             0.0,
             0.0,
             0.0,
+            config.curvature_std_rad_m,
+            0.0,
         ]
     )
     Q = kernels.process_noise(x, DT_S, noise, heave_noise)
     after, _ = kernels.advance(x, DT_S, config.acceleration_decay_s, heave)
+    after[6] *= kernels.curvature_left(float(np.hypot(x[2], x[3])), DT_S, noise)
     return np.asarray(after + drawn(Q, rng))
 
 
