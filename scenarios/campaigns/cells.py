@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import Field
 
 from companion.config.companion import CompanionConfig
-from link.program.toml_config import StrictModel, merged, validated
+from link.program.toml_config import StrictModel, merge, validate
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.catalogue.world_names import WorldName, names_worlds, parse_world_name
 from scenarios.catalogue.worlds import drawn_world
@@ -91,6 +91,6 @@ def _laid_over(scenario: Scenario, table: Table, source: str) -> Scenario:
     if not table:
         return scenario
     below = scenario.system.companion.model_dump(mode="json")
-    companion = validated(CompanionConfig, merged(below, table), source=f"{source} over {scenario.name}")
+    companion = validate(CompanionConfig, merge(below, table), source=f"{source} over {scenario.name}")
     system = scenario.system.model_copy(update={"companion": companion})
     return scenario.model_copy(update={"system": system})

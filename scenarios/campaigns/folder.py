@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from link.errors import UserError
-from link.program.toml_config import validated
+from link.program.toml_config import validate
 from scenarios.campaigns.landing_task import Flown, Row, Task
 from scenarios.campaigns.landings_file import as_written, read_rows, write_rows
 from scenarios.campaigns.plan import Plan
@@ -54,7 +54,7 @@ def read_plan(folder: Path) -> Plan:
         raise UserError(f"{path}: cannot be read ({error.strerror}); is this a campaign's folder?") from None
     except ValueError:
         raise UserError(f"{path}: not valid JSON") from None
-    return validated(Plan, table, source=str(path))
+    return validate(Plan, table, source=str(path))
 
 
 def read_landings(folder: Path) -> list[Row]:

@@ -93,7 +93,7 @@ def _row(task: Task, cell: Cell) -> Row:
         known = {"firmware": drawn.scenario.firmware, **drawn.columns}
         return known | fly(task, drawn.scenario)
     except Exception as error:  # noqa: BLE001 (one landing's fault must not end a campaign, and is reported)
-        return failed(task, known, _where(error))
+        return failed(task, known, error_line(error))
 
 
 def _planner_ms(durations_s: Sequence[float]) -> dict[str, float]:
@@ -159,7 +159,7 @@ def _head(task: Task) -> Row:
     return {"cell": task.cell, "seed": task.seed, "error": None}
 
 
-def _where(error: Exception) -> str:
+def error_line(error: Exception) -> str:
     """Return an error in one line with the place that raised it, the same on every machine."""
     last = traceback.extract_tb(error.__traceback__)[-1]
     file = last.filename.replace("\\", "/").rsplit("/", 1)[-1]

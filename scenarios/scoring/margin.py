@@ -32,12 +32,11 @@ another motion is then judged. It is bounded above only; large negative values m
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from scenarios.scoring import flight_faults as limits
 from scenarios.scoring.flight_faults import Flight, tilts_rad
 from scenarios.scoring.limits import S1_LIMITS
-from scenarios.scoring.touch import Box, Flags, Touches
+from scenarios.scoring.touch import Box, Touches
 from scenarios.scoring.touchdown import Landing, ScoreRules, trims_rad
 from scenarios.scoring.truth_log import Array, TruthLog
 
@@ -66,8 +65,10 @@ def margin_terms(log: TruthLog, touched: Touches, flight: Flight, landing: Landi
     if flight.takeoff is None:
         risen_m = float(touched.height_m.min(axis=1).max())
         return {"never took off": (risen_m - limits.TAKEN_OFF_M) / limits.TAKEN_OFF_M}
-    terms = _before_contact(log, touched, flight, rules) | _over_flight(log, touched, flight.takeoff, rules)
-    terms |= _touching(touched, flight, rules.box)
+    terms = _before_contact(log, touched, flight, flight.takeoff, rules) | _over_flight(
+        log, touched, flight.takeoff, rules
+    )
+    terms |= _touching(touched, flight, flight.takeoff, rules.box)
     if landing is None:
         return terms | _at_end(log, touched)
     return terms | {name: float(_left(getattr(landing.touchdown, name), name)) for name in S1_LIMITS.__slots__}
@@ -85,12 +86,11 @@ def margin_of(terms: Terms, *, unsafe: bool, reported: bool = False) -> float:
     return min(least, -LEAST) if unsafe else max(least, 0.0)
 
 
-def _before_contact(log: TruthLog, touched: Touches, flight: Flight, rules: ScoreRules) -> Terms:
-    lowest_m = touched.height_m[flight.takeoff :].min(axis=1)
-    clear = np.flatnonzero(lowest_m > limits.CLEAR_M)
-    if flight.takeoff is None or not len(clear):
+def _before_contact(log: TruthLog, touched: Touches, flight: Flight, takeoff: int, rules: ScoreRules) -> Terms:
+    clear = np.flatnonzero(touched.height_m[takeoff:].min(axis=1) > limits.CLEAR_M)
+    if not len(clear):
         return {}
-    first = flight.takeoff + int(clear[0])
+    first = takeoff + int(clear[0])
     last = len(log.t_ns) if flight.first is None else flight.first.before + 1
     if first >= last:
         return {}
@@ -136,14 +136,11 @@ def _room_m(points_v_m: Array, box: Box) -> Array:
     return np.asarray((0.5 * np.array(box.pad_size_m) - np.abs(points_v_m[..., :2])).min(axis=-1))
 
 
-def _touching(touched: Touches, flight: Flight, box: Box) -> Terms:
+def _touching(touched: Touches, flight: Flight, takeoff: int, box: Box) -> Terms:
     """Return how far inside the pad the points are that begin a contact, and those first on the ground or a flank."""
     starts = [contact.before + 1 for contact in flight.contacts]
-    starts += [
-        first
-        for flags in (touched.ground, touched.side)
-        if (first := _first(flags.any(axis=1), flight.takeoff)) is not None
-    ]
+    for flags in (touched.ground, touched.side):
+        starts += (np.flatnonzero(flags[takeoff:].any(axis=1))[:1] + takeoff).tolist()
     if not starts:
         return {}
     return {"inside the pad": min(_touching_room_m(touched, index, box) for index in starts) / _NEAR_M}
@@ -181,9 +178,3 @@ def _at_end(log: TruthLog, touched: Touches) -> Terms:
         "tilt at the end": 1.0 - float(tilts_rad(log.rotation[last]).max()) / limits.STABLE_TILT_RAD,
         "rate at the end": 1.0 - float(log.rate_rad_s[last].max()) / limits.STABLE_RATE_RAD_S,
     }
-
-
-def _first(flags: Flags | NDArray[np.bool_], begin: int | None) -> int | None:
-    """Return the first sample from `begin` on that is flagged."""
-    found = np.flatnonzero(flags[begin:])
-    return None if begin is None or not len(found) else begin + int(found[0])
