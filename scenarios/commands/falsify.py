@@ -96,7 +96,7 @@ def _space_of(request: "Request") -> "Space":
     ordinary = dict.fromkeys(every, MEDIAN) if request.only else {}
     return Space(
         names=searched(every, request.only),
-        draw=lambda seed, chosen: draw_world(request.slice, seed, chosen=ordinary | chosen).scenario,
+        draw=lambda seed, chosen: draw_world(request.slice, seed, chosen={**ordinary, **chosen}).scenario,
     )
 
 
