@@ -78,6 +78,7 @@ class OwnStateConfig(StrictModel):
     position_std_m: NotNegative = 0.0  # on each axis, as are the velocity's
     velocity_std_m_s: NotNegative = 0.0
     origin_step_range_m: tuple[NotNegative, NotNegative] = (0.0, 0.0)  # one step of its origin in flight, drawn
+    origin_step_at_s: NotNegative | None = None  # since the start; within `disturbed_between_s` where None
 
 
 class SensorsConfig(StrictModel):
@@ -98,8 +99,11 @@ class WindConfig(StrictModel):
     mean_m_s: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0
     from_rad: float | None = None  # mathematical angle, from East counter-clockwise, that the wind blows from
     turbulence: Literal["none", "light", "moderate", "severe"] = "none"
+    turbulence_std_m_s: Annotated[float, Field(ge=0.0, le=10.0)] | None = None  # vertical; in place of the severity's
     gust_m_s: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0  # peak of one 1-cosine gust from a drawn direction
     gust_duration_s: Positive = 3.0  # from calm to calm; in 5 m/s of airspeed it rises over d_m = 7.5 m
+    gust_from_rad: float | None = None  # drawn for each seed where None
+    gust_at_s: NotNegative | None = None  # since the start; within the scenario's `disturbed_between_s` where None
 
 
 class ChannelConfig(StrictModel):
@@ -109,6 +113,7 @@ class ChannelConfig(StrictModel):
     jitter_s: NotNegative = 0.0
     loss: Share = 0.0
     outage_range_s: tuple[NotNegative, NotNegative] = (0.0, 0.0)  # length of one outage, drawn
+    outage_at_s: NotNegative | None = None  # since the start; within the scenario's `disturbed_between_s` where None
 
 
 class LinkConfig(StrictModel):

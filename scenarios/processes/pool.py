@@ -55,12 +55,12 @@ class Workers(ABC, Generic[Task, Result]):
 def run_tasks(
     workers: Workers[Task, Result], tasks: Iterable[Task], *, lost: Callable[[Task, str], Result]
 ) -> Generator[Result, None, None]:
-    """Yield the results of all tasks in the order in which they are ready, by workers that are entered for them.
+    """Yield the results of all tasks in the order in which they are ready.
 
     To be closed (`contextlib.closing`) where it may not be exhausted: that ends the workers.
 
     Args:
-        workers: who does them.
+        workers: who does them; they are found, and ended.
         tasks: hashable, and can be pickled.
         lost: what stands for the result of a task that failed, or ended its worker time and again; from task and why.
 
@@ -68,13 +68,14 @@ def run_tasks(
         UserError: raised by the job, or there are no workers.
     """
     with workers:
-        yield from run_batch(workers, tasks, lost=lost)
+        for _, result in run_batch(workers, tasks, lost=lost):
+            yield result
 
 
 def run_batch(
     workers: Workers[Task, Result], tasks: Iterable[Task], *, lost: Callable[[Task, str], Result]
-) -> Generator[Result, None, None]:
-    """Yield the results of all tasks as `run_tasks` does, by workers that were entered before and stay so."""
+) -> Generator[tuple[Task, Result], None, None]:
+    """Yield each task with its result, as `run_tasks` does, by workers that are found and stay for other tasks."""
     waiting, losses = deque(tasks), Counter[Task]()
     underway: dict[Future[Result], Task] = {}
     ended: SimpleQueue[Future[Result]] = SimpleQueue()
@@ -87,13 +88,13 @@ def run_batch(
         task = underway.pop(future)
         death = workers.release(future)
         if death is None:
-            yield _result(future, task, lost)
+            yield task, _result(future, task, lost)
             continue
         losses[task] += 1
         if losses[task] < _ATTEMPTS_MAX:
             waiting.appendleft(task)
         else:
-            yield lost(task, f"its process died {_ATTEMPTS_MAX} times ({death})")
+            yield task, lost(task, f"its process died {_ATTEMPTS_MAX} times ({death})")
 
 
 def _next_ended(ended: "SimpleQueue[Future[Result]]") -> "Future[Result]":

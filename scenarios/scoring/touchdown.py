@@ -14,7 +14,8 @@ from scenarios.config import Scenario
 from scenarios.scoring.flight_faults import motors_off_index
 from scenarios.scoring.touch import Box, Contact
 from scenarios.scoring.truth_log import Array, TruthLog
-from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, GRAVITY_M_S2, REPORT_AIRFRAME
+from sim_autopilot.physics.airframe import GRAVITY_M_S2
+from sim_autopilot.runtime.config import airframe_of
 
 _MOTORS_OFF_MAX_S = 2.0
 _STAYS_S = 2.0
@@ -48,7 +49,7 @@ class ScoreRules:
 def rules_of(scenario: Scenario, *, wind_mean_enu_m_s: Vector3 = (0.0, 0.0, 0.0)) -> ScoreRules:
     """Return the rules of `scenario`; S0 is a tier where the pad lies on the road, as in the report."""
     vehicle = scenario.vehicle
-    airframe = REPORT_AIRFRAME if scenario.system.drone.airframe == "report" else BENCHMARK_AIRFRAME
+    airframe = airframe_of(scenario.system.drone)
     return ScoreRules(
         box=Box(
             roof_size_m=(vehicle.length_m, vehicle.width_m),

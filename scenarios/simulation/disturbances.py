@@ -6,9 +6,11 @@ from scenarios.simulation.noise import Seed, named_rng
 Span = tuple[int, int]
 
 
-def instant_s(scenario: Scenario, seed: Seed, name: str) -> float:
-    """Return when the disturbance `name` begins, in seconds since the start of the simulation."""
-    return float(named_rng(seed, f"{name} instant").uniform(*scenario.disturbed_between_s))
+def instant_s(scenario: Scenario, seed: Seed, name: str, at_s: float | None) -> float:
+    """Return when the disturbance `name` begins, in seconds since the start of the simulation; `at_s` None draws it."""
+    return (
+        at_s if at_s is not None else float(named_rng(seed, f"{name} instant").uniform(*scenario.disturbed_between_s))
+    )
 
 
 def outages_ns(channel: ChannelConfig, scenario: Scenario, seed: Seed, name: str, start_ns: int) -> list[Span]:
@@ -24,6 +26,6 @@ def outages_ns(channel: ChannelConfig, scenario: Scenario, seed: Seed, name: str
     shortest_s, longest_s = channel.outage_range_s
     if longest_s == 0.0:
         return []
-    begin_ns = start_ns + round(instant_s(scenario, seed, f"{name} outage") * 1e9)
+    begin_ns = start_ns + round(instant_s(scenario, seed, f"{name} outage", channel.outage_at_s) * 1e9)
     length_s = float(named_rng(seed, f"{name} outage").uniform(shortest_s, longest_s))
     return [(begin_ns, begin_ns + round(length_s * 1e9))]

@@ -38,9 +38,10 @@ def _wind(scenario: Scenario, seed: Seed) -> WindConfig:
         mean_m_s=wind.mean_m_s,
         from_rad=_wind_from_rad(scenario, seed),
         turbulence=wind.turbulence,
+        turbulence_std_m_s=wind.turbulence_std_m_s,
         gust_m_s=wind.gust_m_s,
-        gust_from_rad=float(named_rng(seed, "gust").uniform(-math.pi, math.pi)),
-        gust_start_s=instant_s(scenario, seed, "gust"),
+        gust_from_rad=_gust_from_rad(scenario, seed),
+        gust_start_s=instant_s(scenario, seed, "gust", wind.gust_at_s),
         gust_duration_s=wind.gust_duration_s,
     )
 
@@ -53,7 +54,7 @@ def _own_state(scenario: Scenario, seed: Seed) -> OwnStateConfig:
         position_std_m=own.position_std_m,
         velocity_std_m_s=own.velocity_std_m_s,
         origin_step_enu_m=(step_m * math.cos(angle_rad), step_m * math.sin(angle_rad), 0.0) if step_m > 0.0 else None,
-        origin_step_s=instant_s(scenario, seed, "origin step"),
+        origin_step_s=instant_s(scenario, seed, "origin step", own.origin_step_at_s),
     )
 
 
@@ -67,3 +68,9 @@ def _wind_from_rad(scenario: Scenario, seed: Seed) -> float:
     if scenario.wind.from_rad is not None:
         return scenario.wind.from_rad
     return float(named_rng(seed, "wind").uniform(-math.pi, math.pi))
+
+
+def _gust_from_rad(scenario: Scenario, seed: Seed) -> float:
+    if scenario.wind.gust_from_rad is not None:
+        return scenario.wind.gust_from_rad
+    return float(named_rng(seed, "gust").uniform(-math.pi, math.pi))

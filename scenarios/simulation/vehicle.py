@@ -1,7 +1,8 @@
 """The simulated vehicle as a pure step: it waits for the drone, then drives its course.
 
-Model: the middle of the body follows the road exactly, the body points along the road. State `VehicleMemory`: the
-instants at which something happened, in UTC nanoseconds; everything else is a closed form of the time since departure.
+Model: the middle of the body follows the road exactly, the body points along the road, and sways on its wheels.
+State `VehicleMemory`: the instants at which something happened, in UTC nanoseconds; everything else is a closed form of
+the time since departure, but for the swaying, which is computed before it.
 Frames: W is ENU about the datum, V the body's FLU with its origin on the road under the middle of the body.
 Angular velocity from ZYX Euler rates by the usual kinematic matrix.
 """
@@ -23,6 +24,7 @@ from sim_autopilot.core.data import Deck
 
 _BRAKE_REACH_M = 3.0  # the vehicle brakes for a drone over its roof, not for one that waits ahead
 _NO_WAVE = (0.0, 0.0, 0.0)
+_STILL = (_NO_WAVE, _NO_WAVE, _NO_WAVE)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -109,8 +111,12 @@ def _drone_is_low(state: VehicleState, drone: BodyTruth | None, plan: VehiclePla
 
 def vehicle_at(memory: VehicleMemory, t_ns: int, plan: VehiclePlan) -> VehicleState:
     """Return the vehicle's state at `t_ns` as `memory` decides it: the past, or the future if nothing happens."""
-    motion = _motion_at(memory, t_ns, plan.course)
-    return state_on_road(t_ns, motion, plan.course.road.at(motion.s_m), plan.course.roughness)
+    course = plan.course
+    motion = _motion_at(memory, t_ns, course)
+    swaying = _STILL
+    if course.sway is not None and memory.departs_ns is not None:
+        swaying = course.sway.at((t_ns - memory.departs_ns) * 1e-9)
+    return state_on_road(t_ns, motion, course.road.at(motion.s_m), course.roughness, swaying)
 
 
 def _motion_at(memory: VehicleMemory, t_ns: int, course: Course) -> Motion:
@@ -134,8 +140,22 @@ def _braked(before: Motion, duration_s: float, deceleration_m_s2: float) -> Moti
     )
 
 
-def state_on_road(t_ns: int, motion: Motion, at: RoadPoint, roughness: Roughness | None) -> VehicleState:
-    """Return the state of a vehicle that moves by `motion` where the road is `at`; speeds are horizontal."""
+def state_on_road(
+    t_ns: int,
+    motion: Motion,
+    at: RoadPoint,
+    roughness: Roughness | None,
+    swaying: tuple[Vector3, Vector3, Vector3] = _STILL,
+) -> VehicleState:
+    """Return the state of a vehicle on the road; speeds are horizontal.
+
+    Args:
+        t_ns: of the state.
+        motion: along the road.
+        at: the road there.
+        roughness: that shakes the body along the road, None for none.
+        swaying: heave (m), pitch and roll (rad) of the body on its wheels, each with its rate and acceleration.
+    """
     v, a = motion.speed_m_s, motion.acceleration_m_s2
     heave = roll = shake = _NO_WAVE
     if roughness is not None:
@@ -144,23 +164,25 @@ def state_on_road(t_ns: int, motion: Motion, at: RoadPoint, roughness: Roughness
             roughness.roll.at(motion.s_m),
             roughness.pitch.at(motion.s_m),
         )
+    rise, dive, lean = swaying
     cosine, sine = math.cos(at.heading_rad), math.sin(at.heading_rad)
     yaw_rate_rad_s = at.curvature_per_m * v
     slope, bend_per_m = at.grade + heave[1], at.grade_change_per_m + heave[2]
-    pitch_rad = shake[0] - math.atan(at.grade)
-    pitch_rate_rad_s = v * (shake[1] - at.grade_change_per_m / (1.0 + at.grade**2))
+    roll_rad, roll_rate_rad_s = roll[0] + lean[0], v * roll[1] + lean[1]
+    pitch_rad = shake[0] - math.atan(at.grade) + dive[0]
+    pitch_rate_rad_s = v * (shake[1] - at.grade_change_per_m / (1.0 + at.grade**2)) + dive[1]
     yaw_rad = wrap_angle(at.heading_rad)
     return VehicleState(
         t_ns=t_ns,
-        position_enu_m=(at.x_m, at.y_m, at.z_m + heave[0]),
-        velocity_enu_m_s=(v * cosine, v * sine, v * slope),
+        position_enu_m=(at.x_m, at.y_m, at.z_m + heave[0] + rise[0]),
+        velocity_enu_m_s=(v * cosine, v * sine, v * slope + rise[1]),
         acceleration_enu_m_s2=(
             a * cosine - v * yaw_rate_rad_s * sine,
             a * sine + v * yaw_rate_rad_s * cosine,
-            a * slope + v * v * bend_per_m,
+            a * slope + v * v * bend_per_m + rise[2],
         ),
-        orientation_wxyz=quaternion_from_roll_pitch_yaw(roll[0], pitch_rad, yaw_rad),
-        angular_velocity_flu_rad_s=_body_rates(roll[0], pitch_rad, v * roll[1], pitch_rate_rad_s, yaw_rate_rad_s),
+        orientation_wxyz=quaternion_from_roll_pitch_yaw(roll_rad, pitch_rad, yaw_rad),
+        angular_velocity_flu_rad_s=_body_rates(roll_rad, pitch_rad, roll_rate_rad_s, pitch_rate_rad_s, yaw_rate_rad_s),
         yaw_rad=yaw_rad,
         yaw_rate_rad_s=yaw_rate_rad_s,
     )

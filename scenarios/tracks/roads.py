@@ -1,8 +1,10 @@
-"""Roads as chains of pieces of constant curvature, evaluated in closed form at any arc length.
+"""Roads as chains of pieces whose curvature is constant or grows evenly, evaluated at any arc length.
 
 State of a point on a road: position x, y (m, W), heading (rad, counter-clockwise from East), curvature (1/m,
 positive to the left). Arc length `s_m` is horizontal and starts at the road's first point. A straight line is a
-piece of zero curvature, a circle's arc one piece, any smooth curve many short ones.
+piece of zero curvature, a circle's arc one piece, a clothoid a few; any other smooth curve is many short arcs.
+Lines and arcs are closed forms. A clothoid's place is the integral of its direction, by Gauss and Legendre's rule of
+eight points, which is exact to rounding for the half a radian that a piece turns at most.
 """
 
 import math
@@ -14,20 +16,27 @@ from itertools import pairwise
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from scenarios.tracks.heights import FLAT, GradeLine, Slope
+
 Point = tuple[float, float]
 _STRAIGHT_PER_M = 1e-9  # below this curvature the chord and the arc agree to double precision
+_GAUSS = [
+    (0.5 * (x + 1.0), 0.5 * w) for x, w in zip(*(a.tolist() for a in np.polynomial.legendre.leggauss(8)), strict=True)
+]
+_CLOTHOID_TURN_MAX_RAD = 0.5  # in one piece
 _ARCS_PER_CHORD = 64  # of 0.1 to 0.3 m on the report's road, which is then within 0.1 mm of the spline
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Piece:
-    """A stretch of constant curvature that starts at `s_m` in `x_m`, `y_m` with `heading_rad`."""
+    """A stretch that starts at `s_m` in `x_m`, `y_m` with `heading_rad`, and its curvature there, which may grow."""
 
     s_m: float
     x_m: float
     y_m: float
     heading_rad: float
     curvature_per_m: float
+    growth_per_m2: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,25 +50,6 @@ class RoadPoint:
     curvature_per_m: float
     grade: float
     grade_change_per_m: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Slope:
-    """A grade (height per horizontal length) that sets in linearly over `transition_m` from `start_s_m` on."""
-
-    grade: float = 0.0
-    start_s_m: float = 0.0
-    transition_m: float = 10.0
-
-    def at(self, s_m: float) -> tuple[float, float, float]:
-        """Return height (m), grade and change of grade (1/m) at arc length `s_m`."""
-        along_m = s_m - self.start_s_m
-        if along_m <= 0.0 or self.grade == 0.0:
-            return 0.0, 0.0, 0.0
-        if along_m < self.transition_m:
-            change_per_m = self.grade / self.transition_m
-            return 0.5 * change_per_m * along_m**2, change_per_m * along_m, change_per_m
-        return self.grade * (along_m - 0.5 * self.transition_m), self.grade, 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,7 +68,7 @@ class Road:
     starts_m: tuple[float, ...]
     length_m: float
     loop_s_m: float | None = None
-    slope: Slope = Slope()
+    slope: Slope | GradeLine = FLAT
 
     def at(self, s_m: float) -> RoadPoint:
         """Return the road at arc length `s_m` (m)."""
@@ -96,7 +86,7 @@ class Road:
             y_m=y_m,
             z_m=z_m,
             heading_rad=heading_rad,
-            curvature_per_m=piece.curvature_per_m,
+            curvature_per_m=piece.curvature_per_m + piece.growth_per_m2 * (on_plan_m - piece.s_m),
             grade=grade,
             grade_change_per_m=grade_change_per_m,
         )
@@ -105,6 +95,8 @@ class Road:
 def advance(piece: Piece, length_m: float) -> tuple[float, float, float]:
     """Return x, y (m) and heading (rad) `length_m` behind the start of `piece`."""
     curvature_per_m = piece.curvature_per_m
+    if piece.growth_per_m2 != 0.0:
+        return _along_clothoid(piece, length_m)
     if abs(curvature_per_m) < _STRAIGHT_PER_M:
         return (
             piece.x_m + length_m * math.cos(piece.heading_rad),
@@ -119,13 +111,24 @@ def advance(piece: Piece, length_m: float) -> tuple[float, float, float]:
     )
 
 
+def _along_clothoid(piece: Piece, length_m: float) -> tuple[float, float, float]:
+    x_m, y_m = 0.0, 0.0
+    for place, weight in _GAUSS:
+        along_m = place * length_m
+        turned_rad = (piece.curvature_per_m + 0.5 * piece.growth_per_m2 * along_m) * along_m
+        x_m += weight * math.cos(piece.heading_rad + turned_rad)
+        y_m += weight * math.sin(piece.heading_rad + turned_rad)
+    heading_rad = piece.heading_rad + (piece.curvature_per_m + 0.5 * piece.growth_per_m2 * length_m) * length_m
+    return piece.x_m + x_m * length_m, piece.y_m + y_m * length_m, heading_rad
+
+
 def road_of(
     stretches: Sequence[tuple[float, float]],
     *,
     start_m: Point = (0.0, 0.0),
     heading_rad: float = 0.0,
     loop_from: int | None = None,
-    slope: Slope | None = None,
+    slope: Slope | GradeLine | None = None,
 ) -> Road:
     """Return the smooth road made of `stretches`.
 
@@ -153,8 +156,56 @@ def road_of(
         starts_m=tuple(piece.s_m for piece in pieces),
         length_m=s_m,
         loop_s_m=None if loop_from is None else pieces[loop_from].s_m,
-        slope=slope or Slope(),
+        slope=slope or FLAT,
     )
+
+
+def clothoid_road(
+    stretches: Sequence[tuple[float, float, float]],
+    *,
+    start_m: Point,
+    heading_rad: float,
+    slope: Slope | GradeLine | None = None,
+) -> Road:
+    """Return the open road made of `stretches`, whose curvatures grow evenly from one end to the other.
+
+    Args:
+        stretches: (length in m, curvature in 1/m at its beginning, at its end) of each.
+        start_m: x, y of the first point in W.
+        heading_rad: direction of travel there.
+        slope: its height, None for a flat road.
+
+    Raises:
+        ValueError: no stretch, or one without length.
+    """
+    if not stretches or any(length_m <= 0.0 for length_m, _, _ in stretches):
+        raise ValueError(f"a road needs stretches of positive length, not {list(stretches)}")
+    pieces: list[Piece] = []
+    s_m, (x_m, y_m), direction_rad = 0.0, start_m, heading_rad
+    for length_m, curvature_per_m, end_per_m in (part for one in stretches for part in _parts(*one)):
+        piece = Piece(
+            s_m=s_m,
+            x_m=x_m,
+            y_m=y_m,
+            heading_rad=direction_rad,
+            curvature_per_m=curvature_per_m,
+            growth_per_m2=(end_per_m - curvature_per_m) / length_m,
+        )
+        pieces.append(piece)
+        x_m, y_m, direction_rad = advance(piece, length_m)
+        s_m += length_m
+    starts_m = tuple(piece.s_m for piece in pieces)
+    return Road(pieces=tuple(pieces), starts_m=starts_m, length_m=s_m, slope=slope or FLAT)
+
+
+def _parts(length_m: float, begin_per_m: float, end_per_m: float) -> list[tuple[float, float, float]]:
+    """Return a stretch in as many equal parts as keep the turn of each within what the integral is good for."""
+    if begin_per_m == end_per_m:
+        return [(length_m, begin_per_m, end_per_m)]
+    turn_rad = max(abs(begin_per_m), abs(end_per_m)) * length_m
+    count = max(1, math.ceil(turn_rad / _CLOTHOID_TURN_MAX_RAD))
+    bends = [begin_per_m + (end_per_m - begin_per_m) * i / count for i in range(count + 1)]
+    return [(length_m / count, before, after) for before, after in pairwise(bends)]
 
 
 def polyline(waypoints_m: Sequence[Point]) -> Road:

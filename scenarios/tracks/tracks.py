@@ -16,6 +16,7 @@ import numpy as np
 from scenarios.tracks.config import (
     BrakeTrack,
     CircleTrack,
+    DriveTrack,
     FigureEightTrack,
     LaneChangeTrack,
     MovingTrack,
@@ -28,8 +29,10 @@ from scenarios.tracks.config import (
     WaypointsTrack,
 )
 from scenarios.tracks.course import BrakeEvent, Course, Roughness, Wave
+from scenarios.tracks.drive import drive_course
+from scenarios.tracks.heights import Slope
 from scenarios.tracks.profiles import Profile, cruise_steps, profile_of, waypoint_steps
-from scenarios.tracks.roads import Piece, Point, Slope, advance, curve_through, polyline, road_of
+from scenarios.tracks.roads import Piece, Point, advance, curve_through, polyline, road_of
 
 Steps = list[tuple[float, float]]
 _CURVE_STEP_M = 0.1  # pieces of a lane change: the heading is then within 0.1 mrad of the smooth curve
@@ -63,6 +66,8 @@ def course_of(track: TrackConfig, rng: np.random.Generator) -> Course:  # noqa: 
             return _open_course(track, _lane_change(track))
         case RandomTrack():
             return _random_course(track, rng)
+        case DriveTrack():
+            return drive_course(track)
         case _:
             assert_never(track)
 

@@ -47,8 +47,12 @@ class Dryden:
     length_w_m: float
 
 
-def dryden(turbulence: Turbulence, height_m: float = HEIGHT_M) -> Dryden:
+def dryden(turbulence: Turbulence | float, height_m: float = HEIGHT_M) -> Dryden:
     """Return the standard's parameters at `height_m`, which is below 1000 ft.
+
+    Args:
+        turbulence: severity, or the vertical standard deviation in m/s.
+        height_m: above the ground.
 
     Raises:
         ValueError: if it is not, or not above the ground.
@@ -57,7 +61,7 @@ def dryden(turbulence: Turbulence, height_m: float = HEIGHT_M) -> Dryden:
     if not 0.0 < feet <= 1000.0:
         msg = f"height_m is {height_m} m, the low-altitude model holds from 0 to {1000.0 * FOOT_M} m"
         raise ValueError(msg)
-    sigma = 0.1 * turbulence.value * KNOT_M_S
+    sigma = 0.1 * turbulence.value * KNOT_M_S if isinstance(turbulence, Turbulence) else turbulence
     shape = 0.177 + 0.000823 * feet
     length = height_m / shape**1.2
     return Dryden(
@@ -134,7 +138,7 @@ class WindModel:
         seed: int | np.random.Generator,
         mean_m_s: float,
         direction_rad: float,
-        turbulence: Turbulence,
+        turbulence: Turbulence | float,
         *,
         gust: Gust | None = None,
         height_m: float = HEIGHT_M,
@@ -145,7 +149,7 @@ class WindModel:
             seed: of the turbulence, or the generator that draws it.
             mean_m_s: speed.
             direction_rad: the mean wind blows towards, from east to north.
-            turbulence: severity.
+            turbulence: severity, or the vertical standard deviation in m/s.
             gust: one, or none.
             height_m: for which the turbulence is computed.
         """

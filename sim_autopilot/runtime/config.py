@@ -1,6 +1,7 @@
 """The configuration of `sim-autopilot`: one TOML file, validated once, every value with its unit and source."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from math import pi, radians
 from types import MappingProxyType
 from typing import Annotated, Literal
@@ -20,7 +21,7 @@ from sim_autopilot.ground_station.ardupilot import ARDUPILOT_STATION
 from sim_autopilot.ground_station.px4.station import PX4_STATION
 from sim_autopilot.interfaces import NO_SERVICES, Firmware, Services
 from sim_autopilot.memory import AutopilotConfig
-from sim_autopilot.physics.airframe import ARDUCOPTER_AIRFRAME, BENCHMARK_AIRFRAME, REPORT_AIRFRAME
+from sim_autopilot.physics.airframe import ARDUCOPTER_AIRFRAME, BENCHMARK_AIRFRAME, REPORT_AIRFRAME, Airframe
 from sim_autopilot.physics.contact import GEAR_HEIGHT_M
 from sim_autopilot.physics.wind import Gust, Turbulence, WindModel
 from sim_autopilot.plant.own_state import OwnStateModel
@@ -49,9 +50,13 @@ class StartConfig(StrictModel):
 
 
 class DroneConfig(StrictModel):
-    """The drone and its flight controller."""
+    """The drone and its flight controller; what is given beside the airframe's name is in place of its own."""
 
     airframe: Literal["report", "benchmark", "arducopter"] = "benchmark"
+    mass_kg: Annotated[float, Field(ge=0.5, le=6.0)] | None = None  # of the same size; the inertia grows with it
+    thrust_to_weight: Annotated[float, Field(ge=1.2, le=10.0)] | None = None
+    drag_n_s_m: Annotated[float, Field(ge=0.0, le=5.0)] | None = None
+    motor_time_constant_s: Annotated[float, Field(gt=0.0, le=0.5)] | None = None
     controller: Literal["lqr", "lqr_feedforward", "geometric"] = "geometric"
     friction_coefficient: Annotated[float, Field(ge=0.0, le=2.0)] = 0.8  # rubber on painted metal
     ground_effect: bool = True
@@ -65,6 +70,7 @@ class WindConfig(StrictModel):
     mean_m_s: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0
     from_rad: Annotated[float, Field(ge=-pi, le=pi)] | None = None  # from East counter-clockwise; None: by the seed
     turbulence: Literal["none", "light", "moderate", "severe"] = "none"
+    turbulence_std_m_s: Annotated[float, Field(ge=0.0, le=10.0)] | None = None  # vertical; in place of the severity's
     gust_m_s: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0  # its peak; 0 is none
     gust_from_rad: Annotated[float, Field(ge=-pi, le=pi)] = 0.0  # from East counter-clockwise
     gust_start_s: NotNegative = 0.0  # since boot
@@ -137,7 +143,7 @@ def autopilot_config(config: SimAutopilotConfig) -> AutopilotConfig:
             altitude_m=config.datum.altitude_m,
         ),
         plant=PlantConfig(
-            airframe=_AIRFRAMES[config.drone.airframe],
+            airframe=airframe_of(config.drone),
             controller=ControllerKind(config.drone.controller),
             friction_coefficient=config.drone.friction_coefficient,
             ground_effect=config.drone.ground_effect,
@@ -152,6 +158,17 @@ def autopilot_config(config: SimAutopilotConfig) -> AutopilotConfig:
         links=tuple(ground_rates_hz if link.streams == "ground" else None for link in config.links) or (None,),
         own_state=OwnStateModel(seed=config.seed, **config.own_state.model_dump()),
     )
+
+
+def airframe_of(drone: DroneConfig) -> Airframe:
+    """Return the airframe of a drone: the named one with what differs from it."""
+    named = _AIRFRAMES[drone.airframe]
+    names = ("mass_kg", "thrust_to_weight", "drag_n_s_m", "motor_time_constant_s")
+    own = {name: value for name in names if (value := getattr(drone, name)) is not None}
+    if drone.mass_kg is not None:
+        x, y, z = (drone.mass_kg / named.mass_kg * one for one in named.inertia_kg_m2)
+        return replace(named, inertia_kg_m2=(x, y, z), **own)
+    return replace(named, **own)
 
 
 def with_default_links(config: SimAutopilotConfig) -> SimAutopilotConfig:
@@ -175,8 +192,10 @@ def wind_model(config: SimAutopilotConfig, seed: int | np.random.Generator | Non
     from_rad = wind.from_rad
     if from_rad is None:
         from_rad = float(np.random.default_rng(config.seed).uniform(-pi, pi))
-    turbulence = Turbulence[wind.turbulence.upper()]
-    return WindModel(config.seed if seed is None else seed, wind.mean_m_s, from_rad + pi, turbulence, gust=_gust(wind))
+    std_m_s = wind.turbulence_std_m_s
+    turbulence = Turbulence[wind.turbulence.upper()] if std_m_s is None else std_m_s
+    own = config.seed if seed is None else seed
+    return WindModel(own, wind.mean_m_s, from_rad + pi, turbulence, gust=_gust(wind))
 
 
 def _gust(wind: WindConfig) -> Gust | None:

@@ -80,7 +80,7 @@ def test_gust_of_the_preset_is_blown_as_the_standard_has_it() -> None:
     t_s = dt_s * np.arange(1, 2501)
     # MIL-F-8785C 3.7.2.3: V_m / 2 (1 - cos(pi x / d_m)) over the way x through the air, up over d_m and down again
     d_m = 0.5 * airspeed_m_s * scenario.wind.gust_duration_s
-    x_m = airspeed_m_s * (t_s - instant_s(scenario, 7, "gust"))
+    x_m = airspeed_m_s * (t_s - instant_s(scenario, 7, "gust", None))
     inside = (x_m > 0.0) & (x_m < 2.0 * d_m)
     expected_m_s = np.where(inside, 0.5 * 5.0 * (1.0 - np.cos(np.pi * x_m / d_m)), 0.0)
     np.testing.assert_allclose(np.hypot(blown[:, 0], blown[:, 1]), expected_m_s, atol=1e-9)

@@ -7,8 +7,9 @@ import pytest
 from scenarios.catalogue.catalogue import list_scenarios, load_scenario
 from scenarios.tracks.config import MovingTrack, RandomTrack
 from scenarios.tracks.course import Course
+from scenarios.tracks.heights import Slope
 from scenarios.tracks.profiles import profile_of, waypoint_steps
-from scenarios.tracks.roads import Slope, polyline, road_of
+from scenarios.tracks.roads import polyline, road_of
 from scenarios.tracks.tracks import approach_m, course_of
 
 SMOOTH = [entry.name for entry in list_scenarios() if not entry.name.startswith(("report_", "static"))]
