@@ -10,7 +10,7 @@ from typing import Protocol
 from companion.autopilots.response import Cascade
 from companion.core.data import FlightLimits, RangeReading, Setpoint
 from link.frames.local_frame import LocalFrame, Projection
-from link.mavlink.dialect import Message
+from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
 
 
@@ -88,6 +88,16 @@ class DriverMemory:
     disarm_asked: bool = False
     disarm_refusals: int = 0
     climbs_by_itself: bool = False
+
+
+STREAMS_HZ = {
+    mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: 10.0,
+    mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: 2.0,
+    mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: 1.0,  # tells the geoid's height
+    mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: 1.0,
+    mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: 20.0,
+}
+"""Messages that are read of every autopilot beside its motion, by id."""
 
 
 class Driver(Protocol):

@@ -70,8 +70,9 @@ class Forecast:
         velocity_enu_m_s: (n, 3).
         acceleration_enu_m_s2: (n, 3).
         yaw_rad: (n,), None while the heading is unknown.
-        position_std_m: (n, 3) standard deviation.
+        position_std_m: (n, 3) standard deviation; the pad's, where the estimator knows its lever arm.
         is_coarse: the vehicle's fixes alone are too coarse to land by.
+        yaw_std_rad: standard deviation of the heading now, 0 where there is none.
     """
 
     t_ns: int
@@ -82,6 +83,7 @@ class Forecast:
     yaw_rad: Array | None
     position_std_m: Array
     is_coarse: bool = False
+    yaw_std_rad: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

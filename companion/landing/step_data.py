@@ -7,7 +7,7 @@ from companion.autopilots.response import ResponseModel
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits, Measurement, OwnState, Setpoint
 from companion.planning.guidance import Guidance, PlanResult
-from companion.vehicle.buffered import Estimator
+from companion.vehicle.estimator import Estimator
 from link.messages import Command, CommandReply, LandingStatus, PadGeometry
 
 
@@ -18,6 +18,14 @@ class System:
     config: CompanionConfig
     estimator: Estimator
     guidance: Guidance
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LinkDelay:
+    """How long a message takes, and by how much that differs from one to the next."""
+
+    mean_s: float = 0.0
+    std_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -38,8 +46,7 @@ class StepInputs:
         pad: the vehicle's own description of its pad.
         command: an operator's wish.
         leaving: the companion is about to end, so the autopilot is to hover by itself, or to finish its disarm.
-        link_delay_s: from the companion to the autopilot.
-        link_delay_std_s: its standard deviation.
+        link_delay: from the companion to the autopilot.
         timeout_s: for how long the autopilot goes on without a setpoint.
     """
 
@@ -56,8 +63,7 @@ class StepInputs:
     pad: PadGeometry | None = None
     command: Command | None = None
     leaving: bool = False
-    link_delay_s: float = 0.0
-    link_delay_std_s: float = 0.0
+    link_delay: LinkDelay = LinkDelay()
     timeout_s: float = 0.0
 
     def monotonic_at(self, t_ns: int) -> int:

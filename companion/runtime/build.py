@@ -16,7 +16,6 @@ from companion.runtime.recorded_node import RecordingNode
 from companion.vehicle.factory import make_estimator
 from companion.vehicle.pad import turned_lever
 from link.mavlink.session import MavlinkSession
-from link.mavlink.session_config import SessionConfig
 from link.mavlink.signing import Signing
 from link.recording.recorder import Recorder
 from link.zenoh.keys import Keys
@@ -78,8 +77,7 @@ def build_node(
     )
     warm_up(system)
     signing = None if signing_key is None else Signing(signing_key)
-    settings = SessionConfig(records_input=records_input)
-    session = MavlinkSession(system_id, target_system_id=system_id, config=settings, signing=signing)
+    session = MavlinkSession(system_id, target_system_id=system_id, signing=signing, records_input=records_input)
     if recorder is not None:
         return RecordingNode(system, keys, session, recorder, dry_run=dry_run)
     return CompanionNode(system, keys, session, dry_run=dry_run)

@@ -133,10 +133,10 @@ def step(
     rank = RANK[measurement.quantity]
     nis_per_dof = update.nis / update.dof
     if update.gate_nis <= nis_threshold(config.gate_probability, update.dof):
-        return Snapshot(t_ns=t_ns, state=update.state, tally=_accepted(snapshot.tally, rank, t_ns, update)), nis_per_dof
+        return Snapshot(t_ns=t_ns, state=update.state, tally=_accept(snapshot.tally, rank, t_ns, update)), nis_per_dof
     since_ns = snapshot.tally.rejected_since_ns[rank]
     if since_ns is None or t_ns - since_ns < config.recover_after_s * 1e9:
-        return Snapshot(t_ns=t_ns, state=state, tally=_rejected(snapshot.tally, rank, t_ns)), nis_per_dof
+        return Snapshot(t_ns=t_ns, state=state, tally=_reject(snapshot.tally, rank, t_ns)), nis_per_dof
     return _recover(model, Snapshot(t_ns=t_ns, state=state, tally=snapshot.tally), measurement), nis_per_dof
 
 
@@ -166,7 +166,7 @@ def _recover(model: FilterModel[S], snapshot: Snapshot[S], measurement: Measurem
     return Snapshot(t_ns=measurement.t_ns, state=state if update is None else update.state, tally=tally)
 
 
-def _accepted(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
+def _accept(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
     return Tally(
         fused=tally.fused + 1,
         gated=tally.gated,
@@ -178,7 +178,7 @@ def _accepted(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
     )
 
 
-def _rejected(tally: Tally, rank: int, t_ns: int) -> Tally:
+def _reject(tally: Tally, rank: int, t_ns: int) -> Tally:
     since_ns = tally.rejected_since_ns[rank]
     since = _put(tally.rejected_since_ns, rank, t_ns if since_ns is None else since_ns)
     return replace(tally, gated=tally.gated + 1, rejected_since_ns=since)

@@ -52,10 +52,11 @@ def measurements_of(key: str, payload: bytes, keys: Keys, state: AutopilotState)
     Raises:
         PayloadError: it cannot be decoded, or is absurd.
     """
-    return [plausible(measurement) for measurement in _decoded(key, payload, keys, state)]
+    with np.errstate(over="ignore", invalid="ignore"):  # what gets too large for a number is refused as absurd
+        return [plausible(measurement) for measurement in _decode(key, payload, keys, state)]
 
 
-def _decoded(key: str, payload: bytes, keys: Keys, state: AutopilotState) -> tuple[Measurement, ...]:
+def _decode(key: str, payload: bytes, keys: Keys, state: AutopilotState) -> tuple[Measurement, ...]:
     frame = state.view.frame
     if key == keys.fix:
         fix = cdr.decode(Fix, payload)

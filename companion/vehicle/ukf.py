@@ -140,6 +140,7 @@ class UkfModel:
             acceleration_enu_m_s2=middle[:, 6:],
             yaw_rad=states[:, 0, 2],
             position_std_m=np.sqrt(variance),
+            yaw_std_rad=math.sqrt(max(float(state.covariance[2, 2]), 0.0)),
         )
 
     def _step(self, state: Car, dt_s: float) -> Car:

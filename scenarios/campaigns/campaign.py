@@ -11,7 +11,7 @@ from typing import Any
 
 from companion.config.companion import CompanionConfig
 from link.errors import UserError
-from link.program.toml_config import load_config, merged, read_toml, validated
+from link.program.toml_config import load_config, merge, read_toml, validate
 from scenarios.campaigns.folder import Plan, open_journal
 from scenarios.campaigns.landing_task import Flights, Flown, Row, Task, failed
 from scenarios.catalogue.catalogue import load_scenario
@@ -127,6 +127,6 @@ def _flown(plan: Plan, tasks: Sequence[Task], where: Where) -> Generator[Flown, 
 def _with_companion(scenario: Scenario, table: Mapping[str, Any], source: str) -> Scenario:
     """Return `scenario` with a table of the companion's configuration laid over its own."""
     below = scenario.system.companion.model_dump(mode="json")
-    companion = validated(CompanionConfig, merged(below, table), source=f"{source} over {scenario.name}")
+    companion = validate(CompanionConfig, merge(below, table), source=f"{source} over {scenario.name}")
     system = scenario.system.model_copy(update={"companion": companion})
     return scenario.model_copy(update={"system": system})

@@ -17,7 +17,7 @@ from typing import Annotated, Any, Self
 from pydantic import Field, model_validator
 
 from link.errors import UserError
-from link.program.toml_config import StrictModel, validated
+from link.program.toml_config import StrictModel, validate
 from scenarios.campaigns.landing_task import Flown, Row, Task
 from scenarios.campaigns.landings_file import as_written, read_rows, write_rows
 from scenarios.config import Scenario
@@ -77,7 +77,7 @@ def read_plan(folder: Path) -> Plan:
         raise UserError(f"{path}: cannot be read ({error.strerror}); is this a campaign's folder?") from None
     except ValueError:
         raise UserError(f"{path}: not valid JSON") from None
-    return validated(Plan, table, source=str(path))
+    return validate(Plan, table, source=str(path))
 
 
 def read_landings(folder: Path) -> list[Row]:

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from link.errors import UserError
-from link.program.toml_config import merged, read_toml, validated
+from link.program.toml_config import merge, read_toml, validate
 from scenarios.catalogue.placement import keep_clear_of_vehicle
 from scenarios.config import Scenario
 
@@ -56,7 +56,7 @@ def load_scenario(name_or_path: str) -> Scenario:
         table = _named(name) | {"name": name_or_path}
     for option in options:
         table |= _option(option, name_or_path)
-    return keep_clear_of_vehicle(validated(Scenario, _resolved(table, name_or_path), source=name_or_path))
+    return keep_clear_of_vehicle(validate(Scenario, _resolved(table, name_or_path), source=name_or_path))
 
 
 def _option(option: str, whole: str) -> Table:
@@ -89,7 +89,7 @@ def _scenarios() -> dict[str, Table]:
     }
     found: dict[str, Table] = {}
     for track, table in tables.items():
-        whole = merged(tables[table["base"]], table) if "base" in table else table
+        whole = merge(tables[table["base"]], table) if "base" in table else table
         found |= _at_speeds(track, {key: value for key, value in whole.items() if key != "base"})
     return found
 
@@ -100,7 +100,7 @@ def _at_speeds(track: str, table: Table) -> dict[str, Table]:
     if speeds_m_s is None:
         return {track: table}
     return {
-        f"{track}_{math.floor(speed_m_s)}": merged(
+        f"{track}_{math.floor(speed_m_s)}": merge(
             table,
             {"description": f"{table['description']}, {speed_m_s:g} m/s", "track": {"speed_m_s": speed_m_s}},
         )
@@ -112,7 +112,7 @@ def _file_table(path: Path) -> Table:
     """Return the table of a user's file, laid over its base."""
     table = read_toml(path)
     base = table.pop("base", None)
-    return table if base is None else merged(_named(str(base), f"{path}: base: "), table)
+    return table if base is None else merge(_named(str(base), f"{path}: base: "), table)
 
 
 def _resolved(table: Table, source: str) -> Table:
@@ -130,7 +130,7 @@ def _section(section: str, value: object, source: str) -> Table:
     presets = _presets(section)
     if preset not in presets:
         raise _unknown(f"preset of {section} ({source})", str(preset), list(presets))
-    return merged(presets[preset], values)
+    return merge(presets[preset], values)
 
 
 @cache
@@ -144,7 +144,7 @@ def _on_base(table: Table, tables: Table) -> Table:
     if "base" not in table:
         return table
     own = {key: value for key, value in table.items() if key != "base"}
-    return merged(_on_base(tables[table["base"]], tables), own)
+    return merge(_on_base(tables[table["base"]], tables), own)
 
 
 def _folder() -> Traversable:

@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterator
 from typing import Any
 
 from link.errors import UserError
-from link.program.toml_config import validated
+from link.program.toml_config import validate
 from scenarios.config import ChannelConfig, ClockConfig, OwnStateConfig, Scenario, WindConfig
 from sim_autopilot.runtime.config import DroneConfig
 
@@ -53,7 +53,7 @@ def without(scenario: Scenario, left_out: Collection[Detail]) -> Scenario | None
             elements = enumerate(table["track"][name])
             table["track"][name] = [one for place, one in elements if ("track", name, place) not in left_out]
     try:
-        return validated(Scenario, table, source=scenario.name)
+        return validate(Scenario, table, source=scenario.name)
     except UserError:
         return None
 

@@ -13,7 +13,7 @@ from link.messages import PadGeometry
 from link.payloads import json_messages
 from link.payloads.checks import PayloadError
 from link.payloads.decklander_msgs import fields_of
-from link.program.toml_config import validated
+from link.program.toml_config import validate
 from link.recording.mcap_reader import Recorded, read_head, read_messages, recording_files
 from link.zenoh.keys import Keys
 from scenarios.config import Scenario
@@ -106,7 +106,7 @@ def _road(truth: list[Path]) -> Road | None:
     if "scenario.toml" not in head.attachments or "seed" not in head.metadata:
         return None
     table = tomllib.loads(head.attachments["scenario.toml"])
-    return Road(scenario=validated(Scenario, table, source="scenario.toml"), seed=int(head.metadata["seed"]))
+    return Road(scenario=validate(Scenario, table, source="scenario.toml"), seed=int(head.metadata["seed"]))
 
 
 def _merged(companion: list[Path], truth: list[Path]) -> list[Recorded]:

@@ -50,9 +50,7 @@ def has_lifted(elapsed_s: float, ramp_s: float) -> bool:
     return elapsed_s >= _LIFTED_SHARE * ramp_s
 
 
-def ramped(
-    reference: Reference, climb: Climb, elapsed_s: float, rate_max_m_s: float, ramp_s: float
-) -> Reference | None:
+def ramp(reference: Reference, climb: Climb, elapsed_s: float, rate_max_m_s: float, ramp_s: float) -> Reference | None:
     """Return `reference` held down to the ramp, or None once the ramp is over or above it.
 
     Args:

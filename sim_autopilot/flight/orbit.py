@@ -70,7 +70,7 @@ def begin_orbit(centre_enu_m: Vector3, radius_m: float, speed_m_s: float, facing
     )
 
 
-def carried_round(orbit: Orbit, pace: Pace, elapsed_s: float) -> tuple[Orbit, Reference]:
+def carry_round(orbit: Orbit, pace: Pace, elapsed_s: float) -> tuple[Orbit, Reference]:
     """Return the circle `elapsed_s` later, and what to follow there."""
     outward_m_s = _towards(orbit.radius_m - orbit.distance_m, pace.speed_m_s)
     up_m_s = _towards(

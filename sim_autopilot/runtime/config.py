@@ -194,8 +194,7 @@ def wind_model(config: SimAutopilotConfig, seed: int | np.random.Generator | Non
         from_rad = float(np.random.default_rng(config.seed).uniform(-pi, pi))
     std_m_s = wind.turbulence_std_m_s
     turbulence = Turbulence[wind.turbulence.upper()] if std_m_s is None else std_m_s
-    own = config.seed if seed is None else seed
-    return WindModel(own, wind.mean_m_s, from_rad + pi, turbulence, gust=_gust(wind))
+    return WindModel(config.seed if seed is None else seed, wind.mean_m_s, from_rad + pi, turbulence, gust=_gust(wind))
 
 
 def _gust(wind: WindConfig) -> Gust | None:

@@ -17,7 +17,7 @@ from link.messages import Vector3
 from sim_autopilot.core.data import Array, Reference
 from sim_autopilot.core.places import Origin, local_from_world, world_from_local
 from sim_autopilot.plant.snapshot import Snapshot
-from sim_autopilot.setpoints.partial import Axes, given_by
+from sim_autopilot.setpoints.partial import Axes, read_mask
 
 _POSITION = 0b0000_0000_0000_0111
 _VELOCITY = 0b0000_0000_0011_1000
@@ -54,7 +54,7 @@ def reference_from_message(message: Message, frames: frozenset[int], origin: Ori
     body = frame == mavlink.MAV_FRAME_BODY_NED
     if body:
         mask |= _POSITION | sum(group for group in (_VELOCITY, _ACCELERATION) if mask & group)
-    given = given_by(mask)
+    given = read_mask(mask)
     if given is None or not all(map(isfinite, _values_used(message, mask))):
         return None
     position = velocity = acceleration = None

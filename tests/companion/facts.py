@@ -8,8 +8,8 @@ import numpy as np
 from companion.autopilots.driver import AutopilotView
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Reason
-from companion.landing.decisions import Decision, decide
-from companion.landing.entries import update_held
+from companion.landing.decisions import decide
+from companion.landing.entries import Decision, update_held
 from companion.landing.memory import ControlMemory, Held, Progress, StepMemory
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase

@@ -20,7 +20,7 @@ from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.runtime.build import make_guidance
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.step import companion_step
-from companion.vehicle.buffered import BufferHealth, Estimator
+from companion.vehicle.estimator import BufferHealth, Estimator
 from link.frames.geodesy import Datum
 from link.frames.local_frame import LocalFrame, Projection
 from link.frames.rotations import quaternion_from_yaw

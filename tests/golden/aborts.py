@@ -12,7 +12,7 @@ from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from link.mavlink.dialect import mavlink
 from link.messages import Command
-from link.program.toml_config import merged, validated
+from link.program.toml_config import merge, validate
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import Scenario
 from scenarios.faults.flight import FaultFlight
@@ -57,10 +57,10 @@ class Abort:
 
 def fly(abort: Abort) -> FaultFlight:
     """Fly until the abort's climb is over, or nothing more is to be expected."""
-    companion = merged({"abort": {"retries_max": 0}}, dict(abort.companion))
+    companion = merge({"abort": {"retries_max": 0}}, dict(abort.companion))
     changes = {"system": {"companion": companion}, "vehicle": dict(abort.vehicle)}
-    table = merged(load_scenario(abort.scenario).model_dump(mode="json"), changes)
-    flight = FaultFlight(validated(Scenario, table, source=abort.scenario), SEED)
+    table = merge(load_scenario(abort.scenario).model_dump(mode="json"), changes)
+    flight = FaultFlight(validate(Scenario, table, source=abort.scenario), SEED)
     if abort.fault is not None:
         flight.fly_to(abort.phase)
         abort.fault(flight)

@@ -73,7 +73,7 @@ def with_row(stream: LogStream, row: bytes, boot_ns: int) -> LogStream:
     return replace(stream, rest=stream.rest + row, starts=starts, row_ns=boot_ns + _ROW_NS)
 
 
-def streamed(stream: LogStream, boot_ns: int) -> tuple[LogStream | None, tuple[Message, ...]]:
+def stream_on(stream: LogStream, boot_ns: int) -> tuple[LogStream | None, tuple[Message, ...]]:
     """Return the stream one step on, None where its client has not answered, and what goes to that."""
     if stream.waiting is not None:
         return _again(stream, stream.waiting, boot_ns)

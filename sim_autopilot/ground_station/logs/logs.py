@@ -72,7 +72,7 @@ def is_due(logs: Logs, boot_ns: int, *, armed: bool) -> bool:
     return begins_or_ends or (armed and boot_ns >= logs.next_ns)
 
 
-def logged(logs: Logs, row: Row, now_s: int, rules: LogRules, *, armed: bool) -> Logs:
+def add_row(logs: Logs, row: Row, now_s: int, rules: LogRules, *, armed: bool) -> Logs:
     """Return the logs with one row more, or with the flight's log finished when the motors stand."""
     if not armed:
         log = Log(began_s=now_s if logs.began_s is None else logs.began_s, data=b"".join(logs.chunks) + logs.rest)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from companion.core.reasons import Cause, Reason, sentence
 from companion.landing.aborts import ABORTS, must_wait
-from companion.landing.condition import Condition
+from companion.landing.conditions import Condition
 from companion.landing.entries import ENTRIES, update_held
 from companion.landing.memory import Held
 from companion.situation.phases import Event, Phase

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 from scipy.integrate import cumulative_trapezoid, trapezoid
 
 from companion.core.reasons import Reason
-from companion.landing.decisions import vehicle_passes
-from companion.landing.entries import update_held
+from companion.landing.entries import update_held, vehicle_passes
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import vehicle_stands
 from tests.companion.facts import CONFIG, TICK_NS, changed, drone_at, first_decision, pad_at, situation

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from companion.autopilots.response import ResponseModel
 from companion.config.companion import CompanionConfig
 from companion.situation.phases import Phase
-from companion.vehicle.delay_buffer import DelayBuffer
+from companion.vehicle.estimator import DelayBuffer
 from link.errors import UserError
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Command, Fix, FixVelocity, LandingStatus, PadGeometry, PadSighting, Plan, VehicleImu

@@ -8,7 +8,7 @@ import numpy as np
 from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.core.data import VehicleEstimate
-from companion.vehicle.surprise import Surprise, update_surprise
+from companion.vehicle.driving import Surprise, update_surprise
 from tests.companion.vehicle.drives import (
     DEGRADED,
     Drive,

@@ -9,7 +9,7 @@ import pytest
 
 from companion.config.estimation import EstimatorKind
 from companion.core.data import Measurement, Quantity
-from companion.vehicle.buffered import Estimator
+from companion.vehicle.estimator import Estimator
 from tests.companion.vehicle.drives import (
     NOMINAL,
     brake,

@@ -1,6 +1,7 @@
 """The pad from the antenna: the lever arm turns with the heading, and its motion is that of a rigid body."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from hypothesis import given, settings
@@ -78,3 +79,11 @@ def test_forecast_is_not_written_to() -> None:
     before = forecast.position_enu_m.copy()
     pad_path(forecast, _pad((1.0, -0.5, 0.2)))
     np.testing.assert_array_equal(forecast.position_enu_m, before)
+
+
+def test_vague_heading_does_not_place_a_pad_on_a_long_lever_arm_that_nobody_has_seen() -> None:
+    unseen = replace(_forecast(np.zeros_like(OFFSETS_S)), yaw_std_rad=0.15, position_std_m=np.full((41, 3), 1.0))
+    seen = replace(unseen, position_std_m=np.full((41, 3), 0.05))
+    assert pad_path(unseen, _pad((2.0, 0.0, 0.7))).unplaced == HEADING_UNKNOWN
+    assert pad_path(unseen, _pad((0.4, 0.0, 0.7))).unplaced is None
+    assert pad_path(seen, _pad((2.0, 0.0, 0.7))).unplaced is None

@@ -125,6 +125,10 @@ def pad_pose(frame_id: str, covariance: list[float], orientation: ros.Quaternion
     ).serialize()
 
 
+def test_every_type_on_the_wire_makes_the_round_trip_below() -> None:
+    assert {type(message) for message in MESSAGES} == set(ROS_TYPES)
+
+
 @pytest.mark.parametrize("message", MESSAGES, ids=lambda message: type(message).__name__)
 def test_message_returns_from_its_bytes(message: Message) -> None:
     back = decode(type(message), encode(message))

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.autopilots.setpoint_message import local_ned_setpoint
+from companion.autopilots.messages import local_ned_setpoint
 from companion.core.data import Setpoint
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink

@@ -6,8 +6,7 @@ import pytest
 
 from companion.config.estimation import BufferConfig, LkfConfig
 from companion.core.data import Measurement, Quantity
-from companion.vehicle.buffered import BufferedEstimator
-from companion.vehicle.delay_buffer import DelayBuffer, fuse
+from companion.vehicle.estimator import BufferedEstimator, DelayBuffer, fuse
 from companion.vehicle.filter_step import FilterModel, Gaussian, nis_threshold
 from companion.vehicle.lkf import LkfModel, WhiteJerkNoise
 from tests.companion.vehicle.rides import now_ns

@@ -1,4 +1,4 @@
-"""Commands with acknowledgement: sent again until answered, one of a kind at a time.
+"""What is asked of the autopilot until it answers or it has been enough: commands, one of a kind at a time; parameters.
 
 An acknowledgement names the command only, not which of several it answers. So two commands with the same id, such as
 two message intervals, are never under way together: the second waits for the end of the first.
@@ -11,12 +11,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from link.mavlink.dialect import Message, mavlink
-from link.mavlink.events import CommandAcknowledged, CommandTimedOut
-from link.mavlink.session_config import SessionConfig, duration_ns
+from link.mavlink.events import CommandAcknowledged, CommandTimedOut, ParameterMissing, ParameterRead
+from link.mavlink.parameters import NAME_LENGTH_MAX, parameter_value
 
 CommandParams = tuple[float, float, float, float, float, float, float]
 _PARAMS = 7
 _CONFIRMATION_MAX = 255
+_COMMAND_RETRY_NS = 500_000_000  # without an acknowledgement
+_PROGRESS_NS = 10_000_000_000  # patience after an IN_PROGRESS
 
 
 def command_params(params: Sequence[float]) -> CommandParams:
@@ -47,15 +49,12 @@ class CommandSender:
 
     Args:
         send: called with command, parameters and confirmation count to put a COMMAND_LONG on its way.
-        config: patience.
     """
 
-    def __init__(self, send: Callable[[int, CommandParams, int], None], config: SessionConfig) -> None:
+    def __init__(self, send: Callable[[int, CommandParams, int], None]) -> None:
         self.retried = 0
         self.timed_out = 0
         self._send = send
-        self._retry_ns = duration_ns(config.command_retry_s)
-        self._progress_ns = duration_ns(config.command_progress_timeout_s)
         self._queues: dict[int, deque[_Command]] = {}
         self._last_ticket: dict[int, int] = {}
         self._tickets = 0
@@ -76,7 +75,7 @@ class CommandSender:
         if queue and pending is not None:
             if message.result == mavlink.MAV_RESULT_IN_PROGRESS:
                 pending.in_progress = True
-                pending.due_ns = t_ns + self._progress_ns
+                pending.due_ns = t_ns + _PROGRESS_NS
             else:
                 self._finish(queue, t_ns)
         return CommandAcknowledged(
@@ -94,7 +93,7 @@ class CommandSender:
         return [
             self._give_up(queue, t_ns)
             for queue in self._queues.values()
-            if queue and t_ns >= queue[0].due_ns and not self._sent_again(queue[0], t_ns)
+            if queue and t_ns >= queue[0].due_ns and not self._send_again(queue[0], t_ns)
         ]
 
     def drop_all(self, t_ns: int) -> list[CommandTimedOut]:
@@ -102,9 +101,9 @@ class CommandSender:
         dropped = [one for queue in self._queues.values() for one in queue]
         self._queues.clear()
         self.timed_out += len(dropped)
-        return [_timed_out(one, t_ns) for one in dropped]
+        return [_time_out(one, t_ns) for one in dropped]
 
-    def _sent_again(self, pending: _Command, t_ns: int) -> bool:
+    def _send_again(self, pending: _Command, t_ns: int) -> bool:
         if pending.in_progress or pending.attempts >= pending.attempts_max:
             return False
         self.retried += 1
@@ -113,7 +112,7 @@ class CommandSender:
 
     def _give_up(self, queue: deque[_Command], t_ns: int) -> CommandTimedOut:
         self.timed_out += 1
-        return _timed_out(self._finish(queue, t_ns), t_ns)
+        return _time_out(self._finish(queue, t_ns), t_ns)
 
     def _finish(self, queue: deque[_Command], t_ns: int) -> _Command:
         done = queue.popleft()
@@ -125,8 +124,74 @@ class CommandSender:
     def _transmit(self, pending: _Command, t_ns: int) -> None:
         self._send(pending.command, pending.params, min(pending.attempts, _CONFIRMATION_MAX))
         pending.attempts += 1
-        pending.due_ns = t_ns + self._retry_ns
+        pending.due_ns = t_ns + _COMMAND_RETRY_NS
 
 
-def _timed_out(pending: _Command, t_ns: int) -> CommandTimedOut:
+def _time_out(pending: _Command, t_ns: int) -> CommandTimedOut:
     return CommandTimedOut(t_ns=t_ns, command=pending.command, ticket=pending.ticket, attempts=pending.attempts)
+
+
+_PARAMETER_RETRY_NS = 500_000_000
+_PARAMETER_ATTEMPTS = 6
+
+
+@dataclass(slots=True)
+class _Question:
+    attempts: int
+    due_ns: int
+
+
+class ParameterReader:
+    """The parameters asked for.
+
+    Args:
+        send: called with a parameter's name to put a PARAM_REQUEST_READ on its way.
+    """
+
+    def __init__(self, send: Callable[[str], None]) -> None:
+        self.retried = 0
+        self._send = send
+        self._questions: dict[str, _Question] = {}
+
+    def read(self, name: str, t_ns: int) -> None:
+        """Asks for a parameter, unless it has been asked for already.
+
+        Raises:
+            ValueError: No parameter can have this name.
+        """
+        if not (0 < len(name) <= NAME_LENGTH_MAX and name.isascii()):
+            raise ValueError(f"a parameter's name has 1 to {NAME_LENGTH_MAX} ASCII characters, not {name!r}")
+        if name not in self._questions:
+            self._questions[name] = _Question(attempts=1, due_ns=t_ns + _PARAMETER_RETRY_NS)
+            self._send(name)
+
+    def received(self, message: Message, autopilot: int, t_ns: int) -> list[ParameterRead]:
+        """Takes a PARAM_VALUE, which may be one that nobody asked for."""
+        name: str = message.param_id
+        value = parameter_value(message, autopilot)
+        if name not in self._questions or value is None:
+            return []
+        del self._questions[name]
+        return [ParameterRead(t_ns=t_ns, name=name, value=value)]
+
+    def poll(self, t_ns: int) -> list[ParameterMissing]:
+        """Asks again for what did not come and gives up what was asked for often enough."""
+        due = [(name, question) for name, question in self._questions.items() if t_ns >= question.due_ns]
+        return [ParameterMissing(t_ns=t_ns, name=name) for name, question in due if not self._ask_again(name, t_ns)]
+
+    def start_over(self, t_ns: int) -> None:
+        """Asks for everything outstanding anew, as after a restart."""
+        for name in self._questions:
+            self._questions[name] = _Question(attempts=1, due_ns=t_ns + _PARAMETER_RETRY_NS)
+            self._send(name)
+
+    def _ask_again(self, name: str, t_ns: int) -> bool:
+        question = self._questions[name]
+        if question.attempts >= _PARAMETER_ATTEMPTS:
+            del self._questions[name]
+            return False
+        question.attempts += 1
+        question.due_ns = t_ns + _PARAMETER_RETRY_NS
+        self.retried += 1
+        self._send(name)
+        return True

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from companion.autopilots.velocity_bias import as_seen_with, velocity_bias, without
+from companion.autopilots.own_reports import as_seen_with, velocity_bias, without_bias
 from companion.core.data import OwnState, Setpoint
 from link.messages import Vector3
 
@@ -35,13 +35,13 @@ def after(
         t_ns = 10**18 + index * REPORT_NS + int(random.integers(0, 4_000_000))
         (x, y, z), velocity = motion((t_ns - 10**18) * 1e-9)
         position = (x + moved_m((t_ns - 10**18) * 1e-9), y, z)
-        reported = without(velocity, tuple(-part for part in wrong_by))  # type: ignore[arg-type]  # (three parts)
+        reported = without_bias(velocity, tuple(-part for part in wrong_by))  # type: ignore[arg-type]  # (three parts)
         stamp_ns = t_ns - t_ns % 1_000_000
         bias = velocity_bias(own, stamp_ns, position, reported)
         own = OwnState(
             t_ns=stamp_ns,
             position_enu_m=position,
-            velocity_enu_m_s=without(reported, bias),
+            velocity_enu_m_s=without_bias(reported, bias),
             velocity_bias_enu_m_s=bias,
             orientation_wxyz=(1.0, 0.0, 0.0, 0.0),
             angular_velocity_flu_rad_s=(0.0, 0.0, 0.0),
@@ -92,5 +92,5 @@ def test_setpoint_asks_for_the_velocity_that_the_autopilot_will_report() -> None
     )
     asked = as_seen_with(wanted, WRONG_BY)
     assert asked.velocity_enu_m_s == pytest.approx((5.3, -1.45, 0.2))
-    assert without(asked.velocity_enu_m_s or (0.0, 0.0, 0.0), WRONG_BY) == pytest.approx(wanted.velocity_enu_m_s)
+    assert without_bias(asked.velocity_enu_m_s or (0.0, 0.0, 0.0), WRONG_BY) == pytest.approx(wanted.velocity_enu_m_s)
     assert asked.position_enu_m == wanted.position_enu_m

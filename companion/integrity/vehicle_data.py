@@ -1,4 +1,8 @@
-"""Whether the vehicle heads where it goes: a heading that its course contradicts places no pad; pure.
+"""Whether the vehicle's data contradict each other, come from the future, or head where it does not go; pure.
+
+How many of them the estimator has lately rejected tells the first, how old the newest fix was when it came the second.
+A velocity with its axes exchanged, or stamps that jump, make the estimator reject what it has just believed, again and
+again: its estimate swings between the two. Outages and brakes have a few rejected, one after the other.
 
 A heading from a magnetometer beside steel, or one with its axes mixed up, turns the lever arm from the antenna to the
 pad: by 20 degrees the benchmark's pad is half a metre off, by 180 degrees it is beside the vehicle. The course tells,
@@ -11,10 +15,81 @@ from dataclasses import dataclass
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
+from companion.situation.situation import Situation
+from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.pad import PadPath
 from link.records import replace
 
-_OVER_S = 2.0  # heading and course are compared over so long: a cheap heading has 5 degrees of noise
+_EVERY_NS = 500_000_000
+_SAMPLES_KEPT = (
+    20  # samples, of 10 s in all: a step of the drone's own frame has measurements of half a second rejected
+)
+_MEASUREMENTS_MIN = 20  # measurements that something is said of
+
+Sample = tuple[int, int, int]
+"""Monotonic ns, and how many measurements were accepted and rejected by then."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Contradictions:
+    """What became of the vehicle's measurements in the last seconds.
+
+    Attributes:
+        samples: oldest first.
+        rejected_share: of those that came, 0 to 1.
+    """
+
+    samples: tuple[Sample, ...] = ()
+    rejected_share: float = 0.0
+
+    def is_due(self, t_ns: int) -> bool:
+        """Return whether the next sample is to be taken at `t_ns`."""
+        return not self.samples or t_ns - self.samples[-1][0] >= _EVERY_NS
+
+
+def update_contradictions(before: Contradictions, health: BufferHealth, t_ns: int) -> Contradictions:
+    """Return the contradictions with what the estimator tells at `t_ns`; one that was begun anew is counted anew."""
+    now = (t_ns, health.fused, health.gated)
+    if before.samples and before.samples[-1][1] > health.fused:
+        return Contradictions(samples=(now,))
+    samples = (*before.samples, now)[-_SAMPLES_KEPT - 1 :]
+    accepted, rejected = health.fused - samples[0][1], health.gated - samples[0][2]
+    arrived = accepted + rejected
+    return Contradictions(samples=samples, rejected_share=rejected / arrived if arrived >= _MEASUREMENTS_MIN else 0.0)
+
+
+def contradicts_itself(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether so many of the vehicle's measurements were rejected that nothing says which are right."""
+    return s.vehicle.rejected_share > c.abort.rejected_share_max
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FixStamps:
+    """The newest accepted fix.
+
+    Attributes:
+        newest_ns: when it was taken, by its own stamp; None before the first.
+        age_on_arrival_s: of it in the step that took it in, never negative where both clocks are right.
+    """
+
+    newest_ns: int | None = None
+    age_on_arrival_s: float | None = None
+
+
+def update_fix_stamps(stamps: FixStamps, newest_ns: int | None, t_ns: int) -> FixStamps:
+    """Return the stamps with the newest fix as it is known at `t_ns`.
+
+    Args:
+        stamps: so far.
+        newest_ns: stamp of the newest accepted fix.
+        t_ns: now.
+    """
+    if newest_ns == stamps.newest_ns:
+        return stamps
+    return FixStamps(newest_ns=newest_ns, age_on_arrival_s=None if newest_ns is None else (t_ns - newest_ns) * 1e-9)
+
+
+_COURSE_OVER_S = 2.0  # heading and course are compared over so long: a cheap heading has 5 degrees of noise
 _COURSE_STD_MAX = 0.1  # standard deviation of the speed, as a share of it: 6 degrees of the course
 _COURSE_STDS = 3.0  # of the course, by which more it may be off: over poor data it errs for as long as that
 _CAR_M = 3.0  # times the curvature: what a point of a car slips beside its heading
@@ -61,7 +136,7 @@ def update_course(
         return watch
     step_s = 1.0 / config.step_rate_hz
     compared_s = watch.compared_s + step_s
-    share = step_s / min(compared_s, _OVER_S)
+    share = step_s / min(compared_s, _COURSE_OVER_S)
     off_rad = pad.yaw_rad - math.atan2(vy, vx)
     watch = replace(
         watch,
@@ -71,10 +146,14 @@ def update_course(
     )
     slip_rad = _CAR_M * abs(vx * ay - vy * ax) / speed_m_s**3
     unsure_rad = _COURSE_STDS * speed_std_m_s / speed_m_s
-    return watch if compared_s < _OVER_S else _judged(watch, config.chase.heading_off_max_rad + slip_rad + unsure_rad)
+    return (
+        watch
+        if compared_s < _COURSE_OVER_S
+        else _judge(watch, config.chase.heading_off_max_rad + slip_rad + unsure_rad)
+    )
 
 
-def _judged(watch: CourseWatch, off_max_rad: float) -> CourseWatch:
+def _judge(watch: CourseWatch, off_max_rad: float) -> CourseWatch:
     off_rad = abs(math.atan2(watch.off_sin, watch.off_cos))
     within_rad = off_max_rad if watch.off_rad is None else _BACK_WITHIN * off_max_rad
     if off_rad <= within_rad:
