@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from scenarios.simulation.noise import named_rng
+from scenarios.simulation.noise import Seed, named_rng
 from scenarios.tracks.drive import SHIFT_CURVATURE, Shift
 from scenarios.tracks.suspension import Array
 from scenarios.worlds.draws import Draws
@@ -101,7 +101,7 @@ class _Drive:
 
 
 def plan_drive(
-    draws: Draws, seed: int, road: RoadPlan, *, cruise_m_s: float, run_up_m: float, length_m: float
+    draws: Draws, seed: Seed, road: RoadPlan, *, cruise_m_s: float, run_up_m: float, length_m: float
 ) -> DrivePlan:
     """Return the drive of a world along its road; the arguments are those of `plan_road`."""
     events = [_event(draws, slot) for slot in range(EVENTS)]
@@ -132,7 +132,7 @@ def _event(draws: Draws, slot: int) -> _Event:
     )
 
 
-def _planned(draws: Draws, seed: int, road: RoadPlan, *, cruise_m_s: float, length_m: float) -> _Grid:
+def _planned(draws: Draws, seed: Seed, road: RoadPlan, *, cruise_m_s: float, length_m: float) -> _Grid:
     """Return the grid with the speeds that the driver plans."""
     step_m = min(_CELL_MAX_M, max(_CELL_MIN_M, cruise_m_s * _CELL_S))
     count = int(length_m / step_m)
@@ -153,7 +153,7 @@ def _planned(draws: Draws, seed: int, road: RoadPlan, *, cruise_m_s: float, leng
     )
 
 
-def _wishes(draws: Draws, seed: int, cruise_m_s: float, step_m: float, count: int) -> Array:
+def _wishes(draws: Draws, seed: Seed, cruise_m_s: float, step_m: float, count: int) -> Array:
     """Return the speed (count,) that the driver would like: an Ornstein-Uhlenbeck process about his cruising speed.
 
     Its square is linear in the place between knots, so the acceleration is constant there.
