@@ -1,7 +1,6 @@
 """A landing as a task; the flights themselves are tested with lockstep."""
 
 import math
-from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -9,6 +8,7 @@ import pytest
 
 from companion.situation.phases import Phase
 from link.errors import UserError
+from link.records import replace
 from scenarios.campaigns import landing_task
 from scenarios.campaigns.landing_task import Flights, Task, row_of, wave_offs
 from scenarios.catalogue.catalogue import load_scenario
