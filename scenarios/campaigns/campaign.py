@@ -13,7 +13,7 @@ from companion.config.companion import CompanionConfig
 from link.errors import UserError
 from link.program.toml_config import load_config, merge, read_toml, validate
 from scenarios.campaigns.folder import Plan, open_journal
-from scenarios.campaigns.landing_task import Flights, Flown, Row, Task, failed
+from scenarios.campaigns.landing_task import Flights, Flown, Row, Task, failed_row
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.catalogue.firmware_option import cells_with
 from scenarios.config import Scenario
@@ -120,7 +120,7 @@ def _flown(plan: Plan, tasks: Sequence[Task], where: Where) -> Generator[Flown, 
     return run_tasks(
         workers,
         tasks,
-        lost=lambda task, why: Flown(row=failed(task, plan.scenarios[task.cell].firmware, why), wall_s=0.0),
+        lost=lambda task, why: Flown(row=failed_row(task, plan.scenarios[task.cell].firmware, why), wall_s=0.0),
     )
 
 

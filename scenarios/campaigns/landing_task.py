@@ -77,7 +77,7 @@ class Flights:
                 try:
                     row = fly(task, self.scenarios[task.cell])
                 except Exception as error:  # noqa: BLE001 (one landing's fault must not end a campaign, and is reported)
-                    row = failed(task, self.scenarios[task.cell].firmware, error_line(error))
+                    row = failed_row(task, self.scenarios[task.cell].firmware, error_line(error))
             wall_s, cpu_s = time.perf_counter() - began_s, time.process_time() - began_cpu_s
             return Flown(row=row, wall_s=wall_s, times={"cpu_s": cpu_s} | _planner_ms(durations_s["planner"]))
 
@@ -114,7 +114,7 @@ def row_of(task: Task, table: Mapping[str, Any], recording: Recording) -> Row:
     return _head(task) | values | wave_offs([status.phase for status in recording.statuses]) | tried | phases
 
 
-def failed(task: Task, firmware: str, error: str) -> Row:
+def failed_row(task: Task, firmware: str, error: str) -> Row:
     """Return the row of a task that has no result."""
     return _head(task) | {"firmware": firmware, "error": error}
 

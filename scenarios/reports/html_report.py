@@ -64,7 +64,7 @@ def _run_page(run: RunData) -> str:
         plotly=plotly_script(),
         path_chart=path_chart(run),
         motion_chart=motion_chart(run),
-        figures=_captioned(run_figures(run)),
+        figures=_caption(run_figures(run)),
         phases=run.phases,
         approaches=result.get("approaches", ()),
         scenario=dump_toml(run.scenario),
@@ -83,7 +83,7 @@ def _campaign_page(folder: Path) -> str:
         title=f"Campaign {folder.resolve().name}",
         verdict=f"{landed} of {len(rows)} landings reached S3",
         summary=text.getvalue(),
-        figures=_captioned(campaign_figures(plan, rows)),
+        figures=_caption(campaign_figures(plan, rows)),
         scenarios={cell: dump_toml(scenario) for cell, scenario in plan.scenarios.items()},
         versions=plan.versions,
     )
@@ -98,7 +98,7 @@ def _page(template: str, **values: Any) -> str:
     return environment.get_template(template).render(values)
 
 
-def _captioned(figures: Mapping[str, Figure]) -> dict[str, str]:
+def _caption(figures: Mapping[str, Figure]) -> dict[str, str]:
     """Return figures by what stands below them."""
     return {_CAPTIONS[name]: _svg(figure, name) for name, figure in figures.items()}
 
