@@ -15,7 +15,7 @@ class MemoryLink:
     """Holds packets until their time has come, and loses, doubles, spoils or overtakes some of them.
 
     Args:
-        seed: of all that is random.
+        seed: of all that is random, or the generator that draws it.
         delay_s: mean time from `put` to `take`.
         jitter_s: the delay is uniform within plus or minus this about its mean, never below zero.
         loss: probability that a packet is lost.
@@ -31,7 +31,7 @@ class MemoryLink:
     def __init__(
         self,
         *,
-        seed: int,
+        seed: int | np.random.Generator,
         delay_s: float = 0.0,
         jitter_s: float = 0.0,
         loss: float = 0.0,

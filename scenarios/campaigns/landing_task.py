@@ -77,7 +77,7 @@ class Flights:
                 try:
                     row = fly(task, self.scenarios[task.cell])
                 except Exception as error:  # noqa: BLE001 (one landing's fault must not end a campaign, and is reported)
-                    row = failed(task, self.scenarios[task.cell].firmware, _where(error))
+                    row = failed(task, self.scenarios[task.cell].firmware, error_line(error))
             wall_s, cpu_s = time.perf_counter() - began_s, time.process_time() - began_cpu_s
             return Flown(row=row, wall_s=wall_s, times={"cpu_s": cpu_s} | _planner_ms(durations_s["planner"]))
 
@@ -148,7 +148,7 @@ def _head(task: Task) -> Row:
     return {"cell": task.cell, "seed": task.seed, "error": None}
 
 
-def _where(error: Exception) -> str:
+def error_line(error: Exception) -> str:
     """Return an error in one line with the place that raised it, the same on every machine."""
     last = traceback.extract_tb(error.__traceback__)[-1]
     file = last.filename.replace("\\", "/").rsplit("/", 1)[-1]

@@ -17,6 +17,7 @@ from scenarios.config import Scenario
 from scenarios.lockstep.channels import Channels, channels_of
 from scenarios.recordings.recording import EndWatch, Recording
 from scenarios.scoring.accuracy import PERIOD_NS, PHASES, Nis, antenna_truth, estimate_error
+from scenarios.simulation.noise import Seed
 from scenarios.simulation.simulation import Simulation, SimulationOutputs
 
 START_NS = 1_767_225_600_000_000_000
@@ -36,7 +37,7 @@ class Lockstep:
     """
 
     def __init__(
-        self, scenario: Scenario, seed: int, config: CompanionConfig | None = None, recorder: Recorder | None = None
+        self, scenario: Scenario, seed: Seed, config: CompanionConfig | None = None, recorder: Recorder | None = None
     ) -> None:
         keys = Keys()
         self.recording = Recording()

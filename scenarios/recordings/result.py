@@ -17,12 +17,13 @@ from scenarios.scoring.score import Score, Tier, score, score_log
 from scenarios.scoring.touchdown import ScoreRules, Touchdown, rules_of
 from scenarios.scoring.truth_log import TruthLog, truth_log
 from scenarios.simulation.drone import mean_wind_enu_m_s
+from scenarios.simulation.noise import Seed
 
 _DIGITS = 6  # a micrometre, a microsecond
 LANDED = frozenset({Tier.S1, Tier.S2, Tier.S3})
 
 
-def score_run(scenario: Scenario, seed: int, recording: Recording, rules: ScoreRules | None = None) -> Score:
+def score_run(scenario: Scenario, seed: Seed, recording: Recording, rules: ScoreRules | None = None) -> Score:
     """Return the score of a recording, on truth, by the scenario's rules unless others are given."""
     rules = rules or rules_of(scenario, wind_mean_enu_m_s=mean_wind_enu_m_s(scenario, seed))
     return score(recording.drone, recording.vehicle, recording.rotors, rules)

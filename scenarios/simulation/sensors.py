@@ -17,7 +17,7 @@ from link.frames.rotations import canonical, conjugate, multiply, quaternion_fro
 from link.messages import BodyTruth, Fix, FixVelocity, Matrix3, PadSighting, Quaternion, Vector3, VehicleImu
 from link.records import replace
 from scenarios.config import FixConfig, ImuConfig, PatternConfig, SensorsConfig, VelocityConfig
-from scenarios.simulation.noise import Dropouts, GaussMarkov, SensorSchedule, StampClock, named_rng, normal3
+from scenarios.simulation.noise import Dropouts, GaussMarkov, Seed, SensorSchedule, StampClock, named_rng, normal3
 from scenarios.simulation.vehicle import VehicleState
 
 Sample = Fix | FixVelocity | VehicleImu | PadSighting
@@ -37,7 +37,7 @@ class _FixSensor:
     """The receiver's position, at the antenna, in the receiver's own frame."""
 
     def __init__(
-        self, config: FixConfig, seed: int, *, mounting: Mounting, offset_enu_m: Vector3, datum: Datum
+        self, config: FixConfig, seed: Seed, *, mounting: Mounting, offset_enu_m: Vector3, datum: Datum
     ) -> None:
         self.schedule = SensorSchedule(config, seed, "fix")
         self._rng = named_rng(seed, "fix")
@@ -73,7 +73,7 @@ def white_error_m(config: FixConfig, rng: np.random.Generator) -> Vector3:
 class _VelocitySensor:
     """The receiver's velocity, at the antenna."""
 
-    def __init__(self, config: VelocityConfig, seed: int, *, mounting: Mounting) -> None:
+    def __init__(self, config: VelocityConfig, seed: Seed, *, mounting: Mounting) -> None:
         self.schedule = SensorSchedule(config, seed, "velocity")
         self._rng = named_rng(seed, "velocity")
         self._white_m_s = config.white_m_s
@@ -92,7 +92,7 @@ class _VelocitySensor:
 class _ImuSensor:
     """Heading and yaw rate; roll and pitch are reported as level, with the same doubt as the heading."""
 
-    def __init__(self, config: ImuConfig, seed: int) -> None:
+    def __init__(self, config: ImuConfig, seed: Seed) -> None:
         self.schedule = SensorSchedule(config, seed, "imu")
         self._rng = named_rng(seed, "imu")
         self._bias = GaussMarkov(
@@ -119,7 +119,7 @@ class _ImuSensor:
 class _PatternSensor:
     """The detector on the drone: a cone of view straight down from the drone's centre."""
 
-    def __init__(self, config: PatternConfig, seed: int, *, mounting: Mounting) -> None:
+    def __init__(self, config: PatternConfig, seed: Seed, *, mounting: Mounting) -> None:
         self.schedule = SensorSchedule(config, seed, "pattern")
         self._rng = named_rng(seed, "pattern")
         chain = named_rng(seed, "pattern dropouts")
@@ -159,7 +159,7 @@ class _PatternSensor:
 class SensorSuite:
     """All sensors of a scenario, and the samples that are under way."""
 
-    def __init__(self, config: SensorsConfig, seed: int, *, mounting: Mounting, datum: Datum) -> None:
+    def __init__(self, config: SensorsConfig, seed: Seed, *, mounting: Mounting, datum: Datum) -> None:
         self._queue: list[tuple[int, int, Sample]] = []
         self._count = 0
         self._clock: StampClock | None = None

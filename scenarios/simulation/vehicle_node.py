@@ -10,7 +10,7 @@ from link.messages import BodyTruth, Fix, FixVelocity, PadGeometry, PadSighting,
 from link.payloads import cdr
 from link.zenoh.keys import Keys, Publication
 from scenarios.config import Scenario
-from scenarios.simulation.noise import named_rng
+from scenarios.simulation.noise import Seed, named_rng
 from scenarios.simulation.sensors import Mounting, SensorSuite
 from scenarios.simulation.vehicle import (
     VehicleInputs,
@@ -43,7 +43,7 @@ class VehicleNode:
         state: where it is, None before the first step.
     """
 
-    def __init__(self, scenario: Scenario, seed: int, keys: Keys, *, publishes_truth: bool = True) -> None:
+    def __init__(self, scenario: Scenario, seed: Seed, keys: Keys, *, publishes_truth: bool = True) -> None:
         self.pad: PadGeometry = scenario.vehicle.pad
         self.plan = plan_of(scenario, seed)
         self.memory = VehicleMemory()
@@ -91,7 +91,7 @@ class VehicleNode:
         return Publication(key=self._keys[kind], payload=cdr.encode(message), encoding=self._encodings[kind])
 
 
-def plan_of(scenario: Scenario, seed: int) -> VehiclePlan:
+def plan_of(scenario: Scenario, seed: Seed) -> VehiclePlan:
     """Return what the vehicle of `scenario` does with `seed`."""
     return VehiclePlan(
         course=course_of(scenario.track, named_rng(seed, "track")),

@@ -181,15 +181,20 @@ def with_default_links(config: SimAutopilotConfig) -> SimAutopilotConfig:
     return config.model_copy(update={"links": links})
 
 
-def wind_model(config: SimAutopilotConfig) -> WindModel:
-    """Return the air, which blows towards where it does not come from."""
+def wind_model(config: SimAutopilotConfig, seed: int | np.random.Generator | None = None) -> WindModel:
+    """Return the air, which blows towards where it does not come from.
+
+    Args:
+        config: of the mean wind, the turbulence and the gust.
+        seed: of the turbulence, or the generator that draws it; None for the configuration's.
+    """
     wind = config.wind
     from_rad = wind.from_rad
     if from_rad is None:
         from_rad = float(np.random.default_rng(config.seed).uniform(-pi, pi))
     std_m_s = wind.turbulence_std_m_s
     turbulence = Turbulence[wind.turbulence.upper()] if std_m_s is None else std_m_s
-    return WindModel(config.seed, wind.mean_m_s, from_rad + pi, turbulence, gust=_gust(wind))
+    return WindModel(config.seed if seed is None else seed, wind.mean_m_s, from_rad + pi, turbulence, gust=_gust(wind))
 
 
 def _gust(wind: WindConfig) -> Gust | None:
