@@ -33,7 +33,7 @@ TABLE: MappingProxyType[str, Any] = MappingProxyType(
         ],
     }
 )
-FLIGHTS = Flights(scenarios={"straight_5": load_scenario("straight_5")}, sources=sources())
+FLIGHTS = Flights(cells={"straight_5": load_scenario("straight_5")}, sources=sources())
 
 
 def values(*phases: Phase) -> list[str]:
@@ -91,8 +91,8 @@ def test_worker_with_other_sources_refuses() -> None:
 
 
 def test_job_of_one_cell_holds_no_other() -> None:
-    both = replace(FLIGHTS, scenarios={**FLIGHTS.scenarios, "circle_5": load_scenario("circle_5")})
-    assert both.only("circle_5").scenarios.keys() == {"circle_5"}
+    both = replace(FLIGHTS, cells={**FLIGHTS.cells, "circle_5": load_scenario("circle_5")})
+    assert both.only("circle_5").cells.keys() == {"circle_5"}
 
 
 def test_versions_name_the_numerics() -> None:
