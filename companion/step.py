@@ -3,28 +3,27 @@
 Pure: the same memory, inputs and system give the same result, in flight, in simulation and in replay.
 """
 
-import math
-
 from companion.autopilots.driver import AutopilotCommand, Desire
 from companion.config.companion import CompanionConfig
 from companion.core.data import Forecast
-from companion.core.reasons import sentence
-from companion.integrity.contradictions import Contradictions, FixStamps, update_contradictions, update_fix_stamps
-from companion.integrity.course import update_course, without_contradicted_heading
 from companion.integrity.heights import is_road_elsewhere, update_ground, update_pad_raised_m, with_pad_raised
-from companion.landing.condition import holds
+from companion.integrity.vehicle_data import (
+    Contradictions,
+    FixStamps,
+    update_contradictions,
+    update_course,
+    update_fix_stamps,
+    without_contradicted_heading,
+)
+from companion.landing.conditions import HELD_UP, holds
 from companion.landing.contact import may_force_motors_off, signs_of
-from companion.landing.contact_conditions import HELD_UP
 from companion.landing.flying import fly
-from companion.landing.frame_shift import to_present_frame
-from companion.landing.memory import ModelMemory, Progress, StepMemory, VehicleMemory
-from companion.landing.setpoints import has_free_place, setpoint
-from companion.landing.status import landing_status
+from companion.landing.memory import ModelMemory, StepMemory, VehicleMemory, to_present_frame
+from companion.landing.outputs import has_free_place, landing_status, news, setpoint
 from companion.landing.step_data import StepInputs, StepOutputs, System
 from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.landing.transitions import take_events
-from companion.landing.virtual_model import update_tracking
-from companion.planning.guidance import ReferenceState
+from companion.landing.virtual_model import tracking_error_max_m, update_tracking
 from companion.planning.requests import are_finite
 from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
 from companion.situation.situation import (
@@ -36,8 +35,8 @@ from companion.situation.situation import (
     range_height_m,
     with_pad,
 )
+from companion.vehicle.driving import forget_beliefs, update_surprise
 from companion.vehicle.pad import PadPath, pad_path
-from companion.vehicle.surprise import forget_beliefs, update_surprise
 from link.frames.rotations import yaw_of
 from link.records import replace
 
@@ -69,21 +68,12 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
     outputs = StepOutputs(
         setpoint=setpoint(memory, inputs, system.config, plan),
         commands=commands,
-        text=_news(before, memory.progress),
+        text=news(before, memory.progress),
         reply=reply,
         status=landing_status(memory, situation, system.config),
         plan=plan,
     )
     return memory, outputs
-
-
-def _news(before: Progress, now: Progress) -> str | None:
-    """Return what the pilot is told of this step, None when there is nothing new."""
-    if now.phase is not before.phase:
-        return f"{now.phase.value}: {sentence(now.cause)}"
-    told = now.obstacle
-    is_new = told is not None and (before.obstacle is None or before.obstacle.reason is not told.reason)
-    return f"{now.phase.value}: {sentence(told)}" if told is not None and is_new else None
 
 
 def _update_model(memory: StepMemory, inputs: StepInputs, system: System) -> ModelMemory:
@@ -186,7 +176,9 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
         feet_offset_m=touchdown.gear_height_m,
         reference=memory.model.reference,
         tracking_error_m=memory.model.tracking.error_m,
-        tracking_error_max_m=_tracking_error_max_m(memory.model.reference, inputs, system.config),
+        tracking_error_max_m=tracking_error_max_m(
+            memory.model.reference, inputs.response, inputs.link_delay.std_s, system.config.abort.tracking_stds_max
+        ),
         waiting_point_enu_m=memory.places.waiting_point_enu_m,
         limits=inputs.limits,
         speed_limited_by=() if inputs.driver is None else inputs.driver.speed_parameters,
@@ -207,15 +199,6 @@ def _look(
     places = replace(memory.places, ground_enu_m=update_ground(memory.places.ground_enu_m, phase, situation))
     memory = replace(memory, vehicle=vehicle, places=places)
     return memory, with_pad_raised(situation, vehicle.pad_raised_m)
-
-
-def _tracking_error_max_m(reference: ReferenceState | None, inputs: StepInputs, config: CompanionConfig) -> float:
-    """Return how far from its setpoint a drone may be that follows it."""
-    if inputs.response is None:
-        return math.inf
-    speed_m_s = 0.0 if reference is None else math.hypot(*reference.velocity_enu_m_s.tolist())
-    std_m = math.hypot(math.sqrt(inputs.response.spread[0, 0]), speed_m_s * inputs.link_delay_std_s)
-    return config.abort.tracking_stds_max * std_m
 
 
 def _drive(

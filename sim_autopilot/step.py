@@ -36,7 +36,7 @@ from sim_autopilot.plant.plant import asked_tilt_rad, fly
 from sim_autopilot.plant.snapshot import take_snapshot
 from sim_autopilot.safety.arming import disarm, should_disarm
 from sim_autopilot.safety.failsafes_step import keep_watch, mind_lost_sticks
-from sim_autopilot.safety.failures import stopped
+from sim_autopilot.safety.failures import stop_failed
 from sim_autopilot.telemetry.builders import build_message, stream_of
 from sim_autopilot.telemetry.events import announce_origin, describe_step, failsafe_texts, tell
 from sim_autopilot.telemetry.status import heartbeat
@@ -159,7 +159,7 @@ def _advance(memory: AutopilotMemory, inputs: AutopilotInputs, config: Autopilot
     memory, following = over_target(memory, course.following, duration_s)
     plant = fly(memory.plant, following, inputs.deck, wind_enu_m_s, plant_config, duration_s, error)
     east, north, up = wind_enu_m_s.tolist()
-    plant = stopped(plant, memory.safety.failures)
+    plant = stop_failed(plant, memory.safety.failures)
     now = take_snapshot(plant.state, plant_config.airframe, plant.state.t_ns - memory.boot.start_ns, error)
     return replace(
         memory,

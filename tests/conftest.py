@@ -1,4 +1,4 @@
-"""Options of the whole test run, and a disk that is soon full."""
+"""Options of the whole test run, examples that are the same in each run, and a disk that is soon full."""
 
 import os
 import shutil
@@ -7,6 +7,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("repeatable", derandomize=True, deadline=None)
+settings.load_profile("repeatable")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

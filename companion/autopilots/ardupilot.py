@@ -10,19 +10,19 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
-from companion.autopilots.limits import Named, acceleration_of_tilt_m_s2, gain, stated
-from companion.autopilots.requests import (
+from companion.autopilots.limits import Named, acceleration_of_tilt_m_s2, find_gain, find_limit
+from companion.autopilots.messages import (
     Requested,
     arm,
     ask,
     ask_to_disarm,
+    local_ned_setpoint,
     set_mode,
     take_off,
     with_disarm_answer,
     without_disarm,
 )
 from companion.autopilots.response import Cascade
-from companion.autopilots.setpoint_message import local_ned_setpoint
 from companion.core.data import FlightLimits, Setpoint
 from link.frames.local_frame import Projection
 from link.mavlink.dialect import Message, mavlink
@@ -106,16 +106,16 @@ class ArduPilotDriver:
 
     def limits(self, wanted: FlightLimits, parameters: Mapping[str, float]) -> FlightLimits:
         """Return `wanted` cut to ArduCopter's limits of speed, climb, descent, tilt and jerk."""
-        tilt_deg = stated(parameters, _TILT)
+        tilt_deg = find_limit(parameters, _TILT)
         tilt_deg = min(tilt_deg, _TILT_MAX_DEG) if math.isfinite(tilt_deg) else _TILT_DEG
-        tilt_deg = min(tilt_deg, stated(parameters, _TILT_BY_POSITION))
+        tilt_deg = min(tilt_deg, find_limit(parameters, _TILT_BY_POSITION))
         return replace(
             wanted,
-            speed_max_m_s=min(wanted.speed_max_m_s, stated(parameters, _SPEED)),
-            climb_max_m_s=min(wanted.climb_max_m_s, stated(parameters, _CLIMB)),
-            descent_max_m_s=min(wanted.descent_max_m_s, stated(parameters, _DESCENT)),
+            speed_max_m_s=min(wanted.speed_max_m_s, find_limit(parameters, _SPEED)),
+            climb_max_m_s=min(wanted.climb_max_m_s, find_limit(parameters, _CLIMB)),
+            descent_max_m_s=min(wanted.descent_max_m_s, find_limit(parameters, _DESCENT)),
             tilt_acceleration_m_s2=acceleration_of_tilt_m_s2(tilt_deg),
-            jerk_max_m_s3=min(wanted.jerk_max_m_s3, _JERK_SHARE * stated(parameters, _JERK)),
+            jerk_max_m_s3=min(wanted.jerk_max_m_s3, _JERK_SHARE * find_limit(parameters, _JERK)),
         )
 
     def cascade(self, parameters: Mapping[str, float]) -> Cascade:
@@ -124,9 +124,9 @@ class ArduPilotDriver:
         A setpoint is carried on by its own velocity and acceleration, so that it needs no lead.
         """
         return Cascade(
-            position_per_s=gain(parameters, _POSITION_GAIN, 1.0),
-            velocity_per_s=gain(parameters, _VELOCITY_GAIN, 2.0),
-            integral_per_s2=gain(parameters, _INTEGRAL_GAIN, 1.0),
+            position_per_s=find_gain(parameters, _POSITION_GAIN, 1.0),
+            velocity_per_s=find_gain(parameters, _VELOCITY_GAIN, 2.0),
+            integral_per_s2=find_gain(parameters, _INTEGRAL_GAIN, 1.0),
             lead_s=0.0,
         )
 

@@ -52,10 +52,10 @@ def check_autopilot(session: MavlinkSession, device: str, timeout_s: float) -> N
         UserError: none was.
     """
     if session.autopilot is None:
-        raise UserError(f"no heartbeat of an autopilot within {timeout_s:g} s on {device}: {_seen(session)}")
+        raise UserError(f"no heartbeat of an autopilot within {timeout_s:g} s on {device}: {_describe_heard(session)}")
 
 
-def _seen(session: MavlinkSession) -> str:
+def _describe_heard(session: MavlinkSession) -> str:
     """Return what came instead, with what to change."""
     causes, codec = [], session.statistics.codec
     if session.other_system_ids:

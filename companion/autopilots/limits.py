@@ -25,7 +25,7 @@ class Named:
     unit: float = 1.0
 
 
-def stated(parameters: Mapping[str, float], names: Sequence[Named]) -> float:
+def find_limit(parameters: Mapping[str, float], names: Sequence[Named]) -> float:
     """Return a limit by whichever of its names is known, infinity where none is or what it says cannot be meant."""
     for named in names:
         value = parameters.get(named.name, math.nan) * named.unit
@@ -34,7 +34,7 @@ def stated(parameters: Mapping[str, float], names: Sequence[Named]) -> float:
     return math.inf
 
 
-def gain(parameters: Mapping[str, float], names: Sequence[str], default: float) -> float:
+def find_gain(parameters: Mapping[str, float], names: Sequence[str], default: float) -> float:
     """Return a gain by whichever of its names is known, the firmware's default where none is or it is not positive.
 
     A drone does not fly with gains far from the default; such a value is cut to where the cascade's model is stable.
@@ -54,7 +54,7 @@ def acceleration_of_tilt_m_s2(tilt_deg: float) -> float:
 _ASK_AGAIN_NS = 5_000_000_000  # after six questions without an answer, as over a link that was silent
 
 
-def named(driver: Driver) -> tuple[tuple[str, ...], ...]:
+def parameter_names(driver: Driver) -> tuple[tuple[str, ...], ...]:
     """Return the parameters that the flight depends on, each by all of its names."""
     return (*driver.limit_names, *driver.gain_names, (driver.timeout_parameter,))
 
@@ -80,4 +80,6 @@ class LimitQuestions:
         due = [name for name, due_ns in self._due_ns.items() if local_ns >= due_ns]
         for name in due:
             del self._due_ns[name]
-        return [name for name in due if any(name in names and known.isdisjoint(names) for names in named(driver))]
+        return [
+            name for name in due if any(name in names and known.isdisjoint(names) for names in parameter_names(driver))
+        ]

@@ -1,12 +1,11 @@
 """The companion's conversation with the autopilot: streams, origin and parameters asked for, messages read."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from itertools import chain
 
 from companion.autopilots.choice import driver_for
-from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver
-from companion.autopilots.limits import LimitQuestions, named
+from companion.autopilots.driver import STREAMS_HZ, AutopilotCommand, AutopilotView, Driver
+from companion.autopilots.limits import LimitQuestions, parameter_names
 from companion.autopilots.response import Cascade
 from companion.autopilots.state import AutopilotState, shift_reports, update_state
 from companion.config.companion import AutopilotKind
@@ -25,14 +24,8 @@ from link.mavlink.events import (
 )
 from link.mavlink.parameters import parameter_value
 from link.mavlink.session import MavlinkSession
+from link.records import replace
 
-_STREAMS_HZ = {
-    mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: 10.0,
-    mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: 2.0,
-    mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: 1.0,  # tells the geoid's height
-    mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: 1.0,
-    mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: 20.0,
-}
 _MOTION_IDS = (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED)
 _ASK = mavlink.MAV_CMD_REQUEST_MESSAGE
 _ASK_ORIGIN_NS = 1_000_000_000
@@ -77,6 +70,7 @@ class AutopilotLink:
         self._unanswered: dict[int, int] = {}
         self._origin_asked_ns: int | None = None
         self._limits: tuple[_LimitsAsked, FlightLimits] | None = None
+        self._cascade: tuple[Driver, Mapping[str, float], Cascade] | None = None
         self._heard_ns: int | None = None
         self._polled_ns: int | None = None
         self._questions = LimitQuestions()
@@ -123,7 +117,12 @@ class AutopilotLink:
     @property
     def cascade(self) -> Cascade | None:
         """How the autopilot follows setpoints, by its parameters as far as they are known; None before it is found."""
-        return None if self.driver is None else self.driver.cascade(self.state.parameters)
+        if self.driver is None:
+            return None
+        driver, parameters = self.driver, self.state.parameters
+        if self._cascade is None or self._cascade[0] is not driver or self._cascade[1] is not parameters:
+            self._cascade = (driver, parameters, driver.cascade(parameters))
+        return self._cascade[2]
 
     def send_setpoint(self, setpoint: Setpoint, local_ns: int) -> None:
         """Send a setpoint for the flight; one that the message cannot hold is counted and left out."""
@@ -170,10 +169,10 @@ class AutopilotLink:
                     self._start_over()
                 case CommandAcknowledged():
                     if event.result != mavlink.MAV_RESULT_IN_PROGRESS:
-                        self._answered(event.command, event.ticket)
+                        self._take_answer(event.command, event.ticket)
                     self._acknowledgements.append((event.command, event.result))
                 case CommandTimedOut():
-                    self._answered(event.command, event.ticket)
+                    self._take_answer(event.command, event.ticket)
                 case ParameterMissing():
                     self._questions.unanswered(event.name, local_ns)
 
@@ -188,7 +187,7 @@ class AutopilotLink:
     def _hear_parameter(self, message: Message, driver: Driver) -> None:
         """Take a limit that was asked for or that somebody else has changed: autopilots tell everybody."""
         value = parameter_value(message, driver.autopilot_id)
-        if value is not None and any(message.param_id in names for names in named(driver)):
+        if value is not None and any(message.param_id in names for names in parameter_names(driver)):
             self.state = replace(self.state, parameters={**self.state.parameters, message.param_id: float(value)})
 
     def _start_over(self) -> None:
@@ -201,7 +200,7 @@ class AutopilotLink:
         self.state = AutopilotState(view=view, parameters=parameters, geoid_height_m=geoid_m)
         self._origin_asked_ns = None
 
-    def _answered(self, command: int, ticket: int | None) -> None:
+    def _take_answer(self, command: int, ticket: int | None) -> None:
         if self._unanswered.get(command) == ticket:
             self._unanswered.pop(command, None)
 
@@ -225,9 +224,9 @@ class AutopilotLink:
     def _ask_for_streams(self, driver: Driver, local_ns: int) -> None:
         motion_hz = dict.fromkeys(_MOTION_IDS, self._motion_rate_hz)
         unused_hz = dict.fromkeys(driver.unused_streams if self._stops_unused else (), 0.0)
-        for message_id, rate_hz in (motion_hz | _STREAMS_HZ | dict(driver.mode_streams_hz) | unused_hz).items():
+        for message_id, rate_hz in (motion_hz | STREAMS_HZ | dict(driver.mode_streams_hz) | unused_hz).items():
             self.session.request_interval(message_id, rate_hz, local_ns)
-        for name in chain(*named(driver)):
+        for name in chain(*parameter_names(driver)):
             self.session.read_parameter(name, local_ns)
 
     def _follow_clock(self, local_ns: int) -> None:

@@ -7,19 +7,19 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
-from companion.autopilots.limits import Named, acceleration_of_tilt_m_s2, gain, stated
-from companion.autopilots.px4_events import refusal_of
-from companion.autopilots.requests import (
+from companion.autopilots.limits import Named, acceleration_of_tilt_m_s2, find_gain, find_limit
+from companion.autopilots.messages import (
     Requested,
     arm,
     ask,
     ask_to_disarm,
+    local_ned_setpoint,
     set_mode,
     with_disarm_answer,
     without_disarm,
 )
+from companion.autopilots.px4_events import refusal_of
 from companion.autopilots.response import Cascade
-from companion.autopilots.setpoint_message import local_ned_setpoint
 from companion.core.data import FlightLimits, Setpoint
 from link.frames.local_frame import Projection
 from link.mavlink.dialect import Message, mavlink
@@ -98,7 +98,7 @@ class Px4Driver:
     def limits(self, wanted: FlightLimits, parameters: Mapping[str, float]) -> FlightLimits:
         """Return `wanted` cut to PX4's speed, climb, descent and tilt limits."""
         speed_m_s, climb_m_s, descent_m_s, tilt_deg = (
-            stated(parameters, (Named(name),)) for (name,) in self.limit_names
+            find_limit(parameters, (Named(name),)) for (name,) in self.limit_names
         )
         return replace(
             wanted,
@@ -115,9 +115,9 @@ class Px4Driver:
         """
         position, velocity, integral = self.gain_names
         return Cascade(
-            position_per_s=gain(parameters, position, 0.95),
-            velocity_per_s=gain(parameters, velocity, 1.8),
-            integral_per_s2=gain(parameters, integral, 0.4),
+            position_per_s=find_gain(parameters, position, 0.95),
+            velocity_per_s=find_gain(parameters, velocity, 1.8),
+            integral_per_s2=find_gain(parameters, integral, 0.4),
             lead_s=0.01,
         )
 

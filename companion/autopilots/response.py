@@ -15,9 +15,9 @@ Source: the position controllers of PX4 (mc_pos_control) and ArduPilot (AC_PosCo
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 from scipy.linalg import expm, solve_continuous_are, solve_continuous_lyapunov
 
 from companion.core.data import Array
@@ -39,8 +39,7 @@ _PUSH = 3
 _STEP_MAX_S = 0.05
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Cascade:
+class Cascade(Struct, frozen=True, kw_only=True):
     """The gains of a position controller along a horizontal axis, and how it takes setpoints.
 
     Attributes:
@@ -103,11 +102,11 @@ class ResponseModel:
             dt_s: since the report before.
         """
         driven = self._gain @ measured + np.outer(self._asked, acceleration_m_s2)
-        return _moved(self._corrected, state, driven, dt_s)
+        return _move(self._corrected, state, driven, dt_s)
 
     def carry(self, state: Array, dt_s: float) -> Array:
         """Return the state (4, k) a moment later on a steady path, without a report."""
-        return _moved(self._motion, state, np.zeros_like(state), dt_s)
+        return _move(self._motion, state, np.zeros_like(state), dt_s)
 
     def predict(self, state: Array, acceleration_m_s2: Array) -> Array:
         """Return the states (n, 4, k) at the model's offsets.
@@ -119,7 +118,7 @@ class ResponseModel:
         return np.asarray(self._free @ state + self._forced @ acceleration_m_s2)
 
 
-def _moved(motion: Array, state: Array, driven: Array, dt_s: float) -> Array:
+def _move(motion: Array, state: Array, driven: Array, dt_s: float) -> Array:
     """Return the state (4, k) after `dt_s`, driven steadily by (4, k); to the third order in short steps."""
     steps = max(1, math.ceil(dt_s / _STEP_MAX_S))
     step = motion * (dt_s / steps)

@@ -1,15 +1,15 @@
 """The autopilot's messages folded into what the companion's step wants to know of it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from math import isfinite
 from types import MappingProxyType
 
+from msgspec import Struct, field
+
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotView, Driver
 from companion.autopilots.local_origin import above_ellipsoid, geoid_height_m, is_same, origin_above_sea
-from companion.autopilots.own_reports import HISTORY_NS, carried, is_plausible, with_report
+from companion.autopilots.own_reports import HISTORY_NS, carry, is_plausible, velocity_bias, with_report, without_bias
 from companion.autopilots.sensor_messages import with_sensor
-from companion.autopilots.velocity_bias import velocity_bias, without
 from companion.core.data import OwnState
 from link.frames.geodesy import Datum
 from link.frames.local_frame import LocalFrame, Projection
@@ -23,8 +23,7 @@ _AHEAD_NS = 100_000_000  # how far a report is carried beyond the newest one
 _FAILSAFE_STATES = (mavlink.MAV_STATE_CRITICAL, mavlink.MAV_STATE_EMERGENCY)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AutopilotState:
+class AutopilotState(Struct, frozen=True, kw_only=True):
     """What the messages so far have told.
 
     Attributes:
@@ -58,7 +57,7 @@ class AutopilotState:
         """The state at `t_ns`: the nearest report carried there by its own rates; None beyond what they span."""
         if not self.history or t_ns < self.history[0].t_ns or t_ns > self.history[-1].t_ns + _AHEAD_NS:
             return None
-        return carried(min(self.history, key=lambda own: abs(own.t_ns - t_ns)), t_ns)
+        return carry(min(self.history, key=lambda own: abs(own.t_ns - t_ns)), t_ns)
 
 
 def update_state(state: AutopilotState, message: Message, clock: ClockMap, driver: Driver) -> AutopilotState:
@@ -74,13 +73,15 @@ def update_state(state: AutopilotState, message: Message, clock: ClockMap, drive
             state = _current_mode(state, message, driver)
         case "EXTENDED_SYS_STATE":
             taking_off = message.landed_state == mavlink.MAV_LANDED_STATE_TAKEOFF
-            view = replace(state.view, landed=_landed(message.landed_state), taking_off=taking_off)
+            view = replace(state.view, landed=_is_landed(message.landed_state), taking_off=taking_off)
             state = replace(state, view=view)
         case "GPS_GLOBAL_ORIGIN":
-            state = _placed(replace(state, origin_msl=origin_above_sea(message) or state.origin_msl), driver.projection)
+            state = _place_origin(
+                replace(state, origin_msl=origin_above_sea(message) or state.origin_msl), driver.projection
+            )
         case "GPS_RAW_INT":
             height_m = geoid_height_m(state.geoid_height_m, message)
-            state = _placed(replace(state, geoid_height_m=height_m), driver.projection)
+            state = _place_origin(replace(state, geoid_height_m=height_m), driver.projection)
         case "DISTANCE_SENSOR" | "BATTERY_STATUS":
             up_m = None if state.own is None else state.own.position_enu_m[2]
             state = replace(state, view=with_sensor(state.view, message, clock, up_m))
@@ -118,7 +119,7 @@ def _position(state: AutopilotState, message: Message, clock: ClockMap) -> Autop
     own = OwnState(
         t_ns=t_ns,
         position_enu_m=position,
-        velocity_enu_m_s=without(reported, bias),
+        velocity_enu_m_s=without_bias(reported, bias),
         velocity_bias_enu_m_s=bias,
         orientation_wxyz=state.orientation_wxyz,
         angular_velocity_flu_rad_s=state.angular_velocity_flu_rad_s,
@@ -128,10 +129,10 @@ def _position(state: AutopilotState, message: Message, clock: ClockMap) -> Autop
         if state.history[-1].t_ns - t_ns <= HISTORY_NS:
             return state
         state = replace(state, history=())  # not late: the clock was set back
-    return _reported(state, own)
+    return _add_report(state, own)
 
 
-def _reported(state: AutopilotState, own: OwnState) -> AutopilotState:
+def _add_report(state: AutopilotState, own: OwnState) -> AutopilotState:
     """Add the drone's newest report to the history; with one that flying cannot explain the local frame has moved."""
     history, jump = with_report(state.history, own)
     state = replace(state, history=history)
@@ -186,13 +187,13 @@ def _current_mode(state: AutopilotState, message: Message, driver: Driver) -> Au
     return replace(state, view=replace(state.view, in_control=in_control, overruled=overruled))
 
 
-def _landed(landed_state: int) -> bool | None:
+def _is_landed(landed_state: int) -> bool | None:
     if landed_state == mavlink.MAV_LANDED_STATE_UNDEFINED:
         return None
     return bool(landed_state == mavlink.MAV_LANDED_STATE_ON_GROUND)
 
 
-def _placed(state: AutopilotState, projection: Projection) -> AutopilotState:
+def _place_origin(state: AutopilotState, projection: Projection) -> AutopilotState:
     """Put the origin above the ellipsoid; a moved one is counted, since the local frame has then moved."""
     if state.origin_msl is None:
         return state

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 from companion.autopilots.choice import MULTIROTORS
 from companion.check.ardupilot_rules import ARDUPILOT_RULES, ARDUPILOT_SINK
-from companion.check.findings import Finding, Level, passed
+from companion.check.findings import Finding, Level, pass_line
 from companion.check.observation import AutopilotFacts, VehicleFacts
 from companion.check.px4_rules import PX4_RULES, PX4_SINK
-from companion.check.rules import ParameterRule, Spelling, judged, names_of, sink_rule
+from companion.check.rules import ParameterRule, Spelling, judge, names_of, sink_rule
 from companion.config.companion import AutopilotKind, CompanionConfig
 from companion.config.landing import AbortConfig, ChaseConfig
 from link.mavlink.dialect import mavlink
@@ -68,7 +68,7 @@ _FIX_AGE_SHARE = 0.5  # of what aborts a landing
 _FIX_STD_GOOD_M = 0.3
 
 
-def assessed(
+def assess(
     autopilot: AutopilotFacts, vehicle: VehicleFacts | None, speed_m_s: float, config: CompanionConfig
 ) -> list[Finding]:
     """Return the lines of the check.
@@ -86,7 +86,7 @@ def assessed(
     found.append(_range_finder(autopilot))
     if autopilot.autopilot_id in FIRMWARES:
         rules = FIRMWARES[autopilot.autopilot_id].rules_for(config.descent.descent_rate_max_m_s)
-        found += judged(rules, autopilot.parameters, speed_m_s)
+        found += judge(rules, autopilot.parameters, speed_m_s)
     return found if vehicle is None else [*found, *_vehicle(vehicle, config)]
 
 
@@ -95,40 +95,40 @@ def is_ready(findings: Sequence[Finding]) -> bool:
     return all(finding.level is not Level.FAIL for finding in findings)
 
 
-def _graded(name: str, found: str, level: Level, advice: str, reason: str = "") -> Finding:
+def _finding(name: str, found: str, level: Level, advice: str, reason: str = "") -> Finding:
     if level is Level.PASS:
-        return passed(name, found)
+        return pass_line(name, found)
     return Finding(name=name, level=level, found=found, advice=advice, reason=reason)
 
 
-def _when(is_true: bool, otherwise: Level) -> Level:
+def _level(is_true: bool, otherwise: Level) -> Level:
     return Level.PASS if is_true else otherwise
 
 
 def _firmware(seen: AutopilotFacts, wanted: AutopilotKind) -> Finding:
     if seen.vehicle_type not in MULTIROTORS:
         text = f"MAV_TYPE {seen.vehicle_type}, which is no multirotor"
-        return _graded("firmware", text, Level.FAIL, "connect to a multirotor, or set the autopilot's airframe to one")
+        return _finding("firmware", text, Level.FAIL, "connect to a multirotor, or set the autopilot's airframe to one")
     if seen.autopilot_id not in FIRMWARES:
-        return _graded("firmware", f"MAV_AUTOPILOT {seen.autopilot_id}", Level.FAIL, "connect PX4 or ArduPilot")
+        return _finding("firmware", f"MAV_AUTOPILOT {seen.autopilot_id}", Level.FAIL, "connect PX4 or ArduPilot")
     firmware = FIRMWARES[seen.autopilot_id]
     name, oldest = firmware.name, firmware.oldest
     if wanted not in {AutopilotKind.AUTO, firmware.kind}:
         text = f"{name}, and the configuration says {wanted.value}"
-        return _graded("firmware", text, Level.FAIL, 'connect the other, or set autopilot = "auto"')
+        return _finding("firmware", text, Level.FAIL, 'connect the other, or set autopilot = "auto"')
     if seen.version is None:
-        return _graded("firmware", f"{name}, version not told", Level.WARN, "check that it is a current release")
+        return _finding("firmware", f"{name}, version not told", Level.WARN, "check that it is a current release")
     text = f"{name} {'.'.join(map(str, seen.version))}"
-    level = _when(seen.version[:2] >= oldest, Level.WARN)
-    return _graded("firmware", text, level, f"update it: {name} from {oldest[0]}.{oldest[1]} on is known to work")
+    level = _level(seen.version[:2] >= oldest, Level.WARN)
+    return _finding("firmware", text, level, f"update it: {name} from {oldest[0]}.{oldest[1]} on is known to work")
 
 
 def _readiness(seen: AutopilotFacts) -> Finding:
     if seen.can_arm is None:
-        return _graded("arming checks", "not told", Level.WARN, "look at them in a ground station")
+        return _finding("arming checks", "not told", Level.WARN, "look at them in a ground station")
     text = "ready to arm" if seen.can_arm else "not ready to arm"
-    return _graded(
-        "arming checks", text, _when(seen.can_arm, Level.WARN), "wait, or see a ground station for the cause"
+    return _finding(
+        "arming checks", text, _level(seen.can_arm, Level.WARN), "wait, or see a ground station for the cause"
     )
 
 
@@ -137,7 +137,7 @@ def _origin(seen: AutopilotFacts) -> Finding:
         text for text, there in (("origin", seen.has_origin), ("local position", seen.has_position)) if not there
     ]
     text = "origin and local position known" if not missing else f"no {' and no '.join(missing)}"
-    return _graded("estimator", text, _when(not missing, Level.FAIL), "wait for a GNSS fix under an open sky")
+    return _finding("estimator", text, _level(not missing, Level.FAIL), "wait for a GNSS fix under an open sky")
 
 
 def _heights(seen: AutopilotFacts, configured_m: float | None) -> Finding:
@@ -145,67 +145,67 @@ def _heights(seen: AutopilotFacts, configured_m: float | None) -> Finding:
     if height_m is None:
         advice = "let its receiver tell alt_ellipsoid, or set geoid_height_m in the companion's configuration"
         reason = "the vehicle's heights are above the ellipsoid, the autopilot's above the sea; without it no start"
-        return _graded("heights", "geoid not told", Level.FAIL, advice, reason)
+        return _finding("heights", "geoid not told", Level.FAIL, advice, reason)
     source = "by the configuration" if seen.geoid_height_m is None else "by its receiver"
-    return passed("heights", f"the sea is {height_m:.1f} m above the ellipsoid, {source}")
+    return pass_line("heights", f"the sea is {height_m:.1f} m above the ellipsoid, {source}")
 
 
 def _clock(seen: AutopilotFacts) -> Finding:
     if not seen.round_trips:
-        return _graded("clock", "TIMESYNC not answered", Level.FAIL, "let the autopilot answer TIMESYNC on this link")
+        return _finding("clock", "TIMESYNC not answered", Level.FAIL, "let the autopilot answer TIMESYNC on this link")
     std_s = seen.clock_std_s
     text = f"{seen.round_trips} round trips" + ("" if std_s is None else f", offset known to {1e3 * std_s:.1f} ms")
     if not seen.utc_known:
-        return _graded("clock", f"{text}, no time of day", Level.FAIL, "wait for its GNSS to tell SYSTEM_TIME")
-    level = _when(std_s is None or std_s <= _CLOCK_STD_MAX_S, Level.WARN)
-    return _graded("clock", text, level, "use a faster link: the vehicle's place is off by speed times clock error")
+        return _finding("clock", f"{text}, no time of day", Level.FAIL, "wait for its GNSS to tell SYSTEM_TIME")
+    level = _level(std_s is None or std_s <= _CLOCK_STD_MAX_S, Level.WARN)
+    return _finding("clock", text, level, "use a faster link: the vehicle's place is off by speed times clock error")
 
 
 def _rate(seen: AutopilotFacts, name: str) -> Finding:
     rate_hz = seen.rates_hz.get(name, 0.0)
-    level = Level.FAIL if rate_hz <= 0.0 else _when(rate_hz >= _MOTION_RATE_MIN_HZ, Level.WARN)
-    return _graded(name, f"{rate_hz:.0f} Hz", level, "raise the link's baud rate; 50 Hz are asked for")
+    level = Level.FAIL if rate_hz <= 0.0 else _level(rate_hz >= _MOTION_RATE_MIN_HZ, Level.WARN)
+    return _finding(name, f"{rate_hz:.0f} Hz", level, "raise the link's baud rate; 50 Hz are asked for")
 
 
 def _latency(seen: AutopilotFacts) -> Finding:
     if seen.latency_s is None:
-        return _graded("latency", "unknown", Level.WARN, "needs clock and position")
-    level = _when(seen.latency_s <= _LATENCY_MAX_S, Level.WARN)
-    return _graded("latency", f"{1e3 * seen.latency_s:.0f} ms", level, "use a wire instead of a radio")
+        return _finding("latency", "unknown", Level.WARN, "needs clock and position")
+    level = _level(seen.latency_s <= _LATENCY_MAX_S, Level.WARN)
+    return _finding("latency", f"{1e3 * seen.latency_s:.0f} ms", level, "use a wire instead of a radio")
 
 
 def _battery(seen: AutopilotFacts, share_min: float) -> Finding:
     share = seen.battery_share
     if share is None:
-        return _graded("battery", "not told", Level.WARN, "set up the autopilot's battery monitor")
+        return _finding("battery", "not told", Level.WARN, "set up the autopilot's battery monitor")
     needed, good = round(share_min + _BATTERY_SPARE, 6), min(round(share_min + _BATTERY_GOOD, 6), 1.0)
-    level = Level.FAIL if share < needed else _when(share >= good, Level.WARN)
-    return _graded("battery", f"{100.0 * share:.0f} %", level, "charge it: aborts and retries take minutes")
+    level = Level.FAIL if share < needed else _level(share >= good, Level.WARN)
+    return _finding("battery", f"{100.0 * share:.0f} %", level, "charge it: aborts and retries take minutes")
 
 
 def _range_finder(seen: AutopilotFacts) -> Finding:
     text = "tells what is below" if seen.has_range_finder else "no DISTANCE_SENSOR that looks down"
     advice = "fit one, or compare drone and pad at rest before each day's first landing (docs/vehicle.md)"
     reason = "a vehicle's height that is wrong by less than 2 m is told by nothing else"
-    return _graded("range finder", text, _when(seen.has_range_finder, Level.WARN), advice, reason)
+    return _finding("range finder", text, _level(seen.has_range_finder, Level.WARN), advice, reason)
 
 
 def _vehicle(seen: VehicleFacts, config: CompanionConfig) -> list[Finding]:
     if seen.rate_hz <= 0.0 and seen.fix_refused_why is not None:
         advice = f"see what the vehicle publishes on {seen.key}, and whether its receiver has a fix"
-        return [_graded("vehicle", f"refused: {seen.fix_refused_why}", Level.FAIL, advice)]
+        return [_finding("vehicle", f"refused: {seen.fix_refused_why}", Level.FAIL, advice)]
     if seen.rate_hz <= 0.0:
         advice = "start the ground vehicle, or check --ns, --vehicle and -e"
-        return [_graded("vehicle", f"nothing on {seen.key}", Level.WARN, advice)]
+        return [_finding("vehicle", f"nothing on {seen.key}", Level.WARN, advice)]
     refused = "not described" if seen.pad_refused_why is None else f"refused: {seen.pad_refused_why}"
-    pad = _graded(
+    pad = _finding(
         "vehicle pad",
         "described" if seen.describes_pad else refused,
-        _when(seen.describes_pad, Level.FAIL),
+        _level(seen.describes_pad, Level.FAIL),
         "let the vehicle answer for its pad" if seen.pad_refused_why is None else "mend the vehicle's description",
     )
-    level = _when(seen.rate_hz >= _FIX_RATE_MIN_HZ, Level.WARN)
-    rate = _graded("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, "set its receiver to 5 Hz or more")
+    level = _level(seen.rate_hz >= _FIX_RATE_MIN_HZ, Level.WARN)
+    rate = _finding("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, "set its receiver to 5 Hz or more")
     known = [_vehicle_age(seen, config.abort), _vehicle_accuracy(seen, config.abort.position_std_max_m)]
     return [rate, *known, *_vehicle_heading(seen, config.chase), pad]
 
@@ -214,23 +214,23 @@ def _vehicle_heading(seen: VehicleFacts, config: ChaseConfig) -> list[Finding]:
     """Return the line on a heading that was compared with the course: of a vehicle that drove meanwhile."""
     if seen.heading_off_rad is None:
         return []
-    level = _when(abs(seen.heading_off_rad) <= config.heading_off_max_rad, Level.FAIL)
+    level = _level(abs(seen.heading_off_rad) <= config.heading_off_max_rad, Level.FAIL)
     text = f"{abs(math.degrees(seen.heading_off_rad)):.0f} degrees off its course"
     advice = "see its compass, the IMU's mounting and axes; reversing is 180 degrees, so drive forwards"
-    return [_graded("vehicle heading", text, level, advice, "the pad is not placed by it")]
+    return [_finding("vehicle heading", text, level, advice, "the pad is not placed by it")]
 
 
 def _vehicle_age(seen: VehicleFacts, limits: AbortConfig) -> Finding:
     if seen.age_s is None:
-        return _graded("vehicle age", "unknown", Level.WARN, "needs the autopilot's time of day")
+        return _finding("vehicle age", "unknown", Level.WARN, "needs the autopilot's time of day")
     is_fit = -limits.fix_ahead_max_s <= seen.age_s <= _FIX_AGE_SHARE * limits.fix_age_max_s
     advice = "set its clock by GNSS or NTP, or use a faster link"
-    return _graded("vehicle age", f"{1e3 * seen.age_s:.0f} ms", _when(is_fit, Level.FAIL), advice)
+    return _finding("vehicle age", f"{1e3 * seen.age_s:.0f} ms", _level(is_fit, Level.FAIL), advice)
 
 
 def _vehicle_accuracy(seen: VehicleFacts, std_max_m: float) -> Finding:
     if seen.std_m is None:
-        return _graded("vehicle accuracy", "not stated", Level.WARN, "let it publish a covariance")
-    level = Level.FAIL if seen.std_m > std_max_m else _when(seen.std_m <= _FIX_STD_GOOD_M, Level.WARN)
+        return _finding("vehicle accuracy", "not stated", Level.WARN, "let it publish a covariance")
+    level = Level.FAIL if seen.std_m > std_max_m else _level(seen.std_m <= _FIX_STD_GOOD_M, Level.WARN)
     text = f"{seen.std_m:.2f} m" + ("" if seen.has_velocity else ", no velocity")
-    return _graded("vehicle accuracy", text, level, "use RTK, or a landing-pattern detector")
+    return _finding("vehicle accuracy", text, level, "use RTK, or a landing-pattern detector")

@@ -70,7 +70,7 @@ def check(
     zenoh_config: ZenohConfigOption = None,
 ) -> int:
     """Read the autopilot and the vehicle, and say what to change before a landing; exit code 1 when something fails."""
-    from companion.check.findings import kept
+    from companion.check.findings import read_kept
     from companion.check.session import open_check
     from companion.config.companion import CompanionConfig
     from link.mavlink.signing import read_key
@@ -82,7 +82,7 @@ def check(
 
     settings = load_config(config, CompanionConfig)
     key = None if signing_key is None else read_key(signing_key)
-    back = None if restore is None else kept(restore)
+    back = None if restore is None else read_kept(restore)
     options = zenoh_options(mode, connect, listen, multicast, zenoh_config)
     with open_transport(mavlink) as transport, open_session(options) as zenoh:
         session = open_check(transport, mavlink, system_id=system_id, signing_key=key)
@@ -111,10 +111,10 @@ class _Question:
 
 
 def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
-    from companion.check.assessment import assessed
+    from companion.check.assessment import assess
 
     vehicle = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.chase)
-    return assessed(session.reader.facts(), vehicle, asked.speed_m_s, asked.config)
+    return assess(session.reader.facts(), vehicle, asked.speed_m_s, asked.config)
 
 
 def _show(findings: "list[Finding]", speed_m_s: float, *, as_json: bool) -> int:

@@ -39,7 +39,7 @@ class Finding:
     set_to: float | None = None
 
 
-def passed(name: str, found: str) -> Finding:
+def pass_line(name: str, found: str) -> Finding:
     """Return a line that asks for nothing."""
     return Finding(name=name, level=Level.PASS, found=found)
 
@@ -55,14 +55,14 @@ def keep(path: Path, before: Mapping[str, float]) -> None:
     Raises:
         UserError: the file cannot be written, or is another's.
     """
-    earlier = kept(path) if path.exists() else {}
+    earlier = read_kept(path) if path.exists() else {}
     try:
         path.write_text(json.dumps({**before, **earlier}, indent=2) + "\n", encoding="utf-8")
     except OSError as error:
         raise UserError(f"{path}: cannot be written ({error.strerror}); choose another --keep FILE") from error
 
 
-def kept(path: Path) -> dict[str, float]:
+def read_kept(path: Path) -> dict[str, float]:
     """Return the parameters of a file that `keep` wrote.
 
     Raises:

@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from companion.check.findings import Finding, Level, passed
+from companion.check.findings import Finding, Level, pass_line
 from companion.core.data import GRAVITY_M_S2
 
 SPEED_SHARE_ADVISED = 1.2
@@ -100,7 +100,7 @@ def names_of(rules: Sequence[ParameterRule]) -> tuple[str, ...]:
     return tuple(spelling.name for rule in rules for spelling in rule.spellings)
 
 
-def judged(rules: Sequence[ParameterRule], parameters: Mapping[str, float], speed_m_s: float) -> list[Finding]:
+def judge(rules: Sequence[ParameterRule], parameters: Mapping[str, float], speed_m_s: float) -> list[Finding]:
     """Return a finding for each rule.
 
     Args:
@@ -124,7 +124,7 @@ def _judge(rule: ParameterRule, parameters: Mapping[str, float], speed_m_s: floa
     value = parameters[known.name] / known.per_unit
     found = _shown(parameters[known.name], value, rule.unit, known)
     if rule.test(value, speed_m_s):
-        return passed(known.name, found)
+        return pass_line(known.name, found)
     advised = rule.advised(speed_m_s)
     return Finding(
         name=known.name,

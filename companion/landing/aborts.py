@@ -4,10 +4,9 @@ import math
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
-from companion.integrity.contradictions import contradicts_itself
 from companion.integrity.heights import is_seen_too_near
-from companion.landing.condition import AUTOPILOT_SILENT, VEHICLE_SILENT, Condition, is_fix_old
-from companion.landing.contact_conditions import MISSED
+from companion.integrity.vehicle_data import contradicts_itself
+from companion.landing.conditions import AUTOPILOT_SILENT, MISSED, VEHICLE_SILENT, Condition, is_fix_old
 from companion.landing.targets import changes_speed, is_unseen, is_vague
 from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
 from companion.situation.situation import Approach, Situation
@@ -42,7 +41,7 @@ def is_pad_unplaced(s: Situation, _: CompanionConfig) -> bool:
     return s.pad is not None and s.pad.unplaced is not None
 
 
-def unplaced(s: Situation) -> Cause | None:
+def why_unplaced(s: Situation) -> Cause | None:
     """Return why nobody knows it, None when the place is known or no vehicle is."""
     return None if s.pad is None else s.pad.unplaced
 
@@ -115,7 +114,7 @@ ABORTS = (
         reason=Reason.HEADING_UNKNOWN,
         phases=_DESCENT,
         is_true=is_pad_unplaced,
-        cause=lambda s, _: unplaced(s) or Cause(Reason.HEADING_UNKNOWN),
+        cause=lambda s, _: why_unplaced(s) or Cause(Reason.HEADING_UNKNOWN),
     ),
     Condition(
         reason=Reason.SETPOINT_NOT_FOLLOWED,

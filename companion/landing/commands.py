@@ -34,16 +34,16 @@ def answer(
     if phase is Phase.ABORT and command is not Command.START:
         return None, CommandReply(accepted=True, reason="")  # the climb goes on, but to no retry
     if next_phase(phase, event) is phase:
-        return None, _refused(Cause(Reason.NOTHING_TO_DO, (command.value, phase.value)))
+        return None, _refuse(Cause(Reason.NOTHING_TO_DO, (command.value, phase.value)))
     missing = None
     if command is Command.START:
         missing = _missing_for_start(situation) or _rides_along(situation, config) or obstacle
     if missing is not None:
-        return None, _refused(missing)
+        return None, _refuse(missing)
     return event, CommandReply(accepted=True, reason="")
 
 
-def _refused(why: Cause) -> CommandReply:
+def _refuse(why: Cause) -> CommandReply:
     return CommandReply(accepted=False, reason=sentence(why))
 
 

@@ -12,18 +12,26 @@ from companion.landing.aborts import (
     is_pad_unplaced,
     is_uncertain,
     must_be_seen,
-    unplaced,
+    why_unplaced,
 )
-from companion.landing.condition import HEARD, Condition, cause_of, holds, is_attitude_unknown, is_fix_old
-from companion.landing.contact_conditions import LIFTED, MISSED, STOPPED_BY_PAD, is_below_pad
-from companion.landing.entries import DRIVES, ENTRIES, is_too_low
+from companion.landing.conditions import (
+    HEARD,
+    LIFTED,
+    MISSED,
+    STOPPED_BY_PAD,
+    Condition,
+    cause_of,
+    holds,
+    is_attitude_unknown,
+    is_below_pad,
+    is_fix_old,
+)
+from companion.landing.entries import DRIVES, ENTRIES, Decision, vehicle_passes
 from companion.landing.feasibility import obstacle
 from companion.landing.memory import ControlMemory, Held, Progress
 from companion.landing.waiting import waited_s
 from companion.situation.phases import FLYING_PHASES, Event, Phase
-from companion.situation.situation import Situation, vehicle_stands
-
-Decision = tuple[Event, Cause]
+from companion.situation.situation import Situation
 
 
 def decide(progress: Progress, control: ControlMemory, s: Situation, config: CompanionConfig) -> Decision | None:
@@ -34,7 +42,7 @@ def decide(progress: Progress, control: ControlMemory, s: Situation, config: Com
     # By then the autopilot's own failsafe acts. PX4 would go back into OFFBOARD with the first setpoint that arrives.
     if progress.phase in FLYING_PHASES and not s.autopilot.link_up:
         return Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_LOST)
-    taken = _control_taken(progress.phase, control, s)
+    taken = _find_taken_control(progress.phase, control, s)
     if taken is not None:
         return taken
     # What the pad stops is fast against a pad that drives on: it would be taken for unsafe in the same step.
@@ -45,7 +53,7 @@ def decide(progress: Progress, control: ControlMemory, s: Situation, config: Com
     broken_off = _unsafe(MISSED if committed else ABORTS, s, progress.held, config)
     if broken_off is None and not committed:
         broken_off = _time_limit(progress, control, s, config)
-    return _going_on(progress, s, config) if broken_off is None else broken_off
+    return _go_on(progress, s, config) if broken_off is None else broken_off
 
 
 def _unsafe(conditions: tuple[Condition, ...], s: Situation, held: Held, config: CompanionConfig) -> Decision | None:
@@ -55,7 +63,7 @@ def _unsafe(conditions: tuple[Condition, ...], s: Situation, held: Held, config:
     return None
 
 
-def _going_on(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
+def _go_on(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
     """Return the landing's own next event; a vehicle out of reach is waited beside, not chased."""
     if progress.phase is Phase.WAITING and obstacle(progress.held, s, config) is not None:
         return None
@@ -80,7 +88,7 @@ def _is_committed(s: Situation, config: CompanionConfig) -> bool:
     )
 
 
-def _control_taken(phase: Phase, control: ControlMemory, s: Situation) -> Decision | None:
+def _find_taken_control(phase: Phase, control: ControlMemory, s: Situation) -> Decision | None:
     if phase not in FLYING_PHASES or not control.was_in_control:
         return None
     if s.autopilot.failsafe or s.autopilot.overruled:
@@ -113,7 +121,7 @@ def _time_limit(progress: Progress, control: ControlMemory, s: Situation, config
     limit_s = _longest_s(progress.phase, config)
     waits_s = min(waited_s(progress, s.monotonic_ns), config.descent.surprise_wait_max_s)
     if limit_s is not None and in_phase_s - waits_s > limit_s:
-        not_placed = unplaced(s) if progress.phase is Phase.ALIGN else None
+        not_placed = why_unplaced(s) if progress.phase is Phase.ALIGN else None
         return Event.TIME_LIMIT, not_placed or Cause(TOO_LONG[progress.phase], (limit_s,))
     return None
 
@@ -144,7 +152,7 @@ def _advance(progress: Progress, s: Situation, config: CompanionConfig) -> Decis
         case Phase.TOUCHDOWN:
             return _on_the_pad(s, progress.held, config)
         case Phase.ABORT:
-            return _climbed(progress, s, config)
+            return _end_climb(progress, s, config)
         case _:
             return None
 
@@ -156,40 +164,6 @@ def _at_waiting_point(s: Situation, config: CompanionConfig) -> Decision | None:
     if distance_m > config.takeoff.reached_distance_m:
         return None
     return Event.AT_WAITING_POINT, Cause(Reason.AT_WAITING_POINT)
-
-
-def vehicle_passes(s: Situation, config: CompanionConfig) -> Decision | None:
-    """Return the event that starts the chase.
-
-    A moving vehicle is chased from the moment at which a drone that accelerates to its speed meets it. One that is past
-    is let go when it is farther away than the passing distance and would not be caught up with soon.
-    """
-    if s.drone is None or s.pad is None or is_fix_old(s, config) or is_too_low(s, config):
-        return None
-    velocity = s.pad.velocity_enu_m_s[0, :2]
-    ahead = s.drone.position_enu_m[:2] - s.pad.position_enu_m[0, :2]
-    speed_m_s = math.hypot(*velocity.tolist())
-    if vehicle_stands(s, config.chase):
-        return None
-    to_go_m = float(ahead @ velocity) / speed_m_s
-    beside_m = abs(float(ahead[0] * velocity[1] - ahead[1] * velocity[0])) / speed_m_s
-    lead_m = _lead_m(speed_m_s, s, config)
-    speed_max_m_s = config.limits.speed_max_m_s if s.limits is None else s.limits.speed_max_m_s
-    faster_m_s = min(speed_max_m_s - speed_m_s, config.chase.catch_up_speed_m_s)
-    past_m = max(config.chase.passing_distance_m, config.chase.catch_up_s * faster_m_s)
-    if beside_m > config.chase.passing_distance_m or not -past_m < to_go_m < lead_m:
-        return None
-    return Event.VEHICLE_PASSES, Cause(Reason.VEHICLE_PASSES, (speed_m_s,))
-
-
-def _lead_m(speed_m_s: float, s: Situation, config: CompanionConfig) -> float:
-    """Return how far before it passes a vehicle is that a drone meets which accelerates from rest to its speed v.
-
-    It takes v / a + a / j for that, and is half of the way behind.
-    """
-    acceleration_m_s2 = config.chase.start_acceleration_m_s2
-    jerk_m_s3 = config.limits.jerk_max_m_s3 if s.limits is None else s.limits.jerk_max_m_s3
-    return 0.5 * speed_m_s * (speed_m_s / acceleration_m_s2 + acceleration_m_s2 / jerk_m_s3)
 
 
 def _over_pad(s: Situation, config: CompanionConfig) -> Decision | None:
@@ -213,7 +187,7 @@ def _on_the_pad(s: Situation, held: Held, config: CompanionConfig) -> Decision |
     return None
 
 
-def _climbed(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
+def _end_climb(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
     in_phase_s = (s.monotonic_ns - progress.since_ns) * 1e-9
     high = s.approach is not None and s.approach.height_m > 0.8 * config.abort.height_m
     ready = high and holds(HEARD, progress.held, s, config)
@@ -237,7 +211,7 @@ def _no_retry(progress: Progress, s: Situation, config: CompanionConfig) -> Caus
         Reason.HEARD_WITH_BREAKS: not holds(HEARD, progress.held, s, config),
     }
     first = next((Cause(reason) for reason, holds_now in known.items() if holds_now), None)
-    first = first or unplaced(s)
+    first = first or why_unplaced(s)
     if first is None and is_out_of_range(s, config):
         first = Cause(Reason.TOO_FAR_FROM_START)
     first = first or obstacle(progress.held, s, config)

@@ -5,14 +5,25 @@ from functools import cache
 
 from companion.config.companion import CompanionConfig
 from companion.config.landing import LandingStyle
-from companion.core.reasons import Reason
+from companion.core.reasons import Cause, Reason
 from companion.landing.aborts import ABORTS, is_pad_unplaced, must_be_seen, strays
-from companion.landing.condition import HEARD, Condition, is_fix_old
-from companion.landing.contact_conditions import HELD_UP, LIFTED, STOPPED_BY_PAD, TOUCHED, TOUCHED_BY_DISPUTE
+from companion.landing.conditions import (
+    HEARD,
+    HELD_UP,
+    LIFTED,
+    STOPPED_BY_PAD,
+    TOUCHED,
+    TOUCHED_BY_DISPUTE,
+    Condition,
+    is_fix_old,
+)
 from companion.landing.memory import Held
 from companion.landing.targets import chase_floor_m
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation, vehicle_stands
+
+Decision = tuple[Event, Cause]
+"""What happens, and why."""
 
 _DESCENT = frozenset({Phase.DESCEND})
 _ALIGNMENT = frozenset({Phase.ALIGN})
@@ -58,6 +69,40 @@ def _stands_nearby(s: Situation, c: CompanionConfig) -> bool:
 
 def _drives(s: Situation, c: CompanionConfig) -> bool:
     return s.pad is not None and not vehicle_stands(s, c.chase)
+
+
+def vehicle_passes(s: Situation, config: CompanionConfig) -> Decision | None:
+    """Return the event that starts the chase.
+
+    A moving vehicle is chased from the moment at which a drone that accelerates to its speed meets it. One that is past
+    is let go when it is farther away than the passing distance and would not be caught up with soon.
+    """
+    if s.drone is None or s.pad is None or is_fix_old(s, config) or is_too_low(s, config):
+        return None
+    velocity = s.pad.velocity_enu_m_s[0, :2]
+    ahead = s.drone.position_enu_m[:2] - s.pad.position_enu_m[0, :2]
+    speed_m_s = math.hypot(*velocity.tolist())
+    if vehicle_stands(s, config.chase):
+        return None
+    to_go_m = float(ahead @ velocity) / speed_m_s
+    beside_m = abs(float(ahead[0] * velocity[1] - ahead[1] * velocity[0])) / speed_m_s
+    lead_m = _lead_m(speed_m_s, s, config)
+    speed_max_m_s = config.limits.speed_max_m_s if s.limits is None else s.limits.speed_max_m_s
+    faster_m_s = min(speed_max_m_s - speed_m_s, config.chase.catch_up_speed_m_s)
+    past_m = max(config.chase.passing_distance_m, config.chase.catch_up_s * faster_m_s)
+    if beside_m > config.chase.passing_distance_m or not -past_m < to_go_m < lead_m:
+        return None
+    return Event.VEHICLE_PASSES, Cause(Reason.VEHICLE_PASSES, (speed_m_s,))
+
+
+def _lead_m(speed_m_s: float, s: Situation, config: CompanionConfig) -> float:
+    """Return how far before it passes a vehicle is that a drone meets which accelerates from rest to its speed v.
+
+    It takes v / a + a / j for that, and is half of the way behind.
+    """
+    acceleration_m_s2 = config.chase.start_acceleration_m_s2
+    jerk_m_s3 = config.limits.jerk_max_m_s3 if s.limits is None else s.limits.jerk_max_m_s3
+    return 0.5 * speed_m_s * (speed_m_s / acceleration_m_s2 + acceleration_m_s2 / jerk_m_s3)
 
 
 STRAYS = Condition(

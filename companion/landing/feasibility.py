@@ -7,10 +7,10 @@ import math
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
-from companion.integrity.contradictions import contradicts_itself
 from companion.integrity.heights import road_above_ground_m, road_distance_m
+from companion.integrity.vehicle_data import contradicts_itself
 from companion.landing.aborts import is_stamped_ahead
-from companion.landing.condition import Condition, cause_of, holds, is_fix_old
+from companion.landing.conditions import Condition, cause_of, holds, is_fix_old
 from companion.landing.memory import Held
 from companion.landing.targets import chase_floor_m
 from companion.situation.phases import Phase
@@ -56,7 +56,7 @@ def _too_far(s: Situation, c: CompanionConfig) -> Cause:
     return Cause(Reason.VEHICLE_TOO_FAR, values)
 
 
-def _rejected(s: Situation, _: CompanionConfig) -> Cause:
+def _tell_rejected(s: Situation, _: CompanionConfig) -> Cause:
     return Cause(Reason.MEASUREMENTS_REJECTED, (100.0 * s.vehicle.rejected_share,))
 
 
@@ -83,7 +83,7 @@ def _lacks_geoid(s: Situation, _: CompanionConfig) -> bool:
     return s.autopilot.frame is not None and not s.autopilot.geoid_known
 
 
-def _stamped_ahead(s: Situation, _: CompanionConfig) -> Cause:
+def _tell_stamped_ahead(s: Situation, _: CompanionConfig) -> Cause:
     return Cause(Reason.STAMPS_AHEAD, (-(s.vehicle.fix_age_on_arrival_s or 0.0),))
 
 
@@ -130,7 +130,7 @@ OBSTACLES = (
         phases=_BEFORE_A_CHASE,
         is_true=is_stamped_ahead,
         hold_s=lambda c: c.abort.fix_ahead_hold_s,
-        cause=_stamped_ahead,
+        cause=_tell_stamped_ahead,
     ),
     Condition(
         reason=Reason.VEHICLE_TOO_FAST,
@@ -153,7 +153,9 @@ OBSTACLES = (
         hold_s=lambda _: _RECEIVER_TOLD_S,
     ),
     Condition(reason=Reason.AUTOPILOT_WARNS, phases=_BEFORE_A_CHASE, is_true=_is_warned),
-    Condition(reason=Reason.MEASUREMENTS_REJECTED, phases=_BEFORE_A_CHASE, is_true=contradicts_itself, cause=_rejected),
+    Condition(
+        reason=Reason.MEASUREMENTS_REJECTED, phases=_BEFORE_A_CHASE, is_true=contradicts_itself, cause=_tell_rejected
+    ),
     Condition(
         reason=Reason.BATTERY_LOW,
         phases=_BEFORE_A_CHASE,

@@ -91,7 +91,7 @@ def fly(
     request = replace(request, limits=limit_tilt(request, model.tracking.air_enu_m_s2))
     guidance, plan = system.guidance.plan(model.guidance, request)
     if inputs.driver is not None and inputs.driver.carries_setpoints_on:
-        plan = _kept_up(plan, reference, float(aim.floor_enu_m[0]), inputs.timeout_s, period_s)
+        plan = _keep_up(plan, reference, float(aim.floor_enu_m[0]), inputs.timeout_s, period_s)
     model = ModelMemory(
         reference=plan.next_state,
         reference_ns=reference_ns,
@@ -99,7 +99,7 @@ def fly(
         guidance=guidance,
         tracking=add_to_past(model.tracking, reference_ns, plan.next_state),
         sway=model.sway,
-        yaw_setpoint_rad=_slewed_yaw_rad(memory, situation.pad, period_s, system.config),
+        yaw_setpoint_rad=_slew_yaw_rad(memory, situation.pad, period_s, system.config),
     )
     return _update_anchor(replace(memory, model=model), situation, system.config), plan
 
@@ -121,7 +121,7 @@ def _for_the_drone(target: Target, memory: StepMemory, inputs: StepInputs) -> Ta
     return replace(target, position_enu_m=position, velocity_enu_m_s=velocity)
 
 
-def _kept_up(
+def _keep_up(
     plan: PlanResult, reference: ReferenceState, lowest_enu_m: float, timeout_s: float, period_s: float
 ) -> PlanResult:
     """Return the plan with a next state that may be carried on for the autopilot's time-out.
@@ -209,7 +209,7 @@ def _update_anchor(memory: StepMemory, situation: Situation, config: CompanionCo
     return replace(memory, places=replace(memory.places, anchor_enu_m=np.array([x, y, anchor[2]])))
 
 
-def _slewed_yaw_rad(memory: StepMemory, pad: PadPath | None, dt_s: float, config: CompanionConfig) -> float:
+def _slew_yaw_rad(memory: StepMemory, pad: PadPath | None, dt_s: float, config: CompanionConfig) -> float:
     """Turn towards the vehicle's heading while it is followed, at a bounded rate."""
     phase, yaw_rad = memory.progress.phase, memory.model.yaw_setpoint_rad
     follows = phase in LANDING_PHASES or phase is Phase.TOUCHDOWN

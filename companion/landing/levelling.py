@@ -35,7 +35,7 @@ def limits_now(memory: StepMemory, situation: Situation, inputs: StepInputs, con
     turns_m_s2 = 0.0 if situation.pad is None else math.hypot(*situation.pad.acceleration_enu_m_s2[0, :2].tolist())
     kept_m_s2 = min(_kept_m_s2(turns_m_s2, limits.jerk_max_m_s3, config), limits.acceleration_max_m_s2)
     takes_s = max(turns_m_s2 - kept_m_s2, 0.0) / limits.jerk_max_m_s3
-    early_m = max(-relative.climb_m_s, 0.0) * (takes_s + touchdown.level_late_stds * inputs.link_delay_std_s)
+    early_m = max(-relative.climb_m_s, 0.0) * (takes_s + touchdown.level_late_stds * inputs.link_delay.std_s)
     if lowest_foot_m(situation, relative, config) > touchdown.level_height_m + early_m + escape_m:
         return limits
     return replace(limits, acceleration_max_m_s2=kept_m_s2)

@@ -1,24 +1,26 @@
-"""What a step remembers, in groups that live and are begun anew together.
+"""What a step remembers, in groups that live and are begun anew together, and what of it moves with the frame; pure.
 
 Spans of time are measured on the step's monotonic clock, which nobody sets; whatever is compared with a stamp of the
 vehicle's data is in UTC.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from types import MappingProxyType
 
-from companion.autopilots.driver import NO_MOVES, DriverMemory, FrameMoves
+import numpy as np
+from msgspec import Struct, field
+
+from companion.autopilots.driver import NO_MOVES, AutopilotView, DriverMemory, FrameMoves
 from companion.core.data import Array
 from companion.core.reasons import Cause, Reason
-from companion.integrity.contradictions import Contradictions, FixStamps
-from companion.integrity.course import CourseWatch
+from companion.integrity.vehicle_data import Contradictions, CourseWatch, FixStamps
 from companion.landing.sway import Sway
 from companion.landing.virtual_model import Tracking
 from companion.planning.guidance import GuidanceMemory, ReferenceState, Trajectory
 from companion.situation.phases import Phase
-from companion.vehicle.buffered import EstimatorMemory
-from companion.vehicle.surprise import Surprise
+from companion.vehicle.driving import Surprise
+from companion.vehicle.estimator import EstimatorMemory
+from link.records import replace
 
 Held = Mapping[Reason, int]
 """Since when (monotonic ns) each condition has been true, by its reason."""
@@ -26,8 +28,7 @@ Held = Mapping[Reason, int]
 NOTHING_HELD: Held = MappingProxyType({})
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Progress:
+class Progress(Struct, frozen=True, kw_only=True, eq=False):
     """Where in the landing we are, for how long, and what is counted over it.
 
     Attributes:
@@ -59,8 +60,7 @@ class Progress:
     obstacle: Cause | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class VehicleMemory:
+class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
     """What is known of the vehicle, and whether it can be believed.
 
     Attributes:
@@ -84,8 +84,7 @@ class VehicleMemory:
     is_road_elsewhere: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ModelMemory:
+class ModelMemory(Struct, frozen=True, kw_only=True, eq=False):
     """The virtual model that the setpoints follow, and how the drone follows it.
 
     Attributes:
@@ -107,8 +106,7 @@ class ModelMemory:
     yaw_setpoint_rad: float = 0.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ControlMemory:
+class ControlMemory(Struct, frozen=True, kw_only=True, eq=False):
     """How the autopilot stands to the companion.
 
     Attributes:
@@ -122,8 +120,7 @@ class ControlMemory:
     was_armed: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Places:
+class Places(Struct, frozen=True, kw_only=True, eq=False):
     """Places in W, and which W that is.
 
     Attributes:
@@ -139,8 +136,7 @@ class Places:
     frame_moves: FrameMoves = NO_MOVES
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class StepMemory:
+class StepMemory(Struct, frozen=True, kw_only=True, eq=False):
     """What a step hands to the next."""
 
     progress: Progress = field(default_factory=Progress)
@@ -148,3 +144,42 @@ class StepMemory:
     model: ModelMemory = field(default_factory=ModelMemory)
     control: ControlMemory = field(default_factory=ControlMemory)
     places: Places = field(default_factory=Places)
+
+
+def to_present_frame(memory: StepMemory, view: AutopilotView) -> StepMemory:
+    """Return the memory in the frame that the autopilot's positions are in now.
+
+    A moved origin or a jump of the drone's own position makes the vehicle's estimate start anew. With a jump, all
+    places that the companion flies to move along, so that the drone stays where it is.
+
+    Args:
+        memory: in the frame of the last step.
+        view: of the autopilot now.
+    """
+    places = memory.places
+    if view.frame_moves == places.frame_moves:
+        return memory
+    shift_enu_m, before_enu_m = view.frame_moves.shift_enu_m, places.frame_moves.shift_enu_m
+    vehicle, places = replace(memory.vehicle, estimator=None), replace(places, frame_moves=view.frame_moves)
+    if shift_enu_m == before_enu_m:
+        return replace(memory, vehicle=vehicle, places=places)
+    by_enu_m = np.array(shift_enu_m) - np.array(before_enu_m)
+    places = replace(
+        places,
+        waiting_point_enu_m=_move(places.waiting_point_enu_m, by_enu_m),
+        anchor_enu_m=_move(places.anchor_enu_m, by_enu_m),
+        ground_enu_m=_move(places.ground_enu_m, by_enu_m),
+    )
+    return replace(memory, vehicle=vehicle, places=places, model=_move_model(memory.model, by_enu_m))
+
+
+def _move_model(model: ModelMemory, by_enu_m: Array) -> ModelMemory:
+    reference, tracking = model.reference, model.tracking
+    if reference is not None:
+        reference = replace(reference, position_enu_m=reference.position_enu_m + by_enu_m)
+    past = tuple((t_ns, place + by_enu_m, velocity) for t_ns, place, velocity in tracking.past)
+    return replace(model, reference=reference, guidance=None, tracking=replace(tracking, past=past))
+
+
+def _move(point_enu_m: Array | None, by_enu_m: Array) -> Array | None:
+    return None if point_enu_m is None else point_enu_m + by_enu_m

@@ -1,18 +1,17 @@
 """What goes into a companion step and what comes out; `memory.py` holds what it remembers in between."""
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, AutopilotView, Driver
 from companion.autopilots.response import ResponseModel
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits, Measurement, OwnState, Setpoint
 from companion.planning.guidance import Guidance, PlanResult
-from companion.vehicle.buffered import Estimator
+from companion.vehicle.estimator import Estimator
 from link.messages import Command, CommandReply, LandingStatus, PadGeometry
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class System:
+class System(Struct, frozen=True, kw_only=True, eq=False):
     """The parts that a companion is made of; none of them changes during a flight."""
 
     config: CompanionConfig
@@ -20,8 +19,14 @@ class System:
     guidance: Guidance
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class StepInputs:
+class LinkDelay(Struct, frozen=True, kw_only=True):
+    """How long a message takes, and by how much that differs from one to the next."""
+
+    mean_s: float = 0.0
+    std_s: float = 0.0
+
+
+class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
     """What a step is told.
 
     Attributes:
@@ -38,8 +43,7 @@ class StepInputs:
         pad: the vehicle's own description of its pad.
         command: an operator's wish.
         leaving: the companion is about to end, so the autopilot is to hover by itself, or to finish its disarm.
-        link_delay_s: from the companion to the autopilot.
-        link_delay_std_s: its standard deviation.
+        link_delay: from the companion to the autopilot.
         timeout_s: for how long the autopilot goes on without a setpoint.
     """
 
@@ -56,8 +60,7 @@ class StepInputs:
     pad: PadGeometry | None = None
     command: Command | None = None
     leaving: bool = False
-    link_delay_s: float = 0.0
-    link_delay_std_s: float = 0.0
+    link_delay: LinkDelay = LinkDelay()
     timeout_s: float = 0.0
 
     def monotonic_at(self, t_ns: int) -> int:
@@ -65,8 +68,7 @@ class StepInputs:
         return t_ns - self.t_ns + self.monotonic_ns
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class StepOutputs:
+class StepOutputs(Struct, frozen=True, kw_only=True, eq=False):
     """What a step wants done.
 
     Attributes:

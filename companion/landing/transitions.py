@@ -86,7 +86,7 @@ def _enter(memory: StepMemory, event: Event, cause: Cause, situation: Situation,
         return replace(memory, model=replace(model, reference=None, tracking=Tracking()))
     if phase in (Phase.HOLD, Phase.ABORT) and model.reference is not None:
         memory = replace(memory, places=replace(places, anchor_enu_m=stopping_point(model.reference, BRAKING_M_S2)))
-    return replace(memory, model=_escaping(model, situation, config)) if phase is Phase.ABORT else memory
+    return replace(memory, model=_escape(model, situation, config)) if phase is Phase.ABORT else memory
 
 
 def _progress_after(
@@ -121,7 +121,7 @@ def _progress_after(
     )
 
 
-def _escaping(model: ModelMemory, situation: Situation, config: CompanionConfig) -> ModelMemory:
+def _escape(model: ModelMemory, situation: Situation, config: CompanionConfig) -> ModelMemory:
     """Let the virtual model sink no further towards a roof that is near: no plan of limited jerk turns it in time."""
     reference, pad, limits, relative = model.reference, situation.pad, situation.limits, situation.approach
     if reference is None or pad is None or limits is None or relative is None:

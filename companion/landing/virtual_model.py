@@ -5,9 +5,9 @@ the virtual model at the same instant. The plan then leads the virtual model to 
 """
 
 import math
-from dataclasses import dataclass, field
 
 import numpy as np
+from msgspec import Struct, field
 
 from companion.autopilots.response import STATES, ResponseModel
 from companion.core.data import GRAVITY_M_S2, Array, OwnState, Setpoint
@@ -24,8 +24,7 @@ _BREAK_S = 0.25  # between two reports, after which the deviation is what the ne
 _ACCELERATION_MAX_M_S2 = 10.0  # of the model between two steps: it is set back at times, and that is no motion
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Tracking:
+class Tracking(Struct, frozen=True, kw_only=True, eq=False):
     """The model's recent past and the drone beside it.
 
     Attributes:
@@ -82,7 +81,7 @@ def update_tracking(
         behind_enu_m=behind,
         error_m=math.hypot(*behind.tolist()),
         compared_ns=own_ns,
-        air_enu_m_s2=_updated_air(tracking, own, since_s),
+        air_enu_m_s2=_update_air(tracking, own, since_s),
         velocity_enu_m_s=np.array(own.velocity_enu_m_s[:2]),
     )
     if not estimates or response is None:
@@ -93,7 +92,24 @@ def update_tracking(
     return replace(tracking, deviation=response.update(tracking.deviation, measured, acceleration[:2], since_s))
 
 
-def _updated_air(tracking: Tracking, own: OwnState, since_s: float) -> Array:
+def tracking_error_max_m(
+    reference: ReferenceState | None, response: ResponseModel | None, delay_std_s: float, stds_max: float
+) -> float:
+    """Return how far from its setpoint a drone may be that follows it.
+
+    Args:
+        reference: the virtual model, None while nothing is flown.
+        response: of the autopilot, None while none is connected.
+        delay_std_s: standard deviation of the link's delay.
+        stds_max: so many standard deviations of what gusts and the link do.
+    """
+    if response is None:
+        return math.inf
+    speed_m_s = 0.0 if reference is None else math.hypot(*reference.velocity_enu_m_s.tolist())
+    return stds_max * math.hypot(math.sqrt(response.spread[0, 0]), speed_m_s * delay_std_s)
+
+
+def _update_air(tracking: Tracking, own: OwnState, since_s: float) -> Array:
     """Return the mean of what the drone leans beyond what accelerates it, by the change of its own velocity."""
     x, y, up = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
     if up < _UPRIGHT_MIN or not 0.0 < since_s < _BREAK_S:

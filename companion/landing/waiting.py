@@ -8,8 +8,7 @@ from companion.landing.sway import is_swaying
 from companion.landing.targets import changes_speed
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation, vehicle_stands
-from companion.vehicle.driving import drives_unevenly, may_depart, turns_hard, winds
-from companion.vehicle.surprise import may_surprise
+from companion.vehicle.driving import drives_unevenly, may_depart, may_surprise, turns_hard, winds
 from link.records import replace
 
 _HELD_UP_M = 0.1  # above the height of waiting, down to which a descent sinks whether it is to wait or not
@@ -17,7 +16,7 @@ _HELD_UP_M = 0.1  # above the height of waiting, down to which a descent sinks w
 
 def waits_at_m(memory: StepMemory, situation: Situation, config: CompanionConfig) -> float | None:
     """Return how high above the pad a descent waits for now, None for one that goes on."""
-    if _awaited(memory, situation, config) is not None:
+    if _find_awaited(memory, situation, config) is not None:
         return _waiting_height_m(situation, config)
     if not waits_for_calm(memory, situation, config):
         return None
@@ -36,13 +35,13 @@ def why_held_up(memory: StepMemory, situation: Situation, config: CompanionConfi
     relative = situation.approach
     if relative is None or relative.height_m > _waiting_height_m(situation, config) + _HELD_UP_M:
         return None
-    return _awaited(memory, situation, config)
+    return _find_awaited(memory, situation, config)
 
 
 def update_wait(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Progress:
     """Return the progress with the time for which this descent has waited above a vehicle that drives unpredictably."""
     progress, now_ns = memory.progress, situation.monotonic_ns
-    if _unpredictable(memory, situation, config) is not None:
+    if _find_unpredictable(memory, situation, config) is not None:
         return progress if progress.waits_since_ns is not None else replace(progress, waits_since_ns=now_ns)
     if progress.waits_since_ns is None:
         return progress
@@ -55,7 +54,7 @@ def waited_s(progress: Progress, monotonic_ns: int) -> float:
     return progress.waited_s + (0.0 if since_ns is None else (monotonic_ns - since_ns) * 1e-9)
 
 
-def _unpredictable(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause | None:
+def _find_unpredictable(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause | None:
     """Return what a vehicle has lately done that nobody could expect, None of one that stands or drives evenly."""
     if not _may_wait(memory, situation, config) or _stays(memory, situation, config):
         return None
@@ -82,11 +81,11 @@ def _may_wait(memory: StepMemory, situation: Situation, config: CompanionConfig)
     return situation.approach.height_m > config.descent.commit_height_m
 
 
-def _awaited(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause | None:
+def _find_awaited(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause | None:
     relative = situation.approach
     if relative is None or not _may_wait(memory, situation, config):
         return None
-    unpredictable = _unpredictable(memory, situation, config)
+    unpredictable = _find_unpredictable(memory, situation, config)
     if unpredictable is not None:
         return unpredictable
     if must_wait(situation, config):

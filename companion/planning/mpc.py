@@ -45,14 +45,14 @@ class Mpc:
     def plan(self, memory: ReferenceState | None, request: PlanRequest) -> tuple[ReferenceState, PlanResult]:
         """Return the next state as memory, and the plan."""
         limits = limits_of(request)
-        posed = self._posed(request, limits)
+        posed = self._pose(request, limits)
         if posed is None and not is_finite_state(request.state):
             request = with_finite_state(memory, request)
-            posed = self._posed(request, limits)
+            posed = self._pose(request, limits)
         result = brake(request, PlanStatus.FAILED, 0) if posed is None else self._plan(request, limits, posed)
         return result.next_state, result
 
-    def _posed(self, request: PlanRequest, limits: PlainLimits) -> Posed | None:
+    def _pose(self, request: PlanRequest, limits: PlainLimits) -> Posed | None:
         """Return the problem of a plan, all but its minor axis's bounds; None where the request is not finite."""
         state, resampler = request.state, make_resampler(request.target.offset_s, self._nodes_s)
         posed = np.empty((5, 3)), self._level.blank(), self._level.blank(), self._upright.blank()

@@ -101,7 +101,7 @@ class ReportMpc:
                 status = next(status for status, _, _ in solutions if status is not PlanStatus.SOLVED)
                 return _fallback(request, status, iterations)
             moves = np.stack(unknowns, axis=1)
-            trajectory.append(self._predicted(state, moves[:-1]))
+            trajectory.append(self._predict(state, moves[:-1]))
             excess = max(excess, float(moves[-1, 2]))
             jerk = moves[0]
             state = EULER @ state + np.outer([0.0, 0.0, STEP_S], jerk)
@@ -124,7 +124,7 @@ class ReportMpc:
         lower = np.append(above_road, 0.0)
         return self._programme.solve((np.append(moves, SLACK_WEIGHT), lower, np.full(steps + 1, np.inf)))
 
-    def _predicted(self, state: Array, moves: Array) -> Trajectory:
+    def _predict(self, state: Array, moves: Array) -> Trajectory:
         """Return the prediction for the state (3, 3) and the moves (c, 3)."""
         nodes = (self._free @ state + self._forced @ moves).reshape(3, self._numbers.prediction_steps, 3)
         path = np.concatenate((state[:, None, :], nodes), axis=1)

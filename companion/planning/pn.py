@@ -112,7 +112,7 @@ def advance(state: ReferenceState, wanted: Array, limits: FlightLimits, floor_m:
     """Return the state after `dt_s` in which the acceleration moves to `wanted` (3,) as far as the limits allow."""
     velocity, old = state.velocity_enu_m_s, state.acceleration_enu_m_s2
     push = np.empty(3)
-    push[:2] = _short(_slowed(wanted[:2], velocity[:2], limits.speed_max_m_s), limits.acceleration_max_m_s2)
+    push[:2] = _short(_slow(wanted[:2], velocity[:2], limits.speed_max_m_s), limits.acceleration_max_m_s2)
     sink_max = min(limits.descent_max_m_s, FLOOR_1_S * (float(state.position_enu_m[2]) - floor_m))
     lowest, highest = PULL_UP_1_S * (-sink_max - velocity[2]), PULL_UP_1_S * (limits.climb_max_m_s - velocity[2])
     bound = limits.vertical_acceleration_max_m_s2
@@ -126,7 +126,7 @@ def advance(state: ReferenceState, wanted: Array, limits: FlightLimits, floor_m:
     )
 
 
-def _slowed(push: Array, velocity: Array, speed_max_m_s: float) -> Array:
+def _slow(push: Array, velocity: Array, speed_max_m_s: float) -> Array:
     """Return `push` (2,) without what would take the speed past its limit."""
     speed = float(np.hypot(velocity[0], velocity[1]))
     if speed < 1e-6:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 from companion.landing.step_data import StepInputs, StepOutputs
-from companion.vehicle.buffered import Estimator, EstimatorMemory
+from companion.vehicle.estimator import Estimator, EstimatorMemory
 from link.mavlink.statistics import SessionStatistics
 
 

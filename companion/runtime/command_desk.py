@@ -32,7 +32,7 @@ class CommandDesk:
             return json_messages.encode(CommandReply(accepted=False, reason=str(error)))
         reply: Future[CommandReply] = Future()
         self._waiting.put((command, reply))
-        return json_messages.encode(awaited(reply))
+        return json_messages.encode(await_reply(reply))
 
     def pass_on(self, node: CompanionNode, local_ns: int) -> Command | None:
         """Give the oldest command to the node, one at a time, if it makes a step now; return it."""
@@ -54,7 +54,7 @@ class CommandDesk:
                 self._asked.popleft().set_result(reply)
 
 
-def awaited(reply: Future[CommandReply]) -> CommandReply:
+def await_reply(reply: Future[CommandReply]) -> CommandReply:
     """Return the answer to a command, or that it was taken back, or that neither came in time."""
     try:
         return reply.result(timeout=_REPLY_WAIT_S)

@@ -4,23 +4,25 @@ The wire loop, the lockstep campaigns and the tests all run this one.
 """
 
 import math
-from dataclasses import replace
+from functools import cache
 
-from companion.autopilots.link import CLOCK_SET_NS, AutopilotLink
-from companion.autopilots.response import ResponseModel
+from companion.autopilots.link import AutopilotLink
+from companion.autopilots.response import Cascade, ResponseModel
 from companion.core.data import Measurement, VehicleEstimate
 from companion.landing.memory import StepMemory
-from companion.landing.status import plan_publication, status_publication
-from companion.landing.step_data import StepInputs, StepOutputs, System
+from companion.landing.outputs import plan_publication, status_publication
+from companion.landing.step_data import LinkDelay, StepInputs, StepOutputs, System
 from companion.landing.targets import HORIZON_OFFSETS_S
+from companion.runtime.step_clock import StepClock
 from companion.situation.phases import FLYING_PHASES, Phase
 from companion.step import companion_step
-from companion.vehicle.buffered import BufferHealth
+from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.factory import make_estimator
 from companion.vehicle.inputs import measurements_of
 from link.mavlink.session import MavlinkSession
 from link.messages import LEVER_MAX_M, Command, CommandReply, PadGeometry
 from link.payloads.checks import PayloadError
+from link.records import replace
 from link.zenoh.keys import Keys, Publication
 
 _MOTION_RATE_MIN_HZ = 50.0
@@ -39,9 +41,12 @@ class CompanionNode:
         keys: of the Zenoh contract.
         session: to the autopilot.
         dry_run: send neither setpoints nor commands.
+        publishes: put status and plan on Zenoh; where nobody listens, leaving them out saves a hundredth of the time.
     """
 
-    def __init__(self, system: System, keys: Keys, session: MavlinkSession, *, dry_run: bool = False) -> None:
+    def __init__(
+        self, system: System, keys: Keys, session: MavlinkSession, *, dry_run: bool = False, publishes: bool = True
+    ) -> None:
         self.autopilot = AutopilotLink(
             session,
             motion_rate_hz=max(system.config.step_rate_hz, _MOTION_RATE_MIN_HZ),
@@ -50,6 +55,7 @@ class CompanionNode:
             geoid_height_m=system.config.geoid_height_m,
         )
         self._dry_run = dry_run
+        self._publishes = publishes
         self._response: ResponseModel | None = None
         self._limits_wanted = system.config.limits.flight_limits()
         self.memory = StepMemory()
@@ -67,9 +73,7 @@ class CompanionNode:
         self._publications: list[Publication] = []
         self._stepped_ns: int | None = None
         self._stepped_own_ns: int | None = None
-        self._t_ns = 0
-        self._monotonic_ns = 0
-        self._utc_ahead_ns = 0  # of the monotonic clock, by what UTC has been set to
+        self._clock = StepClock()
         self._status_ns: int | None = None
         self._statuses = 0
 
@@ -106,7 +110,7 @@ class CompanionNode:
         except PayloadError:
             self.bad_payloads += 1
             return
-        newest_ns = self._t_ns + _FUTURE_MAX_NS
+        newest_ns = self._clock.t_ns + _FUTURE_MAX_NS
         self._measurements += [measurement for measurement in measurements if measurement.t_ns <= newest_ns]
         # Before UTC is known a stamp ahead of the companion's own clock says nothing about who is wrong.
         if self.autopilot.session.clock.is_utc_known and any(one.t_ns > newest_ns for one in measurements):
@@ -182,11 +186,11 @@ class CompanionNode:
         return periods >= (_EARLY if is_new else _LATE)
 
     def _step(self, local_ns: int) -> None:
-        state = self.autopilot.state
-        self._set_time(local_ns)
+        state, way = self.autopilot.state, self.autopilot.session.clock
+        self._clock.advance(way.local_to_utc_ns(local_ns), local_ns)
         inputs = StepInputs(
-            t_ns=self._t_ns,
-            monotonic_ns=self._monotonic_ns,
+            t_ns=self._clock.t_ns,
+            monotonic_ns=self._clock.monotonic_ns,
             limits=self.autopilot.limits(self._limits_wanted),
             response=self._present_response(),
             own=state.own,
@@ -199,8 +203,7 @@ class CompanionNode:
             command=self._command,
             leaving=self._leaving,
             timeout_s=self.autopilot.timeout_s,
-            link_delay_s=min(self.autopilot.session.clock.one_way_s, _LINK_DELAY_MAX_S),
-            link_delay_std_s=self.autopilot.session.clock.one_way_std_s,
+            link_delay=LinkDelay(mean_s=min(way.one_way_s, _LINK_DELAY_MAX_S), std_s=way.one_way_std_s),
         )
         self._measurements, self._command = [], None
         self._stepped_ns, self._stepped_own_ns = local_ns, None if state.own is None else state.own.t_ns
@@ -208,28 +211,11 @@ class CompanionNode:
         self.memory, self.outputs = companion_step(self.memory, inputs, self.system)
         self._send(self.outputs, local_ns)
 
-    def _set_time(self, local_ns: int) -> None:
-        """Take the time of this step.
-
-        The map to UTC is refined all the time, and the step's own time never goes back with it. Where UTC is set, or
-        becomes known, only UTC is: the monotonic time goes on, and so does the flight.
-        """
-        utc_ns = self.autopilot.session.clock.local_to_utc_ns(local_ns)
-        if self._stepped_ns is None:
-            self._utc_ahead_ns = utc_ns - local_ns
-        else:
-            set_by_ns = utc_ns - (self._t_ns + local_ns - self._stepped_ns)
-            if abs(set_by_ns) > CLOCK_SET_NS:
-                self._t_ns += set_by_ns
-                self._utc_ahead_ns += set_by_ns
-        self._t_ns = max(self._t_ns + 1, utc_ns)
-        self._monotonic_ns = self._t_ns - self._utc_ahead_ns
-
     def _present_response(self) -> ResponseModel | None:
         """Return the model of how the autopilot follows setpoints, made anew when its gains have changed."""
         cascade = self.autopilot.cascade
         if cascade is not None and (self._response is None or self._response.cascade != cascade):
-            self._response = ResponseModel(cascade, HORIZON_OFFSETS_S)
+            self._response = _response_to(cascade)
         return self._response
 
     def _send(self, outputs: StepOutputs, local_ns: int) -> None:
@@ -241,13 +227,13 @@ class CompanionNode:
             self.autopilot.send_text(outputs.text)
         if outputs.reply is not None:
             self._replies.append(outputs.reply)
-        since_ns = math.inf if self._status_ns is None else self._monotonic_ns - self._status_ns
+        since_ns = math.inf if self._status_ns is None else self._clock.monotonic_ns - self._status_ns
         is_due = since_ns >= 1e9 / self.system.config.status_rate_hz
-        if outputs.text is not None or is_due:
+        if self._publishes and (outputs.text is not None or is_due):
             self._publish(outputs)
 
     def _publish(self, outputs: StepOutputs) -> None:
-        self._status_ns = self._monotonic_ns
+        self._status_ns = self._clock.monotonic_ns
         self._statuses += 1
         status = replace(
             outputs.status,
@@ -256,5 +242,11 @@ class CompanionNode:
         )
         self._publications.append(status_publication(self._keys, status))
         if outputs.plan is not None and self._statuses % _PLAN_EVERY == 0:
-            plan = plan_publication(self._keys, outputs.plan, self._t_ns, self.memory.model.yaw_setpoint_rad)
+            plan = plan_publication(self._keys, outputs.plan, self._clock.t_ns, self.memory.model.yaw_setpoint_rad)
             self._publications.append(plan)
+
+
+@cache
+def _response_to(cascade: Cascade) -> ResponseModel:
+    """Return the model of a cascade; 2 ms, and the gains of an autopilot come one by one in each of many landings."""
+    return ResponseModel(cascade, HORIZON_OFFSETS_S)

@@ -50,13 +50,13 @@ class PadQuestion:
             now_s: of a monotonic clock.
             asks: whether there is anybody to ask.
         """
-        pad = self._taken()
+        pad = self._take()
         if asks and not self.is_answered and now_s - self._asked_s >= _AGAIN_S:
             self._asked_s = now_s
             self._answers = self._zenoh.ask(self._key, b"", _AGAIN_S)
         return pad
 
-    def _taken(self) -> PadGeometry | None:
+    def _take(self) -> PadGeometry | None:
         pad: PadGeometry | None = None
         for sample in () if self._answers is None else self._answers.take():
             try:

@@ -1,18 +1,29 @@
-"""How the vehicle has driven lately, from velocities that its data have confirmed: evenly, turning, braking; pure.
+"""How the vehicle has driven lately, and whether it has done what its data did not let expect, told in hindsight; pure.
 
-A driver who changes speed time and again surprises by less each time than one who brakes (`surprise.py`), but goes on
-doing so: by 0.3 m/s in the half second that poor data are late for one of 0.8 m/s^2, of which the tails do the harm. So
-does a road that bends one way and the other: a curve that is known may last, but where the next one begins, with a
+**Surprise.** What is known of a vehicle is as old as its data: 0.1 s over a good link, 0.6 s over a poor one. What it
+does meanwhile is a guess, which can be checked once the data of that moment are there. A guess that was off by nearly
+the speed that a contact may have against the pad means that a contact at that moment would have been too fast. A
+vehicle that has braked or started like that will again (a bus, a queue of cars), so it is landed on only while it
+stands, or has driven for some time as expected. Over late data it has to stand for some time, too, or it drives again
+before that is told. Only its speed is asked about. With fresh data even an emergency brake surprises by little, but
+it takes the drone half a second to brake as hard: a vehicle that is seen to brake hard counts as one that has
+surprised.
+
+**Driving.** A driver who changes speed time and again surprises by less each time than one who brakes, but goes on
+doing so: by 0.3 m/s in the half second that poor data are late for one of 0.8 m/s^2, of which the tails do the harm.
+So does a road that bends one way and the other: a curve that is known may last, but where the next one begins, with a
 radius of 16 m at 7 m/s, the vehicle is 1.6 m/s off to the side when that is told; and in the sharpest curves a drone
 leans so far that it has to come level at the right tenth of a second. All of these show in the velocities that were
 driven, long before a belief of the vehicle's speed is found to be wrong.
 """
 
 import math
-from dataclasses import dataclass
+
+from msgspec import Struct, field
 
 from companion.config.landing import DescentConfig
-from companion.core.data import Array
+from companion.core.data import Array, VehicleEstimate
+from companion.vehicle.estimator import Estimator, EstimatorMemory
 from link.records import replace
 
 _DRIVEN_KEPT = 150  # velocities: of 15 s, five times as long as an uneven driver keeps an acceleration
@@ -27,8 +38,7 @@ Change = tuple[float, float]
 """The mean acceleration along and to the left from one such velocity to one 2 s later, m/s^2."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Driving:
+class Driving(Struct, frozen=True, kw_only=True):
     """How a vehicle has driven in the last 15 s.
 
     Attributes:
@@ -121,3 +131,98 @@ def _change_m_s2(before: Driven, then: Driven) -> Change | None:
 
 def _root_mean_square(values: list[float]) -> float:
     return math.sqrt(sum(value * value for value in values) / len(values)) if values else 0.0
+
+
+_BELIEF_PERIOD_NS = 100_000_000
+_KNOWN_STD_MAX_M_S = 1.0  # of a velocity that is a belief: in its first second an estimate knows no acceleration
+_SURPRISE_STDS = 2.5  # less was said to be possible: through an outage of 2 s a belief is off by 1 m/s
+_KEPT = 30  # beliefs: of 3 s, longer than any data are awaited
+_SURE_STD_MAX_M_S = 0.3  # of a velocity that was driven; one fix's is 0.1
+
+Belief = tuple[int, float, float]
+"""UTC ns, the horizontal speed that was believed then, m/s, and its standard deviation, m/s."""
+
+
+class Surprise(Struct, frozen=True, kw_only=True):
+    """What has been believed of the vehicle's speed, and when that was last found to be wrong.
+
+    Attributes:
+        beliefs: not checked yet, oldest first.
+        speed_std_m_s: of the newest of all; infinite while the speed is not known.
+        surprised_ns: when the newest wrong one was held, monotonic; None when none was.
+        driving: how it has driven up to the times of the beliefs that have been checked.
+    """
+
+    beliefs: tuple[Belief, ...] = ()
+    speed_std_m_s: float = math.inf
+    surprised_ns: int | None = None
+    driving: Driving = field(default_factory=Driving)
+
+
+def update_surprise(
+    surprise: Surprise,
+    estimator: Estimator,
+    memory: EstimatorMemory | None,
+    t_ns: int,
+    *,
+    monotonic_ns: int,
+    config: DescentConfig,
+) -> Surprise:
+    """Return the surprise at `t_ns`: beliefs are checked whose time the vehicle's data have reached, and one is added.
+
+    Args:
+        surprise: so far.
+        estimator: of the vehicle.
+        memory: the estimator's own, after all that has arrived.
+        t_ns: now, UTC.
+        monotonic_ns: now, on the clock that is never set.
+        config: what counts as wrong.
+    """
+    newest_ns = estimator.newest_fix_ns(memory)
+    if newest_ns is None:
+        return replace(surprise, beliefs=(), speed_std_m_s=math.inf)
+    while surprise.beliefs and surprise.beliefs[0][0] <= newest_ns:
+        (then_ns, speed_m_s, std_m_s), *later = surprise.beliefs
+        surprise = replace(surprise, beliefs=tuple(later))
+        known = estimator.estimate(memory, then_ns)
+        if known is None or not _is_known(known):
+            continue
+        off_m_s = abs(_speed_m_s(known) - speed_m_s)
+        is_sure = _std_m_s(known) < _SURE_STD_MAX_M_S
+        if is_sure:
+            surprise = replace(surprise, driving=with_velocity(surprise.driving, then_ns, known.velocity_enu_m_s))
+        is_wrong = off_m_s > max(config.surprise_speed_m_s, _SURPRISE_STDS * std_m_s)
+        if is_wrong or (is_sure and brakes_hard(surprise.driving, config)):
+            wrong_ns, before_ns = then_ns - t_ns + monotonic_ns, surprise.surprised_ns
+            surprise = replace(surprise, surprised_ns=wrong_ns if before_ns is None else max(wrong_ns, before_ns))
+    if surprise.beliefs and t_ns - surprise.beliefs[-1][0] < _BELIEF_PERIOD_NS:
+        return surprise
+    now = estimator.estimate(memory, t_ns)
+    if now is None or not _is_known(now):
+        return replace(surprise, speed_std_m_s=math.inf)
+    std_m_s = _std_m_s(now)
+    beliefs = (*surprise.beliefs, (t_ns, _speed_m_s(now), std_m_s))[-_KEPT:]
+    return replace(surprise, beliefs=beliefs, speed_std_m_s=std_m_s)
+
+
+def forget_beliefs(surprise: Surprise) -> Surprise:
+    """Return the surprise after UTC was set: what was believed has lost its time."""
+    return replace(surprise, beliefs=(), driving=replace(surprise.driving, driven=(), changes=()))
+
+
+def may_surprise(surprise: Surprise, monotonic_ns: int, config: DescentConfig) -> bool:
+    """Return whether a driving vehicle is to be expected to do at `monotonic_ns` what it has done."""
+    since_ns = surprise.surprised_ns
+    return since_ns is not None and (monotonic_ns - since_ns) * 1e-9 < config.surprise_hold_s
+
+
+def _speed_m_s(estimate: VehicleEstimate) -> float:
+    return math.hypot(*estimate.velocity_enu_m_s[:2].tolist())
+
+
+def _is_known(estimate: VehicleEstimate) -> bool:
+    return _std_m_s(estimate) < _KNOWN_STD_MAX_M_S
+
+
+def _std_m_s(estimate: VehicleEstimate) -> float:
+    return math.sqrt(max(float(estimate.covariance[3, 3] + estimate.covariance[4, 4]), 0.0))  # rounding

@@ -7,7 +7,7 @@ import numpy as np
 
 from companion.config.estimation import EstimatorConfig, EstimatorKind
 from companion.core.data import Measurement, Quantity
-from companion.vehicle.buffered import BufferedEstimator, Estimator, EstimatorMemory
+from companion.vehicle.estimator import BufferedEstimator, Estimator, EstimatorMemory
 from companion.vehicle.imm import ImmModel
 from link.messages import Vector3
 

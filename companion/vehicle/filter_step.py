@@ -5,19 +5,19 @@ is told to recover on the new data.
 """
 
 import math
-from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
+from msgspec import Struct
 from scipy.special import gammaincinv
 
 from companion.config.estimation import BufferConfig
 from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
+from link.records import replace
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Gaussian:
+class Gaussian(Struct, frozen=True, kw_only=True, eq=False):
     """Mean `(n,)` and covariance `(n, n)`; which states and units, each filter says."""
 
     mean: Array
@@ -46,8 +46,7 @@ RANK = {quantity: rank for rank, quantity in enumerate(QUANTITIES)}
 _NEVER: tuple[int | None, ...] = (None,) * len(QUANTITIES)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Update(Generic[S]):
+class Update(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
     """A filter's answer to a measurement: the state after it, and how well it fitted.
 
     Attributes:
@@ -85,8 +84,7 @@ class FilterModel(Protocol[S]):
         """Return the future of a state that holds at `t_ns`."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Tally:
+class Tally(Struct, frozen=True, kw_only=True):
     """What happened to the measurements up to a moment; tuples run over `QUANTITIES`."""
 
     fused: int = 0
@@ -98,8 +96,7 @@ class Tally:
     rejected_since_ns: tuple[int | None, ...] = _NEVER
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Snapshot(Generic[S]):
+class Snapshot(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
     """The filter at `t_ns`; the state is None until the first position."""
 
     t_ns: int
@@ -133,10 +130,10 @@ def step(
     rank = RANK[measurement.quantity]
     nis_per_dof = update.nis / update.dof
     if update.gate_nis <= nis_threshold(config.gate_probability, update.dof):
-        return Snapshot(t_ns=t_ns, state=update.state, tally=_accepted(snapshot.tally, rank, t_ns, update)), nis_per_dof
+        return Snapshot(t_ns=t_ns, state=update.state, tally=_accept(snapshot.tally, rank, t_ns, update)), nis_per_dof
     since_ns = snapshot.tally.rejected_since_ns[rank]
     if since_ns is None or t_ns - since_ns < config.recover_after_s * 1e9:
-        return Snapshot(t_ns=t_ns, state=state, tally=_rejected(snapshot.tally, rank, t_ns)), nis_per_dof
+        return Snapshot(t_ns=t_ns, state=state, tally=_reject(snapshot.tally, rank, t_ns)), nis_per_dof
     return _recover(model, Snapshot(t_ns=t_ns, state=state, tally=snapshot.tally), measurement), nis_per_dof
 
 
@@ -166,7 +163,7 @@ def _recover(model: FilterModel[S], snapshot: Snapshot[S], measurement: Measurem
     return Snapshot(t_ns=measurement.t_ns, state=state if update is None else update.state, tally=tally)
 
 
-def _accepted(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
+def _accept(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
     return Tally(
         fused=tally.fused + 1,
         gated=tally.gated,
@@ -178,7 +175,7 @@ def _accepted(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
     )
 
 
-def _rejected(tally: Tally, rank: int, t_ns: int) -> Tally:
+def _reject(tally: Tally, rank: int, t_ns: int) -> Tally:
     since_ns = tally.rejected_since_ns[rank]
     since = _put(tally.rejected_since_ns, rank, t_ns if since_ns is None else since_ns)
     return replace(tally, gated=tally.gated + 1, rejected_since_ns=since)

@@ -9,10 +9,11 @@ as well, and from one sighting to the next nothing tells how far.
 """
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import assert_never
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from companion.config.estimation import ImmConfig
@@ -24,6 +25,7 @@ from companion.vehicle import imm_sensors as sensors
 from companion.vehicle.filter_step import Update, wrapped
 from companion.vehicle.imm_numbers import Numbers, noises_with, numbers_of
 from link.messages import Vector3
+from link.records import replace
 
 KINDS = {
     Quantity.POSITION: sensors.POSITION,
@@ -38,17 +40,19 @@ MOVES = np.array([2, 3, 4, 5, 9, 11])  # of what a velocity tells about
 OFFSET = np.array([12, 13, 14])
 CURVATURE, HEADING = 6, 7
 CLOCK = kernels.CLOCK
+TURNS = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
+TURN_AGE_MAX_S = 1.0  # of a sensor that is at work: several periods of the slowest
 CLIMB_STD_M_S = 1.0  # at the start: a grade of 5 % at 20 m/s
 
 IndexArray = NDArray[np.intp]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ImmState:
-    """Both modes and the slow part of the fixes' variance."""
+class ImmState(Struct, frozen=True, kw_only=True, eq=False):
+    """Both modes, the slow part of the fixes' variance, and how long ago a sensor told the heading or the yaw rate."""
 
     modes: mixing.Modes
     fix_bias_variance_m2: float
+    turn_age_s: float = math.inf
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -87,7 +91,7 @@ class ImmModel:
         """Return the state `dt_s` later."""
         motion = self._motion(state)
         modes = mixing.predict_modes(state.modes, dt_s, self._noises(state), self.numbers.dwell_s, motion)
-        return ImmState(modes=modes, fix_bias_variance_m2=state.fix_bias_variance_m2)
+        return replace(state, modes=modes, turn_age_s=state.turn_age_s + dt_s)
 
     def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState]:
         """Return the state after any quantity."""
@@ -96,7 +100,8 @@ class ImmModel:
             R, bias_variance = self._split(R)
         reading = (KINDS[measurement.quantity], _own(measurement.value), _own(R))
         modes, nis, gate_nis = mixing.take_reading(state.modes, reading, self.numbers.lever_m, self.numbers.course)
-        updated = ImmState(modes=modes, fix_bias_variance_m2=bias_variance)
+        turn_age_s = 0.0 if measurement.quantity in TURNS else state.turn_age_s
+        updated = ImmState(modes=modes, fix_bias_variance_m2=bias_variance, turn_age_s=turn_age_s)
         return Update(state=updated, nis=nis, gate_nis=gate_nis, dof=len(measurement.value))
 
     def recover(self, state: ImmState, measurement: Measurement) -> ImmState:
@@ -112,15 +117,15 @@ class ImmModel:
                 return replace(state, modes=(means, _with_common_step(covariances, step), weights))
             case Quantity.POSITION:
                 step_m = self._step_size(state, measurement)
-                if self._placed_by_sightings(state):
-                    return _opened(state, OFFSET, np.full(3, step_m**2))
-                return self._restarted(state, measurement)
+                if self._is_placed_by_sightings(state):
+                    return _open(state, OFFSET, np.full(3, step_m**2))
+                return self._restart(state, measurement)
             case Quantity.VELOCITY:
-                return _opened(state, MOVES, self._prior_variances()[MOVES])
+                return _open(state, MOVES, self._prior_variances()[MOVES])
             case Quantity.HEADING:
-                return _opened(state, np.array([HEADING]), np.array([UNKNOWN_HEADING_VARIANCE]))
+                return _open(state, np.array([HEADING]), np.array([UNKNOWN_HEADING_VARIANCE]))
             case Quantity.YAW_RATE:
-                return _opened(state, np.array([CURVATURE]), np.array([self.config.curvature_std_rad_m**2]))
+                return _open(state, np.array([CURVATURE]), np.array([self.config.curvature_std_rad_m**2]))
             case _:
                 assert_never(measurement.quantity)
 
@@ -131,7 +136,7 @@ class ImmModel:
         G = forecasts.kinematics_jacobian(x, motion)
         position, velocity, acceleration = forecasts.kinematics(x[None], motion)
         covariance = G @ P @ G.T
-        known = self._heading_known(state)
+        known = self._is_heading_known(state)
         return VehicleEstimate(
             t_ns=t_ns,
             position_enu_m=position[0],
@@ -153,9 +158,10 @@ class ImmModel:
             position_enu_m=position,
             velocity_enu_m_s=velocity,
             acceleration_enu_m_s2=acceleration,
-            yaw_rad=yaw if self._heading_known(state) else None,
+            yaw_rad=yaw if self._is_heading_known(state) else None,
             position_std_m=std,
             is_coarse=state.fix_bias_variance_m2 > 0.0,
+            yaw_std_rad=math.sqrt(mixing.heading_variance(state.modes)),
         )
 
     def _split(self, fix_covariance: Array) -> tuple[Array, float]:
@@ -169,10 +175,15 @@ class ImmModel:
         return mixing.with_direction(self.numbers.motion, state.modes, float(self.numbers.course[2]))
 
     def _noises(self, state: ImmState) -> Array:
-        """Both modes' noise, (2, 9), as `imm_kernels.process_noise` takes it."""
+        """Both modes' noise, (2, 11), as `imm_kernels.process_noise` takes it."""
         walk_m2_s = 2.0 * state.fix_bias_variance_m2 / self.config.fix_bias_time_s
         receiver_m2_s = self.config.frame_offset_walk_m2_s + walk_m2_s
-        return noises_with(self.numbers, receiver_m2_s, self.config.own_walk_share * walk_m2_s)
+        return noises_with(
+            self.numbers,
+            receiver_m2_s,
+            self.config.own_walk_share * walk_m2_s,
+            turn_is_measured=state.turn_age_s < TURN_AGE_MAX_S,
+        )
 
     def _prior_variances(self) -> Array:
         """Of every state but position, offset and clock, (16,)."""
@@ -185,7 +196,7 @@ class ImmModel:
         vertical = [0.0, CLIMB_STD_M_S**2, heave, heave_rate]
         return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0])
 
-    def _heading_known(self, state: ImmState) -> bool:
+    def _is_heading_known(self, state: ImmState) -> bool:
         return mixing.is_heading_known(state.modes, self.config.heading_known_std_rad**2)
 
     def _step_size(self, state: ImmState, measurement: Measurement) -> float:
@@ -194,13 +205,13 @@ class ImmModel:
         expected, _ = sensors.observe(KINDS[measurement.quantity], weights @ means, self.numbers.lever_m, False)
         return max(float(np.linalg.norm(measurement.value - expected)), self.config.frame_offset_std_m)
 
-    def _placed_by_sightings(self, state: ImmState) -> bool:
+    def _is_placed_by_sightings(self, state: ImmState) -> bool:
         """Whether the place is known better than the fixes alone could tell it in the drone's frame."""
         _, covariances, weights = state.modes
         variance = float(weights @ covariances[:, 0, 0])
         return variance < 0.25 * (self.config.frame_offset_std_m**2 + state.fix_bias_variance_m2)
 
-    def _restarted(self, state: ImmState, fix: Measurement) -> ImmState:
+    def _restart(self, state: ImmState, fix: Measurement) -> ImmState:
         """A new start at `fix` that keeps offset, heading and clock."""
         x, P = mixing.combine(*state.modes)
         means, covariances, weights = self.start(fix).modes
@@ -216,7 +227,7 @@ def _own(array: Array) -> Array:
     return np.array(array, dtype=np.float64, order="C")
 
 
-def _opened(state: ImmState, indices: IndexArray, variances: Array) -> ImmState:
+def _open(state: ImmState, indices: IndexArray, variances: Array) -> ImmState:
     means, covariances, weights = state.modes
     opened = covariances.copy()
     opened[:, indices, indices] += variances

@@ -8,7 +8,7 @@ import numpy as np
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_kernels import SIZE
-from companion.vehicle.imm_mixing import Modes, combine, glide
+from companion.vehicle.imm_mixing import Modes, combine, glide, shifted
 from companion.vehicle.imm_sensors import antenna_velocity, horizontal_acceleration
 
 
@@ -39,7 +39,10 @@ def kinematics_jacobian(x: Array, motion: Array) -> Array:
 
 @compiled_kernel
 def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) -> tuple[Array, Array]:
-    """Return the means `(n, 16)` and the position variances `(n, 3)` at `offset_s` (n,), not falling."""
+    """Return the means `(n, 16)` and the pad's position variances `(n, 3)` at `offset_s` (n,), not falling.
+
+    The pad's, because a heading that is not well known moves it about an antenna that is.
+    """
     n = len(offset_s)
     means, variances = np.empty((n, SIZE)), np.empty((n, 3))
     passed_s = 0.0
@@ -49,8 +52,9 @@ def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) ->
             x, P = glide(x, P, ahead_s, noise, motion)
             passed_s = offset_s[i]
         means[i] = x
-        variances[i, 0], variances[i, 1] = P[0, 0], P[1, 1]
-        variances[i, 2] = P[8, 8] + P[10, 10] + 2.0 * P[8, 10]
+        _, S = shifted(x, P, motion[5:8], 1.0)
+        variances[i, 0], variances[i, 1] = S[0, 0], S[1, 1]
+        variances[i, 2] = S[8, 8] + S[10, 10] + 2.0 * S[8, 10]
     return means, variances
 
 
@@ -58,7 +62,7 @@ def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) ->
 def forecast_modes(
     modes: Modes, offset_s: Array, noises: Array, motion: Array
 ) -> tuple[Array, Array, Array, Array, Array]:
-    """Return the mixture's position, velocity, acceleration (n, 3), heading (n,) and position's deviation (n, 3)."""
+    """Return the mixture's position, velocity, acceleration (n, 3), heading (n,) and the pad's deviation (n, 3)."""
     x, P = combine(modes[0], modes[1], modes[2])
     noise = modes[2][0] * noises[0] + modes[2][1] * noises[1]
     means, variances = horizon(x, P, offset_s, noise, motion)

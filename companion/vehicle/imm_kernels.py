@@ -12,7 +12,9 @@ State `x` (16,) of the vehicle in W:
   15   c   how far the vehicle's clock is ahead of the drone's, s: what it stamps with now was true c ago
 With `w = k |v|` and J the turn by +90 degrees: `dp = v, dv = w J v + b, db = w J b - b/tau, dpsi = w`. At constant
 `w` this has a closed form: in a frame that turns with the vehicle, `v` relaxes along `b` and nothing else happens.
-At rest `w` is zero, so a standing vehicle cannot turn. Braking ends at standstill.
+At rest `w` is zero, so a standing vehicle cannot turn. Braking ends at standstill. The curvature is driven by the
+lateral acceleration that drivers change, `q / v^4`, and fades (Ornstein-Uhlenbeck) so that its standard deviation stays
+that of what a vehicle can steer: a random walk would let a vehicle that stands turn about its own antenna.
 Source: constant turn rate models in Bar-Shalom, Li and Kirubarajan 2001, 11.7; curvature after Baca et al. 2019.
 """
 
@@ -28,7 +30,7 @@ SIZE = 16
 MOTION = 8  # leading states that the non-linear motion touches
 FOLLOWS = (0, 0, 1, 1, 1, 1, 2, 1)  # each of them: 2 is the curvature, 1 its integral, 0 its second one
 CLOCK = 15
-CLOCK_NOISE = 8  # its place in the noise
+HEADING_NOISE, CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST = 4, 8, 9, 10  # their places in the noise
 
 
 @compiled_kernel
@@ -103,6 +105,13 @@ def advance(x: Array, dt_s: float, tau_s: float, heave: Array) -> tuple[Array, A
 
 
 @compiled_kernel
+def curvature_left(speed_m_s: float, dt_s: float, noise: Array) -> float:
+    """Return which share of the curvature is left after `dt_s`, with `noise` as `process_noise` takes it."""
+    psd = noise[2] / max(speed_m_s, noise[3]) ** 4
+    return math.exp(-0.5 * psd * dt_s / noise[CURVATURE_STD] ** 2)
+
+
+@compiled_kernel
 def heave_step(dt_s: float, frequency_rad_s: float, damping: float, std_m: float) -> tuple[Array, Array]:
     """Return transition and noise, each (2, 2), of a damped oscillator driven by white noise to a steady `std_m`."""
     damped = frequency_rad_s * math.sqrt(1.0 - damping**2)
@@ -127,9 +136,9 @@ def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array) -> Ar
     Args:
         x: state (16,), whose velocity says what is along and what is across.
         dt_s: step.
-        noise: (9,) jerk along and across the track, m^2/s^5; lateral acceleration, m^2/s^5; lowest speed for the
+        noise: (11,) jerk along and across the track, m^2/s^5; lateral acceleration, m^2/s^5; lowest speed for the
             curvature, m/s; heading, rad^2/s; climb, m^2/s^3; the receiver's and the drone's own wandering, m^2/s;
-            clock, s^2/s.
+            clock, s^2/s; standard deviation of the curvature in the long run, rad/m; heading at rest, rad^2/s.
         heave_noise: (2, 2) of the heave over `dt_s`.
     """
     Q = np.zeros((SIZE, SIZE))
@@ -149,12 +158,13 @@ def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array) -> Ar
             Q[2 * i, 2 * j + 1], Q[2 * i + 1, 2 * j] = g * qxy, g * qxy
     # What the curvature does within the step has turned velocity and heading by its end: left out, a curve that begins
     # between two measurements leaves a velocity that nothing explains and that is held for certain.
-    turning = noise[2] / max(speed, noise[3]) ** 4
+    left = curvature_left(speed, d, noise)
+    turning = noise[CURVATURE_STD] ** 2 * (1.0 - left * left) / d
     rates = (-speed * x[3], speed * x[2], -speed * x[3], speed * x[2], -speed * x[5], speed * x[4], 1.0, speed)
     for i in range(MOTION):
         for j in range(MOTION):
             Q[i, j] += turning * white_jerk[FOLLOWS[i]][FOLLOWS[j]] * rates[i] * rates[j]
-    Q[7, 7] += noise[4] * d
+    Q[7, 7] += (noise[HEADING_NOISE] * share + noise[HEADING_AT_REST] * (1.0 - share)) * d
     Q[8, 8], Q[8, 9], Q[9, 8], Q[9, 9] = noise[5] * d**3 / 3, noise[5] * d**2 / 2, noise[5] * d**2 / 2, noise[5] * d
     Q[10:12, 10:12] = heave_noise
     for place, offset in ((0, 12), (1, 13), (8, 14)):  # where the drone errs about itself, both move

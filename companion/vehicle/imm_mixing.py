@@ -12,7 +12,7 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
-from companion.vehicle.imm_kernels import CLOCK, SIZE, advance, correct, heave_step, process_noise
+from companion.vehicle.imm_kernels import CLOCK, SIZE, advance, correct, curvature_left, heave_step, process_noise
 from companion.vehicle.imm_sensors import (
     COURSE,
     HEADING,
@@ -27,6 +27,7 @@ from companion.vehicle.small_matrices import carried_through, inverse_of
 Modes = tuple[Array, Array, Array]
 
 WEIGHT_MIN = 1e-12  # a mode that rounding has ruled out could never come back
+SIDEWAYS_RAD = 1.0  # so far from its heading, or from the opposite, no vehicle goes that is known well
 STEP_MAX_S = 0.1  # 0.04 rad in the tightest of the benchmark's curves
 
 
@@ -85,7 +86,7 @@ def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple
         x: mean (16,).
         P: covariance (16, 16).
         dt_s: time to pass.
-        noise: (9,) as `process_noise` takes it.
+        noise: (11,) as `process_noise` takes it.
         motion: (8,), see the module; a lever arm of zero where it has no known direction.
     """
     steps = max(math.ceil(dt_s / STEP_MAX_S - 1e-9), 1)
@@ -95,7 +96,10 @@ def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple
     x, P = shifted(x, P, motion[5:8], 1.0)
     for _ in range(steps):
         Q = process_noise(x, step_s, noise, heave_noise)
+        bend_left = curvature_left(math.hypot(x[2], x[3]), step_s, noise)
         x, F = advance(x, step_s, motion[0], heave)
+        x[6] *= bend_left
+        F[6, 6] = bend_left
         x[CLOCK] *= clock_left
         F[CLOCK, CLOCK] = clock_left
         P = carried_through(F, P) + Q
@@ -104,10 +108,16 @@ def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple
 
 
 @compiled_kernel
+def heading_variance(modes: Modes) -> float:
+    """Return the mean of both modes' variances of the heading, rad^2."""
+    _, covariances, weights = modes
+    return float(weights[0] * covariances[0, 7, 7] + weights[1] * covariances[1, 7, 7])
+
+
+@compiled_kernel
 def is_heading_known(modes: Modes, known_variance: float) -> bool:
     """Return whether the heading of the mixture is known better than `known_variance`, rad^2."""
-    _, covariances, weights = modes
-    return bool(weights[0] * covariances[0, 7, 7] + weights[1] * covariances[1, 7, 7] < known_variance)
+    return heading_variance(modes) < known_variance
 
 
 @compiled_kernel
@@ -121,7 +131,7 @@ def with_direction(motion: Array, modes: Modes, known_variance: float) -> Array:
 
 @compiled_kernel
 def predict_modes(modes: Modes, dt_s: float, noises: Array, dwell_s: Array, motion: Array) -> Modes:
-    """Return the filter `dt_s` later; `noises` (2, 9), `dwell_s` (2,), `motion` as `with_direction` has it."""
+    """Return the filter `dt_s` later; `noises` (2, 11), `dwell_s` (2,), `motion` as `with_direction` has it."""
     means, covariances, weights = mix(modes, switching(dwell_s, dt_s))
     for j in range(2):
         means[j], covariances[j] = glide(means[j], covariances[j], dt_s, noises[j], motion)
@@ -178,7 +188,8 @@ def align_modes(
 ) -> tuple[Array, Array]:
     """Return the modes after the rule that a driving vehicle heads where it goes.
 
-    Nothing is learnt while it is slow, while the course itself is vague, or when it drives backwards.
+    One that is known to head against its course drives backwards. Nothing is learnt while it is slow, while the course
+    itself is vague, or when it goes sideways.
     """
     xs, Ps = means.copy(), covariances.copy()
     lever, zero = np.zeros(3), np.zeros(1)
@@ -190,7 +201,9 @@ def align_modes(
         known = P[7, 7] < known_variance
         expected, H = observe(COURSE, x, lever, False)
         residual = residual_of(COURSE, zero, expected)
-        if known and abs(residual[0]) > 1.0:
+        if known and abs(residual[0]) > math.pi - SIDEWAYS_RAD:
+            residual[0] -= math.copysign(math.pi, residual[0])
+        if known and abs(residual[0]) > SIDEWAYS_RAD:
             continue
         R = np.array([[course_variance if known else min(course_variance, 0.01)]])
         xs[j], Ps[j], _, _ = correct(x, P, residual, H, R)

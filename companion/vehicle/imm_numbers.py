@@ -8,8 +8,10 @@ import numpy as np
 
 from companion.config.estimation import ImmConfig, ImmModeConfig
 from companion.core.data import Array
-from companion.vehicle.imm_kernels import CLOCK_NOISE
+from companion.vehicle.imm_kernels import CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST, HEADING_NOISE
 from link.messages import Vector3
+
+ON_THE_SPOT_RAD_M = 10.0  # 1 rad/s while the middle moves at 0.1 m/s
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -19,7 +21,7 @@ class Numbers:
     Attributes:
         motion: (8,) as `imm_mixing` has it.
         dwell_s: (2,) of both modes.
-        noises: (2, 9) as `imm_kernels.process_noise` takes them, but for the two wanderings, which depend on the state.
+        noises: (2, 11) as `imm_kernels.process_noise` takes them, but for what depends on the state (`noises_with`).
         lever_m: (3,) from the antenna to the pad in V.
         course: (3,) as `imm_mixing.take_reading` takes it.
     """
@@ -45,15 +47,20 @@ def numbers_of(config: ImmConfig, antenna_to_pad_m: Vector3) -> Numbers:
 
 
 @lru_cache(maxsize=4)  # it changes with a fix's stated error only
-def noises_with(numbers: Numbers, receiver_m2_s: float, own_m2_s: float) -> Array:
-    """Return both modes' noise (2, 9) with the wandering of the vehicle's receiver and of the drone's own place.
+def noises_with(numbers: Numbers, receiver_m2_s: float, own_m2_s: float, *, turn_is_measured: bool) -> Array:
+    """Return both modes' noise (2, 11) with the wandering of the vehicle's receiver and of the drone's own place.
 
     Where the drone's own place does not wander, fixes have corrections, and are dated without an error.
+    A vehicle whose turning is measured may be one that turns on the spot. Any other is taken for a car: it turns no
+    tighter than a car steers, and not at all while it stands.
     """
     noises = numbers.noises.copy()
     noises[:, 6], noises[:, 7] = receiver_m2_s, own_m2_s
     if not own_m2_s:
         noises[:, CLOCK_NOISE] = 0.0
+    if turn_is_measured:
+        noises[:, CURVATURE_STD] = ON_THE_SPOT_RAD_M
+        noises[:, HEADING_AT_REST] = noises[:, HEADING_NOISE]
     return noises
 
 
@@ -68,4 +75,6 @@ def _noise(config: ImmConfig, mode: ImmModeConfig) -> tuple[float, ...]:
         0.0,
         0.0,
         2.0 * config.clock_std_s**2 / config.clock_time_s,
+        config.curvature_std_rad_m,
+        0.0,
     )

@@ -6,9 +6,9 @@ the configured radius is what a drone in gusts is to keep to.
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array, Forecast
@@ -18,9 +18,12 @@ from link.messages import PadGeometry
 
 HEADING_UNKNOWN, NOT_DESCRIBED = Cause(Reason.HEADING_UNKNOWN), Cause(Reason.PAD_NOT_DESCRIBED)
 
+_CONE_SHARE = 0.4  # of half of the pad's width: 0.3 m on a pad of 1.5 m
+_CONTACT_SHARE = 0.8  # 0.6 m
+_KNOWN_SHARE = 1.0 / 3.0  # standard deviation of a pad that has to be seen: 0.25 m
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PadPath:
+
+class PadPath(Struct, frozen=True, kw_only=True, eq=False):
     """The pad's centre in W; row 0 is the present.
 
     Attributes:
@@ -54,8 +57,9 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
     """Return where the pad will be.
 
     The lever arm from the antenna turns with the vehicle's heading. With an unknown heading its horizontal
-    part is left out and the pad is not placed: it can be followed, but not landed on. Nor can one that the vehicle has
-    not described; the antenna is followed then.
+    part is left out and the pad is not placed: it can be followed, but not landed on. Nor is one on a lever arm so long
+    that the heading is too vague for it, unless the pad itself has been seen, nor one that the vehicle has not
+    described; the antenna is followed then.
 
     Args:
         forecast: of the antenna, its first offset 0.
@@ -80,8 +84,18 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
         half_width_m=math.inf if pad is None else 0.5 * min(pad.size_m),
         height_m=0.0 if pad is None else pad.height_m,
         needs_heading=is_beside,
-        unplaced=NOT_DESCRIBED if pad is None else HEADING_UNKNOWN if is_beside and forecast.yaw_rad is None else None,
+        unplaced=NOT_DESCRIBED if pad is None else HEADING_UNKNOWN if _is_about(forecast, pad) else None,
     )
+
+
+def _is_about(forecast: Forecast, pad: PadGeometry) -> bool:
+    """Return whether the pad may be anywhere about the antenna, as far as is known of the vehicle's heading."""
+    lever_m = math.hypot(*pad.antenna_to_pad_m[:2])
+    if forecast.yaw_rad is None:
+        return lever_m > 0.0
+    known_m = 0.5 * _KNOWN_SHARE * min(pad.size_m)
+    is_seen = float(np.max(forecast.position_std_m[0, :2])) < known_m
+    return lever_m * forecast.yaw_std_rad > known_m and not is_seen
 
 
 @compiled_kernel
@@ -108,11 +122,6 @@ def turned_lever(yaw_rad: Array, offset_s: Array, lever_x_m: float, lever_y_m: f
         rate = (1.0 - share) * turn_rad[before] / step_s[before] + share * turn_rad[after] / step_s[after]
         swing[i, 0], swing[i, 1] = -rate * arm[i, 1], rate * arm[i, 0]
     return arm, swing
-
-
-_CONE_SHARE = 0.4  # of half of the pad's width: 0.3 m on a pad of 1.5 m
-_CONTACT_SHARE = 0.8  # 0.6 m
-_KNOWN_SHARE = 1.0 / 3.0  # standard deviation of a pad that has to be seen: 0.25 m
 
 
 def cone_radius_at_pad_m(half_width_m: float, config: CompanionConfig) -> float:

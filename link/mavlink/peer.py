@@ -1,13 +1,14 @@
-"""Who is at the other end: which messages are the autopilot's, whether it is heard, whether it restarted."""
+"""Who is at the other end: heartbeats, which messages are the autopilot's, and whether it is heard or has restarted."""
 
 from dataclasses import dataclass
 
-from link.mavlink.dialect import Message
+from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import AutopilotRestarted, Event, LinkFound, LinkLost, LinkRegained
-from link.mavlink.heartbeat import AUTOPILOT_COMPONENT_ID, is_autopilot_heartbeat
-from link.mavlink.session_config import SessionConfig, duration_ns
 
 _BROADCAST = 0
+_LOST_AFTER_NS = 3_000_000_000  # of silence: three of the autopilot's heartbeats
+_RESTART_THRESHOLD_NS = 1_000_000_000  # boot time falling back by more is a restart, by less a late message
+_RESTART_CONFIRMATIONS = 3  # so many messages in a row have to say so
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,10 +31,9 @@ class Peer:
     Args:
         own: our own address.
         target_system_id: whose messages are taken; None takes the first autopilot that is heard.
-        config: patience.
     """
 
-    def __init__(self, own: Address, target_system_id: int | None, config: SessionConfig) -> None:
+    def __init__(self, own: Address, target_system_id: int | None) -> None:
         self.target_system_id = target_system_id
         self.autopilot: int | None = None
         self.vehicle_type: int | None = None
@@ -41,7 +41,6 @@ class Peer:
         self.others: set[int] = set()
         """Systems of further autopilots that were heard."""
         self._own = own
-        self._lost_after_ns = duration_ns(config.link_lost_after_s)
         self._last_heard_ns = 0
 
     def accepts(self, message: Message) -> bool:
@@ -69,7 +68,7 @@ class Peer:
 
     def poll(self, t_ns: int) -> list[Event]:
         """Tells when the autopilot has been silent for too long."""
-        if not self.is_up or t_ns - self._last_heard_ns <= self._lost_after_ns:
+        if not self.is_up or t_ns - self._last_heard_ns <= _LOST_AFTER_NS:
             return []
         self.is_up = False
         return [LinkLost(t_ns=t_ns, last_heard_ns=self._last_heard_ns)]
@@ -94,27 +93,46 @@ class Peer:
 
 
 class RestartWatch:
-    """Notices a restart by the time since boot, and is not misled by messages that come late.
+    """Notices a restart by the time since boot, and is not misled by messages that come late."""
 
-    Args:
-        config: threshold and confirmations.
-    """
-
-    def __init__(self, config: SessionConfig) -> None:
-        self._threshold_ns = duration_ns(config.restart_threshold_s)
-        self._confirmations = config.restart_confirmations
+    def __init__(self) -> None:
         self._newest_ns = 0
         self._earlier_in_a_row = 0
 
     def see(self, boot_ns: int, t_ns: int) -> AutopilotRestarted | None:
         """Takes note of a boot time of the autopilot; returns the restart that it proves, if it does."""
-        if boot_ns >= self._newest_ns - self._threshold_ns:
+        if boot_ns >= self._newest_ns - _RESTART_THRESHOLD_NS:
             self._newest_ns = max(self._newest_ns, boot_ns)
             self._earlier_in_a_row = 0
             return None
         self._earlier_in_a_row += 1
-        if self._earlier_in_a_row < self._confirmations:
+        if self._earlier_in_a_row < _RESTART_CONFIRMATIONS:
             return None
         before_ns, self._newest_ns = self._newest_ns, boot_ns
         self._earlier_in_a_row = 0
         return AutopilotRestarted(t_ns=t_ns, boot_before_ns=before_ns, boot_now_ns=boot_ns)
+
+
+AUTOPILOT_COMPONENT_ID: int = mavlink.MAV_COMP_ID_AUTOPILOT1
+_MAVLINK_VERSION = 3  # of the messages' definitions, the same for all of MAVLink 1 and 2
+
+
+def companion_heartbeat() -> Message:
+    """The heartbeat of an onboard computer, which flies nothing itself."""
+    return mavlink.MAVLink_heartbeat_message(
+        type=mavlink.MAV_TYPE_ONBOARD_CONTROLLER,
+        autopilot=mavlink.MAV_AUTOPILOT_INVALID,
+        base_mode=0,
+        custom_mode=0,
+        system_status=mavlink.MAV_STATE_ACTIVE,
+        mavlink_version=_MAVLINK_VERSION,
+    )
+
+
+def is_autopilot_heartbeat(message: Message) -> bool:
+    """Whether a message is the heartbeat of an autopilot, not of a ground station, gimbal or companion."""
+    return bool(
+        message.get_msgId() == mavlink.MAVLINK_MSG_ID_HEARTBEAT
+        and message.get_srcComponent() == AUTOPILOT_COMPONENT_ID
+        and message.autopilot != mavlink.MAV_AUTOPILOT_INVALID
+    )

@@ -52,7 +52,7 @@ class SendQueue:
         dropped = self._drop_old(now_s)
         while (item := self._begun or (self._waiting[0] if self._waiting else None)) is not None:
             given_s, data = item
-            taken = _taken(write, data)
+            taken = _write_some(write, data)
             if not taken:
                 self._refused_s = now_s if self._refused_s is None else self._refused_s
                 break
@@ -91,7 +91,7 @@ class SendQueue:
         return dropped
 
 
-def _taken(write: Callable[[bytes], int], data: bytes) -> int:
+def _write_some(write: Callable[[bytes], int], data: bytes) -> int:
     try:
         return write(data)
     except BlockingIOError:

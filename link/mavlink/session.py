@@ -8,13 +8,10 @@ from collections.abc import Sequence
 
 from link.mavlink.clock_map import ClockMap
 from link.mavlink.codec import MavlinkCodec
-from link.mavlink.commands import CommandParams, CommandSender, command_params
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import AutopilotRestarted, CommandTimedOut, Event, MessageReceived
-from link.mavlink.heartbeat import AUTOPILOT_COMPONENT_ID, companion_heartbeat
-from link.mavlink.parameter_reader import ParameterReader
-from link.mavlink.peer import Address, Peer, RestartWatch
-from link.mavlink.session_config import SessionConfig, duration_ns
+from link.mavlink.peer import AUTOPILOT_COMPONENT_ID, Address, Peer, RestartWatch, companion_heartbeat
+from link.mavlink.requests import CommandParams, CommandSender, ParameterReader, command_params
 from link.mavlink.signing import Signing
 from link.mavlink.statistics import SessionStatistics
 from link.mavlink.streams import StreamRequests
@@ -22,7 +19,9 @@ from link.mavlink.timer import Timer
 from link.mavlink.timesync import ClockSync, boot_time_ns
 
 _BY_NAME = -1  # param_index of a PARAM_REQUEST_READ that goes by name
-_DEFAULT_CONFIG = SessionConfig()
+_HEARTBEAT_PERIOD_NS = 1_000_000_000  # by the MAVLink heartbeat protocol
+_COMMAND_ATTEMPTS = 5
+_INTERVAL_ATTEMPTS = 3  # of one message's interval, before the next one has its turn
 
 
 class MavlinkSession:
@@ -32,8 +31,8 @@ class MavlinkSession:
         system_id: our own, the vehicle's.
         component_id: our own, 191 for an onboard computer.
         target_system_id: of the autopilot; None takes the first that is heard.
-        config: periods and patience.
         signing: signs what is sent and refuses what is not signed rightly; None for a link without a key.
+        records_input: keep the frames received for `take_input`.
     """
 
     def __init__(
@@ -41,19 +40,19 @@ class MavlinkSession:
         system_id: int,
         component_id: int = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER,
         target_system_id: int | None = None,
-        config: SessionConfig = _DEFAULT_CONFIG,
         signing: Signing | None = None,
+        *,
+        records_input: bool = False,
     ) -> None:
-        self._config = config
         self._signing = signing
-        self._codec = MavlinkCodec(system_id, component_id, records_input=config.records_input, signing=signing)
-        self._peer = Peer(Address(system_id, component_id), target_system_id, config)
-        self._restarts = RestartWatch(config)
-        self._clock_sync = ClockSync(config)
-        self._commands = CommandSender(self._send_command, config)
-        self._streams = StreamRequests(self._command_stream, config)
-        self._parameters = ParameterReader(self._send_parameter_request, config)
-        self._heartbeat = Timer(duration_ns(config.heartbeat_period_s))
+        self._codec = MavlinkCodec(system_id, component_id, records_input=records_input, signing=signing)
+        self._peer = Peer(Address(system_id, component_id), target_system_id)
+        self._restarts = RestartWatch()
+        self._clock_sync = ClockSync()
+        self._commands = CommandSender(self._send_command)
+        self._streams = StreamRequests(self._command_stream)
+        self._parameters = ParameterReader(self._send_parameter_request)
+        self._heartbeat = Timer(_HEARTBEAT_PERIOD_NS)
         self._filtered = 0
         self._output: list[bytes] = []
 
@@ -113,7 +112,7 @@ class MavlinkSession:
         for message in self._codec.decode(data):
             if self._peer.accepts(message):
                 events += self._peer.heard(message, t_ns)
-                events += self._restarted(message, t_ns)
+                events += self._watch_restart(message, t_ns)
                 events.append(MessageReceived(message, t_ns))
                 events += self._handle(message, t_ns)
             else:
@@ -155,7 +154,7 @@ class MavlinkSession:
             command_id: MAV_CMD.
             params: up to seven, the rest is 0; NaN is MAVLink's "not given".
             t_ns: local time now.
-            attempts: how often it is sent at most, by default as configured.
+            attempts: how often it is sent at most, five times by default.
 
         Returns:
             The ticket that its events carry.
@@ -163,7 +162,7 @@ class MavlinkSession:
         Raises:
             ValueError: There are too many parameters, or one is infinite.
         """
-        attempts_max = attempts or self._config.command_attempts
+        attempts_max = attempts or _COMMAND_ATTEMPTS
         return self._commands.submit(command_id, command_params(params), attempts_max, t_ns)
 
     def request_interval(self, message_id: int, rate_hz: float, t_ns: int) -> None:
@@ -212,7 +211,7 @@ class MavlinkSession:
             return [*self._parameters.received(message, self._peer.autopilot, t_ns)]
         return []
 
-    def _restarted(self, message: Message, t_ns: int) -> list[Event]:
+    def _watch_restart(self, message: Message, t_ns: int) -> list[Event]:
         boot_ns = boot_time_ns(message)
         restart = self._restarts.see(boot_ns, t_ns) if boot_ns else None
         return [] if restart is None else [restart, *self._start_over(restart)]
@@ -229,7 +228,7 @@ class MavlinkSession:
         return [event for event in timed_out if not self._streams.timed_out(event)]
 
     def _command_stream(self, command: int, params: CommandParams, t_ns: int) -> int:
-        return self._commands.submit(command, params, self._config.interval_attempts, t_ns)
+        return self._commands.submit(command, params, _INTERVAL_ATTEMPTS, t_ns)
 
     def _send_command(self, command: int, params: CommandParams, confirmation: int) -> None:
         target = self._peer.target_system_id

@@ -5,13 +5,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 
-from link.mavlink.commands import CommandParams
 from link.mavlink.dialect import mavlink
 from link.mavlink.events import CommandAcknowledged, CommandTimedOut
-from link.mavlink.session_config import SessionConfig, duration_ns
+from link.mavlink.requests import CommandParams
 
 _US_PER_S = 1e6
 _OFF_US = -1.0
+_SILENT_AFTER_NS = 5_000_000_000  # a granted stream that stays away so long is asked for again
 _PERIODS_SILENT = 5  # a slow stream is silent only after so many of its own periods
 _FINAL_REFUSALS = (mavlink.MAV_RESULT_DENIED, mavlink.MAV_RESULT_UNSUPPORTED)
 
@@ -44,12 +44,10 @@ class StreamRequests:
 
     Args:
         command: called with command id, parameters and time to send a command; returns its ticket.
-        config: patience.
     """
 
-    def __init__(self, command: Callable[[int, CommandParams, int], int], config: SessionConfig) -> None:
+    def __init__(self, command: Callable[[int, CommandParams, int], int]) -> None:
         self._command = command
-        self._silent_ns = duration_ns(config.stream_silent_after_s)
         self._streams: dict[int, _Stream] = {}
         self._by_ticket: dict[int, int] = {}
 
@@ -106,7 +104,7 @@ class StreamRequests:
     def _ask(self, message_id: int, interval_us: float, t_ns: int) -> None:
         params = (float(message_id), interval_us, 0.0, 0.0, 0.0, 0.0, 0.0)
         ticket = self._command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, params, t_ns)
-        patience_ns = max(self._silent_ns, round(_PERIODS_SILENT * interval_us * 1000))
+        patience_ns = max(_SILENT_AFTER_NS, round(_PERIODS_SILENT * interval_us * 1000))
         self._streams[message_id] = _Stream(interval_us, _State.ASKED, ticket, t_ns, patience_ns)
         self._by_ticket[ticket] = message_id
 

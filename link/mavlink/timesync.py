@@ -3,11 +3,14 @@
 Source: MAVLink time synchronization protocol v2, https://mavlink.io/en/services/timesync.html.
 """
 
-from link.mavlink.clock_map import UNIX_TIME_MIN_NS, ClockMap, RoundTrip, with_round_trip, with_system_time
+from link.mavlink.clock_map import UNIX_TIME_MIN_NS, ClockConfig, ClockMap, RoundTrip, with_round_trip, with_system_time
 from link.mavlink.dialect import Message, mavlink
-from link.mavlink.session_config import SessionConfig, duration_ns
 from link.mavlink.timer import Timer
 
+_FAST_PERIOD_NS = 100_000_000
+_FAST_COUNT = 20  # so many are asked so quickly at first, 2 s worth
+_PERIOD_NS = 500_000_000
+_CLOCK = ClockConfig()
 _ASKED_MAX = 64  # questions under way; older ones are lost
 
 
@@ -24,18 +27,13 @@ def _is_boot_time(tc1_ns: int) -> bool:
 
 
 class ClockSync:
-    """The exchange of times with the autopilot.
+    """The exchange of times with the autopilot."""
 
-    Args:
-        config: how often to ask.
-    """
-
-    def __init__(self, config: SessionConfig) -> None:
+    def __init__(self) -> None:
         self.clock = ClockMap()
         self.round_trips = 0
-        self._config = config
-        self._timer = Timer(duration_ns(config.timesync_fast_period_s))
-        self._fast_left = config.timesync_fast_count
+        self._timer = Timer(_FAST_PERIOD_NS)
+        self._fast_left = _FAST_COUNT
         self._asked_ns: dict[int, None] = {}
 
     def poll(self, t_ns: int) -> Message | None:
@@ -44,7 +42,7 @@ class ClockSync:
             return None
         self._fast_left -= 1
         if self._fast_left == 0:
-            self._timer.period_ns = duration_ns(self._config.timesync_period_s)
+            self._timer.period_ns = _PERIOD_NS
         self._asked_ns[t_ns] = None
         if len(self._asked_ns) > _ASKED_MAX:
             del self._asked_ns[next(iter(self._asked_ns))]
@@ -57,17 +55,17 @@ class ClockSync:
         if message.ts1 in self._asked_ns and _is_boot_time(message.tc1):
             del self._asked_ns[message.ts1]
             self.round_trips += 1
-            self.clock = with_round_trip(self.clock, RoundTrip(message.ts1, t_ns, message.tc1), self._config.clock)
+            self.clock = with_round_trip(self.clock, RoundTrip(message.ts1, t_ns, message.tc1), _CLOCK)
         return None
 
     def system_time(self, message: Message) -> None:
         """Takes a SYSTEM_TIME."""
         boot_ns = message.time_boot_ms * 1_000_000
-        self.clock = with_system_time(self.clock, boot_ns, message.time_unix_usec * 1000, self._config.clock)
+        self.clock = with_system_time(self.clock, boot_ns, message.time_unix_usec * 1000, _CLOCK)
 
     def start_over(self) -> None:
         """Forgets everything, as after a restart; answers to earlier questions count no more."""
         self.clock = ClockMap()
         self._asked_ns.clear()
-        self._fast_left = self._config.timesync_fast_count
-        self._timer = Timer(duration_ns(self._config.timesync_fast_period_s))
+        self._fast_left = _FAST_COUNT
+        self._timer = Timer(_FAST_PERIOD_NS)

@@ -52,19 +52,19 @@ def load_config(path: Path | None, model: type[Model], overrides: Mapping[str, A
     table = {} if path is None else read_toml(path)
     above = overrides or {}
     source = "the defaults" if path is None else str(path)
-    return _checked(model, merged(table, above), lambda location: "command line" if _is_in(location, above) else source)
+    return _check(model, merge(table, above), lambda location: "command line" if _is_in(location, above) else source)
 
 
-def validated(model: type[Model], table: Mapping[str, Any], *, source: str) -> Model:
+def validate(model: type[Model], table: Mapping[str, Any], *, source: str) -> Model:
     """Return `table` as a `model`.
 
     Raises:
         UserError: with `source`, the first key that does not fit, its value and what would.
     """
-    return _checked(model, table, lambda _: source)
+    return _check(model, table, lambda _: source)
 
 
-def merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
+def merge(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
     """Return `below` with the values of `above` laid over it, table by table; None leaves what is below."""
     both = dict(below)
     for key, value in above.items():
@@ -72,7 +72,7 @@ def merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]
             continue
         under = both.get(key)
         tables = isinstance(under, Mapping) and isinstance(value, Mapping)
-        both[key] = merged(under, value) if tables else value  # type: ignore[arg-type]  # both are mappings here
+        both[key] = merge(under, value) if tables else value  # type: ignore[arg-type]  # both are mappings here
     return both
 
 
@@ -99,7 +99,7 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise UserError(f"{path}: not valid TOML ({error})") from None
 
 
-def _checked(model: type[Model], table: Mapping[str, Any], source_of: Callable[[Location], str]) -> Model:
+def _check(model: type[Model], table: Mapping[str, Any], source_of: Callable[[Location], str]) -> Model:
     try:
         # as JSON, whose arrays and texts a strict model takes for tuples and enumerations
         return model.model_validate_json(json.dumps(table, default=str))
@@ -133,8 +133,8 @@ def _sentence(details: ErrorDetails, location: Location, fields: Fields, source:
     else:
         field = fields.get(str(location[-1])) if location else None
         is_ours = details["type"] == "value_error"  # a check of the model's own, beyond the range of one number
-        expected = ("" if is_ours or field is None else _range_of(field)) or _lowered(details["msg"])
-        text = f"{source}: {_given(key, details['input'])} does not fit: {expected}"
+        expected = ("" if is_ours or field is None else _range_of(field)) or _lower_first(details["msg"])
+        text = f"{source}: {_describe_value(key, details['input'])} does not fit: {expected}"
     more = f" ({further} more like this)" if further else ""
     return _cut(" ".join(text.split()), _LINE_MAX - len(more)) + more
 
@@ -144,7 +144,7 @@ def _key(location: Location) -> str:
     return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in location).removeprefix(".")
 
 
-def _given(key: str, value: object) -> str:
+def _describe_value(key: str, value: object) -> str:
     """Return a key with its value; a table or a list, which may be long, is named only."""
     if not key or isinstance(value, Mapping | list | tuple):
         return key or "it"
@@ -155,7 +155,7 @@ def _cut(text: str, length: int) -> str:
     return text if len(text) <= length else text[: length - len(_CUT)] + _CUT
 
 
-def _lowered(message: str) -> str:
+def _lower_first(message: str) -> str:
     plain = message.removeprefix("Value error, ")
     return plain[:1].lower() + plain[1:]
 

@@ -111,14 +111,14 @@ class BackgroundRecorder:
         try:
             self._sink.close()
         except _UNWRITABLE as error:
-            self._dropped_failed += _lost(error)
+            self._dropped_failed += _count_lost(error)
 
     def _write_waiting(self) -> None:
         while self._waiting:
             try:
                 self._sink.write(self._waiting.popleft())
             except _UNWRITABLE as error:
-                self._dropped_failed += _lost(error)
+                self._dropped_failed += _count_lost(error)
             self._pause(_PAUSE_S)
 
 
@@ -139,15 +139,15 @@ class DirectRecorder:
         try:
             self._sink.write(record)
         except _UNWRITABLE as error:
-            self._dropped += _lost(error)
+            self._dropped += _count_lost(error)
 
     def close(self) -> None:
         """Complete the recording."""
         try:
             self._sink.close()
         except _UNWRITABLE as error:
-            self._dropped += _lost(error)
+            self._dropped += _count_lost(error)
 
 
-def _lost(error: Exception) -> int:
+def _count_lost(error: Exception) -> int:
     return error.count if isinstance(error, RecordsLost) else 1

@@ -64,7 +64,7 @@ def zenoh_options(
         UserError: If the mode or an endpoint is not one.
     """
     if not (connect or listen or config_file or multicast):
-        connect, listen = ((), _listened(mode)) if listens else ((DEFAULT_ENDPOINT,), ())
+        connect, listen = ((), _default_listen(mode)) if listens else ((DEFAULT_ENDPOINT,), ())
     return ZenohOptions(
         mode=mode,
         connect=tuple(connect or ()),
@@ -74,7 +74,7 @@ def zenoh_options(
     )
 
 
-def _listened(mode: str | None) -> tuple[str, ...]:
+def _default_listen(mode: str | None) -> tuple[str, ...]:
     return () if mode == "client" else (DEFAULT_ENDPOINT,)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from link.program.toml_config import merged
+from link.program.toml_config import merge
 from scenarios.bench.codec import codec_ratios
 from scenarios.bench.measures import first_heartbeats_s, full_speed_factor, help_times_s
 from scenarios.bench.recording import recording_cost
@@ -99,7 +99,7 @@ def bench(scenario: Scenario, seed: int, announce: Announce) -> Table:
         "firmware": scenario.firmware,
         "seed": seed,
         "tier": wire.result["tier"],
-        **merged(wire.timing, {"step_ms": lockstep.pop("step_ms")}),
+        **merge(wire.timing, {"step_ms": lockstep.pop("step_ms")}),
         "full_speed_factor": round(full_speed, 3),
         "lockstep": lockstep,
         "recording": recording,

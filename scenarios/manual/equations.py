@@ -10,7 +10,7 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "Where the vehicle is",
         "The vehicle's samples count at the time they were taken. `estimator.kind` chooses the filter.",
         (
-            "companion.vehicle.delay_buffer",
+            "companion.vehicle.estimator",
             "companion.vehicle.filter_step",
             "companion.vehicle.imm",
             "companion.vehicle.imm_kernels",

@@ -18,7 +18,7 @@ from link.errors import UserError
 from link.messages import Command, PadGeometry
 from link.payloads import json_messages
 from link.payloads.decklander_msgs import RosMessage, fields_of
-from link.program.toml_config import validated
+from link.program.toml_config import validate
 from link.recording.mcap_reader import RecordingHead, read_head, read_messages, recordings
 from link.recording.recorder import DirectRecorder
 from link.zenoh.keys import Keys
@@ -65,7 +65,7 @@ class Flight:
     def config(self) -> CompanionConfig:
         """The companion's configuration."""
         table = tomllib.loads(self.head.attachments[CONFIG_NAME])
-        return validated(CompanionConfig, table, source=f"{CONFIG_NAME} of the recording")
+        return validate(CompanionConfig, table, source=f"{CONFIG_NAME} of the recording")
 
 
 class _MessageLists:

@@ -18,7 +18,7 @@ from companion.recording.folder import STEM as COMPANION
 from link.errors import UserError
 from link.frames.local_frame import LocalFrame, Projection
 from link.payloads.decklander_msgs import fields_of
-from link.program.toml_config import validated
+from link.program.toml_config import validate
 from link.recording.mcap_reader import RecordingHead, read_head, read_messages, recording_files
 from link.units import NS_PER_S
 from link.zenoh.keys import Keys
@@ -102,14 +102,14 @@ def read_run(folder: Path) -> RunData:
         raise UserError(f"{result_path}: cannot be read; is this the folder of a run that ended?") from None
     truth_head = read_head(recording_files(folder, TRUTH)[0])
     head = read_head(recording_files(folder, COMPANION)[0])
-    scenario = validated(Scenario, tomllib.loads(truth_head.attachments["scenario.toml"]), source="scenario.toml")
-    config = validated(CompanionConfig, tomllib.loads(head.attachments["companion.toml"]), source="companion.toml")
+    scenario = validate(Scenario, tomllib.loads(truth_head.attachments["scenario.toml"]), source="scenario.toml")
+    config = validate(CompanionConfig, tomllib.loads(head.attachments["companion.toml"]), source="companion.toml")
     keys = Keys(head.metadata["namespace"], head.metadata["vehicle"], head.metadata["drone"])
     truth = read_truth(folder, keys)
     log = truth_log(truth.drone, truth.vehicle, truth.rotors)
     start_ns = int(log.t_ns[0])
     t_s = (log.t_ns - start_ns) / NS_PER_S
-    antenna = log.vehicle_position_enu_m + _turned(log, scenario.vehicle.antenna_flu_m)
+    antenna = log.vehicle_position_enu_m + _turn(log, scenario.vehicle.antenna_flu_m)
     steps, estimates = _beliefs(folder, keys)
     return RunData(
         name=folder.resolve().name,
@@ -126,7 +126,7 @@ def read_run(folder: Path) -> RunData:
     )
 
 
-def _turned(log: TruthLog, vector_flu: tuple[float, float, float]) -> Array:
+def _turn(log: TruthLog, vector_flu: tuple[float, float, float]) -> Array:
     """Return a vector of V in W, (n, 3): R_WV is R_WB times the inverse of R_VB."""
     rotation_wv = log.rotation @ np.swapaxes(log.rotation_vb, 1, 2)
     return np.asarray(rotation_wv @ np.array(vector_flu))

@@ -12,16 +12,16 @@ from sim_autopilot.core.data import Surface
 
 Fault = tuple[int, str]
 
-_MOTORS_OFF_RAD_S = 50.0  # of a hover's 743: 0.5 % of the weight
-_TAKEN_OFF_M = 0.5  # of the lowest point over what is below it
-_IN_AIR_M = 0.3
+MOTORS_OFF_RAD_S = 50.0  # of a hover's 743: 0.5 % of the weight
+TAKEN_OFF_M = 0.5  # of the lowest point over what is below it
+IN_AIR_M = 0.3
 _APART_S = 0.3  # contacts closer in time than this are one landing, bounces included
-_TIPPED_ON_DECK_RAD = math.radians(45.0)
-_TIPPED_IN_AIR_RAD = math.radians(80.0)
-_CLEAR_M = 1.0  # at the end, of feet and blades from vehicle and ground: three times the reach of the blades
-_STABLE_S = 1.0
-_STABLE_TILT_RAD = math.radians(50.0)  # the airframe's limit is 45 degrees
-_STABLE_RATE_RAD_S = 2.0
+TIPPED_ON_DECK_RAD = math.radians(45.0)
+TIPPED_IN_AIR_RAD = math.radians(80.0)
+CLEAR_M = 1.0  # at the end, of feet and blades from vehicle and ground: three times the reach of the blades
+STABLE_S = 1.0
+STABLE_TILT_RAD = math.radians(50.0)  # the airframe's limit is 45 degrees
+STABLE_RATE_RAD_S = 2.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -39,7 +39,7 @@ class Flight:
 
 def flight_of(log: TruthLog, touched: Touches, box: Box) -> Flight:
     """Return when the drone took off and what it touched from then on."""
-    risen = np.flatnonzero(touched.height_m.min(axis=1) > _TAKEN_OFF_M)
+    risen = np.flatnonzero(touched.height_m.min(axis=1) > TAKEN_OFF_M)
     if not len(risen):
         return Flight(takeoff=None, contacts=())
     takeoff = int(risen[0])
@@ -51,7 +51,7 @@ def motors_off_index(log: TruthLog, from_index: int) -> int | None:
     """Return the first sample from `from_index` on at which no rotor turns any more, None without one."""
     if log.rotor_speed_rad_s is None:
         return None
-    off = np.flatnonzero((log.rotor_speed_rad_s[from_index:] < _MOTORS_OFF_RAD_S).all(axis=1))
+    off = np.flatnonzero((log.rotor_speed_rad_s[from_index:] < MOTORS_OFF_RAD_S).all(axis=1))
     return from_index + int(off[0]) if len(off) else None
 
 
@@ -59,17 +59,17 @@ def flight_faults(log: TruthLog, touched: Touches, flight: Flight, *, fence_radi
     """Return the faults of a flight; its limits at touchdown are not among them."""
     if flight.takeoff is None:
         return [(int(log.t_ns[-1]), "never took off")]
-    in_air = touched.height_m.min(axis=1) > _IN_AIR_M
+    in_air = touched.height_m.min(axis=1) > IN_AIR_M
     outside = np.hypot(log.position_enu_m[:, 0], log.position_enu_m[:, 1]) > fence_radius_m
     signs: list[tuple[Flags, str]] = [
         (np.asarray(touched.ground.any(axis=1)), "contact with the ground"),
         (np.asarray(touched.side.any(axis=1)), "contact with the vehicle's side"),
         (outside, "fence broken"),
-        (_tilt_rad(log.rotation) > _TIPPED_IN_AIR_RAD, "tipped over"),
-        (touched.any & (_tilt_rad(log.rotation_vb) > _TIPPED_ON_DECK_RAD), "tipped over on the deck"),
+        (tilts_rad(log.rotation) > TIPPED_IN_AIR_RAD, "tipped over"),
+        (touched.any & (tilts_rad(log.rotation_vb) > TIPPED_ON_DECK_RAD), "tipped over on the deck"),
     ]
     if log.rotor_speed_rad_s is not None:
-        signs.append((in_air & (log.rotor_speed_rad_s < _MOTORS_OFF_RAD_S).all(axis=1), "motors off in the air"))
+        signs.append((in_air & (log.rotor_speed_rad_s < MOTORS_OFF_RAD_S).all(axis=1), "motors off in the air"))
     faults = [
         (int(log.t_ns[flight.takeoff + int(np.argmax(sign[flight.takeoff :]))]), text)
         for sign, text in signs
@@ -80,7 +80,7 @@ def flight_faults(log: TruthLog, touched: Touches, flight: Flight, *, fence_radi
     return faults if flight.contacts else faults + _end_faults(log, touched)
 
 
-def _tilt_rad(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
+def tilts_rad(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the angle (n,) between the two z axes of `rotation` (n, 3, 3)."""
     return np.asarray(np.arccos(np.clip(rotation[:, 2, 2], -1.0, 1.0)))
 
@@ -89,8 +89,8 @@ def _end_faults(log: TruthLog, touched: Touches) -> list[Fault]:
     """Return what keeps a flight without contact from being a clean abort."""
     end_ns = int(log.t_ns[-1])
     # A flank that is driven into is no better than a roof that is flown into: all directions count.
-    if float(np.minimum(touched.height_m[-1], touched.from_box_m[-1]).min()) <= _CLEAR_M:
+    if float(np.minimum(touched.height_m[-1], touched.from_box_m[-1]).min()) <= CLEAR_M:
         return [(end_ns, "ends close to the vehicle or the ground")]
-    last = log.t_ns >= end_ns - round(_STABLE_S * 1e9)
-    steady = (_tilt_rad(log.rotation[last]) <= _STABLE_TILT_RAD) & (log.rate_rad_s[last] <= _STABLE_RATE_RAD_S)
+    last = log.t_ns >= end_ns - round(STABLE_S * 1e9)
+    steady = (tilts_rad(log.rotation[last]) <= STABLE_TILT_RAD) & (log.rate_rad_s[last] <= STABLE_RATE_RAD_S)
     return [] if steady.all() else [(end_ns, "ends unstable")]

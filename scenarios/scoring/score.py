@@ -6,7 +6,6 @@ for every run, but it is a tier only under `report_rule`: on a roof it would cal
 A landing with contact on the pad but outside the limits of S1 is unsafe, and so is a drone that never took off.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from enum import Enum
@@ -15,6 +14,8 @@ import numpy as np
 
 from link.messages import BodyTruth, RotorTruth
 from scenarios.scoring.flight_faults import Fault, flight_faults, flight_of
+from scenarios.scoring.limits import S1_LIMITS, S2_LIMITS, find_exceeded
+from scenarios.scoring.margin import margin_of, margin_terms
 from scenarios.scoring.touch import touches
 from scenarios.scoring.touchdown import Landing, ScoreRules, Touchdown, landing_of
 from scenarios.scoring.truth_log import TruthLog, truth_log
@@ -36,27 +37,12 @@ class Tier(Enum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Limits:
-    horizontal_error_m: float
-    relative_speed_m_s: float
-    sink_rate_m_s: float
-    tilt_over_trim_rad: float
-
-
-_S1_LIMITS = _Limits(
-    horizontal_error_m=0.50, relative_speed_m_s=1.0, sink_rate_m_s=1.0, tilt_over_trim_rad=math.radians(15.0)
-)
-_S2_LIMITS = _Limits(
-    horizontal_error_m=0.30, relative_speed_m_s=0.5, sink_rate_m_s=0.7, tilt_over_trim_rad=math.radians(10.0)
-)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Score:
     """What a run is worth; None where there was no contact, no start or no such event."""
 
     tier: Tier
     reason: str
+    margin: float  # negative when unsafe; scenarios.scoring.margin defines it
     touchdown: Touchdown | None
     start_t_ns: int
     time_to_contact_s: float | None
@@ -69,7 +55,7 @@ class Score:
     def s2_quality(self) -> bool:
         """Whether it landed, secured or not, with a contact within the limits of S2."""
         landed = self.tier in {Tier.S1, Tier.S2, Tier.S3}
-        return landed and self.touchdown is not None and not _beyond(self.touchdown, _S2_LIMITS)
+        return landed and self.touchdown is not None and not find_exceeded(self.touchdown, S2_LIMITS)
 
     def to_json(self) -> dict[str, float | int | str | bool | None]:
         """Return the score as one flat table."""
@@ -77,6 +63,7 @@ class Score:
         own = {
             "tier": self.tier.value,
             "reason": self.reason,
+            "margin": self.margin,
             "s2_quality": self.s2_quality,
             "start_t_ns": self.start_t_ns,
             "time_to_contact_s": self.time_to_contact_s,
@@ -127,14 +114,20 @@ def score_log(log: TruthLog, rules: ScoreRules, *, started_ns: int | None = None
     reached_ns = log.t_ns[(distance_m <= _S0_DISTANCE_M) & started]
     s0_ns = int(reached_ns[0]) if len(reached_ns) else None
     tier, reason = _tier(landing, found, faults, s0_ns if rules.report_rule else None)
+    closest_m = float(distance_m[started].min() if started.any() else distance_m[-1])
+    if tier is Tier.S0:
+        terms = {"S0": 1.0 - closest_m / _S0_DISTANCE_M}
+    else:
+        terms = margin_terms(log, touched, flight, landing, rules)
     return Score(
         tier=tier,
         reason=reason,
+        margin=margin_of(terms, unsafe=tier is Tier.UNSAFE, reported=bool(faults)),
         touchdown=None if landing is None else landing.touchdown,
         start_t_ns=start_ns,
         time_to_contact_s=None if landing is None else (landing.touchdown.contact_t_ns - start_ns) * 1e-9,
         time_to_s0_s=None if s0_ns is None else (s0_ns - start_ns) * 1e-9,
-        closest_m=float(distance_m[started].min() if started.any() else distance_m[-1]),
+        closest_m=closest_m,
         slid_m=None if landing is None else landing.slid_m,
         motors_off_s=None if landing is None else landing.motors_off_s,
     )
@@ -152,23 +145,15 @@ def _tier(
         return Tier.ABORT, "no touchdown; it ends airborne, stable and clear of the vehicle"
     if landing.secured:
         return Tier.S3, "landed, motors off in time and at rest on the pad"
-    if not _beyond(landing.touchdown, _S2_LIMITS):
+    if not find_exceeded(landing.touchdown, S2_LIMITS):
         return Tier.S2, "landed precisely, not secured"
     return Tier.S1, "landed, not secured"
 
 
 def _excesses(touchdown: Touchdown) -> list[Fault]:
     """Return the fault of a contact on the pad beyond the limits of S1, if it is one."""
-    beyond = _beyond(touchdown, _S1_LIMITS)
+    beyond = find_exceeded(touchdown, S1_LIMITS)
     return [(touchdown.contact_t_ns, f"contact on the pad beyond the limits: {', '.join(beyond)}")] if beyond else []
-
-
-def _beyond(touchdown: Touchdown, limits: _Limits) -> list[str]:
-    """Return the measures of `touchdown` that exceed `limits`, with their values."""
-    names = _Limits.__dataclass_fields__
-    return [
-        f"{name} {getattr(touchdown, name):.3g}" for name in names if getattr(touchdown, name) > getattr(limits, name)
-    ]
 
 
 def _passing_ns(log: TruthLog, rules: ScoreRules) -> int:

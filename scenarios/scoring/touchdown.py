@@ -112,6 +112,12 @@ def landing_of(log: TruthLog, contact: Contact, rules: ScoreRules) -> Landing:
     )
 
 
+def trims_rad(velocity_enu_m_s: Array, rules: ScoreRules) -> Array:
+    """Return the tilts (n,) of steady flight at velocities (n, 3) in W in the mean wind, atan(drag / weight)."""
+    airspeed_m_s = np.linalg.norm(velocity_enu_m_s[:, :2] - np.array(rules.wind_mean_enu_m_s[:2]), axis=1)
+    return np.asarray(np.arctan(rules.drag_n_s_m * airspeed_m_s / (rules.mass_kg * GRAVITY_M_S2)))
+
+
 def _on_pad(position_v_m: Array, box: Box) -> bool:
     """Return whether a drone at `position_v_m` (3,) stands on the pad."""
     x_m, y_m, z_m = position_v_m
@@ -123,8 +129,7 @@ def _touchdown(log: TruthLog, contact: Contact, rules: ScoreRules) -> Touchdown:
     """Return the first contact's measures; velocity and attitude are those just before it."""
     k = contact.before
     velocity_v_m_s = log.velocity_v_m_s[k]
-    airspeed_m_s = math.dist(log.velocity_enu_m_s[k, :2], rules.wind_mean_enu_m_s[:2])
-    trim_rad = math.atan(rules.drag_n_s_m * airspeed_m_s / (rules.mass_kg * GRAVITY_M_S2))
+    trim_rad = float(trims_rad(log.velocity_enu_m_s[k : k + 1], rules)[0])
     tilt_rad = math.acos(min(1.0, max(-1.0, float(log.rotation_vb[k, 2, 2]))))
     return Touchdown(
         contact_t_ns=contact.t_ns,

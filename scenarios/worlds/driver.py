@@ -10,6 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from scenarios.simulation.noise import Seed
 from scenarios.tracks.drive import SHIFT_CURVATURE, Shift
 from scenarios.worlds.draws import Draws
 from scenarios.worlds.road import RoadPlan
@@ -74,7 +75,7 @@ class _Drive:
 
 
 def plan_drive(
-    draws: Draws, seed: int, road: RoadPlan, *, cruise_m_s: float, run_up_m: float, length_m: float
+    draws: Draws, seed: Seed, road: RoadPlan, *, cruise_m_s: float, run_up_m: float, length_m: float
 ) -> DrivePlan:
     """Return the drive of a world along its road; the arguments are those of `plan_road`."""
     events = [_event(draws, slot) for slot in range(EVENTS)]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scenarios.simulation.noise import named_rng
+from scenarios.simulation.noise import Seed, named_rng
 from scenarios.tracks.suspension import Array
 from scenarios.worlds.draws import Draws
 from scenarios.worlds.road import RoadPlan
@@ -38,7 +38,7 @@ class Grid:
     curvatures_per_m: list[float]
 
 
-def plan_speed(draws: Draws, seed: int, road: RoadPlan, *, cruise_m_s: float, length_m: float) -> Grid:
+def plan_speed(draws: Draws, seed: Seed, road: RoadPlan, *, cruise_m_s: float, length_m: float) -> Grid:
     """Return the grid with the speeds that the driver plans."""
     step_m = min(_CELL_MAX_M, max(_CELL_MIN_M, cruise_m_s * _CELL_S))
     count = int(length_m / step_m)
@@ -59,7 +59,7 @@ def plan_speed(draws: Draws, seed: int, road: RoadPlan, *, cruise_m_s: float, le
     )
 
 
-def _wishes(draws: Draws, seed: int, cruise_m_s: float, step_m: float, count: int) -> Array:
+def _wishes(draws: Draws, seed: Seed, cruise_m_s: float, step_m: float, count: int) -> Array:
     """Return the speed (count,) that the driver would like: an Ornstein-Uhlenbeck process about his cruising speed.
 
     Its square is linear in the place between knots, so the acceleration is constant there.

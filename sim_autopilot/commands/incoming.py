@@ -23,7 +23,7 @@ from sim_autopilot.core.streams import with_interval
 from sim_autopilot.flight.manual import sticks_from_message
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed, with_link
 from sim_autopilot.missions.step import mission_current, set_current
-from sim_autopilot.safety.failsafes_step import watching
+from sim_autopilot.safety.failsafes_step import update_watch
 
 Result = tuple[AutopilotMemory, tuple[Message, ...]]
 Handler = Callable[[AutopilotMemory, Message, AutopilotConfig], Result]
@@ -52,9 +52,9 @@ def _heartbeat(memory: AutopilotMemory, message: Message, config: AutopilotConfi
     if is_station and not memory.links.here.ground_station:
         memory = _with_station(memory)
     if is_station if counted is None else message.get_srcSystem() == counted:
-        memory = watching(memory, replace(memory.safety.watch, station_ns=memory.now.boot_ns))
+        memory = update_watch(memory, replace(memory.safety.watch, station_ns=memory.now.boot_ns))
     if message.type == mavlink.MAV_TYPE_ONBOARD_CONTROLLER and message.get_srcSystem() == config.system_id:
-        memory = watching(memory, replace(memory.safety.watch, companion_ns=memory.now.boot_ns))
+        memory = update_watch(memory, replace(memory.safety.watch, companion_ns=memory.now.boot_ns))
     return memory, ()
 
 

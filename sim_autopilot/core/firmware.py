@@ -4,9 +4,25 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from link.frames.local_frame import Projection
+from link.mavlink.dialect import mavlink
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.core.parameters import Parameter, Values
 from sim_autopilot.core.settings import FlightSettings
+
+COMMON_CAPABILITIES = int(
+    mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
+    | mavlink.MAV_PROTOCOL_CAPABILITY_FTP
+    | mavlink.MAV_PROTOCOL_CAPABILITY_FLIGHT_TERMINATION
+    | mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
+    | mavlink.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
+    | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT
+    | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_INT
+    | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE
+    | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_RALLY
+    | mavlink.MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
+    | mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
+)
+"""MAV_PROTOCOL_CAPABILITY flags of every firmware here."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -24,14 +24,14 @@ def whole_list(folder: str, obeyed: tuple[Parameter, ...]) -> tuple[Parameter, .
     """
     acting = {parameter.name: parameter for parameter in obeyed}
     lines = files(__package__).joinpath(folder, "parameters.csv").read_text(encoding="ascii").splitlines()
-    stored = tuple(map(_stored, lines))
+    stored = tuple(map(_parse_line, lines))
     lacking = acting.keys() - {parameter.name for parameter in stored}
     if lacking:
         raise ValueError(f"the table of {folder} lacks {', '.join(sorted(lacking))}")
     return tuple(acting.get(parameter.name, parameter) for parameter in stored)
 
 
-def _stored(line: str) -> Parameter:
+def _parse_line(line: str) -> Parameter:
     name, kind, default = line.split(",")
     if int(kind) == mavlink.MAV_PARAM_TYPE_REAL32:
         return Parameter(name=name, default=float(default), lowest=-_REAL_MAX, highest=_REAL_MAX)

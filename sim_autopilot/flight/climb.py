@@ -4,10 +4,11 @@ As PX4 does it: from the end of the spool-up on, the allowed climb rate grows li
 below zero that the thrust begins at none.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
+from link.records import replace
 from sim_autopilot.core.data import Array, Reference
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
 
@@ -50,9 +51,7 @@ def has_lifted(elapsed_s: float, ramp_s: float) -> bool:
     return elapsed_s >= _LIFTED_SHARE * ramp_s
 
 
-def ramped(
-    reference: Reference, climb: Climb, elapsed_s: float, rate_max_m_s: float, ramp_s: float
-) -> Reference | None:
+def ramp(reference: Reference, climb: Climb, elapsed_s: float, rate_max_m_s: float, ramp_s: float) -> Reference | None:
     """Return `reference` held down to the ramp, or None once the ramp is over or above it.
 
     Args:

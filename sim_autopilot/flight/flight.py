@@ -1,18 +1,19 @@
 """What each mode wants the flight controller to follow."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from math import hypot
 
 import numpy as np
 
 from link.messages import Vector3
+from link.records import replace
 from sim_autopilot.core.data import Array, Reference
 from sim_autopilot.core.modes import Mode, Modes
 from sim_autopilot.core.settings import FlightSettings
 from sim_autopilot.flight.follow import Chase
-from sim_autopilot.flight.orbit import Orbit, carried_round
-from sim_autopilot.flight.travel import Goal, Pace, moved
+from sim_autopilot.flight.orbit import Orbit, carry_round
+from sim_autopilot.flight.travel import Goal, Pace, move
 from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.setpoints.partial import with_own_motion
 from sim_autopilot.setpoints.setpoints import Setpoints
@@ -112,11 +113,11 @@ def next_reference(
     if mode in RETURNING or flight.returns:
         flight = _return(flight, now, home_enu_m, settings)
     if mode is Mode.ORBIT and flight.orbit is not None:
-        orbit, reference = carried_round(flight.orbit, pace_of(settings), elapsed_s)
+        orbit, reference = carry_round(flight.orbit, pace_of(settings), elapsed_s)
         return replace(flight, orbit=orbit), reference
     since_s = (now.boot_ns - flight.began_ns) * 1e-9
     if flight.goal is None and since_s < flight.stop_s:
-        return flight, _braking(flight, since_s)
+        return flight, _brake(flight, since_s)
     if flight.leg is Leg.BRAKE and (mode is Mode.LAND or (mode is Mode.POSITION and modes.failsafe)):
         flight = descend_here(flight, now)
     if flight.leg is Leg.DESCEND:
@@ -124,7 +125,7 @@ def next_reference(
         rate_m_s = settings.land.descent_m_s if low else settings.land.approach_m_s
         return _descend(flight, now, rate_m_s, elapsed_s)
     if flight.goal is not None:
-        flight = replace(flight, anchor=moved(flight.anchor, flight.goal, pace_of(settings), elapsed_s))
+        flight = replace(flight, anchor=move(flight.anchor, flight.goal, pace_of(settings), elapsed_s))
     return flight, flight.anchor
 
 
@@ -174,7 +175,7 @@ def is_takeoff_complete(flight: ModeFlight, now: Snapshot, settings: FlightSetti
     return target is not None and now.position_enu_m[2] > float(target[2]) - settings.travel.reached_height_m
 
 
-def _braking(flight: ModeFlight, since_s: float) -> Reference:
+def _brake(flight: ModeFlight, since_s: float) -> Reference:
     deceleration = flight.velocity_enu_m_s / flight.stop_s
     return replace(
         flight.anchor,

@@ -6,13 +6,14 @@ which the drone stands about him, which turns no faster than FLW_TGT_MAX_VEL alo
 it keeps it goes straight up or down first. Source: PX4 parameter reference, FLW_TGT_*, and its follow-me documentation.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import atan2, cos, hypot, pi, sin
 
 import numpy as np
 
 from link.frames.rotations import wrap_angle
 from link.messages import Vector3
+from link.records import replace
 from sim_autopilot.core.data import Reference
 from sim_autopilot.core.pilot_settings import FollowSettings
 from sim_autopilot.plant.snapshot import Snapshot
@@ -52,14 +53,14 @@ def with_word(
 ) -> Leader:
     """Return the leader after he told where he is, in W."""
     if before is not None:
-        expected = _carried_on(before, boot_ns).position_enu_m
+        expected = _carry_on(before, boot_ns).position_enu_m
         pairs = zip(position_enu_m, expected, strict=True)
         x, y, z = (told + smoothing * (guess - told) for told, guess in pairs)
         position_enu_m = (x, y, z)
     return Leader(told_ns=boot_ns, position_enu_m=position_enu_m, velocity_enu_m_s=velocity_enu_m_s)
 
 
-def chased(
+def chase_leader(
     chase: Chase | None,
     leader: Leader,
     now: Snapshot,
@@ -69,10 +70,10 @@ def chased(
     elapsed_s: float,
 ) -> tuple[Chase, Reference]:
     """Return what the mode remembers `elapsed_s` later, and what the drone is to follow until then."""
-    leader = _carried_on(leader, now.boot_ns)
+    leader = _carry_on(leader, now.boot_ns)
     if chase is None:
         chase = Chase(position_enu_m=leader.position_enu_m, velocity_enu_m_s=leader.velocity_enu_m_s)
-    chase = _turned(_smoothed(chase, leader, elapsed_s), leader, settings, elapsed_s)
+    chase = _turn(_smooth(chase, leader, elapsed_s), leader, settings, elapsed_s)
     x, y, z = chase.position_enu_m
     height_m = (z if settings.with_him else home_enu_m[2]) + settings.height_m
     east, north = x - now.position_enu_m[0], y - now.position_enu_m[1]
@@ -92,7 +93,7 @@ def chased(
     return chase, reference
 
 
-def _carried_on(leader: Leader, boot_ns: int) -> Leader:
+def _carry_on(leader: Leader, boot_ns: int) -> Leader:
     """Where he is by now, if he has gone on as he said; after a long silence he stands."""
     since_s = (boot_ns - leader.told_ns) * 1e-9
     moved_s = min(since_s, _LOST_S)
@@ -101,7 +102,7 @@ def _carried_on(leader: Leader, boot_ns: int) -> Leader:
     return Leader(told_ns=boot_ns, position_enu_m=(x, y, z), velocity_enu_m_s=velocity)
 
 
-def _smoothed(chase: Chase, leader: Leader, elapsed_s: float) -> Chase:
+def _smooth(chase: Chase, leader: Leader, elapsed_s: float) -> Chase:
     position, velocity = np.array(chase.position_enu_m), np.array(chase.velocity_enu_m_s)
     off = np.array(leader.position_enu_m) - position
     acceleration = _BANDWIDTH_RAD_S**2 * off + 2.0 * _DAMPING * _BANDWIDTH_RAD_S * (leader.velocity_enu_m_s - velocity)
@@ -111,7 +112,7 @@ def _smoothed(chase: Chase, leader: Leader, elapsed_s: float) -> Chase:
     return replace(chase, position_enu_m=(x, y, z), velocity_enu_m_s=(vx, vy, vz))
 
 
-def _turned(chase: Chase, leader: Leader, settings: FollowSettings, elapsed_s: float) -> Chase:
+def _turn(chase: Chase, leader: Leader, settings: FollowSettings, elapsed_s: float) -> Chase:
     vx, vy, _ = chase.velocity_enu_m_s
     moves = min(hypot(vx, vy), hypot(*leader.velocity_enu_m_s[:2])) >= _MOVES_M_S
     course_rad = atan2(vy, vx) if moves else chase.course_rad

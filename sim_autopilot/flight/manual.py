@@ -4,13 +4,14 @@ In the position mode they ask for velocity along the heading, and let go they ho
 tilt and climb rate; stabilised for tilt and thrust; in acro for turn rates and thrust. How much: `StickFeel`.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import cos, sin
 
 import numpy as np
 
 from link.frames.rotations import quaternion_from_roll_pitch_yaw
 from link.mavlink.dialect import Message, mavlink
+from link.records import replace
 from sim_autopilot.core.data import Reference
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.core.pilot_settings import StickFeel
@@ -63,16 +64,16 @@ def _read(message: Message, boot_ns: int, before: Sticks | None) -> Sticks | Non
     kept = before or Sticks(received_ns=boot_ns, roll=0.0, pitch=0.0, throttle=0.0, yaw=0.0)
     if message.get_msgId() == mavlink.MAVLINK_MSG_ID_MANUAL_CONTROL:
         roll, pitch, yaw = (
-            old if value == _UNSAID else _bounded(value / _FULL)
+            old if value == _UNSAID else _bound(value / _FULL)
             for value, old in ((message.y, kept.roll), (message.x, kept.pitch), (message.r, kept.yaw))
         )
-        throttle = kept.throttle if message.z == _UNSAID else _bounded(message.z / _FULL * 2.0 - 1.0)
+        throttle = kept.throttle if message.z == _UNSAID else _bound(message.z / _FULL * 2.0 - 1.0)
         return replace(kept, received_ns=boot_ns, roll=roll, pitch=pitch, throttle=throttle, yaw=yaw, moved_per_s=0.0)
     channels = (message.chan1_raw, message.chan2_raw, message.chan3_raw, message.chan4_raw)
     if all(value in _PWM_IGNORED for value in channels):
         return before
     roll, pitch, throttle, yaw = (
-        old if value in _PWM_IGNORED else _bounded((value - _PWM_MIDDLE_US) / _PWM_SPAN_US)
+        old if value in _PWM_IGNORED else _bound((value - _PWM_MIDDLE_US) / _PWM_SPAN_US)
         for value, old in zip(channels, (kept.roll, -kept.pitch, kept.throttle, kept.yaw), strict=True)
     )
     told_us = (message.chan5_raw, message.chan6_raw, message.chan7_raw, message.chan8_raw)
@@ -100,7 +101,7 @@ def follow_sticks(  # noqa: PLR0917 (who, how, by what, where, within what, how 
     flight: ModeFlight, mode: Mode, sticks: Sticks, now: Snapshot, settings: FlightSettings, elapsed_s: float
 ) -> tuple[ModeFlight, Reference]:
     """Return the memory of a manual mode and what it follows for the next `elapsed_s`."""
-    flight = replace(flight, goal=None, stop_s=0.0, anchor=_led(flight.anchor, mode, sticks, now, settings, elapsed_s))
+    flight = replace(flight, goal=None, stop_s=0.0, anchor=_lead(flight.anchor, mode, sticks, now, settings, elapsed_s))
     anchor, feel = flight.anchor, settings.sticks
     yaw_rate = -_dead(sticks.yaw, feel.dead_zone) * feel.yaw_rate_rad_s
     if mode in _PLACED:
@@ -116,7 +117,7 @@ def follow_sticks(  # noqa: PLR0917 (who, how, by what, where, within what, how 
     return flight, attitude_reference(q, np.array((0.0, 0.0, yaw_rate)), thrust_m_s2)
 
 
-def _led(  # noqa: PLR0917 (the arguments of its caller)
+def _lead(  # noqa: PLR0917 (the arguments of its caller)
     anchor: Reference, mode: Mode, sticks: Sticks, now: Snapshot, settings: FlightSettings, elapsed_s: float
 ) -> Reference:
     """The held place and heading, moved as the sticks ask."""
@@ -171,5 +172,5 @@ def _dead(value: float, zone: float) -> float:
     return (value - zone if value > 0.0 else value + zone) / (1.0 - zone)
 
 
-def _bounded(value: float) -> float:
+def _bound(value: float) -> float:
     return max(-1.0, min(1.0, value))

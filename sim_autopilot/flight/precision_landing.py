@@ -5,7 +5,7 @@ for moving targets the velocity is zero. It counts for 2 s after a sighting. Far
 drone does not sink. Source: ArduPilot, AC_PrecLand and LAND's vertical control.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import hypot, isfinite, tan
 
 import numpy as np
@@ -13,11 +13,12 @@ import numpy as np
 from link.frames.rotations import flu_from_frd, quaternion_from_roll_pitch_yaw, rotate
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Quaternion, Vector3
+from link.records import replace
 from sim_autopilot.core.data import Reference
 from sim_autopilot.core.limits import PathLimits
 from sim_autopilot.core.settings import PrecisionSettings
 from sim_autopilot.plant.snapshot import Snapshot
-from sim_autopilot.setpoints.path import Motion, Plane, carried_on, correction_speed, led_to_position
+from sim_autopilot.setpoints.path import Motion, Plane, carry_on, correction_speed, lead_to_position
 
 _LOST_S = 2.0
 _POSITION_GAIN, _VELOCITY_GAIN = 0.4, 0.1
@@ -94,7 +95,7 @@ def is_acquired(target: Target | None, boot_ns: int) -> bool:
     return target is not None and (boot_ns - target.seen_ns) * 1e-9 <= _LOST_S
 
 
-def steered(  # noqa: PLR0917 (over what, from what, who, as told, within what, how long)
+def steer_to_target(  # noqa: PLR0917 (over what, from what, who, as told, within what, how long)
     target: Target, reference: Reference, now: Snapshot, settings: PrecisionSettings, limits: PathLimits, dt_s: float
 ) -> tuple[Target, Reference]:
     """Return the target with its path `dt_s` later, and LAND's `reference` moved over it until then."""
@@ -103,13 +104,13 @@ def steered(  # noqa: PLR0917 (over what, from what, who, as told, within what, 
     px, py, pz = now.position_enu_m
     wanted = Motion(position=(x + vx * age_s, y + vy * age_s, pz), velocity=(vx, vy, 0.0))
     path = target.path or Motion(position=now.position_enu_m, velocity=now.velocity_enu_m_s)
-    path = led_to_position(path, wanted, limits, correction_speed(limits), dt_s)
+    path = lead_to_position(path, wanted, limits, correction_speed(limits), dt_s)
     away_m = hypot(wanted.position[0] - px, wanted.position[1] - py)
-    flown = _sinking(reference, path, away_m, pz - z, now, settings)
-    return replace(target, path=carried_on(path, dt_s)), flown
+    flown = _sink(reference, path, away_m, pz - z, now, settings)
+    return replace(target, path=carry_on(path, dt_s)), flown
 
 
-def _sinking(  # noqa: PLR0917 (from what, where, how far, how high, who, as told)
+def _sink(  # noqa: PLR0917 (from what, where, how far, how high, who, as told)
     reference: Reference, path: Motion, away_m: float, above_m: float, now: Snapshot, settings: PrecisionSettings
 ) -> Reference:
     down = 0.0 if reference.velocity_enu_m_s is None else float(reference.velocity_enu_m_s[2])

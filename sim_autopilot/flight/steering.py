@@ -3,12 +3,12 @@
 from link.records import replace
 from sim_autopilot.core.data import Reference
 from sim_autopilot.core.modes import Mode
-from sim_autopilot.flight.climb import Climb, asks_for_takeoff, has_lifted, is_idle, ramped
+from sim_autopilot.flight.climb import Climb, asks_for_takeoff, has_lifted, is_idle, ramp
 from sim_autopilot.flight.flight import ModeFlight, next_reference
-from sim_autopilot.flight.follow import chased
+from sim_autopilot.flight.follow import chase_leader
 from sim_autopilot.flight.land_detector import IN_AIR
 from sim_autopilot.flight.manual import MANUAL_MODES, follow_sticks, sticks_in_effect
-from sim_autopilot.flight.precision_landing import is_acquired, steered
+from sim_autopilot.flight.precision_landing import is_acquired, steer_to_target
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, Course
 from sim_autopilot.setpoints.guided import on_the_ground
 
@@ -26,7 +26,7 @@ def steer(memory: AutopilotMemory, config: AutopilotConfig, elapsed_s: float) ->
     flight, wanted = _wish(memory, elapsed_s)
     climb = _lift_off(memory, wanted, memory.armed_ns) if memory.course.landing.landed else memory.course.climb
     if climb is not None and wanted is not None:
-        return _climbing(memory, flight, climb, wanted)
+        return _climb(memory, flight, climb, wanted)
     following = None if memory.course.landing.landed else wanted
     return Course(
         flight=flight, guided=memory.course.guided, climb=None, landing=memory.course.landing, following=following
@@ -43,7 +43,7 @@ def over_target(
         return memory, following
     if not is_acquired(target, memory.now.boot_ns):
         return memory, following
-    target, following = steered(target, following, memory.now, settings.land.precision, limits, elapsed_s)
+    target, following = steer_to_target(target, following, memory.now, settings.land.precision, limits, elapsed_s)
     return replace(memory, heard=replace(memory.heard, target=target)), following
 
 
@@ -56,7 +56,7 @@ def _wish(memory: AutopilotMemory, elapsed_s: float) -> tuple[ModeFlight, Refere
     leader = memory.heard.leader
     if mode is Mode.FOLLOW and leader is not None:
         follow = memory.tuning.settings.follow
-        chase, reference = chased(
+        chase, reference = chase_leader(
             memory.course.flight.chase, leader, now, memory.places.home_enu_m, settings=follow, elapsed_s=elapsed_s
         )
         return replace(memory.course.flight, chase=chase), reference
@@ -71,7 +71,7 @@ def _wish(memory: AutopilotMemory, elapsed_s: float) -> tuple[ModeFlight, Refere
     )
 
 
-def _climbing(memory: AutopilotMemory, flight: ModeFlight, climb: Climb, wanted: Reference) -> Course:
+def _climb(memory: AutopilotMemory, flight: ModeFlight, climb: Climb, wanted: Reference) -> Course:
     settings = memory.tuning.settings
     rate_m_s = settings.envelope.climb_max_m_s
     if memory.modes.mode is Mode.TAKEOFF:
@@ -80,7 +80,7 @@ def _climbing(memory: AutopilotMemory, flight: ModeFlight, climb: Climb, wanted:
     landing = IN_AIR if has_lifted(elapsed_s, ramp_s) else memory.course.landing
     if is_idle(elapsed_s, rate_m_s, ramp_s):
         return Course(flight=flight, guided=memory.course.guided, climb=climb, landing=landing, following=None)
-    slowed = ramped(wanted, climb, elapsed_s, rate_m_s, ramp_s)
+    slowed = ramp(wanted, climb, elapsed_s, rate_m_s, ramp_s)
     if slowed is None:
         return Course(flight=flight, guided=memory.course.guided, climb=None, landing=IN_AIR, following=wanted)
     return Course(flight=flight, guided=memory.course.guided, climb=climb, landing=landing, following=slowed)

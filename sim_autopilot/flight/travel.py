@@ -3,12 +3,13 @@
 Horizontally and vertically by itself; the speed falls off linearly near the goal, by constant deceleration farther out.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import atan2, hypot, sqrt
 
 import numpy as np
 
 from link.messages import Vector3
+from link.records import replace
 from sim_autopilot.core.data import Array, Reference
 
 _SLOPE_PER_S = 1.5
@@ -35,7 +36,7 @@ class Goal:
     yaw_rad: float | None = None
 
 
-def moved(anchor: Reference, goal: Goal, pace: Pace, elapsed_s: float) -> Reference:
+def move(anchor: Reference, goal: Goal, pace: Pace, elapsed_s: float) -> Reference:
     """Return `anchor`, which has a position and a velocity, `elapsed_s` nearer to `goal`."""
     position, velocity = anchor.position_enu_m, anchor.velocity_enu_m_s
     if position is None or velocity is None:
@@ -46,7 +47,7 @@ def moved(anchor: Reference, goal: Goal, pace: Pace, elapsed_s: float) -> Refere
     scale = speed_m_s / distance_m if distance_m > 0.0 else 0.0
     vertical_m_s = _approach_m_s(abs(dz), pace.climb_m_s if dz > 0.0 else pace.descent_m_s, pace.acceleration_m_s2)
     wanted = np.array((dx * scale, dy * scale, vertical_m_s if dz > 0.0 else -vertical_m_s))
-    after = velocity + _limited(wanted - velocity, pace.acceleration_m_s2 * elapsed_s)
+    after = velocity + _limit(wanted - velocity, pace.acceleration_m_s2 * elapsed_s)
     yaw_rad = goal.yaw_rad
     if yaw_rad is None:
         yaw_rad = atan2(dy, dx) if distance_m > _TURNS_BEYOND_M else anchor.yaw_rad
@@ -62,7 +63,7 @@ def _approach_m_s(distance_m: float, speed_m_s: float, braking_m_s2: float) -> f
     return min(speed_m_s, sqrt(2.0 * braking_m_s2 * (distance_m - 0.5 * linear_m)))
 
 
-def _limited(change: Array, most: float) -> Array:
+def _limit(change: Array, most: float) -> Array:
     size = float(np.linalg.norm(change[:2]))
     along = change[:2] * min(1.0, most / size) if size > 0.0 else change[:2]
     return np.array((along[0], along[1], max(-most, min(most, change[2]))))

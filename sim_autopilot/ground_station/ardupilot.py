@@ -8,7 +8,7 @@ from sim_autopilot.core.parameters import Parameter, Values
 from sim_autopilot.ground_station.calibration import accept_calibration
 from sim_autopilot.ground_station.files.ftp_state import FtpRules
 from sim_autopilot.ground_station.files.ftp_wire import DATA_MAX, Error
-from sim_autopilot.ground_station.files.parameter_file import PATH, packed
+from sim_autopilot.ground_station.files.parameter_file import PATH, pack_parameters
 from sim_autopilot.ground_station.files.store import Shown
 from sim_autopilot.ground_station.fixed_answers import ARDUCOPTER_ANSWERS
 from sim_autopilot.ground_station.logs.flight_log import LogRules, dataflash_head, dataflash_row
@@ -19,8 +19,8 @@ from sim_autopilot.ground_station.station import GroundStation
 
 def _shown_files(parameters: tuple[Parameter, ...], values: Values) -> Shown:
     return {
-        PATH: partial(packed, parameters, values),
-        f"{PATH}?withdefaults=1": partial(packed, parameters, values, with_defaults=True),
+        PATH: partial(pack_parameters, parameters, values),
+        f"{PATH}?withdefaults=1": partial(pack_parameters, parameters, values, with_defaults=True),
     }
 
 

@@ -12,7 +12,7 @@ from sim_autopilot.ground_station.files.ftp_state import FtpRules
 from sim_autopilot.ground_station.files.ftp_wire import question_from_message
 from sim_autopilot.ground_station.files.store import Shown
 from sim_autopilot.ground_station.logs.flight_log import LogRules, Row
-from sim_autopilot.ground_station.logs.logs import Logs, begin_download, entries, is_due, logged, pieces, shown_logs
+from sim_autopilot.ground_station.logs.logs import Logs, add_row, begin_download, entries, is_due, pieces, shown_logs
 from sim_autopilot.ground_station.memory import station_of, with_station
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.telemetry.motion import attitude, global_position_int, local_position_ned
@@ -42,7 +42,7 @@ def log_flight(memory: AutopilotMemory, config: AutopilotConfig, rules: LogRules
     if not is_due(logs, memory.now.boot_ns, armed=armed):
         return memory
     row, now_s = log_row(memory, config), memory.now.t_ns // NS_PER_S
-    return _with_logs(memory, logged(logs, row, now_s, rules, armed=armed))
+    return _with_logs(memory, add_row(logs, row, now_s, rules, armed=armed))
 
 
 def send_burst(memory: AutopilotMemory, rules: FtpRules) -> Result:

@@ -27,7 +27,7 @@ def grip(memory: AutopilotMemory, request: Request, _config: AutopilotConfig) ->
     if action == gripper.action:
         return Answer(memory=memory, result=_REJECTED if moves else ACCEPTED)
     under_way = tuple(later for later in memory.outbox.later if _is_about_gripper(later)) if moves else ()
-    told = tuple(_cancelled(later.message) for later in under_way)
+    told = tuple(_cancel(later.message) for later in under_way)
     if action is None or action not in _ACTIONS:
         return Answer(memory=memory, result=None, messages=(*told, acknowledgement(request, DENIED)))
     done_ns = now_ns + round(memory.tuning.values["PD_GRIPPER_TO"] * 1e9)
@@ -45,7 +45,7 @@ def _is_about_gripper(later: Later) -> bool:
     return is_answer and bool(later.message.command == mavlink.MAV_CMD_DO_GRIPPER)
 
 
-def _cancelled(answer: Message) -> Message:
+def _cancel(answer: Message) -> Message:
     """Tell whoever waits for `answer` that nothing comes of it."""
     return mavlink.MAVLink_command_ack_message(
         answer.command,

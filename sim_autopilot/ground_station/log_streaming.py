@@ -8,7 +8,7 @@ from sim_autopilot.ground_station.logs.flight_log import LogRules
 from sim_autopilot.ground_station.logs.log_stream import (
     LogStream,
     begun_stream,
-    streamed,
+    stream_on,
     wants_row,
     with_acknowledged,
     with_row,
@@ -66,7 +66,7 @@ def stream_log(memory: AutopilotMemory, config: AutopilotConfig, rules: LogRules
     boot_ns = memory.now.boot_ns
     if wants_row(stream, boot_ns):
         stream = with_row(stream, rules.row(log_row(memory, config)), boot_ns)
-    rest, messages = streamed(stream, boot_ns)
+    rest, messages = stream_on(stream, boot_ns)
     return _with_stream(memory, rest), messages
 
 

@@ -30,7 +30,7 @@ def take_typed(memory: AutopilotMemory, message: Message, config: AutopilotConfi
     *lines, rest = (station_of(memory).typed + typed).split("\n")
     printed = typed
     for line in lines:
-        memory, said = _obeyed(memory, line, config)
+        memory, said = _obey(memory, line, config)
         printed += said + _PROMPT
     memory = with_station(memory, replace(station_of(memory), typed=rest[-_LINE_MAX:]))
     return memory, _pieces(printed)
@@ -45,7 +45,7 @@ def _pieces(text: str) -> tuple[Message, ...]:
     )
 
 
-def _obeyed(memory: AutopilotMemory, line: str, config: AutopilotConfig) -> Spoken:
+def _obey(memory: AutopilotMemory, line: str, config: AutopilotConfig) -> Spoken:
     words = line.split()
     if not words:
         return memory, ""
@@ -75,19 +75,21 @@ def _version(memory: AutopilotMemory, words: list[str], config: AutopilotConfig)
 def _parameter(memory: AutopilotMemory, words: list[str], config: AutopilotConfig) -> Spoken:
     match words:
         case ["show"]:
-            return memory, _listed(memory, [parameter.name for parameter in config.firmware.parameters.table], config)
+            return memory, _list_parameters(
+                memory, [parameter.name for parameter in config.firmware.parameters.table], config
+            )
         case ["show", pattern]:
             begins = pattern.removesuffix("*")
             names = [parameter.name for parameter in config.firmware.parameters.table]
             chosen = [name for name in names if name == pattern or (begins != pattern and name.startswith(begins))]
-            return memory, _listed(memory, chosen, config)
+            return memory, _list_parameters(memory, chosen, config)
         case ["set", name, value]:
             return _set(memory, name, value, config)
         case _:
             return memory, "usage: param {show [name]|set name value}\n"
 
 
-def _listed(memory: AutopilotMemory, names: list[str], config: AutopilotConfig) -> str:
+def _list_parameters(memory: AutopilotMemory, names: list[str], config: AutopilotConfig) -> str:
     parameters = config.firmware.parameters.table
     said = "Symbols: x = used, + = saved, * = unsaved\n"
     for name in names:

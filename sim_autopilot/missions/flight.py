@@ -1,7 +1,7 @@
 """Flying a mission: which item is current, whether it is done, and where it sends the flight."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import Enum
 from math import dist, hypot, isfinite, nan, pi, radians, tau
 from types import MappingProxyType
@@ -9,6 +9,7 @@ from types import MappingProxyType
 from link.frames.geodesy import Datum
 from link.mavlink.dialect import mavlink
 from link.messages import Vector3
+from link.records import replace
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.core.settings import FlightSettings
 from sim_autopilot.flight.flight import Leg, ModeFlight, begin, climb_to, descend_here, go_to
@@ -112,7 +113,7 @@ def fly_mission(progress: Progress, items: tuple[Item, ...], flight: ModeFlight,
             break
         index, item = progress.index, _as_flown(items[progress.index], around)
         if item.command == _RETURN and around.returns_itself:
-            step = _returning(progress, flight, around)
+            step = _return_home(progress, flight, around)
             return replace(step, reached=(*reached, *step.reached))
         if item.command == _RETURN:
             after = replace(progress, stage=Stage.FINISHED)
@@ -139,7 +140,7 @@ def _as_flown(item: Item, around: Surroundings) -> Item:
     return replace(item, command=command, parameters=(time_s, 0.0, 0.0, nan))
 
 
-def _returning(progress: Progress, flight: ModeFlight, around: Surroundings) -> MissionStep:
+def _return_home(progress: Progress, flight: ModeFlight, around: Surroundings) -> MissionStep:
     """Return to home and land there, without another mode, as ArduCopter does."""
     if progress.stage is not Stage.LANDING:
         back = begin(Mode.RTL, around.now, around.home_enu_m, around.settings)
@@ -149,7 +150,7 @@ def _returning(progress: Progress, flight: ModeFlight, around: Surroundings) -> 
     return MissionStep(progress=replace(progress, stage=Stage.FINISHED), flight=flight, reached=(progress.index,))
 
 
-def resumed(progress: Progress) -> Progress:
+def resume(progress: Progress) -> Progress:
     """Return the progress of a mission that is taken up again: its current item begins anew."""
     return progress if progress.stage is Stage.FINISHED else replace(progress, stage=Stage.NEW)
 
@@ -166,10 +167,10 @@ def _pursue(progress: Progress, item: Item, flight: ModeFlight, around: Surround
             progress = replace(progress, stage=Stage.STAYING, staying_ns=now.boot_ns)
         return progress, flight
     if item.command not in _PLACES:
-        return _obeyed(progress, item), flight
+        return _obey(progress, item), flight
     goal = _goal(progress, item, around)
     if progress.stage is Stage.NEW and (around.landed or item.command == _TAKEOFF):
-        progress, flight = replace(progress, stage=Stage.RISING), _rising(item, goal, flight, around)
+        progress, flight = replace(progress, stage=Stage.RISING), _rise(item, goal, flight, around)
     if progress.stage is Stage.NEW or (progress.stage is Stage.RISING and _has_climbed(flight, around)):
         progress = replace(progress, stage=Stage.GOING)
     if progress.stage is Stage.GOING:
@@ -181,7 +182,7 @@ def _pursue(progress: Progress, item: Item, flight: ModeFlight, around: Surround
     return progress, flight
 
 
-def _rising(item: Item, goal: Goal, flight: ModeFlight, around: Surroundings) -> ModeFlight:
+def _rise(item: Item, goal: Goal, flight: ModeFlight, around: Surroundings) -> ModeFlight:
     height_m = goal.position_enu_m[2]
     if item.command != _TAKEOFF:
         height_m = max(height_m, around.home_enu_m[2] + around.settings.takeoff.height_m)
@@ -225,7 +226,7 @@ def _is_done(progress: Progress, item: Item, around: Surroundings) -> bool:
     return (around.now.boot_ns - progress.staying_ns) * 1e-9 >= stay_s
 
 
-def _obeyed(progress: Progress, item: Item) -> Progress:
+def _obey(progress: Progress, item: Item) -> Progress:
     """Take an item that is done at once; those about cameras and gimbals, which it has not, change nothing."""
     if item.command == mavlink.MAV_CMD_DO_CHANGE_SPEED and item.number(2) > 0.0:
         progress = replace(progress, speed_m_s=item.number(2))

@@ -5,7 +5,7 @@ from link.records import replace
 from sim_autopilot.core.modes import Event, Mode
 from sim_autopilot.flight.mode_change import change_mode
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, with_flight
-from sim_autopilot.missions.flight import Progress, Stage, Surroundings, fly_mission, resumed, set_to
+from sim_autopilot.missions.flight import Progress, Stage, Surroundings, fly_mission, resume, set_to
 
 _NO_ITEMS = 65535
 """What MISSION_CURRENT tells as the total of no mission; its modes follow."""
@@ -28,7 +28,7 @@ def set_current(memory: AutopilotMemory, index: int) -> AutopilotMemory | None:
 
 def begin_mission(memory: AutopilotMemory, config: AutopilotConfig) -> AutopilotMemory:
     """Return the memory of a mission mode that begins: a finished mission from the start, another where it was."""
-    progress = resumed(memory.mission.progress)
+    progress = resume(memory.mission.progress)
     if progress.stage is Stage.FINISHED or progress.index < first_index(config):
         progress = Progress(index=first_index(config))
     return _with_progress(memory, progress)

@@ -31,7 +31,7 @@ def keep_watch(memory: AutopilotMemory, config: AutopilotConfig) -> AutopilotMem
     if memory.modes.mode in settings.station_spares:
         lost = None
     if watch is not before:
-        memory = watching(memory, watch)
+        memory = update_watch(memory, watch)
     for event in (left, lost, low):
         memory = react_to_failsafe(memory, event)
     return memory
@@ -51,17 +51,17 @@ def mind_lost_sticks(memory: AutopilotMemory, *, held: bool) -> AutopilotMemory:
         and hold_s is not None
     ):
         watch = replace(watch, sticks_lost_ns=boot_ns)
-        return react_to_failsafe(watching(memory, watch), Event.FAILSAFE_HOLD)
+        return react_to_failsafe(update_watch(memory, watch), Event.FAILSAFE_HOLD)
     if watch.sticks_lost_ns is None:
         return memory
     if not memory.modes.latched:
-        return watching(memory, replace(watch, sticks_lost_ns=None))
+        return update_watch(memory, replace(watch, sticks_lost_ns=None))
     if hold_s is None or (boot_ns - watch.sticks_lost_ns) * 1e-9 < hold_s:
         return memory
-    return react_to_failsafe(watching(memory, replace(watch, sticks_lost_ns=None)), settings.takeover.lost_event)
+    return react_to_failsafe(update_watch(memory, replace(watch, sticks_lost_ns=None)), settings.takeover.lost_event)
 
 
-def watching(memory: AutopilotMemory, watch: Watch) -> AutopilotMemory:
+def update_watch(memory: AutopilotMemory, watch: Watch) -> AutopilotMemory:
     """Return the memory with what the failsafes have noticed."""
     return replace(memory, safety=replace(memory.safety, watch=watch))
 

@@ -3,9 +3,10 @@
 Source: MAV_CMD_INJECT_FAILURE; which units answer: as PX4 was seen to do it.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from link.mavlink.dialect import mavlink
+from link.records import replace
 from sim_autopilot.plant.plant import PlantMemory
 
 _OK = int(mavlink.FAILURE_TYPE_OK)
@@ -27,7 +28,7 @@ class Failures:
 NO_FAILURES = Failures()
 
 
-def injected(failures: Failures, unit: int, kind: int, instance: int) -> Failures | None:
+def inject(failures: Failures, unit: int, kind: int, instance: int) -> Failures | None:
     """Return the failures after an injection, None for one that is not simulated; instance 0 is all of a unit.
 
     What a motor tells wrongly of itself changes nothing here: nobody reads it.
@@ -49,7 +50,7 @@ def is_refused(unit: int, kind: int) -> bool:
     return unit == _MOTOR or (unit == _BATTERY and kind in {_OK, _OFF})
 
 
-def stopped(plant: PlantMemory, failures: Failures) -> PlantMemory:
+def stop_failed(plant: PlantMemory, failures: Failures) -> PlantMemory:
     """Return the drone with its failed motors at rest."""
     if not failures.motors:
         return plant

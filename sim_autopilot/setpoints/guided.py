@@ -1,10 +1,10 @@
 """ArduCopter's GUIDED mode: a shaped path that setpoints lead, and the take-off that is a part of the mode."""
 
-from dataclasses import dataclass
 from enum import Enum
 from math import acos, atan2, hypot
 
 import numpy as np
+from msgspec import Struct
 
 from link.frames.rotations import rotate
 from link.messages import Vector3
@@ -13,16 +13,16 @@ from sim_autopilot.core.data import Reference
 from sim_autopilot.core.limits import PathLimits
 from sim_autopilot.core.settings import FlightSettings
 from sim_autopilot.plant.snapshot import Snapshot
-from sim_autopilot.setpoints.guided_attitude import AttitudeWish, attitude_flown, levelled
+from sim_autopilot.setpoints.guided_attitude import AttitudeWish, attitude_flown, level_out
 from sim_autopilot.setpoints.guided_setpoint import STOP, Task, Wish
 from sim_autopilot.setpoints.path import (
     Blocked,
     Motion,
-    carried_on,
+    carry_on,
     correction_speed,
-    led_to_acceleration,
-    led_to_position,
-    led_to_velocity,
+    lead_to_acceleration,
+    lead_to_position,
+    lead_to_velocity,
     straight_speed,
 )
 
@@ -47,8 +47,7 @@ class Stage(Enum):
     CLIMB = 2
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Guided:
+class Guided(Struct, frozen=True, kw_only=True):
     """What GUIDED remembers; times in ns since boot.
 
     Attributes:
@@ -126,7 +125,7 @@ def has_run_up(guided: Guided, now: Snapshot, limits: PathLimits) -> bool:
     return guided.stage is Stage.RUN_UP and since_s >= _SPOOL_S + limits.throttle_slew_s
 
 
-def lifted(guided: Guided, now: Snapshot) -> Guided:
+def lift(guided: Guided, now: Snapshot) -> Guided:
     """Return the memory of a take-off that leaves the ground."""
     return replace(guided, stage=Stage.NONE if guided.attitude else Stage.CLIMB, path=_path_from(now))
 
@@ -143,12 +142,12 @@ def next_guided(
     wish = guided.wish
     silent = (now.boot_ns - guided.updated_ns) * 1e-9 > limits.timeout_s
     if guided.attitude is not None:
-        return _next_attitude(guided, levelled(now) if silent else guided.attitude, now, dt_s)
+        return _next_attitude(guided, level_out(now) if silent else guided.attitude, now, dt_s)
     if silent and wish.task is not Task.TAKEOFF:
         wish = _without_motion(wish)
     if guided.speed_m_s is not None:
         limits = replace(limits, speed_m_s=guided.speed_m_s)
-    path = _led(guided.path, wish, limits, dt_s)
+    path = _lead(guided.path, wish, limits, dt_s)
     yaw_rad = _heading(guided, wish, now)
     reference = Reference(
         position_enu_m=np.array(path.position),
@@ -157,10 +156,10 @@ def next_guided(
         yaw_rad=yaw_rad,
         yaw_rate_rad_s=wish.yaw_rate_rad_s,
     )
-    path = _not_below(carried_on(path, dt_s, _blocked(now, settings)), now)
+    path = _not_below(carry_on(path, dt_s, _find_block(now, settings)), now)
     guided = replace(
         guided,
-        wish=_carried_on(wish, dt_s),
+        wish=_carry_on(wish, dt_s),
         path=path,
         yaw_rad=now.yaw_rad if yaw_rad is None else yaw_rad,
         stage=Stage.NONE if is_rising(guided) and _has_risen(path, wish, limits) else guided.stage,
@@ -188,24 +187,24 @@ def _without_motion(wish: Wish) -> Wish:
     return replace(wish, task=task, velocity=still, acceleration=still, yaw_rate_rad_s=None)
 
 
-def _led(path: Motion, wish: Wish, limits: PathLimits, dt_s: float) -> Motion:
+def _lead(path: Motion, wish: Wish, limits: PathLimits, dt_s: float) -> Motion:
     target = Motion(position=wish.position, velocity=wish.velocity, acceleration=wish.acceleration)
     match wish.task:
         case Task.VELOCITY:
-            return led_to_velocity(path, target, limits, dt_s)
+            return lead_to_velocity(path, target, limits, dt_s)
         case Task.ACCELERATION:
-            return led_to_acceleration(path, wish.acceleration, limits, dt_s)
+            return lead_to_acceleration(path, wish.acceleration, limits, dt_s)
         case Task.POSITION:
-            return led_to_position(path, target, limits, straight_speed(path, wish.position, limits), dt_s)
+            return lead_to_position(path, target, limits, straight_speed(path, wish.position, limits), dt_s)
         case Task.FOLLOW | Task.TAKEOFF:
-            return led_to_position(path, target, limits, correction_speed(limits), dt_s)
+            return lead_to_position(path, target, limits, correction_speed(limits), dt_s)
 
 
-def _carried_on(wish: Wish, dt_s: float) -> Wish:
+def _carry_on(wish: Wish, dt_s: float) -> Wish:
     if wish.task is not Task.FOLLOW and wish.task is not Task.VELOCITY:
         return wish
     target = Motion(position=wish.position, velocity=wish.velocity, acceleration=wish.acceleration)
-    moved = carried_on(target, dt_s)
+    moved = carry_on(target, dt_s)
     yaw_rad = wish.yaw_rad
     if yaw_rad is not None and wish.yaw_rate_rad_s is not None:
         yaw_rad += wish.yaw_rate_rad_s * dt_s
@@ -221,7 +220,7 @@ def _heading(guided: Guided, wish: Wish, now: Snapshot) -> float | None:
     return atan2(north, east) if hypot(east, north) > _AHEAD_MIN_M_S else guided.yaw_rad
 
 
-def _blocked(now: Snapshot, settings: FlightSettings) -> Blocked | None:
+def _find_block(now: Snapshot, settings: FlightSettings) -> Blocked | None:
     x, y, z = rotate(now.orientation_wxyz, (0.0, 0.0, 1.0))
     if acos(max(-1.0, min(1.0, z))) < settings.envelope.tilt_max_rad - _LIMIT_MARGIN_RAD:
         return None

@@ -74,7 +74,7 @@ def attitude_wish(message: Message, settings: FlightSettings, limits: PathLimits
     )
 
 
-def levelled(now: Snapshot) -> AttitudeWish:
+def level_out(now: Snapshot) -> AttitudeWish:
     """Return what is flown when nothing has come for too long: level, at this height."""
     level = quaternion_from_roll_pitch_yaw(0.0, 0.0, now.yaw_rad)
     return AttitudeWish(orientation_wxyz=level, rates_flu_rad_s=_STILL)

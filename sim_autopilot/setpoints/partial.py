@@ -4,11 +4,12 @@ Each of the two needs a position, a velocity or an acceleration. An axis without
 with an acceleration alone has no velocity to keep to either: there the drone's own place and velocity stand in.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
+from link.records import replace
 from sim_autopilot.core.data import Array, Reference
 from sim_autopilot.plant.snapshot import Snapshot
 
@@ -38,7 +39,7 @@ class Given:
 
 
 @lru_cache(maxsize=16)  # a companion's masks are the same all the time
-def given_by(mask: int) -> Given | None:
+def read_mask(mask: int) -> Given | None:
     """Return what the type mask of a SET_POSITION_TARGET gives, None where PX4 does not fly it."""
     position, velocity, acceleration = (_group(mask, bit) for bit in (_POSITION, _VELOCITY, _ACCELERATION))
     if position is None or velocity is None or acceleration is None:
@@ -54,8 +55,8 @@ def with_own_motion(reference: Reference, now: Snapshot) -> Reference:
         return reference
     return replace(
         reference,
-        position_enu_m=_filled(reference.position_enu_m, reference.free_position, now.position_enu_m),
-        velocity_enu_m_s=_filled(reference.velocity_enu_m_s, reference.free_velocity, now.velocity_enu_m_s),
+        position_enu_m=_fill(reference.position_enu_m, reference.free_position, now.position_enu_m),
+        velocity_enu_m_s=_fill(reference.velocity_enu_m_s, reference.free_velocity, now.velocity_enu_m_s),
     )
 
 
@@ -72,7 +73,7 @@ def _unless(axes: Axes, *, among: bool) -> Axes:
     return (not axes[0], not axes[1], not axes[2]) if among else (False, False, False)
 
 
-def _filled(vector: Array | None, free: Axes, own: tuple[float, float, float]) -> Array | None:
+def _fill(vector: Array | None, free: Axes, own: tuple[float, float, float]) -> Array | None:
     if not any(free):
         return vector
     return np.where(free, own, np.zeros(3) if vector is None else vector)

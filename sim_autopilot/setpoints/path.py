@@ -12,17 +12,18 @@ the vectors are limited by their length, and of the acceleration at least 1 / sq
 Source: the behaviour of ArduPilot's AP_Math control functions; the equations are theirs, the code is not.
 """
 
-from dataclasses import dataclass, replace
 from math import copysign, hypot, sqrt
 
+from msgspec import Struct
+
 from link.messages import Vector3
+from link.records import replace
 from sim_autopilot.core.limits import PathLimits
 
 Plane = tuple[float, float]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Motion:
+class Motion(Struct, frozen=True, kw_only=True):
     """Position (m), velocity (m/s) and acceleration (m/s2) in W."""
 
     position: Vector3
@@ -30,8 +31,7 @@ class Motion:
     acceleration: Vector3 = (0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PathSpeed:
+class PathSpeed(Struct, frozen=True, kw_only=True):
     """How fast a position error is corrected at most."""
 
     horizontal_m_s: float
@@ -39,8 +39,7 @@ class PathSpeed:
     descent_m_s: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Blocked:
+class Blocked(Struct, frozen=True, kw_only=True):
     """Where the drone cannot follow: the direction in which it leans as far as it may, and its own place and speed."""
 
     direction: Plane
@@ -56,7 +55,7 @@ def square_root_law(error: float, slope_per_s: float, limit: float, dt_s: float)
     return copysign(min(rate, size / dt_s), error)
 
 
-def carried_on(motion: Motion, dt_s: float, blocked: Blocked | None = None) -> Motion:
+def carry_on(motion: Motion, dt_s: float, blocked: Blocked | None = None) -> Motion:
     """Return `motion` after `dt_s` of its own velocity and acceleration, not farther into what is `blocked`."""
     x, y, z = motion.position
     u, v, w = motion.velocity
@@ -80,37 +79,37 @@ def _unless_towards(change: Plane, error: Plane, direction: Plane) -> Plane:
     return (0.0, 0.0) if towards else change
 
 
-def led_to_position(path: Motion, target: Motion, limits: PathLimits, speed: PathSpeed, dt_s: float) -> Motion:
+def lead_to_position(path: Motion, target: Motion, limits: PathLimits, speed: PathSpeed, dt_s: float) -> Motion:
     """Return `path` with the acceleration that leads it to `target`; `speed` bounds the correction."""
     horizontal, slope = limits.acceleration_m_s2, 0.5 * limits.jerk_m_s3 / limits.acceleration_m_s2
     error = (target.position[0] - path.position[0], target.position[1] - path.position[1])
-    correction = _clipped(_law(error, slope, 0.5 * horizontal, dt_s), speed.horizontal_m_s)
+    correction = _clip(_law(error, slope, 0.5 * horizontal, dt_s), speed.horizontal_m_s)
     rising = limits.vertical_acceleration_m_s2
     height = target.position[2] - path.position[2]
     climb = square_root_law(height, 0.5 * limits.vertical_jerk_m_s3 / rising, 0.5 * rising, dt_s)
     climb = max(-speed.descent_m_s, min(speed.climb_m_s, climb))
     u, v, w = target.velocity
     wanted = replace(target, velocity=(u + correction[0], v + correction[1], w + climb))
-    return led_to_velocity(path, wanted, limits, dt_s)
+    return lead_to_velocity(path, wanted, limits, dt_s)
 
 
-def led_to_velocity(path: Motion, target: Motion, limits: PathLimits, dt_s: float) -> Motion:
+def lead_to_velocity(path: Motion, target: Motion, limits: PathLimits, dt_s: float) -> Motion:
     """Return `path` with the acceleration that leads it to the target's velocity."""
     most, jerk = limits.acceleration_m_s2, limits.jerk_m_s3
     wanted = (target.velocity[0], target.velocity[1])
     error = (wanted[0] - path.velocity[0], wanted[1] - path.velocity[1])
-    correction = _cornering(_law(error, jerk / most, jerk, dt_s), wanted, most)
+    correction = _corner(_law(error, jerk / most, jerk, dt_s), wanted, most)
     most_up, jerk_up = limits.vertical_acceleration_m_s2, limits.vertical_jerk_m_s3
     up = square_root_law(target.velocity[2] - path.velocity[2], jerk_up / most_up, jerk_up, dt_s)
     up = max(-most_up, min(most_up, up))
     a, b, c = target.acceleration
-    return led_to_acceleration(path, (a + correction[0], b + correction[1], c + up), limits, dt_s)
+    return lead_to_acceleration(path, (a + correction[0], b + correction[1], c + up), limits, dt_s)
 
 
-def led_to_acceleration(path: Motion, wanted: Vector3, limits: PathLimits, dt_s: float) -> Motion:
+def lead_to_acceleration(path: Motion, wanted: Vector3, limits: PathLimits, dt_s: float) -> Motion:
     """Return `path` with its acceleration brought nearer to `wanted`, as fast as the jerk allows."""
     a, b, c = path.acceleration
-    step = _clipped((wanted[0] - a, wanted[1] - b), limits.jerk_m_s3 * dt_s)
+    step = _clip((wanted[0] - a, wanted[1] - b), limits.jerk_m_s3 * dt_s)
     most_up = limits.vertical_jerk_m_s3 * dt_s
     return replace(path, acceleration=(a + step[0], b + step[1], c + max(-most_up, min(most_up, wanted[2] - c))))
 
@@ -144,23 +143,23 @@ def _law(error: Plane, slope_per_s: float, limit: float, dt_s: float) -> Plane:
     return (error[0] * scale, error[1] * scale)
 
 
-def _cornering(wanted: Plane, velocity: Plane, most: float) -> Plane:
+def _corner(wanted: Plane, velocity: Plane, most: float) -> Plane:
     """`wanted` of length `most` at most, its part across `velocity` kept up to 1 / sqrt(2) of that."""
     speed = hypot(*velocity)
     if speed == 0.0:
-        return _clipped(wanted, most)
+        return _clip(wanted, most)
     ahead = (velocity[0] / speed, velocity[1] / speed)
     along = _dot(wanted, ahead)
     across = (wanted[0] - along * ahead[0], wanted[1] - along * ahead[1])
     if along * along <= _dot(across, across):
-        return _clipped(wanted, most)
-    across = _clipped(across, most / sqrt(2.0))
+        return _clip(wanted, most)
+    across = _clip(across, most / sqrt(2.0))
     left = sqrt(most * most - _dot(across, across))
     along = max(-left, min(left, along))
     return (across[0] + along * ahead[0], across[1] + along * ahead[1])
 
 
-def _clipped(vector: Plane, most: float) -> Plane:
+def _clip(vector: Plane, most: float) -> Plane:
     size = hypot(*vector)
     if size <= most:
         return vector

@@ -4,10 +4,10 @@ A setpoint is held as it came, never extrapolated. One that cannot be understood
 that is flown (`partial_setpoints`), and every value used must be finite.
 """
 
-from dataclasses import dataclass
 from math import cos, hypot, isfinite, pi, radians, sin
 
 import numpy as np
+from msgspec import Struct
 
 from link.frames.geodesy import geodetic_from_enu
 from link.frames.local_frame import local_from_geodetic
@@ -17,7 +17,7 @@ from link.messages import Vector3
 from sim_autopilot.core.data import Array, Reference
 from sim_autopilot.core.places import Origin, local_from_world, world_from_local
 from sim_autopilot.plant.snapshot import Snapshot
-from sim_autopilot.setpoints.partial import Axes, given_by
+from sim_autopilot.setpoints.partial import Axes, read_mask
 
 _POSITION = 0b0000_0000_0000_0111
 _VELOCITY = 0b0000_0000_0011_1000
@@ -27,8 +27,7 @@ _YAW = 0b0000_0100_0000_0000
 _YAW_RATE = 0b0000_1000_0000_0000
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Setpoints:
+class Setpoints(Struct, frozen=True, kw_only=True, eq=False):
     """The last setpoint, when it came, and since when they have come without a gap; times in ns since boot."""
 
     reference: Reference | None = None
@@ -54,7 +53,7 @@ def reference_from_message(message: Message, frames: frozenset[int], origin: Ori
     body = frame == mavlink.MAV_FRAME_BODY_NED
     if body:
         mask |= _POSITION | sum(group for group in (_VELOCITY, _ACCELERATION) if mask & group)
-    given = given_by(mask)
+    given = read_mask(mask)
     if given is None or not all(map(isfinite, _values_used(message, mask))):
         return None
     position = velocity = acceleration = None

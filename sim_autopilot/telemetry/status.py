@@ -88,7 +88,7 @@ def battery_status(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
         32767,
         (_millivolts(charge, memory), *(_UNKNOWN_MV,) * 9),
         _current_ca(memory, config),
-        _given_mah(memory, charge) if config.firmware.condition.current_ca is None else 0,
+        _consumed_mah(memory, charge) if config.firmware.condition.current_ca is None else 0,
         -1,
         _percent(charge),
         0,
@@ -107,7 +107,7 @@ def _current_ca(memory: AutopilotMemory, config: AutopilotConfig) -> int:
     )
 
 
-def _given_mah(memory: AutopilotMemory, charge: float) -> int:
+def _consumed_mah(memory: AutopilotMemory, charge: float) -> int:
     return round((1.0 - charge) * _capacity_mah(memory))
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache
 from typing import cast
 
@@ -20,12 +20,13 @@ from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.runtime.build import make_guidance
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.step import companion_step
-from companion.vehicle.buffered import BufferHealth, Estimator
+from companion.vehicle.estimator import BufferHealth, Estimator
 from link.frames.geodesy import Datum
 from link.frames.local_frame import LocalFrame, Projection
 from link.frames.rotations import quaternion_from_yaw
 from link.mavlink.dialect import mavlink
 from link.messages import Command, PadGeometry, Vector3
+from link.records import replace
 
 CONFIG = CompanionConfig()
 IMPATIENT = CONFIG.model_copy(

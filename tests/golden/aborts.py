@@ -5,14 +5,15 @@ an operator does. Nothing is tried again, and a flight is over a moment after th
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from link.mavlink.dialect import mavlink
 from link.messages import Command
-from link.program.toml_config import merged, validated
+from link.program.toml_config import merge, validate
+from link.records import replace
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import Scenario
 from scenarios.faults.flight import FaultFlight
@@ -57,10 +58,10 @@ class Abort:
 
 def fly(abort: Abort) -> FaultFlight:
     """Fly until the abort's climb is over, or nothing more is to be expected."""
-    companion = merged({"abort": {"retries_max": 0}}, dict(abort.companion))
+    companion = merge({"abort": {"retries_max": 0}}, dict(abort.companion))
     changes = {"system": {"companion": companion}, "vehicle": dict(abort.vehicle)}
-    table = merged(load_scenario(abort.scenario).model_dump(mode="json"), changes)
-    flight = FaultFlight(validated(Scenario, table, source=abort.scenario), SEED)
+    table = merge(load_scenario(abort.scenario).model_dump(mode="json"), changes)
+    flight = FaultFlight(validate(Scenario, table, source=abort.scenario), SEED)
     if abort.fault is not None:
         flight.fly_to(abort.phase)
         abort.fault(flight)

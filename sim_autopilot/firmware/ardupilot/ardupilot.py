@@ -8,6 +8,7 @@ from types import MappingProxyType
 from link.frames.local_frame import Projection
 from link.mavlink.dialect import mavlink
 from sim_autopilot.core.firmware import (
+    COMMON_CAPABILITIES,
     Condition,
     DefaultLink,
     Identity,
@@ -64,19 +65,9 @@ ARDUPILOT = Firmware(
     name="ardupilot",
     identity=Identity(
         autopilot_id=mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA,
-        capabilities=mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
-        | mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
-        | mavlink.MAV_PROTOCOL_CAPABILITY_FTP
+        capabilities=COMMON_CAPABILITIES
         | mavlink.MAV_PROTOCOL_CAPABILITY_COMPASS_CALIBRATION
-        | mavlink.MAV_PROTOCOL_CAPABILITY_FLIGHT_TERMINATION
-        | mavlink.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
-        | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_INT
-        | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE
-        | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_RALLY
-        | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT
-        | mavlink.MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
-        | mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
-        | mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED,
+        | mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT,
         version=0x04_06_00_00,  # 4.6.0, in development
         custom_version=_COMMIT.encode(),
         uid2=_BOARD[:17].encode().ljust(18, b"\0"),

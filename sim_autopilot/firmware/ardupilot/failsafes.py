@@ -77,7 +77,7 @@ def failsafe_settings(values: Values) -> FailsafeSettings:
         station_lost_s=values["FS_GCS_TIMEOUT"],
         station_event=_STATION_ACTIONS.get(int(values["FS_GCS_ENABLE"])),
         station_system=int(values["SYSID_MYGCS"]),
-        station_spares=_spared(int(values["FS_OPTIONS"])),
+        station_spares=_modes_to_spare(int(values["FS_OPTIONS"])),
         hold_s=None,
         fence_event=_FENCE_ACTIONS.get(int(values["FENCE_ACTION"])) if kinds else None,
         reach_m=values["FENCE_RADIUS"] if kinds & _FENCE_CIRCLE else 0.0,
@@ -102,6 +102,6 @@ def _share(values: Values, name: str) -> float:
     return max(by_voltage, limit_mah / capacity_mah if limit_mah > 0.0 and capacity_mah > 0.0 else _NEVER)
 
 
-def _spared(options: int) -> frozenset[Mode]:
+def _modes_to_spare(options: int) -> frozenset[Mode]:
     auto = frozenset({Mode.MISSION}) if options & _SPARES_AUTO else frozenset()
     return auto | (PILOT_MODES if options & _SPARES_PILOT else frozenset())

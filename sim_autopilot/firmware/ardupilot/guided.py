@@ -4,7 +4,7 @@ from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.flight.land_detector import IN_AIR
 from sim_autopilot.memory import AutopilotMemory, Course, with_guided
-from sim_autopilot.setpoints.guided import has_run_up, lifted, next_guided, on_the_ground, with_attitude, with_wish
+from sim_autopilot.setpoints.guided import has_run_up, lift, next_guided, on_the_ground, with_attitude, with_wish
 from sim_autopilot.setpoints.guided_attitude import attitude_wish
 from sim_autopilot.setpoints.guided_setpoint import STOP, wish_from_message
 from sim_autopilot.setpoints.setpoints import local_setpoint
@@ -66,7 +66,7 @@ class GuidedFlight:
         if settings.path is None:
             raise ValueError("a firmware with GUIDED has limits of its path")
         if landing.landed and has_run_up(guided, now, settings.path):
-            guided, landing = lifted(guided, now), IN_AIR
+            guided, landing = lift(guided, now), IN_AIR
         if landing.landed:
             guided = on_the_ground(guided, now)
             return Course(flight=course.flight, guided=guided, climb=None, landing=landing, following=None)

@@ -48,11 +48,11 @@ def mission_texts(before: Progress, step: MissionStep, items: tuple[Item, ...]) 
         command = items[index].command if index < len(items) else _NONE
         begins = index != before.index or (before.stage is Stage.NEW and step.progress.stage is not Stage.NEW)
         if begins and command in _NAMES:
-            said.append(_told(f"Mission: {index} {_NAMES[command]}"))
+            said.append(_text(f"Mission: {index} {_NAMES[command]}"))
         if index in step.reached and command in _REACHED_TOLD:
-            said.append(_told(f"Reached command #{index}"))
+            said.append(_text(f"Reached command #{index}"))
     return tuple(said)
 
 
-def _told(text: str) -> Message:
+def _text(text: str) -> Message:
     return status_text(mavlink.MAV_SEVERITY_INFO, text)

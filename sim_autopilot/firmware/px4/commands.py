@@ -17,7 +17,7 @@ from sim_autopilot.flight.flight import climb_to
 from sim_autopilot.flight.orbit import Facing, begin_orbit
 from sim_autopilot.flight.repositioning import place_asked, reposition, with_speed
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, with_flight
-from sim_autopilot.safety.failures import injected, is_refused
+from sim_autopilot.safety.failures import inject, is_refused
 
 
 def _take_off(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:
@@ -70,7 +70,7 @@ def _inject_failure(memory: AutopilotMemory, request: Request, _config: Autopilo
         return Answer(memory=memory, result=UNSUPPORTED)
     unit, kind, instance = request.number(1), request.number(2), request.number(3)
     unit, kind = unit or 0, -1 if kind is None else kind
-    failures = injected(memory.safety.failures, unit, kind, instance or 0)
+    failures = inject(memory.safety.failures, unit, kind, instance or 0)
     if failures is None:
         return Answer(memory=memory, result=UNSUPPORTED if is_refused(unit, kind) else None)
     return Answer(memory=replace(memory, safety=replace(memory.safety, failures=failures)), result=ACCEPTED)

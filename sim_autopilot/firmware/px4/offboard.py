@@ -34,7 +34,7 @@ class Offboard:
 
     def take_local(self, memory: AutopilotMemory, message: Message) -> AutopilotMemory:
         """Return the memory after a SET_POSITION_TARGET_LOCAL_NED."""
-        return _followed(memory, reference_from_message(message, _FRAMES, memory.places.origin, memory.now))
+        return _follow(memory, reference_from_message(message, _FRAMES, memory.places.origin, memory.now))
 
     def take_global(self, memory: AutopilotMemory, message: Message) -> AutopilotMemory:
         """Return the memory after a SET_POSITION_TARGET_GLOBAL_INT."""
@@ -43,14 +43,14 @@ class Offboard:
 
     def take_attitude(self, memory: AutopilotMemory, message: Message) -> AutopilotMemory:
         """Return the memory after a SET_ATTITUDE_TARGET."""
-        return _followed(memory, attitude_from_message(message, memory.tuning.settings.setpoints.hover_share))
+        return _follow(memory, attitude_from_message(message, memory.tuning.settings.setpoints.hover_share))
 
     def steer(self, _memory: AutopilotMemory, _elapsed_s: float) -> Course | None:
         """Return None: the setpoint is the mode's wish as any other is."""
         return None
 
 
-def _followed(memory: AutopilotMemory, reference: Reference | None) -> AutopilotMemory:
+def _follow(memory: AutopilotMemory, reference: Reference | None) -> AutopilotMemory:
     if reference is None:
         return memory
     heard, boot_ns = memory.heard, memory.now.boot_ns

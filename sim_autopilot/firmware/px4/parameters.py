@@ -60,7 +60,7 @@ _OVERRIDDEN = ((1, _AUTO_MODES), (2, frozenset({Mode.OFFBOARD})))
 """By the bits of COM_RC_OVERRIDE."""
 
 
-def _overridden(bits: int) -> frozenset[Mode]:
+def _modes_to_override(bits: int) -> frozenset[Mode]:
     return frozenset(mode for bit, modes in _OVERRIDDEN if bits & bit for mode in modes)
 
 
@@ -142,7 +142,7 @@ def flight_settings(values: Values) -> FlightSettings:
         ),
         takeover=TakeoverSettings(
             lost_event=_ACTIONS.get(int(values["NAV_RCL_ACT"])),
-            overridden_modes=_overridden(int(values["COM_RC_OVERRIDE"])),
+            overridden_modes=_modes_to_override(int(values["COM_RC_OVERRIDE"])),
             moved_per_s=values["COM_RC_STICK_OV"] / 100.0,
         ),
         follow=_follow(values),

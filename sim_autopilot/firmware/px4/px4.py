@@ -9,6 +9,7 @@ from types import MappingProxyType
 from link.frames.local_frame import Projection
 from link.mavlink.dialect import mavlink
 from sim_autopilot.core.firmware import (
+    COMMON_CAPABILITIES,
     Condition,
     Identity,
     OriginRules,
@@ -50,18 +51,7 @@ PX4 = Firmware(
     name="px4",
     identity=Identity(
         autopilot_id=mavlink.MAV_AUTOPILOT_PX4,
-        capabilities=mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
-        | mavlink.MAV_PROTOCOL_CAPABILITY_FTP
-        | mavlink.MAV_PROTOCOL_CAPABILITY_FLIGHT_TERMINATION
-        | mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE
-        | mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
-        | mavlink.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
-        | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT
-        | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_INT
-        | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE
-        | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_RALLY
-        | mavlink.MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
-        | mavlink.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED,
+        capabilities=COMMON_CAPABILITIES | mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE,
         version=0x01_11_00_00,  # 1.17.0, in development
         custom_version=bytes((0, 0, 0, 24, 153, 179, 3, 186)),
         os_version=0x06_12_2C_FF,  # Linux 6.18.44

@@ -3,10 +3,10 @@
 Source: https://mavlink.io/en/services/ftp.html; sessions, errors and ends as each firmware's own server has them.
 """
 
-from dataclasses import replace
 from errno import EEXIST, ENOENT
 
 from link.mavlink.dialect import Message
+from link.records import replace
 from sim_autopilot.ground_station.files.ftp_handlers import HANDLERS
 from sim_autopilot.ground_station.files.ftp_state import Case, Ftp, FtpRules, RefusedError
 from sim_autopilot.ground_station.files.ftp_wire import DATA_MAX, Error, Opcode, Question, Reply, reply_message
@@ -29,11 +29,11 @@ def answer(
         ftp = replace(ftp, opened=None, burst=None)
     ftp = replace(ftp, asked_ns=boot_ns, last=None)
     try:
-        ftp, reply = _handled(ftp, Case(question=question, shown=shown, rules=rules))
+        ftp, reply = _handle(ftp, Case(question=question, shown=shown, rules=rules))
     except RefusedError as refused:
         reply = _refusal(question, bytes([refused.error]))
     except OSError as failed:
-        reply = _refusal(question, _told(failed.errno or 0))
+        reply = _refusal(question, _error_bytes(failed.errno or 0))
     if reply is None:
         return ftp, ()
     sequence = question.sequence + 1
@@ -69,12 +69,12 @@ def _refusal(question: Question, data: bytes) -> Reply:
     return Reply(session=question.session, asked=question.opcode, offset=question.offset, data=data, is_refusal=True)
 
 
-def _told(number: int) -> bytes:
+def _error_bytes(number: int) -> bytes:
     known = {EEXIST: Error.FILE_EXISTS, ENOENT: Error.FILE_NOT_FOUND}.get(number)
     return bytes([Error.FAIL_ERRNO, number]) if known is None else bytes([known])
 
 
-def _handled(ftp: Ftp, case: Case) -> tuple[Ftp, Reply | None]:
+def _handle(ftp: Ftp, case: Case) -> tuple[Ftp, Reply | None]:
     question, rules = case.question, case.rules
     if question.opcode in {Opcode.ACK, Opcode.NAK}:
         return ftp, None

@@ -1,10 +1,10 @@
 """What each question of MAVLink FTP does: the server after it, and the data that answer it, None where a burst does."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from types import MappingProxyType
 from zlib import crc32
 
+from link.records import replace
 from sim_autopilot.ground_station.files.ftp_state import Burst, Case, Ftp, Opened, RefusedError
 from sim_autopilot.ground_station.files.ftp_wire import DATA_MAX, Error, Opcode
 from sim_autopilot.ground_station.files.store import (
@@ -12,11 +12,11 @@ from sim_autopilot.ground_station.files.store import (
     cut,
     entries,
     plain_path,
-    removed,
-    renamed,
+    remove,
+    rename,
     with_directory,
     without_directory,
-    written,
+    write,
 )
 
 _ALL_BITS = 0xFFFFFFFF
@@ -24,7 +24,7 @@ _ALL_BITS = 0xFFFFFFFF
 _Done = tuple[Ftp, bytes | None]
 
 
-def _nothing(ftp: Ftp, _case: Case) -> _Done:
+def _do_nothing(ftp: Ftp, _case: Case) -> _Done:
     return ftp, b""
 
 
@@ -63,12 +63,12 @@ def _open(ftp: Ftp, case: Case) -> _Done:
         opened = Opened(path=case.path, data=data, session=session)
         return replace(ftp, opened=opened), len(data).to_bytes(4, "little")
     emptied = question.opcode == Opcode.CREATE_FILE
-    store = written(ftp.store, case.shown, case.path, 0, b"", emptied=emptied)
+    store = write(ftp.store, case.shown, case.path, 0, b"", emptied=emptied)
     size = len(store.files[case.path]).to_bytes(4, "little") if rules.own_session else b""
     return replace(ftp, store=store, opened=Opened(path=case.path, data=None, session=session)), size
 
 
-def _opened(ftp: Ftp, case: Case, *, reads: bool) -> Opened:
+def _find_opened(ftp: Ftp, case: Case, *, reads: bool) -> Opened:
     opened, rules = ftp.opened, case.rules
     if opened is None:
         raise RefusedError(rules.not_open)
@@ -80,7 +80,7 @@ def _opened(ftp: Ftp, case: Case, *, reads: bool) -> Opened:
 
 
 def _read(ftp: Ftp, case: Case) -> _Done:
-    data = _opened(ftp, case, reads=True).data or b""
+    data = _find_opened(ftp, case, reads=True).data or b""
     part = data[case.question.offset :][: case.question.size]
     if not part:
         raise RefusedError(Error.END_OF_FILE)
@@ -88,15 +88,15 @@ def _read(ftp: Ftp, case: Case) -> _Done:
 
 
 def _write(ftp: Ftp, case: Case) -> _Done:
-    opened, question = _opened(ftp, case, reads=False), case.question
+    opened, question = _find_opened(ftp, case, reads=False), case.question
     data = question.data[: question.size]
-    store = written(ftp.store, case.shown, opened.path, question.offset, data)
+    store = write(ftp.store, case.shown, opened.path, question.offset, data)
     size = len(data).to_bytes(4, "little") if case.rules.own_session else b""
     return replace(ftp, store=store), size
 
 
 def _begin_burst(ftp: Ftp, case: Case) -> _Done:
-    _opened(ftp, case, reads=True)
+    _find_opened(ftp, case, reads=True)
     question, rules = case.question, case.rules
     size = question.size if rules.burst_of_any_size and question.size else DATA_MAX
     burst = Burst(
@@ -110,7 +110,7 @@ def _begin_burst(ftp: Ftp, case: Case) -> _Done:
 
 
 def _remove(ftp: Ftp, case: Case) -> _Done:
-    return replace(ftp, store=removed(ftp.store, case.shown, case.path)), b""
+    return replace(ftp, store=remove(ftp.store, case.shown, case.path)), b""
 
 
 def _make_directory(ftp: Ftp, case: Case) -> _Done:
@@ -128,7 +128,7 @@ def _truncate(ftp: Ftp, case: Case) -> _Done:
 def _rename(ftp: Ftp, case: Case) -> _Done:
     old, _, new = case.question.text.partition("\0")
     new_path = plain_path(new.partition("\0")[0])
-    return replace(ftp, store=renamed(ftp.store, case.shown, plain_path(old), new_path)), b""
+    return replace(ftp, store=rename(ftp.store, case.shown, plain_path(old), new_path)), b""
 
 
 def _check(ftp: Ftp, case: Case) -> _Done:
@@ -142,7 +142,7 @@ def checksum(data: bytes) -> int:
 
 HANDLERS: Mapping[int, Callable[[Ftp, Case], _Done]] = MappingProxyType(
     {
-        Opcode.NONE: _nothing,
+        Opcode.NONE: _do_nothing,
         Opcode.TERMINATE_SESSION: _close,
         Opcode.RESET_SESSIONS: _close,
         Opcode.LIST_DIRECTORY: _list,

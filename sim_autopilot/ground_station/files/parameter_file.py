@@ -24,7 +24,7 @@ _FORMATS = {
 _SHARED_MAX = 15
 
 
-def packed(parameters: Sequence[Parameter], values: Values, *, with_defaults: bool = False) -> bytes:
+def pack_parameters(parameters: Sequence[Parameter], values: Values, *, with_defaults: bool = False) -> bytes:
     """Return the parameter file.
 
     Args:

@@ -4,9 +4,11 @@ Paths are plain names joined by slashes, without one at either end; the root is 
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from errno import EACCES, EEXIST, EISDIR, ENOENT, ENOSPC, ENOTDIR, ENOTEMPTY
 from types import MappingProxyType
+
+from link.records import replace
 
 Shown = Mapping[str, Callable[[], bytes]]
 """The autopilot's own files by their paths, made when they are read."""
@@ -76,7 +78,7 @@ def entries(store: Store, shown: Shown, path: str) -> list[tuple[str, int | None
     return sorted(found.items())
 
 
-def written(store: Store, shown: Shown, path: str, offset: int, data: bytes, *, emptied: bool = False) -> Store:
+def write(store: Store, shown: Shown, path: str, offset: int, data: bytes, *, emptied: bool = False) -> Store:
     """Return the store with `data` at `offset` of the file `path`, which is made where it is not there.
 
     Raises:
@@ -103,10 +105,10 @@ def cut(store: Store, shown: Shown, path: str, length: int) -> Store:
         OSError: there is no such file, or it cannot be written.
     """
     before = content(store, shown, path)
-    return written(store, shown, path, 0, before[:length].ljust(min(length, _WRITTEN_MAX + 1), b"\0"), emptied=True)
+    return write(store, shown, path, 0, before[:length].ljust(min(length, _WRITTEN_MAX + 1), b"\0"), emptied=True)
 
 
-def removed(store: Store, shown: Shown, path: str) -> Store:
+def remove(store: Store, shown: Shown, path: str) -> Store:
     """Return the store without the file `path`.
 
     Raises:
@@ -118,14 +120,14 @@ def removed(store: Store, shown: Shown, path: str) -> Store:
     return replace(store, files={name: one for name, one in store.files.items() if name != path})
 
 
-def renamed(store: Store, shown: Shown, path: str, new: str) -> Store:
+def rename(store: Store, shown: Shown, path: str, new: str) -> Store:
     """Return the store with the file `path` called `new`.
 
     Raises:
         OSError: there is no such file, or no place of that name.
     """
     data = content(store, shown, path)
-    return written(removed(store, shown, path), shown, new, 0, data, emptied=True)
+    return write(remove(store, shown, path), shown, new, 0, data, emptied=True)
 
 
 def with_directory(store: Store, shown: Shown, path: str) -> Store:

@@ -5,9 +5,10 @@ https://docs.px4.io/main/en/dev_log/logging.html#log-streaming.
 """
 
 import struct
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from link.mavlink.dialect import Message, mavlink
+from link.records import replace
 
 _PIECE = 249
 _ULOG_FILE_HEAD = 16
@@ -73,7 +74,7 @@ def with_row(stream: LogStream, row: bytes, boot_ns: int) -> LogStream:
     return replace(stream, rest=stream.rest + row, starts=starts, row_ns=boot_ns + _ROW_NS)
 
 
-def streamed(stream: LogStream, boot_ns: int) -> tuple[LogStream | None, tuple[Message, ...]]:
+def stream_on(stream: LogStream, boot_ns: int) -> tuple[LogStream | None, tuple[Message, ...]]:
     """Return the stream one step on, None where its client has not answered, and what goes to that."""
     if stream.waiting is not None:
         return _again(stream, stream.waiting, boot_ns)

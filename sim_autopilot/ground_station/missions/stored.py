@@ -7,11 +7,11 @@ Source: ArduPilot's AP_Mission and AC_PolyFence_loader.
 """
 
 from collections.abc import Mapping
-from dataclasses import replace
 from math import isfinite, nan
 from types import MappingProxyType
 
 from link.mavlink.dialect import mavlink
+from link.records import replace
 from sim_autopilot.missions.items import FENCE, MISSION, PLACED, Item
 
 _CORNERS_MIN = 3
@@ -54,7 +54,7 @@ _CIRCLES = frozenset({mavlink.MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION, mavlink.MAV_CM
 _GLOBAL = int(mavlink.MAV_FRAME_GLOBAL)
 
 
-def stored(item: Item, kind: int) -> Item:
+def store_item(item: Item, kind: int) -> Item:
     """Return what is kept of an item of a plan of type `kind`; a parameter that is lost is no number."""
     if kind == FENCE:
         return replace(item, frame=_GLOBAL, autocontinue=0, parameters=(item.number(1), 0.0, 0.0, 0.0), z=0.0)
@@ -68,7 +68,7 @@ def stored(item: Item, kind: int) -> Item:
     return replace(item, frame=_GLOBAL, x=0, y=0, z=0.0)
 
 
-def told(item: Item) -> Item:
+def restore_item(item: Item) -> Item:
     """Return how an item is sent that was stored: what was lost as zero."""
     one, two, three, four = (value if isfinite(value) else 0.0 for value in item.parameters)
     return replace(item, parameters=(one, two, three, four))

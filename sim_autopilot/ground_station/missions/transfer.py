@@ -4,10 +4,10 @@ Source: https://mavlink.io/en/services/mission.html; what is refused, retried an
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from types import MappingProxyType
 
 from link.mavlink.dialect import Message, mavlink
+from link.records import replace
 from sim_autopilot.ground_station.missions.library import (
     Arrival,
     Library,
@@ -18,7 +18,7 @@ from sim_autopilot.ground_station.missions.library import (
     is_kept_out,
 )
 from sim_autopilot.ground_station.missions.rules import TransferRules
-from sim_autopilot.ground_station.missions.stored import encloses_nothing, leads_nowhere, stored, told
+from sim_autopilot.ground_station.missions.stored import encloses_nothing, leads_nowhere, restore_item, store_item
 from sim_autopilot.missions.items import FENCE, Item, item_from_message, item_message, result_of, unreadable
 
 _ACCEPTED = int(mavlink.MAV_MISSION_ACCEPTED)
@@ -47,9 +47,9 @@ def transfer_passes(library: Library, boot_ns: int, rules: TransferRules) -> Res
     if transfer is None:
         return library, ()
     if (boot_ns - transfer.heard_ns) * 1e-9 > rules.timeout_s:
-        told = rules.timeout_answered and transfer.way is Way.UPLOAD
+        is_told = rules.timeout_answered and transfer.way is Way.UPLOAD
         cancelled = acknowledgement(transfer.partner, int(mavlink.MAV_MISSION_OPERATION_CANCELLED), transfer.kind)
-        return replace(library, transfer=None), (cancelled,) if told else ()
+        return replace(library, transfer=None), (cancelled,) if is_told else ()
     if transfer.way is Way.UPLOAD and (boot_ns - transfer.asked_ns) * 1e-9 > rules.retry_s:
         return _ask(library, replace(transfer, asked_ns=boot_ns))
     return library, ()
@@ -112,7 +112,7 @@ def _add(library: Library, transfer: Transfer, arrival: Arrival) -> Result:
     result = unreadable(arrival.message) if arrival.rules.items.needs_numbers else None
     try:
         item = item_from_message(arrival.message)
-        item = stored(item, transfer.kind) if arrival.rules.items.keeps_little else item
+        item = store_item(item, transfer.kind) if arrival.rules.items.keeps_little else item
         result = (
             result_of(item, transfer.kind, arrival.rules.items.commands, arrival.rules.items.frames)
             if result is None
@@ -173,14 +173,14 @@ def _serve(library: Library, arrival: Arrival) -> Result:
     whole = arrival.message.get_msgId() == mavlink.MAVLINK_MSG_ID_MISSION_REQUEST_INT
     marked = kind == mavlink.MAV_MISSION_TYPE_MISSION and not arrival.rules.items.keeps_little
     current = marked and index == arrival.current
-    item = told(items[index]) if arrival.rules.items.keeps_little else items[index]
+    item = restore_item(items[index]) if arrival.rules.items.keeps_little else items[index]
     if whole:
         frame = arrival.rules.items.told_frames.get(item.frame, item.frame)
         item = replace(item, frame=arrival.rules.items.told_fence_frame or frame if kind == FENCE else frame)
     return library, (item_message(item, index, kind, arrival.partner, current=current, whole=whole),)
 
 
-def _answered(library: Library, arrival: Arrival) -> Result:
+def _take_acknowledgement(library: Library, arrival: Arrival) -> Result:
     """Take a partner's MISSION_ACK, by which it ends its download, gives up, or asks for the other form of items."""
     transfer = library.transfer
     if transfer is None or transfer.partner != arrival.partner:
@@ -209,7 +209,7 @@ _HANDLERS: Mapping[int, Callable[[Library, Arrival], Result]] = MappingProxyType
         mavlink.MAVLINK_MSG_ID_MISSION_REQUEST_LIST: _list,
         mavlink.MAVLINK_MSG_ID_MISSION_REQUEST: _request,
         mavlink.MAVLINK_MSG_ID_MISSION_REQUEST_INT: _request,
-        mavlink.MAVLINK_MSG_ID_MISSION_ACK: _answered,
+        mavlink.MAVLINK_MSG_ID_MISSION_ACK: _take_acknowledgement,
         mavlink.MAVLINK_MSG_ID_MISSION_CLEAR_ALL: _clear,
     }
 )

@@ -63,7 +63,7 @@ def component_metadata(memory: AutopilotMemory, config: AutopilotConfig) -> Mess
 @cache
 def parameters_file(parameters: tuple[Parameter, ...], obeyed: frozenset[str]) -> bytes:
     """Return the description of `parameters`, with the ranges of those that are `obeyed`."""
-    return _compressed({"version": 1, "parameters": [_described(one, obeyed) for one in parameters]})
+    return _compress({"version": 1, "parameters": [_describe(one, obeyed) for one in parameters]})
 
 
 @cache
@@ -75,22 +75,22 @@ def general_file(parameters: tuple[Parameter, ...], obeyed: frozenset[str], mode
         (_ACTUATORS_METADATA, ACTUATORS_PATH, actuators_file()),
     )
     entries = [{"type": kind, "uri": f"mftp://{path}", "fileCrc": checksum(data)} for kind, path, data in files]
-    return _compressed({"version": 1, "metadataTypes": entries})
+    return _compress({"version": 1, "metadataTypes": entries})
 
 
 @cache
 def events_file(modes: CustomModes) -> bytes:
     """Return the description of the events, and of the modes that the report on arming tells of."""
-    return _compressed(events_description(dict(modes)))
+    return _compress(events_description(dict(modes)))
 
 
 @cache
 def actuators_file() -> bytes:
     """Return the description of the outputs."""
-    return _compressed(actuators_description())
+    return _compress(actuators_description())
 
 
-def _described(parameter: Parameter, obeyed: frozenset[str]) -> dict[str, str | float]:
+def _describe(parameter: Parameter, obeyed: frozenset[str]) -> dict[str, str | float]:
     described: dict[str, str | float] = {
         "name": parameter.name,
         "type": _TYPES[parameter.mavlink_type],
@@ -101,7 +101,7 @@ def _described(parameter: Parameter, obeyed: frozenset[str]) -> dict[str, str | 
     return described | {"min": parameter.lowest, "max": parameter.highest} if parameter.name in obeyed else described
 
 
-def _compressed(content: object) -> bytes:
+def _compress(content: object) -> bytes:
     return lzma.compress(json.dumps(content, separators=(",", ":")).encode(), check=lzma.CHECK_CRC32)
 
 

@@ -51,7 +51,7 @@ def events_description(custom_modes: Mapping[Mode, int]) -> dict[str, object]:
     words = {code.name: text for text, code in EVENTS.items()}
     plain = {name: (text, ()) for name, text in words.items() if name not in _WITH_ARGUMENTS}
     events = {
-        str(event_id(name) & _ID_BITS): _described(name, message, types)
+        str(event_id(name) & _ID_BITS): _describe(name, message, types)
         for name, (message, types) in sorted({**plain, **_WITH_ARGUMENTS}.items())
     }
     entries = {str(number): {"name": name, "description": said} for number, (name, said) in DISARM_REASONS.items()}
@@ -74,7 +74,7 @@ def events_description(custom_modes: Mapping[Mode, int]) -> dict[str, object]:
 def _summaries() -> dict[str, object]:
     groups: dict[str, object] = {}
     for group, name, types in _SUMMARIES:
-        described = _described(name, "Summary", types) | {"type": "summary"}
+        described = _describe(name, "Summary", types) | {"type": "summary"}
         groups[group] = {"events": {str(event_id(name) & _ID_BITS): described}}
     return groups
 
@@ -84,7 +84,7 @@ def _bitfield(names: Mapping[int, tuple[str, str]]) -> dict[str, object]:
     return {"type": "uint32_t", "is_bitfield": True, "entries": entries}
 
 
-def _described(name: str, message: str, types: tuple[str, ...]) -> dict[str, object]:
+def _describe(name: str, message: str, types: tuple[str, ...]) -> dict[str, object]:
     described: dict[str, object] = {"name": name, "message": message}
     if types:
         described["arguments"] = [{"name": f"arg{place}", "type": kind} for place, kind in enumerate(types)]

@@ -1,19 +1,19 @@
 """The lines of the check: everything in order passes, and each thing amiss is told by its own line."""
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from companion.autopilots.choice import driver_for
-from companion.check.assessment import MOTION, assessed, is_ready
+from companion.check.assessment import MOTION, assess, is_ready
 from companion.check.findings import Level, advised_values
 from companion.check.observation import AutopilotFacts, VehicleFacts
 from companion.config.companion import CompanionConfig
 from link.errors import UserError
 from link.mavlink.dialect import mavlink
-from link.program.toml_config import validated
+from link.program.toml_config import validate
+from link.records import replace
 from tests.companion.check.test_rules import ARDUCOPTER_46, PX4_DEFAULTS
 
 GOOD = AutopilotFacts(
@@ -46,7 +46,7 @@ VEHICLE = VehicleFacts(
 
 
 def test_everything_in_order_is_all_pass() -> None:
-    findings = assessed(GOOD, VEHICLE, 10.0, CONFIG)
+    findings = assess(GOOD, VEHICLE, 10.0, CONFIG)
     assert {one.level for one in findings} == {Level.PASS}
     assert is_ready(findings)
 
@@ -74,14 +74,14 @@ def test_everything_in_order_is_all_pass() -> None:
     ],
 )
 def test_autopilot_amiss_is_told(changed: dict[str, Any], line: str, level: Level) -> None:
-    by_name = {one.name: one for one in assessed(replace(GOOD, **changed), VEHICLE, 10.0, CONFIG)}
+    by_name = {one.name: one for one in assess(replace(GOOD, **changed), VEHICLE, 10.0, CONFIG)}
     assert by_name[line].level is level
     assert by_name[line].advice
 
 
 @pytest.mark.parametrize("vehicle_type", range(0, 50, 3))
 def test_what_the_companion_would_not_fly_fails_by_its_type(vehicle_type: int) -> None:
-    by_name = {one.name: one for one in assessed(replace(GOOD, vehicle_type=vehicle_type), VEHICLE, 10.0, CONFIG)}
+    by_name = {one.name: one for one in assess(replace(GOOD, vehicle_type=vehicle_type), VEHICLE, 10.0, CONFIG)}
     try:
         driver_for(GOOD.autopilot_id, vehicle_type)
     except UserError:
@@ -110,21 +110,21 @@ def test_what_the_companion_would_not_fly_fails_by_its_type(vehicle_type: int) -
     ],
 )
 def test_vehicle_amiss_is_told(changed: dict[str, Any], line: str, level: Level) -> None:
-    by_name = {one.name: one for one in assessed(GOOD, replace(VEHICLE, **changed), 10.0, CONFIG)}
+    by_name = {one.name: one for one in assess(GOOD, replace(VEHICLE, **changed), 10.0, CONFIG)}
     assert by_name[line].level is level
     assert by_name[line].advice
 
 
 def test_heading_that_follows_the_course_passes() -> None:
-    by_name = {one.name: one for one in assessed(GOOD, replace(VEHICLE, heading_off_rad=0.1), 10.0, CONFIG)}
+    by_name = {one.name: one for one in assess(GOOD, replace(VEHICLE, heading_off_rad=0.1), 10.0, CONFIG)}
     assert by_name["vehicle heading"].level is Level.PASS
 
 
 def test_advised_values_make_an_arducopter_pass() -> None:
     seen = replace(GOOD, autopilot_id=mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, version=(4, 6, 0), parameters=ARDUCOPTER_46)
-    before = assessed(seen, VEHICLE, 12.0, CONFIG)
+    before = assess(seen, VEHICLE, 12.0, CONFIG)
     assert not is_ready(before)
-    after = assessed(replace(seen, parameters={**ARDUCOPTER_46, **advised_values(before)}), VEHICLE, 12.0, CONFIG)
+    after = assess(replace(seen, parameters={**ARDUCOPTER_46, **advised_values(before)}), VEHICLE, 12.0, CONFIG)
     assert {one.level for one in after} == {Level.PASS}
 
 
@@ -142,8 +142,8 @@ def test_advised_values_make_an_arducopter_pass() -> None:
 def test_what_passes_with_the_defaults_is_judged_by_the_configuration_given(
     table: dict[str, Any], line: str, level: Level
 ) -> None:
-    config = validated(CompanionConfig, table, source="test")
-    by_name = {one.name: one for one in assessed(GOOD, VEHICLE, 10.0, config)}
+    config = validate(CompanionConfig, table, source="test")
+    by_name = {one.name: one for one in assess(GOOD, VEHICLE, 10.0, config)}
     assert by_name[line].level is level
     assert by_name[line].advice
 
@@ -151,5 +151,5 @@ def test_what_passes_with_the_defaults_is_judged_by_the_configuration_given(
 def test_geoid_of_the_configuration_is_as_good_as_one_that_is_told() -> None:
     untold = replace(GOOD, geoid_height_m=None)
     for facts, config in ((untold, CONFIG.model_copy(update={"geoid_height_m": 47.3})), (GOOD, CONFIG)):
-        by_name = {one.name: one for one in assessed(facts, VEHICLE, 10.0, config)}
+        by_name = {one.name: one for one in assess(facts, VEHICLE, 10.0, config)}
         assert by_name["heights"].level is Level.PASS

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from companion.check.findings import keep, kept
+from companion.check.findings import keep, read_kept
 from link.errors import UserError
 
 
@@ -12,7 +12,7 @@ def test_second_change_keeps_the_values_from_before_the_first(tmp_path: Path) ->
     path = tmp_path / "before.json"
     keep(path, {"A": 1.0, "B": 2.0})
     keep(path, {"B": 5.0, "C": 3.0})
-    assert kept(path) == {"A": 1.0, "B": 2.0, "C": 3.0}
+    assert read_kept(path) == {"A": 1.0, "B": 2.0, "C": 3.0}
 
 
 @pytest.mark.parametrize("text", ["", "[1]", '{"A": "x"}', '{"A": NaN}', '{"A": null}'])
@@ -20,9 +20,9 @@ def test_other_files_are_refused_with_their_name(text: str, tmp_path: Path) -> N
     path = tmp_path / "other.json"
     path.write_text(text)
     with pytest.raises(UserError, match=r"other\.json"):
-        kept(path)
+        read_kept(path)
 
 
 def test_file_that_is_not_there_is_told(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="cannot be read"):
-        kept(tmp_path / "none.json")
+        read_kept(tmp_path / "none.json")

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from companion.check.assessment import FIRMWARES
 from companion.check.findings import Finding, Level
-from companion.check.rules import SPEED_SHARE_ADVISED, ParameterRule, Spelling, judged, names_of
+from companion.check.rules import SPEED_SHARE_ADVISED, ParameterRule, Spelling, judge, names_of
 from companion.landing.feasibility import SPEED_SHARE_MIN
 from link.mavlink.dialect import mavlink
 
@@ -60,13 +60,13 @@ def names(findings: list[Finding], level: Level) -> set[str]:
 @given(speed_m_s=st.floats(0.0, 30.0))
 def test_advised_value_passes(rule: ParameterRule, spelling: Spelling, speed_m_s: float) -> None:
     value = rule.advised(speed_m_s) * spelling.per_unit
-    (found,) = judged([rule], {spelling.name: value}, speed_m_s)
+    (found,) = judge([rule], {spelling.name: value}, speed_m_s)
     assert found.level is Level.PASS
 
 
 @pytest.mark.parametrize("rules", [PX4_RULES, ARDUPILOT_RULES])
 def test_parameter_that_is_not_answered_is_a_warning_with_no_value_to_set(rules: tuple[ParameterRule, ...]) -> None:
-    findings = judged(rules, {}, 5.0)
+    findings = judge(rules, {}, 5.0)
     assert len(findings) == len(rules)
     assert all(one.level is Level.WARN and one.set_to is None and one.advice for one in findings)
 
@@ -74,14 +74,14 @@ def test_parameter_that_is_not_answered_is_a_warning_with_no_value_to_set(rules:
 @pytest.mark.parametrize("defaults", [ARDUCOPTER_46, ARDUCOPTER_47], ids=["4.6", "4.7"])
 def test_arducopters_defaults_serve_8_m_s_and_not_12(defaults: dict[str, float]) -> None:
     assert set(defaults) <= set(names_of(ARDUPILOT_RULES))
-    assert names(judged(ARDUPILOT_RULES, defaults, 8.0), Level.FAIL) == set()
+    assert names(judge(ARDUPILOT_RULES, defaults, 8.0), Level.FAIL) == set()
     tilt, _, speed = list(defaults)[:3]
-    assert names(judged(ARDUPILOT_RULES, defaults, 12.0), Level.FAIL) == {tilt, speed}
+    assert names(judge(ARDUPILOT_RULES, defaults, 12.0), Level.FAIL) == {tilt, speed}
 
 
 def test_both_spellings_are_advised_the_same_in_their_own_units() -> None:
-    old = {one.name: one.set_to for one in judged(ARDUPILOT_RULES, ARDUCOPTER_46, 12.0)}
-    new = {one.name: one.set_to for one in judged(ARDUPILOT_RULES, ARDUCOPTER_47, 12.0)}
+    old = {one.name: one.set_to for one in judge(ARDUPILOT_RULES, ARDUCOPTER_46, 12.0)}
+    new = {one.name: one.set_to for one in judge(ARDUPILOT_RULES, ARDUCOPTER_47, 12.0)}
     assert (old["ANGLE_MAX"], new["ATC_ANGLE_MAX"]) == (4500.0, 45.0)  # flown at 12 m/s
     assert (old["WPNAV_SPEED"], new["WP_SPD"]) == (1500.0, 15.0)  # flown at 12 m/s
     assert (old["WPNAV_ACCEL"], new["WP_ACC"]) == (350.0, 3.5)  # flown at 12 m/s
@@ -89,15 +89,15 @@ def test_both_spellings_are_advised_the_same_in_their_own_units() -> None:
 
 def test_px4s_defaults_serve_10_m_s_and_not_11() -> None:
     assert set(PX4_DEFAULTS) == set(names_of(PX4_RULES))
-    assert names(judged(PX4_RULES, PX4_DEFAULTS, 10.0), Level.FAIL) == set()
-    assert names(judged(PX4_RULES, PX4_DEFAULTS, 11.0), Level.FAIL) == {"MPC_XY_VEL_MAX"}
+    assert names(judge(PX4_RULES, PX4_DEFAULTS, 10.0), Level.FAIL) == set()
+    assert names(judge(PX4_RULES, PX4_DEFAULTS, 11.0), Level.FAIL) == {"MPC_XY_VEL_MAX"}
 
 
 @pytest.mark.parametrize(
     ("action", "level"), [(5.0, Level.PASS), (0.0, Level.WARN), (6.0, Level.FAIL), (7.0, Level.FAIL)]
 )
 def test_stopping_the_motors_when_setpoints_stay_away_is_a_failure(action: float, level: Level) -> None:
-    found = {one.name: one.level for one in judged(PX4_RULES, {**PX4_DEFAULTS, "COM_OBL_RC_ACT": action}, 5.0)}
+    found = {one.name: one.level for one in judge(PX4_RULES, {**PX4_DEFAULTS, "COM_OBL_RC_ACT": action}, 5.0)}
     assert found["COM_OBL_RC_ACT"] is level
 
 
@@ -105,7 +105,7 @@ def test_stopping_the_motors_when_setpoints_stay_away_is_a_failure(action: float
 def test_tilt_limit_by_position_has_to_be_off_or_large_enough(value: float, level: Level) -> None:
     (found,) = (
         one
-        for one in judged(ARDUPILOT_RULES, {**ARDUCOPTER_46, "PSC_ANGLE_MAX": value}, 8.0)
+        for one in judge(ARDUPILOT_RULES, {**ARDUCOPTER_46, "PSC_ANGLE_MAX": value}, 8.0)
         if one.name == "PSC_ANGLE_MAX"
     )
     assert found.level is level
@@ -115,7 +115,7 @@ def test_tilt_limit_by_position_has_to_be_off_or_large_enough(value: float, leve
     ("action", "level"), [(0.0, Level.PASS), (2.0, Level.WARN), (5.0, Level.FAIL), (6.0, Level.FAIL)]
 )
 def test_stopping_the_motors_for_a_lost_ground_station_is_a_failure(action: float, level: Level) -> None:
-    found = {one.name: one.level for one in judged(PX4_RULES, {**PX4_DEFAULTS, "NAV_DLL_ACT": action}, 5.0)}
+    found = {one.name: one.level for one in judge(PX4_RULES, {**PX4_DEFAULTS, "NAV_DLL_ACT": action}, 5.0)}
     assert found["NAV_DLL_ACT"] is level
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from companion.core.reasons import Reason
-from companion.integrity.contradictions import FixStamps, update_fix_stamps
+from companion.integrity.vehicle_data import FixStamps, update_fix_stamps
 from companion.situation.phases import Phase
 from link.messages import Command
 from tests.companion.world import CONFIG, LANDING, START_NS, Flight, reached

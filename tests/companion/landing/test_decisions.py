@@ -1,7 +1,6 @@
 """The tests of the phases: each fires after its hold time and not before, and in the order of their weight."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,13 +9,14 @@ from hypothesis import strategies as st
 
 from companion.core.reasons import Cause, Reason, sentence
 from companion.landing.aborts import ABORTS, must_wait
-from companion.landing.condition import Condition
+from companion.landing.conditions import Condition
 from companion.landing.entries import ENTRIES, update_held
 from companion.landing.memory import Held
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
 from companion.vehicle.pad import NOT_DESCRIBED, cone_radius_m
 from link.messages import Vector3
+from link.records import replace
 from tests.companion.facts import (
     CONFIG,
     LONG_HEARD,

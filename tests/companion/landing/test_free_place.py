@@ -1,7 +1,5 @@
 """Over a link with jitter a landing drone is asked for velocities and a height: a late place would lean it."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -9,11 +7,12 @@ from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.driver import Driver
 from companion.autopilots.px4 import Px4Driver
 from companion.landing.memory import StepMemory
-from companion.landing.setpoints import has_free_place, setpoint
-from companion.landing.step_data import StepInputs
+from companion.landing.outputs import has_free_place, setpoint
+from companion.landing.step_data import LinkDelay, StepInputs
 from companion.landing.virtual_model import Tracking
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
+from link.records import replace
 from tests.companion.facts import CONFIG, NOW_NS, PAD_ENU_M, changed
 
 LIMITS = CONFIG.limits.flight_limits()
@@ -38,7 +37,7 @@ def _memory(phase: Phase, speed_m_s: float = 8.0) -> StepMemory:
 def _inputs(std_s: float, driver: Driver | None = None) -> StepInputs:
     driver = Px4Driver() if driver is None else driver
     return StepInputs(
-        t_ns=NOW_NS, monotonic_ns=NOW_NS, limits=LIMITS, driver=driver, link_delay_s=0.1, link_delay_std_s=std_s
+        t_ns=NOW_NS, monotonic_ns=NOW_NS, limits=LIMITS, driver=driver, link_delay=LinkDelay(mean_s=0.1, std_s=std_s)
     )
 
 

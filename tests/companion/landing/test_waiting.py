@@ -1,19 +1,17 @@
 """A descent says what it waits for and its time stands still meanwhile; neither waiting nor straying is without end."""
 
-from dataclasses import replace
-
 import pytest
 
 from companion.core.reasons import Cause, Reason
 from companion.landing.memory import StepMemory
-from companion.landing.status import landing_status
+from companion.landing.outputs import landing_status
 from companion.landing.transitions import take_events
 from companion.landing.waiting import waits_at_m, why_held_up
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
-from companion.vehicle.driving import Driving
-from companion.vehicle.surprise import Surprise
+from companion.vehicle.driving import Driving, Surprise
 from link.messages import Vector3
+from link.records import replace
 from tests.companion.facts import (
     CONFIG,
     GEAR_M,

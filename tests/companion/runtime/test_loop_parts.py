@@ -136,7 +136,7 @@ def test_command_that_a_long_step_is_doing_gets_the_answer_of_that_step(monkeypa
     reply = TriedToTakeBack()
     reply.set_running_or_notify_cancel()
     with ThreadPoolExecutor(1) as pool:
-        answer = pool.submit(command_desk.awaited, reply)
+        answer = pool.submit(command_desk.await_reply, reply)
         assert reply.tried.wait(10.0)
         reply.set_result(ACCEPTED)
         assert answer.result(10.0) == ACCEPTED
@@ -147,7 +147,7 @@ def test_command_that_a_step_never_answers_is_not_told_as_undone(monkeypatch: py
     monkeypatch.setattr(command_desk, "_STEP_WAIT_S", 0.01)
     reply: Future[CommandReply] = Future()
     reply.set_running_or_notify_cancel()
-    assert "may still do it" in command_desk.awaited(reply).reason
+    assert "may still do it" in command_desk.await_reply(reply).reason
 
 
 def test_what_is_asked_for_when_a_step_is_due_is_in_the_next_step() -> None:

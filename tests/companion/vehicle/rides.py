@@ -6,7 +6,7 @@ import numpy as np
 
 from companion.config.estimation import EstimatorConfig, EstimatorKind
 from companion.core.data import Array, Measurement, VehicleEstimate
-from companion.vehicle.buffered import Estimator, EstimatorMemory
+from companion.vehicle.estimator import Estimator, EstimatorMemory
 from companion.vehicle.factory import make_estimator
 from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, EPOCH_NS, Drive, Sensors, sense
 

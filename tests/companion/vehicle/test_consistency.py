@@ -7,7 +7,7 @@ from scipy import stats
 from companion.config.estimation import BufferConfig, EstimatorConfig, ImmConfig, ImmModeConfig, LkfConfig
 from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle import imm_kernels as kernels
-from companion.vehicle.delay_buffer import DelayBuffer, fuse
+from companion.vehicle.estimator import DelayBuffer, fuse
 from companion.vehicle.filter_step import Gaussian
 from companion.vehicle.imm import ImmModel, ImmState
 from companion.vehicle.imm_kernels import heave_step
@@ -83,10 +83,13 @@ def wander(x: Array, rng: np.random.Generator) -> Array:
             0.0,
             0.0,
             0.0,
+            config.curvature_std_rad_m,
+            0.0,
         ]
     )
     Q = kernels.process_noise(x, DT_S, noise, heave_noise)
     after, _ = kernels.advance(x, DT_S, config.acceleration_decay_s, heave)
+    after[6] *= kernels.curvature_left(float(np.hypot(x[2], x[3])), DT_S, noise)
     return np.asarray(after + drawn(Q, rng))
 
 

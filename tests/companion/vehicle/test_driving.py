@@ -1,17 +1,40 @@
-"""An uneven driver, a winding road, a hard turn and a stop are told by the velocities that were driven."""
+"""An uneven driver, a winding road, a hard turn and a stop are told by the velocities that were driven.
+
+A vehicle that has done what its late data did not let expect is landed on while it stands, or has driven evenly.
+"""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass
 from typing import Any
 
 import pytest
 
-from companion.vehicle.buffered import EstimatorMemory
-from companion.vehicle.driving import Driving, drives_unevenly, may_depart, turns_hard, winds
-from companion.vehicle.surprise import Surprise, update_surprise
-from tests.companion.facts import NOW_NS
+from companion.config.companion import CompanionConfig
+from companion.config.estimation import EstimatorKind
+from companion.core.data import VehicleEstimate
+from companion.landing.memory import StepMemory
+from companion.landing.waiting import waits_at_m
+from companion.situation.phases import Phase
+from companion.vehicle.driving import (
+    Driving,
+    Surprise,
+    drives_unevenly,
+    forget_beliefs,
+    may_depart,
+    may_surprise,
+    turns_hard,
+    update_surprise,
+    winds,
+)
+from companion.vehicle.estimator import EstimatorMemory
+from link.messages import Vector3
+from link.records import replace
+from tests.companion.facts import NOW_NS, changed, drone_at, pad_at, situation
 from tests.companion.vehicle.drives import (
+    NOMINAL,
     Drive,
+    Sensors,
+    brake,
     circle,
     drive,
     figure_eight,
@@ -19,6 +42,8 @@ from tests.companion.vehicle.drives import (
     straight,
 )
 from tests.companion.vehicle.hindsight import DESCENT, LATE, Told, after
+from tests.companion.vehicle.rides import estimator, now_ns
+from tests.companion.world import PAD_HEIGHT_M, Flight, KnownVehicle
 
 
 @pytest.mark.slow
@@ -126,3 +151,147 @@ def test_vehicle_that_has_just_stopped_may_depart_before_that_is_told(until_s: f
 def test_vehicle_that_has_not_driven_is_parked() -> None:
     assert not may_depart(Driving(), LATE.delay_s, DESCENT)
     assert not may_depart(after(straight(0.0), LATE, 3, 8.0).driving, LATE.delay_s, DESCENT)
+
+
+CONFIG = CompanionConfig()
+BEGUN_S = 2.0  # until then an estimate may be surprised by what it has not known yet
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("truth", [straight(7.0), circle(5.0)], ids=["straight", "circle"])
+def test_even_driving_surprises_nobody_however_late_it_is_told(truth: Drive, seed: int) -> None:
+    assert (after(truth, LATE, seed, 15.0).surprised_ns or 0) < now_ns(BEGUN_S)
+
+
+def braking(by_m_s2: float) -> Drive:
+    """Slows down from 10 to 6 m/s after 8 s."""
+    return drive(16.0, lambda t_s: min(max(10.0 - by_m_s2 * (t_s - 8.0), 6.0), 10.0), lambda _: 0.0)
+
+
+@pytest.mark.parametrize(
+    ("sensors", "truth", "surprises"),
+    [(LATE, brake(), True), (NOMINAL, brake(), True), (NOMINAL, braking(2.0), True), (NOMINAL, braking(1.0), False)],
+    ids=["hard, late", "hard", "as hard as the drone can follow late", "soft"],
+)
+def test_hard_brake_surprises(sensors: Sensors, truth: Drive, *, surprises: bool) -> None:
+    found = after(truth, sensors, 3, truth.length_s)
+    assert ((found.surprised_ns or 0) > now_ns(BEGUN_S)) is surprises
+
+
+@pytest.mark.parametrize(
+    ("off_m_s", "std_m_s", "surprises"),
+    [(0.8, 0.2, True), (0.6, 0.2, False), (0.8, 0.5, False), (1.3, 0.5, True)],
+    ids=["wrong", "nearly right", "vague, as was said", "wrong beyond what was said"],
+)
+def test_belief_surprises_by_more_than_it_was_said_to_be_off(
+    off_m_s: float, std_m_s: float, *, surprises: bool
+) -> None:
+    told: Any = Told(5.0, 0.01)
+    found = update_surprise(
+        Surprise(beliefs=((NOW_NS, 5.0 + off_m_s, std_m_s),)),
+        told,
+        EstimatorMemory(NOW_NS),
+        NOW_NS,
+        monotonic_ns=NOW_NS,
+        config=DESCENT,
+    )
+    assert (found.surprised_ns is not None) is surprises
+
+
+def test_surprise_holds_for_its_time_and_no_longer() -> None:
+    surprise = Surprise(surprised_ns=NOW_NS)
+    hold_ns = round(DESCENT.surprise_hold_s * 1e9)
+    assert may_surprise(surprise, NOW_NS + hold_ns - 1, DESCENT)
+    assert not may_surprise(surprise, NOW_NS + hold_ns + 1, DESCENT)
+    assert not may_surprise(Surprise(), NOW_NS, DESCENT)
+
+
+def test_beliefs_end_with_the_estimate_that_they_were() -> None:
+    surprise = Surprise(beliefs=((NOW_NS, 5.0, 0.1),), speed_std_m_s=0.1, surprised_ns=NOW_NS)
+    found = update_surprise(surprise, estimator(EstimatorKind.IMM), None, NOW_NS, monotonic_ns=NOW_NS, config=DESCENT)
+    assert found == Surprise(surprised_ns=NOW_NS)
+
+
+@pytest.mark.parametrize(
+    ("variance_m2_s2", "std_m_s"),
+    [(0.04, 0.2), (4.0, math.inf), (-1e-18, 0.0)],
+    ids=["known", "no longer known", "rounded below nothing"],
+)
+def test_speed_is_as_uncertain_as_it_is_told_and_unknown_once_it_is_lost(variance_m2_s2: float, std_m_s: float) -> None:
+    told: Any = Told(5.0, variance_m2_s2)
+    found = update_surprise(
+        Surprise(speed_std_m_s=0.1), told, EstimatorMemory(NOW_NS - 10), NOW_NS, monotonic_ns=NOW_NS, config=DESCENT
+    )
+    assert found.speed_std_m_s == pytest.approx(std_m_s)
+
+
+def test_surprise_outlasts_a_clock_that_is_set() -> None:
+    surprise = Surprise(
+        beliefs=((NOW_NS, 5.0, 0.1),),
+        speed_std_m_s=0.1,
+        surprised_ns=NOW_NS,
+        driving=Driving(driven=((NOW_NS, 3.0, 4.0),), changes=((0.5, 0.0),), unevenness_m_s2=0.5),
+    )
+    kept = replace(surprise, beliefs=(), driving=Driving(unevenness_m_s2=0.5))
+    assert forget_beliefs(surprise) == kept
+    assert may_surprise(kept, NOW_NS, DESCENT)
+    assert forget_beliefs(Surprise()) == Surprise()
+
+
+@dataclass(frozen=True)
+class Braking(KnownVehicle):
+    """Drives at 4 m/s as far as the data tell, and has stood in hindsight."""
+
+    def estimate(self, memory: int | None, t_ns: int) -> VehicleEstimate | None:
+        return None if memory is None else Told(4.0 if t_ns > memory else 0.0, 0.01).estimate(memory, t_ns)
+
+
+@pytest.mark.parametrize("kind", [Braking, KnownVehicle])
+def test_step_looks_back_at_what_it_has_believed(kind: type[KnownVehicle]) -> None:
+    flight = Flight(vehicle=kind((-20.0, 0.4, PAD_HEIGHT_M), (4.0, 0.0, 0.0)))
+    flight.run(0.1)
+    flight.sends_fixes = False
+    flight.run(0.5)
+    flight.sends_fixes = True
+    flight.run(0.1)
+    assert may_surprise(flight.memory.vehicle.surprise, flight.monotonic_ns, DESCENT) is (kind is Braking)
+
+
+@pytest.mark.parametrize(
+    ("speed_m_s", "std_m_s", "waits"),
+    [
+        (DESCENT.waiting_speed_m_s - 0.01, 0.05, False),
+        (DESCENT.waiting_speed_m_s + 0.01, 0.05, True),
+        (DESCENT.waiting_speed_m_s + 0.01, 0.3, False),
+        (DESCENT.waiting_speed_m_s + 0.01, math.inf, False),
+        (CONFIG.abort.near_speed_max_m_s + 0.01, math.inf, True),
+    ],
+    ids=["settled", "too fast", "hardly known", "not known", "too fast by far"],
+)
+def test_descent_waits_until_the_drone_has_settled_as_far_as_that_is_known(
+    speed_m_s: float, std_m_s: float, *, waits: bool
+) -> None:
+    pad = pad_at()
+    here = replace(situation(0.9), drone=drone_at(0.9, 0.0, (0.6 * speed_m_s, -0.8 * speed_m_s, 0.0), pad=pad))
+    memory = changed(StepMemory(), phase=Phase.DESCEND, surprise=Surprise(speed_std_m_s=std_m_s))
+    assert waits_at_m(memory, here, CONFIG) == (DESCENT.waiting_height_m if waits else None)
+
+
+@pytest.mark.parametrize(
+    ("phase", "height_m", "velocity", "surprised", "waits"),
+    [
+        (Phase.DESCEND, 0.9, (5.0, 1.0, 0.0), True, True),
+        (Phase.DESCEND, 0.9, (5.0, 1.0, 0.0), False, False),
+        (Phase.DESCEND, 0.9, (0.1, 0.1, 0.0), True, False),
+        (Phase.DESCEND, 0.9 * DESCENT.commit_height_m, (5.0, 1.0, 0.0), True, False),
+        (Phase.CHASE, 0.9, (5.0, 1.0, 0.0), True, False),
+    ],
+    ids=["drives", "has not surprised", "stands", "committed", "chase"],
+)
+def test_descent_waits_above_a_driving_vehicle_that_has_surprised(
+    phase: Phase, height_m: float, velocity: Vector3, *, surprised: bool, waits: bool
+) -> None:
+    surprise = Surprise(surprised_ns=NOW_NS - 10 if surprised else None)
+    memory = changed(StepMemory(), phase=phase, surprise=surprise)
+    waiting_m = waits_at_m(memory, situation(height_m, pad=pad_at(velocity)), CONFIG)
+    assert waiting_m == (DESCENT.waiting_height_m if waits else None)

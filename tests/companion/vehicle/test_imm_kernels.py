@@ -15,7 +15,7 @@ from companion.vehicle import imm_sensors as sensors
 
 TAU_S = 3.0
 MOTION = np.array([TAU_S, 2.0 * math.pi * 0.75, 0.3, 0.04, 180.0, -0.7, 0.1, 0.3])
-NOISE = np.array([12.0, 0.005, 20.0, 3.0, 1e-4, 0.01, 1e-5, 2e-3, 1e-7])
+NOISE = np.array([12.0, 0.005, 20.0, 3.0, 1e-4, 0.01, 1e-5, 2e-3, 1e-7, 0.1, 0.0])
 LEVER = MOTION[5:8]
 HEAVE = np.array([[0.91, 0.08], [-1.7, 0.69]])
 
@@ -145,10 +145,25 @@ def test_compiled_kernels_equal_their_python(seed: int) -> None:
         assert mine == pytest.approx(python, rel=1e-9, abs=1e-12)
 
 
+@pytest.mark.parametrize("speed_m_s", [0.0, 2.0, 7.0])
+def test_curvature_stays_as_uncertain_as_a_vehicle_can_steer(speed_m_s: float) -> None:
+    std, dt_s, x = NOISE[kernels.CURVATURE_STD], 0.1, np.zeros(kernels.SIZE)
+    x[2] = speed_m_s
+    left = kernels.curvature_left(speed_m_s, dt_s, NOISE)
+    fed = kernels.process_noise(x, dt_s, NOISE, np.zeros((2, 2)))[6, 6]
+    assert left**2 * std**2 + fed == pytest.approx(std**2)
+    assert fed > 0.0
+
+
+def test_heading_of_a_vehicle_at_rest_is_fed_by_no_noise() -> None:
+    Q = kernels.process_noise(np.zeros(kernels.SIZE), 0.1, NOISE, np.zeros((2, 2)))
+    assert np.abs(Q[7]).max() == 0.0
+
+
 def test_process_noise_is_positive_and_lies_along_the_track() -> None:
     x = a_state(3)
     assert np.linalg.eigvalsh(kernels.process_noise(x, 0.1, NOISE, 1e-6 * np.eye(2))).min() > -1e-15
-    Q = kernels.process_noise(x, 0.1, np.where(np.arange(9) == 2, 0.0, NOISE), 1e-6 * np.eye(2))
+    Q = kernels.process_noise(x, 0.1, np.where(np.arange(len(NOISE)) == 2, 0.0, NOISE), 1e-6 * np.eye(2))
     along = x[2:4] / np.hypot(*x[2:4])
     across = np.array([-along[1], along[0]])
     assert along @ Q[4:6, 4:6] @ along == pytest.approx(12.0 * 0.1)

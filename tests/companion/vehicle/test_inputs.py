@@ -1,7 +1,7 @@
 """Vehicle messages as measurements in W: values, covariances and what stands in when none is stated."""
 
 import math
-from dataclasses import replace
+import sys
 
 import numpy as np
 import pytest
@@ -26,6 +26,7 @@ from link.frames.rotations import quaternion_from_roll_pitch_yaw
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, Vector3, VehicleImu
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
+from link.records import replace
 from link.zenoh.keys import Keys
 from tests.companion.world import FRAME, ORIGIN, START_NS, own_state
 
@@ -185,3 +186,13 @@ def test_absurd_number_is_refused(bad: float) -> None:
         plausible(replace(fix, value=np.array([0.0, bad, 0.0])))
     with pytest.raises(PayloadError, match="absurd"):
         plausible(replace(fix, covariance=np.diag([1.0, abs(bad) * 1e3, 1.0])))
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_velocity_that_no_number_holds_in_the_drones_frame_is_refused(axis: int) -> None:
+    huge: list[float] = [0.0, 0.0, 0.0]
+    huge[axis] = sys.float_info.max
+    message = FixVelocity(t_ns=START_NS, velocity_enu_m_s=(huge[0], huge[1], huge[2]), is_vertical_measured=True)
+    state = AutopilotState(view=replace(NO_AUTOPILOT, frame=FRAME))
+    with pytest.raises(PayloadError, match="absurd"):
+        measurements_of(KEYS.fix_velocity, cdr.encode(message), KEYS, state)

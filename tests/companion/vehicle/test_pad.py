@@ -10,6 +10,7 @@ from companion.core.data import Array, Forecast
 from companion.vehicle.pad import HEADING_UNKNOWN, NOT_DESCRIBED, pad_path
 from link.frames.rotations import quaternion_from_yaw, rotate
 from link.messages import PadGeometry, Vector3
+from link.records import replace
 from tests.companion.world import START_NS
 
 OFFSETS_S = np.arange(0.0, 2.01, 0.05)
@@ -78,3 +79,11 @@ def test_forecast_is_not_written_to() -> None:
     before = forecast.position_enu_m.copy()
     pad_path(forecast, _pad((1.0, -0.5, 0.2)))
     np.testing.assert_array_equal(forecast.position_enu_m, before)
+
+
+def test_vague_heading_does_not_place_a_pad_on_a_long_lever_arm_that_nobody_has_seen() -> None:
+    unseen = replace(_forecast(np.zeros_like(OFFSETS_S)), yaw_std_rad=0.15, position_std_m=np.full((41, 3), 1.0))
+    seen = replace(unseen, position_std_m=np.full((41, 3), 0.05))
+    assert pad_path(unseen, _pad((2.0, 0.0, 0.7))).unplaced == HEADING_UNKNOWN
+    assert pad_path(unseen, _pad((0.4, 0.0, 0.7))).unplaced is None
+    assert pad_path(seen, _pad((2.0, 0.0, 0.7))).unplaced is None

@@ -13,7 +13,6 @@ from link.mavlink.events import (
     MessageReceived,
 )
 from link.mavlink.session import MavlinkSession
-from link.mavlink.session_config import SessionConfig
 from link.mavlink.timesync import ClockSync
 from tests.link.mavlink.fake_autopilot import BOOTED_NS, MS, START_NS, UTC_AHEAD_NS, FakeAutopilot, Pair, S, of_kind
 
@@ -119,7 +118,7 @@ def test_the_autopilots_question_for_the_time_is_answered() -> None:
 
 
 def test_answers_to_questions_from_before_a_restart_are_not_learned_from() -> None:
-    sync = ClockSync(SessionConfig())
+    sync = ClockSync()
     question = sync.poll(START_NS)
     assert question is not None
     sync.start_over()
@@ -128,7 +127,7 @@ def test_answers_to_questions_from_before_a_restart_are_not_learned_from() -> No
 
 
 def test_an_answer_in_unix_time_is_no_boot_time() -> None:
-    sync = ClockSync(SessionConfig())
+    sync = ClockSync()
     sync.poll(START_NS)
     sync.timesync(mavlink.MAVLink_timesync_message(tc1=START_NS, ts1=START_NS), START_NS + MS)
     assert sync.clock.local_to_boot is None
@@ -170,7 +169,7 @@ def test_a_few_late_messages_are_no_restart() -> None:
 
 
 def test_input_is_recorded_for_all_senders_when_asked_for() -> None:
-    session = MavlinkSession(1, config=SessionConfig(records_input=True))
+    session = MavlinkSession(1, records_input=True)
     frame = MavlinkCodec(255, 190).encode(heartbeat(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID))
     session.receive(frame, START_NS)
     assert session.take_input() == [frame]

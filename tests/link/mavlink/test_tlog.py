@@ -7,7 +7,7 @@ from pymavlink import mavutil
 from link.errors import UserError
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
-from link.mavlink.heartbeat import companion_heartbeat
+from link.mavlink.peer import companion_heartbeat
 from link.mavlink.tlog import TlogWriter
 from tests.link.mavlink.tlog_frames import frames_of
 

@@ -1,6 +1,5 @@
 """The CDR payloads against an independent CDR library, in both directions, and against bytes that are none."""
 
-from dataclasses import replace
 from math import degrees, inf, nan, pi, radians
 from typing import Any
 
@@ -22,6 +21,7 @@ from link.messages import (
 )
 from link.payloads.cdr import ROS_TYPES, Message, PayloadError, decode, encode, encoding_of
 from link.program.clock import ClockTick
+from link.records import replace
 from tests.link import ros_definitions as ros
 
 T_NS = 1_763_708_400_123_456_789
@@ -123,6 +123,10 @@ def pad_pose(frame_id: str, covariance: list[float], orientation: ros.Quaternion
     return ros.PoseWithCovarianceStamped(
         header=replace(HEADER, frame_id=frame_id), pose=ros.PoseWithCovariance(pose=pose, covariance=covariance)
     ).serialize()
+
+
+def test_every_type_on_the_wire_makes_the_round_trip_below() -> None:
+    assert {type(message) for message in MESSAGES} == set(ROS_TYPES)
 
 
 @pytest.mark.parametrize("message", MESSAGES, ids=lambda message: type(message).__name__)

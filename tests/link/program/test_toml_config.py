@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from pydantic import Field, ValidationError, model_validator
 
 from link.errors import UserError
-from link.program.toml_config import StrictModel, dump_toml, load_config, merged, validated
+from link.program.toml_config import StrictModel, dump_toml, load_config, merge, validate
 
 
 class Kind(Enum):
@@ -83,7 +83,7 @@ def test_overrides_go_before_the_file_and_none_leaves_it(tmp_path: Path) -> None
 
 def test_merging_leaves_what_it_merges_alone() -> None:
     below, above = {"a": {"x": 1, "y": 2}, "b": 3}, {"a": {"x": 9}, "b": {"z": 4}}
-    assert merged(below, above) == {"a": {"x": 9, "y": 2}, "b": {"z": 4}}
+    assert merge(below, above) == {"a": {"x": 9, "y": 2}, "b": {"z": 4}}
     assert below == {"a": {"x": 1, "y": 2}, "b": 3}
 
 
@@ -140,7 +140,7 @@ def test_one_bad_number_in_a_long_list_is_told_by_its_place_in_one_short_line(wr
     speeds_m_s: list[object] = [1.25] * 4000
     speeds_m_s[1234] = wrong
     with pytest.raises(UserError) as caught:
-        validated(Trip, {"legs": {"speeds_m_s": speeds_m_s}}, source="x.toml")
+        validate(Trip, {"legs": {"speeds_m_s": speeds_m_s}}, source="x.toml")
     assert str(caught.value) == f"x.toml: {expected}"
 
 
@@ -149,7 +149,7 @@ def test_whatever_is_wrong_in_a_file_is_one_line_of_at_most_200_characters(
     speeds_m_s: list[str], source: str, name: int
 ) -> None:
     with pytest.raises(UserError) as caught:
-        validated(Trip, {"legs": {"speeds_m_s": speeds_m_s}, "name": name}, source=source)
+        validate(Trip, {"legs": {"speeds_m_s": speeds_m_s}, "name": name}, source=source)
     assert len(str(caught.value).splitlines()) == 1
     assert len(str(caught.value)) <= 200
 
@@ -180,13 +180,13 @@ def test_a_mistake_in_a_table_of_some_kind_is_named_as_it_stands_in_the_file(
     values: dict[str, float], expected: str
 ) -> None:
     with pytest.raises(UserError) as caught:
-        validated(Drive, {"track": {"kind": "circle"} | values}, source="x.toml")
+        validate(Drive, {"track": {"kind": "circle"} | values}, source="x.toml")
     assert str(caught.value) == f"x.toml: {expected}"
 
 
 def test_a_file_that_holds_no_table_is_told_so() -> None:
     with pytest.raises(UserError, match=r"^x.json: it does not fit: input should be an object$"):
-        validated(Config, [], source="x.json")  # type: ignore[arg-type]  # as JSON may hold it
+        validate(Config, [], source="x.json")  # type: ignore[arg-type]  # as JSON may hold it
 
 
 def test_further_mistakes_are_counted(tmp_path: Path) -> None:
@@ -195,9 +195,9 @@ def test_further_mistakes_are_counted(tmp_path: Path) -> None:
 
 def test_a_misspelt_key_is_named_before_the_key_that_is_missing_for_it() -> None:
     with pytest.raises(UserError, match="unknown key 'speed_m_s', did you mean 'speed_max_m_s'"):
-        validated(Demanding, {"speed_m_s": 3.0}, source="x.toml")
+        validate(Demanding, {"speed_m_s": 3.0}, source="x.toml")
     with pytest.raises(UserError, match=r"^x.toml: key 'speed_max_m_s' is missing$"):
-        validated(Demanding, {}, source="x.toml")
+        validate(Demanding, {}, source="x.toml")
 
 
 def test_a_mistake_in_an_override_is_the_command_lines(tmp_path: Path) -> None:
@@ -233,4 +233,4 @@ def test_printed_configuration_is_read_back_the_same(tmp_path: Path) -> None:
 @given(st.floats(min_value=1e-300, max_value=0.5), st.text(st.characters(codec="utf-8", exclude_characters="\r")))
 def test_every_number_and_text_survives_printing(tolerance: float, name: str) -> None:
     config = Config(name=name, guidance=Guidance(solver=Solver(tolerance=tolerance)))
-    assert validated(Config, tomllib.loads(dump_toml(config)), source="printed") == config
+    assert validate(Config, tomllib.loads(dump_toml(config)), source="printed") == config

@@ -11,7 +11,7 @@ from rosbags.highlevel import AnyReader
 from companion.config.companion import CompanionConfig
 from companion.recording.folder import recording_sink
 from link.errors import UserError
-from link.program.toml_config import merged, validated
+from link.program.toml_config import merge, validate
 from link.recording.mcap_reader import read_messages, recording_files
 from link.recording.recorder import BackgroundRecorder
 from link.zenoh.keys import Keys
@@ -83,8 +83,8 @@ def test_companion_that_was_started_again_leaves_two_flights_that_are_replayed_a
 
 
 def test_replay_with_another_gain_names_the_fields_largest_difference_first(flight: Flight) -> None:
-    table = merged(flight.config.model_dump(mode="json"), {"descent": {"descent_gain_hz": 1.1}})
-    result = replay(flight, validated(CompanionConfig, table, source="test"))
+    table = merge(flight.config.model_dump(mode="json"), {"descent": {"descent_gain_hz": 1.1}})
+    result = replay(flight, validate(CompanionConfig, table, source="test"))
     named = [one.field for one in result.differences]
     assert "setpoint.position_m" in named
     assert "step.next_velocity_m_s" in named

@@ -5,7 +5,7 @@ import pytest
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.missions.fence import Area, is_allowed
 from sim_autopilot.missions.items import FENCE
-from sim_autopilot.safety.failures import NO_FAILURES, injected
+from sim_autopilot.safety.failures import NO_FAILURES, inject
 from tests.sim_autopilot.pilot import HOLD, LAND, RTL, Pilot, command, px4, set_mode
 from tests.sim_autopilot.planner import item, upload
 
@@ -110,7 +110,7 @@ def test_a_failed_motor_brings_the_drone_down() -> None:
 
 def test_an_injection_that_is_no_such_thing_changes_nothing() -> None:
     for unit, kind, instance in ((int(MOTOR), 2, 0), (int(MOTOR), 1, 9), (0, 1, 0), (-1, -1, -1)):
-        assert injected(NO_FAILURES, unit, kind, instance) is None
+        assert inject(NO_FAILURES, unit, kind, instance) is None
 
 
 def told_low(pilot: Pilot) -> list[Message]:

@@ -9,10 +9,10 @@ from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
 from sim_autopilot.setpoints.path import (
     Blocked,
     Motion,
-    carried_on,
+    carry_on,
     correction_speed,
-    led_to_position,
-    led_to_velocity,
+    lead_to_position,
+    lead_to_velocity,
     square_root_law,
     straight_speed,
 )
@@ -29,8 +29,8 @@ def limits() -> PathLimits:
 def led(path: Motion, target: Motion, duration_s: float) -> list[Motion]:
     path_limits, motions = limits(), []
     for _ in range(round(duration_s / DT_S)):
-        path = carried_on(
-            led_to_position(path, target, path_limits, straight_speed(path, target.position, path_limits), DT_S), DT_S
+        path = carry_on(
+            lead_to_position(path, target, path_limits, straight_speed(path, target.position, path_limits), DT_S), DT_S
         )
         motions.append(path)
     return motions
@@ -67,18 +67,18 @@ def test_a_velocity_that_is_given_is_not_limited_by_the_speed_of_corrections() -
     fast = Motion(position=(0.0, 0.0, 0.0), velocity=(14.0, 0.0, -4.0))
     path = Motion(position=(0.0, 0.0, 0.0))
     for _ in range(1500):
-        path = carried_on(led_to_velocity(path, fast, limits(), DT_S), DT_S)
+        path = carry_on(lead_to_velocity(path, fast, limits(), DT_S), DT_S)
     assert path.velocity == pytest.approx((14.0, 0.0, -4.0), abs=0.01)
 
 
 def test_a_path_does_not_run_on_where_the_drone_cannot_follow() -> None:
     path = Motion(position=(5.0, 0.0, 0.0), velocity=(8.0, 0.0, 0.0), acceleration=(1.0, 0.5, 0.0))
     blocked = Blocked(direction=(0.5, 0.0), position=(0.0, 0.0, 0.0), velocity=(8.0, 0.0, 0.0))
-    after = carried_on(path, DT_S, blocked)
+    after = carry_on(path, DT_S, blocked)
     assert after.position[0] == path.position[0]
     assert after.velocity[0] == path.velocity[0]
-    backwards = carried_on(path, DT_S, Blocked(direction=(-0.5, 0.0), position=(0.0,) * 3, velocity=(8.0, 0.0, 0.0)))
-    assert backwards == carried_on(path, DT_S)
+    backwards = carry_on(path, DT_S, Blocked(direction=(-0.5, 0.0), position=(0.0,) * 3, velocity=(8.0, 0.0, 0.0)))
+    assert backwards == carry_on(path, DT_S)
 
 
 def test_corrections_beside_a_velocity_keep_to_the_waypoint_speeds() -> None:

@@ -1,0 +1,104 @@
+"""What every driver sends: a setpoint as SET_POSITION_TARGET_LOCAL_NED, and commands, each as often as is asked for."""
+
+from companion.autopilots.driver import AutopilotCommand, Desire, DriverMemory
+from companion.core.data import Setpoint
+from link.frames.rotations import ned_from_enu, yaw_ned_from_enu
+from link.mavlink.dialect import Message, mavlink
+from link.records import replace
+
+ASK_AGAIN_S = 1.0  # the heartbeat that confirms a mode may be a second late
+_DISARM_AGAIN_S = 0.2
+_CUSTOM_MODE_FLAG = 1.0  # MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
+_FORCE_DISARM = 21196.0  # MAVLink common, MAV_CMD_COMPONENT_ARM_DISARM, parameter 2
+_IGNORE_PLACE = 0b0000_0000_0000_0011
+_IGNORE_VELOCITY = 0b0000_0000_0011_1000
+_IGNORE_ACCELERATION = 0b0000_0001_1100_0000
+_IGNORE_YAW_RATE = 0b0000_1000_0000_0000
+_ZERO = (0.0, 0.0, 0.0)
+_VALUE_MAX = 1e7  # more than any place or motion; single precision holds it
+
+Requested = tuple[DriverMemory, tuple[AutopilotCommand, ...]]
+
+
+def local_ned_setpoint(setpoint: Setpoint, boot_ms: int, target_system: int) -> Message:
+    """Return the message that asks for `setpoint` in the autopilot's local frame.
+
+    Args:
+        setpoint: position, velocity and acceleration in ENU; a None group is masked out.
+        boot_ms: the autopilot's boot time at which it is sent; no autopilot goes by it.
+        target_system: the autopilot's system id.
+
+    Raises:
+        ValueError: a value is not finite, or absurd.
+
+    Source: MAVLink common, POSITION_TARGET_TYPEMASK.
+    """
+    mask = _IGNORE_YAW_RATE
+    mask |= _IGNORE_PLACE if setpoint.is_place_free else 0
+    mask |= _IGNORE_VELOCITY if setpoint.velocity_enu_m_s is None else 0
+    mask |= _IGNORE_ACCELERATION if setpoint.acceleration_enu_m_s2 is None else 0
+    position = ned_from_enu(setpoint.position_enu_m)
+    velocity = ned_from_enu(setpoint.velocity_enu_m_s or _ZERO)
+    acceleration = ned_from_enu(setpoint.acceleration_enu_m_s2 or _ZERO)
+    yaw_rad = yaw_ned_from_enu(setpoint.yaw_rad)
+    values = (*position, *velocity, *acceleration, yaw_rad)
+    if not all(abs(value) < _VALUE_MAX for value in values):
+        raise ValueError(f"setpoint is not finite or absurd: {setpoint}")
+    return mavlink.MAVLink_set_position_target_local_ned_message(
+        boot_ms & 0xFFFFFFFF,
+        target_system,
+        mavlink.MAV_COMP_ID_AUTOPILOT1,
+        mavlink.MAV_FRAME_LOCAL_NED,
+        mask,
+        *values,
+        0.0,
+    )
+
+
+def ask(memory: DriverMemory, command: AutopilotCommand, monotonic_ns: int, again_s: float = ASK_AGAIN_S) -> Requested:
+    """Return `command`, unless the same one, parameters included, was sent less than `again_s` ago."""
+    asked_ns = dict(memory.asked_ns or {})
+    last_ns = asked_ns.get(command)
+    if last_ns is not None and (monotonic_ns - last_ns) * 1e-9 < again_s:
+        return memory, ()
+    asked_ns[command] = monotonic_ns
+    return replace(memory, asked_ns=asked_ns), (command,)
+
+
+def ask_to_disarm(memory: DriverMemory, desire: Desire, monotonic_ns: int) -> Requested:
+    """Ask plainly; once that was refused, and only with the evidence complete, force it."""
+    force = desire.force_disarm and memory.disarm_refusals > 0
+    return ask(replace(memory, disarm_asked=True), arm(armed=False, force=force), monotonic_ns, _DISARM_AGAIN_S)
+
+
+def without_disarm(memory: DriverMemory) -> DriverMemory:
+    """Return the memory once no disarm is wanted any more."""
+    if not (memory.disarm_asked or memory.disarm_refusals):
+        return memory
+    return replace(memory, disarm_asked=False, disarm_refusals=0)
+
+
+def with_disarm_answer(memory: DriverMemory, command: int, result: int) -> DriverMemory:
+    """Count refused disarms; an answer to an earlier arming is none."""
+    refused = result not in (mavlink.MAV_RESULT_ACCEPTED, mavlink.MAV_RESULT_IN_PROGRESS)
+    if command == mavlink.MAV_CMD_COMPONENT_ARM_DISARM and refused and memory.disarm_asked:
+        return replace(memory, disarm_refusals=memory.disarm_refusals + 1)
+    return memory
+
+
+def arm(*, armed: bool, force: bool = False) -> AutopilotCommand:
+    """Return the command that switches the motors on or off."""
+    parameters = (float(armed), _FORCE_DISARM if force else 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return AutopilotCommand(command=mavlink.MAV_CMD_COMPONENT_ARM_DISARM, parameters=parameters)
+
+
+def set_mode(main: int, sub: int = 0) -> AutopilotCommand:
+    """Return the command that enters a mode, by the autopilot's own numbers."""
+    parameters = (_CUSTOM_MODE_FLAG, float(main), float(sub), 0.0, 0.0, 0.0, 0.0)
+    return AutopilotCommand(command=mavlink.MAV_CMD_DO_SET_MODE, parameters=parameters)
+
+
+def take_off(height_above_home_m: float) -> AutopilotCommand:
+    """Return the command that climbs from the ground."""
+    parameters = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, height_above_home_m)
+    return AutopilotCommand(command=mavlink.MAV_CMD_NAV_TAKEOFF, parameters=parameters)

@@ -1,0 +1,169 @@
+"""Whether the vehicle's data contradict each other, come from the future, or head where it does not go; pure.
+
+How many of them the estimator has lately rejected tells the first, how old the newest fix was when it came the second.
+A velocity with its axes exchanged, or stamps that jump, make the estimator reject what it has just believed, again and
+again: its estimate swings between the two. Outages and brakes have a few rejected, one after the other.
+
+A heading from a magnetometer beside steel, or one with its axes mixed up, turns the lever arm from the antenna to the
+pad: by 20 degrees the benchmark's pad is half a metre off, by 180 degrees it is beside the vehicle. The course tells,
+wherever the vehicle drives; in a curve a car heads a little away from it. One that reverses goes backwards by right:
+that is believed of a vehicle whose heading has agreed with its course before, and of no other.
+"""
+
+import math
+
+from msgspec import Struct
+
+from companion.config.companion import CompanionConfig
+from companion.core.reasons import Cause, Reason
+from companion.situation.situation import Situation
+from companion.vehicle.estimator import BufferHealth
+from companion.vehicle.pad import PadPath
+from link.records import replace
+
+_EVERY_NS = 500_000_000
+_SAMPLES_KEPT = (
+    20  # samples, of 10 s in all: a step of the drone's own frame has measurements of half a second rejected
+)
+_MEASUREMENTS_MIN = 20  # measurements that something is said of
+
+Sample = tuple[int, int, int]
+"""Monotonic ns, and how many measurements were accepted and rejected by then."""
+
+
+class Contradictions(Struct, frozen=True, kw_only=True):
+    """What became of the vehicle's measurements in the last seconds.
+
+    Attributes:
+        samples: oldest first.
+        rejected_share: of those that came, 0 to 1.
+    """
+
+    samples: tuple[Sample, ...] = ()
+    rejected_share: float = 0.0
+
+    def is_due(self, t_ns: int) -> bool:
+        """Return whether the next sample is to be taken at `t_ns`."""
+        return not self.samples or t_ns - self.samples[-1][0] >= _EVERY_NS
+
+
+def update_contradictions(before: Contradictions, health: BufferHealth, t_ns: int) -> Contradictions:
+    """Return the contradictions with what the estimator tells at `t_ns`; one that was begun anew is counted anew."""
+    now = (t_ns, health.fused, health.gated)
+    if before.samples and before.samples[-1][1] > health.fused:
+        return Contradictions(samples=(now,))
+    samples = (*before.samples, now)[-_SAMPLES_KEPT - 1 :]
+    accepted, rejected = health.fused - samples[0][1], health.gated - samples[0][2]
+    arrived = accepted + rejected
+    return Contradictions(samples=samples, rejected_share=rejected / arrived if arrived >= _MEASUREMENTS_MIN else 0.0)
+
+
+def contradicts_itself(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether so many of the vehicle's measurements were rejected that nothing says which are right."""
+    return s.vehicle.rejected_share > c.abort.rejected_share_max
+
+
+class FixStamps(Struct, frozen=True, kw_only=True):
+    """The newest accepted fix.
+
+    Attributes:
+        newest_ns: when it was taken, by its own stamp; None before the first.
+        age_on_arrival_s: of it in the step that took it in, never negative where both clocks are right.
+    """
+
+    newest_ns: int | None = None
+    age_on_arrival_s: float | None = None
+
+
+def update_fix_stamps(stamps: FixStamps, newest_ns: int | None, t_ns: int) -> FixStamps:
+    """Return the stamps with the newest fix as it is known at `t_ns`.
+
+    Args:
+        stamps: so far.
+        newest_ns: stamp of the newest accepted fix.
+        t_ns: now.
+    """
+    if newest_ns == stamps.newest_ns:
+        return stamps
+    return FixStamps(newest_ns=newest_ns, age_on_arrival_s=None if newest_ns is None else (t_ns - newest_ns) * 1e-9)
+
+
+_COURSE_OVER_S = 2.0  # heading and course are compared over so long: a cheap heading has 5 degrees of noise
+_COURSE_STD_MAX = 0.1  # standard deviation of the speed, as a share of it: 6 degrees of the course
+_COURSE_STDS = 3.0  # of the course, by which more it may be off: over poor data it errs for as long as that
+_CAR_M = 3.0  # times the curvature: what a point of a car slips beside its heading
+_BACK_WITHIN = 0.7  # of the limit, to be believed again
+
+
+class CourseWatch(Struct, frozen=True, kw_only=True):
+    """How the heading has compared with the course.
+
+    Attributes:
+        off_cos: mean cosine of the heading's angle from the course.
+        off_sin: mean sine of it.
+        compared_s: for how long without a stop they have been compared.
+        has_agreed: they agreed once.
+        off_rad: by how much the heading was off when it was found to contradict the course; None while it does not.
+    """
+
+    off_cos: float = 1.0
+    off_sin: float = 0.0
+    compared_s: float = 0.0
+    has_agreed: bool = False
+    off_rad: float | None = None
+
+
+def update_course(
+    watch: CourseWatch, pad: PadPath | None, speed_std_m_s: float, config: CompanionConfig
+) -> CourseWatch:
+    """Return the watch after a step.
+
+    Args:
+        watch: so far.
+        pad: now, with the vehicle's heading and course.
+        speed_std_m_s: of the vehicle's velocity; infinite while that is not known.
+        config: all numbers.
+    """
+    if pad is None or pad.yaw_rad is None:
+        return watch
+    (vx, vy), (ax, ay) = pad.velocity_enu_m_s[0, :2].tolist(), pad.acceleration_enu_m_s2[0, :2].tolist()
+    speed_m_s = math.hypot(vx, vy)
+    if speed_m_s < config.chase.course_speed_min_m_s:
+        return watch if watch.compared_s == 0.0 else replace(watch, compared_s=0.0)
+    if speed_std_m_s > _COURSE_STD_MAX * speed_m_s:
+        return watch
+    step_s = 1.0 / config.step_rate_hz
+    compared_s = watch.compared_s + step_s
+    share = step_s / min(compared_s, _COURSE_OVER_S)
+    off_rad = pad.yaw_rad - math.atan2(vy, vx)
+    watch = replace(
+        watch,
+        off_cos=watch.off_cos + share * (math.cos(off_rad) - watch.off_cos),
+        off_sin=watch.off_sin + share * (math.sin(off_rad) - watch.off_sin),
+        compared_s=compared_s,
+    )
+    slip_rad = _CAR_M * abs(vx * ay - vy * ax) / speed_m_s**3
+    unsure_rad = _COURSE_STDS * speed_std_m_s / speed_m_s
+    return (
+        watch
+        if compared_s < _COURSE_OVER_S
+        else _judge(watch, config.chase.heading_off_max_rad + slip_rad + unsure_rad)
+    )
+
+
+def _judge(watch: CourseWatch, off_max_rad: float) -> CourseWatch:
+    off_rad = abs(math.atan2(watch.off_sin, watch.off_cos))
+    within_rad = off_max_rad if watch.off_rad is None else _BACK_WITHIN * off_max_rad
+    if off_rad <= within_rad:
+        is_known = watch.has_agreed and watch.off_rad is None
+        return watch if is_known else replace(watch, has_agreed=True, off_rad=None)
+    if watch.has_agreed and math.pi - off_rad <= within_rad:
+        return watch if watch.off_rad is None else replace(watch, off_rad=None)
+    return watch if watch.off_rad is not None else replace(watch, off_rad=off_rad)
+
+
+def without_contradicted_heading(pad: PadPath, watch: CourseWatch) -> PadPath:
+    """Return the pad, not placed where that takes a heading that the course contradicts."""
+    if watch.off_rad is None or not pad.needs_heading or pad.unplaced is not None:
+        return pad
+    return replace(pad, unplaced=Cause(Reason.HEADING_OFF_COURSE, (math.degrees(watch.off_rad),)))

@@ -1,0 +1,191 @@
+"""What a step tells: the setpoint for the autopilot, the news for the pilot, status and plan for the world; pure."""
+
+import math
+from typing import NamedTuple
+
+from companion.autopilots.own_reports import as_seen_with
+from companion.config.companion import CompanionConfig
+from companion.config.landing import DescentConfig
+from companion.core.data import Setpoint
+from companion.core.reasons import Cause, Reason, sentence
+from companion.landing.aborts import why_unplaced
+from companion.landing.memory import Progress, StepMemory
+from companion.landing.step_data import StepInputs
+from companion.landing.virtual_model import extrapolate, free_place, press_down, setpoint_at, state_in_plan
+from companion.landing.waiting import why_held_up
+from companion.planning.guidance import PlanResult
+from companion.situation.phases import Phase
+from companion.situation.situation import Approach, Situation
+from link.messages import LandingStatus, Plan, PlannedPose
+from link.payloads import cdr, json_messages
+from link.zenoh.keys import Keys, Publication
+
+# A chase keeps its place: through an outage the drone then stops where it was last sent.
+_FREE_PLACE_PHASES = (Phase.ALIGN, Phase.DESCEND, Phase.TOUCHDOWN)
+
+
+def setpoint(
+    memory: StepMemory, inputs: StepInputs, config: CompanionConfig, plan: PlanResult | None = None
+) -> Setpoint | None:
+    """Return what the autopilot is to follow now, None while nothing is flown.
+
+    Args:
+        memory: after this step's plan.
+        inputs: of this step.
+        config: all numbers.
+        plan: of this step, None when there was nothing to plan.
+    """
+    model = memory.model
+    if model.reference is None or memory.control.driver.climbs_by_itself:
+        return None
+    lead_s = config.setpoint_lead_s
+    if lead_s is None:
+        lead_s = 0.0 if inputs.response is None else inputs.response.cascade.lead_s
+    ahead_s = inputs.link_delay.mean_s + lead_s
+    if plan is None or (inputs.driver is not None and inputs.driver.carries_setpoints_on):
+        reference = extrapolate(model.reference, (inputs.monotonic_ns - model.reference_ns) * 1e-9 + ahead_s)
+    else:
+        reference = state_in_plan(plan.trajectory, ahead_s)
+    press_m_s2 = _press_m_s2(memory, config)
+    if press_m_s2 is not None:
+        reference = press_down(reference, press_m_s2, ahead_s)
+    wanted = setpoint_at(
+        reference,
+        inputs.t_ns + round(ahead_s * 1e9),
+        model.yaw_setpoint_rad,
+        position_only=config.position_only,
+    )
+    if has_free_place(memory, inputs, config):
+        wanted = free_place(wanted, model.tracking.behind_enu_m, config.place_gain_hz)
+    return wanted if inputs.own is None else as_seen_with(wanted, inputs.own.velocity_bias_enu_m_s)
+
+
+def has_free_place(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) -> bool:
+    """Return whether the link's jitter would move the place that is asked for too far for a landing.
+
+    A setpoint is held as it came, so one that comes late by so much asks for a place that the vehicle has left.
+    """
+    reference, driver = memory.model.reference, inputs.driver
+    if memory.progress.phase not in _FREE_PLACE_PHASES or reference is None or config.position_only:
+        return False
+    if driver is None or not driver.holds_height_alone:
+        return False
+    speed_m_s = math.hypot(*reference.velocity_enu_m_s[:2].tolist())
+    return speed_m_s * inputs.link_delay.std_s > config.place_jitter_max_m
+
+
+def _press_m_s2(memory: StepMemory, config: CompanionConfig) -> float | None:
+    """Return the downward acceleration with which a drone is pressed on what it touches, None for one that flies."""
+    if memory.progress.phase is Phase.TOUCHDOWN:
+        return config.touchdown.press_acceleration_m_s2
+    held = memory.progress.held
+    touches = Reason.CONTACT in held or Reason.DISPUTED_CONTACT in held
+    return config.touchdown.try_acceleration_m_s2 if touches else None
+
+
+_WAITING_FOR_PAD = frozenset({Phase.WAITING, Phase.CHASE, Phase.ALIGN})
+_NOT_BEGUN = frozenset({Phase.IDLE, Phase.WAITING})
+_TIMED_PHASES = frozenset({Phase.ALIGN, Phase.DESCEND})
+
+
+def landing_status(memory: StepMemory, situation: Situation, config: CompanionConfig) -> LandingStatus:
+    """Return the status; the counters of bad bytes are filled in by whoever counts them."""
+    relative, cause = situation.approach, _cause(memory, situation, config)
+    phase = memory.progress.phase
+    timed = phase in _TIMED_PHASES and relative is not None
+    return LandingStatus(
+        stamp_ns=situation.t_ns,
+        phase=phase.value,
+        reason=sentence(cause),
+        reason_code=cause.reason.name,
+        relative_position_enu_m=None if relative is None else relative.position_enu_m,
+        relative_velocity_enu_m_s=None if relative is None else relative.velocity_enu_m_s,
+        height_above_pad_m=None if relative is None else relative.height_m,
+        time_to_contact_s=_time_to_contact_s(relative, config.descent) if timed and relative is not None else None,
+        mavlink_bad_bytes=0,
+        zenoh_bad_payloads=0,
+        armed=situation.autopilot.armed,
+        fix_age_s=situation.vehicle.fix_age_s,
+    )
+
+
+def _cause(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause:
+    """Return what the landing waits for, or why its phase began."""
+    progress, not_placed = memory.progress, why_unplaced(situation)
+    if progress.phase in _WAITING_FOR_PAD and not_placed is not None:
+        return not_placed
+    if progress.phase in _NOT_BEGUN and progress.obstacle is not None:
+        return progress.obstacle
+    return why_held_up(memory, situation, config) or progress.cause
+
+
+def _time_to_contact_s(relative: Approach, descent: DescentConfig) -> float:
+    """Return how long the sink profile takes from the present height: fast, slowing down, slow."""
+    stretches = _sink_stretches(relative.height_m, descent)
+    slow_s = max(stretches.slow_from_m, 0.0) / descent.touchdown_sink_rate_m_s
+    return stretches.fast_s + stretches.slowing_s + slow_s
+
+
+def news(before: Progress, now: Progress) -> str | None:
+    """Return what the pilot is told of this step, None when there is nothing new."""
+    if now.phase is not before.phase:
+        return f"{now.phase.value}: {sentence(now.cause)}"
+    told = now.obstacle
+    is_new = told is not None and (before.obstacle is None or before.obstacle.reason is not told.reason)
+    return f"{now.phase.value}: {sentence(told)}" if told is not None and is_new else None
+
+
+_PLAN_POINTS = 2  # every so many points of the plan are published
+
+
+def status_publication(keys: Keys, status: LandingStatus) -> Publication:
+    """Return the status as JSON."""
+    return Publication(keys.landing_status, json_messages.encode(status), "application/json")
+
+
+def plan_publication(keys: Keys, plan: PlanResult, t_ns: int, yaw_rad: float) -> Publication:
+    """Return the planned motion as a path.
+
+    Args:
+        keys: of the Zenoh contract.
+        plan: of a step.
+        t_ns: of that step, UTC.
+        yaw_rad: the heading that is flown, from East counter-clockwise.
+    """
+    trajectory = plan.trajectory
+    offsets_s = trajectory.offset_s[::_PLAN_POINTS].tolist()
+    points = zip(offsets_s, trajectory.position_enu_m[::_PLAN_POINTS].tolist(), strict=True)
+    poses = tuple(
+        PlannedPose(t_ns=t_ns + int(offset_s * 1e9), position_enu_m=(x, y, z), yaw_rad=yaw_rad)
+        for offset_s, (x, y, z) in points
+    )
+    return Publication(keys.landing_plan, cdr.encode(Plan(t_ns=t_ns, poses=poses)), cdr.encoding_of(Plan))
+
+
+class _SinkStretches(NamedTuple):
+    """A descent's three stretches one after the other: at the largest rate, slowing down exponentially, at the slowest.
+
+    Attributes:
+        fast_s: how long the first takes.
+        slowing_from_m: height over the pad at which the second begins.
+        slowing_s: how long it takes.
+        slow_from_m: height at which the third begins.
+    """
+
+    fast_s: float
+    slowing_from_m: float
+    slowing_s: float
+    slow_from_m: float
+
+
+def _sink_stretches(height_now_m: float, config: DescentConfig) -> _SinkStretches:
+    """Return how a descent from a height over the pad goes: it sinks at the height times the gain, within limits."""
+    fast_m_s, slow_m_s, gain_hz = config.descent_rate_max_m_s, config.touchdown_sink_rate_m_s, config.descent_gain_hz
+    slowing_from_m = min(height_now_m, fast_m_s / gain_hz)
+    slow_from_m = min(slowing_from_m, slow_m_s / gain_hz)
+    return _SinkStretches(
+        fast_s=max(height_now_m - slowing_from_m, 0.0) / fast_m_s,
+        slowing_from_m=slowing_from_m,
+        slowing_s=math.log(slowing_from_m / slow_from_m) / gain_hz if slowing_from_m > slow_from_m else 0.0,
+        slow_from_m=slow_from_m,
+    )

@@ -1,0 +1,83 @@
+"""The heading of a vehicle that stands, reverses or turns on the spot; without a heading sensor, that of a car."""
+
+import math
+
+import numpy as np
+import pytest
+
+from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig
+from companion.core.data import Array
+from link.frames.rotations import wrap_angle
+from link.records import replace
+from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, NOMINAL, Drive, drive, pad_centre
+from tests.companion.vehicle.rides import Ride, estimator, ride
+
+FIX_AND_VELOCITY = replace(NOMINAL, heading_std_rad=0.0, yaw_rate_std_rad_s=0.0)
+SAME_FRAME = EstimatorConfig(imm=ImmConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
+STOPS_S, ENDS_S = 12.0, 40.0
+
+
+def stopping() -> Drive:
+    """7 m/s, a brake of 6 m/s^2 at 10 s, then half a minute at rest."""
+    return drive(ENDS_S + 1.0, lambda t: min(max(7.0 - 6.0 * (t - 10.0), 0.0), 7.0), lambda _: 0.0)
+
+
+def turning_on_the_spot() -> Drive:
+    """At rest but for half a turn per six seconds from 5 s to 11 s; the pad's centre stays where it is."""
+    turns = drive(16.0, lambda _: 1e-6, lambda t: 0.5e6 if 5.0 < t < 11.0 else 0.0)
+    arm = np.array([pad_centre(np.zeros(3), yaw) for yaw in turns.yaw])
+    position = pad_centre(turns.position[0], float(turns.yaw[0])) - arm
+    return replace(turns, position=position, velocity=np.gradient(position, turns.length_s / (len(arm) - 1), axis=0))
+
+
+def estimated(truth: Drive, seed: int, *, with_imu: bool) -> Ride:
+    sensors = NOMINAL if with_imu else FIX_AND_VELOCITY
+    return ride(estimator(EstimatorKind.IMM, SAME_FRAME), truth, sensors, seed, ahead_s=0.5)
+
+
+def yaws(done: Ride, from_s: float) -> Array:
+    """Return the headings from then on; all must be known."""
+    told = [e.yaw_rad for t_s, e in zip(done.t_s, done.estimates, strict=True) if t_s >= from_s]
+    assert None not in told
+    return np.unwrap(np.array(told, dtype=float))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_standing_vehicle_keeps_the_heading_with_which_it_stopped(seed: int) -> None:
+    yaw = yaws(estimated(stopping(), seed, with_imu=False), STOPS_S)
+    assert np.abs(yaw - yaw[0]).max() < math.radians(3.0)
+
+
+def test_pad_of_a_vehicle_that_stands_for_long_is_not_forgotten() -> None:
+    truth = stopping()
+    chosen = estimator(EstimatorKind.IMM, SAME_FRAME)
+    done = ride(chosen, truth, FIX_AND_VELOCITY, 5, from_s=STOPS_S, ahead_s=0.5)
+    stopped, later = (
+        chosen.forecast(done.memory, e.t_ns, np.array([0.0, 0.1])) for e in (done.estimates[-5], done.estimates[-1])
+    )
+    assert stopped is not None
+    assert later is not None
+    assert later.yaw_std_rad < math.radians(8.0)
+    assert np.max(later.position_std_m[0, :2]) == pytest.approx(
+        math.hypot(*ANTENNA_TO_PAD_M[:2]) * later.yaw_std_rad, rel=0.5
+    )
+
+
+def test_parked_vehicle_that_never_drove_has_no_heading() -> None:
+    done = estimated(drive(20.0, lambda _: 0.0, lambda _: 0.0), 6, with_imu=False)
+    assert {e.yaw_rad for e in done.estimates} == {None}
+
+
+@pytest.mark.parametrize("with_imu", [False, True])
+def test_car_that_reverses_keeps_its_heading(with_imu: bool) -> None:
+    truth = drive(20.0, lambda t: 3.0 if t < 6.0 else 0.0 if t < 10.0 else -2.0, lambda _: 0.0)
+    yaw = yaws(estimated(truth, 7, with_imu=with_imu), 8.0)
+    assert np.abs(yaw - truth.yaw[0]).max() < math.radians(15.0)
+    assert abs(wrap_angle(yaw[-1] - truth.yaw[-1])) < math.radians(5.0)
+
+
+def test_rover_that_turns_on_the_spot_is_followed_by_its_heading_sensor() -> None:
+    truth = turning_on_the_spot()
+    done = estimated(truth, 8, with_imu=True)
+    expected = np.array([truth.at(t_s)[2] for t_s in done.t_s])
+    assert np.abs(yaws(done, 0.0) - expected).max() < math.radians(6.0)
