@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import fresnel
 
 from link.errors import UserError
-from link.program.toml_config import validated
+from link.program.toml_config import validate
 from scenarios.tracks.config import DriveTrack, SuspensionConfig
 from scenarios.tracks.drive import drive_course, driven, shifted
 from scenarios.tracks.heights import grade_line
@@ -150,5 +150,5 @@ def test_drive_keeps_to_its_legs_and_its_bend() -> None:
 def test_drive_that_no_vehicle_can_drive_is_refused(change: dict[str, object], told: str) -> None:
     table = {"kind": "drive", "begins_m": [0.0, 0.0], "stretches": [[10.0, 0.0, 0.0]], "legs": [[5.0, 1.0]]} | change
     with pytest.raises(UserError) as error:
-        validated(DriveTrack, table, source="own.toml")
+        validate(DriveTrack, table, source="own.toml")
     assert told in str(error.value)

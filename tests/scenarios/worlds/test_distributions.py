@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from link.errors import UserError
-from link.program.toml_config import validated
+from link.program.toml_config import validate
 from scenarios.worlds.distributions import Choice, Graded
 from scenarios.worlds.odd import Domain
 from tests.scenarios.worlds.references import LEVELS, PLAIN, reference_of
@@ -59,7 +59,7 @@ def test_domain_with_what_cannot_be_drawn_is_refused_in_one_line(quantity: dict[
     side = {"kind": "choice", "values": ["a", "b"], "weights": [1.0, 1.0]}
     table = {"version": 1, "quantities": {"t": {"side": side, "value": quantity}}, "slices": {}}
     with pytest.raises(UserError) as error:
-        validated(Domain, table, source="odd.toml")
+        validate(Domain, table, source="odd.toml")
     assert told in str(error.value)
     assert "\n" not in str(error.value)
     assert "value" in str(error.value)
@@ -69,4 +69,4 @@ def test_slice_of_what_is_no_quantity_is_refused() -> None:
     even = {"kind": "uniform", "low": 0.0, "high": 1.0}
     table = {"version": 1, "quantities": {"t": {"value": even}}, "slices": {"part": {"t": {"valeu": even}}}}
     with pytest.raises(UserError, match=r"'t\.valeu'"):
-        validated(Domain, table, source="odd.toml")
+        validate(Domain, table, source="odd.toml")
