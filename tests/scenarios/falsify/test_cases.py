@@ -1,7 +1,7 @@
 """Landings that a search found to be unsafe, reduced: expected to be so until they are mended.
 
-A case that is not unsafe any more fails its test, since the mark is strict: then its name is taken out of `UNSAFE`, and it
-stays as a regression.
+A case that is not unsafe any more fails its test, since the mark is strict: then its name is taken out of `UNSAFE`, and
+it stays as a regression.
 """
 
 import re
