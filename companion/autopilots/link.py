@@ -1,7 +1,6 @@
 """The companion's conversation with the autopilot: streams, origin and parameters asked for, messages read."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from itertools import chain
 
 from companion.autopilots.choice import driver_for
@@ -25,6 +24,7 @@ from link.mavlink.events import (
 )
 from link.mavlink.parameters import parameter_value
 from link.mavlink.session import MavlinkSession
+from link.records import replace
 
 _MOTION_IDS = (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED)
 _ASK = mavlink.MAV_CMD_REQUEST_MESSAGE

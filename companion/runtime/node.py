@@ -4,7 +4,6 @@ The wire loop, the lockstep campaigns and the tests all run this one.
 """
 
 import math
-from dataclasses import replace
 
 from companion.autopilots.link import AutopilotLink
 from companion.autopilots.response import ResponseModel
@@ -22,6 +21,7 @@ from companion.vehicle.inputs import measurements_of
 from link.mavlink.session import MavlinkSession
 from link.messages import LEVER_MAX_M, Command, CommandReply, PadGeometry
 from link.payloads.checks import PayloadError
+from link.records import replace
 from link.zenoh.keys import Keys, Publication
 
 _MOTION_RATE_MIN_HZ = 50.0

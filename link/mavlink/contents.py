@@ -11,6 +11,7 @@ from functools import cache
 from operator import attrgetter
 from typing import Any, NamedTuple
 
+from link.mavlink.checksum import checksum
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.layout import fields_in_order
 
@@ -52,7 +53,7 @@ def message_of(frame: bytearray, message_id: int) -> Message | None:
     start = mavlink.HEADER_LEN_V1 if is_version1 else mavlink.HEADER_LEN_V2
     end = start + frame[1]
     layout = _layout(message_id)
-    crc = mavlink.x25crc(bytes(frame[1:end]) + layout.crc_extra).crc
+    crc = checksum(bytes(frame[1:end]) + layout.crc_extra)
     if frame[end] | frame[end + 1] << 8 != crc:
         return None
     # The zeros at the end of a payload are not sent, and a newer definition may have made it longer.
@@ -102,7 +103,7 @@ def frame_of(message: Message, sequence: int, system_id: int, component_id: int)
         message_id & 0xFFFF,
         message_id >> 16,
     )
-    crc = mavlink.x25crc(head[1:] + payload + layout.crc_extra).crc
+    crc = checksum(head[1:] + payload + layout.crc_extra)
     return head + payload + _CHECKSUM.pack(crc)
 
 

@@ -11,9 +11,9 @@ from scenarios.config import Scenario
 from scenarios.falsify.minimal import minimal
 from scenarios.falsify.search import Fly, Found, Space
 from scenarios.falsify.simplify import details, without
+from scenarios.falsify.space import MEDIAN
 from scenarios.falsify.trial import Outcome
 
-_MEDIAN = 0.5
 _DEPTH_KEPT = 0.5
 
 
@@ -61,10 +61,10 @@ class Reduction:
         """Return `case` with as many of its quantities as can be at their medians, the most ordinary tried first."""
 
         def scenario_of(names: Sequence[str]) -> Scenario:
-            at_median = dict.fromkeys(self._space.names, _MEDIAN)
+            at_median = dict.fromkeys(self._space.names, MEDIAN)
             return self._space.draw(case.seed, at_median | {name: case.chosen[name] for name in names})
 
-        names = sorted(case.chosen, key=lambda name: (abs(case.chosen[name] - _MEDIAN), name))
+        names = sorted(case.chosen, key=lambda name: (abs(case.chosen[name] - MEDIAN), name))
         kept = minimal(names, lambda selections: self._still_fail([scenario_of(one) for one in selections]))
         return self._case(scenario_of(kept), {name: case.chosen[name] for name in sorted(kept)})
 

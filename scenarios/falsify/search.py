@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from scenarios.config import Scenario
 from scenarios.falsify.flights import Flight
 from scenarios.falsify.space import uniforms
-from scenarios.falsify.strategy import Strategy
+from scenarios.falsify.strategy import EvolutionStrategy, Strategy
 from scenarios.falsify.trial import Outcome
 
 _NO_MARGIN = 1.0  # of a landing without a result: nothing to go towards
@@ -19,6 +19,7 @@ Fly = Callable[[Sequence[Flight]], list[Outcome]]
 """Flies landings and returns their outcomes in order."""
 Draw = Callable[[int, Mapping[str, float]], Scenario]
 """Makes the scenario of a seed with chosen uniform numbers, by the quantities' names."""
+MakeStrategy = Callable[[int, int], Strategy]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,7 +47,9 @@ class Found:
     outcome: Outcome
 
 
-def search(space: Space, fly: Fly, *, first_seed: int, landings: int) -> Found | None:
+def search(
+    space: Space, fly: Fly, *, first_seed: int, landings: int, make_strategy: MakeStrategy = EvolutionStrategy
+) -> Found | None:
     """Return the first unsafe world within so many landings, None without one.
 
     Args:
@@ -54,10 +57,11 @@ def search(space: Space, fly: Fly, *, first_seed: int, landings: int) -> Found |
         fly: flies landings and returns their outcomes in order.
         first_seed: of the first start; each further start has the next.
         landings: how many may be flown.
+        make_strategy: of a start, from the number of quantities and its seed.
     """
     flown, seed = 0, first_seed
     while flown < landings:
-        strategy = Strategy(len(space.names), seed)
+        strategy = make_strategy(len(space.names), seed)
         while flown < landings and not strategy.is_stale:
             points = [uniforms(space.names, z) for z in strategy.ask()]
             asked = points[: landings - flown]

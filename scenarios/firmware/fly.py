@@ -3,7 +3,7 @@
 import math
 import time
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from companion.situation.phases import Phase
@@ -12,6 +12,7 @@ from link.frames.geodesy import Datum
 from link.mavlink.transports import Transport, open_transport
 from link.payloads import json_messages
 from link.program.toml_config import dump_toml
+from link.records import replace
 from link.zenoh.keys import Keys, Publication
 from link.zenoh.session import ZenohOptions, ZenohSession, open_session
 from scenarios.config import Scenario

@@ -1,7 +1,5 @@
 """A second link to a firmware's own simulation: its clock, its truth, and its ship. Without I/O."""
 
-from dataclasses import replace
-
 from link.errors import UserError
 from link.frames.geodesy import Datum
 from link.mavlink.codec import MavlinkCodec
@@ -9,6 +7,7 @@ from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import LinkFound, MessageReceived
 from link.mavlink.session import MavlinkSession
 from link.messages import BodyTruth, RotorTruth
+from link.records import replace
 from scenarios.firmware.ship import ShipReport, ship_report
 from scenarios.firmware.truth import (
     DATED_BY,

@@ -5,9 +5,10 @@ import inspect
 import json
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import fields, is_dataclass
 from importlib import resources
 from importlib.resources.abc import Traversable
+
+from msgspec import StructMeta, structs
 
 from link import messages
 from link.mavlink.dialect import mavlink
@@ -70,7 +71,7 @@ def _keys() -> Iterator[tuple[str, str, str]]:
 
 def _described_names() -> list[str]:
     """Return the names of the messages that the keys speak of, as they come."""
-    return [name for name, one in vars(messages).items() if is_dataclass(one)]
+    return [name for name, one in vars(messages).items() if isinstance(one, StructMeta)]
 
 
 def _message(name: str) -> str:
@@ -82,7 +83,7 @@ def _message(name: str) -> str:
             type_in_words(annotations[one.name]),
             unit_of(one.name.replace("_enu", "").replace("_flu", "")),
         )
-        for one in fields(owner)
+        for one in structs.fields(owner)
     ]
     return f"**{name}**: {inspect.getdoc(owner)}\n\n{table(('field', 'type', 'unit'), rows)}"
 

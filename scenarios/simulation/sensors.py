@@ -8,13 +8,14 @@ Noise: white normal, and first-order Gauss-Markov for a bias; standard deviation
 
 import heapq
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from link.frames.geodesy import Datum, geodetic_from_enu
 from link.frames.rotations import canonical, conjugate, multiply, quaternion_from_yaw, rotate
 from link.messages import BodyTruth, Fix, FixVelocity, Matrix3, PadSighting, Quaternion, Vector3, VehicleImu
+from link.records import replace
 from scenarios.config import FixConfig, ImuConfig, PatternConfig, SensorsConfig, VelocityConfig
 from scenarios.simulation.noise import Dropouts, GaussMarkov, Seed, SensorSchedule, StampClock, named_rng, normal3
 from scenarios.simulation.vehicle import VehicleState

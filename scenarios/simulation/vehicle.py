@@ -8,9 +8,9 @@ Angular velocity from ZYX Euler rates by the usual kinematic matrix.
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 
 from link.frames.rotations import conjugate, quaternion_from_roll_pitch_yaw, rotate, wrap_angle
 from link.messages import BodyTruth, Quaternion, Vector3
@@ -27,8 +27,7 @@ _NO_WAVE = (0.0, 0.0, 0.0)
 _STILL = (_NO_WAVE, _NO_WAVE, _NO_WAVE)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class VehicleState:
+class VehicleState(Struct, frozen=True, kw_only=True):
     """The vehicle at `t_ns`: p_WV, its derivatives in W, q_WV and w_WV in V."""
 
     t_ns: int
@@ -41,8 +40,7 @@ class VehicleState:
     yaw_rate_rad_s: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class VehicleMemory:
+class VehicleMemory(Struct, frozen=True, kw_only=True):
     """When the drone began its present hover, when the vehicle departs, and when it began to brake; None is not yet."""
 
     started_ns: int | None = None
@@ -51,16 +49,14 @@ class VehicleMemory:
     brakes_ns: int | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class VehicleInputs:
+class VehicleInputs(Struct, frozen=True, kw_only=True):
     """The time and the drone's truth, None while there is no drone."""
 
     t_ns: int
     drone: BodyTruth | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class VehiclePlan:
+class VehiclePlan(Struct, frozen=True, kw_only=True):
     """What the vehicle does: its course, its departure and the roof that the drone's height is taken from."""
 
     course: Course

@@ -7,7 +7,7 @@ import math
 
 from link.frames.geodesy import Datum
 from link.messages import BodyTruth, Fix, FixVelocity, PadGeometry, PadSighting, VehicleImu
-from link.payloads.cdr import encode, encoding_of
+from link.payloads import cdr
 from link.zenoh.keys import Keys, Publication
 from scenarios.config import Scenario
 from scenarios.simulation.noise import Seed, named_rng
@@ -50,14 +50,14 @@ class VehicleNode:
         self.state: VehicleState | None = None
         mounting = Mounting(antenna_flu_m=scenario.vehicle.antenna_flu_m, pad_height_m=scenario.vehicle.roof_height_m)
         self._sensors = SensorSuite(scenario.sensors, seed, mounting=mounting, datum=datum_of(scenario.datum))
-        self._keys = {
+        self._keys: dict[type[cdr.Message], str] = {
             Fix: keys.fix,
             FixVelocity: keys.fix_velocity,
             VehicleImu: keys.imu,
             PadSighting: keys.pad_pose,
             BodyTruth: keys.vehicle_truth,
         }
-        self._encodings = {kind: encoding_of(kind) for kind in self._keys}
+        self._encodings = {kind: cdr.encoding_of(kind) for kind in self._keys}
         self._publishes_truth = publishes_truth
         self._truth_due_ns = 0
 
@@ -88,7 +88,7 @@ class VehicleNode:
 
     def _publish(self, message: Fix | FixVelocity | VehicleImu | PadSighting | BodyTruth) -> Publication:
         kind = type(message)
-        return Publication(key=self._keys[kind], payload=encode(message), encoding=self._encodings[kind])
+        return Publication(key=self._keys[kind], payload=cdr.encode(message), encoding=self._encodings[kind])
 
 
 def plan_of(scenario: Scenario, seed: Seed) -> VehiclePlan:

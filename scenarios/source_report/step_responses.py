@@ -3,11 +3,12 @@
 Steps of 1 m along x, y, z and of 0.1 rad of heading, from hover at heading zero. The settling time is to 2 %.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
+from link.records import replace
 from sim_autopilot.control.lqr import StepResponse, linear_step, measured_step
 from sim_autopilot.control.parameters import ControllerKind
 from sim_autopilot.core.data import Array, Reference

@@ -10,10 +10,10 @@ eight points, which is exact to rounding for the half a radian that a piece turn
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from msgspec import Struct
 from scipy.interpolate import CubicSpline
 
 from scenarios.tracks.heights import FLAT, GradeLine, Slope
@@ -27,8 +27,7 @@ _CLOTHOID_TURN_MAX_RAD = 0.5  # in one piece
 _ARCS_PER_CHORD = 64  # of 0.1 to 0.3 m on the report's road, which is then within 0.1 mm of the spline
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Piece:
+class Piece(Struct, frozen=True, kw_only=True):
     """A stretch that starts at `s_m` in `x_m`, `y_m` with `heading_rad`, and its curvature there, which may grow."""
 
     s_m: float
@@ -39,8 +38,7 @@ class Piece:
     growth_per_m2: float = 0.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RoadPoint:
+class RoadPoint(Struct, frozen=True, kw_only=True):
     """Where the road is and how it bends; the height is `grade` integrated, with its two derivatives by arc length."""
 
     x_m: float
@@ -52,8 +50,7 @@ class RoadPoint:
     grade_change_per_m: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Road:
+class Road(Struct, frozen=True, kw_only=True):
     """A road of `length_m`; a closed one repeats from `loop_s_m`, an open one goes on straight behind its end.
 
     Attributes:

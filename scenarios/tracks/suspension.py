@@ -129,7 +129,8 @@ def _road(driven: Driven, surface: Surface, c: SuspensionConfig) -> tuple[tuple[
     front, rear = (_humps(driven, surface.humps, side * 0.5 * c.wheelbase_m) for side in (1.0, -1.0))
     sums[0] += 0.5 * (front + rear)
     sums[1] += (front - rear) / c.wheelbase_m
-    return tuple((value, rate) for value, rate in sums)
+    # Against where it stands: there the body is at rest.
+    return tuple((value - value[0], rate) for value, rate in sums)
 
 
 def _humps(driven: Driven, humps: Sequence[tuple[float, float, float]], ahead_m: float) -> Array:

@@ -3,7 +3,7 @@
 import tomllib
 from bisect import bisect_right
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from companion.recording.folder import STEM as COMPANION
@@ -15,6 +15,7 @@ from link.payloads.checks import PayloadError
 from link.payloads.decklander_msgs import fields_of
 from link.program.toml_config import validate
 from link.recording.mcap_reader import Recorded, read_head, read_messages, recording_files
+from link.records import replace
 from link.zenoh.keys import Keys
 from scenarios.config import Scenario
 from scenarios.recordings.truth_file import STEM as TRUTH

@@ -4,7 +4,7 @@ The messages are the same on Zenoh and in a recording. World W is ENU; where the
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from link.messages import BodyTruth, LandingStatus, PadGeometry, Plan, Vector3
 from link.payloads import cdr, json_messages
 from link.payloads.decklander_msgs import PACKAGE, fields_of
+from link.records import replace
 from link.units import NS_PER_S
 from link.zenoh.keys import Keys
 
