@@ -1,7 +1,7 @@
 import numpy as np
 
 from scenarios.rare.chain import FlyOne, Landing, LaterStep, Walk, WholeStep, walk
-from scenarios.rare.noise import Move, MovedNoise, NoiseInFlight
+from scenarios.rare.noise import Move, MovedNoise, NoiseInFlight, Redraw
 from tests.scenarios.rare.limit_states import at_once, linear
 
 FIRST = MovedNoise(seed=3)
@@ -40,8 +40,9 @@ def lasting(duration_s: float, instants_s: list[float]) -> FlyOne:
         noise.now_s = lambda: now_s
         for now_s in clock:  # noqa: B007 (the clock reads it)
             stream.standard_normal()
-        flown = noise.flown()
-        instants_s.append(0.5 * flown.changes[-1].kept_of("z") if flown.changes else 100.0)
+        (redraw,) = noise.flown().changes
+        assert isinstance(redraw, Redraw)
+        instants_s.append(0.5 * redraw.kept_of("z"))
         return Landing(margin=-1.0, duration_s=duration_s)
 
     return fly_one
