@@ -30,6 +30,10 @@ def falsify_command(
     workers: Annotated[
         int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
     ] = None,
+    only: Annotated[
+        str, typer.Option("--only", metavar="PART,...", help="Of the quantities, such as driver,wind; others: medians.")
+    ] = "",
+    random: Annotated[bool, typer.Option("--random", help="Draw worlds at random, to compare with.")] = False,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="What is kept [default: in runs].")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> int:
@@ -38,10 +42,16 @@ def falsify_command(
     from scenarios.falsify.falsify import Request, create_folder, falsify
     from scenarios.processes.local_workers import core_count
 
-    space = _space_of(slice_name, seed, landings)
     request = Request(
-        slice=slice_name, seed=seed, landings=landings, reduction=reduction, workers=workers or core_count()
+        slice=slice_name,
+        seed=seed,
+        landings=landings,
+        reduction=reduction,
+        workers=workers or core_count(),
+        only=tuple(only.split(",")) if only else (),
+        random=random,
     )
+    space = _space_of(request)
     folder = create_folder(out)
     _note(f"{request.command} in {folder}")
     try:
@@ -57,26 +67,36 @@ def falsify_command(
     return 1 if result.found is None else 0
 
 
-def _space_of(slice_name: str, seed: int, landings: int) -> "Space":
+def _space_of(request: "Request") -> "Space":
     """Return what is searched.
 
     Raises:
-        UserError: there is no such slice, or a seed that is held back.
+        UserError: there is no such slice or part of the quantities, or a seed is held back.
     """
     from scenarios.falsify.search import Space
-    from scenarios.falsify.space import searched
-    from scenarios.worlds.seeds import check_seeds
+    from scenarios.falsify.space import MEDIAN, searched
+    from scenarios.worlds.seeds import HELD_BACK_FROM
     from scenarios.worlds.world import SLICES, draw_world, quantities
 
-    if slice_name not in SLICES:
+    if request.slice not in SLICES:
         raise UserError(
-            f"'{slice_name}' is no slice of the domain: give one of {', '.join(SLICES)};"
+            f"'{request.slice}' is no slice of the domain: give one of {', '.join(SLICES)};"
             " a scenario of the catalogue draws nothing that could be searched"
         )
-    check_seeds(range(seed, seed + landings), held_back=False)  # a start has several landings at least
+    if request.seed + request.landings > HELD_BACK_FROM:  # a start has one landing at least
+        raise UserError(
+            f"seeds from {HELD_BACK_FROM} on are held back for published figures:"
+            f" give --seed {HELD_BACK_FROM - request.landings} or less"
+        )
+    every = quantities(request.slice, request.seed)
+    parts = sorted({name.partition(".")[0] for name in every})
+    unknown = next((part for part in request.only if part not in parts), None)
+    if unknown is not None:
+        raise UserError(f"--only: no quantity begins with '{unknown}.': give some of {', '.join(parts)}")
+    ordinary = dict.fromkeys(every, MEDIAN) if request.only else {}
     return Space(
-        names=searched(quantities(slice_name, seed)),
-        draw=lambda seed, chosen: draw_world(slice_name, seed, chosen=chosen).scenario,
+        names=searched(every, request.only),
+        draw=lambda seed, chosen: draw_world(request.slice, seed, chosen={**ordinary, **chosen}).scenario,
     )
 
 

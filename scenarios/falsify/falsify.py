@@ -19,6 +19,7 @@ from scenarios.falsify.case_file import case_text
 from scenarios.falsify.flights import Flight, Flights
 from scenarios.falsify.reduction import Case, Reduction
 from scenarios.falsify.search import Found, Space, search
+from scenarios.falsify.strategy import EvolutionStrategy, RandomStrategy
 from scenarios.falsify.trial import Outcome
 from scenarios.recordings.result import write_text
 
@@ -38,6 +39,8 @@ class Request:
         landings: that the search may fly.
         reduction: landings that the reduction may fly.
         workers: local processes.
+        only: first parts of the names of the quantities that are searched, such as `driver`; empty for all.
+        random: whether worlds are drawn at random, to compare with.
     """
 
     slice: str
@@ -45,13 +48,16 @@ class Request:
     landings: int
     reduction: int
     workers: int
+    only: tuple[str, ...] = ()
+    random: bool = False
 
     @property
     def command(self) -> str:
         """The command that asks for it; the number of processes does not show in the result."""
-        return (
-            f"scenarios falsify {self.slice} --landings {self.landings} --seed {self.seed} --reduction {self.reduction}"
-        )
+        options = ["--landings", self.landings, "--seed", self.seed, "--reduction", self.reduction]
+        options += ["--only", ",".join(self.only)] if self.only else []
+        options += ["--random"] if self.random else []
+        return " ".join(str(part) for part in ("scenarios falsify", self.slice, *options))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,7 +93,13 @@ def falsify(request: Request, space: Space, folder: Path, progress: Progress) ->
         UserError: the folder cannot be written, or processes cannot start.
     """
     with _Recorder(request, folder, progress) as flown:
-        found = search(space, flown.fly, first_seed=request.seed, landings=request.landings)
+        found = search(
+            space,
+            flown.fly,
+            first_seed=request.seed,
+            landings=request.landings,
+            make_strategy=RandomStrategy if request.random else EvolutionStrategy,
+        )
         case = None
         if found is not None:
             reduction = Reduction(found, space, flown.fly, landings=request.reduction)
@@ -134,10 +146,10 @@ class _Recorder(AbstractContextManager["_Recorder"]):
     ) -> None:
         self._flights.__exit__(kind, error, trace)
 
-    def fly(self, flights: Sequence[Flight]) -> list[Outcome]:
-        """Fly a batch and return its outcomes in order."""
-        outcomes = self._flights(flights)
-        for (_, seed), outcome in zip(flights, outcomes, strict=True):
+    def fly(self, flights: Sequence[Flight], is_last: Callable[[Outcome], bool]) -> list[Outcome]:
+        """Fly a batch and return its outcomes in order, up to the first that is the last one wanted."""
+        outcomes = self._flights(flights, is_last)
+        for (_, seed), outcome in zip(flights, outcomes, strict=False):
             self._outcomes.append(outcome)
             line = {"landing": len(self._outcomes), "part": self.part, "seed": seed} | asdict(outcome)
             self._lines.append(json.dumps(line) + "\n")

@@ -11,9 +11,9 @@ from scenarios.config import Scenario
 from scenarios.falsify.minimal import minimal
 from scenarios.falsify.search import Fly, Found, Space
 from scenarios.falsify.simplify import details, without
+from scenarios.falsify.space import MEDIAN
 from scenarios.falsify.trial import Outcome
 
-_MEDIAN = 0.5
 _DEPTH_KEPT = 0.5
 
 
@@ -40,7 +40,7 @@ class Reduction:
     Args:
         found: the world.
         space: that it was found in.
-        fly: flies landings and returns their outcomes in order.
+        fly: flies landings.
         landings: how many may be flown; when they are used up, the case stays as it is.
     """
 
@@ -61,10 +61,10 @@ class Reduction:
         """Return `case` with as many of its quantities as can be at their medians, the most ordinary tried first."""
 
         def scenario_of(names: Sequence[str]) -> Scenario:
-            at_median = dict.fromkeys(self._space.names, _MEDIAN)
+            at_median = dict.fromkeys(self._space.names, MEDIAN)
             return self._space.draw(case.seed, at_median | {name: case.chosen[name] for name in names})
 
-        names = sorted(case.chosen, key=lambda name: (abs(case.chosen[name] - _MEDIAN), name))
+        names = sorted(case.chosen, key=lambda name: (abs(case.chosen[name] - MEDIAN), name))
         kept = minimal(names, lambda selections: self._still_fail([scenario_of(one) for one in selections]))
         return self._case(scenario_of(kept), {name: case.chosen[name] for name in sorted(kept)})
 
@@ -83,12 +83,16 @@ class Reduction:
         return Case(scenario=scenario, seed=self._found.seed, chosen=chosen, outcome=outcome)
 
     def _still_fail(self, scenarios: Sequence[Scenario | None]) -> list[bool]:
-        """Say of each scenario whether it is unsafe enough; one that was flown is not flown again."""
+        """Say of each scenario, up to the first that is so, whether it is unsafe enough.
+
+        One that was flown is not flown again.
+        """
         valid = {one.model_dump_json(): one for one in scenarios if one is not None}
         new = [text for text in valid if text not in self._known][: self._left]
-        self._left -= len(new)
-        outcomes = self._fly([(valid[text], self._found.seed) for text in new])
-        self._known |= zip(new, outcomes, strict=True)
+        if new and not any(self._fails(self._known.get(text)) for text in valid):
+            outcomes = self._fly([(valid[text], self._found.seed) for text in new], self._fails)
+            self._left -= len(outcomes)
+            self._known |= zip(new, outcomes, strict=False)
         return [one is not None and self._fails(self._known.get(one.model_dump_json())) for one in scenarios]
 
     def _fails(self, outcome: Outcome | None) -> bool:

@@ -16,14 +16,22 @@ from scipy.stats import chi2, norm
 
 Array = NDArray[np.float64]
 
+MEDIAN = 0.5
+"""As a uniform number."""
 Z_MAX = 3.0
 _INSIDE_SHARE = 0.99
 _SLOTS = 4  # of the road's elements and the driver's events: more does not fit into the half minute of a landing
 
 
-def searched(names: Sequence[str]) -> tuple[str, ...]:
-    """Return those of a world's quantities that a search may choose: of what recurs, such as bends, the first ones."""
-    slots = ((name, name.rpartition(".")[2]) for name in names)
+def searched(names: Sequence[str], only: Sequence[str] = ()) -> tuple[str, ...]:
+    """Return those of a world's quantities that a search chooses: of what recurs, such as bends, the first ones.
+
+    Args:
+        names: of all quantities.
+        only: first parts of names, such as `driver`; empty for all.
+    """
+    chosen = (name for name in names if not only or name.partition(".")[0] in only)
+    slots = ((name, name.rpartition(".")[2]) for name in chosen)
     return tuple(name for name, slot in slots if not slot.isdigit() or int(slot) < _SLOTS)
 
 

@@ -23,7 +23,7 @@ class KeyedLink:
 
     def take(self, t_ns: int) -> list[tuple[str, bytes]]:
         """Return what has arrived, with the keys."""
-        packets = (packet.partition(_SEPARATOR) for packet in self._link.take(t_ns))
+        packets = [packet.partition(_SEPARATOR) for packet in self._link.take(t_ns)]
         return [(key.decode(), payload) for key, _, payload in packets]
 
 

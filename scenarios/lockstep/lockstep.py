@@ -43,7 +43,8 @@ class Lockstep:
         self.recording = Recording()
         instant = scenario.start == "instant"
         self.simulation = Simulation(scenario, seed, keys, START_NS, instant=instant, publishes_truth=False)
-        self.companion = build_node(scenario.system.companion if config is None else config, keys, recorder=recorder)
+        flown = scenario.system.companion if config is None else config
+        self.companion = build_node(flown, keys, recorder=recorder, publishes=False)
         self.companion.receive_pad(self.simulation.vehicle.pad)
         self._channels: Channels = channels_of(scenario, seed, START_NS)
         from_vehicle = dict.fromkeys((keys.fix, keys.fix_velocity, keys.imu), self._channels.zenoh)
@@ -83,7 +84,6 @@ class Lockstep:
         if node.poll(local_ns) and node.outputs is not None:
             self.recording.add(node.outputs.status)
             self._compare(node, t_ns)
-        node.take_publications()
         node.take_replies()
         self._send(node.take_frames(), t_ns)
 

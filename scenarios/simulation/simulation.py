@@ -3,12 +3,13 @@
 `scenarios world` puts sockets around it, a lockstep run puts it beside a companion.
 """
 
-from dataclasses import dataclass, replace
 from math import dist
 
 import numpy as np
+from msgspec import Struct
 
 from link.messages import BodyTruth, RotorTruth
+from link.records import replace
 from link.zenoh.keys import Keys, Publication
 from scenarios.config import Scenario
 from scenarios.simulation.drone import sim_autopilot_config
@@ -22,8 +23,7 @@ from sim_autopilot.runtime.node import STEP_NS, AutopilotNode
 __all__ = ["STEP_NS", "Simulation", "SimulationOutputs"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SimulationOutputs:
+class SimulationOutputs(Struct, frozen=True, kw_only=True):
     """What one step of the simulated side brings.
 
     Attributes:

@@ -22,6 +22,7 @@ _LATERAL_JERK_MAX_M_S3 = 3.0  # beyond the 1.2 m/s^3 of AASHTO's spirals, as at 
 _GRIP_BEND_MAX = 0.5  # of the friction circle in a bend: AASHTO's side friction leaves more than half; a choice
 _REFERENCE_PER_M = 0.1  # ISO 8608: spatial frequency, in cycles, at which roughness is told
 _WAVELENGTHS_M = np.geomspace(1.0, 50.0, 17)  # edges; ISO 8608 fits up to 100 m; heave is told from the grade below 50
+_SAME_GRADE = 1e-6  # a millimetre in a kilometre: for less there is no crest or dip, whose ends would be one place
 _SLANT_MAX_RAD = 1.0  # of a wave against the road: uneven across as well as along; a choice
 
 
@@ -141,7 +142,7 @@ def _grades(slopes: list[tuple[float, float]], end_m: float, radius_m: float) ->
     for (from_m, wanted), to_m in zip([*slopes, (end_m, 0.0)], [*ends_m, end_m + 2.0 * radius_m], strict=True):
         grade = wanted if height_m + wanted * (to_m - from_m) >= 0.0 else -wanted
         height_m += grade * (to_m - from_m)
-        if grade == before:
+        if abs(grade - before) < _SAME_GRADE:
             continue
         room_m = 0.9 * min(from_m - points[-1][0], 0.5 * (to_m - from_m))
         half_m = min(0.5 * abs(grade - before) * radius_m, room_m)

@@ -1,7 +1,6 @@
 """The configuration of `sim-autopilot`: one TOML file, validated once, every value with its unit and source."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from math import pi, radians
 from types import MappingProxyType
 from typing import Annotated, Literal
@@ -13,6 +12,7 @@ from link.errors import UserError
 from link.frames.geodesy import Datum
 from link.messages import Vector3
 from link.program.toml_config import NotNegative, Positive, StrictModel
+from link.records import replace
 from sim_autopilot.control.parameters import ControllerKind
 from sim_autopilot.core.parameters import default_values
 from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT

@@ -38,3 +38,4 @@ def test_uniform_numbers_are_those_of_the_normal_table() -> None:
 def test_search_chooses_what_is_drawn_once_and_the_first_of_what_recurs() -> None:
     names = ("wind.mean_m_s", "road.radius_m.0", "road.radius_m.3", "road.radius_m.4", "driver.event.12")
     assert searched(names) == ("wind.mean_m_s", "road.radius_m.0", "road.radius_m.3")
+    assert searched(names, ["wind", "driver"]) == ("wind.mean_m_s",)

@@ -2,19 +2,19 @@ import numpy as np
 import pytest
 
 from scenarios.falsify.space import Z_MAX, radius_max
-from scenarios.falsify.strategy import Strategy
+from scenarios.falsify.strategy import EvolutionStrategy, RandomStrategy
 
 DIMENSION = 60
 
 
 def test_first_generation_is_drawn_as_random_worlds_are() -> None:
-    points = np.array([z for seed in range(40) for z in Strategy(DIMENSION, seed).ask()])
+    points = np.array([z for seed in range(40) for z in EvolutionStrategy(DIMENSION, seed).ask()])
     assert points.mean() == pytest.approx(0.0, abs=0.02)
     assert points.std() == pytest.approx(1.0, abs=0.02)
 
 
 def test_every_point_that_is_asked_for_is_plausible() -> None:
-    strategy = Strategy(DIMENSION, 3)
+    strategy = EvolutionStrategy(DIMENSION, 3)
     for _ in range(25):
         points = strategy.ask()
         assert max(np.linalg.norm(z) for z in points) <= radius_max(DIMENSION) * (1.0 + 1e-12)
@@ -25,7 +25,7 @@ def test_every_point_that_is_asked_for_is_plausible() -> None:
 def test_same_seed_asks_for_the_same_whatever_else_draws_random_numbers() -> None:
     asked = []
     for disturbance in (1, 2):
-        strategy = Strategy(DIMENSION, 8)
+        strategy = EvolutionStrategy(DIMENSION, 8)
         for _ in range(4):
             np.random.seed(disturbance)  # noqa: NPY002 (the global generator, which pycma would draw from)
             points = strategy.ask()
@@ -38,7 +38,7 @@ def test_failure_that_random_worlds_meet_once_in_a_hundred_thousand_is_reached_w
     # Three quantities must add up to 7.4 at standard deviation sqrt(3): 4.27 of them, one in 100,000.
     flown = []
     for seed in range(5):
-        strategy, count, worst = Strategy(DIMENSION, seed), 0, 1.0
+        strategy, count, worst = EvolutionStrategy(DIMENSION, seed), 0, 1.0
         while worst > 0.0 and count < 1000:
             margins = [float(1.0 - (z[3] + z[20] - z[41]) / 7.4) for z in strategy.ask()]
             strategy.tell(margins)
@@ -48,9 +48,17 @@ def test_failure_that_random_worlds_meet_once_in_a_hundred_thousand_is_reached_w
 
 
 def test_strategy_is_stale_when_nothing_becomes_better() -> None:
-    strategy = Strategy(DIMENSION, 1)
+    strategy = EvolutionStrategy(DIMENSION, 1)
     generations = 0
     while not strategy.is_stale:
         strategy.tell([0.5 + 1e-4 * index for index, _ in enumerate(strategy.ask())])
         generations += 1
     assert 5 < generations < 20
+
+
+def test_random_worlds_are_as_plausible_and_are_never_drawn_twice() -> None:
+    strategies = [RandomStrategy(DIMENSION, seed) for seed in range(20)]
+    points = np.array([z for strategy in strategies for z in strategy.ask()])
+    assert len(np.unique(points[:, 0])) == len(points)
+    assert np.linalg.norm(points, axis=1).max() <= radius_max(DIMENSION) * (1.0 + 1e-12)
+    assert all(strategy.is_stale for strategy in strategies)
