@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from scenarios.campaigns.folder import open_journal
-from scenarios.campaigns.landing_task import Flights, Flown, Row, Task, failed
+from scenarios.campaigns.landing_task import Flights, Flown, Row, Task, failed_row
 from scenarios.campaigns.plan import Plan
 from scenarios.processes.dask_workers import DaskWorkers
 from scenarios.processes.local_workers import LocalWorkers, core_count
@@ -69,5 +69,5 @@ def _flown(plan: Plan, tasks: Sequence[Task], where: Where) -> Generator[Flown, 
     return run_tasks(
         workers,
         tasks,
-        lost=lambda task, why: Flown(row=failed(task, {"firmware": flown[task.cell].firmware}, why), wall_s=0.0),
+        lost=lambda task, why: Flown(row=failed_row(task, {"firmware": flown[task.cell].firmware}, why), wall_s=0.0),
     )

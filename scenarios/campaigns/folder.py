@@ -66,7 +66,7 @@ def read_landings(folder: Path) -> list[Row]:
     plan = read_plan(folder)
     if (folder / _LANDINGS).exists() and not (folder / _JOURNAL).exists():
         return [_with_firmware(row, plan) for row in read_rows(folder / _LANDINGS)]
-    rows = [_with_firmware(flown.row, plan) for flown in _written_down(folder)]
+    rows = [_with_firmware(flown.row, plan) for flown in _list_newest(folder)]
     if not rows:
         raise UserError(f"{folder}: no landing is done; go on with: scenarios campaign --resume {folder}")
     return as_written(rows)
@@ -85,7 +85,7 @@ def read_timing(folder: Path) -> list[Row]:
     """
     if not (folder / _JOURNAL).exists():
         return read_rows(folder / _TIMING)
-    return as_written([_timing(flown) for flown in _written_down(folder)])
+    return as_written([_timing(flown) for flown in _list_newest(folder)])
 
 
 def missing_landings(folder: Path) -> str | None:
@@ -102,7 +102,7 @@ def missing_landings(folder: Path) -> str | None:
     return f"{done} of {planned} landings are done; go on with: scenarios campaign --resume {folder}"
 
 
-def _written_down(folder: Path) -> Collection[Flown]:
+def _list_newest(folder: Path) -> Collection[Flown]:
     """Return the newest line of each landing in the journal; the one at which a process was interrupted is left out.
 
     The Parquet files are written from it, but only when a campaign ends by itself.

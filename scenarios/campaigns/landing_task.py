@@ -93,7 +93,7 @@ def _row(task: Task, cell: Cell) -> Row:
         known = {"firmware": drawn.scenario.firmware, **drawn.columns}
         return known | fly(task, drawn.scenario)
     except Exception as error:  # noqa: BLE001 (one landing's fault must not end a campaign, and is reported)
-        return failed(task, known, error_line(error))
+        return failed_row(task, known, error_line(error))
 
 
 def _planner_ms(durations_s: Sequence[float]) -> dict[str, float]:
@@ -125,7 +125,7 @@ def row_of(task: Task, table: Mapping[str, Any], recording: Recording) -> Row:
     return _head(task) | values | wave_offs([status.phase for status in recording.statuses]) | tried | phases
 
 
-def failed(task: Task, known: Row, error: str) -> Row:
+def failed_row(task: Task, known: Row, error: str) -> Row:
     """Return the row of a task that has no result, with what is known of it all the same, such as its firmware."""
     return known | _head(task) | {"error": error}
 

@@ -59,10 +59,10 @@ def load_scenario(name_or_path: str) -> Scenario:
         table = {"name": Path(path).name} | _file_table(Path(path + suffix + name))
         table["name"] = "+".join((table["name"], *options))
     else:
-        table = _named(name) | {"name": name_or_path}
+        table = _find_table(name) | {"name": name_or_path}
     for option in options:
         table |= _option(option, name_or_path)
-    return keep_clear_of_vehicle(validate(Scenario, _resolved(table, name_or_path), source=name_or_path))
+    return keep_clear_of_vehicle(validate(Scenario, _resolve(table, name_or_path), source=name_or_path))
 
 
 def _option(option: str, whole: str) -> Table:
@@ -74,7 +74,7 @@ def _option(option: str, whole: str) -> Table:
     return {section: preset}
 
 
-def _named(name: str, place: str = "") -> Table:
+def _find_table(name: str, place: str = "") -> Table:
     """Return the catalogue's table called `name`; `place` is where the name stands, for the message."""
     try:
         return _scenarios()[name]
@@ -118,10 +118,10 @@ def _file_table(path: Path) -> Table:
     """Return the table of a user's file, laid over its base."""
     table = read_toml(path)
     base = table.pop("base", None)
-    return table if base is None else merge(_named(str(base), f"{path}: base: "), table)
+    return table if base is None else merge(_find_table(str(base), f"{path}: base: "), table)
 
 
-def _resolved(table: Table, source: str) -> Table:
+def _resolve(table: Table, source: str) -> Table:
     """Return `table` with the presets' values in place of their names."""
     return table | {section: _section(section, table.get(section), source) for section in _DEFAULT_PRESETS}
 

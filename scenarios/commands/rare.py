@@ -15,7 +15,13 @@ def register(app: typer.Typer) -> None:
 
 
 def rare_command(
-    name: Annotated[str, typer.Argument(metavar="CELL", help="A scenario, such as brake_10+link=degraded.")],
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="world[:SLICE]|CELL",
+            help="The operational design domain, a slice of it, or a scenario, such as brake_10+link=degraded.",
+        ),
+    ],
     *,
     level: Annotated[
         float, typer.Option("--level", min=1e-12, max=0.1, help="No level goes below this probability.")
@@ -30,22 +36,22 @@ def rare_command(
     workers: Annotated[
         int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
     ] = None,
-    firmware: Annotated[str | None, typer.Option("--firmware", metavar="NAME", help="px4 or ardupilot.")] = None,
+    firmware: Annotated[
+        str | None, typer.Option("--firmware", metavar="NAME", help="px4 or ardupilot, of a cell.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> int:
     """Estimate the probability of an unsafe outcome; exit code 1 when the splitting has not converged."""
-    from scenarios.catalogue.catalogue import load_scenario
-    from scenarios.catalogue.firmware_option import with_firmware
     from scenarios.processes.local_workers import core_count
-    from scenarios.rare.landing import Cell, flying
+    from scenarios.rare.landing import flying, subject_of
     from scenarios.rare.report import level_line, print_report, report
     from scenarios.rare.splitting import Settings, split
 
-    scenario = load_scenario(name if firmware is None else with_firmware(name, firmware))
+    subject = subject_of(name, firmware)
     settings = Settings(particles=particles, moves=moves, least=level, seed=seed)
-    with flying(Cell(cell=scenario), core_count() if workers is None else workers) as fly:
+    with flying(subject, core_count() if workers is None else workers) as fly:
         population = split(settings, fly, lambda population: _note(level_line(population)))
-    table = report(scenario.name, settings, population)
+    table = report(subject.name, settings, population)
     if as_json:
         sys.stdout.write(json.dumps(table, indent=2, allow_nan=False) + "\n")
     else:

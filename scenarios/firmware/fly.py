@@ -70,7 +70,7 @@ def fly(scenario: Scenario, options: FlyOptions, progress: Progress) -> RunOutco
         watch = FirmwareWatch()
         datum = _datum(watch, transport)
         firmware = NAMES.get(watch.session.autopilot or 0, scenario.firmware)
-        placed = _placed(scenario, datum).model_copy(update={"firmware": firmware})
+        placed = _place(scenario, datum).model_copy(update={"firmware": firmware})
         write_text(options.folder / "scenario.toml", dump_toml(placed))
         write_text(options.folder / "companion.toml", dump_toml(placed.system.companion))
         flight = _Flight(placed, options, watch, keys, zenoh)
@@ -100,7 +100,7 @@ def _write_truth(scenario: Scenario, options: FlyOptions, keys: Keys, recording:
         truth.take(recording)
 
 
-def _placed(scenario: Scenario, datum: Datum) -> Scenario:
+def _place(scenario: Scenario, datum: Datum) -> Scenario:
     """Return the scenario about the drone's place, for ground at a fixed height and positions told of the feet."""
     vehicle = scenario.vehicle.model_copy(update=_BODY)
     companion = scenario.system.companion

@@ -55,7 +55,7 @@ class Workers(ABC, Generic[Task, Result]):
 def run_tasks(
     workers: Workers[Task, Result], tasks: Iterable[Task], *, lost: Callable[[Task, str], Result]
 ) -> Generator[Result, None, None]:
-    """Yield the results of all tasks in the order in which they are ready, by workers that are entered for them.
+    """Yield the results of all tasks in the order in which they are ready.
 
     To be closed (`contextlib.closing`) where it may not be exhausted: that ends the workers.
 

@@ -67,7 +67,7 @@ def _run_page(run: RunData) -> str:
         plotly=plotly_script(),
         path_chart=path_chart(run),
         motion_chart=motion_chart(run),
-        figures=_captioned(run_figures(run)),
+        figures=_captions(run_figures(run)),
         phases=run.phases,
         approaches=result.get("approaches", ()),
         scenario=dump_toml(run.scenario),
@@ -87,7 +87,7 @@ def _campaign_page(folder: Path) -> str:
         verdict=f"{landed} of {len(rows)} landings reached S3",
         summary=text.getvalue(),
         worlds=[worlds_sheets(report) for report in worlds_report(rows, plan.populations)],
-        figures=_captioned(campaign_figures(plan, rows)),
+        figures=_captions(campaign_figures(plan, rows)),
         scenarios={name: dump_toml(cell) for name, cell in plan.flown.items()},
         versions={"commit": plan.commit or "not known"} | plan.versions,
     )
@@ -102,7 +102,7 @@ def _page(template: str, **values: Any) -> str:
     return environment.get_template(template).render(values)
 
 
-def _captioned(figures: Mapping[str, Figure]) -> dict[str, str]:
+def _captions(figures: Mapping[str, Figure]) -> dict[str, str]:
     """Return figures by what stands below them."""
     return {_caption(name): _svg(figure, name) for name, figure in figures.items()}
 

@@ -134,17 +134,17 @@ class _PatternSensor:
         hidden = self._dropouts.step(elapsed_s)
         age_s = (vehicle.t_ns - drone.t_ns) * 1e-9
         pad_enu_m = rotate(vehicle.orientation_wxyz, (0.0, 0.0, self._mounting.pad_height_m))
-        moved_m = _scaled(vehicle.velocity_enu_m_s, -age_s)
-        away_enu_m = _sum(vehicle.position_enu_m, pad_enu_m, moved_m, _scaled(drone.position_enu_m, -1.0))
+        moved_m = _scale(vehicle.velocity_enu_m_s, -age_s)
+        away_enu_m = _sum(vehicle.position_enu_m, pad_enu_m, moved_m, _scale(drone.position_enu_m, -1.0))
         away_flu_m = rotate(conjugate(drone.orientation_wxyz), away_enu_m)
         if hidden or age_s > _DRONE_AGE_MAX_S or not self._sees(away_flu_m):
             return None
         std_m = self._config.range_share * math.hypot(*away_flu_m) + self._config.white_m
-        turn = _small_turn(_scaled((errors[3], errors[4], errors[5]), self._config.white_rad))
+        turn = _small_turn(_scale((errors[3], errors[4], errors[5]), self._config.white_rad))
         attitude = multiply(conjugate(drone.orientation_wxyz), vehicle.orientation_wxyz)
         return PadSighting(
             t_ns=drone.t_ns,
-            position_flu_m=_sum(away_flu_m, _scaled((errors[0], errors[1], errors[2]), std_m)),
+            position_flu_m=_sum(away_flu_m, _scale((errors[0], errors[1], errors[2]), std_m)),
             orientation_wxyz=canonical(multiply(attitude, turn)),
             position_covariance_m2=_diagonal(std_m**2),
         )
@@ -213,7 +213,7 @@ def _sum(*vectors: Vector3) -> Vector3:
     return sum(v[0] for v in vectors), sum(v[1] for v in vectors), sum(v[2] for v in vectors)
 
 
-def _scaled(vector: Vector3, factor: float) -> Vector3:
+def _scale(vector: Vector3, factor: float) -> Vector3:
     return factor * vector[0], factor * vector[1], factor * vector[2]
 
 
@@ -225,5 +225,5 @@ def _small_turn(rotation_vector_rad: Vector3) -> Quaternion:
     """Return the unit quaternion of a rotation vector."""
     angle_rad = math.hypot(*rotation_vector_rad)
     scale = 0.5 if angle_rad < 1e-9 else math.sin(0.5 * angle_rad) / angle_rad
-    x, y, z = _scaled(rotation_vector_rad, scale)
+    x, y, z = _scale(rotation_vector_rad, scale)
     return math.cos(0.5 * angle_rad), x, y, z

@@ -80,13 +80,13 @@ class VehicleNode:
     def published(self, state: VehicleState, drone: BodyTruth | None) -> list[Publication]:
         """Return what is to be published of a vehicle in `state`, truth first."""
         t_ns = state.t_ns
-        publications = [self._published(sample) for sample in self._sensors.step(t_ns, state, drone)]
+        publications = [self._publish(sample) for sample in self._sensors.step(t_ns, state, drone)]
         if not self._publishes_truth or t_ns < self._truth_due_ns:
             return publications
         self._truth_due_ns = max(self._truth_due_ns + TRUTH_PERIOD_NS, t_ns + 1)
-        return [self._published(vehicle_truth(state)), *publications]
+        return [self._publish(vehicle_truth(state)), *publications]
 
-    def _published(self, message: Fix | FixVelocity | VehicleImu | PadSighting | BodyTruth) -> Publication:
+    def _publish(self, message: Fix | FixVelocity | VehicleImu | PadSighting | BodyTruth) -> Publication:
         kind = type(message)
         return Publication(key=self._keys[kind], payload=cdr.encode(message), encoding=self._encodings[kind])
 

@@ -94,13 +94,13 @@ def sway_of(driven: Driven, surface: Surface, suspension: SuspensionConfig) -> S
     heave, slope, tilt = _road(driven, surface, c)
     dive, lean = -c.dive_rad_s2_m * driven.along_m_s2, c.lean_rad_s2_m * driven.left_m_s2
     return Sway(
-        heave=_oscillated(c.heave_hz, c.damping, *heave, 0.0 * dive),
-        pitch=_oscillated(c.pitch_hz, c.damping, -slope[0], -slope[1], dive),
-        roll=_oscillated(c.roll_hz, c.damping, *tilt, lean),
+        heave=_oscillate(c.heave_hz, c.damping, *heave, 0.0 * dive),
+        pitch=_oscillate(c.pitch_hz, c.damping, -slope[0], -slope[1], dive),
+        roll=_oscillate(c.roll_hz, c.damping, *tilt, lean),
     )
 
 
-def _oscillated(
+def _oscillate(
     frequency_hz: float, damping: float, base: Array, base_rate: Array, pushed: Array
 ) -> tuple[list[float], list[float]]:
     """Return values and rates on the grid of an oscillator on a moving `base` that is also `pushed` to a value."""

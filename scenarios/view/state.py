@@ -92,7 +92,7 @@ class StateReader:
             keys.record("estimate"): _estimate,
             keys.record("forecast"): _forecast,
             keys.record("link"): _link,
-            keys.record("plan"): _recorded_plan,
+            keys.record("plan"): _read_plan,
             keys.record("step"): _step,
             keys.landing_plan: _plan,
             keys.landing_status: _status,
@@ -175,7 +175,7 @@ def _plan(payload: bytes) -> dict[str, Any]:
     return {"plan_enu_m": np.array([pose.position_enu_m for pose in poses]).reshape(-1, 3)}
 
 
-def _recorded_plan(payload: bytes) -> dict[str, Any]:
+def _read_plan(payload: bytes) -> dict[str, Any]:
     return {"plan_enu_m": fields_of(payload, f"{PACKAGE}/Trajectory")["position_m"].reshape(-1, 3)}
 
 

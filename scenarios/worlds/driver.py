@@ -13,8 +13,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from scenarios.simulation.noise import named_rng
+from scenarios.simulation.noise import Seed, named_rng
 from scenarios.tracks.drive import SHIFT_CURVATURE, Shift
+from scenarios.tracks.suspension import Array
 from scenarios.worlds.draws import Draws
 from scenarios.worlds.road import RoadPlan
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
@@ -100,7 +101,7 @@ class _Drive:
 
 
 def plan_drive(
-    draws: Draws, seed: int, road: RoadPlan, *, cruise_m_s: float, run_up_m: float, length_m: float
+    draws: Draws, seed: Seed, road: RoadPlan, *, cruise_m_s: float, run_up_m: float, length_m: float
 ) -> DrivePlan:
     """Return the drive of a world along its road; the arguments are those of `plan_road`."""
     events = [_event(draws, slot) for slot in range(EVENTS)]
@@ -131,7 +132,7 @@ def _event(draws: Draws, slot: int) -> _Event:
     )
 
 
-def _planned(draws: Draws, seed: int, road: RoadPlan, *, cruise_m_s: float, length_m: float) -> _Grid:
+def _planned(draws: Draws, seed: Seed, road: RoadPlan, *, cruise_m_s: float, length_m: float) -> _Grid:
     """Return the grid with the speeds that the driver plans."""
     step_m = min(_CELL_MAX_M, max(_CELL_MIN_M, cruise_m_s * _CELL_S))
     count = int(length_m / step_m)
@@ -152,7 +153,7 @@ def _planned(draws: Draws, seed: int, road: RoadPlan, *, cruise_m_s: float, leng
     )
 
 
-def _wishes(draws: Draws, seed: int, cruise_m_s: float, step_m: float, count: int) -> np.ndarray:
+def _wishes(draws: Draws, seed: Seed, cruise_m_s: float, step_m: float, count: int) -> Array:
     """Return the speed (count,) that the driver would like: an Ornstein-Uhlenbeck process about his cruising speed.
 
     Its square is linear in the place between knots, so the acceleration is constant there.
@@ -166,7 +167,8 @@ def _wishes(draws: Draws, seed: int, cruise_m_s: float, step_m: float, count: in
         wishes.append(cruise_m_s * min(_WISH_MAX, max(_WISH_MIN, 1.0 + share * value)))
         value = decay * value + math.sqrt(1.0 - decay**2) * kick
     places_m = np.arange(knots) * knot_s * cruise_m_s
-    return np.sqrt(np.interp(np.arange(count) * step_m, places_m, np.square(wishes)))
+    squares: Array = np.interp(np.arange(count) * step_m, places_m, np.square(wishes))
+    return np.sqrt(squares)
 
 
 def _cell_curvatures(road: RoadPlan, step_m: float, count: int) -> list[float]:
@@ -182,7 +184,8 @@ def _cell_curvatures(road: RoadPlan, step_m: float, count: int) -> list[float]:
 
 def _driven(draws: Draws, grid: _Grid, events: Sequence[_Event], run_up_m: float) -> DrivePlan:
     """Return the drive on the grid with the events."""
-    drive, shifts, counts = _Drive(), [], dict.fromkeys(("stop", "slow", "brake", "lane_change", "swerve"), 0)
+    drive, counts = _Drive(), dict.fromkeys(("stop", "slow", "brake", "lane_change", "swerve"), 0)
+    shifts: list[Shift] = []
     passes_s, first_s, next_s = 0.0, None, math.inf
     waiting = list(events)
     last = len(grid.caps_m_s) - 1

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scenarios.simulation.noise import named_rng
+from scenarios.simulation.noise import Seed, named_rng
 from scenarios.tracks.drive import Stretch
 from scenarios.worlds.draws import Draws
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
@@ -46,7 +46,7 @@ class RoadPlan:
     limits: list[Limit]
 
 
-def plan_road(draws: Draws, seed: int, *, cruise_m_s: float, run_up_m: float, length_m: float) -> RoadPlan:
+def plan_road(draws: Draws, seed: Seed, *, cruise_m_s: float, run_up_m: float, length_m: float) -> RoadPlan:
     """Return the road of a world.
 
     Args:
@@ -151,7 +151,7 @@ def _grades(slopes: list[tuple[float, float]], end_m: float, radius_m: float) ->
     return points
 
 
-def _waves(draws: Draws, seed: int) -> list[tuple[float, float, float, float]]:
+def _waves(draws: Draws, seed: Seed) -> list[tuple[float, float, float, float]]:
     """Return the roughness as waves whose variances are the integral of ISO 8608's spectrum over bands."""
     degree_m3 = 1e-6 * draws.number("road.roughness_1e_6_m3")
     phases = named_rng(seed, "world road waves").random((len(_WAVELENGTHS_M) - 1, 2)).tolist()

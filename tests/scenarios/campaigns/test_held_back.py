@@ -1,6 +1,5 @@
 """The rule of the seeds, at the command line and in the file that remembers what was flown."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -23,7 +22,7 @@ def plan(*cells: str, first_seed: int = 500_000, commit: str | None = COMMIT) ->
 
 
 @pytest.fixture
-def flown_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+def flown_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A file of its own in place of the repository's."""
     file = tmp_path / "held_back.toml"
     file.write_text("", encoding="utf-8")

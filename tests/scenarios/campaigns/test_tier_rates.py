@@ -5,13 +5,13 @@ from itertools import pairwise
 import pytest
 from scipy import stats
 
-from scenarios.campaigns.landing_task import Task, failed
+from scenarios.campaigns.landing_task import Task, failed_row
 from scenarios.campaigns.tier_rates import binned, grouped, tier_rates
 from tests.scenarios.campaigns.test_summary import row
 
 
 def test_rates_are_shares_of_all_landings_with_wilsons_interval() -> None:
-    error = failed(Task(cell="straight_5", seed=9), {"firmware": "px4"}, "ValueError: wrong")
+    error = failed_row(Task(cell="straight_5", seed=9), {"firmware": "px4"}, "ValueError: wrong")
     found = tier_rates([row(1), row(2), row(3, "unsafe"), error])
     assert (found["landings"], found["errors"]) == (4, 1)
     assert {tier: rate["count"] for tier, rate in found["tiers"].items() if rate["count"]} == {"S3": 2, "unsafe": 1}

@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from scenarios.campaigns.cells import Population
-from scenarios.campaigns.landing_task import Row, Task, failed
+from scenarios.campaigns.landing_task import Row, Task, failed_row
 from scenarios.campaigns.sheets import print_sheets, write_sheets
 from scenarios.campaigns.worlds_report import worlds_report
 from scenarios.campaigns.worlds_sheets import worlds_sheets
@@ -31,7 +31,9 @@ def landing(seed: int, tier: str = "S3", cell: str = "world:urban", **values: An
     return row(seed, tier, cell, **(base | values))
 
 
-ERROR = failed(Task(cell="world:urban", seed=101), {"firmware": None}, "ValueError: cannot be drawn (world.py, draw)")
+ERROR = failed_row(
+    Task(cell="world:urban", seed=101), {"firmware": None}, "ValueError: cannot be drawn (world.py, draw)"
+)
 ROWS = [landing(seed, "unsafe" if seed > 88 else "S3") for seed in range(1, 101)]
 
 

@@ -8,7 +8,7 @@ from scenarios.catalogue.catalogue import load_scenario
 from scenarios.commands import campaign as campaign_commands
 from scenarios.commands import rare as rare_commands
 from scenarios.rare.chain import Walk, Walked
-from scenarios.rare.landing import Cell, fly_margin, flying
+from scenarios.rare.landing import Cell, fly_margin, flying, subject_of
 from scenarios.rare.noise import Move, MovedNoise
 from tests.scenarios.campaigns.short import failing_cell, short_cell
 
@@ -56,8 +56,28 @@ def test_landings_that_raise_are_told_and_give_no_probability(
     assert "not converged, so there is no probability: a landing raised an error" in capsys.readouterr().out
 
 
-def test_unknown_cell_is_one_clear_line(capsys: pytest.CaptureFixture[str]) -> None:
-    assert scenarios("nowhere_5") == 2
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        (["nowhere_5"], "nowhere_5"),
+        (["world:nowhere"], "world:nowhere"),
+        (["world", "--firmware", "px4"], "--firmware"),
+        (["straight_5", "--level", "0"], "--level"),
+    ],
+)
+def test_what_cannot_be_flown_is_one_clear_line(
+    options: list[str], named: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert scenarios(*options) == 2
     told = capsys.readouterr().err
-    assert "nowhere_5" in told
+    assert named in told
     assert told.count("\n") == 1
+
+
+def test_noise_draws_the_world_and_a_small_move_changes_it_a_little() -> None:
+    subject = subject_of("world")
+    first, again = subject.scenario(FIRST), subject.scenario(FIRST)
+    assert first == again
+    nearby = subject.scenario(FIRST.moved(Move(seed=4, angle_rad=1e-3)))
+    assert nearby.wind.mean_m_s == pytest.approx(first.wind.mean_m_s, rel=0.02)
+    assert nearby.wind.mean_m_s != first.wind.mean_m_s

@@ -12,7 +12,7 @@ from scenarios.tracks.drive import drive_course, driven, shifted
 from scenarios.tracks.heights import grade_line
 from scenarios.tracks.profiles import profile_of
 from scenarios.tracks.roads import clothoid_road
-from scenarios.tracks.suspension import STEP_S, Driven, Surface, sway_of
+from scenarios.tracks.suspension import STEP_S, Array, Driven, Surface, sway_of
 
 STIFF = SuspensionConfig(dive_rad_s2_m=0.004, lean_rad_s2_m=0.01)
 FLAT = Surface(waves=(), humps=())
@@ -20,8 +20,8 @@ FLAT = Surface(waves=(), humps=())
 
 def still(count: int, *, along_m_s2: float = 0.0, left_m_s2: float = 0.0, speed_m_s: float = 0.0) -> Driven:
     """A drive at one speed, with accelerations that begin at once."""
-    times_s = (np.arange(count) + 0.5) * STEP_S
-    level = np.ones(count)
+    times_s: Array = (np.arange(count, dtype=np.float64) + 0.5) * STEP_S
+    level: Array = np.ones(count)
     return Driven(
         s_m=speed_m_s * times_s,
         speed_m_s=speed_m_s * level,

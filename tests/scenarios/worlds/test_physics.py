@@ -12,6 +12,7 @@ from scenarios.catalogue.catalogue import load_scenario
 from scenarios.simulation.vehicle import VehicleMemory, VehicleState, vehicle_at
 from scenarios.simulation.vehicle_node import plan_of
 from scenarios.tracks.config import DriveTrack
+from scenarios.tracks.roads import Piece, Road
 from scenarios.worlds.driver import DRIVE_S
 from scenarios.worlds.world import SLICES, World, draw_world
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
@@ -85,7 +86,7 @@ def test_curvature_changes_at_a_finite_rate(seeds: range) -> None:
         )  # 1/m/s: a rover's 6 m lock to lock in a tenth of a second
 
 
-def lengths(road):  # type: ignore[no-untyped-def]
+def lengths(road: Road) -> list[tuple[Piece, float]]:
     """The pieces of a road, each with its length."""
     ends = [*road.starts_m[1:], road.length_m]
     return [(piece, end - piece.s_m) for piece, end in zip(road.pieces, ends, strict=True)]
