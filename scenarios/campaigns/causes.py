@@ -9,10 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from scenarios.campaigns.landing_task import Row
-from scenarios.campaigns.summary import is_s1_or_better, is_unsafe, share_json
+from scenarios.campaigns.summary import is_given_up, is_s1_or_better, is_unsafe, share_json
 from scenarios.recordings.reason_counts import counts_of
 from scenarios.scoring.limits import S1_LIMITS
-from scenarios.scoring.score import Tier
 
 NOTHING = "nothing of these"
 
@@ -59,7 +58,7 @@ def events_before(row: Row) -> list[str]:
 
 def outcome(row: Row) -> str:
     """Return how a landing that reached no tier of landings failed, by truth."""
-    if row["tier"] == Tier.ABORT.value:
+    if is_given_up(row):
         return _given_up(row["closest_m"])
     if not row.get("on_pad"):
         return str(row["reason"])
@@ -86,7 +85,7 @@ def causes(rows: Sequence[Row], name_of: Callable[[Row], str]) -> dict[str, Any]
         name_of: by which the world of one is loaded.
     """
     unsafe = [row for row in rows if is_unsafe(row)]
-    given_up = [row for row in rows if row.get("tier") == Tier.ABORT.value]
+    given_up = [row for row in rows if is_given_up(row)]
     landed = [row for row in rows if is_s1_or_better(row)]
     return {
         "unsafe": _groups(unsafe, name_of),

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TextIO
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
+from rich.console import Console, JustifyMethod
 from rich.table import Table
 
 from scenarios.manual.markdown import table
@@ -48,13 +48,8 @@ def print_sheets(sheets: Iterable[Sheet], out: TextIO) -> None:
     for sheet in sheets:
         shown = open_table(console, sheet.title)
         for place, heading in enumerate(sheet.head):
-            is_text = place < sheet.texts
-            shown.add_column(
-                heading.replace("[", "\\["),
-                justify="left" if is_text else "right",
-                overflow="fold",
-                no_wrap=not is_text,
-            )
+            justify: JustifyMethod = "left" if place < sheet.texts else "right"
+            shown.add_column(heading.replace("[", "\\["), justify=justify, overflow="fold")
         for row in sheet.rows:
             shown.add_row(*(text.replace("[", "\\[") for text in row))
         console.print(shown)

@@ -50,6 +50,11 @@ def is_unsafe(row: Row) -> bool:
     return row.get("tier") == Tier.UNSAFE.value
 
 
+def is_given_up(row: Row) -> bool:
+    """Return whether the landing was given up, in good order."""
+    return row.get("tier") == Tier.ABORT.value
+
+
 def summarize(rows: Iterable[Row], times: Iterable[Row] = ()) -> dict[str, Any]:
     """Return the summary of a campaign, in the order of its cells with both firmwares of one side by side, for JSON.
 

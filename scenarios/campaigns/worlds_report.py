@@ -5,9 +5,10 @@ from typing import Any
 
 from scenarios.campaigns.causes import causes, events_before, outcome
 from scenarios.campaigns.cells import WORLD_COLUMN, Population
+from scenarios.campaigns.contrasts import contrasts
 from scenarios.campaigns.intervals import mcnemar_p
 from scenarios.campaigns.landing_task import Row
-from scenarios.campaigns.summary import is_s1_or_better, is_unsafe
+from scenarios.campaigns.summary import is_given_up, is_s1_or_better, is_unsafe
 from scenarios.campaigns.tier_rates import binned, grouped, tier_rates
 from scenarios.config import FIRMWARES
 from scenarios.scoring.score import Tier
@@ -57,6 +58,10 @@ def _report(name: str, rows: Sequence[Row], cells: Mapping[str, Population]) -> 
         "by": {column: grouped(rows, column) for column in _choices(rows)},
         "over": {column: bins for column in QUANTITIES if (bins := binned(rows, column))},
         "causes": causes(rows, name_of),
+        "contrasts": {
+            "unsafe": contrasts(rows, [row for row in rows if is_unsafe(row)]),
+            "given_up": contrasts(rows, [row for row in rows if is_given_up(row)]),
+        },
         "worst": [_told(row, name_of(row)) for row in _worst(rows)],
         "configured": any(one.companion for one in cells.values()),
     }

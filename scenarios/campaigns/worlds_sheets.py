@@ -33,8 +33,10 @@ def worlds_sheets(report: Mapping[str, Any]) -> list[Sheet]:
     sheets += [_bins_sheet(report["worlds"], name, bins, tiers) for name, bins in report["over"].items()]
     sheets += [
         _failures("Unsafe", report["causes"]["unsafe"]),
-        _before(report["causes"]["before"]),
+        _contrasts("unsafe", report["contrasts"]["unsafe"]),
         _failures("Given up", report["causes"]["given_up"]),
+        _contrasts("given up", report["contrasts"]["given_up"]),
+        _before(report["causes"]["before"]),
         _worst(report["worst"], configured=report["configured"]),
     ]
     return [sheet for sheet in sheets if sheet.rows]
@@ -101,8 +103,25 @@ def _some(worlds: Sequence[str]) -> str:
 def _before(events: Sequence[Mapping[str, Any]]) -> Sheet:
     parts = ("unsafe", "given_up", "landed")
     rows = tuple((one["event"], *(_count(one[part]) for part in parts)) for one in events)
-    title = "How often it happened in the 3 s before, in % of the landings (95 % intervals)"
+    title = "In the 3 s before, in % of the landings (95 % intervals)"
     return Sheet(title=title, head=("event", *(part.replace("_", " ") for part in parts)), rows=rows)
+
+
+def _contrasts(failed: str, found: Sequence[Mapping[str, Any]]) -> Sheet:
+    rows = tuple(
+        (
+            _plain(one["column"]),
+            f"{one['failed']:.4g}",
+            f"{one['landed']:.4g}",
+            f"{100.0 * one['above']:.0f}",
+            f"{one['p']:.2g}",
+        )
+        for one in found
+    )
+    title = f"What the worlds that were {failed} drew otherwise than those that landed (Mann and Whitney, Holm's p)"
+    return Sheet(
+        title=title, head=("drawn", f"median, {failed}", "median, landed", "larger in % of pairs", "p"), rows=rows
+    )
 
 
 def _worst(worst: Sequence[Mapping[str, Any]], *, configured: bool) -> Sheet:

@@ -146,10 +146,10 @@ class _Recorder(AbstractContextManager["_Recorder"]):
     ) -> None:
         self._flights.__exit__(kind, error, trace)
 
-    def fly(self, flights: Sequence[Flight]) -> list[Outcome]:
-        """Fly a batch and return its outcomes in order."""
-        outcomes = self._flights(flights)
-        for (_, seed), outcome in zip(flights, outcomes, strict=True):
+    def fly(self, flights: Sequence[Flight], is_last: Callable[[Outcome], bool]) -> list[Outcome]:
+        """Fly a batch and return its outcomes in order, up to the first that is the last one wanted."""
+        outcomes = self._flights(flights, is_last)
+        for (_, seed), outcome in zip(flights, outcomes, strict=False):
             self._outcomes.append(outcome)
             line = {"landing": len(self._outcomes), "part": self.part, "seed": seed} | asdict(outcome)
             self._lines.append(json.dumps(line) + "\n")

@@ -40,7 +40,7 @@ class Reduction:
     Args:
         found: the world.
         space: that it was found in.
-        fly: flies landings and returns their outcomes in order.
+        fly: flies landings.
         landings: how many may be flown; when they are used up, the case stays as it is.
     """
 
@@ -83,12 +83,16 @@ class Reduction:
         return Case(scenario=scenario, seed=self._found.seed, chosen=chosen, outcome=outcome)
 
     def _still_fail(self, scenarios: Sequence[Scenario | None]) -> list[bool]:
-        """Say of each scenario whether it is unsafe enough; one that was flown is not flown again."""
+        """Say of each scenario, up to the first that is so, whether it is unsafe enough.
+
+        One that was flown is not flown again.
+        """
         valid = {one.model_dump_json(): one for one in scenarios if one is not None}
         new = [text for text in valid if text not in self._known][: self._left]
-        self._left -= len(new)
-        outcomes = self._fly([(valid[text], self._found.seed) for text in new])
-        self._known |= zip(new, outcomes, strict=True)
+        if new and not any(self._fails(self._known.get(text)) for text in valid):
+            outcomes = self._fly([(valid[text], self._found.seed) for text in new], self._fails)
+            self._left -= len(outcomes)
+            self._known |= zip(new, outcomes, strict=False)
         return [one is not None and self._fails(self._known.get(one.model_dump_json())) for one in scenarios]
 
     def _fails(self, outcome: Outcome | None) -> bool:

@@ -1,4 +1,4 @@
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import pytest
 
@@ -30,9 +30,14 @@ class Air:
         self.limit = limit
         self.flown: list[Flight] = []
 
-    def fly(self, flights: Sequence[Flight]) -> list[Outcome]:
-        self.flown += flights
-        return [self.outcome(scenario) for scenario, _ in flights]
+    def fly(self, flights: Sequence[Flight], is_last: Callable[[Outcome], bool]) -> list[Outcome]:
+        outcomes: list[Outcome] = []
+        for scenario, seed in flights:
+            self.flown.append((scenario, seed))
+            outcomes.append(self.outcome(scenario))
+            if is_last(outcomes[-1]):
+                break
+        return outcomes
 
     def outcome(self, scenario: Scenario) -> Outcome:
         margin = self.limit - 0.05 * scenario.wind.mean_m_s * scenario.link.zenoh.delay_s
@@ -52,7 +57,7 @@ def test_search_says_which_landing_was_the_first_unsafe_one() -> None:
     air = Air(limit=0.9)
     found = found_with(air)
     outcomes = [air.outcome(scenario) for scenario, _ in air.flown]
-    assert [one.is_unsafe for one in outcomes].index(True) == found.landing - 1
+    assert [one.is_unsafe for one in outcomes].index(True) == found.landing - 1 == len(outcomes) - 1
     assert draw(found.seed, found.chosen) == air.flown[found.landing - 1][0]
 
 
@@ -73,7 +78,7 @@ def test_each_start_is_about_another_seed() -> None:
 
 def test_search_goes_on_where_landings_have_no_result() -> None:
     lost = Outcome(margin=None, tier=None, reason=None, error="ValueError: no")
-    assert search(SPACE, lambda flights: [lost] * len(flights), first_seed=1, landings=60) is None
+    assert search(SPACE, lambda flights, _: [lost] * len(flights), first_seed=1, landings=60) is None
 
 
 def reduced(air: Air, landings: int) -> Reduction:
