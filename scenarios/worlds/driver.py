@@ -200,7 +200,7 @@ def _shift_length_m(event: _Event, grid: Grid, speed_m_s: float) -> float:
     return max(
         speed_m_s * math.sqrt(SHIFT_CURVATURE * offset_m / lateral_m_s2),
         math.sqrt(SHIFT_CURVATURE * offset_m * TURN_RADIUS_MIN_M),
-        (4.0 * SHIFT_CURVATURE * offset_m * speed_m_s / STEERING_MAX_PER_M_S) ** (1.0 / 3.0),
+        math.cbrt(4.0 * SHIFT_CURVATURE * offset_m * speed_m_s / STEERING_MAX_PER_M_S),
     )
 
 
