@@ -130,7 +130,7 @@ def _change_m_s2(before: Driven, then: Driven) -> Change | None:
 
 
 def _root_mean_square(values: list[float]) -> float:
-    return math.sqrt(sum(value * value for value in values) / len(values)) if values else 0.0
+    return math.sqrt(sum([value * value for value in values]) / len(values)) if values else 0.0
 
 
 _BELIEF_PERIOD_NS = 100_000_000

@@ -89,8 +89,10 @@ class ImmModel:
 
     def predict(self, state: ImmState, dt_s: float) -> ImmState:
         """Return the state `dt_s` later."""
-        motion = self._motion(state)
-        modes = mixing.predict_modes(state.modes, dt_s, self._noises(state), self.numbers.dwell_s, motion)
+        numbers = self.numbers
+        modes = mixing.predict_modes(
+            state.modes, dt_s, self._noises(state), numbers.dwell_s, numbers.motion, self._known_variance
+        )
         return replace(state, modes=modes, turn_age_s=state.turn_age_s + dt_s)
 
     def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState]:
@@ -131,12 +133,11 @@ class ImmModel:
 
     def describe(self, state: ImmState, t_ns: int) -> VehicleEstimate:
         """Return the mixture of both modes."""
-        x, P = mixing.combine(*state.modes)
-        motion = self._motion(state)
-        G = forecasts.kinematics_jacobian(x, motion)
-        position, velocity, acceleration = forecasts.kinematics(x[None], motion)
+        x, P, position, velocity, acceleration, G, heading_variance = forecasts.describe_modes(
+            state.modes, self.numbers.motion, self._known_variance
+        )
         covariance = G @ P @ G.T
-        known = self._is_heading_known(state)
+        known = heading_variance < self._known_variance
         return VehicleEstimate(
             t_ns=t_ns,
             position_enu_m=position[0],
@@ -149,8 +150,8 @@ class ImmModel:
 
     def forecast(self, state: ImmState, t_ns: int, offset_s: Array) -> Forecast:
         """Return the future along the present curvature, with an acceleration that fades and stops at standstill."""
-        position, velocity, acceleration, yaw, std = forecasts.forecast_modes(
-            state.modes, _own(offset_s), self._noises(state), self._motion(state)
+        position, velocity, acceleration, yaw, std, heading_variance = forecasts.forecast_modes(
+            state.modes, _own(offset_s), self._noises(state), self.numbers.motion, self._known_variance
         )
         return Forecast(
             t_ns=t_ns,
@@ -158,10 +159,10 @@ class ImmModel:
             position_enu_m=position,
             velocity_enu_m_s=velocity,
             acceleration_enu_m_s2=acceleration,
-            yaw_rad=yaw if self._is_heading_known(state) else None,
+            yaw_rad=yaw if heading_variance < self._known_variance else None,
             position_std_m=std,
             is_coarse=state.fix_bias_variance_m2 > 0.0,
-            yaw_std_rad=math.sqrt(mixing.heading_variance(state.modes)),
+            yaw_std_rad=math.sqrt(heading_variance),
         )
 
     def _split(self, fix_covariance: Array) -> tuple[Array, float]:
@@ -170,9 +171,10 @@ class ImmModel:
         white = min(stated, self.config.fix_white_std_max_m**2)
         return fix_covariance * (white / stated), stated - white
 
-    def _motion(self, state: ImmState) -> Array:
-        """The motion's numbers, (8,), as `imm_mixing` has them; the lever arm is zero while the heading is unknown."""
-        return mixing.with_direction(self.numbers.motion, state.modes, float(self.numbers.course[2]))
+    @property
+    def _known_variance(self) -> float:
+        """Of a heading that is known, rad^2; while it is not, the kernels leave the lever arm out."""
+        return self.config.heading_known_std_rad**2
 
     def _noises(self, state: ImmState) -> Array:
         """Both modes' noise, (2, 11), as `imm_kernels.process_noise` takes it."""
@@ -195,9 +197,6 @@ class ImmModel:
         moving = [speed, speed, acceleration, acceleration, curvature, UNKNOWN_HEADING_VARIANCE]
         vertical = [0.0, CLIMB_STD_M_S**2, heave, heave_rate]
         return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0])
-
-    def _is_heading_known(self, state: ImmState) -> bool:
-        return mixing.is_heading_known(state.modes, self.config.heading_known_std_rad**2)
 
     def _step_size(self, state: ImmState, measurement: Measurement) -> float:
         """How far, m, a measured place is from the expected one; at least the prior of the offset."""

@@ -8,7 +8,7 @@ import numpy as np
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_kernels import SIZE
-from companion.vehicle.imm_mixing import Modes, combine, glide, shifted
+from companion.vehicle.imm_mixing import Modes, combine, glide, heading_variance, shifted, with_direction
 from companion.vehicle.imm_sensors import antenna_velocity, horizontal_acceleration
 
 
@@ -60,11 +60,45 @@ def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) ->
 
 @compiled_kernel
 def forecast_modes(
-    modes: Modes, offset_s: Array, noises: Array, motion: Array
-) -> tuple[Array, Array, Array, Array, Array]:
-    """Return the mixture's position, velocity, acceleration (n, 3), heading (n,) and the pad's deviation (n, 3)."""
+    modes: Modes, offset_s: Array, noises: Array, motion: Array, known_variance: float
+) -> tuple[Array, Array, Array, Array, Array, float]:
+    """Return the mixture over the horizon.
+
+    Args:
+        modes: the filter.
+        offset_s: (n,) not falling.
+        noises: (2, 11) of both modes.
+        motion: its numbers.
+        known_variance: of a heading that is known, rad^2; without one the lever arm has no direction.
+
+    Returns:
+        Position, velocity and acceleration, each (n, 3), heading (n,), the pad's deviation (n, 3), and the present
+        variance of the heading, rad^2.
+    """
+    directed = with_direction(motion, modes, known_variance)
     x, P = combine(modes[0], modes[1], modes[2])
     noise = modes[2][0] * noises[0] + modes[2][1] * noises[1]
-    means, variances = horizon(x, P, offset_s, noise, motion)
-    position, velocity, acceleration = kinematics(means, motion)
-    return position, velocity, acceleration, means[:, 7].copy(), np.sqrt(variances)
+    means, variances = horizon(x, P, offset_s, noise, directed)
+    position, velocity, acceleration = kinematics(means, directed)
+    return position, velocity, acceleration, means[:, 7].copy(), np.sqrt(variances), heading_variance(modes)
+
+
+@compiled_kernel
+def describe_modes(
+    modes: Modes, motion: Array, known_variance: float
+) -> tuple[Array, Array, Array, Array, Array, Array, float]:
+    """Return the mixture now.
+
+    Args:
+        modes: the filter.
+        motion: its numbers.
+        known_variance: as above.
+
+    Returns:
+        Mean (16,) and covariance (16, 16), position, velocity and acceleration, each (1, 3), their Jacobian (9, 16),
+        and the variance of the heading, rad^2.
+    """
+    directed = with_direction(motion, modes, known_variance)
+    x, P = combine(modes[0], modes[1], modes[2])
+    position, velocity, acceleration = kinematics(x.reshape(1, SIZE), directed)
+    return x, P, position, velocity, acceleration, kinematics_jacobian(x, directed), heading_variance(modes)

@@ -130,11 +130,14 @@ def with_direction(motion: Array, modes: Modes, known_variance: float) -> Array:
 
 
 @compiled_kernel
-def predict_modes(modes: Modes, dt_s: float, noises: Array, dwell_s: Array, motion: Array) -> Modes:
-    """Return the filter `dt_s` later; `noises` (2, 11), `dwell_s` (2,), `motion` as `with_direction` has it."""
+def predict_modes(
+    modes: Modes, dt_s: float, noises: Array, dwell_s: Array, motion: Array, known_variance: float
+) -> Modes:
+    """Return the filter `dt_s` later; `noises` (2, 11), `dwell_s` (2,), the others as `with_direction` has them."""
+    directed = with_direction(motion, modes, known_variance)
     means, covariances, weights = mix(modes, switching(dwell_s, dt_s))
     for j in range(2):
-        means[j], covariances[j] = glide(means[j], covariances[j], dt_s, noises[j], motion)
+        means[j], covariances[j] = glide(means[j], covariances[j], dt_s, noises[j], directed)
     return means, covariances, weights
 
 

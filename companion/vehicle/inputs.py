@@ -100,8 +100,8 @@ def plausible(measurement: Measurement) -> Measurement:
 
 def _least_variance(covariance: Array) -> float:
     """Return the variance (smallest eigenvalue) of the best known direction; sensors mostly state a diagonal."""
-    variances = covariance.diagonal().tolist()
-    if np.count_nonzero(covariance) == np.count_nonzero(variances):
+    variances, parts = covariance.diagonal().tolist(), covariance.ravel().tolist()
+    if len(parts) - parts.count(0.0) == len(variances) - variances.count(0.0):
         return float(min(variances))
     return float(np.linalg.eigvalsh(covariance)[0])
 

@@ -94,8 +94,8 @@ def _is_about(forecast: Forecast, pad: PadGeometry) -> bool:
     if forecast.yaw_rad is None:
         return lever_m > 0.0
     known_m = 0.5 * _KNOWN_SHARE * min(pad.size_m)
-    is_seen = float(np.max(forecast.position_std_m[0, :2])) < known_m
-    return lever_m * forecast.yaw_std_rad > known_m and not is_seen
+    east_std_m, north_std_m, _ = forecast.position_std_m[0].tolist()
+    return lever_m * forecast.yaw_std_rad > known_m and not max(east_std_m, north_std_m) < known_m
 
 
 @compiled_kernel

@@ -1,6 +1,7 @@
 """What every payload from a peer must pass before its numbers are believed."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 from math import hypot, isfinite
 
 from link.messages import Matrix3, Quaternion
@@ -62,8 +63,14 @@ def checked_covariance(name: str, covariance: Matrix3) -> Matrix3 | None:
     Raises:
         PayloadError: If it is not finite, not symmetric or not positive semidefinite.
     """
+    return covariance if _is_known_covariance(name, covariance) else None
+
+
+@lru_cache(maxsize=64)  # most sensors state the same one again and again
+def _is_known_covariance(name: str, covariance: Matrix3) -> bool:
+    """Return whether a covariance is not the zero matrix; raise PayloadError if it is none."""
     if not any(covariance):
-        return None
+        return False
     check_finite(name, covariance)
     a, b, c, d, e, f, g, h, i = covariance
     trace = a + e + i
@@ -75,4 +82,4 @@ def checked_covariance(name: str, covariance: Matrix3) -> Matrix3 | None:
     determinant = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
     if min(a, e, i) < 0.0 or min(minors) < -slack * trace or determinant < -slack * trace * trace:
         raise PayloadError(f"{name} is not positive semidefinite: {covariance}")
-    return covariance
+    return True

@@ -1,9 +1,9 @@
 """The worlds by their names, as every command that takes a scenario loads them."""
 
-from dataclasses import replace
 from itertools import accumulate
 
 from link.errors import UserError
+from link.records import replace
 from scenarios.catalogue.world_names import WorldName
 from scenarios.config import FirmwareName
 from scenarios.worlds.distributions import Choice

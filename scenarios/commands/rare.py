@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-_PARTICLES, _MOVES, _LEVEL = 200, 4, 1e-6
+_PARTICLES, _STEPS, _LEVEL = 200, 4, 1e-6
 
 
 def register(app: typer.Typer) -> None:
@@ -29,9 +29,10 @@ def rare_command(
     particles: Annotated[
         int, typer.Option("--particles", min=20, metavar="N", help="Landings of the population.")
     ] = _PARTICLES,
-    moves: Annotated[
-        int, typer.Option("--moves", min=1, metavar="N", help="Landings that a copy of one tries to move by.")
-    ] = _MOVES,
+    steps: Annotated[
+        int,
+        typer.Option("--steps", min=2, metavar="N", help="Landings that each copy tries in order to be another one."),
+    ] = _STEPS,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of everything random.")] = 1,
     workers: Annotated[
         int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
@@ -48,7 +49,7 @@ def rare_command(
     from scenarios.rare.splitting import Settings, split
 
     subject = subject_of(name, firmware)
-    settings = Settings(particles=particles, moves=moves, least=level, seed=seed)
+    settings = Settings(particles=particles, steps=steps, in_time=True, least=level, seed=seed)
     with flying(subject, core_count() if workers is None else workers) as fly:
         population = split(settings, fly, lambda population: _note(level_line(population)))
     table = report(subject.name, settings, population)

@@ -1,5 +1,6 @@
 """A found case as a scenario file that `scenarios run` flies and `scenarios campaign` takes."""
 
+import re
 import textwrap
 from collections.abc import Sequence
 from typing import Any
@@ -11,6 +12,8 @@ from scenarios.config import Scenario
 _SECTIONS = ("track", "sensors", "wind", "link", "vehicle", "system")
 """All stand in the file, those of nothing but defaults too: without them the catalogue's presets would be taken."""
 _WIDTH = 120
+_ARRAY = re.compile(r"\[\n([^\[\]]*),\n *\]")
+"""Of plain values; tomli_w gives each a line of its own."""
 
 
 def case_text(scenario: Scenario, notes: Sequence[str]) -> str:
@@ -27,4 +30,9 @@ def case_text(scenario: Scenario, notes: Sequence[str]) -> str:
     sections["track"] = {"kind": scenario.track.kind} | sections["track"]
     lines = [line for note in notes for line in textwrap.wrap(note, _WIDTH - 2, break_long_words=False)]
     comment = "".join(f"# {line}\n" for line in lines)
-    return f"{comment}\n{tomli_w.dumps(own | sections)}"
+    return f"{comment}\n{_ARRAY.sub(_in_one_line, tomli_w.dumps(own | sections))}"
+
+
+def _in_one_line(array: re.Match[str]) -> str:
+    values = [line.strip().removesuffix(",") for line in array[1].splitlines()]
+    return f"[{', '.join(values)}]"

@@ -102,12 +102,10 @@ def falsify(request: Request, space: Space, folder: Path, progress: Progress) ->
         )
         case = None
         if found is not None:
-            reduction = Reduction(found, space, flown.fly, landings=request.reduction)
-            case = reduction.found()
-            write_text(folder / FOUND, case_text(case.scenario, _notes(request, case, FOUND)))
-            for flown.part, step in (("medians", reduction.at_medians), ("ideal", reduction.ideal)):
-                case = step(case)
-                write_text(folder / CASE, case_text(case.scenario, _notes(request, case, CASE)))
+            reduction = Reduction(found, space, flown.fly, landings=request.reduction, keep=flown.keep)
+            for flown.part, reduce in (("medians", reduction.put_to_medians), ("ideal", reduction.make_ideal)):
+                reduce()
+            case = reduction.case
         return flown.result(found, case)
 
 
@@ -132,8 +130,9 @@ class _Recorder(AbstractContextManager["_Recorder"]):
 
     def __init__(self, request: Request, folder: Path, progress: Progress) -> None:
         self.part = "search"
+        self._request = request
+        self._folder = folder
         self._flights = Flights(request.workers, lambda outcome: progress(self.part, outcome))
-        self._path = folder / LANDINGS
         self._lines: list[str] = []
         self._outcomes: list[Outcome] = []
 
@@ -146,15 +145,21 @@ class _Recorder(AbstractContextManager["_Recorder"]):
     ) -> None:
         self._flights.__exit__(kind, error, trace)
 
-    def fly(self, flights: Sequence[Flight]) -> list[Outcome]:
-        """Fly a batch and return its outcomes in order."""
-        outcomes = self._flights(flights)
-        for (_, seed), outcome in zip(flights, outcomes, strict=True):
+    def fly(self, flights: Sequence[Flight], is_last: Callable[[Outcome], bool]) -> list[Outcome]:
+        """Fly a batch and return its outcomes in order, up to the first that is the last one wanted."""
+        outcomes = self._flights(flights, is_last)
+        for (_, seed), outcome in zip(flights, outcomes, strict=False):
             self._outcomes.append(outcome)
             line = {"landing": len(self._outcomes), "part": self.part, "seed": seed} | asdict(outcome)
             self._lines.append(json.dumps(line) + "\n")
-        write_text(self._path, "".join(self._lines))
+        write_text(self._folder / LANDINGS, "".join(self._lines))
         return outcomes
+
+    def keep(self, case: Case) -> None:
+        """Write a case down: the first as it was found, each as far as it is reduced."""
+        if self.part == "search":
+            write_text(self._folder / FOUND, case_text(case.scenario, _notes(self._request, case, FOUND)))
+        write_text(self._folder / CASE, case_text(case.scenario, _notes(self._request, case, CASE)))
 
     def result(self, found: Found | None, case: Case | None) -> Result:
         """Return what came of it."""

@@ -1,6 +1,6 @@
 """Batches of landings on local processes, which stay from batch to batch; results in the order asked."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from types import TracebackType
 from typing import Self
@@ -35,18 +35,23 @@ class Flights(AbstractContextManager["Flights"]):
     ) -> None:
         self._workers.__exit__(kind, error, trace)
 
-    def __call__(self, flights: Sequence[Flight]) -> list[Outcome]:
-        """Return the outcomes of `flights`, in their order.
+    def __call__(self, flights: Sequence[Flight], is_last: Callable[[Outcome], bool]) -> list[Outcome]:
+        """Return the outcomes of `flights` in their order, up to the first that is the last one wanted.
 
         Raises:
             UserError: the processes end before they are ready.
         """
-        trials = [
-            Trial(index=index, seed=seed, scenario=scenario.model_dump_json())
-            for index, (scenario, seed) in enumerate(flights)
-        ]
         outcomes: dict[int, Outcome] = {}
-        for trial, outcome in run_batch(self._workers, trials, lost=lost):
+        ends = len(flights)
+
+        def trials() -> Iterator[Trial]:
+            for index, (scenario, seed) in enumerate(flights):
+                if index < ends:
+                    yield Trial(index=index, seed=seed, scenario=scenario.model_dump_json())
+
+        for trial, outcome in run_batch(self._workers, trials(), lost=lost):
             outcomes[trial.index] = outcome
             self._landed(outcome)
-        return [outcomes[trial.index] for trial in trials]
+            if is_last(outcome):
+                ends = min(ends, trial.index + 1)
+        return [outcomes[index] for index in range(ends)]

@@ -17,7 +17,8 @@ def minimal(items: Sequence[Item], still_fails: Callable[[Sequence[list[Item]]],
 
     Args:
         items: which fail together.
-        still_fails: says of each of some selections, in the items' order, whether it fails.
+        still_fails: says of each of some selections, in the items' order, whether it fails; only the first that does
+            is looked at.
     """
     kept = list(items)
     size = len(kept)

@@ -4,7 +4,7 @@ First its quantities are put back to their medians, then the details of the scen
 is kept goes at least half as far beyond the limit as what was found, so that no case hangs on the limit itself.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from scenarios.config import Scenario
@@ -34,62 +34,83 @@ class Case:
     outcome: Outcome
 
 
+_Try = tuple[Scenario | None, Mapping[str, float]]
+"""A scenario, None where nothing valid remains, and the uniform numbers that are not at their medians."""
+
+
 class Reduction:
     """Flies what is left of a found world, and keeps what is unsafe enough.
 
     Args:
         found: the world.
         space: that it was found in.
-        fly: flies landings and returns their outcomes in order.
+        fly: flies landings.
         landings: how many may be flown; when they are used up, the case stays as it is.
+        keep: is given the case as it was found, and then each smaller one.
     """
 
-    def __init__(self, found: Found, space: Space, fly: Fly, *, landings: int) -> None:
+    def __init__(
+        self, found: Found, space: Space, fly: Fly, *, landings: int, keep: Callable[[Case], None] = lambda _: None
+    ) -> None:
         self._found = found
         self._space = space
         self._fly = fly
         self._left = landings
-        self._known: dict[str, Outcome] = {}
+        self._keep = keep
+        scenario = space.draw(found.seed, found.chosen)
+        self._case = Case(scenario=scenario, seed=found.seed, chosen=found.chosen, outcome=found.outcome)
+        self._known = {scenario.model_dump_json(): found.outcome}
+        keep(self._case)
 
-    def found(self) -> Case:
-        """Return the case as it was found."""
-        scenario = self._space.draw(self._found.seed, self._found.chosen)
-        self._known[scenario.model_dump_json()] = self._found.outcome
-        return self._case(scenario, self._found.chosen)
+    @property
+    def case(self) -> Case:
+        """The case as far as it is reduced."""
+        return self._case
 
-    def at_medians(self, case: Case) -> Case:
-        """Return `case` with as many of its quantities as can be at their medians, the most ordinary tried first."""
+    def put_to_medians(self) -> None:
+        """Put as many of the case's quantities as can be back to their medians, the most ordinary tried first."""
+        chosen, at_medians = self._case.chosen, dict.fromkeys(self._space.names, MEDIAN)
 
-        def scenario_of(names: Sequence[str]) -> Scenario:
-            at_median = dict.fromkeys(self._space.names, MEDIAN)
-            return self._space.draw(case.seed, at_median | {name: case.chosen[name] for name in names})
+        def try_of(names: Sequence[str]) -> _Try:
+            kept = {name: chosen[name] for name in sorted(names)}
+            return self._space.draw(self._case.seed, at_medians | kept), kept
 
-        names = sorted(case.chosen, key=lambda name: (abs(case.chosen[name] - MEDIAN), name))
-        kept = minimal(names, lambda selections: self._still_fail([scenario_of(one) for one in selections]))
-        return self._case(scenario_of(kept), {name: case.chosen[name] for name in sorted(kept)})
+        names = sorted(chosen, key=lambda name: (abs(chosen[name] - MEDIAN), name))
+        minimal(names, lambda selections: self._still_fail([try_of(one) for one in selections]))
 
-    def ideal(self, case: Case) -> Case:
-        """Return `case` with as many of its scenario's details as can be ideal or left out."""
-        every = details(case.scenario)
+    def make_ideal(self) -> None:
+        """Make as many of the details of the case's scenario as can be ideal, or leave them out."""
+        whole = self._case.scenario
+        every = details(whole)
+        minimal(
+            every,
+            lambda selections: self._still_fail(
+                [(without(whole, set(every) - set(kept)), self._case.chosen) for kept in selections]
+            ),
+        )
 
-        def scenario_of(kept: Sequence[object]) -> Scenario | None:
-            return without(case.scenario, set(every) - set(kept))
+    def _still_fail(self, tries: Sequence[_Try]) -> list[bool]:
+        """Say of each try, up to the first that is so, whether it is unsafe enough; that one is the case from then on.
 
-        kept = minimal(every, lambda selections: self._still_fail([scenario_of(one) for one in selections]))
-        return self._case(scenario_of(kept) or case.scenario, case.chosen)
-
-    def _case(self, scenario: Scenario, chosen: Mapping[str, float]) -> Case:
-        outcome = self._known[scenario.model_dump_json()]
-        return Case(scenario=scenario, seed=self._found.seed, chosen=chosen, outcome=outcome)
-
-    def _still_fail(self, scenarios: Sequence[Scenario | None]) -> list[bool]:
-        """Say of each scenario whether it is unsafe enough; one that was flown is not flown again."""
-        valid = {one.model_dump_json(): one for one in scenarios if one is not None}
+        A scenario that was flown is not flown again.
+        """
+        valid = {one.model_dump_json(): one for one, _ in tries if one is not None}
         new = [text for text in valid if text not in self._known][: self._left]
-        self._left -= len(new)
-        outcomes = self._fly([(valid[text], self._found.seed) for text in new])
-        self._known |= zip(new, outcomes, strict=True)
-        return [one is not None and self._fails(self._known.get(one.model_dump_json())) for one in scenarios]
+        if new and not any(self._fails(self._known.get(text)) for text in valid):
+            outcomes = self._fly([(valid[text], self._found.seed) for text in new], self._fails)
+            self._left -= len(outcomes)
+            self._known |= zip(new, outcomes, strict=False)
+        outcomes_by_try = [None if one is None else self._known.get(one.model_dump_json()) for one, _ in tries]
+        answers = [self._fails(outcome) for outcome in outcomes_by_try]
+        if True in answers:
+            first = answers.index(True)
+            self._accept(*tries[first], outcomes_by_try[first])
+        return answers
+
+    def _accept(self, scenario: Scenario | None, chosen: Mapping[str, float], outcome: Outcome | None) -> None:
+        if scenario is not None and outcome is not None:
+            self._case = Case(scenario=scenario, seed=self._found.seed, chosen=chosen, outcome=outcome)
+            self._keep(self._case)
 
     def _fails(self, outcome: Outcome | None) -> bool:
         worst = self._found.outcome.margin

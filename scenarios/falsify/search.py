@@ -15,8 +15,8 @@ from scenarios.falsify.trial import Outcome
 
 _NO_MARGIN = 1.0  # of a landing without a result: nothing to go towards
 
-Fly = Callable[[Sequence[Flight]], list[Outcome]]
-"""Flies landings and returns their outcomes in order."""
+Fly = Callable[[Sequence[Flight], Callable[[Outcome], bool]], list[Outcome]]
+"""Flies landings and returns their outcomes in order, up to the first of which it is told that it is the last."""
 Draw = Callable[[int, Mapping[str, float]], Scenario]
 """Makes the scenario of a seed with chosen uniform numbers, by the quantities' names."""
 MakeStrategy = Callable[[int, int], Strategy]
@@ -54,7 +54,7 @@ def search(
 
     Args:
         space: that is searched.
-        fly: flies landings and returns their outcomes in order.
+        fly: flies them.
         first_seed: of the first start; each further start has the next.
         landings: how many may be flown.
         make_strategy: of a start, from the number of quantities and its seed.
@@ -65,11 +65,10 @@ def search(
         while flown < landings and not strategy.is_stale:
             points = [uniforms(space.names, z) for z in strategy.ask()]
             asked = points[: landings - flown]
-            outcomes = fly([(space.draw(seed, chosen), seed) for chosen in asked])
-            for place, outcome in enumerate(outcomes):
-                if outcome.is_unsafe:
-                    return Found(landing=flown + place + 1, seed=seed, chosen=asked[place], outcome=outcome)
-            flown += len(asked)
+            outcomes = fly([(space.draw(seed, chosen), seed) for chosen in asked], lambda one: one.is_unsafe)
+            flown += len(outcomes)
+            if outcomes[-1].is_unsafe:
+                return Found(landing=flown, seed=seed, chosen=asked[len(outcomes) - 1], outcome=outcomes[-1])
             if len(asked) == len(points):
                 strategy.tell([_NO_MARGIN if one.margin is None else one.margin for one in outcomes])
         seed += 1

@@ -5,8 +5,9 @@ Who the workers are (`LocalWorkers`, `DaskWorkers`) shows neither in the results
 
 from abc import ABC, abstractmethod
 from collections import Counter, deque
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import CancelledError, Future
+from itertools import chain, islice
 from queue import Empty, SimpleQueue
 from types import TracebackType
 from typing import Generic, Self, TypeVar
@@ -75,15 +76,20 @@ def run_tasks(
 def run_batch(
     workers: Workers[Task, Result], tasks: Iterable[Task], *, lost: Callable[[Task, str], Result]
 ) -> Generator[tuple[Task, Result], None, None]:
-    """Yield each task with its result, as `run_tasks` does, by workers that are found and stay for other tasks."""
-    waiting, losses = deque(tasks), Counter[Task]()
+    """Yield each task with its result, as `run_tasks` does, by workers that are found and stay for other tasks.
+
+    A task is taken from `tasks` when there is a place for it, so that who asks can end them early.
+    """
+    fresh, again, losses = iter(tasks), deque[Task](), Counter[Task]()
     underway: dict[Future[Result], Task] = {}
     ended: SimpleQueue[Future[Result]] = SimpleQueue()
-    while waiting or underway:
-        while waiting and len(underway) < workers.places:
-            future = workers.submit(waiting[0])
-            underway[future] = waiting.popleft()
+    while True:
+        for task in islice(chain(_drained(again), fresh), workers.places - len(underway)):
+            future = workers.submit(task)
+            underway[future] = task
             future.add_done_callback(ended.put)
+        if not underway:
+            return
         future = _next_ended(ended)
         task = underway.pop(future)
         death = workers.release(future)
@@ -92,9 +98,14 @@ def run_batch(
             continue
         losses[task] += 1
         if losses[task] < _ATTEMPTS_MAX:
-            waiting.appendleft(task)
+            again.append(task)
         else:
             yield task, lost(task, f"its process died {_ATTEMPTS_MAX} times ({death})")
+
+
+def _drained(tasks: "deque[Task]") -> Iterator[Task]:
+    while tasks:
+        yield tasks.popleft()
 
 
 def _next_ended(ended: "SimpleQueue[Future[Result]]") -> "Future[Result]":

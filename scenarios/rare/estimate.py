@@ -35,7 +35,7 @@ class Verdict(Enum):
     FAILED = "a landing raised an error"
     NOTHING_WORSE = "most landings have the same margin, so that none is worse than the others"
     NONE_UNSAFE = "no landing is unsafe down to the least probability: it may be lower (--level)"
-    STUCK = "at some level most copies did not move: more moves are needed (--moves)"
+    STUCK = "at some level most copies did not move: more steps are needed (--steps)"
     FEW_ANCESTORS = "the unsafe landings descend from too few of the first ones: more landings are needed (--particles)"
 
 

@@ -10,14 +10,15 @@ from scenarios.campaigns.landing_task import error_line
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.catalogue.firmware_option import with_firmware
 from scenarios.config import Scenario
-from scenarios.lockstep.lockstep import Lockstep
+from scenarios.lockstep.lockstep import START_NS, Lockstep
 from scenarios.lockstep.warm_up import warm_process
 from scenarios.processes.local_workers import LocalWorkers
 from scenarios.processes.pool import run_batch
-from scenarios.rare.chain import Walk, Walked, walk
-from scenarios.rare.noise import MovedNoise
+from scenarios.rare.chain import Landing, Walk, Walked, walk
+from scenarios.rare.noise import NoiseInFlight
 from scenarios.rare.splitting import Fly
 from scenarios.recordings.result import score_run
+from scenarios.simulation.noise import NoiseSource
 from scenarios.worlds.odd import quantities_of
 from scenarios.worlds.world import draw_world
 
@@ -32,7 +33,7 @@ class Subject(Protocol):
     def name(self) -> str:
         """As it is reported."""
 
-    def scenario(self, noise: MovedNoise) -> Scenario:
+    def scenario(self, noise: NoiseSource) -> Scenario:
         """Return what is flown with `noise`."""
 
 
@@ -47,7 +48,7 @@ class Cell:
         """Of the scenario."""
         return self.cell.name
 
-    def scenario(self, noise: MovedNoise) -> Scenario:  # noqa: ARG002 (a cell is the same for all)
+    def scenario(self, noise: NoiseSource) -> Scenario:  # noqa: ARG002 (a cell is the same for all)
         """Return the scenario."""
         return self.cell
 
@@ -70,12 +71,14 @@ def subject_of(name: str, firmware: str | None = None) -> Subject:
     return World(slice=name)
 
 
-def fly_margin(subject: Subject, noise: MovedNoise) -> float:
-    """Fly a landing in lockstep and return its margin, negative exactly if it is unsafe."""
+def fly_landing(subject: Subject, noise: NoiseInFlight) -> Landing:
+    """Fly a landing in lockstep."""
     scenario = subject.scenario(noise)
     lockstep = Lockstep(scenario, noise)
+    noise.now_s = lambda: (lockstep.simulation.t_ns - START_NS) * 1e-9
     lockstep.run()
-    return score_run(scenario, noise, lockstep.recording).margin
+    margin = score_run(scenario, noise.flown(), lockstep.recording).margin
+    return Landing(margin=margin, duration_s=lockstep.recording.elapsed_s)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,7 +92,7 @@ class World:
         """Of the slice."""
         return self.slice
 
-    def scenario(self, noise: MovedNoise) -> Scenario:
+    def scenario(self, noise: NoiseSource) -> Scenario:
         """Return the scenario of the world that `noise` draws."""
         return draw_world(self.slice, noise).scenario
 
@@ -104,7 +107,7 @@ class Chains:
         """Return where a chain ends; one with a landing that raises ends where it began, with the error."""
         warm_process()
         try:
-            return walk(start, lambda noise: fly_margin(self.subject, noise))
+            return walk(start, lambda noise: fly_landing(self.subject, noise))
         except UserError:
             raise
         except Exception as error:  # noqa: BLE001 (it is reported, and no probability is given)
@@ -112,8 +115,7 @@ class Chains:
 
 
 def _failed(start: Walk, why: str) -> Walked:
-    margin = 0.0 if start.margin is None else start.margin
-    return Walked(noise=start.noise, margin=margin, flown=0, taken=0, error=why)
+    return Walked(noise=start.noise, landing=start.landing, flown=0, taken=(), error=why)
 
 
 @contextmanager

@@ -1,6 +1,7 @@
 """A splitting as a table for programs and as text for people."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import Any, TextIO
 
 from rich.box import SIMPLE_HEAD
@@ -13,7 +14,7 @@ from scenarios.rare.splitting import Particle, Population, Settings
 
 _PLAIN_WIDTH = 1000  # nothing is wrapped where a program may read it
 _ERRORS_SHOWN = 5
-_WORST_SHOWN = 10
+_WORST_SHOWN = 3
 
 _COLUMNS = {
     "margin": ".3g",
@@ -21,6 +22,7 @@ _COLUMNS = {
     "survivors": "d",
     "angle_rad": ".3g",
     "taken": ".0%",
+    "taken_later": ".0%",
     "moved": ".0%",
 }
 
@@ -38,7 +40,7 @@ def report(subject: str, settings: Settings, population: Population) -> dict[str
     return {
         "subject": subject,
         "particles": settings.particles,
-        "moves": settings.moves,
+        "steps": settings.steps,
         "level": settings.least,
         "seed": settings.seed,
         "converged": found.verdict is Verdict.CONVERGED,
@@ -55,6 +57,7 @@ def report(subject: str, settings: Settings, population: Population) -> dict[str
                 "survivors": level.survivors,
                 "angle_rad": level.angle_rad,
                 "taken": level.taken,
+                "taken_later": level.taken_later,
                 "moved": level.moved,
             }
             for level in population.levels
@@ -70,8 +73,11 @@ def _interval(interval: Interval) -> dict[str, float]:
 
 def _noise(particle: Particle) -> dict[str, Any]:
     """Return what flies an unsafe landing again."""
-    moves = [[move.seed, move.angle_rad] for move in particle.noise.moves]
-    return {"margin": particle.margin, "seed": particle.noise.seed, "moves": moves}
+    return {
+        "margin": particle.margin,
+        "seed": particle.noise.seed,
+        "changes": [asdict(c) for c in particle.noise.changes],
+    }
 
 
 def print_report(table: Mapping[str, Any], out: TextIO) -> None:
@@ -95,7 +101,9 @@ def _print_levels(console: Console, levels: Sequence[Mapping[str, Any]]) -> None
         return
     table = Table("level", *_COLUMNS, box=SIMPLE_HEAD)
     for number, level in enumerate(levels, start=1):
-        table.add_row(str(number), *(format(level[name], form) for name, form in _COLUMNS.items()))
+        table.add_row(
+            str(number), *("-" if level[name] is None else format(level[name], form) for name, form in _COLUMNS.items())
+        )
     console.print(table)
 
 

@@ -1,6 +1,7 @@
 """The simulated drone under its flight controller: one pure function from a reference to a new state."""
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 from math import atan2, hypot, inf
 
 import numpy as np
@@ -73,7 +74,7 @@ class PlantConfig:
         control = control_record(
             self.controller,
             gains if self.gains is None else _with_gains(gains, self.gains),
-            report_gains(self.airframe),
+            _gains_of(self.airframe),
             self.envelope,
             period_s=self.control_period_s,
             observer_rad_s=OBSERVER_POLE_RAD_S if self.gains is None else _observer_pole(self.gains),
@@ -93,6 +94,12 @@ class PlantMemory(Struct, frozen=True, kw_only=True, eq=False):
 
     state: PlantState
     internals: Array
+
+
+@lru_cache(maxsize=4)
+def _gains_of(airframe: Airframe) -> tuple[Array, Array]:
+    """Return the report's gains, which take 5 ms; each boot and each change of a limit asks for them."""
+    return report_gains(airframe)
 
 
 def _with_gains(own: CascadeGains, given: PositionGains) -> CascadeGains:

@@ -116,11 +116,12 @@ class Setup:
 
     autopilot: FakePx4 = field(default_factory=FakePx4)
     dry_run: bool = False
+    publishes: bool = True
     t_ns: int = START_NS
     config: CompanionConfig = field(default_factory=_config)
 
     def __post_init__(self) -> None:
-        self.node: CompanionNode = build_node(self.config, KEYS, dry_run=self.dry_run)
+        self.node: CompanionNode = build_node(self.config, KEYS, dry_run=self.dry_run, publishes=self.publishes)
 
     @property
     def utc_ns(self) -> int:

@@ -194,6 +194,19 @@ def test_status_and_plan_are_published_and_can_be_read() -> None:
     assert len(cdr.decode(Plan, plans[-1].payload).poses) > 3
 
 
+def test_node_that_nobody_listens_to_says_the_same_to_its_autopilot() -> None:
+    said: list[list[bytes]] = []
+    for publishes in (True, False):
+        setup = Setup(publishes=publishes)
+        setup.run(3.0)
+        setup.node.request(Command.START)
+        setup.run(1.0)
+        assert bool(setup.node.take_publications()) is publishes
+        said.append([bytes(message.get_msgbuf()) for message in setup.autopilot.received])
+    assert said[0] == said[1]
+    assert len(said[0]) > 100
+
+
 @pytest.mark.slow
 def test_pilot_reads_every_phase() -> None:
     setup = _flying()

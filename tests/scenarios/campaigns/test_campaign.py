@@ -91,7 +91,7 @@ def test_interrupted_campaign_keeps_what_is_done_and_goes_on_with_the_rest(refer
     assert len(journal_of(folder)) == pl.read_parquet(folder / "landings.parquet").height == 3
 
     flown: list[Flown | None] = []
-    fly_campaign(folder, plan, Where(workers=2), lambda one, _done, _total: flown.append(one))
+    fly_campaign(folder, plan, Where(workers=1), lambda one, _done, _total: flown.append(one))
     assert len([one for one in flown if one is not None]) == 2 * SEEDS - 3
     assert landings(folder) == landings(reference)
 
@@ -118,7 +118,7 @@ def test_landing_that_raises_is_a_row_and_makes_the_exit_code_1(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     cells = failing_cell(tmp_path), short_cell(tmp_path)
-    code = scenarios("campaign", *cells, "--seeds", 2, "--workers", 2, "--out", tmp_path / "out", "--json")
+    code = scenarios("campaign", *cells, "--seeds", 2, "--workers", 1, "--out", tmp_path / "out", "--json")
     printed = capsys.readouterr()
     assert code == 1
     by_cell = {cell["cell"]: cell for cell in json.loads(printed.out)["cells"]}
@@ -152,7 +152,7 @@ def test_ctrl_c_ends_the_program_and_its_processes(reference: Path, tmp_path: Pa
     assert err.decode().splitlines()[1:] == [f"what is done is kept; go on with: scenarios campaign --resume {folder}"]
     wait_until(lambda: all(has_ended(child) for child in children))
     assert 0 < len(journal_of(folder)) < 2 * SEEDS
-    fly_campaign(folder, plan, Where(workers=2), quiet)
+    fly_campaign(folder, plan, Where(workers=1), quiet)
     assert landings(folder) == landings(reference)
 
 

@@ -28,3 +28,8 @@ def test_notes_are_comments_that_fit_the_page() -> None:
     assert len(comments) == 4
     assert max(len(line) for line in comments) <= 120
     assert comments[-1] == "# Fly it: scenarios run case.toml"
+
+
+def test_plain_values_of_a_list_share_a_line() -> None:
+    text = case_text(load_scenario("report_1"), [])
+    assert "waypoints_m = [\n    [0.0, 0.0],\n    [50.0, 0.0],\n]\nspeeds_m_s = [0.0, 5.0]\n" in text

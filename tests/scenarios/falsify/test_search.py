@@ -1,11 +1,11 @@
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import pytest
 
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import Scenario
 from scenarios.falsify.flights import Flight
-from scenarios.falsify.reduction import Reduction
+from scenarios.falsify.reduction import Case, Reduction
 from scenarios.falsify.search import Found, Space, search
 from scenarios.falsify.trial import Outcome
 
@@ -30,9 +30,14 @@ class Air:
         self.limit = limit
         self.flown: list[Flight] = []
 
-    def fly(self, flights: Sequence[Flight]) -> list[Outcome]:
-        self.flown += flights
-        return [self.outcome(scenario) for scenario, _ in flights]
+    def fly(self, flights: Sequence[Flight], is_last: Callable[[Outcome], bool]) -> list[Outcome]:
+        outcomes: list[Outcome] = []
+        for scenario, seed in flights:
+            self.flown.append((scenario, seed))
+            outcomes.append(self.outcome(scenario))
+            if is_last(outcomes[-1]):
+                break
+        return outcomes
 
     def outcome(self, scenario: Scenario) -> Outcome:
         margin = self.limit - 0.05 * scenario.wind.mean_m_s * scenario.link.zenoh.delay_s
@@ -52,7 +57,7 @@ def test_search_says_which_landing_was_the_first_unsafe_one() -> None:
     air = Air(limit=0.9)
     found = found_with(air)
     outcomes = [air.outcome(scenario) for scenario, _ in air.flown]
-    assert [one.is_unsafe for one in outcomes].index(True) == found.landing - 1
+    assert [one.is_unsafe for one in outcomes].index(True) == found.landing - 1 == len(outcomes) - 1
     assert draw(found.seed, found.chosen) == air.flown[found.landing - 1][0]
 
 
@@ -73,16 +78,18 @@ def test_each_start_is_about_another_seed() -> None:
 
 def test_search_goes_on_where_landings_have_no_result() -> None:
     lost = Outcome(margin=None, tier=None, reason=None, error="ValueError: no")
-    assert search(SPACE, lambda flights: [lost] * len(flights), first_seed=1, landings=60) is None
+    assert search(SPACE, lambda flights, _: [lost] * len(flights), first_seed=1, landings=60) is None
 
 
 def reduced(air: Air, landings: int) -> Reduction:
-    return Reduction(found_with(air), SPACE, air.fly, landings=landings)
+    reduction = Reduction(found_with(air), SPACE, air.fly, landings=landings)
+    reduction.put_to_medians()
+    reduction.make_ideal()
+    return reduction
 
 
 def test_reduction_puts_back_what_the_failure_does_not_need() -> None:
-    reduction = reduced(Air(limit=0.9), 300)
-    case = reduction.at_medians(reduction.found())
+    case = reduced(Air(limit=0.9), 300).case
     assert set(case.chosen) == {NAMES[WIND], NAMES[DELAY]}
     assert case.outcome.is_unsafe
 
@@ -90,36 +97,43 @@ def test_reduction_puts_back_what_the_failure_does_not_need() -> None:
 def test_reduced_case_keeps_half_of_how_far_it_was_beyond_the_limit() -> None:
     air = Air(limit=0.9)
     found = found_with(air)
-    reduction = Reduction(found, SPACE, air.fly, landings=300)
-    case = reduction.ideal(reduction.at_medians(reduction.found()))
+    case = reduced(air, 300).case
     assert case.outcome.margin is not None
     assert found.outcome.margin is not None
     assert case.outcome.margin <= 0.5 * found.outcome.margin
 
 
 def test_reduction_makes_ideal_what_the_failure_does_not_need() -> None:
-    reduction = reduced(Air(limit=0.9), 300)
-    case = reduction.ideal(reduction.at_medians(reduction.found()))
-    assert case.scenario.wind.turbulence == "none"
-    assert case.scenario.wind.mean_m_s > 0.0
-    assert case.scenario.link.mavlink.delay_s == 0.0
-    assert case.scenario.link.zenoh.delay_s > 0.0
+    scenario = reduced(Air(limit=0.9), 300).case.scenario
+    assert scenario.wind.turbulence == "none"
+    assert scenario.wind.mean_m_s > 0.0
+    assert scenario.link.mavlink.delay_s == 0.0
+    assert scenario.link.zenoh.delay_s > 0.0
 
 
 @pytest.mark.parametrize("landings", [0, 1, 7])
 def test_reduction_flies_no_more_than_it_may_and_still_has_an_unsafe_case(landings: int) -> None:
     air = Air(limit=0.9)
-    reduction = reduced(air, landings)
-    before = len(air.flown)
-    case = reduction.ideal(reduction.at_medians(reduction.found()))
-    assert len(air.flown) - before <= landings
+    searched = found_with(air).landing
+    air.flown.clear()
+    case = reduced(air, landings).case
+    assert len(air.flown) <= searched + landings
     assert case.outcome.is_unsafe
 
 
 def test_reduction_flies_no_scenario_twice() -> None:
     air = Air(limit=0.9)
-    reduction = reduced(air, 300)
-    before = len(air.flown)
-    reduction.ideal(reduction.at_medians(reduction.found()))
-    texts = [scenario.model_dump_json() for scenario, _ in air.flown[before:]]
+    reduced(air, 300)
+    texts = [scenario.model_dump_json() for scenario, _ in air.flown]
     assert len(texts) == len(set(texts))
+
+
+def test_every_case_that_is_kept_is_unsafe_and_smaller_than_the_one_before() -> None:
+    air = Air(limit=0.9)
+    kept: list[Case] = []
+    reduction = Reduction(found_with(air), SPACE, air.fly, landings=300, keep=kept.append)
+    reduction.put_to_medians()
+    assert kept[-1] == reduction.case
+    assert all(air.outcome(case.scenario) == case.outcome and case.outcome.is_unsafe for case in kept)
+    sizes = [len(case.chosen) for case in kept]
+    assert sizes == sorted(set(sizes), reverse=True)

@@ -7,13 +7,13 @@ from link.program.cli import make_app, run_app
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.commands import campaign as campaign_commands
 from scenarios.commands import rare as rare_commands
-from scenarios.rare.chain import Walk, Walked
-from scenarios.rare.landing import Cell, fly_margin, flying, subject_of
-from scenarios.rare.noise import Move, MovedNoise
+from scenarios.rare.chain import LaterStep, Walk, Walked, WholeStep
+from scenarios.rare.landing import Cell, fly_landing, flying, subject_of
+from scenarios.rare.noise import Move, MovedNoise, NoiseInFlight
 from tests.scenarios.campaigns.short import failing_cell, short_cell
 
 FIRST = MovedNoise(seed=3)
-BESIDE = FIRST.moved(Move(seed=4, angle_rad=0.5))
+BESIDE = FIRST.changed(Move(seed=4, angle_rad=0.5))
 
 
 def scenarios(*args: object) -> int:
@@ -26,16 +26,26 @@ def scenarios(*args: object) -> int:
 
 def test_noise_decides_the_landing_and_a_move_changes_it(tmp_path: Path) -> None:
     subject = Cell(cell=load_scenario(short_cell(tmp_path)))
-    first, again, beside = (fly_margin(subject, noise) for noise in (FIRST, FIRST, BESIDE))
+    first, again, beside = (fly_landing(subject, NoiseInFlight(noise)) for noise in (FIRST, FIRST, BESIDE))
     assert first == again
     assert first != beside
 
 
 @pytest.mark.slow
+def test_redrawn_landing_flies_the_same_again(tmp_path: Path) -> None:
+    subject = Cell(cell=load_scenario(short_cell(tmp_path)))
+    before = fly_landing(subject, NoiseInFlight(FIRST))
+    redrawn = NoiseInFlight(FIRST, redraw_seed=8, from_s=0.5 * before.duration_s)
+    after = fly_landing(subject, redrawn)
+    assert after != before
+    assert fly_landing(subject, NoiseInFlight(redrawn.flown())) == after
+
+
+@pytest.mark.slow
 def test_chains_end_the_same_on_any_number_of_processes(tmp_path: Path) -> None:
     subject = Cell(cell=load_scenario(short_cell(tmp_path)))
-    moves = (Move(seed=6, angle_rad=0.5), Move(seed=7, angle_rad=0.5))
-    walks = [Walk(noise=FIRST), Walk(noise=BESIDE, moves=moves), Walk(noise=BESIDE)]
+    steps = (WholeStep(seed=6, angle_rad=0.5), LaterStep(seed=7, share=0.3))
+    walks = [Walk(noise=FIRST), Walk(noise=BESIDE, steps=steps), Walk(noise=BESIDE)]
 
     def ends(workers: int) -> list[Walked]:
         with flying(subject, workers) as fly:
@@ -78,6 +88,6 @@ def test_noise_draws_the_world_and_a_small_move_changes_it_a_little() -> None:
     subject = subject_of("world")
     first, again = subject.scenario(FIRST), subject.scenario(FIRST)
     assert first == again
-    nearby = subject.scenario(FIRST.moved(Move(seed=4, angle_rad=1e-3)))
+    nearby = subject.scenario(FIRST.changed(Move(seed=4, angle_rad=1e-3)))
     assert nearby.wind.mean_m_s == pytest.approx(first.wind.mean_m_s, rel=0.02)
     assert nearby.wind.mean_m_s != first.wind.mean_m_s

@@ -1,10 +1,11 @@
 import io
 
+from scenarios.rare.noise import Move
 from scenarios.rare.report import level_line, print_report, report
 from scenarios.rare.splitting import Settings
 from tests.scenarios.rare.limit_states import linear, split_margin
 
-SETTINGS = Settings(particles=60, moves=4, least=1e-9, seed=1)
+SETTINGS = Settings(particles=60, steps=4, in_time=False, least=1e-9, seed=1)
 MARGIN = linear(0.05)
 POPULATION = split_margin(MARGIN, particles=60, seed=1)
 
@@ -25,7 +26,10 @@ def test_worst_landings_are_told_by_what_flies_them_again() -> None:
     assert worst[0]["margin"] == min(particle.margin for particle in POPULATION.particles)
     particle = min(POPULATION.particles, key=lambda one: one.margin)
     assert worst[0]["seed"] == particle.noise.seed
-    assert worst[0]["moves"] == [[move.seed, move.angle_rad] for move in particle.noise.moves]
+    assert len(worst[0]["changes"]) == len(particle.noise.changes)
+    last = particle.noise.changes[-1]
+    assert isinstance(last, Move)
+    assert worst[0]["changes"][-1] == {"seed": last.seed, "angle_rad": last.angle_rad}
 
 
 def test_level_line_tells_how_far_it_is() -> None:

@@ -5,7 +5,16 @@ from scipy import stats
 from scenarios.rare.estimate import ANCESTORS_MIN, MOVED_MIN, Verdict, estimate
 from scenarios.rare.noise import MovedNoise
 from scenarios.rare.splitting import Population
-from tests.scenarios.rare.limit_states import MarginOf, linear, region, split_margin, two_regions
+from tests.scenarios.rare.limit_states import (
+    MarginOf,
+    linear,
+    region,
+    split_landings,
+    split_margin,
+    two_regions,
+    waiting,
+    waiting_probability,
+)
 
 REPETITIONS = 40
 LEVEL = 0.01
@@ -34,6 +43,18 @@ def test_interval_has_its_coverage_and_the_estimate_no_bias(
     assert len(intervals) == REPETITIONS
     covered = sum(one.low <= probability <= one.high for one in intervals)
     assert stats.binomtest(covered, REPETITIONS, 0.95, alternative="less").pvalue > LEVEL
+    ratios = np.array([one.value for one in intervals]) / probability
+    assert stats.ttest_1samp(ratios, 1.0).pvalue > LEVEL
+
+
+@pytest.mark.slow
+def test_drawing_anew_in_time_gives_no_bias() -> None:
+    probability = waiting_probability(0.02)
+    found = [estimate(split_landings(waiting(0.02), particles=80, seed=seed)) for seed in range(REPETITIONS)]
+    intervals = [one.probability for one in found if one.probability is not None]
+    assert len(intervals) > 0.8 * REPETITIONS
+    covered = sum(one.low <= probability <= one.high for one in intervals)
+    assert stats.binomtest(covered, len(intervals), 0.95, alternative="less").pvalue > LEVEL
     ratios = np.array([one.value for one in intervals]) / probability
     assert stats.ttest_1samp(ratios, 1.0).pvalue > LEVEL
 
@@ -104,7 +125,7 @@ def test_too_few_ancestors_give_no_number() -> None:
 def test_copies_that_do_not_move_give_no_number() -> None:
     def rugged(noise: MovedNoise) -> float:
         """Return a margin that every move raises."""
-        return 1.0 if noise.moves else float(noise.stream("z").random()) - 0.1
+        return 1.0 if noise.changes else float(noise.stream("z").random()) - 0.1
 
     population = split_margin(rugged, particles=60, seed=1)
     assert any(level.moved < MOVED_MIN for level in population.levels)
