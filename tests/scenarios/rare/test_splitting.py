@@ -31,7 +31,6 @@ def value_of(population: Population) -> float:
     ("margin_of", "probability", "particles"),
     [
         (linear(0.05), 0.05, 60),
-        pytest.param(linear(1e-3), 1e-3, 100, marks=pytest.mark.slow),
         pytest.param(two_regions(1e-2), 1e-2, 100, marks=pytest.mark.slow),
     ],
 )
