@@ -116,7 +116,7 @@ def test_landings_of_the_same_margin_give_no_number() -> None:
 
 
 def test_too_few_ancestors_give_no_number() -> None:
-    population = split_margin(linear(1e-6), particles=20, seed=2)
+    population = split_margin(linear(1e-4), particles=40, seed=1)
     assert len({one.ancestor for one in population.unsafe}) < ANCESTORS_MIN
     assert no_number(population) is Verdict.FEW_ANCESTORS
 
