@@ -6,6 +6,7 @@ from typing import Any
 from scenarios.campaigns.causes import NOTHING
 from scenarios.campaigns.cells import WORLD_COLUMN
 from scenarios.campaigns.sheets import Sheet
+from scenarios.config import FIRMWARES
 from scenarios.recordings.reason_counts import counts_text
 
 _WORLDS_SHOWN = 3
@@ -26,7 +27,7 @@ Rates = Mapping[str, Any]
 def worlds_sheets(report: Mapping[str, Any]) -> list[Sheet]:
     """Return the sheets of one slice's report; what has nothing to show is left out."""
     tiers = _reached(report)
-    sheets = [_overall(report, tiers)]
+    sheets = [_overall(report, tiers), _pairs(report["pairs"])]
     sheets += [
         _groups_sheet(f"{report['worlds']} by {_plain(name)}", found, tiers) for name, found in report["by"].items()
     ]
@@ -55,18 +56,25 @@ def _reached(report: Mapping[str, Any]) -> list[str]:
 
 def _overall(report: Mapping[str, Any], tiers: Sequence[str]) -> Sheet:
     rows = [("all", report["overall"]), *(report["by_firmware"].items() if len(report["by_firmware"]) > 1 else ())]
-    title = f"{report['worlds']}: tiers in % (95 % intervals)"
-    pairs = report["pairs"]
-    if pairs is not None:
-        title += "; " + ", ".join(
-            _pair_text(name.replace("_", " "), pairs[name]) for name in ("s1_or_better", "unsafe")
+    return _rates_sheet(f"{report['worlds']}: tiers in % (95 % intervals)", "firmware", rows, tiers)
+
+
+def _pairs(pairs: Mapping[str, Any] | None) -> Sheet:
+    """Return what worlds flown with both firmwares came to; no rows where there is none."""
+    title = "Worlds in which only one firmware did (McNemar's exact p)"
+    head = ("of both", "pairs", *FIRMWARES, "p")
+    if pairs is None:
+        return Sheet(title=title, head=head, rows=())
+    rows = tuple(
+        (
+            heading,
+            str(pairs["pairs"]),
+            *(str(pairs[name][f"only_{one}"]) for one in FIRMWARES),
+            f"{pairs[name]['p']:.2g}",
         )
-    return _rates_sheet(title, "firmware", rows, tiers)
-
-
-def _pair_text(name: str, found: Mapping[str, Any]) -> str:
-    only = ", ".join(f"{key.removeprefix('only_')} {count}" for key, count in found.items() if key != "p")
-    return f"{name} with only one of a world's firmwares: {only} (p={found['p']:.2g})"
+        for name, heading in (("s1_or_better", "S1 or better"), ("unsafe", "unsafe"))
+    )
+    return Sheet(title=title, head=head, rows=rows)
 
 
 def _groups_sheet(title: str, groups: Mapping[str, Rates], tiers: Sequence[str]) -> Sheet:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from scenarios.simulation.noise import Seed
 from scenarios.tracks.drive import SHIFT_CURVATURE, Shift
 from scenarios.worlds.draws import Draws
-from scenarios.worlds.road import RoadPlan
+from scenarios.worlds.road import STEERING_MAX_PER_M_S, TURN_RADIUS_MIN_M, RoadPlan
 from scenarios.worlds.speed_plan import Grid, plan_speed
 
 EVENTS = 8
@@ -168,22 +168,21 @@ def _shift(event: _Event, drive: _Drive, grid: Grid, shifts: list[Shift]) -> boo
     """Plan a lane change, or a swerve there and back, on the next long enough straight; return whether there is one."""
     here_m = drive.place * grid.step_m + grid.step_m
     free_m = max([here_m, *(place_m + length_m for place_m, length_m, _ in shifts)])
-    lateral_m_s2 = min(event.lateral_m_s2, _GRIP_SHIFT_MAX * grid.grip_m_s2)
-    time_s = math.sqrt(SHIFT_CURVATURE * abs(event.offset_m) / lateral_m_s2)
     parts = 2 if event.kind == "swerve" else 1
     first = math.ceil(free_m / grid.step_m)
     for start in range(first, first + int(_AHEAD_MAX_M / grid.step_m)):
-        fastest_m_s = max(grid.caps_m_s[start : start + 1], default=0.0)
-        cells = math.ceil(parts * time_s * fastest_m_s / grid.step_m) + 1
+        if start >= len(grid.caps_m_s):
+            return False
+        # as long as the speed at its beginning needs, unless the vehicle may be faster on the way
+        length_m = _shift_length_m(event, grid, grid.caps_m_s[start])
+        cells = math.ceil(parts * length_m / grid.step_m) + 1
         if start + cells >= len(grid.caps_m_s):
             return False
-        fastest_m_s = max(grid.caps_m_s[start : start + cells])
-        length_m = time_s * fastest_m_s
+        length_m = _shift_length_m(event, grid, max(grid.caps_m_s[start : start + cells]))
         cells = math.ceil(parts * length_m / grid.step_m) + 1
-        if max(grid.curvatures_per_m[start : start + cells], default=1.0) > _STRAIGHT_PER_M:
-            continue
-        fastest_m_s = max(grid.caps_m_s[start : start + cells])
-        if time_s * fastest_m_s > length_m:
+        speed_m_s = max(grid.caps_m_s[start : start + cells])
+        is_straight = max(grid.curvatures_per_m[start : start + cells]) <= _STRAIGHT_PER_M
+        if not is_straight or _shift_length_m(event, grid, speed_m_s) > length_m:
             continue
         offsets_m = (event.offset_m, -event.offset_m)[:parts]
         shifts.extend(
@@ -193,6 +192,16 @@ def _shift(event: _Event, drive: _Drive, grid: Grid, shifts: list[Shift]) -> boo
         grid.curvatures_per_m[start : start + cells] = [curvature_per_m] * cells
         return True
     return False
+
+
+def _shift_length_m(event: _Event, grid: Grid, speed_m_s: float) -> float:
+    """Return the length of a shift at a speed: what grip, the tightest turn and the driver's hands ask for."""
+    lateral_m_s2, offset_m = min(event.lateral_m_s2, _GRIP_SHIFT_MAX * grid.grip_m_s2), abs(event.offset_m)
+    return max(
+        speed_m_s * math.sqrt(SHIFT_CURVATURE * offset_m / lateral_m_s2),
+        math.sqrt(SHIFT_CURVATURE * offset_m * TURN_RADIUS_MIN_M),
+        math.cbrt(4.0 * SHIFT_CURVATURE * offset_m * speed_m_s / STEERING_MAX_PER_M_S),
+    )
 
 
 def _merged(cells: Sequence[tuple[float, float, float]]) -> list[Leg]:

@@ -17,6 +17,10 @@ from scenarios.worlds.draws import Draws
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
 
 ELEMENTS = 16
+TURN_RADIUS_MIN_M = 6.0
+"""Of a car's path, and of the tightest bend in the domain."""
+STEERING_MAX_PER_M_S = 0.45
+"""The fastest change of curvature: 1000 degrees a second on the wheel, over a ratio of 15 and a wheelbase of 2.6 m."""
 _ENTRY_RAD = 0.9  # by which a roundabout's entry and exit turn away from its island; a choice
 _LATERAL_JERK_MAX_M_S3 = 3.0  # beyond the 1.2 m/s^3 of AASHTO's spirals, as at a junction; a choice
 _GRIP_BEND_MAX = 0.5  # of the friction circle in a bend: AASHTO's side friction leaves more than half; a choice
@@ -114,7 +118,8 @@ def _bends(draws: Draws, slot: int, cruise_m_s: float, lateral_m_s2: float) -> l
     def bend(radius_m: float, angle_rad: float, side: float) -> list[Stretch]:
         speed_m_s = min(cruise_m_s, math.sqrt(lateral_m_s2 * radius_m))
         swift_m = speed_m_s**3 / (radius_m * _LATERAL_JERK_MAX_M_S3)
-        clothoid_m = min(max(share**2 * radius_m, swift_m), 0.9 * angle_rad * radius_m)
+        steered_m = speed_m_s / (radius_m * STEERING_MAX_PER_M_S)
+        clothoid_m = min(max(share**2 * radius_m, swift_m, steered_m), 0.9 * angle_rad * radius_m)
         curvature_per_m = side / radius_m
         arc_m = angle_rad * radius_m - clothoid_m
         return [

@@ -12,6 +12,7 @@ from companion.situation.phases import TRANSITIONS, Phase
 from link.payloads.cdr import ROS_TYPES
 from link.program.toml_config import StrictModel
 from scenarios.catalogue.catalogue import list_scenarios, load_scenario
+from scenarios.catalogue.world_names import names_worlds, parse_world_name
 from scenarios.config import Scenario
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.manual.commands import PROGRAMS, helps
@@ -20,6 +21,7 @@ from scenarios.manual.phase_chart import FROM_ANYWHERE, PLACES, arrows, phase_ch
 from scenarios.manual.settings import keys_of, tables_of
 from scenarios.recordings.result import score_run
 from scenarios.scoring.score import Tier
+from scenarios.worlds.world import SLICES
 from sim_autopilot.runtime.config import SimAutopilotConfig
 from tests.scenarios.presets import list_presets
 
@@ -94,8 +96,11 @@ def test_files_that_a_page_leads_to_are_there_without_the_manual_being_built(pag
 def test_scenarios_that_a_page_flies_exist(page: str) -> None:
     text = (ROOT / page).read_text(encoding="utf-8")
     known = {entry.name for entry in list_scenarios()}
-    for name in re.findall(r"scenarios (?:run|world) ([\w+=]+)(?![\w./])", text):
-        assert name == "NAME" or name.split("+")[0] in known, name
+    for name in re.findall(r"scenarios (?:run|world) ([\w+=:@]+)(?![\w./])", text):
+        if names_worlds(name):
+            assert parse_world_name(name).slice in SLICES
+        else:
+            assert name == "NAME" or name.split("+")[0] in known, name
 
 
 @pytest.mark.slow

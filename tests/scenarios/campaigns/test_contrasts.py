@@ -15,11 +15,11 @@ def worlds(count: int = 200, quiet: int = 60) -> list[Row]:
     rng = np.random.default_rng(5)
     rows = []
     for seed in range(count):
-        drawn = {f"world.noise.n{number}": float(rng.random()) for number in range(quiet)}
+        drawn: Row = {f"world.noise.n{number}": float(rng.random()) for number in range(quiet)}
         speed_m_s = float(rng.uniform(2.0, 20.0))
         failed = speed_m_s > 14.0 and rng.random() < 0.3
-        rest = {"world.vehicle.class": "van", "world.wind.gust": bool(rng.random() < 0.5), "world.same": 3.0}
-        rows.append(row(seed, "unsafe" if failed else "S3", **{"world.speed_m_s": speed_m_s}, **drawn, **rest))
+        drawn |= {"world.speed_m_s": speed_m_s, "world.wind.gust": bool(rng.random() < 0.5), "world.same": 3.0}
+        rows.append(row(seed, "unsafe" if failed else "S3", **(drawn | {"world.vehicle.class": "van"})))
     return rows
 
 

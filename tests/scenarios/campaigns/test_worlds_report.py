@@ -84,6 +84,8 @@ def test_worlds_with_both_firmwares_are_one_report_that_compares_them_in_pairs()
     assert (pairs["unsafe"]["only_px4"], pairs["unsafe"]["only_ardupilot"]) == (5, 1)
     assert pairs["unsafe"]["p"] == pytest.approx(stats.binomtest(5, 6).pvalue)
     assert found["worst"][0]["world"] == "world@20+firmware=px4"
+    (shown,) = (sheet for sheet in worlds_sheets(found) if "only one firmware" in sheet.title)
+    assert shown.rows == (("S1 or better", "20", "1", "5", "0.22"), ("unsafe", "20", "5", "1", "0.22"))
 
 
 def test_each_slice_has_its_own_report_in_the_order_of_the_cells() -> None:

@@ -21,7 +21,7 @@ def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def git(folder: Path, *words: str) -> str:
-    command = ["git", "-C", folder, "-c", "user.name=A", "-c", "user.email=a@example.org", *words]
+    command = ["git", "-C", str(folder), "-c", "user.name=A", "-c", "user.email=a@example.org", *words]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
     return done.stdout.strip()
 

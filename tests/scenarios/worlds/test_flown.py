@@ -10,11 +10,12 @@ from scenarios.wire.run import RunOptions, run_in_lockstep
 from scenarios.worlds.world import draw_world
 
 pytestmark = pytest.mark.slow
-WORLD = draw_world("world", 2)
+SEED = 2
+WORLD = draw_world("world", SEED)
 
 
 def options(folder: Path) -> RunOptions:
-    return RunOptions(seed=WORLD.seed, speed=1.0, folder=folder, record=True)
+    return RunOptions(seed=SEED, speed=1.0, folder=folder, record=True)
 
 
 @pytest.fixture(scope="module")
