@@ -15,7 +15,7 @@ class MemoryLink:
     """Holds packets until their time has come, and loses, doubles, spoils or overtakes some of them.
 
     Args:
-        seed: of all that is random.
+        seed: of all that is random, or the generator that draws it.
         delay_s: mean time from `put` to `take`.
         jitter_s: the delay is uniform within plus or minus this about its mean, never below zero.
         loss: probability that a packet is lost.
@@ -31,7 +31,7 @@ class MemoryLink:
     def __init__(
         self,
         *,
-        seed: int,
+        seed: int | np.random.Generator,
         delay_s: float = 0.0,
         jitter_s: float = 0.0,
         loss: float = 0.0,
@@ -62,7 +62,7 @@ class MemoryLink:
         """
         # A fixed number of draws for each packet keeps the rest of a run the same when one probability changes.
         lose, double, delay, second_delay, spoil, place = next(self._draws)
-        if lose < self._loss or any(start <= t_ns < end for start, end in self._outages_ns):
+        if lose < self._loss or (self._outages_ns and self._is_out(t_ns)):
             return
         if spoil < self._corruption and data:
             data = _with_flipped_bit(data, int(place * len(data) * 8))
@@ -83,6 +83,9 @@ class MemoryLink:
         while self._waiting and self._waiting[0][0] <= t_ns:
             packets.append(heapq.heappop(self._waiting)[2])
         return packets
+
+    def _is_out(self, t_ns: int) -> bool:
+        return any(start <= t_ns < end for start, end in self._outages_ns)
 
     def _push(self, data: bytes, t_ns: int, draw: float) -> None:
         due_ns = t_ns + max(0, self._delay_ns + round(self._jitter_ns * (2.0 * draw - 1.0)))

@@ -5,8 +5,9 @@ Quaternions are Hamilton, order wxyz. `t_ns` is the UTC instant of measurement i
 The wire forms (ROS 2 messages in CDR, JSON) live in `link.payloads.cdr` and `link.payloads.json_messages`.
 """
 
-from dataclasses import dataclass
 from enum import Enum
+
+from msgspec import Struct
 
 LEVER_MAX_M = 50.0
 """From a vehicle's antenna to its pad along each axis: no vehicle is larger, so what is further is a mistake."""
@@ -16,8 +17,7 @@ Quaternion = tuple[float, float, float, float]
 Matrix3 = tuple[float, float, float, float, float, float, float, float, float]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Fix:
+class Fix(Struct, frozen=True, kw_only=True):
     """A GNSS position of the vehicle's antenna; `altitude_m` is above the WGS 84 ellipsoid.
 
     `covariance_enu_m2` is row-major 3x3, None when the receiver does not state one.
@@ -30,8 +30,7 @@ class Fix:
     covariance_enu_m2: Matrix3 | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FixVelocity:
+class FixVelocity(Struct, frozen=True, kw_only=True):
     """The vehicle's velocity in ENU and, where known, its yaw rate.
 
     Without `is_vertical_measured` the third component, and what a covariance says of it, mean nothing.
@@ -45,8 +44,7 @@ class FixVelocity:
     yaw_rate_variance_rad2_s2: float | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class VehicleImu:
+class VehicleImu(Struct, frozen=True, kw_only=True):
     """The vehicle's attitude (`q_WV`), angular velocity and specific force, each None when not measured."""
 
     t_ns: int
@@ -58,8 +56,7 @@ class VehicleImu:
     specific_force_covariance_m2_s4: Matrix3 | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PadSighting:
+class PadSighting(Struct, frozen=True, kw_only=True):
     """The pad's centre in the drone's body frame B (`base_link`), as a detector saw it at `t_ns`."""
 
     t_ns: int
@@ -68,8 +65,7 @@ class PadSighting:
     position_covariance_m2: Matrix3
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BodyTruth:
+class BodyTruth(Struct, frozen=True, kw_only=True):
     """True pose and motion of a body in the simulation: pose in W, velocities in the body frame."""
 
     t_ns: int
@@ -79,16 +75,14 @@ class BodyTruth:
     angular_velocity_flu_rad_s: Vector3
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RotorTruth:
+class RotorTruth(Struct, frozen=True, kw_only=True):
     """True rotor speeds of the simulated drone."""
 
     t_ns: int
     speed_rad_s: tuple[float, float, float, float]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlannedPose:
+class PlannedPose(Struct, frozen=True, kw_only=True):
     """One point of a planned path."""
 
     t_ns: int
@@ -96,16 +90,14 @@ class PlannedPose:
     yaw_rad: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Plan:
+class Plan(Struct, frozen=True, kw_only=True):
     """The path that the companion intends to fly, first point first."""
 
     t_ns: int
     poses: tuple[PlannedPose, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PadGeometry:
+class PadGeometry(Struct, frozen=True, kw_only=True):
     """The landing pad on the vehicle.
 
     `antenna_to_pad_m` leads from the GNSS antenna to the pad's centre in V, by `LEVER_MAX_M` along each axis at most.
@@ -124,16 +116,14 @@ class Command(Enum):
     HOLD = "hold"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CommandReply:
+class CommandReply(Struct, frozen=True, kw_only=True):
     """Whether a command was accepted, and if not, why."""
 
     accepted: bool
     reason: str
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LandingStatus:
+class LandingStatus(Struct, frozen=True, kw_only=True):
     """What the companion tells the world about the landing; None where it does not know.
 
     `relative_position_enu_m` is of the drone's feet from the pad's centre: east and north are those of the drone, up is

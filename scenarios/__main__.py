@@ -19,14 +19,18 @@ from link.program.cli import (
     make_app,
     run_app,
 )
-from scenarios.commands import bench, campaign, faults, fly, fuzz, replay, report
+from scenarios.commands import bench, campaign, falsify, faults, fly, fuzz, rare, replay, report
 from scenarios.commands import view as view_command
 
 app = make_app("Experiments: run landings, score them on ground truth, and report.")
 
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
-SeedOption = Annotated[int, typer.Option("--seed", min=0, help="Of everything random.")]
-NameArgument = Annotated[str, typer.Argument(metavar="NAME|FILE", help="Scenario; `scenarios list` shows them.")]
+SeedOption = Annotated[
+    int | None, typer.Option("--seed", min=0, help="Of everything random [default: 1, or the world's own].")
+]
+NameArgument = Annotated[
+    str, typer.Argument(metavar="NAME|FILE", help="Scenario; `scenarios list` shows them. Or a world: world:urban@1.")
+]
 
 
 @app.command("list")
@@ -50,7 +54,7 @@ def list_command(*, as_json: JsonOption = False) -> None:
 def run_command(
     name: NameArgument,
     *,
-    seed: SeedOption = 1,
+    seed: SeedOption = None,
     speed: Annotated[float, typer.Option("--speed", min=0.1, max=50.0, help="Simulated seconds a second.")] = 1.0,
     lockstep: Annotated[bool, typer.Option("--lockstep", help="In one process on a simulated clock.")] = False,
     firmware: Annotated[str | None, typer.Option("--firmware", metavar="NAME", help="px4 or ardupilot.")] = None,
@@ -64,13 +68,14 @@ def run_command(
     """Run a landing and score it on ground truth; exit code 1 when it does not land."""
     from scenarios.catalogue.catalogue import load_scenario
     from scenarios.catalogue.firmware_option import with_firmware
+    from scenarios.catalogue.world_names import run_seed
     from scenarios.commands.run_lines import Reporter
     from scenarios.wire.run import RunOptions, run_folder, run_in_lockstep, run_over_wire
 
     scenario = load_scenario(name if firmware is None else with_firmware(name, firmware))
     view_port = view_command.port_of_run(lockstep=lockstep, as_json=as_json) if view else None
     folder = run_folder(out, scenario.name)
-    options = RunOptions(seed=seed, speed=speed, folder=folder, record=record, view_port=view_port)
+    options = RunOptions(seed=run_seed(name, seed), speed=speed, folder=folder, record=record, view_port=view_port)
     with Reporter(scenario, folder, as_json=as_json) as reporter:
         run = run_in_lockstep if lockstep else run_over_wire
         outcome = run(scenario, options, reporter.progress)
@@ -81,7 +86,7 @@ def run_command(
 def world_command(
     name: NameArgument,
     *,
-    seed: SeedOption = 1,
+    seed: SeedOption = None,
     speed: Annotated[float, typer.Option("--speed", min=0.1, max=50.0, help="Simulated seconds a second.")] = 1.0,
     mavlink: Annotated[
         str, typer.Option("--mavlink", metavar="DEVICE", help="Where the companion listens.")
@@ -101,13 +106,14 @@ def world_command(
     from link.zenoh.options import zenoh_options
     from link.zenoh.session import open_session
     from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.world_names import run_seed
     from scenarios.wire.world import WorldLoop
 
     scenario = load_scenario(name)
     keys = Keys(namespace, vehicle, drone)
     options = zenoh_options(mode, connect, listen, multicast, zenoh_config, listens=True)
     with open_transport(mavlink, is_patient=True) as transport, open_session(options) as zenoh:
-        WorldLoop(scenario, seed, keys, transport, zenoh, speed=speed).run()
+        WorldLoop(scenario, run_seed(name, seed), keys, transport, zenoh, speed=speed).run()
 
 
 @app.command("command")
@@ -139,7 +145,7 @@ def command_command(
     return 0 if reply.accepted else 1
 
 
-for command in (campaign, bench, fuzz, faults, report, replay, fly, view_command):
+for command in (campaign, falsify, rare, bench, fuzz, faults, report, replay, fly, view_command):
     command.register(app)
 
 

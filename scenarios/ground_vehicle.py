@@ -82,7 +82,9 @@ _AntennaToPadOption = Annotated[
         rich_help_panel=_PAD,
     ),
 ]
-_SeedOption = Annotated[int, typer.Option("--seed", min=0, help="Of everything random.")]
+_SeedOption = Annotated[
+    int | None, typer.Option("--seed", min=0, help="Of everything random [default: 1, or the world's own].")
+]
 _UseSimTimeOption = Annotated[bool, typer.Option("--use-sim-time", help="Follow the simulation's clock on Zenoh.")]
 _DepartAtOnceOption = Annotated[
     bool, typer.Option("--depart-at-once", help="Do not wait until the simulated drone hovers.")
@@ -103,7 +105,7 @@ def ground_vehicle(
     pad_size: _PadSizeOption = None,
     pad_height: _PadHeightOption = None,
     antenna_to_pad: _AntennaToPadOption = None,
-    seed: _SeedOption = 1,
+    seed: _SeedOption = None,
     use_sim_time: _UseSimTimeOption = False,
     depart_at_once: _DepartAtOnceOption = False,
     timeout: _TimeoutOption = 60.0,
@@ -142,7 +144,7 @@ def ground_vehicle(
 
 class _Simulation(NamedTuple):
     scenario: str
-    seed: int
+    seed: int | None
     departs_at_once: bool
     uses_sim_time: bool
     timeout_s: float
@@ -194,11 +196,13 @@ def _drive(simulation: _Simulation, keys: "Keys", options: "ZenohOptions") -> No
     """Publish a scenario's vehicle."""
     from link.zenoh.session import open_session
     from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.world_names import run_seed
     from scenarios.simulation.vehicle_node import VehicleNode, departing_at_once
     from scenarios.wire.vehicle_loop import VehicleLoop
 
     driven = load_scenario(simulation.scenario)
-    node = VehicleNode(departing_at_once(driven) if simulation.departs_at_once else driven, simulation.seed, keys)
+    seed = run_seed(simulation.scenario, simulation.seed)
+    node = VehicleNode(departing_at_once(driven) if simulation.departs_at_once else driven, seed, keys)
     with open_session(options) as zenoh:
         VehicleLoop(node, keys, zenoh, use_sim_time=simulation.uses_sim_time, timeout_s=simulation.timeout_s).run()
 

@@ -1,10 +1,9 @@
 """How the autopilot starts, and starts anew."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from link.frames.local_frame import LocalFrame
+from link.records import replace
 from sim_autopilot.core.links import LinkMemory, Links, Outbox
 from sim_autopilot.core.modes import Modes
 from sim_autopilot.core.parameters import Values, default_values

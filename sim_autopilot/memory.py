@@ -1,8 +1,9 @@
 """What the autopilot's step is told once, what it remembers, what comes in and what goes out."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from math import pi
+
+from msgspec import Struct, field
 
 from link.frames.geodesy import Datum
 from link.mavlink.dialect import Message
@@ -33,8 +34,7 @@ from sim_autopilot.setpoints.guided import Guided
 from sim_autopilot.setpoints.setpoints import NO_SETPOINTS, Setpoints
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AutopilotConfig:
+class AutopilotConfig(Struct, frozen=True, kw_only=True):
     """What does not change while the autopilot runs.
 
     Attributes:
@@ -66,8 +66,7 @@ class AutopilotConfig:
     services: Services = NO_SERVICES
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Boot:
+class Boot(Struct, frozen=True, kw_only=True):
     """When it was booted (UTC), and when it boots again, in ns since then; whether that forgets all parameters."""
 
     start_ns: int
@@ -75,8 +74,7 @@ class Boot:
     forgets: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Tuning:
+class Tuning(Struct, frozen=True, kw_only=True):
     """The parameters' values, the flight settings that they amount to, and the drone with the envelope of these."""
 
     values: Values
@@ -84,8 +82,7 @@ class Tuning:
     plant_config: PlantConfig
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Course:
+class Course(Struct, frozen=True, kw_only=True, eq=False):
     """What steering changes.
 
     Attributes:
@@ -103,8 +100,7 @@ class Course:
     following: Reference | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Heard:
+class Heard(Struct, frozen=True, kw_only=True, eq=False):
     """What others have said of where to fly.
 
     Attributes:
@@ -120,16 +116,14 @@ class Heard:
     leader: Leader | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class World:
+class World(Struct, frozen=True, kw_only=True, eq=False):
     """What is about the drone: the vehicle, for the range finder, and the air, for WIND_COV."""
 
     deck: Deck | None = None
     wind_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MissionMemory:
+class MissionMemory(Struct, frozen=True, kw_only=True):
     """The items of the mission, how far it is flown, and the fence in W."""
 
     items: tuple[Item, ...] = ()
@@ -137,16 +131,14 @@ class MissionMemory:
     fence: Fence = ()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SafetyMemory:
+class SafetyMemory(Struct, frozen=True, kw_only=True):
     """What the failsafes have noticed, and what has failed on purpose."""
 
     watch: Watch = NOTHING_NOTICED
     failures: Failures = NO_FAILURES
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class AutopilotMemory:
+class AutopilotMemory(Struct, frozen=True, kw_only=True, eq=False):
     """Everything that the autopilot knows from one step to the next.
 
     Attributes:
@@ -184,8 +176,7 @@ class AutopilotMemory:
     station: object
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class AutopilotInputs:
+class AutopilotInputs(Struct, frozen=True, kw_only=True, eq=False):
     """What the autopilot gets for one step, which ends at `t_ns` (UTC).
 
     Attributes:
@@ -205,8 +196,7 @@ class AutopilotInputs:
     links: tuple[int, ...] = ()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class AutopilotOutputs:
+class AutopilotOutputs(Struct, frozen=True, kw_only=True, eq=False):
     """What the autopilot sends, and the truth.
 
     Attributes:

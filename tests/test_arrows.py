@@ -30,6 +30,7 @@ HOMES = {
     "filterpy": {"companion/vehicle/lkf.py", "companion/vehicle/ukf.py"},
     "polars": {"scenarios/campaigns/landings_file.py"},
     "loky": {"scenarios/processes/local_workers.py"},
+    "cma": {"scenarios/falsify/strategy.py"},
     "viser": {f"scenarios/view/{name}.py" for name in ("page", "panel", "scene")},
     "distributed": {"scenarios/processes/dask_workers.py"},
 }

@@ -4,8 +4,9 @@ A driver is pure: it turns what the companion wants and what the autopilot says 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Protocol
+
+from msgspec import Struct
 
 from companion.autopilots.response import Cascade
 from companion.core.data import FlightLimits, RangeReading, Setpoint
@@ -14,8 +15,7 @@ from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FrameMoves:
+class FrameMoves(Struct, frozen=True, kw_only=True):
     """How the local frame has moved since it was first set: what is known in it holds until this changes."""
 
     origin_count: int = 0  # how often the origin was set or moved
@@ -25,8 +25,7 @@ class FrameMoves:
 NO_MOVES = FrameMoves()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AutopilotView:
+class AutopilotView(Struct, frozen=True, kw_only=True):
     """The autopilot as its messages tell; None where it has not said yet."""
 
     link_up: bool
@@ -49,8 +48,7 @@ class AutopilotView:
 NO_AUTOPILOT = AutopilotView(link_up=False, armed=False, in_control=False, failsafe=False)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Desire:
+class Desire(Struct, frozen=True, kw_only=True):
     """What the companion wants of the autopilot; None leaves it as it is.
 
     Attributes:
@@ -68,16 +66,14 @@ class Desire:
     takeoff_height_m: float | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AutopilotCommand:
+class AutopilotCommand(Struct, frozen=True, kw_only=True):
     """A COMMAND_LONG to be sent and acknowledged."""
 
     command: int
     parameters: tuple[float, float, float, float, float, float, float]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DriverMemory:
+class DriverMemory(Struct, frozen=True, kw_only=True):
     """When the driver last asked for what, and what was refused.
 
     While the autopilot `climbs_by_itself` it is sent no setpoints.

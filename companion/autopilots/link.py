@@ -1,7 +1,6 @@
 """The companion's conversation with the autopilot: streams, origin and parameters asked for, messages read."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from itertools import chain
 
 from companion.autopilots.choice import driver_for
@@ -25,6 +24,7 @@ from link.mavlink.events import (
 )
 from link.mavlink.parameters import parameter_value
 from link.mavlink.session import MavlinkSession
+from link.records import replace
 
 _MOTION_IDS = (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED)
 _ASK = mavlink.MAV_CMD_REQUEST_MESSAGE
@@ -70,6 +70,7 @@ class AutopilotLink:
         self._unanswered: dict[int, int] = {}
         self._origin_asked_ns: int | None = None
         self._limits: tuple[_LimitsAsked, FlightLimits] | None = None
+        self._cascade: tuple[Driver, Mapping[str, float], Cascade] | None = None
         self._heard_ns: int | None = None
         self._polled_ns: int | None = None
         self._questions = LimitQuestions()
@@ -116,7 +117,12 @@ class AutopilotLink:
     @property
     def cascade(self) -> Cascade | None:
         """How the autopilot follows setpoints, by its parameters as far as they are known; None before it is found."""
-        return None if self.driver is None else self.driver.cascade(self.state.parameters)
+        if self.driver is None:
+            return None
+        driver, parameters = self.driver, self.state.parameters
+        if self._cascade is None or self._cascade[0] is not driver or self._cascade[1] is not parameters:
+            self._cascade = (driver, parameters, driver.cascade(parameters))
+        return self._cascade[2]
 
     def send_setpoint(self, setpoint: Setpoint, local_ns: int) -> None:
         """Send a setpoint for the flight; one that the message cannot hold is counted and left out."""

@@ -1,10 +1,10 @@
 """The origin of the autopilot's local frame above the ellipsoid, from messages that have it above mean sea level."""
 
-from dataclasses import replace
 from math import radians
 
 from link.frames.geodesy import Datum
 from link.mavlink.dialect import Message, mavlink
+from link.records import replace
 
 _MOVED_RAD = 1e-8  # 6 cm; the field's resolution is 1e-7 degrees, 1 cm
 _MOVED_M = 0.05

@@ -15,9 +15,9 @@ Source: the position controllers of PX4 (mc_pos_control) and ArduPilot (AC_PosCo
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 from scipy.linalg import expm, solve_continuous_are, solve_continuous_lyapunov
 
 from companion.core.data import Array
@@ -39,8 +39,7 @@ _PUSH = 3
 _STEP_MAX_S = 0.05
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Cascade:
+class Cascade(Struct, frozen=True, kw_only=True):
     """The gains of a position controller along a horizontal axis, and how it takes setpoints.
 
     Attributes:

@@ -1,9 +1,10 @@
 """The autopilot's messages folded into what the companion's step wants to know of it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from math import isfinite
 from types import MappingProxyType
+
+from msgspec import Struct, field
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotView, Driver
 from companion.autopilots.local_origin import above_ellipsoid, geoid_height_m, is_same, origin_above_sea
@@ -22,8 +23,7 @@ _AHEAD_NS = 100_000_000  # how far a report is carried beyond the newest one
 _FAILSAFE_STATES = (mavlink.MAV_STATE_CRITICAL, mavlink.MAV_STATE_EMERGENCY)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AutopilotState:
+class AutopilotState(Struct, frozen=True, kw_only=True):
     """What the messages so far have told.
 
     Attributes:

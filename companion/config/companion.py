@@ -45,7 +45,7 @@ class LimitsConfig(StrictModel):
 
     def flight_limits(self) -> FlightLimits:
         """Return the planner's part of them."""
-        names = FlightLimits.__dataclass_fields__
+        names = FlightLimits.__struct_fields__
         return FlightLimits(**{name: value for name, value in self.model_dump().items() if name in names})
 
 

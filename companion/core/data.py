@@ -5,10 +5,10 @@ Arrays are float64 and are never written in place. Unknown is None.
 """
 
 import math
-from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from link.messages import Quaternion, Vector3
@@ -28,8 +28,7 @@ class Quantity(Enum):
     PAD = "pad"  # the pad's centre in W as seen from the drone, m (3)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Measurement:
+class Measurement(Struct, frozen=True, kw_only=True, eq=False):
     """A value `(n,)` with covariance `(n, n)`, taken at `t_ns`."""
 
     t_ns: int
@@ -38,8 +37,7 @@ class Measurement:
     covariance: Array
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class VehicleEstimate:
+class VehicleEstimate(Struct, frozen=True, kw_only=True, eq=False):
     """The vehicle's reference point (its antenna) at `t_ns`.
 
     Attributes:
@@ -60,8 +58,7 @@ class VehicleEstimate:
     yaw_rate_rad_s: float | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Forecast:
+class Forecast(Struct, frozen=True, kw_only=True, eq=False):
     """The vehicle's reference point at `t_ns` and at later instants.
 
     Attributes:
@@ -88,8 +85,7 @@ class Forecast:
     grade: Array | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OwnState:
+class OwnState(Struct, frozen=True, kw_only=True):
     """The drone as its autopilot reports it; `t_ns` is when it was so.
 
     `acceleration_up_m_s2`, and `jolt_m_s2` as the size of the horizontal acceleration, are from the last reports'
@@ -108,8 +104,7 @@ class OwnState:
     attitude_age_s: float = 0.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RangeReading:
+class RangeReading(Struct, frozen=True, kw_only=True):
     """What a range finder that looks down along the drone's body measured at `t_ns`.
 
     `up_m` is the drone's own height in W then, None when it was not known or that frame has moved since.
@@ -120,8 +115,7 @@ class RangeReading:
     up_m: float | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Setpoint:
+class Setpoint(Struct, frozen=True, kw_only=True):
     """What the autopilot is to follow from `t_ns` on; None leaves a group out.
 
     Where the place is free, of the position only the height is to be held.
@@ -135,8 +129,7 @@ class Setpoint:
     is_place_free: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FlightLimits:
+class FlightLimits(Struct, frozen=True, kw_only=True):
     """What the planner may ask of the drone; each a magnitude.
 
     `tilt_acceleration_m_s2` is the horizontal thrust by mass of the largest tilt. What holds against the air is taken

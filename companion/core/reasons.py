@@ -3,8 +3,9 @@
 What decides, counts or compares does so by the `Reason`; the sentence, with its numbers, is made where it is shown.
 """
 
-from dataclasses import dataclass
 from enum import Enum
+
+from msgspec import Struct
 
 
 class Reason(Enum):
@@ -125,8 +126,7 @@ class Reason(Enum):
     DRONE_UNKNOWN = "the drone's position is not known"
 
 
-@dataclass(frozen=True, slots=True)
-class Cause:
+class Cause(Struct, frozen=True):
     """A reason with the values that its sentence tells, as they were when it was decided."""
 
     reason: Reason

@@ -11,7 +11,8 @@ that is believed of a vehicle whose heading has agreed with its course before, a
 """
 
 import math
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
@@ -30,8 +31,7 @@ Sample = tuple[int, int, int]
 """Monotonic ns, and how many measurements were accepted and rejected by then."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Contradictions:
+class Contradictions(Struct, frozen=True, kw_only=True):
     """What became of the vehicle's measurements in the last seconds.
 
     Attributes:
@@ -63,8 +63,7 @@ def contradicts_itself(s: Situation, c: CompanionConfig) -> bool:
     return s.vehicle.rejected_share > c.abort.rejected_share_max
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FixStamps:
+class FixStamps(Struct, frozen=True, kw_only=True):
     """The newest accepted fix.
 
     Attributes:
@@ -96,8 +95,7 @@ _CAR_M = 3.0  # times the curvature: what a point of a car slips beside its head
 _BACK_WITHIN = 0.7  # of the limit, to be believed again
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CourseWatch:
+class CourseWatch(Struct, frozen=True, kw_only=True):
     """How the heading has compared with the course.
 
     Attributes:

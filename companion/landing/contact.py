@@ -10,8 +10,9 @@ for so long that a drone pressed downwards in the air would have fallen.
 """
 
 import math
-from dataclasses import dataclass
 from enum import Enum
+
+from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
 from companion.config.landing import TouchdownConfig
@@ -22,8 +23,7 @@ from link.records import replace
 _JOLT_S = 0.06  # three reports at 50 Hz
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Signs:
+class Signs(Struct, frozen=True, kw_only=True):
     """What is known of a contact; None where it is not.
 
     Attributes:

@@ -5,10 +5,10 @@ vehicle's data is in UTC.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from types import MappingProxyType
 
 import numpy as np
+from msgspec import Struct, field
 
 from companion.autopilots.driver import NO_MOVES, AutopilotView, DriverMemory, FrameMoves
 from companion.core.data import Array
@@ -28,8 +28,7 @@ Held = Mapping[Reason, int]
 NOTHING_HELD: Held = MappingProxyType({})
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Progress:
+class Progress(Struct, frozen=True, kw_only=True, eq=False):
     """Where in the landing we are, for how long, and what is counted over it.
 
     Attributes:
@@ -61,8 +60,7 @@ class Progress:
     obstacle: Cause | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class VehicleMemory:
+class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
     """What is known of the vehicle, and whether it can be believed.
 
     Attributes:
@@ -86,8 +84,7 @@ class VehicleMemory:
     is_road_elsewhere: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ModelMemory:
+class ModelMemory(Struct, frozen=True, kw_only=True, eq=False):
     """The virtual model that the setpoints follow, and how the drone follows it.
 
     Attributes:
@@ -109,8 +106,7 @@ class ModelMemory:
     yaw_setpoint_rad: float = 0.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ControlMemory:
+class ControlMemory(Struct, frozen=True, kw_only=True, eq=False):
     """How the autopilot stands to the companion.
 
     Attributes:
@@ -124,8 +120,7 @@ class ControlMemory:
     was_armed: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Places:
+class Places(Struct, frozen=True, kw_only=True, eq=False):
     """Places in W, and which W that is.
 
     Attributes:
@@ -141,8 +136,7 @@ class Places:
     frame_moves: FrameMoves = NO_MOVES
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class StepMemory:
+class StepMemory(Struct, frozen=True, kw_only=True, eq=False):
     """What a step hands to the next."""
 
     progress: Progress = field(default_factory=Progress)

@@ -1,6 +1,6 @@
 """What goes into a companion step and what comes out; `memory.py` holds what it remembers in between."""
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, AutopilotView, Driver
 from companion.autopilots.response import ResponseModel
@@ -11,8 +11,7 @@ from companion.vehicle.estimator import Estimator
 from link.messages import Command, CommandReply, LandingStatus, PadGeometry
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class System:
+class System(Struct, frozen=True, kw_only=True, eq=False):
     """The parts that a companion is made of; none of them changes during a flight."""
 
     config: CompanionConfig
@@ -20,16 +19,14 @@ class System:
     guidance: Guidance
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LinkDelay:
+class LinkDelay(Struct, frozen=True, kw_only=True):
     """How long a message takes, and by how much that differs from one to the next."""
 
     mean_s: float = 0.0
     std_s: float = 0.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class StepInputs:
+class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
     """What a step is told.
 
     Attributes:
@@ -71,8 +68,7 @@ class StepInputs:
         return t_ns - self.t_ns + self.monotonic_ns
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class StepOutputs:
+class StepOutputs(Struct, frozen=True, kw_only=True, eq=False):
     """What a step wants done.
 
     Attributes:

@@ -7,7 +7,8 @@ with one foot. Only more lean than the mean counts: a drone that comes upright, 
 """
 
 import math
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from companion.config.landing import DescentConfig
 from companion.core.data import GRAVITY_M_S2, OwnState
@@ -17,8 +18,7 @@ _UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady
 _MEAN_S = 1.0  # longer than a gust's beginning, shorter than the turn of a curve
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Sway:
+class Sway(Struct, frozen=True, kw_only=True):
     """What has been seen of it.
 
     Attributes:

@@ -5,9 +5,9 @@ its feet, which stand on the pad after the landing.
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
 from companion.config.landing import DescentConfig, LandingStyle
@@ -28,8 +28,7 @@ _REST_M = 0.005
 _REST_MOTION = 0.01  # m/s and m/s^2
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Aim:
+class Aim(Struct, frozen=True, kw_only=True, eq=False):
     """What the planner is given: the target and the lowest height (n,) at its offsets."""
 
     target: Target

@@ -5,9 +5,9 @@ the virtual model at the same instant. The plan then leads the virtual model to 
 """
 
 import math
-from dataclasses import dataclass, field
 
 import numpy as np
+from msgspec import Struct, field
 
 from companion.autopilots.response import STATES, ResponseModel
 from companion.core.data import GRAVITY_M_S2, Array, OwnState, Setpoint
@@ -24,8 +24,7 @@ _BREAK_S = 0.25  # between two reports, after which the deviation is what the ne
 _ACCELERATION_MAX_M_S2 = 10.0  # of the model between two steps: it is set back at times, and that is no motion
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Tracking:
+class Tracking(Struct, frozen=True, kw_only=True, eq=False):
     """The model's recent past and the drone beside it.
 
     Attributes:

@@ -4,9 +4,10 @@ The virtual model is a point mass whose position, velocity and acceleration are 
 follow. SI units, world ENU (W). A law is a pure function over its own immutable memory.
 """
 
-from dataclasses import dataclass
 from enum import Enum
 from typing import NewType, Protocol
+
+from msgspec import Struct
 
 from companion.core.data import Array, FlightLimits
 
@@ -20,8 +21,7 @@ class PlanStatus(Enum):
     FAILED = "failed"  # not finite input, iteration limit, numerical trouble
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ReferenceState:
+class ReferenceState(Struct, frozen=True, kw_only=True, eq=False):
     """The virtual model at one instant, each (3,) in W."""
 
     position_enu_m: Array
@@ -29,8 +29,7 @@ class ReferenceState:
     acceleration_enu_m_s2: Array
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Target:
+class Target(Struct, frozen=True, kw_only=True, eq=False):
     """Where the drone's reference is wanted at `offset_s` (n,) >= 0, rising, after now; the others (n, 3) in W.
 
     After the last offset the target is taken to go on at its last velocity.
@@ -42,8 +41,7 @@ class Target:
     acceleration_enu_m_s2: Array
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PlanRequest:
+class PlanRequest(Struct, frozen=True, kw_only=True, eq=False):
     """What a guidance law plans from.
 
     Attributes:
@@ -61,8 +59,7 @@ class PlanRequest:
     dt_s: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Trajectory:
+class Trajectory(Struct, frozen=True, kw_only=True, eq=False):
     """The planned motion of the virtual model at `offset_s` (n,) from 0 on; the others (n, 3) in W."""
 
     offset_s: Array
@@ -71,8 +68,7 @@ class Trajectory:
     acceleration_enu_m_s2: Array
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PlanResult:
+class PlanResult(Struct, frozen=True, kw_only=True, eq=False):
     """What a guidance law wants flown.
 
     Attributes:

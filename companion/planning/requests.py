@@ -1,12 +1,12 @@
 """Checks of what a guidance law is asked, the same for all laws."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
 from companion.core.data import Array
 from companion.planning.guidance import PlanRequest, ReferenceState
+from link.records import replace
 
 
 def with_finite_state(last: ReferenceState | None, request: PlanRequest) -> PlanRequest:

@@ -55,6 +55,7 @@ def build_node(
     *,
     system_id: int = 1,
     dry_run: bool = False,
+    publishes: bool = True,
     records_input: bool = False,
     recorder: Recorder | None = None,
     signing_key: bytes | None = None,
@@ -66,6 +67,7 @@ def build_node(
         keys: of the Zenoh contract.
         system_id: MAVLink's, of the autopilot that is flown and, on the same drone, of the companion.
         dry_run: send neither setpoints nor commands.
+        publishes: put status and plan on Zenoh.
         records_input: keep received frames for a recording of the link.
         recorder: takes all that goes in and out, None where nothing is recorded.
         signing_key: 32 bytes shared with the autopilot; None sends unsigned and takes everything.
@@ -79,8 +81,8 @@ def build_node(
     signing = None if signing_key is None else Signing(signing_key)
     session = MavlinkSession(system_id, target_system_id=system_id, signing=signing, records_input=records_input)
     if recorder is not None:
-        return RecordingNode(system, keys, session, recorder, dry_run=dry_run)
-    return CompanionNode(system, keys, session, dry_run=dry_run)
+        return RecordingNode(system, keys, session, recorder, dry_run=dry_run, publishes=publishes)
+    return CompanionNode(system, keys, session, dry_run=dry_run, publishes=publishes)
 
 
 def make_guidance(kind: GuidanceKind, config: GuidanceConfig) -> Guidance:

@@ -47,12 +47,20 @@ class RecordingNode(CompanionNode):
         session: to the autopilot.
         recorder: takes the records.
         dry_run: send neither setpoints nor commands.
+        publishes: as there.
     """
 
     def __init__(
-        self, system: System, keys: Keys, session: MavlinkSession, recorder: Recorder, *, dry_run: bool = False
+        self,
+        system: System,
+        keys: Keys,
+        session: MavlinkSession,
+        recorder: Recorder,
+        *,
+        dry_run: bool = False,
+        publishes: bool = True,
     ) -> None:
-        super().__init__(system, keys, session, dry_run=dry_run)
+        super().__init__(system, keys, session, dry_run=dry_run, publishes=publishes)
         self._recorder = recorder
         self._sequence = 0
         self._local_ns = 0

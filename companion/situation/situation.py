@@ -1,9 +1,9 @@
 """The facts of one step that the phases decide on, put together from the estimate, the pad and the drone."""
 
 import math
-from dataclasses import dataclass, field, replace
 
 import numpy as np
+from msgspec import Struct, structs
 
 from companion.autopilots.driver import AutopilotView
 from companion.config.landing import ChaseConfig
@@ -12,14 +12,14 @@ from companion.planning.guidance import ReferenceState
 from companion.vehicle.pad import PadPath
 from link.frames.rotations import rotate
 from link.messages import Vector3
+from link.records import replace
 
 _RANGE_AGE_MAX_S = 0.3
 _LAST_SEEN_AGE_MAX_S = 3.0  # own heights wander by some millimetres a second
 _UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which a range finder does not look down
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Drone:
+class Drone(Struct, frozen=True, kw_only=True, eq=False):
     """The drone now, carried forward from its last report.
 
     Attributes:
@@ -43,8 +43,7 @@ class Drone:
     attitude_known: bool = True
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Approach:
+class Approach(Struct, frozen=True, kw_only=True):
     """The drone against the pad: its feet from the pad's centre, in W and in four numbers."""
 
     position_enu_m: Vector3
@@ -56,8 +55,7 @@ class Approach:
     pad_half_width_m: float = math.inf  # from its centre to its nearest edge
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class VehicleNews:
+class VehicleNews(Struct, frozen=True, kw_only=True):
     """How what the vehicle sends comes, and how far it can be believed; None where that is not known.
 
     Attributes:
@@ -77,8 +75,7 @@ class VehicleNews:
     is_road_elsewhere: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Below:
+class Below(Struct, frozen=True, kw_only=True, eq=False):
     """What is below the drone.
 
     Attributes:
@@ -92,8 +89,7 @@ class Below:
     ground_enu_m: Array | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Situation:
+class Situation(Struct, frozen=True, kw_only=True, eq=False):
     """What is known in this step; None where it is not.
 
     Attributes:
@@ -128,13 +124,14 @@ class Situation:
     waiting_point_enu_m: Array | None
     limits: FlightLimits | None = None
     speed_limited_by: tuple[str, ...] = ()
-    approach: Approach | None = field(init=False)
+    approach: Approach | None = None
 
     def __post_init__(self) -> None:
+        """Derive the approach, of a copy as well; what is given for it does not count."""
         approach = None
         if self.drone is not None and self.pad is not None:
             approach = _approach(self.drone, self.pad, self.feet_offset_m)
-        object.__setattr__(self, "approach", approach)
+        structs.force_setattr(self, "approach", approach)
 
 
 def _approach(drone: Drone, pad: PadPath, feet_offset_m: float) -> Approach:

@@ -18,7 +18,8 @@ driven, long before a belief of the vehicle's speed is found to be wrong.
 """
 
 import math
-from dataclasses import dataclass, field
+
+from msgspec import Struct, field
 
 from companion.config.landing import DescentConfig
 from companion.core.data import Array, VehicleEstimate
@@ -37,8 +38,7 @@ Change = tuple[float, float]
 """The mean acceleration along and to the left from one such velocity to one 2 s later, m/s^2."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Driving:
+class Driving(Struct, frozen=True, kw_only=True):
     """How a vehicle has driven in the last 15 s.
 
     Attributes:
@@ -143,8 +143,7 @@ Belief = tuple[int, float, float]
 """UTC ns, the horizontal speed that was believed then, m/s, and its standard deviation, m/s."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Surprise:
+class Surprise(Struct, frozen=True, kw_only=True):
     """What has been believed of the vehicle's speed, and when that was last found to be wrong.
 
     Attributes:

@@ -8,12 +8,14 @@ trace; a measurement older than the buffer is dropped and counted.
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 from typing import Generic, NewType, Protocol, TypeVar
+
+from msgspec import Struct
 
 from companion.config.estimation import BufferConfig
 from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
 from companion.vehicle.filter_step import QUANTITIES, RANK, FilterModel, Snapshot, Tally, is_forgotten, step
+from link.records import replace
 
 S = TypeVar("S")
 
@@ -23,8 +25,7 @@ Place = tuple[int, int, tuple[float, ...]]
 """Of a measurement in the order of fusion: by time, then by quantity, then by value."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Entry(Generic[S]):
+class Entry(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
     """A measurement and its place, the filter after it, and its NIS per degree of freedom (None when not used)."""
 
     measurement: Measurement
@@ -33,8 +34,7 @@ class Entry(Generic[S]):
     nis_per_dof: float | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class DelayBuffer(Generic[S]):
+class DelayBuffer(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
     """The filter before the oldest kept measurement, the kept ones in order of time, and how many came too late."""
 
     base: Snapshot[S]
@@ -130,8 +130,7 @@ def _time(entry: Entry[S]) -> int:
     return entry.measurement.t_ns
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BufferHealth:
+class BufferHealth(Struct, frozen=True, kw_only=True):
     """What became of the measurements, and whether they agree with the filter.
 
     Attributes:
@@ -153,8 +152,7 @@ class BufferHealth:
     recent_nis_per_dof: float | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BufferedEstimator(Generic[S]):
+class BufferedEstimator(Struct, Generic[S], frozen=True, kw_only=True):
     """`Estimator` over a `FilterModel`; holds configuration only."""
 
     model: FilterModel[S]

@@ -5,19 +5,19 @@ is told to recover on the new data.
 """
 
 import math
-from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
+from msgspec import Struct
 from scipy.special import gammaincinv
 
 from companion.config.estimation import BufferConfig
 from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
+from link.records import replace
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Gaussian:
+class Gaussian(Struct, frozen=True, kw_only=True, eq=False):
     """Mean `(n,)` and covariance `(n, n)`; which states and units, each filter says."""
 
     mean: Array
@@ -46,8 +46,7 @@ RANK = {quantity: rank for rank, quantity in enumerate(QUANTITIES)}
 _NEVER: tuple[int | None, ...] = (None,) * len(QUANTITIES)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Update(Generic[S]):
+class Update(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
     """A filter's answer to a measurement: the state after it, and how well it fitted.
 
     Attributes:
@@ -85,8 +84,7 @@ class FilterModel(Protocol[S]):
         """Return the future of a state that holds at `t_ns`."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Tally:
+class Tally(Struct, frozen=True, kw_only=True):
     """What happened to the measurements up to a moment; tuples run over `QUANTITIES`."""
 
     fused: int = 0
@@ -98,8 +96,7 @@ class Tally:
     rejected_since_ns: tuple[int | None, ...] = _NEVER
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Snapshot(Generic[S]):
+class Snapshot(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
     """The filter at `t_ns`; the state is None until the first position."""
 
     t_ns: int

@@ -9,10 +9,11 @@ as well, and from one sighting to the next nothing tells how far.
 """
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import assert_never
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from companion.config.estimation import ImmConfig
@@ -24,6 +25,7 @@ from companion.vehicle import imm_sensors as sensors
 from companion.vehicle.filter_step import Update, wrapped
 from companion.vehicle.imm_numbers import Numbers, noises_with, numbers_of
 from link.messages import Vector3
+from link.records import replace
 
 KINDS = {
     Quantity.POSITION: sensors.POSITION,
@@ -44,8 +46,7 @@ TURN_AGE_MAX_S = 1.0  # of a sensor that is at work: several periods of the slow
 IndexArray = NDArray[np.intp]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ImmState:
+class ImmState(Struct, frozen=True, kw_only=True, eq=False):
     """Both modes, the slow part of the fixes' variance, and how long ago a sensor told the heading or the yaw rate."""
 
     modes: mixing.Modes

@@ -1,7 +1,5 @@
 """From the vehicle's messages to measurements in the drone's local frame W."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from companion.autopilots.state import AutopilotState
@@ -11,6 +9,7 @@ from link.frames.rotations import rotate, yaw_of
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, VehicleImu
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
+from link.records import replace
 from link.zenoh.keys import Keys
 
 # Taken when a message states no covariance: plain GNSS and a low-cost attitude sensor.

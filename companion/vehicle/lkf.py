@@ -5,7 +5,7 @@ What it believes of model and sensors is either the report's own or white noise 
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -14,6 +14,7 @@ from filterpy.kalman import predict, update
 from companion.config.estimation import LkfConfig, LkfReportConfig
 from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
 from companion.vehicle.filter_step import Gaussian, Update, squared_norm, symmetric
+from link.records import replace
 
 I3 = np.eye(3)
 

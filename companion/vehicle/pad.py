@@ -6,9 +6,9 @@ the configured radius is what a drone in gusts is to keep to.
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array, Forecast
@@ -23,8 +23,7 @@ _CONTACT_SHARE = 0.8  # 0.6 m
 _KNOWN_SHARE = 1.0 / 3.0  # standard deviation of a pad that has to be seen: 0.25 m
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PadPath:
+class PadPath(Struct, frozen=True, kw_only=True, eq=False):
     """The pad's centre in W; row 0 is the present.
 
     Attributes:

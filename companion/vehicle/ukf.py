@@ -6,7 +6,7 @@ reads them back. The sigma points all weigh the same (the centre nothing), which
 """
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -17,6 +17,7 @@ from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleE
 from companion.vehicle.filter_step import Gaussian, Update, squared_norm, symmetric, wrapped
 from companion.vehicle.lkf import LkfModel, WhiteJerkNoise
 from companion.vehicle.ukf_motion import SIZE, drive, drive_all, kinematics, process_noise, track_variance
+from link.records import replace
 
 STEP_MAX_S = 0.2  # 0.08 rad in the tightest of the benchmark's curves
 SLIP_VARIANCE_RAD2 = 0.05**2  # by how much a course may differ from the heading

@@ -7,8 +7,9 @@ Source: Gelman et al., Bayesian Data Analysis, 3rd ed., section 14.8 (regression
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
+
+from msgspec import Struct
 
 from link.units import NS_PER_S
 
@@ -23,8 +24,7 @@ class ClockPair(NamedTuple):
     std_ns: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ClockLine:
+class ClockLine(Struct, frozen=True, kw_only=True):
     """Clock y as a line of clock x about `reference_ns`, a reading of x; variances in ns² and of ns per s."""
 
     reference_ns: int

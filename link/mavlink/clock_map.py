@@ -11,11 +11,13 @@ and so do the messages whose stamps are mapped, so these cuts are left alone.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from statistics import pstdev
 from typing import NamedTuple
 
+from msgspec import Struct
+
 from link.mavlink.clock_line import ClockLine, ClockPair, fit_clock_line
+from link.records import replace
 
 # Before this (2009-02-13) a unix time is a clock that was never set, not a date; PX4 draws the line here too.
 UNIX_TIME_MIN_NS = 1_234_567_890 * 10**9
@@ -26,8 +28,7 @@ UNIX_TIME_MAX_NS = 2_147_400_000 * 10**9
 _STEP_PAIRS_MIN = 5
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ClockConfig:
+class ClockConfig(Struct, frozen=True, kw_only=True):
     """How clocks are followed.
 
     Attributes:
@@ -72,8 +73,7 @@ class RoundTrip(NamedTuple):
         return (self.sent_ns + self.received_ns) // 2
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ClockMap:
+class ClockMap(Struct, frozen=True, kw_only=True):
     """What is known of the three clocks; empty as constructed.
 
     Attributes:

@@ -8,9 +8,10 @@ they are.
 import struct
 from collections.abc import Callable
 from functools import cache
-from operator import attrgetter
+from operator import attrgetter, itemgetter
 from typing import Any, NamedTuple
 
+from link.mavlink.checksum import checksum
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.layout import fields_in_order
 
@@ -21,7 +22,7 @@ class _Layout(NamedTuple):
     Attributes:
         kind: its class.
         crc_extra: what its definition adds to the checksum.
-        places: of each of the class's fields among the values, a slice for an array.
+        values_of: gives of the unpacked values those of the class's fields in its own order, an array's as a tuple.
         arrays: which of the fields are arrays of numbers.
         texts: which of them are texts.
         fields_of: a message's fields in the order of the payload.
@@ -30,7 +31,7 @@ class _Layout(NamedTuple):
 
     kind: type[Message]
     crc_extra: bytes
-    places: tuple[int | slice, ...]
+    values_of: Callable[[tuple[Any, ...]], tuple[Any, ...]]
     arrays: tuple[int, ...]
     texts: tuple[int, ...]
     fields_of: Callable[[Message], tuple[Any, ...]]
@@ -52,13 +53,13 @@ def message_of(frame: bytearray, message_id: int) -> Message | None:
     start = mavlink.HEADER_LEN_V1 if is_version1 else mavlink.HEADER_LEN_V2
     end = start + frame[1]
     layout = _layout(message_id)
-    crc = mavlink.x25crc(bytes(frame[1:end]) + layout.crc_extra).crc
+    crc = checksum(bytes(frame[1:end]) + layout.crc_extra)
     if frame[end] | frame[end + 1] << 8 != crc:
         return None
     # The zeros at the end of a payload are not sent, and a newer definition may have made it longer.
     unpacker = layout.kind.unpacker
     values = unpacker.unpack(frame[start:end].ljust(unpacker.size, b"\0")[: unpacker.size])
-    fields = [values[place] for place in layout.places]
+    fields = list(layout.values_of(values))
     for field in layout.arrays:
         fields[field] = list(fields[field])
     for field in layout.texts:
@@ -102,7 +103,7 @@ def frame_of(message: Message, sequence: int, system_id: int, component_id: int)
         message_id & 0xFFFF,
         message_id >> 16,
     )
-    crc = mavlink.x25crc(head[1:] + payload + layout.crc_extra).crc
+    crc = checksum(head[1:] + payload + layout.crc_extra)
     return head + payload + _CHECKSUM.pack(crc)
 
 
@@ -124,10 +125,16 @@ def _layout(message_id: int) -> _Layout:
     names = [f"_{one.name}_raw" if one.kind == "char" else one.name for one in fields]
     lengths = {place: one.length for place, one in enumerate(fields) if one.length and one.kind != "char"}
     crc_extra = bytes((kind.crc_extra,))
-    return _Layout(kind, crc_extra, tuple(places), tuple(arrays), tuple(texts), _getter(names), lengths)
+    return _Layout(kind, crc_extra, _chooser(places), tuple(arrays), tuple(texts), _getter(names), lengths)
 
 
 def _getter(names: list[str]) -> Callable[[Message], tuple[Any, ...]]:
     """Return what gives these attributes, of which `attrgetter` does not make a tuple when there is one."""
     get = attrgetter(*names)
     return get if len(names) > 1 else lambda message: (get(message),)
+
+
+def _chooser(places: list[int | slice]) -> Callable[[tuple[Any, ...]], tuple[Any, ...]]:
+    """Return what gives the values at these places, as above."""
+    choose = itemgetter(*places)
+    return choose if len(places) > 1 else lambda values: (choose(values),)

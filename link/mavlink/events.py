@@ -1,21 +1,20 @@
 """What a MAVLink session tells its owner; `t_ns` is always the local time at which it became known."""
 
-from dataclasses import dataclass
 from typing import TypeAlias
+
+from msgspec import Struct
 
 from link.mavlink.dialect import Message
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class MessageReceived:
+class MessageReceived(Struct, frozen=True, eq=False):
     """A message of the autopilot, for us or for everybody."""
 
     message: Message
     t_ns: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LinkFound:
+class LinkFound(Struct, frozen=True, kw_only=True):
     """The first heartbeat of the autopilot; `autopilot` and `vehicle_type` are MAV_AUTOPILOT and MAV_TYPE."""
 
     t_ns: int
@@ -25,24 +24,21 @@ class LinkFound:
     vehicle_type: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LinkLost:
+class LinkLost(Struct, frozen=True, kw_only=True):
     """Nothing was heard of the autopilot since `last_heard_ns`."""
 
     t_ns: int
     last_heard_ns: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LinkRegained:
+class LinkRegained(Struct, frozen=True, kw_only=True):
     """The autopilot is heard again after a silence."""
 
     t_ns: int
     silence_ns: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AutopilotRestarted:
+class AutopilotRestarted(Struct, frozen=True, kw_only=True):
     """The autopilot's time since boot fell back; what it was told before is forgotten there."""
 
     t_ns: int
@@ -50,8 +46,7 @@ class AutopilotRestarted:
     boot_now_ns: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CommandAcknowledged:
+class CommandAcknowledged(Struct, frozen=True, kw_only=True):
     """An acknowledgement, every one of them: PX4 sends ACCEPTED first and the real answer after it.
 
     Attributes:
@@ -72,8 +67,7 @@ class CommandAcknowledged:
     is_repeat: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CommandTimedOut:
+class CommandTimedOut(Struct, frozen=True, kw_only=True):
     """A command was not answered, or not finished, in time, or the autopilot restarted meanwhile."""
 
     t_ns: int
@@ -82,8 +76,7 @@ class CommandTimedOut:
     attempts: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ParameterRead:
+class ParameterRead(Struct, frozen=True, kw_only=True):
     """A parameter that was asked for; an int for the integer types."""
 
     t_ns: int
@@ -91,8 +84,7 @@ class ParameterRead:
     value: int | float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ParameterMissing:
+class ParameterMissing(Struct, frozen=True, kw_only=True):
     """A parameter was asked for in vain: unknown to the autopilot (which does not say so), or the link is bad."""
 
     t_ns: int

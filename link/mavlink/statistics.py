@@ -1,10 +1,9 @@
 """Counters of a MAVLink link, as snapshots."""
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CodecStatistics:
+class CodecStatistics(Struct, frozen=True, kw_only=True):
     """What a codec has seen so far.
 
     Attributes:
@@ -36,8 +35,7 @@ class CodecStatistics:
     doubled_messages: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SessionStatistics:
+class SessionStatistics(Struct, frozen=True, kw_only=True):
     """What a session has seen so far.
 
     Attributes:

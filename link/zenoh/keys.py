@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from msgspec import Struct
+
 from link.errors import UserError
 
 _RESERVED = "*$?#@/"
@@ -108,8 +110,7 @@ def _check_chunk(option: str, name: str, chunk: str) -> None:
             raise UserError(f"{option} {name!r} holds {character!r}: use letters, digits, '_', '-' and '.' in a name")
 
 
-@dataclass(frozen=True, slots=True)
-class Publication:
+class Publication(Struct, frozen=True):
     """What a program without I/O of its own wants put on Zenoh: a payload, the key it goes to and its encoding."""
 
     key: str

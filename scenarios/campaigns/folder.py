@@ -12,39 +12,16 @@ from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated, Any, Self
-
-from pydantic import Field, model_validator
+from typing import Any
 
 from link.errors import UserError
-from link.program.toml_config import StrictModel, validate
+from link.program.toml_config import validate
 from scenarios.campaigns.landing_task import Flown, Row, Task
 from scenarios.campaigns.landings_file import as_written, read_rows, write_rows
-from scenarios.config import Scenario
+from scenarios.campaigns.plan import Plan
 from scenarios.recordings.result import write_json
 
 _PLAN, _JOURNAL, _LANDINGS, _TIMING = "campaign.json", "landings.jsonl", "landings.parquet", "timing.parquet"
-
-
-class Plan(StrictModel):
-    """What a campaign flies: each cell with the same seeds."""
-
-    cells: Annotated[list[str], Field(min_length=1)]
-    first_seed: Annotated[int, Field(ge=0)]
-    seeds: Annotated[int, Field(ge=1)]
-    versions: dict[str, str]
-    scenarios: dict[str, Scenario]
-
-    @model_validator(mode="after")
-    def _every_cell_has_its_scenario(self) -> Self:
-        if set(self.cells) != set(self.scenarios) or len(self.cells) != len(self.scenarios):
-            raise ValueError("each cell needs one scenario, and each scenario one cell")
-        return self
-
-    def tasks(self) -> list[Task]:
-        """Return all landings, the cells in turns: they advance together, and so the remaining time can be told."""
-        seeds = range(self.first_seed, self.first_seed + self.seeds)
-        return [Task(cell=cell, seed=seed) for seed in seeds for cell in self.cells]
 
 
 def create_folder(path: Path | None, plan: Plan) -> Path:
@@ -89,7 +66,7 @@ def read_landings(folder: Path) -> list[Row]:
     plan = read_plan(folder)
     if (folder / _LANDINGS).exists() and not (folder / _JOURNAL).exists():
         return [_with_firmware(row, plan) for row in read_rows(folder / _LANDINGS)]
-    rows = [_with_firmware(flown.row, plan) for flown in _written_down(folder)]
+    rows = [_with_firmware(flown.row, plan) for flown in _list_newest(folder)]
     if not rows:
         raise UserError(f"{folder}: no landing is done; go on with: scenarios campaign --resume {folder}")
     return as_written(rows)
@@ -97,7 +74,7 @@ def read_landings(folder: Path) -> list[Row]:
 
 def _with_firmware(row: Row, plan: Plan) -> Row:
     """Return a row that names its firmware, as those of earlier versions do not."""
-    return {"firmware": plan.scenarios[row["cell"]].firmware} | row
+    return {"firmware": plan.flown[row["cell"]].firmware} | row
 
 
 def read_timing(folder: Path) -> list[Row]:
@@ -108,7 +85,7 @@ def read_timing(folder: Path) -> list[Row]:
     """
     if not (folder / _JOURNAL).exists():
         return read_rows(folder / _TIMING)
-    return as_written([_timing(flown) for flown in _written_down(folder)])
+    return as_written([_timing(flown) for flown in _list_newest(folder)])
 
 
 def missing_landings(folder: Path) -> str | None:
@@ -125,7 +102,7 @@ def missing_landings(folder: Path) -> str | None:
     return f"{done} of {planned} landings are done; go on with: scenarios campaign --resume {folder}"
 
 
-def _written_down(folder: Path) -> Collection[Flown]:
+def _list_newest(folder: Path) -> Collection[Flown]:
     """Return the newest line of each landing in the journal; the one at which a process was interrupted is left out.
 
     The Parquet files are written from it, but only when a campaign ends by itself.

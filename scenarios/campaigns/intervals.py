@@ -1,7 +1,7 @@
-"""The statistics of campaigns: shares with their intervals, and two variants on the same seeds, by scipy.stats.
+"""The statistics of campaigns: shares with their intervals, variants on the same seeds, and contrasts, by scipy.stats.
 
 Sources: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209; Q. McNemar, Psychometrika 12 (1947) 153, in its exact form;
-B. Efron, Ann. Statist. 7 (1979) 1, percentile interval.
+B. Efron, Ann. Statist. 7 (1979) 1, percentile interval; H. B. Mann and D. R. Whitney, Ann. Math. Statist. 18 (1947) 50.
 """
 
 from collections.abc import Sequence
@@ -58,6 +58,20 @@ def mcnemar_p(only_first: int, only_second: int) -> float:
     """
     discordant = only_first + only_second
     return float(stats.binomtest(only_first, discordant).pvalue) if discordant else 1.0
+
+
+def rank_contrast(first: Sequence[float], second: Sequence[float]) -> tuple[float, float]:
+    """Return how often a value of the first group is above one of the second, ties by half, and the two-sided p.
+
+    Args:
+        first: (n,) at least one.
+        second: (m,) at least one, of the same unit.
+
+    Returns:
+        0.5 where the groups do not differ, 1 where all of the first are above all of the second; p by Mann and Whitney.
+    """
+    found = stats.mannwhitneyu(first, second)
+    return float(found.statistic) / (len(first) * len(second)), float(found.pvalue)
 
 
 def median_difference(first: Sequence[float], second: Sequence[float]) -> Interval:

@@ -10,6 +10,8 @@ from typing import Any
 
 from companion.situation.phases import LANDING_PHASES, Phase
 from link.errors import UserError
+from scenarios.campaigns.cells import Cell, draw
+from scenarios.campaigns.conditions import conditions_of, disturbances_before
 from scenarios.config import Scenario
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.lockstep.stopwatch import quantiles_ms, timed_steps
@@ -55,11 +57,11 @@ class Flights:
     """The job of a campaign's processes.
 
     Attributes:
-        scenarios: by cell.
+        cells: by their names.
         sources: of the project, as `scenarios.recordings.versions` has them; a process with others refuses.
     """
 
-    scenarios: Mapping[str, Scenario]
+    cells: Mapping[str, Cell]
     sources: str
 
     def __call__(self, task: Task) -> Flown:
@@ -74,16 +76,24 @@ class Flights:
             warm_process()
             began_s, began_cpu_s = time.perf_counter(), time.process_time()
             with timed_steps() as durations_s:
-                try:
-                    row = fly(task, self.scenarios[task.cell])
-                except Exception as error:  # noqa: BLE001 (one landing's fault must not end a campaign, and is reported)
-                    row = failed(task, self.scenarios[task.cell].firmware, _where(error))
+                row = _row(task, self.cells[task.cell])
             wall_s, cpu_s = time.perf_counter() - began_s, time.process_time() - began_cpu_s
             return Flown(row=row, wall_s=wall_s, times={"cpu_s": cpu_s} | _planner_ms(durations_s["planner"]))
 
     def only(self, cell: str) -> "Flights":
         """Return the job for tasks of one cell."""
-        return Flights(scenarios={cell: self.scenarios[cell]}, sources=self.sources)
+        return Flights(cells={cell: self.cells[cell]}, sources=self.sources)
+
+
+def _row(task: Task, cell: Cell) -> Row:
+    """Return the row of a landing that is drawn and flown; of one that raises, what was known of it until then."""
+    known: Row = {"firmware": cell.firmware}
+    try:
+        drawn = draw(cell, task.seed)
+        known = {"firmware": drawn.scenario.firmware, **drawn.columns}
+        return known | fly(task, drawn.scenario)
+    except Exception as error:  # noqa: BLE001 (one landing's fault must not end a campaign, and is reported)
+        return failed_row(task, known, error_line(error))
 
 
 def _planner_ms(durations_s: Sequence[float]) -> dict[str, float]:
@@ -96,7 +106,8 @@ def fly(task: Task, scenario: Scenario) -> Row:
     """Fly a landing in lockstep and return its row."""
     lockstep = Lockstep(scenario, task.seed)
     ended = lockstep.run()
-    return row_of(task, result_table(scenario, task.seed, lockstep.recording, ended), lockstep.recording)
+    row = row_of(task, result_table(scenario, task.seed, lockstep.recording, ended), lockstep.recording)
+    return row | conditions_of(scenario) | disturbances_before(scenario, task.seed, row["instant_s"])
 
 
 def row_of(task: Task, table: Mapping[str, Any], recording: Recording) -> Row:
@@ -114,9 +125,9 @@ def row_of(task: Task, table: Mapping[str, Any], recording: Recording) -> Row:
     return _head(task) | values | wave_offs([status.phase for status in recording.statuses]) | tried | phases
 
 
-def failed(task: Task, firmware: str, error: str) -> Row:
-    """Return the row of a task that has no result."""
-    return _head(task) | {"firmware": firmware, "error": error}
+def failed_row(task: Task, known: Row, error: str) -> Row:
+    """Return the row of a task that has no result, with what is known of it all the same, such as its firmware."""
+    return known | _head(task) | {"error": error}
 
 
 def wave_offs(phases: Sequence[str]) -> dict[str, int]:
@@ -148,7 +159,7 @@ def _head(task: Task) -> Row:
     return {"cell": task.cell, "seed": task.seed, "error": None}
 
 
-def _where(error: Exception) -> str:
+def error_line(error: Exception) -> str:
     """Return an error in one line with the place that raised it, the same on every machine."""
     last = traceback.extract_tb(error.__traceback__)[-1]
     file = last.filename.replace("\\", "/").rsplit("/", 1)[-1]

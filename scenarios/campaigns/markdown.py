@@ -48,7 +48,8 @@ def write_markdown(summary: Mapping[str, Any], out: TextIO) -> None:
         out.write(f"All with {code('+' + '+'.join(shared))}. ")
     out.write("Shares with Wilson's 95 % intervals; measures at contact as median, 95th percentile.\n\n")
     rows = [_row(cell, shared) for cell in cells]
-    by_firmware = {one: [cell for cell in cells if cell["firmware"] == one] for one in FIRMWARES}
+    firmwares = sorted({cell["firmware"] for cell in cells}, key=lambda one: [*FIRMWARES, one].index(one))
+    by_firmware = {one: [cell for cell in cells if cell["firmware"] == one] for one in firmwares}
     rows += [_total(one, flown) for one, flown in by_firmware.items() if len(flown) > 1]
     out.write(table(_HEAD, rows))
     for firmware, flown in by_firmware.items():

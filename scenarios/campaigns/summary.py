@@ -7,7 +7,7 @@ import numpy as np
 
 from scenarios.campaigns.intervals import Interval, mean_band, wilson
 from scenarios.campaigns.landing_task import Row
-from scenarios.catalogue.firmware_option import side_by_side
+from scenarios.catalogue.firmware_option import firmware_text, side_by_side
 from scenarios.recordings.reason_counts import counts_of, reasons_in
 from scenarios.recordings.result import LANDED
 from scenarios.scoring.accuracy import NEES_DOF
@@ -50,6 +50,11 @@ def is_unsafe(row: Row) -> bool:
     return row.get("tier") == Tier.UNSAFE.value
 
 
+def is_given_up(row: Row) -> bool:
+    """Return whether the landing was given up, in good order."""
+    return row.get("tier") == Tier.ABORT.value
+
+
 def summarize(rows: Iterable[Row], times: Iterable[Row] = ()) -> dict[str, Any]:
     """Return the summary of a campaign, in the order of its cells with both firmwares of one side by side, for JSON.
 
@@ -58,7 +63,7 @@ def summarize(rows: Iterable[Row], times: Iterable[Row] = ()) -> dict[str, Any]:
         times: what they took to compute, where that is known.
     """
     cells, timing = _by_cell(rows), _by_cell(times)
-    ordered = sorted(cells, key=lambda cell: side_by_side(cell, cells[cell][0]["firmware"]))
+    ordered = sorted(cells, key=lambda cell: side_by_side(cell, _firmware(cells[cell])))
     return {
         "cells": [_summary_of(cell, cells[cell]) | _timing_of(timing.get(cell, ())) for cell in ordered],
     }
@@ -79,7 +84,7 @@ def _summary_of(cell: str, rows: Sequence[Row]) -> dict[str, Any]:
         "seeds": len(rows),
         "tiers": {tier.value: tiers.count(tier.value) for tier in Tier},
         **measures,
-        "firmware": rows[0]["firmware"],
+        "firmware": _firmware(rows),
         "s1_or_better": share_json(sum(map(is_s1_or_better, rows)), len(rows)),
         "s2_quality": share_json(sum(map(is_s2_quality, rows)), len(rows)),
         "unsafe": share_json(sum(map(is_unsafe, rows)), len(rows)),
@@ -96,6 +101,11 @@ def _summary_of(cell: str, rows: Sequence[Row]) -> dict[str, Any]:
         "nees": _nees(rows),
         "nis_per_dof": _nis(rows),
     }
+
+
+def _firmware(rows: Sequence[Row]) -> str:
+    """Return the firmware of a cell, or both of one that is flown with both."""
+    return firmware_text([row["firmware"] for row in rows])
 
 
 def _reasons(rows: Iterable[Row], name: str) -> dict[str, int]:

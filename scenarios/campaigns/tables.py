@@ -4,15 +4,13 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TextIO
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.table import Table
 
+from scenarios.campaigns.sheets import open_console, open_table
 from scenarios.catalogue.firmware_option import firmware_text
 from scenarios.recordings.reason_counts import add_counts, counts_text
 from scenarios.scoring.score import Tier
 
-_PLAIN_WIDTH = 1000  # nothing is wrapped where a program may read it
 _DEG = 180.0 / math.pi
 _UNITS = {
     "horizontal_error_m": ("error", "m", 1.0, 3),
@@ -38,7 +36,7 @@ def print_summary(summary: Mapping[str, Any], out: TextIO) -> None:
     reached += [(name, _count_of(name)) for name in ("aborts", "retries")]
     if any(cell["errors"] for cell in cells):
         reached.append(("errors", _count_of("errors")))
-    console = _console(out)
+    console = open_console(out)
     _print(console, "Landings", reached, cells)
     _print_reasons(console, cells)
     shares = [(f"{heading} [%]", _share_of(name)) for name, heading in _SHARES.items()]
@@ -55,7 +53,7 @@ def print_summary(summary: Mapping[str, Any], out: TextIO) -> None:
 
 def print_comparison(comparison: Mapping[str, Any], out: TextIO) -> None:
     """Print a comparison of two campaigns A and B."""
-    console = _console(out)
+    console = open_console(out)
     cells: Sequence[Cell] = comparison["cells"]
     shares: list[Column] = [("pairs", lambda cell: str(cell["pairs"]))]
     shares += [(_SHARES[name], _mcnemar_of(name)) for name in _SHARES]
@@ -90,14 +88,8 @@ _REASONS = {
 _SHARES = {"s1_or_better": "S1 or better", "s2_quality": "S2 quality", "unsafe": "unsafe"}
 
 
-def _console(out: TextIO) -> Console:
-    is_terminal = out.isatty()
-    return Console(file=out, highlight=False, width=None if is_terminal else _PLAIN_WIDTH, no_color=not is_terminal)
-
-
 def _print(console: Console, title: str, columns: Sequence[Column], cells: Sequence[Cell]) -> None:
-    framed = console.is_terminal
-    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD if framed else None, pad_edge=framed)
+    table = open_table(console, title)
     for heading in _HEAD:
         table.add_column(heading, overflow="fold")
     for heading, _ in columns:
@@ -112,8 +104,7 @@ def _print_reasons(console: Console, cells: Sequence[Cell]) -> None:
     total = {name: add_counts(cell[name] for cell in cells) for name in _REASONS}
     if not any(total.values()):
         return
-    framed = console.is_terminal
-    table = Table(title=_WHY, title_justify="left", box=SIMPLE_HEAD if framed else None, pad_edge=framed)
+    table = open_table(console, _WHY)
     for heading in (*_HEAD, "approaches", *_REASONS.values()):
         table.add_column(heading, overflow="fold")
     told = [cell for cell in cells if any(cell[name] for name in _REASONS)]

@@ -3,7 +3,8 @@
 A name is a track and its speed rounded down (`straight_5`), perhaps with presets (`straight_5+sensors=nominal`).
 A file of one's own has the same keys, perhaps with presets behind its name as well (`own.toml+firmware=px4`); `base`
 names a scenario to start from. A section is a preset's name, or a
-table of values, in which `preset` names what the values change.
+table of values, in which `preset` names what the values change. A world of `scenarios.worlds` has a name too
+(`world:urban@123`).
 """
 
 import difflib
@@ -19,6 +20,8 @@ from typing import Any
 from link.errors import UserError
 from link.program.toml_config import merge, read_toml, validate
 from scenarios.catalogue.placement import keep_clear_of_vehicle
+from scenarios.catalogue.world_names import names_worlds, parse_world_name
+from scenarios.catalogue.worlds import named_world
 from scenarios.config import Scenario
 
 Table = dict[str, Any]
@@ -44,8 +47,11 @@ def load_scenario(name_or_path: str) -> Scenario:
     """Return the scenario called `name_or_path`, or the one in that TOML file.
 
     Raises:
-        UserError: no such scenario, preset or file, a file that does not fit, or a drone inside the vehicle.
+        UserError: no such scenario, preset or file, a file that does not fit, a drone inside the vehicle, or a world
+            that is held back.
     """
+    if names_worlds(name_or_path):
+        return named_world(parse_world_name(name_or_path)).scenario
     # A folder may have a "+" in its name.
     path, suffix, presets = name_or_path.rpartition(_SUFFIX)
     name, *options = presets.split("+")
@@ -53,10 +59,10 @@ def load_scenario(name_or_path: str) -> Scenario:
         table = {"name": Path(path).name} | _file_table(Path(path + suffix + name))
         table["name"] = "+".join((table["name"], *options))
     else:
-        table = _named(name) | {"name": name_or_path}
+        table = _find_table(name) | {"name": name_or_path}
     for option in options:
         table |= _option(option, name_or_path)
-    return keep_clear_of_vehicle(validate(Scenario, _resolved(table, name_or_path), source=name_or_path))
+    return keep_clear_of_vehicle(validate(Scenario, _resolve(table, name_or_path), source=name_or_path))
 
 
 def _option(option: str, whole: str) -> Table:
@@ -68,7 +74,7 @@ def _option(option: str, whole: str) -> Table:
     return {section: preset}
 
 
-def _named(name: str, place: str = "") -> Table:
+def _find_table(name: str, place: str = "") -> Table:
     """Return the catalogue's table called `name`; `place` is where the name stands, for the message."""
     try:
         return _scenarios()[name]
@@ -112,10 +118,10 @@ def _file_table(path: Path) -> Table:
     """Return the table of a user's file, laid over its base."""
     table = read_toml(path)
     base = table.pop("base", None)
-    return table if base is None else merge(_named(str(base), f"{path}: base: "), table)
+    return table if base is None else merge(_find_table(str(base), f"{path}: base: "), table)
 
 
-def _resolved(table: Table, source: str) -> Table:
+def _resolve(table: Table, source: str) -> Table:
     """Return `table` with the presets' values in place of their names."""
     return table | {section: _section(section, table.get(section), source) for section in _DEFAULT_PRESETS}
 

@@ -6,7 +6,7 @@ from link.errors import UserError
 from scenarios.config import FIRMWARES
 
 BOTH = "both"
-_OPTION = "firmware="
+OPTION = "firmware="
 
 
 def with_firmware(name: str, firmware: str) -> str:
@@ -19,7 +19,7 @@ def with_firmware(name: str, firmware: str) -> str:
         raise UserError(f"--firmware is one of {', '.join(FIRMWARES)}, not '{firmware}'")
     if without_firmware(name) != name:
         raise UserError(f"'{name}' names its firmware: leave out that, or --firmware")
-    return f"{name}+{_OPTION}{firmware}"
+    return f"{name}+{OPTION}{firmware}"
 
 
 def cells_with(cells: Sequence[str], firmware: str | None) -> list[str]:
@@ -38,7 +38,7 @@ def cells_with(cells: Sequence[str], firmware: str | None) -> list[str]:
 
 def without_firmware(name: str) -> str:
     """Return a name without the option, so that what is flown with both has one name."""
-    return "+".join(part for part in name.split("+") if not part.startswith(_OPTION))
+    return "+".join(part for part in name.split("+") if not part.startswith(OPTION))
 
 
 def firmware_text(firmwares: Sequence[str]) -> str:

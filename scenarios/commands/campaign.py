@@ -12,8 +12,8 @@ from link.errors import UserError
 
 if TYPE_CHECKING:
     from scenarios.campaigns.campaign import Where
-    from scenarios.campaigns.folder import Plan
     from scenarios.campaigns.landing_task import Row
+    from scenarios.campaigns.plan import Plan
 
 _ERRORS_SHOWN = 5
 _SEEDS, _FIRST_SEED = 100, 1
@@ -31,7 +31,10 @@ def register(app: typer.Typer) -> None:
 def campaign_command(
     cells: Annotated[
         list[str] | None,
-        typer.Argument(metavar="CELL...", help="Scenarios, such as straight_5+sensors=nominal+wind=moderate."),
+        typer.Argument(
+            metavar="CELL...",
+            help="Scenarios, such as straight_5+sensors=nominal; world or world:urban is another one for each seed.",
+        ),
     ] = None,
     *,
     seeds: Annotated[
@@ -58,20 +61,25 @@ def campaign_command(
     firmware: Annotated[
         str | None, typer.Option("--firmware", metavar="px4|ardupilot|both", help="Of each cell [default: its own].")
     ] = None,
+    held_back: Annotated[
+        bool, typer.Option("--held-back", help="Fly worlds from seed 500000 on, for a published figure, once.")
+    ] = False,
     as_json: JsonOption = False,
 ) -> int:
     """Fly each cell with many seeds and print the summary; exit code 1 when a landing raised an error."""
-    from scenarios.campaigns.campaign import Where, check_same_versions, make_plan
+    from scenarios.campaigns.campaign import Where
     from scenarios.campaigns.folder import create_folder, read_plan
+    from scenarios.campaigns.held_back import check_worlds, write_down_held_back
+    from scenarios.campaigns.plan import check_same_versions, make_plan
 
     where = Where(workers=workers, scheduler=scheduler)
     if workers is not None and scheduler is not None:
         raise UserError("--workers is about local processes: leave it out with --scheduler")
     if resume is not None:
-        if cells or any(one is not None for one in (config, out, seeds, first_seed, firmware)):
+        if cells or held_back or any(one is not None for one in (config, out, seeds, first_seed, firmware)):
             raise UserError(
-                f"{resume} says what is flown: with --resume leave out cells, --config, --firmware, --out, --seeds and "
-                "--first-seed"
+                f"{resume} says what is flown: with --resume leave out cells, --config, --firmware, --held-back, "
+                "--out, --seeds and --first-seed"
             )
         plan = read_plan(resume)
         check_same_versions(plan)
@@ -85,25 +93,27 @@ def campaign_command(
         config=config,
         firmware=firmware,
     )
+    check_worlds(plan, held_back=held_back)
     if scheduler is not None:
         from scenarios.processes.dask_workers import check_scheduler
 
         check_scheduler(scheduler)  # before there is a folder of a campaign that cannot begin
-    return _fly(create_folder(out, plan), plan, where, as_json=as_json)
+    folder = create_folder(out, plan)
+    if held_back:
+        write_down_held_back(plan)
+    return _fly(folder, plan, where, as_json=as_json)
 
 
 def table_command(folder: FolderArgument, *, as_json: JsonOption = False, markdown: bool = False) -> None:
     """Print a campaign's summary again."""
-    from scenarios.campaigns.folder import read_landings, read_timing
+    from scenarios.campaigns.folder import read_landings, read_plan, read_timing
 
     say_missing(folder)
+    rows, plan = read_landings(folder), read_plan(folder)
     if markdown and not as_json:
-        from scenarios.campaigns.markdown import write_markdown
-        from scenarios.campaigns.summary import summarize
-
-        write_markdown(summarize(read_landings(folder)), sys.stdout)
-        return
-    _print_summary(read_landings(folder), read_timing(folder), as_json=as_json)
+        _write_markdown(rows, plan)
+    else:
+        _print_summary(rows, read_timing(folder), plan, as_json=as_json)
 
 
 def compare_command(
@@ -150,7 +160,7 @@ def _fly(folder: Path, plan: "Plan", where: "Where", *, as_json: bool) -> int:
     except KeyboardInterrupt:
         _note(f"what is done is kept; go on with: scenarios campaign --resume {folder}")
         raise
-    _print_summary(rows, read_timing(folder), as_json=as_json)
+    _print_summary(rows, read_timing(folder), plan, as_json=as_json)
     failed = [row for row in rows if row["error"] is not None]
     for row in failed[:_ERRORS_SHOWN]:
         _note(f"{row['cell']}, seed {row['seed']}: {row['error']}")
@@ -159,15 +169,32 @@ def _fly(folder: Path, plan: "Plan", where: "Where", *, as_json: bool) -> int:
     return 1 if failed else 0
 
 
-def _print_summary(rows: Sequence["Row"], times: Sequence["Row"], *, as_json: bool) -> None:
+def _print_summary(rows: Sequence["Row"], times: Sequence["Row"], plan: "Plan", *, as_json: bool) -> None:
+    from scenarios.campaigns.sheets import print_sheets
     from scenarios.campaigns.summary import summarize
     from scenarios.campaigns.tables import print_summary
+    from scenarios.campaigns.worlds_report import worlds_report
+    from scenarios.campaigns.worlds_sheets import worlds_sheets
 
-    summary = summarize(rows, times)
+    summary, worlds = summarize(rows, times), worlds_report(rows, plan.populations)
     if as_json:
-        _print_json(summary)
-    else:
-        print_summary(summary, sys.stdout)
+        _print_json(summary | ({"worlds": worlds} if worlds else {}))
+        return
+    print_summary(summary, sys.stdout)
+    for report in worlds:
+        print_sheets(worlds_sheets(report), sys.stdout)
+
+
+def _write_markdown(rows: Sequence["Row"], plan: "Plan") -> None:
+    from scenarios.campaigns.markdown import write_markdown
+    from scenarios.campaigns.sheets import write_sheets
+    from scenarios.campaigns.summary import summarize
+    from scenarios.campaigns.worlds_report import worlds_report
+    from scenarios.campaigns.worlds_sheets import worlds_sheets
+
+    write_markdown(summarize(rows), sys.stdout)
+    for report in worlds_report(rows, plan.populations):
+        write_sheets(worlds_sheets(report), sys.stdout)
 
 
 def _print_json(table: Mapping[str, Any]) -> None:

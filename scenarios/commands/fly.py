@@ -26,7 +26,9 @@ def fly_command(
         float | None,
         typer.Option("--ship", min=0.1, metavar="M_S", help="Land on ArduPilot's simulated ship at this speed."),
     ] = None,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Of the vehicle's sensors.")] = 1,
+    seed: Annotated[
+        int | None, typer.Option("--seed", min=0, help="Of the vehicle's sensors [default: 1, or the world's own].")
+    ] = None,
     record: Annotated[
         bool, typer.Option("--record", help="Record the companion and the truth, as MCAP, into the run's folder.")
     ] = False,
@@ -38,13 +40,21 @@ def fly_command(
     The vehicle drives by the place where the simulated drone stands, its pad at the height of the ground.
     """
     from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.world_names import run_seed
     from scenarios.commands.run_lines import Reporter
     from scenarios.firmware.fly import FlyOptions, fly
     from scenarios.wire.run import run_folder
 
     scenario = load_scenario(name)
     folder = run_folder(out, scenario.name)
-    options = FlyOptions(mavlink=mavlink, watch=watch, ship_speed_m_s=ship, seed=seed, folder=folder, record=record)
+    options = FlyOptions(
+        mavlink=mavlink,
+        watch=watch,
+        ship_speed_m_s=ship,
+        seed=run_seed(name, seed),
+        folder=folder,
+        record=record,
+    )
     with Reporter(scenario, folder, as_json=as_json) as reporter:
         outcome = fly(scenario, options, reporter.progress)
     return reporter.conclude(outcome)

@@ -68,7 +68,9 @@ def view_command(
     road: Annotated[
         str | None, typer.Option("--road", metavar="NAME|FILE", help="Draw the road of this scenario.")
     ] = None,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Of that scenario.")] = 1,
+    seed: Annotated[
+        int | None, typer.Option("--seed", min=0, help="Of that scenario [default: 1, or the world's own].")
+    ] = None,
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
     drone: DroneOption = "drone",
@@ -93,9 +95,10 @@ def view_command(
     from link.zenoh.options import zenoh_options
     from link.zenoh.session import open_session
     from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.world_names import run_seed
     from scenarios.view.live import LiveSource
 
-    drawn = None if road is None else Road(scenario=load_scenario(road), seed=seed)
+    drawn = None if road is None else Road(scenario=load_scenario(road), seed=run_seed(road, seed))
     keys = Keys(namespace, vehicle, drone)
     with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config)) as zenoh:
         _show(LiveSource(zenoh, keys), drawn, port)

@@ -78,7 +78,7 @@ def fuzz(link: str, firmware: str, frames: int, seed: int) -> FuzzResult:
         frames: how many.
         seed: of the frames.
     """
-    node = _hovering(firmware)
+    node = _fly_to_hover(firmware)
     place, mode = node.state.position_enu_m.copy(), node.memory.modes.mode
     listener = MavlinkCodec(255, 190)
     drift_m, not_finite, offered_bytes = 0.0, 0, 0
@@ -107,7 +107,7 @@ def fuzz(link: str, firmware: str, frames: int, seed: int) -> FuzzResult:
     )
 
 
-def _hovering(firmware: str) -> AutopilotNode:
+def _fly_to_hover(firmware: str) -> AutopilotNode:
     config = SimAutopilotConfig.model_validate({"firmware": firmware, "instant": True, "drone": {"endurance_s": 1e4}})
     node, pilot = AutopilotNode(autopilot_config(config), _START_NS), MavlinkCodec(255, 190)
     orders = [_command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1.0)]

@@ -37,21 +37,21 @@ def fuzz_frames(seed: int) -> Iterator[bytes]:
     rng = random.Random(seed)  # noqa: S311 (reproducible, not secret)
     ids = sorted(mavlink.mavlink_map)
     pool = [_absurd(rng, rng.choice(ids)) for _ in range(_POOL)]
-    makers = (_replayed, _truncated, _flipped, _noise)
+    makers = (_replay, _truncate, _flip, _noise)
     while True:
         yield rng.choice(makers)(rng, pool)
 
 
-def _replayed(rng: random.Random, pool: list[bytes]) -> bytes:
+def _replay(rng: random.Random, pool: list[bytes]) -> bytes:
     return rng.choice(pool)
 
 
-def _truncated(rng: random.Random, pool: list[bytes]) -> bytes:
+def _truncate(rng: random.Random, pool: list[bytes]) -> bytes:
     frame = rng.choice(pool)
     return frame[: rng.randrange(len(frame))]
 
 
-def _flipped(rng: random.Random, pool: list[bytes]) -> bytes:
+def _flip(rng: random.Random, pool: list[bytes]) -> bytes:
     frame = bytearray(rng.choice(pool))
     for _ in range(rng.randint(1, _FLIPS_MAX)):
         frame[rng.randrange(len(frame))] ^= 1 << rng.randrange(8)

@@ -73,18 +73,18 @@ def _is_end(end: End, tier: Tier, *, motors_off: bool) -> bool:
             return motors_off
 
 
-def _expected(phase: Phase, *ends: End) -> Expected:
+def _expect(phase: Phase, *ends: End) -> Expected:
     return Expected(phase=phase, ends=frozenset(ends))
 
 
-_LANDS = _expected(Phase.SECURED, End.LANDED)
-_HOLDS = _expected(Phase.HOLD, End.HOVERS)
-_WAITS = _expected(Phase.WAITING, End.HOVERS)
-_IS_OUT = _expected(Phase.PILOT, End.HOVERS)
-_IS_OUT_ON_PAD = _expected(Phase.PILOT, End.LANDED)
-_IS_IDLE = _expected(Phase.IDLE, End.HOVERS)
-_IS_IDLE_ON_PAD = _expected(Phase.IDLE, End.LANDED)
-_FALLS = _expected(Phase.PILOT, End.FALLEN)
+_LANDS = _expect(Phase.SECURED, End.LANDED)
+_HOLDS = _expect(Phase.HOLD, End.HOVERS)
+_WAITS = _expect(Phase.WAITING, End.HOVERS)
+_IS_OUT = _expect(Phase.PILOT, End.HOVERS)
+_IS_OUT_ON_PAD = _expect(Phase.PILOT, End.LANDED)
+_IS_IDLE = _expect(Phase.IDLE, End.HOVERS)
+_IS_IDLE_ON_PAD = _expect(Phase.IDLE, End.LANDED)
+_FALLS = _expect(Phase.PILOT, End.FALLEN)
 
 _BEFORE = (Phase.TAKEOFF, Phase.WAITING)
 _APPROACH = (Phase.CHASE, Phase.ALIGN, Phase.DESCEND)

@@ -3,7 +3,7 @@
 import math
 import time
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from companion.situation.phases import Phase
@@ -12,6 +12,7 @@ from link.frames.geodesy import Datum
 from link.mavlink.transports import Transport, open_transport
 from link.payloads import json_messages
 from link.program.toml_config import dump_toml
+from link.records import replace
 from link.zenoh.keys import Keys, Publication
 from link.zenoh.session import ZenohOptions, ZenohSession, open_session
 from scenarios.config import Scenario
@@ -69,7 +70,7 @@ def fly(scenario: Scenario, options: FlyOptions, progress: Progress) -> RunOutco
         watch = FirmwareWatch()
         datum = _datum(watch, transport)
         firmware = NAMES.get(watch.session.autopilot or 0, scenario.firmware)
-        placed = _placed(scenario, datum).model_copy(update={"firmware": firmware})
+        placed = _place(scenario, datum).model_copy(update={"firmware": firmware})
         write_text(options.folder / "scenario.toml", dump_toml(placed))
         write_text(options.folder / "companion.toml", dump_toml(placed.system.companion))
         flight = _Flight(placed, options, watch, keys, zenoh)
@@ -99,7 +100,7 @@ def _write_truth(scenario: Scenario, options: FlyOptions, keys: Keys, recording:
         truth.take(recording)
 
 
-def _placed(scenario: Scenario, datum: Datum) -> Scenario:
+def _place(scenario: Scenario, datum: Datum) -> Scenario:
     """Return the scenario about the drone's place, for ground at a fixed height and positions told of the feet."""
     vehicle = scenario.vehicle.model_copy(update=_BODY)
     companion = scenario.system.companion

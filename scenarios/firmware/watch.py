@@ -1,7 +1,5 @@
 """A second link to a firmware's own simulation: its clock, its truth, and its ship. Without I/O."""
 
-from dataclasses import replace
-
 from link.errors import UserError
 from link.frames.geodesy import Datum
 from link.mavlink.codec import MavlinkCodec
@@ -9,6 +7,7 @@ from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import LinkFound, MessageReceived
 from link.mavlink.session import MavlinkSession
 from link.messages import BodyTruth, RotorTruth
+from link.records import replace
 from scenarios.firmware.ship import ShipReport, ship_report
 from scenarios.firmware.truth import (
     DATED_BY,
@@ -108,9 +107,9 @@ class FirmwareWatch:
             self._sent_boot_ns[message.get_type()] = message.time_boot_ms * 1_000_000
         pose = true_pose(message)
         if pose is not None and self._geoid_height_m is not None:
-            self._see(pose, self._dated_ns(message, t_ns))
+            self._see(pose, self._date_ns(message, t_ns))
 
-    def _dated_ns(self, message: Message, arrived_ns: int) -> int:
+    def _date_ns(self, message: Message, arrived_ns: int) -> int:
         """Return when a truth was sent, by the message sent with it; its arrival while there is none."""
         boot_ns = self._sent_boot_ns.pop(DATED_BY.get(message.get_type(), ""), None)
         sent_ns = None if boot_ns is None else self.session.clock.boot_to_utc_ns(boot_ns)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from link.memory_link import MemoryLink
 from scenarios.config import ChannelConfig, Scenario
 from scenarios.simulation.disturbances import Span, outages_ns
-from scenarios.simulation.noise import named_rng
+from scenarios.simulation.noise import Seed, named_rng
 
 _SEPARATOR = b"\0"
 
@@ -23,7 +23,7 @@ class KeyedLink:
 
     def take(self, t_ns: int) -> list[tuple[str, bytes]]:
         """Return what has arrived, with the keys."""
-        packets = (packet.partition(_SEPARATOR) for packet in self._link.take(t_ns))
+        packets = [packet.partition(_SEPARATOR) for packet in self._link.take(t_ns)]
         return [(key.decode(), payload) for key, _, payload in packets]
 
 
@@ -44,7 +44,7 @@ class Channels:
     detector: KeyedLink
 
 
-def channels_of(scenario: Scenario, seed: int, start_ns: int) -> Channels:
+def channels_of(scenario: Scenario, seed: Seed, start_ns: int) -> Channels:
     """Return fresh channels for a run that starts at `start_ns`; an outage of MAVLink is one of both directions."""
     link = scenario.link
     outages = outages_ns(link.mavlink, scenario, seed, "mavlink", start_ns)
@@ -56,14 +56,14 @@ def channels_of(scenario: Scenario, seed: int, start_ns: int) -> Channels:
     )
 
 
-def _keyed_link(config: ChannelConfig, scenario: Scenario, seed: int, name: str, start_ns: int) -> KeyedLink:
+def _keyed_link(config: ChannelConfig, scenario: Scenario, seed: Seed, name: str, start_ns: int) -> KeyedLink:
     return KeyedLink(_channel(config, seed, name, outages_ns(config, scenario, seed, name, start_ns)))
 
 
-def _channel(config: ChannelConfig, seed: int, name: str, outages: Sequence[Span]) -> MemoryLink:
+def _channel(config: ChannelConfig, seed: Seed, name: str, outages: Sequence[Span]) -> MemoryLink:
     rng = named_rng(seed, name)
     return MemoryLink(
-        seed=int(rng.integers(2**31)),
+        seed=int(rng.integers(2**31)) if isinstance(seed, int) else rng,
         delay_s=config.delay_s,
         jitter_s=config.jitter_s,
         loss=config.loss,

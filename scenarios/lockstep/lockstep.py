@@ -17,6 +17,7 @@ from scenarios.config import Scenario
 from scenarios.lockstep.channels import Channels, channels_of
 from scenarios.recordings.recording import EndWatch, Recording
 from scenarios.scoring.accuracy import PERIOD_NS, PHASES, Nis, antenna_truth, estimate_error
+from scenarios.simulation.noise import Seed
 from scenarios.simulation.simulation import Simulation, SimulationOutputs
 
 START_NS = 1_767_225_600_000_000_000
@@ -36,13 +37,14 @@ class Lockstep:
     """
 
     def __init__(
-        self, scenario: Scenario, seed: int, config: CompanionConfig | None = None, recorder: Recorder | None = None
+        self, scenario: Scenario, seed: Seed, config: CompanionConfig | None = None, recorder: Recorder | None = None
     ) -> None:
         keys = Keys()
         self.recording = Recording()
         instant = scenario.start == "instant"
         self.simulation = Simulation(scenario, seed, keys, START_NS, instant=instant, publishes_truth=False)
-        self.companion = build_node(scenario.system.companion if config is None else config, keys, recorder=recorder)
+        flown = scenario.system.companion if config is None else config
+        self.companion = build_node(flown, keys, recorder=recorder, publishes=False)
         self.companion.receive_pad(self.simulation.vehicle.pad)
         self._channels: Channels = channels_of(scenario, seed, START_NS)
         from_vehicle = dict.fromkeys((keys.fix, keys.fix_velocity, keys.imu), self._channels.zenoh)
@@ -82,7 +84,6 @@ class Lockstep:
         if node.poll(local_ns) and node.outputs is not None:
             self.recording.add(node.outputs.status)
             self._compare(node, t_ns)
-        node.take_publications()
         node.take_replies()
         self._send(node.take_frames(), t_ns)
 

@@ -31,14 +31,14 @@ def timed_steps() -> Iterator[dict[str, list[float]]]:
     plain = [getattr(owner, attribute) for _, owner, attribute in places]
     try:
         for (name, owner, attribute), function in zip(places, plain, strict=True):
-            setattr(owner, attribute, _timed(function, durations_s[name]))
+            setattr(owner, attribute, _time(function, durations_s[name]))
         yield durations_s
     finally:
         for (_, owner, attribute), function in zip(places, plain, strict=True):
             setattr(owner, attribute, function)
 
 
-def _timed(function: Callable[..., Any], durations_s: list[float]) -> Callable[..., Any]:
+def _time(function: Callable[..., Any], durations_s: list[float]) -> Callable[..., Any]:
     def timed(*arguments: Any) -> Any:
         began_s = time.perf_counter()
         result = function(*arguments)

@@ -96,7 +96,7 @@ def _row(one: Table, name: str) -> tuple[str, ...]:
     comment = comments_of(one.model).get(name, "")
     meaning = "; ".join(part for part in (comment, _choices(field.annotation)) if part)
     value = getattr(one.values, name) if one.values is not None else _value(field)
-    default = "must be given" if one.values is None and field.is_required() else _written(value)
+    default = "must be given" if one.values is None and field.is_required() else _write(value)
     return code(name), _type(field), unit_of(name), default, meaning
 
 
@@ -131,7 +131,7 @@ def _value(field: FieldInfo) -> Any:
     return None if field.is_required() else field.get_default(call_default_factory=True, validated_data={})
 
 
-def _written(value: Any) -> str:
+def _write(value: Any) -> str:
     """Return a value as it is written in TOML, which writes most things as JSON does."""
     if value is None:
         return "none"

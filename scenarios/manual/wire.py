@@ -5,9 +5,10 @@ import inspect
 import json
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import fields, is_dataclass
 from importlib import resources
 from importlib.resources.abc import Traversable
+
+from msgspec import StructMeta, structs
 
 from link import messages
 from link.mavlink.dialect import mavlink
@@ -45,7 +46,7 @@ def wire_page() -> str:
         table(("key", "ROS 2 type", "what"), _keys()),
         "### What the messages hold",
         "In SI units, radians, east-north-up (W) and forward-left-up (B, V): this is what the programs make of them.",
-        *(_message(name) for name in _described()),
+        *(_message(name) for name in _described_names()),
         "### Schema of `landing/status`",
         block(json.dumps(json_messages.LANDING_STATUS_SCHEMA, indent=2)),
         "### Messages of our own",
@@ -68,9 +69,9 @@ def _keys() -> Iterator[tuple[str, str, str]]:
         yield code(getattr(KEYS, name)), code(ROS_TYPES[classes[0]]) if classes else "", text
 
 
-def _described() -> list[str]:
+def _described_names() -> list[str]:
     """Return the names of the messages that the keys speak of, as they come."""
-    return [name for name, one in vars(messages).items() if is_dataclass(one)]
+    return [name for name, one in vars(messages).items() if isinstance(one, StructMeta)]
 
 
 def _message(name: str) -> str:
@@ -82,7 +83,7 @@ def _message(name: str) -> str:
             type_in_words(annotations[one.name]),
             unit_of(one.name.replace("_enu", "").replace("_flu", "")),
         )
-        for one in fields(owner)
+        for one in structs.fields(owner)
     ]
     return f"**{name}**: {inspect.getdoc(owner)}\n\n{table(('field', 'type', 'unit'), rows)}"
 
@@ -107,16 +108,16 @@ def _uses(tree: ast.Module) -> Iterator[tuple[str, str]]:
         ):
             yield made[1].upper(), "sends"
         elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith(".get"):
-            yield from ((name, "reads") for name in _named(node.args))
+            yield from ((name, "reads") for name in _names_of(node.args))
         elif isinstance(node, ast.Compare):
-            yield from ((name, "reads") for name in _named(node.comparators))
+            yield from ((name, "reads") for name in _names_of(node.comparators))
         elif isinstance(node, ast.MatchValue):
-            yield from ((name, "reads") for name in _named([node.value]))
+            yield from ((name, "reads") for name in _names_of([node.value]))
         elif isinstance(node, ast.Dict):
-            yield from ((name, "asks for") for name in _named([key for key in node.keys if key is not None]))
+            yield from ((name, "asks for") for name in _names_of([key for key in node.keys if key is not None]))
 
 
-def _named(nodes: list[ast.expr]) -> Iterator[str]:
+def _names_of(nodes: list[ast.expr]) -> Iterator[str]:
     for node in nodes:
         text = f"{node.value!s}" if isinstance(node, ast.Constant) else ast.unparse(node)
         name = text.removeprefix("mavlink.MAVLINK_MSG_ID_")

@@ -5,8 +5,9 @@ Who the workers are (`LocalWorkers`, `DaskWorkers`) shows neither in the results
 
 from abc import ABC, abstractmethod
 from collections import Counter, deque
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import CancelledError, Future
+from itertools import chain, islice
 from queue import Empty, SimpleQueue
 from types import TracebackType
 from typing import Generic, Self, TypeVar
@@ -60,33 +61,51 @@ def run_tasks(
     To be closed (`contextlib.closing`) where it may not be exhausted: that ends the workers.
 
     Args:
-        workers: who does them.
+        workers: who does them; they are found, and ended.
         tasks: hashable, and can be pickled.
         lost: what stands for the result of a task that failed, or ended its worker time and again; from task and why.
 
     Raises:
         UserError: raised by the job, or there are no workers.
     """
-    waiting, losses = deque(tasks), Counter[Task]()
+    with workers:
+        for _, result in run_batch(workers, tasks, lost=lost):
+            yield result
+
+
+def run_batch(
+    workers: Workers[Task, Result], tasks: Iterable[Task], *, lost: Callable[[Task, str], Result]
+) -> Generator[tuple[Task, Result], None, None]:
+    """Yield each task with its result, as `run_tasks` does, by workers that are found and stay for other tasks.
+
+    A task is taken from `tasks` when there is a place for it, so that who asks can end them early.
+    """
+    fresh, again, losses = iter(tasks), deque[Task](), Counter[Task]()
     underway: dict[Future[Result], Task] = {}
     ended: SimpleQueue[Future[Result]] = SimpleQueue()
-    with workers:
-        while waiting or underway:
-            while waiting and len(underway) < workers.places:
-                future = workers.submit(waiting[0])
-                underway[future] = waiting.popleft()
-                future.add_done_callback(ended.put)
-            future = _next_ended(ended)
-            task = underway.pop(future)
-            death = workers.release(future)
-            if death is None:
-                yield _result(future, task, lost)
-                continue
-            losses[task] += 1
-            if losses[task] < _ATTEMPTS_MAX:
-                waiting.appendleft(task)
-            else:
-                yield lost(task, f"its process died {_ATTEMPTS_MAX} times ({death})")
+    while True:
+        for task in islice(chain(_drained(again), fresh), workers.places - len(underway)):
+            future = workers.submit(task)
+            underway[future] = task
+            future.add_done_callback(ended.put)
+        if not underway:
+            return
+        future = _next_ended(ended)
+        task = underway.pop(future)
+        death = workers.release(future)
+        if death is None:
+            yield task, _result(future, task, lost)
+            continue
+        losses[task] += 1
+        if losses[task] < _ATTEMPTS_MAX:
+            again.append(task)
+        else:
+            yield task, lost(task, f"its process died {_ATTEMPTS_MAX} times ({death})")
+
+
+def _drained(tasks: "deque[Task]") -> Iterator[Task]:
+    while tasks:
+        yield tasks.popleft()
 
 
 def _next_ended(ended: "SimpleQueue[Future[Result]]") -> "Future[Result]":

@@ -76,7 +76,7 @@ class ProcessGroup:
         for name, process in self._processes.items():
             code = process.poll()
             if code is not None:
-                raise UserError(f"{name} {_ending(code)}: {self._last_words(name)}; see {self._log(name)}")
+                raise UserError(f"{name} {_describe_end(code)}: {self._last_words(name)}; see {self._log(name)}")
 
     def _start(self, program: Program) -> None:
         with self._log(program.name).open("wb") as log:
@@ -132,5 +132,5 @@ def _free_port(kind: socket.SocketKind) -> int:
         return int(probe.getsockname()[1])
 
 
-def _ending(code: int) -> str:
+def _describe_end(code: int) -> str:
     return f"ended with exit code {code}" if code >= 0 else f"was ended by {signal.Signals(-code).name}"

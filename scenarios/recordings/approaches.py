@@ -93,10 +93,10 @@ def approaches_of(statuses: Sequence[LandingStatus], log: TruthLog, pad_height_m
         pad_height_m: over the vehicle's origin.
     """
     height_m = log.position_v_m[:, 2] - pad_height_m - GEAR_HEIGHT_M
-    return [_approach(steps, statuses[-1], log, height_m) for steps in _entered(statuses)]
+    return [_approach(steps, statuses[-1], log, height_m) for steps in _list_approaches(statuses)]
 
 
-def _entered(statuses: Sequence[LandingStatus]) -> list[list[LandingStatus]]:
+def _list_approaches(statuses: Sequence[LandingStatus]) -> list[list[LandingStatus]]:
     """Return for each approach the statuses with which its phases began, and last of all what ended it, if anything."""
     begun = [*statuses[:1], *(after for before, after in pairwise(statuses) if after.phase != before.phase)]
     found: list[list[LandingStatus]] = []

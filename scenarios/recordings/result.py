@@ -12,17 +12,19 @@ from scenarios.config import Scenario
 from scenarios.recordings.approaches import Approach, approaches_of
 from scenarios.recordings.recording import Recording
 from scenarios.scoring.accuracy import accuracy_table
+from scenarios.scoring.circumstances import closest_ns, vehicle_circumstances
 from scenarios.scoring.passing import passing_ns
 from scenarios.scoring.score import Score, Tier, score, score_log
 from scenarios.scoring.touchdown import ScoreRules, Touchdown, rules_of
 from scenarios.scoring.truth_log import TruthLog, truth_log
 from scenarios.simulation.drone import mean_wind_enu_m_s
+from scenarios.simulation.noise import Seed
 
 _DIGITS = 6  # a micrometre, a microsecond
 LANDED = frozenset({Tier.S1, Tier.S2, Tier.S3})
 
 
-def score_run(scenario: Scenario, seed: int, recording: Recording, rules: ScoreRules | None = None) -> Score:
+def score_run(scenario: Scenario, seed: Seed, recording: Recording, rules: ScoreRules | None = None) -> Score:
     """Return the score of a recording, on truth, by the scenario's rules unless others are given."""
     rules = rules or rules_of(scenario, wind_mean_enu_m_s=mean_wind_enu_m_s(scenario, seed))
     return score(recording.drone, recording.vehicle, recording.rotors, rules)
@@ -39,8 +41,10 @@ def result_table(
     table = scored.to_json()
     table |= accuracy_table(recording.estimate_errors, recording.nis)
     table["pass_to_contact_s"] = _pass_to_contact_s(log, approaches, scored.touchdown)
+    instant_ns = _decisive_ns(log, scored, rules)
+    table |= vehicle_circumstances(log, instant_ns)
     start_ns = recording.drone[0].t_ns
-    times = {key: table.pop(key) for key in ("start_t_ns", "contact_t_ns")}
+    times = {key: table.pop(key) for key in ("start_t_ns", "contact_t_ns")} | {"instant_t_ns": instant_ns}
     relative = {key.removesuffix("_t_ns") + "_s": _since_s(value, start_ns) for key, value in times.items()}
     phases = {phase: round(t_s, 3) for phase, t_s in recording.phase_times_s().items()}
     rounded = {key: round(value, _DIGITS) if isinstance(value, float) else value for key, value in table.items()}
@@ -57,6 +61,13 @@ def result_table(
         "phases_s": phases,
         "approaches": [approach.to_json(start_ns) for approach in approaches],
     }
+
+
+def _decisive_ns(log: TruthLog, scored: Score, rules: ScoreRules) -> int:
+    """Return the instant that decided the run: the first contact, or the closest that the drone came to the pad."""
+    if scored.touchdown is not None:
+        return scored.touchdown.contact_t_ns
+    return closest_ns(log, rules.box.roof_height_m, scored.start_t_ns)
 
 
 def _pass_to_contact_s(log: TruthLog, approaches: Sequence[Approach], touchdown: Touchdown | None) -> float | None:

@@ -7,23 +7,33 @@ from itertools import cycle
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle
 
-from scenarios.campaigns.folder import Plan
+from scenarios.campaigns.cells import Cell
 from scenarios.campaigns.landing_task import Row
+from scenarios.campaigns.plan import Plan
+from scenarios.campaigns.worlds_report import worlds_report
 from scenarios.catalogue.firmware_option import without_firmware
+from scenarios.config import Scenario
 from scenarios.reports.figure_files import DARK, LIGHT, MIDDLE, STYLES
-from scenarios.reports.run_figures import draw_pad
+from scenarios.reports.run_figures import draw_pad, show_around_pad
+from scenarios.reports.worlds_figures import draw_rates
+from scenarios.scoring.limits import S1_LIMITS, S2_LIMITS
 
 _TITLE_WIDTH = 34  # characters over a panel
 _COLUMNS_MAX = 3
-_S1_M, _S2_M = 0.5, 0.3  # horizontal errors that the tiers allow, as scenarios.scoring.score has them
+_S1_M, _S2_M = S1_LIMITS.horizontal_error_m, S2_LIMITS.horizontal_error_m
+_WORLDS_REACH_M = 1.0
 
 
 def campaign_figures(plan: Plan, rows: Sequence[Row]) -> dict[str, Figure]:
     """Return the figures by the names of their files."""
     with mpl.rc_context(STYLES):
-        return {"touchdowns": _touchdowns(plan, rows), "errors": _errors(plan, rows)}
+        figures = {"touchdowns": _touchdowns(plan, rows), "errors": _errors(plan, rows)}
+        reports = {report["worlds"].replace(":", "_"): report for report in worlds_report(rows, plan.populations)}
+        return figures | {f"rates_{worlds}": draw_rates(report) for worlds, report in reports.items()}
 
 
 def _touchdowns(plan: Plan, rows: Sequence[Row]) -> Figure:
@@ -35,7 +45,7 @@ def _touchdowns(plan: Plan, rows: Sequence[Row]) -> Figure:
     for axes in grid.flat[len(plan.cells) :]:
         axes.set_visible(False)
     for axes, cell in zip(grid.flat, plan.cells, strict=False):
-        draw_pad(axes, plan.scenarios[cell].vehicle.pad_size_m)
+        _draw_target(axes, plan.flown[cell])
         touched = [row for row in rows if row["cell"] == cell and row.get("contact_forward_m") is not None]
         for secured, marker in ((True, "o"), (False, "x")):
             chosen = [row for row in touched if (row["tier"] == "S3") is secured]
@@ -56,8 +66,19 @@ def _touchdowns(plan: Plan, rows: Sequence[Row]) -> Figure:
     return figure
 
 
+def _draw_target(axes: Axes, cell: Cell) -> None:
+    """Draw the pad that the cell has, or, where each world has its own, only how far from its centre a tier may be."""
+    if isinstance(cell, Scenario):
+        draw_pad(axes, cell.vehicle.pad_size_m)
+        return
+    show_around_pad(axes, _WORLDS_REACH_M)
+    for limit_m in (_S1_M, _S2_M):
+        axes.add_patch(Circle((0.0, 0.0), limit_m, fill=False, linewidth=0.8, color=MIDDLE))
+
+
 def _name(plan: Plan, cell: str) -> str:
-    return f"{without_firmware(cell)}, {plan.scenarios[cell].firmware}"
+    firmware = plan.flown[cell].firmware
+    return without_firmware(cell) + ("" if firmware is None else f", {firmware}")
 
 
 def _errors(plan: Plan, rows: Sequence[Row]) -> Figure:

@@ -18,6 +18,8 @@ from link.program.toml_config import dump_toml
 from scenarios.campaigns.folder import read_landings, read_plan
 from scenarios.campaigns.summary import summarize
 from scenarios.campaigns.tables import print_summary
+from scenarios.campaigns.worlds_report import worlds_report
+from scenarios.campaigns.worlds_sheets import worlds_sheets
 from scenarios.reports.campaign_figures import campaign_figures
 from scenarios.reports.charts import motion_chart, path_chart, plotly_script
 from scenarios.reports.figure_files import STYLES
@@ -34,6 +36,7 @@ _CAPTIONS = {
     "estimate": "The estimate's error inside its band of two standard deviations",
     "touchdowns": "First contacts on the pad, forward up",
     "errors": "Share of the landings within a distance of the pad's centre",
+    "rates": "Landings of the worlds that were unsafe, and that were given up, with 95 % intervals",
 }
 _UNITS = (("_m_s", "m/s"), ("_rad", "rad"), ("_m", "m"), ("_s", "s"))
 
@@ -64,7 +67,7 @@ def _run_page(run: RunData) -> str:
         plotly=plotly_script(),
         path_chart=path_chart(run),
         motion_chart=motion_chart(run),
-        figures=_captioned(run_figures(run)),
+        figures=_captions(run_figures(run)),
         phases=run.phases,
         approaches=result.get("approaches", ()),
         scenario=dump_toml(run.scenario),
@@ -83,9 +86,10 @@ def _campaign_page(folder: Path) -> str:
         title=f"Campaign {folder.resolve().name}",
         verdict=f"{landed} of {len(rows)} landings reached S3",
         summary=text.getvalue(),
-        figures=_captioned(campaign_figures(plan, rows)),
-        scenarios={cell: dump_toml(scenario) for cell, scenario in plan.scenarios.items()},
-        versions=plan.versions,
+        worlds=[worlds_sheets(report) for report in worlds_report(rows, plan.populations)],
+        figures=_captions(campaign_figures(plan, rows)),
+        scenarios={name: dump_toml(cell) for name, cell in plan.flown.items()},
+        versions={"commit": plan.commit or "not known"} | plan.versions,
     )
 
 
@@ -98,9 +102,17 @@ def _page(template: str, **values: Any) -> str:
     return environment.get_template(template).render(values)
 
 
-def _captioned(figures: Mapping[str, Figure]) -> dict[str, str]:
+def _captions(figures: Mapping[str, Figure]) -> dict[str, str]:
     """Return figures by what stands below them."""
-    return {_CAPTIONS[name]: _svg(figure, name) for name, figure in figures.items()}
+    return {_caption(name): _svg(figure, name) for name, figure in figures.items()}
+
+
+def _caption(name: str) -> str:
+    """Return what stands below a figure; of those that there are for each slice of the worlds, also of which it is."""
+    if name in _CAPTIONS:
+        return _CAPTIONS[name]
+    kind, _, worlds = name.partition("_")
+    return f"{_CAPTIONS[kind]}: {worlds}"
 
 
 def _svg(figure: Figure, name: str) -> str:

@@ -58,8 +58,8 @@ def path_above(run: RunData) -> Figure:
     room_m = _LABEL_SHARE * (high_m - low_m)
     low_m, high_m = low_m - room_m, high_m + room_m
     slope = min(max((high_m - low_m) / (right_m - left_m), _SLOPE_MIN), 1.0)
-    x_limits_m = _widened_m(left_m, right_m, (high_m - low_m) / slope)
-    y_limits_m = _widened_m(low_m, high_m, (right_m - left_m) * slope)
+    x_limits_m = _widen_m(left_m, right_m, (high_m - low_m) / slope)
+    y_limits_m = _widen_m(low_m, high_m, (right_m - left_m) * slope)
     figure = Figure(figsize=(_WIDTH_IN, _WIDTH_IN * slope), layout="constrained")
     axes = figure.subplots()
     axes.plot(vehicle[:, 0], vehicle[:, 1], color=LIGHT, linewidth=5, solid_capstyle="butt", label="vehicle")
@@ -75,7 +75,7 @@ def path_above(run: RunData) -> Figure:
     return figure
 
 
-def _widened_m(low_m: float, high_m: float, extent_m: float) -> tuple[float, float]:
+def _widen_m(low_m: float, high_m: float, extent_m: float) -> tuple[float, float]:
     """Return the limits, widened on both sides where they span less than `extent_m`."""
     margin_m = max(0.5 * (extent_m - (high_m - low_m)), 0.0)
     return low_m - margin_m, high_m + margin_m

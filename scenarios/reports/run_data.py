@@ -109,7 +109,7 @@ def read_run(folder: Path) -> RunData:
     log = truth_log(truth.drone, truth.vehicle, truth.rotors)
     start_ns = int(log.t_ns[0])
     t_s = (log.t_ns - start_ns) / NS_PER_S
-    antenna = log.vehicle_position_enu_m + _turned(log, scenario.vehicle.antenna_flu_m)
+    antenna = log.vehicle_position_enu_m + _turn(log, scenario.vehicle.antenna_flu_m)
     steps, estimates = _beliefs(folder, keys)
     return RunData(
         name=folder.resolve().name,
@@ -126,7 +126,7 @@ def read_run(folder: Path) -> RunData:
     )
 
 
-def _turned(log: TruthLog, vector_flu: tuple[float, float, float]) -> Array:
+def _turn(log: TruthLog, vector_flu: tuple[float, float, float]) -> Array:
     """Return a vector of V in W, (n, 3): R_WV is R_WB times the inverse of R_VB."""
     rotation_wv = log.rotation @ np.swapaxes(log.rotation_vb, 1, 2)
     return np.asarray(rotation_wv @ np.array(vector_flu))

@@ -189,12 +189,16 @@ def _touchdown(run: RunData) -> Figure:
 
 
 def draw_pad(axes: Axes, pad_size_m: tuple[float, float]) -> None:
-    """Draw the pad's outline from above, forward up, with its centre lines."""
+    """Draw the pad's outline from above."""
     length_m, width_m = pad_size_m
     axes.add_patch(Rectangle((-0.5 * width_m, -0.5 * length_m), width_m, length_m, fill=False, linewidth=1.5))
+    show_around_pad(axes, 0.65 * max(pad_size_m))
+
+
+def show_around_pad(axes: Axes, reach_m: float) -> None:
+    """Show what is around the pad's centre from above, forward up, with its centre lines."""
     axes.axhline(0.0, color="0.75", linewidth=0.7)
     axes.axvline(0.0, color="0.75", linewidth=0.7)
-    reach_m = 0.65 * max(pad_size_m)
     axes.set(xlim=(-reach_m, reach_m), ylim=(-reach_m, reach_m))
     axes.set(xlabel="to the vehicle's right [m]", ylabel="forward [m]")
     axes.set_aspect("equal")

@@ -7,9 +7,9 @@ Source of both tests: Bar-Shalom, Li and Kirubarajan, Estimation with Applicatio
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 
 from companion.core.data import Array, VehicleEstimate
 from companion.situation.phases import Phase
@@ -27,16 +27,14 @@ PERIOD_NS = 100_000_000
 """Between two of them, that of the benchmark's receiver; nearer ones tell nothing new."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Truth:
+class Truth(Struct, frozen=True, kw_only=True):
     """The vehicle's antenna in the frame that the drone flies in, m and m/s."""
 
     position_enu_m: Vector3
     velocity_enu_m_s: Vector3
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EstimateError:
+class EstimateError(Struct, frozen=True, kw_only=True):
     """An estimate against the truth."""
 
     in_descent: bool
@@ -45,8 +43,7 @@ class EstimateError:
     nees: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Nis:
+class Nis(Struct, frozen=True, kw_only=True):
     """Normalised innovations squared of the accepted measurements, summed up, with their degrees of freedom."""
 
     total: float

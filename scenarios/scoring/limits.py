@@ -24,7 +24,7 @@ S2_LIMITS = Limits(
 )
 
 
-def exceeded(touchdown: Touchdown, limits: Limits) -> list[str]:
+def find_exceeded(touchdown: Touchdown, limits: Limits) -> list[str]:
     """Return the measures of `touchdown` that exceed `limits`, with their values."""
     names = Limits.__dataclass_fields__
     return [

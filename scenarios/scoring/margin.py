@@ -68,10 +68,10 @@ def margin_terms(log: TruthLog, touched: Touches, flight: Flight, landing: Landi
     terms = _before_contact(log, touched, flight, flight.takeoff, rules) | _over_flight(
         log, touched, flight.takeoff, rules
     )
-    terms |= _touching(touched, flight, flight.takeoff, rules.box)
+    terms |= _touch_terms(touched, flight, flight.takeoff, rules.box)
     if landing is None:
         return terms | _at_end(log, touched)
-    return terms | {name: float(_left(getattr(landing.touchdown, name), name)) for name in S1_LIMITS.__slots__}
+    return terms | {name: float(_left_share(getattr(landing.touchdown, name), name)) for name in S1_LIMITS.__slots__}
 
 
 def margin_of(terms: Terms, *, unsafe: bool, reported: bool = False) -> float:
@@ -112,10 +112,10 @@ def _s1_left(log: TruthLog, span: slice, rules: ScoreRules) -> dict[str, Array]:
         "sink_rate_m_s": -log.velocity_v_m_s[span, 2],
         "tilt_over_trim_rad": tilt_rad - trims_rad(log.velocity_enu_m_s[span], rules),
     }
-    return {name: _left(values, name) for name, values in measures.items()}
+    return {name: _left_share(values, name) for name, values in measures.items()}
 
 
-def _left(value: Array | float, name: str) -> Array:
+def _left_share(value: Array | float, name: str) -> Array:
     return np.asarray(1.0 - np.asarray(value) / getattr(S1_LIMITS, name))
 
 
@@ -136,7 +136,7 @@ def _room_m(points_v_m: Array, box: Box) -> Array:
     return np.asarray((0.5 * np.array(box.pad_size_m) - np.abs(points_v_m[..., :2])).min(axis=-1))
 
 
-def _touching(touched: Touches, flight: Flight, takeoff: int, box: Box) -> Terms:
+def _touch_terms(touched: Touches, flight: Flight, takeoff: int, box: Box) -> Terms:
     """Return how far inside the pad the points are that begin a contact, and those first on the ground or a flank."""
     starts = [contact.before + 1 for contact in flight.contacts]
     for flags in (touched.ground, touched.side):

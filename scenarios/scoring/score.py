@@ -14,7 +14,7 @@ import numpy as np
 
 from link.messages import BodyTruth, RotorTruth
 from scenarios.scoring.flight_faults import Fault, flight_faults, flight_of
-from scenarios.scoring.limits import S1_LIMITS, S2_LIMITS, exceeded
+from scenarios.scoring.limits import S1_LIMITS, S2_LIMITS, find_exceeded
 from scenarios.scoring.margin import margin_of, margin_terms
 from scenarios.scoring.touch import touches
 from scenarios.scoring.touchdown import Landing, ScoreRules, Touchdown, landing_of
@@ -55,7 +55,7 @@ class Score:
     def s2_quality(self) -> bool:
         """Whether it landed, secured or not, with a contact within the limits of S2."""
         landed = self.tier in {Tier.S1, Tier.S2, Tier.S3}
-        return landed and self.touchdown is not None and not exceeded(self.touchdown, S2_LIMITS)
+        return landed and self.touchdown is not None and not find_exceeded(self.touchdown, S2_LIMITS)
 
     def to_json(self) -> dict[str, float | int | str | bool | None]:
         """Return the score as one flat table."""
@@ -145,14 +145,14 @@ def _tier(
         return Tier.ABORT, "no touchdown; it ends airborne, stable and clear of the vehicle"
     if landing.secured:
         return Tier.S3, "landed, motors off in time and at rest on the pad"
-    if not exceeded(landing.touchdown, S2_LIMITS):
+    if not find_exceeded(landing.touchdown, S2_LIMITS):
         return Tier.S2, "landed precisely, not secured"
     return Tier.S1, "landed, not secured"
 
 
 def _excesses(touchdown: Touchdown) -> list[Fault]:
     """Return the fault of a contact on the pad beyond the limits of S1, if it is one."""
-    beyond = exceeded(touchdown, S1_LIMITS)
+    beyond = find_exceeded(touchdown, S1_LIMITS)
     return [(touchdown.contact_t_ns, f"contact on the pad beyond the limits: {', '.join(beyond)}")] if beyond else []
 
 

@@ -65,9 +65,9 @@ def truth_log(drone: Sequence[BodyTruth], vehicle: Sequence[BodyTruth], rotors: 
         raise ValueError("the drone's truth must be in order of time")
     body, base = _poses(drone, t_ns), _poses(vehicle, t_ns)
     to_vehicle = np.swapaxes(base.rotation, 1, 2)
-    position_v_m = _turned(to_vehicle, body.position - base.position)
-    velocity_enu_m_s = _turned(body.rotation, body.velocity_body)
-    velocity_v_m_s = _turned(to_vehicle, velocity_enu_m_s) - base.velocity_body - np.cross(base.rate_body, position_v_m)
+    position_v_m = _turn(to_vehicle, body.position - base.position)
+    velocity_enu_m_s = _turn(body.rotation, body.velocity_body)
+    velocity_v_m_s = _turn(to_vehicle, velocity_enu_m_s) - base.velocity_body - np.cross(base.rate_body, position_v_m)
     return TruthLog(
         t_ns=t_ns,
         position_enu_m=body.position,
@@ -87,12 +87,12 @@ def _poses(samples: Sequence[BodyTruth], t_ns: NDArray[np.int64]) -> _Poses:
     quaternions = np.array([sample.orientation_wxyz for sample in samples], dtype=float)
     flips = np.sign(np.sum(quaternions[1:] * quaternions[:-1], axis=1))
     quaternions[1:] *= np.cumprod(np.where(flips == 0.0, 1.0, flips))[:, None]
-    blended = _interpolated(t_ns, times_ns, quaternions)
+    blended = _interpolate(t_ns, times_ns, quaternions)
     return _Poses(
-        position=_interpolated(t_ns, times_ns, np.array([sample.position_enu_m for sample in samples])),
+        position=_interpolate(t_ns, times_ns, np.array([sample.position_enu_m for sample in samples])),
         rotation=_matrices(blended / np.linalg.norm(blended, axis=1, keepdims=True)),
-        velocity_body=_interpolated(t_ns, times_ns, np.array([sample.velocity_flu_m_s for sample in samples])),
-        rate_body=_interpolated(t_ns, times_ns, np.array([sample.angular_velocity_flu_rad_s for sample in samples])),
+        velocity_body=_interpolate(t_ns, times_ns, np.array([sample.velocity_flu_m_s for sample in samples])),
+        rate_body=_interpolate(t_ns, times_ns, np.array([sample.angular_velocity_flu_rad_s for sample in samples])),
     )
 
 
@@ -100,16 +100,16 @@ def _rotor_speeds(rotors: Sequence[RotorTruth], t_ns: NDArray[np.int64]) -> Arra
     if not rotors:
         return None
     times_ns = np.array([sample.t_ns for sample in rotors], dtype=np.int64)
-    return _interpolated(t_ns, times_ns, np.array([sample.speed_rad_s for sample in rotors]))
+    return _interpolate(t_ns, times_ns, np.array([sample.speed_rad_s for sample in rotors]))
 
 
-def _interpolated(t_ns: NDArray[np.int64], times_ns: NDArray[np.int64], values: Array) -> Array:
+def _interpolate(t_ns: NDArray[np.int64], times_ns: NDArray[np.int64], values: Array) -> Array:
     """Return `values` (m, k) at `t_ns` (n,), as (n, k); ends are held."""
     at_s, times_s = (t_ns - t_ns[0]) * 1e-9, (times_ns - t_ns[0]) * 1e-9
     return np.stack([np.interp(at_s, times_s, column) for column in values.T], axis=1)
 
 
-def _turned(rotation: Array, vectors: Array) -> Array:
+def _turn(rotation: Array, vectors: Array) -> Array:
     """Return `rotation` (n, 3, 3) times `vectors` (n, 3)."""
     return np.asarray(np.einsum("nij,nj->ni", rotation, vectors))
 

@@ -1,19 +1,19 @@
 """When what happens once in a run happens: an outage, a gust, a step of the autopilot's origin."""
 
 from scenarios.config import ChannelConfig, Scenario
-from scenarios.simulation.noise import named_rng
+from scenarios.simulation.noise import Seed, named_rng
 
 Span = tuple[int, int]
 
 
-def instant_s(scenario: Scenario, seed: int, name: str, at_s: float | None) -> float:
+def instant_s(scenario: Scenario, seed: Seed, name: str, at_s: float | None) -> float:
     """Return when the disturbance `name` begins, in seconds since the start of the simulation; `at_s` None draws it."""
     return (
         at_s if at_s is not None else float(named_rng(seed, f"{name} instant").uniform(*scenario.disturbed_between_s))
     )
 
 
-def outages_ns(channel: ChannelConfig, scenario: Scenario, seed: int, name: str, start_ns: int) -> list[Span]:
+def outages_ns(channel: ChannelConfig, scenario: Scenario, seed: Seed, name: str, start_ns: int) -> list[Span]:
     """Return the outages of the link `name`, from start to end in UTC: one, or none where it never fails.
 
     Args:

@@ -5,23 +5,23 @@ import math
 from link.messages import Vector3
 from scenarios.config import Scenario
 from scenarios.simulation.disturbances import instant_s
-from scenarios.simulation.noise import named_rng
+from scenarios.simulation.noise import Seed, named_rng
 from sim_autopilot.runtime.config import OwnStateConfig, SimAutopilotConfig, StartConfig, VehicleConfig, WindConfig
 
 
-def sim_autopilot_config(scenario: Scenario, seed: int, *, instant: bool) -> SimAutopilotConfig:
+def sim_autopilot_config(scenario: Scenario, seed: Seed, *, instant: bool) -> SimAutopilotConfig:
     """Return what the scenario's simulated autopilot is started with.
 
     Args:
         scenario: what is flown.
-        seed: of the wind.
+        seed: of the wind; one that is no number stays with the caller, who gives its noise to the parts themselves.
         instant: ready at once, without the seconds that a boot takes.
     """
     body = scenario.vehicle
     return SimAutopilotConfig(
         firmware=scenario.firmware,
         instant=instant,
-        seed=seed,
+        seed=seed if isinstance(seed, int) else 0,
         datum=scenario.datum,
         start=StartConfig(position_enu_m=scenario.drone_start_enu_m),
         drone=scenario.system.drone,
@@ -32,7 +32,7 @@ def sim_autopilot_config(scenario: Scenario, seed: int, *, instant: bool) -> Sim
     )
 
 
-def _wind(scenario: Scenario, seed: int) -> WindConfig:
+def _wind(scenario: Scenario, seed: Seed) -> WindConfig:
     wind = scenario.wind
     return WindConfig(
         mean_m_s=wind.mean_m_s,
@@ -46,7 +46,7 @@ def _wind(scenario: Scenario, seed: int) -> WindConfig:
     )
 
 
-def _own_state(scenario: Scenario, seed: int) -> OwnStateConfig:
+def _own_state(scenario: Scenario, seed: Seed) -> OwnStateConfig:
     own = scenario.sensors.own_state
     rng = named_rng(seed, "origin step")
     step_m, angle_rad = float(rng.uniform(*own.origin_step_range_m)), float(rng.uniform(-math.pi, math.pi))
@@ -58,19 +58,19 @@ def _own_state(scenario: Scenario, seed: int) -> OwnStateConfig:
     )
 
 
-def mean_wind_enu_m_s(scenario: Scenario, seed: int) -> Vector3:
+def mean_wind_enu_m_s(scenario: Scenario, seed: Seed) -> Vector3:
     """Return the mean wind of `scenario` with `seed`."""
     from_rad, mean_m_s = _wind_from_rad(scenario, seed), scenario.wind.mean_m_s
     return (-mean_m_s * math.cos(from_rad), -mean_m_s * math.sin(from_rad), 0.0)
 
 
-def _wind_from_rad(scenario: Scenario, seed: int) -> float:
+def _wind_from_rad(scenario: Scenario, seed: Seed) -> float:
     if scenario.wind.from_rad is not None:
         return scenario.wind.from_rad
     return float(named_rng(seed, "wind").uniform(-math.pi, math.pi))
 
 
-def _gust_from_rad(scenario: Scenario, seed: int) -> float:
+def _gust_from_rad(scenario: Scenario, seed: Seed) -> float:
     if scenario.wind.gust_from_rad is not None:
         return scenario.wind.gust_from_rad
     return float(named_rng(seed, "gust").uniform(-math.pi, math.pi))

@@ -3,6 +3,7 @@
 import math
 import zlib
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -10,9 +11,27 @@ from link.messages import Vector3
 from scenarios.config import DelayConfig
 
 
-def named_rng(seed: int, name: str) -> np.random.Generator:
+class NoiseSource(Protocol):
+    """All random numbers of a run, where no single number decides them."""
+
+    def stream(self, name: str) -> np.random.Generator:
+        """Return a fresh generator of what belongs to `name`, independent of other names'."""
+
+
+Seed = int | NoiseSource
+"""What decides everything random in a run."""
+
+
+def named_rng(seed: Seed, name: str) -> np.random.Generator:
     """Return the generator of `seed` that belongs to `name`; other names' generators are independent of it."""
+    if not isinstance(seed, int):
+        return seed.stream(name)
     return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(zlib.crc32(name.encode()),)))
+
+
+def part_seed(seed: Seed, name: str) -> int | np.random.Generator:
+    """Return of what a part that takes one seed makes its generator: the run's own seed, or the noise of its name."""
+    return seed if isinstance(seed, int) else seed.stream(name)
 
 
 def normal3(rng: np.random.Generator, std: float) -> Vector3:
@@ -77,7 +96,7 @@ class SensorSchedule:
     It draws from a generator of its own, seeded by the sensor's name.
     """
 
-    def __init__(self, config: DelayConfig, seed: int, name: str) -> None:
+    def __init__(self, config: DelayConfig, seed: Seed, name: str) -> None:
         self._config = config
         self._rng = named_rng(seed, f"{name} link")
         self._period_ns = round(1e9 / config.rate_hz)

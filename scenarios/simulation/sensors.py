@@ -8,15 +8,16 @@ Noise: white normal, and first-order Gauss-Markov for a bias; standard deviation
 
 import heapq
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from link.frames.geodesy import Datum, geodetic_from_enu
 from link.frames.rotations import canonical, conjugate, multiply, quaternion_from_yaw, rotate
 from link.messages import BodyTruth, Fix, FixVelocity, Matrix3, PadSighting, Quaternion, Vector3, VehicleImu
+from link.records import replace
 from scenarios.config import FixConfig, ImuConfig, PatternConfig, SensorsConfig, VelocityConfig
-from scenarios.simulation.noise import Dropouts, GaussMarkov, SensorSchedule, StampClock, named_rng, normal3
+from scenarios.simulation.noise import Dropouts, GaussMarkov, Seed, SensorSchedule, StampClock, named_rng, normal3
 from scenarios.simulation.vehicle import VehicleState
 
 Sample = Fix | FixVelocity | VehicleImu | PadSighting
@@ -36,7 +37,7 @@ class _FixSensor:
     """The receiver's position, at the antenna, in the receiver's own frame."""
 
     def __init__(
-        self, config: FixConfig, seed: int, *, mounting: Mounting, offset_enu_m: Vector3, datum: Datum
+        self, config: FixConfig, seed: Seed, *, mounting: Mounting, offset_enu_m: Vector3, datum: Datum
     ) -> None:
         self.schedule = SensorSchedule(config, seed, "fix")
         self._rng = named_rng(seed, "fix")
@@ -72,7 +73,7 @@ def white_error_m(config: FixConfig, rng: np.random.Generator) -> Vector3:
 class _VelocitySensor:
     """The receiver's velocity, at the antenna."""
 
-    def __init__(self, config: VelocityConfig, seed: int, *, mounting: Mounting) -> None:
+    def __init__(self, config: VelocityConfig, seed: Seed, *, mounting: Mounting) -> None:
         self.schedule = SensorSchedule(config, seed, "velocity")
         self._rng = named_rng(seed, "velocity")
         self._white_m_s = config.white_m_s
@@ -91,7 +92,7 @@ class _VelocitySensor:
 class _ImuSensor:
     """Heading and yaw rate; roll and pitch are reported as level, with the same doubt as the heading."""
 
-    def __init__(self, config: ImuConfig, seed: int) -> None:
+    def __init__(self, config: ImuConfig, seed: Seed) -> None:
         self.schedule = SensorSchedule(config, seed, "imu")
         self._rng = named_rng(seed, "imu")
         self._bias = GaussMarkov(
@@ -118,7 +119,7 @@ class _ImuSensor:
 class _PatternSensor:
     """The detector on the drone: a cone of view straight down from the drone's centre."""
 
-    def __init__(self, config: PatternConfig, seed: int, *, mounting: Mounting) -> None:
+    def __init__(self, config: PatternConfig, seed: Seed, *, mounting: Mounting) -> None:
         self.schedule = SensorSchedule(config, seed, "pattern")
         self._rng = named_rng(seed, "pattern")
         chain = named_rng(seed, "pattern dropouts")
@@ -133,17 +134,17 @@ class _PatternSensor:
         hidden = self._dropouts.step(elapsed_s)
         age_s = (vehicle.t_ns - drone.t_ns) * 1e-9
         pad_enu_m = rotate(vehicle.orientation_wxyz, (0.0, 0.0, self._mounting.pad_height_m))
-        moved_m = _scaled(vehicle.velocity_enu_m_s, -age_s)
-        away_enu_m = _sum(vehicle.position_enu_m, pad_enu_m, moved_m, _scaled(drone.position_enu_m, -1.0))
+        moved_m = _scale(vehicle.velocity_enu_m_s, -age_s)
+        away_enu_m = _sum(vehicle.position_enu_m, pad_enu_m, moved_m, _scale(drone.position_enu_m, -1.0))
         away_flu_m = rotate(conjugate(drone.orientation_wxyz), away_enu_m)
         if hidden or age_s > _DRONE_AGE_MAX_S or not self._sees(away_flu_m):
             return None
         std_m = self._config.range_share * math.hypot(*away_flu_m) + self._config.white_m
-        turn = _small_turn(_scaled((errors[3], errors[4], errors[5]), self._config.white_rad))
+        turn = _small_turn(_scale((errors[3], errors[4], errors[5]), self._config.white_rad))
         attitude = multiply(conjugate(drone.orientation_wxyz), vehicle.orientation_wxyz)
         return PadSighting(
             t_ns=drone.t_ns,
-            position_flu_m=_sum(away_flu_m, _scaled((errors[0], errors[1], errors[2]), std_m)),
+            position_flu_m=_sum(away_flu_m, _scale((errors[0], errors[1], errors[2]), std_m)),
             orientation_wxyz=canonical(multiply(attitude, turn)),
             position_covariance_m2=_diagonal(std_m**2),
         )
@@ -158,7 +159,7 @@ class _PatternSensor:
 class SensorSuite:
     """All sensors of a scenario, and the samples that are under way."""
 
-    def __init__(self, config: SensorsConfig, seed: int, *, mounting: Mounting, datum: Datum) -> None:
+    def __init__(self, config: SensorsConfig, seed: Seed, *, mounting: Mounting, datum: Datum) -> None:
         self._queue: list[tuple[int, int, Sample]] = []
         self._count = 0
         self._clock: StampClock | None = None
@@ -212,7 +213,7 @@ def _sum(*vectors: Vector3) -> Vector3:
     return sum(v[0] for v in vectors), sum(v[1] for v in vectors), sum(v[2] for v in vectors)
 
 
-def _scaled(vector: Vector3, factor: float) -> Vector3:
+def _scale(vector: Vector3, factor: float) -> Vector3:
     return factor * vector[0], factor * vector[1], factor * vector[2]
 
 
@@ -224,5 +225,5 @@ def _small_turn(rotation_vector_rad: Vector3) -> Quaternion:
     """Return the unit quaternion of a rotation vector."""
     angle_rad = math.hypot(*rotation_vector_rad)
     scale = 0.5 if angle_rad < 1e-9 else math.sin(0.5 * angle_rad) / angle_rad
-    x, y, z = _scaled(rotation_vector_rad, scale)
+    x, y, z = _scale(rotation_vector_rad, scale)
     return math.cos(0.5 * angle_rad), x, y, z

@@ -3,15 +3,17 @@
 `scenarios world` puts sockets around it, a lockstep run puts it beside a companion.
 """
 
-from dataclasses import dataclass
 from math import dist
 
 import numpy as np
+from msgspec import Struct
 
 from link.messages import BodyTruth, RotorTruth
+from link.records import replace
 from link.zenoh.keys import Keys, Publication
 from scenarios.config import Scenario
 from scenarios.simulation.drone import sim_autopilot_config
+from scenarios.simulation.noise import Seed, part_seed
 from scenarios.simulation.vehicle import vehicle_deck, vehicle_truth
 from scenarios.simulation.vehicle_node import VehicleNode
 from sim_autopilot.plant.snapshot import drone_truth, rotor_truth
@@ -21,8 +23,7 @@ from sim_autopilot.runtime.node import STEP_NS, AutopilotNode
 __all__ = ["STEP_NS", "Simulation", "SimulationOutputs"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SimulationOutputs:
+class SimulationOutputs(Struct, frozen=True, kw_only=True):
     """What one step of the simulated side brings.
 
     Attributes:
@@ -55,7 +56,7 @@ class Simulation:
     def __init__(
         self,
         scenario: Scenario,
-        seed: int,
+        seed: Seed,
         keys: Keys,
         start_ns: int,
         *,
@@ -64,9 +65,11 @@ class Simulation:
     ) -> None:
         self.vehicle = VehicleNode(scenario, seed, keys, publishes_truth=publishes_truth)
         settings = sim_autopilot_config(scenario, seed, instant=instant)
-        self.autopilot = AutopilotNode(autopilot_config(settings), start_ns)
+        config = autopilot_config(settings)
+        own_state = replace(config.own_state, seed=part_seed(seed, "own state"))
+        self.autopilot = AutopilotNode(replace(config, own_state=own_state), start_ns)
         self._body = scenario.vehicle
-        self._wind = wind_model(settings)
+        self._wind = wind_model(settings, part_seed(seed, "turbulence"))
         self._wind_enu_m_s = np.zeros(3)
         self._drone = drone_truth(self.autopilot.state)
 

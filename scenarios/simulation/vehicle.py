@@ -8,9 +8,9 @@ Angular velocity from ZYX Euler rates by the usual kinematic matrix.
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 
 from link.frames.rotations import conjugate, quaternion_from_roll_pitch_yaw, rotate, wrap_angle
 from link.messages import BodyTruth, Quaternion, Vector3
@@ -27,8 +27,7 @@ _NO_WAVE = (0.0, 0.0, 0.0)
 _STILL = (_NO_WAVE, _NO_WAVE, _NO_WAVE)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class VehicleState:
+class VehicleState(Struct, frozen=True, kw_only=True):
     """The vehicle at `t_ns`: p_WV, its derivatives in W, q_WV and w_WV in V."""
 
     t_ns: int
@@ -41,8 +40,7 @@ class VehicleState:
     yaw_rate_rad_s: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class VehicleMemory:
+class VehicleMemory(Struct, frozen=True, kw_only=True):
     """When the drone began its present hover, when the vehicle departs, and when it began to brake; None is not yet."""
 
     started_ns: int | None = None
@@ -51,16 +49,14 @@ class VehicleMemory:
     brakes_ns: int | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class VehicleInputs:
+class VehicleInputs(Struct, frozen=True, kw_only=True):
     """The time and the drone's truth, None while there is no drone."""
 
     t_ns: int
     drone: BodyTruth | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class VehiclePlan:
+class VehiclePlan(Struct, frozen=True, kw_only=True):
     """What the vehicle does: its course, its departure and the roof that the drone's height is taken from."""
 
     course: Course
@@ -72,14 +68,14 @@ class VehiclePlan:
 def vehicle_step(memory: VehicleMemory, inputs: VehicleInputs, plan: VehiclePlan) -> tuple[VehicleMemory, VehicleState]:
     """Return the memory and the vehicle's state at `inputs.t_ns`; times must not run backwards."""
     if memory.departs_ns is None:
-        memory = _watched_for_hover(memory, inputs, plan)
+        memory = _watch_for_hover(memory, inputs, plan)
     state = vehicle_at(memory, inputs.t_ns, plan)
     if plan.course.brake is not None and memory.brakes_ns is None and _drone_is_low(state, inputs.drone, plan):
         memory = replace(memory, brakes_ns=inputs.t_ns)
     return memory, state
 
 
-def _watched_for_hover(memory: VehicleMemory, inputs: VehicleInputs, plan: VehiclePlan) -> VehicleMemory:
+def _watch_for_hover(memory: VehicleMemory, inputs: VehicleInputs, plan: VehiclePlan) -> VehicleMemory:
     """Return the memory with the departure set once the drone has hovered long enough."""
     departure = plan.departure
     started_ns = inputs.t_ns if memory.started_ns is None else memory.started_ns
@@ -125,10 +121,10 @@ def _motion_at(memory: VehicleMemory, t_ns: int, course: Course) -> Motion:
     if memory.brakes_ns is None or course.brake is None or t_ns <= memory.brakes_ns:
         return course.profile.at((t_ns - memory.departs_ns) * 1e-9)
     before = course.profile.at((memory.brakes_ns - memory.departs_ns) * 1e-9)
-    return _braked(before, (t_ns - memory.brakes_ns) * 1e-9, course.brake.deceleration_m_s2)
+    return _brake(before, (t_ns - memory.brakes_ns) * 1e-9, course.brake.deceleration_m_s2)
 
 
-def _braked(before: Motion, duration_s: float, deceleration_m_s2: float) -> Motion:
+def _brake(before: Motion, duration_s: float, deceleration_m_s2: float) -> Motion:
     """Return the motion after braking for `duration_s`, at most to a stop."""
     stop_s = before.speed_m_s / deceleration_m_s2
     braking_s = min(duration_s, stop_s)

@@ -7,10 +7,10 @@ import math
 
 from link.frames.geodesy import Datum
 from link.messages import BodyTruth, Fix, FixVelocity, PadGeometry, PadSighting, VehicleImu
-from link.payloads.cdr import encode, encoding_of
+from link.payloads import cdr
 from link.zenoh.keys import Keys, Publication
 from scenarios.config import Scenario
-from scenarios.simulation.noise import named_rng
+from scenarios.simulation.noise import Seed, named_rng
 from scenarios.simulation.sensors import Mounting, SensorSuite
 from scenarios.simulation.vehicle import (
     VehicleInputs,
@@ -43,21 +43,21 @@ class VehicleNode:
         state: where it is, None before the first step.
     """
 
-    def __init__(self, scenario: Scenario, seed: int, keys: Keys, *, publishes_truth: bool = True) -> None:
+    def __init__(self, scenario: Scenario, seed: Seed, keys: Keys, *, publishes_truth: bool = True) -> None:
         self.pad: PadGeometry = scenario.vehicle.pad
         self.plan = plan_of(scenario, seed)
         self.memory = VehicleMemory()
         self.state: VehicleState | None = None
         mounting = Mounting(antenna_flu_m=scenario.vehicle.antenna_flu_m, pad_height_m=scenario.vehicle.roof_height_m)
         self._sensors = SensorSuite(scenario.sensors, seed, mounting=mounting, datum=datum_of(scenario.datum))
-        self._keys = {
+        self._keys: dict[type[cdr.Message], str] = {
             Fix: keys.fix,
             FixVelocity: keys.fix_velocity,
             VehicleImu: keys.imu,
             PadSighting: keys.pad_pose,
             BodyTruth: keys.vehicle_truth,
         }
-        self._encodings = {kind: encoding_of(kind) for kind in self._keys}
+        self._encodings = {kind: cdr.encoding_of(kind) for kind in self._keys}
         self._publishes_truth = publishes_truth
         self._truth_due_ns = 0
 
@@ -80,18 +80,18 @@ class VehicleNode:
     def published(self, state: VehicleState, drone: BodyTruth | None) -> list[Publication]:
         """Return what is to be published of a vehicle in `state`, truth first."""
         t_ns = state.t_ns
-        publications = [self._published(sample) for sample in self._sensors.step(t_ns, state, drone)]
+        publications = [self._publish(sample) for sample in self._sensors.step(t_ns, state, drone)]
         if not self._publishes_truth or t_ns < self._truth_due_ns:
             return publications
         self._truth_due_ns = max(self._truth_due_ns + TRUTH_PERIOD_NS, t_ns + 1)
-        return [self._published(vehicle_truth(state)), *publications]
+        return [self._publish(vehicle_truth(state)), *publications]
 
-    def _published(self, message: Fix | FixVelocity | VehicleImu | PadSighting | BodyTruth) -> Publication:
+    def _publish(self, message: Fix | FixVelocity | VehicleImu | PadSighting | BodyTruth) -> Publication:
         kind = type(message)
-        return Publication(key=self._keys[kind], payload=encode(message), encoding=self._encodings[kind])
+        return Publication(key=self._keys[kind], payload=cdr.encode(message), encoding=self._encodings[kind])
 
 
-def plan_of(scenario: Scenario, seed: int) -> VehiclePlan:
+def plan_of(scenario: Scenario, seed: Seed) -> VehiclePlan:
     """Return what the vehicle of `scenario` does with `seed`."""
     return VehiclePlan(
         course=course_of(scenario.track, named_rng(seed, "track")),

@@ -3,11 +3,12 @@
 Steps of 1 m along x, y, z and of 0.1 rad of heading, from hover at heading zero. The settling time is to 2 %.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
+from link.records import replace
 from sim_autopilot.control.lqr import StepResponse, linear_step, measured_step
 from sim_autopilot.control.parameters import ControllerKind
 from sim_autopilot.core.data import Array, Reference
@@ -60,24 +61,24 @@ def flown_curve(controller: ControllerKind, airframe: Airframe, axis: str) -> Cu
     goal = np.array([0.0, 0.0, _HEIGHT_M, 0.0])
     goal[index] += _STEP_RAD if axis == "yaw" else _STEP_M
     count = round(_END_S / _PERIOD_S)
-    memory = _settled(config)
+    memory = _settle(config)
     start = _outputs(memory)[index]
     output = np.empty(count)
     for k in range(count):
         output[k] = (_outputs(memory)[index] - start) / (goal[index] - start)
-        memory = fly(memory, _holding(goal), None, _CALM, config, _PERIOD_S)
+        memory = fly(memory, _hold(goal), None, _CALM, config, _PERIOD_S)
     return Curve(t_s=np.linspace(0.0, _END_S, count, endpoint=False), output=output)
 
 
-def _settled(config: PlantConfig) -> PlantMemory:
+def _settle(config: PlantConfig) -> PlantMemory:
     """Return a drone that hovers, its controller at rest."""
     memory = initial_plant(config, 0, np.array([0.0, 0.0, _HEIGHT_M]), 0.0)
     hover = np.array([0.0, 0.0, _HEIGHT_M, 0.0])
     spinning = replace(memory.state, rotor_speed_rad_s=np.full(4, config.airframe.hover_speed_rad_s))
-    return fly(PlantMemory(state=spinning, internals=memory.internals), _holding(hover), None, _CALM, config, 1.0)
+    return fly(PlantMemory(state=spinning, internals=memory.internals), _hold(hover), None, _CALM, config, 1.0)
 
 
-def _holding(goal: Array) -> Reference:
+def _hold(goal: Array) -> Reference:
     """Return the reference that rests at x, y, z, heading (4,)."""
     return Reference(
         position_enu_m=goal[:3],

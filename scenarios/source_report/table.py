@@ -42,14 +42,14 @@ def fly_report(seeds: int, workers: int | None) -> dict[str, Any]:
         for system in SYSTEMS
     ]
     console = Console(stderr=True)
-    with closing(run_tasks(LocalWorkers(fly_row, workers or core_count()), tasks, lost=_lost)) as rows:
+    with closing(run_tasks(LocalWorkers(fly_row, workers or core_count()), tasks, lost=_refuse_lost)) as rows:
         flown = track(
             rows, "flights", total=len(tasks), console=console, transient=True, disable=not console.is_terminal
         )
         return report_table(list(flown))
 
 
-def _lost(task: ReportTask, why: str) -> Row:
+def _refuse_lost(task: ReportTask, why: str) -> Row:
     raise UserError(f"{task.scenario} with {task.system}, seed {task.seed}: {why}")
 
 

@@ -8,11 +8,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from scenarios.tracks.clothoids import clothoid_road
 from scenarios.tracks.config import DriveTrack
 from scenarios.tracks.course import Course
 from scenarios.tracks.heights import FLAT, grade_line
 from scenarios.tracks.profiles import Profile, profile_of
-from scenarios.tracks.roads import Road, clothoid_road
+from scenarios.tracks.roads import Road
 from scenarios.tracks.suspension import STEP_S, Array, Driven, Surface, sway_of
 
 Stretch = tuple[float, float, float]

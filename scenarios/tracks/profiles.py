@@ -6,11 +6,11 @@ Source of the waypoint legs: constant acceleration between waypoints, v² - u² 
 
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Leg:
+class Leg(Struct, frozen=True, kw_only=True):
     """A time of constant acceleration that starts at `t_s` at `s_m` with `speed_m_s`."""
 
     t_s: float
@@ -19,8 +19,7 @@ class Leg:
     acceleration_m_s2: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Motion:
+class Motion(Struct, frozen=True, kw_only=True):
     """Where along the road, how fast and with which acceleration."""
 
     s_m: float
@@ -28,8 +27,7 @@ class Motion:
     acceleration_m_s2: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Profile:
+class Profile(Struct, frozen=True, kw_only=True):
     """Legs in order of time; the last one lasts for ever, and before the first the vehicle stands."""
 
     legs: tuple[Leg, ...]

@@ -10,10 +10,10 @@ eight points, which is exact to rounding for the half a radian that a piece turn
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from msgspec import Struct
 from scipy.interpolate import CubicSpline
 
 from scenarios.tracks.heights import FLAT, GradeLine, Slope
@@ -23,12 +23,10 @@ _STRAIGHT_PER_M = 1e-9  # below this curvature the chord and the arc agree to do
 _GAUSS = [
     (0.5 * (x + 1.0), 0.5 * w) for x, w in zip(*(a.tolist() for a in np.polynomial.legendre.leggauss(8)), strict=True)
 ]
-_CLOTHOID_TURN_MAX_RAD = 0.5  # in one piece
 _ARCS_PER_CHORD = 64  # of 0.1 to 0.3 m on the report's road, which is then within 0.1 mm of the spline
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Piece:
+class Piece(Struct, frozen=True, kw_only=True):
     """A stretch that starts at `s_m` in `x_m`, `y_m` with `heading_rad`, and its curvature there, which may grow."""
 
     s_m: float
@@ -39,8 +37,7 @@ class Piece:
     growth_per_m2: float = 0.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RoadPoint:
+class RoadPoint(Struct, frozen=True, kw_only=True):
     """Where the road is and how it bends; the height is `grade` integrated, with its two derivatives by arc length."""
 
     x_m: float
@@ -52,8 +49,7 @@ class RoadPoint:
     grade_change_per_m: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Road:
+class Road(Struct, frozen=True, kw_only=True):
     """A road of `length_m`; a closed one repeats from `loop_s_m`, an open one goes on straight behind its end.
 
     Attributes:
@@ -158,54 +154,6 @@ def road_of(
         loop_s_m=None if loop_from is None else pieces[loop_from].s_m,
         slope=slope or FLAT,
     )
-
-
-def clothoid_road(
-    stretches: Sequence[tuple[float, float, float]],
-    *,
-    start_m: Point,
-    heading_rad: float,
-    slope: Slope | GradeLine | None = None,
-) -> Road:
-    """Return the open road made of `stretches`, whose curvatures grow evenly from one end to the other.
-
-    Args:
-        stretches: (length in m, curvature in 1/m at its beginning, at its end) of each.
-        start_m: x, y of the first point in W.
-        heading_rad: direction of travel there.
-        slope: its height, None for a flat road.
-
-    Raises:
-        ValueError: no stretch, or one without length.
-    """
-    if not stretches or any(length_m <= 0.0 for length_m, _, _ in stretches):
-        raise ValueError(f"a road needs stretches of positive length, not {list(stretches)}")
-    pieces: list[Piece] = []
-    s_m, (x_m, y_m), direction_rad = 0.0, start_m, heading_rad
-    for length_m, curvature_per_m, end_per_m in (part for one in stretches for part in _parts(*one)):
-        piece = Piece(
-            s_m=s_m,
-            x_m=x_m,
-            y_m=y_m,
-            heading_rad=direction_rad,
-            curvature_per_m=curvature_per_m,
-            growth_per_m2=(end_per_m - curvature_per_m) / length_m,
-        )
-        pieces.append(piece)
-        x_m, y_m, direction_rad = advance(piece, length_m)
-        s_m += length_m
-    starts_m = tuple(piece.s_m for piece in pieces)
-    return Road(pieces=tuple(pieces), starts_m=starts_m, length_m=s_m, slope=slope or FLAT)
-
-
-def _parts(length_m: float, begin_per_m: float, end_per_m: float) -> list[tuple[float, float, float]]:
-    """Return a stretch in as many equal parts as keep the turn of each within what the integral is good for."""
-    if begin_per_m == end_per_m:
-        return [(length_m, begin_per_m, end_per_m)]
-    turn_rad = max(abs(begin_per_m), abs(end_per_m)) * length_m
-    count = max(1, math.ceil(turn_rad / _CLOTHOID_TURN_MAX_RAD))
-    bends = [begin_per_m + (end_per_m - begin_per_m) * i / count for i in range(count + 1)]
-    return [(length_m / count, before, after) for before, after in pairwise(bends)]
 
 
 def polyline(waypoints_m: Sequence[Point]) -> Road:

@@ -94,13 +94,13 @@ def sway_of(driven: Driven, surface: Surface, suspension: SuspensionConfig) -> S
     heave, slope, tilt = _road(driven, surface, c)
     dive, lean = -c.dive_rad_s2_m * driven.along_m_s2, c.lean_rad_s2_m * driven.left_m_s2
     return Sway(
-        heave=_oscillated(c.heave_hz, c.damping, *heave, 0.0 * dive),
-        pitch=_oscillated(c.pitch_hz, c.damping, -slope[0], -slope[1], dive),
-        roll=_oscillated(c.roll_hz, c.damping, *tilt, lean),
+        heave=_oscillate(c.heave_hz, c.damping, *heave, 0.0 * dive),
+        pitch=_oscillate(c.pitch_hz, c.damping, -slope[0], -slope[1], dive),
+        roll=_oscillate(c.roll_hz, c.damping, *tilt, lean),
     )
 
 
-def _oscillated(
+def _oscillate(
     frequency_hz: float, damping: float, base: Array, base_rate: Array, pushed: Array
 ) -> tuple[list[float], list[float]]:
     """Return values and rates on the grid of an oscillator on a moving `base` that is also `pushed` to a value."""
@@ -129,7 +129,8 @@ def _road(driven: Driven, surface: Surface, c: SuspensionConfig) -> tuple[tuple[
     front, rear = (_humps(driven, surface.humps, side * 0.5 * c.wheelbase_m) for side in (1.0, -1.0))
     sums[0] += 0.5 * (front + rear)
     sums[1] += (front - rear) / c.wheelbase_m
-    return tuple((value, rate) for value, rate in sums)
+    # Against where it stands: there the body is at rest.
+    return tuple((value - value[0], rate) for value, rate in sums)
 
 
 def _humps(driven: Driven, humps: Sequence[tuple[float, float, float]], ahead_m: float) -> Array:

@@ -7,12 +7,12 @@ waypoints for `waypoints`; an Ornstein-Uhlenbeck process in its exact discretisa
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 from typing import assert_never
 
 import numpy as np
 
+from link.records import replace
 from scenarios.tracks.config import (
     BrakeTrack,
     CircleTrack,

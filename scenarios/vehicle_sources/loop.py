@@ -79,7 +79,7 @@ class ReceiverLoop:
                     self._stopping = self._stopping or transport.is_at_end
                 elif isinstance(transport, TcpClientTransport) and health.is_silent(time.monotonic_ns()):
                     health.closed(time.monotonic_ns())
-                    transport = self._opened_again(transport, stack)
+                    transport = self._open_again(transport, stack)
         self._service.stopping()
         self._service.close()
         self._log.info("stopped", fixes=self._fixes, unsendable=self._unsendable, **self._receiver.counts)
@@ -87,7 +87,7 @@ class ReceiverLoop:
     def _stop(self, *_: object) -> None:
         self._stopping = True
 
-    def _opened_again(self, transport: Transport, stack: ExitStack) -> Transport:
+    def _open_again(self, transport: Transport, stack: ExitStack) -> Transport:
         """Return a new transport: the old one may be a connection whose other end has gone without a word."""
         self._was_connected = False
         try:

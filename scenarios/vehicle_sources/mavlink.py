@@ -97,12 +97,12 @@ class MavlinkReceiver:
 
     def _position(self, message: Message) -> list[Reading]:
         if message.fix_type < mavlink.GPS_FIX_TYPE_3D_FIX:
-            return self._missed("the autopilot's receiver has no fix: give it a view of the sky")
+            return self._miss("the autopilot's receiver has no fix: give it a view of the sky")
         if not message.alt_ellipsoid:
-            return self._missed("the autopilot's receiver says no height above the ellipsoid (alt_ellipsoid)")
+            return self._miss("the autopilot's receiver says no height above the ellipsoid (alt_ellipsoid)")
         t_ns = self._utc_ns(message.time_usec * 1000)
         if t_ns is None:
-            return self._missed("the autopilot does not say the UTC time (SYSTEM_TIME)")
+            return self._miss("the autopilot does not say the UTC time (SYSTEM_TIME)")
         if is_repeated(t_ns, self._told_ns):
             return []
         self._told_ns, self._reason = t_ns, None
@@ -110,7 +110,7 @@ class MavlinkReceiver:
         self._has_double_antenna = found[2] is not None
         return [reading for reading in found if reading is not None]
 
-    def _missed(self, reason: str) -> list[Reading]:
+    def _miss(self, reason: str) -> list[Reading]:
         self._without_place += 1
         self._reason = reason
         return []

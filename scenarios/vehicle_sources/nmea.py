@@ -95,7 +95,7 @@ class NmeaReceiver:
                 self._reason = "the receiver does not know the time yet: give it a view of the sky"
                 return []
             if time_ns != self._time_ns:
-                readings = self._told()
+                readings = self._tell()
                 self._ending_kind, self._time_ns, self._epoch, self._is_told = self._last_kind, time_ns, {}, False
         elif kind not in _UNTIMED or self._time_ns is None:
             return []
@@ -105,7 +105,7 @@ class NmeaReceiver:
         if kind == "HDT":
             return readings + self._heading(sentence)
         self._last_kind = kind
-        return readings + self._told() if kind == self._ending_kind else readings
+        return readings + self._tell() if kind == self._ending_kind else readings
 
     def _note_date(self, sentence: Sentence) -> None:
         day_ns = date_of(sentence)
@@ -119,7 +119,7 @@ class NmeaReceiver:
         is_next_day = self._day_of_time_ns - self._time_ns > NANOSECONDS_PER_DAY // 2
         return self._day_ns + self._time_ns + (NANOSECONDS_PER_DAY if is_next_day else 0)
 
-    def _told(self) -> list[Reading]:
+    def _tell(self) -> list[Reading]:
         """Return what the instant's sentences tell, once."""
         if self._is_told or self._time_ns is None:
             return []

@@ -48,7 +48,7 @@ def diagonal(east: float, north: float, up: float) -> Matrix3:
     return (east**2, 0.0, 0.0, 0.0, north**2, 0.0, 0.0, 0.0, up**2)
 
 
-def turned(along: float, across: float, azimuth_rad: float, up: float) -> Matrix3:
+def turn_covariance(along: float, across: float, azimuth_rad: float, up: float) -> Matrix3:
     """Return the covariance in ENU of standard deviations along and across a horizontal direction, and upwards.
 
     Args:
@@ -75,7 +75,7 @@ def stated_covariance(ellipse: Sequence[float | None], deviations: Sequence[floa
     if up is None or not are_positive((up,)):
         return None
     if major is not None and minor is not None and azimuth_deg is not None and are_positive((major, minor)):
-        return turned(major, minor, radians(azimuth_deg), up)
+        return turn_covariance(major, minor, radians(azimuth_deg), up)
     if east is not None and north is not None and are_positive((east, north)):
         return diagonal(east, north, up)
     return None
@@ -106,7 +106,9 @@ def course_velocity(
     covariance = None
     if speed_std_m_s is not None:
         across = speed_std_m_s if course_std_rad is None else max(speed_m_s * course_std_rad, speed_std_m_s)
-        covariance = turned(speed_std_m_s, across, course_rad, (up_std_m_s or 0.0) if is_vertical_measured else 0.0)
+        covariance = turn_covariance(
+            speed_std_m_s, across, course_rad, (up_std_m_s or 0.0) if is_vertical_measured else 0.0
+        )
     up = up_m_s if is_vertical_measured and up_m_s is not None else 0.0
     return FixVelocity(
         t_ns=t_ns,

@@ -3,7 +3,7 @@
 import tomllib
 from bisect import bisect_right
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from companion.recording.folder import STEM as COMPANION
@@ -15,6 +15,7 @@ from link.payloads.checks import PayloadError
 from link.payloads.decklander_msgs import fields_of
 from link.program.toml_config import validate
 from link.recording.mcap_reader import Recorded, read_head, read_messages, recording_files
+from link.records import replace
 from link.zenoh.keys import Keys
 from scenarios.config import Scenario
 from scenarios.recordings.truth_file import STEM as TRUTH
@@ -57,7 +58,7 @@ class RecordedSource:
         self.road = _road(truth)
         self.history = History()
         self._states: list[ViewState] = []
-        for state in _states(_merged(companion, truth), keys, self._pad()):
+        for state in _states(_merge(companion, truth), keys, self._pad()):
             rows = len(self.history.times_s)
             self.history.add(state)
             if len(self.history.times_s) > rows:
@@ -109,7 +110,7 @@ def _road(truth: list[Path]) -> Road | None:
     return Road(scenario=validate(Scenario, table, source="scenario.toml"), seed=int(head.metadata["seed"]))
 
 
-def _merged(companion: list[Path], truth: list[Path]) -> list[Recorded]:
+def _merge(companion: list[Path], truth: list[Path]) -> list[Recorded]:
     messages = [*read_messages(companion), *read_messages(truth)]
     return sorted(messages, key=lambda recorded: recorded.log_ns)
 
@@ -130,7 +131,7 @@ def _states(messages: list[Recorded], keys: Keys, pad: PadGeometry | None) -> It
         if message.topic in reader.topics:
             newest[message.topic] = message.payload
         elif message.topic == keys.record("input") and state.pad is None:
-            state = replace(state, pad=_told_pad(message.payload, message.type_name))
+            state = replace(state, pad=_read_pad(message.payload, message.type_name))
     yield _all_taken(reader, state, newest)
 
 
@@ -143,7 +144,7 @@ def _all_taken(reader: StateReader, state: ViewState, newest: dict[str, bytes]) 
     return state
 
 
-def _told_pad(payload: bytes, type_name: str) -> PadGeometry | None:
+def _read_pad(payload: bytes, type_name: str) -> PadGeometry | None:
     """Return the vehicle's description of its pad when this input is it."""
     fields = fields_of(payload, type_name)
     if fields["kind"] != InputKind.PAD:

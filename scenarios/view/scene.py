@@ -94,7 +94,7 @@ class Scene:
         shown = true or estimated
         drone = None if state.drone is None else (state.drone.position_enu_m, state.drone.orientation_wxyz)
         _place(self._drone, drone)
-        _place(self._cone, None if shown is None else (_raised(shown[0], self._pad.height_m), _LEVEL))
+        _place(self._cone, None if shown is None else (_raise_by(shown[0], self._pad.height_m), _LEVEL))
         followed = {"vehicle": shown or drone, "drone": drone}.get(self.followed)
         if followed is not None:
             self._world.position = _negative(followed[0])
@@ -141,7 +141,7 @@ def _negative(position: Vector3) -> Vector3:
     return -x_m, -y_m, -z_m
 
 
-def _raised(position: Vector3, height_m: float) -> Vector3:
+def _raise_by(position: Vector3, height_m: float) -> Vector3:
     x_m, y_m, z_m = position
     return x_m, y_m, z_m + height_m
 

@@ -4,7 +4,7 @@ The messages are the same on Zenoh and in a recording. World W is ENU; where the
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from link.messages import BodyTruth, LandingStatus, PadGeometry, Plan, Vector3
 from link.payloads import cdr, json_messages
 from link.payloads.decklander_msgs import PACKAGE, fields_of
+from link.records import replace
 from link.units import NS_PER_S
 from link.zenoh.keys import Keys
 
@@ -91,7 +92,7 @@ class StateReader:
             keys.record("estimate"): _estimate,
             keys.record("forecast"): _forecast,
             keys.record("link"): _link,
-            keys.record("plan"): _recorded_plan,
+            keys.record("plan"): _read_plan,
             keys.record("step"): _step,
             keys.landing_plan: _plan,
             keys.landing_status: _status,
@@ -174,7 +175,7 @@ def _plan(payload: bytes) -> dict[str, Any]:
     return {"plan_enu_m": np.array([pose.position_enu_m for pose in poses]).reshape(-1, 3)}
 
 
-def _recorded_plan(payload: bytes) -> dict[str, Any]:
+def _read_plan(payload: bytes) -> dict[str, Any]:
     return {"plan_enu_m": fields_of(payload, f"{PACKAGE}/Trajectory")["position_m"].reshape(-1, 3)}
 
 

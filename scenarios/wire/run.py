@@ -119,7 +119,7 @@ def run_over_wire(scenario: Scenario, options: RunOptions, progress: Progress) -
         ended, factor = _watch(watcher, processes, scenario, recording, keep)
     result = result_table(scenario, options.seed, recording, ended)
     timing = {"real_time_factor": round(factor, 4), "speed": options.speed, **_companion_timing(options.folder)}
-    return _written(options.folder, result, timing | _lost(truth))
+    return _write(options.folder, result, timing | _count_lost(truth))
 
 
 def _programs(scenario: Scenario, options: RunOptions, endpoint: str) -> list[Program]:
@@ -228,20 +228,20 @@ def run_in_lockstep(scenario: Scenario, options: RunOptions, progress: Progress)
     result = result_table(scenario, options.seed, lockstep.recording, ended)
     step_ms = {name: quantiles_ms(durations) for name, durations in durations_s.items() if durations}
     timing = {"real_time_factor": round(factor, 4), "step_ms": step_ms}
-    return _written(options.folder, result, timing | _lost(truth, recorder))
+    return _write(options.folder, result, timing | _count_lost(truth, recorder))
 
 
 def _direct_recorder(scenario: Scenario, folder: Path) -> DirectRecorder:
     return DirectRecorder(recording_sink(folder, scenario.system.companion, Keys()))
 
 
-def _lost(*recorders: DirectRecorder | TruthFile | None) -> dict[str, int]:
+def _count_lost(*recorders: DirectRecorder | TruthFile | None) -> dict[str, int]:
     """Return how many records a failing disk has cost; nothing where nothing was recorded."""
     dropped = [recorder.dropped for recorder in recorders if recorder is not None]
     return {"records_dropped": sum(dropped)} if dropped else {}
 
 
-def _written(folder: Path, result: dict[str, Any], timing: dict[str, Any]) -> RunOutcome:
+def _write(folder: Path, result: dict[str, Any], timing: dict[str, Any]) -> RunOutcome:
     write_json(folder / "result.json", result)
     write_json(folder / "timing.json", timing)
     return RunOutcome(result=result, timing=timing)

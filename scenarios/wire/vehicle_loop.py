@@ -80,7 +80,7 @@ class VehicleLoop:
         started_s, ticked, believed = time.monotonic(), False, TickFilter()
         while not self._stopping:
             for sample in ticks.take():
-                tick = self._decoded(ClockTick, sample.payload)
+                tick = self._decode(ClockTick, sample.payload)
                 if tick is not None and believed.accepts(tick.t_ns):
                     ticked = True
                     self._step(tick.t_ns)
@@ -91,11 +91,11 @@ class VehicleLoop:
     def _step(self, t_ns: int) -> None:
         truths = self._truths.take()
         if truths:
-            self._drone = self._decoded(BodyTruth, truths[-1].payload) or self._drone
+            self._drone = self._decode(BodyTruth, truths[-1].payload) or self._drone
         for publication in self._node.step(t_ns, self._drone):
             self._zenoh.publish(publication.key, publication.payload, publication.encoding)
 
-    def _decoded(self, kind: type[M], payload: bytes) -> M | None:
+    def _decode(self, kind: type[M], payload: bytes) -> M | None:
         try:
             return cdr.decode(kind, payload)
         except PayloadError:

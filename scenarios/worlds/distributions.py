@@ -48,7 +48,7 @@ class LogUniform(_Bounded):
 
     def quantile(self, u: float) -> float:
         """Return the value below which the share `u` of the values lies."""
-        return self.low * (self.high / self.low) ** u
+        return float(self.low * (self.high / self.low) ** u)
 
 
 class Normal(_Bounded):
@@ -116,7 +116,7 @@ class Weibull(_Bounded):
     def quantile(self, u: float) -> float:
         """Return the value below which the share `u` of the values lies."""
         below, above = (-math.expm1(-((bound / self.scale) ** self.shape)) for bound in (self.low, self.high))
-        value = self.scale * (-math.log1p(-(below + u * (above - below)))) ** (1.0 / self.shape)
+        value = float(self.scale * (-math.log1p(-(below + u * (above - below)))) ** (1.0 / self.shape))
         return min(self.high, max(self.low, value))
 
 
@@ -162,7 +162,7 @@ class Graded(StrictModel):
     def quantile_at(self, quality: float, u: float) -> float:
         """Return the value below which the share `u` of the values lies at this quality."""
         z = _normal_between(u, -_CUT, _CUT)
-        return self.poor * (self.good / self.poor) ** quality * math.exp(self.spread * z)
+        return float(self.poor * (self.good / self.poor) ** quality * math.exp(self.spread * z))
 
 
 _CUT = 2.0

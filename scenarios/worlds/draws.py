@@ -7,7 +7,7 @@ fourth one. Every world of the population draws the same names, used or not, so 
 from collections.abc import Mapping
 
 from link.errors import UserError
-from scenarios.simulation.noise import named_rng
+from scenarios.simulation.noise import Seed, named_rng
 from scenarios.worlds.distributions import Graded, Plain, Value
 from scenarios.worlds.odd import Cases
 
@@ -25,7 +25,7 @@ class Draws:
         values: the value of every name that was drawn.
     """
 
-    def __init__(self, quantities: Mapping[str, Cases | Plain], seed: int, chosen: Mapping[str, float]) -> None:
+    def __init__(self, quantities: Mapping[str, Cases | Plain], seed: Seed, chosen: Mapping[str, float]) -> None:
         self._quantities = quantities
         self._seed = seed
         self._chosen = chosen

@@ -1,9 +1,8 @@
 """How the driver of a world drives its road: speed, stops, brakes, lane changes and swerves.
 
-The speed is planned along the road, on a grid of places: no faster than the driver's wandering wish and than bends and
-humps allow, braking comfortably ahead of each. Against that plan events happen at random times: the vehicle stops and
-stands, slows down behind another one, brakes hard, changes the lane, or swerves. Between grid points the acceleration
-is constant, so the drive is a list of legs; grid cells of equal acceleration become one leg.
+The driver follows the planned speed, until events happen at random times: the vehicle stops and stands, slows down
+behind another one, brakes hard, changes the lane, or swerves. Between the places of the plan's grid the acceleration is
+constant, so the drive is a list of legs; neighbouring cells of equal acceleration become one leg.
 Braking keeps within the friction circle: what the bend takes is not left for the brakes.
 """
 
@@ -11,22 +10,17 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-
-from scenarios.simulation.noise import named_rng
+from scenarios.simulation.noise import Seed
 from scenarios.tracks.drive import SHIFT_CURVATURE, Shift
 from scenarios.worlds.draws import Draws
 from scenarios.worlds.road import RoadPlan
-from sim_autopilot.physics.airframe import GRAVITY_M_S2
+from scenarios.worlds.speed_plan import Grid, plan_speed
 
 EVENTS = 8
 DRIVE_S = 140.0
 """From departure to the final stop: longer than a run, which lasts 120 s and 30 s to break off."""
 _GRIP_USED_MAX = 0.95  # of the friction circle; a driver at the limit of grip is a skid, which is not modelled
 _GRIP_SHIFT_MAX = 0.75  # of a lane change or a swerve, which leaves some for speeding up; a choice
-_CELL_S = 0.05  # at cruising speed
-_CELL_MIN_M, _CELL_MAX_M = 0.2, 1.0
-_WISH_MIN, _WISH_MAX = 0.7, 1.15  # of the wandering wish; a choice
 _SAME_M_S2 = 1e-7
 _STRAIGHT_PER_M = 1e-6
 _CRAWL_M_S = 0.2  # slower than this a vehicle stands
@@ -57,25 +51,6 @@ class _Event:
     lateral_m_s2: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Grid:
-    """Places `step_m` apart: the planned speed at each, and the curvature of the cell behind it.
-
-    Attributes:
-        step_m: from one place to the next.
-        caps_m_s: planned at each place.
-        curvatures_per_m: the greatest in the cell behind each place; events add to it.
-        speeding_m_s2: with which this driver speeds up.
-        grip_m_s2: radius of the friction circle.
-    """
-
-    step_m: float
-    speeding_m_s2: float
-    grip_m_s2: float
-    caps_m_s: list[float]
-    curvatures_per_m: list[float]
-
-
 @dataclass(slots=True)
 class _Drive:
     """A drive that grows cell by cell."""
@@ -100,11 +75,11 @@ class _Drive:
 
 
 def plan_drive(
-    draws: Draws, seed: int, road: RoadPlan, *, cruise_m_s: float, run_up_m: float, length_m: float
+    draws: Draws, seed: Seed, road: RoadPlan, *, cruise_m_s: float, run_up_m: float, length_m: float
 ) -> DrivePlan:
     """Return the drive of a world along its road; the arguments are those of `plan_road`."""
     events = [_event(draws, slot) for slot in range(EVENTS)]
-    grid = _planned(draws, seed, road, cruise_m_s=cruise_m_s, length_m=length_m)
+    grid = plan_speed(draws, seed, road, cruise_m_s=cruise_m_s, length_m=length_m)
     return _driven(draws, grid, events, run_up_m)
 
 
@@ -131,58 +106,10 @@ def _event(draws: Draws, slot: int) -> _Event:
     )
 
 
-def _planned(draws: Draws, seed: int, road: RoadPlan, *, cruise_m_s: float, length_m: float) -> _Grid:
-    """Return the grid with the speeds that the driver plans."""
-    step_m = min(_CELL_MAX_M, max(_CELL_MIN_M, cruise_m_s * _CELL_S))
-    count = int(length_m / step_m)
-    caps_m_s = _wishes(draws, seed, cruise_m_s, step_m, count)
-    for limit in road.limits:
-        first, last = int(limit.from_m / step_m), math.ceil(limit.to_m / step_m)
-        caps_m_s[first : last + 1] = np.minimum(caps_m_s[first : last + 1], limit.speed_m_s)
-    slowing_m_s2 = draws.number("driver.deceleration_m_s2")
-    caps = caps_m_s.tolist()
-    for i in range(count - 2, -1, -1):
-        caps[i] = min(caps[i], math.sqrt(caps[i + 1] ** 2 + 2.0 * slowing_m_s2 * step_m))
-    return _Grid(
-        step_m=step_m,
-        caps_m_s=caps,
-        curvatures_per_m=_cell_curvatures(road, step_m, count),
-        speeding_m_s2=draws.number("driver.acceleration_m_s2"),
-        grip_m_s2=draws.number("road.friction") * GRAVITY_M_S2,
-    )
-
-
-def _wishes(draws: Draws, seed: int, cruise_m_s: float, step_m: float, count: int) -> np.ndarray:
-    """Return the speed (count,) that the driver would like: an Ornstein-Uhlenbeck process about his cruising speed.
-
-    Its square is linear in the place between knots, so the acceleration is constant there.
-    """
-    share, tau_s = draws.number("driver.wander_share"), draws.number("driver.wander_s")
-    knot_s = 0.5 * tau_s
-    knots = 2 + int(count * step_m / (knot_s * cruise_m_s * _WISH_MIN))
-    decay = math.exp(-knot_s / tau_s)
-    value, wishes = 0.0, []
-    for kick in named_rng(seed, "world driver wander").standard_normal(knots).tolist():
-        wishes.append(cruise_m_s * min(_WISH_MAX, max(_WISH_MIN, 1.0 + share * value)))
-        value = decay * value + math.sqrt(1.0 - decay**2) * kick
-    places_m = np.arange(knots) * knot_s * cruise_m_s
-    return np.sqrt(np.interp(np.arange(count) * step_m, places_m, np.square(wishes)))
-
-
-def _cell_curvatures(road: RoadPlan, step_m: float, count: int) -> list[float]:
-    """Return the greatest curvature in each of `count` cells."""
-    sharpest = np.zeros(count)
-    begins_m = 0.0
-    for stretch_m, begin_per_m, end_per_m in road.stretches:
-        first, last = int(begins_m / step_m), math.ceil((begins_m + stretch_m) / step_m)
-        sharpest[first:last] = np.maximum(sharpest[first:last], max(abs(begin_per_m), abs(end_per_m)))
-        begins_m += stretch_m
-    return sharpest.tolist()
-
-
-def _driven(draws: Draws, grid: _Grid, events: Sequence[_Event], run_up_m: float) -> DrivePlan:
+def _driven(draws: Draws, grid: Grid, events: Sequence[_Event], run_up_m: float) -> DrivePlan:
     """Return the drive on the grid with the events."""
-    drive, shifts, counts = _Drive(), [], dict.fromkeys(("stop", "slow", "brake", "lane_change", "swerve"), 0)
+    drive, counts = _Drive(), dict.fromkeys(("stop", "slow", "brake", "lane_change", "swerve"), 0)
+    shifts: list[Shift] = []
     passes_s, first_s, next_s = 0.0, None, math.inf
     waiting = list(events)
     last = len(grid.caps_m_s) - 1
@@ -203,13 +130,13 @@ def _driven(draws: Draws, grid: _Grid, events: Sequence[_Event], run_up_m: float
     return DrivePlan(legs=legs, shifts=shifts, counts=counts, passes_s=passes_s, first_event_s=first_s)
 
 
-def _follow(drive: _Drive, grid: _Grid, cap_m_s: float = math.inf) -> None:
+def _follow(drive: _Drive, grid: Grid, cap_m_s: float = math.inf) -> None:
     """Drive one cell as planned, speeding up where there is room."""
     faster = math.sqrt(drive.speed_m_s**2 + 2.0 * grid.speeding_m_s2 * grid.step_m)
     drive.go(grid.step_m, min(grid.caps_m_s[drive.place + 1], faster, max(cap_m_s, _CRAWL_M_S)))
 
 
-def _happens(event: _Event, drive: _Drive, grid: _Grid, shifts: list[Shift]) -> bool:
+def _happens(event: _Event, drive: _Drive, grid: Grid, shifts: list[Shift]) -> bool:
     """Let an event happen now; return whether it could."""
     match event.kind:
         case "lane_change" | "swerve":
@@ -220,7 +147,7 @@ def _happens(event: _Event, drive: _Drive, grid: _Grid, shifts: list[Shift]) -> 
     raise ValueError(f"no event is called '{event.kind}'")
 
 
-def _brake(event: _Event, drive: _Drive, grid: _Grid) -> None:
+def _brake(event: _Event, drive: _Drive, grid: Grid) -> None:
     """Brake to the event's share of the speed, and stand or keep it for its time."""
     target_m_s = event.speed_share * drive.speed_m_s
     last = len(grid.caps_m_s) - 1
@@ -237,7 +164,7 @@ def _brake(event: _Event, drive: _Drive, grid: _Grid) -> None:
         _follow(drive, grid, target_m_s)
 
 
-def _shift(event: _Event, drive: _Drive, grid: _Grid, shifts: list[Shift]) -> bool:
+def _shift(event: _Event, drive: _Drive, grid: Grid, shifts: list[Shift]) -> bool:
     """Plan a lane change, or a swerve there and back, on the next long enough straight; return whether there is one."""
     here_m = drive.place * grid.step_m + grid.step_m
     free_m = max([here_m, *(place_m + length_m for place_m, length_m, _ in shifts)])

@@ -14,7 +14,7 @@ from typing import Annotated, Self
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from link.errors import UserError
-from link.program.toml_config import StrictModel, validated
+from link.program.toml_config import StrictModel, validate
 from scenarios.worlds.distributions import Choice, Graded, Plain
 
 FILE = "scenarios/worlds/odd.toml"
@@ -83,7 +83,7 @@ def _by_name(tables: Tables) -> dict[str, Cases | Plain]:
 def domain() -> Domain:
     """Return the domain as `odd.toml` has it."""
     text = (resources.files("scenarios") / "worlds" / "odd.toml").read_text(encoding="utf-8")
-    return validated(Domain, tomllib.loads(text), source=FILE)
+    return validate(Domain, tomllib.loads(text), source=FILE)
 
 
 @cache

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scenarios.simulation.noise import named_rng
+from scenarios.simulation.noise import Seed, named_rng
 from scenarios.tracks.drive import Stretch
 from scenarios.worlds.draws import Draws
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
@@ -22,6 +22,7 @@ _LATERAL_JERK_MAX_M_S3 = 3.0  # beyond the 1.2 m/s^3 of AASHTO's spirals, as at 
 _GRIP_BEND_MAX = 0.5  # of the friction circle in a bend: AASHTO's side friction leaves more than half; a choice
 _REFERENCE_PER_M = 0.1  # ISO 8608: spatial frequency, in cycles, at which roughness is told
 _WAVELENGTHS_M = np.geomspace(1.0, 50.0, 17)  # edges; ISO 8608 fits up to 100 m; heave is told from the grade below 50
+_SAME_GRADE = 1e-6  # a millimetre in a kilometre: for less there is no crest or dip, whose ends would be one place
 _SLANT_MAX_RAD = 1.0  # of a wave against the road: uneven across as well as along; a choice
 
 
@@ -45,7 +46,7 @@ class RoadPlan:
     limits: list[Limit]
 
 
-def plan_road(draws: Draws, seed: int, *, cruise_m_s: float, run_up_m: float, length_m: float) -> RoadPlan:
+def plan_road(draws: Draws, seed: Seed, *, cruise_m_s: float, run_up_m: float, length_m: float) -> RoadPlan:
     """Return the road of a world.
 
     Args:
@@ -141,7 +142,7 @@ def _grades(slopes: list[tuple[float, float]], end_m: float, radius_m: float) ->
     for (from_m, wanted), to_m in zip([*slopes, (end_m, 0.0)], [*ends_m, end_m + 2.0 * radius_m], strict=True):
         grade = wanted if height_m + wanted * (to_m - from_m) >= 0.0 else -wanted
         height_m += grade * (to_m - from_m)
-        if grade == before:
+        if abs(grade - before) < _SAME_GRADE:
             continue
         room_m = 0.9 * min(from_m - points[-1][0], 0.5 * (to_m - from_m))
         half_m = min(0.5 * abs(grade - before) * radius_m, room_m)
@@ -150,7 +151,7 @@ def _grades(slopes: list[tuple[float, float]], end_m: float, radius_m: float) ->
     return points
 
 
-def _waves(draws: Draws, seed: int) -> list[tuple[float, float, float, float]]:
+def _waves(draws: Draws, seed: Seed) -> list[tuple[float, float, float, float]]:
     """Return the roughness as waves whose variances are the integral of ISO 8608's spectrum over bands."""
     degree_m3 = 1e-6 * draws.number("road.roughness_1e_6_m3")
     phases = named_rng(seed, "world road waves").random((len(_WAVELENGTHS_M) - 1, 2)).tolist()

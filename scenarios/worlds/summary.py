@@ -17,7 +17,7 @@ def summary_of(scenario: Scenario, road: RoadPlan, drive: DrivePlan, cruise_m_s:
         raise TypeError(f"a world drives, and does not follow a track of kind '{track.kind}'")
     course = drive_course(track)
     motion = driven(course.road, course.profile)
-    moving = motion.speed_m_s > 0.0
+    moving, end_m = motion.speed_m_s > 0.0, float(motion.s_m[-1])
     curvature_per_m = np.abs(motion.left_m_s2[moving]) / motion.speed_m_s[moving] ** 2
     fix, zenoh = scenario.sensors.fix, scenario.link.zenoh
     sway = course.sway
@@ -34,8 +34,8 @@ def summary_of(scenario: Scenario, road: RoadPlan, drive: DrivePlan, cruise_m_s:
         "drive.roll_max_rad": 0.0 if sway is None else float(np.abs(sway.roll[0]).max()),
         "drive.passes_s": drive.passes_s,
         "drive.first_event_s": 1e3 if drive.first_event_s is None else drive.first_event_s,
-        "drive.bends": sum(one.speed_m_s < cruise_m_s for one in road.limits),
-        "drive.humps": len(road.humps),
+        "drive.bends": sum(one.speed_m_s < cruise_m_s and one.from_m < end_m for one in road.limits),
+        "drive.humps": sum(place_m < end_m for place_m, _, _ in road.humps),
         **{f"drive.{kind}s": count for kind, count in drive.counts.items()},
         "sensors.data_age_s": fix.delay_s + zenoh.delay_s + 0.5 / fix.rate_hz,
     }

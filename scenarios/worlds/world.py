@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from scenarios.config import Scenario, SensorsConfig
+from scenarios.simulation.noise import Seed
 from scenarios.tracks.config import Departure, DriveTrack
 from scenarios.worlds.distributions import Value
 from scenarios.worlds.draws import Draws
@@ -37,12 +38,12 @@ class World:
     """
 
     slice: str
-    seed: int
+    seed: Seed
     scenario: Scenario
     drawn: Mapping[str, float | int | str | bool]
 
 
-def draw_world(slice: str, seed: int, *, chosen: Mapping[str, float] | None = None) -> World:  # noqa: A002 (it is the domain's word)
+def draw_world(slice: str, seed: Seed, *, chosen: Mapping[str, float] | None = None) -> World:  # noqa: A002 (it is the domain's word)
     """Return the world of `seed` in a slice of the domain.
 
     Args:
@@ -59,7 +60,7 @@ def draw_world(slice: str, seed: int, *, chosen: Mapping[str, float] | None = No
     return world
 
 
-def quantities(slice: str, seed: int) -> tuple[str, ...]:  # noqa: A002 (likewise)
+def quantities(slice: str, seed: Seed) -> tuple[str, ...]:  # noqa: A002 (likewise)
     """Return the names of what the world of `seed` draws: of all that may be chosen.
 
     Raises:
@@ -70,7 +71,7 @@ def quantities(slice: str, seed: int) -> tuple[str, ...]:  # noqa: A002 (likewis
     return tuple(draws.uniforms)
 
 
-def _world(name: str, seed: int, draws: Draws) -> World:
+def _world(name: str, seed: Seed, draws: Draws) -> World:
     wind, firmware, drone = draw_wind(draws), draw_firmware(draws), draw_drone(draws)
     vehicle, sensors = draw_vehicle(draws), draw_sensors(draws)
     wish_m_s = draws.number("driver.speed_m_s")

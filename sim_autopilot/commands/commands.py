@@ -4,10 +4,10 @@ Source: MAVLink command protocol, https://mavlink.io/en/services/command.html; r
 """
 
 from collections.abc import Mapping
-from dataclasses import replace
 from types import MappingProxyType
 
 from link.mavlink.dialect import Message, mavlink
+from link.records import replace
 from sim_autopilot.commands.mode_request import loiter, mode_command, try_mode
 from sim_autopilot.commands.place_commands import set_home
 from sim_autopilot.commands.requests import (

@@ -1,12 +1,11 @@
 """The local frame's origin moves: by a message, or by a step of the estimator."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from link.frames.geodesy import Datum, geodetic_from_enu
 from link.mavlink.dialect import Message
 from link.messages import Vector3
+from link.records import replace
 from sim_autopilot.core.places import local_from_world, world_from_local
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.telemetry.motion import gps_global_origin

@@ -1,9 +1,10 @@
 """Commands as they travel: what COMMAND_LONG and COMMAND_INT ask for, and what an answer consists of."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import isfinite, nan
 from typing import TypeAlias
+
+from msgspec import Struct
 
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
@@ -15,8 +16,7 @@ _NOWHERE = frozenset({2**31 - 1, -(2**31)})
 """What stands for no place in the integers of a COMMAND_INT: the largest, and what a client makes of no number."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Request:
+class Request(Struct, frozen=True, kw_only=True):
     """A command, who sent it, and its seven parameters; one that is not finite counts as not given."""
 
     command: int
@@ -39,8 +39,7 @@ class Request:
         return round(value) if isfinite(value) else None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Answer:
+class Answer(Struct, frozen=True, kw_only=True):
     """What a command leads to: the result, None for no answer at all, and what is sent besides the acknowledgement."""
 
     memory: AutopilotMemory

@@ -3,10 +3,10 @@
 Arrays are float64 and are never written in place. Quaternions are Hamilton, order wxyz, w >= 0.
 """
 
-from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -21,8 +21,7 @@ class Surface(Enum):
     SIDE = 3  # the vehicle's flank
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PlantState:
+class PlantState(Struct, frozen=True, kw_only=True, eq=False):
     """The drone's body at `t_ns`.
 
     Attributes:
@@ -45,8 +44,7 @@ class PlantState:
     surface: Surface
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Deck:
+class Deck(Struct, frozen=True, kw_only=True, eq=False):
     """The vehicle under the drone at `t_ns`, a box whose top face is the roof.
 
     Attributes:
@@ -67,8 +65,7 @@ class Deck:
     roof_height_m: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class AttitudeTarget:
+class AttitudeTarget(Struct, frozen=True, kw_only=True, eq=False):
     """An attitude to turn to, or turn rates alone, and the thrust.
 
     Attributes:
@@ -82,8 +79,7 @@ class AttitudeTarget:
     thrust_m_s2: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Reference:
+class Reference(Struct, frozen=True, kw_only=True, eq=False):
     """What the flight controller is to follow; a None group is free (no feedback, no feed-forward).
 
     Attributes:

@@ -1,14 +1,13 @@
 """What the autopilot remembers of its MAVLink links: what each streams, which is at hand, and what is to be sent."""
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from link.mavlink.dialect import Message
 from link.records import replace
 from sim_autopilot.core.streams import Streams
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LinkMemory:
+class LinkMemory(Struct, frozen=True, kw_only=True):
     """What belongs to one link.
 
     Attributes:
@@ -22,8 +21,7 @@ class LinkMemory:
     ground_station: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Links:
+class Links(Struct, frozen=True, kw_only=True):
     """The links, and the number of the one at hand."""
 
     each: tuple[LinkMemory, ...]
@@ -47,16 +45,14 @@ def with_link_at_hand(links: Links, link: LinkMemory) -> Links:
     return replace(links, each=tuple(each))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Later:
+class Later(Struct, frozen=True, kw_only=True):
     """A message to be sent at `boot_ns`, on the links on which its target is."""
 
     boot_ns: int
     message: Message
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Outbox:
+class Outbox(Struct, frozen=True, kw_only=True):
     """Messages to be sent later, and how many events were told, as the 16 bits on the wire count them."""
 
     later: tuple[Later, ...] = ()

@@ -1,9 +1,11 @@
 """The flight modes and the one table of what leads from each to which."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from types import MappingProxyType
+
+from link.records import replace
 
 
 class Mode(Enum):

@@ -6,8 +6,9 @@ few metres. Longitudes are kept in (-pi, pi], and their differences go the short
 antimeridian.
 """
 
-from dataclasses import dataclass
 from math import dist
+
+from msgspec import Struct
 
 from link.frames.geodesy import Datum, enu_from_geodetic, geodetic_from_enu
 from link.frames.local_frame import LocalFrame, geodetic_from_local, local_from_geodetic
@@ -19,8 +20,7 @@ _CHART_REACH_M = 20.0
 _STEP_M = 10.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Chart:
+class Chart(Struct, frozen=True, kw_only=True):
     """A linear map from ENU about `datum` to latitude (rad), longitude (rad), altitude (m), around `base_enu_m`."""
 
     datum: Datum
@@ -71,8 +71,7 @@ _REACH_M = 1e5
 """No drone gets so far from its origin; a place beyond would be on the other side of the globe."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Origin:
+class Origin(Struct, frozen=True, kw_only=True):
     """The autopilot's local frame, where its origin is in W, which is about `world`, and how often it was moved."""
 
     world: Datum
@@ -92,8 +91,7 @@ def world_from_local(origin: Origin, position_enu_m: Vector3) -> Vector3:
     return enu_from_geodetic(origin.world, *geodetic_from_local(origin.frame, (east_m, north_m, up_m)))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Places:
+class Places(Struct, frozen=True, kw_only=True):
     """The local frame with its origin, where it was armed, and a chart for geodetic coordinates."""
 
     origin: Origin

@@ -1,13 +1,13 @@
 """Which messages are due: each stream has an interval, kept exactly on average on the step's time grid."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from link.units import NS_PER_S
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Stream:
+class Stream(Struct, frozen=True, kw_only=True):
     """A message that can be sent unasked: `rate_hz` by default (0 is off), from `from_s` after boot on.
 
     A `fixed` one keeps its rate: another one is refused.
@@ -19,8 +19,7 @@ class Stream:
     fixed: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Streams:
+class Streams(Struct, frozen=True, kw_only=True):
     """The streams that run, by message id, in nanoseconds since boot; the mappings are never written in place."""
 
     interval_ns: Mapping[int, int]

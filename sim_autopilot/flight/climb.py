@@ -4,10 +4,11 @@ As PX4 does it: from the end of the spool-up on, the allowed climb rate grows li
 below zero that the thrust begins at none.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
+from link.records import replace
 from sim_autopilot.core.data import Array, Reference
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
 

@@ -1,12 +1,13 @@
 """What each mode wants the flight controller to follow."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from math import hypot
 
 import numpy as np
 
 from link.messages import Vector3
+from link.records import replace
 from sim_autopilot.core.data import Array, Reference
 from sim_autopilot.core.modes import Mode, Modes
 from sim_autopilot.core.settings import FlightSettings

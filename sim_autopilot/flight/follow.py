@@ -6,13 +6,14 @@ which the drone stands about him, which turns no faster than FLW_TGT_MAX_VEL alo
 it keeps it goes straight up or down first. Source: PX4 parameter reference, FLW_TGT_*, and its follow-me documentation.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import atan2, cos, hypot, pi, sin
 
 import numpy as np
 
 from link.frames.rotations import wrap_angle
 from link.messages import Vector3
+from link.records import replace
 from sim_autopilot.core.data import Reference
 from sim_autopilot.core.pilot_settings import FollowSettings
 from sim_autopilot.plant.snapshot import Snapshot

@@ -5,8 +5,9 @@ the limit. ArduCopter does not look at the speed, but at the tilt that is asked 
 that is too much. Neither knows of the true contact.
 """
 
-from dataclasses import dataclass
 from math import hypot
+
+from msgspec import Struct
 
 from link.frames.rotations import rotate
 from sim_autopilot.core.data import Reference
@@ -20,8 +21,7 @@ _IDLE_SHARE = 0.3
 """Of the weight: a pilot who asks for less thrust wants it to stay on the ground (PX4's low throttle)."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Landing:
+class Landing(Struct, frozen=True, kw_only=True):
     """Whether the drone counts as landed; times in ns since boot, None where it does not apply.
 
     Attributes:

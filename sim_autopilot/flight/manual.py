@@ -4,13 +4,14 @@ In the position mode they ask for velocity along the heading, and let go they ho
 tilt and climb rate; stabilised for tilt and thrust; in acro for turn rates and thrust. How much: `StickFeel`.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import cos, sin
 
 import numpy as np
 
 from link.frames.rotations import quaternion_from_roll_pitch_yaw
 from link.mavlink.dialect import Message, mavlink
+from link.records import replace
 from sim_autopilot.core.data import Reference
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.core.pilot_settings import StickFeel

@@ -4,13 +4,14 @@ State: the angle about the centre in W (from East, counter-clockwise) and the pr
 radius that was asked for. Source: MAV_CMD_DO_ORBIT, https://mavlink.io/en/messages/common.html#MAV_CMD_DO_ORBIT.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from math import atan2, copysign, cos, hypot, isfinite, pi, sin, sqrt
 
 import numpy as np
 
 from link.messages import Vector3
+from link.records import replace
 from sim_autopilot.core.data import Reference
 from sim_autopilot.flight.travel import Pace
 from sim_autopilot.plant.snapshot import Snapshot

@@ -5,7 +5,7 @@ for moving targets the velocity is zero. It counts for 2 s after a sighting. Far
 drone does not sink. Source: ArduPilot, AC_PrecLand and LAND's vertical control.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import hypot, isfinite, tan
 
 import numpy as np
@@ -13,6 +13,7 @@ import numpy as np
 from link.frames.rotations import flu_from_frd, quaternion_from_roll_pitch_yaw, rotate
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Quaternion, Vector3
+from link.records import replace
 from sim_autopilot.core.data import Reference
 from sim_autopilot.core.limits import PathLimits
 from sim_autopilot.core.settings import PrecisionSettings

@@ -1,11 +1,11 @@
 """Going somewhere by command: DO_REPOSITION and DO_CHANGE_SPEED."""
 
-from dataclasses import replace
 from math import hypot, isfinite, radians
 
 from link.frames.geodesy import Datum, enu_from_geodetic
 from link.mavlink.dialect import mavlink
 from link.messages import Vector3
+from link.records import replace
 from sim_autopilot.flight.flight import go_to
 from sim_autopilot.flight.travel import Goal
 from sim_autopilot.memory import AutopilotMemory, with_flight

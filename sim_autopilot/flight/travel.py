@@ -3,12 +3,13 @@
 Horizontally and vertically by itself; the speed falls off linearly near the goal, by constant deceleration farther out.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import atan2, hypot, sqrt
 
 import numpy as np
 
 from link.messages import Vector3
+from link.records import replace
 from sim_autopilot.core.data import Array, Reference
 
 _SLOPE_PER_S = 1.5

@@ -1,6 +1,6 @@
 """What the services remember, each in its own part; the flight carries it along without reading it."""
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from link.records import replace
 from sim_autopilot.ground_station.files.ftp_state import NO_FTP, Ftp
@@ -10,8 +10,7 @@ from sim_autopilot.ground_station.missions.library import NO_LIBRARY, Library
 from sim_autopilot.memory import AutopilotMemory
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Gripper:
+class Gripper(Struct, frozen=True, kw_only=True):
     """What it was last told: to release (0) or to grab (1), as it does at boot; and when it is done, since boot."""
 
     action: int = 1
@@ -25,8 +24,7 @@ class Gripper:
 AT_REST = Gripper()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StationMemory:
+class StationMemory(Struct, frozen=True, kw_only=True):
     """The services' memories.
 
     Attributes:

@@ -1,7 +1,7 @@
 """Flying a mission: which item is current, whether it is done, and where it sends the flight."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import Enum
 from math import dist, hypot, isfinite, nan, pi, radians, tau
 from types import MappingProxyType
@@ -9,6 +9,7 @@ from types import MappingProxyType
 from link.frames.geodesy import Datum
 from link.mavlink.dialect import mavlink
 from link.messages import Vector3
+from link.records import replace
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.core.settings import FlightSettings
 from sim_autopilot.flight.flight import Leg, ModeFlight, begin, climb_to, descend_here, go_to

@@ -135,7 +135,7 @@ class WindModel:
 
     def __init__(
         self,
-        seed: int,
+        seed: int | np.random.Generator,
         mean_m_s: float,
         direction_rad: float,
         turbulence: Turbulence | float,
@@ -146,7 +146,7 @@ class WindModel:
         """Start in the steady state.
 
         Args:
-            seed: of the turbulence.
+            seed: of the turbulence, or the generator that draws it.
             mean_m_s: speed.
             direction_rad: the mean wind blows towards, from east to north.
             turbulence: severity, or the vertical standard deviation in m/s.

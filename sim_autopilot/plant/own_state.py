@@ -24,7 +24,7 @@ class OwnStateModel:
     """Standard deviations on each axis with their time constants T, and one step of the local frame's origin.
 
     Attributes:
-        seed: of the errors.
+        seed: of the errors, or the generator that draws them.
         position_std_m: zero is the truth.
         velocity_std_m_s: likewise.
         position_time_s: T.
@@ -33,7 +33,7 @@ class OwnStateModel:
         origin_step_s: since boot, when.
     """
 
-    seed: int = 0
+    seed: int | np.random.Generator = 0
     position_std_m: float = 0.0
     velocity_std_m_s: float = 0.0
     position_time_s: float = 10.0

@@ -1,11 +1,13 @@
 """The simulated drone under its flight controller: one pure function from a reference to a new state."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import atan2, hypot, inf
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
+from link.records import replace
 from sim_autopilot.control.geometric import MOTOR_POLE_RAD_S, geometric_gains
 from sim_autopilot.control.lqr import feedforward_gains, report_gains
 from sim_autopilot.control.parameters import (
@@ -81,8 +83,7 @@ class PlantConfig:
         object.__setattr__(self, "records", (body, control))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PlantMemory:
+class PlantMemory(Struct, frozen=True, kw_only=True, eq=False):
     """The drone and what its controller and its contacts remember.
 
     Attributes:

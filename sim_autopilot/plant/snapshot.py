@@ -1,7 +1,8 @@
 """The drone as its autopilot believes it to be at one instant, as plain numbers, so that arrays are unpacked once."""
 
-from dataclasses import dataclass
 from math import hypot
+
+from msgspec import Struct
 
 from link.frames.rotations import conjugate, rotate, yaw_of
 from link.messages import BodyTruth, Quaternion, RotorTruth, Vector3
@@ -10,8 +11,7 @@ from sim_autopilot.physics.airframe import Airframe
 from sim_autopilot.plant.own_state import NO_ERROR
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Snapshot:
+class Snapshot(Struct, frozen=True, kw_only=True):
     """The drone at `t_ns`, `boot_ns` after the autopilot's start; W is ENU about the datum, B is FLU.
 
     `thrust_share` is the rotors' thrust over the weight.

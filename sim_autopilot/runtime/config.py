@@ -1,7 +1,6 @@
 """The configuration of `sim-autopilot`: one TOML file, validated once, every value with its unit and source."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from math import pi, radians
 from types import MappingProxyType
 from typing import Annotated, Literal
@@ -13,6 +12,7 @@ from link.errors import UserError
 from link.frames.geodesy import Datum
 from link.messages import Vector3
 from link.program.toml_config import NotNegative, Positive, StrictModel
+from link.records import replace
 from sim_autopilot.control.parameters import ControllerKind
 from sim_autopilot.core.parameters import default_values
 from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
@@ -181,15 +181,20 @@ def with_default_links(config: SimAutopilotConfig) -> SimAutopilotConfig:
     return config.model_copy(update={"links": links})
 
 
-def wind_model(config: SimAutopilotConfig) -> WindModel:
-    """Return the air, which blows towards where it does not come from."""
+def wind_model(config: SimAutopilotConfig, seed: int | np.random.Generator | None = None) -> WindModel:
+    """Return the air, which blows towards where it does not come from.
+
+    Args:
+        config: of the mean wind, the turbulence and the gust.
+        seed: of the turbulence, or the generator that draws it; None for the configuration's.
+    """
     wind = config.wind
     from_rad = wind.from_rad
     if from_rad is None:
         from_rad = float(np.random.default_rng(config.seed).uniform(-pi, pi))
     std_m_s = wind.turbulence_std_m_s
     turbulence = Turbulence[wind.turbulence.upper()] if std_m_s is None else std_m_s
-    return WindModel(config.seed, wind.mean_m_s, from_rad + pi, turbulence, gust=_gust(wind))
+    return WindModel(config.seed if seed is None else seed, wind.mean_m_s, from_rad + pi, turbulence, gust=_gust(wind))
 
 
 def _gust(wind: WindConfig) -> Gust | None:

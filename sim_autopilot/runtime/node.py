@@ -166,8 +166,8 @@ class AutopilotNode:
                 codec.signing = signing
 
     def _next_step_ns(self) -> int:
-        intervals_ns = (shortest_interval_ns(link.streams) for link in self._memory.links.each)
-        return _FAST_STEP_NS if min(filter(None, intervals_ns), default=STEP_NS) < STEP_NS else STEP_NS
+        intervals_ns = [shortest_interval_ns(link.streams) for link in self._memory.links.each]
+        return _FAST_STEP_NS if any(one is not None and one < STEP_NS for one in intervals_ns) else STEP_NS
 
 
 _TRUSTED_LINK = 0  # a cable, by which a lost key can be replaced

@@ -1,13 +1,12 @@
 """The deck under the drone, as the vehicle's truth and its pad tell over Zenoh."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from link.frames.rotations import rotate
 from link.messages import BodyTruth, PadGeometry
 from link.payloads import cdr, json_messages
 from link.payloads.checks import PayloadError
+from link.records import replace
 from link.zenoh.keys import Keys
 from link.zenoh.session import Inbox, ZenohSession
 from sim_autopilot.core.data import Deck

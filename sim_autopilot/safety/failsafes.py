@@ -1,14 +1,14 @@
 """The failsafes that do not come from setpoints: battery, ground station, fence; each acts once, when it begins."""
 
-from dataclasses import dataclass, replace
+from msgspec import Struct
 
+from link.records import replace
 from sim_autopilot.core.modes import Event
 from sim_autopilot.core.settings import FailsafeSettings
 from sim_autopilot.missions.fence import Fence, is_allowed, is_near_home
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Watch:
+class Watch(Struct, frozen=True, kw_only=True):
     """What was noticed: the battery's level (0 is good), a fence left, since when the station is lost, whether acted.
 
     `station_ns` is when a ground station was last heard, None before the first; `companion_ns` when a companion was;

@@ -3,9 +3,10 @@
 Source: MAV_CMD_INJECT_FAILURE; which units answer: as PX4 was seen to do it.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from link.mavlink.dialect import mavlink
+from link.records import replace
 from sim_autopilot.plant.plant import PlantMemory
 
 _OK = int(mavlink.FAILURE_TYPE_OK)

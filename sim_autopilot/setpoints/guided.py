@@ -1,10 +1,10 @@
 """ArduCopter's GUIDED mode: a shaped path that setpoints lead, and the take-off that is a part of the mode."""
 
-from dataclasses import dataclass
 from enum import Enum
 from math import acos, atan2, hypot
 
 import numpy as np
+from msgspec import Struct
 
 from link.frames.rotations import rotate
 from link.messages import Vector3
@@ -47,8 +47,7 @@ class Stage(Enum):
     CLIMB = 2
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Guided:
+class Guided(Struct, frozen=True, kw_only=True):
     """What GUIDED remembers; times in ns since boot.
 
     Attributes:

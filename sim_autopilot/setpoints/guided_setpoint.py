@@ -5,9 +5,10 @@ velocity, acceleration, or position alone are flown; anything else, a frame that
 no number stop the drone. (The real one's estimate does not survive a position that is no number.)
 """
 
-from dataclasses import dataclass
 from enum import Enum
 from math import cos, isfinite, pi, sin
+
+from msgspec import Struct
 
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
@@ -34,8 +35,7 @@ class Task(Enum):
     TAKEOFF = 4
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Wish:
+class Wish(Struct, frozen=True, kw_only=True):
     """A setpoint in W; what it does not give is zero, a heading None."""
 
     task: Task

@@ -4,11 +4,12 @@ Each of the two needs a position, a velocity or an acceleration. An axis without
 with an acceleration alone has no velocity to keep to either: there the drone's own place and velocity stand in.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
+from link.records import replace
 from sim_autopilot.core.data import Array, Reference
 from sim_autopilot.plant.snapshot import Snapshot
 

@@ -12,17 +12,18 @@ the vectors are limited by their length, and of the acceleration at least 1 / sq
 Source: the behaviour of ArduPilot's AP_Math control functions; the equations are theirs, the code is not.
 """
 
-from dataclasses import dataclass, replace
 from math import copysign, hypot, sqrt
 
+from msgspec import Struct
+
 from link.messages import Vector3
+from link.records import replace
 from sim_autopilot.core.limits import PathLimits
 
 Plane = tuple[float, float]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Motion:
+class Motion(Struct, frozen=True, kw_only=True):
     """Position (m), velocity (m/s) and acceleration (m/s2) in W."""
 
     position: Vector3
@@ -30,8 +31,7 @@ class Motion:
     acceleration: Vector3 = (0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PathSpeed:
+class PathSpeed(Struct, frozen=True, kw_only=True):
     """How fast a position error is corrected at most."""
 
     horizontal_m_s: float
@@ -39,8 +39,7 @@ class PathSpeed:
     descent_m_s: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Blocked:
+class Blocked(Struct, frozen=True, kw_only=True):
     """Where the drone cannot follow: the direction in which it leans as far as it may, and its own place and speed."""
 
     direction: Plane

@@ -4,10 +4,10 @@ A setpoint is held as it came, never extrapolated. One that cannot be understood
 that is flown (`partial_setpoints`), and every value used must be finite.
 """
 
-from dataclasses import dataclass
 from math import cos, hypot, isfinite, pi, radians, sin
 
 import numpy as np
+from msgspec import Struct
 
 from link.frames.geodesy import geodetic_from_enu
 from link.frames.local_frame import local_from_geodetic
@@ -27,8 +27,7 @@ _YAW = 0b0000_0100_0000_0000
 _YAW_RATE = 0b0000_1000_0000_0000
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Setpoints:
+class Setpoints(Struct, frozen=True, kw_only=True, eq=False):
     """The last setpoint, when it came, and since when they have come without a gap; times in ns since boot."""
 
     reference: Reference | None = None

@@ -1,9 +1,9 @@
 """Situations and progress for the tests of decisions: a drone, a pad, and what each test of a phase looks at."""
 
-from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
+from msgspec import Struct, structs
 
 from companion.autopilots.driver import AutopilotView
 from companion.config.companion import CompanionConfig
@@ -18,6 +18,7 @@ from companion.vehicle.pad import HEADING_UNKNOWN, PadPath
 from link.frames.geodesy import Datum
 from link.frames.local_frame import LocalFrame, Projection
 from link.messages import Vector3
+from link.records import replace
 
 R = TypeVar("R", Situation, StepMemory)
 CONFIG = CompanionConfig()
@@ -112,7 +113,11 @@ def progress(phase: Phase, in_phase_s: float = 1.0) -> Progress:
 def changed(record: R, **changes: Any) -> R:
     """The same record with other fields, its own or those of its groups."""
     own = {name: value for name, value in changes.items() if name in _names(record)}
-    groups = {one.name: getattr(record, one.name) for one in fields(record) if is_dataclass(getattr(record, one.name))}
+    groups = {
+        one.name: getattr(record, one.name)
+        for one in structs.fields(record)
+        if isinstance(getattr(record, one.name), Struct)
+    }
     for name, value in ((name, value) for name, value in changes.items() if name not in own):
         (group,) = (group for group, inner in groups.items() if name in _names(inner))
         own[group] = replace(own.get(group, groups[group]), **{name: value})
@@ -120,7 +125,7 @@ def changed(record: R, **changes: Any) -> R:
 
 
 def _names(record: Any) -> set[str]:
-    return {one.name for one in fields(record)}
+    return {one.name for one in structs.fields(record)}
 
 
 def decided(now: Progress, facts: Situation, held: Held | None = None) -> Decision | None:

@@ -1,13 +1,12 @@
 """Whole flights of the step against an exact vehicle and an exact autopilot: the way of a landing."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from companion.core.reasons import Reason
 from companion.situation.phases import LANDING_PHASES, Phase
 from link.messages import Command, PadGeometry
+from link.records import replace
 from tests.companion.world import (
     CONFIG,
     DISARM,

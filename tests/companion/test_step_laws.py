@@ -1,7 +1,6 @@
 """What holds in every step: pure, finite, silent before a start, motors forced off only on the pad."""
 
 import pickle
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +13,7 @@ from companion.landing.memory import StepMemory
 from companion.situation.phases import Phase
 from companion.step import companion_step
 from link.messages import Command
+from link.records import replace
 from tests.companion.facts import changed
 from tests.companion.world import (
     CONFIG,

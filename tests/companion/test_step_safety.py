@@ -1,7 +1,6 @@
 """Who is in command and when a landing is broken off: whole flights of the step."""
 
 import math
-from dataclasses import replace
 
 import pytest
 
@@ -9,6 +8,7 @@ from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from companion.step import companion_step
 from link.messages import Command
+from link.records import replace
 from tests.companion.world import (
     CONFIG,
     DISARM,

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache
 from typing import cast
 
@@ -26,6 +26,7 @@ from link.frames.local_frame import LocalFrame, Projection
 from link.frames.rotations import quaternion_from_yaw
 from link.mavlink.dialect import mavlink
 from link.messages import Command, PadGeometry, Vector3
+from link.records import replace
 
 CONFIG = CompanionConfig()
 IMPATIENT = CONFIG.model_copy(

@@ -5,7 +5,7 @@ an operator does. Nothing is tried again, and a flight is over a moment after th
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 from companion.core.reasons import Reason
@@ -13,6 +13,7 @@ from companion.situation.phases import Phase
 from link.mavlink.dialect import mavlink
 from link.messages import Command
 from link.program.toml_config import merge, validate
+from link.records import replace
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import Scenario
 from scenarios.faults.flight import FaultFlight

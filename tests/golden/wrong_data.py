@@ -1,9 +1,8 @@
 """Vehicles that send what is not so, for flights that are to be broken off."""
 
-from dataclasses import replace
-
 from link.messages import FixVelocity
 from link.payloads import cdr
+from link.records import replace
 from scenarios.faults.flight import FaultFlight
 
 

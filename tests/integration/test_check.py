@@ -9,7 +9,7 @@ import pytest
 from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from tests.integration.programs import Programs
 
-pytestmark = [pytest.mark.wire, pytest.mark.alone]
+pytestmark = pytest.mark.wire
 
 AMISS_AT_10_M_S = {"MPC_Z_VEL_MAX_DN", "LNDMC_XY_VEL_MAX", "COM_RC_OVERRIDE"}
 

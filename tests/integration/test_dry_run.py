@@ -10,7 +10,7 @@ from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from tests.integration.observer import observer
 from tests.integration.programs import Programs, until
 
-pytestmark = [pytest.mark.wire, pytest.mark.alone]
+pytestmark = pytest.mark.wire
 
 ASKING = {mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAV_CMD_REQUEST_MESSAGE}
 """Without these it would learn nothing of the drone; they move nothing."""

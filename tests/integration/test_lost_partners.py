@@ -8,7 +8,7 @@ from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from tests.integration.observer import Observer, observer
 from tests.integration.programs import Programs
 
-pytestmark = [pytest.mark.wire, pytest.mark.alone]
+pytestmark = pytest.mark.wire
 
 # What a drone that sinks when the abort comes may still sink: it plans with at least half of MPC_ACC_UP_MAX, and its
 # attitude and rotors lag behind the plan.
@@ -41,6 +41,7 @@ def test_the_companion_outlives_a_simulator_killed_in_flight_and_flies_with_the_
         assert companion.runs
 
 
+@pytest.mark.alone
 def test_the_drone_climbs_away_when_the_vehicle_is_killed_in_the_chase() -> None:
     port, endpoint = free_udp_port(), free_tcp_endpoint()
     with Programs() as programs, observer(endpoint) as bystander:

@@ -59,7 +59,12 @@ def test_leaving_out_the_truth_changes_nothing_else() -> None:
 
 def test_nominal_sensors_publish_on_every_key_of_the_contract() -> None:
     publications = published(VehicleNode(load_scenario("straight_5+sensors=nominal"), 1, KEYS), 12.0)
-    kinds = {KEYS.imu: VehicleImu, KEYS.pad_pose: PadSighting, KEYS.fix: Fix, KEYS.fix_velocity: FixVelocity}
+    kinds: dict[str, type[cdr.Message]] = {
+        KEYS.imu: VehicleImu,
+        KEYS.pad_pose: PadSighting,
+        KEYS.fix: Fix,
+        KEYS.fix_velocity: FixVelocity,
+    }
     for key, kind in kinds.items():
         encodings = {publication.encoding for publication in on_key(publications, key)}
         assert encodings == {cdr.encoding_of(kind)}

@@ -1,10 +1,10 @@
 """Clients on several links of one simulated autopilot, in bytes only."""
 
 from collections import Counter
-from dataclasses import replace
 
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
+from link.records import replace
 from sim_autopilot.memory import AutopilotConfig
 from sim_autopilot.runtime.node import AutopilotNode
 from tests.sim_autopilot.pilot import START_NS, STILL_AIR

@@ -1,10 +1,11 @@
 """Flights of the simulated drone, as arrays that the tests of physics and control look at."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
+from link.records import replace
 from sim_autopilot.core.data import Array, Deck, Reference, Surface
 from sim_autopilot.plant.plant import PlantConfig, PlantMemory, fly, initial_plant
 

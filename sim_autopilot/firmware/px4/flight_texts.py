@@ -84,7 +84,8 @@ def _silence(heard_ns: tuple[int | None, int | None], times_ns: tuple[int, int],
     before_ns, after_ns = heard_ns
     if before_ns is None:
         return ""
-    was_lost, is_lost = ((time_ns - before_ns) * 1e-9 > limit_s for time_ns in times_ns)
+    was_ns, is_ns = times_ns
+    was_lost, is_lost = (was_ns - before_ns) * 1e-9 > limit_s, (is_ns - before_ns) * 1e-9 > limit_s
     if after_ns != before_ns:
         return _BACK if was_lost else ""
     return _LOST if is_lost and not was_lost else ""
@@ -112,8 +113,10 @@ def _mission(start: AutopilotMemory, memory: AutopilotMemory) -> str | None:
         return MISSION_BEGINS
     if begins and was is Mode.MISSION and not memory.mission.items:
         return MISSION_GONE
+    if Mode.MISSION not in {mode, was}:
+        return None
     finished, had = (each.mission.progress.stage is Stage.FINISHED for each in (memory, start))
-    if Mode.MISSION in {mode, was} and finished and not had:
+    if finished and not had:
         return MISSION_LANDED if memory.course.landing.landed else MISSION_LOITERS
     return None
 

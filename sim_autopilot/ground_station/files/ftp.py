@@ -3,10 +3,10 @@
 Source: https://mavlink.io/en/services/ftp.html; sessions, errors and ends as each firmware's own server has them.
 """
 
-from dataclasses import replace
 from errno import EEXIST, ENOENT
 
 from link.mavlink.dialect import Message
+from link.records import replace
 from sim_autopilot.ground_station.files.ftp_handlers import HANDLERS
 from sim_autopilot.ground_station.files.ftp_state import Case, Ftp, FtpRules, RefusedError
 from sim_autopilot.ground_station.files.ftp_wire import DATA_MAX, Error, Opcode, Question, Reply, reply_message

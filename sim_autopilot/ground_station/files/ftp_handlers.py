@@ -1,10 +1,10 @@
 """What each question of MAVLink FTP does: the server after it, and the data that answer it, None where a burst does."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from types import MappingProxyType
 from zlib import crc32
 
+from link.records import replace
 from sim_autopilot.ground_station.files.ftp_state import Burst, Case, Ftp, Opened, RefusedError
 from sim_autopilot.ground_station.files.ftp_wire import DATA_MAX, Error, Opcode
 from sim_autopilot.ground_station.files.store import (

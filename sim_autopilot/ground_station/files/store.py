@@ -4,9 +4,11 @@ Paths are plain names joined by slashes, without one at either end; the root is 
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from errno import EACCES, EEXIST, EISDIR, ENOENT, ENOSPC, ENOTDIR, ENOTEMPTY
 from types import MappingProxyType
+
+from link.records import replace
 
 Shown = Mapping[str, Callable[[], bytes]]
 """The autopilot's own files by their paths, made when they are read."""

@@ -6,8 +6,9 @@ ArduPilot's logs. Only position, velocity and attitude are in it: what the autop
 
 import struct
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import degrees
+
+from msgspec import Struct
 
 _ULOG_MAGIC = b"ULog\x01\x12\x35\x01"
 _ULOG_ROW = struct.Struct("<HQ7f")
@@ -20,8 +21,7 @@ _POSITION_BODY = struct.Struct("<Qiiff")
 _ATTITUDE_BODY = struct.Struct("<Qfff")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Row:
+class Row(Struct, frozen=True, kw_only=True):
     """One moment of a flight: ns since boot, NED about the origin, roll, pitch and yaw, and where on the globe."""
 
     boot_ns: int
@@ -82,8 +82,7 @@ def _format(kind: int, size: int, name: bytes, form: bytes, columns: bytes) -> b
     return _dataflash_message(_FMT, _FMT_BODY.pack(kind, size + 3, name, form, columns))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LogRules:
+class LogRules(Struct, frozen=True, kw_only=True):
     """In what the firmwares' logs differ.
 
     Attributes:

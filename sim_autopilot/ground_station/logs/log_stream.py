@@ -5,9 +5,10 @@ https://docs.px4.io/main/en/dev_log/logging.html#log-streaming.
 """
 
 import struct
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from link.mavlink.dialect import Message, mavlink
+from link.records import replace
 
 _PIECE = 249
 _ULOG_FILE_HEAD = 16

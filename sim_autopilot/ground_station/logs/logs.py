@@ -3,11 +3,13 @@
 Source: MAVLink log messages, as the firmwares' own log handlers answer them.
 """
 
-from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from functools import partial
 
+from msgspec import Struct
+
 from link.mavlink.dialect import Message, mavlink
+from link.records import replace
 from sim_autopilot.ground_station.files.store import Shown
 from sim_autopilot.ground_station.logs.flight_log import LogRules, Row
 
@@ -22,16 +24,14 @@ _CHUNKS_MAX = 500
 """Bytes written together, and how often: a log grows to 4 MB at most, hours of flight."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Log:
+class Log(Struct, frozen=True, kw_only=True):
     """A finished log, and when it began, in whole seconds of UTC."""
 
     began_s: int
     data: bytes
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Sending:
+class Sending(Struct, frozen=True, kw_only=True):
     """A download under way: on which link, which log, from where to where."""
 
     link: int
@@ -40,8 +40,7 @@ class Sending:
     end: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Logs:
+class Logs(Struct, frozen=True, kw_only=True):
     """What the service remembers.
 
     Attributes:

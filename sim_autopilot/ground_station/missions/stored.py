@@ -7,11 +7,11 @@ Source: ArduPilot's AP_Mission and AC_PolyFence_loader.
 """
 
 from collections.abc import Mapping
-from dataclasses import replace
 from math import isfinite, nan
 from types import MappingProxyType
 
 from link.mavlink.dialect import mavlink
+from link.records import replace
 from sim_autopilot.missions.items import FENCE, MISSION, PLACED, Item
 
 _CORNERS_MIN = 3

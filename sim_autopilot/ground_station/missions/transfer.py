@@ -4,10 +4,10 @@ Source: https://mavlink.io/en/services/mission.html; what is refused, retried an
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from types import MappingProxyType
 
 from link.mavlink.dialect import Message, mavlink
+from link.records import replace
 from sim_autopilot.ground_station.missions.library import (
     Arrival,
     Library,

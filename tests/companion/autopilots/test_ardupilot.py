@@ -1,7 +1,6 @@
 """The ArduCopter driver: what it asks for, in which order, and that nothing disturbs its own take-off."""
 
 import math
-from dataclasses import replace
 from itertools import chain
 
 import pytest
@@ -13,6 +12,7 @@ from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, Autopilo
 from companion.autopilots.limits import acceleration_of_tilt_m_s2
 from companion.config.companion import CompanionConfig
 from link.mavlink.dialect import mavlink
+from link.records import replace
 from tests.companion.world import START_NS, STEP_NS
 
 DRIVER = ArduPilotDriver()

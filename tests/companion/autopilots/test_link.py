@@ -1,7 +1,6 @@
 """The conversation with the autopilot: no command is ever late, and a restart begins anew."""
 
 import math
-from dataclasses import replace
 
 import pytest
 
@@ -11,6 +10,7 @@ from companion.config.companion import CompanionConfig
 from companion.core.data import Setpoint
 from link.mavlink.dialect import mavlink
 from link.mavlink.session import MavlinkSession
+from link.records import replace
 from tests.companion.peer import FakePx4
 from tests.link.mavlink.fake_autopilot import MS, START_NS
 

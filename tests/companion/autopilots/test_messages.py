@@ -1,7 +1,6 @@
 """SET_POSITION_TARGET_LOCAL_NED: frame, masks and refusal of what is not a number."""
 
 import math
-from dataclasses import replace
 
 import pytest
 from hypothesis import given
@@ -11,6 +10,7 @@ from companion.autopilots.messages import local_ned_setpoint
 from companion.core.data import Setpoint
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
+from link.records import replace
 
 SETPOINT = Setpoint(
     t_ns=0,

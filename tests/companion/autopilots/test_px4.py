@@ -1,7 +1,6 @@
 """The PX4 driver: what it asks for, when, and how often."""
 
 import math
-from dataclasses import replace
 from itertools import chain
 
 import pytest
@@ -12,6 +11,7 @@ from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, Autopilo
 from companion.autopilots.px4 import Px4Driver
 from companion.config.companion import CompanionConfig
 from link.mavlink.dialect import mavlink
+from link.records import replace
 from tests.companion.world import START_NS, STEP_NS
 
 DRIVER = Px4Driver()

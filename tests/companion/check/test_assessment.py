@@ -1,7 +1,6 @@
 """The lines of the check: everything in order passes, and each thing amiss is told by its own line."""
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -14,6 +13,7 @@ from companion.config.companion import CompanionConfig
 from link.errors import UserError
 from link.mavlink.dialect import mavlink
 from link.program.toml_config import validate
+from link.records import replace
 from tests.companion.check.test_rules import ARDUCOPTER_46, PX4_DEFAULTS
 
 GOOD = AutopilotFacts(

@@ -1,7 +1,5 @@
 """Heights that cannot be: a road far off the ground beside it, a roof as high as the hover, less room than told."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -16,6 +14,7 @@ from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from companion.vehicle.pad import PadPath
 from link.messages import Command
+from link.records import replace
 from tests.companion.facts import CONFIG, GEAR_M, PAD_ENU_M, changed, pad_at, situation
 from tests.companion.world import PAD, PAD_HEIGHT_M, Flight, KnownVehicle
 

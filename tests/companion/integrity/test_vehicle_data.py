@@ -4,7 +4,6 @@ A heading that the course contradicts places no pad; noise, slip and honest reve
 """
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -23,6 +22,7 @@ from companion.situation.phases import Phase
 from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.pad import PadPath
 from link.messages import PadGeometry
+from link.records import replace
 from tests.companion.facts import CONFIG, NOW_NS, changed, pad_at, situation
 from tests.companion.world import PAD_HEIGHT_M, Flight, KnownVehicle
 

@@ -1,7 +1,6 @@
 """Answers to operators over every pair of command and phase."""
 
 import itertools
-from dataclasses import replace
 
 import pytest
 
@@ -10,6 +9,7 @@ from companion.landing.commands import answer
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
 from companion.situation.situation import Situation
 from link.messages import Command, CommandReply
+from link.records import replace
 from tests.companion.facts import CONFIG, drone_at, pad_at, situation
 from tests.companion.world import PAD_HEIGHT_M, SET_MODE, Flight, KnownVehicle, own_state
 

@@ -1,6 +1,5 @@
 """The signs of a contact: what agrees on the pad, and that nothing faulty alone cuts the motors in the air."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from companion.landing.contact import Verdict, may_force_motors_off, signs_of, s
 from companion.situation.situation import Situation
 from companion.vehicle.pad import over_pad_radius_m
 from link.messages import Vector3
+from link.records import replace
 from tests.companion.facts import CONFIG, GEAR_M, changed, drone_at, pad_at, reference_at, situation
 
 TOUCHDOWN, DESCENT = CONFIG.touchdown, CONFIG.descent

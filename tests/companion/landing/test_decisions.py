@@ -1,7 +1,6 @@
 """The tests of the phases: each fires after its hold time and not before, and in the order of their weight."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,6 +16,7 @@ from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
 from companion.vehicle.pad import NOT_DESCRIBED, cone_radius_m
 from link.messages import Vector3
+from link.records import replace
 from tests.companion.facts import (
     CONFIG,
     LONG_HEARD,

@@ -1,7 +1,5 @@
 """An abort just above the roof turns the virtual model at once; one that has room keeps it."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -11,6 +9,7 @@ from companion.landing.step_data import StepInputs
 from companion.landing.transitions import take_events
 from companion.situation.phases import Phase
 from link.messages import Command
+from link.records import replace
 from tests.companion.facts import FLIES, NOW_NS, changed, drone_at, pad_at, reference_at, situation
 
 CONFIG = CompanionConfig()

@@ -1,7 +1,5 @@
 """What cannot be landed on is refused with its numbers, once, and not chased."""
 
-from dataclasses import replace
-
 import pytest
 
 from companion.config.companion import CompanionConfig
@@ -9,6 +7,7 @@ from companion.landing.aborts import ABORTS
 from companion.landing.feasibility import OBSTACLES
 from companion.situation.phases import Phase
 from link.messages import Command
+from link.records import replace
 from tests.companion.world import CONFIG, PAD_HEIGHT_M, START_NS, Flight, KnownVehicle
 
 FAST = KnownVehicle((-60.0, 0.4, PAD_HEIGHT_M), (14.2, 0.0, 0.0))

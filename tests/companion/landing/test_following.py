@@ -1,6 +1,5 @@
 """The virtual model and an autopilot in a closed loop: a drone that is off its setpoints is brought over the pad."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from companion.landing.targets import chase_floor_m
 from companion.landing.virtual_model import extrapolate
 from companion.situation.phases import Phase
 from link.messages import Vector3
+from link.records import replace
 from tests.companion.world import CONFIG, GEAR_M, PAD_HEIGHT_M, STEP_NS, Flight, KnownVehicle, own_state
 
 SPEED_M_S = 5.0

@@ -1,7 +1,5 @@
 """Over a link with jitter a landing drone is asked for velocities and a height: a late place would lean it."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -14,6 +12,7 @@ from companion.landing.step_data import LinkDelay, StepInputs
 from companion.landing.virtual_model import Tracking
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
+from link.records import replace
 from tests.companion.facts import CONFIG, NOW_NS, PAD_ENU_M, changed
 
 LIMITS = CONFIG.limits.flight_limits()

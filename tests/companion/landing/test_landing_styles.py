@@ -1,7 +1,5 @@
 """The report's ways: straight at the pad's centre, without estimating the lag, at the heading of the start."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -10,6 +8,7 @@ from companion.config.landing import LandingStyle
 from companion.landing.step_data import StepOutputs
 from companion.situation.phases import Phase
 from link.frames.rotations import yaw_of
+from link.records import replace
 from tests.companion.world import CONFIG, PAD_HEIGHT_M, UTC_AHEAD_NS, Flight
 
 DIRECT = CONFIG.model_copy(update={"landing": LandingStyle.DIRECT})

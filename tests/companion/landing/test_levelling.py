@@ -1,7 +1,6 @@
 """What the tilt leaves of the acceleration, and a drone that is levelled so as not to touch down with one foot."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,6 +16,7 @@ from companion.planning.guidance import PlanRequest, ReferenceState, Target
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation, drone_now
 from companion.vehicle.pad import PadPath
+from link.records import replace
 from tests.companion.facts import NOW_NS, changed, drone_at, pad_at, situation
 
 CONFIG = CompanionConfig()

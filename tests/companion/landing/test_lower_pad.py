@@ -1,12 +1,13 @@
 """A pad that is lower than the vehicle says: the descent ends, and says why."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import pytest
 
 from companion.core.reasons import Reason
 from companion.landing.step_data import StepOutputs
 from companion.situation.phases import Phase
+from link.records import replace
 from tests.companion.world import CONFIG, GEAR_M, Flight
 
 DESCENT_LIMIT_S = 15.0  # from the alignment's height down, and the hold of the test

@@ -1,7 +1,6 @@
 """What an outage breaks off before the drone is near goes on after it: it costs no retry, and gets no more time."""
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import pytest
 
@@ -9,6 +8,7 @@ from companion.core.reasons import Cause, Reason
 from companion.landing.entries import update_held
 from companion.landing.memory import Held
 from companion.situation.phases import Event, Phase
+from link.records import replace
 from tests.companion.facts import (
     CONFIG,
     LONG_HEARD,

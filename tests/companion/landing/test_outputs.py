@@ -1,7 +1,5 @@
 """The landing's status: every field from the facts, None where nothing is known, and always fit to be sent."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -12,6 +10,7 @@ from companion.landing.outputs import landing_status
 from companion.situation.phases import Phase
 from link.messages import LandingStatus
 from link.payloads import json_messages as json_payloads
+from link.records import replace
 from tests.companion.facts import CONFIG, changed, drone_at, pad_at, situation
 
 MEMORY = changed(StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED))

@@ -1,7 +1,6 @@
 """When a vehicle that drives past is chased, and which vehicle stands."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,6 +12,7 @@ from companion.core.reasons import Reason
 from companion.landing.entries import update_held, vehicle_passes
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import vehicle_stands
+from link.records import replace
 from tests.companion.facts import CONFIG, TICK_NS, changed, drone_at, first_decision, pad_at, situation
 
 HIGH_M = CONFIG.descent.align_height_m

@@ -1,7 +1,5 @@
 """A range finder that has come too near to see: what it saw last, carried on by the drone's own descent."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -13,6 +11,7 @@ from companion.core.data import RangeReading
 from companion.situation.situation import Drone, range_carried_m
 from link.mavlink.clock_map import ClockMap, RoundTrip, with_round_trip, with_system_time
 from link.mavlink.dialect import Message, mavlink
+from link.records import replace
 from tests.companion.facts import NOW_NS
 
 BOOT_MS = 50_000

@@ -1,12 +1,11 @@
 """A drone that the pad has stopped at once, as hard ground does, while the pad drives on: whole steps."""
 
-from dataclasses import replace
-
 import pytest
 
 from companion.core.data import RangeReading
 from companion.situation.phases import Phase
 from link.messages import Vector3
+from link.records import replace
 from tests.companion.facts import changed
 from tests.companion.world import CONFIG, DISARM, GEAR_M, STEP_NS, Flight, reached
 

@@ -1,7 +1,6 @@
 """Just above the pad a drone that leans harder than steady flight needs waits until that is over."""
 
 import math
-from dataclasses import replace
 
 import pytest
 
@@ -11,6 +10,7 @@ from companion.landing.memory import StepMemory
 from companion.landing.sway import Sway, is_swaying, update_sway
 from companion.landing.waiting import waits_at_m, waits_for_calm
 from companion.situation.phases import Phase
+from link.records import replace
 from tests.companion.facts import NOW_NS, TICK_NS, changed, pad_at, situation
 
 CONFIG = CompanionConfig()

@@ -1,7 +1,5 @@
 """The aims of the phases: hovering, following the pad, and the way down to it."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -10,6 +8,7 @@ from companion.landing.targets import HORIZON_OFFSETS_S, hover_aim, pad_aim, sto
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
 from companion.vehicle.pad import PadPath
+from link.records import replace
 
 CONFIG = CompanionConfig()
 DESCENT = CONFIG.descent

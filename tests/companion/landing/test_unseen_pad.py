@@ -1,7 +1,5 @@
 """Between a vehicle and a drone without corrections lie metres: the pad is landed on only where it was just seen."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -16,6 +14,7 @@ from companion.landing.targets import is_unseen, pad_aim
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
 from companion.vehicle.pad import PadPath, pad_path
+from link.records import replace
 from scenarios.config import PatternConfig
 from tests.companion.facts import GEAR_M, TICK_NS, decided, later, pad_at, progress, reference_at, situation
 from tests.companion.vehicle.drives import DEGRADED, NOMINAL, Sensors, circle

@@ -1,7 +1,6 @@
 """The virtual model: the drone beside it, how far it may sink, and the setpoint that asks for it."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -23,6 +22,7 @@ from companion.landing.virtual_model import (
 )
 from companion.planning.guidance import ReferenceState, Trajectory
 from link.messages import Quaternion
+from link.records import replace
 from tests.companion.world import response_of
 
 STEP_NS = 20_000_000

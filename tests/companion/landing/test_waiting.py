@@ -1,7 +1,5 @@
 """A descent says what it waits for and its time stands still meanwhile; neither waiting nor straying is without end."""
 
-from dataclasses import replace
-
 import pytest
 
 from companion.core.reasons import Cause, Reason
@@ -13,6 +11,7 @@ from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
 from companion.vehicle.driving import Driving, Surprise
 from link.messages import Vector3
+from link.records import replace
 from tests.companion.facts import (
     CONFIG,
     GEAR_M,

@@ -1,10 +1,9 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from companion.planning.brake import brake
 from companion.planning.guidance import PlanResult, PlanStatus
+from link.records import replace
 from tests.companion.planning.cases import LIMITS, request_of, state_at, straight, target_of
 
 STATE = state_at((3.0, -2.0, 6.0), (9.0, -4.0, -1.2), (2.0, 1.0, -1.0))

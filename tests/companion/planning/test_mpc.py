@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -7,6 +5,7 @@ from companion.config.planning import MpcConfig, SolverKind
 from companion.core.data import Array
 from companion.planning.guidance import PlanResult, PlanStatus, ReferenceState, Target
 from companion.planning.mpc import Mpc
+from link.records import replace
 from tests.companion.planning.cases import (
     Motion,
     caught_s,
@@ -93,9 +92,11 @@ def test_a_plan_depends_on_its_arguments_only() -> None:
 
 def test_a_mirrored_scenario_is_planned_mirrored() -> None:
     mirror = np.array([1.0, -1.0, 1.0])
-    state = replace(START, **{name: getattr(START, name) * mirror for name in ReferenceState.__slots__})
+    state = replace(START, **{name: getattr(START, name) * mirror for name in ReferenceState.__struct_fields__})
     target = target_of(MEETING)
-    mirrored = Target(offset_s=target.offset_s, **{n: getattr(target, n) * mirror for n in Target.__slots__[1:]})
+    mirrored = Target(
+        offset_s=target.offset_s, **{n: getattr(target, n) * mirror for n in Target.__struct_fields__[1:]}
+    )
     result = MPC.plan(None, request_of(state, mirrored))[1]
     np.testing.assert_allclose(stacked(result), stacked(plan(START, MEETING)) * mirror, atol=1e-6)
 
@@ -103,9 +104,9 @@ def test_a_mirrored_scenario_is_planned_mirrored() -> None:
 def test_a_turned_scenario_is_planned_turned() -> None:
     c, s = np.cos(0.7), np.sin(0.7)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    state = replace(START, **{name: turn @ getattr(START, name) for name in ReferenceState.__slots__})
+    state = replace(START, **{name: turn @ getattr(START, name) for name in ReferenceState.__struct_fields__})
     target = target_of(MEETING)
-    turned = Target(offset_s=target.offset_s, **{n: getattr(target, n) @ turn.T for n in Target.__slots__[1:]})
+    turned = Target(offset_s=target.offset_s, **{n: getattr(target, n) @ turn.T for n in Target.__struct_fields__[1:]})
     result = MPC.plan(None, request_of(state, turned))[1]
     np.testing.assert_allclose(stacked(result), stacked(plan(START, MEETING)) @ turn.T, atol=1e-6)
 
@@ -128,7 +129,7 @@ def test_the_trajectory_starts_at_the_state() -> None:
     np.testing.assert_allclose(path.velocity_enu_m_s[0], START.velocity_enu_m_s, atol=1e-9)
 
 
-@pytest.mark.parametrize("field", Target.__slots__[1:])
+@pytest.mark.parametrize("field", Target.__struct_fields__[1:])
 def test_a_target_with_nan_is_answered_by_braking(field: str) -> None:
     target = target_of(MEETING)
     broken = getattr(target, field).copy()

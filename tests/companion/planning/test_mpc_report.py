@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -7,6 +5,7 @@ from companion.config.planning import ReportMpcConfig, ReportReading
 from companion.core.data import Array
 from companion.planning.guidance import PlanStatus
 from companion.planning.mpc_report import NUMBERS, STEP_S, ReportMpc, euler_predictions
+from link.records import replace
 from tests.companion.planning.cases import fly, request_of, state_at, straight, target_of
 
 START = state_at((0.0, 0.0, 5.0))

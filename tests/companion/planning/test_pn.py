@@ -1,11 +1,10 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from companion.config.planning import PnConfig
 from companion.planning.guidance import PlanStatus
 from companion.planning.pn import ProportionalNavigation, advance
+from link.records import replace
 from tests.companion.planning.cases import (
     LIMITS,
     caught_s,

@@ -1,6 +1,5 @@
 """The compiled calls of a plan: their Python, what they are given, and what is not a plan."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from companion.planning.mpc import Mpc
 from companion.planning.programmes import bound_minor, plan_of, pose, total_of
 from companion.planning.requests import limits_of
 from companion.planning.resample import make_resampler
+from link.records import replace
 from tests.companion.planning.cases import LIMITS, circle, request_of, state_at, target_of
 
 MPC = Mpc(MpcConfig())
@@ -91,7 +91,7 @@ def test_kernels_within_are_their_python() -> None:
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
-@pytest.mark.parametrize("field", [*Target.__slots__, "floor_enu_m"])
+@pytest.mark.parametrize("field", [*Target.__struct_fields__, "floor_enu_m"])
 def test_what_is_not_finite_is_answered_by_braking(field: str, bad: float) -> None:
     broken = getattr(REQUEST if field == "floor_enu_m" else REQUEST.target, field).copy()
     broken.flat[-1] = bad
@@ -104,7 +104,7 @@ def test_what_is_not_finite_is_answered_by_braking(field: str, bad: float) -> No
     assert np.isfinite(result.next_state.position_enu_m).all()
 
 
-@pytest.mark.parametrize("field", Target.__slots__[1:])
+@pytest.mark.parametrize("field", Target.__struct_fields__[1:])
 def test_rows_that_are_not_one_for_each_offset_are_refused(field: str) -> None:
     short = getattr(REQUEST.target, field)[:-1]
     with pytest.raises(ValueError, match="offsets has rows of shape"):
@@ -117,7 +117,7 @@ def test_a_floor_that_is_not_one_for_each_offset_is_refused(rows: int) -> None:
         planned(replace(REQUEST, floor_enu_m=np.zeros(rows)))
 
 
-@pytest.mark.parametrize("limit", sorted(set(FlightLimits.__slots__) - {"tilt_acceleration_m_s2"}))
+@pytest.mark.parametrize("limit", sorted(set(FlightLimits.__struct_fields__) - {"tilt_acceleration_m_s2"}))
 @pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf])
 def test_limits_that_are_no_positive_numbers_are_refused(limit: str, value: float) -> None:
     with pytest.raises(ValueError, match="limits must be positive"):
@@ -133,7 +133,7 @@ def test_limits_that_are_whole_numbers_compile_nothing() -> None:
 
 def test_arrays_laid_out_otherwise_give_the_same_plan_and_compile_nothing() -> None:
     first, known = planned(REQUEST), len(pose.signatures)
-    strided = {name: np.asfortranarray(getattr(REQUEST.target, name)) for name in Target.__slots__[1:]}
+    strided = {name: np.asfortranarray(getattr(REQUEST.target, name)) for name in Target.__struct_fields__[1:]}
     floor = np.repeat(REQUEST.floor_enu_m, 2)[::2]
     second = planned(replace(REQUEST, target=replace(REQUEST.target, **strided), floor_enu_m=floor))
     np.testing.assert_array_equal(first.trajectory.position_enu_m, second.trajectory.position_enu_m)

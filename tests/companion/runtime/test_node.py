@@ -1,7 +1,6 @@
 """The node in bytes: what it sends to a PX4, and what no peer can make it do."""
 
 import math
-from dataclasses import replace
 from typing import cast
 
 import numpy as np
@@ -17,6 +16,7 @@ from link.errors import UserError
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Command, Fix, FixVelocity, LandingStatus, PadGeometry, PadSighting, Plan, VehicleImu
 from link.payloads import cdr, json_messages
+from link.records import replace
 from tests.companion.facts import changed
 from tests.companion.peer import KEYS, OFFBOARD, POSITION, FakePx4, Setup
 from tests.link.mavlink.fake_autopilot import S

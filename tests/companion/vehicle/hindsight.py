@@ -1,6 +1,5 @@
 """Drives as an estimator looks back at them, for the tests of what has been noticed of a vehicle."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,6 +8,7 @@ from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.core.data import VehicleEstimate
 from companion.vehicle.driving import Surprise, update_surprise
+from link.records import replace
 from tests.companion.vehicle.drives import (
     DEGRADED,
     Drive,

@@ -4,7 +4,7 @@ A vehicle that has done what its late data did not let expect is landed on while
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import pytest
@@ -28,6 +28,7 @@ from companion.vehicle.driving import (
 )
 from companion.vehicle.estimator import EstimatorMemory
 from link.messages import Vector3
+from link.records import replace
 from tests.companion.facts import NOW_NS, changed, drone_at, pad_at, situation
 from tests.companion.vehicle.drives import (
     NOMINAL,

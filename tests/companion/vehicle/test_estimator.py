@@ -1,4 +1,4 @@
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, cast
 
 import numpy as np
@@ -9,6 +9,7 @@ from companion.core.data import Measurement, Quantity
 from companion.vehicle.estimator import BufferedEstimator, DelayBuffer, fuse
 from companion.vehicle.filter_step import FilterModel, Gaussian, nis_threshold
 from companion.vehicle.lkf import LkfModel, WhiteJerkNoise
+from link.records import replace
 from tests.companion.vehicle.rides import now_ns
 
 MODEL = LkfModel(noise=WhiteJerkNoise(config=LkfConfig()))

@@ -2,7 +2,6 @@
 
 import math
 import random
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +9,7 @@ import pytest
 from companion.config.estimation import EstimatorKind
 from companion.core.data import Measurement, Quantity
 from companion.vehicle.estimator import Estimator
+from link.records import replace
 from tests.companion.vehicle.drives import (
     NOMINAL,
     brake,

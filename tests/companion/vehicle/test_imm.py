@@ -1,5 +1,4 @@
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +8,7 @@ from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig
 from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle.factory import make_estimator
+from link.records import replace
 from tests.companion.vehicle.drives import (
     ANTENNA_TO_PAD_M,
     DEGRADED,

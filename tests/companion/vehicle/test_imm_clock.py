@@ -1,13 +1,13 @@
 """The vehicle's clock is off, the drone errs about its own place: the estimate learns the one and admits both."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from companion.config.estimation import EstimatorKind
 from companion.core.data import Array, Measurement, Quantity, VehicleEstimate
+from link.records import replace
 from tests.companion.vehicle.drives import DEGRADED, NOMINAL, Drive, Sensors, circle, straight
 from tests.companion.vehicle.rides import arrivals, estimator, now_ns
 

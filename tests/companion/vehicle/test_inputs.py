@@ -2,7 +2,6 @@
 
 import math
 import sys
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -27,6 +26,7 @@ from link.frames.rotations import quaternion_from_roll_pitch_yaw
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, Vector3, VehicleImu
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
+from link.records import replace
 from link.zenoh.keys import Keys
 from tests.companion.world import FRAME, ORIGIN, START_NS, own_state
 

@@ -1,7 +1,6 @@
 """The pad from the antenna: the lever arm turns with the heading, and its motion is that of a rigid body."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 from hypothesis import given, settings
@@ -11,6 +10,7 @@ from companion.core.data import Array, Forecast
 from companion.vehicle.pad import HEADING_UNKNOWN, NOT_DESCRIBED, pad_path
 from link.frames.rotations import quaternion_from_yaw, rotate
 from link.messages import PadGeometry, Vector3
+from link.records import replace
 from tests.companion.world import START_NS
 
 OFFSETS_S = np.arange(0.0, 2.01, 0.05)

@@ -1,7 +1,5 @@
 """A pad's own size decides what is touched of it: smaller pads are kept to more narrowly, too small ones refused."""
 
-from dataclasses import replace
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -13,6 +11,7 @@ from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from companion.vehicle.pad import cone_radius_at_pad_m, cone_radius_m, over_pad_radius_m, unseen_std_max_m
 from link.messages import Command
+from link.records import replace
 from tests.companion.facts import CONFIG, pad_at, reference_at, situation
 from tests.companion.world import PAD, Flight
 

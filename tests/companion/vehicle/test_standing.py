@@ -1,7 +1,6 @@
 """The heading of a vehicle that stands, reverses or turns on the spot; without a heading sensor, that of a car."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +8,7 @@ import pytest
 from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig
 from companion.core.data import Array
 from link.frames.rotations import wrap_angle
+from link.records import replace
 from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, NOMINAL, Drive, drive, pad_centre
 from tests.companion.vehicle.rides import Ride, estimator, ride
 

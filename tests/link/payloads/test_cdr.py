@@ -1,6 +1,5 @@
 """The CDR payloads against an independent CDR library, in both directions, and against bytes that are none."""
 
-from dataclasses import replace
 from math import degrees, inf, nan, pi, radians
 from typing import Any
 
@@ -22,6 +21,7 @@ from link.messages import (
 )
 from link.payloads.cdr import ROS_TYPES, Message, PayloadError, decode, encode, encoding_of
 from link.program.clock import ClockTick
+from link.records import replace
 from tests.link import ros_definitions as ros
 
 T_NS = 1_763_708_400_123_456_789

@@ -210,7 +210,6 @@ def test_query_whose_handler_refuses_has_no_answers_and_others_go_on(
 
 
 @pytest.mark.wire
-@pytest.mark.alone
 def test_the_one_to_connect_may_start_first(endpoint: str) -> None:
     with connector(endpoint) as receiver:
         inbox = receiver.subscribe("ns/late")
@@ -220,7 +219,6 @@ def test_the_one_to_connect_may_start_first(endpoint: str) -> None:
 
 
 @pytest.mark.wire
-@pytest.mark.alone
 def test_samples_flow_again_after_a_restart(endpoint: str) -> None:
     with connector(endpoint) as receiver:
         inbox = receiver.subscribe("ns/restart")
@@ -304,7 +302,6 @@ def test_a_listen_address_of_another_computer_is_the_users_mistake() -> None:
 
 
 @pytest.mark.wire
-@pytest.mark.alone
 def test_a_client_without_router_gives_up(endpoint: str) -> None:
     with pytest.raises(UserError, match=f"--connect {endpoint}: no router answers"):
         open_session(ZenohOptions(mode="client", connect=(endpoint,)))

@@ -15,9 +15,10 @@ import pytest
 
 from companion.situation.phases import Phase
 from link.errors import UserError
-from scenarios.campaigns.campaign import Where, fly_campaign, make_plan
-from scenarios.campaigns.folder import Plan, create_folder, open_journal, read_plan
+from scenarios.campaigns.campaign import Where, fly_campaign
+from scenarios.campaigns.folder import create_folder, open_journal, read_plan
 from scenarios.campaigns.landing_task import Flown
+from scenarios.campaigns.plan import Plan, make_plan
 from tests.scenarios.campaigns.short import failing_cell, journal_of, scenarios, short_cell
 
 pytestmark = pytest.mark.slow

@@ -12,9 +12,10 @@ from pathlib import Path
 import pytest
 
 from link.errors import UserError
-from scenarios.campaigns.campaign import Where, fly_campaign, make_plan
-from scenarios.campaigns.folder import Plan, create_folder
+from scenarios.campaigns.campaign import Where, fly_campaign
+from scenarios.campaigns.folder import create_folder
 from scenarios.campaigns.landing_task import Flights, Flown, Task
+from scenarios.campaigns.plan import Plan, make_plan
 from scenarios.processes.dask_workers import DaskWorkers
 from scenarios.processes.pool import run_tasks
 from tests.integration.programs import Lines
@@ -123,7 +124,7 @@ def test_dask_worker_killed_in_the_middle_loses_nothing(local: bytes, tmp_path: 
 
 def test_dask_worker_with_other_sources_is_refused(cluster: str, tmp_path: Path) -> None:
     plan = plan_of(tmp_path)
-    flights = Flights(scenarios=plan.scenarios, sources="0123456789ab")
+    flights = Flights(cells=plan.flown, sources="0123456789ab")
     workers: DaskWorkers[Task, Flown] = DaskWorkers(cluster, lambda _: flights)
     with pytest.raises(UserError, match="other sources"):
         list(run_tasks(workers, plan.tasks(), lost=lambda task, why: pytest.fail(f"{task}: {why}")))

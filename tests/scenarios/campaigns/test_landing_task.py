@@ -1,7 +1,6 @@
 """A landing as a task; the flights themselves are tested with lockstep."""
 
 import math
-from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -9,6 +8,7 @@ import pytest
 
 from companion.situation.phases import Phase
 from link.errors import UserError
+from link.records import replace
 from scenarios.campaigns import landing_task
 from scenarios.campaigns.landing_task import Flights, Task, row_of, wave_offs
 from scenarios.catalogue.catalogue import load_scenario
@@ -33,7 +33,7 @@ TABLE: MappingProxyType[str, Any] = MappingProxyType(
         ],
     }
 )
-FLIGHTS = Flights(scenarios={"straight_5": load_scenario("straight_5")}, sources=sources())
+FLIGHTS = Flights(cells={"straight_5": load_scenario("straight_5")}, sources=sources())
 
 
 def values(*phases: Phase) -> list[str]:
@@ -91,8 +91,8 @@ def test_worker_with_other_sources_refuses() -> None:
 
 
 def test_job_of_one_cell_holds_no_other() -> None:
-    both = replace(FLIGHTS, scenarios={**FLIGHTS.scenarios, "circle_5": load_scenario("circle_5")})
-    assert both.only("circle_5").scenarios.keys() == {"circle_5"}
+    both = replace(FLIGHTS, cells={**FLIGHTS.cells, "circle_5": load_scenario("circle_5")})
+    assert both.only("circle_5").cells.keys() == {"circle_5"}
 
 
 def test_versions_name_the_numerics() -> None:

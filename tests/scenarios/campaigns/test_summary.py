@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scenarios.campaigns.landing_task import Row, Task, failed
+from scenarios.campaigns.landing_task import Row, Task, failed_row
 from scenarios.campaigns.summary import MEASURES, summarize
 from scenarios.campaigns.tables import print_summary
 from scenarios.scoring.score import Tier
@@ -90,7 +90,7 @@ def test_summary_without_contacts_has_no_measures() -> None:
 
 
 def test_error_counts_as_a_landing_that_failed() -> None:
-    rows = [row(1), failed(Task(cell="straight_5", seed=2), "px4", "ValueError: wrong")]
+    rows = [row(1), failed_row(Task(cell="straight_5", seed=2), {"firmware": "px4"}, "ValueError: wrong")]
     found = cell("straight_5", rows)
     assert (found["seeds"], found["errors"], sum(found["tiers"].values())) == (2, 1, 1)
     assert found["s1_or_better"]["share"] == 0.5

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.campaigns.campaign import make_plan
 from scenarios.campaigns.folder import create_folder, open_journal, read_landings
 from scenarios.campaigns.landing_task import Flown, Row
+from scenarios.campaigns.plan import make_plan
 from scenarios.campaigns.summary import MEASURES
 from tests.scenarios.campaigns.short import scenarios, short_cell
 

@@ -1,9 +1,10 @@
 """Truth of simple landings and flights, made by formula."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from link.frames.rotations import conjugate, quaternion_from_roll_pitch_yaw, rotate
 from link.messages import BodyTruth, RotorTruth, Vector3
+from link.records import replace
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.scoring.score import Score, score
 from scenarios.scoring.touchdown import ScoreRules, rules_of

@@ -1,7 +1,6 @@
 """The estimate against the truth: the frame it is compared in, and what NEES and NIS of a fair filter are."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +10,7 @@ from companion.core.data import VehicleEstimate
 from link.frames.geodesy import Datum, geodetic_from_enu
 from link.frames.local_frame import LocalFrame, Projection
 from link.frames.rotations import quaternion_from_yaw
+from link.records import replace
 from scenarios.campaigns.intervals import mean_band
 from scenarios.scoring.accuracy import EstimateError, Nis, Truth, accuracy_table, antenna_truth, estimate_error
 from scenarios.simulation.vehicle import VehicleState

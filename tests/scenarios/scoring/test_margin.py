@@ -1,5 +1,4 @@
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -7,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from link.messages import BodyTruth, Vector3
+from link.records import replace
 from scenarios.scoring.flight_faults import flight_of
 from scenarios.scoring.margin import LEAST, margin_of, margin_terms
 from scenarios.scoring.score import Tier, score_log

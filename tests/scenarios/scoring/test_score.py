@@ -1,11 +1,11 @@
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from link.frames.rotations import quaternion_from_roll_pitch_yaw, rotate
 from link.messages import BodyTruth, Vector3
+from link.records import replace
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.scoring.score import Tier, score
 from scenarios.scoring.touchdown import rules_of

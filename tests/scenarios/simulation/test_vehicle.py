@@ -1,12 +1,12 @@
 import math
 from collections.abc import Iterable
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from link.frames.rotations import rotate
 from link.messages import BodyTruth, Vector3
+from link.records import replace
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.simulation.vehicle import (
     VehicleInputs,

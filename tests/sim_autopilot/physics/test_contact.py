@@ -1,11 +1,11 @@
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from link.records import replace
 from sim_autopilot.core.data import Deck, Surface
 from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, GRAVITY_M_S2, REPORT_AIRFRAME
 from sim_autopilot.physics.contact import GEAR_HEIGHT_M

@@ -1,10 +1,9 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
+from link.records import replace
 from sim_autopilot.core.data import Array
 from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, GRAVITY_M_S2, REPORT_AIRFRAME
 from sim_autopilot.plant.plant import PlantConfig, PlantMemory, fly

@@ -1,13 +1,14 @@
 import importlib
 import math
 import pkgutil
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
 import sim_autopilot.control
 import sim_autopilot.physics
+from link.records import replace
 from sim_autopilot.control.parameters import ControllerKind
 from sim_autopilot.core.data import Array, Reference, Surface
 from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, REPORT_AIRFRAME, Airframe

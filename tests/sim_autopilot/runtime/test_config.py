@@ -7,7 +7,8 @@ import pytest
 from link.errors import UserError
 from link.program.toml_config import dump_toml, load_config
 from sim_autopilot.control.parameters import ControllerKind
-from sim_autopilot.runtime.config import SimAutopilotConfig, autopilot_config, wind_model
+from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME
+from sim_autopilot.runtime.config import DroneConfig, SimAutopilotConfig, airframe_of, autopilot_config, wind_model
 
 
 def loaded(tmp_path: Path, text: str) -> SimAutopilotConfig:
@@ -61,3 +62,22 @@ def test_the_seed_draws_the_winds_direction() -> None:
 
     assert wind(1) == wind(1)
     assert wind(1) != wind(2)
+
+
+def test_the_turbulence_may_be_told_by_its_vertical_deviation(tmp_path: Path) -> None:
+    light = loaded(tmp_path, "[wind]\nfrom_rad = 0.3\nturbulence = 'light'\n")
+    told = loaded(tmp_path, f"[wind]\nfrom_rad = 0.3\nturbulence_std_m_s = {0.1 * 15 * 1852.0 / 3600.0}\n")
+    np.testing.assert_allclose(wind_model(told).advance(0.01, 5.0), wind_model(light).advance(0.01, 5.0))
+
+
+def test_a_drones_own_numbers_take_the_place_of_its_airframes() -> None:
+    drone = DroneConfig(mass_kg=2.2, thrust_to_weight=2.4, drag_n_s_m=0.31, motor_time_constant_s=0.03)
+    airframe = airframe_of(drone)
+    assert (airframe.mass_kg, airframe.thrust_to_weight) == (2.2, 2.4)
+    assert (airframe.drag_n_s_m, airframe.motor_time_constant_s) == (0.31, 0.03)
+    share = np.array(airframe.inertia_kg_m2) / np.array(BENCHMARK_AIRFRAME.inertia_kg_m2)
+    np.testing.assert_allclose(share, 2.2 / BENCHMARK_AIRFRAME.mass_kg)
+
+
+def test_a_drone_without_numbers_of_its_own_is_its_airframe() -> None:
+    assert airframe_of(DroneConfig()) == BENCHMARK_AIRFRAME

@@ -22,7 +22,7 @@ from link.zenoh.session import Inbox, ZenohOptions, ZenohSession, open_session
 from sim_autopilot.runtime.vehicle_view import VehicleView
 from tests.sim_autopilot.pilot import arm, set_mode, setpoint
 
-pytestmark = [pytest.mark.wire, pytest.mark.alone]
+pytestmark = pytest.mark.wire
 
 DEADLINE_S = 60.0
 KEYS = Keys("loop_test")
@@ -132,6 +132,7 @@ def test_it_answers_to_where_it_was_spoken_to_and_takes_off(companion: Companion
         until(is_up)
 
 
+@pytest.mark.alone
 def test_speed_four_gives_four_simulated_seconds_a_second_in_steps_of_ten_milliseconds(companion: Companion) -> None:
     inbox = companion.zenoh.subscribe(KEYS.clock)
     with sim_autopilot(*companion.arguments, "--speed", "4"):
@@ -143,6 +144,7 @@ def test_speed_four_gives_four_simulated_seconds_a_second_in_steps_of_ten_millis
     assert (times_ns[-1] - times_ns[0]) / wall_ns == pytest.approx(4.0, rel=0.1)
 
 
+@pytest.mark.alone
 def test_speed_zero_runs_faster_than_any_clock(companion: Companion) -> None:
     inbox = companion.zenoh.subscribe(KEYS.clock)
     with sim_autopilot(*companion.arguments, "--speed", "0"):

@@ -1,4 +1,3 @@
-from dataclasses import replace
 from math import inf, nan, pi
 
 import numpy as np
@@ -7,6 +6,7 @@ import pytest
 from link.frames.geodesy import Datum, geodetic_from_enu
 from link.frames.local_frame import LocalFrame, Projection
 from link.mavlink.dialect import Message, mavlink
+from link.records import replace
 from sim_autopilot.boot import initial_memory
 from sim_autopilot.core.data import Array, Reference
 from sim_autopilot.core.places import Origin

@@ -1,12 +1,12 @@
 """The range finder looks along the body's axis, not straight down: what it measures grows with the lean."""
 
-from dataclasses import replace
 from math import cos, radians, sin, tan
 
 import numpy as np
 import pytest
 
 from link.messages import Quaternion
+from link.records import replace
 from sim_autopilot.core.data import Deck
 from sim_autopilot.telemetry.motion import distance_sensor
 from tests.sim_autopilot.pilot import START_NS, Pilot, px4

@@ -1,9 +1,9 @@
-from dataclasses import replace
 from math import atan2, degrees, isfinite
 
 import pytest
 
 from link.mavlink.dialect import Message, mavlink
+from link.records import replace
 from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.ardupilot.messages import wind
 from sim_autopilot.memory import World

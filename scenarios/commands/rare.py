@@ -1,0 +1,63 @@
+"""The command `rare`: the probability of an unsafe outcome by adaptive multilevel splitting."""
+
+import json
+import sys
+from typing import Annotated
+
+import typer
+
+_PARTICLES, _MOVES, _LEVEL = 200, 4, 1e-6
+
+
+def register(app: typer.Typer) -> None:
+    """Add `rare` to `app`."""
+    app.command("rare")(rare_command)
+
+
+def rare_command(
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="world[:SLICE]|CELL",
+            help="The operational design domain, a slice of it, or a scenario, such as brake_10+link=degraded.",
+        ),
+    ],
+    *,
+    level: Annotated[
+        float, typer.Option("--level", min=1e-12, max=0.1, help="No level goes below this probability.")
+    ] = _LEVEL,
+    particles: Annotated[
+        int, typer.Option("--particles", min=20, metavar="N", help="Landings of the population.")
+    ] = _PARTICLES,
+    moves: Annotated[
+        int, typer.Option("--moves", min=1, metavar="N", help="Landings that a copy of one tries to move by.")
+    ] = _MOVES,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Of everything random.")] = 1,
+    workers: Annotated[
+        int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
+    ] = None,
+    firmware: Annotated[
+        str | None, typer.Option("--firmware", metavar="NAME", help="px4 or ardupilot, of a cell.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+) -> int:
+    """Estimate the probability of an unsafe outcome; exit code 1 when the splitting has not converged."""
+    from scenarios.processes.local_workers import core_count
+    from scenarios.rare.landing import flying, subject_of
+    from scenarios.rare.report import level_line, print_report, report
+    from scenarios.rare.splitting import Settings, split
+
+    subject = subject_of(name, firmware)
+    settings = Settings(particles=particles, moves=moves, least=level, seed=seed)
+    with flying(subject, core_count() if workers is None else workers) as fly:
+        population = split(settings, fly, lambda population: _note(level_line(population)))
+    table = report(subject.name, settings, population)
+    if as_json:
+        sys.stdout.write(json.dumps(table, indent=2, allow_nan=False) + "\n")
+    else:
+        print_report(table, sys.stdout)
+    return 0 if table["converged"] else 1
+
+
+def _note(text: str) -> None:
+    sys.stderr.write(f"{text}\n")

@@ -1,0 +1,30 @@
+from pathlib import Path
+
+import pytest
+
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.falsify.case_file import case_text
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "straight_5",
+        "lane_change_5+sensors=nominal+wind=gust+link=degraded",
+        "report_1",
+        "circle_5+firmware=ardupilot+sensors=degraded_no_heading",
+    ],
+)
+def test_file_of_a_case_is_the_same_scenario(name: str, tmp_path: Path) -> None:
+    scenario = load_scenario(name)
+    path = tmp_path / "case.toml"
+    path.write_text(case_text(scenario, ["a note"]), encoding="utf-8")
+    assert load_scenario(str(path)) == scenario.model_copy(update={"name": "case"})
+
+
+def test_notes_are_comments_that_fit_the_page() -> None:
+    text = case_text(load_scenario("straight_5"), ["word " * 60, "Fly it: scenarios run case.toml"])
+    comments = [line for line in text.splitlines() if line.startswith("#")]
+    assert len(comments) == 4
+    assert max(len(line) for line in comments) <= 120
+    assert comments[-1] == "# Fly it: scenarios run case.toml"

@@ -1,0 +1,83 @@
+import json
+from pathlib import Path
+
+import pytest
+
+from link.program.cli import make_app, run_app
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.commands import campaign as campaign_commands
+from scenarios.commands import rare as rare_commands
+from scenarios.rare.chain import Walk, Walked
+from scenarios.rare.landing import Cell, fly_margin, flying, subject_of
+from scenarios.rare.noise import Move, MovedNoise
+from tests.scenarios.campaigns.short import failing_cell, short_cell
+
+FIRST = MovedNoise(seed=3)
+BESIDE = FIRST.moved(Move(seed=4, angle_rad=0.5))
+
+
+def scenarios(*args: object) -> int:
+    """Run a program with the command, and another one beside it, and return its exit code."""
+    app = make_app("Rare events.")
+    for commands in (rare_commands, campaign_commands):
+        commands.register(app)
+    return run_app("scenarios", app, ["rare", *(str(arg) for arg in args)])
+
+
+def test_noise_decides_the_landing_and_a_move_changes_it(tmp_path: Path) -> None:
+    subject = Cell(cell=load_scenario(short_cell(tmp_path)))
+    first, again, beside = (fly_margin(subject, noise) for noise in (FIRST, FIRST, BESIDE))
+    assert first == again
+    assert first != beside
+
+
+@pytest.mark.slow
+def test_chains_end_the_same_on_any_number_of_processes(tmp_path: Path) -> None:
+    subject = Cell(cell=load_scenario(short_cell(tmp_path)))
+    moves = (Move(seed=6, angle_rad=0.5), Move(seed=7, angle_rad=0.5))
+    walks = [Walk(noise=FIRST), Walk(noise=BESIDE, moves=moves), Walk(noise=BESIDE)]
+
+    def ends(workers: int) -> list[Walked]:
+        with flying(subject, workers) as fly:
+            return [*fly(walks[:2]), *fly(walks[2:])]
+
+    assert ends(1) == ends(2)
+
+
+def test_landings_that_raise_are_told_and_give_no_probability(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cell = failing_cell(tmp_path)
+    assert scenarios(cell, "--particles", 20, "--workers", 1, "--json") == 1
+    table = json.loads(capsys.readouterr().out)
+    assert (table["converged"], table["verdict"], table["probability"]) == (False, "failed", None)
+    assert len(table["errors"]) == 20
+    assert scenarios(cell, "--particles", 20, "--workers", 1) == 1
+    assert "not converged, so there is no probability: a landing raised an error" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        (["nowhere_5"], "nowhere_5"),
+        (["world:nowhere"], "world:nowhere"),
+        (["world", "--firmware", "px4"], "--firmware"),
+        (["straight_5", "--level", "0"], "--level"),
+    ],
+)
+def test_what_cannot_be_flown_is_one_clear_line(
+    options: list[str], named: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert scenarios(*options) == 2
+    told = capsys.readouterr().err
+    assert named in told
+    assert told.count("\n") == 1
+
+
+def test_noise_draws_the_world_and_a_small_move_changes_it_a_little() -> None:
+    subject = subject_of("world")
+    first, again = subject.scenario(FIRST), subject.scenario(FIRST)
+    assert first == again
+    nearby = subject.scenario(FIRST.moved(Move(seed=4, angle_rad=1e-3)))
+    assert nearby.wind.mean_m_s == pytest.approx(first.wind.mean_m_s, rel=0.02)
+    assert nearby.wind.mean_m_s != first.wind.mean_m_s

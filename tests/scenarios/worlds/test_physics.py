@@ -1,0 +1,141 @@
+"""No world's vehicle breaks physics: evaluated on a grid over the whole drive, without flying."""
+
+import math
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from link.program.toml_config import dump_toml
+from scenarios.catalogue.catalogue import load_scenario
+from scenarios.simulation.vehicle import VehicleMemory, VehicleState, vehicle_at
+from scenarios.simulation.vehicle_node import plan_of
+from scenarios.tracks.config import DriveTrack
+from scenarios.tracks.roads import Piece, Road
+from scenarios.worlds.driver import DRIVE_S
+from scenarios.worlds.world import SLICES, World, draw_world
+from sim_autopilot.physics.airframe import GRAVITY_M_S2
+from tests.rotations import matrix_of
+
+SEEDS = [
+    pytest.param(range(20_000, 20_003), id="few"),
+    pytest.param(range(20_003, 20_060), id="many", marks=pytest.mark.slow),
+]
+STEP_S = 0.05
+START_NS = 1_800_000_000_000_000_000
+
+
+def states(world: World, times_s: np.ndarray) -> list[VehicleState]:
+    """The vehicle at times after its departure."""
+    plan, memory = plan_of(world.scenario, world.seed), VehicleMemory(departs_ns=START_NS)
+    return [vehicle_at(memory, START_NS + round(t_s * 1e9), plan) for t_s in times_s.tolist()]
+
+
+@cache
+def driven(name: str, seed: int) -> tuple[World, dict[str, np.ndarray]]:
+    """A world and its vehicle on the grid, by the fields of its state."""
+    world = draw_world(name, seed)
+    vehicle = states(world, np.arange(0.0, DRIVE_S + 20.0, STEP_S))
+    fields = (
+        "position_enu_m",
+        "velocity_enu_m_s",
+        "acceleration_enu_m_s2",
+        "yaw_rad",
+        "yaw_rate_rad_s",
+        "orientation_wxyz",
+    )
+    return world, {field: np.array([getattr(state, field) for state in vehicle]) for field in fields}
+
+
+def worlds(seeds: range) -> list[tuple[World, dict[str, np.ndarray]]]:
+    """Worlds of all slices."""
+    return [driven(name, seed) for name in SLICES for seed in seeds]
+
+
+@pytest.mark.parametrize("seeds", SEEDS)
+def test_acceleration_stays_in_the_friction_circle(seeds: range) -> None:
+    for world, vehicle in worlds(seeds):
+        level = np.linalg.norm(vehicle["acceleration_enu_m_s2"][:, :2], axis=1)
+        assert level.max() <= GRAVITY_M_S2 * float(world.drawn["road.friction"]), world.scenario.name
+
+
+@pytest.mark.parametrize("seeds", SEEDS)
+def test_position_and_velocity_are_continuous(seeds: range) -> None:
+    for world, vehicle in worlds(seeds):
+        moved_m = np.diff(vehicle["position_enu_m"], axis=0)
+        mean_m_s = 0.5 * (vehicle["velocity_enu_m_s"][1:] + vehicle["velocity_enu_m_s"][:-1])
+        # the level part bends with at most the friction circle's acceleration, which the trapezoid leaves out
+        off_m = np.abs(moved_m - mean_m_s * STEP_S)
+        assert off_m[:, :2].max() < GRAVITY_M_S2 * STEP_S**2, world.scenario.name
+        jump_m_s = np.linalg.norm(np.diff(vehicle["velocity_enu_m_s"][:, :2], axis=0), axis=1)
+        assert jump_m_s.max() <= 1.05 * GRAVITY_M_S2 * STEP_S, world.scenario.name
+
+
+@pytest.mark.parametrize("seeds", SEEDS)
+def test_curvature_changes_at_a_finite_rate(seeds: range) -> None:
+    for world, vehicle in worlds(seeds):
+        plan = plan_of(world.scenario, world.seed)
+        rates = [abs(piece.growth_per_m2) for piece in plan.course.road.pieces]
+        ends = [road.curvature_per_m + road.growth_per_m2 * length_m for road, length_m in lengths(plan.course.road)]
+        begins = [piece.curvature_per_m for piece in plan.course.road.pieces]
+        np.testing.assert_allclose(ends[:-1], begins[1:], atol=1e-9, err_msg=world.scenario.name)
+        speed_m_s = np.linalg.norm(vehicle["velocity_enu_m_s"][:, :2], axis=1).max()
+        assert max(rates) * speed_m_s < 3.0, (
+            world.scenario.name
+        )  # 1/m/s: a rover's 6 m lock to lock in a tenth of a second
+
+
+def lengths(road: Road) -> list[tuple[Piece, float]]:
+    """The pieces of a road, each with its length."""
+    ends = [*road.starts_m[1:], road.length_m]
+    return [(piece, end - piece.s_m) for piece, end in zip(road.pieces, ends, strict=True)]
+
+
+@pytest.mark.parametrize("seeds", SEEDS)
+def test_body_neither_tips_nor_leaves_the_road_nor_sinks_into_the_ground(seeds: range) -> None:
+    for world, vehicle in worlds(seeds):
+        upright = np.array([matrix_of(q)[2, 2] for q in vehicle["orientation_wxyz"]])
+        assert upright.min() > math.cos(0.3), world.scenario.name
+        assert float(world.drawn["drive.heave_max_m"]) < 0.3, world.scenario.name
+        assert vehicle["position_enu_m"][:, 2].min() > -0.15, world.scenario.name
+
+
+@pytest.mark.parametrize("seeds", SEEDS)
+def test_vehicle_passes_the_waiting_point_at_speed_and_stands_in_the_end(seeds: range) -> None:
+    for world, vehicle in worlds(seeds):
+        aside_m = np.linalg.norm(vehicle["position_enu_m"][:, :2], axis=1)
+        speeds_m_s = np.linalg.norm(vehicle["velocity_enu_m_s"][:, :2], axis=1)
+        nearest = int(aside_m.argmin())
+        assert aside_m[0] >= 40.0 - 1e-9, world.scenario.name
+        assert aside_m[nearest] < 0.51 * STEP_S * speeds_m_s.max(), world.scenario.name
+        assert nearest * STEP_S < 60.0, world.scenario.name
+        assert speeds_m_s[nearest] > 0.5 * float(world.drawn["drive.cruise_m_s"]), world.scenario.name
+        assert speeds_m_s[-1] < 1e-9, world.scenario.name
+
+
+def test_velocity_and_angular_velocity_are_the_derivatives_of_the_pose() -> None:
+    world = draw_world("world:urban", 20_001)
+    times_s, step_s = np.linspace(3.0013, 118.0, 157), 2e-5
+    before, now, after = (states(world, times_s + shift) for shift in (-step_s, 0.0, step_s))
+    for one, two, three in zip(before, now, after, strict=True):
+        velocity = (np.array(three.position_enu_m) - np.array(one.position_enu_m)) / (2.0 * step_s)
+        np.testing.assert_allclose(velocity, two.velocity_enu_m_s, atol=2e-4)
+        turned = matrix_of(one.orientation_wxyz).T @ matrix_of(three.orientation_wxyz)
+        rate = np.array([turned[2, 1], turned[0, 2], turned[1, 0]]) / (2.0 * step_s)
+        np.testing.assert_allclose(rate, two.angular_velocity_flu_rad_s, atol=2e-4)
+
+
+@pytest.mark.parametrize("name", SLICES)
+def test_world_is_read_back_from_its_file_to_the_last_bit(name: str, tmp_path: Path) -> None:
+    for seed in range(30_000, 30_003):
+        scenario = draw_world(name, seed).scenario
+        file = tmp_path / "world.toml"
+        file.write_text(dump_toml(scenario), encoding="utf-8")
+        assert load_scenario(str(file)) == scenario
+
+
+def test_world_is_named_after_its_slice_and_seed() -> None:
+    world = draw_world("world:yard", 12)
+    assert world.scenario.name == "world:yard-12"
+    assert isinstance(world.scenario.track, DriveTrack)
