@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
-from companion.autopilots.limits import Named, acceleration_of_tilt_m_s2, find_gain, find_limit
+from companion.autopilots.limits import INTEGRAL_FACTOR_MAX, Named, acceleration_of_tilt_m_s2, find_gain, find_limit
 from companion.autopilots.messages import (
     Requested,
     arm,
@@ -126,7 +126,7 @@ class ArduPilotDriver:
         return Cascade(
             position_per_s=find_gain(parameters, _POSITION_GAIN, 1.0),
             velocity_per_s=find_gain(parameters, _VELOCITY_GAIN, 2.0),
-            integral_per_s2=find_gain(parameters, _INTEGRAL_GAIN, 1.0),
+            integral_per_s2=find_gain(parameters, _INTEGRAL_GAIN, 1.0, INTEGRAL_FACTOR_MAX),
             lead_s=0.0,
         )
 

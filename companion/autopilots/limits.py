@@ -13,7 +13,8 @@ from companion.autopilots.driver import Driver
 from companion.core.data import GRAVITY_M_S2
 
 _STATED_MIN = 0.1  # m/s or degrees; a limit below this cannot be flown with
-_GAIN_FACTOR_MAX = 4.0  # about a default; the ranges that the firmwares state are narrower
+GAIN_FACTOR_MAX = 4.0  # about a default; the ranges that the firmwares state are narrower
+INTEGRAL_FACTOR_MAX = 40.0  # PX4 states 150 times its default as the end of the range
 _TILT_SHARE = 0.85  # of the largest tilt's thrust; the rest is for gusts and for the autopilot's own corrections
 
 
@@ -34,7 +35,9 @@ def find_limit(parameters: Mapping[str, float], names: Sequence[Named]) -> float
     return math.inf
 
 
-def find_gain(parameters: Mapping[str, float], names: Sequence[str], default: float) -> float:
+def find_gain(
+    parameters: Mapping[str, float], names: Sequence[str], default: float, factor_max: float = GAIN_FACTOR_MAX
+) -> float:
     """Return a gain by whichever of its names is known, the firmware's default where none is or it is not positive.
 
     A drone does not fly with gains far from the default; such a value is cut to where the cascade's model is stable.
@@ -42,7 +45,7 @@ def find_gain(parameters: Mapping[str, float], names: Sequence[str], default: fl
     for name in names:
         value = parameters.get(name, math.nan)
         if value > 0.0 and math.isfinite(value):
-            return min(max(value, default / _GAIN_FACTOR_MAX), default * _GAIN_FACTOR_MAX)
+            return min(max(value, default / factor_max), default * factor_max)
     return default
 
 

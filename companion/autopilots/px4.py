@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
-from companion.autopilots.limits import Named, acceleration_of_tilt_m_s2, find_gain, find_limit
+from companion.autopilots.limits import INTEGRAL_FACTOR_MAX, Named, acceleration_of_tilt_m_s2, find_gain, find_limit
 from companion.autopilots.messages import (
     Requested,
     arm,
@@ -117,7 +117,7 @@ class Px4Driver:
         return Cascade(
             position_per_s=find_gain(parameters, position, 0.95),
             velocity_per_s=find_gain(parameters, velocity, 1.8),
-            integral_per_s2=find_gain(parameters, integral, 0.4),
+            integral_per_s2=find_gain(parameters, integral, 0.4, INTEGRAL_FACTOR_MAX),
             lead_s=0.01,
         )
 

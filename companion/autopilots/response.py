@@ -22,10 +22,11 @@ from scipy.linalg import expm, solve_continuous_are, solve_continuous_lyapunov
 
 from companion.core.data import Array
 
-PUSH_STD_M_S2 = 0.5
-"""Of what pushes a drone about: a gust of 3 m/s, moderate turbulence of MIL-F-8785C, at a drag of 0.17 per second."""
-DRAG_PER_S = 0.17
-"""Drag by mass and airspeed: the benchmark's airframe, 0.25 N s/m by 1.5 kg. ArduCopter's simulation has 0.38."""
+DRAG_PER_S = 0.25
+"""Drag by mass and airspeed, which no autopilot tells: the benchmark's airframe has 0.17 (0.25 N s/m by 1.5 kg), the
+simulations of PX4 and ArduCopter 0.3 and 0.38."""
+PUSH_STD_M_S2 = 0.75
+"""Of what pushes a drone about: a gust of 3 m/s, moderate turbulence of MIL-F-8785C, at that drag."""
 ATTITUDE_LAG_S = 0.1
 """From a wanted acceleration to the drone's; of 0.05 to 0.2 s it predicted the stand-ins' flights best."""
 POSITION_STD_M = 0.04

@@ -3,6 +3,7 @@
 import math
 from functools import cache
 
+from companion.autopilots.response import DRAG_PER_S
 from companion.config.companion import CompanionConfig
 from companion.config.landing import LandingStyle
 from companion.core.reasons import Cause, Reason
@@ -25,6 +26,7 @@ from companion.situation.situation import Situation, vehicle_stands
 Decision = tuple[Event, Cause]
 """What happens, and why."""
 
+_LEFT_MIN_M_S2 = 1.0  # of the tilt limit beside drag: a drone that has less meets nothing
 _DESCENT = frozenset({Phase.DESCEND})
 _ALIGNMENT = frozenset({Phase.ALIGN})
 _WAITING = frozenset({Phase.WAITING})
@@ -45,8 +47,10 @@ def _is_above_commitment(s: Situation, c: CompanionConfig) -> bool:
 def _is_aligned(s: Situation, c: CompanionConfig) -> bool:
     if s.approach is None or is_pad_unplaced(s, c) or must_be_seen(s, c):
         return False
-    is_over = s.approach.distance_m < c.descent.aligned_distance_m
-    return is_over and s.approach.speed_m_s < c.descent.aligned_speed_m_s
+    # A drone that is higher has that much longer to come nearer and to become slower.
+    higher = max(s.approach.height_m / c.descent.align_height_m, 1.0)
+    is_over = s.approach.distance_m < higher * c.descent.aligned_distance_m
+    return is_over and s.approach.speed_m_s < higher * c.descent.aligned_speed_m_s
 
 
 def _is_far_off(s: Situation, c: CompanionConfig) -> bool:
@@ -98,11 +102,15 @@ def vehicle_passes(s: Situation, config: CompanionConfig) -> Decision | None:
 def _lead_m(speed_m_s: float, s: Situation, config: CompanionConfig) -> float:
     """Return how far before it passes a vehicle is that a drone meets which accelerates from rest to its speed v.
 
-    It takes v / a + a / j for that, and is half of the way behind.
+    It takes v / a + a / j for that, and is half of the way behind. Acceleration and jerk are the same share of what
+    there is, a tilt limit less the drag at v included: a drone that is early waits for the vehicle, one that is late
+    has nothing left to catch up with.
     """
-    acceleration_m_s2 = config.chase.start_acceleration_m_s2
-    jerk_m_s3 = config.limits.jerk_max_m_s3 if s.limits is None else s.limits.jerk_max_m_s3
-    return 0.5 * speed_m_s * (speed_m_s / acceleration_m_s2 + acceleration_m_s2 / jerk_m_s3)
+    limits = config.limits.flight_limits() if s.limits is None else s.limits
+    share = config.chase.start_acceleration_m_s2 / config.limits.acceleration_max_m_s2
+    left_m_s2 = limits.tilt_acceleration_m_s2 - DRAG_PER_S * speed_m_s
+    acceleration_m_s2 = share * max(min(limits.acceleration_max_m_s2, left_m_s2), _LEFT_MIN_M_S2)
+    return 0.5 * speed_m_s * (speed_m_s / acceleration_m_s2 + acceleration_m_s2 / (share * limits.jerk_max_m_s3))
 
 
 STRAYS = Condition(

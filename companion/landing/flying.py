@@ -14,7 +14,7 @@ from companion.landing.virtual_model import (
     Tracking,
     add_to_past,
     extrapolate,
-    limit_sink,
+    keep_up,
     predict_deviation,
 )
 from companion.landing.waiting import waits_at_m
@@ -91,7 +91,8 @@ def fly(
     request = replace(request, limits=limit_tilt(request, model.tracking.air_enu_m_s2))
     guidance, plan = system.guidance.plan(model.guidance, request)
     if inputs.driver is not None and inputs.driver.carries_setpoints_on:
-        plan = _keep_up(plan, reference, float(aim.floor_enu_m[0]), inputs.timeout_s, period_s)
+        kept_up = keep_up(plan.next_state, reference, float(aim.floor_enu_m[0]), inputs.timeout_s, period_s)
+        plan = replace(plan, next_state=kept_up)
     model = ModelMemory(
         reference=plan.next_state,
         reference_ns=reference_ns,
@@ -119,28 +120,6 @@ def _for_the_drone(target: Target, memory: StepMemory, inputs: StepInputs) -> Ta
     position[:, :2] -= deviation[:, 0]
     velocity[:, :2] -= deviation[:, 1]
     return replace(target, position_enu_m=position, velocity_enu_m_s=velocity)
-
-
-def _keep_up(
-    plan: PlanResult, reference: ReferenceState, lowest_enu_m: float, timeout_s: float, period_s: float
-) -> PlanResult:
-    """Return the plan with a next state that may be carried on for the autopilot's time-out.
-
-    The virtual model itself is kept up, since the drone follows what is sent, and the next plan begins there.
-    """
-    limited = limit_sink(plan.next_state, lowest_enu_m, timeout_s)
-    if limited is plan.next_state:
-        return plan
-    state = extrapolate(replace(reference, acceleration_enu_m_s2=limited.acceleration_enu_m_s2), period_s)
-    horizontal = np.array([True, True, False])
-    return replace(
-        plan,
-        next_state=ReferenceState(
-            position_enu_m=np.where(horizontal, plan.next_state.position_enu_m, state.position_enu_m),
-            velocity_enu_m_s=np.where(horizontal, plan.next_state.velocity_enu_m_s, state.velocity_enu_m_s),
-            acceleration_enu_m_s2=limited.acceleration_enu_m_s2,
-        ),
-    )
 
 
 def _at_drone(

@@ -1,16 +1,18 @@
 """What a step tells: the setpoint for the autopilot, the news for the pilot, status and plan for the world; pure."""
 
 import math
-from typing import NamedTuple
+
+import numpy as np
 
 from companion.autopilots.own_reports import as_seen_with
 from companion.config.companion import CompanionConfig
 from companion.config.landing import DescentConfig
-from companion.core.data import Setpoint
+from companion.core.data import Array, FlightLimits, Setpoint
 from companion.core.reasons import Cause, Reason, sentence
 from companion.landing.aborts import why_unplaced
 from companion.landing.memory import Progress, StepMemory
 from companion.landing.step_data import StepInputs
+from companion.landing.targets import way_down
 from companion.landing.virtual_model import extrapolate, free_place, press_down, setpoint_at, state_in_plan
 from companion.landing.waiting import why_held_up
 from companion.planning.guidance import PlanResult
@@ -86,6 +88,7 @@ def _press_m_s2(memory: StepMemory, config: CompanionConfig) -> float | None:
 _WAITING_FOR_PAD = frozenset({Phase.WAITING, Phase.CHASE, Phase.ALIGN})
 _NOT_BEGUN = frozenset({Phase.IDLE, Phase.WAITING})
 _TIMED_PHASES = frozenset({Phase.ALIGN, Phase.DESCEND})
+_CONTACT_OFFSETS_S: Array = np.arange(0.0, 30.0, 0.1)  # from 8 m, the greatest height of a chase, it takes 8 s
 
 
 def landing_status(memory: StepMemory, situation: Situation, config: CompanionConfig) -> LandingStatus:
@@ -101,7 +104,11 @@ def landing_status(memory: StepMemory, situation: Situation, config: CompanionCo
         relative_position_enu_m=None if relative is None else relative.position_enu_m,
         relative_velocity_enu_m_s=None if relative is None else relative.velocity_enu_m_s,
         height_above_pad_m=None if relative is None else relative.height_m,
-        time_to_contact_s=_time_to_contact_s(relative, config.descent) if timed and relative is not None else None,
+        time_to_contact_s=(
+            _time_to_contact_s(relative, situation.limits or config.limits.flight_limits(), config.descent)
+            if timed and relative is not None
+            else None
+        ),
         mavlink_bad_bytes=0,
         zenoh_bad_payloads=0,
         armed=situation.autopilot.armed,
@@ -119,11 +126,17 @@ def _cause(memory: StepMemory, situation: Situation, config: CompanionConfig) ->
     return why_held_up(memory, situation, config) or progress.cause
 
 
-def _time_to_contact_s(relative: Approach, descent: DescentConfig) -> float:
-    """Return how long the sink profile takes from the present height: fast, slowing down, slow."""
-    stretches = _sink_stretches(relative.height_m, descent)
-    slow_s = max(stretches.slow_from_m, 0.0) / descent.touchdown_sink_rate_m_s
-    return stretches.fast_s + stretches.slowing_s + slow_s
+def _time_to_contact_s(relative: Approach, limits: FlightLimits, descent: DescentConfig) -> float:
+    """Return how long a descent that nothing holds up takes from the present height and rate, at most the horizon."""
+    if relative.height_m <= 0.0:
+        return 0.0
+    state = (relative.height_m, relative.climb_m_s, 0.0)
+    height_m = way_down(state, _CONTACT_OFFSETS_S, limits, descent)[0]
+    below = int(np.argmax(height_m <= 0.0))
+    if height_m[below] > 0.0:
+        return float(_CONTACT_OFFSETS_S[-1])
+    around = [below, below - 1]
+    return float(np.interp(0.0, height_m[around], _CONTACT_OFFSETS_S[around]))
 
 
 def news(before: Progress, now: Progress) -> str | None:
@@ -160,32 +173,3 @@ def plan_publication(keys: Keys, plan: PlanResult, t_ns: int, yaw_rad: float) ->
         for offset_s, (x, y, z) in points
     )
     return Publication(keys.landing_plan, cdr.encode(Plan(t_ns=t_ns, poses=poses)), cdr.encoding_of(Plan))
-
-
-class _SinkStretches(NamedTuple):
-    """A descent's three stretches one after the other: at the largest rate, slowing down exponentially, at the slowest.
-
-    Attributes:
-        fast_s: how long the first takes.
-        slowing_from_m: height over the pad at which the second begins.
-        slowing_s: how long it takes.
-        slow_from_m: height at which the third begins.
-    """
-
-    fast_s: float
-    slowing_from_m: float
-    slowing_s: float
-    slow_from_m: float
-
-
-def _sink_stretches(height_now_m: float, config: DescentConfig) -> _SinkStretches:
-    """Return how a descent from a height over the pad goes: it sinks at the height times the gain, within limits."""
-    fast_m_s, slow_m_s, gain_hz = config.descent_rate_max_m_s, config.touchdown_sink_rate_m_s, config.descent_gain_hz
-    slowing_from_m = min(height_now_m, fast_m_s / gain_hz)
-    slow_from_m = min(slowing_from_m, slow_m_s / gain_hz)
-    return _SinkStretches(
-        fast_s=max(height_now_m - slowing_from_m, 0.0) / fast_m_s,
-        slowing_from_m=slowing_from_m,
-        slowing_s=math.log(slowing_from_m / slow_from_m) / gain_hz if slowing_from_m > slow_from_m else 0.0,
-        slow_from_m=slow_from_m,
-    )

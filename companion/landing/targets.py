@@ -22,7 +22,9 @@ HORIZON_OFFSETS_S: Array = np.arange(0.0, 4.01, 0.2)
 NO_FLOOR_M = -1e4
 _AT_REST: Array = np.zeros((len(HORIZON_OFFSETS_S), 3))
 _NO_FLOOR: Array = np.full(len(HORIZON_OFFSETS_S), NO_FLOOR_M)
-_DESCENT_SHARE = 0.5  # of the vertical limits; the rest is for following the pad
+_DESCENT_SHARE = 0.5  # of the vertical acceleration; the rest is for following the pad
+_DESCENT_JERK_MAX_M_S3 = 10.0  # that acceleration within 0.15 s: sooner brings nothing, and who has less needs it all
+_SHORT_SHARE = 0.5  # of the distance at which the alignment begins: a chase that aims shorter might not come there
 _SLOW_M_S = 0.5  # slower than this a vehicle has no direction to speak of
 _REST_M = 0.005
 _REST_MOTION = 0.01  # m/s and m/s^2
@@ -100,14 +102,16 @@ def pad_aim(
             float(reference.velocity_enu_m_s[2] - pad.velocity_enu_m_s[0, 2]),
             float(reference.acceleration_enu_m_s2[2] - pad.acceleration_enu_m_s2[0, 2]),
         )
-        height, rate, acceleration = _way_down(
-            state, pad.offset_s, limits, config.descent, lowest_m, previews=config.guidance.kind is GuidanceKind.MPC
-        )
+        if config.guidance.kind is not GuidanceKind.MPC:
+            state = _without_preview(state, config.descent, lowest_m)
+        height, rate, acceleration = way_down(state, pad.offset_s, limits, config.descent, lowest_m)
     else:
         height, rate, acceleration = _height_m(phase, pad, reference, config), 0.0, 0.0
     position, velocity, accelerated = (
         path.copy() for path in (pad.position_enu_m, pad.velocity_enu_m_s, pad.acceleration_enu_m_s2)
     )
+    if phase is Phase.CHASE and config.landing is LandingStyle.STAGED:
+        position[:, :2] += _short_enu_m(pad, reference, config)
     position[:, 2] += feet_offset_m + height
     velocity[:, 2] += rate
     accelerated[:, 2] += acceleration
@@ -121,26 +125,46 @@ def pad_aim(
     return Aim(target=target, floor_enu_m=floor)
 
 
-def _way_down(
+def _short_enu_m(pad: PadPath, reference: ReferenceState, config: CompanionConfig) -> Array:
+    """Return (2,) by how far a chase aims short of the pad: it may be that much nearer than it is said to be.
+
+    What is then seen to be farther away is reached a moment later; for what is nearer there may be no jerk left.
+    """
+    off = reference.position_enu_m[:2] - pad.position_enu_m[0, :2]
+    short_m = min(float(np.max(pad.position_std_m[0, :2])), _SHORT_SHARE * config.descent.align_distance_m)
+    return np.asarray(off * (short_m / max(math.hypot(*off.tolist()), short_m, _REST_M)))
+
+
+def _without_preview(
+    state: tuple[float, float, float], descent: DescentConfig, lowest_m: float | None
+) -> tuple[float, float, float]:
+    """Return height, rate and acceleration for a law that looks at the present alone: the rate that is wanted there."""
+    wanted_m_s = max(descent.descent_gain_hz * state[0], descent.touchdown_sink_rate_m_s)
+    sinks = lowest_m is None or state[0] > lowest_m
+    return state[0], -min(wanted_m_s, descent.descent_rate_max_m_s) if sinks else 0.0, 0.0
+
+
+def way_down(
     state: tuple[float, float, float],
     offset_s: Array,
     limits: FlightLimits,
     descent: DescentConfig,
-    lowest_m: float | None,
-    *,
-    previews: bool,
+    lowest_m: float | None = None,
 ) -> Array:
-    """Return height over the pad, its rate and its acceleration (3, n) of a descent that the virtual model can fly."""
+    """Return height over the pad, its rate and its acceleration (3, n) of a descent that the virtual model can fly.
+
+    Args:
+        state: height, rate and acceleration now.
+        offset_s: (n,) after now, rising.
+        limits: of the flight.
+        descent: its rates.
+        lowest_m: where it waits; None for one that goes on, to below the pad.
+    """
     lowest_m = -descent.press_depth_m if lowest_m is None else lowest_m
-    if not previews:  # a law that looks at the present alone is given the rate that is wanted there
-        wanted_m_s = min(
-            max(descent.descent_gain_hz * state[0], descent.touchdown_sink_rate_m_s), descent.descent_rate_max_m_s
-        )
-        state = (state[0], -wanted_m_s if state[0] > lowest_m else 0.0, 0.0)
     return descent_path(
         state,
         (descent.descent_gain_hz, descent.descent_rate_max_m_s, descent.touchdown_sink_rate_m_s, lowest_m),
-        (_DESCENT_SHARE * limits.vertical_acceleration_max_m_s2, _DESCENT_SHARE * limits.jerk_max_m_s3),
+        (_DESCENT_SHARE * limits.vertical_acceleration_max_m_s2, min(limits.jerk_max_m_s3, _DESCENT_JERK_MAX_M_S3)),
         offset_s,
     )
 

@@ -177,6 +177,32 @@ def limit_sink(reference: ReferenceState, lowest_enu_m: float, duration_s: float
     return replace(reference, acceleration_enu_m_s2=np.array([ax, ay, least_m_s2]))
 
 
+def keep_up(
+    planned: ReferenceState, before: ReferenceState, lowest_enu_m: float, duration_s: float, period_s: float
+) -> ReferenceState:
+    """Return the planned next state, kept up by `limit_sink`, so that it may be carried on for `duration_s`.
+
+    The model itself is kept up, for the drone follows what is sent, and the next plan begins there.
+
+    Args:
+        planned: the model `period_s` after `before`.
+        before: the model now.
+        lowest_enu_m: where it is to end above.
+        duration_s: for which a setpoint is carried on.
+        period_s: of control.
+    """
+    limited = limit_sink(planned, lowest_enu_m, duration_s)
+    if limited is planned:
+        return planned
+    up = extrapolate(replace(before, acceleration_enu_m_s2=limited.acceleration_enu_m_s2), period_s)
+    kept_up = ReferenceState(
+        position_enu_m=np.array([*planned.position_enu_m[:2], up.position_enu_m[2]]),
+        velocity_enu_m_s=np.array([*planned.velocity_enu_m_s[:2], up.velocity_enu_m_s[2]]),
+        acceleration_enu_m_s2=limited.acceleration_enu_m_s2,
+    )
+    return limit_sink(kept_up, lowest_enu_m, duration_s)
+
+
 def extrapolate(reference: ReferenceState, duration_s: float) -> ReferenceState:
     """Return the model `duration_s` later (or, negative, earlier) at its present acceleration."""
     velocity, acceleration = reference.velocity_enu_m_s, reference.acceleration_enu_m_s2

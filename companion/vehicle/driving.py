@@ -82,6 +82,12 @@ def brakes_hard(driving: Driving, config: DescentConfig) -> bool:
     return newest is not None and newest[0] < -config.hard_brake_m_s2
 
 
+def _speeds_up_hard(driving: Driving, config: DescentConfig) -> bool:
+    """Return whether the vehicle has just sped up as hard as it would have to brake to be waited above."""
+    newest = driving.changes[-1] if driving.changes else None
+    return newest is not None and newest[0] > config.hard_brake_m_s2
+
+
 def drives_unevenly(driving: Driving, fix_age_s: float | None, config: DescentConfig) -> bool:
     """Return whether a vehicle, whose newest fix is `fix_age_s` old, will have changed its speed by when that is told.
 
@@ -187,11 +193,14 @@ def update_surprise(
         known = estimator.estimate(memory, then_ns)
         if known is None or not _is_known(known):
             continue
-        off_m_s = abs(_speed_m_s(known) - speed_m_s)
+        faster_m_s = _speed_m_s(known) - speed_m_s
         is_sure = _std_m_s(known) < _SURE_STD_MAX_M_S
         if is_sure:
             surprise = replace(surprise, driving=with_velocity(surprise.driving, then_ns, known.velocity_enu_m_s))
-        is_wrong = off_m_s > max(config.surprise_speed_m_s, _SURPRISE_STDS * std_m_s)
+        # To depart so once more it has to stop first, and over fresh data that surprises by itself if it is as hard.
+        departs = faster_m_s > 0.0 or _speeds_up_hard(surprise.driving, config)
+        counts = not departs or _is_late((t_ns - newest_ns) * 1e-9, config)
+        is_wrong = counts and abs(faster_m_s) > max(config.surprise_speed_m_s, _SURPRISE_STDS * std_m_s)
         if is_wrong or (is_sure and brakes_hard(surprise.driving, config)):
             wrong_ns, before_ns = then_ns - t_ns + monotonic_ns, surprise.surprised_ns
             surprise = replace(surprise, surprised_ns=wrong_ns if before_ns is None else max(wrong_ns, before_ns))

@@ -44,3 +44,8 @@ def test_no_gains_whatever_are_without_a_model_that_settles(driver: Driver, data
     start = np.vstack((np.ones((2, 1)), np.zeros((states - 2, 1))))
     ends = response.predict(start, np.zeros((len(HORIZON_OFFSETS_S), 1)))[-1]
     assert np.abs(ends[:2]).max() < 3.0
+
+
+def test_gains_of_the_simulated_px4_are_taken_as_they_are() -> None:
+    cascade = Px4Driver().cascade({"MPC_XY_P": 1.767, "MPC_XY_VEL_P_ACC": 4.81, "MPC_XY_VEL_I_ACC": 9.6})
+    assert (cascade.position_per_s, cascade.velocity_per_s, cascade.integral_per_s2) == (1.767, 4.81, 9.6)

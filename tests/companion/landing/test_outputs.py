@@ -39,8 +39,8 @@ def test_unknown_is_none() -> None:
 
 
 @pytest.mark.parametrize("height_m", [2.7, 1.3, 0.6, 0.2])
-def test_time_to_contact_is_that_of_the_sink_profile(height_m: float) -> None:
-    descent = CONFIG.descent
+def test_time_to_contact_of_a_drone_that_sinks_as_wanted_is_that_of_the_sink_profile(height_m: float) -> None:
+    descent, pad = CONFIG.descent, pad_at()
 
     def rate(_: float, h: np.ndarray) -> list[float]:
         wanted = descent.descent_gain_hz * h[0]
@@ -51,8 +51,19 @@ def test_time_to_contact_is_that_of_the_sink_profile(height_m: float) -> None:
 
     contact.terminal = True  # type: ignore[attr-defined]  # as scipy wants it
     truth = solve_ivp(rate, (0.0, 20.0), [height_m], events=contact, max_step=1e-2)
-    status = landing_status(MEMORY, situation(height_m), CONFIG)
-    assert status.time_to_contact_s == pytest.approx(truth.t[-1], rel=0.01)
+    sinking = drone_at(height_m, 0.0, (0.0, 0.0, rate(0.0, np.array([height_m]))[0]), pad=pad)
+    status = landing_status(MEMORY, replace(situation(), drone=sinking, pad=pad), CONFIG)
+    assert status.time_to_contact_s == pytest.approx(truth.t[-1], rel=0.03)
+
+
+def test_time_to_contact_of_a_drone_that_does_not_sink_yet_is_longer_and_with_little_jerk_longer_still() -> None:
+    sinking, hovering = (
+        replace(situation(), drone=drone_at(1.5, 0.0, (0.0, 0.0, rate_m_s), pad=pad_at()), pad=pad_at())
+        for rate_m_s in (-1.2, 0.0)
+    )
+    smooth = replace(hovering, limits=replace(CONFIG.limits.flight_limits(), jerk_max_m_s3=4.0))
+    times_s = [landing_status(MEMORY, one, CONFIG).time_to_contact_s or 0.0 for one in (sinking, hovering, smooth)]
+    assert times_s[0] + 0.3 < times_s[1] < times_s[2] - 0.05
 
 
 def test_time_to_contact_is_zero_on_the_pad_and_told_while_descending_only() -> None:

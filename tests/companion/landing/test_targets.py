@@ -41,12 +41,27 @@ def test_hover_aim_stays_at_its_point() -> None:
     assert not np.any(aim.target.velocity_enu_m_s)
 
 
-@pytest.mark.parametrize("phase", [Phase.CHASE, Phase.ALIGN, Phase.DESCEND, Phase.TOUCHDOWN, Phase.ABORT])
+@pytest.mark.parametrize("phase", [Phase.ALIGN, Phase.DESCEND, Phase.TOUCHDOWN, Phase.ABORT])
 def test_pad_aim_follows_the_pad_horizontally(phase: Phase) -> None:
     pad = _pad_path(5.0)
     aim = pad_aim(phase, pad, _at(0.0, -2.0, 5.0), FEET_M, CONFIG, limits=LIMITS)
     np.testing.assert_array_equal(aim.target.position_enu_m[:, :2], pad.position_enu_m[:, :2])
     np.testing.assert_array_equal(aim.target.velocity_enu_m_s[:, :2], pad.velocity_enu_m_s[:, :2])
+
+
+@pytest.mark.parametrize(("std_m", "short_m"), [(0.05, 0.05), (0.4, 0.4), (2.0, 0.5 * DESCENT.align_distance_m)])
+def test_chase_aims_short_of_a_pad_by_what_its_place_is_unsure(std_m: float, short_m: float) -> None:
+    pad = replace(_pad_path(5.0), position_std_m=np.full((len(HORIZON_OFFSETS_S), 3), std_m))
+    aim = pad_aim(Phase.CHASE, pad, _at(9.0, -10.0, 5.0), FEET_M, CONFIG, limits=LIMITS)
+    shift = aim.target.position_enu_m[:, :2] - pad.position_enu_m[:, :2]
+    np.testing.assert_allclose(shift, np.tile([0.6 * short_m, -0.8 * short_m], (len(shift), 1)))
+    np.testing.assert_array_equal(aim.target.velocity_enu_m_s[:, :2], pad.velocity_enu_m_s[:, :2])
+
+
+def test_chase_that_is_as_near_as_the_pad_is_unsure_stays_where_it_is() -> None:
+    pad = replace(_pad_path(5.0), position_std_m=np.full((len(HORIZON_OFFSETS_S), 3), 0.6))
+    aim = pad_aim(Phase.CHASE, pad, _at(3.3, -2.2, 5.0), FEET_M, CONFIG, limits=LIMITS)
+    np.testing.assert_allclose(aim.target.position_enu_m[0, :2], [3.3, -2.2])
 
 
 @pytest.mark.parametrize("phase", [Phase.CHASE, Phase.ALIGN, Phase.ABORT])

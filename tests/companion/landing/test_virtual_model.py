@@ -14,6 +14,7 @@ from companion.landing.virtual_model import (
     add_to_past,
     extrapolate,
     free_place,
+    keep_up,
     limit_sink,
     press_down,
     setpoint_at,
@@ -175,6 +176,19 @@ def test_nothing_but_the_acceleration_upwards_is_limited(
     np.testing.assert_array_equal(limited.velocity_enu_m_s, reference.velocity_enu_m_s)
     np.testing.assert_array_equal(limited.acceleration_enu_m_s2[:2], reference.acceleration_enu_m_s2[:2])
     assert limited.acceleration_enu_m_s2[2] >= up_m_s2
+
+
+motions = st.tuples(rates, ups)
+
+
+@given(heights, motions, motions, durations)
+def test_next_state_that_is_kept_up_may_be_carried_on(
+    height_m: float, planned: tuple[float, float], before: tuple[float, float], duration_s: float
+) -> None:
+    kept_up = keep_up(_moving(height_m, *planned), _moving(height_m + 0.01, *before), 0.6, duration_s, 0.02)
+    carried = extrapolate(kept_up, duration_s)
+    sinks_m_s = max(-float(carried.velocity_enu_m_s[2]), 0.0)
+    assert carried.position_enu_m[2] - sinks_m_s**2 / (2.0 * BRAKES_M_S2) >= 0.6 - 1e-6
 
 
 def test_model_of_an_autopilot_that_carries_nothing_on_is_left_alone() -> None:

@@ -178,6 +178,13 @@ def test_hard_brake_surprises(sensors: Sensors, truth: Drive, *, surprises: bool
     assert ((found.surprised_ns or 0) > now_ns(BEGUN_S)) is surprises
 
 
+@pytest.mark.parametrize(("sensors", "surprises"), [(NOMINAL, False), (LATE, True)], ids=["fresh", "late"])
+def test_hard_departure_surprises_over_late_data_only(sensors: Sensors, *, surprises: bool) -> None:
+    departs = drive(14.0, lambda t_s: min(max(4.0 * (t_s - 8.0), 0.0), 8.0), lambda _: 0.0)
+    found = after(departs, sensors, 3, departs.length_s)
+    assert ((found.surprised_ns or 0) > now_ns(BEGUN_S)) is surprises
+
+
 @pytest.mark.parametrize(
     ("off_m_s", "std_m_s", "surprises"),
     [(0.8, 0.2, True), (0.6, 0.2, False), (0.8, 0.5, False), (1.3, 0.5, True)],
