@@ -90,7 +90,14 @@ class ImmConfig(StrictModel):
     course_speed_min_m_s: Positive = 1.0
     heading_known_std_rad: Positive = 0.5  # worse than this the heading is not told
     curvature_std_rad_m: Positive = 0.1  # at the start; a car's tightest turn is some 0.2
-    climb_psd_m2_s3: Positive = 0.01  # of the road's grade; measured
+    # The change of the grade in vertical curves of streets: the root mean square of 1 % in K for the least K of crests
+    # (2, 4, 7, 11 m) and sags (6, 9, 13, 18 m) for 30 to 60 km/h (AASHTO Green Book 2011, 3.4.6). Faster roads bend
+    # less: sags are made for the comfort of 0.3 m/s^2. Curves are 10 m long and longer.
+    grade_std: Positive = 0.06  # at the start; 12 % is steep for a street
+    bend_std_per_m: Positive = 0.002
+    bend_acceleration_std_m_s2: Positive = 0.3
+    bend_length_m: Positive = 10.0
+    road_psd_m2_m: NotNegative = 1e-5  # of the height, as ISO 8608 has it for a road of class B (waviness 2)
     heave_std_m: Positive = 0.04  # benchmark: `rough_road` heaves 0.1 m at 0.5 to 1 Hz, the others not at all
     heave_frequency_hz: Positive = 0.75
     heave_damping: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.3

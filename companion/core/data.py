@@ -70,6 +70,7 @@ class Forecast(Struct, frozen=True, kw_only=True, eq=False):
         position_std_m: (n, 3) standard deviation; the pad's, where the estimator knows its lever arm.
         is_coarse: the vehicle's fixes alone are too coarse to land by.
         yaw_std_rad: standard deviation of the heading now, 0 where there is none.
+        grade: (n,) of the road in the direction of the heading, m of height per m; None where it is not estimated.
     """
 
     t_ns: int
@@ -81,6 +82,7 @@ class Forecast(Struct, frozen=True, kw_only=True, eq=False):
     position_std_m: Array
     is_coarse: bool = False
     yaw_std_rad: float = 0.0
+    grade: Array | None = None
 
 
 class OwnState(Struct, frozen=True, kw_only=True):

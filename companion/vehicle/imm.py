@@ -36,13 +36,12 @@ KINDS = {
 }
 UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
 PLACE = np.array([0, 1, 8])  # indices of the position
-MOVES = np.array([2, 3, 4, 5, 9, 11])  # of what a velocity tells about
+MOVES = np.array([2, 3, 4, 5, 9, 11, kernels.BEND])  # of what a velocity tells about
 OFFSET = np.array([12, 13, 14])
 CURVATURE, HEADING = 6, 7
 CLOCK = kernels.CLOCK
 TURNS = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
 TURN_AGE_MAX_S = 1.0  # of a sensor that is at work: several periods of the slowest
-CLIMB_STD_M_S = 1.0  # at the start: a grade of 5 % at 20 m/s
 
 IndexArray = NDArray[np.intp]
 
@@ -150,7 +149,7 @@ class ImmModel:
 
     def forecast(self, state: ImmState, t_ns: int, offset_s: Array) -> Forecast:
         """Return the future along the present curvature, with an acceleration that fades and stops at standstill."""
-        position, velocity, acceleration, yaw, std, heading_variance = forecasts.forecast_modes(
+        position, velocity, acceleration, yaw, grade, std, heading_variance = forecasts.forecast_modes(
             state.modes, _own(offset_s), self._noises(state), self.numbers.motion, self._known_variance
         )
         return Forecast(
@@ -162,6 +161,7 @@ class ImmModel:
             yaw_rad=yaw if heading_variance < self._known_variance else None,
             position_std_m=std,
             is_coarse=state.fix_bias_variance_m2 > 0.0,
+            grade=grade,
             yaw_std_rad=math.sqrt(heading_variance),
         )
 
@@ -177,7 +177,7 @@ class ImmModel:
         return self.config.heading_known_std_rad**2
 
     def _noises(self, state: ImmState) -> Array:
-        """Both modes' noise, (2, 11), as `imm_kernels.process_noise` takes it."""
+        """Both modes' noise, (2, 14), as `imm_kernels.process_noise` takes it."""
         walk_m2_s = 2.0 * state.fix_bias_variance_m2 / self.config.fix_bias_time_s
         receiver_m2_s = self.config.frame_offset_walk_m2_s + walk_m2_s
         return noises_with(
@@ -188,15 +188,15 @@ class ImmModel:
         )
 
     def _prior_variances(self) -> Array:
-        """Of every state but position, offset and clock, (16,)."""
+        """Of every state but position, offset and clock, (17,)."""
         config = self.config
         speed, acceleration = config.initial_speed_std_m_s**2, config.initial_acceleration_std_m_s2**2
         heave = config.heave_std_m**2
         heave_rate = heave * float(self.numbers.motion[1]) ** 2
         curvature = config.curvature_std_rad_m**2
         moving = [speed, speed, acceleration, acceleration, curvature, UNKNOWN_HEADING_VARIANCE]
-        vertical = [0.0, CLIMB_STD_M_S**2, heave, heave_rate]
-        return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0])
+        vertical = [0.0, config.grade_std**2, heave, heave_rate]
+        return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0, config.bend_std_per_m**2])
 
     def _step_size(self, state: ImmState, measurement: Measurement) -> float:
         """How far, m, a measured place is from the expected one; at least the prior of the offset."""

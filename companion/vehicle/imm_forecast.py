@@ -7,14 +7,14 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
-from companion.vehicle.imm_kernels import SIZE
+from companion.vehicle.imm_kernels import BEND, SIZE
 from companion.vehicle.imm_mixing import Modes, combine, glide, heading_variance, shifted, with_direction
 from companion.vehicle.imm_sensors import antenna_velocity, horizontal_acceleration
 
 
 @compiled_kernel
 def kinematics(states: Array, motion: Array) -> tuple[Array, Array, Array]:
-    """Return the antenna's position and velocity and the pad's acceleration in W, each (n, 3), of `states` (n, 16)."""
+    """Return the antenna's position and velocity and the pad's acceleration in W, each (n, 3), of `states` (n, 17)."""
     n = len(states)
     position, velocity, acceleration = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
     for i in range(n):
@@ -22,24 +22,32 @@ def kinematics(states: Array, motion: Array) -> tuple[Array, Array, Array]:
         position[i, 0], position[i, 1], position[i, 2] = x[0], x[1], x[8] + x[10]
         velocity[i], _ = antenna_velocity(x, motion[5:8])
         acceleration[i, :2], _ = horizontal_acceleration(x)
-        acceleration[i, 2] = -(motion[1] ** 2) * x[10] - 2.0 * motion[2] * motion[1] * x[11]
+        hx, hy = np.cos(x[7]), np.sin(x[7])
+        forward, pull = hx * x[2] + hy * x[3], hx * x[4] + hy * x[5]
+        climbing = pull * x[9] + forward**2 * x[BEND]
+        acceleration[i, 2] = climbing - (motion[1] ** 2) * x[10] - 2.0 * motion[2] * motion[1] * x[11]
     return position, velocity, acceleration
 
 
 @compiled_kernel
 def kinematics_jacobian(x: Array, motion: Array) -> Array:
-    """Return the Jacobian `(9, 16)` of position, velocity and acceleration."""
+    """Return the Jacobian `(9, 17)` of position, velocity and acceleration."""
     G = np.zeros((9, SIZE))
     G[0, 0], G[1, 1], G[2, 8], G[2, 10] = 1.0, 1.0, 1.0, 1.0
     _, G[3:6] = antenna_velocity(x, motion[5:8])
     _, G[6:8, 2:7] = horizontal_acceleration(x)
+    hx, hy = np.cos(x[7]), np.sin(x[7])
+    forward, pull = hx * x[2] + hy * x[3], hx * x[4] + hy * x[5]
+    G[8, 2], G[8, 3] = 2.0 * forward * x[BEND] * hx, 2.0 * forward * x[BEND] * hy
+    G[8, 4], G[8, 5], G[8, 9], G[8, BEND] = x[9] * hx, x[9] * hy, pull, forward**2
+    G[8, 7] = x[9] * (hx * x[5] - hy * x[4]) + 2.0 * forward * x[BEND] * (hx * x[3] - hy * x[2])
     G[8, 10], G[8, 11] = -(motion[1] ** 2), -2.0 * motion[2] * motion[1]
     return G
 
 
 @compiled_kernel
 def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) -> tuple[Array, Array]:
-    """Return the means `(n, 16)` and the pad's position variances `(n, 3)` at `offset_s` (n,), not falling.
+    """Return the means `(n, 17)` and the pad's position variances `(n, 3)` at `offset_s` (n,), not falling.
 
     The pad's, because a heading that is not well known moves it about an antenna that is.
     """
@@ -61,26 +69,27 @@ def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) ->
 @compiled_kernel
 def forecast_modes(
     modes: Modes, offset_s: Array, noises: Array, motion: Array, known_variance: float
-) -> tuple[Array, Array, Array, Array, Array, float]:
+) -> tuple[Array, Array, Array, Array, Array, Array, float]:
     """Return the mixture over the horizon.
 
     Args:
         modes: the filter.
         offset_s: (n,) not falling.
-        noises: (2, 11) of both modes.
+        noises: (2, 14) of both modes.
         motion: its numbers.
         known_variance: of a heading that is known, rad^2; without one the lever arm has no direction.
 
     Returns:
-        Position, velocity and acceleration, each (n, 3), heading (n,), the pad's deviation (n, 3), and the present
-        variance of the heading, rad^2.
+        Position, velocity and acceleration, each (n, 3), heading and grade, each (n,), the pad's deviation (n, 3), and
+        the present variance of the heading, rad^2.
     """
     directed = with_direction(motion, modes, known_variance)
     x, P = combine(modes[0], modes[1], modes[2])
     noise = modes[2][0] * noises[0] + modes[2][1] * noises[1]
     means, variances = horizon(x, P, offset_s, noise, directed)
     position, velocity, acceleration = kinematics(means, directed)
-    return position, velocity, acceleration, means[:, 7].copy(), np.sqrt(variances), heading_variance(modes)
+    yaw, grade = means[:, 7].copy(), means[:, 9].copy()
+    return position, velocity, acceleration, yaw, grade, np.sqrt(variances), heading_variance(modes)
 
 
 @compiled_kernel
@@ -95,7 +104,7 @@ def describe_modes(
         known_variance: as above.
 
     Returns:
-        Mean (16,) and covariance (16, 16), position, velocity and acceleration, each (1, 3), their Jacobian (9, 16),
+        Mean (17,) and covariance (17, 17), position, velocity and acceleration, each (1, 3), their Jacobian (9, 17),
         and the variance of the heading, rad^2.
     """
     directed = with_direction(motion, modes, known_variance)

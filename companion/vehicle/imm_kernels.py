@@ -1,21 +1,27 @@
 """Compiled arithmetic of the turning model: one step of motion, its noise, and the Kalman update.
 
-State `x` (16,) of the vehicle in W:
+State `x` (17,) of the vehicle in W:
   0:2  p   horizontal position, m: the antenna's, and the pad's while it moves (`imm_mixing.glide`)
   2:4  v   horizontal velocity of the pad's centre, m/s, where the vehicle's body follows the road
   4:6  b   what changes the velocity apart from turning, m/s^2; decays with time constant tau
   6    k   curvature of the track, rad/m, left positive
   7    psi heading of V, rad, not wrapped
-  8:10     height of the road, m, and its rate, m/s
+  8   z    height without heave, m: the antenna's, and the pad's while it moves, as `p`
+  9   g    grade of the road in the direction in which the vehicle heads, m of height per m; V pitches by it
   10:12 h  heave about the road, m, and its rate, m/s: a damped oscillator
   12:15 o  what the vehicle's receiver must be corrected by to be in the drone's frame, m
   15   c   how far the vehicle's clock is ahead of the drone's, s: what it stamps with now was true c ago
+  16  e    change of the grade per metre, 1/m
 With `w = k |v|` and J the turn by +90 degrees: `dp = v, dv = w J v + b, db = w J b - b/tau, dpsi = w`. At constant
 `w` this has a closed form: in a frame that turns with the vehicle, `v` relaxes along `b` and nothing else happens.
 At rest `w` is zero, so a standing vehicle cannot turn. Braking ends at standstill. The curvature is driven by the
 lateral acceleration that drivers change, `q / v^4`, and fades (Ornstein-Uhlenbeck) so that its standard deviation stays
 that of what a vehicle can steer: a random walk would let a vehicle that stands turn about its own antenna.
-Source: constant turn rate models in Bar-Shalom, Li and Kirubarajan 2001, 11.7; curvature after Baca et al. 2019.
+Along the distance s that is driven in the direction of the heading, `dz/ds = g, dg/ds = e`; e is driven by noise per
+metre and fades over the length of a vertical curve. So height changes with the distance only: a vehicle that stands
+neither climbs nor heaves, a fast one meets a grade all the sooner.
+Source: constant turn rate models in Bar-Shalom, Li and Kirubarajan 2001, 11.7; curvature after Baca et al. 2019;
+vertical curves of roads: AASHTO, A Policy on Geometric Design of Highways and Streets, 3.4.6.
 """
 
 import math
@@ -26,11 +32,12 @@ from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.small_matrices import inverse_of, less_outer, times
 
-SIZE = 16
+SIZE = 17
 MOTION = 8  # leading states that the non-linear motion touches
 FOLLOWS = (0, 0, 1, 1, 1, 1, 2, 1)  # each of them: 2 is the curvature, 1 its integral, 0 its second one
-CLOCK = 15
+CLOCK, BEND = 15, 16
 HEADING_NOISE, CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST = 4, 8, 9, 10  # their places in the noise
+BEND_STD, BEND_ACCELERATION_STD, BEND_LENGTH, ROAD_NOISE = 5, 11, 12, 13
 
 
 @compiled_kernel
@@ -45,11 +52,35 @@ def standstill_s(v: Array, b: Array, tau_s: float, dt_s: float) -> float:
 
 
 @compiled_kernel
-def advance(x: Array, dt_s: float, tau_s: float, heave: Array) -> tuple[Array, Array]:
-    """Return the state `dt_s` later and its Jacobian `(16, 16)`.
+def climb(x: Array, y: Array, F: Array, by_v_s: float, by_b_s2: float) -> None:
+    """Write height and grade into `y`, and their rows into `F`, after a drive from `x`.
 
     Args:
-        x: state (16,).
+        x: state (17,) before.
+        y: the state afterwards, under way.
+        F: its Jacobian, under way.
+        by_v_s: what the velocity adds to the place, s.
+        by_b_s2: what the acceleration adds to it, s^2.
+    """
+    hx, hy = math.cos(x[7]), math.sin(x[7])
+    forward, pull = hx * x[2] + hy * x[3], hx * x[4] + hy * x[5]
+    aside = by_v_s * (hx * x[3] - hy * x[2]) + by_b_s2 * (hx * x[5] - hy * x[4])
+    along = forward * by_v_s + pull * by_b_s2
+    y[8] = x[8] + (x[9] + 0.5 * x[BEND] * along) * along
+    y[9] = x[9] + x[BEND] * along
+    F[8, 9], F[8, BEND], F[9, BEND] = along, 0.5 * along**2, along
+    for row, change in ((8, y[9]), (9, x[BEND])):
+        F[row, 2], F[row, 3] = change * by_v_s * hx, change * by_v_s * hy
+        F[row, 4], F[row, 5] = change * by_b_s2 * hx, change * by_b_s2 * hy
+        F[row, 7] = change * aside
+
+
+@compiled_kernel
+def advance(x: Array, dt_s: float, tau_s: float, heave: Array) -> tuple[Array, Array]:
+    """Return the state `dt_s` later and its Jacobian `(17, 17)`.
+
+    Args:
+        x: state (17,).
         dt_s: step, short against a turn (0.1 s).
         tau_s: time constant of `b`.
         heave: transition (2, 2) of the heave over `dt_s`.
@@ -74,7 +105,6 @@ def advance(x: Array, dt_s: float, tau_s: float, heave: Array) -> tuple[Array, A
     y[2], y[3] = c * wx - s * wy, s * wx + c * wy
     y[4], y[5] = decay * (c * bx - s * by), decay * (s * bx + c * by)
     y[7] = x[7] + turn
-    y[8] = x[8] + x[9] * dt_s
     y[10] = heave[0, 0] * x[10] + heave[0, 1] * x[11]
     y[11] = heave[1, 0] * x[10] + heave[1, 1] * x[11]
 
@@ -91,16 +121,18 @@ def advance(x: Array, dt_s: float, tau_s: float, heave: Array) -> tuple[Array, A
         F[i, 3] += d_turn[i] * by_speed * uy
         F[i, 6] = d_turn[i] * speed_mid * dt_s
     F[7, 2], F[7, 3], F[7, 6] = by_speed * ux, by_speed * uy, speed_mid * dt_s
-    F[8, 9] = dt_s
     F[10:12, 10:12] = heave
 
     stop_s = standstill_s(x[2:4], x[4:6], tau_s, dt_s)
     if stop_s >= 0.0:
         stop_t2 = tau_s * (stop_s - tau_s * (1.0 - math.exp(-stop_s / tau_s)))
-        along = speed * stop_s + (ux * bx + uy * by) * stop_t2
-        y[0], y[1] = x[0] + along * ux, x[1] + along * uy
+        rolls = speed * stop_s + (ux * bx + uy * by) * stop_t2
+        y[0], y[1] = x[0] + rolls * ux, x[1] + rolls * uy
         y[2:6] = 0.0
-        y[7] = x[7] + x[6] * along
+        y[7] = x[7] + x[6] * rolls
+        climb(x, y, F, stop_s, stop_t2)
+    else:
+        climb(x, y, F, dt_s, t2)
     return y, F
 
 
@@ -109,6 +141,24 @@ def curvature_left(speed_m_s: float, dt_s: float, noise: Array) -> float:
     """Return which share of the curvature is left after `dt_s`, with `noise` as `process_noise` takes it."""
     psd = noise[2] / max(speed_m_s, noise[3]) ** 4
     return math.exp(-0.5 * psd * dt_s / noise[CURVATURE_STD] ** 2)
+
+
+@compiled_kernel
+def forward_speed(x: Array) -> float:
+    """Return the speed in the direction of the heading, m/s."""
+    return float(math.cos(x[7]) * x[2] + math.sin(x[7]) * x[3])
+
+
+@compiled_kernel
+def bend_step(x: Array, dt_s: float, noise: Array) -> tuple[float, float]:
+    """Return which share of the grade's change per metre is left after `dt_s`, and the variance that its noise adds.
+
+    Nobody drives over a crest much faster than comfort allows, so the change is bounded by its acceleration, too.
+    """
+    speed = abs(forward_speed(x))
+    left = math.exp(-speed * dt_s / noise[BEND_LENGTH])
+    std = min(noise[BEND_STD], noise[BEND_ACCELERATION_STD] / max(speed, 0.1) ** 2)
+    return left, std**2 * (1.0 - left * left)
 
 
 @compiled_kernel
@@ -131,14 +181,16 @@ def heave_step(dt_s: float, frequency_rad_s: float, damping: float, std_m: float
 
 @compiled_kernel
 def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array) -> Array:
-    """Return Q `(16, 16)` over `dt_s`.
+    """Return Q `(17, 17)` over `dt_s`.
 
     Args:
-        x: state (16,), whose velocity says what is along and what is across.
+        x: state (17,), whose velocity says what is along and what is across.
         dt_s: step.
-        noise: (11,) jerk along and across the track, m^2/s^5; lateral acceleration, m^2/s^5; lowest speed for the
-            curvature, m/s; heading, rad^2/s; climb, m^2/s^3; the receiver's and the drone's own wandering, m^2/s;
-            clock, s^2/s; standard deviation of the curvature in the long run, rad/m; heading at rest, rad^2/s.
+        noise: (14,) jerk along and across the track, m^2/s^5; lateral acceleration, m^2/s^5; lowest speed for the
+            curvature, m/s; heading, rad^2/s; standard deviation of the grade's change, 1/m; the receiver's and the
+            drone's own wandering, m^2/s; clock, s^2/s; standard deviation of the curvature in the long run, rad/m;
+            heading at rest, rad^2/s; standard deviation of a vertical curve's acceleration, m/s^2; its length, m;
+            height of the road, m^2/m.
         heave_noise: (2, 2) of the heave over `dt_s`.
     """
     Q = np.zeros((SIZE, SIZE))
@@ -165,8 +217,13 @@ def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array) -> Ar
         for j in range(MOTION):
             Q[i, j] += turning * white_jerk[FOLLOWS[i]][FOLLOWS[j]] * rates[i] * rates[j]
     Q[7, 7] += (noise[HEADING_NOISE] * share + noise[HEADING_AT_REST] * (1.0 - share)) * d
-    Q[8, 8], Q[8, 9], Q[9, 8], Q[9, 9] = noise[5] * d**3 / 3, noise[5] * d**2 / 2, noise[5] * d**2 / 2, noise[5] * d
-    Q[10:12, 10:12] = heave_noise
+    s = forward_speed(x) * d
+    _, bends = bend_step(x, d, noise)
+    Q[8, 8], Q[9, 9], Q[BEND, BEND] = bends * s**4 / 20 + noise[ROAD_NOISE] * abs(s), bends * s**2 / 3, bends
+    Q[8, 9] = Q[9, 8] = bends * s**3 / 8
+    Q[8, BEND] = Q[BEND, 8] = bends * s**2 / 6
+    Q[9, BEND] = Q[BEND, 9] = bends * s / 2
+    Q[10:12, 10:12] = heave_noise * share  # it is the road that shakes a vehicle
     for place, offset in ((0, 12), (1, 13), (8, 14)):  # where the drone errs about itself, both move
         Q[place, place] += noise[7] * d
         Q[place, offset] = Q[offset, place] = noise[7] * d

@@ -1,6 +1,6 @@
 """Compiled steps of two interacting turning models that differ in their noise only (Blom and Bar-Shalom 1988).
 
-`Modes` are means (2, 16), covariances (2, 16, 16) and probabilities (2,). Between measurements the vehicle may change
+`Modes` are means (2, 17), covariances (2, 17, 17) and probabilities (2,). Between measurements the vehicle may change
 from one mode to the other as a continuous Markov chain with the given mean dwell times. `motion` (8,) is the time
 constant of the acceleration, s, the heave's angular frequency, rad/s, damping and standard deviation, m, the time
 constant of the clock's difference, s, and the lever arm (3,) from the antenna to the pad in V, m.
@@ -12,7 +12,17 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
-from companion.vehicle.imm_kernels import CLOCK, SIZE, advance, correct, curvature_left, heave_step, process_noise
+from companion.vehicle.imm_kernels import (
+    BEND,
+    CLOCK,
+    SIZE,
+    advance,
+    bend_step,
+    correct,
+    curvature_left,
+    heave_step,
+    process_noise,
+)
 from companion.vehicle.imm_sensors import (
     COURSE,
     HEADING,
@@ -62,17 +72,24 @@ def mix(modes: Modes, changes: Array) -> Modes:
 
 @compiled_kernel
 def shifted(x: Array, P: Array, lever: Array, sign: float) -> tuple[Array, Array]:
-    """Return mean and covariance with the position moved by `sign` times `lever` (3,) of V, which the heading turns."""
+    """Return mean and covariance with the position moved by `sign` times `lever` (3,) of V.
+
+    The heading turns it, and the grade raises what is in front. Its upright part is left out, for it is the same at all
+    times; that it leans with the grade, too, is a tenth of it at most.
+    """
     arm_x, arm_y = turned(lever, x[7])
     y, S = x.copy(), P.copy()
     y[0] += sign * arm_x
     y[1] += sign * arm_y
+    y[8] += sign * lever[0] * x[9]
     for i in range(SIZE):
         S[0, i] -= sign * arm_y * S[7, i]
         S[1, i] += sign * arm_x * S[7, i]
+        S[8, i] += sign * lever[0] * S[9, i]
     for i in range(SIZE):
         S[i, 0] -= sign * arm_y * S[i, 7]
         S[i, 1] += sign * arm_x * S[i, 7]
+        S[i, 8] += sign * lever[0] * S[i, 9]
     return y, S
 
 
@@ -83,10 +100,10 @@ def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple
     It is the pad's centre that moves as `advance` says, and the antenna swings about it.
 
     Args:
-        x: mean (16,).
-        P: covariance (16, 16).
+        x: mean (17,).
+        P: covariance (17, 17).
         dt_s: time to pass.
-        noise: (11,) as `process_noise` takes it.
+        noise: (14,) as `process_noise` takes it.
         motion: (8,), see the module; a lever arm of zero where it has no known direction.
     """
     steps = max(math.ceil(dt_s / STEP_MAX_S - 1e-9), 1)
@@ -96,10 +113,13 @@ def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple
     x, P = shifted(x, P, motion[5:8], 1.0)
     for _ in range(steps):
         Q = process_noise(x, step_s, noise, heave_noise)
-        bend_left = curvature_left(math.hypot(x[2], x[3]), step_s, noise)
+        turn_left = curvature_left(math.hypot(x[2], x[3]), step_s, noise)
+        bend_left, _ = bend_step(x, step_s, noise)
         x, F = advance(x, step_s, motion[0], heave)
-        x[6] *= bend_left
-        F[6, 6] = bend_left
+        x[6] *= turn_left
+        F[6, 6] = turn_left
+        x[BEND] *= bend_left
+        F[BEND, BEND] = bend_left
         x[CLOCK] *= clock_left
         F[CLOCK, CLOCK] = clock_left
         P = carried_through(F, P) + Q
@@ -133,7 +153,7 @@ def with_direction(motion: Array, modes: Modes, known_variance: float) -> Array:
 def predict_modes(
     modes: Modes, dt_s: float, noises: Array, dwell_s: Array, motion: Array, known_variance: float
 ) -> Modes:
-    """Return the filter `dt_s` later; `noises` (2, 11), `dwell_s` (2,), the others as `with_direction` has them."""
+    """Return the filter `dt_s` later; `noises` (2, 14), `dwell_s` (2,), the others as `with_direction` has them."""
     directed = with_direction(motion, modes, known_variance)
     means, covariances, weights = mix(modes, switching(dwell_s, dt_s))
     for j in range(2):

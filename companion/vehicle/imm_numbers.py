@@ -21,7 +21,7 @@ class Numbers:
     Attributes:
         motion: (8,) as `imm_mixing` has it.
         dwell_s: (2,) of both modes.
-        noises: (2, 11) as `imm_kernels.process_noise` takes them, but for what depends on the state (`noises_with`).
+        noises: (2, 14) as `imm_kernels.process_noise` takes them, but for what depends on the state (`noises_with`).
         lever_m: (3,) from the antenna to the pad in V.
         course: (3,) as `imm_mixing.take_reading` takes it.
     """
@@ -48,7 +48,7 @@ def numbers_of(config: ImmConfig, antenna_to_pad_m: Vector3) -> Numbers:
 
 @lru_cache(maxsize=4)  # it changes with a fix's stated error only
 def noises_with(numbers: Numbers, receiver_m2_s: float, own_m2_s: float, *, turn_is_measured: bool) -> Array:
-    """Return both modes' noise (2, 11) with the wandering of the vehicle's receiver and of the drone's own place.
+    """Return both modes' noise (2, 14) with the wandering of the vehicle's receiver and of the drone's own place.
 
     Where the drone's own place does not wander, fixes have corrections, and are dated without an error.
     A vehicle whose turning is measured may be one that turns on the spot. Any other is taken for a car: it turns no
@@ -71,10 +71,13 @@ def _noise(config: ImmConfig, mode: ImmModeConfig) -> tuple[float, ...]:
         mode.lateral_acceleration_psd_m2_s5,
         config.curvature_speed_min_m_s,
         config.heading_psd_rad2_s,
-        config.climb_psd_m2_s3,
+        config.bend_std_per_m,
         0.0,
         0.0,
         2.0 * config.clock_std_s**2 / config.clock_time_s,
         config.curvature_std_rad_m,
         0.0,
+        config.bend_acceleration_std_m_s2,
+        config.bend_length_m,
+        config.road_psd_m2_m,
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
-from companion.vehicle.imm_kernels import CLOCK, SIZE
+from companion.vehicle.imm_kernels import BEND, CLOCK, SIZE
 
 POSITION, VELOCITY, HEADING, YAW_RATE, PAD, COURSE = range(6)
 
@@ -42,21 +42,25 @@ def turned(lever: Array, yaw_rad: float) -> tuple[float, float]:
 
 @compiled_kernel
 def antenna_velocity(x: Array, lever: Array) -> tuple[Array, Array]:
-    """Return the antenna's velocity (3,), m/s, and its Jacobian (3, 16).
+    """Return the antenna's velocity (3,), m/s, and its Jacobian (3, 17).
 
-    The pad's centre goes where the road goes; behind it by `lever` the antenna swings out as the vehicle turns.
+    The pad's centre goes where the road goes; behind it by `lever` the antenna swings out as the vehicle turns, and
+    is still lower where the road begins to climb.
 
     Args:
-        x: state (16,).
+        x: state (17,).
         lever: (3,) from the antenna to the pad in V, m, zero where it has no known direction.
     """
     speed, ux, uy = course(x)
     arm_x, arm_y = turned(lever, x[7])
     w = x[6] * speed
-    z, H = np.array([x[2] + w * arm_y, x[3] - w * arm_x, x[9] + x[11]]), np.zeros((3, SIZE))
+    hx, hy = math.cos(x[7]), math.sin(x[7])
+    forward, climb = hx * x[2] + hy * x[3], x[9] - lever[0] * x[BEND]
+    z, H = np.array([x[2] + w * arm_y, x[3] - w * arm_x, forward * climb + x[11]]), np.zeros((3, SIZE))
     H[0, 2], H[0, 3] = 1.0 + x[6] * ux * arm_y, x[6] * uy * arm_y
     H[1, 2], H[1, 3] = -x[6] * ux * arm_x, 1.0 - x[6] * uy * arm_x
-    H[2, 9], H[2, 11] = 1.0, 1.0
+    H[2, 2], H[2, 3], H[2, 7] = hx * climb, hy * climb, (hx * x[3] - hy * x[2]) * climb
+    H[2, 9], H[2, 11], H[2, BEND] = forward, 1.0, -forward * lever[0]
     H[0, 6], H[1, 6] = speed * arm_y, -speed * arm_x
     H[0, 7], H[1, 7] = w * arm_x, w * arm_y
     return z, H
@@ -64,11 +68,11 @@ def antenna_velocity(x: Array, lever: Array) -> tuple[Array, Array]:
 
 @compiled_kernel
 def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Array, Array]:
-    """Return what a sensor reads at `x`, `(m,)`, and its Jacobian `(m, 16)`.
+    """Return what a sensor reads at `x`, `(m,)`, and its Jacobian `(m, 17)`.
 
     Args:
         kind: POSITION, VELOCITY, HEADING, YAW_RATE, PAD, or COURSE (the course minus the heading).
-        x: state (16,).
+        x: state (17,).
         lever: (3,) from the antenna to the pad in V, m.
         sees_heading: whether the heading is known, so that the lever arm has a direction.
     """
@@ -88,7 +92,8 @@ def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Arra
         arm_x, arm_y = turned(lever, x[7])
         z[0] += arm_x
         z[1] += arm_y
-        z[2] += lever[2]
+        z[2] += lever[2] + lever[0] * x[9]
+        H[2, 9] = lever[0]
         if sees_heading:
             H[0, 7], H[1, 7] = -arm_y, arm_x
     elif kind == VELOCITY:

@@ -17,18 +17,25 @@ Profile = Callable[[float], float]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Drive:
-    """True motion of the antenna in W every `TRUTH_STEP_S`: (n, 3), (n, 3), (n,), (n,)."""
+    """True motion of the antenna in W every `TRUTH_STEP_S`: (n, 3), (n, 3), (n,), (n,), and the road's grade (n,)."""
 
     position: Array
     velocity: Array
     yaw: Array
     yaw_rate: Array
+    grade: Array
 
     def at(self, t_s: float) -> tuple[Array, Array, float, float]:
         where, rest = divmod(t_s / TRUTH_STEP_S, 1.0)
         i = int(min(max(where, 0), len(self.yaw) - 2))
         blend = [(1.0 - rest) * a[i] + rest * a[i + 1] for a in (self.position, self.velocity, self.yaw, self.yaw_rate)]
         return blend[0], blend[1], float(blend[2]), float(blend[3])
+
+    def pad_at(self, t_s: float) -> Array:
+        """The pad's centre (3,), by which the vehicle pitches with the grade."""
+        position, _, yaw, _ = self.at(t_s)
+        grade = float(np.interp(t_s, np.arange(len(self.grade)) * TRUTH_STEP_S, self.grade))
+        return np.asarray(pad_centre(position, yaw) + np.array([0.0, 0.0, ANTENNA_TO_PAD_M[0] * grade]))
 
     @property
     def length_s(self) -> float:
@@ -61,8 +68,10 @@ REPORT = Sensors(fix_std_m=0.1, rate_hz=100.0, delay_s=0.0)
 DEGRADED = Sensors(fix_std_m=0.3, fix_bias_std_m=1.5, velocity_std_m_s=0.1, rate_hz=5.0, delay_s=0.2)
 
 
-def drive(length_s: float, speed: Profile, curvature: Profile, height: Profile = lambda _: 0.0) -> Drive:
-    """Integrate a vehicle whose pad starts at (30, -20) heading 0.3 rad and follows the road."""
+def drive(
+    length_s: float, speed: Profile, curvature: Profile, height: Profile = lambda _: 0.0, *, pitches: bool = True
+) -> Drive:
+    """Integrate a vehicle whose pad starts at (30, -20) heading 0.3 rad, follows the road and pitches with it."""
     n = round(length_s / TRUTH_STEP_S) + 1
     t = np.arange(n) * TRUTH_STEP_S
     v = np.array([speed(s) for s in t])
@@ -78,9 +87,12 @@ def drive(length_s: float, speed: Profile, curvature: Profile, height: Profile =
         [np.cos(yaw) * lever_x - np.sin(yaw) * lever_y, np.sin(yaw) * lever_x + np.cos(yaw) * lever_y]
     )
     swing = yaw_rate[:, None] * np.column_stack([arm[:, 1], -arm[:, 0]])
-    position = np.column_stack([xy - arm, z + 1.8])
-    velocity = np.column_stack([road + swing, np.gradient(z, TRUTH_STEP_S)])
-    return Drive(position=position, velocity=velocity, yaw=yaw, yaw_rate=yaw_rate)
+    rise = np.gradient(z, TRUTH_STEP_S)
+    grade = np.divide(rise, v, out=np.zeros(n), where=v > 0.0) if pitches else np.zeros(n)
+    antenna_z = z + 1.8 - lever_x * grade
+    position = np.column_stack([xy - arm, antenna_z])
+    velocity = np.column_stack([road + swing, np.gradient(antenna_z, TRUTH_STEP_S)])
+    return Drive(position=position, velocity=velocity, yaw=yaw, yaw_rate=yaw_rate, grade=grade)
 
 
 def straight(speed_m_s: float, length_s: float = 20.0) -> Drive:
@@ -134,7 +146,24 @@ def random_drive(seed: int, speed_m_s: float = 7.0) -> Drive:
 
 
 def rough_road() -> Drive:
-    return drive(20.0, lambda _: 5.0, lambda _: 0.0, lambda t: 0.25 * t + 0.1 * math.sin(2 * math.pi * 0.7 * t))
+    def height(t_s: float) -> float:
+        return 0.25 * t_s + 0.1 * math.sin(2 * math.pi * 0.7 * t_s)
+
+    return drive(20.0, lambda _: 5.0, lambda _: 0.0, height, pitches=False)
+
+
+def climb(grade: float, speed_m_s: float, *, from_s: float = 6.0, transition_m: float = 10.0) -> Drive:
+    """A road whose grade sets in evenly over `transition_m`."""
+
+    def height(t_s: float) -> float:
+        along_m = speed_m_s * (t_s - from_s)
+        if along_m <= 0.0:
+            return 0.0
+        if along_m < transition_m:
+            return 0.5 * grade / transition_m * along_m**2
+        return grade * (along_m - 0.5 * transition_m)
+
+    return drive(from_s + transition_m / speed_m_s + 4.0, lambda _: speed_m_s, lambda _: 0.0, height)
 
 
 def sense(truth: Drive, sensors: Sensors, seed: int) -> list[tuple[int, Measurement]]:
@@ -193,8 +222,7 @@ def _vehicle_sensors(
 def _pad_sightings(truth: Drive, sensors: Sensors, rng: np.random.Generator) -> Iterator[tuple[int, Measurement]]:
     for i in range(int(truth.length_s * sensors.pad_rate_hz)):
         t = i / sensors.pad_rate_hz
-        position, _, yaw, _ = truth.at(t)
-        value = pad_centre(position, yaw) + sensors.pad_std_m * rng.standard_normal(3)
+        value = truth.pad_at(t) + sensors.pad_std_m * rng.standard_normal(3)
         yield _arrival(t, sensors.pad_delay_s, Quantity.PAD, value, sensors.pad_std_m**2 * np.eye(3))
 
 

@@ -16,6 +16,7 @@ from companion.vehicle.lkf import LkfModel, WhiteJerkNoise, transition
 from tests.companion.vehicle.rides import now_ns
 
 DT_S, STEPS, RUNS, SETTLED = 0.1, 150, 36, 60
+STATES = np.array([0, 1, 2, 3, 4, 5, 6, 8, 9, kernels.BEND])
 FIX_STD_M, VELOCITY_STD_M_S = 0.02, 0.05
 MODE = ImmModeConfig(jerk_psd_m2_s5=0.5, lateral_acceleration_psd_m2_s5=0.5, dwell_s=1.0)
 IMM = ImmModel(
@@ -79,17 +80,21 @@ def wander(x: Array, rng: np.random.Generator) -> Array:
             MODE.lateral_acceleration_psd_m2_s5,
             config.curvature_speed_min_m_s,
             config.heading_psd_rad2_s,
-            config.climb_psd_m2_s3,
+            config.bend_std_per_m,
             0.0,
             0.0,
             0.0,
             config.curvature_std_rad_m,
             0.0,
+            config.bend_acceleration_std_m_s2,
+            config.bend_length_m,
+            config.road_psd_m2_m,
         ]
     )
     Q = kernels.process_noise(x, DT_S, noise, heave_noise)
     after, _ = kernels.advance(x, DT_S, config.acceleration_decay_s, heave)
     after[6] *= kernels.curvature_left(float(np.hypot(x[2], x[3])), DT_S, noise)
+    after[kernels.BEND] *= kernels.bend_step(x, DT_S, noise)[0]
     return np.asarray(after + drawn(Q, rng))
 
 
@@ -100,7 +105,10 @@ def imm_run(curvature: float, seed: int) -> tuple[float, float, int]:
     buffer: DelayBuffer[ImmState] | None = None
     at_settled = (0.0, 0)
     for i in range(STEPS):
-        position, velocity = x[[0, 1, 8]] + [0, 0, x[10]], np.array([x[2], x[3], x[9] + x[11]])
+        position, velocity = (
+            x[[0, 1, 8]] + [0, 0, x[10]],
+            np.array([x[2], x[3], kernels.forward_speed(x) * x[9] + x[11]]),
+        )
         sensors = [
             *measured(i, position, velocity, rng),
             noisy(i * DT_S, Quantity.YAW_RATE, np.array([x[6] * np.hypot(x[2], x[3])]), 0.01, rng),
@@ -114,8 +122,8 @@ def imm_run(curvature: float, seed: int) -> tuple[float, float, int]:
     assert buffer.newest.state is not None
     tally = buffer.newest.tally
     mean, covariance = combine(*buffer.newest.state.modes)
-    error = (truth - mean)[:7]
-    nees = float(error @ np.linalg.solve(covariance[:7, :7], error))
+    error = (truth - mean)[STATES]
+    nees = float(error @ np.linalg.solve(covariance[np.ix_(STATES, STATES)], error))
     return nees, tally.nis_sum - at_settled[0], tally.nis_dof - at_settled[1]
 
 
@@ -123,7 +131,7 @@ def imm_run(curvature: float, seed: int) -> tuple[float, float, int]:
 @pytest.mark.parametrize("curvature", [0.0, 0.05], ids=["straight", "circle"])
 def test_turning_filter_is_consistent_on_its_own_model(curvature: float) -> None:
     runs = [imm_run(curvature, seed) for seed in range(RUNS)]
-    assert_consistent(runs, states=7)
+    assert_consistent(runs, states=len(STATES))
 
 
 def lkf_run(seed: int) -> tuple[float, float, int]:

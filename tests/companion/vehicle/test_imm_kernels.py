@@ -15,7 +15,7 @@ from companion.vehicle import imm_sensors as sensors
 
 TAU_S = 3.0
 MOTION = np.array([TAU_S, 2.0 * math.pi * 0.75, 0.3, 0.04, 180.0, -0.7, 0.1, 0.3])
-NOISE = np.array([12.0, 0.005, 20.0, 3.0, 1e-4, 0.01, 1e-5, 2e-3, 1e-7, 0.1, 0.0])
+NOISE = np.array([12.0, 0.005, 20.0, 3.0, 1e-4, 0.003, 1e-5, 2e-3, 1e-7, 0.1, 0.0, 0.5, 10.0, 1e-5])
 LEVER = MOTION[5:8]
 HEAVE = np.array([[0.91, 0.08], [-1.7, 0.69]])
 
@@ -27,6 +27,7 @@ def a_state(seed: int) -> Array:
     x[4:6] = rng.uniform(-1.5, 1.5, 2)
     x[6] = rng.uniform(-0.08, 0.08)
     x[kernels.CLOCK] = rng.uniform(-0.1, 0.1)
+    x[9], x[kernels.BEND] = rng.uniform(-0.12, 0.12), rng.uniform(-0.006, 0.006)
     return x
 
 
@@ -198,7 +199,7 @@ def test_mixing_keeps_mean_and_covariance_of_the_mixture() -> None:
 
 def test_mode_that_was_ruled_out_comes_back() -> None:
     means = np.stack([a_state(1), a_state(1)])
-    means[1, 0] += 3.0
+    means[1, 0] += 5.0
     covariances = np.stack([1e-2 * np.eye(kernels.SIZE), 1e-2 * np.eye(kernels.SIZE)])
     value = sensors.observe(sensors.POSITION, means[1], LEVER, True)[0]
     modes, reading = (means, covariances, np.array([1.0, 0.0])), (sensors.POSITION, value, 1e-4 * np.eye(3))

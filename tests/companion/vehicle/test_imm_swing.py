@@ -15,23 +15,26 @@ from tests.companion.vehicle.drives import NOMINAL, drive
 from tests.companion.vehicle.rides import estimator, ride
 from tests.companion.vehicle.test_imm_kernels import HEAVE, LEVER, MOTION, NOISE, TAU_S, a_covariance, a_state
 
-QUIET = np.where(np.isin(np.arange(len(NOISE)), (3, kernels.CURVATURE_STD)), NOISE, 0.0)
+PLACE = np.array([0, 1, 8])
+QUIET = np.where(np.isin(np.arange(len(NOISE)), (3, kernels.CURVATURE_STD, kernels.BEND_LENGTH)), NOISE, 0.0)
 CURVE_S, SPEED_M_S, RADIUS_M = 8.0, 8.0, 20.0
 
 
 def pad_place(x: Array) -> Array:
     c, s = math.cos(x[7]), math.sin(x[7])
-    return np.array([x[0] + c * LEVER[0] - s * LEVER[1], x[1] + s * LEVER[0] + c * LEVER[1]])
+    return np.array([x[0] + c * LEVER[0] - s * LEVER[1], x[1] + s * LEVER[0] + c * LEVER[1], x[8] + LEVER[0] * x[9]])
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_pad_moves_as_if_there_were_no_lever_arm(seed: int) -> None:
     x, P = a_state(seed), a_covariance(seed)
-    pad = np.concatenate([pad_place(x), x[2:]])
+    pad = x.copy()
+    pad[PLACE] = pad_place(x)
     bare = np.where(np.arange(8) < 5, MOTION, 0.0)
     turned, straight = mixing.glide(x, P, 0.33, QUIET, MOTION)[0], mixing.glide(pad, P, 0.33, QUIET, bare)[0]
-    assert pad_place(turned) == pytest.approx(straight[:2], abs=1e-12)
-    assert turned[2:] == pytest.approx(straight[2:], abs=1e-12)
+    assert pad_place(turned) == pytest.approx(straight[PLACE], abs=1e-12)
+    rest = np.delete(np.arange(kernels.SIZE), PLACE)
+    assert turned[rest] == pytest.approx(straight[rest], abs=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -40,7 +43,7 @@ def test_shift_to_the_pad_is_linear_in_what_it_does_to_the_covariance(seed: int)
     numeric = np.eye(kernels.SIZE)
     for i in range(kernels.SIZE):
         step = 1e-6 * np.eye(kernels.SIZE)[i]
-        numeric[:2, i] = (pad_place(x + step) - pad_place(x - step)) / 2e-6
+        numeric[PLACE, i] = (pad_place(x + step) - pad_place(x - step)) / 2e-6
     y, S = mixing.shifted(x, P, LEVER, 1.0)
     assert pytest.approx(numeric @ P @ numeric.T, abs=1e-6) == S
     back = mixing.shifted(y, S, LEVER, -1.0)
@@ -53,7 +56,7 @@ def test_antenna_s_velocity_is_how_fast_its_place_changes(seed: int) -> None:
     x, P = a_state(seed), a_covariance(seed)
     at = np.array([x, mixing.glide(x, P, 1e-4, QUIET, MOTION)[0]])
     position, velocity, _ = forecasts.kinematics(at, MOTION)
-    assert (position[1] - position[0])[:2] / 1e-4 == pytest.approx(velocity[0, :2], abs=2e-3)
+    assert (position[1] - position[0]) / 1e-4 == pytest.approx(velocity[0], abs=2e-3)
     assert sensors.antenna_velocity(x, np.zeros(3))[0][:2] == pytest.approx(x[2:4])
 
 

@@ -1,0 +1,84 @@
+"""The height of the road: it changes with the distance driven, and the vehicle pitches with its grade."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig
+from companion.vehicle import imm_kernels as kernels
+from companion.vehicle.pad import pad_path
+from link.messages import PadGeometry
+from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, NOMINAL, climb
+from tests.companion.vehicle.rides import estimator, ride
+from tests.companion.vehicle.test_imm_kernels import HEAVE, NOISE, TAU_S
+
+SAME_FRAME = EstimatorConfig(imm=ImmConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
+PAD = PadGeometry(size_m=(1.5, 1.5), height_m=1.5, antenna_to_pad_m=ANTENNA_TO_PAD_M)
+VERTICAL = np.array([2, 5])
+GRADES_AND_SPEEDS = [(0.03, 3.0), (0.12, 3.0), (0.08, 8.0), (-0.08, 8.0), (0.03, 12.0), (0.08, 12.0)]
+
+
+def test_height_is_that_of_a_vertical_curve() -> None:
+    x = np.zeros(kernels.SIZE)
+    x[2:4], x[7] = 8.0 * np.array([math.cos(0.4), math.sin(0.4)]), 0.4
+    x[8], x[9], x[kernels.BEND] = 2.0, 0.03, 0.004
+    after, _ = kernels.advance(x, 0.1, TAU_S, HEAVE)
+    assert after[8] == pytest.approx(2.0 + 0.03 * 0.8 + 0.5 * 0.004 * 0.8**2)
+    assert after[9] == pytest.approx(0.03 + 0.004 * 0.8)
+
+
+def test_vehicle_that_reverses_goes_down_what_it_has_climbed() -> None:
+    x = np.zeros(kernels.SIZE)
+    x[2], x[9] = -2.0, 0.1
+    assert kernels.advance(x, 0.1, TAU_S, HEAVE)[0][8] == pytest.approx(-0.02)
+
+
+def test_standing_vehicle_neither_climbs_nor_heaves() -> None:
+    Q = kernels.process_noise(np.zeros(kernels.SIZE), 0.1, NOISE, 1e-4 * np.eye(2))
+    assert np.abs(Q[[9, 10, 11, kernels.BEND]]).max() == 0.0
+    assert Q[8, 8] == pytest.approx(NOISE[7] * 0.1)  # how far the drone errs about itself
+
+
+@pytest.mark.parametrize("speed_m_s", [1.0, 8.0, 25.0])
+def test_change_of_the_grade_stays_within_what_roads_are_built_with(speed_m_s: float) -> None:
+    x = np.zeros(kernels.SIZE)
+    x[2] = speed_m_s
+    left, fed = kernels.bend_step(x, 0.1, NOISE)
+    std = math.sqrt(fed / (1.0 - left**2))
+    assert std <= NOISE[kernels.BEND_STD] * (1.0 + 1e-9)
+    assert std * speed_m_s**2 <= NOISE[kernels.BEND_ACCELERATION_STD] * (1.0 + 1e-9)
+
+
+def test_noise_of_the_grade_is_that_of_many_small_steps() -> None:
+    x = np.zeros(kernels.SIZE)
+    x[2] = 8.0
+    rows = np.array([8, 9, kernels.BEND])
+    whole = kernels.process_noise(x, 0.02, NOISE, np.zeros((2, 2)))[np.ix_(rows, rows)]
+    _, F = kernels.advance(x, 0.0004, TAU_S, HEAVE)
+    once = kernels.process_noise(x, 0.0004, NOISE, np.zeros((2, 2)))
+    parts = np.zeros_like(once)
+    for _ in range(50):
+        parts = F @ parts @ F.T + once
+    scale = np.sqrt(np.diag(whole))
+    assert np.abs((whole - parts[np.ix_(rows, rows)]) / np.outer(scale, scale)).max() < 0.02
+
+
+@pytest.mark.parametrize(("grade", "speed_m_s"), GRADES_AND_SPEEDS)
+def test_height_on_a_climb_is_as_sure_as_is_stated(grade: float, speed_m_s: float) -> None:
+    truth = climb(grade, speed_m_s)
+    nees, errors_m = [], []
+    for seed in range(4):
+        done = ride(estimator(EstimatorKind.IMM, SAME_FRAME), truth, NOMINAL, 400 + seed, from_s=6.0, rate_hz=2.0)
+        for t_s, estimate in zip(done.t_s, done.estimates, strict=True):
+            error = np.concatenate([estimate.position_enu_m, estimate.velocity_enu_m_s])
+            error = (error - np.concatenate(truth.at(t_s)[:2]))[VERTICAL]
+            nees.append(error @ np.linalg.solve(estimate.covariance[np.ix_(VERTICAL, VERTICAL)], error))
+        forecast = estimator(EstimatorKind.IMM, SAME_FRAME).forecast(
+            done.memory, done.estimates[-1].t_ns, np.array([0.0, 0.1])
+        )
+        assert forecast is not None
+        errors_m.append(pad_path(forecast, PAD).position_enu_m[0, 2] - truth.pad_at(float(done.t_s[-1]))[2])
+    assert np.sum(nees) < stats.chi2.ppf(0.975, 2 * len(nees))
+    assert np.abs(errors_m).max() < 0.06
