@@ -9,7 +9,7 @@ from scenarios.catalogue.catalogue import load_scenario
 from scenarios.catalogue.world_names import WorldName, names_worlds, parse_world_name, run_seed
 from scenarios.catalogue.worlds import drawn_world
 from scenarios.config import FIRMWARES, FirmwareName
-from scenarios.worlds.seeds import HELD_BACK_FROM
+from scenarios.worlds.seeds import SEEDS_END
 from scenarios.worlds.world import SLICES, draw_world
 
 
@@ -39,7 +39,7 @@ def test_other_names_mean_no_worlds(name: str) -> None:
         ("world@-1", "write SLICE@SEED"),
         ("world@1+wind=calm", "draws everything but its firmware"),
         ("world@1+firmware=inav", r"\+firmware=px4, \+firmware=ardupilot"),
-        (f"world@{HELD_BACK_FROM + 1}", "is held back"),
+        (f"world@{SEEDS_END - 1}", "is held back"),
         ("world@1000000", "below 1000000"),
     ],
 )
