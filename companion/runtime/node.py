@@ -4,7 +4,7 @@ The wire loop, the lockstep campaigns and the tests all run this one.
 """
 
 import math
-from functools import cache
+from functools import lru_cache
 
 from companion.autopilots.link import AutopilotLink
 from companion.autopilots.response import Cascade, ResponseModel
@@ -246,7 +246,7 @@ class CompanionNode:
             self._publications.append(plan)
 
 
-@cache
+@lru_cache(maxsize=16)  # the gains of some landings; nothing that a link tells fills the memory
 def _response_to(cascade: Cascade) -> ResponseModel:
     """Return the model of a cascade; 2 ms, and the gains of an autopilot come one by one in each of many landings."""
     return ResponseModel(cascade, HORIZON_OFFSETS_S)

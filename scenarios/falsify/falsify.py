@@ -179,7 +179,7 @@ def _shown(outcome: Outcome) -> dict[str, Any]:
 
 def _notes(request: Request, case: Case, file: str) -> list[str]:
     """Return what a case's file says about itself."""
-    state = "as found" if file == FOUND else "reduced to what it needs"
+    state = "as found" if file == FOUND else "as far as it was reduced"
     changed = ", ".join(f"{name} {u:.4f}" for name, u in case.chosen.items())
     return [
         f"An unsafe landing that a search found, {state}. Found by: {request.command}",

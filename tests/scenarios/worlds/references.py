@@ -15,8 +15,11 @@ from scenarios.worlds.distributions import (
     Weibull,
 )
 
+Bounded = Uniform | LogUniform | Normal | LogNormal | Beta | Exponential | Weibull
+"""Every distribution of a number by itself."""
+
 LEVELS = (1e-9, 0.013, 0.21, 0.5, 0.68, 0.97, 1.0 - 1e-9)
-PLAIN = (
+PLAIN: tuple[Bounded, ...] = (
     Uniform(kind="uniform", low=-3.0, high=0.7),
     LogUniform(kind="log_uniform", low=0.02, high=7.0),
     Normal(kind="normal", mean=1.0, std=2.0, low=-0.5, high=6.0),

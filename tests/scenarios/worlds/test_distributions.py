@@ -8,20 +8,20 @@ from link.errors import UserError
 from link.program.toml_config import validate
 from scenarios.worlds.distributions import Choice, Graded
 from scenarios.worlds.odd import Domain
-from tests.scenarios.worlds.references import LEVELS, PLAIN, reference_of
+from tests.scenarios.worlds.references import LEVELS, PLAIN, Bounded, reference_of
 
 
 @pytest.mark.parametrize("plain", PLAIN, ids=lambda one: one.kind)
-def test_quantile_is_that_of_scipys_distribution(plain: object) -> None:
+def test_quantile_is_that_of_scipys_distribution(plain: Bounded) -> None:
     levels = np.array(LEVELS)
-    ours = np.array([plain.quantile(float(u)) for u in levels])  # type: ignore[attr-defined]  # all but a graded one
+    ours = np.array([plain.quantile(float(u)) for u in levels])
     np.testing.assert_allclose(reference_of(plain).cdf(ours), levels, atol=1e-9)
 
 
 @pytest.mark.parametrize("plain", PLAIN, ids=lambda one: one.kind)
-def test_quantile_keeps_to_the_bounds_at_the_ends(plain: object) -> None:
-    low, high = plain.low, plain.high  # type: ignore[attr-defined]  # likewise
-    ends = [plain.quantile(u) for u in (1e-300, 2.0**-53, 1.0 - 2.0**-53)]  # type: ignore[attr-defined]
+def test_quantile_keeps_to_the_bounds_at_the_ends(plain: Bounded) -> None:
+    low, high = plain.low, plain.high
+    ends = [plain.quantile(u) for u in (1e-300, 2.0**-53, 1.0 - 2.0**-53)]
     assert all(low <= value <= high for value in ends)
     assert all(math.isfinite(value) for value in ends)
 
