@@ -82,7 +82,7 @@ def test_wind_turbulence_and_own_errors_of_a_seed_are_independent() -> None:
         turned, still = (wind_model(config.model_copy(update={"wind": wind})) for wind in _winds(config))
         own_state = OwnStateError(autopilot_config(config).own_state, 0.01)
         draws[:, seed] = turned.advance(0.01, 0.0)[0], still.advance(0.01, 0.0)[0], own_state.advance()[0]
-    correlation = np.corrcoef(draws)[np.triu_indices(3, k=1)]
+    correlation = np.asarray(np.corrcoef(draws))[np.triu_indices(3, k=1)]
     assert np.abs(correlation).max() < 4.0 / np.sqrt(seeds)
 
 
