@@ -13,6 +13,7 @@ from msgspec import Struct, field
 from companion.autopilots.driver import NO_MOVES, AutopilotView, DriverMemory, FrameMoves
 from companion.core.data import Array
 from companion.core.reasons import Cause, Reason
+from companion.integrity.frames import FixedPhases
 from companion.integrity.vehicle_data import Contradictions, CourseWatch, FixStamps
 from companion.landing.sway import Sway
 from companion.landing.virtual_model import Tracking
@@ -68,6 +69,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
         surprise: how the vehicle drives against what was expected.
         fix_stamps: whether its fixes come from the future.
         contradictions: of its data.
+        phases: whether its receiver and the drone's have fixed ones.
         course: how its heading compares with its course.
         utc_ahead_ns: of the monotonic clock, when its stamps were last compared with UTC.
         pad_raised_m: by the range finder, in the drone's frame.
@@ -78,6 +80,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
     surprise: Surprise = field(default_factory=Surprise)
     fix_stamps: FixStamps = field(default_factory=FixStamps)
     contradictions: Contradictions = field(default_factory=Contradictions)
+    phases: FixedPhases = field(default_factory=FixedPhases)
     course: CourseWatch = field(default_factory=CourseWatch)
     utc_ahead_ns: int = 0
     pad_raised_m: float = 0.0

@@ -83,6 +83,8 @@ class OwnStateConfig(StrictModel):
 
     position_std_m: NotNegative = 0.0  # on each axis
     velocity_std_m_s: NotNegative = 0.0  # likewise
+    # What its receiver states, horizontally; None: what the firmware's own simulator says.
+    receiver_accuracy_m: Positive | None = None
     position_time_s: Positive = 10.0  # of both errors' memory; sim_autopilot/plant/own_state.py says why
     velocity_time_s: Positive = 2.0
     origin_step_enu_m: Vector3 | None = None  # how far the local frame's origin moves in flight
