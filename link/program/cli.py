@@ -3,6 +3,7 @@
 Kept light, so that `--help` is quick: no numerics and no Zenoh are imported here.
 """
 
+import os
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
@@ -70,6 +71,22 @@ ZenohConfigOption = Annotated[
 ]
 
 
+Ros2Option = Annotated[
+    int | None,
+    typer.Option(
+        "--ros2",
+        metavar="[DOMAIN]",
+        help="Be a node of a ROS 2 graph over rmw_zenoh [default: ROS_DOMAIN_ID, else 0].",
+        show_default=False,
+        rich_help_panel="ROS 2",
+    ),
+]
+Ros2MapOption = Annotated[
+    Path | None,
+    typer.Option("--ros2-map", metavar="FILE", help="Which topics are what, in TOML.", rich_help_panel="ROS 2"),
+]
+
+
 def make_app(description: str) -> typer.Typer:
     """Return an empty app whose help and errors are plain text; `description` heads its `--help`."""
     return typer.Typer(help=description, rich_markup_mode=None, pretty_exceptions_enable=False)
@@ -117,7 +134,8 @@ def run_app(name: str, app: typer.Typer, args: Sequence[str] | None = None) -> i
     """
     command = command_of(app)
     try:
-        result = command.main(args=list(sys.argv[1:] if args is None else args), prog_name=name, standalone_mode=False)
+        arguments = _with_domain(sys.argv[1:] if args is None else args)
+        result = command.main(args=arguments, prog_name=name, standalone_mode=False)
     except UserError as error:
         return _fail(name, str(error))
     except typer.TyperException as error:
@@ -125,6 +143,16 @@ def run_app(name: str, app: typer.Typer, args: Sequence[str] | None = None) -> i
     except (KeyboardInterrupt, typer.Abort):
         return EXIT_INTERRUPTED
     return result if isinstance(result, int) else EXIT_OK
+
+
+def _with_domain(args: Sequence[str]) -> list[str]:
+    """Return the arguments with the domain that `--ros2` may leave out: typer has no options with optional values."""
+    given = list(args)
+    if "--ros2" in given:
+        after = given.index("--ros2") + 1
+        if not "".join(given[after : after + 1]).isdigit():
+            given.insert(after, os.environ.get("ROS_DOMAIN_ID") or "0")
+    return given
 
 
 def _fail(name: str, message: str, hint: str = "") -> int:

@@ -170,12 +170,16 @@ def open_session(options: ZenohOptions, *, receive_clock_ns: Callable[[], int] =
     Raises:
         UserError: If the configuration file is missing or wrong, a port is in use or a client finds no router.
     """
+    return ZenohSession(open_library_session(options), receive_clock_ns=receive_clock_ns)
+
+
+def open_library_session(options: ZenohOptions) -> zenoh.Session:
+    """Return the library's own session, for other layouts; see `open_session`."""
     config = _config(options)
     try:
-        session = zenoh.open(config)
+        return zenoh.open(config)
     except zenoh.ZError as error:
         raise UserError(_open_failure(options, str(error))) from error
-    return ZenohSession(session, receive_clock_ns=receive_clock_ns)
 
 
 def _config(options: ZenohOptions) -> zenoh.Config:
