@@ -12,6 +12,7 @@ import typer
 from typer.main import get_command
 
 from link.errors import UserError
+from link.program.printable import printable
 
 EXIT_OK = 0
 EXIT_USER_ERROR = 2
@@ -100,6 +101,6 @@ def run_app(name: str, app: typer.Typer, args: Sequence[str] | None = None) -> i
 
 
 def _fail(name: str, message: str, hint: str = "") -> int:
-    line = " ".join(f"{message} {hint}".split())
+    line = printable(" ".join(f"{message} {hint}".split()))
     sys.stderr.write(f"{name}: {line}\n")
     return EXIT_USER_ERROR
