@@ -14,6 +14,7 @@ import typer
 from typer.main import get_command
 
 from link.errors import UserError
+from link.program.printable import printable
 
 EXIT_OK = 0
 EXIT_USER_ERROR = 2
@@ -156,6 +157,6 @@ def _with_domain(args: Sequence[str]) -> list[str]:
 
 
 def _fail(name: str, message: str, hint: str = "") -> int:
-    line = " ".join(f"{message} {hint}".split())
+    line = printable(" ".join(f"{message} {hint}".split()))
     sys.stderr.write(f"{name}: {line}\n")
     return EXIT_USER_ERROR
