@@ -10,6 +10,7 @@ from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
     DroneOption,
+    InsecureOption,
     ListenOption,
     ModeOption,
     MulticastOption,
@@ -117,6 +118,7 @@ def ground_vehicle(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
 ) -> None:
     """Publish a ground vehicle over Zenoh: its position, velocity, heading and pad."""
     from link.zenoh.keys import Keys
@@ -125,7 +127,7 @@ def ground_vehicle(
     if sum(one is not None for one in (scenario, gpsd, nmea, mavlink)) > 1:
         raise UserError("--scenario, --gpsd, --nmea and --mavlink are one vehicle each: give one of them")
     keys = Keys(namespace, vehicle, drone)
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, listens=True)
+    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure, listens=True)
     if scenario is not None:
         if any(one is not None for one in (pad, pad_size, pad_height, antenna_to_pad)):
             raise UserError(
