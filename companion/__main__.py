@@ -11,10 +11,12 @@ import typer
 
 from companion.check.command import ConfigOption, DeviceOption, SigningKeyOption, SystemIdOption, check
 from companion.config.companion import AutopilotKind
+from companion.runtime.keys import keys
 from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
     DroneOption,
+    InsecureOption,
     ListenOption,
     ModeOption,
     MulticastOption,
@@ -29,6 +31,7 @@ from link.program.cli import (
 
 app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.")
 app.command("check")(check)
+app.command("keys")(keys)
 
 _PrintConfigOption = Annotated[bool, typer.Option("--print-config", help="Print the configuration and end.")]
 _StartOption = Annotated[bool, typer.Option("--start", help="Arm, take off and land without an operator's command.")]
@@ -75,6 +78,7 @@ def companion(
     zenoh_config: ZenohConfigOption = None,
     ros2: Ros2Option = None,
     ros2_map: Ros2MapOption = None,
+    insecure: InsecureOption = False,
 ) -> None:
     """Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot."""
     if context.invoked_subcommand is not None:
@@ -104,7 +108,7 @@ def companion(
     recorder: BackgroundRecorder | None = None
     with ExitStack() as stack:
         # What a user may have got wrong is opened first: the numerics take their time, up to a minute to be compiled.
-        endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config)
+        endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
         transport = stack.enter_context(open_transport(mavlink))
         zenoh = stack.enter_context(
             open_layout(endpoints, ros2_options(ros2, ros2_map), keys, (f"/{drone}", "companion"))

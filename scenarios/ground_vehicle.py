@@ -10,6 +10,7 @@ from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
     DroneOption,
+    InsecureOption,
     ListenOption,
     ModeOption,
     MulticastOption,
@@ -125,6 +126,7 @@ def ground_vehicle(
     zenoh_config: ZenohConfigOption = None,
     ros2: Ros2Option = None,
     ros2_map: Ros2MapOption = None,
+    insecure: InsecureOption = False,
 ) -> None:
     """Publish a ground vehicle over Zenoh: its position, velocity, heading and pad."""
     from link.ros2.options import open_layout, ros2_options
@@ -136,7 +138,7 @@ def ground_vehicle(
     keys = Keys(namespace, vehicle, drone)
     layout = ros2_options(ros2, ros2_map)
     # a ROS 2 graph has its router at the default endpoint; else the vehicle waits there for the others
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, listens=layout is None)
+    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure, listens=layout is None)
     node = (f"/{vehicle}", "ground_vehicle")
 
     def open_zenoh() -> "ZenohSession":

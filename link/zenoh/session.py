@@ -17,6 +17,7 @@ from typing import Self
 import zenoh
 
 from link.errors import UserError
+from link.zenoh.exposure import check_exposure
 from link.zenoh.inbox import Inbox, Sample, WakeUp
 from link.zenoh.options import DEFAULT_ENDPOINT, ZenohOptions
 
@@ -232,7 +233,7 @@ def open_library_session(options: ZenohOptions) -> zenoh.Session:
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:
-        raise UserError(_open_failure(options, str(error))) from error
+        raise UserError(_open_failure(options, config, str(error))) from error
 
 
 def _config(options: ZenohOptions) -> zenoh.Config:
@@ -248,11 +249,33 @@ def _config(options: ZenohOptions) -> zenoh.Config:
     _fill_connection(config)
     if options.listen:
         _insert(config, "listen/endpoints", list(options.listen))
-    elif options.config_file is None and _get(config, "mode") != "client":
-        _insert(config, "listen/endpoints", ["tcp/127.0.0.1:0"])
+    elif _get(config, "listen/endpoints") == _get(zenoh.Config(), "listen/endpoints"):
+        # Zenoh's own default is plain TCP on all interfaces, beside whatever a file says of TLS.
+        own = [] if options.config_file or _get(config, "mode") == "client" else ["tcp/127.0.0.1:0"]
+        _insert(config, "listen/endpoints", own)
+    if not options.insecure:
+        _check_exposure(config)
     if _get(config, _BLOCK_MAX_KEY) == _get(zenoh.Config(), _BLOCK_MAX_KEY):
         _insert(config, _BLOCK_MAX_KEY, _BLOCK_MAX_US)
     return config
+
+
+def _check_exposure(config: zenoh.Config) -> None:
+    protocols = _get(config, "transport/link/protocols")
+    check_exposure(
+        connect=_endpoints(config, "connect/endpoints"),
+        listen=_endpoints(config, "listen/endpoints"),
+        protocols=protocols if isinstance(protocols, list) else None,
+        is_mutual=_get(config, "transport/link/tls/enable_mtls") is True,
+        scouts=_get(config, "scouting/multicast/enabled") is True,
+    )
+
+
+def _endpoints(config: zenoh.Config, key: str) -> list[str]:
+    """Return endpoints of all modes: those of the session's own, or a table with a list for each mode."""
+    found = _get(config, key)
+    lists = found.values() if isinstance(found, dict) else (found,)
+    return [str(endpoint) for one in lists for endpoint in (one if isinstance(one, list) else ())]
 
 
 def _fill_connection(config: zenoh.Config) -> None:
@@ -288,12 +311,14 @@ def _fill(config: zenoh.Config, key: str, value: object) -> None:
         _insert(config, key, value)
 
 
-def _open_failure(options: ZenohOptions, text: str) -> str:
+def _open_failure(options: ZenohOptions, config: zenoh.Config, text: str) -> str:
     endpoints = ", ".join(options.listen) or f"the endpoints of {options.config_file}"
     if "Address already in use" in text:
         return f"--listen {endpoints}: the port is in use, stop the other program or choose another port"
-    if options.mode == "client":
-        return f"--connect {', '.join(options.connect)}: no router answers there ({_plain(text)})"
+    if _get(config, "mode") == "client":
+        return (
+            f"--connect {', '.join(_endpoints(config, 'connect/endpoints'))}: no router answers there ({_plain(text)})"
+        )
     return f"cannot open the Zenoh session (--listen {endpoints}): {_plain(text)}"
 
 

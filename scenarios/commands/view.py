@@ -10,6 +10,7 @@ from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
     DroneOption,
+    InsecureOption,
     ListenOption,
     ModeOption,
     MulticastOption,
@@ -69,6 +70,7 @@ def view_command(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
 ) -> None:
     """Show a landing in the browser as it goes on, or play a recording.
 
@@ -90,7 +92,7 @@ def view_command(
 
     drawn = None if road is None else Road(scenario=load_scenario(road), seed=run_seed(road, seed))
     keys = Keys(namespace, vehicle, drone)
-    with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config)) as zenoh:
+    with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)) as zenoh:
         _show(LiveSource(zenoh, keys), drawn, port)
 
 
