@@ -82,7 +82,8 @@ def update_state(state: AutopilotState, message: Message, clock: ClockMap, drive
             )
         case "GPS_RAW_INT":
             height_m = geoid_height_m(state.geoid_height_m, message)
-            state = _place_origin(replace(state, geoid_height_m=height_m), driver.projection)
+            view = replace(state.view, receiver_is_fixed=message.fix_type == mavlink.GPS_FIX_TYPE_RTK_FIXED)
+            state = _place_origin(replace(state, geoid_height_m=height_m, view=view), driver.projection)
         case "DISTANCE_SENSOR" | "BATTERY_STATUS":
             up_m = None if state.own is None else state.own.position_enu_m[2]
             state = replace(state, view=with_sensor(state.view, message, clock, up_m))
