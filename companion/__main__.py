@@ -76,9 +76,9 @@ def companion(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
     ros2: Ros2Option = None,
     ros2_map: Ros2MapOption = None,
-    insecure: InsecureOption = False,
 ) -> None:
     """Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot."""
     if context.invoked_subcommand is not None:

@@ -124,9 +124,9 @@ def ground_vehicle(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
     ros2: Ros2Option = None,
     ros2_map: Ros2MapOption = None,
-    insecure: InsecureOption = False,
 ) -> None:
     """Publish a ground vehicle over Zenoh: its position, velocity, heading and pad."""
     from link.ros2.options import open_layout, ros2_options

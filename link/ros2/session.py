@@ -82,11 +82,11 @@ class Ros2Session(ZenohSession):
         if self._pad is not None and self._pad.antenna_to_pad_m is None:
             self._transforms = self._subscribe_latched(topic(self._pad.tf_static, foreign.TRANSFORMS))
 
-    def publish(self, key: str, payload: bytes, encoding: str) -> None:
+    def _send(self, key: str, payload: bytes, encoding: str) -> None:
         """Send `payload` to whoever subscribes to `key`, or to its topic."""
         route = self._routes.get(key)
         if route is None:
-            super().publish(key, payload, encoding)
+            super()._send(key, payload, encoding)
             return
         if route.to_ros is None:
             raise ValueError(f"{route.endpoint.name} is only read")
@@ -134,31 +134,22 @@ class Ros2Session(ZenohSession):
             inbox.put(Sample(key, json_messages.encode(pad), self._receive_clock_ns()))
         return inbox
 
-    def serve(self, key: str, handler: Callable[[bytes], bytes], encoding: str = "application/json") -> None:
+    def serve_later(self, key: str, take: Callable[[bytes, Callable[[bytes], None]], None]) -> None:
         """Answer queries on `key`; commands of the landing are services of type std_srvs/srv/Trigger besides."""
-        super().serve(key, handler, encoding)
+        super().serve_later(key, take)
         if key == self._keys.landing_command:
             for command in Command:
-                self._serve_trigger(trigger(f"/{self._keys.drone}/landing/{command.value}"), command, handler)
+                self._serve_trigger(trigger(f"/{self._keys.drone}/landing/{command.value}"), command, take)
 
-    def _serve_trigger(self, endpoint: Endpoint, command: Command, handler: Callable[[bytes], bytes]) -> None:
+    def _serve_trigger(
+        self, endpoint: Endpoint, command: Command, take: Callable[[bytes, Callable[[bytes], None]], None]
+    ) -> None:
         key, request = self._data_key(endpoint), json_messages.encode(command)
 
-        def answer(query: zenoh.Query) -> None:
-            asked = None if query.attachment is None else attachment.decode(query.attachment.to_bytes())
-            told = Attachment(
-                sequence=0 if asked is None else asked.sequence,
-                source_time_ns=time.time_ns(),
-                publisher_id=bytes(16) if asked is None else asked.publisher_id,
-            )
-            reply = json_messages.decode(CommandReply, handler(request))
-            query.reply(
-                key,
-                trigger_reply(accepted=reply.accepted, reason=reply.reason),
-                attachment=attachment.encode(told),
-            )
+        def receive(query: zenoh.Query) -> None:
+            take(request, lambda answer: self._replies.put(query, lambda: _reply_trigger(query, key, answer)))
 
-        self._held.append(self._session.declare_queryable(key, answer, complete=True))
+        self._held.append(self._session.declare_queryable(key, receive, complete=True))
         self._declare(EntityKind.SERVICE, endpoint, Qos())
 
     def _endpoint(self, route: Route) -> _Publisher:
@@ -265,3 +256,16 @@ def read_graph(options: ZenohOptions, domain: int) -> list[Token]:
         return [token for token in found if token is not None]
     finally:
         session.close()  # type: ignore[no-untyped-call]  # its stub has no return type
+
+
+def _reply_trigger(query: zenoh.Query, key: str, answer: bytes) -> None:
+    """Answer the call of a Trigger, with the caller's own number, by a reply in JSON."""
+    asked = None if query.attachment is None else attachment.decode(query.attachment.to_bytes())
+    told = Attachment(
+        sequence=0 if asked is None else asked.sequence,
+        source_time_ns=time.time_ns(),
+        publisher_id=bytes(16) if asked is None else asked.publisher_id,
+    )
+    reply = json_messages.decode(CommandReply, answer)
+    payload = trigger_reply(accepted=reply.accepted, reason=reply.reason)
+    query.reply(key, payload, attachment=attachment.encode(told))

@@ -17,6 +17,7 @@ from typing import Self
 import zenoh
 
 from link.errors import UserError
+from link.payloads.checks import PayloadError
 from link.zenoh.exposure import check_exposure
 from link.zenoh.inbox import Inbox, Sample, WakeUp
 from link.zenoh.options import DEFAULT_ENDPOINT, ZenohOptions
@@ -37,26 +38,34 @@ _BLOCK_MAX_US = 200_000
 stall the loop that flies. Less than the half second after which autopilots call a setpoint stream lost."""
 
 
-class _Replies:
-    """Sends answers to queries from a thread of its own: one who does not read them holds nobody else up."""
+class Replies:
+    """Sends answers to queries from a thread of its own: one who does not read them holds nobody else up.
+
+    Attributes:
+        lost: answers to who has gone, or that came after the end.
+    """
 
     def __init__(self) -> None:
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="replies")
         self._places = threading.BoundedSemaphore(_REPLIES_MAX)
-        self.lost = 0  # since who asked has gone
+        self.lost = 0
 
-    def put(self, query: zenoh.Query, key: str, payload: bytes) -> None:
-        """Send an answer later, or never where too many wait already."""
-        if self._places.acquire(blocking=False):
-            self._pool.submit(self._send, query, key, payload)
+    def put(self, query: zenoh.Query, send: Callable[[], None]) -> None:
+        """Answer `query` by `send` later, or never where too many wait already."""
+        if not self._places.acquire(blocking=False):
+            return
+        try:
+            self._pool.submit(self._send, query, send)
+        except RuntimeError:  # it is closed
+            self.lost += 1
 
     def close(self) -> None:
         """Send none of those that wait."""
         self._pool.shutdown(wait=False, cancel_futures=True)
 
-    def _send(self, query: zenoh.Query, key: str, payload: bytes) -> None:
+    def _send(self, query: zenoh.Query, send: Callable[[], None]) -> None:
         try:
-            query.reply(key, payload, encoding=zenoh.Encoding("application/json"))
+            send()
         except zenoh.ZError:
             self.lost += 1
         finally:
@@ -91,7 +100,7 @@ class ZenohSession:
         self._publishers: dict[tuple[str, str], zenoh.Publisher] = {}
         self._held: list[object] = []  # what Zenoh would undeclare when nobody holds it
         self._lock = threading.Lock()
-        self._replies = _Replies()
+        self._replies = Replies()
         self.unpublished = 0
         self.wake_up = WakeUp()
 
@@ -111,9 +120,12 @@ class ZenohSession:
         What cannot be sent is counted as `unpublished`: who publishes has other things to do.
         """
         try:
-            self._publisher(key, encoding).put(payload)
-        except zenoh.ZError:
+            self._send(key, payload, encoding)
+        except (zenoh.ZError, PayloadError):
             self.unpublished += 1
+
+    def _send(self, key: str, payload: bytes, encoding: str) -> None:
+        self._publisher(key, encoding).put(payload)
 
     def is_heard(self, key: str, encoding: str) -> bool:
         """Return whether anybody subscribes to `key` now; `encoding` as it is published there."""
@@ -170,7 +182,12 @@ class ZenohSession:
 
         def receive(query: zenoh.Query) -> None:
             payload = b"" if query.payload is None else query.payload.to_bytes()
-            take(payload, lambda answer: self._replies.put(query, key, answer))
+
+            def reply(answer: bytes) -> None:
+                encoding = zenoh.Encoding("application/json")
+                self._replies.put(query, lambda: query.reply(key, answer, encoding=encoding))
+
+            take(payload, reply)
 
         self._held.append(self._session.declare_queryable(key, receive))
 
