@@ -37,6 +37,9 @@ from link.zenoh.keys import Keys
 from link.zenoh.options import ZenohOptions
 from link.zenoh.session import INBOX_CAPACITY, Alive, Inbox, Sample, ZenohSession, open_library_session
 
+Take = Callable[[bytes, Callable[[bytes], None]], None]
+"""Of `ZenohSession.serve_later`."""
+
 _NODE_ID = 0
 _GRAPH_S = 2.0
 
@@ -93,7 +96,10 @@ class Ros2Session(ZenohSession):
         there = self._endpoint(route)
         there.sequence += 1
         told = Attachment(sequence=there.sequence, source_time_ns=time.time_ns(), publisher_id=there.identity)
-        there.publisher.put(route.to_ros(payload), attachment=attachment.encode(told))
+        try:
+            there.publisher.put(route.to_ros(payload), attachment=attachment.encode(told))
+        except zenoh.ZError:
+            self.unpublished += 1
 
     def is_heard(self, key: str, encoding: str) -> bool:
         """Return whether anybody subscribes to `key`, or to its topic."""
@@ -134,31 +140,20 @@ class Ros2Session(ZenohSession):
             inbox.put(Sample(key, json_messages.encode(pad), self._receive_clock_ns()))
         return inbox
 
-    def serve(self, key: str, handler: Callable[[bytes], bytes], encoding: str = "application/json") -> None:
+    def serve_later(self, key: str, take: Take) -> None:
         """Answer queries on `key`; commands of the landing are services of type std_srvs/srv/Trigger besides."""
-        super().serve(key, handler, encoding)
+        super().serve_later(key, take)
         if key == self._keys.landing_command:
             for command in Command:
-                self._serve_trigger(trigger(f"/{self._keys.drone}/landing/{command.value}"), command, handler)
+                self._serve_trigger(trigger(f"/{self._keys.drone}/landing/{command.value}"), command, take)
 
-    def _serve_trigger(self, endpoint: Endpoint, command: Command, handler: Callable[[bytes], bytes]) -> None:
+    def _serve_trigger(self, endpoint: Endpoint, command: Command, take: Take) -> None:
         key, request = self._data_key(endpoint), json_messages.encode(command)
 
-        def answer(query: zenoh.Query) -> None:
-            asked = None if query.attachment is None else attachment.decode(query.attachment.to_bytes())
-            told = Attachment(
-                sequence=0 if asked is None else asked.sequence,
-                source_time_ns=time.time_ns(),
-                publisher_id=bytes(16) if asked is None else asked.publisher_id,
-            )
-            reply = json_messages.decode(CommandReply, handler(request))
-            query.reply(
-                key,
-                trigger_reply(accepted=reply.accepted, reason=reply.reason),
-                attachment=attachment.encode(told),
-            )
+        def receive(query: zenoh.Query) -> None:
+            take(request, lambda answer: self._replies.put(query, key, _trigger_reply(answer), _told_back(query)))
 
-        self._held.append(self._session.declare_queryable(key, answer, complete=True))
+        self._held.append(self._session.declare_queryable(key, receive, complete=True))
         self._declare(EntityKind.SERVICE, endpoint, Qos())
 
     def _endpoint(self, route: Route) -> _Publisher:
@@ -225,6 +220,22 @@ class Ros2Session(ZenohSession):
 
     def _data_key(self, endpoint: Endpoint) -> str:
         return data_key(self._domain, endpoint)
+
+
+def _trigger_reply(answer: bytes) -> bytes:
+    reply = json_messages.decode(CommandReply, answer)
+    return trigger_reply(accepted=reply.accepted, reason=reply.reason)
+
+
+def _told_back(query: zenoh.Query) -> bytes:
+    """Return the attachment of an answer: the caller's own number and id, and the time of now."""
+    asked = None if query.attachment is None else attachment.decode(query.attachment.to_bytes())
+    told = Attachment(
+        sequence=0 if asked is None else asked.sequence,
+        source_time_ns=time.time_ns(),
+        publisher_id=bytes(16) if asked is None else asked.publisher_id,
+    )
+    return attachment.encode(told)
 
 
 def _transforms_or_none(payload: bytes) -> foreign.Transforms:

@@ -44,18 +44,19 @@ class _Replies:
         self._places = threading.BoundedSemaphore(_REPLIES_MAX)
         self.lost = 0  # since who asked has gone
 
-    def put(self, query: zenoh.Query, key: str, payload: bytes) -> None:
-        """Send an answer later, or never where too many wait already."""
+    def put(self, query: zenoh.Query, key: str, payload: bytes, attachment: bytes | None = None) -> None:
+        """Send an answer later, or never where too many wait already; one in JSON has no attachment."""
         if self._places.acquire(blocking=False):
-            self._pool.submit(self._send, query, key, payload)
+            self._pool.submit(self._send, query, key, payload, attachment)
 
     def close(self) -> None:
         """Send none of those that wait."""
         self._pool.shutdown(wait=False, cancel_futures=True)
 
-    def _send(self, query: zenoh.Query, key: str, payload: bytes) -> None:
+    def _send(self, query: zenoh.Query, key: str, payload: bytes, attachment: bytes | None) -> None:
+        encoding = "application/json" if attachment is None else "application/cdr"
         try:
-            query.reply(key, payload, encoding=zenoh.Encoding("application/json"))
+            query.reply(key, payload, encoding=zenoh.Encoding(encoding), attachment=attachment)
         except zenoh.ZError:
             self.lost += 1
         finally:

@@ -156,14 +156,14 @@ def test_command_is_a_trigger_service_that_answers_with_the_callers_number(
 ) -> None:
     asked: list[bytes] = []
 
-    def handler(payload: bytes) -> bytes:
+    def take(payload: bytes, reply: Callable[[bytes], None]) -> None:
         asked.append(payload)
-        return json_messages.encode(CommandReply(accepted=False, reason="no vehicle"))
+        reply(json_messages.encode(CommandReply(accepted=False, reason="no vehicle")))
 
     caller = struct.pack("<qqB", 41, 5, 16) + bytes(range(16))
     found: list[zenoh.Sample] = []
     with node(endpoint) as ours:
-        ours.serve(KEYS.landing_command, handler)
+        ours.serve_later(KEYS.landing_command, take)
 
         def call() -> None:
             replies = bystander.get(
