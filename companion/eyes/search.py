@@ -1,9 +1,10 @@
 """Tags found anywhere in a picture, without knowing where: OpenCV's detector on the picture and on reduced ones.
 
 A large tag in whose cells smaller ones stand is found where these have blurred away, in a reduced picture. That is
-also the cheapest, so the reduced ones come first and the search ends with the first that shows a tag of the board.
+also the cheapest, so the reduced ones come first, and the search ends with the first that shows the board.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
@@ -17,8 +18,10 @@ from companion.eyes.picture import Gray, Part
 
 Array = NDArray[np.float64]
 
-_REDUCTIONS = (4, 2, 1)
-_WINDOW_PX = 13  # of the adaptive threshold: larger than a cell of most tags, smaller than what light changes over
+_PASSES = ((8, False), (4, False), (2, False), (1, False), (4, True), (2, True))
+"""By how much the picture is reduced, and whether its speckles are then taken out: mud that breaks a tag's outline."""
+_SPECKLE_PX = 5
+_WINDOW_PX = 23  # of the adaptive threshold: larger than a cell of most tags, smaller than what light changes over
 _THRESHOLD_SHARE, _THRESHOLD_MIN, _THRESHOLD_MAX = 0.03, 2.0, 7.0  # of the picture's contrast; in shades
 _SHARPENING = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 20, 0.02)
 _SIDE_MIN_PX = 16.0  # two pixels a cell
@@ -27,7 +30,7 @@ _WRONG_BITS_MAX = 2  # of 36; of the 5 that could be mended, so that chance and 
 
 @dataclass(frozen=True)
 class Found:
-    """What a search has found.
+    """What a pass has found.
 
     Attributes:
         corners_px: of each id on the board the corners (4, 2) in the whole picture, in the order of `Board.corners_m`.
@@ -38,22 +41,21 @@ class Found:
     foreign_ids: frozenset[int]
 
 
-def search(part: Part, board: Board) -> Found:
-    """Return the board's tags in a part of a picture; an id that is seen twice is believed at neither place."""
-    foreign: set[int] = set()
+def search(part: Part, board: Board) -> Iterator[Found]:
+    """Yield what each pass over a part of a picture finds, the cheapest first; the caller stops when it has the pad.
+
+    An id that is seen twice is believed at neither place.
+    """
     constant = _threshold_of(part.shades)
-    for reduction in _REDUCTIONS:
-        tags = _detect(part.shades, reduction, board.config.family, constant)
-        foreign |= {tag_id for tag_id, _ in tags if tag_id not in board.corners_m}
+    for reduction, is_cleaned in _PASSES:
+        tags = _detect(part.shades, reduction, is_cleaned, board.config.family, constant)
         seen = [tag_id for tag_id, _ in tags]
         known = {
             tag_id: corners + np.array([part.box.left, part.box.top])
             for tag_id, corners in tags
             if tag_id in board.corners_m and seen.count(tag_id) == 1
         }
-        if known:
-            return Found(known, frozenset(foreign))
-    return Found({}, frozenset(foreign))
+        yield Found(known, frozenset(seen) - frozenset(board.corners_m))
 
 
 def _threshold_of(shades: Gray) -> int:
@@ -62,7 +64,7 @@ def _threshold_of(shades: Gray) -> int:
     return int(np.clip(_THRESHOLD_SHARE * (high - low), _THRESHOLD_MIN, _THRESHOLD_MAX))
 
 
-def _detect(shades: Gray, reduction: int, family: str, constant: int) -> list[tuple[int, Array]]:
+def _detect(shades: Gray, reduction: int, is_cleaned: bool, family: str, constant: int) -> list[tuple[int, Array]]:
     """Return ids and corners (4, 2) of the tags that are seen in the picture once it is reduced."""
     rows, columns = shades.shape
     if min(rows, columns) < 2 * reduction * _SIDE_MIN_PX:
@@ -72,6 +74,8 @@ def _detect(shades: Gray, reduction: int, family: str, constant: int) -> list[tu
         small = shades[: rows - rows % reduction, : columns - columns % reduction]
         size = (small.shape[1] // reduction, small.shape[0] // reduction)
         small = np.asarray(cv2.resize(small, size, interpolation=cv2.INTER_AREA), np.uint8)
+    if is_cleaned:
+        small = np.asarray(cv2.medianBlur(np.ascontiguousarray(small), _SPECKLE_PX), np.uint8)
     corners, found, _ = _detector(family, max(small.shape), constant).detectMarkers(np.ascontiguousarray(small))
     ids = [int(one) for one in np.ravel(found)] if len(corners) else []
     shift = 0.5 * (reduction - 1)  # between the centres of the first pixels

@@ -133,23 +133,31 @@ def _track(frame: Frame, system: SightSystem, R_WB: Array, expected: Pose) -> Si
 def _search(frame: Frame, system: SightSystem, R_WB: Array) -> Sight:
     """Return the pad wherever it is in the picture."""
     part = frame.picture.part(whole(frame.picture.size_px))
-    found = search(part, system.board)
-    candidates = [
-        candidate
-        for guess in guesses(system.camera, system.board, found.corners_px)
-        if (candidate := _settle(part, system, R_WB, frame, guess)) is not None
-    ]
+    foreign: frozenset[int] = frozenset()
+    for found in search(part, system.board):
+        foreign |= found.foreign_ids
+        candidates = [
+            candidate
+            for guess in guesses(system.camera, system.board, found.corners_px)
+            if (candidate := _settle(part, system, R_WB, frame, guess)) is not None
+        ]
+        chosen = _choose(candidates)
+        if chosen is not None:
+            return _sight(frame, system, *chosen, tracked=False, foreign_ids=foreign)
+    return Sight(foreign_ids=foreign)
+
+
+def _choose(candidates: list[_Candidate]) -> tuple[_Candidate, _Candidate | None] | None:
+    """Return the more probable of up to two poses, and the other one where it may as well be; None if none can be."""
     if not candidates:
-        return Sight(foreign_ids=found.foreign_ids)
-    std_px = min(max(one.refined.rms_px, 1e-3) for one in candidates)
+        return None
+    std_px = max(min(one.refined.rms_px for one in candidates), 1e-3)
     scores = [one.refined.squares_px2 / std_px**2 + one.tilt_stds**2 for one in candidates]
     best = int(np.argmin(scores))
     if candidates[best].tilt_stds > _TILT_STDS_MAX:
-        return Sight(foreign_ids=found.foreign_ids)
-    other = None
-    if len(candidates) > 1 and _misread_probability(scores) > _MISREAD_MAX:
-        other = candidates[1 - best]
-    return _sight(frame, system, candidates[best], other, tracked=False, foreign_ids=found.foreign_ids)
+        return None
+    is_open = len(candidates) > 1 and _misread_probability(scores) > _MISREAD_MAX
+    return candidates[best], candidates[1 - best] if is_open else None
 
 
 def _misread_probability(scores: list[float]) -> float:
