@@ -22,6 +22,7 @@ HOMES = {
         "link/payloads/ros_fields.py",
         "link/payloads/ros_motion.py",
         "link/payloads/decklander_msgs.py",
+        "link/payloads/ros_images.py",
         "link/payloads/ros_sensors.py",
     },
     "mcap": {"link/recording/mcap_reader.py", "link/recording/mcap_writer.py"},

@@ -1,13 +1,26 @@
 """The `pad-detector` command."""
 
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from link.errors import UserError
-from link.program.cli import make_app, run_app
+from link.program.cli import (
+    EXIT_USER_ERROR,
+    ConnectOption,
+    DroneOption,
+    ListenOption,
+    ModeOption,
+    MulticastOption,
+    NamespaceOption,
+    VehicleOption,
+    ZenohConfigOption,
+    make_app,
+    run_app,
+)
 
 app = make_app("See the landing pad by a camera on the drone, and publish where it is.")
 
@@ -19,6 +32,79 @@ BoardOption = Annotated[
 @app.callback()
 def pad_detector() -> None:
     """See the landing pad by a camera on the drone, and publish where it is."""
+
+
+_SourceOption = Annotated[
+    str,
+    typer.Option(
+        "--source",
+        metavar="CAMERA",
+        help="/dev/videoN, rtsp://HOST/PATH, a video file, a folder of pictures, or zenoh.",
+    ),
+]
+_CalibrationOption = Annotated[
+    Path,
+    typer.Option("--calibration", metavar="FILE", help="Of the camera: ROS camera_info or kalibr's camchain, YAML."),
+]
+_MountingOption = Annotated[
+    Path | None,
+    typer.Option("--mounting", metavar="FILE", help="Of the camera on the drone, TOML [default: straight down]."),
+]
+_SizeOption = Annotated[
+    tuple[int, int] | None,
+    typer.Option("--size", metavar="WIDTH HEIGHT", help="Pixels to ask of the camera [default: the calibration's]."),
+]
+_LatencyOption = Annotated[
+    float,
+    typer.Option(
+        "--latency", min=0.0, max=2.0, help="Seconds from the middle of an exposure to the picture's arrival."
+    ),
+]
+_RateOption = Annotated[
+    float, typer.Option("--rate", min=0.1, max=1000.0, help="Of a folder's pictures whose names are no times, in Hz.")
+]
+
+
+@app.command("run")
+def run_detector(
+    calibration: _CalibrationOption,
+    source: _SourceOption = "/dev/video0",
+    board: BoardOption = None,
+    mounting: _MountingOption = None,
+    size: _SizeOption = None,
+    latency: _LatencyOption = 0.03,
+    rate: _RateOption = 30.0,
+    namespace: NamespaceOption = "decklander",
+    vehicle: VehicleOption = "vehicle",
+    drone: DroneOption = "drone",
+    mode: ModeOption = None,
+    connect: ConnectOption = None,
+    listen: ListenOption = None,
+    multicast: MulticastOption = None,
+    zenoh_config: ZenohConfigOption = None,
+) -> None:
+    """Look at a camera's frames and publish where the pad is."""
+    from companion.eyes.board import load_board
+    from companion.eyes.calibration import load_calibration
+    from companion.eyes.loop import EyesLoop
+    from companion.eyes.mounting import load_mounting
+    from companion.eyes.node import EyesNode
+    from companion.eyes.opening import SourceOptions, open_source
+    from companion.eyes.sight import SightSystem
+    from link.zenoh.keys import Keys
+    from link.zenoh.options import zenoh_options
+    from link.zenoh.session import open_session
+
+    keys = Keys(namespace, vehicle, drone)
+    camera = load_calibration(calibration)
+    system = SightSystem(camera=camera, mounting=load_mounting(mounting), board=load_board(board))
+    options = SourceOptions(size_px=size or camera.size_px, latency_s=latency, rate_hz=rate)
+    with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config)) as zenoh:
+        frames = open_source(source, options, keys, zenoh)
+        try:
+            EyesLoop(EyesNode(system, keys), frames, keys, zenoh).run()
+        finally:
+            frames.close()
 
 
 @app.command("print")
@@ -54,6 +140,9 @@ def print_board(
 
 def main() -> None:
     """Run the command."""
+    if find_spec("cv2") is None:
+        sys.stderr.write("pad-detector: OpenCV is missing: install decklander[camera]\n")
+        sys.exit(EXIT_USER_ERROR)
     sys.exit(run_app("pad-detector", app))
 
 
