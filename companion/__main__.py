@@ -19,6 +19,8 @@ from link.program.cli import (
     ModeOption,
     MulticastOption,
     NamespaceOption,
+    Ros2MapOption,
+    Ros2Option,
     VehicleOption,
     ZenohConfigOption,
     make_app,
@@ -71,6 +73,8 @@ def companion(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    ros2: Ros2Option = None,
+    ros2_map: Ros2MapOption = None,
 ) -> None:
     """Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot."""
     if context.invoked_subcommand is not None:
@@ -87,9 +91,9 @@ def companion(
     from link.mavlink.signing import read_key
     from link.mavlink.transports import open_transport
     from link.recording.recorder import BackgroundRecorder
+    from link.ros2.options import open_layout, ros2_options
     from link.zenoh.keys import Keys
     from link.zenoh.options import zenoh_options
-    from link.zenoh.session import open_session
 
     keys = Keys(namespace, vehicle, drone)
     key = None if signing_key is None else read_key(signing_key)
@@ -102,7 +106,9 @@ def companion(
         # What a user may have got wrong is opened first: the numerics take their time, up to a minute to be compiled.
         endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config)
         transport = stack.enter_context(open_transport(mavlink))
-        zenoh = stack.enter_context(open_session(endpoints))
+        zenoh = stack.enter_context(
+            open_layout(endpoints, ros2_options(ros2, ros2_map), keys, (f"/{drone}", "companion"))
+        )
         from companion.runtime.build import build_node
         from companion.runtime.loop import run
         from companion.runtime.options import Links, LoopOptions

@@ -17,6 +17,7 @@ from link.frames.rotations import enu_from_ned, flu_from_frd, normalized, quater
 from link.mavlink.clock_map import ClockMap
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Quaternion, Vector3
+from link.program.printable import printable
 from link.records import replace
 
 _AHEAD_NS = 100_000_000  # how far a report is carried beyond the newest one
@@ -105,9 +106,9 @@ def _said(state: AutopilotState, message: Message, driver: Driver) -> AutopilotS
     """Take a text, or an event in words."""
     refusal = driver.refusal(message)
     if refusal is not None and not state.view.armed:
-        state = replace(state, view=replace(state.view, refusal=refusal))
+        state = replace(state, view=replace(state.view, refusal=printable(refusal)))
     text = refusal if message.get_type() == "EVENT" else f"{message.text}"
-    return state if text is None else replace(state, texts=(*state.texts, text))
+    return state if text is None else replace(state, texts=(*state.texts, printable(text)))
 
 
 def _position(state: AutopilotState, message: Message, clock: ClockMap) -> AutopilotState:

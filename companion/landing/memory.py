@@ -15,9 +15,10 @@ from companion.core.data import Array
 from companion.core.reasons import Cause, Reason
 from companion.integrity.frames import FixedPhases
 from companion.integrity.vehicle_data import Contradictions, CourseWatch, FixStamps
+from companion.landing.flown_plan import FlownPlan
 from companion.landing.sway import Sway
 from companion.landing.virtual_model import Tracking
-from companion.planning.guidance import GuidanceMemory, ReferenceState, Trajectory
+from companion.planning.guidance import GuidanceMemory, ReferenceState
 from companion.situation.phases import Phase
 from companion.vehicle.driving import Surprise
 from companion.vehicle.estimator import EstimatorMemory
@@ -93,7 +94,7 @@ class ModelMemory(Struct, frozen=True, kw_only=True, eq=False):
     Attributes:
         reference: the model, None while nothing is flown.
         reference_ns: the model's time, monotonic.
-        plan: the last one, from one period before the model's time on.
+        plan: that leads to the model, made one period before its time; None once the model is set elsewhere.
         guidance: the guidance law's own memory.
         tracking: how the drone follows it.
         sway: how hard the drone leans.
@@ -102,7 +103,7 @@ class ModelMemory(Struct, frozen=True, kw_only=True, eq=False):
 
     reference: ReferenceState | None = None
     reference_ns: int = 0
-    plan: Trajectory | None = None
+    plan: FlownPlan | None = None
     guidance: GuidanceMemory | None = None
     tracking: Tracking = field(default_factory=Tracking)
     sway: Sway = field(default_factory=Sway)
@@ -181,7 +182,7 @@ def _move_model(model: ModelMemory, by_enu_m: Array) -> ModelMemory:
     if reference is not None:
         reference = replace(reference, position_enu_m=reference.position_enu_m + by_enu_m)
     past = tuple((t_ns, place + by_enu_m, velocity) for t_ns, place, velocity in tracking.past)
-    return replace(model, reference=reference, guidance=None, tracking=replace(tracking, past=past))
+    return replace(model, reference=reference, plan=None, guidance=None, tracking=replace(tracking, past=past))
 
 
 def _move(point_enu_m: Array | None, by_enu_m: Array) -> Array | None:

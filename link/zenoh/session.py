@@ -10,6 +10,7 @@ import re
 import threading
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from types import TracebackType
 from typing import Self
 
@@ -24,12 +25,42 @@ __all__ = ["DEFAULT_ENDPOINT", "Alive", "Inbox", "Sample", "WakeUp", "ZenohOptio
 INBOX_CAPACITY = 1024
 """Ten seconds of a 100 Hz stream."""
 
+_REPLIES_MAX = 256
+"""Answers to queries that wait to be sent; more are asked for by nobody who means it."""
+
 _SOURCE_PLACE = re.compile(r"\s+at /\S+\.rs:\d+\.?")
 _CLIENT_CONNECT_TIMEOUT_MS = 5000
 _BLOCK_MAX_KEY = "transport/link/tx/queue/congestion_control/block/wait_before_close"
 _BLOCK_MAX_US = 200_000
 """A peer that takes nothing for this long while its queue is full is disconnected: a hung dashboard must not
 stall the loop that flies. Less than the half second after which autopilots call a setpoint stream lost."""
+
+
+class _Replies:
+    """Sends answers to queries from a thread of its own: one who does not read them holds nobody else up."""
+
+    def __init__(self) -> None:
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix="replies")
+        self._places = threading.BoundedSemaphore(_REPLIES_MAX)
+        self.lost = 0  # since who asked has gone
+
+    def put(self, query: zenoh.Query, key: str, payload: bytes) -> None:
+        """Send an answer later, or never where too many wait already."""
+        if self._places.acquire(blocking=False):
+            self._pool.submit(self._send, query, key, payload)
+
+    def close(self) -> None:
+        """Send none of those that wait."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
+
+    def _send(self, query: zenoh.Query, key: str, payload: bytes) -> None:
+        try:
+            query.reply(key, payload, encoding=zenoh.Encoding("application/json"))
+        except zenoh.ZError:
+            self.lost += 1
+        finally:
+            query.drop()  # type: ignore[no-untyped-call]  # its stub has no return type
+            self._places.release()
 
 
 class Alive:
@@ -59,6 +90,8 @@ class ZenohSession:
         self._publishers: dict[tuple[str, str], zenoh.Publisher] = {}
         self._held: list[object] = []  # what Zenoh would undeclare when nobody holds it
         self._lock = threading.Lock()
+        self._replies = _Replies()
+        self.unpublished = 0
         self.wake_up = WakeUp()
 
     def __enter__(self) -> Self:
@@ -72,8 +105,14 @@ class ZenohSession:
         self.close()
 
     def publish(self, key: str, payload: bytes, encoding: str) -> None:
-        """Send `payload` to whoever subscribes to `key`; `encoding` as of `link.payloads.cdr.encoding_of`."""
-        self._publisher(key, encoding).put(payload)
+        """Send `payload` to whoever subscribes to `key`; `encoding` as of `link.payloads.cdr.encoding_of`.
+
+        What cannot be sent is counted as `unpublished`: who publishes has other things to do.
+        """
+        try:
+            self._publisher(key, encoding).put(payload)
+        except zenoh.ZError:
+            self.unpublished += 1
 
     def is_heard(self, key: str, encoding: str) -> bool:
         """Return whether anybody subscribes to `key` now; `encoding` as it is published there."""
@@ -121,6 +160,19 @@ class ZenohSession:
 
         self._held.append(self._session.declare_queryable(key, answer))
 
+    def serve_later(self, key: str, take: Callable[[bytes, Callable[[bytes], None]], None]) -> None:
+        """Answer queries on `key` with JSON, by `take(payload, reply)`, which returns at once.
+
+        `reply(answer)` may be called then or later, once, from any thread, and never waits or raises. Where more than
+        `_REPLIES_MAX` answers are on their way it has no effect. A query whose `reply` is forgotten has no answer.
+        """
+
+        def receive(query: zenoh.Query) -> None:
+            payload = b"" if query.payload is None else query.payload.to_bytes()
+            take(payload, lambda answer: self._replies.put(query, key, answer))
+
+        self._held.append(self._session.declare_queryable(key, receive))
+
     def query(self, key: str, payload: bytes, timeout_s: float) -> list[bytes]:
         """Ask whoever serves `key` and return the answers, waiting for at most `timeout_s`; errors are left out."""
         replies = self._session.get(key, payload=payload, timeout=timeout_s, target=zenoh.QueryTarget.ALL)
@@ -151,6 +203,7 @@ class ZenohSession:
         """Leave the network; a second call does nothing."""
         with self._lock:
             if not self._session.is_closed():
+                self._replies.close()
                 self._session.close()  # type: ignore[no-untyped-call]  # its stub has no return type
                 self._held.clear()
                 self._publishers.clear()
@@ -170,12 +223,16 @@ def open_session(options: ZenohOptions, *, receive_clock_ns: Callable[[], int] =
     Raises:
         UserError: If the configuration file is missing or wrong, a port is in use or a client finds no router.
     """
+    return ZenohSession(open_library_session(options), receive_clock_ns=receive_clock_ns)
+
+
+def open_library_session(options: ZenohOptions) -> zenoh.Session:
+    """Return the library's own session, for other layouts; see `open_session`."""
     config = _config(options)
     try:
-        session = zenoh.open(config)
+        return zenoh.open(config)
     except zenoh.ZError as error:
         raise UserError(_open_failure(options, str(error))) from error
-    return ZenohSession(session, receive_clock_ns=receive_clock_ns)
 
 
 def _config(options: ZenohOptions) -> zenoh.Config:

@@ -1,6 +1,5 @@
 """The command `view`: a landing or a recording in the browser."""
 
-import importlib.util
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -18,6 +17,7 @@ from link.program.cli import (
     VehicleOption,
     ZenohConfigOption,
 )
+from link.program.extras import require
 
 if TYPE_CHECKING:
     from scenarios.view.live import LiveSource
@@ -31,16 +31,6 @@ def register(app: typer.Typer) -> None:
     app.command("view")(view_command)
 
 
-def check_viser() -> None:
-    """Find out whether the page can be made.
-
-    Raises:
-        UserError: viser is not installed.
-    """
-    if importlib.util.find_spec("viser") is None:
-        raise UserError("the view needs viser: pip install 'decklander[view]'")
-
-
 def port_of_run(*, lockstep: bool, as_json: bool) -> int:
     """Return the port of the page of a run, and tell it.
 
@@ -51,7 +41,7 @@ def port_of_run(*, lockstep: bool, as_json: bool) -> int:
 
     if lockstep:
         raise UserError("--lockstep is over at once: leave out --view, and give the run's folder to `scenarios view`")
-    check_viser()
+    require("view", "--view")
     port = free_tcp_port(DEFAULT_PORT)
     (sys.stderr if as_json else sys.stdout).write(f"view: http://127.0.0.1:{port}\n")
     return port
@@ -84,7 +74,7 @@ def view_command(
 
     From another machine: ssh -L 8080:127.0.0.1:8080 THIS_MACHINE, and http://127.0.0.1:8080 there.
     """
-    check_viser()
+    require("view", "scenarios view")
     from scenarios.view.recorded import RecordedSource, Road
 
     if recording is not None:

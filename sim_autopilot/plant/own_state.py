@@ -13,6 +13,7 @@ import numpy as np
 
 from link.messages import Vector3
 from sim_autopilot.core.data import Array
+from sim_autopilot.core.noise import NoiseSeed
 from sim_autopilot.physics.wind import second_order_noise
 
 _BLOCK = 1024  # steps whose noise is drawn at once
@@ -34,7 +35,7 @@ class OwnStateModel:
         origin_step_s: since boot, when.
     """
 
-    seed: int | np.random.Generator = 0
+    seed: NoiseSeed = 0
     position_std_m: float = 0.0
     velocity_std_m_s: float = 0.0
     receiver_accuracy_m: float | None = None
