@@ -4,15 +4,18 @@ BIN := .venv/bin
 SPEED ?= 1
 SCENARIO ?= straight_5
 SEED ?= 1
+# make setup EXTRA=companion: only what a drone or a vehicle needs, from its own lock.
+EXTRA ?=
+LOCK := requirements$(if $(EXTRA),-$(EXTRA)).lock
 
 .PHONY: setup demo test check docs lint lock clean
 
 setup: .venv/.complete
 
-.venv/.complete: requirements.lock pyproject.toml
+.venv/.complete: $(LOCK) pyproject.toml
 	rm -rf .venv
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install --quiet --require-hashes -r $(LOCK)
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
 	$(BIN)/python -m scenarios.lockstep.warm_up
 	touch $@
@@ -21,12 +24,13 @@ demo: .venv/.complete
 	$(BIN)/scenarios run $(SCENARIO)$(if $(CAMERA),+camera=$(CAMERA)) --speed $(SPEED) --seed $(SEED)
 
 check: lint
-	$(BIN)/pytest -q -n 2 -m "not slow and not wire"
+	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "not slow and not wire"
 
-# What keeps time with the clock runs after the rest: what mostly waits two at a time, what takes both cores by itself.
+# What keeps time with the clock runs after the rest: what mostly waits three at a time, what takes both cores by itself.
+# A module's tests share what they fly; in the order of the files the many short ones come last.
 test: lint docs
-	$(BIN)/pytest -q -n 2 --dist worksteal -m "not wire"
-	$(BIN)/pytest -q -n 2 --dist loadscope -m "wire and not alone"
+	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "not wire"
+	$(BIN)/pytest -q -n 3 --dist loadscope -m "wire and not alone"
 	$(BIN)/pytest -q -m alone
 
 # The manual, in build/manual/index.html; needs no network. A warning, such as a broken link, fails it.
@@ -38,9 +42,11 @@ lint: .venv/.complete
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 
-# Needs uv; the lock carries hashes and names no package index.
+# Needs uv; the locks carry hashes and name no package index. The drone's has the versions of the other.
+COMPILE := --quiet --generate-hashes --no-emit-index-url --no-header --universal --python-version 3.11
 lock:
-	uv pip compile pyproject.toml --group dev --all-extras --generate-hashes --no-emit-index-url --no-header --universal --python-version 3.11 -o requirements.lock
+	uv pip compile pyproject.toml --group dev --all-extras $(COMPILE) -o requirements.lock
+	uv pip compile pyproject.toml --group build --constraints requirements.lock $(COMPILE) -o requirements-companion.lock
 
 clean:
 	rm -rf .venv runs build .mypy_cache .ruff_cache .pytest_cache

@@ -11,14 +11,18 @@ import typer
 
 from companion.check.command import ConfigOption, DeviceOption, SigningKeyOption, SystemIdOption, check
 from companion.config.companion import AutopilotKind
+from companion.runtime.keys import keys
 from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
     DroneOption,
+    InsecureOption,
     ListenOption,
     ModeOption,
     MulticastOption,
     NamespaceOption,
+    Ros2MapOption,
+    Ros2Option,
     VehicleOption,
     ZenohConfigOption,
     make_app,
@@ -27,6 +31,7 @@ from link.program.cli import (
 
 app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.")
 app.command("check")(check)
+app.command("keys")(keys)
 
 _PrintConfigOption = Annotated[bool, typer.Option("--print-config", help="Print the configuration and end.")]
 _StartOption = Annotated[bool, typer.Option("--start", help="Arm, take off and land without an operator's command.")]
@@ -71,6 +76,9 @@ def companion(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
+    ros2: Ros2Option = None,
+    ros2_map: Ros2MapOption = None,
 ) -> None:
     """Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot."""
     if context.invoked_subcommand is not None:
@@ -87,9 +95,9 @@ def companion(
     from link.mavlink.signing import read_key
     from link.mavlink.transports import open_transport
     from link.recording.recorder import BackgroundRecorder
+    from link.ros2.options import open_layout, ros2_options
     from link.zenoh.keys import Keys
     from link.zenoh.options import zenoh_options
-    from link.zenoh.session import open_session
 
     keys = Keys(namespace, vehicle, drone)
     key = None if signing_key is None else read_key(signing_key)
@@ -100,9 +108,11 @@ def companion(
     recorder: BackgroundRecorder | None = None
     with ExitStack() as stack:
         # What a user may have got wrong is opened first: the numerics take their time, up to a minute to be compiled.
-        endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config)
+        endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
         transport = stack.enter_context(open_transport(mavlink))
-        zenoh = stack.enter_context(open_session(endpoints))
+        zenoh = stack.enter_context(
+            open_layout(endpoints, ros2_options(ros2, ros2_map), keys, (f"/{drone}", "companion"))
+        )
         from companion.runtime.build import build_node
         from companion.runtime.loop import run
         from companion.runtime.options import Links, LoopOptions

@@ -6,6 +6,7 @@ Pure: the same memory, inputs and system give the same result, in flight, in sim
 from companion.autopilots.driver import AutopilotCommand, Desire
 from companion.config.companion import CompanionConfig
 from companion.core.data import Forecast
+from companion.integrity.frames import are_frames_one, update_fixed_phases
 from companion.integrity.heights import is_road_elsewhere, update_ground, update_pad_raised_m, with_pad_raised
 from companion.integrity.vehicle_data import (
     Contradictions,
@@ -66,7 +67,7 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
     memory, plan = fly(memory, situation, inputs, system)
     memory, commands = _drive(memory, situation, inputs, system.config)
     outputs = StepOutputs(
-        setpoint=setpoint(memory, inputs, system.config, plan),
+        setpoint=setpoint(memory, inputs, system.config, is_planned=plan is not None),
         commands=commands,
         text=news(before, memory.progress),
         reply=reply,
@@ -109,6 +110,9 @@ def _update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) 
         ),
         fix_stamps=update_fix_stamps(vehicle.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns),
         contradictions=contradictions,
+        phases=update_fixed_phases(
+            vehicle.phases, inputs.measurements, now_ns, drone_is_fixed=inputs.autopilot.receiver_is_fixed
+        ),
     )
 
 
@@ -139,7 +143,9 @@ def _pad(
     if forecast is None:
         return vehicle, None
     if _is_finite(forecast):
-        return vehicle, without_contradicted_heading(pad_path(forecast, inputs.pad), vehicle.course)
+        has_one_frame = are_frames_one(vehicle.phases, system.config.receiver_frames, inputs.monotonic_ns)
+        pad = pad_path(forecast, inputs.pad, has_one_frame=has_one_frame)
+        return vehicle, without_contradicted_heading(pad, vehicle.course)
     return replace(vehicle, estimator=None), None
 
 

@@ -109,7 +109,9 @@ class SensorsConfig(StrictModel):
     velocity: VelocityConfig | None = None
     imu: ImuConfig | None = None
     pattern: PatternConfig | None = None
-    frame_offset_m: NotNegative = 0.0  # between the two receivers' frames, horizontal, in a drawn direction
+    # Between the two receivers' frames, horizontal, in a drawn direction; 0: of one source of corrections, and whoever
+    # flies knows it.
+    frame_offset_m: NotNegative = 0.0
     clock: ClockConfig = ClockConfig()
     own_state: OwnStateConfig = OwnStateConfig()
 

@@ -10,10 +10,13 @@ from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
     DroneOption,
+    InsecureOption,
     ListenOption,
     ModeOption,
     MulticastOption,
     NamespaceOption,
+    Ros2MapOption,
+    Ros2Option,
     VehicleOption,
     ZenohConfigOption,
     make_app,
@@ -21,11 +24,15 @@ from link.program.cli import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from link.messages import PadGeometry
     from link.zenoh.keys import Keys
-    from link.zenoh.options import ZenohOptions
+    from link.zenoh.session import ZenohSession
     from scenarios.vehicle_sources.channel import OpenTransport
     from scenarios.vehicle_sources.receiver import Receiver
+
+    OpenZenoh = Callable[[], ZenohSession]
 
 _RECEIVER = "A real vehicle"
 _PAD = "Its pad"
@@ -117,15 +124,26 @@ def ground_vehicle(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
+    ros2: Ros2Option = None,
+    ros2_map: Ros2MapOption = None,
 ) -> None:
     """Publish a ground vehicle over Zenoh: its position, velocity, heading and pad."""
+    from link.ros2.options import open_layout, ros2_options
     from link.zenoh.keys import Keys
     from link.zenoh.options import zenoh_options
 
     if sum(one is not None for one in (scenario, gpsd, nmea, mavlink)) > 1:
         raise UserError("--scenario, --gpsd, --nmea and --mavlink are one vehicle each: give one of them")
     keys = Keys(namespace, vehicle, drone)
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, listens=True)
+    layout = ros2_options(ros2, ros2_map)
+    # a ROS 2 graph has its router at the default endpoint; else the vehicle waits there for the others
+    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure, listens=layout is None)
+    node = (f"/{vehicle}", "ground_vehicle")
+
+    def open_zenoh() -> "ZenohSession":
+        return open_layout(options, layout, keys, node)
+
     if scenario is not None:
         if any(one is not None for one in (pad, pad_size, pad_height, antenna_to_pad)):
             raise UserError(
@@ -133,13 +151,13 @@ def ground_vehicle(
                 "file says pad_size_m, roof_height_m and antenna_flu_m of its [vehicle]"
             )
         simulation = _Simulation(scenario, seed, depart_at_once, use_sim_time, timeout)
-        _drive(simulation, keys, options)
+        _drive(simulation, keys, open_zenoh)
         return
     source = _source(gpsd, nmea, mavlink)
     from scenarios.vehicle_sources.pad import pad_geometry
 
     geometry = pad_geometry(pad, size_m=pad_size, height_m=pad_height, antenna_to_pad_m=antenna_to_pad)
-    _listen(source, geometry, keys, options)
+    _listen(source, geometry, keys, open_zenoh)
 
 
 class _Simulation(NamedTuple):
@@ -180,21 +198,19 @@ def _source(gpsd: str | None, nmea: str | None, mavlink: str | None) -> _Source:
     )
 
 
-def _listen(source: _Source, pad: "PadGeometry", keys: "Keys", options: "ZenohOptions") -> None:
+def _listen(source: _Source, pad: "PadGeometry", keys: "Keys", open_zenoh: "OpenZenoh") -> None:
     """Publish a real vehicle."""
     from link.program.service import Service
-    from link.zenoh.session import open_session
     from scenarios.vehicle_sources.loop import ReceiverLoop
 
-    with open_session(options) as zenoh:
+    with open_zenoh() as zenoh:
         ReceiverLoop(
             source.receiver, source.open_transport, source.name, keys=keys, zenoh=zenoh, pad=pad, service=Service()
         ).run()
 
 
-def _drive(simulation: _Simulation, keys: "Keys", options: "ZenohOptions") -> None:
+def _drive(simulation: _Simulation, keys: "Keys", open_zenoh: "OpenZenoh") -> None:
     """Publish a scenario's vehicle."""
-    from link.zenoh.session import open_session
     from scenarios.catalogue.catalogue import load_scenario
     from scenarios.catalogue.world_names import run_seed
     from scenarios.simulation.vehicle_node import VehicleNode, departing_at_once
@@ -204,7 +220,7 @@ def _drive(simulation: _Simulation, keys: "Keys", options: "ZenohOptions") -> No
     seed = run_seed(simulation.scenario, simulation.seed)
     driven = departing_at_once(driven) if simulation.departs_at_once else driven
     node = VehicleNode(driven, seed, keys, has_eyes=False)
-    with open_session(options) as zenoh:
+    with open_zenoh() as zenoh:
         VehicleLoop(node, keys, zenoh, use_sim_time=simulation.uses_sim_time, timeout_s=simulation.timeout_s).run()
 
 

@@ -15,7 +15,8 @@ MAY_IMPORT = {
     "scenarios": {"scenarios", "companion", "sim_autopilot", "link"},
 }
 HOMES = {
-    "zenoh": {"link/zenoh/session.py"},
+    "zenoh": {"link/zenoh/session.py", "link/ros2/session.py"},
+    "xxhash": {"link/ros2/attachment.py"},
     "pymavlink": {f"link/mavlink/{name}.py" for name in ("dialect", "draft_messages", "codec")},
     "rosbags": {
         "link/payloads/cdr.py",
@@ -24,6 +25,7 @@ HOMES = {
         "link/payloads/decklander_msgs.py",
         "link/payloads/ros_images.py",
         "link/payloads/ros_sensors.py",
+        "link/ros2/type_hash.py",
     },
     "mcap": {"link/recording/mcap_reader.py", "link/recording/mcap_writer.py"},
     "osqp": {"companion/planning/qp.py"},

@@ -23,7 +23,7 @@ from companion.autopilots.messages import (
     without_disarm,
 )
 from companion.autopilots.response import Cascade
-from companion.core.data import FlightLimits, Setpoint
+from companion.core.data import GRAVITY_M_S2, FlightLimits, Setpoint
 from link.frames.local_frame import Projection
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
@@ -45,7 +45,10 @@ _DESCENT = (Named("WPNAV_SPEED_DN", _CENTI), Named("WP_SPD_DN"))
 # not swing, and took less time than 0.6.
 _JERK_SHARE = 0.8
 _JERK = (Named("PSC_JERK_XY"), Named("PSC_JERK_NE"))  # it follows no acceleration that changes faster
-_LIMITS = (_TILT, _TILT_BY_POSITION, _SPEED, _CLIMB, _DESCENT, _JERK)
+# It bounds that jerk by what its attitude controller can do, too (AC_PosControl::set_max_speed_accel_xy).
+_ACCELERATION = (Named("WPNAV_ACCEL", _CENTI), Named("WP_ACC"))
+_ATTITUDE_RAD_S2 = math.radians(1100.0)  # ATC_ACCEL_P_MAX by default
+_LIMITS = (_TILT, _TILT_BY_POSITION, _SPEED, _CLIMB, _DESCENT, _JERK, _ACCELERATION)
 _POSITION_GAIN = ("PSC_POSXY_P", "PSC_NE_POS_P")
 _VELOCITY_GAIN = ("PSC_VELXY_P", "PSC_NE_VEL_P")
 _INTEGRAL_GAIN = ("PSC_VELXY_I", "PSC_NE_VEL_I")
@@ -115,7 +118,7 @@ class ArduPilotDriver:
             climb_max_m_s=min(wanted.climb_max_m_s, find_limit(parameters, _CLIMB)),
             descent_max_m_s=min(wanted.descent_max_m_s, find_limit(parameters, _DESCENT)),
             tilt_acceleration_m_s2=acceleration_of_tilt_m_s2(tilt_deg),
-            jerk_max_m_s3=min(wanted.jerk_max_m_s3, _JERK_SHARE * find_limit(parameters, _JERK)),
+            jerk_max_m_s3=min(wanted.jerk_max_m_s3, _JERK_SHARE * _shaping_jerk_m_s3(parameters)),
         )
 
     def cascade(self, parameters: Mapping[str, float]) -> Cascade:
@@ -129,6 +132,12 @@ class ArduPilotDriver:
             integral_per_s2=find_gain(parameters, _INTEGRAL_GAIN, 1.0, INTEGRAL_FACTOR_MAX),
             lead_s=0.0,
         )
+
+
+def _shaping_jerk_m_s3(parameters: Mapping[str, float]) -> float:
+    """Return the jerk that its shaping keeps to: the one set, and no more than turning over and back leaves."""
+    attitude_m_s3 = 0.5 * math.sqrt(find_limit(parameters, _ACCELERATION) * GRAVITY_M_S2 * _ATTITUDE_RAD_S2)
+    return min(find_limit(parameters, _JERK), attitude_m_s3)
 
 
 def _is_airborne(view: AutopilotView) -> bool:

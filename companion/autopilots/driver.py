@@ -39,6 +39,7 @@ class AutopilotView(Struct, frozen=True, kw_only=True):
     taking_off: bool = False  # by itself, after a command
     refusal: str | None = None  # what it last said against arming
     frame: LocalFrame | None = None  # W; its origin above the ellipsoid
+    receiver_is_fixed: bool = False  # its carrier phases, so that it is right to centimetres
     geoid_known: bool = False  # without it the height of that origin is one above the sea
     frame_moves: FrameMoves = NO_MOVES
     range_down: RangeReading | None = None

@@ -76,13 +76,13 @@ class AutopilotLink:
         self._questions = LimitQuestions()
         self._times: tuple[int, int] | None = None
 
-    def receive(self, data: bytes, local_ns: int) -> None:
-        """Take bytes of the transport.
+    def receive(self, data: bytes, local_ns: int, *, is_datagram: bool = False) -> None:
+        """Take bytes of the transport: whole frames if `is_datagram`, else a piece of a stream.
 
         Raises:
             UserError: the autopilot is of a kind that cannot be flown.
         """
-        self._take(self.session.receive(data, local_ns), local_ns)
+        self._take(self.session.receive(data, local_ns, is_datagram=is_datagram), local_ns)
 
     def poll(self, local_ns: int) -> None:
         """Do what is due by now."""

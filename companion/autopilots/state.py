@@ -17,6 +17,7 @@ from link.frames.rotations import enu_from_ned, flu_from_frd, normalized, quater
 from link.mavlink.clock_map import ClockMap
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Quaternion, Vector3
+from link.program.printable import printable
 from link.records import replace
 
 _AHEAD_NS = 100_000_000  # how far a report is carried beyond the newest one
@@ -81,7 +82,8 @@ def update_state(state: AutopilotState, message: Message, clock: ClockMap, drive
             )
         case "GPS_RAW_INT":
             height_m = geoid_height_m(state.geoid_height_m, message)
-            state = _place_origin(replace(state, geoid_height_m=height_m), driver.projection)
+            view = replace(state.view, receiver_is_fixed=message.fix_type == mavlink.GPS_FIX_TYPE_RTK_FIXED)
+            state = _place_origin(replace(state, geoid_height_m=height_m, view=view), driver.projection)
         case "DISTANCE_SENSOR" | "BATTERY_STATUS":
             up_m = None if state.own is None else state.own.position_enu_m[2]
             state = replace(state, view=with_sensor(state.view, message, clock, up_m))
@@ -104,9 +106,9 @@ def _said(state: AutopilotState, message: Message, driver: Driver) -> AutopilotS
     """Take a text, or an event in words."""
     refusal = driver.refusal(message)
     if refusal is not None and not state.view.armed:
-        state = replace(state, view=replace(state.view, refusal=refusal))
+        state = replace(state, view=replace(state.view, refusal=printable(refusal)))
     text = refusal if message.get_type() == "EVENT" else f"{message.text}"
-    return state if text is None else replace(state, texts=(*state.texts, text))
+    return state if text is None else replace(state, texts=(*state.texts, printable(text)))
 
 
 def _position(state: AutopilotState, message: Message, clock: ClockMap) -> AutopilotState:

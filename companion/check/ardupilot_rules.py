@@ -10,6 +10,7 @@ from companion.check.rules import GRADE_MAX, SPEED_SHARE_ADVISED, ParameterRule,
 _CENTI = 100.0
 _CLIMB_M_S = 2.0
 _FAST_M_S = 8.0  # flown with the default acceleration; 12 m/s with 3.5 m/s^2
+_JERK_M_S3 = 10.0  # its own shaping allows 10.8 m/s^3 by default: 0.5 sqrt(WPNAV_ACCEL by g by ATC_ACCEL_P_MAX)
 _NO_STABILISATION = 0b110000  # bits 4 and 5: positions, velocities are not held
 _GUIDED_LOSS_S = (0.5, 1.5)
 _DISARM_DELAY_MIN_S = 5.0
@@ -50,6 +51,14 @@ ARDUPILOT_RULES = (
         unit="m/s^2",
         level=Level.WARN,
         reason="how quickly the position is corrected",
+    ),
+    at_least(
+        lambda _: _JERK_M_S3,
+        step=1.0,
+        spellings=(Spelling("PSC_JERK_NE"), Spelling("PSC_JERK_XY")),
+        unit="m/s^3",
+        level=Level.WARN,
+        reason="how quickly it leans otherwise; with 5 a vehicle that brakes or turns is caught up with late",
     ),
     at_least(
         lambda v: _CLIMB_M_S + GRADE_MAX * v,

@@ -73,9 +73,9 @@ class Reader:
         self._latencies_s.clear()
         self._counted_from_ns = max(t_ns, self._counted_from_ns)
 
-    def receive(self, data: bytes, t_ns: int) -> None:
-        """Take bytes of the transport at local time `t_ns`."""
-        self._take(self.session.receive(data, t_ns))
+    def receive(self, data: bytes, t_ns: int, *, is_datagram: bool = False) -> None:
+        """Take bytes of the transport at local time `t_ns`: whole frames if `is_datagram`."""
+        self._take(self.session.receive(data, t_ns, is_datagram=is_datagram))
 
     def poll(self, t_ns: int) -> None:
         """Do what is due at local time `t_ns`."""

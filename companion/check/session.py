@@ -10,6 +10,7 @@ from companion.check.vehicle_reading import VehicleReader
 from companion.config.landing import ChaseConfig
 from companion.runtime.pad_question import PadQuestion
 from link.mavlink.parameters import parameter_set_message
+from link.mavlink.pinned_peer import PinnedPeer
 from link.mavlink.session import MavlinkSession
 from link.mavlink.signing import Signing
 from link.mavlink.transport import Transport
@@ -61,6 +62,7 @@ class CheckSession:
     def __init__(self, reader: Reader, transport: Transport, device: str) -> None:
         self.reader = reader
         self._transport = transport
+        self._peer = PinnedPeer(transport, reader.session)
         self._device = device
 
     def find(self, timeout_s: float) -> None:
@@ -118,10 +120,10 @@ class CheckSession:
 
     def turn(self) -> None:
         """Take what has come and send what is due."""
-        data = self._transport.receive(_WAIT_S)
+        received = self._transport.receive_by_peer(_WAIT_S)
         t_ns = time.time_ns()
-        if data:
-            self.reader.receive(data, t_ns)
+        for data in self._peer.heard(received):
+            self.reader.receive(data, t_ns, is_datagram=self._transport.is_datagram)
         self.reader.poll(t_ns)
         for frame in self.reader.session.take_output():
             self._transport.send(frame)

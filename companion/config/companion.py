@@ -27,6 +27,14 @@ class AutopilotKind(Enum):
     ARDUPILOT = "ardupilot"
 
 
+class ReceiverFrames(Enum):
+    """What a user says of the drone's and the vehicle's receivers: whether their positions are in one frame."""
+
+    AUTO = "auto"  # while both have fixed carrier phases, which is taken for corrections of one source
+    ONE = "one"  # both are corrected by one base station or network
+    APART = "apart"  # by two: the pad has to be seen
+
+
 class LimitsConfig(StrictModel):
     """What the planner may ask at most; the autopilot's own parameters can only lower it.
 
@@ -73,6 +81,8 @@ class CompanionConfig(StrictModel):
     autopilot: AutopilotKind = AutopilotKind.AUTO  # any other than the one named is refused
     # Of mean sea level above the ellipsoid, where the autopilot's receiver does not tell it; none: then no start.
     geoid_height_m: Annotated[float, Field(ge=-120.0, le=120.0)] | None = None
+    # Whether the pad's place follows from both receivers' positions, or has to be seen.
+    receiver_frames: ReceiverFrames = ReceiverFrames.AUTO
     stops_unused_streams: bool = True  # on the companion's own link; false where others listen on it, too
     status_rate_hz: Annotated[float, Field(ge=0.5, le=50.0)] = 10.0
     # By which setpoints are ahead of the drone beside the link's delay; none: as the autopilot takes them.

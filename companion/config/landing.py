@@ -50,6 +50,9 @@ class ChaseConfig(StrictModel):
     # end of the benchmark's lever arm of 1.3 m; side slip and mounting are less.
     course_speed_min_m_s: Positive = 2.0
     heading_off_max_rad: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.21
+    # So long a chase looks for a pad that has to be seen, over its said place, before it says what is missing. In this
+    # time the offset does not change, and dropouts of a detector last a second.
+    unseen_hold_s: Positive = 10.0
     passing_distance_m: Positive = 15.0  # a vehicle that passes farther away than this is not chased
     # One that has passed meanwhile is chased while so much more speed makes its lead up in that time.
     catch_up_speed_m_s: Positive = 10.0

@@ -63,6 +63,9 @@ class Reason(Enum):
     ALIGNMENT_LOST = "alignment lost"
     PAD_TO_BE_SEEN = "pad to be seen again"
     PAD_NOT_SEEN = "pad not seen"
+    OFFSET_UNKNOWN = (
+        "pad not seen, and both receivers have no common frame: use a pattern detector, or RTK on both from one source"
+    )
     TAKEOFF_TOO_LONG = "takeoff took longer than {:g} s"
     CHASE_TOO_LONG = "chase took longer than {:g} s"
     ALIGN_TOO_LONG = "align took longer than {:g} s"

@@ -3,6 +3,7 @@
 import math
 
 from companion.config.companion import CompanionConfig
+from companion.config.landing import LandingStyle
 from companion.core.reasons import Cause, Reason
 from companion.integrity.heights import is_seen_too_near
 from companion.integrity.vehicle_data import contradicts_itself
@@ -23,6 +24,13 @@ def is_uncertain(s: Situation, c: CompanionConfig) -> bool:
 def must_be_seen(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the pad has to be seen (again) before it is landed on."""
     return s.pad is not None and is_unseen(s.pad, c)
+
+
+def _is_over_unseen_pad(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the drone has to see the pad, and is where a camera would that sees 45 degrees to each side."""
+    if s.approach is None or c.landing is LandingStyle.DIRECT:
+        return False
+    return must_be_seen(s, c) and s.approach.distance_m < c.chase.height_m
 
 
 def _is_token_lost(s: Situation, c: CompanionConfig) -> bool:
@@ -101,6 +109,12 @@ ABORTS = (
         phases=NEAR_PHASES,
         is_true=is_uncertain,
         hold_s=lambda c: c.abort.cone_hold_s,
+    ),
+    Condition(
+        reason=Reason.OFFSET_UNKNOWN,
+        phases=frozenset({Phase.CHASE}),
+        is_true=_is_over_unseen_pad,
+        hold_s=lambda c: c.chase.unseen_hold_s,
     ),
     Condition(reason=Reason.VEHICLE_LINK_LOST, phases=LANDING_PHASES, is_true=_is_token_lost),
     Condition(

@@ -4,19 +4,14 @@ import numpy as np
 
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits
+from companion.landing.flown_plan import extrapolate, flown_plan, state_at
 from companion.landing.levelling import limit_tilt, limits_now
 from companion.landing.memory import ModelMemory, StepMemory
 from companion.landing.step_data import StepInputs, System
 from companion.landing.sway import update_sway
 from companion.landing.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
 from companion.landing.transitions import BRAKING_M_S2
-from companion.landing.virtual_model import (
-    Tracking,
-    add_to_past,
-    extrapolate,
-    keep_up,
-    predict_deviation,
-)
+from companion.landing.virtual_model import Tracking, add_to_past, predict_deviation
 from companion.landing.waiting import waits_at_m
 from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState, Target
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
@@ -69,18 +64,15 @@ def fly(
     model = memory.model
     if model.reference is None:
         return memory, None
-    # The last plan led to `reference_ns`; this step may come a little earlier or later than that.
-    off_s = (inputs.monotonic_ns - model.reference_ns) * 1e-9
-    reference = extrapolate(model.reference, max(min(off_s, _STEP_MAX_S), -_STEP_MAX_S))
-    reference = _at_drone(memory, reference, situation, system.config)
+    period_s = 1.0 / system.config.step_rate_hz
+    reference = _at_drone(memory, _model_at(model, inputs.monotonic_ns, period_s), situation, system.config)
     model = replace(model, reference=reference)
     memory = replace(memory, model=model)
-    period_s = 1.0 / system.config.step_rate_hz
     reference_ns = inputs.monotonic_ns + round(period_s * 1e9)
     aim = _aim(memory, situation, inputs.limits, system.config)
     if is_at_rest(reference, aim):  # there is nothing to plan
         tracking = add_to_past(model.tracking, reference_ns, reference)
-        return replace(memory, model=replace(model, reference_ns=reference_ns, tracking=tracking)), None
+        return replace(memory, model=replace(model, reference_ns=reference_ns, plan=None, tracking=tracking)), None
     request = PlanRequest(
         state=reference,
         target=_for_the_drone(aim.target, memory, inputs),
@@ -90,19 +82,27 @@ def fly(
     )
     request = replace(request, limits=limit_tilt(request, model.tracking.air_enu_m_s2))
     guidance, plan = system.guidance.plan(model.guidance, request)
-    if inputs.driver is not None and inputs.driver.carries_setpoints_on:
-        kept_up = keep_up(plan.next_state, reference, float(aim.floor_enu_m[0]), inputs.timeout_s, period_s)
-        plan = replace(plan, next_state=kept_up)
+    is_carried_on = inputs.driver is not None and inputs.driver.carries_setpoints_on
+    flown = flown_plan(plan, period_s, float(aim.floor_enu_m[0]), inputs.timeout_s if is_carried_on else 0.0)
+    plan = replace(plan, next_state=state_at(flown, period_s))
     model = ModelMemory(
         reference=plan.next_state,
         reference_ns=reference_ns,
-        plan=plan.trajectory,
+        plan=flown,
         guidance=guidance,
         tracking=add_to_past(model.tracking, reference_ns, plan.next_state),
         sway=model.sway,
         yaw_setpoint_rad=_slew_yaw_rad(memory, situation.pad, period_s, system.config),
     )
     return _update_anchor(replace(memory, model=model), situation, system.config), plan
+
+
+def _model_at(model: ModelMemory, monotonic_ns: int, period_s: float) -> ReferenceState:
+    """Return the virtual model now: the last plan led to `reference_ns`, and this step may come earlier or later."""
+    if model.reference is None:
+        raise ValueError("nothing is flown")
+    off_s = max(min((monotonic_ns - model.reference_ns) * 1e-9, _STEP_MAX_S), -period_s)
+    return extrapolate(model.reference, off_s) if model.plan is None else state_at(model.plan, period_s + off_s)
 
 
 def _for_the_drone(target: Target, memory: StepMemory, inputs: StepInputs) -> Target:
@@ -112,8 +112,9 @@ def _for_the_drone(target: Target, memory: StepMemory, inputs: StepInputs) -> Ta
         return target
     planned = np.zeros((len(target.offset_s), 2))
     if plan is not None:
+        path = plan.trajectory
         for axis in range(2):
-            planned[:, axis] = np.interp(target.offset_s, plan.offset_s, plan.acceleration_enu_m_s2[:, axis])
+            planned[:, axis] = np.interp(target.offset_s, path.offset_s, path.acceleration_enu_m_s2[:, axis])
     late_s = (inputs.monotonic_ns - tracking.compared_ns) * 1e-9
     deviation = predict_deviation(tracking, response, late_s, planned)
     position, velocity = target.position_enu_m.copy(), target.velocity_enu_m_s.copy()

@@ -13,10 +13,12 @@ from msgspec import Struct, field
 from companion.autopilots.driver import NO_MOVES, AutopilotView, DriverMemory, FrameMoves
 from companion.core.data import Array
 from companion.core.reasons import Cause, Reason
+from companion.integrity.frames import FixedPhases
 from companion.integrity.vehicle_data import Contradictions, CourseWatch, FixStamps
+from companion.landing.flown_plan import FlownPlan
 from companion.landing.sway import Sway
 from companion.landing.virtual_model import Tracking
-from companion.planning.guidance import GuidanceMemory, ReferenceState, Trajectory
+from companion.planning.guidance import GuidanceMemory, ReferenceState
 from companion.situation.phases import Phase
 from companion.vehicle.driving import Surprise
 from companion.vehicle.estimator import EstimatorMemory
@@ -68,6 +70,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
         surprise: how the vehicle drives against what was expected.
         fix_stamps: whether its fixes come from the future.
         contradictions: of its data.
+        phases: whether its receiver and the drone's have fixed ones.
         course: how its heading compares with its course.
         utc_ahead_ns: of the monotonic clock, when its stamps were last compared with UTC.
         pad_raised_m: by the range finder, in the drone's frame.
@@ -78,6 +81,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
     surprise: Surprise = field(default_factory=Surprise)
     fix_stamps: FixStamps = field(default_factory=FixStamps)
     contradictions: Contradictions = field(default_factory=Contradictions)
+    phases: FixedPhases = field(default_factory=FixedPhases)
     course: CourseWatch = field(default_factory=CourseWatch)
     utc_ahead_ns: int = 0
     pad_raised_m: float = 0.0
@@ -90,7 +94,7 @@ class ModelMemory(Struct, frozen=True, kw_only=True, eq=False):
     Attributes:
         reference: the model, None while nothing is flown.
         reference_ns: the model's time, monotonic.
-        plan: the last one, from one period before the model's time on.
+        plan: that leads to the model, made one period before its time; None once the model is set elsewhere.
         guidance: the guidance law's own memory.
         tracking: how the drone follows it.
         sway: how hard the drone leans.
@@ -99,7 +103,7 @@ class ModelMemory(Struct, frozen=True, kw_only=True, eq=False):
 
     reference: ReferenceState | None = None
     reference_ns: int = 0
-    plan: Trajectory | None = None
+    plan: FlownPlan | None = None
     guidance: GuidanceMemory | None = None
     tracking: Tracking = field(default_factory=Tracking)
     sway: Sway = field(default_factory=Sway)
@@ -178,7 +182,7 @@ def _move_model(model: ModelMemory, by_enu_m: Array) -> ModelMemory:
     if reference is not None:
         reference = replace(reference, position_enu_m=reference.position_enu_m + by_enu_m)
     past = tuple((t_ns, place + by_enu_m, velocity) for t_ns, place, velocity in tracking.past)
-    return replace(model, reference=reference, guidance=None, tracking=replace(tracking, past=past))
+    return replace(model, reference=reference, plan=None, guidance=None, tracking=replace(tracking, past=past))
 
 
 def _move(point_enu_m: Array | None, by_enu_m: Array) -> Array | None:

@@ -10,10 +10,11 @@ from companion.config.landing import DescentConfig
 from companion.core.data import Array, FlightLimits, Setpoint
 from companion.core.reasons import Cause, Reason, sentence
 from companion.landing.aborts import why_unplaced
+from companion.landing.flown_plan import extrapolate, state_at
 from companion.landing.memory import Progress, StepMemory
 from companion.landing.step_data import StepInputs
 from companion.landing.targets import way_down
-from companion.landing.virtual_model import extrapolate, free_place, press_down, setpoint_at, state_in_plan
+from companion.landing.virtual_model import free_place, press_down, setpoint_at
 from companion.landing.waiting import why_held_up
 from companion.planning.guidance import PlanResult
 from companion.situation.phases import Phase
@@ -27,7 +28,7 @@ _FREE_PLACE_PHASES = (Phase.ALIGN, Phase.DESCEND, Phase.TOUCHDOWN)
 
 
 def setpoint(
-    memory: StepMemory, inputs: StepInputs, config: CompanionConfig, plan: PlanResult | None = None
+    memory: StepMemory, inputs: StepInputs, config: CompanionConfig, *, is_planned: bool = False
 ) -> Setpoint | None:
     """Return what the autopilot is to follow now, None while nothing is flown.
 
@@ -35,7 +36,7 @@ def setpoint(
         memory: after this step's plan.
         inputs: of this step.
         config: all numbers.
-        plan: of this step, None when there was nothing to plan.
+        is_planned: whether this step has planned; there may be nothing to plan.
     """
     model = memory.model
     if model.reference is None or memory.control.driver.climbs_by_itself:
@@ -44,10 +45,10 @@ def setpoint(
     if lead_s is None:
         lead_s = 0.0 if inputs.response is None else inputs.response.cascade.lead_s
     ahead_s = inputs.link_delay.mean_s + lead_s
-    if plan is None or (inputs.driver is not None and inputs.driver.carries_setpoints_on):
-        reference = extrapolate(model.reference, (inputs.monotonic_ns - model.reference_ns) * 1e-9 + ahead_s)
+    if is_planned and model.plan is not None:
+        reference = state_at(model.plan, ahead_s)
     else:
-        reference = state_in_plan(plan.trajectory, ahead_s)
+        reference = extrapolate(model.reference, (inputs.monotonic_ns - model.reference_ns) * 1e-9 + ahead_s)
     press_m_s2 = _press_m_s2(memory, config)
     if press_m_s2 is not None:
         reference = press_down(reference, press_m_s2, ahead_s)

@@ -190,18 +190,22 @@ def is_vague(pad: PadPath, config: CompanionConfig) -> bool:
 def is_unseen(pad: PadPath, config: CompanionConfig) -> bool:
     """Return whether the pad has to be seen (again) before it is landed on.
 
-    Fixes of some decimetres or better place it by themselves; between coarser ones and the drone's own place lie
-    metres, and what a sighting said of them holds for seconds only.
+    Fixes of some decimetres or better place it by themselves where both receivers have one frame. Where they may not,
+    a first sighting tells the offset; between coarser fixes and the drone's own place lie metres, and what a sighting
+    said of them holds for seconds only.
     """
-    return pad.is_coarse and float(np.max(pad.position_std_m[0, :2])) > unseen_std_max_m(pad.half_width_m, config)
+    return (pad.is_coarse or not pad.has_one_frame) and float(np.max(pad.position_std_m[0, :2])) > unseen_std_max_m(
+        pad.half_width_m, config
+    )
 
 
 def _unseen_height_m(height_m: float, pad: PadPath, config: CompanionConfig) -> float:
     """Return how high the drone stays above a pad that it has to see first, and `height_m` above any other.
 
-    Higher by what the pad's height is unsure, but not out of its detector's sight: it would never be seen then.
+    Higher by what the pad's height is unsure, but not out of its detector's sight: it would never be seen then. Fixes
+    that are not coarse tell heights well enough for the height at which a vehicle is waited for.
     """
-    if not is_unseen(pad, config):
+    if not (pad.is_coarse and is_unseen(pad, config)):
         return height_m
     clear_m = height_m + config.chase.unseen_height_stds * float(pad.position_std_m[0, 2])
     return max(height_m, min(clear_m, config.chase.unseen_height_max_m))

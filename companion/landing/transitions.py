@@ -132,7 +132,7 @@ def _escape(model: ModelMemory, situation: Situation, config: CompanionConfig) -
     velocity[2] = max(velocity[2], pad.velocity_enu_m_s[0, 2])
     acceleration[2] = limits.vertical_acceleration_max_m_s2
     escaping = replace(reference, velocity_enu_m_s=velocity, acceleration_enu_m_s2=acceleration)
-    return replace(model, reference=escaping, guidance=None)
+    return replace(model, reference=escaping, plan=None, guidance=None)
 
 
 def _begin_flight(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
@@ -148,6 +148,7 @@ def _begin_flight(memory: StepMemory, situation: Situation, config: CompanionCon
         memory.model,
         reference=ReferenceState(position_enu_m=position, velocity_enu_m_s=zero, acceleration_enu_m_s2=zero),
         reference_ns=situation.monotonic_ns,
+        plan=None,
         tracking=Tracking(),
         guidance=None,
         yaw_setpoint_rad=drone.yaw_rad,

@@ -11,14 +11,13 @@ from msgspec import Struct, field
 
 from companion.autopilots.response import STATES, ResponseModel
 from companion.core.data import GRAVITY_M_S2, Array, OwnState, Setpoint
-from companion.planning.guidance import ReferenceState, Trajectory
+from companion.planning.guidance import ReferenceState
 from link.frames.rotations import rotate
 from link.records import replace
 
 _HISTORY_S = 0.6  # longer than any telemetry is late
 _UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady
 _AIR_MEAN_S = 1.0  # longer than a gust's beginning, shorter than a change of speed
-_BRAKING_M_S2 = 1.0  # of a drone whose setpoints have stayed away: ArduPilot's WPNAV_ACCEL_Z by default
 _CAUGHT_UP_MAX_M = 1.0  # made up for by velocity at a time; more would be a chase
 _BREAK_S = 0.25  # between two reports, after which the deviation is what the next one shows
 _ACCELERATION_MAX_M_S2 = 10.0  # of the model between two steps: it is set back at times, and that is no motion
@@ -150,82 +149,6 @@ def press_down(reference: ReferenceState, acceleration_m_s2: float, duration_s: 
         position_enu_m=reference.position_enu_m - np.array([0.0, 0.0, 0.5 * faster_m_s * duration_s]),
         velocity_enu_m_s=reference.velocity_enu_m_s - np.array([0.0, 0.0, faster_m_s]),
         acceleration_enu_m_s2=np.array([*reference.acceleration_enu_m_s2[:2], -acceleration_m_s2]),
-    )
-
-
-def limit_sink(reference: ReferenceState, lowest_enu_m: float, duration_s: float) -> ReferenceState:
-    """Return the model for an autopilot that carries a setpoint on for `duration_s`, should no other follow.
-
-    Its acceleration upwards is at least such that the drone, which then brakes, ends above `lowest_enu_m`: ArduCopter
-    was flown into the road at 1.6 m/s from a chase whose companion had died. The rate w at the end of the time T obeys
-    `h + (v + w) T / 2 - w^2 / 2A >= 0` with the height h, the rate v and the braking A.
-    """
-    if duration_s <= 0.0:
-        return reference
-    above_m = float(reference.position_enu_m[2]) - lowest_enu_m
-    ax, ay, az = reference.acceleration_enu_m_s2.tolist()
-    climb_m_s, room_m = float(reference.velocity_enu_m_s[2]), 2.0 * above_m
-    room_m += climb_m_s * duration_s
-    if room_m >= 0.0:
-        brakes_m_s = _BRAKING_M_S2 * duration_s
-        end_m_s = 0.5 * (brakes_m_s - math.sqrt(brakes_m_s**2 + 4.0 * _BRAKING_M_S2 * room_m))
-    else:
-        end_m_s = -room_m / duration_s
-    least_m_s2 = (end_m_s - climb_m_s) / duration_s
-    if az >= least_m_s2:
-        return reference
-    return replace(reference, acceleration_enu_m_s2=np.array([ax, ay, least_m_s2]))
-
-
-def keep_up(
-    planned: ReferenceState, before: ReferenceState, lowest_enu_m: float, duration_s: float, period_s: float
-) -> ReferenceState:
-    """Return the planned next state, kept up by `limit_sink`, so that it may be carried on for `duration_s`.
-
-    The model itself is kept up, for the drone follows what is sent, and the next plan begins there.
-
-    Args:
-        planned: the model `period_s` after `before`.
-        before: the model now.
-        lowest_enu_m: where it is to end above.
-        duration_s: for which a setpoint is carried on.
-        period_s: of control.
-    """
-    limited = limit_sink(planned, lowest_enu_m, duration_s)
-    if limited is planned:
-        return planned
-    up = extrapolate(replace(before, acceleration_enu_m_s2=limited.acceleration_enu_m_s2), period_s)
-    kept_up = ReferenceState(
-        position_enu_m=np.array([*planned.position_enu_m[:2], up.position_enu_m[2]]),
-        velocity_enu_m_s=np.array([*planned.velocity_enu_m_s[:2], up.velocity_enu_m_s[2]]),
-        acceleration_enu_m_s2=limited.acceleration_enu_m_s2,
-    )
-    return limit_sink(kept_up, lowest_enu_m, duration_s)
-
-
-def extrapolate(reference: ReferenceState, duration_s: float) -> ReferenceState:
-    """Return the model `duration_s` later (or, negative, earlier) at its present acceleration."""
-    velocity, acceleration = reference.velocity_enu_m_s, reference.acceleration_enu_m_s2
-    return replace(
-        reference,
-        position_enu_m=reference.position_enu_m + (velocity + 0.5 * acceleration * duration_s) * duration_s,
-        velocity_enu_m_s=velocity + acceleration * duration_s,
-    )
-
-
-def state_in_plan(trajectory: Trajectory, offset_s: float) -> ReferenceState:
-    """Return the model `offset_s` after its plan was made; between two instants of a plan the jerk is constant."""
-    last = len(trajectory.offset_s) - 2
-    node = min(max(int(np.searchsorted(trajectory.offset_s, offset_s, side="right")) - 1, 0), last)
-    start_s, end_s = trajectory.offset_s[node : node + 2].tolist()
-    position, velocity = trajectory.position_enu_m[node], trajectory.velocity_enu_m_s[node]
-    acceleration = trajectory.acceleration_enu_m_s2[node]
-    jerk = (trajectory.acceleration_enu_m_s2[node + 1] - acceleration) / (end_s - start_s)
-    t_s = offset_s - start_s
-    return ReferenceState(
-        position_enu_m=position + (velocity + (acceleration / 2.0 + jerk * t_s / 6.0) * t_s) * t_s,
-        velocity_enu_m_s=velocity + (acceleration + jerk * t_s / 2.0) * t_s,
-        acceleration_enu_m_s2=acceleration + jerk * t_s,
     )
 
 

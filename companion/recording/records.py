@@ -11,13 +11,14 @@ from link.mavlink.statistics import SessionStatistics
 class InputKind(IntEnum):
     """By which door of the node something came in."""
 
-    MAVLINK = 0  # data: bytes of the link
+    MAVLINK = 0  # data: a piece of the link's stream
     SAMPLE = 1  # key and data: a Zenoh sample
     PAD = 2  # data: the vehicle's description of its pad, JSON
     ALIVE = 3  # data: 1 or 0
     COMMAND = 4  # data: the command's name
     POLL = 5  # no data
     LEAVE = 6  # no data
+    DATAGRAM = 7  # data: whole frames of the link
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,7 +5,8 @@ from typing import assert_never, cast
 import numpy as np
 
 from companion.config.companion import CompanionConfig
-from companion.config.planning import GuidanceConfig, GuidanceKind
+from companion.config.estimation import EstimatorKind
+from companion.config.planning import GuidanceConfig, GuidanceKind, SolverKind
 from companion.landing.step_data import System
 from companion.planning.guidance import Guidance, GuidanceMemory, PlanRequest, ReferenceState, Target
 from companion.planning.mpc import Mpc
@@ -17,6 +18,7 @@ from companion.vehicle.factory import make_estimator
 from companion.vehicle.pad import turned_lever
 from link.mavlink.session import MavlinkSession
 from link.mavlink.signing import Signing
+from link.program.extras import require
 from link.recording.recorder import Recorder
 from link.zenoh.keys import Keys
 
@@ -71,7 +73,11 @@ def build_node(
         records_input: keep received frames for a recording of the link.
         recorder: takes all that goes in and out, None where nothing is recorded.
         signing_key: 32 bytes shared with the autopilot; None sends unsigned and takes everything.
+
+    Raises:
+        UserError: what the configuration chooses is not installed.
     """
+    _check_installed(config)
     system = System(
         config=config,
         estimator=make_estimator(config.estimator),
@@ -83,6 +89,13 @@ def build_node(
     if recorder is not None:
         return RecordingNode(system, keys, session, recorder, dry_run=dry_run, publishes=publishes)
     return CompanionNode(system, keys, session, dry_run=dry_run, publishes=publishes)
+
+
+def _check_installed(config: CompanionConfig) -> None:
+    if config.estimator.kind is not EstimatorKind.IMM:
+        require("sim", f"estimator.kind = {config.estimator.kind.value!r}")
+    if config.guidance.mpc.solver is SolverKind.OSQP:
+        require("sim", f"guidance.mpc.solver = {SolverKind.OSQP.value!r}")
 
 
 def make_guidance(kind: GuidanceKind, config: GuidanceConfig) -> Guidance:

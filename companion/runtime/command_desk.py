@@ -1,69 +1,87 @@
 """Where operators' commands come in from Zenoh's threads, and their replies go out.
 
-A command that is answered by a refusal is never done afterwards: it is kept here, and can be taken back, until the step
-that does it is made at once. From then on that step's own answer is waited for.
+What ends a landing goes first, and all who wait for the same command get the answer of one step, so that however many
+ask, an abort waits for no more than the step under way. A command that no step has taken within two seconds is refused
+and never done afterwards; the operator's query waits for longer.
 """
 
-import queue
+import threading
+import time
 from collections import deque
-from concurrent.futures import Future
+from collections.abc import Callable
+from typing import NamedTuple
 
 from companion.runtime.node import CompanionNode
 from link.messages import Command, CommandReply
 from link.payloads import json_messages
 from link.payloads.checks import PayloadError
 
-_REPLY_WAIT_S = 2.0  # for the step to begin
-_STEP_WAIT_S = 0.5  # for it to end; together less than an operator's query waits
+Reply = Callable[[bytes], None]
+_FIRST_TO_LAST = (Command.ABORT, Command.HOLD, Command.START)
+_WAITING_MAX = 64  # of each command; who comes when so many ask for the same hears nothing, and asks again
+_WAIT_MAX_S = 2.0  # less than an operator's query waits
+_LATE = CommandReply(accepted=False, reason="the companion made no step in time")
+
+
+class _Asked(NamedTuple):
+    """A command's sender: when it came, and how to answer."""
+
+    came_s: float
+    reply: Reply
 
 
 class CommandDesk:
-    """Takes operators' commands from Zenoh's threads to the loop, and the replies back."""
+    """Takes operators' commands from Zenoh's threads to the loop, and the replies back.
 
-    def __init__(self) -> None:
-        self._waiting: queue.SimpleQueue[tuple[Command, Future[CommandReply]]] = queue.SimpleQueue()
-        self._asked: deque[Future[CommandReply]] = deque()
+    Args:
+        now_s: a monotonic clock.
+    """
 
-    def handle(self, payload: bytes) -> bytes:
-        """Answer a query; called from a thread of Zenoh's."""
+    def __init__(self, now_s: Callable[[], float] = time.monotonic) -> None:
+        self._now_s = now_s
+        self._lock = threading.Lock()
+        self._waiting: dict[Command, deque[_Asked]] = {command: deque() for command in _FIRST_TO_LAST}
+        self._asked: list[_Asked] = []
+
+    def take(self, payload: bytes, reply: Reply) -> None:
+        """Take a query, which is answered by `reply`, at once or after a step; called from a thread of Zenoh's."""
         try:
             command = json_messages.decode(Command, payload)
         except PayloadError as error:
-            return json_messages.encode(CommandReply(accepted=False, reason=str(error)))
-        reply: Future[CommandReply] = Future()
-        self._waiting.put((command, reply))
-        return json_messages.encode(await_reply(reply))
+            reply(json_messages.encode(CommandReply(accepted=False, reason=str(error))))
+            return
+        with self._lock:
+            if len(self._waiting[command]) < _WAITING_MAX:
+                self._waiting[command].append(_Asked(self._now_s(), reply))
 
     def pass_on(self, node: CompanionNode, local_ns: int) -> Command | None:
-        """Give the oldest command to the node, one at a time, if it makes a step now; return it."""
-        while not self._asked and node.is_due(local_ns):
-            try:
-                command, reply = self._waiting.get_nowait()
-            except queue.Empty:
-                return None
-            if reply.set_running_or_notify_cancel():
+        """Give the most urgent command to the node, if it makes a step now; return it."""
+        if self._asked or not node.is_due(local_ns):
+            return None
+        for command in _FIRST_TO_LAST:
+            self._asked = self._take_waiting(command)
+            if self._asked:
                 node.request(command)
-                self._asked.append(reply)
                 return command
         return None
 
     def answer(self, replies: list[CommandReply]) -> None:
-        """Give the replies to whom they belong, in order."""
-        for reply in replies:
-            if self._asked:
-                self._asked.popleft().set_result(reply)
+        """Give a step's reply to all who have asked for its command."""
+        for reply in replies[:1]:
+            asked, self._asked = self._asked, []
+            _answer(asked, reply)
+
+    def _take_waiting(self, command: Command) -> list[_Asked]:
+        """Return who waits for a command; who has waited for too long is refused."""
+        with self._lock:
+            waiting = list(self._waiting[command])
+            self._waiting[command].clear()
+        since_s = self._now_s() - _WAIT_MAX_S
+        _answer([one for one in waiting if one.came_s < since_s], _LATE)
+        return [one for one in waiting if one.came_s >= since_s]
 
 
-def await_reply(reply: Future[CommandReply]) -> CommandReply:
-    """Return the answer to a command, or that it was taken back, or that neither came in time."""
-    try:
-        return reply.result(timeout=_REPLY_WAIT_S)
-    except TimeoutError:
-        if reply.cancel():
-            return CommandReply(accepted=False, reason="the companion made no step in time")
-    try:
-        return reply.result(timeout=_STEP_WAIT_S)
-    except TimeoutError:
-        return CommandReply(
-            accepted=False, reason="the companion's step takes too long: it may still do it, see its status"
-        )
+def _answer(asked: list[_Asked], reply: CommandReply) -> None:
+    payload = json_messages.encode(reply)
+    for one in asked:
+        one.reply(payload)

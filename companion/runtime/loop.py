@@ -5,8 +5,6 @@ import time
 from collections.abc import Callable
 from contextlib import ExitStack
 
-import structlog
-
 from companion.autopilots.choice import check_autopilot
 from companion.runtime.command_desk import CommandDesk
 from companion.runtime.live_state import Onlooker, onlookers
@@ -17,11 +15,13 @@ from companion.runtime.pad_question import PadQuestion
 from companion.runtime.recorded_node import RecordingNode
 from companion.situation.phases import Phase
 from link.errors import UserError
+from link.mavlink.pinned_peer import PinnedPeer
 from link.mavlink.tlog import TlogFrames, TlogSink
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
 from link.program.clock import Clock, ClockTick, SimulatedClock, SystemClock, spare_present_objects
 from link.program.service import Service
+from link.recording.log import Log
 from link.recording.recorder import BackgroundRecorder, Recorder
 
 _WAIT_MAX_S = 0.005  # for bytes; Zenoh samples wait no longer than this
@@ -40,7 +40,9 @@ def run(node: CompanionNode, links: Links, options: LoopOptions) -> Timings:
             tlog = BackgroundRecorder(TlogSink(options.tlog))
             stack.callback(tlog.close)
         lookers = onlookers(stack, links.zenoh, links.keys, options.device)
-        return _Loop(node, links, options, tlog, lookers).run()
+        log = Log("companion")
+        stack.callback(log.close)
+        return _Loop(node, links, options, tlog=tlog, lookers=lookers, log=log).run()
 
 
 class _Loop:
@@ -49,17 +51,20 @@ class _Loop:
         node: CompanionNode,
         links: Links,
         options: LoopOptions,
+        *,
         tlog: Recorder | None,
         lookers: list[Onlooker],
+        log: Log,
     ) -> None:
         self._node = node
         self._keys = keys = links.keys
         self._transport = links.transport
+        self._peer = PinnedPeer(links.transport, node.autopilot.session)
         self._zenoh = zenoh = links.zenoh
         self._options = options
         self._tlog = tlog
         self._onlookers = lookers
-        self._log = structlog.get_logger("companion")
+        self._log = log
         self._service = Service()
         self._desk = CommandDesk()
         self._timings = Timings()
@@ -73,13 +78,14 @@ class _Loop:
         self._was_alive = False
         self._pad_question = PadQuestion(zenoh, keys.pad)
         self._link_was_up: bool | None = None
+        self._strangers_told = False
 
     def run(self) -> Timings:
         """Run until a signal comes."""
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._stop)
         clock = self._clock()
-        self._zenoh.serve(self._keys.landing_command, self._desk.handle)
+        self._zenoh.serve_later(self._keys.landing_command, self._desk.take)
         spare_present_objects()
         self._log.info("ready", device=self._options.device)
         while not self._stopping:
@@ -123,12 +129,12 @@ class _Loop:
         self._service.alive(time.monotonic_ns())
         if isinstance(clock, SimulatedClock):
             self._tick(clock)
-        data = self._transport.receive(min(_WAIT_MAX_S, clock.wall_s(_WAIT_MAX_S)))
+        received = self._transport.receive_by_peer(min(_WAIT_MAX_S, clock.wall_s(_WAIT_MAX_S)))
         received_s = time.perf_counter()
         local_ns = clock.now_ns()
-        if data:
-            self._node.receive_mavlink(data, local_ns)
-            self._record(self._node.autopilot.session.take_input(), local_ns)
+        for data in self._peer.heard(received):
+            self._node.receive_mavlink(data, local_ns, is_datagram=self._transport.is_datagram)
+        self._record(self._node.autopilot.session.take_input(), local_ns)
         self._take_samples()
         if self._start.commanded(self._desk.pass_on(self._node, local_ns)):
             self._log.info("start called off")
@@ -187,6 +193,9 @@ class _Loop:
             self._service.ready()
         elif self._link_was_up and not is_up:
             self._log.warning("autopilot lost")
+        if not self._strangers_told and self._transport.statistics.strangers:
+            self._strangers_told = True
+            self._log.warning("somebody else sends to the autopilot's link, and is not listened to")
         self._link_was_up = is_up if is_up or self._link_was_up is not None else None
 
     def _ask_for_pad(self) -> None:

@@ -62,6 +62,7 @@ class CompanionNode:
         self.inputs: StepInputs | None = None
         self.outputs: StepOutputs | None = None
         self.bad_payloads = 0
+        self.unpublished = 0  # statuses and plans that hold what no message has room for
         self.system = system
         self._keys = keys
         self._measurements: list[Measurement] = []
@@ -95,13 +96,13 @@ class CompanionNode:
         """Return what became of the measurements, and whether they agree with the estimator."""
         return self.system.estimator.health(self.memory.vehicle.estimator)
 
-    def receive_mavlink(self, data: bytes, local_ns: int) -> None:
-        """Take bytes of the autopilot's link.
+    def receive_mavlink(self, data: bytes, local_ns: int, *, is_datagram: bool = False) -> None:
+        """Take bytes of the autopilot's link: whole frames if `is_datagram`, else a piece of a stream.
 
         Raises:
             UserError: the autopilot is of a kind that cannot be flown.
         """
-        self.autopilot.receive(data, local_ns)
+        self.autopilot.receive(data, local_ns, is_datagram=is_datagram)
 
     def receive_sample(self, key: str, payload: bytes) -> None:
         """Take a Zenoh sample; what cannot be decoded, is absurd or comes from the future is counted and dropped."""
@@ -240,10 +241,13 @@ class CompanionNode:
             mavlink_bad_bytes=self.autopilot.session.statistics.codec.bad_bytes,
             zenoh_bad_payloads=self.bad_payloads,
         )
-        self._publications.append(status_publication(self._keys, status))
-        if outputs.plan is not None and self._statuses % _PLAN_EVERY == 0:
-            plan = plan_publication(self._keys, outputs.plan, self._clock.t_ns, self.memory.model.yaw_setpoint_rad)
-            self._publications.append(plan)
+        try:
+            self._publications.append(status_publication(self._keys, status))
+            if outputs.plan is not None and self._statuses % _PLAN_EVERY == 0:
+                plan = plan_publication(self._keys, outputs.plan, self._clock.t_ns, self.memory.model.yaw_setpoint_rad)
+                self._publications.append(plan)
+        except PayloadError:  # a flight goes on without being seen
+            self.unpublished += 1
 
 
 @lru_cache(maxsize=16)  # the gains of some landings; nothing that a link tells fills the memory

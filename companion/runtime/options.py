@@ -23,9 +23,14 @@ class Timings:
     started_cpu_s: float = field(default_factory=time.process_time)
 
     def summary(self) -> dict[str, float | int]:
-        """Return what belongs into a timing file."""
+        """Return what belongs into a timing file.
+
+        `memory_mb` counts what is resident; `own_memory_mb` leaves out what other processes share and what can be read
+        again from files, such as a library's code.
+        """
         ordered = sorted(self.state_to_setpoint_s)
         wall_s = time.perf_counter() - self.started_s
+        memory = psutil.Process().memory_full_info()
 
         def quantile_ms(share: float) -> float:
             return round(1e3 * ordered[min(int(share * len(ordered)), len(ordered) - 1)], 4) if ordered else 0.0
@@ -36,7 +41,8 @@ class Timings:
             "state_to_setpoint_p99_ms": quantile_ms(0.99),
             "state_to_setpoint_max_ms": quantile_ms(1.0),
             "cpu_share": round((time.process_time() - self.started_cpu_s) / wall_s, 4),
-            "memory_mb": round(psutil.Process().memory_info().rss / 1e6, 1),
+            "memory_mb": round(memory.rss / 1e6, 1),
+            "own_memory_mb": round(memory.uss / 1e6, 1),
         }
 
 

@@ -67,15 +67,15 @@ class RecordingNode(CompanionNode):
         self._link_ns: int | None = None
         self._recorded_alive: bool | None = None
 
-    def receive_mavlink(self, data: bytes, local_ns: int) -> None:
+    def receive_mavlink(self, data: bytes, local_ns: int, *, is_datagram: bool = False) -> None:
         """Take bytes of the autopilot's link.
 
         Raises:
             UserError: the autopilot is of a kind that cannot be flown.
         """
         self._local_ns = local_ns
-        self._record(InputKind.MAVLINK, data)
-        super().receive_mavlink(data, local_ns)
+        self._record(InputKind.DATAGRAM if is_datagram else InputKind.MAVLINK, data)
+        super().receive_mavlink(data, local_ns, is_datagram=is_datagram)
 
     def receive_sample(self, key: str, payload: bytes) -> None:
         """Take a Zenoh sample."""

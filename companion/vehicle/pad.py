@@ -34,6 +34,7 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
         yaw_rad: heading of the vehicle now, None when unknown.
         position_std_m: (n, 3).
         is_coarse: the vehicle's fixes alone are too coarse to land by: only what the drone sees of the pad places it.
+        has_one_frame: the vehicle's fixes are in the drone's frame; if not, only what the drone sees tells the offset.
         half_width_m: from its centre to the nearest edge; infinite until it is described.
         height_m: of its surface above the vehicle's road.
         needs_heading: it is beside the antenna.
@@ -47,13 +48,14 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
     yaw_rad: float | None
     position_std_m: Array
     is_coarse: bool = False
+    has_one_frame: bool = True
     half_width_m: float = math.inf
     height_m: float = 0.0
     needs_heading: bool = False
     unplaced: Cause | None = None
 
 
-def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
+def pad_path(forecast: Forecast, pad: PadGeometry | None, *, has_one_frame: bool = True) -> PadPath:
     """Return where the pad will be.
 
     The lever arm from the antenna turns with the vehicle's heading and pitches with the grade: on a climb of 8 % a pad
@@ -65,6 +67,7 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
     Args:
         forecast: of the antenna, its first offset 0.
         pad: the vehicle's own description, None until it has answered.
+        has_one_frame: both receivers' positions are in one frame.
     """
     lever_x_m, lever_y_m, lever_z_m = pad.antenna_to_pad_m if pad is not None else (0.0, 0.0, 0.0)
     position = forecast.position_enu_m + np.array([0.0, 0.0, lever_z_m])
@@ -85,6 +88,7 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None) -> PadPath:
         yaw_rad=None if forecast.yaw_rad is None else float(forecast.yaw_rad[0]),
         position_std_m=forecast.position_std_m,
         is_coarse=forecast.is_coarse,
+        has_one_frame=has_one_frame,
         half_width_m=math.inf if pad is None else 0.5 * min(pad.size_m),
         height_m=0.0 if pad is None else pad.height_m,
         needs_heading=is_beside,

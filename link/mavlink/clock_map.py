@@ -109,17 +109,22 @@ class ClockMap(Struct, frozen=True, kw_only=True):
         """UTC at a boot time, None when neither SYSTEM_TIME nor a round trip has come."""
         if self.boot_to_utc is None:
             return self.boot_to_local_ns(boot_ns)
-        return self.boot_to_utc.y_ns(boot_ns)
+        return _bounded(self.boot_to_utc.y_ns(boot_ns))
 
     def local_to_utc_ns(self, local_ns: int) -> int:
         """UTC at a local time; the local time itself until both ways are known."""
         if self.boot_to_utc is None or self.local_to_boot is None:
             return local_ns
-        return self.boot_to_utc.y_ns(self.local_to_boot.y_ns(local_ns))
+        return _bounded(self.boot_to_utc.y_ns(self.local_to_boot.y_ns(local_ns)))
 
     def local_to_boot_std_ns(self, local_ns: int) -> float | None:
         """Standard deviation of `local_to_boot_ns` by the scatter that the link is known for, None when unknown."""
         return None if self.local_to_boot is None else self.local_to_boot.std_ns(local_ns)
+
+
+def _bounded(utc_ns: int) -> int:
+    """A time on a fitted line as one that a stamp has room for: the line leaves the bounds that its pairs keep to."""
+    return min(max(utc_ns, UNIX_TIME_MIN_NS), UNIX_TIME_MAX_NS)
 
 
 def with_round_trip(clock: ClockMap, trip: RoundTrip, config: ClockConfig = DEFAULT_CLOCK_CONFIG) -> ClockMap:

@@ -1,48 +1,22 @@
-"""Messages to bytes and back: frames are found here, their contents are pymavlink's business.
+"""Messages to bytes and back: frames are checked here, their contents are pymavlink's business.
 
 Framing is not left to pymavlink: after a wrong checksum it throws away as many bytes as the broken frame claimed to
 have, good frames included. Here the search goes on at the next byte.
 """
 
-import re
 import struct
 from collections import Counter
 
 from link.mavlink.contents import frame_of, message_of
 from link.mavlink.dialect import Message, mavlink
+from link.mavlink.framing import MARKER_V1, MARKER_V2, Stream, message_id_at
 from link.mavlink.sequence import SequenceTracker
 from link.mavlink.signing import Signing
 from link.mavlink.statistics import CodecStatistics
 from link.mavlink.version1 import as_version1
 
-_MARKER_V1 = mavlink.PROTOCOL_MARKER_V1
-_MARKER_V2 = mavlink.PROTOCOL_MARKER_V2
-_SIGNED = mavlink.MAVLINK_IFLAG_SIGNED
-_MARKER = re.compile(b"[\xfd\xfe]")
-_HEAD_SIZE = 3  # marker, payload length, incompatibility flags: enough to know a frame's length
-_OVERHEAD_V1 = mavlink.HEADER_LEN_V1 + 2
-_OVERHEAD_V2 = mavlink.HEADER_LEN_V2 + 2
-NOT_A_FRAME = 0
 _UNKNOWN_IDS_MAX = 64  # counted apart; noise would make up thousands
 _PEERS_MAX = 64  # whose unfinished frames are kept; more than a transport has at a time
-
-
-def frame_size(head: bytes | bytearray, start: int) -> int:
-    """Length in bytes of the frame that starts at `start`, `NOT_A_FRAME` when its flags are not ones that we know."""
-    length = head[start + 1]
-    if head[start] == _MARKER_V1:
-        return int(length + _OVERHEAD_V1)
-    flags = head[start + 2]
-    if flags & ~_SIGNED:
-        return NOT_A_FRAME
-    return int(length + _OVERHEAD_V2 + (mavlink.MAVLINK_SIGNATURE_BLOCK_LEN if flags else 0))
-
-
-def _header(frame: bytearray) -> tuple[int, int, int, int]:
-    """Sequence number, system, component and message id of a frame."""
-    if frame[0] == _MARKER_V1:
-        return frame[2], frame[3], frame[4], frame[5]
-    return frame[4], frame[5], frame[6], frame[7] | frame[8] << 8 | frame[9] << 16
 
 
 class MavlinkCodec:
@@ -70,8 +44,7 @@ class MavlinkCodec:
         self._sequence = 0
         self._answers_version1 = answers_version1
         self._version1_heard = self._version2_heard = False
-        self._buffer = bytearray()
-        self._unfinished: dict[int, bytearray] = {0: self._buffer}
+        self._streams: dict[int, Stream] = {}
         self._records_input = records_input
         self._input: list[bytes] = []
         self._sequences: dict[tuple[int, int], SequenceTracker] = {}
@@ -128,97 +101,102 @@ class MavlinkCodec:
         self._bytes_sent += len(frame)
         return frame
 
-    def decode(self, data: bytes, peer: int = 0) -> list[Message]:
+    def decode(
+        self, data: bytes, peer: int = 0, *, t_ns: int | None = None, is_datagram: bool = False
+    ) -> list[Message]:
         """Takes bytes as they come and gives the messages completed by them.
 
-        Frames may be cut anywhere. Bad bytes and unknown messages are counted and dropped.
+        Bad bytes and unknown messages are counted and dropped.
 
         Args:
             data: what was received since the last call.
             peer: from whom; a frame is put together of one peer's bytes only.
+            t_ns: the time now; a frame of a stream whose rest does not come for `WAIT_MAX_NS` is none. None waits on.
+            is_datagram: `data` are whole frames, the end of which is theirs; frames of a stream may be cut anywhere.
 
         Returns:
             Known messages, in their order of arrival.
         """
         self._bytes_received += len(data)
-        buffer = self._buffer = self._buffer_of(peer)
-        buffer += data
+        stream = Stream() if is_datagram else self._stream_of(peer)
+        stream.add(data, t_ns)
         messages: list[Message] = []
-        start = 0
-        while (start := self._next_marker(start)) + _HEAD_SIZE <= len(buffer):
-            size = frame_size(buffer, start)
-            if start + size > len(buffer):
-                break
-            start += self._take(start, size, messages)
-        del buffer[:start]
-        if peer and not buffer:
-            del self._unfinished[peer]
+        while (found := stream.find(ends=is_datagram)) is not None:
+            self._take(stream, *found, messages)
+        stream.settle(t_ns, ends=is_datagram)
+        self._count_bad(stream)
         return messages
+
+    def flush(self, t_ns: int) -> list[tuple[int, Message]]:
+        """Gives up frames whose rest has not come in time; returns the messages found behind them, with their peers.
+
+        Args:
+            t_ns: the time now, on the clock of `decode`.
+        """
+        overdue = [peer for peer, stream in self._streams.items() if stream.is_overdue(t_ns)]
+        return [(peer, message) for peer in overdue for message in self.decode(b"", peer, t_ns=t_ns)]
 
     def take_input(self) -> list[bytes]:
         """Gives the frames received since the last call, for a recording; empty unless `records_input`."""
         frames, self._input = self._input, []
         return frames
 
-    def _buffer_of(self, peer: int) -> bytearray:
-        if peer not in self._unfinished:
-            if len(self._unfinished) == _PEERS_MAX:
-                oldest = min(one for one in self._unfinished if one)
-                self._bad_bytes += len(self._unfinished.pop(oldest))
-            self._unfinished[peer] = bytearray()
-        return self._unfinished[peer]
+    def _stream_of(self, peer: int) -> Stream:
+        if peer not in self._streams:
+            if len(self._streams) == _PEERS_MAX:
+                oldest = min(self._streams)
+                self._bad_bytes += len(self._streams.pop(oldest).buffer)
+            self._streams[peer] = Stream()
+        return self._streams[peer]
 
-    def _next_marker(self, start: int) -> int:
-        """The next place where a frame may start, or the end; what lies before it is bad."""
-        buffer = self._buffer
-        if start < len(buffer) and buffer[start] == _MARKER_V2:  # the usual case needs no search
-            return start
-        found = _MARKER.search(buffer, start)
-        end = len(buffer) if found is None else found.start()
-        self._bad_bytes += end - start
-        return end
+    def _count_bad(self, stream: Stream) -> None:
+        self._bad_bytes += stream.bad_bytes
+        self._bad_frames += stream.bad_frames
+        stream.bad_bytes = stream.bad_frames = 0
 
-    def _take(self, start: int, size: int, messages: list[Message]) -> int:
-        """Decodes the frame at `start`; returns how many bytes it used up."""
-        frame = self._buffer[start : start + size]
-        if size == NOT_A_FRAME:
-            return self._skip()
-        sequence, system, component, message_id = _header(frame)
+    def _take(self, stream: Stream, start: int, size: int, messages: list[Message]) -> None:
+        """Decodes what may be a frame, and goes on behind it or, if it is none, at the next byte."""
+        frame = stream.buffer[start : start + size]
+        message_id = message_id_at(frame, 0)
         if message_id not in mavlink.mavlink_map:
-            if not self._ends_at_frame(start + size):
-                return self._skip()
+            if not _is_followed_by_frame(stream, start + size):
+                stream.skip()
+                return
             self._count_unknown(message_id)
         else:
             message = message_of(frame, message_id)
             if message is None:
-                return self._skip()
+                stream.skip(has_wrong_checksum=True)
+                return
             if self.signing is not None and not self.signing.accepts(frame):
                 self._refused += 1
-                return size
-            self._version1_heard |= frame[0] == _MARKER_V1
-            self._version2_heard |= frame[0] == _MARKER_V2
-            messages.append(message)
-            self._messages_received += 1
-            if (system, component) not in self._sequences:
-                self._sequences[system, component] = SequenceTracker()
+                stream.take(size, is_known=True)
+                return
+            self._receive(message, frame, messages)
+        stream.take(size, is_known=message_id in mavlink.mavlink_map)
         # An unknown message has no checksum to prove its sender, so it introduces none.
+        sequence, system, component = frame[2:5] if frame[0] == MARKER_V1 else frame[4:7]
         tracker = self._sequences.get((system, component))
         if tracker is not None:
             tracker.see(sequence)
         if self._records_input:
             self._input.append(bytes(frame))
-        return size
+
+    def _receive(self, message: Message, frame: bytearray, messages: list[Message]) -> None:
+        self._version1_heard |= frame[0] == MARKER_V1
+        self._version2_heard |= frame[0] == MARKER_V2
+        messages.append(message)
+        self._messages_received += 1
+        sender = message.get_srcSystem(), message.get_srcComponent()
+        if sender not in self._sequences:
+            self._sequences[sender] = SequenceTracker()
 
     def _count_unknown(self, message_id: int) -> None:
         self._unknown_messages += 1
         if message_id in self._unknown or len(self._unknown) < _UNKNOWN_IDS_MAX:
             self._unknown[message_id] += 1
 
-    def _ends_at_frame(self, end: int) -> bool:
-        """Whether a frame of an unknown message, whose checksum cannot be told, is followed by a frame or nothing."""
-        return end == len(self._buffer) or self._buffer[end] in (_MARKER_V1, _MARKER_V2)
 
-    def _skip(self) -> int:
-        self._bad_frames += 1
-        self._bad_bytes += 1
-        return 1
+def _is_followed_by_frame(stream: Stream, end: int) -> bool:
+    """Whether a frame of an unknown message, whose checksum cannot be told, is followed by a frame or nothing."""
+    return end == len(stream.buffer) or stream.buffer[end] in (MARKER_V1, MARKER_V2)

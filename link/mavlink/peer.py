@@ -7,8 +7,8 @@ from link.mavlink.events import AutopilotRestarted, Event, LinkFound, LinkLost, 
 
 _BROADCAST = 0
 _LOST_AFTER_NS = 3_000_000_000  # of silence: three of the autopilot's heartbeats
-_RESTART_THRESHOLD_NS = 1_000_000_000  # boot time falling back by more is a restart, by less a late message
-_RESTART_CONFIRMATIONS = 3  # so many messages in a row have to say so
+_JUMP_NS = 1_000_000_000  # boot time falling back by more is a restart, by less a late message; ahead, it was set
+_JUMP_CONFIRMATIONS = 3  # so many messages in a row have to say so
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,22 +93,33 @@ class Peer:
 
 
 class RestartWatch:
-    """Notices a restart by the time since boot, and is not misled by messages that come late."""
+    """Notices a restart by the time since boot, misled neither by messages that come late nor by a forged one."""
 
     def __init__(self) -> None:
         self._newest_ns = 0
+        self._heard_ns: int | None = None
         self._earlier_in_a_row = 0
+        self._ahead_in_a_row = 0
+
+    def doubts(self, boot_ns: int, t_ns: int) -> bool:
+        """Whether a boot time, ahead of the newest by more than time has passed, is to be confirmed by further ones."""
+        if self._heard_ns is None or boot_ns <= self._newest_ns + (t_ns - self._heard_ns) + _JUMP_NS:
+            self._ahead_in_a_row = 0
+            return False
+        self._ahead_in_a_row = (self._ahead_in_a_row + 1) % _JUMP_CONFIRMATIONS
+        return self._ahead_in_a_row > 0
 
     def see(self, boot_ns: int, t_ns: int) -> AutopilotRestarted | None:
         """Takes note of a boot time of the autopilot; returns the restart that it proves, if it does."""
-        if boot_ns >= self._newest_ns - _RESTART_THRESHOLD_NS:
-            self._newest_ns = max(self._newest_ns, boot_ns)
+        if boot_ns >= self._newest_ns - _JUMP_NS:
+            if boot_ns >= self._newest_ns:
+                self._newest_ns, self._heard_ns = boot_ns, t_ns
             self._earlier_in_a_row = 0
             return None
         self._earlier_in_a_row += 1
-        if self._earlier_in_a_row < _RESTART_CONFIRMATIONS:
+        if self._earlier_in_a_row < _JUMP_CONFIRMATIONS:
             return None
-        before_ns, self._newest_ns = self._newest_ns, boot_ns
+        before_ns, self._newest_ns, self._heard_ns = self._newest_ns, boot_ns, t_ns
         self._earlier_in_a_row = 0
         return AutopilotRestarted(t_ns=t_ns, boot_before_ns=before_ns, boot_now_ns=boot_ns)
 

@@ -98,36 +98,33 @@ class MavlinkSession:
             round_trips=self._clock_sync.round_trips,
         )
 
-    def receive(self, data: bytes, t_ns: int) -> list[Event]:
+    def receive(self, data: bytes, t_ns: int, *, is_datagram: bool = False) -> list[Event]:
         """Takes what came from the transport; no bytes whatever make it raise.
 
         Args:
             data: bytes as they came.
             t_ns: local time now.
+            is_datagram: they are whole frames, not a piece of a stream.
 
         Returns:
             What they mean, in order.
         """
         events: list[Event] = []
-        for message in self._codec.decode(data):
-            if self._peer.accepts(message):
-                events += self._peer.heard(message, t_ns)
-                events += self._watch_restart(message, t_ns)
-                events.append(MessageReceived(message, t_ns))
-                events += self._handle(message, t_ns)
-            else:
-                self._filtered += 1
+        for message in self._codec.decode(data, t_ns=t_ns, is_datagram=is_datagram):
+            events += self._take(message, t_ns)
         return events
 
     def poll(self, t_ns: int) -> list[Event]:
         """Does what is due: heartbeat, clock questions, everything that has to be sent again, and looking for silence.
 
         Returns:
-            What has run out of time at local time `t_ns`.
+            What has run out of time at local time `t_ns`, and what was behind a frame that was never completed.
         """
         if self._signing is not None:
             self._signing.advance(t_ns)
         events: list[Event] = [*self._peer.poll(t_ns)]
+        for _, message in self._codec.flush(t_ns):
+            events += self._take(message, t_ns)
         if self._heartbeat.is_due(t_ns):
             self.send(companion_heartbeat())
         if self._peer.is_up and (question := self._clock_sync.poll(t_ns)) is not None:
@@ -194,6 +191,20 @@ class MavlinkSession:
         """Gives the frames received since the last call, all senders', for a recording; see `records_input`."""
         return self._codec.take_input()
 
+    def _take(self, message: Message, t_ns: int) -> list[Event]:
+        if not self._peer.accepts(message):
+            self._filtered += 1
+            return []
+        boot_ns = boot_time_ns(message)
+        if boot_ns and self._restarts.doubts(boot_ns, t_ns):
+            self._filtered += 1
+            return []
+        events = self._peer.heard(message, t_ns)
+        if boot_ns:
+            events += self._watch_restart(boot_ns, t_ns)
+        events.append(MessageReceived(message, t_ns))
+        return [*events, *self._handle(message, t_ns)]
+
     def _handle(self, message: Message, t_ns: int) -> list[Event]:
         message_id = message.get_msgId()
         self._streams.seen(message_id, t_ns)
@@ -211,9 +222,8 @@ class MavlinkSession:
             return [*self._parameters.received(message, self._peer.autopilot, t_ns)]
         return []
 
-    def _watch_restart(self, message: Message, t_ns: int) -> list[Event]:
-        boot_ns = boot_time_ns(message)
-        restart = self._restarts.see(boot_ns, t_ns) if boot_ns else None
+    def _watch_restart(self, boot_ns: int, t_ns: int) -> list[Event]:
+        restart = self._restarts.see(boot_ns, t_ns)
         return [] if restart is None else [restart, *self._start_over(restart)]
 
     def _start_over(self, restart: AutopilotRestarted) -> list[Event]:

@@ -40,7 +40,7 @@ class SessionStatistics(Struct, frozen=True, kw_only=True):
 
     Attributes:
         codec: the counters of its codec.
-        filtered_messages: messages that were from, or for, somebody else.
+        filtered_messages: messages that were from, or for, somebody else, or from a time that is not confirmed.
         commands_retried: command frames sent again.
         commands_timed_out: commands never answered.
         parameters_retried: parameter requests sent again.

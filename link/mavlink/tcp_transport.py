@@ -148,10 +148,11 @@ class TcpServerTransport(Transport):
 
     def send(self, data: bytes) -> None:
         """Sends bytes to every client, if there is one."""
-        if not self._clients:
+        clients = [client for number, client in self._clients.items() if self._is_served(number)]
+        if not clients:
             self._dropped += 1
         now_s = time.monotonic()
-        for client in self._clients.values():
+        for client in clients:
             self._dropped += client.send(data, now_s)
         self._let_go()
 
@@ -170,7 +171,12 @@ class TcpServerTransport(Transport):
         received = [PeerBytes(number, data) for number, client in self._clients.items() if (data := client.read())]
         self._let_go()
         self._accept()
-        return received
+        heard = [one for one in received if self._pinned in {None, one.peer}]
+        self._strangers += len(received) - len(heard)
+        return heard
+
+    def _is_served(self, number: int) -> bool:
+        return not self._is_seeking and self._pinned in {None, number}
 
     def fileno(self) -> int:
         """The descriptor to wait on for input, -1 when closed."""

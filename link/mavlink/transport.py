@@ -16,7 +16,7 @@ from link.errors import UserError
 from link.mavlink.device import NetworkDevice
 
 CHUNK_BYTES = 65536  # the largest datagram there is
-DRAIN_BYTES_MAX = 1 << 20  # a flood must not keep the loop from its other work
+DRAIN_BYTES_MAX = 1 << 16  # a flood must not keep the loop from its other work; 100 Mbit/s at 200 turns a second
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,10 +26,12 @@ class TransportStatistics:
     Attributes:
         errors: failed system calls, such as a refused connection.
         dropped: sends that reached nobody: no peer yet, or one that does not read.
+        strangers: times that others than the pinned peer were heard and not listened to.
     """
 
     errors: int
     dropped: int
+    strangers: int
 
 
 class PeerBytes(NamedTuple):
@@ -40,16 +42,25 @@ class PeerBytes(NamedTuple):
 
 
 class Transport(ABC):
-    """Bytes in and out; also a context manager that closes itself."""
+    """Bytes in and out; also a context manager that closes itself.
+
+    Attributes:
+        is_datagram: whether what comes at a time from a peer is whole frames, instead of a piece of a stream.
+    """
+
+    is_datagram = False
 
     def __init__(self) -> None:
         self._errors = 0
         self._dropped = 0
+        self._strangers = 0
+        self._is_seeking = False
+        self._pinned: int | None = None
 
     @property
     def statistics(self) -> TransportStatistics:
         """The counters as they stand."""
-        return TransportStatistics(errors=self._errors, dropped=self._dropped)
+        return TransportStatistics(errors=self._errors, dropped=self._dropped, strangers=self._strangers)
 
     @abstractmethod
     def receive(self, timeout_s: float) -> bytes:
@@ -73,6 +84,18 @@ class Transport(ABC):
         """
         data = self.receive(timeout_s)
         return [PeerBytes(0, data)] if data else []
+
+    def seek_peer(self) -> None:
+        """Hears everybody from now on but, where others have to speak first, sends to nobody, until `pin`."""
+        self._is_seeking, self._pinned = True, None
+
+    def pin(self, peer: int) -> None:
+        """Hears this peer only from now on, and sends to no other, until `seek_peer`.
+
+        Args:
+            peer: as `receive_by_peer` numbers it; where there can only be one, this changes nothing.
+        """
+        self._is_seeking, self._pinned = False, peer
 
     @abstractmethod
     def send(self, data: bytes) -> None:

@@ -26,6 +26,10 @@ class UdpPeers:
         """Their addresses."""
         return list(self._heard_s)
 
+    def address_of(self, number: int) -> Any:
+        """The address of a peer, None when it is forgotten."""
+        return next((address for address, one in self._numbers.items() if one == number), None)
+
     def heard(self, address: Any, now_s: float) -> int:
         """Takes note that a peer spoke; returns its number."""
         self._heard_s.pop(address, None)
@@ -50,6 +54,8 @@ class UdpPeers:
 
 
 class _UdpTransport(Transport):
+    is_datagram = True
+
     def __init__(self, device: NetworkDevice) -> None:
         super().__init__()
         family, self._address = resolve(device, socket.SOCK_DGRAM)
@@ -57,6 +63,7 @@ class _UdpTransport(Transport):
         self._socket.setblocking(False)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BUFFER_BYTES)
         self._peers = UdpPeers()
+        self._pinned_address: Any = None
 
     @property
     def port(self) -> int:
@@ -81,10 +88,23 @@ class _UdpTransport(Transport):
             except OSError:  # a datagram of ours was refused, which says nothing of the next one
                 self._errors += 1
                 continue
-            received.append(PeerBytes(self._peers.heard(address, now_s), data))
             size += len(data) or 1  # an empty datagram, too, is work
+            if self._pinned_address in {None, address}:
+                received.append(PeerBytes(self._peers.heard(address, now_s), data))
+            else:
+                self._strangers += 1
         self._peers.forget_silent(now_s)
         return received
+
+    def seek_peer(self) -> None:
+        """Hears everybody from now on but, where others have to speak first, sends to nobody, until `pin`."""
+        super().seek_peer()
+        self._pinned_address = None
+
+    def pin(self, peer: int) -> None:
+        """Hears this peer's address and port only from now on, and sends to no other, until `seek_peer`."""
+        super().pin(peer)
+        self._pinned_address = self._peers.address_of(peer)
 
     def fileno(self) -> int:
         """The descriptor to wait on for input, -1 while there is none."""
@@ -108,7 +128,9 @@ class _UdpTransport(Transport):
                 self._errors += 1
 
     def _receivers(self) -> list[Any]:
-        return self._peers.addresses
+        if self._pinned_address is not None:
+            return [self._pinned_address]
+        return [] if self._is_seeking else self._peers.addresses
 
     def _transmit(self, data: bytes, address: Any) -> None:
         self._socket.sendto(data, address)
@@ -165,5 +187,7 @@ class UdpBoundTransport(_UdpTransport):
         bind(self._socket, (own_host, own_port), NetworkDevice(kind="udpin", host=own_host, port=own_port))
 
     def _receivers(self) -> list[Any]:
-        others = (one for one in self._peers.addresses if one[:2] != self._address)
+        if self._pinned_address is not None:
+            return [self._pinned_address]
+        others = (one for one in super()._receivers() if one[:2] != self._address)
         return [self._address, *others]

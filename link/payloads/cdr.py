@@ -6,7 +6,7 @@ the wire they are the same up to Jazzy.
 """
 
 from functools import cache
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from link.messages import (
     BodyTruth,
@@ -39,7 +39,7 @@ Message = (
     | CameraImage
     | CompressedPicture
 )
-__all__ = ["ROS_TYPES", "Message", "PayloadError", "decode", "encode", "encoding_of", "typestore"]
+__all__ = ["ROS_TYPES", "Message", "PayloadError", "decode", "decode_ros", "encode", "encoding_of", "typestore"]
 
 M = TypeVar("M", bound=Message)
 
@@ -80,16 +80,24 @@ def decode(message_type: type[M], payload: bytes) -> M:
     Raises:
         PayloadError: If the bytes are not such a message, or what it says cannot be.
     """
-    from rosbags.serde import SerdeError  # noqa: PLC0415 (with the type library, see above)
-
-    try:
-        ros_message = typestore().deserialize_cdr(payload, ROS_TYPES[message_type])
-    except SerdeError as error:
-        raise PayloadError(f"not a {ROS_TYPES[message_type]}: {error}") from error
-    message = _conversions()[message_type].from_ros(ros_message)
+    message = _conversions()[message_type].from_ros(decode_ros(ROS_TYPES[message_type], payload))
     if not isinstance(message, message_type):
         raise TypeError(f"the conversion for {message_type.__name__} gave a {type(message).__name__}")
     return message
+
+
+def decode_ros(ros_type: str, payload: bytes) -> Any:
+    """Return the message of ROS 2's own type `ros_type` that a CDR payload holds, with its values unchecked.
+
+    Raises:
+        PayloadError: If the bytes are not such a message.
+    """
+    from rosbags.serde import SerdeError  # noqa: PLC0415 (with the type library, see above)
+
+    try:
+        return typestore().deserialize_cdr(payload, ros_type)
+    except SerdeError as error:
+        raise PayloadError(f"not a {ros_type}: {error}") from error
 
 
 @cache

@@ -3,15 +3,18 @@
 Kept light, so that `--help` is quick: no numerics and no Zenoh are imported here.
 """
 
+import os
 import sys
 from collections.abc import Sequence
+from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from typer.main import get_command
 
 from link.errors import UserError
+from link.program.printable import printable
 
 EXIT_OK = 0
 EXIT_USER_ERROR = 2
@@ -35,7 +38,7 @@ ConnectOption = Annotated[
         "-e",
         "--connect",
         metavar="ENDPOINT",
-        help="Endpoint to connect to, such as tcp/192.168.1.5:7447. May be repeated.",
+        help="Endpoint to connect to, such as tls/192.168.1.5:7447. May be repeated.",
         rich_help_panel=_PANEL,
     ),
 ]
@@ -45,7 +48,7 @@ ListenOption = Annotated[
         "-l",
         "--listen",
         metavar="ENDPOINT",
-        help="Endpoint to listen on, such as tcp/0.0.0.0:7447. May be repeated.",
+        help="Endpoint to listen on, such as tls/0.0.0.0:7447. May be repeated.",
         rich_help_panel=_PANEL,
     ),
 ]
@@ -67,11 +70,62 @@ ZenohConfigOption = Annotated[
         rich_help_panel=_PANEL,
     ),
 ]
+InsecureOption = Annotated[
+    bool,
+    typer.Option(
+        "--insecure",
+        help="Meet others beyond this machine without certificates: anybody on that network can give orders.",
+        rich_help_panel=_PANEL,
+    ),
+]
+
+
+Ros2Option = Annotated[
+    int | None,
+    typer.Option(
+        "--ros2",
+        metavar="[DOMAIN]",
+        help="Be a node of a ROS 2 graph over rmw_zenoh [default: ROS_DOMAIN_ID, else 0].",
+        show_default=False,
+        rich_help_panel="ROS 2",
+    ),
+]
+Ros2MapOption = Annotated[
+    Path | None,
+    typer.Option("--ros2-map", metavar="FILE", help="Which topics are what, in TOML.", rich_help_panel="ROS 2"),
+]
 
 
 def make_app(description: str) -> typer.Typer:
     """Return an empty app whose help and errors are plain text; `description` heads its `--help`."""
-    return typer.Typer(help=description, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+    return typer.Typer(help=description, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+def command_of(app: typer.Typer) -> Any:  # of a class that is private to typer
+    """Return an app from `make_app` as a command, with the options that all programs have."""
+    command = get_command(app)
+    versioned = typer.Typer(add_completion=False)
+    versioned.command()(_with_version)
+    command.params[:0] = get_command(versioned).params
+    return command
+
+
+def _print_version(context: typer.Context, *, wanted: bool) -> None:
+    if wanted:
+        sys.stdout.write(f"{context.info_name} {version('decklander')}\n")
+        raise typer.Exit
+
+
+def _with_version(
+    *,
+    _version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, expose_value=False, help="Print the version and end."
+        ),
+    ] = False,
+) -> None:
+    """Hold the option `--version`."""
 
 
 def run_app(name: str, app: typer.Typer, args: Sequence[str] | None = None) -> int:
@@ -87,9 +141,10 @@ def run_app(name: str, app: typer.Typer, args: Sequence[str] | None = None) -> i
     Returns:
         0, the function's own code, 2 after a mistake of the user, 130 after Ctrl-C.
     """
-    command = get_command(app)
+    command = command_of(app)
     try:
-        result = command.main(args=list(sys.argv[1:] if args is None else args), prog_name=name, standalone_mode=False)
+        arguments = _with_domain(sys.argv[1:] if args is None else args)
+        result = command.main(args=arguments, prog_name=name, standalone_mode=False)
     except UserError as error:
         return _fail(name, str(error))
     except typer.TyperException as error:
@@ -99,7 +154,17 @@ def run_app(name: str, app: typer.Typer, args: Sequence[str] | None = None) -> i
     return result if isinstance(result, int) else EXIT_OK
 
 
+def _with_domain(args: Sequence[str]) -> list[str]:
+    """Return the arguments with the domain that `--ros2` may leave out: typer has no options with optional values."""
+    given = list(args)
+    if "--ros2" in given:
+        after = given.index("--ros2") + 1
+        if not "".join(given[after : after + 1]).isdigit():
+            given.insert(after, os.environ.get("ROS_DOMAIN_ID") or "0")
+    return given
+
+
 def _fail(name: str, message: str, hint: str = "") -> int:
-    line = " ".join(f"{message} {hint}".split())
+    line = printable(" ".join(f"{message} {hint}".split()))
     sys.stderr.write(f"{name}: {line}\n")
     return EXIT_USER_ERROR

@@ -3,6 +3,7 @@
 A slow or full disk costs records, which are counted, and never time of the loop's.
 """
 
+import struct
 import threading
 import time
 from collections import deque
@@ -13,7 +14,8 @@ _CAPACITY = 20_000  # half a minute of everything that a companion records
 _LOOK_S = 0.02  # between two looks for records: waking a thread at each would cost the loop more than all else here
 _PAUSE_S = 20e-6  # after each record, so that the loop never waits for the interpreter longer than for one
 _CLOSE_WAIT_S = 5.0
-_UNWRITABLE = (OSError, ValueError)  # the disk's fault, or of a message that holds what must not be written
+# The disk's fault, or of a message that holds what must not, or cannot, be written.
+_UNWRITABLE = (OSError, ValueError, ArithmeticError, struct.error)
 
 
 class RecordsLost(OSError):  # noqa: N818 (it is what has happened to them)
@@ -37,6 +39,8 @@ class Sink(Protocol):
         Raises:
             OSError: it is not written.
             ValueError: it cannot be written.
+            ArithmeticError: one of its numbers is too large for its field.
+            struct.error: likewise.
         """
 
     def close(self) -> None:

@@ -10,12 +10,15 @@ import re
 import threading
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from types import TracebackType
 from typing import Self
 
 import zenoh
 
 from link.errors import UserError
+from link.payloads.checks import PayloadError
+from link.zenoh.exposure import check_exposure
 from link.zenoh.inbox import Inbox, Sample, WakeUp
 from link.zenoh.options import DEFAULT_ENDPOINT, ZenohOptions
 
@@ -24,12 +27,50 @@ __all__ = ["DEFAULT_ENDPOINT", "Alive", "Inbox", "Sample", "WakeUp", "ZenohOptio
 INBOX_CAPACITY = 1024
 """Ten seconds of a 100 Hz stream."""
 
+_REPLIES_MAX = 256
+"""Answers to queries that wait to be sent; more are asked for by nobody who means it."""
+
 _SOURCE_PLACE = re.compile(r"\s+at /\S+\.rs:\d+\.?")
 _CLIENT_CONNECT_TIMEOUT_MS = 5000
 _BLOCK_MAX_KEY = "transport/link/tx/queue/congestion_control/block/wait_before_close"
 _BLOCK_MAX_US = 200_000
 """A peer that takes nothing for this long while its queue is full is disconnected: a hung dashboard must not
 stall the loop that flies. Less than the half second after which autopilots call a setpoint stream lost."""
+
+
+class Replies:
+    """Sends answers to queries from a thread of its own: one who does not read them holds nobody else up.
+
+    Attributes:
+        lost: answers to who has gone, or that came after the end.
+    """
+
+    def __init__(self) -> None:
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix="replies")
+        self._places = threading.BoundedSemaphore(_REPLIES_MAX)
+        self.lost = 0
+
+    def put(self, query: zenoh.Query, send: Callable[[], None]) -> None:
+        """Answer `query` by `send` later, or never where too many wait already."""
+        if not self._places.acquire(blocking=False):
+            return
+        try:
+            self._pool.submit(self._send, query, send)
+        except RuntimeError:  # it is closed
+            self.lost += 1
+
+    def close(self) -> None:
+        """Send none of those that wait."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
+
+    def _send(self, query: zenoh.Query, send: Callable[[], None]) -> None:
+        try:
+            send()
+        except zenoh.ZError:
+            self.lost += 1
+        finally:
+            query.drop()  # type: ignore[no-untyped-call]  # its stub has no return type
+            self._places.release()
 
 
 class Alive:
@@ -59,6 +100,8 @@ class ZenohSession:
         self._publishers: dict[tuple[str, str], zenoh.Publisher] = {}
         self._held: list[object] = []  # what Zenoh would undeclare when nobody holds it
         self._lock = threading.Lock()
+        self._replies = Replies()
+        self.unpublished = 0
         self.wake_up = WakeUp()
 
     def __enter__(self) -> Self:
@@ -72,7 +115,16 @@ class ZenohSession:
         self.close()
 
     def publish(self, key: str, payload: bytes, encoding: str) -> None:
-        """Send `payload` to whoever subscribes to `key`; `encoding` as of `link.payloads.cdr.encoding_of`."""
+        """Send `payload` to whoever subscribes to `key`; `encoding` as of `link.payloads.cdr.encoding_of`.
+
+        What cannot be sent is counted as `unpublished`: who publishes has other things to do.
+        """
+        try:
+            self._send(key, payload, encoding)
+        except (zenoh.ZError, PayloadError):
+            self.unpublished += 1
+
+    def _send(self, key: str, payload: bytes, encoding: str) -> None:
         self._publisher(key, encoding).put(payload)
 
     def is_heard(self, key: str, encoding: str) -> bool:
@@ -121,6 +173,24 @@ class ZenohSession:
 
         self._held.append(self._session.declare_queryable(key, answer))
 
+    def serve_later(self, key: str, take: Callable[[bytes, Callable[[bytes], None]], None]) -> None:
+        """Answer queries on `key` with JSON, by `take(payload, reply)`, which returns at once.
+
+        `reply(answer)` may be called then or later, once, from any thread, and never waits or raises. Where more than
+        `_REPLIES_MAX` answers are on their way it has no effect. A query whose `reply` is forgotten has no answer.
+        """
+
+        def receive(query: zenoh.Query) -> None:
+            payload = b"" if query.payload is None else query.payload.to_bytes()
+
+            def reply(answer: bytes) -> None:
+                encoding = zenoh.Encoding("application/json")
+                self._replies.put(query, lambda: query.reply(key, answer, encoding=encoding))
+
+            take(payload, reply)
+
+        self._held.append(self._session.declare_queryable(key, receive))
+
     def query(self, key: str, payload: bytes, timeout_s: float) -> list[bytes]:
         """Ask whoever serves `key` and return the answers, waiting for at most `timeout_s`; errors are left out."""
         replies = self._session.get(key, payload=payload, timeout=timeout_s, target=zenoh.QueryTarget.ALL)
@@ -151,6 +221,7 @@ class ZenohSession:
         """Leave the network; a second call does nothing."""
         with self._lock:
             if not self._session.is_closed():
+                self._replies.close()
                 self._session.close()  # type: ignore[no-untyped-call]  # its stub has no return type
                 self._held.clear()
                 self._publishers.clear()
@@ -170,12 +241,16 @@ def open_session(options: ZenohOptions, *, receive_clock_ns: Callable[[], int] =
     Raises:
         UserError: If the configuration file is missing or wrong, a port is in use or a client finds no router.
     """
+    return ZenohSession(open_library_session(options), receive_clock_ns=receive_clock_ns)
+
+
+def open_library_session(options: ZenohOptions) -> zenoh.Session:
+    """Return the library's own session, for other layouts; see `open_session`."""
     config = _config(options)
     try:
-        session = zenoh.open(config)
+        return zenoh.open(config)
     except zenoh.ZError as error:
-        raise UserError(_open_failure(options, str(error))) from error
-    return ZenohSession(session, receive_clock_ns=receive_clock_ns)
+        raise UserError(_open_failure(options, config, str(error))) from error
 
 
 def _config(options: ZenohOptions) -> zenoh.Config:
@@ -191,11 +266,33 @@ def _config(options: ZenohOptions) -> zenoh.Config:
     _fill_connection(config)
     if options.listen:
         _insert(config, "listen/endpoints", list(options.listen))
-    elif options.config_file is None and _get(config, "mode") != "client":
-        _insert(config, "listen/endpoints", ["tcp/127.0.0.1:0"])
+    elif _get(config, "listen/endpoints") == _get(zenoh.Config(), "listen/endpoints"):
+        # Zenoh's own default is plain TCP on all interfaces, beside whatever a file says of TLS.
+        own = [] if options.config_file or _get(config, "mode") == "client" else ["tcp/127.0.0.1:0"]
+        _insert(config, "listen/endpoints", own)
+    if not options.insecure:
+        _check_exposure(config)
     if _get(config, _BLOCK_MAX_KEY) == _get(zenoh.Config(), _BLOCK_MAX_KEY):
         _insert(config, _BLOCK_MAX_KEY, _BLOCK_MAX_US)
     return config
+
+
+def _check_exposure(config: zenoh.Config) -> None:
+    protocols = _get(config, "transport/link/protocols")
+    check_exposure(
+        connect=_endpoints(config, "connect/endpoints"),
+        listen=_endpoints(config, "listen/endpoints"),
+        protocols=protocols if isinstance(protocols, list) else None,
+        is_mutual=_get(config, "transport/link/tls/enable_mtls") is True,
+        scouts=_get(config, "scouting/multicast/enabled") is True,
+    )
+
+
+def _endpoints(config: zenoh.Config, key: str) -> list[str]:
+    """Return endpoints of all modes: those of the session's own, or a table with a list for each mode."""
+    found = _get(config, key)
+    lists = found.values() if isinstance(found, dict) else (found,)
+    return [str(endpoint) for one in lists for endpoint in (one if isinstance(one, list) else ())]
 
 
 def _fill_connection(config: zenoh.Config) -> None:
@@ -231,12 +328,14 @@ def _fill(config: zenoh.Config, key: str, value: object) -> None:
         _insert(config, key, value)
 
 
-def _open_failure(options: ZenohOptions, text: str) -> str:
+def _open_failure(options: ZenohOptions, config: zenoh.Config, text: str) -> str:
     endpoints = ", ".join(options.listen) or f"the endpoints of {options.config_file}"
     if "Address already in use" in text:
         return f"--listen {endpoints}: the port is in use, stop the other program or choose another port"
-    if options.mode == "client":
-        return f"--connect {', '.join(options.connect)}: no router answers there ({_plain(text)})"
+    if _get(config, "mode") == "client":
+        return (
+            f"--connect {', '.join(_endpoints(config, 'connect/endpoints'))}: no router answers there ({_plain(text)})"
+        )
     return f"cannot open the Zenoh session (--listen {endpoints}): {_plain(text)}"
 
 

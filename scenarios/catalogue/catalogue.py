@@ -20,6 +20,7 @@ from typing import Any
 from link.errors import UserError
 from link.program.toml_config import merge, read_toml, validate
 from scenarios.catalogue.placement import keep_clear_of_vehicle
+from scenarios.catalogue.receivers import tell_of_one_frame
 from scenarios.catalogue.world_names import names_worlds, parse_world_name
 from scenarios.catalogue.worlds import named_world
 from scenarios.config import Scenario
@@ -69,7 +70,8 @@ def load_scenario(name_or_path: str) -> Scenario:
         table = _find_table(name) | {"name": name_or_path}
     for option in options:
         table |= _option(option, name_or_path)
-    return keep_clear_of_vehicle(validate(Scenario, _resolve(table, name_or_path), source=name_or_path))
+    scenario = validate(Scenario, _resolve(table, name_or_path), source=name_or_path)
+    return keep_clear_of_vehicle(tell_of_one_frame(scenario))
 
 
 def _option(option: str, whole: str) -> Table:

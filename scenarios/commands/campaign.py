@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from link.errors import UserError
+from link.program.extras import require
 
 if TYPE_CHECKING:
     from scenarios.campaigns.campaign import Where
@@ -67,6 +68,7 @@ def campaign_command(
     as_json: JsonOption = False,
 ) -> int:
     """Fly each cell with many seeds and print the summary; exit code 1 when a landing raised an error."""
+    require("campaign", "scenarios campaign")
     from scenarios.campaigns.campaign import Where
     from scenarios.campaigns.folder import create_folder, read_plan
     from scenarios.campaigns.held_back import check_worlds, write_down_held_back
@@ -106,6 +108,7 @@ def campaign_command(
 
 def table_command(folder: FolderArgument, *, as_json: JsonOption = False, markdown: bool = False) -> None:
     """Print a campaign's summary again."""
+    require("campaign", "scenarios table")
     from scenarios.campaigns.folder import read_landings, read_plan, read_timing
 
     say_missing(folder)
@@ -127,6 +130,7 @@ def compare_command(
     as_json: JsonOption = False,
 ) -> None:
     """Compare two campaigns on the same cells and seeds."""
+    require("campaign", "scenarios compare")
     from scenarios.campaigns.compare import compare_campaigns
     from scenarios.campaigns.tables import print_comparison
 

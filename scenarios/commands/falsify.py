@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from link.errors import UserError
+from link.program.extras import require
 
 if TYPE_CHECKING:
     from scenarios.falsify.falsify import Request, Result
@@ -38,6 +39,7 @@ def falsify_command(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> int:
     """Search a slice for an unsafe landing and reduce it to a small scenario file; exit code 1 when none is found."""
+    require("campaign", "scenarios falsify")
     from scenarios.commands.falsify_progress import FalsifyProgress
     from scenarios.falsify.falsify import Request, create_folder, falsify
     from scenarios.processes.local_workers import core_count

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from link.errors import UserError
+from link.program.extras import require
 
 if TYPE_CHECKING:
     from scenarios.faults.trial import Ended
@@ -41,6 +42,7 @@ def faults_command(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> int:
     """Let every fault happen in every phase of a landing; exit code 1 when a reaction is not as expected."""
+    require("campaign", "scenarios faults")
     from scenarios.config import FIRMWARES
     from scenarios.faults.matrix import EXPECTED
     from scenarios.faults.trial import fly_case, lost

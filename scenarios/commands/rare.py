@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from link.program.extras import require
+
 _PARTICLES, _STEPS, _LEVEL = 200, 4, 1e-6
 
 
@@ -43,6 +45,7 @@ def rare_command(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> int:
     """Estimate the probability of an unsafe outcome; exit code 1 when the splitting has not converged."""
+    require("campaign", "scenarios rare")
     from scenarios.processes.local_workers import core_count
     from scenarios.rare.landing import flying, subject_of
     from scenarios.rare.report import level_line, print_report, report

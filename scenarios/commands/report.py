@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from link.program.extras import require
 from scenarios.commands.campaign import JsonOption, say_missing, table_command
 
 _REPORT = "report"
@@ -37,6 +38,7 @@ def report_or_campaign_table(
     if what != _REPORT:
         table_command(Path(what), as_json=as_json, markdown=markdown)
         return
+    require("campaign", "scenarios table report")
     from scenarios.source_report.table import fly_report, print_report, write_markdown
 
     table = fly_report(seeds, workers)
@@ -59,6 +61,7 @@ def figures_command(
     ] = None,
 ) -> None:
     """Draw figures as PNG and SVG: of a run, of a campaign, or the source report's, measured."""
+    require("report", "scenarios figures")
     from scenarios.reports.figures import draw_figures
 
     if what == _REPORT:
@@ -80,6 +83,7 @@ def html_command(
     ] = None,
 ) -> None:
     """Write a run or a campaign as one page that opens offline: verdict, figures, tables, configuration, versions."""
+    require("report", "scenarios report")
     from scenarios.reports.html_report import write_report
 
     page = write_report(what, out)

@@ -1,6 +1,5 @@
 """The command `view`: a landing or a recording in the browser."""
 
-import importlib.util
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,6 +10,7 @@ from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
     DroneOption,
+    InsecureOption,
     ListenOption,
     ModeOption,
     MulticastOption,
@@ -18,6 +18,7 @@ from link.program.cli import (
     VehicleOption,
     ZenohConfigOption,
 )
+from link.program.extras import require
 
 if TYPE_CHECKING:
     from scenarios.view.live import LiveSource
@@ -31,16 +32,6 @@ def register(app: typer.Typer) -> None:
     app.command("view")(view_command)
 
 
-def check_viser() -> None:
-    """Find out whether the page can be made.
-
-    Raises:
-        UserError: viser is not installed.
-    """
-    if importlib.util.find_spec("viser") is None:
-        raise UserError("the view needs viser: pip install 'decklander[view]'")
-
-
 def port_of_run(*, lockstep: bool, as_json: bool) -> int:
     """Return the port of the page of a run, and tell it.
 
@@ -51,7 +42,7 @@ def port_of_run(*, lockstep: bool, as_json: bool) -> int:
 
     if lockstep:
         raise UserError("--lockstep is over at once: leave out --view, and give the run's folder to `scenarios view`")
-    check_viser()
+    require("view", "--view")
     port = free_tcp_port(DEFAULT_PORT)
     (sys.stderr if as_json else sys.stdout).write(f"view: http://127.0.0.1:{port}\n")
     return port
@@ -79,12 +70,13 @@ def view_command(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
 ) -> None:
     """Show a landing in the browser as it goes on, or play a recording.
 
     From another machine: ssh -L 8080:127.0.0.1:8080 THIS_MACHINE, and http://127.0.0.1:8080 there.
     """
-    check_viser()
+    require("view", "scenarios view")
     from scenarios.view.recorded import RecordedSource, Road
 
     if recording is not None:
@@ -100,7 +92,7 @@ def view_command(
 
     drawn = None if road is None else Road(scenario=load_scenario(road), seed=run_seed(road, seed))
     keys = Keys(namespace, vehicle, drone)
-    with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config)) as zenoh:
+    with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)) as zenoh:
         _show(LiveSource(zenoh, keys), drawn, port)
 
 

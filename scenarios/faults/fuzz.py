@@ -157,7 +157,7 @@ def _offer(data: bytes, send: Send, transport: Transport, node: AutopilotNode, t
 
 def _take(transport: Transport, node: AutopilotNode, timeout_s: float = 0.0) -> None:
     for peer, data in transport.receive_by_peer(timeout_s):
-        answer = node.receive(data, node.state.t_ns, peer=peer)[0]
+        answer = node.receive(data, node.state.t_ns, peer=peer, is_datagram=transport.is_datagram)[0]
         if answer:
             transport.send(answer)
 

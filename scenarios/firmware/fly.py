@@ -126,10 +126,10 @@ def _datum(watch: FirmwareWatch, transport: Transport) -> Datum:
 
 def _listen(watch: FirmwareWatch, transport: Transport) -> int:
     """Take what comes within a few milliseconds; return the local time."""
-    data = transport.receive(_WAIT_S)
+    received = transport.receive_by_peer(_WAIT_S)
     local_ns = time.time_ns()
-    if data:
-        watch.receive(data, local_ns)
+    for _, data in received:
+        watch.receive(data, local_ns, is_datagram=transport.is_datagram)
     watch.session.poll(local_ns)
     for frame in watch.session.take_output():
         transport.send(frame)

@@ -58,13 +58,13 @@ class FirmwareWatch:
         clock = self.session.clock
         return clock.local_to_utc_ns(local_ns) if clock.is_utc_known and clock.local_to_boot is not None else None
 
-    def receive(self, data: bytes, local_ns: int) -> None:
+    def receive(self, data: bytes, local_ns: int, *, is_datagram: bool = False) -> None:
         """Take bytes of the link.
 
         Raises:
             UserError: the autopilot is of a kind whose simulation tells no truth.
         """
-        for event in self.session.receive(data, local_ns):
+        for event in self.session.receive(data, local_ns, is_datagram=is_datagram):
             match event:
                 case LinkFound():
                     self._ask_for_streams(event.autopilot, local_ns)
@@ -72,7 +72,7 @@ class FirmwareWatch:
                     self._hear(event, local_ns)
                 case _:
                     pass
-        for message in self._others.decode(data):
+        for message in self._others.decode(data, t_ns=local_ns, is_datagram=is_datagram):
             self.ship = ship_report(message) or self.ship
 
     def set_parameter(self, name: str, value: float) -> None:

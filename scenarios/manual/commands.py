@@ -5,8 +5,7 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Any
 
-from typer.main import get_command
-
+from link.program.cli import command_of
 from scenarios.manual.markdown import block, page
 
 PROGRAMS: Mapping[str, str] = MappingProxyType(
@@ -35,7 +34,7 @@ def commands_page() -> str:
 def helps() -> Iterator[tuple[str, str]]:
     """Yield each command's name and help, a program before its commands."""
     for program, module in PROGRAMS.items():
-        yield from _helps(get_command(import_module(module).app), program, None)
+        yield from _helps(command_of(import_module(module).app), program, None)
 
 
 def _helps(command: Any, name: str, parent: Any) -> Iterator[tuple[str, str]]:

@@ -1,6 +1,5 @@
 """An existing Dask cluster as workers; the only file that imports `distributed`."""
 
-import importlib.util
 import socket
 import sys
 from collections.abc import Callable
@@ -10,6 +9,7 @@ from typing import Any, Self
 from urllib.parse import urlsplit
 
 from link.errors import UserError
+from link.program.extras import require
 from scenarios.processes.pool import Result, Task, Workers
 
 _SCHEMES = ("tcp", "tls")
@@ -75,8 +75,7 @@ def check_scheduler(address: str) -> None:
     Raises:
         UserError: `distributed` is not installed, it is no address, or nobody listens there.
     """
-    if importlib.util.find_spec("distributed") is None:
-        raise UserError("--scheduler needs Dask: install decklander[dask], here and on its workers")
+    require("dask", "--scheduler")
     try:
         parts = urlsplit(address)
         host, port = parts.hostname, parts.port

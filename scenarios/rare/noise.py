@@ -24,6 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
+from sim_autopilot.core.noise import named_seed
+
 _BLOCK_FIRST, _BLOCK_MAX = 16, 4096  # values made at once: many parts draw a single number, others all the time
 _WHOLE_RAD = 0.5 * math.pi
 _BELOW_ONE = float(np.nextafter(1.0, 0.0))
@@ -123,7 +125,7 @@ def _reach(change: Move | Redraw, name: str) -> Any:
 
 
 def _generator(seed: int, name: str) -> np.random.Generator:
-    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(zlib.crc32(name.encode()),)))
+    return np.random.default_rng(named_seed(seed, name))
 
 
 class MovedStream(np.random.Generator):

@@ -152,8 +152,9 @@ def outputs_of(flight: Flight, config: CompanionConfig) -> dict[str, list[RosMes
 def give(node: CompanionNode, record: InputRecord) -> None:
     """Give a recorded input to a node, and take what a poll brings, as the loop would."""
     match record.kind:
-        case InputKind.MAVLINK:
-            node.receive_mavlink(record.data, record.local_ns)
+        case InputKind.MAVLINK | InputKind.DATAGRAM:
+            is_datagram = record.kind is InputKind.DATAGRAM
+            node.receive_mavlink(record.data, record.local_ns, is_datagram=is_datagram)
         case InputKind.SAMPLE:
             node.receive_sample(record.key, record.data)
         case InputKind.PAD:

@@ -1,7 +1,6 @@
 """Noise, loss and delay of the sensor models, each a small object that owns its own seeded generator."""
 
 import math
-import zlib
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -9,6 +8,7 @@ import numpy as np
 
 from link.messages import Vector3
 from scenarios.config import DelayConfig
+from sim_autopilot.core.noise import NoiseSeed, named_seed
 
 
 class NoiseSource(Protocol):
@@ -26,12 +26,12 @@ def named_rng(seed: Seed, name: str) -> np.random.Generator:
     """Return the generator of `seed` that belongs to `name`; other names' generators are independent of it."""
     if not isinstance(seed, int):
         return seed.stream(name)
-    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(zlib.crc32(name.encode()),)))
+    return np.random.default_rng(named_seed(seed, name))
 
 
-def part_seed(seed: Seed, name: str) -> int | np.random.Generator:
-    """Return of what a part that takes one seed makes its generator: the run's own seed, or the noise of its name."""
-    return seed if isinstance(seed, int) else seed.stream(name)
+def part_seed(seed: Seed, name: str) -> NoiseSeed:
+    """Return of what a part of the simulated autopilot makes its generator: the seed or the noise of its name."""
+    return named_seed(seed, name) if isinstance(seed, int) else seed.stream(name)
 
 
 def normal3(rng: np.random.Generator, std: float) -> Vector3:

@@ -80,9 +80,9 @@ class Simulation:
         """UTC now."""
         return self.autopilot.state.t_ns
 
-    def receive(self, data: bytes) -> bytes:
-        """Take bytes of a MAVLink link and return what is answered at once."""
-        return self.autopilot.receive(data, self.t_ns)[0]
+    def receive(self, data: bytes, peer: int = 0, *, is_datagram: bool = False) -> bytes:
+        """Take a peer's bytes of a MAVLink link and return what is answered at once."""
+        return self.autopilot.receive(data, self.t_ns, peer=peer, is_datagram=is_datagram)[0]
 
     def step(self) -> SimulationOutputs:
         """Advance by `STEP_NS`."""

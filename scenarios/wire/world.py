@@ -61,10 +61,10 @@ class WorldLoop:
         """Take what the companion sends until the next step is due."""
         while True:
             left_s = (self._simulation.t_ns + STEP_NS - clock.now_ns()) / NS_PER_S
-            data = self._transport.receive(max(clock.wall_s(left_s), 0.0))
-            answer = self._simulation.receive(data) if data else b""
-            if answer:
-                self._transport.send(answer)
+            for peer, data in self._transport.receive_by_peer(max(clock.wall_s(left_s), 0.0)):
+                answer = self._simulation.receive(data, peer, is_datagram=self._transport.is_datagram)
+                if answer:
+                    self._transport.send(answer)
             if left_s <= 0.0 or self._stopping:
                 return
 

@@ -17,6 +17,7 @@ from enum import Enum
 import numpy as np
 
 from sim_autopilot.core.data import Array
+from sim_autopilot.core.noise import NoiseSeed
 
 FOOT_M = 0.3048
 KNOT_M_S = 1852.0 / 3600.0
@@ -135,7 +136,7 @@ class WindModel:
 
     def __init__(
         self,
-        seed: int | np.random.Generator,
+        seed: NoiseSeed,
         mean_m_s: float,
         direction_rad: float,
         turbulence: Turbulence | float,

@@ -13,6 +13,7 @@ import numpy as np
 
 from link.messages import Vector3
 from sim_autopilot.core.data import Array
+from sim_autopilot.core.noise import NoiseSeed
 from sim_autopilot.physics.wind import second_order_noise
 
 _BLOCK = 1024  # steps whose noise is drawn at once
@@ -27,15 +28,17 @@ class OwnStateModel:
         seed: of the errors, or the generator that draws them.
         position_std_m: zero is the truth.
         velocity_std_m_s: likewise.
+        receiver_accuracy_m: that its receiver states, None for what the firmware's own simulator says.
         position_time_s: T.
         velocity_time_s: T.
         origin_step_enu_m: how far the origin moves, None where it never does.
         origin_step_s: since boot, when.
     """
 
-    seed: int | np.random.Generator = 0
+    seed: NoiseSeed = 0
     position_std_m: float = 0.0
     velocity_std_m_s: float = 0.0
+    receiver_accuracy_m: float | None = None
     position_time_s: float = 10.0
     velocity_time_s: float = 2.0
     origin_step_enu_m: Vector3 | None = None

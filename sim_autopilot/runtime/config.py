@@ -14,6 +14,7 @@ from link.messages import Vector3
 from link.program.toml_config import NotNegative, Positive, StrictModel
 from link.records import replace
 from sim_autopilot.control.parameters import ControllerKind
+from sim_autopilot.core.noise import NoiseSeed, named_seed
 from sim_autopilot.core.parameters import default_values
 from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.px4.px4 import PX4
@@ -82,6 +83,8 @@ class OwnStateConfig(StrictModel):
 
     position_std_m: NotNegative = 0.0  # on each axis
     velocity_std_m_s: NotNegative = 0.0  # likewise
+    # What its receiver states, horizontally; None: what the firmware's own simulator says.
+    receiver_accuracy_m: Positive | None = None
     position_time_s: Positive = 10.0  # of both errors' memory; sim_autopilot/plant/own_state.py says why
     velocity_time_s: Positive = 2.0
     origin_step_enu_m: Vector3 | None = None  # how far the local frame's origin moves in flight
@@ -156,7 +159,7 @@ def autopilot_config(config: SimAutopilotConfig) -> AutopilotConfig:
         parameters=config.parameters,
         endurance_s=config.drone.endurance_s,
         links=tuple(ground_rates_hz if link.streams == "ground" else None for link in config.links) or (None,),
-        own_state=OwnStateModel(seed=config.seed, **config.own_state.model_dump()),
+        own_state=OwnStateModel(seed=named_seed(config.seed, "own state"), **config.own_state.model_dump()),
     )
 
 
@@ -181,7 +184,7 @@ def with_default_links(config: SimAutopilotConfig) -> SimAutopilotConfig:
     return config.model_copy(update={"links": links})
 
 
-def wind_model(config: SimAutopilotConfig, seed: int | np.random.Generator | None = None) -> WindModel:
+def wind_model(config: SimAutopilotConfig, seed: NoiseSeed | None = None) -> WindModel:
     """Return the air, which blows towards where it does not come from.
 
     Args:
@@ -191,10 +194,11 @@ def wind_model(config: SimAutopilotConfig, seed: int | np.random.Generator | Non
     wind = config.wind
     from_rad = wind.from_rad
     if from_rad is None:
-        from_rad = float(np.random.default_rng(config.seed).uniform(-pi, pi))
+        from_rad = float(np.random.default_rng(named_seed(config.seed, "wind")).uniform(-pi, pi))
     std_m_s = wind.turbulence_std_m_s
     turbulence = Turbulence[wind.turbulence.upper()] if std_m_s is None else std_m_s
-    return WindModel(config.seed if seed is None else seed, wind.mean_m_s, from_rad + pi, turbulence, gust=_gust(wind))
+    seed = named_seed(config.seed, "turbulence") if seed is None else seed
+    return WindModel(seed, wind.mean_m_s, from_rad + pi, turbulence, gust=_gust(wind))
 
 
 def _gust(wind: WindConfig) -> Gust | None:

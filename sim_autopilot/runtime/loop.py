@@ -96,7 +96,8 @@ class WireLoop:
         select.select(descriptors, [], [], timeout_s)
         for link, transport in enumerate(self._links.transports):
             for peer, data in transport.receive_by_peer(0.0):
-                self._send(self._node.receive(data, self._now_ns(), link, peer))
+                output = self._node.receive(data, self._now_ns(), link, peer, is_datagram=transport.is_datagram)
+                self._send(output)
 
     def _send(self, output: Sequence[bytes]) -> None:
         for transport, data in zip(self._links.transports, output, strict=True):

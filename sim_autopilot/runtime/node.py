@@ -87,7 +87,9 @@ class AutopilotNode:
         datum = Datum(latitude_rad=latitude_rad, longitude_rad=longitude_rad, altitude_m=altitude_m)
         self._memory, _ = move_origin(self._memory, datum, (x, y, z), self._config)
 
-    def receive(self, data: bytes, t_ns: int, link: int = 0, peer: int = 0) -> tuple[bytes, ...]:
+    def receive(
+        self, data: bytes, t_ns: int, link: int = 0, peer: int = 0, *, is_datagram: bool = False
+    ) -> tuple[bytes, ...]:
         """Take bytes as they come, for the next step; what is not for us alone is passed on.
 
         Only questions for the time and pings are answered at once.
@@ -97,20 +99,14 @@ class AutopilotNode:
             t_ns: UTC now, between the last step and the next.
             link: on which they came.
             peer: of the link, from whom they came.
+            is_datagram: they are whole frames, not a piece of a stream.
 
         Returns:
             What is to be sent on each link.
         """
         output = self._no_output()
-        for message in self._codecs[link].decode(data, peer):
-            self._routes.learn(message, link)
-            for other in self._routes.onward(message, link):
-                output[other] += message.get_msgbuf()
-            answer = self._answer_at_once(message, t_ns)
-            if answer is None:
-                self._received.append((message, link))
-            else:
-                output[link] += self._codecs[link].encode(answer)
+        for message in self._codecs[link].decode(data, peer, t_ns=t_ns, is_datagram=is_datagram):
+            self._take(message, t_ns, link, output)
         return tuple(map(bytes, output))
 
     def step(self, deck: Deck | None, wind_enu_m_s: Array) -> tuple[bytes, ...]:
@@ -120,6 +116,10 @@ class AutopilotNode:
             deck: the vehicle, None without one.
             wind_enu_m_s: (3,) air over ground.
         """
+        output = self._no_output()
+        for link, codec in enumerate(self._codecs):
+            for _, message in codec.flush(self.state.t_ns):
+                self._take(message, self.state.t_ns, link, output)
         received, self._received = self._received, []
         if (self.state.t_ns - self._memory.boot.start_ns) % STEP_NS == 0:
             self._error = self._own_error.advance()
@@ -134,17 +134,27 @@ class AutopilotNode:
         self._setup_signing(inputs.messages)
         self._memory, outputs = autopilot_step(self._memory, inputs, self._config)
         self._step_ns = self._next_step_ns()
-        return self._encode(outputs.messages, outputs.links)
+        self._encode(outputs.messages, outputs.links, output)
+        return tuple(map(bytes, output))
 
-    def _encode(self, messages: Sequence[Message], links: Sequence[int | None]) -> tuple[bytes, ...]:
+    def _take(self, message: Message, t_ns: int, link: int, output: list[bytearray]) -> None:
+        """Keep a message for the next step, unless it is answered at once, and pass on what is not for us alone."""
+        self._routes.learn(message, link)
+        for other in self._routes.onward(message, link):
+            output[other] += message.get_msgbuf()
+        answer = self._answer_at_once(message, t_ns)
+        if answer is None:
+            self._received.append((message, link))
+        else:
+            output[link] += self._codecs[link].encode(answer)
+
+    def _encode(self, messages: Sequence[Message], links: Sequence[int | None], output: list[bytearray]) -> None:
         for codec in self._codecs:
             if codec.signing is not None:
                 codec.signing.advance(self.state.t_ns)
-        output = self._no_output()
         for message, link in zip(messages, links, strict=True):
             for one in self._routes.towards(message) or range(len(output)) if link is None else (link,):
                 output[one] += self._codecs[one].encode(message)
-        return tuple(map(bytes, output))
 
     def _no_output(self) -> list[bytearray]:
         return [bytearray() for _ in self._codecs]

@@ -30,6 +30,8 @@ _VELOCITY_VARIANCE_M2_S2 = 1e-4
 _ANGLE_VARIANCE_RAD2 = 1e-6
 _RECEIVER_ACCURACY = (900, 1780, 400, 572958)
 """Horizontal and vertical, mm, of speed, mm/s, and of course, 1e-5 deg: as PX4's simulated receiver says."""
+# A fixed carrier phase errs by a quarter of its wavelength of 0.19 m at most; one that floats, by decimetres.
+_FIXES_BY_ACCURACY_M = ((0.048, mavlink.GPS_FIX_TYPE_RTK_FIXED), (0.5, mavlink.GPS_FIX_TYPE_RTK_FLOAT))
 _DIAGONAL = (0, 6, 11, 15, 18, 20)  # of a 6x6 matrix's upper triangle, row by row
 
 
@@ -200,14 +202,24 @@ def gps_raw_int(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return GPS_RAW_INT: no fix before the receiver has one."""
     now = memory.now
     has_fix = config.instant or now.boot_ns * 1e-9 >= config.firmware.condition.readiness.fix_s
-    fix = config.firmware.condition.fix_type if has_fix else mavlink.GPS_FIX_TYPE_NO_FIX
+    fix, accuracy = _receiver(config) if has_fix else (mavlink.GPS_FIX_TYPE_NO_FIX, _RECEIVER_ACCURACY)
     place = wire_place(geodetic(memory.places.chart, now.position_enu_m))
     north, east, _ = ned_from_enu(now.velocity_enu_m_s)
     speed = min(65534, round(100.0 * hypot(north, east)))
     course = round(100.0 * degrees(yaw_ned_from_enu(_course_rad(now)))) % 36000
     return mavlink.MAVLink_gps_raw_int_message(
-        now.boot_ns // 1000, fix, *place, 70, 110, speed, course, 10, place[2], *_RECEIVER_ACCURACY
+        now.boot_ns // 1000, fix, *place, 70, 110, speed, course, 10, place[2], *accuracy
     )
+
+
+def _receiver(config: AutopilotConfig) -> tuple[int, tuple[int, int, int, int]]:
+    """Return GPS_FIX_TYPE and what the receiver states of its accuracy."""
+    accuracy_m = config.own_state.receiver_accuracy_m
+    if accuracy_m is None:
+        return config.firmware.condition.fix_type, _RECEIVER_ACCURACY
+    fix = next((fix for most_m, fix in _FIXES_BY_ACCURACY_M if accuracy_m <= most_m), mavlink.GPS_FIX_TYPE_3D_FIX)
+    horizontal_mm = round(1000.0 * accuracy_m)
+    return fix, (horizontal_mm, 2 * horizontal_mm, *_RECEIVER_ACCURACY[2:])
 
 
 def gps_global_origin(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:

@@ -11,7 +11,7 @@ import numpy as np
 from companion.autopilots.driver import AutopilotView, Driver, FrameMoves
 from companion.autopilots.px4 import Px4Driver
 from companion.autopilots.response import Cascade, ResponseModel
-from companion.config.companion import CompanionConfig
+from companion.config.companion import CompanionConfig, ReceiverFrames
 from companion.core.data import Array, Forecast, Measurement, OwnState, Quantity, VehicleEstimate
 from companion.core.reasons import Reason, sentence
 from companion.landing.memory import StepMemory
@@ -28,7 +28,7 @@ from link.mavlink.dialect import mavlink
 from link.messages import Command, PadGeometry, Vector3
 from link.records import replace
 
-CONFIG = CompanionConfig()
+CONFIG = CompanionConfig(receiver_frames=ReceiverFrames.ONE)
 IMPATIENT = CONFIG.model_copy(
     update={
         "takeoff": CONFIG.takeoff.model_copy(update={"refused_after_s": 3.0}),

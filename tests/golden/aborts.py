@@ -192,6 +192,9 @@ ABORTS: dict[str, Abort] = {
         scenario=_POOR_SENSORS,
         companion={"descent": {"unseen_max": 0, "unseen_std_max_m": 0.1, "unseen_hold_s": 0.5, "aligned_hold_s": 20.0}},
     ),
+    "offset_unknown": Abort(
+        reason=Reason.OFFSET_UNKNOWN, companion={"receiver_frames": "apart", "chase": {"unseen_hold_s": 2.0}}
+    ),
     "seen_too_near": Abort(
         reason=Reason.SEEN_TOO_NEAR,
         phase=Phase.ALIGN,

@@ -60,11 +60,18 @@ class Lines:
 
 
 class Program:
-    """One of the four programs; both its outputs are read."""
+    """One of the four programs, or a module by its name; both its outputs are read."""
 
     def __init__(self, name: str, arguments: Sequence[str], folder: Path | None) -> None:
         # by the launcher, so that nothing is left behind even when the tests themselves are killed
-        command = [sys.executable, "-m", "scenarios.processes.launch", str(os.getpid()), MODULES[name], *arguments]
+        command = [
+            sys.executable,
+            "-m",
+            "scenarios.processes.launch",
+            str(os.getpid()),
+            MODULES.get(name, name),
+            *arguments,
+        ]
         self._process = subprocess.Popen(
             command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=folder
         )

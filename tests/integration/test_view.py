@@ -126,10 +126,10 @@ def test_page_shows_the_phases_of_a_landing_in_their_order_until_it_is_secured(
     landing: tuple[list[str], Path],
 ) -> None:
     order = ("idle", "takeoff", "waiting", "chase", "align", "descend", "touchdown", "secured")
-    shown = [phase for phase in landing[0] if phase in order]
-    assert shown[:2] == ["idle", "takeoff"]
-    assert shown[-1] == "secured"
-    assert {"waiting", "descend"} <= set(shown)
+    first_shown = list(dict.fromkeys(landing[0]))  # a page that draws slowly misses a short phase
+    assert first_shown[:3] == ["idle", "takeoff", "waiting"]
+    assert first_shown[-1] == "secured"
+    assert [order.index(phase) for phase in first_shown] == sorted(order.index(phase) for phase in first_shown)
 
 
 def test_recording_plays_pauses_and_shows_any_instant(

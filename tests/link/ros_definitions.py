@@ -116,6 +116,30 @@ class Odometry(IdlStruct):
 
 
 @dataclass
+class Transform(IdlStruct):
+    translation: Vector3
+    rotation: Quaternion
+
+
+@dataclass
+class TransformStamped(IdlStruct):
+    header: Header
+    child_frame_id: str
+    transform: Transform
+
+
+if TYPE_CHECKING:
+    Transforms = list[TransformStamped]
+else:
+    Transforms = sequence[TransformStamped]
+
+
+@dataclass
+class TFMessage(IdlStruct):
+    transforms: Transforms
+
+
+@dataclass
 class JointState(IdlStruct):
     header: Header
     name: Strings

@@ -4,7 +4,7 @@ Names, types and defaults: ArduCopter 4.6 parameter reference; ANGLE_MAX, FRAME_
 sets them. Speeds are in cm/s, heights in cm and angles in hundredths of a degree where the firmware has them so.
 """
 
-from math import cos, inf, radians, sin
+from math import cos, inf, radians, sin, sqrt
 
 from link.mavlink.dialect import mavlink
 from link.messages import Vector3
@@ -25,6 +25,7 @@ from sim_autopilot.core.settings import (
 )
 from sim_autopilot.firmware.ardupilot.failsafes import PARAMETERS as FAILSAFE_PARAMETERS
 from sim_autopilot.firmware.ardupilot.failsafes import battery_v, failsafe_settings
+from sim_autopilot.physics.airframe import GRAVITY_M_S2
 
 _INT8, _INT16, _INT32 = mavlink.MAV_PARAM_TYPE_INT8, mavlink.MAV_PARAM_TYPE_INT16, mavlink.MAV_PARAM_TYPE_INT32
 _UNLIMITED_M_S = 100.0
@@ -40,6 +41,8 @@ _NO_PILOT = -1.0
 """The throttle stick of the simulated receiver, right down: 1000 us."""
 _LEAST_M_S = 0.1
 """Speeds and accelerations below a tenth count as that, as the firmware's own lower bounds do roughly."""
+_ATTITUDE_M_S4 = GRAVITY_M_S2 * radians(1100.0)
+"""How fast the jerk can change, by ATC_ACCEL_P_MAX at its default; AC_PosControl bounds its jerk by this."""
 
 
 def _real(name: str, default: float, lowest: float = -1e9, highest: float = 1e9) -> Parameter:
@@ -159,7 +162,7 @@ def flight_settings(values: Values) -> FlightSettings:
             descent_m_s=descent_m_s,
             acceleration_m_s2=acceleration_m_s2,
             vertical_acceleration_m_s2=_si(values, "WPNAV_ACCEL_Z"),
-            jerk_m_s3=max(0.1, values["PSC_JERK_XY"]),
+            jerk_m_s3=min(max(0.1, values["PSC_JERK_XY"]), 0.5 * sqrt(acceleration_m_s2 * _ATTITUDE_M_S4)),
             vertical_jerk_m_s3=max(0.1, values["PSC_JERK_Z"]),
             timeout_s=max(0.1, values["GUID_TIMEOUT"]),
             throttle_slew_s=max(0.25, values["TKOFF_SLEW_TIME"]),

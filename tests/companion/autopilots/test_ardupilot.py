@@ -136,6 +136,17 @@ def test_limits_are_read_by_the_names_of_old_and_new_releases(parameters: dict[s
     assert cut.tilt_acceleration_m_s2 == pytest.approx(acceleration_of_tilt_m_s2(22.0))
 
 
+@pytest.mark.parametrize(("acceleration_m_s2", "most_m_s3"), [(2.5, 10.8), (3.5, 12.8)])
+def test_jerk_is_no_more_than_the_attitude_controller_allows(acceleration_m_s2: float, most_m_s3: float) -> None:
+    """As AC_PosControl: half the root of the acceleration by that of the tilt, 1100 degrees/s^2 by default."""
+    limits = CompanionConfig().limits.flight_limits()
+    set_so, unlimited = (
+        DRIVER.limits(limits, {"PSC_JERK_XY": jerk_m_s3, "WPNAV_ACCEL": 100.0 * acceleration_m_s2}).jerk_max_m_s3
+        for jerk_m_s3 in (most_m_s3, 20.0)
+    )
+    assert set_so == pytest.approx(unlimited, rel=0.01)
+
+
 @pytest.mark.parametrize(
     ("parameters", "tilt_deg"),
     [

@@ -171,6 +171,13 @@ def test_later_geoid_height_counts_when_it_is_another_one() -> None:
     assert other.view.frame.origin.altitude_m == pytest.approx(401.7)
 
 
+@pytest.mark.parametrize(("fix", "is_fixed"), [(3, False), (5, False), (6, True)])
+def test_receiver_tells_whether_its_phases_are_fixed(fix: int, *, is_fixed: bool) -> None:
+    state = _hear(_receiver(fix, 410_000, 457_300))
+    assert state.view.receiver_is_fixed is is_fixed
+    assert not _hear(_receiver(5, 410_000, 457_300), state=state).view.receiver_is_fixed
+
+
 OFFBOARD, LOITER, GUIDED, RTL = 0x0006_0000, 0x0304_0000, 4, 6
 
 

@@ -16,6 +16,7 @@ from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
 from link.mavlink.session import MavlinkSession
 from link.mavlink.signing import Signing
+from link.mavlink.transport import Transport
 from link.messages import Fix, PadGeometry
 from link.payloads import cdr, json_messages
 from link.zenoh.inbox import Inbox, Sample
@@ -28,7 +29,7 @@ PAD = PadGeometry(size_m=(1.5, 1.2), height_m=1.6, antenna_to_pad_m=(0.8, -0.1, 
 FIX = cdr.encode(Fix(t_ns=10**18, latitude_rad=0.8, longitude_rad=0.1, altitude_m=400.0))
 
 
-class World:
+class World(Transport):
     """A transport that nothing comes through, and a vehicle on Zenoh that hears only a later question for its pad.
 
     Args:
@@ -36,6 +37,7 @@ class World:
     """
 
     def __init__(self, heard_from: int | None) -> None:
+        super().__init__()
         self.now_s = 5.0
         self._heard_from = heard_from
         self._asked = 0
@@ -54,6 +56,12 @@ class World:
     def send(self, _: bytes) -> None:
         """Lose it."""
 
+    def fileno(self) -> int:
+        return -1
+
+    def close(self) -> None:
+        """Nothing is open."""
+
     def subscribe(self, key: str) -> Inbox:
         if key != KEYS.fix:
             return Inbox(capacity=1, wake_up=WAKE_UP)
@@ -70,10 +78,11 @@ class World:
         return inbox
 
 
-class SignedAutopilot:
+class SignedAutopilot(Transport):
     """A transport to an autopilot that signs all that it sends."""
 
     def __init__(self) -> None:
+        super().__init__()
         self._signing = Signing(KEY)
         self._codec = MavlinkCodec(1, 1, signing=self._signing)
         self.sent: list[bytes] = []
@@ -84,6 +93,12 @@ class SignedAutopilot:
 
     def send(self, frame: bytes) -> None:
         self.sent.append(frame)
+
+    def fileno(self) -> int:
+        return -1
+
+    def close(self) -> None:
+        """Nothing is open."""
 
 
 def listened(monkeypatch: pytest.MonkeyPatch, world: World, duration_s: float) -> tuple[VehicleFacts, float]:

@@ -45,6 +45,7 @@ LOW_M = 0.5 * CONFIG.descent.commit_height_m
 UNSAFE: dict[Reason, Situation] = {
     Reason.VEHICLE_DATA_OLD: changed(situation(), fix_age_s=CONFIG.abort.fix_age_max_s + 0.01),
     Reason.VEHICLE_UNCERTAIN: situation(pad=pad_at(std_m=CONFIG.abort.position_std_max_m + 0.01)),
+    Reason.OFFSET_UNKNOWN: situation(pad=replace(pad_at(std_m=1.0), has_one_frame=False)),
     Reason.VEHICLE_LINK_LOST: changed(
         situation(), is_alive=False, fix_age_s=CONFIG.abort.alive_lost_fix_age_max_s + 0.01
     ),

@@ -1,4 +1,7 @@
-"""Between a vehicle and a drone without corrections lie metres: the pad is landed on only where it was just seen."""
+"""Between a vehicle and a drone without corrections lie metres: the pad is landed on only where it was just seen.
+
+Between receivers of two sources of corrections lie metres, too, however little each of them errs: one sighting tells.
+"""
 
 import numpy as np
 import pytest
@@ -8,7 +11,8 @@ from hypothesis import strategies as st
 from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.core.data import Quantity
-from companion.landing.entries import update_held
+from companion.core.reasons import Cause, Reason
+from companion.landing.entries import Decision, update_held
 from companion.landing.memory import Held
 from companion.landing.targets import is_unseen, pad_aim
 from companion.situation.phases import Event, Phase
@@ -16,7 +20,7 @@ from companion.situation.situation import Situation
 from companion.vehicle.pad import PadPath, pad_path
 from link.records import replace
 from scenarios.config import PatternConfig
-from tests.companion.facts import GEAR_M, TICK_NS, decided, later, pad_at, progress, reference_at, situation
+from tests.companion.facts import GEAR_M, LONG_HEARD, TICK_NS, decided, later, pad_at, progress, reference_at, situation
 from tests.companion.vehicle.drives import DEGRADED, NOMINAL, Sensors, circle
 from tests.companion.vehicle.rides import arrivals, estimator, now_ns
 
@@ -34,16 +38,51 @@ def above(height_m: float, std_m: float, *, is_coarse: bool) -> Situation:
     return situation(height_m, pad=replace(pad_at(std_m=std_m), is_coarse=is_coarse))
 
 
-def event_within(phase: Phase, facts: Situation, limit_s: float) -> Event | None:
-    """The first event on facts that stay as they are."""
+def between_two_frames(height_m: float, std_m: float) -> Situation:
+    return situation(height_m, pad=replace(pad_at(std_m=std_m), has_one_frame=False))
+
+
+def decision_within(phase: Phase, facts: Situation, limit_s: float) -> Decision | None:
+    """The first decision on facts that stay as they are."""
     held: Held = {}
     for tick in range(round(limit_s * 1e9 / TICK_NS) + 1):
         now = later(facts, tick * TICK_NS)
         held = update_held(held, phase, now, CONFIG)
         decision = decided(progress(phase, 0.0), now, held)
         if decision is not None:
-            return decision[0]
+            return decision
     return None
+
+
+def event_within(phase: Phase, facts: Situation, limit_s: float) -> Event | None:
+    """The first event on facts that stay as they are."""
+    decision = decision_within(phase, facts, limit_s)
+    return None if decision is None else decision[0]
+
+
+@pytest.mark.parametrize(("std_m", "event"), [(SURE_M, Event.ALIGNED), (1.0, Event.OUT_OF_ALIGNMENT)])
+def test_pad_between_two_frames_is_landed_on_once_it_was_seen(std_m: float, event: Event) -> None:
+    assert event_within(Phase.ALIGN, between_two_frames(HIGH_M, std_m), 5.0) is event
+    assert event_within(Phase.CHASE, between_two_frames(HIGH_M, std_m), 5.0) is (
+        Event.OVER_PAD if event is Event.ALIGNED else None
+    )
+
+
+@pytest.mark.parametrize("is_coarse", [False, True])
+def test_approach_to_a_pad_that_nothing_shows_ends_and_says_what_is_missing(*, is_coarse: bool) -> None:
+    facts = situation(HIGH_M, pad=replace(pad_at(std_m=1.0), has_one_frame=False, is_coarse=is_coarse))
+    hold_s = CONFIG.chase.unseen_hold_s
+    assert decision_within(Phase.CHASE, facts, hold_s - 0.1) is None
+    decision = decision_within(Phase.CHASE, facts, hold_s + 0.1)
+    assert decision == (Event.UNSAFE, Cause(Reason.OFFSET_UNKNOWN))
+    climbed = replace(progress(Phase.ABORT, CONFIG.abort.time_limit_s + 0.1), cause=decision[1])
+    after = decided(climbed, situation(CONFIG.abort.height_m), LONG_HEARD)
+    assert after == (Event.CLEAR_TO_HOLD, decision[1])
+
+
+def test_pad_is_looked_for_where_it_is_said_to_be() -> None:
+    far = situation(HIGH_M, CONFIG.chase.height_m + 0.1, pad=between_two_frames(HIGH_M, 1.0).pad)
+    assert decision_within(Phase.CHASE, far, CONFIG.chase.unseen_hold_s + 1.0) is None
 
 
 @pytest.mark.parametrize(
@@ -144,3 +183,9 @@ def test_sighting_holds_for_seconds_between_coarse_fixes(sensors: Sensors, unsee
 def test_pad_that_no_sighting_has_placed_is_unseen_between_coarse_fixes() -> None:
     assert is_unseen(pad_after(replace(PLAIN, pad_rate_hz=0.0), 1.0), CONFIG)
     assert not is_unseen(pad_after(replace(RTK, pad_rate_hz=0.0), 1.0), CONFIG)
+
+
+@pytest.mark.parametrize(("pad_rate_hz", "unseen"), [(0.0, True), (30.0, False)])
+def test_sighting_tells_the_offset_of_two_fine_receivers_for_good(pad_rate_hz: float, *, unseen: bool) -> None:
+    pad = pad_after(replace(RTK, pad_rate_hz=pad_rate_hz), 6.0)
+    assert is_unseen(replace(pad, has_one_frame=False), CONFIG) is unseen

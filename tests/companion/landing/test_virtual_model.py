@@ -4,24 +4,18 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from companion.autopilots.px4 import Px4Driver
-from companion.core.data import GRAVITY_M_S2, Array, OwnState
+from companion.core.data import GRAVITY_M_S2, OwnState
 from companion.landing.virtual_model import (
     Tracking,
     add_to_past,
-    extrapolate,
     free_place,
-    keep_up,
-    limit_sink,
     press_down,
     setpoint_at,
-    state_in_plan,
     update_tracking,
 )
-from companion.planning.guidance import ReferenceState, Trajectory
+from companion.planning.guidance import ReferenceState
 from link.messages import Quaternion
 from link.records import replace
 from tests.companion.world import response_of
@@ -121,106 +115,11 @@ def test_drone_that_leans_as_its_path_accelerates_holds_against_nothing() -> Non
     np.testing.assert_allclose(tracking.air_enu_m_s2, 0.0, atol=1e-6)
 
 
-def test_carried_is_the_closed_form_of_constant_acceleration() -> None:
-    reference = ReferenceState(
-        position_enu_m=np.array([1.0, 2.0, 3.0]),
-        velocity_enu_m_s=np.array([4.0, 0.0, -1.0]),
-        acceleration_enu_m_s2=np.array([2.0, 1.0, 0.0]),
-    )
-    later = extrapolate(reference, 0.05)
-    np.testing.assert_allclose(later.position_enu_m, [1.0 + 0.2 + 0.0025, 2.0 + 0.00125, 3.0 - 0.05])
-    np.testing.assert_allclose(later.velocity_enu_m_s, [4.1, 0.05, -1.0])
-    np.testing.assert_allclose(extrapolate(later, -0.05).position_enu_m, reference.position_enu_m, atol=1e-12)
-
-
-heights, rates, ups = st.floats(-3.0, 20.0), st.floats(-4.0, 4.0), st.floats(-10.0, 10.0)
-durations = st.floats(0.1, 5.0)
-BRAKES_M_S2 = 1.0  # ArduPilot's WPNAV_ACCEL_Z
-
-
-def _moving(height_m: float, rate_m_s: float, up_m_s2: float) -> ReferenceState:
-    return ReferenceState(
-        position_enu_m=np.array([1.0, 2.0, height_m]),
-        velocity_enu_m_s=np.array([4.0, 0.0, rate_m_s]),
-        acceleration_enu_m_s2=np.array([2.0, 1.0, up_m_s2]),
-    )
-
-
-@given(heights, rates, ups, durations)
-def test_model_that_is_carried_on_and_then_brakes_ends_above_the_lowest_height(
-    height_m: float, rate_m_s: float, up_m_s2: float, duration_s: float
-) -> None:
-    carried = extrapolate(limit_sink(_moving(height_m, rate_m_s, up_m_s2), 0.6, duration_s), duration_s)
-    sinks_m_s = max(-float(carried.velocity_enu_m_s[2]), 0.0)
-    assert carried.position_enu_m[2] - sinks_m_s**2 / (2.0 * BRAKES_M_S2) >= 0.6 - 1e-6
-
-
-@given(heights, rates, ups, durations)
-def test_model_that_ends_above_the_lowest_height_is_left_alone(
-    height_m: float, rate_m_s: float, up_m_s2: float, duration_s: float
-) -> None:
-    reference = _moving(height_m, rate_m_s, up_m_s2)
-    carried = extrapolate(reference, duration_s)
-    sinks_m_s = max(-float(carried.velocity_enu_m_s[2]), 0.0)
-    lowest_m = float(carried.position_enu_m[2]) - sinks_m_s**2 / (2.0 * BRAKES_M_S2) - 1e-6
-    assert limit_sink(reference, lowest_m, duration_s) is reference
-
-
-@given(heights, rates, ups, durations)
-def test_nothing_but_the_acceleration_upwards_is_limited(
-    height_m: float, rate_m_s: float, up_m_s2: float, duration_s: float
-) -> None:
-    reference = _moving(height_m, rate_m_s, up_m_s2)
-    limited = limit_sink(reference, 0.6, duration_s)
-    np.testing.assert_array_equal(limited.position_enu_m, reference.position_enu_m)
-    np.testing.assert_array_equal(limited.velocity_enu_m_s, reference.velocity_enu_m_s)
-    np.testing.assert_array_equal(limited.acceleration_enu_m_s2[:2], reference.acceleration_enu_m_s2[:2])
-    assert limited.acceleration_enu_m_s2[2] >= up_m_s2
-
-
-motions = st.tuples(rates, ups)
-
-
-@given(heights, motions, motions, durations)
-def test_next_state_that_is_kept_up_may_be_carried_on(
-    height_m: float, planned: tuple[float, float], before: tuple[float, float], duration_s: float
-) -> None:
-    kept_up = keep_up(_moving(height_m, *planned), _moving(height_m + 0.01, *before), 0.6, duration_s, 0.02)
-    carried = extrapolate(kept_up, duration_s)
-    sinks_m_s = max(-float(carried.velocity_enu_m_s[2]), 0.0)
-    assert carried.position_enu_m[2] - sinks_m_s**2 / (2.0 * BRAKES_M_S2) >= 0.6 - 1e-6
-
-
-def test_model_of_an_autopilot_that_carries_nothing_on_is_left_alone() -> None:
-    sinking = _moving(0.1, -2.0, -3.0)
-    assert limit_sink(sinking, 0.6, 0.0) is sinking
-
-
 def test_setpoint_is_the_model() -> None:
     setpoint = setpoint_at(_state(2.0, 5.0), 50_000_000, 0.3, position_only=False)
     assert setpoint.position_enu_m == (10.0, 0.3, 4.0)
     assert setpoint.velocity_enu_m_s == (5.0, 0.0, 0.0)
     assert setpoint_at(_state(2.0, 5.0), 0, 0.3, position_only=True).velocity_enu_m_s is None
-
-
-def _cubic(t_s: Array) -> Trajectory:
-    """A motion of constant jerk, at `t_s` (n,)."""
-    p, v, a, j = (np.array(one) for one in ([1.0, 2.0, 3.0], [4.0, -1.0, 0.3], [0.5, 2.0, -0.7], [3.0, -5.0, 1.0]))
-    t = t_s[:, None]
-    return Trajectory(
-        offset_s=t_s,
-        position_enu_m=p + v * t + a * t**2 / 2.0 + j * t**3 / 6.0,
-        velocity_enu_m_s=v + a * t + j * t**2 / 2.0,
-        acceleration_enu_m_s2=a + j * t,
-    )
-
-
-@pytest.mark.parametrize("offset_s", [0.0, 0.013, 0.11, 0.3, 0.37])
-def test_model_between_two_instants_of_its_plan_is_the_motion_of_their_jerk(offset_s: float) -> None:
-    model, truth = state_in_plan(_cubic(np.array([0.0, 0.02, 0.13, 0.3])), offset_s), _cubic(np.array([offset_s]))
-    np.testing.assert_allclose(model.position_enu_m, truth.position_enu_m[0])
-    np.testing.assert_allclose(model.velocity_enu_m_s, truth.velocity_enu_m_s[0])
-    np.testing.assert_allclose(model.acceleration_enu_m_s2, truth.acceleration_enu_m_s2[0])
 
 
 def test_model_that_is_pressed_falls_as_if_nothing_held_it() -> None:

@@ -1,12 +1,9 @@
 """The parts of the wire loop that can be tried without sockets: the desk for commands, and the timings."""
 
-import threading
-from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+import json
 
 import pytest
 
-from companion.runtime import command_desk
 from companion.runtime.command_desk import CommandDesk
 from companion.runtime.node import CompanionNode
 from companion.runtime.options import Timings
@@ -18,30 +15,26 @@ ACCEPTED = CommandReply(accepted=True, reason="")
 
 
 class Asker:
-    """An operator's query, which waits in a thread of its own as Zenoh's do."""
+    """An operator's query at a desk, and the answers to it."""
 
-    def __init__(self, desk: CommandDesk, payload: bytes) -> None:
-        self._reply: list[bytes] = []
-        self._thread = threading.Thread(target=lambda: self._reply.append(desk.handle(payload)))
-        self._thread.start()
+    def __init__(self, desk: CommandDesk, command: Command | bytes) -> None:
+        self._replies: list[bytes] = []
+        desk.take(json_payloads.encode(command) if isinstance(command, Command) else command, self._replies.append)
 
-    def reply(self) -> CommandReply:
-        self._thread.join(5.0)
-        assert not self._thread.is_alive()
-        return json_payloads.decode(CommandReply, self._reply[0])
+    def reply(self) -> CommandReply | None:
+        """The only answer, None while there is none."""
+        assert len(self._replies) <= 1
+        return json_payloads.decode(CommandReply, self._replies[0]) if self._replies else None
 
 
-class TriedToTakeBack(Future[CommandReply]):
-    """A reply that tells when somebody has tried to take its command back."""
+class Now:
+    """A clock that is set by hand."""
 
     def __init__(self) -> None:
-        super().__init__()
-        self.tried = threading.Event()
+        self.s = 5.0
 
-    def cancel(self) -> bool:
-        is_cancelled = super().cancel()
-        self.tried.set()
-        return is_cancelled
+    def __call__(self) -> float:
+        return self.s
 
 
 @pytest.fixture
@@ -49,105 +42,88 @@ def node() -> CompanionNode:
     return Setup().node
 
 
-def _until(is_true: Callable[[], bool]) -> None:
-    deadline = threading.Event()
-    for _ in range(2000):
-        if is_true():
-            return
-        deadline.wait(0.001)
-    raise AssertionError("it did not come")
-
-
-def _passed_on(desk: CommandDesk, node: CompanionNode, asked: list[Command]) -> Callable[[], bool]:
-    def passed() -> bool:
-        before = len(asked)
-        desk.pass_on(node, 0)
-        return len(asked) > before
-
-    return passed
-
-
 @pytest.fixture
 def asked(node: CompanionNode, monkeypatch: pytest.MonkeyPatch) -> list[Command]:
     commands: list[Command] = []
     monkeypatch.setattr(node, "request", commands.append)
-    monkeypatch.setattr(node, "is_due", lambda _local_ns: True)
+    monkeypatch.setattr(node, "is_due", lambda local_ns: local_ns >= 1)
     return commands
 
 
 def test_reply_goes_to_who_asked(node: CompanionNode, asked: list[Command]) -> None:
     desk = CommandDesk()
-    asker = Asker(desk, json_payloads.encode(Command.START))
-    _until(_passed_on(desk, node, asked))
+    asker = Asker(desk, Command.START)
+    assert desk.pass_on(node, 1) is Command.START
+    assert asker.reply() is None
     desk.answer([ACCEPTED])
     assert asker.reply() == ACCEPTED
     assert asked == [Command.START]
 
 
-def test_commands_reach_the_node_one_at_a_time(node: CompanionNode, asked: list[Command]) -> None:
+def test_commands_reach_the_node_one_at_a_time_and_what_ends_a_landing_first(
+    node: CompanionNode, asked: list[Command]
+) -> None:
     desk = CommandDesk()
-    first = Asker(desk, json_payloads.encode(Command.START))
-    _until(_passed_on(desk, node, asked))
-    second = Asker(desk, json_payloads.encode(Command.ABORT))
-    for _ in range(5):
-        desk.pass_on(node, 0)
-    assert asked == [Command.START]
+    askers = [Asker(desk, command) for command in (Command.START, Command.HOLD, Command.ABORT)]
+    for number in range(3):
+        for _ in range(5):
+            desk.pass_on(node, 1)
+        desk.answer([CommandReply(accepted=False, reason=str(number))])
+    assert asked == [Command.ABORT, Command.HOLD, Command.START]
+    replies = [asker.reply() for asker in askers]
+    assert [reply.reason for reply in replies if reply is not None] == ["2", "1", "0"]
+
+
+def test_all_who_wait_for_the_same_command_get_the_answer_of_one_step(
+    node: CompanionNode, asked: list[Command]
+) -> None:
+    desk = CommandDesk()
+    askers = [Asker(desk, Command.START) for _ in range(40)]
+    desk.pass_on(node, 1)
+    later = Asker(desk, Command.START)
     desk.answer([ACCEPTED])
-    first.reply()
-    _until(_passed_on(desk, node, asked))
-    desk.answer([CommandReply(accepted=False, reason="nothing to abort")])
-    assert second.reply().reason == "nothing to abort"
+    assert all(asker.reply() == ACCEPTED for asker in askers)
+    assert later.reply() is None
+    assert asked == [Command.START]
 
 
 def test_payload_that_is_no_command_is_refused_and_never_passed_on(node: CompanionNode, asked: list[Command]) -> None:
     desk = CommandDesk()
-    for payload in (b"", b"start", b'{"command": "land"}', b'{"command": "start", "when": "later"}'):
-        assert not Asker(desk, payload).reply().accepted
-    desk.pass_on(node, 0)
-    assert asked == []
-
-
-def test_command_answered_by_a_refusal_is_not_done_later(
-    node: CompanionNode, asked: list[Command], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(command_desk, "_REPLY_WAIT_S", 0.01)
-    desk = CommandDesk()
-    assert not Asker(desk, json_payloads.encode(Command.START)).reply().accepted
-    desk.pass_on(node, 0)
-    assert asked == []
-
-
-def test_command_waits_at_the_desk_until_a_step_is_due(
-    node: CompanionNode, asked: list[Command], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(command_desk, "_REPLY_WAIT_S", 0.01)
-    monkeypatch.setattr(node, "is_due", lambda local_ns: local_ns >= 1)
-    desk = CommandDesk()
-    asker = Asker(desk, json_payloads.encode(Command.START))
-    desk.pass_on(node, 0)
-    assert not asker.reply().accepted
+    for payload in (b"", b"start", b'{"command": "land"}', json.dumps({"command": "start", "when": "later"}).encode()):
+        reply = Asker(desk, payload).reply()
+        assert reply is not None
+        assert not reply.accepted
     desk.pass_on(node, 1)
     assert asked == []
 
 
-def test_command_that_a_long_step_is_doing_gets_the_answer_of_that_step(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(command_desk, "_REPLY_WAIT_S", 0.01)
-    monkeypatch.setattr(command_desk, "_STEP_WAIT_S", 10.0)
-    reply = TriedToTakeBack()
-    reply.set_running_or_notify_cancel()
-    with ThreadPoolExecutor(1) as pool:
-        answer = pool.submit(command_desk.await_reply, reply)
-        assert reply.tried.wait(10.0)
-        reply.set_result(ACCEPTED)
-        assert answer.result(10.0) == ACCEPTED
+def test_command_that_no_step_took_in_time_is_refused_and_not_done_later(
+    node: CompanionNode, asked: list[Command]
+) -> None:
+    now = Now()
+    desk = CommandDesk(now)
+    late = Asker(desk, Command.START)
+    desk.pass_on(node, 0)
+    now.s += 2.1
+    in_time = Asker(desk, Command.START)
+    desk.pass_on(node, 1)
+    assert late.reply() == CommandReply(accepted=False, reason="the companion made no step in time")
+    assert asked == [Command.START]
+    desk.answer([ACCEPTED])
+    assert in_time.reply() == ACCEPTED
 
 
-def test_command_that_a_step_never_answers_is_not_told_as_undone(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(command_desk, "_REPLY_WAIT_S", 0.01)
-    monkeypatch.setattr(command_desk, "_STEP_WAIT_S", 0.01)
-    reply: Future[CommandReply] = Future()
-    reply.set_running_or_notify_cancel()
-    assert "may still do it" in command_desk.await_reply(reply).reason
+def test_commands_that_wait_are_bounded(node: CompanionNode, asked: list[Command]) -> None:
+    desk = CommandDesk()
+    askers = [Asker(desk, Command.START) for _ in range(1000)]
+    abort = Asker(desk, Command.ABORT)
+    desk.pass_on(node, 1)
+    desk.answer([ACCEPTED])
+    assert abort.reply() == ACCEPTED
+    desk.pass_on(node, 1)
+    desk.answer([ACCEPTED])
+    assert sum(asker.reply() is not None for asker in askers) == 64
+    assert asked == [Command.ABORT, Command.START]
 
 
 def test_what_is_asked_for_when_a_step_is_due_is_in_the_next_step() -> None:

@@ -3,7 +3,7 @@
 import struct
 from collections.abc import Iterator
 
-from link.mavlink.codec import NOT_A_FRAME, frame_size
+from link.mavlink.framing import NOT_A_FRAME, frame_size
 
 _HEAD_BYTES = 3  # of a frame, that tell its length
 _TIME = struct.Struct(">Q")

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import time
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -117,6 +118,20 @@ def test_help_goes_to_stdout_as_plain_text(capsys: pytest.CaptureFixture[str]) -
     for option in ("-m", "--mode", "-e", "--connect", "-l", "--listen", "--no-multicast-scouting", "--zenoh-config"):
         assert option in output.out
     assert output.out.isascii()
+
+
+def test_version_is_the_installed_one(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_app("tool", program([]), ["--version"]) == 0
+    assert capsys.readouterr().out == f"tool {version('decklander')}\n"
+
+
+def test_shell_completes_options(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setenv("_TOOL_COMPLETE", "complete_bash")
+    monkeypatch.setenv("COMP_WORDS", "tool run --dr")
+    monkeypatch.setenv("COMP_CWORD", "2")
+    with pytest.raises(SystemExit):
+        run_app("tool", program([]), [])
+    assert capsys.readouterr().out == "--drone\n"
 
 
 def test_importing_the_command_line_loads_nothing_heavy() -> None:

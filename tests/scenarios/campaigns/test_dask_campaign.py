@@ -65,14 +65,6 @@ def scheduler() -> Iterator[str]:
         yield f"tcp://127.0.0.1:{port}"
 
 
-@pytest.fixture(scope="module")
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """A scheduler with two workers of one thread and one of two."""
-    folder = tmp_path_factory.mktemp("workers")
-    with scheduler() as address, worker(address, folder, threads=1), worker(address, folder, threads=2):
-        yield address
-
-
 @contextmanager
 def worker(address: str, folder: Path, *, threads: int = 1) -> Iterator["subprocess.Popen[str]"]:
     words = "--no-nanny", "--no-dashboard", "--host", "127.0.0.1", "--local-directory", str(folder)
@@ -101,17 +93,12 @@ def local(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     return (folder / "out" / "landings.parquet").read_bytes()
 
 
-def test_dask_gives_the_bytes_that_one_local_process_gives(cluster: str, local: bytes, tmp_path: Path) -> None:
+def test_dask_gives_the_bytes_of_one_local_process_though_a_worker_is_killed_in_the_middle(
+    local: bytes, tmp_path: Path
+) -> None:
     plan = plan_of(tmp_path)
     remote = create_folder(tmp_path / "remote", plan)
-    fly_campaign(remote, plan, Where(scheduler=cluster), quiet)
-    assert (remote / "landings.parquet").read_bytes() == local
-
-
-def test_dask_worker_killed_in_the_middle_loses_nothing(local: bytes, tmp_path: Path) -> None:
-    plan = plan_of(tmp_path)
-    remote = create_folder(tmp_path / "remote", plan)
-    with scheduler() as address, worker(address, tmp_path) as victim, worker(address, tmp_path):
+    with scheduler() as address, worker(address, tmp_path) as victim, worker(address, tmp_path, threads=2):
 
         def kill(_flown: Flown | None, done: int, _total: int) -> None:
             if done == 1:
@@ -122,12 +109,13 @@ def test_dask_worker_killed_in_the_middle_loses_nothing(local: bytes, tmp_path: 
     assert (remote / "landings.parquet").read_bytes() == local
 
 
-def test_dask_worker_with_other_sources_is_refused(cluster: str, tmp_path: Path) -> None:
+def test_dask_worker_with_other_sources_is_refused(tmp_path: Path) -> None:
     plan = plan_of(tmp_path)
     flights = Flights(cells=plan.flown, sources="0123456789ab")
-    workers: DaskWorkers[Task, Flown] = DaskWorkers(cluster, lambda _: flights)
-    with pytest.raises(UserError, match="other sources"):
-        list(run_tasks(workers, plan.tasks(), lost=lambda task, why: pytest.fail(f"{task}: {why}")))
+    with scheduler() as address, worker(address, tmp_path):
+        workers: DaskWorkers[Task, Flown] = DaskWorkers(address, lambda _: flights)
+        with pytest.raises(UserError, match="other sources"):
+            list(run_tasks(workers, plan.tasks(), lost=lambda task, why: pytest.fail(f"{task}: {why}")))
 
 
 def test_scheduler_that_is_not_there_is_a_mistake_of_the_user(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,8 +7,8 @@ from link.program.cli import make_app, run_app
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.commands import campaign as campaign_commands
 from scenarios.commands import rare as rare_commands
-from scenarios.rare.chain import LaterStep, Walk, Walked, WholeStep
-from scenarios.rare.landing import Cell, fly_landing, flying, subject_of
+from scenarios.rare.chain import LaterStep, Walk, WholeStep
+from scenarios.rare.landing import Cell, Chains, fly_landing, flying, subject_of
 from scenarios.rare.noise import Move, MovedNoise, NoiseInFlight
 from tests.scenarios.campaigns.short import failing_cell, short_cell
 
@@ -43,16 +43,13 @@ def test_redrawn_landing_flies_the_same_again(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_chains_end_the_same_on_any_number_of_processes(tmp_path: Path) -> None:
+def test_chains_end_in_other_processes_as_in_this_one(tmp_path: Path) -> None:
     subject = Cell(cell=load_scenario(short_cell(tmp_path)))
     steps = (WholeStep(seed=6, angle_rad=0.5), LaterStep(seed=7, share=0.3))
     walks = [Walk(noise=FIRST), Walk(noise=BESIDE, steps=steps)]
-
-    def ends(workers: int) -> list[Walked]:
-        with flying(subject, workers) as fly:
-            return fly(walks)
-
-    assert ends(1) == ends(2)
+    chains = Chains(subject=subject)
+    with flying(subject, 2) as fly:
+        assert fly(walks) == [chains(walk) for walk in walks]
 
 
 def test_landings_that_raise_are_told_and_give_no_probability(

@@ -16,7 +16,7 @@ from tests.scenarios.rare.limit_states import (
     waiting_probability,
 )
 
-REPETITIONS = 40
+REPETITIONS = 25
 LEVEL = 0.01
 
 

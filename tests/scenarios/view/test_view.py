@@ -1,6 +1,5 @@
 """The view without a browser: its shapes, what it makes of messages, and what its command refuses."""
 
-import importlib.util
 import math
 
 import numpy as np
@@ -14,7 +13,6 @@ from link.payloads import json_messages
 from link.payloads.checks import PayloadError
 from link.zenoh.keys import Keys
 from scenarios.__main__ import app
-from scenarios.commands import view as view_commands
 from scenarios.tracks.roads import road_of
 from scenarios.view.history import NAMES, History
 from scenarios.view.shapes import box_edges, centre_line, cone, ellipses, estimated_vehicle, polyline, ribbon
@@ -158,9 +156,3 @@ def test_command_refuses_what_cannot_be_shown(arguments: list[str], told: str) -
     result = CliRunner().invoke(app, arguments)
     assert isinstance(result.exception, UserError)
     assert told in str(result.exception)
-
-
-def test_missing_library_is_told_with_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(importlib.util, "find_spec", lambda _: None)
-    with pytest.raises(UserError, match="decklander\\[view\\]"):
-        view_commands.check_viser()

@@ -3,6 +3,9 @@
 Levels: one test of a thousand would fail by chance, over all of its quantities together; the seeds are fixed.
 """
 
+from functools import cache
+from typing import Any
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -41,7 +44,12 @@ def level_of(quantity: Plain, draws: Draws, value: float) -> float:
         quality = draws.number(quantity.quality)
         median = quantity.poor * (quantity.good / quantity.poor) ** quality
         return float(stats.truncnorm(-2.0, 2.0).cdf(np.log(value / median) / quantity.spread))
-    return float(reference_of(quantity).cdf([value])[0])
+    return float(_reference(quantity).cdf([value])[0])
+
+
+@cache
+def _reference(quantity: Plain) -> Any:
+    return reference_of(quantity)
 
 
 @pytest.mark.slow

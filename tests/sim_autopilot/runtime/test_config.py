@@ -8,7 +8,15 @@ from link.errors import UserError
 from link.program.toml_config import dump_toml, load_config
 from sim_autopilot.control.parameters import ControllerKind
 from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME
-from sim_autopilot.runtime.config import DroneConfig, SimAutopilotConfig, airframe_of, autopilot_config, wind_model
+from sim_autopilot.plant.own_state import OwnStateError
+from sim_autopilot.runtime.config import (
+    DroneConfig,
+    SimAutopilotConfig,
+    WindConfig,
+    airframe_of,
+    autopilot_config,
+    wind_model,
+)
 
 
 def loaded(tmp_path: Path, text: str) -> SimAutopilotConfig:
@@ -62,6 +70,26 @@ def test_the_seed_draws_the_winds_direction() -> None:
 
     assert wind(1) == wind(1)
     assert wind(1) != wind(2)
+
+
+def test_wind_turbulence_and_own_errors_of_a_seed_are_independent() -> None:
+    seeds = 400
+    draws = np.empty((3, seeds))
+    for seed in range(seeds):
+        config = SimAutopilotConfig.model_validate(
+            {"seed": seed, "wind": {"turbulence": "light"}, "own_state": {"position_std_m": 0.5}}
+        )
+        turned, still = (wind_model(config.model_copy(update={"wind": wind})) for wind in _winds(config))
+        own_state = OwnStateError(autopilot_config(config).own_state, 0.01)
+        draws[:, seed] = turned.advance(0.01, 0.0)[0], still.advance(0.01, 0.0)[0], own_state.advance()[0]
+    correlation = np.asarray(np.corrcoef(draws))[np.triu_indices(3, k=1)]
+    assert np.abs(correlation).max() < 4.0 / np.sqrt(seeds)
+
+
+def _winds(config: SimAutopilotConfig) -> tuple[WindConfig, WindConfig]:
+    """Return a mean wind of a drawn direction without turbulence, and turbulence without a mean wind."""
+    mean = config.wind.model_copy(update={"mean_m_s": 5.0, "turbulence": "none"})
+    return mean, config.wind.model_copy(update={"from_rad": 0.0})
 
 
 def test_the_turbulence_may_be_told_by_its_vertical_deviation(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.core.places import chart_at, geodetic, near
 from sim_autopilot.firmware.px4.px4 import PX4
+from sim_autopilot.plant.own_state import OwnStateModel
 from sim_autopilot.runtime.node import AutopilotNode
 from tests.sim_autopilot.pilot import DATUM, START_NS, STILL_AIR, Pilot, command, px4, setpoint
 
@@ -80,6 +81,16 @@ def test_global_position_agrees_with_pymap3d(flying: Pilot) -> None:
     assert np.allclose((message.vx, message.vy, message.vz), 100.0 * velocity, atol=0.6)
     raw = flying.last("GPS_RAW_INT")
     assert (raw.fix_type, raw.lat, raw.lon) == (3, message.lat, message.lon)
+
+
+@pytest.mark.parametrize(
+    ("accuracy_m", "fix", "h_acc_mm"), [(None, 3, 900), (0.02, 6, 20), (0.1, 5, 100), (1.2, 3, 1200)]
+)
+def test_receiver_states_the_accuracy_that_it_is_given(accuracy_m: float | None, fix: int, h_acc_mm: int) -> None:
+    pilot = Pilot(px4(own_state=OwnStateModel(receiver_accuracy_m=accuracy_m)))
+    pilot.step(command(mavlink.MAV_CMD_REQUEST_MESSAGE, float(mavlink.MAVLINK_MSG_ID_GPS_RAW_INT)))
+    raw = pilot.last("GPS_RAW_INT")
+    assert (raw.fix_type, raw.h_acc) == (fix, h_acc_mm)
 
 
 def test_the_chart_follows_the_drone_and_stays_exact() -> None:

@@ -1,0 +1,137 @@
+"""A plan as it is flown: where the virtual model is at any time after it was made; pure numerics.
+
+A step comes when the drone has reported, over a link that loses and delays 0.02 to 0.04 s after the one before. The
+model goes on along its plan for as long as that was. Steps of a fixed period instead would change its acceleration by
+less than was planned (0.65 of it on such a link), and a plan of limited jerk would then swing about what it follows.
+"""
+
+import math
+
+import numpy as np
+from msgspec import Struct
+
+from companion.core.data import Array
+from companion.planning.guidance import PlanResult, ReferenceState, Trajectory
+from link.records import replace
+
+_BRAKING_M_S2 = 1.0  # of a drone whose setpoints have stayed away: ArduPilot's WPNAV_ACCEL_Z by default
+
+
+class FlownPlan(Struct, frozen=True, kw_only=True, eq=False):
+    """A plan, and how it is kept up for an autopilot that carries setpoints on.
+
+    Attributes:
+        trajectory: of the virtual model, from where it was when the plan was made.
+        lowest_enu_m: height above which a setpoint that is carried on has to end.
+        carried_s: for how long one is; 0 for an autopilot that does not.
+    """
+
+    trajectory: Trajectory
+    lowest_enu_m: float
+    carried_s: float
+
+
+def flown_plan(plan: PlanResult, period_s: float, lowest_enu_m: float, carried_s: float) -> FlownPlan:
+    """Return the plan as it is flown: its next state, `period_s` after it was made, is one of its instants."""
+    path, following = plan.trajectory, plan.next_state
+    later = int(np.searchsorted(path.offset_s, period_s, side="right"))
+    trajectory = Trajectory(
+        offset_s=np.concatenate((path.offset_s[:1], [period_s], path.offset_s[later:])),
+        position_enu_m=_through(path.position_enu_m, following.position_enu_m, later),
+        velocity_enu_m_s=_through(path.velocity_enu_m_s, following.velocity_enu_m_s, later),
+        acceleration_enu_m_s2=_through(path.acceleration_enu_m_s2, following.acceleration_enu_m_s2, later),
+    )
+    return FlownPlan(trajectory=trajectory, lowest_enu_m=lowest_enu_m, carried_s=carried_s)
+
+
+def state_at(flown: FlownPlan, offset_s: float) -> ReferenceState:
+    """Return the model `offset_s` after its plan was made."""
+    planned = state_in_plan(flown.trajectory, offset_s)
+    if flown.carried_s <= 0.0:
+        return planned
+    before = ReferenceState(
+        position_enu_m=flown.trajectory.position_enu_m[0],
+        velocity_enu_m_s=flown.trajectory.velocity_enu_m_s[0],
+        acceleration_enu_m_s2=flown.trajectory.acceleration_enu_m_s2[0],
+    )
+    return keep_up(planned, before, flown.lowest_enu_m, flown.carried_s, offset_s)
+
+
+def _through(path: Array, following: Array, later: int) -> Array:
+    return np.concatenate((path[:1], following[np.newaxis], path[later:]))
+
+
+def state_in_plan(trajectory: Trajectory, offset_s: float) -> ReferenceState:
+    """Return the model `offset_s` after its plan was made; between two instants of a plan the jerk is constant."""
+    last = len(trajectory.offset_s) - 2
+    node = min(max(int(np.searchsorted(trajectory.offset_s, offset_s, side="right")) - 1, 0), last)
+    start_s, end_s = trajectory.offset_s[node : node + 2].tolist()
+    position, velocity = trajectory.position_enu_m[node], trajectory.velocity_enu_m_s[node]
+    acceleration = trajectory.acceleration_enu_m_s2[node]
+    jerk = (trajectory.acceleration_enu_m_s2[node + 1] - acceleration) / (end_s - start_s)
+    t_s = offset_s - start_s
+    return ReferenceState(
+        position_enu_m=position + (velocity + (acceleration / 2.0 + jerk * t_s / 6.0) * t_s) * t_s,
+        velocity_enu_m_s=velocity + (acceleration + jerk * t_s / 2.0) * t_s,
+        acceleration_enu_m_s2=acceleration + jerk * t_s,
+    )
+
+
+def keep_up(
+    planned: ReferenceState, before: ReferenceState, lowest_enu_m: float, duration_s: float, elapsed_s: float
+) -> ReferenceState:
+    """Return the planned next state, kept up by `limit_sink`, so that it may be carried on for `duration_s`.
+
+    The model itself is kept up, for the drone follows what is sent, and the next plan begins there.
+
+    Args:
+        planned: the model `elapsed_s` after `before`.
+        before: the model when the plan was made.
+        lowest_enu_m: where it is to end above.
+        duration_s: for which a setpoint is carried on.
+        elapsed_s: since then.
+    """
+    limited = limit_sink(planned, lowest_enu_m, duration_s)
+    if limited is planned:
+        return planned
+    up = extrapolate(replace(before, acceleration_enu_m_s2=limited.acceleration_enu_m_s2), elapsed_s)
+    kept_up = ReferenceState(
+        position_enu_m=np.array([*planned.position_enu_m[:2], up.position_enu_m[2]]),
+        velocity_enu_m_s=np.array([*planned.velocity_enu_m_s[:2], up.velocity_enu_m_s[2]]),
+        acceleration_enu_m_s2=limited.acceleration_enu_m_s2,
+    )
+    return limit_sink(kept_up, lowest_enu_m, duration_s)
+
+
+def limit_sink(reference: ReferenceState, lowest_enu_m: float, duration_s: float) -> ReferenceState:
+    """Return the model for an autopilot that carries a setpoint on for `duration_s`, should no other follow.
+
+    Its acceleration upwards is at least such that the drone, which then brakes, ends above `lowest_enu_m`: ArduCopter
+    was flown into the road at 1.6 m/s from a chase whose companion had died. The rate w at the end of the time T obeys
+    `h + (v + w) T / 2 - w^2 / 2A >= 0` with the height h, the rate v and the braking A.
+    """
+    if duration_s <= 0.0:
+        return reference
+    above_m = float(reference.position_enu_m[2]) - lowest_enu_m
+    ax, ay, az = reference.acceleration_enu_m_s2.tolist()
+    climb_m_s, room_m = float(reference.velocity_enu_m_s[2]), 2.0 * above_m
+    room_m += climb_m_s * duration_s
+    if room_m >= 0.0:
+        brakes_m_s = _BRAKING_M_S2 * duration_s
+        end_m_s = 0.5 * (brakes_m_s - math.sqrt(brakes_m_s**2 + 4.0 * _BRAKING_M_S2 * room_m))
+    else:
+        end_m_s = -room_m / duration_s
+    least_m_s2 = (end_m_s - climb_m_s) / duration_s
+    if az >= least_m_s2:
+        return reference
+    return replace(reference, acceleration_enu_m_s2=np.array([ax, ay, least_m_s2]))
+
+
+def extrapolate(reference: ReferenceState, duration_s: float) -> ReferenceState:
+    """Return the model `duration_s` later (or, negative, earlier) at its present acceleration."""
+    velocity, acceleration = reference.velocity_enu_m_s, reference.acceleration_enu_m_s2
+    return replace(
+        reference,
+        position_enu_m=reference.position_enu_m + (velocity + 0.5 * acceleration * duration_s) * duration_s,
+        velocity_enu_m_s=velocity + acceleration * duration_s,
+    )

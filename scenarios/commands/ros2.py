@@ -1,0 +1,87 @@
+"""The command `ros2 topics`: what the ROS 2 graph on Zenoh shows."""
+
+import json
+import os
+import sys
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from link.program.cli import (
+    ConnectOption,
+    InsecureOption,
+    ListenOption,
+    ModeOption,
+    MulticastOption,
+    ZenohConfigOption,
+    make_app,
+)
+
+if TYPE_CHECKING:
+    from link.ros2.names import Token
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command to `app`."""
+    group = make_app("Look at a ROS 2 graph over rmw_zenoh, without ROS.")
+    group.callback()(_group)  # by its own, a single command would take the group's name
+    group.command("topics")(topics_command)
+    app.add_typer(group, name="ros2")
+
+
+def _group() -> None:
+    """Look at a ROS 2 graph over rmw_zenoh, without ROS."""
+
+
+def topics_command(
+    *,
+    domain: Annotated[
+        int | None, typer.Option("--domain", min=0, max=232, help="[default: ROS_DOMAIN_ID, else 0].")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    mode: ModeOption = None,
+    connect: ConnectOption = None,
+    listen: ListenOption = None,
+    multicast: MulticastOption = None,
+    zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
+) -> None:
+    """List topics and services with their types and nodes, as the liveliness tokens of the graph tell them."""
+    from link.errors import UserError
+    from link.ros2.session import read_graph
+    from link.zenoh.options import zenoh_options
+
+    text = os.environ.get("ROS_DOMAIN_ID") or "0"
+    if domain is None and not text.isdigit():
+        raise UserError(f"ROS_DOMAIN_ID is {text!r}: give --domain, a number from 0 to 232")
+    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
+    rows = topic_rows(read_graph(options, int(text) if domain is None else domain))
+    if as_json:
+        sys.stdout.write(json.dumps({"topics": rows}, indent=2) + "\n")
+        return
+    for row in rows:
+        sys.stdout.write(f"{row['topic']}  {row['type']}\n")
+        for role in ("publishers", "subscriptions", "services", "clients"):
+            if row[role]:
+                sys.stdout.write(f"    {role}: {', '.join(row[role])}\n")
+
+
+def topic_rows(tokens: "list[Token]") -> list[dict[str, Any]]:
+    """Return a row for each topic and service with the full names of its nodes."""
+    found: dict[tuple[str, str], dict[str, Any]] = {}
+    for token in tokens:
+        if token.endpoint is None:
+            continue
+        topic, type_name = token.endpoint.name, token.endpoint.type_name
+        row = found.setdefault(
+            (topic, type_name),
+            {"topic": topic, "type": type_name, "publishers": [], "subscriptions": [], "services": [], "clients": []},
+        )
+        node = f"{token.namespace.rstrip('/')}/{token.node}"
+        nodes = row[f"{token.kind.name.lower()}s"]
+        if node not in nodes:
+            nodes.append(node)
+    for row in found.values():
+        for role in ("publishers", "subscriptions", "services", "clients"):
+            row[role].sort()
+    return [found[key] for key in sorted(found)]

@@ -1,0 +1,103 @@
+"""Extras: pyproject.toml's are those that the commands ask for, and the base works without any of them."""
+
+import importlib.util
+import re
+import subprocess
+import sys
+import tomllib
+from importlib.metadata import packages_distributions
+from pathlib import Path
+
+import pytest
+
+from companion.config.companion import CompanionConfig
+from companion.config.estimation import EstimatorKind
+from companion.config.planning import SolverKind
+from companion.runtime.build import build_node
+from link.errors import UserError
+from link.program.cli import EXIT_USER_ERROR, run_app
+from link.program.extras import EXTRAS
+from link.zenoh.keys import Keys
+from scenarios.__main__ import app
+
+ROOT = Path(__file__).parents[3]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+BLOCKED = """
+import sys
+
+class Blocker:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in {modules}:
+            raise ModuleNotFoundError(f"{{name}} is of an extra")
+
+sys.meta_path.insert(0, Blocker())
+import companion.check.command, companion.runtime.loop, companion.recording.folder
+import scenarios.__main__, scenarios.ground_vehicle, scenarios.vehicle_sources.loop
+import scenarios.wire.run, scenarios.wire.world, sim_autopilot.runtime.run
+"""
+
+
+def distributions(requirements: list[str]) -> set[str]:
+    names = (re.split(r"[\[><=]", requirement)[0] for requirement in requirements)
+    return {name.lower() for name in names} - {"decklander"}
+
+
+@pytest.mark.parametrize("extra", EXTRAS)
+def test_modules_of_an_extra_come_with_it(extra: str) -> None:
+    brought = packages_distributions()
+    of_modules = {brought[module][0].lower() for module in EXTRAS[extra]}
+    assert of_modules == distributions(PROJECT["optional-dependencies"][extra])
+    assert not of_modules & distributions(PROJECT["dependencies"])
+
+
+def test_all_has_every_extra() -> None:
+    named = set(re.findall(r"\w+", PROJECT["optional-dependencies"]["all"][0].partition("[")[2]))
+    for extra in list(named):
+        named |= {part for one in PROJECT["optional-dependencies"][extra] for part in re.findall(r"\[(\w+)\]", one)}
+    assert named | {"campaign", "sim"} == set(PROJECT["optional-dependencies"]) - {"all"}
+
+
+@pytest.mark.slow
+def test_drone_vehicle_and_simulation_need_no_extra() -> None:
+    modules = {module for extra in EXTRAS.values() for module in extra}
+    done = subprocess.run([sys.executable, "-c", BLOCKED.format(modules=modules)], check=False, capture_output=True)
+    assert done.returncode == 0, done.stderr.decode()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "extra"),
+    [
+        (["campaign", "straight_5"], "campaign"),
+        (["table", "runs/none"], "campaign"),
+        (["compare", "runs/a", "runs/b"], "campaign"),
+        (["faults"], "campaign"),
+        (["falsify", "world"], "campaign"),
+        (["rare", "world"], "campaign"),
+        (["figures", "runs/none"], "report"),
+        (["report", "runs/none"], "report"),
+        (["view", "runs/none"], "view"),
+        (["run", "straight_5", "--view"], "view"),
+    ],
+)
+def test_command_names_the_extra_that_is_missing(
+    arguments: list[str], extra: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    there = importlib.util.find_spec
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name in EXTRAS[extra] else there(name))
+    assert run_app("scenarios", app, arguments) == EXIT_USER_ERROR
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert f"pip install 'decklander[{extra}]'" in error
+
+
+@pytest.mark.parametrize(
+    "choice",
+    [{"estimator": {"kind": EstimatorKind.LKF}}, {"guidance": {"mpc": {"solver": SolverKind.OSQP}}}],
+    ids=["lkf", "osqp"],
+)
+def test_configuration_names_the_extra_that_it_needs(
+    choice: dict[str, object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(importlib.util, "find_spec", lambda _: None)
+    with pytest.raises(UserError, match=r"decklander\[sim\]"):
+        build_node(CompanionConfig.model_validate(choice), Keys())
