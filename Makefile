@@ -21,7 +21,7 @@ setup: .venv/.complete
 	touch $@
 
 demo: .venv/.complete
-	$(BIN)/scenarios run $(SCENARIO) --speed $(SPEED) --seed $(SEED)
+	$(BIN)/scenarios run $(SCENARIO)$(if $(CAMERA),+camera=$(CAMERA)) --speed $(SPEED) --seed $(SEED)
 
 check: lint
 	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "not slow and not wire"

@@ -19,6 +19,14 @@ _ROS_MODELS: dict[str, Model] = {
     "fisheye": "fisheye",
 }
 _KALIBR_MODELS: dict[str, Model] = {"radtan": "pinhole", "none": "pinhole", "equidistant": "fisheye", "equi": "fisheye"}
+_ROS_MODEL_OF_COUNT = {
+    0: "plumb_bob",
+    4: "plumb_bob",
+    5: "plumb_bob",
+    8: "rational_polynomial",
+    12: "rational_polynomial",
+    14: "rational_polynomial",
+}
 _COEFFICIENTS: dict[Model, tuple[int, ...]] = {"pinhole": (0, 4, 5, 8, 12, 14), "fisheye": (4,)}
 
 
@@ -96,3 +104,16 @@ def _camera(model: Model, matrix: np.ndarray[Any, Any], coefficients: Any, size_
     if not all(isfinite(number) for number in numbers) or min(matrix[0, 0], matrix[1, 1]) <= 0.0 or min(size_px) <= 0:
         raise ValueError("focal lengths and size must be above 0, and all numbers finite")
     return Camera(model=model, matrix=matrix, distortion=distortion, size_px=size_px)
+
+
+def dump_calibration(camera: Camera) -> str:
+    """Return the camera as ROS's camera_info file has it."""
+    width, height = camera.size_px
+    model = "equidistant" if camera.model == "fisheye" else _ROS_MODEL_OF_COUNT[len(camera.distortion)]
+    matrix, distortion = camera.matrix.ravel().tolist(), camera.distortion.tolist()
+    return (
+        f"image_width: {width}\nimage_height: {height}\ncamera_name: camera\n"
+        f"camera_matrix: {{rows: 3, cols: 3, data: {matrix}}}\n"
+        f"distortion_model: {model}\n"
+        f"distortion_coefficients: {{rows: 1, cols: {len(distortion)}, data: {distortion}}}\n"
+    )

@@ -36,6 +36,8 @@ class VehicleNode:
         seed: of everything random.
         keys: of the Zenoh contract.
         publishes_truth: where nobody listens to it, leaving it out saves a third of the time.
+        has_eyes: its sensors have the drone's camera among them, where the scenario has one; else that is a program of
+            its own.
 
     Attributes:
         pad: what the `pad` queryable tells.
@@ -44,18 +46,21 @@ class VehicleNode:
         state: where it is, None before the first step.
     """
 
-    def __init__(self, scenario: Scenario, seed: Seed, keys: Keys, *, publishes_truth: bool = True) -> None:
+    def __init__(
+        self, scenario: Scenario, seed: Seed, keys: Keys, *, publishes_truth: bool = True, has_eyes: bool = True
+    ) -> None:
         self.pad: PadGeometry = scenario.vehicle.pad
         self.plan = plan_of(scenario, seed)
         self.memory = VehicleMemory()
         self.state: VehicleState | None = None
         mounting = Mounting(antenna_flu_m=scenario.vehicle.antenna_flu_m, pad_height_m=scenario.vehicle.roof_height_m)
+        sensors = scenario.sensors.model_copy(update={"pattern": None}) if scenario.has_camera else scenario.sensors
         self._sensors = SensorSuite(
-            scenario.sensors,
+            sensors,
             seed,
             mounting=mounting,
             datum=datum_of(scenario.datum),
-            detector=_camera_of(scenario, seed),
+            detector=_camera_of(scenario, seed) if has_eyes else None,
         )
         self._keys: dict[type[cdr.Message], str] = {
             Fix: keys.fix,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from companion.eyes.calibration import check_size, load_calibration
+from companion.eyes.calibration import check_size, dump_calibration, load_calibration
 from companion.eyes.camera import Camera, Model, matrix_of
 from companion.eyes.mounting import load_mounting
 from link.errors import UserError
@@ -81,6 +81,15 @@ def test_calibrations_of_ros_and_kalibr_are_read(
     camera = load_calibration(tmp_path / "camera.yaml")
     assert (camera.model, camera.size_px, camera.distortion.tolist()) == (model, (1280, 720), distortion)
     assert camera.matrix == pytest.approx(MATRIX)
+
+
+@pytest.mark.parametrize("camera", CAMERAS, ids=["pinhole", "fisheye"])
+def test_a_written_calibration_is_read_back(tmp_path: Path, camera: Camera) -> None:
+    (tmp_path / "camera.yaml").write_text(dump_calibration(camera), encoding="utf-8")
+    back = load_calibration(tmp_path / "camera.yaml")
+    assert (back.model, back.size_px) == (camera.model, camera.size_px)
+    assert (back.matrix == camera.matrix).all()
+    assert (back.distortion == camera.distortion).all()
 
 
 @pytest.mark.parametrize(
