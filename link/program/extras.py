@@ -14,6 +14,7 @@ EXTRAS: Final = {
     "campaign": ("cma", "loky", "polars"),
     "report": ("jinja2", "matplotlib", "plotly"),
     "view": ("viser", "websockets"),
+    "foxglove": ("foxglove",),
     "dask": ("distributed",),
 }
 """Extra: the modules that it brings. filterpy is no part of the base since it brings matplotlib along."""
