@@ -11,11 +11,13 @@ import typer
 
 from companion.check.command import ConfigOption, DeviceOption, SigningKeyOption, SystemIdOption, check
 from companion.config.companion import AutopilotKind
+from companion.runtime.keys import keys
 from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
     DroneOption,
     FoxgloveOption,
+    InsecureOption,
     ListenOption,
     ModeOption,
     MulticastOption,
@@ -35,6 +37,7 @@ if TYPE_CHECKING:
 
 app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.")
 app.command("check")(check)
+app.command("keys")(keys)
 
 _PrintConfigOption = Annotated[bool, typer.Option("--print-config", help="Print the configuration and end.")]
 _StartOption = Annotated[bool, typer.Option("--start", help="Arm, take off and land without an operator's command.")]
@@ -80,6 +83,7 @@ def companion(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
     ros2: Ros2Option = None,
     ros2_map: Ros2MapOption = None,
 ) -> None:
@@ -111,7 +115,7 @@ def companion(
     recorder: BackgroundRecorder | None = None
     with ExitStack() as stack:
         # What a user may have got wrong is opened first: the numerics take their time, up to a minute to be compiled.
-        endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config)
+        endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
         transport = stack.enter_context(open_transport(mavlink))
         zenoh = stack.enter_context(
             open_layout(endpoints, ros2_options(ros2, ros2_map), keys, (f"/{drone}", "companion"))

@@ -10,6 +10,7 @@ from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
     DroneOption,
+    InsecureOption,
     ListenOption,
     ModeOption,
     MulticastOption,
@@ -99,6 +100,7 @@ def world_command(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
 ) -> None:
     """Run the simulated side of a scenario, the autopilot with the vehicle in it, in one process."""
     from link.mavlink.transports import open_transport
@@ -111,7 +113,7 @@ def world_command(
 
     scenario = load_scenario(name)
     keys = Keys(namespace, vehicle, drone)
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, listens=True)
+    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure, listens=True)
     with open_transport(mavlink, is_patient=True) as transport, open_session(options) as zenoh:
         WorldLoop(scenario, run_seed(name, seed), keys, transport, zenoh, speed=speed).run()
 
@@ -127,6 +129,7 @@ def command_command(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
 ) -> int:
     """Send a command to the companion; exit code 1 when it is refused."""
     from link.messages import Command
@@ -139,7 +142,7 @@ def command_command(
     except ValueError:
         known = ", ".join(one.value for one in Command)
         raise UserError(f"command '{command}' does not exist: give one of {known}") from None
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config)
+    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
     reply = send_command(wanted, Keys(namespace, "vehicle", drone), options)
     sys.stdout.write("accepted\n" if reply.accepted else f"refused: {reply.reason}\n")
     return 0 if reply.accepted else 1

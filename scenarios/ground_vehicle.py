@@ -10,6 +10,7 @@ from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
     DroneOption,
+    InsecureOption,
     ListenOption,
     ModeOption,
     MulticastOption,
@@ -123,6 +124,7 @@ def ground_vehicle(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
     ros2: Ros2Option = None,
     ros2_map: Ros2MapOption = None,
 ) -> None:
@@ -136,7 +138,7 @@ def ground_vehicle(
     keys = Keys(namespace, vehicle, drone)
     layout = ros2_options(ros2, ros2_map)
     # a ROS 2 graph has its router at the default endpoint; else the vehicle waits there for the others
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, listens=layout is None)
+    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure, listens=layout is None)
     node = (f"/{vehicle}", "ground_vehicle")
 
     def open_zenoh() -> "ZenohSession":

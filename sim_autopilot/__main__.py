@@ -13,6 +13,7 @@ from link.program.cli import (
     EXIT_OK,
     ConnectOption,
     DroneOption,
+    InsecureOption,
     ListenOption,
     ModeOption,
     MulticastOption,
@@ -83,6 +84,7 @@ def sim_autopilot(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
 ) -> int:
     """Simulate a quadrotor under an autopilot that speaks MAVLink."""
     from link.program.toml_config import dump_toml, load_config
@@ -101,7 +103,7 @@ def sim_autopilot(
     from link.zenoh.options import zenoh_options
     from sim_autopilot.runtime.run import RunOptions, run
 
-    zenoh = zenoh_options(mode, connect, listen, multicast, zenoh_config)
+    zenoh = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
     devices = tuple(link.device for link in settings.links)
     options = RunOptions(devices=devices, speed=speed, keys=Keys(namespace, vehicle, drone), zenoh=zenoh)
     signal.signal(signal.SIGTERM, _interrupt)

@@ -11,6 +11,7 @@ import typer
 from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
+    InsecureOption,
     ListenOption,
     ModeOption,
     MulticastOption,
@@ -68,6 +69,7 @@ def check(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
 ) -> int:
     """Read the autopilot and the vehicle, and say what to change before a landing; exit code 1 when something fails."""
     from companion.check.findings import read_kept
@@ -83,7 +85,7 @@ def check(
     settings = load_config(config, CompanionConfig)
     key = None if signing_key is None else read_key(signing_key)
     back = None if restore is None else read_kept(restore)
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config)
+    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
     with open_transport(mavlink) as transport, open_session(options) as zenoh:
         session = open_check(transport, mavlink, system_id=system_id, signing_key=key)
         session.find(timeout)

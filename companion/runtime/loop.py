@@ -78,6 +78,7 @@ class _Loop:
         self._was_alive = False
         self._pad_question = PadQuestion(zenoh, keys.pad)
         self._link_was_up: bool | None = None
+        self._strangers_told = False
 
     def run(self) -> Timings:
         """Run until a signal comes."""
@@ -192,6 +193,9 @@ class _Loop:
             self._service.ready()
         elif self._link_was_up and not is_up:
             self._log.warning("autopilot lost")
+        if not self._strangers_told and self._transport.statistics.strangers:
+            self._strangers_told = True
+            self._log.warning("somebody else sends to the autopilot's link, and is not listened to")
         self._link_was_up = is_up if is_up or self._link_was_up is not None else None
 
     def _ask_for_pad(self) -> None:

@@ -38,7 +38,7 @@ ConnectOption = Annotated[
         "-e",
         "--connect",
         metavar="ENDPOINT",
-        help="Endpoint to connect to, such as tcp/192.168.1.5:7447. May be repeated.",
+        help="Endpoint to connect to, such as tls/192.168.1.5:7447. May be repeated.",
         rich_help_panel=_PANEL,
     ),
 ]
@@ -48,7 +48,7 @@ ListenOption = Annotated[
         "-l",
         "--listen",
         metavar="ENDPOINT",
-        help="Endpoint to listen on, such as tcp/0.0.0.0:7447. May be repeated.",
+        help="Endpoint to listen on, such as tls/0.0.0.0:7447. May be repeated.",
         rich_help_panel=_PANEL,
     ),
 ]
@@ -70,8 +70,14 @@ ZenohConfigOption = Annotated[
         rich_help_panel=_PANEL,
     ),
 ]
-
-
+InsecureOption = Annotated[
+    bool,
+    typer.Option(
+        "--insecure",
+        help="Meet others beyond this machine without certificates: anybody on that network can give orders.",
+        rich_help_panel=_PANEL,
+    ),
+]
 Ros2Option = Annotated[
     int | None,
     typer.Option(

@@ -37,9 +37,6 @@ from link.zenoh.keys import Keys
 from link.zenoh.options import ZenohOptions
 from link.zenoh.session import INBOX_CAPACITY, Alive, Inbox, Sample, ZenohSession, open_library_session
 
-Take = Callable[[bytes, Callable[[bytes], None]], None]
-"""Of `ZenohSession.serve_later`."""
-
 _NODE_ID = 0
 _GRAPH_S = 2.0
 
@@ -85,21 +82,18 @@ class Ros2Session(ZenohSession):
         if self._pad is not None and self._pad.antenna_to_pad_m is None:
             self._transforms = self._subscribe_latched(topic(self._pad.tf_static, foreign.TRANSFORMS))
 
-    def publish(self, key: str, payload: bytes, encoding: str) -> None:
+    def _send(self, key: str, payload: bytes, encoding: str) -> None:
         """Send `payload` to whoever subscribes to `key`, or to its topic."""
         route = self._routes.get(key)
         if route is None:
-            super().publish(key, payload, encoding)
+            super()._send(key, payload, encoding)
             return
         if route.to_ros is None:
             raise ValueError(f"{route.endpoint.name} is only read")
         there = self._endpoint(route)
         there.sequence += 1
         told = Attachment(sequence=there.sequence, source_time_ns=time.time_ns(), publisher_id=there.identity)
-        try:
-            there.publisher.put(route.to_ros(payload), attachment=attachment.encode(told))
-        except zenoh.ZError:
-            self.unpublished += 1
+        there.publisher.put(route.to_ros(payload), attachment=attachment.encode(told))
 
     def is_heard(self, key: str, encoding: str) -> bool:
         """Return whether anybody subscribes to `key`, or to its topic."""
@@ -140,18 +134,20 @@ class Ros2Session(ZenohSession):
             inbox.put(Sample(key, json_messages.encode(pad), self._receive_clock_ns()))
         return inbox
 
-    def serve_later(self, key: str, take: Take) -> None:
+    def serve_later(self, key: str, take: Callable[[bytes, Callable[[bytes], None]], None]) -> None:
         """Answer queries on `key`; commands of the landing are services of type std_srvs/srv/Trigger besides."""
         super().serve_later(key, take)
         if key == self._keys.landing_command:
             for command in Command:
                 self._serve_trigger(trigger(f"/{self._keys.drone}/landing/{command.value}"), command, take)
 
-    def _serve_trigger(self, endpoint: Endpoint, command: Command, take: Take) -> None:
+    def _serve_trigger(
+        self, endpoint: Endpoint, command: Command, take: Callable[[bytes, Callable[[bytes], None]], None]
+    ) -> None:
         key, request = self._data_key(endpoint), json_messages.encode(command)
 
         def receive(query: zenoh.Query) -> None:
-            take(request, lambda answer: self._replies.put(query, key, _trigger_reply(answer), _told_back(query)))
+            take(request, lambda answer: self._replies.put(query, lambda: _reply_trigger(query, key, answer)))
 
         self._held.append(self._session.declare_queryable(key, receive, complete=True))
         self._declare(EntityKind.SERVICE, endpoint, Qos())
@@ -222,22 +218,6 @@ class Ros2Session(ZenohSession):
         return data_key(self._domain, endpoint)
 
 
-def _trigger_reply(answer: bytes) -> bytes:
-    reply = json_messages.decode(CommandReply, answer)
-    return trigger_reply(accepted=reply.accepted, reason=reply.reason)
-
-
-def _told_back(query: zenoh.Query) -> bytes:
-    """Return the attachment of an answer: the caller's own number and id, and the time of now."""
-    asked = None if query.attachment is None else attachment.decode(query.attachment.to_bytes())
-    told = Attachment(
-        sequence=0 if asked is None else asked.sequence,
-        source_time_ns=time.time_ns(),
-        publisher_id=bytes(16) if asked is None else asked.publisher_id,
-    )
-    return attachment.encode(told)
-
-
 def _transforms_or_none(payload: bytes) -> foreign.Transforms:
     try:
         return foreign.transforms_of(payload)
@@ -276,3 +256,16 @@ def read_graph(options: ZenohOptions, domain: int) -> list[Token]:
         return [token for token in found if token is not None]
     finally:
         session.close()  # type: ignore[no-untyped-call]  # its stub has no return type
+
+
+def _reply_trigger(query: zenoh.Query, key: str, answer: bytes) -> None:
+    """Answer the call of a Trigger, with the caller's own number, by a reply in JSON."""
+    asked = None if query.attachment is None else attachment.decode(query.attachment.to_bytes())
+    told = Attachment(
+        sequence=0 if asked is None else asked.sequence,
+        source_time_ns=time.time_ns(),
+        publisher_id=bytes(16) if asked is None else asked.publisher_id,
+    )
+    reply = json_messages.decode(CommandReply, answer)
+    payload = trigger_reply(accepted=reply.accepted, reason=reply.reason)
+    query.reply(key, payload, attachment=attachment.encode(told))

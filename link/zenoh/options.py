@@ -23,9 +23,10 @@ class ZenohOptions:
     Attributes:
         mode: `peer`, `client` or `router`; None is the configuration file's, else peer.
         connect: endpoints to connect to, tried again for ever.
-        listen: endpoints to listen on; empty is the configuration file's, else a free port on loopback.
+        listen: endpoints to listen on; empty is the configuration file's; without a file a free port on loopback.
         multicast_scouting: whether to look for others by multicast; None is the file's, else no.
         config_file: a Zenoh configuration in JSON5, for what has no option here (TLS, access control).
+        insecure: whether strangers on a network may reach the session.
 
     Raises:
         UserError: If the mode or an endpoint is not one.
@@ -36,6 +37,7 @@ class ZenohOptions:
     listen: tuple[str, ...] = ()
     multicast_scouting: bool | None = None
     config_file: Path | None = None
+    insecure: bool = False
 
     def __post_init__(self) -> None:
         """Check the mode and the endpoints."""
@@ -54,6 +56,7 @@ def zenoh_options(
     multicast: bool | None,
     config_file: Path | None,
     *,
+    insecure: bool = False,
     listens: bool = False,
 ) -> ZenohOptions:
     """Return the options of a command line; one that says nothing connects to the default endpoint.
@@ -71,6 +74,7 @@ def zenoh_options(
         listen=tuple(listen or ()),
         multicast_scouting=multicast,
         config_file=config_file,
+        insecure=insecure,
     )
 
 

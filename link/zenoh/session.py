@@ -17,6 +17,8 @@ from typing import Self
 import zenoh
 
 from link.errors import UserError
+from link.payloads.checks import PayloadError
+from link.zenoh.exposure import check_exposure
 from link.zenoh.inbox import Inbox, Sample, WakeUp
 from link.zenoh.options import DEFAULT_ENDPOINT, ZenohOptions
 
@@ -36,27 +38,34 @@ _BLOCK_MAX_US = 200_000
 stall the loop that flies. Less than the half second after which autopilots call a setpoint stream lost."""
 
 
-class _Replies:
-    """Sends answers to queries from a thread of its own: one who does not read them holds nobody else up."""
+class Replies:
+    """Sends answers to queries from a thread of its own: one who does not read them holds nobody else up.
+
+    Attributes:
+        lost: answers to who has gone, or that came after the end.
+    """
 
     def __init__(self) -> None:
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="replies")
         self._places = threading.BoundedSemaphore(_REPLIES_MAX)
-        self.lost = 0  # since who asked has gone
+        self.lost = 0
 
-    def put(self, query: zenoh.Query, key: str, payload: bytes, attachment: bytes | None = None) -> None:
-        """Send an answer later, or never where too many wait already; one in JSON has no attachment."""
-        if self._places.acquire(blocking=False):
-            self._pool.submit(self._send, query, key, payload, attachment)
+    def put(self, query: zenoh.Query, send: Callable[[], None]) -> None:
+        """Answer `query` by `send` later, or never where too many wait already."""
+        if not self._places.acquire(blocking=False):
+            return
+        try:
+            self._pool.submit(self._send, query, send)
+        except RuntimeError:  # it is closed
+            self.lost += 1
 
     def close(self) -> None:
         """Send none of those that wait."""
         self._pool.shutdown(wait=False, cancel_futures=True)
 
-    def _send(self, query: zenoh.Query, key: str, payload: bytes, attachment: bytes | None) -> None:
-        encoding = "application/json" if attachment is None else "application/cdr"
+    def _send(self, query: zenoh.Query, send: Callable[[], None]) -> None:
         try:
-            query.reply(key, payload, encoding=zenoh.Encoding(encoding), attachment=attachment)
+            send()
         except zenoh.ZError:
             self.lost += 1
         finally:
@@ -91,7 +100,7 @@ class ZenohSession:
         self._publishers: dict[tuple[str, str], zenoh.Publisher] = {}
         self._held: list[object] = []  # what Zenoh would undeclare when nobody holds it
         self._lock = threading.Lock()
-        self._replies = _Replies()
+        self._replies = Replies()
         self.unpublished = 0
         self.wake_up = WakeUp()
 
@@ -111,9 +120,12 @@ class ZenohSession:
         What cannot be sent is counted as `unpublished`: who publishes has other things to do.
         """
         try:
-            self._publisher(key, encoding).put(payload)
-        except zenoh.ZError:
+            self._send(key, payload, encoding)
+        except (zenoh.ZError, PayloadError):
             self.unpublished += 1
+
+    def _send(self, key: str, payload: bytes, encoding: str) -> None:
+        self._publisher(key, encoding).put(payload)
 
     def is_heard(self, key: str, encoding: str) -> bool:
         """Return whether anybody subscribes to `key` now; `encoding` as it is published there."""
@@ -170,7 +182,12 @@ class ZenohSession:
 
         def receive(query: zenoh.Query) -> None:
             payload = b"" if query.payload is None else query.payload.to_bytes()
-            take(payload, lambda answer: self._replies.put(query, key, answer))
+
+            def reply(answer: bytes) -> None:
+                encoding = zenoh.Encoding("application/json")
+                self._replies.put(query, lambda: query.reply(key, answer, encoding=encoding))
+
+            take(payload, reply)
 
         self._held.append(self._session.declare_queryable(key, receive))
 
@@ -233,7 +250,7 @@ def open_library_session(options: ZenohOptions) -> zenoh.Session:
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:
-        raise UserError(_open_failure(options, str(error))) from error
+        raise UserError(_open_failure(options, config, str(error))) from error
 
 
 def _config(options: ZenohOptions) -> zenoh.Config:
@@ -249,11 +266,33 @@ def _config(options: ZenohOptions) -> zenoh.Config:
     _fill_connection(config)
     if options.listen:
         _insert(config, "listen/endpoints", list(options.listen))
-    elif options.config_file is None and _get(config, "mode") != "client":
-        _insert(config, "listen/endpoints", ["tcp/127.0.0.1:0"])
+    elif _get(config, "listen/endpoints") == _get(zenoh.Config(), "listen/endpoints"):
+        # Zenoh's own default is plain TCP on all interfaces, beside whatever a file says of TLS.
+        own = [] if options.config_file or _get(config, "mode") == "client" else ["tcp/127.0.0.1:0"]
+        _insert(config, "listen/endpoints", own)
+    if not options.insecure:
+        _check_exposure(config)
     if _get(config, _BLOCK_MAX_KEY) == _get(zenoh.Config(), _BLOCK_MAX_KEY):
         _insert(config, _BLOCK_MAX_KEY, _BLOCK_MAX_US)
     return config
+
+
+def _check_exposure(config: zenoh.Config) -> None:
+    protocols = _get(config, "transport/link/protocols")
+    check_exposure(
+        connect=_endpoints(config, "connect/endpoints"),
+        listen=_endpoints(config, "listen/endpoints"),
+        protocols=protocols if isinstance(protocols, list) else None,
+        is_mutual=_get(config, "transport/link/tls/enable_mtls") is True,
+        scouts=_get(config, "scouting/multicast/enabled") is True,
+    )
+
+
+def _endpoints(config: zenoh.Config, key: str) -> list[str]:
+    """Return endpoints of all modes: those of the session's own, or a table with a list for each mode."""
+    found = _get(config, key)
+    lists = found.values() if isinstance(found, dict) else (found,)
+    return [str(endpoint) for one in lists for endpoint in (one if isinstance(one, list) else ())]
 
 
 def _fill_connection(config: zenoh.Config) -> None:
@@ -289,12 +328,14 @@ def _fill(config: zenoh.Config, key: str, value: object) -> None:
         _insert(config, key, value)
 
 
-def _open_failure(options: ZenohOptions, text: str) -> str:
+def _open_failure(options: ZenohOptions, config: zenoh.Config, text: str) -> str:
     endpoints = ", ".join(options.listen) or f"the endpoints of {options.config_file}"
     if "Address already in use" in text:
         return f"--listen {endpoints}: the port is in use, stop the other program or choose another port"
-    if options.mode == "client":
-        return f"--connect {', '.join(options.connect)}: no router answers there ({_plain(text)})"
+    if _get(config, "mode") == "client":
+        return (
+            f"--connect {', '.join(_endpoints(config, 'connect/endpoints'))}: no router answers there ({_plain(text)})"
+        )
     return f"cannot open the Zenoh session (--listen {endpoints}): {_plain(text)}"
 
 

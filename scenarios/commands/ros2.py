@@ -9,6 +9,7 @@ import typer
 
 from link.program.cli import (
     ConnectOption,
+    InsecureOption,
     ListenOption,
     ModeOption,
     MulticastOption,
@@ -43,6 +44,7 @@ def topics_command(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
 ) -> None:
     """List topics and services with their types and nodes, as the liveliness tokens of the graph tell them."""
     from link.errors import UserError
@@ -52,7 +54,7 @@ def topics_command(
     text = os.environ.get("ROS_DOMAIN_ID") or "0"
     if domain is None and not text.isdigit():
         raise UserError(f"ROS_DOMAIN_ID is {text!r}: give --domain, a number from 0 to 232")
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config)
+    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
     rows = topic_rows(read_graph(options, int(text) if domain is None else domain))
     if as_json:
         sys.stdout.write(json.dumps({"topics": rows}, indent=2) + "\n")

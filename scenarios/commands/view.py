@@ -11,6 +11,7 @@ from link.program.cli import (
     ConnectOption,
     DroneOption,
     FoxgloveOption,
+    InsecureOption,
     ListenOption,
     ModeOption,
     MulticastOption,
@@ -75,6 +76,7 @@ def view_command(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
 ) -> None:
     """Show a landing in the browser as it goes on, or play a recording.
 
@@ -105,7 +107,7 @@ def view_command(
     from scenarios.view.live import LiveSource
 
     drawn = None if road is None else Road(scenario=load_scenario(road), seed=run_seed(road, seed))
-    with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config)) as zenoh:
+    with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)) as zenoh:
         _show(LiveSource(zenoh, keys), drawn, port, keys, foxglove)
 
 

@@ -1,6 +1,6 @@
 """A bystander of a landing: it hears truth and the companion's status over Zenoh, and scores on truth."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from companion.situation.phases import Phase
@@ -84,11 +84,12 @@ class Observer:
 
         until(has_passed, f"{duration_s} s of truth")
 
-    def wait_for_end(self) -> Score:
-        """Wait until the run is over and return its score on truth."""
+    def wait_for_end(self, meanwhile: Callable[[], None] = lambda: None) -> Score:
+        """Wait until the run is over, doing something again and again, and return its score on truth."""
         end = EndWatch(SCENARIO.time_limit_s)
 
         def is_over() -> bool:
+            meanwhile()
             self.hear()
             return end.reason(self.recording) is not None
 

@@ -297,7 +297,7 @@ def test_endpoints_of_every_kind_are_taken(endpoint: str) -> None:
 
 def test_a_listen_address_of_another_computer_is_the_users_mistake() -> None:
     with pytest.raises(UserError, match=r"^cannot open the Zenoh session .*Cannot assign requested address") as caught:
-        listener("tcp/192.0.2.1:7447")
+        open_session(ZenohOptions(listen=("tcp/192.0.2.1:7447",), insecure=True))
     assert ".rs" not in str(caught.value)
 
 

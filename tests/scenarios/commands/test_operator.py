@@ -18,7 +18,7 @@ from scenarios.processes.programs import free_tcp_endpoint
 from sim_autopilot.__main__ import app as autopilot_app
 
 KEYS = Keys()
-ZENOH = ["--mode", "--connect", "--listen", "--multicast-scouting", "--zenoh-config"]
+ZENOH = ["--mode", "--connect", "--listen", "--multicast-scouting", "--zenoh-config", "--insecure"]
 
 
 def options_of(app: typer.Typer, name: str | None) -> dict[str, bool]:

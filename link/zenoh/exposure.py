@@ -1,0 +1,67 @@
+"""What of a Zenoh session strangers can reach: endpoints beyond this machine that do not prove who is at the end."""
+
+import ipaddress
+from collections.abc import Iterable, Sequence
+
+from link.errors import UserError
+
+_ENCRYPTED = frozenset({"tls", "quic"})
+_OF_THIS_MACHINE = frozenset({"unixsock-stream", "unixpipe", "serial", "vsock"})
+_REMEDY = "use tls/ with --zenoh-config (docs/zenoh, companion keys), or say --insecure"
+
+
+def exposed(endpoints: Iterable[str], *, is_mutual: bool = True) -> list[str]:
+    """Return those of `endpoints` by which a stranger could speak.
+
+    Args:
+        endpoints: in Zenoh's form.
+        is_mutual: whether TLS asks both ends for a certificate.
+    """
+    return [one for one in endpoints if not (_is_local(one) or (_is_encrypted(one) and is_mutual))]
+
+
+def check_exposure(
+    *,
+    connect: Sequence[str],
+    listen: Sequence[str],
+    protocols: Sequence[str] | None,
+    is_mutual: bool,
+    scouts: bool,
+) -> None:
+    """Check that a session can only be reached from this machine, or by who has a certificate.
+
+    Args:
+        connect: endpoints to connect to, where a certificate always proves the other end.
+        listen: endpoints to listen on.
+        protocols: that the session speaks at all, None for every one.
+        is_mutual: whether who connects by TLS is asked for a certificate.
+        scouts: whether others are looked for by multicast, and connected with.
+
+    Raises:
+        UserError: there is such an endpoint.
+    """
+    for endpoint in exposed(connect):
+        raise UserError(f"--connect {endpoint}: whoever is on that network could give orders; {_REMEDY}")
+    for endpoint in exposed(listen, is_mutual=is_mutual):
+        if _is_encrypted(endpoint):
+            raise UserError(
+                f"--listen {endpoint}: takes anybody; set transport/link/tls/enable_mtls, or say --insecure"
+            )
+        raise UserError(f"--listen {endpoint}: whoever is on that network could give orders; {_REMEDY}")
+    if scouts and not (protocols and set(protocols) <= _ENCRYPTED | _OF_THIS_MACHINE):
+        raise UserError(f"--multicast-scouting: whoever is on that network could give orders; {_REMEDY}")
+
+
+def _is_encrypted(endpoint: str) -> bool:
+    return endpoint.partition("/")[0] in _ENCRYPTED
+
+
+def _is_local(endpoint: str) -> bool:
+    protocol, _, address = endpoint.partition("/")
+    if protocol in _OF_THIS_MACHINE:
+        return True
+    host = address.partition("?")[0].partition("#")[0].rpartition(":")[0].strip("[]")
+    try:
+        return ipaddress.ip_address(host.partition("%")[0]).is_loopback
+    except ValueError:
+        return host == "localhost"
