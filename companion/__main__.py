@@ -5,7 +5,7 @@ import os
 import sys
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -23,6 +23,7 @@ from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
     DroneOption,
+    FoxgloveOption,
     InsecureOption,
     ListenOption,
     ModeOption,
@@ -35,6 +36,11 @@ from link.program.cli import (
     make_app,
     run_app,
 )
+
+if TYPE_CHECKING:
+    from companion.config.companion import CompanionConfig
+    from companion.recording.sink import MessageStore
+    from link.zenoh.keys import Keys
 
 app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.")
 app.command("check")(check)
@@ -75,6 +81,7 @@ def companion(
     signing_stamps: SigningStampsOption = None,
     tlog: _TlogOption = None,
     record: _RecordOption = None,
+    foxglove: FoxgloveOption = None,
     timing: _TimingOption = None,
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
@@ -129,10 +136,11 @@ def companion(
         from companion.runtime.loop import run
         from companion.runtime.options import Links, LoopOptions
 
-        if folder is not None:
-            from companion.recording.folder import recording_sink
+        if folder is not None or foxglove is not None:
+            from companion.recording.sink import CompanionSink, MessageStores
 
-            recorder = BackgroundRecorder(recording_sink(folder, settings, keys, system_id=system_id, dry_run=dry_run))
+            stores = _stores(folder, foxglove, settings, keys, system_id=system_id, dry_run=dry_run)
+            recorder = BackgroundRecorder(CompanionSink(MessageStores(stores), keys, settings.descent))
             stack.callback(recorder.close)
         node = build_node(
             settings,
@@ -147,9 +155,33 @@ def companion(
         options = LoopOptions(device=mavlink, timeout_s=timeout, start=start, use_sim_time=use_sim_time, tlog=tlog)
         timings = run(node, Links(keys=keys, transport=transport, zenoh=zenoh, signing=memory), options)
     if recorder is not None and recorder.dropped:
-        sys.stderr.write(f"recording: {recorder.dropped} records are lost, the disk of {folder} is full or too slow\n")
+        where = "Foxglove's server" if folder is None else f"the disk of {folder}"
+        sys.stderr.write(f"recording: {recorder.dropped} records are lost, {where} is full or too slow\n")
     if timing is not None:
         timing.write_text(json.dumps(timings.summary(), indent=2) + "\n", encoding="utf-8")
+
+
+def _stores(
+    folder: Path | None,
+    foxglove_port: int | None,
+    settings: "CompanionConfig",
+    keys: "Keys",
+    *,
+    system_id: int,
+    dry_run: bool,
+) -> "list[MessageStore]":
+    """Return where all that is recorded goes."""
+    from companion.recording.folder import recording_store
+    from link.recording.foxglove_server import FoxgloveServer
+
+    stores: list[MessageStore] = []
+    if foxglove_port is not None:
+        server = FoxgloveServer(foxglove_port)
+        sys.stderr.write(f"foxglove: ws://127.0.0.1:{server.port}\n")
+        stores.append(server)
+    if folder is not None:
+        stores.append(recording_store(folder, settings, keys, system_id=system_id, dry_run=dry_run))
+    return stores
 
 
 def _check_writable(path: Path) -> None:

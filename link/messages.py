@@ -68,6 +68,28 @@ class PadSighting(Struct, frozen=True, kw_only=True):
     position_covariance_m2: Matrix3
 
 
+class CameraImage(Struct, frozen=True, kw_only=True):
+    """A picture of the drone's camera, taken at `t_ns` (the middle of its exposure), row by row.
+
+    `encoding` is ROS's name of the pixels (mono8, bgr8, rgb8); a row is `row_bytes` long and begins with its pixels.
+    """
+
+    t_ns: int
+    width_px: int
+    height_px: int
+    encoding: str
+    row_bytes: int
+    data: bytes
+
+
+class CompressedPicture(Struct, frozen=True, kw_only=True):
+    """A picture as a file of the format that `format` names (jpeg, png)."""
+
+    t_ns: int
+    format: str
+    data: bytes
+
+
 class BodyTruth(Struct, frozen=True, kw_only=True):
     """True pose and motion of a body in the simulation: pose in W, velocities in the body frame."""
 

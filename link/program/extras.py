@@ -14,7 +14,9 @@ EXTRAS: Final = {
     "campaign": ("cma", "loky", "polars"),
     "report": ("jinja2", "matplotlib", "plotly"),
     "view": ("viser", "websockets"),
+    "foxglove": ("foxglove",),
     "dask": ("distributed",),
+    "camera": ("cv2", "fpdf", "ruamel"),
 }
 """Extra: the modules that it brings. filterpy is no part of the base since it brings matplotlib along."""
 
