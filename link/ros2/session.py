@@ -180,7 +180,8 @@ class Ros2Session(ZenohSession):
 
     def _into(self, inbox: Inbox, key: str, change: Callable[[bytes], bytes]) -> Callable[[zenoh.Sample], None]:
         def receive(sample: zenoh.Sample) -> None:
-            inbox.put(Sample(key, changed(change, sample.payload.to_bytes()), self._receive_clock_ns()))
+            if inbox.has_room(len(sample.payload)):
+                inbox.put(Sample(key, changed(change, sample.payload.to_bytes()), self._receive_clock_ns()))
 
         return receive
 
