@@ -1,7 +1,6 @@
 """The `pad-detector` command."""
 
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
 
@@ -9,7 +8,6 @@ import typer
 
 from link.errors import UserError
 from link.program.cli import (
-    EXIT_USER_ERROR,
     ConnectOption,
     DroneOption,
     ListenOption,
@@ -21,6 +19,7 @@ from link.program.cli import (
     make_app,
     run_app,
 )
+from link.program.extras import require
 
 app = make_app("See the landing pad by a camera on the drone, and publish where it is.")
 
@@ -32,6 +31,7 @@ BoardOption = Annotated[
 @app.callback()
 def pad_detector() -> None:
     """See the landing pad by a camera on the drone, and publish where it is."""
+    require("camera", "pad-detector")
 
 
 _SourceOption = Annotated[
@@ -140,9 +140,6 @@ def print_board(
 
 def main() -> None:
     """Run the command."""
-    if find_spec("cv2") is None:
-        sys.stderr.write("pad-detector: OpenCV is missing: install decklander[camera]\n")
-        sys.exit(EXIT_USER_ERROR)
     sys.exit(run_app("pad-detector", app))
 
 

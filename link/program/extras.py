@@ -15,6 +15,7 @@ EXTRAS: Final = {
     "report": ("jinja2", "matplotlib", "plotly"),
     "view": ("viser", "websockets"),
     "dask": ("distributed",),
+    "camera": ("cv2", "fpdf"),
 }
 """Extra: the modules that it brings. filterpy is no part of the base since it brings matplotlib along."""
 
