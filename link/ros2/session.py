@@ -16,6 +16,7 @@ from link.messages import Command, CommandReply, PadGeometry
 from link.payloads import json_messages
 from link.payloads.checks import PayloadError
 from link.program.toml_config import load_config
+from link.records import replace
 from link.ros2 import attachment, foreign
 from link.ros2.attachment import Attachment
 from link.ros2.names import (
@@ -33,6 +34,7 @@ from link.ros2.names import (
 from link.ros2.options import Ros2Options
 from link.ros2.routes import Route, changed, routes, topic, trigger, trigger_reply
 from link.ros2.topic_map import PadTopics, TopicMap
+from link.ros2.type_hash import NOT_SUPPORTED
 from link.zenoh.keys import Keys
 from link.zenoh.options import ZenohOptions
 from link.zenoh.session import INBOX_CAPACITY, Alive, Inbox, Sample, ZenohSession, open_library_session
@@ -72,6 +74,7 @@ class Ros2Session(ZenohSession):
     ) -> None:
         super().__init__(session, receive_clock_ns=receive_clock_ns)
         self._domain, self._node, self._keys = domain, node, keys
+        self._has_hashes = topics.distribution != "humble"
         self._routes = routes(keys, topics)
         self._pad = topics.pad
         self._endpoints: dict[str, _Publisher] = {}
@@ -206,7 +209,7 @@ class Ros2Session(ZenohSession):
             kind=kind,
             namespace=namespace,
             node=node,
-            endpoint=endpoint,
+            endpoint=None if endpoint is None else self._written(endpoint),
             qos=qos,
         )
         self._entities += 1
@@ -215,7 +218,11 @@ class Ros2Session(ZenohSession):
         return key
 
     def _data_key(self, endpoint: Endpoint) -> str:
-        return data_key(self._domain, endpoint)
+        return data_key(self._domain, self._written(endpoint))
+
+    def _written(self, endpoint: Endpoint) -> Endpoint:
+        """Return an endpoint as this distribution writes it."""
+        return endpoint if self._has_hashes else replace(endpoint, type_hash=NOT_SUPPORTED)
 
 
 def _transforms_or_none(payload: bytes) -> foreign.Transforms:
