@@ -15,13 +15,13 @@ setup: .venv/.complete
 .venv/.complete: $(LOCK) pyproject.toml
 	rm -rf .venv
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --require-hashes -r $(LOCK)
+	$(BIN)/python -m pip install --quiet --no-deps --require-hashes -r $(LOCK)
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
 	$(BIN)/python -m scenarios.lockstep.warm_up
 	touch $@
 
 demo: .venv/.complete
-	$(BIN)/scenarios run $(SCENARIO) --speed $(SPEED) --seed $(SEED)
+	$(BIN)/scenarios run $(SCENARIO)$(if $(CAMERA),+camera=$(CAMERA)) --speed $(SPEED) --seed $(SEED)
 
 check: lint
 	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "not slow and not wire"

@@ -20,7 +20,7 @@ from link.program.cli import (
     make_app,
     run_app,
 )
-from scenarios.commands import bench, campaign, falsify, faults, fly, fuzz, rare, replay, report, ros2
+from scenarios.commands import bench, camera, campaign, eyes, falsify, faults, fly, fuzz, rare, replay, report, ros2
 from scenarios.commands import view as view_command
 
 app = make_app("Experiments: run landings, score them on ground truth, and report.")
@@ -148,7 +148,7 @@ def command_command(
     return 0 if reply.accepted else 1
 
 
-for command in (campaign, falsify, rare, bench, fuzz, faults, report, replay, fly, view_command, ros2):
+for command in (campaign, falsify, rare, bench, fuzz, faults, report, replay, fly, view_command, ros2, camera, eyes):
     command.register(app)
 
 

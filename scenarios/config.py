@@ -65,6 +65,27 @@ class PatternConfig(DelayConfig):
     dropout_mean_s: Positive = 0.5  # length of one dropout
 
 
+class CameraConfig(DelayConfig):
+    """A camera on the drone, whose rendered frames the detector itself looks at; without light there is none.
+
+    The delay is from the middle of the exposure to the message: 10 ms of reading out, 10 ms of transfer, and the search
+    or the tracking on a small computer.
+    """
+
+    rate_hz: Annotated[float, Field(gt=0.0, le=1000.0)] = 30.0
+    delay_s: NotNegative = 0.06
+    daylight_lx: Annotated[float, Field(ge=0.0, le=150_000.0)] = 0.0  # on level ground
+    lamp_lm: Annotated[float, Field(ge=0.0, le=50_000.0)] = 0.0  # beside the camera, in a cone of 90 degrees
+    sun_elevation_range_rad: tuple[float, float] | None = None  # drawn for each seed; None: overcast, or after sunset
+    is_glossy: bool = False  # the board mirrors the sun
+    dirt_share: Annotated[float, Field(ge=0.0, le=0.5)] = 0.0  # of the board, covered by mud and droppings
+
+    @property
+    def sees(self) -> bool:
+        """Whether there is a camera."""
+        return self.daylight_lx > 0.0 or self.lamp_lm > 0.0
+
+
 class ClockConfig(StrictModel):
     """The vehicle's clock against the drone's; offset and drift are drawn evenly, to either side, for each seed."""
 
@@ -167,6 +188,10 @@ class Scenario(StrictModel):
     description: str
     track: TrackConfig
     sensors: SensorsConfig
+    camera: CameraConfig = CameraConfig()
+    detector: Literal["camera", "model"] = (
+        "camera"  # the noise model of `sensors.pattern`, or the camera if there is one
+    )
     wind: WindConfig = WindConfig()
     link: LinkConfig = LinkConfig()
     vehicle: VehicleConfig = VehicleConfig()
@@ -179,3 +204,8 @@ class Scenario(StrictModel):
     fence_radius_m: Positive = 3000.0  # horizontal, about the datum
     time_limit_s: Positive = 120.0
     disturbed_between_s: tuple[NotNegative, NotNegative] = (12.0, 20.0)  # a gust, outage or origin step begins; drawn
+
+    @property
+    def has_camera(self) -> bool:
+        """Whether the pad is seen in rendered frames."""
+        return self.camera.sees and self.detector == "camera"

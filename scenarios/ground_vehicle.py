@@ -218,7 +218,8 @@ def _drive(simulation: _Simulation, keys: "Keys", open_zenoh: "OpenZenoh") -> No
 
     driven = load_scenario(simulation.scenario)
     seed = run_seed(simulation.scenario, simulation.seed)
-    node = VehicleNode(departing_at_once(driven) if simulation.departs_at_once else driven, seed, keys)
+    driven = departing_at_once(driven) if simulation.departs_at_once else driven
+    node = VehicleNode(driven, seed, keys, has_eyes=False)
     with open_zenoh() as zenoh:
         VehicleLoop(node, keys, zenoh, use_sim_time=simulation.uses_sim_time, timeout_s=simulation.timeout_s).run()
 

@@ -24,6 +24,7 @@ HOMES = {
         "link/payloads/ros_fields.py",
         "link/payloads/ros_motion.py",
         "link/payloads/decklander_msgs.py",
+        "link/payloads/ros_images.py",
         "link/payloads/ros_sensors.py",
         "link/ros2/type_hash.py",
     },
@@ -36,6 +37,8 @@ HOMES = {
     "cma": {"scenarios/falsify/strategy.py"},
     "viser": {f"scenarios/view/{name}.py" for name in ("page", "panel", "scene")},
     "distributed": {"scenarios/processes/dask_workers.py"},
+    "fpdf": {"companion/eyes/pdf.py"},
+    "ruamel": {"companion/eyes/calibration.py"},
 }
 
 
@@ -74,6 +77,20 @@ def test_library_has_one_home(library: str) -> None:
     }
     assert users
     assert users <= HOMES[library]
+
+
+@pytest.mark.slow
+def test_the_eyes_share_nothing_with_the_rest_of_the_companion_but_link() -> None:
+    # a program of its own, which may run on another computer of the drone
+    for path in sources("companion"):
+        names = {
+            node.module
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            if isinstance(node, ast.ImportFrom) and node.module is not None and node.module.startswith("companion.")
+        }
+        is_eyes = path.is_relative_to(ROOT / "companion" / "eyes")
+        of_eyes = {name for name in names if name.split(".")[1] == "eyes"}
+        assert (names - of_eyes if is_eyes else of_eyes) == set(), path
 
 
 def folder_arrows(package: str) -> dict[str, set[str]]:

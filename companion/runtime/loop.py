@@ -13,7 +13,7 @@ from companion.runtime.options import Links, LoopOptions, Timings
 from companion.runtime.own_start import OwnStart
 from companion.runtime.pad_question import PadQuestion
 from companion.runtime.recorded_node import RecordingNode
-from companion.situation.phases import Phase
+from companion.situation.phases import FLYING_PHASES, Phase
 from link.errors import UserError
 from link.mavlink.pinned_peer import PinnedPeer
 from link.mavlink.tlog import TlogFrames, TlogSink
@@ -205,7 +205,8 @@ class _Loop:
             question.ask_anew()
         self._was_alive = alive
         bad, why = question.bad_answers, question.refused_why
-        pad = question.poll(time.monotonic(), asks=alive or self._fix_seen)
+        may_change = self._node.phase not in FLYING_PHASES
+        pad = question.poll(time.monotonic(), asks=alive or self._fix_seen, may_change=may_change)
         self._node.bad_payloads += question.bad_answers - bad
         if question.refused_why != why:
             self._log.warning("the vehicle's description of its pad is refused", why=question.refused_why)

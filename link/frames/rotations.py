@@ -165,3 +165,23 @@ def roll_pitch_yaw_of(q_WB: Numbers) -> Vector3:
     # rounding may carry the sine of a vertical attitude past 1
     pitch = asin(sin_pitch) if abs(sin_pitch) < 1.0 else copysign(0.5 * pi, sin_pitch)
     return (roll, pitch, yaw_of((w, x, y, z)))
+
+
+def matrix_from_quaternion(q_AB: Numbers) -> Array:
+    """Return R_AB (3, 3), which turns B's coordinates into A's."""
+    return np.column_stack([rotate(q_AB, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))])
+
+
+def quaternion_from_matrix(R_AB: Array) -> Quaternion:
+    """Return the unit quaternion, w >= 0, of a rotation matrix (3, 3).
+
+    The largest of its four components comes first, so none is divided by a small one. Source: Shepperd 1978.
+    """
+    (a, b, c), (d, e, f), (g, h, i) = np.asarray(R_AB, np.float64).tolist()
+    choices = (
+        (1.0 + a + e + i, (1.0 + a + e + i, h - f, c - g, d - b)),
+        (1.0 + a - e - i, (h - f, 1.0 + a - e - i, b + d, c + g)),
+        (1.0 - a + e - i, (c - g, b + d, 1.0 - a + e - i, f + h)),
+        (1.0 - a - e + i, (d - b, c + g, f + h, 1.0 - a - e + i)),
+    )
+    return normalized(max(choices, key=lambda choice: choice[0])[1])

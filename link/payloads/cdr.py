@@ -1,14 +1,24 @@
 """Messages to and from the bytes that ROS 2 puts on the wire (CDR), with the encoding that names their type.
 
-Written in little-endian order, read in either. What each field means in ROS is in `link.payloads.ros_sensors` and
-`link.payloads.ros_motion`, imported with the first message. The definitions are those of ROS 2 Humble; on the wire
-they are the same up to Jazzy.
+Written in little-endian order, read in either. What each field means in ROS is in `link.payloads.ros_sensors`,
+`ros_motion` and `ros_images` beside it, imported with the first message. The definitions are those of ROS 2 Humble; on
+the wire they are the same up to Jazzy.
 """
 
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from link.messages import BodyTruth, Fix, FixVelocity, PadSighting, Plan, RotorTruth, VehicleImu
+from link.messages import (
+    BodyTruth,
+    CameraImage,
+    CompressedPicture,
+    Fix,
+    FixVelocity,
+    PadSighting,
+    Plan,
+    RotorTruth,
+    VehicleImu,
+)
 from link.payloads.checks import PayloadError
 from link.program.clock import ClockTick
 
@@ -17,7 +27,18 @@ if TYPE_CHECKING:
 
     from link.payloads.ros_fields import Conversion
 
-Message = Fix | FixVelocity | VehicleImu | PadSighting | BodyTruth | RotorTruth | Plan | ClockTick
+Message = (
+    Fix
+    | FixVelocity
+    | VehicleImu
+    | PadSighting
+    | BodyTruth
+    | RotorTruth
+    | Plan
+    | ClockTick
+    | CameraImage
+    | CompressedPicture
+)
 __all__ = ["ROS_TYPES", "Message", "PayloadError", "decode", "decode_ros", "encode", "encoding_of", "typestore"]
 
 M = TypeVar("M", bound=Message)
@@ -31,6 +52,8 @@ ROS_TYPES: dict[type[object], str] = {
     RotorTruth: "sensor_msgs/msg/JointState",
     Plan: "nav_msgs/msg/Path",
     ClockTick: "rosgraph_msgs/msg/Clock",
+    CameraImage: "sensor_msgs/msg/Image",
+    CompressedPicture: "sensor_msgs/msg/CompressedImage",
 }
 """The ROS 2 type of each message."""
 
@@ -87,6 +110,6 @@ def typestore() -> "Typestore":
 
 @cache
 def _conversions() -> "dict[type[object], Conversion]":
-    from link.payloads import ros_motion, ros_sensors  # noqa: PLC0415 (as above)
+    from link.payloads import ros_images, ros_motion, ros_sensors  # noqa: PLC0415 (as above)
 
-    return ros_sensors.CONVERSIONS | ros_motion.CONVERSIONS
+    return ros_sensors.CONVERSIONS | ros_motion.CONVERSIONS | ros_images.CONVERSIONS

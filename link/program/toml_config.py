@@ -119,7 +119,7 @@ def _is_in(location: Location, table: Mapping[str, Any]) -> bool:
         if node.get(str(part)) is None:
             return False
         node = node[str(part)]
-    return True
+    return bool(location)  # what does not fit as a whole is the file's
 
 
 def _sentence(details: ErrorDetails, location: Location, fields: Fields, source: str, further: int) -> str:

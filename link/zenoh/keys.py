@@ -68,6 +68,21 @@ class Keys:
         return f"{self.namespace}/{self.drone}/pad_pose"
 
     @property
+    def camera_image(self) -> str:
+        """What the drone's camera sees, `link.messages.CameraImage`."""
+        return f"{self.namespace}/{self.drone}/camera/image"
+
+    @property
+    def camera_compressed(self) -> str:
+        """The same as a file, `link.messages.CompressedPicture`."""
+        return f"{self.namespace}/{self.drone}/camera/image/compressed"
+
+    @property
+    def pad_view(self) -> str:
+        """What the detector saw with the pad drawn in, while one listens, `link.messages.CompressedPicture`."""
+        return f"{self.namespace}/{self.drone}/pad_view/compressed"
+
+    @property
     def landing_status(self) -> str:
         """How the landing goes, `link.messages.LandingStatus`."""
         return f"{self.namespace}/{self.drone}/landing/status"

@@ -26,8 +26,15 @@ from scenarios.catalogue.worlds import named_world
 from scenarios.config import Scenario
 
 Table = dict[str, Any]
-_DEFAULT_PRESETS = {"sensors": "rtk", "wind": "calm", "link": "ideal", "vehicle": "car", "system": "default"}
-_PLAIN_OPTIONS = ("firmware", "start")
+_DEFAULT_PRESETS = {
+    "sensors": "rtk",
+    "wind": "calm",
+    "link": "ideal",
+    "vehicle": "car",
+    "system": "default",
+    "camera": "none",
+}
+_PLAIN_OPTIONS = ("firmware", "start", "detector")
 _SUFFIX = ".toml"
 
 

@@ -11,6 +11,7 @@ from scenarios.manual.markdown import block, page
 PROGRAMS: Mapping[str, str] = MappingProxyType(
     {
         "companion": "companion.__main__",
+        "pad-detector": "companion.eyes.__main__",
         "ground-vehicle": "scenarios.ground_vehicle",
         "sim-autopilot": "sim_autopilot.__main__",
         "scenarios": "scenarios.__main__",

@@ -18,6 +18,7 @@ MODULES = {
     "sim-autopilot": "sim_autopilot",
     "ground-vehicle": "scenarios.ground_vehicle",
     "scenarios": "scenarios",
+    "pad-detector": "companion.eyes",
 }
 """The module of each program, for `python -m`."""
 

@@ -9,6 +9,7 @@ Noise: white normal, and first-order Gauss-Markov for a bias; standard deviation
 import heapq
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -156,10 +157,27 @@ class _PatternSensor:
         return -away_flu_m[2] >= range_m * math.cos(self._config.half_field_of_view_rad)
 
 
-class SensorSuite:
-    """All sensors of a scenario, and the samples that are under way."""
+class Detector(Protocol):
+    """What sees the pad from the drone."""
 
-    def __init__(self, config: SensorsConfig, seed: Seed, *, mounting: Mounting, datum: Datum) -> None:
+    schedule: SensorSchedule
+
+    def sample(self, vehicle: VehicleState, drone: BodyTruth, elapsed_s: float) -> PadSighting | None:
+        """Return the sighting at the drone's own time, `elapsed_s` after the sample before; None if it is not seen."""
+
+
+class SensorSuite:
+    """All sensors of a scenario, and the samples that are under way; `detector` is in place of the noise model."""
+
+    def __init__(
+        self,
+        config: SensorsConfig,
+        seed: Seed,
+        *,
+        mounting: Mounting,
+        datum: Datum,
+        detector: Detector | None = None,
+    ) -> None:
         self._queue: list[tuple[int, int, Sample]] = []
         self._count = 0
         self._clock: StampClock | None = None
@@ -173,7 +191,9 @@ class SensorSuite:
             self._on_vehicle.append(_VelocitySensor(config.velocity, seed, mounting=mounting))
         if config.imu is not None:
             self._on_vehicle.append(_ImuSensor(config.imu, seed))
-        self._pattern = None if config.pattern is None else _PatternSensor(config.pattern, seed, mounting=mounting)
+        self._pattern = detector
+        if detector is None and config.pattern is not None:
+            self._pattern = _PatternSensor(config.pattern, seed, mounting=mounting)
 
     def set_clock(self, ahead_s: float) -> None:
         """Set the vehicle's clock ahead by `ahead_s`: what is taken from now on is stamped by it."""

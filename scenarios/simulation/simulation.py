@@ -51,6 +51,7 @@ class Simulation:
         start_ns: UTC at its beginning.
         instant: the autopilot is ready at once.
         publishes_truth: the vehicle's truth is among the publications.
+        has_eyes: the drone's camera is part of it.
     """
 
     def __init__(
@@ -62,8 +63,9 @@ class Simulation:
         *,
         instant: bool = False,
         publishes_truth: bool = True,
+        has_eyes: bool = True,
     ) -> None:
-        self.vehicle = VehicleNode(scenario, seed, keys, publishes_truth=publishes_truth)
+        self.vehicle = VehicleNode(scenario, seed, keys, publishes_truth=publishes_truth, has_eyes=has_eyes)
         settings = sim_autopilot_config(scenario, seed, instant=instant)
         config = autopilot_config(settings)
         own_state = replace(config.own_state, seed=part_seed(seed, "own state"))

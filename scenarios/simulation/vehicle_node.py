@@ -5,13 +5,14 @@ The `ground-vehicle` program, the one-process world and the lockstep campaigns a
 
 import math
 
+from link.errors import UserError
 from link.frames.geodesy import Datum
 from link.messages import BodyTruth, Fix, FixVelocity, PadGeometry, PadSighting, VehicleImu
 from link.payloads import cdr
 from link.zenoh.keys import Keys, Publication
 from scenarios.config import Scenario
 from scenarios.simulation.noise import Seed, named_rng
-from scenarios.simulation.sensors import Mounting, SensorSuite
+from scenarios.simulation.sensors import Detector, Mounting, SensorSuite
 from scenarios.simulation.vehicle import (
     VehicleInputs,
     VehicleMemory,
@@ -35,6 +36,8 @@ class VehicleNode:
         seed: of everything random.
         keys: of the Zenoh contract.
         publishes_truth: where nobody listens to it, leaving it out saves a third of the time.
+        has_eyes: its sensors have the drone's camera among them, where the scenario has one; else that is a program of
+            its own.
 
     Attributes:
         pad: what the `pad` queryable tells.
@@ -43,13 +46,22 @@ class VehicleNode:
         state: where it is, None before the first step.
     """
 
-    def __init__(self, scenario: Scenario, seed: Seed, keys: Keys, *, publishes_truth: bool = True) -> None:
+    def __init__(
+        self, scenario: Scenario, seed: Seed, keys: Keys, *, publishes_truth: bool = True, has_eyes: bool = True
+    ) -> None:
         self.pad: PadGeometry = scenario.vehicle.pad
         self.plan = plan_of(scenario, seed)
         self.memory = VehicleMemory()
         self.state: VehicleState | None = None
         mounting = Mounting(antenna_flu_m=scenario.vehicle.antenna_flu_m, pad_height_m=scenario.vehicle.roof_height_m)
-        self._sensors = SensorSuite(scenario.sensors, seed, mounting=mounting, datum=datum_of(scenario.datum))
+        sensors = scenario.sensors.model_copy(update={"pattern": None}) if scenario.has_camera else scenario.sensors
+        self._sensors = SensorSuite(
+            sensors,
+            seed,
+            mounting=mounting,
+            datum=datum_of(scenario.datum),
+            detector=_camera_of(scenario, seed) if has_eyes else None,
+        )
         self._keys: dict[type[cdr.Message], str] = {
             Fix: keys.fix,
             FixVelocity: keys.fix_velocity,
@@ -89,6 +101,16 @@ class VehicleNode:
     def _publish(self, message: Fix | FixVelocity | VehicleImu | PadSighting | BodyTruth) -> Publication:
         kind = type(message)
         return Publication(key=self._keys[kind], payload=cdr.encode(message), encoding=self._encodings[kind])
+
+
+def _camera_of(scenario: Scenario, seed: Seed) -> Detector | None:
+    if not scenario.has_camera:
+        return None
+    try:
+        from scenarios.simulation.camera_sensor import CameraSensor  # noqa: PLC0415 (OpenCV is an extra)
+    except ImportError as error:
+        raise UserError(f"+camera needs OpenCV ({error}): install decklander[camera]") from None
+    return CameraSensor(scenario, seed)
 
 
 def plan_of(scenario: Scenario, seed: Seed) -> VehiclePlan:

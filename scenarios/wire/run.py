@@ -145,7 +145,26 @@ def _programs(scenario: Scenario, options: RunOptions, endpoint: str) -> list[Pr
             *(("--record", str(folder)) if options.record else ()),
         ],
     }
-    return [Program(name=name, module=MODULES[name], arguments=words) for name, words in arguments.items()]
+    programs = [Program(name=name, module=MODULES[name], arguments=words) for name, words in arguments.items()]
+    return [*programs, *_eyes(scenario, options, endpoint)]
+
+
+def _eyes(scenario: Scenario, options: RunOptions, endpoint: str) -> list[Program]:
+    """Return how the simulated camera and the real detector are started, if the scenario has a camera."""
+    if not scenario.has_camera:
+        return []
+    from scenarios.simulation.camera_files import (  # noqa: PLC0415 (OpenCV is an extra)
+        detector_arguments,
+        write_camera_files,
+    )
+
+    write_camera_files(scenario, options.seed, options.folder)
+    seen = ["camera", str(options.folder / "scenario.toml"), "--seed", str(options.seed), "-e", endpoint]
+    sees = ["run", "--source", "zenoh", *detector_arguments(options.folder), "-e", endpoint]
+    return [
+        Program(name="camera", module=MODULES["scenarios"], arguments=seen),
+        Program(name="pad-detector", module=MODULES["pad-detector"], arguments=sees),
+    ]
 
 
 def _view(options: RunOptions, endpoint: str) -> list[Program]:

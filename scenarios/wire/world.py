@@ -31,8 +31,10 @@ class WorldLoop:
         self, scenario: Scenario, seed: int, keys: Keys, transport: Transport, zenoh: ZenohSession, *, speed: float
     ) -> None:
         start_ns = time.time_ns() // STEP_NS * STEP_NS
-        Simulation(scenario, seed, keys, start_ns).step()  # loads the compiled physics before time starts to count
-        self._simulation = Simulation(scenario, seed, keys, start_ns)
+        Simulation(
+            scenario, seed, keys, start_ns, has_eyes=False
+        ).step()  # loads the compiled physics before time starts to count
+        self._simulation = Simulation(scenario, seed, keys, start_ns, has_eyes=False)
         self._keys = keys
         self._transport = transport
         self._zenoh = zenoh

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import companion.__main__
+import companion.eyes.__main__
 import scenarios.__main__
 import scenarios.ground_vehicle
 import sim_autopilot.__main__
@@ -18,6 +19,7 @@ from tests.integration.programs import Programs
 APPS = {
     "companion": companion.__main__.app,
     "ground-vehicle": scenarios.ground_vehicle.app,
+    "pad-detector": companion.eyes.__main__.app,
     "scenarios": scenarios.__main__.app,
     "sim-autopilot": sim_autopilot.__main__.app,
 }
@@ -33,6 +35,8 @@ FILES = {
     "parameter.toml": "[parameters]\nMPC_XY_VEL_MAXX = 2.0\n",
     "scenario.toml": 'base = "straight_5"\ntime_limits_s = 20.0\n',
     "zenoh.json5": "{ mode: ",
+    "camera.yaml": "image_width: 1280\n",
+    "board.toml": "size_m = [1.0, 1.0]\ntags = [{id = 900, center_m = [0.0, 0.0], side_m = 0.5}]\n",
 }
 
 MISTAKES = [
@@ -67,6 +71,14 @@ MISTAKES = [
     ("companion", "--config kind.toml", ["kind.toml", "guidance.kind", '"mpcc"', "'mpc'"]),
     ("sim-autopilot", "--config wind.toml", ["wind.toml", "'wind.mean_mps'", "'mean_m_s'"]),
     ("sim-autopilot", "--config parameter.toml", ["MPC_XY_VEL_MAXX", "MPC_XY_VEL_MAX"]),
+    # the camera
+    ("pad-detector", "run", ["--calibration"]),
+    ("pad-detector", "run --calibration none.yaml", ["none.yaml", "cannot be read"]),
+    ("pad-detector", "run --calibration camera.yaml", ["camera.yaml", "camera_matrix", "cam0"]),
+    ("pad-detector", "print --board board.toml", ["board.toml", "0 to 586", "900"]),
+    ("pad-detector", "print --size 9", ["--size 9", "0.1 to 5 m"]),
+    ("pad-detector", "print --out none/pad.pdf", ["none/pad.pdf", "--out"]),
+    ("scenarios", "camera straight_5", ["straight_5", "+camera=day"]),
     # options and values
     ("companion", "--stat", ["--stat", "--start"]),
     ("companion", "--timeout -1", ["--timeout", "0"]),

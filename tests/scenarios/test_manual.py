@@ -78,10 +78,12 @@ def test_phase_chart_has_every_phase_and_event_and_is_the_same_each_time() -> No
 
 def test_presets_of_the_page_are_those_that_there_are() -> None:
     rows = re.findall(
-        r"^\| `(sensors|wind|link|vehicle|system)` \| (.*) \|$", (DOCS / "own_scenario.md").read_text(), re.MULTILINE
+        r"^\| `(sensors|wind|link|vehicle|system|camera)` \| (.*) \|$",
+        (DOCS / "own_scenario.md").read_text(),
+        re.MULTILINE,
     )
     assert {section: sorted(re.findall(r"`(\w+)`", cell)) for section, cell in rows} == {
-        section: list_presets(section) for section in ("sensors", "wind", "link", "vehicle", "system")
+        section: list_presets(section) for section in ("sensors", "wind", "link", "vehicle", "system", "camera")
     }
 
 

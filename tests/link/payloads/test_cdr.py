@@ -11,6 +11,8 @@ from pycdr2 import Endianness  # type: ignore[attr-defined]  # it does not list 
 from link.frames.rotations import normalized
 from link.messages import (
     BodyTruth,
+    CameraImage,
+    CompressedPicture,
     Fix,
     FixVelocity,
     PadSighting,
@@ -72,7 +74,11 @@ PLAN = Plan(
     ),
 )
 TICK = ClockTick(t_ns=T_NS)
-MESSAGES: list[Message] = [FIX, FIX_VELOCITY, IMU, SIGHTING, TRUTH, ROTORS, PLAN, TICK]
+IMAGE = CameraImage(
+    t_ns=T_NS, width_px=3, height_px=2, encoding="mono8", row_bytes=4, data=bytes([1, 2, 3, 0, 250, 251, 252, 0])
+)
+COMPRESSED = CompressedPicture(t_ns=T_NS, format="jpeg", data=b"\xff\xd8\xff\xd9")
+MESSAGES: list[Message] = [FIX, FIX_VELOCITY, IMU, SIGHTING, TRUTH, ROTORS, PLAN, TICK, IMAGE, COMPRESSED]
 
 HEADER = ros.Header(stamp=ros.Time(sec=SECONDS, nanosec=NANOSECONDS), frame_id="map")
 ZERO_3 = ros.Vector3(x=0.0, y=0.0, z=0.0)

@@ -1,0 +1,1 @@
+"""The camera program: from the pixels of a frame to where the pad is; of the project it imports only `link`."""

@@ -1,0 +1,149 @@
+"""The `pad-detector` command."""
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from link.errors import UserError
+from link.program.cli import (
+    ConnectOption,
+    DroneOption,
+    InsecureOption,
+    ListenOption,
+    ModeOption,
+    MulticastOption,
+    NamespaceOption,
+    VehicleOption,
+    ZenohConfigOption,
+    make_app,
+    run_app,
+)
+from link.program.extras import require
+
+app = make_app("See the landing pad by a camera on the drone, and publish where it is.")
+
+BoardOption = Annotated[
+    Path | None, typer.Option("--board", metavar="FILE", help="The board, in TOML [default: 1.5 m, ids 0 to 62].")
+]
+
+
+@app.callback()
+def pad_detector() -> None:
+    """See the landing pad by a camera on the drone, and publish where it is."""
+    require("camera", "pad-detector")
+
+
+_SourceOption = Annotated[
+    str,
+    typer.Option(
+        "--source",
+        metavar="CAMERA",
+        help="/dev/videoN, rtsp://HOST/PATH, a video file, a folder of pictures, or zenoh.",
+    ),
+]
+_CalibrationOption = Annotated[
+    Path,
+    typer.Option("--calibration", metavar="FILE", help="Of the camera: ROS camera_info or kalibr's camchain, YAML."),
+]
+_MountingOption = Annotated[
+    Path | None,
+    typer.Option("--mounting", metavar="FILE", help="Of the camera on the drone, TOML [default: straight down]."),
+]
+_SizeOption = Annotated[
+    tuple[int, int] | None,
+    typer.Option("--size", metavar="WIDTH HEIGHT", help="Pixels to ask of the camera [default: the calibration's]."),
+]
+_LatencyOption = Annotated[
+    float,
+    typer.Option(
+        "--latency", min=0.0, max=2.0, help="Seconds from the middle of an exposure to the picture's arrival."
+    ),
+]
+_RateOption = Annotated[
+    float, typer.Option("--rate", min=0.1, max=1000.0, help="Of a folder's pictures whose names are no times, in Hz.")
+]
+
+
+@app.command("run")
+def run_detector(
+    calibration: _CalibrationOption,
+    source: _SourceOption = "/dev/video0",
+    board: BoardOption = None,
+    mounting: _MountingOption = None,
+    size: _SizeOption = None,
+    latency: _LatencyOption = 0.03,
+    rate: _RateOption = 30.0,
+    namespace: NamespaceOption = "decklander",
+    vehicle: VehicleOption = "vehicle",
+    drone: DroneOption = "drone",
+    mode: ModeOption = None,
+    connect: ConnectOption = None,
+    listen: ListenOption = None,
+    multicast: MulticastOption = None,
+    zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
+) -> None:
+    """Look at a camera's frames and publish where the pad is."""
+    from companion.eyes.board import load_board
+    from companion.eyes.calibration import load_calibration
+    from companion.eyes.loop import EyesLoop
+    from companion.eyes.mounting import load_mounting
+    from companion.eyes.node import EyesNode
+    from companion.eyes.opening import SourceOptions, open_source
+    from companion.eyes.sight import SightSystem
+    from link.zenoh.keys import Keys
+    from link.zenoh.options import zenoh_options
+    from link.zenoh.session import open_session
+
+    keys = Keys(namespace, vehicle, drone)
+    camera = load_calibration(calibration)
+    system = SightSystem(camera=camera, mounting=load_mounting(mounting), board=load_board(board))
+    options = SourceOptions(size_px=size or camera.size_px, latency_s=latency, rate_hz=rate)
+    with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)) as zenoh:
+        frames = open_source(source, options, keys, zenoh)
+        try:
+            EyesLoop(EyesNode(system, keys), frames, keys, zenoh).run()
+        finally:
+            frames.close()
+
+
+@app.command("print")
+def print_board(
+    out: Annotated[Path, typer.Option("--out", metavar="FILE", help="Write the PDF here.")] = Path("pad.pdf"),
+    board: BoardOption = None,
+    size: Annotated[
+        float | None, typer.Option("--size", metavar="M", help="A nested board of this side in place of --board.")
+    ] = None,
+    first_id: Annotated[int, typer.Option("--first-id", min=0, help="With --size: the board's lowest id.")] = 0,
+    save_board: Annotated[
+        Path | None, typer.Option("--save-board", metavar="FILE", help="Write the board here, for `run --board`.")
+    ] = None,
+) -> None:
+    """Draw the board as a PDF in true size, with a ruler to check the print by."""
+    from companion.eyes.board import load_board, nested_board
+    from companion.eyes.pdf import write_pdf
+    from link.program.toml_config import dump_toml
+
+    if size is not None and board is not None:
+        raise UserError("--size makes a board and --board names one: give one of them")
+    if size is not None and not 0.1 <= size <= 5.0:
+        raise UserError(f"--size {size:g} is not from 0.1 to 5 m")
+    config = load_board(board).config if size is None else nested_board(size, first_id)
+    write_pdf(config, out)
+    if save_board is not None:
+        try:
+            save_board.write_text(dump_toml(config), encoding="utf-8")
+        except OSError as error:
+            raise UserError(f"{save_board}: cannot be written ({error.strerror})") from None
+    sys.stdout.write(f"{out}: {config.size_m[0]:g} x {config.size_m[1]:g} m, {len(config.tags)} tags\n")
+
+
+def main() -> None:
+    """Run the command."""
+    sys.exit(run_app("pad-detector", app))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,149 @@
+"""The board on the pad: square tags of one family, each with its own id, at known places.
+
+Frame P: origin in the middle of the board, x forward along the vehicle, y left, z up; lengths in metres.
+A tag's upper edge, as it is printed, points forward.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import resources
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from companion.eyes.family import CELLS, ids_of
+from link.errors import UserError
+from link.program.toml_config import StrictModel, load_config
+
+Array = NDArray[np.float64]
+Family = Literal["36h11"]
+Length = Annotated[float, Field(gt=0.0, le=10.0)]
+Place = Annotated[float, Field(ge=-10.0, le=10.0)]
+
+_UNIT_CORNERS = np.array([[0.5, 0.5], [0.5, -0.5], [-0.5, -0.5], [-0.5, 0.5]])  # upper left, then clockwise
+
+
+class TagConfig(StrictModel):
+    """One tag; of several that overlap the later one is on top, within a cell of the other."""
+
+    id: Annotated[int, Field(ge=0)]
+    center_m: tuple[Place, Place]  # forward and left of the board's middle
+    side_m: Length  # of the black square
+
+
+class BoardConfig(StrictModel):
+    """A board as its file has it."""
+
+    family: Family = "36h11"  # of AprilTag
+    size_m: tuple[Length, Length]  # of the white plate: along and across the vehicle
+    tags: tuple[TagConfig, ...]
+
+    @model_validator(mode="after")
+    def _check_tags(self) -> "BoardConfig":
+        ids = [tag.id for tag in self.tags]
+        if not ids:
+            raise ValueError("a board needs at least one tag")
+        if len(set(ids)) < len(ids):
+            raise ValueError(f"two tags have the id {next(one for one in ids if ids.count(one) > 1)}")
+        if max(ids) >= ids_of(self.family):
+            raise ValueError(f"the family {self.family} has the ids 0 to {ids_of(self.family) - 1}, not {max(ids)}")
+        for tag in self.tags:
+            for center_m, size_m in zip(tag.center_m, self.size_m, strict=True):
+                if abs(center_m) + 0.5 * tag.side_m > 0.5 * size_m:
+                    raise ValueError(f"the tag {tag.id} reaches beyond the board's edge")
+        return self
+
+
+@dataclass(frozen=True)
+class Board:
+    """A board, ready to be looked for.
+
+    Attributes:
+        config: what it is made of.
+    """
+
+    config: BoardConfig
+
+    @cached_property
+    def corners_m(self) -> dict[int, Array]:
+        """Of each id the corners (4, 3) in P: upper left as printed, then clockwise seen from above."""
+        return {tag.id: _corners(tag) for tag in self.config.tags}
+
+    @cached_property
+    def outline_m(self) -> Array:
+        """The corners (4, 3) of the plate in P, forward left first, then clockwise seen from above."""
+        return np.column_stack([_UNIT_CORNERS * np.array(self.config.size_m), np.zeros(4)])
+
+
+def _corners(tag: TagConfig) -> Array:
+    return np.column_stack([np.array(tag.center_m) + tag.side_m * _UNIT_CORNERS, np.zeros(4)])
+
+
+def load_board(path: Path | None) -> Board:
+    """Return the board in a TOML file, the default one (1.5 m) for None.
+
+    Raises:
+        UserError: the file cannot be read or does not fit.
+    """
+    if path is not None:
+        return Board(load_config(path, BoardConfig))
+    with resources.as_file(resources.files("companion.eyes") / "boards" / "default.toml") as default:
+        return Board(load_config(default, BoardConfig))
+
+
+_GRID = 8  # cells of the large tag along a side, its border included
+_LARGE_SHARE = 0.8  # of the board's side: a white margin of a cell's width is left for it to be told by
+_MIDDLE_SHARE = 0.56  # of the large tag's cell
+_SMALL_SHARE = 0.226
+_CORE = 2  # cells to each side of the middle in which the small tags are
+
+
+def nested_board(size_m: float, first_id: int = 0) -> BoardConfig:
+    """Return a square board with one large tag, in whose inner cells smaller ones stand.
+
+    The large tag's cell is read by its majority, which a smaller tag and its white surround leave. For a board of 1.5 m
+    the sides are 1.2 m, 0.084 m and 0.034 m. Of a camera with 640 pixels a radian, which reads tags from 24 pixels
+    on, that is for 32 m, 2.2 m and 0.9 m; the large one leaves the picture below 1.1 m.
+
+    Args:
+        size_m: of the plate's side.
+        first_id: the ids are this one and those that follow; boards that may be seen together need different ones.
+
+    Raises:
+        UserError: there are not that many ids.
+    """
+    large_m = _LARGE_SHARE * size_m
+    cell_m = large_m / _GRID
+    found = [((0.0, 0.0), large_m)]
+    for row in range(1, _GRID - 1):
+        for column in range(1, _GRID - 1):
+            center_m = ((0.5 * (_GRID - 1) - row) * cell_m, (0.5 * (_GRID - 1) - column) * cell_m)
+            found.extend(_cell_tags(row, column, center_m, cell_m))
+    if first_id + len(found) > ids_of("36h11"):
+        raise UserError(f"a board needs {len(found)} ids and there are {ids_of('36h11')}: begin with a lower one")
+    tags = (
+        TagConfig(id=first_id + number, center_m=(round(x_m, 5), round(y_m, 5)), side_m=round(side_m, 5))
+        for number, ((x_m, y_m), side_m) in enumerate(found)
+    )
+    return BoardConfig(size_m=(size_m, size_m), tags=tuple(tags))
+
+
+def _cell_tags(
+    row: int, column: int, center_m: tuple[float, float], cell_m: float
+) -> list[tuple[tuple[float, float], float]]:
+    """Return the tags within a cell of the large one, places and sides: four small ones, a middle one, or none."""
+    middle = 0.5 * (_GRID - 1)
+    is_core = max(abs(row - middle), abs(column - middle)) < _CORE
+    if is_core and (row + 2 * column) % 4:
+        quarter_m = 0.25 * cell_m
+        shifts = ((1, 1), (1, -1), (-1, 1), (-1, -1))
+        return [((center_m[0] + a * quarter_m, center_m[1] + b * quarter_m), _SMALL_SHARE * cell_m) for a, b in shifts]
+    if is_core or (row + column) % 2:
+        return [(center_m, _MIDDLE_SHARE * cell_m)]
+    return []
+
+
+__all__ = ["CELLS", "Board", "BoardConfig", "TagConfig", "load_board", "nested_board"]

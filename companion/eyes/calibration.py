@@ -1,0 +1,119 @@
+"""Calibrations of cameras from files: ROS camera_info, as camera_calibration writes it, and kalibr's camchain."""
+
+from collections.abc import Callable
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
+
+from companion.eyes.camera import Camera, Model
+from link.errors import UserError
+
+_ROS_MODELS: dict[str, Model] = {
+    "plumb_bob": "pinhole",
+    "rational_polynomial": "pinhole",
+    "equidistant": "fisheye",
+    "fisheye": "fisheye",
+}
+_KALIBR_MODELS: dict[str, Model] = {"radtan": "pinhole", "none": "pinhole", "equidistant": "fisheye", "equi": "fisheye"}
+_ROS_MODEL_OF_COUNT = {
+    0: "plumb_bob",
+    4: "plumb_bob",
+    5: "plumb_bob",
+    8: "rational_polynomial",
+    12: "rational_polynomial",
+    14: "rational_polynomial",
+}
+_COEFFICIENTS: dict[Model, tuple[int, ...]] = {"pinhole": (0, 4, 5, 8, 12, 14), "fisheye": (4,)}
+
+
+def load_calibration(path: Path) -> Camera:
+    """Return the camera that a file describes.
+
+    Raises:
+        UserError: the file cannot be read, or is neither of the two formats.
+    """
+    try:
+        table = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read ({error.strerror})") from None
+    except (YAMLError, UnicodeDecodeError, ValueError) as error:
+        raise UserError(f"{path}: no YAML ({' '.join(str(error).split())[:120]})") from None
+    if isinstance(table, dict) and "camera_matrix" in table:
+        return _read(path, table, _from_ros)
+    if isinstance(table, dict) and isinstance(table.get("cam0"), dict):
+        return _read(path, table["cam0"], _from_kalibr)
+    raise UserError(f"{path}: no calibration: it needs camera_matrix, as ROS has it, or cam0, as kalibr has it")
+
+
+def check_size(camera: Camera, size_px: tuple[int, int]) -> None:
+    """Check that a picture is of the size for which the camera was calibrated.
+
+    Raises:
+        UserError: it is another one.
+    """
+    if size_px != camera.size_px:
+        raise UserError(
+            "the camera gives {} x {} pixels and the calibration is for {} x {}: set --size, or calibrate anew".format(
+                *size_px, *camera.size_px
+            )
+        )
+
+
+def _read(path: Path, table: dict[str, Any], convert: Callable[[dict[str, Any]], Camera]) -> Camera:
+    try:
+        return convert(table)
+    except KeyError as error:
+        raise UserError(f"{path}: key {error} is missing") from None
+    except (TypeError, ValueError, AttributeError) as error:
+        raise UserError(f"{path}: {' '.join(str(error).split())}") from None
+
+
+def _from_ros(table: dict[str, Any]) -> Camera:
+    matrix = np.array(table["camera_matrix"]["data"], np.float64).reshape(3, 3)
+    model = _known(_ROS_MODELS, str(table["distortion_model"]))
+    size_px = (int(table["image_width"]), int(table["image_height"]))
+    return _camera(model, matrix, table["distortion_coefficients"]["data"], size_px)
+
+
+def _from_kalibr(table: dict[str, Any]) -> Camera:
+    if table["camera_model"] != "pinhole":
+        raise ValueError(f"camera_model {table['camera_model']!r} is not known; pinhole is")
+    fx, fy, cx, cy = (float(value) for value in table["intrinsics"])
+    matrix = np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
+    width, height = (int(value) for value in table["resolution"])
+    return _camera(
+        _known(_KALIBR_MODELS, str(table["distortion_model"])), matrix, table["distortion_coeffs"], (width, height)
+    )
+
+
+def _known(models: dict[str, Model], name: str) -> Model:
+    if name not in models:
+        raise ValueError(f"distortion_model {name!r} is not known; {', '.join(models)} are")
+    return models[name]
+
+
+def _camera(model: Model, matrix: np.ndarray[Any, Any], coefficients: Any, size_px: tuple[int, int]) -> Camera:
+    distortion = np.array(coefficients, np.float64).ravel()
+    if len(distortion) not in _COEFFICIENTS[model]:
+        raise ValueError(f"{len(distortion)} distortion coefficients do not fit the model {model}")
+    numbers = [*matrix.ravel().tolist(), *distortion.tolist()]
+    if not all(isfinite(number) for number in numbers) or min(matrix[0, 0], matrix[1, 1]) <= 0.0 or min(size_px) <= 0:
+        raise ValueError("focal lengths and size must be above 0, and all numbers finite")
+    return Camera(model=model, matrix=matrix, distortion=distortion, size_px=size_px)
+
+
+def dump_calibration(camera: Camera) -> str:
+    """Return the camera as ROS's camera_info file has it."""
+    width, height = camera.size_px
+    model = "equidistant" if camera.model == "fisheye" else _ROS_MODEL_OF_COUNT[len(camera.distortion)]
+    matrix, distortion = camera.matrix.ravel().tolist(), camera.distortion.tolist()
+    return (
+        f"image_width: {width}\nimage_height: {height}\ncamera_name: camera\n"
+        f"camera_matrix: {{rows: 3, cols: 3, data: {matrix}}}\n"
+        f"distortion_model: {model}\n"
+        f"distortion_coefficients: {{rows: 1, cols: {len(distortion)}, data: {distortion}}}\n"
+    )

@@ -1,0 +1,106 @@
+"""Where in the picture the edges of tags are, found along short lines across where they are expected.
+
+Model: a tag's black square is seen with its edges at the projection of its sides; shades rise outwards. Along the
+normal of each edge the shades are sampled, and the edge is where they rise most, to a fraction of a sample by a
+parabola.
+Source: the RAPiD tracker (Harris 1990), with known places in 3-D and one distance for each point.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from companion.eyes.camera import Camera
+from companion.eyes.picture import Part
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+_POINTS_MAX = 12  # along an edge
+_POINT_SPACING_PX = 3.0  # at least: what one pixel's noise moves is one point
+_HALF_SAMPLES = 7  # to either side of the expected edge
+_END_SHARE = 0.06  # of an edge at either end, where the corner rounds it off
+_BASE = 2  # samples to either side over which the shades' rise is taken
+_RISE_MIN = 5.0  # shades; less is noise
+
+
+class EdgePoints(NamedTuple):
+    """Points on the edges of tags.
+
+    Attributes:
+        places_m: (N, 3) in P.
+        outwards_m: (N, 3) unit vectors in P, from the tag outwards.
+        reach_m: (N,) how far across the edge may be looked for: no farther than the next change of colour.
+        tags: (N,) index of the tag.
+    """
+
+    places_m: Array
+    outwards_m: Array
+    reach_m: Array
+    tags: NDArray[np.int64]
+
+
+def edge_points(corners_m: list[Array], sides_px: list[float], cells: int) -> EdgePoints:
+    """Return the points of some tags: corners (4, 3) in P, and how many pixels their sides are long about."""
+    places, outwards, reaches, tags = [], [], [], []
+    for index, (corners, side_px) in enumerate(zip(corners_m, sides_px, strict=True)):
+        count = int(np.clip(side_px / _POINT_SPACING_PX, 3, _POINTS_MAX))
+        shares = np.linspace(_END_SHARE, 1.0 - _END_SHARE, count)[:, None]
+        center, side_m = corners.mean(axis=0), float(np.linalg.norm(corners[1] - corners[0]))
+        for begin, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+            places.append(begin + shares * (end - begin))
+            outward = 0.5 * (begin + end) - center
+            outwards.append(np.tile(outward / np.linalg.norm(outward), (count, 1)))
+            reaches.append(np.full(count, side_m / cells))
+            tags.append(np.full(count, index))
+    return EdgePoints(np.concatenate(places), np.concatenate(outwards), np.concatenate(reaches), np.concatenate(tags))
+
+
+class Crossings(NamedTuple):
+    """Where the edges are.
+
+    Attributes:
+        distance_px: (N,) from the expected place outwards.
+        slopes: (N, 6) how the expected place moves outwards with the pose: rotation vector, then translation.
+        is_seen: (N,) whether an edge was found there.
+    """
+
+    distance_px: Array
+    slopes: Array
+    is_seen: Flags
+
+
+def find_crossings(
+    part: Part, camera: Camera, points: EdgePoints, pose: tuple[Array, Array], reach_max_px: float
+) -> Crossings:
+    """Return where the edges are.
+
+    Args:
+        part: of the picture.
+        camera: that took it.
+        points: on the edges.
+        pose: rotation vector and translation of P in C, about.
+        reach_max_px: how far to look, where the points' own reach allows it.
+    """
+    pixels, slopes = camera.pixels(points.places_m, *pose)
+    beyond, _ = camera.pixels(points.places_m + points.outwards_m * points.reach_m[:, None], *pose)
+    across = beyond - pixels
+    reach_px = np.hypot(across[:, 0], across[:, 1])
+    normals = across / np.maximum(reach_px, 1e-9)[:, None]
+    step_px = np.minimum(0.9 * reach_px, reach_max_px) / _HALF_SAMPLES
+    offsets = np.arange(-_HALF_SAMPLES, _HALF_SAMPLES + 1) * step_px[:, None]
+    at = pixels[:, None, :] + offsets[:, :, None] * normals[:, None, :]
+    inside = part.holds(at[:, [0, -1]]).all(axis=1)
+    profiles = part.sample(at)
+    rise = profiles[:, 2 * _BASE :] - profiles[:, : -2 * _BASE]
+    peak = np.argmax(rise, axis=1)
+    index = np.arange(len(rise))
+    at_peak = rise[index, peak]
+    within = (peak > 0) & (peak < rise.shape[1] - 1)
+    before, after = rise[index, np.maximum(peak - 1, 0)], rise[index, np.minimum(peak + 1, rise.shape[1] - 1)]
+    bend = before - 2.0 * at_peak + after
+    fraction = np.where(bend < 0.0, 0.5 * (before - after) / np.where(bend < 0.0, bend, -1.0), 0.0)
+    distance_px = (peak + fraction - (_HALF_SAMPLES - _BASE)) * step_px
+    is_seen = inside & within & (at_peak >= _RISE_MIN)
+    return Crossings(distance_px, np.einsum("nk,nkj->nj", normals, slopes), is_seen)

@@ -1,0 +1,66 @@
+"""Frames from a folder of pictures, one after the other."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from companion.eyes.frames import Captured
+from link.errors import UserError
+from link.units import NS_PER_S
+
+_SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm"}
+_STAMP_DIGITS = 15  # and more are a stamp in nanoseconds, as EuRoC's and kalibr's folders have them
+
+
+class FolderSource:
+    """The pictures of a folder in the order of their names, each as soon as it is asked for.
+
+    A name that is a number of nanoseconds is the picture's time; others follow each other at a rate.
+
+    Args:
+        folder: of the pictures.
+        start_ns: time of the first one, where names tell none.
+        rate_hz: of those.
+
+    Raises:
+        UserError: there is no picture in it.
+    """
+
+    is_live = False
+
+    def __init__(self, folder: Path, *, start_ns: int, rate_hz: float) -> None:
+        self.name = str(folder)
+        self._files = sorted(path for path in folder.iterdir() if path.suffix.lower() in _SUFFIXES)
+        if not self._files:
+            raise UserError(f"{folder}: there is no picture in it ({', '.join(sorted(_SUFFIXES))})")
+        self._start_ns = start_ns
+        self._period_ns = NS_PER_S / rate_hz
+        self._next = 0
+        self.unreadable: list[str] = []
+
+    def take(self, timeout_s: float) -> Captured | None:  # noqa: ARG002 (a file is there at once)
+        """Return the next picture; one that cannot be read is passed over, and named in `unreadable`."""
+        while self._next < len(self._files):
+            path, index = self._files[self._next], self._next
+            self._next += 1
+            shades = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
+            if shades is not None:
+                return Captured(t_ns=self._time_of(path, index), shades=np.asarray(shades, np.uint8))
+            self.unreadable.append(path.name)
+        return None
+
+    def _time_of(self, path: Path, index: int) -> int:
+        if path.stem.isdigit() and len(path.stem) >= _STAMP_DIGITS:
+            return int(path.stem)
+        return self._start_ns + round(index * self._period_ns)
+
+    def has_ended(self) -> bool:
+        """Return whether the last picture was taken."""
+        return self._next >= len(self._files)
+
+    def restart(self) -> None:
+        """Do nothing: files do not stop."""
+
+    def close(self) -> None:
+        """Do nothing: each file is closed once it is read."""

@@ -1,0 +1,130 @@
+"""The loop of the detector: a source of frames and Zenoh around the node, nothing else."""
+
+import signal
+import time
+from dataclasses import dataclass
+
+import structlog
+
+from companion.eyes.frames import Source
+from companion.eyes.node import EyesNode
+from companion.eyes.watch import CameraWatch, Failure, failure_of, note_frame
+from link.errors import UserError
+from link.messages import CompressedPicture, PadGeometry
+from link.payloads import cdr, json_messages
+from link.payloads.checks import PayloadError
+from link.program.clock import spare_present_objects
+from link.program.service import Service
+from link.zenoh.inbox import Inbox
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohSession
+
+_WAIT_S = 0.1
+_RESTART_EVERY_NS = 1_000_000_000
+_ASK_EVERY_NS = 1_000_000_000
+_OWN = "own"
+
+
+@dataclass(slots=True)
+class _PadQuestion:
+    answers: Inbox | None = None
+    asked_ns: int = 0
+    is_answered: bool = False
+
+
+class EyesLoop:
+    """Looks at each frame and publishes what it shows, until a signal comes or a file ends.
+
+    Args:
+        node: the detector.
+        source: of frames.
+        keys: of the Zenoh contract.
+        zenoh: an open session.
+    """
+
+    def __init__(self, node: EyesNode, source: Source, keys: Keys, zenoh: ZenohSession) -> None:
+        self._node = node
+        self._source = source
+        self._keys = keys
+        self._zenoh = zenoh
+        self._own = zenoh.subscribe(keys.record(_OWN))
+        self._view_encoding = cdr.encoding_of(CompressedPicture)
+        self._question = _PadQuestion()
+        self._failed: Failure | None = None
+        self._restarted_ns = 0
+        self._stopping = False
+        self._service = Service()
+        self._log = structlog.get_logger("pad-detector")
+
+    def run(self) -> None:
+        """Run until a signal comes.
+
+        Raises:
+            UserError: frames are not of the calibration's size, or the board is not that of the vehicle's pad.
+        """
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self._stop)
+        spare_present_objects()
+        self._log.info("ready", source=self._source.name)
+        self._service.ready()
+        now_ns = time.monotonic_ns()
+        watch = CameraWatch(came_ns=now_ns, changed_ns=now_ns)
+        while not self._stopping and not self._source.has_ended():
+            watch = self._turn(watch)
+        self._service.stopping()
+        self._service.close()
+        counts = self._node.counts
+        self._log.info("stopped", frames=counts.frames, seen=counts.seen, tracked=counts.tracked)
+
+    def _stop(self, *_: object) -> None:
+        self._stopping = True
+
+    def _turn(self, watch: CameraWatch) -> CameraWatch:
+        """Wait for a frame, look at it, publish."""
+        captured = self._source.take(_WAIT_S)
+        for sample in self._own.take():
+            self._node.receive_own(sample.payload)
+        now_ns = time.monotonic_ns()
+        self._service.alive(now_ns)
+        if captured is not None:
+            watch = note_frame(watch, captured.shades, now_ns)
+            shows = self._zenoh.is_heard(self._keys.pad_view, self._view_encoding)
+            for publication in self._node.look(captured, shows=shows):
+                self._zenoh.publish(publication.key, publication.payload, publication.encoding)
+        for line in self._node.take_news():
+            self._log.info(line)
+        self._ask_for_pad(now_ns)
+        return self._look_after(watch, now_ns) if self._source.is_live else watch
+
+    def _look_after(self, watch: CameraWatch, now_ns: int) -> CameraWatch:
+        """Say when the camera fails and when it is back, and start it again."""
+        failure = failure_of(watch, now_ns)
+        if failure is not self._failed:
+            if failure is None:
+                self._log.info("camera is back", source=self._source.name)
+            else:
+                self._log.warning("camera failed", source=self._source.name, why=failure.value)
+            self._failed = failure
+        if failure is not None and now_ns - self._restarted_ns >= _RESTART_EVERY_NS:
+            self._restarted_ns = now_ns
+            try:
+                self._source.restart()
+            except UserError as error:
+                self._log.warning("camera cannot be started", why=str(error))
+        return watch
+
+    def _ask_for_pad(self, now_ns: int) -> None:
+        """Ask the vehicle for its pad until it has told, and compare it with the board."""
+        question = self._question
+        if question.is_answered:
+            return
+        for sample in () if question.answers is None else question.answers.take():
+            try:
+                self._node.receive_pad(json_messages.decode(PadGeometry, sample.payload))
+            except PayloadError:
+                self._node.counts.bad_payloads += 1
+            else:
+                question.is_answered = True
+        if not question.is_answered and now_ns - question.asked_ns >= _ASK_EVERY_NS:
+            question.asked_ns = now_ns
+            question.answers = self._zenoh.ask(self._keys.pad, b"", _ASK_EVERY_NS * 1e-9)

@@ -1,0 +1,121 @@
+"""The detector without I/O: frames and the companion's own state in, Zenoh payloads and news out."""
+
+from dataclasses import dataclass, field
+
+from companion.eyes.annotation import annotate, jpeg_of
+from companion.eyes.attitude import Attitude, attitude_at
+from companion.eyes.calibration import check_size
+from companion.eyes.frames import Captured
+from companion.eyes.picture import WholePicture
+from companion.eyes.sight import Frame, Sight, SightMemory, SightSystem, sight_step
+from link.errors import UserError
+from link.messages import BodyTruth, CompressedPicture, PadGeometry, PadSighting
+from link.payloads import cdr
+from link.payloads.checks import PayloadError
+from link.zenoh.keys import Keys, Publication
+
+_HISTORY = 32  # attitudes: a second and more of what the companion tells
+_SIZE_SPARE = 1.02  # by which a board may be larger than the pad: what tape measures
+
+
+@dataclass(slots=True)
+class Counts:
+    """What became of the frames."""
+
+    frames: int = 0
+    seen: int = 0
+    tracked: int = 0
+    bad_payloads: int = 0
+
+
+@dataclass(slots=True)
+class _News:
+    foreign_ids: set[int] = field(default_factory=set)
+    is_seen: bool = False
+    lines: list[str] = field(default_factory=list)
+
+
+class EyesNode:
+    """Sees the pad in one frame after the other.
+
+    Args:
+        system: camera, mounting and board.
+        keys: of the Zenoh contract.
+    """
+
+    def __init__(self, system: SightSystem, keys: Keys) -> None:
+        self.counts = Counts()
+        self._system = system
+        self._keys = keys
+        self._memory = SightMemory()
+        self._attitudes: tuple[Attitude, ...] = ()
+        self._news = _News()
+
+    def receive_own(self, payload: bytes) -> None:
+        """Take what the companion tells of the drone; bad bytes are counted."""
+        try:
+            own = cdr.decode(BodyTruth, payload)
+        except PayloadError:
+            self.counts.bad_payloads += 1
+            return
+        if self._attitudes and own.t_ns <= self._attitudes[-1].t_ns:
+            self._attitudes = ()  # its clock was set back
+        attitude = Attitude(t_ns=own.t_ns, orientation_wxyz=own.orientation_wxyz)
+        self._attitudes = (*self._attitudes[1 - _HISTORY :], attitude)
+
+    def receive_pad(self, pad: PadGeometry) -> None:
+        """Check the vehicle's description of its pad against the board.
+
+        Raises:
+            UserError: the board is larger than the pad that it should be on.
+        """
+        board_m = self._system.board.config.size_m
+        if any(own > _SIZE_SPARE * told for own, told in zip(board_m, pad.size_m, strict=True)):
+            raise UserError(
+                "the board is {:g} x {:g} m and the vehicle's pad {:g} x {:g} m: give the board that is on it by "
+                "--board, or correct the vehicle's size_m".format(*board_m, *pad.size_m)
+            )
+
+    def look(self, captured: Captured, *, shows: bool) -> list[Publication]:
+        """Return what a frame brings: a sighting, and with `shows` the frame with it drawn in.
+
+        Raises:
+            UserError: the frame's size is not the calibration's.
+        """
+        check_size(self._system.camera, captured.size_px)
+        frame = Frame(
+            t_ns=captured.t_ns,
+            picture=WholePicture(captured.shades),
+            orientation_wxyz=attitude_at(self._attitudes, captured.t_ns),
+        )
+        self._memory, sight = sight_step(self._memory, frame, self._system)
+        self._count(sight)
+        found: list[Publication] = []
+        if sight.sighting is not None:
+            payload = cdr.encode(sight.sighting)
+            found.append(Publication(self._keys.pad_pose, payload, cdr.encoding_of(PadSighting)))
+        if shows:
+            drawn = jpeg_of(annotate(captured.shades, sight, self._system))
+            shown = CompressedPicture(t_ns=captured.t_ns, format="jpeg", data=drawn)
+            found.append(Publication(self._keys.pad_view, cdr.encode(shown), cdr.encoding_of(CompressedPicture)))
+        return found
+
+    def _count(self, sight: Sight) -> None:
+        counts, news = self.counts, self._news
+        counts.frames += 1
+        counts.seen += sight.sighting is not None
+        counts.tracked += sight.tracked
+        if (sight.sighting is not None) != news.is_seen:
+            news.is_seen = sight.sighting is not None
+            news.lines.append("pad seen" if news.is_seen else "pad lost")
+        unknown = sorted(sight.foreign_ids - news.foreign_ids)
+        if unknown:
+            news.foreign_ids |= sight.foreign_ids
+            news.lines.append(
+                f"tags {unknown} are seen that are not on the board: is this the --board that was printed?"
+            )
+
+    def take_news(self) -> list[str]:
+        """Return what has happened since it was asked last."""
+        lines, self._news.lines = self._news.lines, []
+        return lines

@@ -1,0 +1,171 @@
+"""The pose of the board in the camera: from corners without a guess, and from edges with one.
+
+Without a guess: IPPE (Collins and Bartoli 2014) gives both poses that explain the corners of a plane; seen from far
+away the two differ by a tilt to either side. With one: the distances of the edges from where they are expected are
+brought to zero by Gauss-Newton, damped as by Levenberg and Marquardt, each weighted as by Huber, and looked for anew
+each time. A pose is the rotation vector and the translation of P in C.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from companion.eyes.board import Board
+from companion.eyes.camera import Camera
+from companion.eyes.edges import EdgePoints, edge_points, find_crossings
+from companion.eyes.family import CELLS
+from companion.eyes.picture import Part
+
+Array = NDArray[np.float64]
+Pose = tuple[Array, Array]
+
+_CORNER_STD_PX = 1.0  # of what a search finds: OpenCV's corners of blurred tags
+_AGREES_PX = 4.0 * _CORNER_STD_PX
+_TAGS_TRIED = 3
+_REACHES_PX = (12.0, 8.0, 5.0, 4.0)  # of the rounds: first as far as the guess may be off, then as fine as blur allows
+_EDGE_STD_PX = 0.1  # of one point, at best: what is left of lenses and printing after a calibration
+_HUBER = 1.5  # standard deviations
+_REWEIGHTINGS = 3
+_DAMPING = 1e-6  # of the largest curvature: one tag far away leaves its tilt nearly open
+_POINTS_MIN = 12
+_SEEN_SHARE_MIN = 0.5
+
+
+@dataclass(frozen=True)
+class Refined:
+    """A pose that the edges agree with.
+
+    Attributes:
+        pose: of P in C.
+        covariance: (6, 6) of rotation (rad, about P's origin) and translation (m), from the edges alone.
+        rms_px: of the distances.
+        points: how many edges' points it rests on.
+        squares_px2: sum of the squared distances, each of them by Huber's weight.
+    """
+
+    pose: Pose
+    covariance: Array
+    rms_px: float
+    points: int
+    squares_px2: float
+
+
+def guesses(camera: Camera, board: Board, corners_px: dict[int, Array]) -> list[Pose]:
+    """Return the two poses that most tags of a search agree with, or none.
+
+    Args:
+        camera: that took the picture.
+        board: that they are on.
+        corners_px: of each id the corners (4, 2); those of wrong ids agree with no others.
+    """
+    sizes = {tag_id: abs(cv2.contourArea(corners.astype(np.float32))) for tag_id, corners in corners_px.items()}
+    largest = sorted(sizes, key=lambda tag_id: -sizes[tag_id])
+    best: list[int] = []
+    for tag_id in largest[:_TAGS_TRIED]:
+        for pose in _two_poses(camera, board, corners_px, [tag_id]):
+            agreeing = [other for other in largest if _agrees(camera, board, corners_px, other, pose)]
+            best = max(best, agreeing, key=len)
+    return _two_poses(camera, board, corners_px, best) if best else []
+
+
+def _two_poses(camera: Camera, board: Board, corners_px: dict[int, Array], ids: list[int]) -> list[Pose]:
+    places = np.concatenate([board.corners_m[tag_id] for tag_id in ids])
+    rays = camera.rays(np.concatenate([corners_px[tag_id] for tag_id in ids]))
+    middle = places.mean(axis=0)  # IPPE wants a plane about its origin
+    try:
+        _, rotations, translations, _ = cv2.solvePnPGeneric(
+            places - middle, rays, np.eye(3), None, flags=cv2.SOLVEPNP_IPPE
+        )
+    except cv2.error:
+        return []  # corners on one line, or on one place
+    found = []
+    for rotation, translation in zip(rotations, translations, strict=True):
+        vector = np.asarray(rotation, np.float64).ravel()
+        shifted = np.asarray(translation, np.float64).ravel() - np.asarray(cv2.Rodrigues(vector)[0]) @ middle
+        if np.isfinite(vector).all() and np.isfinite(shifted).all() and shifted[2] > 0.0:
+            found.append((vector, shifted))
+    return found
+
+
+def _agrees(camera: Camera, board: Board, corners_px: dict[int, Array], tag_id: int, pose: Pose) -> bool:
+    pixels, _ = camera.pixels(board.corners_m[tag_id], *pose)
+    side_px = float(np.linalg.norm(pixels[1] - pixels[0]))
+    allowed_px = max(_AGREES_PX, 0.5 * side_px / CELLS)
+    return bool(np.max(np.linalg.norm(pixels - corners_px[tag_id], axis=1)) <= allowed_px)
+
+
+def refine(part: Part, camera: Camera, board: Board, pose: Pose, sides_px: dict[int, float]) -> Refined | None:
+    """Return the pose that the edges of tags agree with, None where too few of them are seen.
+
+    Args:
+        part: of the picture.
+        camera: that took it.
+        board: that is seen.
+        pose: about.
+        sides_px: of the tags to use, the lengths of their sides in the picture.
+    """
+    points = edge_points([board.corners_m[tag_id] for tag_id in sides_px], list(sides_px.values()), CELLS)
+    seen = camera.in_view(points.places_m, *pose)
+    points = EdgePoints(points.places_m[seen], points.outwards_m[seen], points.reach_m[seen], points.tags[seen])
+    if len(points.places_m) < _POINTS_MIN:
+        return None
+    found: Refined | None = None
+    for reach_px in _REACHES_PX:
+        found = _round(part, camera, points, pose, reach_px)
+        if found is None:
+            return None
+        pose = found.pose
+    return found
+
+
+def _round(part: Part, camera: Camera, points: EdgePoints, pose: Pose, reach_px: float) -> Refined | None:
+    """Return the pose after looking for the edges once."""
+    found = find_crossings(part, camera, points, pose, reach_px)
+    seen = found.is_seen
+    if seen.sum() < max(_POINTS_MIN, _SEEN_SHARE_MIN * len(seen)):
+        return None
+    step = _least_squares(found.slopes[seen], found.distance_px[seen])
+    if step is None:
+        return None
+    moved = (pose[0] + step.change[:3], pose[1] + step.change[3:])
+    if moved[1][2] <= 0.0:
+        return None
+    rms_px = float(np.sqrt(step.squares_px2 / max(step.weight - 6.0, 1.0)))
+    return Refined(
+        pose=moved,
+        covariance=max(rms_px, _EDGE_STD_PX) ** 2 * step.inverse,
+        rms_px=rms_px,
+        points=int(seen.sum()),
+        squares_px2=step.squares_px2,
+    )
+
+
+class _Step(NamedTuple):
+    """A weighted step: change (6,), inverse of the curvature (6, 6), what is left, and the weights' sum."""
+
+    change: Array
+    inverse: Array
+    squares_px2: float
+    weight: float
+
+
+def _least_squares(A: Array, distance_px: Array) -> _Step | None:
+    """Return the step that brings distances (N,) with slopes A (N, 6) to zero; outliers count less, as by Huber."""
+    change, inverse = np.zeros(6), np.zeros((6, 6))
+    left_px, weights = distance_px, np.ones(len(distance_px))
+    for _ in range(_REWEIGHTINGS):
+        H = (A * weights[:, None]).T @ A
+        try:
+            inverse = np.asarray(np.linalg.inv(H + _DAMPING * np.diag(np.diag(H))), np.float64)
+        except np.linalg.LinAlgError:
+            return None
+        change = inverse @ (A.T @ (weights * distance_px))
+        left_px = distance_px - A @ change
+        std_px = max(1.4826 * float(np.median(np.abs(left_px))), _EDGE_STD_PX)
+        weights = np.minimum(1.0, _HUBER * std_px / np.maximum(np.abs(left_px), 1e-9))
+    if not np.isfinite(change).all():
+        return None
+    return _Step(change, inverse, float(np.sum(weights * left_px**2)), float(np.sum(weights)))

@@ -1,0 +1,108 @@
+"""Tags found anywhere in a picture, without knowing where: OpenCV's detector on the picture and on reduced ones.
+
+A large tag in whose cells smaller ones stand is found where these have blurred away, in a reduced picture. That is
+also the cheapest, so the reduced ones come first, and the search ends with the first that shows the board.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from companion.eyes.board import Board
+from companion.eyes.family import CELLS, dictionary_of
+from companion.eyes.picture import Gray, Part
+
+Array = NDArray[np.float64]
+
+_PASSES = ((8, False), (4, False), (2, False), (1, False), (4, True), (2, True))
+"""By how much the picture is reduced, and whether its speckles are then taken out: mud that breaks a tag's outline."""
+_SPECKLE_PX = 5
+_WINDOW_PX = 23  # of the adaptive threshold: larger than a cell of most tags, smaller than what light changes over
+_THRESHOLD_SHARE, _THRESHOLD_MIN, _THRESHOLD_MAX = 0.03, 2.0, 7.0  # of the picture's contrast; in shades
+_SHARPENING = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 20, 0.02)
+_SIDE_MIN_PX = 16.0  # two pixels a cell
+_WRONG_BITS_MAX = 2  # of 36; of the 5 that could be mended, so that chance and other families' tags are refused
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a pass has found.
+
+    Attributes:
+        corners_px: of each id on the board the corners (4, 2) in the whole picture, in the order of `Board.corners_m`.
+        foreign_ids: of tags of the family that are not on the board.
+    """
+
+    corners_px: dict[int, Array]
+    foreign_ids: frozenset[int]
+
+
+def search(part: Part, board: Board) -> Iterator[Found]:
+    """Yield what each pass over a part of a picture finds, the cheapest first; the caller stops when it has the pad.
+
+    An id that is seen twice is believed at neither place.
+    """
+    constant = _threshold_of(part.shades)
+    for reduction, is_cleaned in _PASSES:
+        tags = _detect(part.shades, reduction, is_cleaned, board.config.family, constant)
+        seen = [tag_id for tag_id, _ in tags]
+        known = {
+            tag_id: corners + np.array([part.box.left, part.box.top])
+            for tag_id, corners in tags
+            if tag_id in board.corners_m and seen.count(tag_id) == 1
+        }
+        yield Found(known, frozenset(seen) - frozenset(board.corners_m))
+
+
+def _threshold_of(shades: Gray) -> int:
+    """Return by how much black must be below its surroundings: OpenCV's 7 shades, less where all is dim."""
+    low, high = np.percentile(shades[::8, ::8], [2.0, 98.0])
+    return int(np.clip(_THRESHOLD_SHARE * (high - low), _THRESHOLD_MIN, _THRESHOLD_MAX))
+
+
+def _detect(shades: Gray, reduction: int, is_cleaned: bool, family: str, constant: int) -> list[tuple[int, Array]]:
+    """Return ids and corners (4, 2) of the tags that are seen in the picture once it is reduced."""
+    rows, columns = shades.shape
+    if min(rows, columns) < 2 * reduction * _SIDE_MIN_PX:
+        return []
+    small = shades
+    if reduction > 1:
+        small = shades[: rows - rows % reduction, : columns - columns % reduction]
+        size = (small.shape[1] // reduction, small.shape[0] // reduction)
+        small = np.asarray(cv2.resize(small, size, interpolation=cv2.INTER_AREA), np.uint8)
+    if is_cleaned:
+        small = np.asarray(cv2.medianBlur(np.ascontiguousarray(small), _SPECKLE_PX), np.uint8)
+    corners, found, _ = _detector(family, max(small.shape), constant).detectMarkers(np.ascontiguousarray(small))
+    ids = [int(one) for one in np.ravel(found)] if len(corners) else []
+    shift = 0.5 * (reduction - 1)  # between the centres of the first pixels
+    places = [
+        _sharpen(shades, np.asarray(one, np.float64).reshape(4, 2) * reduction + shift, reduction) for one in corners
+    ]
+    return list(zip(ids, places, strict=True))
+
+
+def _sharpen(shades: Gray, corners: Array, reduction: int) -> Array:
+    """Return corners as the picture in full shows them."""
+    side_px = float(np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1).min())
+    half_px = int(min(0.5 * side_px / CELLS, 2.0 * reduction))
+    if half_px < 2:
+        return corners
+    places = corners.astype(np.float32).reshape(-1, 1, 2)
+    found = cv2.cornerSubPix(shades, places, (half_px, half_px), (-1, -1), _SHARPENING)
+    return np.asarray(found, np.float64).reshape(4, 2)
+
+
+@cache
+def _detector(family: str, side_px: int, constant: int) -> cv2.aruco.ArucoDetector:
+    parameters = cv2.aruco.DetectorParameters()
+    parameters.adaptiveThreshWinSizeMin = parameters.adaptiveThreshWinSizeMax = _WINDOW_PX
+    parameters.adaptiveThreshConstant = constant
+    parameters.minMarkerPerimeterRate = 4.0 * _SIDE_MIN_PX / side_px
+    parameters.maxMarkerPerimeterRate = 8.0
+    table = dictionary_of(family)
+    parameters.errorCorrectionRate = _WRONG_BITS_MAX / table.maxCorrectionBits
+    return cv2.aruco.ArucoDetector(table, parameters)

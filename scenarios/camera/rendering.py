@@ -1,0 +1,259 @@
+"""A picture of the pad rendered from truth: surfaces on planes of V, light on them, lens, motion and sensor.
+
+Each surface is warped by the homography of its plane, from the pyramid's level whose texels are as fine as the
+picture's points; far ones are rendered twice as finely and averaged. The board is on the roof, the road is V's plane
+z = 0.
+Frames: V the vehicle's body (FLU, origin on the road), C the camera.
+"""
+
+import math
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from companion.eyes.board import BoardConfig
+from companion.eyes.picture import Box, remapped
+from scenarios.camera.exposure import develop, exposure_for
+from scenarios.camera.lens import CAMERA, FOCAL_PX, Lens, defocus_std_px, smear
+from scenarios.camera.surfaces import Surface, board_surface, road_surface, roof_surface
+
+Array = NDArray[np.float64]
+Floats = NDArray[np.float32]
+
+_SKY_SHARE = 0.25  # of daylight that comes from all sides, also into a shadow
+_FINE_AREA_PX = 90_000  # smaller parts are rendered twice as finely
+_LAMP_HALF_ANGLE_RAD = math.radians(45.0)
+_GLARE_STD_RAD = 0.12  # of a semi-gloss print: half width of its highlight
+_GLARE_PEAK = 4.0  # in units of what white paper throws back
+_SHADOW_BODY_M, _SHADOW_ROTOR_M, _ROTOR_ARM_M, _ROTOR_SHARE = 0.13, 0.127, 0.215, 0.4
+_SUN_RADIUS_RAD = 0.0047
+_NOISE_SIZE = 2048  # of the field from which each picture's is cut
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Light:
+    """What shines: the day, and a lamp beside the camera.
+
+    Attributes:
+        daylight_lx: on level ground, of sun and sky together.
+        sun_v: unit vector in V towards the sun; None where the sky is overcast or the sun has set.
+        lamp_lm: of the lamp.
+        is_glossy: the board mirrors the sun.
+    """
+
+    daylight_lx: float
+    sun_v: Array | None = None
+    lamp_lm: float = 0.0
+    is_glossy: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class View:
+    """Where the camera is and how it moves against the vehicle: R_VC, places and velocity in V, turning in C."""
+
+    R_VC: Array
+    camera_m: Array
+    velocity_m_s: Array
+    turning_c_rad_s: Array
+    drone_m: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Vehicle:
+    """What there is to be seen; without a board its roof is bare."""
+
+    board: BoardConfig | None
+    length_m: float
+    width_m: float
+    roof_height_m: float
+    paint: float = 0.25
+
+
+class Renderer:
+    """Renders parts of pictures of one vehicle.
+
+    Args:
+        vehicle: that is seen.
+        dirt_share: of the board that is covered.
+        rng: of the dirt and of the noise.
+    """
+
+    def __init__(self, vehicle: Vehicle, dirt_share: float, rng: np.random.Generator) -> None:
+        self._roof_height_m = vehicle.roof_height_m
+        self._road = road_surface()
+        self._roof = roof_surface(vehicle.length_m, vehicle.width_m, vehicle.paint)
+        self._board = None if vehicle.board is None else board_surface(vehicle.board, dirt_share, rng)
+        self._lens = Lens(CAMERA)
+        self._noise = rng.standard_normal((_NOISE_SIZE, _NOISE_SIZE)).astype(np.float32)
+        self._rng = rng
+
+    def render(self, view: View, light: Light, box: Box) -> NDArray[np.uint8]:
+        """Return the shades of a part of the picture; the noise is another one each time."""
+        depth_m = self._depth_m(view)
+        is_fine = box.area < _FINE_AREA_PX
+        blur_px = math.sqrt(max(defocus_std_px(depth_m) ** 2 - 1.0 / 12.0, 0.1))
+        exposure = exposure_for(light.daylight_lx + _lamp_lx(light, depth_m))
+        motion_px = self._motion_px(view) * exposure.duration_s
+        margin = math.ceil(3.0 * blur_px + 0.5 * float(np.hypot(*motion_px)) + 1.0)
+        inner = self._lens.within(Box(box.left - margin, box.top - margin, box.right + margin, box.bottom + margin))
+        lit = self._lit(view, light, self._lens.rays(inner, is_fine=is_fine))
+        if is_fine:
+            lit = np.asarray(cv2.resize(lit, (lit.shape[1] // 2, lit.shape[0] // 2), interpolation=cv2.INTER_AREA))
+        lit = smear(np.asarray(cv2.GaussianBlur(lit * self._lens.vignetting(inner), (0, 0), blur_px)), motion_px)
+        left, top = box.left - inner.left, box.top - inner.top
+        part = lit[top : top + box.bottom - box.top, left : left + box.right - box.left]
+        return develop(part * np.float32(exposure.shades_lx), exposure, self._draw_noise(part.shape))
+
+    def _depth_m(self, view: View) -> float:
+        """Return how far the pad is along the camera's axis: what is focused on and exposed for."""
+        pad_c = view.R_VC.T @ (np.array([0.0, 0.0, self._roof_height_m]) - view.camera_m)
+        return max(float(pad_c[2]), 0.03)
+
+    def _motion_px(self, view: View) -> Array:
+        """Return how fast the pad moves in the picture, pixels a second."""
+        pad_c = view.R_VC.T @ (np.array([0.0, 0.0, self._roof_height_m]) - view.camera_m)
+        rate = -view.R_VC.T @ view.velocity_m_s - np.cross(view.turning_c_rad_s, pad_c)
+        z = max(float(pad_c[2]), 0.03)
+        return np.asarray(FOCAL_PX * (rate[:2] - pad_c[:2] / z * rate[2]) / z)
+
+    def _lit(self, view: View, light: Light, rays: Floats) -> Floats:
+        """Return the light from each point (rows, columns), in lux times albedo."""
+        planes = [(self._road, 0.0), (self._roof, self._roof_height_m)]
+        if self._board is not None:
+            planes.append((self._board, self._roof_height_m))
+        lit = np.full(rays.shape[:2], 0.1, np.float32)
+        hidden = [index for index, (surface, height_m) in enumerate(planes) if _fills(surface, view, height_m, rays)]
+        for surface, height_m in planes[max(hidden, default=0) :]:
+            _paint(lit, surface, _to_plane(view, height_m), rays)
+        _hide_horizon(lit, view, rays)
+        if light.lamp_lm > 0.0:
+            lit *= light.daylight_lx + _lamp_lit(light, rays, self._depth_m(view))
+        else:
+            lit *= np.float32(light.daylight_lx)
+        if light.sun_v is not None:
+            self._cast_shadow(lit, view, light.sun_v, rays)
+            if light.is_glossy:
+                lit += _glare(light.sun_v, light.daylight_lx, view, rays)
+        return lit
+
+    def _cast_shadow(self, lit: Floats, view: View, sun_v: Array, rays: Floats) -> None:
+        """Darken the roof in the drone's shadow, whose edges are as soft as the sun is wide."""
+        height_m = float(view.drone_m[2]) - self._roof_height_m
+        if sun_v[2] < 0.1 or height_m <= 0.0:
+            return
+        center = view.drone_m[:2] - sun_v[:2] / sun_v[2] * height_m
+        soft_m = 0.01 + 2.0 * _SUN_RADIUS_RAD * height_m
+        onto_roof = _to_plane(view, self._roof_height_m)
+        rows, columns = _where_on_plane(onto_roof, rays, center, _ROTOR_ARM_M + _SHADOW_ROTOR_M + soft_m)
+        if rows.start == rows.stop or columns.start == columns.stop:
+            return
+        at = _on_plane(onto_roof, np.ascontiguousarray(rays[rows, columns]))
+        discs = [(center, _SHADOW_BODY_M, 1.0)]
+        arms = ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0))
+        discs += [
+            (center + _ROTOR_ARM_M * math.sqrt(0.5) * np.array(arm), _SHADOW_ROTOR_M, _ROTOR_SHARE) for arm in arms
+        ]
+        for middle, radius_m, depth in discs:
+            away = np.hypot(at[..., 0] - np.float32(middle[0]), at[..., 1] - np.float32(middle[1]))
+            inside = np.clip((np.float32(radius_m) - away) / np.float32(soft_m) + np.float32(0.5), 0.0, 1.0)
+            lit[rows, columns] *= 1.0 - np.float32(depth * (1.0 - _SKY_SHARE)) * inside
+
+    def _draw_noise(self, shape: tuple[int, ...]) -> Floats:
+        """Return standard normal noise: a field that is laid at another place each time, and repeats where it ends."""
+        row, column = (int(self._rng.integers(0, _NOISE_SIZE - size + 1)) for size in shape)
+        return self._noise[row : row + shape[0], column : column + shape[1]]
+
+
+def _hide_horizon(lit: Floats, view: View, rays: Floats) -> None:
+    """Lay haze over what is at the horizon and above it, where the planes' homographies mean nothing."""
+    slope, level = view.R_VC[2, :2].astype(np.float32), np.float32(view.R_VC[2, 2])
+    edges = np.concatenate([rays[[0, -1]].reshape(-1, 2), rays[:, [0, -1]].reshape(-1, 2)])
+    if float(np.max(edges @ slope + level)) > -0.02:
+        lit[rays @ slope + level > -0.02] = 0.3
+
+
+def _where_on_plane(homography: Array, rays: Floats, center: Array, radius_m: float) -> tuple[slice, slice]:
+    """Return the rows and columns that show a square on a plane; all of them where that cannot be told simply."""
+    square = center + radius_m * np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, -1.0], [-1.0, 1.0]])
+    seen = np.column_stack([square, np.ones(4)]) @ np.linalg.inv(homography).T
+    height, width = rays.shape[:2]
+    if (seen[:, 2] <= 0.0).any():
+        return slice(0, height), slice(0, width)
+    directions = seen[:, :2] / seen[:, 2:]
+    along, down = rays[height // 2, :, 0], rays[:, width // 2, 1]
+    spare = 0.1  # of the tangent: lines of equal direction are bent by the distortion
+    first, last = np.searchsorted(along, [directions[:, 0].min() - spare, directions[:, 0].max() + spare]).tolist()
+    top, bottom = np.searchsorted(down, [directions[:, 1].min() - spare, directions[:, 1].max() + spare]).tolist()
+    return slice(top, bottom), slice(first, last)
+
+
+def _to_plane(view: View, height_m: float) -> Array:
+    """Return the homography (3, 3) from a ray (x, y, 1) in C to (forward, left, 1) on V's plane at a height."""
+    from_plane = view.R_VC.T @ np.column_stack(
+        [np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, height_m]) - view.camera_m]
+    )
+    return np.asarray(np.linalg.inv(from_plane))
+
+
+def _on_plane(homography: Array, rays: Floats) -> Floats:
+    flat = cv2.perspectiveTransform(np.ascontiguousarray(rays).reshape(-1, 1, 2), homography)
+    return np.asarray(flat, np.float32).reshape(rays.shape)
+
+
+def _fills(surface: Surface, view: View, height_m: float, rays: Floats) -> bool:
+    """Return whether nothing but a surface is seen."""
+    edges = np.concatenate([rays[[0, -1]].reshape(-1, 1, 2), rays[:, [0, -1]].reshape(-1, 1, 2)])
+    if surface.repeats or float(np.max(edges @ view.R_VC[2, :2] + view.R_VC[2, 2])) > 0.0:
+        return False
+    at = _on_plane(surface.from_plane(0) @ _to_plane(view, height_m), edges.astype(np.float32))
+    limit = np.array(surface.levels[0].shape[::-1]) - 0.5
+    return bool(((at > -0.5) & (at < limit)).all())
+
+
+def _paint(albedo: Floats, surface: Surface, onto_plane: Array, rays: Floats) -> None:
+    """Lay a surface over what is there already."""
+    middle = rays[rays.shape[0] // 2, rays.shape[1] // 2]
+    texels = _texels_per_point(surface, onto_plane, rays, middle)
+    level = min(max(math.floor(math.log2(max(texels, 1e-6))), 0), len(surface.levels) - 1)
+    texture = surface.levels[level]
+    at = _on_plane(surface.from_plane(level) @ onto_plane, rays)
+    if surface.repeats:
+        albedo[:] = remapped(texture, at, cv2.BORDER_WRAP)
+        return
+    shape = texture.shape
+    inside = (at[..., 0] > -0.5) & (at[..., 0] < shape[1] - 0.5) & (at[..., 1] > -0.5) & (at[..., 1] < shape[0] - 0.5)
+    if inside.any():
+        np.copyto(albedo, remapped(texture, at, cv2.BORDER_REPLICATE), where=inside)
+
+
+def _texels_per_point(surface: Surface, onto_plane: Array, rays: Floats, middle: Floats) -> float:
+    """Return how many of the finest texels a point of the picture is wide, in its middle."""
+    step = float(rays[0, 1, 0] - rays[0, 0, 0])
+    three = (middle + np.array([[0.0, 0.0], [step, 0.0], [0.0, step]])).reshape(-1, 1, 2)
+    at = cv2.perspectiveTransform(three, surface.from_plane(0) @ onto_plane).reshape(3, 2)
+    return float(math.sqrt(abs(np.linalg.det(at[1:] - at[0]))))
+
+
+def _lamp_lx(light: Light, depth_m: float) -> float:
+    """Return what the lamp throws on a surface before the camera."""
+    solid_sr = 2.0 * math.pi * (1.0 - math.cos(_LAMP_HALF_ANGLE_RAD))
+    return light.lamp_lm / solid_sr / max(depth_m, 0.05) ** 2
+
+
+def _lamp_lit(light: Light, rays: Floats, depth_m: float) -> Floats:
+    """Return the lamp's light on a plane across the axis: the cosine to the fourth power, and less off its cone."""
+    tangent2 = rays[..., 0] ** 2 + rays[..., 1] ** 2
+    falloff = 1.0 / (1.0 + tangent2) ** 2 / (1.0 + (tangent2 / math.tan(_LAMP_HALF_ANGLE_RAD) ** 2) ** 2)
+    return np.asarray(_lamp_lx(light, depth_m) * falloff, np.float32)
+
+
+def _glare(sun_v: Array, daylight_lx: float, view: View, rays: Floats) -> Floats:
+    """Return the highlight where level surfaces mirror the sun into the camera, and the veil it lays over all."""
+    mirrored_c = view.R_VC.T @ (np.array([sun_v[0], sun_v[1], -sun_v[2]]))
+    cosine = (rays @ mirrored_c[:2].astype(np.float32) + np.float32(mirrored_c[2])) / np.sqrt(
+        1.0 + rays[..., 0] ** 2 + rays[..., 1] ** 2
+    )
+    angle2 = 2.0 * (1.0 - np.clip(cosine, -1.0, 1.0))
+    return np.asarray(0.8 * daylight_lx * (_GLARE_PEAK * np.exp(-0.5 * angle2 / _GLARE_STD_RAD**2) + 0.05), np.float32)

@@ -1,0 +1,63 @@
+"""`scenarios camera`: the simulated camera as a program, for the real detector."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from link.errors import UserError
+from link.program.cli import (
+    ConnectOption,
+    DroneOption,
+    ListenOption,
+    ModeOption,
+    MulticastOption,
+    NamespaceOption,
+    VehicleOption,
+    ZenohConfigOption,
+)
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("camera")(camera_command)
+
+
+def camera_command(
+    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="A scenario with a camera: straight_5+camera=day.")],
+    *,
+    seed: Annotated[
+        int | None, typer.Option("--seed", min=0, help="Of everything random [default: 1, or the world's own].")
+    ] = None,
+    files: Annotated[
+        Path | None,
+        typer.Option("--files", metavar="DIR", help="Only write camera.yaml, mounting.toml and board.toml here."),
+    ] = None,
+    namespace: NamespaceOption = "decklander",
+    vehicle: VehicleOption = "vehicle",
+    drone: DroneOption = "drone",
+    mode: ModeOption = None,
+    connect: ConnectOption = None,
+    listen: ListenOption = None,
+    multicast: MulticastOption = None,
+    zenoh_config: ZenohConfigOption = None,
+) -> None:
+    """Publish what the camera on the simulated drone sees, for `pad-detector run --source zenoh`."""
+    from link.zenoh.keys import Keys
+    from link.zenoh.options import zenoh_options
+    from link.zenoh.session import open_session
+    from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.world_names import run_seed
+    from scenarios.simulation.camera_files import write_camera_files
+    from scenarios.wire.camera_loop import CameraLoop
+
+    scenario = load_scenario(name)
+    if not scenario.has_camera:
+        raise UserError(f"{name} has no camera: add +camera=day")
+    drawn = run_seed(name, seed)
+    if files is not None:
+        write_camera_files(scenario, drawn, files)
+        return
+    keys = Keys(namespace, vehicle, drone)
+    with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config)) as zenoh:
+        CameraLoop(scenario, drawn, keys, zenoh).run()

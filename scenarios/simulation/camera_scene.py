@@ -1,0 +1,156 @@
+"""What the camera on the simulated drone looks at, and what its detector is told of it.
+
+The camera is 5 cm in front of the drone's reference and 3 cm below it and looks down, with the long side of its picture
+along the drone. How it is mounted and calibrated is told to the detector with errors that are drawn for each seed.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from companion.eyes.board import Board, nested_board
+from companion.eyes.camera import Camera
+from companion.eyes.mounting import Mounting, MountingConfig, mounting_of
+from companion.eyes.picture import Box, Part
+from companion.eyes.sight import SightSystem
+from link.frames.rotations import matrix_from_quaternion, quaternion_from_roll_pitch_yaw
+from link.messages import BodyTruth
+from scenarios.camera.lens import CAMERA, SIZE_PX
+from scenarios.camera.rendering import Light, Renderer, Vehicle, View
+from scenarios.config import Scenario
+from scenarios.simulation.noise import Seed, named_rng
+
+Array = NDArray[np.float64]
+
+MOUNTING = MountingConfig(position_flu_m=(0.05, 0.0, -0.03), yaw_rad=0.5 * math.pi)
+_MOUNTING_STD_RAD = 0.003  # of the true camera from what is told: within what the mounting file states
+_FOCAL_STD_SHARE = 0.001
+_PAINT_RANGE = (0.1, 0.5)  # albedo of roofs, from dark gray to silver
+
+
+@dataclass(frozen=True)
+class RenderedPicture:
+    """A picture that is rendered where it is looked at.
+
+    Attributes:
+        renderer: of the scene.
+        view: from where.
+        light: by which.
+        may_show_pad: some of the board's plate may be in it.
+    """
+
+    renderer: Renderer
+    view: View
+    light: Light
+    may_show_pad: bool
+
+    @property
+    def size_px(self) -> tuple[int, int]:
+        """Width and height."""
+        return SIZE_PX
+
+    def part(self, box: Box) -> Part:
+        """Return what is within `box`."""
+        return Part(self.renderer.render(self.view, self.light, box), box)
+
+
+class CameraScene:
+    """The scene of a scenario and a seed.
+
+    Args:
+        scenario: whose light and vehicle.
+        seed: of the sun, the paint, the dirt, the noise, and the errors of mounting and calibration.
+
+    Attributes:
+        system: what the detector is told of camera, mounting and board.
+    """
+
+    def __init__(self, scenario: Scenario, seed: Seed) -> None:
+        rng = named_rng(seed, "camera scene")
+        self._config = scenario.camera
+        board = nested_board(min(scenario.vehicle.pad_size_m))
+        vehicle = Vehicle(
+            board=board,
+            length_m=scenario.vehicle.length_m,
+            width_m=scenario.vehicle.width_m,
+            roof_height_m=scenario.vehicle.roof_height_m,
+            paint=float(rng.uniform(*_PAINT_RANGE)),
+        )
+        self._sun_enu = _draw_sun(scenario.camera.sun_elevation_range_rad, rng)
+        self._renderer = Renderer(vehicle, scenario.camera.dirt_share, rng)
+        self._pad_v_m = np.array([0.0, 0.0, scenario.vehicle.roof_height_m])
+        self._mounting = _misaligned(mounting_of(MOUNTING), rng)
+        self.system = SightSystem(camera=_miscalibrated(rng), mounting=mounting_of(MOUNTING), board=Board(board))
+
+    def picture(self, vehicle: BodyTruth, drone: BodyTruth) -> RenderedPicture:
+        """Return what the camera sees at the drone's time, to which the vehicle is carried by its velocity."""
+        view = view_of(vehicle, drone, self._mounting)
+        sun_v = None
+        if self._sun_enu is not None:
+            sun_v = matrix_from_quaternion(vehicle.orientation_wxyz).T @ self._sun_enu
+        light = Light(
+            daylight_lx=self._config.daylight_lx,
+            sun_v=sun_v,
+            lamp_lm=self._config.lamp_lm,
+            is_glossy=self._config.is_glossy,
+        )
+        return RenderedPicture(self._renderer, view, light, self._may_see(view))
+
+    def _may_see(self, view: View) -> bool:
+        """Return whether any of the board's plate may be in the picture."""
+        in_c = (self.system.board.outline_m + self._pad_v_m - view.camera_m) @ view.R_VC
+        depth = in_c[:, 2]
+        if (depth <= 0.0).all():
+            return False
+        reach = self.system.camera.radius_max
+        beside = [(sign * in_c[:, axis] > reach * depth).all() for axis in (0, 1) for sign in (1.0, -1.0)]
+        return not any(beside)
+
+
+def view_of(vehicle: BodyTruth, drone: BodyTruth, mounting: Mounting) -> View:
+    """Return how a camera on the drone stands and moves against a vehicle."""
+    age_s = (vehicle.t_ns - drone.t_ns) * 1e-9
+    R_WV, R_WB = matrix_from_quaternion(vehicle.orientation_wxyz), matrix_from_quaternion(drone.orientation_wxyz)
+    R_VB = R_WV.T @ R_WB
+    driving_v, turning_v = np.array(vehicle.velocity_flu_m_s), np.array(vehicle.angular_velocity_flu_rad_s)
+    away_v = R_WV.T @ (np.array(drone.position_enu_m) - np.array(vehicle.position_enu_m)) + age_s * driving_v
+    camera_v = away_v + R_VB @ mounting.position_flu_m
+    swing_b = np.cross(np.array(drone.angular_velocity_flu_rad_s), mounting.position_flu_m)
+    velocity_v = R_VB @ (np.array(drone.velocity_flu_m_s) + swing_b) - driving_v - np.cross(turning_v, camera_v)
+    turning_b = np.array(drone.angular_velocity_flu_rad_s) - R_VB.T @ turning_v
+    return View(
+        R_VC=R_VB @ mounting.R_BC,
+        camera_m=camera_v,
+        velocity_m_s=velocity_v,
+        turning_c_rad_s=mounting.R_BC.T @ turning_b,
+        drone_m=away_v,
+    )
+
+
+def _draw_sun(elevation_range_rad: tuple[float, float] | None, rng: np.random.Generator) -> Array | None:
+    """Return a unit vector in W towards the sun, from any side."""
+    azimuth_rad = float(rng.uniform(-math.pi, math.pi))
+    if elevation_range_rad is None:
+        return None
+    up_rad = float(rng.uniform(*elevation_range_rad))
+    level = math.cos(up_rad)
+    return np.array([level * math.cos(azimuth_rad), level * math.sin(azimuth_rad), math.sin(up_rad)])
+
+
+def _misaligned(told: Mounting, rng: np.random.Generator) -> Mounting:
+    roll, pitch, yaw = (_MOUNTING_STD_RAD * rng.standard_normal(3)).tolist()
+    turn = matrix_from_quaternion(quaternion_from_roll_pitch_yaw(roll, pitch, yaw))
+    return Mounting(
+        R_BC=turn @ told.R_BC,
+        position_flu_m=told.position_flu_m,
+        rotation_std_rad=told.rotation_std_rad,
+        focal_std_share=told.focal_std_share,
+    )
+
+
+def _miscalibrated(rng: np.random.Generator) -> Camera:
+    matrix = CAMERA.matrix.copy()
+    matrix[[0, 1], [0, 1]] *= 1.0 + _FOCAL_STD_SHARE * float(rng.standard_normal())
+    return Camera(model=CAMERA.model, matrix=matrix, distortion=CAMERA.distortion, size_px=CAMERA.size_px)

@@ -1,0 +1,114 @@
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from companion.eyes.attitude import GAP_MAX_NS, Attitude, attitude_at
+from companion.eyes.board import load_board, nested_board
+from companion.eyes.frames import Captured, gray_of_file
+from companion.eyes.node import EyesNode
+from companion.eyes.picture import WholePicture
+from link.errors import UserError
+from link.frames.rotations import quaternion_from_yaw, yaw_of
+from link.messages import BodyTruth, CompressedPicture, PadGeometry, PadSighting
+from link.payloads import cdr
+from link.zenoh.keys import Keys
+from tests.companion.eyes.frames import Case, case, system
+
+KEYS = Keys()
+BOARD = load_board(None).config
+
+
+def captured(one: Case) -> Captured:
+    assert isinstance(one.frame.picture, WholePicture)
+    return Captured(t_ns=one.frame.t_ns, shades=one.frame.picture.shades)
+
+
+def own(one: Case) -> bytes:
+    """The drone's state as the companion tells it."""
+    attitude = one.frame.orientation_wxyz
+    assert attitude is not None
+    still = (0.0, 0.0, 0.0)
+    return cdr.encode(
+        BodyTruth(
+            t_ns=one.frame.t_ns,
+            position_enu_m=still,
+            orientation_wxyz=attitude,
+            velocity_flu_m_s=still,
+            angular_velocity_flu_rad_s=still,
+        )
+    )
+
+
+def test_a_frame_brings_the_sighting_that_the_companion_reads() -> None:
+    one = case(4.0, board=BOARD)
+    node = EyesNode(system(), KEYS)
+    node.receive_own(own(one))
+    (published,) = node.look(captured(one), shows=False)
+    assert (published.key, published.encoding) == (KEYS.pad_pose, cdr.encoding_of(PadSighting))
+    sighting = cdr.decode(PadSighting, published.payload)
+    assert sighting.t_ns == one.frame.t_ns
+    assert sighting.position_flu_m == pytest.approx(one.away_flu_m.tolist(), abs=0.05)
+    assert node.take_news() == ["pad seen"]
+    assert (node.counts.frames, node.counts.seen) == (1, 1)
+
+
+def test_a_frame_without_the_pad_brings_nothing_but_news() -> None:
+    node = EyesNode(system(), KEYS)
+    node.look(captured(case(4.0, board=BOARD)), shows=False)
+    node.take_news()
+    assert node.look(captured(case(4.0, board=None, t_ns=1_033_000_000)), shows=False) == []
+    assert node.take_news() == ["pad lost"]
+
+
+def test_ids_of_another_board_are_told_once() -> None:
+    node = EyesNode(system(), KEYS)
+    frame = captured(case(4.0, board=nested_board(1.5, 63)))
+    node.look(frame, shows=False)
+    node.look(frame, shows=False)
+    (line,) = node.take_news()
+    assert "not on the board" in line
+
+
+def test_what_is_shown_is_the_frame_in_colours() -> None:
+    one = case(4.0, board=BOARD)
+    shown = EyesNode(system(), KEYS).look(captured(one), shows=True)[-1]
+    assert shown.key == KEYS.pad_view
+    picture = cdr.decode(CompressedPicture, shown.payload)
+    assert gray_of_file(picture).shape == captured(one).shades.shape
+
+
+def test_frames_of_another_size_than_the_calibrations_are_an_error() -> None:
+    small = captured(case(4.0, board=BOARD)).shades[:480, :640]
+    with pytest.raises(UserError, match="640 x 480"):
+        EyesNode(system(), KEYS).look(Captured(t_ns=1, shades=small), shows=False)
+
+
+@pytest.mark.parametrize(("size_m", "fits"), [((1.5, 1.5), True), ((2.0, 3.0), True), ((1.5, 1.2), False)])
+def test_a_board_that_is_larger_than_the_vehicles_pad_is_an_error(size_m: tuple[float, float], fits: bool) -> None:
+    pad = PadGeometry(size_m=size_m, height_m=1.5, antenna_to_pad_m=(0.0, 0.0, 0.0))
+    node = EyesNode(system(), KEYS)
+    if fits:
+        node.receive_pad(pad)
+        return
+    with pytest.raises(UserError, match=r"the board is 1\.5 x 1\.5 m and the vehicle's pad 1\.5 x 1\.2 m"):
+        node.receive_pad(pad)
+
+
+@given(payload=st.binary(max_size=300))
+def test_random_bytes_for_the_drones_state_are_counted(payload: bytes) -> None:
+    node = EyesNode(system(), KEYS)
+    node.receive_own(payload)
+    assert node.counts.bad_payloads == 1
+
+
+def test_attitudes_are_those_between_the_two_that_are_told() -> None:
+    turning = tuple(
+        Attitude(t_ns=step * 40_000_000, orientation_wxyz=quaternion_from_yaw(0.1 * step)) for step in (0, 1)
+    )
+    between = attitude_at(turning, 10_000_000)
+    assert between is not None
+    assert yaw_of(between) == pytest.approx(0.025, abs=1e-5)
+    after = attitude_at(turning, 40_000_000 + GAP_MAX_NS)
+    assert after == turning[1].orientation_wxyz
+    assert attitude_at(turning, 40_000_001 + GAP_MAX_NS) is None
+    assert attitude_at((), 0) is None

@@ -1,0 +1,111 @@
+import numpy as np
+import pytest
+
+from companion.eyes.board import Board, load_board, nested_board
+from companion.eyes.picture import WholePicture
+from companion.eyes.sight import Frame, Sight, SightMemory, sight_step
+from link.frames.rotations import matrix_from_quaternion
+from link.records import replace
+from scenarios.camera.rendering import Light
+from tests.companion.eyes.frames import DAY, Case, case, system
+
+BOARD = load_board(None).config
+DUSK = Light(daylight_lx=40.0)
+EMPTY = SightMemory()
+
+
+def look(one: Case, memory: SightMemory = EMPTY) -> Sight:
+    return sight_step(memory, one.frame, system())[1]
+
+
+def error_m(sight: Sight, one: Case) -> float:
+    assert sight.sighting is not None
+    return float(np.linalg.norm(np.array(sight.sighting.position_flu_m) - one.away_flu_m))
+
+
+@pytest.mark.parametrize("range_m", [0.12, 0.31, 0.9, 2.2, 6.5, 13.0, 20.0])
+@pytest.mark.parametrize("light", [DAY, DUSK], ids=["day", "dusk"])
+def test_the_pad_is_seen_within_a_centimetre_and_a_percent_of_the_range(range_m: float, light: Light) -> None:
+    one = case(range_m, board=BOARD, aside_m=(0.05, -0.03), light=light)
+    assert error_m(look(one), one) < 0.01 + 0.01 * range_m
+
+
+@pytest.mark.parametrize("tilt_rad", [0.35, 0.7, 1.0])
+def test_a_pad_seen_from_the_side_is_told_from_its_mirrored_pose(tilt_rad: float) -> None:
+    one = case(9.0, board=BOARD, roll_pitch_yaw_rad=(tilt_rad, 0.1, -2.0))
+    sight = look(one)
+    assert sight.sighting is not None
+    R_BP = matrix_from_quaternion(sight.sighting.orientation_wxyz)
+    assert float((R_BP.T @ one.R_BP)[2, 2]) > np.cos(0.1)
+
+
+def test_tracking_gives_what_a_search_gives() -> None:
+    one = case(3.3, board=BOARD)
+    memory, searched = sight_step(EMPTY, one.frame, system())
+    _, tracked = sight_step(memory, replace(one.frame, t_ns=one.frame.t_ns + 33_000_000), system())
+    assert (searched.tracked, tracked.tracked) == (False, True)
+    assert searched.sighting is not None
+    assert tracked.sighting is not None
+    assert tracked.sighting.position_flu_m == pytest.approx(searched.sighting.position_flu_m, abs=0.002)
+
+
+def test_tracking_follows_a_pad_that_moves_as_before() -> None:
+    # 0.1 m between frames is a third of the picture at this range: it is where it was going
+    memory, sights = EMPTY, []
+    for index in range(4):
+        one = case(0.8, board=BOARD, aside_m=(0.1 * index - 0.2, 0.0), t_ns=10**9 + index * 100_000_000)
+        memory, sight = sight_step(memory, one.frame, system())
+        sights.append((sight, one))
+    assert [sight.tracked for sight, _ in sights[2:]] == [True, True]
+    assert max(error_m(*both) for both in sights) < 0.01
+
+
+def test_a_pad_that_jumped_is_searched_for() -> None:
+    memory, _ = sight_step(EMPTY, case(5.0, board=BOARD, aside_m=(2.0, 1.0)).frame, system())
+    one = case(5.0, board=BOARD, aside_m=(-2.0, -1.0), t_ns=1_033_000_000)
+    _, sight = sight_step(memory, one.frame, system())
+    assert not sight.tracked
+    assert error_m(sight, one) < 0.06
+
+
+def test_another_board_is_no_pad_and_its_ids_are_told() -> None:
+    other = nested_board(1.5, 63)
+    sight = look(case(4.0, board=other))
+    assert sight.sighting is None
+    assert sight.foreign_ids
+    assert sight.foreign_ids <= {tag.id for tag in other.tags}
+
+
+def test_a_bare_roof_and_noise_are_no_pad() -> None:
+    assert look(case(4.0, board=None)).sighting is None
+    shades = np.random.default_rng(8).integers(0, 256, (720, 1280)).astype(np.uint8)
+    noise = Frame(t_ns=0, picture=WholePicture(shades))
+    assert sight_step(EMPTY, noise, system())[1].sighting is None
+
+
+def test_a_track_is_given_up_when_the_pad_is_gone() -> None:
+    memory, _ = sight_step(EMPTY, case(4.0, board=BOARD).frame, system())
+    bare = case(4.0, board=None, t_ns=1_033_000_000)
+    assert sight_step(memory, bare.frame, system())[1].sighting is None
+
+
+def test_without_the_drones_attitude_the_pad_is_seen_and_no_better_than_with_it() -> None:
+    one = case(9.0, board=BOARD)
+    blind = sight_step(EMPTY, replace(one.frame, orientation_wxyz=None), system())[1]
+    assert error_m(blind, one) < 0.1
+    told = look(one)
+    assert told.sighting is not None
+    assert blind.sighting is not None
+    assert sum(blind.sighting.position_covariance_m2) >= sum(told.sighting.position_covariance_m2) - 1e-9
+
+
+def test_a_tag_that_is_at_the_wrong_place_does_not_move_the_pad() -> None:
+    # the detector's board has one tag where the print has none
+    tags = tuple(
+        tag.model_copy(update={"center_m": (0.4, 0.4)}) if tag.id == BOARD.tags[7].id else tag for tag in BOARD.tags
+    )
+    wrong = Board(BOARD.model_copy(update={"tags": tags}))
+    one = case(1.4, board=BOARD)
+    sight = sight_step(EMPTY, one.frame, system(wrong))[1]
+    assert BOARD.tags[7].id not in sight.tags
+    assert error_m(sight, one) < 0.01
