@@ -17,7 +17,7 @@ from companion.check.command import (
     SystemIdOption,
     check,
 )
-from companion.config.companion import AutopilotKind
+from companion.config.companion import AutopilotKind, ReceiverFrames
 from companion.runtime.keys import keys
 from link.errors import UserError
 from link.program.cli import (
@@ -56,6 +56,10 @@ _UseSimTimeOption = Annotated[bool, typer.Option("--use-sim-time", help="Follow 
 _AutopilotOption = Annotated[
     AutopilotKind | None, typer.Option("--autopilot", help="In place of the configuration's kind of autopilot.")
 ]
+_FramesOption = Annotated[
+    ReceiverFrames | None,
+    typer.Option("--receiver-frames", help="In place of the configuration's: whether both receivers have one frame."),
+]
 _TlogOption = Annotated[Path | None, typer.Option("--tlog", metavar="FILE", help="Record MAVLink into this file.")]
 _RecordOption = Annotated[
     Path | None, typer.Option("--record", metavar="DIR", help="Record everything into this folder, as MCAP.")
@@ -76,6 +80,7 @@ def companion(
     dry_run: _DryRunOption = False,
     use_sim_time: _UseSimTimeOption = False,
     autopilot: _AutopilotOption = None,
+    receiver_frames: _FramesOption = None,
     system_id: SystemIdOption = 1,
     signing_key: SigningKeyOption = None,
     signing_stamps: SigningStampsOption = None,
@@ -102,8 +107,8 @@ def companion(
     from link.program.toml_config import dump_toml, load_config
 
     settings = load_config(config, CompanionConfig)
-    if autopilot is not None:
-        settings = settings.model_copy(update={"autopilot": autopilot})
+    given = {"autopilot": autopilot, "receiver_frames": receiver_frames}
+    settings = settings.model_copy(update={name: value for name, value in given.items() if value is not None})
     if print_config:
         sys.stdout.write(dump_toml(settings))
         return

@@ -64,7 +64,8 @@ class Reason(Enum):
     PAD_TO_BE_SEEN = "pad to be seen again"
     PAD_NOT_SEEN = "pad not seen"
     OFFSET_UNKNOWN = (
-        "pad not seen, and both receivers have no common frame: use a pattern detector, or RTK on both from one source"
+        "pad not seen, and both receivers have no common frame: use a pattern detector, RTK on both from one source, or"
+        " --receiver-frames one where they are known to have one"
     )
     TAKEOFF_TOO_LONG = "takeoff took longer than {:g} s"
     CHASE_TOO_LONG = "chase took longer than {:g} s"

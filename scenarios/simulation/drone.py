@@ -6,12 +6,18 @@ from link.messages import Vector3
 from scenarios.config import Scenario, SensorsConfig
 from scenarios.simulation.disturbances import instant_s
 from scenarios.simulation.noise import Seed, named_rng
-from sim_autopilot.runtime.config import OwnStateConfig, SimAutopilotConfig, StartConfig, VehicleConfig, WindConfig
+from sim_autopilot.runtime.config import (
+    RECEIVER_ACCURACY_MIN_M,
+    OwnStateConfig,
+    SimAutopilotConfig,
+    StartConfig,
+    VehicleConfig,
+    WindConfig,
+)
 
 # Frames that are 0.5 m apart are those of two base stations, 1.2 m of receivers without corrections (the presets): in
 # between, at the geometric mean, the drone's begins to have none.
 _CORRECTED_OFFSET_MAX_M = 0.77
-_STATED_STD_MIN_M = 0.01  # a receiver never states less
 
 
 def sim_autopilot_config(scenario: Scenario, seed: Seed, *, instant: bool) -> SimAutopilotConfig:
@@ -67,7 +73,7 @@ def _own_state(scenario: Scenario, seed: Seed) -> OwnStateConfig:
 def _receiver_accuracy_m(sensors: SensorsConfig) -> float:
     """Return what the drone's receiver states: as well as the drone knows its place, if it has corrections."""
     absolute_m = sensors.frame_offset_m if sensors.frame_offset_m > _CORRECTED_OFFSET_MAX_M else 0.0
-    return max(_STATED_STD_MIN_M, sensors.own_state.position_std_m, absolute_m)
+    return max(RECEIVER_ACCURACY_MIN_M, sensors.own_state.position_std_m, absolute_m)
 
 
 def mean_wind_enu_m_s(scenario: Scenario, seed: Seed) -> Vector3:

@@ -78,12 +78,16 @@ class WindConfig(StrictModel):
     gust_duration_s: Positive = 3.0
 
 
+RECEIVER_ACCURACY_MIN_M = 0.01
+"""A receiver never states less."""
+
+
 class OwnStateConfig(StrictModel):
     """How well the autopilot knows its own state; all zero is the truth."""
 
     position_std_m: NotNegative = 0.0  # on each axis
     velocity_std_m_s: NotNegative = 0.0  # likewise
-    # What its receiver states, horizontally; None: what the firmware's own simulator says.
+    # What its receiver states, horizontally; None: as well as the drone knows its place, but for a centimetre.
     receiver_accuracy_m: Positive | None = None
     position_time_s: Positive = 10.0  # of both errors' memory; sim_autopilot/plant/own_state.py says why
     velocity_time_s: Positive = 2.0
@@ -159,8 +163,15 @@ def autopilot_config(config: SimAutopilotConfig) -> AutopilotConfig:
         parameters=config.parameters,
         endurance_s=config.drone.endurance_s,
         links=tuple(ground_rates_hz if link.streams == "ground" else None for link in config.links) or (None,),
-        own_state=OwnStateModel(seed=named_seed(config.seed, "own state"), **config.own_state.model_dump()),
+        own_state=_own_state(config),
     )
+
+
+def _own_state(config: SimAutopilotConfig) -> OwnStateModel:
+    own = config.own_state
+    accuracy_m = own.receiver_accuracy_m or max(RECEIVER_ACCURACY_MIN_M, own.position_std_m)
+    settings = own.model_dump() | {"receiver_accuracy_m": accuracy_m}
+    return OwnStateModel(seed=named_seed(config.seed, "own state"), **settings)
 
 
 def airframe_of(drone: DroneConfig) -> Airframe:

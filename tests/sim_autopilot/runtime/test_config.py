@@ -72,6 +72,18 @@ def test_the_seed_draws_the_winds_direction() -> None:
     assert wind(1) != wind(2)
 
 
+@pytest.mark.parametrize(("position_std_m", "stated_m"), [(0.0, 0.01), (0.5, 0.5)])
+def test_the_receiver_states_what_the_drone_knows_unless_it_is_told(position_std_m: float, stated_m: float) -> None:
+    own_state = {"position_std_m": position_std_m}
+    assert stated(own_state) == stated_m
+    assert stated(own_state | {"receiver_accuracy_m": 2.0}) == 2.0
+
+
+def stated(own_state: dict[str, float]) -> float | None:
+    config = SimAutopilotConfig.model_validate({"own_state": own_state})
+    return autopilot_config(config).own_state.receiver_accuracy_m
+
+
 def test_wind_turbulence_and_own_errors_of_a_seed_are_independent() -> None:
     seeds = 400
     draws = np.empty((3, seeds))
