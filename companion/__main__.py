@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from companion.check.command import ConfigOption, DeviceOption, SigningKeyOption, SystemIdOption, check
+from companion.check.command import (
+    ConfigOption,
+    DeviceOption,
+    SigningKeyOption,
+    SigningStampsOption,
+    SystemIdOption,
+    check,
+)
 from companion.config.companion import AutopilotKind
 from companion.runtime.keys import keys
 from link.errors import UserError
@@ -71,6 +78,7 @@ def companion(
     autopilot: _AutopilotOption = None,
     system_id: SystemIdOption = 1,
     signing_key: SigningKeyOption = None,
+    signing_stamps: SigningStampsOption = None,
     tlog: _TlogOption = None,
     record: _RecordOption = None,
     foxglove: FoxgloveOption = None,
@@ -99,7 +107,7 @@ def companion(
     if print_config:
         sys.stdout.write(dump_toml(settings))
         return
-    from link.mavlink.signing import read_key
+    from link.mavlink.signing_memory import SigningMemory, open_signing, stamps_file
     from link.mavlink.transports import open_transport
     from link.recording.recorder import BackgroundRecorder
     from link.ros2.options import open_layout, ros2_options
@@ -107,7 +115,7 @@ def companion(
     from link.zenoh.options import zenoh_options
 
     keys = Keys(namespace, vehicle, drone)
-    key = None if signing_key is None else read_key(signing_key)
+    signing = None if signing_key is None else open_signing(signing_key, signing_stamps)
     for written in (timing, tlog):
         if written is not None:
             _check_writable(written)
@@ -116,6 +124,10 @@ def companion(
     with ExitStack() as stack:
         # What a user may have got wrong is opened first: the numerics take their time, up to a minute to be compiled.
         endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
+        memory: SigningMemory | None = None
+        if signing is not None and signing_key is not None:
+            memory = SigningMemory(stamps_file(signing_key, signing_stamps), signing)
+            stack.callback(memory.close)
         transport = stack.enter_context(open_transport(mavlink))
         zenoh = stack.enter_context(
             open_layout(endpoints, ros2_options(ros2, ros2_map), keys, (f"/{drone}", "companion"))
@@ -137,11 +149,11 @@ def companion(
             dry_run=dry_run,
             records_input=tlog is not None,
             recorder=recorder,
-            signing_key=key,
+            signing=signing,
         )
         transport.receive(0.0)  # what has come meanwhile is old, and its time of receipt is not known
         options = LoopOptions(device=mavlink, timeout_s=timeout, start=start, use_sim_time=use_sim_time, tlog=tlog)
-        timings = run(node, Links(keys=keys, transport=transport, zenoh=zenoh), options)
+        timings = run(node, Links(keys=keys, transport=transport, zenoh=zenoh, signing=memory), options)
     if recorder is not None and recorder.dropped:
         where = "Foxglove's server" if folder is None else f"the disk of {folder}"
         sys.stderr.write(f"recording: {recorder.dropped} records are lost, {where} is full or too slow\n")

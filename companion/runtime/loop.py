@@ -59,6 +59,7 @@ class _Loop:
         self._node = node
         self._keys = keys = links.keys
         self._transport = links.transport
+        self._signing = links.signing
         self._peer = PinnedPeer(links.transport, node.autopilot.session)
         self._zenoh = zenoh = links.zenoh
         self._options = options
@@ -127,6 +128,8 @@ class _Loop:
     def _turn(self, clock: Clock) -> None:
         """Wait for bytes, take what has come, step if due, send."""
         self._service.alive(time.monotonic_ns())
+        if self._signing is not None:
+            self._signing.poll(time.monotonic_ns())
         if isinstance(clock, SimulatedClock):
             self._tick(clock)
         received = self._transport.receive_by_peer(min(_WAIT_MAX_S, clock.wall_s(_WAIT_MAX_S)))
