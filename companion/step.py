@@ -20,7 +20,7 @@ from companion.landing.conditions import HELD_UP, holds
 from companion.landing.contact import may_force_motors_off, signs_of
 from companion.landing.flying import fly
 from companion.landing.memory import ModelMemory, StepMemory, VehicleMemory, to_present_frame
-from companion.landing.outputs import has_free_place, landing_status, news, setpoint
+from companion.landing.outputs import has_jittery_place, landing_status, news, setpoint
 from companion.landing.step_data import StepInputs, StepOutputs, System
 from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.landing.transitions import take_events
@@ -82,7 +82,8 @@ def _update_model(memory: StepMemory, inputs: StepInputs, system: System) -> Mod
     model, own = memory.model, inputs.own
     if own is None or model.reference is None:
         return model
-    flies_place = memory.progress.phase in LANDING_PHASES and not has_free_place(memory, inputs, system.config)
+    # What the link's jitter does to a drone is not how its autopilot follows: led by that, both would swing.
+    flies_place = memory.progress.phase in LANDING_PHASES and not has_jittery_place(memory, inputs, system.config)
     estimates = system.config.corrects_lag and flies_place
     own_ns = inputs.monotonic_at(own.t_ns)
     return replace(model, tracking=update_tracking(model.tracking, own_ns, own, inputs.response, estimates=estimates))

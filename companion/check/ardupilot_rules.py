@@ -9,8 +9,10 @@ from companion.check.rules import GRADE_MAX, SPEED_SHARE_ADVISED, ParameterRule,
 
 _CENTI = 100.0
 _CLIMB_M_S = 2.0
-_FAST_M_S = 8.0  # flown with the default acceleration; 12 m/s with 3.5 m/s^2
 _JERK_M_S3 = 10.0  # its own shaping allows 10.8 m/s^3 by default: 0.5 sqrt(WPNAV_ACCEL by g by ATC_ACCEL_P_MAX)
+_CORRECTED_PER_S = (
+    2.0  # jerk by acceleration, as by default; corrected faster, the jitter of setpoints takes all the jerk
+)
 _NO_STABILISATION = 0b110000  # bits 4 and 5: positions, velocities are not held
 _GUIDED_LOSS_S = (0.5, 1.5)
 _DISARM_DELAY_MIN_S = 5.0
@@ -45,12 +47,12 @@ ARDUPILOT_RULES = (
         reason="limits the correction of the position beside the speed asked for",
     ),
     at_least(
-        lambda v: 2.5 if v <= _FAST_M_S else 3.5,
+        lambda _: _JERK_M_S3 / _CORRECTED_PER_S,
         step=0.5,
         spellings=(Spelling("WP_ACC"), Spelling("WPNAV_ACCEL", _CENTI)),
         unit="m/s^2",
         level=Level.WARN,
-        reason="how quickly the position is corrected",
+        reason="what the position is corrected with; half of the jerk, as by default: with less it swings",
     ),
     at_least(
         lambda _: _JERK_M_S3,

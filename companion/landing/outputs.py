@@ -64,14 +64,20 @@ def setpoint(
 
 
 def has_free_place(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) -> bool:
-    """Return whether the link's jitter would move the place that is asked for too far for a landing.
+    """Return whether the place is left out of what is asked for, since the link's jitter moves it too far."""
+    driver = inputs.driver
+    if memory.progress.phase not in _FREE_PLACE_PHASES or config.position_only:
+        return False
+    return driver is not None and driver.holds_height_alone and has_jittery_place(memory, inputs, config)
+
+
+def has_jittery_place(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) -> bool:
+    """Return whether the link's jitter moves the place that is asked for too far for a landing.
 
     A setpoint is held as it came, so one that comes late by so much asks for a place that the vehicle has left.
     """
-    reference, driver = memory.model.reference, inputs.driver
-    if memory.progress.phase not in _FREE_PLACE_PHASES or reference is None or config.position_only:
-        return False
-    if driver is None or not driver.holds_height_alone:
+    reference = memory.model.reference
+    if reference is None:
         return False
     speed_m_s = math.hypot(*reference.velocity_enu_m_s[:2].tolist())
     return speed_m_s * inputs.link_delay.std_s > config.place_jitter_max_m

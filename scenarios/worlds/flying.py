@@ -60,7 +60,7 @@ def system_of(draws: Draws, drone: DroneConfig, waiting_height_m: float) -> Syst
         "ardupilot": {
             "ANGLE_MAX": 4500.0,
             "WPNAV_SPEED": 100.0 * _SPEED_SET_M_S["ardupilot"],
-            "WPNAV_ACCEL": 350.0,
+            "WPNAV_ACCEL": 500.0,
             "PSC_JERK_XY": 10.0,
             "MOT_THST_HOVER": hover_share,
             "PSC_POSXY_P": response,

@@ -86,7 +86,7 @@ def test_both_spellings_are_advised_the_same_in_their_own_units() -> None:
     new = {one.name: one.set_to for one in judge(ARDUPILOT_RULES, ARDUCOPTER_47, 12.0)}
     assert (old["ANGLE_MAX"], new["ATC_ANGLE_MAX"]) == (4500.0, 45.0)  # flown at 12 m/s
     assert (old["WPNAV_SPEED"], new["WP_SPD"]) == (1500.0, 15.0)  # flown at 12 m/s
-    assert (old["WPNAV_ACCEL"], new["WP_ACC"]) == (350.0, 3.5)  # flown at 12 m/s
+    assert (old["WPNAV_ACCEL"], new["WP_ACC"]) == (500.0, 5.0)  # half of the jerk that is advised
 
 
 def test_px4s_defaults_serve_10_m_s_and_not_11() -> None:
