@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from companion.eyes.board import Board
 from companion.eyes.camera import Camera, matrix_of, vector_of
+from companion.eyes.family import CELLS
 from companion.eyes.mounting import Mounting
 from companion.eyes.picture import Part, Picture, box_around, whole
 from companion.eyes.pose import Pose, Refined, guesses, refine
@@ -38,6 +39,7 @@ _MISREAD_MAX = 1e-3  # probability that the other of the two poses was the right
 _BOARD_STD_M = 0.001  # of a print on a plate that is not quite flat
 _RMS_SHARE_MAX = 0.35  # of a cell of the largest tag: edges farther off are other edges
 _RMS_MIN_PX = 1.0
+_ROUNDS_MAX = 4
 
 
 class Track(Struct, frozen=True, kw_only=True):
@@ -166,30 +168,28 @@ def _misread_probability(scores: list[float]) -> float:
 
 
 def _settle(part: Part, system: SightSystem, R_WB: Array, frame: Frame, guess: Pose) -> _Candidate | None:
-    """Return the pose near a guess by the tags that are read there; the largest come first, the rest once they fit."""
+    """Return the pose near a guess; the better it gets, the more tags are read, until these are all."""
     camera, board = system.camera, system.board
-    expected = expected_tags(camera, board, guess)
-    if not expected:
+    pose, used, refined = guess, _read(part, system, guess), None
+    for _ in range(_ROUNDS_MAX):
+        found = refine(part, camera, board, pose, used) if used else None
+        if found is None:
+            break
+        pose, refined = found.pose, found
+        before, used = used, _read(part, system, pose)
+        if used.keys() <= before.keys():
+            break
+    if refined is None or not used or refined.rms_px > max(_RMS_MIN_PX, _RMS_SHARE_MAX * max(used.values()) / CELLS):
         return None
-    first = dict(list(expected.items())[:1])
-    if not read_tags(part, camera, board, guess, list(first)):
-        first = {tag_id: expected[tag_id] for tag_id in list(expected)[:TAGS_MAX]}
-        first = {tag_id: first[tag_id] for tag_id in read_tags(part, camera, board, guess, list(first))}
-        if not first:
-            return None
-    coarse = refine(part, camera, board, guess, first)
-    pose = guess if coarse is None else coarse.pose
-    seen = expected_tags(camera, board, pose)
-    ids = read_tags(part, camera, board, pose, list(seen)[:TAGS_MAX])
-    if not ids:
-        return None
-    used = {tag_id: seen[tag_id] for tag_id in ids}
-    refined = refine(part, camera, board, pose, used)
-    if refined is None or refined.rms_px > max(_RMS_MIN_PX, _RMS_SHARE_MAX * max(used.values()) / 8.0):
-        return None
-    return _Candidate(
-        refined=refined, tags=tuple(ids), tilt_stds=_tilt_stds(refined.pose, R_WB, system.mounting, frame)
-    )
+    tilt_stds = _tilt_stds(pose, R_WB, system.mounting, frame)
+    return _Candidate(refined=refined, tags=tuple(used), tilt_stds=tilt_stds)
+
+
+def _read(part: Part, system: SightSystem, pose: Pose) -> dict[int, float]:
+    """Return the sides in pixels of the tags that are read at a pose, the largest first."""
+    expected = expected_tags(system.camera, system.board, pose)
+    ids = read_tags(part, system.camera, system.board, pose, list(expected)[:TAGS_MAX])
+    return {tag_id: expected[tag_id] for tag_id in ids}
 
 
 def _tilt_stds(pose: Pose, R_WB: Array, mounting: Mounting, frame: Frame) -> float:

@@ -16,9 +16,19 @@ from link.messages import PadGeometry, Quaternion, Vector3
 from link.payloads.decklander_msgs import RosMessage, typestore
 from link.payloads.foxglove_msgs import PACKAGE
 from link.payloads.ros_fields import ANTENNA_FRAME, BODY_FRAME, WORLD_FRAME, to_header, to_time
+from link.payloads.scene_parts import (
+    Color,
+    make_cube,
+    make_cylinder,
+    make_entity,
+    make_line,
+    make_message,
+    make_quaternion,
+    make_text,
+    make_vector,
+)
 
 Array = NDArray[np.float64]
-Color = tuple[float, float, float, float]
 Pose = tuple[Vector3, Quaternion]
 
 VEHICLE_FRAME, PAD_FRAME = "vehicle", "pad"
@@ -39,7 +49,6 @@ _ELLIPSE_POINTS = 24
 _ELLIPSE_EVERY = 5  # points of the forecast: one a second
 _LEVEL: Quaternion = (1.0, 0.0, 0.0, 0.0)
 _CENTRE: Vector3 = (0.0, 0.0, 0.0)
-_LABEL_M: Vector3 = (0.0, 0.0, 0.6)  # above the drone
 _INFO = 20  # rcl_interfaces/msg/Log
 
 _CIRCLE = [
@@ -93,7 +102,9 @@ def transform_message(scene: Scene) -> RosMessage | None:
         types["geometry_msgs/msg/TransformStamped"](
             header=to_header(max(scene.t_ns, 0), parent),
             child_frame_id=child,
-            transform=types["geometry_msgs/msg/Transform"](translation=_vector(place), rotation=_quaternion(attitude)),
+            transform=types["geometry_msgs/msg/Transform"](
+                translation=make_vector(place), rotation=make_quaternion(attitude)
+            ),
         )
         for parent, child, (place, attitude) in placed
     ]
@@ -105,7 +116,7 @@ def scene_message(scene: Scene, topic: str) -> RosMessage:
     entities = dict(_entities(scene))
     missing = [name for name in _NAMES if name not in entities]
     stamp = to_time(max(scene.t_ns, 0))
-    deletions = [_make("SceneEntityDeletion", timestamp=stamp, type=0, id=name) for name in missing]
+    deletions = [make_message("SceneEntityDeletion", timestamp=stamp, type=0, id=name) for name in missing]
     return _message(topic, f"{PACKAGE}/SceneUpdate", deletions=deletions, entities=list(entities.values()))
 
 
@@ -153,24 +164,24 @@ def _entities(scene: Scene) -> Iterator[tuple[str, Any]]:
     t_ns = scene.t_ns
     if scene.drone is not None:
         cubes, rotors = _drone()
-        texts = [_text(scene.label)] if scene.label else []
-        yield "drone", _entity("drone", t_ns, BODY_FRAME, cubes=cubes, cylinders=rotors, texts=texts)
+        texts = [make_text(scene.label)] if scene.label else []
+        yield "drone", make_entity("drone", t_ns, BODY_FRAME, cubes=cubes, cylinders=rotors, texts=texts)
     if scene.vehicle is not None and scene.pad is not None:
-        yield "vehicle", _entity("vehicle", t_ns, VEHICLE_FRAME, cubes=_vehicle(scene.pad))
+        yield "vehicle", make_entity("vehicle", t_ns, VEHICLE_FRAME, cubes=_vehicle(scene.pad))
         if scene.cone is not None:
-            yield "cone", _entity("cone", t_ns, PAD_FRAME, cylinders=[_wall(scene.cone)])
+            yield "cone", make_entity("cone", t_ns, PAD_FRAME, cylinders=[_wall(scene.cone)])
     if scene.forecast_enu_m is not None:
-        lines = [_line(scene.forecast_enu_m.tolist(), _ORANGE), *_ellipses(scene)]
-        yield "forecast", _entity("forecast", t_ns, WORLD_FRAME, lines=lines)
+        lines = [make_line(scene.forecast_enu_m.tolist(), _ORANGE), *_ellipses(scene)]
+        yield "forecast", make_entity("forecast", t_ns, WORLD_FRAME, lines=lines)
     if scene.plan_enu_m is not None:
-        yield "plan", _entity("plan", t_ns, WORLD_FRAME, lines=[_line(scene.plan_enu_m.tolist(), _GREEN)])
+        yield "plan", make_entity("plan", t_ns, WORLD_FRAME, lines=[make_line(scene.plan_enu_m.tolist(), _GREEN)])
 
 
 def _drone() -> tuple[list[Any], list[Any]]:
     """Return a quadrotor's body with its orange nose, and its rotors."""
-    cubes = [_cube(_CENTRE, _BODY_M, _DARK), _cube((0.15, 0.0, 0.0), (0.06, 0.1, 0.06), _ORANGE)]
+    cubes = [make_cube(_CENTRE, _BODY_M, _DARK), make_cube((0.15, 0.0, 0.0), (0.06, 0.1, 0.06), _ORANGE)]
     rotors = [
-        _cylinder((x * _ARM_M, y * _ARM_M, 0.05), (_ROTOR_M, _ROTOR_M, 0.012), _ORANGE if x > 0 else _BLUE)
+        make_cylinder((x * _ARM_M, y * _ARM_M, 0.05), (_ROTOR_M, _ROTOR_M, 0.012), _ORANGE if x > 0 else _BLUE)
         for x, y in ((1, 1), (1, -1), (-1, 1), (-1, -1))
     ]
     return cubes, rotors
@@ -181,17 +192,17 @@ def _vehicle(pad: PadGeometry) -> list[Any]:
     length_m, width_m = max(_CAR_M[0], pad.size_m[0] + 0.4), max(_CAR_M[1], pad.size_m[1] + 0.2)
     roof_m = max(pad.height_m, 0.1)
     return [
-        _cube((0.0, 0.0, 0.38 * roof_m), (length_m, width_m, 0.5 * roof_m), _GREY),
-        _cube((0.0, 0.0, 0.8 * roof_m), (0.62 * length_m, 0.94 * width_m, 0.36 * roof_m), _DARK),
-        _cube((0.0, 0.0, pad.height_m - 0.01), (*pad.size_m, 0.02), _WHITE),
-        _cube((0.0, 0.0, pad.height_m - 0.005), (0.86 * pad.size_m[0], 0.86 * pad.size_m[1], 0.02), _BLUE),
+        make_cube((0.0, 0.0, 0.38 * roof_m), (length_m, width_m, 0.5 * roof_m), _GREY),
+        make_cube((0.0, 0.0, 0.8 * roof_m), (0.62 * length_m, 0.94 * width_m, 0.36 * roof_m), _DARK),
+        make_cube((0.0, 0.0, pad.height_m - 0.01), (*pad.size_m, 0.02), _WHITE),
+        make_cube((0.0, 0.0, pad.height_m - 0.005), (0.86 * pad.size_m[0], 0.86 * pad.size_m[1], 0.02), _BLUE),
     ]
 
 
 def _wall(cone: Cone) -> Any:
     width_m = 2.0 * (cone.radius_at_pad_m + cone.slope * _CONE_HEIGHT_M)
     bottom = 2.0 * cone.radius_at_pad_m / width_m
-    return _cylinder((0.0, 0.0, 0.5 * _CONE_HEIGHT_M), (width_m, width_m, _CONE_HEIGHT_M), _CONE_COLOR, bottom)
+    return make_cylinder((0.0, 0.0, 0.5 * _CONE_HEIGHT_M), (width_m, width_m, _CONE_HEIGHT_M), _CONE_COLOR, bottom)
 
 
 def _ellipses(scene: Scene) -> Iterator[Any]:
@@ -201,85 +212,7 @@ def _ellipses(scene: Scene) -> Iterator[Any]:
     centres, stds = scene.forecast_enu_m[::_ELLIPSE_EVERY].tolist(), scene.forecast_std_m[::_ELLIPSE_EVERY].tolist()
     for (x_m, y_m, z_m), (a_m, b_m, _) in zip(centres, stds, strict=True):
         points = [(x_m + a_m * along, y_m + b_m * across, z_m) for along, across in _CIRCLE]
-        yield _line(points, _ORANGE, is_closed=True)
-
-
-def _entity(name: str, t_ns: int, frame: str, **primitives: list[Any]) -> Any:
-    kinds = ("arrows", "cubes", "spheres", "cylinders", "lines", "triangles", "texts", "models")
-    return _make(
-        "SceneEntity",
-        timestamp=to_time(max(t_ns, 0)),
-        frame_id=frame,
-        id=name,
-        lifetime=typestore().types["builtin_interfaces/msg/Duration"](sec=0, nanosec=0),
-        frame_locked=frame != WORLD_FRAME,
-        metadata=[],
-        **{kind: primitives.get(kind, []) for kind in kinds},
-    )
-
-
-def _cube(place: Vector3, size_m: Vector3, color: Color) -> Any:
-    return _make("CubePrimitive", pose=_pose(place), size=_vector(size_m), color=_color(color))
-
-
-def _cylinder(place: Vector3, size_m: Vector3, color: Color, bottom_scale: float = 1.0) -> Any:
-    return _make(
-        "CylinderPrimitive",
-        pose=_pose(place),
-        size=_vector(size_m),
-        bottom_scale=bottom_scale,
-        top_scale=1.0,
-        color=_color(color),
-    )
-
-
-def _line(points: list[Any], color: Color, *, is_closed: bool = False) -> Any:
-    point = typestore().types["geometry_msgs/msg/Point"]
-    return _make(
-        "LinePrimitive",
-        type=1 if is_closed else 0,
-        pose=_pose(_CENTRE),
-        thickness=2.0,
-        scale_invariant=True,
-        points=[point(x, y, z) for x, y, z in points],
-        color=_color(color),
-        colors=[],
-        indices=np.empty(0, dtype=np.uint32),
-    )
-
-
-def _text(text: str) -> Any:
-    return _make(
-        "TextPrimitive",
-        pose=_pose(_LABEL_M),
-        billboard=True,
-        font_size=14.0,
-        scale_invariant=True,
-        color=_color(_DARK),
-        text=text,
-    )
-
-
-def _pose(place: Vector3) -> Any:
-    types = typestore().types
-    return types["geometry_msgs/msg/Pose"](types["geometry_msgs/msg/Point"](*place), _quaternion(_LEVEL))
-
-
-def _vector(vector: Vector3) -> Any:
-    return typestore().types["geometry_msgs/msg/Vector3"](*vector)
-
-
-def _quaternion(wxyz: Quaternion) -> Any:
-    w, x, y, z = wxyz
-    return typestore().types["geometry_msgs/msg/Quaternion"](x, y, z, w)
-
-
-def _color(color: Color) -> Any:
-    return _make("Color", r=color[0], g=color[1], b=color[2], a=color[3])
-
-
-def _make(name: str, **values: Any) -> Any:
-    return typestore().types[f"{PACKAGE}/{name}"](**values)
+        yield make_line(points, _ORANGE, is_closed=True)
 
 
 def _message(topic: str, type_name: str, **values: Any) -> RosMessage:

@@ -16,6 +16,7 @@ from link.program.cli import (
     VehicleOption,
     ZenohConfigOption,
 )
+from link.program.extras import require
 
 
 def register(app: typer.Typer) -> None:
@@ -43,6 +44,7 @@ def camera_command(
     zenoh_config: ZenohConfigOption = None,
 ) -> None:
     """Publish what the camera on the simulated drone sees, for `pad-detector run --source zenoh`."""
+    require("camera", "scenarios camera")
     from link.zenoh.keys import Keys
     from link.zenoh.options import zenoh_options
     from link.zenoh.session import open_session

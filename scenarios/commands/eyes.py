@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from link.program.extras import require
+
 _TOLD_EVERY = 100
 
 
@@ -26,6 +28,7 @@ def eyes_command(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> None:
     """Let the detector of the pad look at frames drawn over range, angle and light, and compare it with the truth."""
+    require("camera", "scenarios eyes")
     from scenarios.eyes.pictures import write_pictures
     from scenarios.eyes.study import study
     from scenarios.eyes.tables import summary_of, text_lines

@@ -1,7 +1,7 @@
 """The detector over drawn frames: whether it sees the pad, how far off, and whether it says so.
 
-A pose is flipped if its normal is off by more than 20 degrees. NEES is of the position, with 3 degrees of freedom; camera
-and mounting are exactly known here, so it is that of the edges alone.
+A pose is flipped if its normal is off by more than 20 degrees. NEES is of the position, with 3 degrees of freedom;
+camera and mounting are exactly known here, so it is that of the edges alone.
 """
 
 import math

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -24,14 +25,14 @@ def summary_of(looks: Sequence[Look]) -> Table:
         "all": _row(there),
         "by_range_m": {
             f"{low:g} to {high:g}": _row(look for look in there if low <= look.range_m < high)
-            for low, high in zip(RANGES_M, RANGES_M[1:], strict=False)
+            for low, high in pairwise(RANGES_M)
         },
         "by_light": {light: _row(look for look in there if look.light == light) for light in LIGHTS},
         "by_angle_deg": {
             f"{math.degrees(low):g} to {math.degrees(high):g}": _row(
                 look for look in there if low <= look.angle_rad < high
             )
-            for low, high in zip(ANGLES_RAD, ANGLES_RAD[1:], strict=False)
+            for low, high in pairwise(ANGLES_RAD)
         },
         "frames_without_the_board": len(bare),
         "false_detections": sum(look.error_m is not None for look in bare),

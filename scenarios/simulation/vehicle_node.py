@@ -5,10 +5,10 @@ The `ground-vehicle` program, the one-process world and the lockstep campaigns a
 
 import math
 
-from link.errors import UserError
 from link.frames.geodesy import Datum
 from link.messages import BodyTruth, Fix, FixVelocity, PadGeometry, PadSighting, VehicleImu
 from link.payloads import cdr
+from link.program.extras import require
 from link.zenoh.keys import Keys, Publication
 from scenarios.config import Scenario
 from scenarios.simulation.noise import Seed, named_rng
@@ -106,10 +106,9 @@ class VehicleNode:
 def _camera_of(scenario: Scenario, seed: Seed) -> Detector | None:
     if not scenario.has_camera:
         return None
-    try:
-        from scenarios.simulation.camera_sensor import CameraSensor  # noqa: PLC0415 (OpenCV is an extra)
-    except ImportError as error:
-        raise UserError(f"+camera needs OpenCV ({error}): install decklander[camera]") from None
+    require("camera", "+camera")
+    from scenarios.simulation.camera_sensor import CameraSensor  # noqa: PLC0415 (OpenCV is an extra)
+
     return CameraSensor(scenario, seed)
 
 

@@ -12,6 +12,7 @@ from typing import Any
 
 from companion.recording.folder import recording_sink
 from link.errors import UserError
+from link.program.extras import require
 from link.program.toml_config import dump_toml
 from link.recording.recorder import DirectRecorder
 from link.zenoh.keys import Keys
@@ -153,6 +154,7 @@ def _eyes(scenario: Scenario, options: RunOptions, endpoint: str) -> list[Progra
     """Return how the simulated camera and the real detector are started, if the scenario has a camera."""
     if not scenario.has_camera:
         return []
+    require("camera", "+camera")
     from scenarios.simulation.camera_files import (  # noqa: PLC0415 (OpenCV is an extra)
         detector_arguments,
         write_camera_files,
