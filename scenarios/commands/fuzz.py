@@ -80,5 +80,6 @@ def _companion_line(result: "CompanionFuzzResult") -> str:
     return (
         f"companion on {result.firmware}, {result.link}: {result.frames} frames and "
         f"{result.payloads} payloads {whose}; {result.landed} of {result.flights} landed, "
-        f"{result.not_finite} numbers not finite, {result.latest_s:g} s late at most; {result.frames_a_second:g} frames/s"
+        f"{result.not_finite} numbers not finite, {result.latest_s:g} s late at most; "
+        f"{result.frames_a_second:g} frames/s"
     )
