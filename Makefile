@@ -4,11 +4,12 @@ BIN := .venv/bin
 SPEED ?= 1
 SCENARIO ?= straight_5
 SEED ?= 1
+FRAMES ?= 200000
 # make setup EXTRA=companion: only what a drone or a vehicle needs, from its own lock.
 EXTRA ?=
 LOCK := requirements$(if $(EXTRA),-$(EXTRA)).lock
 
-.PHONY: setup demo test check docs lint lock clean
+.PHONY: setup demo test check docs lint lock fuzz clean
 
 setup: .venv/.complete
 
@@ -32,6 +33,11 @@ test: lint docs
 	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "not wire"
 	$(BIN)/pytest -q -n 3 --dist loadscope -m "wire and not alone"
 	$(BIN)/pytest -q -m alone
+
+# Drawn anew each time; FRAMES=10000000 goes on for longer. What it finds becomes an example in tests/security.
+fuzz: .venv/.complete
+	$(BIN)/scenarios fuzz --frames $(FRAMES) --seed $$(od -An -N4 -tu4 /dev/urandom | tr -d ' ')
+	$(BIN)/pytest -q -n 2 --hypothesis-profile=anew -m "hypothesis and not wire"
 
 # The manual, in build/manual/index.html; needs no network. A warning, such as a broken link, fails it.
 docs: .venv/.complete

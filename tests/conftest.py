@@ -10,6 +10,7 @@ import pytest
 from hypothesis import settings
 
 settings.register_profile("repeatable", derandomize=True, deadline=None)
+settings.register_profile("anew", deadline=None)  # make fuzz
 settings.load_profile("repeatable")
 
 

@@ -2,11 +2,16 @@
 
 import json
 import sys
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+if TYPE_CHECKING:
+    from scenarios.faults.fuzz import FuzzResult
+    from scenarios.faults.fuzz_companion import CompanionFuzzResult
+
 _ALL = "all"
+_ENDS = ("autopilot", "companion")
 
 
 def register(app: typer.Typer) -> None:
@@ -17,36 +22,64 @@ def register(app: typer.Typer) -> None:
 def fuzz_command(
     *,
     frames: Annotated[int, typer.Option("--frames", min=1, help="To offer on each link.")] = 1_000_000,
-    link: Annotated[str, typer.Option("--link", metavar="KIND", help="udpin, udpout, tcpin, serial or all.")] = _ALL,
+    end: Annotated[str, typer.Option("--end", metavar="NAME", help="autopilot, companion or all.")] = _ALL,
+    link: Annotated[
+        str, typer.Option("--link", metavar="KIND", help="Of the autopilot: udpin, udpout, tcpin, serial or all.")
+    ] = _ALL,
     firmware: Annotated[str, typer.Option("--firmware", metavar="NAME", help="px4 or ardupilot.")] = "px4",
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of the frames.")] = 1,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> None:
-    """Offer broken and absurd frames to the simulated autopilot over real links while its drone hovers."""
+    """Offer broken and absurd frames to a simulated autopilot that hovers and to a companion that lands."""
     from dataclasses import asdict
 
     from link.errors import UserError
     from scenarios.faults.fuzz import FIRMWARES, LINK_KINDS, fuzz
+    from scenarios.faults.fuzz_companion import KINDS, fuzz_companion
 
-    if link not in {*LINK_KINDS, _ALL}:
-        raise UserError(f"--link {link} is none of {', '.join(LINK_KINDS)}, {_ALL}; choose one of these")
-    if firmware not in FIRMWARES:
-        raise UserError(f"--firmware {firmware} is none of {', '.join(FIRMWARES)}; choose one of these")
-    kinds = LINK_KINDS if link == _ALL else (link,)
-    results = []
-    for kind in kinds:
-        result = fuzz(kind, firmware, frames, seed)
-        results.append(result)
-        if not as_json:
-            verdict = "undisturbed" if result.is_good else "DISTURBED"
-            sys.stdout.write(
-                f"{kind:7} {result.firmware}: {result.frames} frames, {result.known_messages} of them messages, "
-                f"{100.0 * result.received_share:g} % received; drift {result.drift_m:g} m, "
-                f"{result.not_finite} numbers not finite; {result.frames_a_second:g} frames/s: {verdict}\n"
-            )
-            sys.stdout.flush()
+    for option, value, known in (
+        ("--end", end, (*_ENDS, _ALL)),
+        ("--link", link, (*LINK_KINDS, _ALL)),
+        ("--firmware", firmware, FIRMWARES),
+    ):
+        if value not in known:
+            raise UserError(f"{option} {value} is none of {', '.join(known)}; choose one of these")
+    rows: list[dict[str, Any]] = []
+    if end != "companion":
+        for kind in LINK_KINDS if link == _ALL else (link,):
+            result = fuzz(kind, firmware, frames, seed)
+            rows.append({"end": "autopilot", **asdict(result), "is_good": result.is_good})
+            _say(_autopilot_line(result), is_good=result.is_good, quiet=as_json)
+    if end != "autopilot":
+        for kind, forges in ((kind, forges) for forges in (False, True) for kind in KINDS):
+            landed = fuzz_companion(kind, firmware, frames, seed, forges=forges)
+            rows.append({"end": "companion", **asdict(landed), "is_good": landed.is_good})
+            _say(_companion_line(landed), is_good=landed.is_good, quiet=as_json)
     if as_json:
-        table = {"runs": [asdict(result) | {"is_good": result.is_good} for result in results]}
-        sys.stdout.write(f"{json.dumps(table, indent=2)}\n")
-    if not all(result.is_good for result in results):
-        raise UserError("the flight was disturbed, or frames were lost; run the link in question alone, by --link")
+        sys.stdout.write(f"{json.dumps({'runs': rows}, indent=2)}\n")
+    if not all(row["is_good"] for row in rows):
+        raise UserError("a flight was disturbed, or frames were lost; run it alone, by --end and --link")
+
+
+def _say(line: str, *, is_good: bool, quiet: bool) -> None:
+    if not quiet:
+        sys.stdout.write(f"{line}: {'undisturbed' if is_good else 'DISTURBED'}\n")
+        sys.stdout.flush()
+
+
+def _autopilot_line(result: "FuzzResult") -> str:
+    return (
+        f"autopilot {result.firmware}, {result.link}: {result.frames} frames, "
+        f"{result.known_messages} of them messages, {100.0 * result.received_share:g} % received; "
+        f"drift {result.drift_m:g} m, {result.not_finite} numbers not finite; {result.frames_a_second:g} frames/s"
+    )
+
+
+def _companion_line(result: "CompanionFuzzResult") -> str:
+    whose = "forged" if result.forges else "of strangers"
+    return (
+        f"companion on {result.firmware}, {result.link}: {result.frames} frames and "
+        f"{result.payloads} payloads {whose}; {result.landed} of {result.flights} landed, "
+        f"{result.not_finite} numbers not finite, {result.latest_s:g} s late at most; "
+        f"{result.frames_a_second:g} frames/s"
+    )

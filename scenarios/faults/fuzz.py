@@ -5,7 +5,7 @@ import os
 import pty
 import time
 import tty
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import islice
@@ -18,6 +18,7 @@ from link.mavlink.dialect import Message, mavlink
 from link.mavlink.transport import Transport
 from link.mavlink.transports import open_transport
 from scenarios.faults.fuzz_frames import fuzz_frames
+from scenarios.faults.not_finite import count_not_finite
 from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from sim_autopilot.runtime.config import SimAutopilotConfig, autopilot_config
 from sim_autopilot.runtime.node import AutopilotNode
@@ -91,7 +92,7 @@ def fuzz(link: str, firmware: str, frames: int, seed: int) -> FuzzResult:
             _offer(data, send, transport, node, received_before + offered_bytes)
             output = node.step(None, _STILL_AIR)[0]
             transport.send(output)
-            not_finite += _not_finite(listener.decode(output))
+            not_finite += count_not_finite(listener.decode(output))
             drift_m = max(drift_m, math.dist(place.tolist(), node.state.position_enu_m.tolist()))
     received = node.statistics[0].bytes_received - received_before
     return FuzzResult(
@@ -160,18 +161,6 @@ def _take(transport: Transport, node: AutopilotNode, timeout_s: float = 0.0) -> 
         answer = node.receive(data, node.state.t_ns, peer=peer, is_datagram=transport.is_datagram)[0]
         if answer:
             transport.send(answer)
-
-
-def _not_finite(messages: Iterable[Message]) -> int:
-    """Count numbers that are none; in PX4's PARAM_VALUE the bits of an integer may look like one."""
-    count = 0
-    for message in messages:
-        if message.get_type() == "PARAM_VALUE" and message.param_type != mavlink.MAV_PARAM_TYPE_REAL32:
-            continue
-        for value in message.to_dict().values():
-            numbers = value if isinstance(value, list) else (value,)
-            count += sum(isinstance(one, float) and not math.isfinite(one) for one in numbers)
-    return count
 
 
 @contextmanager

@@ -32,11 +32,16 @@ _QUESTIONS = frozenset(
 _WEIRD = (b"\x00\x00\xc0\x7f", b"\x00\x00\x80\x7f", b"\x00\x00\x80\xff", b"\xff\xff\x7f\x7f", b"\xff" * 4, b"\0" * 4)
 
 
-def fuzz_frames(seed: int) -> Iterator[bytes]:
-    """Yield frames without end; the same ones for the same seed."""
+def fuzz_frames(seed: int, *, forges: bool = False) -> Iterator[bytes]:
+    """Yield frames without end; the same ones for the same seed.
+
+    Args:
+        seed: of them.
+        forges: half of them say that they are the autopilot's.
+    """
     rng = random.Random(seed)  # noqa: S311 (reproducible, not secret)
     ids = sorted(mavlink.mavlink_map)
-    pool = [_absurd(rng, rng.choice(ids)) for _ in range(_POOL)]
+    pool = [_absurd(rng, rng.choice(ids), forges=forges) for _ in range(_POOL)]
     makers = (_replay, _truncate, _flip, _noise)
     while True:
         yield rng.choice(makers)(rng, pool)
@@ -62,7 +67,7 @@ def _noise(rng: random.Random, _pool: list[bytes]) -> bytes:
     return rng.randbytes(rng.randrange(_NOISE_BYTES_MAX))
 
 
-def _absurd(rng: random.Random, message_id: int) -> bytes:
+def _absurd(rng: random.Random, message_id: int, *, forges: bool) -> bytes:
     """A frame with a right checksum, its fields random or not even numbers."""
     kind = mavlink.mavlink_map[message_id]
     payload = bytearray(rng.randbytes(kind.unpacker.size))
@@ -74,6 +79,8 @@ def _absurd(rng: random.Random, message_id: int) -> bytes:
         if name in _TARGETS:
             payload[offset] = target[_TARGETS[name]]
     sender = (rng.randrange(256), rng.randrange(256), rng.randrange(256))  # sequence number, system, component
+    if forges and rng.random() < 0.5:
+        sender = (sender[0], *_OURS)
     if message_id <= 255 and rng.random() < 0.2:
         head = bytes((mavlink.PROTOCOL_MARKER_V1, len(payload), *sender, message_id))
     else:

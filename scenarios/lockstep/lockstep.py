@@ -34,17 +34,24 @@ class Lockstep:
         seed: of everything random.
         config: of the companion, None for the scenario's own.
         recorder: of the companion, None where nothing is recorded.
+        publishes: whether the companion makes what it would put on Zenoh, for `take_publications`.
     """
 
     def __init__(
-        self, scenario: Scenario, seed: Seed, config: CompanionConfig | None = None, recorder: Recorder | None = None
+        self,
+        scenario: Scenario,
+        seed: Seed,
+        config: CompanionConfig | None = None,
+        recorder: Recorder | None = None,
+        *,
+        publishes: bool = False,
     ) -> None:
         keys = Keys()
         self.recording = Recording()
         instant = scenario.start == "instant"
         self.simulation = Simulation(scenario, seed, keys, START_NS, instant=instant, publishes_truth=False)
         flown = scenario.system.companion if config is None else config
-        self.companion = build_node(flown, keys, recorder=recorder, publishes=False)
+        self.companion = build_node(flown, keys, recorder=recorder, publishes=publishes)
         self.companion.receive_pad(self.simulation.vehicle.pad)
         self._channels: Channels = channels_of(scenario, seed, START_NS)
         from_vehicle = dict.fromkeys((keys.fix, keys.fix_velocity, keys.imu), self._channels.zenoh)
@@ -60,6 +67,11 @@ class Lockstep:
             self.step()
         return reason
 
+    @property
+    def local_ns(self) -> int:
+        """What the companion's own clock shows."""
+        return self.simulation.t_ns - START_NS + _COMPANION_LOCAL_NS
+
     def step(self) -> None:
         """Advance by one step of the simulation."""
         outputs = self.simulation.step()
@@ -74,7 +86,7 @@ class Lockstep:
         self._advance_companion(t_ns)
 
     def _advance_companion(self, t_ns: int) -> None:
-        node, local_ns = self.companion, t_ns - START_NS + _COMPANION_LOCAL_NS
+        node, local_ns = self.companion, self.local_ns
         for data in self._channels.down.take(t_ns):
             node.receive_mavlink(data, local_ns)
         for way in (self._channels.zenoh, self._channels.detector):

@@ -4,7 +4,6 @@ from collections.abc import Callable
 
 import pytest
 
-from companion.runtime.build import build_node
 from companion.situation.phases import Phase
 from link.mavlink.clock_map import (
     UNIX_TIME_MAX_NS,
@@ -16,7 +15,6 @@ from link.mavlink.clock_map import (
 )
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
-from link.zenoh.keys import Keys
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.lockstep.lockstep import Lockstep
 
@@ -46,10 +44,7 @@ class Flight(Lockstep):
     """A landing whose companion publishes, and into whose link somebody else speaks."""
 
     def __init__(self) -> None:
-        scenario = load_scenario("straight_5")
-        super().__init__(scenario, 1)
-        self.companion = build_node(scenario.system.companion, Keys())
-        self.companion.receive_pad(self.simulation.vehicle.pad)
+        super().__init__(load_scenario("straight_5"), 1, publishes=True)
         self._forger = MavlinkCodec(1, 1)
 
     def fly_to(self, phase: Phase) -> None:

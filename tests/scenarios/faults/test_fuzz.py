@@ -5,6 +5,7 @@ import pytest
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
 from scenarios.faults.fuzz import LINK_KINDS, fuzz
+from scenarios.faults.fuzz_companion import fuzz_companion
 from scenarios.faults.fuzz_frames import fuzz_frames
 
 ORDERS = {"COMMAND_LONG", "COMMAND_INT", "PARAM_SET", "SET_MODE", "SET_POSITION_TARGET_LOCAL_NED", "MANUAL_CONTROL"}
@@ -39,3 +40,16 @@ def test_a_hovering_drone_minds_no_broken_or_absurd_frame(link: str, firmware: s
     assert result.drift_m < 0.2
     assert result.mode_kept
     assert result.not_finite == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("link", "forges"), [("datagram", False), ("stream", True)])
+def test_a_landing_companion_minds_no_stranger_and_sends_nothing_absurd_whatever_comes(
+    link: str, *, forges: bool
+) -> None:
+    result = fuzz_companion(link, "px4", 10_000, seed=2, forges=forges)
+    assert result.frames >= 10_000
+    assert result.payloads > 500
+    assert result.not_finite == 0
+    assert result.is_good
+    assert forges or result.landed == result.flights == 1
