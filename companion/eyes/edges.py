@@ -32,19 +32,19 @@ class EdgePoints(NamedTuple):
         places_m: (N, 3) in P.
         outwards_m: (N, 3) unit vectors in P, from the tag outwards.
         reach_m: (N,) how far across the edge may be looked for: no farther than the next change of colour.
-        tags: (N,) index of the tag.
+        edges: (N,) of which edge each is, numbered.
     """
 
     places_m: Array
     outwards_m: Array
     reach_m: Array
-    tags: NDArray[np.int64]
+    edges: NDArray[np.int64]
 
 
 def edge_points(corners_m: list[Array], sides_px: list[float], cells: int) -> EdgePoints:
     """Return the points of some tags: corners (4, 3) in P, and how many pixels their sides are long about."""
-    places, outwards, reaches, tags = [], [], [], []
-    for index, (corners, side_px) in enumerate(zip(corners_m, sides_px, strict=True)):
+    places, outwards, reaches, edges = [], [], [], []
+    for corners, side_px in zip(corners_m, sides_px, strict=True):
         count = int(np.clip(side_px / _POINT_SPACING_PX, 3, _POINTS_MAX))
         shares = np.linspace(_END_SHARE, 1.0 - _END_SHARE, count)[:, None]
         center, side_m = corners.mean(axis=0), float(np.linalg.norm(corners[1] - corners[0]))
@@ -53,8 +53,8 @@ def edge_points(corners_m: list[Array], sides_px: list[float], cells: int) -> Ed
             outward = 0.5 * (begin + end) - center
             outwards.append(np.tile(outward / np.linalg.norm(outward), (count, 1)))
             reaches.append(np.full(count, side_m / cells))
-            tags.append(np.full(count, index))
-    return EdgePoints(np.concatenate(places), np.concatenate(outwards), np.concatenate(reaches), np.concatenate(tags))
+            edges.append(np.full(count, len(edges)))
+    return EdgePoints(np.concatenate(places), np.concatenate(outwards), np.concatenate(reaches), np.concatenate(edges))
 
 
 class Crossings(NamedTuple):

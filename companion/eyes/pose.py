@@ -22,15 +22,14 @@ from companion.eyes.picture import Part
 Array = NDArray[np.float64]
 Pose = tuple[Array, Array]
 
-_CORNER_STD_PX = 1.0  # of what a search finds: OpenCV's corners of blurred tags
-_AGREES_PX = 4.0 * _CORNER_STD_PX
-_TAGS_TRIED = 3
+_AGREES_PX = 3.0  # three standard deviations of what a search finds: OpenCV's corners of blurred tags
 _REACHES_PX = (12.0, 8.0, 5.0, 4.0)  # of the rounds: first as far as the guess may be off, then as fine as blur allows
 _EDGE_STD_PX = 0.1  # of one point, at best: what is left of lenses and printing after a calibration
 _HUBER = 1.5  # standard deviations
 _REWEIGHTINGS = 3
 _DAMPING = 1e-6  # of the largest curvature: one tag far away leaves its tilt nearly open
 _POINTS_MIN = 12
+_INDEPENDENT = 2  # points of an edge
 _SEEN_SHARE_MIN = 0.5
 
 
@@ -61,14 +60,15 @@ def guesses(camera: Camera, board: Board, corners_px: dict[int, Array]) -> list[
         board: that they are on.
         corners_px: of each id the corners (4, 2); those of wrong ids agree with no others.
     """
-    sizes = {tag_id: abs(cv2.contourArea(corners.astype(np.float32))) for tag_id, corners in corners_px.items()}
-    largest = sorted(sizes, key=lambda tag_id: -sizes[tag_id])
-    best: list[int] = []
-    for tag_id in largest[:_TAGS_TRIED]:
-        for pose in _two_poses(camera, board, corners_px, [tag_id]):
-            agreeing = [other for other in largest if _agrees(camera, board, corners_px, other, pose)]
-            best = max(best, agreeing, key=len)
-    return _two_poses(camera, board, corners_px, best) if best else []
+    ids = list(corners_px)
+    if len(ids) > 1:
+        places = np.concatenate([board.corners_m[tag_id][:, :2] for tag_id in ids])
+        rays = camera.rays(np.concatenate([corners_px[tag_id] for tag_id in ids]))
+        _, agrees = cv2.findHomography(places, rays, cv2.RANSAC, _AGREES_PX / camera.focal_px)
+        if agrees is not None:
+            kept = np.asarray(agrees).reshape(-1, 4).all(axis=1).tolist()
+            ids = [tag_id for tag_id, is_kept in zip(ids, kept, strict=True) if is_kept]
+    return _two_poses(camera, board, corners_px, ids) if ids else []
 
 
 def _two_poses(camera: Camera, board: Board, corners_px: dict[int, Array], ids: list[int]) -> list[Pose]:
@@ -90,13 +90,6 @@ def _two_poses(camera: Camera, board: Board, corners_px: dict[int, Array], ids: 
     return found
 
 
-def _agrees(camera: Camera, board: Board, corners_px: dict[int, Array], tag_id: int, pose: Pose) -> bool:
-    pixels, _ = camera.pixels(board.corners_m[tag_id], *pose)
-    side_px = float(np.linalg.norm(pixels[1] - pixels[0]))
-    allowed_px = max(_AGREES_PX, 0.5 * side_px / CELLS)
-    return bool(np.max(np.linalg.norm(pixels - corners_px[tag_id], axis=1)) <= allowed_px)
-
-
 def refine(part: Part, camera: Camera, board: Board, pose: Pose, sides_px: dict[int, float]) -> Refined | None:
     """Return the pose that the edges of tags agree with, None where too few of them are seen.
 
@@ -109,7 +102,7 @@ def refine(part: Part, camera: Camera, board: Board, pose: Pose, sides_px: dict[
     """
     points = edge_points([board.corners_m[tag_id] for tag_id in sides_px], list(sides_px.values()), CELLS)
     seen = camera.in_view(points.places_m, *pose)
-    points = EdgePoints(points.places_m[seen], points.outwards_m[seen], points.reach_m[seen], points.tags[seen])
+    points = EdgePoints(points.places_m[seen], points.outwards_m[seen], points.reach_m[seen], points.edges[seen])
     if len(points.places_m) < _POINTS_MIN:
         return None
     found: Refined | None = None
@@ -136,11 +129,20 @@ def _round(part: Part, camera: Camera, points: EdgePoints, pose: Pose, reach_px:
     rms_px = float(np.sqrt(step.squares_px2 / max(step.weight - 6.0, 1.0)))
     return Refined(
         pose=moved,
-        covariance=max(rms_px, _EDGE_STD_PX) ** 2 * step.inverse,
+        covariance=_points_alike(points.edges[seen]) * max(rms_px, _EDGE_STD_PX) ** 2 * step.inverse,
         rms_px=rms_px,
         points=int(seen.sum()),
         squares_px2=step.squares_px2,
     )
+
+
+def _points_alike(edges: NDArray[np.int64]) -> float:
+    """Return how many points of an edge (N,: of which each point is) err alike, on average.
+
+    Blur, light and a plate's bend change slowly along an edge; so it tells its place and its slope, whatever the number
+    of points that are looked for on it.
+    """
+    return max(len(edges) / (_INDEPENDENT * len(np.unique(edges))), 1.0)
 
 
 class _Step(NamedTuple):
