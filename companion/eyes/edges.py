@@ -23,6 +23,7 @@ _HALF_SAMPLES = 7  # to either side of the expected edge
 _END_SHARE = 0.06  # of an edge at either end, where the corner rounds it off
 _BASE = 2  # samples to either side over which the shades' rise is taken
 _RISE_MIN = 5.0  # shades; less is noise
+_RISE_SHARE_MIN = 0.15  # of what most edges rise by: in a shadow a quarter of the light is left
 
 
 class EdgePoints(NamedTuple):
@@ -102,5 +103,6 @@ def find_crossings(
     bend = before - 2.0 * at_peak + after
     fraction = np.where(bend < 0.0, 0.5 * (before - after) / np.where(bend < 0.0, bend, -1.0), 0.0)
     distance_px = (peak + fraction - (_HALF_SAMPLES - _BASE)) * step_px
-    is_seen = inside & within & (at_peak >= _RISE_MIN)
+    typical = float(np.quantile(at_peak, 0.9)) if len(at_peak) else 0.0
+    is_seen = inside & within & (at_peak >= max(_RISE_MIN, _RISE_SHARE_MIN * typical))
     return Crossings(distance_px, np.einsum("nk,nkj->nj", normals, slopes), is_seen)

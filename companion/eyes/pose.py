@@ -23,14 +23,16 @@ Array = NDArray[np.float64]
 Pose = tuple[Array, Array]
 
 _AGREES_PX = 3.0  # three standard deviations of what a search finds: OpenCV's corners of blurred tags
-_REACHES_PX = (12.0, 8.0, 5.0, 4.0)  # of the rounds: first as far as the guess may be off, then as fine as blur allows
+_REACHES_PX = (40.0, 12.0, 5.0, 4.0)  # of the rounds: first as far as the guess may be off, then as fine as blur allows
 _EDGE_STD_PX = 0.1  # of one point, at best: what is left of lenses and printing after a calibration
 _HUBER = 1.5  # standard deviations
+_DOUBT_SHARE = 0.25  # of the reach: an edge that is far off is no outlier before the guess has been brought near
 _REWEIGHTINGS = 3
 _DAMPING = 1e-6  # of the largest curvature: one tag far away leaves its tilt nearly open
 _POINTS_MIN = 12
 _INDEPENDENT = 2  # points of an edge
 _SEEN_SHARE_MIN = 0.5
+_EDGE_SHARE_MIN = 0.3  # of each edge of at least one tag: with three edges of one, the fourth may be anywhere
 
 
 @dataclass(frozen=True)
@@ -120,7 +122,10 @@ def _round(part: Part, camera: Camera, points: EdgePoints, pose: Pose, reach_px:
     seen = found.is_seen
     if seen.sum() < max(_POINTS_MIN, _SEEN_SHARE_MIN * len(seen)):
         return None
-    step = _least_squares(found.slopes[seen], found.distance_px[seen])
+    if not _is_outlined(points.edges, seen):
+        return None
+    std_min_px = _EDGE_STD_PX if reach_px == _REACHES_PX[-1] else _DOUBT_SHARE * reach_px
+    step = _least_squares(found.slopes[seen], found.distance_px[seen], std_min_px)
     if step is None:
         return None
     moved = (pose[0] + step.change[:3], pose[1] + step.change[3:])
@@ -134,6 +139,14 @@ def _round(part: Part, camera: Camera, points: EdgePoints, pose: Pose, reach_px:
         points=int(seen.sum()),
         squares_px2=step.squares_px2,
     )
+
+
+def _is_outlined(edges: NDArray[np.int64], seen: NDArray[np.bool_]) -> bool:
+    """Return whether of some tag each edge that is in view is seen; points (N,) by their edge, four edges to a tag."""
+    numbers, index = np.unique(edges, return_inverse=True)
+    shares = np.bincount(index, weights=seen) / np.bincount(index)
+    tags = numbers // 4
+    return any(bool((shares[tags == tag] >= _EDGE_SHARE_MIN).all()) for tag in np.unique(tags))
 
 
 def _points_alike(edges: NDArray[np.int64]) -> float:
@@ -154,7 +167,7 @@ class _Step(NamedTuple):
     weight: float
 
 
-def _least_squares(A: Array, distance_px: Array) -> _Step | None:
+def _least_squares(A: Array, distance_px: Array, std_min_px: float) -> _Step | None:
     """Return the step that brings distances (N,) with slopes A (N, 6) to zero; outliers count less, as by Huber."""
     change, inverse = np.zeros(6), np.zeros((6, 6))
     left_px, weights = distance_px, np.ones(len(distance_px))
@@ -166,7 +179,7 @@ def _least_squares(A: Array, distance_px: Array) -> _Step | None:
             return None
         change = inverse @ (A.T @ (weights * distance_px))
         left_px = distance_px - A @ change
-        std_px = max(1.4826 * float(np.median(np.abs(left_px))), _EDGE_STD_PX)
+        std_px = max(1.4826 * float(np.median(np.abs(left_px))), std_min_px)
         weights = np.minimum(1.0, _HUBER * std_px / np.maximum(np.abs(left_px), 1e-9))
     if not np.isfinite(change).all():
         return None
