@@ -6,6 +6,7 @@ sighting encoded for Zenoh; its time is counted from the frame on.
 
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import cv2
@@ -44,12 +45,12 @@ def bench() -> Table:
     camera = Camera(model="pinhole", matrix=matrix, distortion=np.zeros(5), size_px=_SIZE_PX)
     system = SightSystem(camera=camera, mounting=mounting_of(MountingConfig()), board=board)
     pictures = list(_pictures(board, camera))
-    searched = _times_ms(lambda shades: _look(SightMemory(), shades, 0, system), pictures)
+    searched = _times_ms(partial(_look, SightMemory(), t_ns=0, system=system), pictures)
     bare = _times_ms(_bare_detector(), pictures)
     tracked: list[float] = []
     for shades in pictures:
         memory, _ = sight_step(SightMemory(), Frame(t_ns=0, picture=WholePicture(shades)), system)
-        tracked += _times_ms(lambda one, kept=memory: _look(kept, one, _NEXT_NS, system), [shades])
+        tracked += _times_ms(partial(_look, memory, t_ns=_NEXT_NS, system=system), [shades])
     return {
         "searched": _row(searched),
         "tracked": _row(tracked),
@@ -59,7 +60,7 @@ def bench() -> Table:
     }
 
 
-def _look(memory: SightMemory, shades: Gray, t_ns: int, system: SightSystem) -> None:
+def _look(memory: SightMemory, shades: Gray, *, t_ns: int, system: SightSystem) -> None:
     """Do all that a frame takes but to capture it and to send its message."""
     _, sight = sight_step(memory, Frame(t_ns=t_ns, picture=WholePicture(shades)), system)
     if sight.sighting is not None:

@@ -44,7 +44,8 @@ class EdgePoints(NamedTuple):
 
 def edge_points(corners_m: list[Array], sides_px: list[float], cells: int) -> EdgePoints:
     """Return the points of some tags: corners (4, 3) in P, and how many pixels their sides are long about."""
-    places, outwards, reaches, edges = [], [], [], []
+    places, outwards, reaches = [], [], []
+    edges: list[NDArray[np.int64]] = []
     for corners, side_px in zip(corners_m, sides_px, strict=True):
         count = int(np.clip(side_px / _POINT_SPACING_PX, 3, _POINTS_MAX))
         shares = np.linspace(_END_SHARE, 1.0 - _END_SHARE, count)[:, None]

@@ -68,7 +68,7 @@ def guesses(camera: Camera, board: Board, corners_px: dict[int, Array]) -> list[
         rays = camera.rays(np.concatenate([corners_px[tag_id] for tag_id in ids]))
         _, agrees = cv2.findHomography(places, rays, cv2.RANSAC, _AGREES_PX / camera.focal_px)
         if agrees is not None:
-            kept = np.asarray(agrees).reshape(-1, 4).all(axis=1).tolist()
+            kept = np.asarray(np.all(np.asarray(agrees).reshape(-1, 4), axis=1)).tolist()
             ids = [tag_id for tag_id, is_kept in zip(ids, kept, strict=True) if is_kept]
     return _two_poses(camera, board, corners_px, ids) if ids else []
 
