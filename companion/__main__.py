@@ -5,17 +5,25 @@ import os
 import sys
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from companion.check.command import ConfigOption, DeviceOption, SigningKeyOption, SystemIdOption, check
+from companion.check.command import (
+    ConfigOption,
+    DeviceOption,
+    SigningKeyOption,
+    SigningStampsOption,
+    SystemIdOption,
+    check,
+)
 from companion.config.companion import AutopilotKind
 from companion.runtime.keys import keys
 from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
     DroneOption,
+    FoxgloveOption,
     InsecureOption,
     ListenOption,
     ModeOption,
@@ -28,6 +36,11 @@ from link.program.cli import (
     make_app,
     run_app,
 )
+
+if TYPE_CHECKING:
+    from companion.config.companion import CompanionConfig
+    from companion.recording.sink import MessageStore
+    from link.zenoh.keys import Keys
 
 app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.")
 app.command("check")(check)
@@ -65,8 +78,10 @@ def companion(
     autopilot: _AutopilotOption = None,
     system_id: SystemIdOption = 1,
     signing_key: SigningKeyOption = None,
+    signing_stamps: SigningStampsOption = None,
     tlog: _TlogOption = None,
     record: _RecordOption = None,
+    foxglove: FoxgloveOption = None,
     timing: _TimingOption = None,
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
@@ -92,7 +107,7 @@ def companion(
     if print_config:
         sys.stdout.write(dump_toml(settings))
         return
-    from link.mavlink.signing import read_key
+    from link.mavlink.signing_memory import SigningMemory, open_signing, stamps_file
     from link.mavlink.transports import open_transport
     from link.recording.recorder import BackgroundRecorder
     from link.ros2.options import open_layout, ros2_options
@@ -100,7 +115,7 @@ def companion(
     from link.zenoh.options import zenoh_options
 
     keys = Keys(namespace, vehicle, drone)
-    key = None if signing_key is None else read_key(signing_key)
+    signing = None if signing_key is None else open_signing(signing_key, signing_stamps)
     for written in (timing, tlog):
         if written is not None:
             _check_writable(written)
@@ -109,6 +124,10 @@ def companion(
     with ExitStack() as stack:
         # What a user may have got wrong is opened first: the numerics take their time, up to a minute to be compiled.
         endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
+        memory: SigningMemory | None = None
+        if signing is not None and signing_key is not None:
+            memory = SigningMemory(stamps_file(signing_key, signing_stamps), signing)
+            stack.callback(memory.close)
         transport = stack.enter_context(open_transport(mavlink))
         zenoh = stack.enter_context(
             open_layout(endpoints, ros2_options(ros2, ros2_map), keys, (f"/{drone}", "companion"))
@@ -117,10 +136,11 @@ def companion(
         from companion.runtime.loop import run
         from companion.runtime.options import Links, LoopOptions
 
-        if folder is not None:
-            from companion.recording.folder import recording_sink
+        if folder is not None or foxglove is not None:
+            from companion.recording.sink import CompanionSink, MessageStores
 
-            recorder = BackgroundRecorder(recording_sink(folder, settings, keys, system_id=system_id, dry_run=dry_run))
+            stores = _stores(folder, foxglove, settings, keys, system_id=system_id, dry_run=dry_run)
+            recorder = BackgroundRecorder(CompanionSink(MessageStores(stores), keys, settings.descent))
             stack.callback(recorder.close)
         node = build_node(
             settings,
@@ -129,15 +149,39 @@ def companion(
             dry_run=dry_run,
             records_input=tlog is not None,
             recorder=recorder,
-            signing_key=key,
+            signing=signing,
         )
         transport.receive(0.0)  # what has come meanwhile is old, and its time of receipt is not known
         options = LoopOptions(device=mavlink, timeout_s=timeout, start=start, use_sim_time=use_sim_time, tlog=tlog)
-        timings = run(node, Links(keys=keys, transport=transport, zenoh=zenoh), options)
+        timings = run(node, Links(keys=keys, transport=transport, zenoh=zenoh, signing=memory), options)
     if recorder is not None and recorder.dropped:
-        sys.stderr.write(f"recording: {recorder.dropped} records are lost, the disk of {folder} is full or too slow\n")
+        where = "Foxglove's server" if folder is None else f"the disk of {folder}"
+        sys.stderr.write(f"recording: {recorder.dropped} records are lost, {where} is full or too slow\n")
     if timing is not None:
         timing.write_text(json.dumps(timings.summary(), indent=2) + "\n", encoding="utf-8")
+
+
+def _stores(
+    folder: Path | None,
+    foxglove_port: int | None,
+    settings: "CompanionConfig",
+    keys: "Keys",
+    *,
+    system_id: int,
+    dry_run: bool,
+) -> "list[MessageStore]":
+    """Return where all that is recorded goes."""
+    from companion.recording.folder import recording_store
+    from link.recording.foxglove_server import FoxgloveServer
+
+    stores: list[MessageStore] = []
+    if foxglove_port is not None:
+        server = FoxgloveServer(foxglove_port)
+        sys.stderr.write(f"foxglove: ws://127.0.0.1:{server.port}\n")
+        stores.append(server)
+    if folder is not None:
+        stores.append(recording_store(folder, settings, keys, system_id=system_id, dry_run=dry_run))
+    return stores
 
 
 def _check_writable(path: Path) -> None:

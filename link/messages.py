@@ -9,8 +9,11 @@ from enum import Enum
 
 from msgspec import Struct
 
-LEVER_MAX_M = 50.0
-"""From a vehicle's antenna to its pad along each axis: no vehicle is larger, so what is further is a mistake."""
+VEHICLE_LENGTH_MAX_M = 25.25
+"""No vehicle on a road is longer: European Modular System, Directive 96/53/EC, article 4. So more is a mistake."""
+
+VEHICLE_HEIGHT_MAX_M = 8.0
+"""The largest truck that is built, a Caterpillar 797F, is 7.7 m high; on roads it is 4 m (Directive 96/53/EC)."""
 
 Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
@@ -122,7 +125,7 @@ class Plan(Struct, frozen=True, kw_only=True):
 class PadGeometry(Struct, frozen=True, kw_only=True):
     """The landing pad on the vehicle.
 
-    `antenna_to_pad_m` leads from the GNSS antenna to the pad's centre in V, by `LEVER_MAX_M` along each axis at most.
+    `antenna_to_pad_m` leads from the GNSS antenna to the pad's centre in V. No part of it all is larger than a vehicle.
     """
 
     size_m: tuple[float, float]

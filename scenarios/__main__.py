@@ -133,6 +133,7 @@ def command_command(
 ) -> int:
     """Send a command to the companion; exit code 1 when it is refused."""
     from link.messages import Command
+    from link.program.printable import printable
     from link.zenoh.keys import Keys
     from link.zenoh.options import zenoh_options
     from scenarios.commands.operator import send_command
@@ -144,7 +145,7 @@ def command_command(
         raise UserError(f"command '{command}' does not exist: give one of {known}") from None
     options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
     reply = send_command(wanted, Keys(namespace, "vehicle", drone), options)
-    sys.stdout.write("accepted\n" if reply.accepted else f"refused: {reply.reason}\n")
+    sys.stdout.write("accepted\n" if reply.accepted else f"refused: {printable(reply.reason)}\n")
     return 0 if reply.accepted else 1
 
 

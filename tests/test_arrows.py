@@ -16,6 +16,7 @@ MAY_IMPORT = {
 }
 HOMES = {
     "zenoh": {"link/zenoh/session.py", "link/ros2/session.py"},
+    "foxglove": {"link/recording/foxglove_server.py", "scenarios/view/foxglove_layout.py"},
     "xxhash": {"link/ros2/attachment.py"},
     "pymavlink": {f"link/mavlink/{name}.py" for name in ("dialect", "draft_messages", "codec")},
     "rosbags": {

@@ -40,6 +40,15 @@ SigningKeyOption = Annotated[
     Path | None,
     typer.Option("--signing-key", metavar="FILE", help="Sign MAVLink with this key: 32 bytes or 64 hex digits."),
 ]
+SigningStampsOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--signing-stamps",
+        metavar="FILE",
+        help="Where the time stamps of signatures are kept [default: the key's name with .stamps].",
+        show_default=False,
+    ),
+]
 SystemIdOption = Annotated[int, typer.Option("--system-id", min=1, max=255, help="MAVLink system id of the drone.")]
 
 
@@ -62,6 +71,7 @@ def check(
     config: ConfigOption = None,
     system_id: SystemIdOption = 1,
     signing_key: SigningKeyOption = None,
+    signing_stamps: SigningStampsOption = None,
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
     mode: ModeOption = None,
@@ -75,7 +85,7 @@ def check(
     from companion.check.findings import read_kept
     from companion.check.session import open_check
     from companion.config.companion import CompanionConfig
-    from link.mavlink.signing import read_key
+    from link.mavlink.signing_memory import open_signing
     from link.mavlink.transports import open_transport
     from link.program.toml_config import load_config
     from link.zenoh.keys import Keys
@@ -83,11 +93,11 @@ def check(
     from link.zenoh.session import open_session
 
     settings = load_config(config, CompanionConfig)
-    key = None if signing_key is None else read_key(signing_key)
+    signing = None if signing_key is None else open_signing(signing_key, signing_stamps)
     back = None if restore is None else read_kept(restore)
     options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
     with open_transport(mavlink) as transport, open_session(options) as zenoh:
-        session = open_check(transport, mavlink, system_id=system_id, signing_key=key)
+        session = open_check(transport, mavlink, system_id=system_id, signing=signing)
         session.find(timeout)
         if back is not None:
             _write(session, back)

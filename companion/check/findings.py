@@ -72,7 +72,7 @@ def read_kept(path: Path) -> dict[str, float]:
         values = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise UserError(f"{path}: cannot be read ({error.strerror}); name the file that --set kept") from error
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise UserError(f"{path}: is no file of parameters: {error}") from error
     is_numbers = isinstance(values, dict) and all(
         isinstance(value, int | float) and math.isfinite(value) for value in values.values()

@@ -34,18 +34,15 @@ class Inboxes:
     pad: PadQuestion
 
 
-def open_check(
-    transport: Transport, device: str, *, system_id: int, signing_key: bytes | None = None
-) -> "CheckSession":
+def open_check(transport: Transport, device: str, *, system_id: int, signing: Signing | None = None) -> "CheckSession":
     """Return a conversation that has not begun.
 
     Args:
         transport: to the autopilot.
         device: its name, for messages.
         system_id: MAVLink's, of the drone.
-        signing_key: 32 bytes shared with the autopilot; None sends unsigned and takes everything.
+        signing: by a key shared with the autopilot; None sends unsigned and takes everything.
     """
-    signing = None if signing_key is None else Signing(signing_key)
     session = MavlinkSession(system_id, target_system_id=system_id, signing=signing)
     return CheckSession(Reader(session), transport, device)
 

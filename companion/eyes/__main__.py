@@ -10,6 +10,7 @@ from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
     DroneOption,
+    InsecureOption,
     ListenOption,
     ModeOption,
     MulticastOption,
@@ -82,6 +83,7 @@ def run_detector(
     listen: ListenOption = None,
     multicast: MulticastOption = None,
     zenoh_config: ZenohConfigOption = None,
+    insecure: InsecureOption = False,
 ) -> None:
     """Look at a camera's frames and publish where the pad is."""
     from companion.eyes.board import load_board
@@ -99,7 +101,7 @@ def run_detector(
     camera = load_calibration(calibration)
     system = SightSystem(camera=camera, mounting=load_mounting(mounting), board=load_board(board))
     options = SourceOptions(size_px=size or camera.size_px, latency_s=latency, rate_hz=rate)
-    with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config)) as zenoh:
+    with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)) as zenoh:
         frames = open_source(source, options, keys, zenoh)
         try:
             EyesLoop(EyesNode(system, keys), frames, keys, zenoh).run()

@@ -4,16 +4,25 @@ import math
 
 from companion.config.companion import CompanionConfig
 from companion.config.landing import LandingStyle
+from companion.core.data import GRAVITY_M_S2
 from companion.core.reasons import Cause, Reason
 from companion.integrity.heights import is_seen_too_near
 from companion.integrity.vehicle_data import contradicts_itself
-from companion.landing.conditions import AUTOPILOT_SILENT, MISSED, VEHICLE_SILENT, Condition, is_fix_old
+from companion.landing.conditions import (
+    AUTOPILOT_SILENT,
+    MISSED,
+    VEHICLE_SILENT,
+    Condition,
+    is_fix_old,
+    is_in_contact,
+)
 from companion.landing.targets import changes_speed, is_unseen, is_vague
 from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
 from companion.situation.situation import Approach, Situation
 from companion.vehicle.pad import cone_radius_m, over_pad_radius_m
 
 _DESCENT = frozenset({Phase.DESCEND})
+_FRICTION_MIN = 0.5  # of rubber on painted metal when it is wet; dry 0.8
 
 
 def is_uncertain(s: Situation, c: CompanionConfig) -> bool:
@@ -69,13 +78,22 @@ def must_wait(s: Situation, c: CompanionConfig) -> bool:
 
 def _is_outside_cone(s: Situation, c: CompanionConfig) -> bool:
     a = s.approach
-    return a is not None and a.height_m < c.abort.near_height_m and _is_beside_cone(a, c)
+    return a is not None and a.height_m < c.abort.near_height_m and _is_beside_cone(a, c) and not _has_touched(s, c)
 
 
 def strays(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the drone leaves the cone above the pad, or moves against the pad too fast to touch it."""
     a = s.approach
     return a is not None and (_is_beside_cone(a, c) or a.speed_m_s > c.abort.near_speed_max_m_s)
+
+
+def _has_touched(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the drone stands on the pad, or slides to rest on it: to lift off would be the greater danger."""
+    a = s.approach
+    if a is None or not is_in_contact(s, c):
+        return False
+    room_m = a.pad_half_width_m - a.distance_m
+    return 0.5 * a.speed_m_s**2 < _FRICTION_MIN * GRAVITY_M_S2 * room_m
 
 
 def is_over_pad(a: Approach, c: CompanionConfig) -> bool:
@@ -85,7 +103,9 @@ def is_over_pad(a: Approach, c: CompanionConfig) -> bool:
 
 def _is_too_fast_near_pad(s: Situation, c: CompanionConfig) -> bool:
     a = s.approach
-    return a is not None and a.height_m < c.abort.near_height_m and a.speed_m_s > c.abort.near_speed_max_m_s
+    if a is None or a.height_m >= c.abort.near_height_m or _has_touched(s, c):
+        return False
+    return a.speed_m_s > c.abort.near_speed_max_m_s
 
 
 def is_out_of_range(s: Situation, c: CompanionConfig) -> bool:

@@ -87,7 +87,8 @@ _DESCENT = frozenset({Phase.DESCEND})
 _STANDING = frozenset({Phase.TOUCHDOWN})
 
 
-def _is_in_contact(s: Situation, c: CompanionConfig) -> bool:
+def is_in_contact(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether every sign of a contact agrees now, however short it has been."""
     return verdict(signs_of(s), c) is Verdict.CONTACT
 
 
@@ -123,7 +124,7 @@ def _is_sunk(s: Situation, c: CompanionConfig) -> bool:
 TOUCHED = Condition(
     reason=Reason.CONTACT,
     phases=_DESCENT,
-    is_true=_is_in_contact,
+    is_true=is_in_contact,
     hold_s=lambda c: c.touchdown.hold_s,
     cause=lambda s, _: Cause(Reason.CONTACT, (signs_text(signs_of(s)),)),
 )

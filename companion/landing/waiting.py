@@ -58,19 +58,21 @@ def _find_unpredictable(memory: StepMemory, situation: Situation, config: Compan
     """Return what a vehicle has lately done that nobody could expect, None of one that stands or drives evenly."""
     if not _may_wait(memory, situation, config) or _stays(memory, situation, config):
         return None
-    surprise, age_s = memory.vehicle.surprise, situation.vehicle.fix_age_s
+    surprise = memory.vehicle.surprise
+    late_s = surprise.lateness_s
     if may_surprise(surprise, situation.monotonic_ns, config.descent):
         return Cause(Reason.SPEED_SURPRISED)
-    if drives_unevenly(surprise.driving, age_s, config.descent):
+    if drives_unevenly(surprise.driving, late_s, config.descent):
         return Cause(Reason.SPEED_UNEVEN)
-    if turns_hard(surprise.driving, age_s, config.descent):
+    if turns_hard(surprise.driving, late_s, config.descent):
         return Cause(Reason.ROAD_TURNS_HARD)
-    return Cause(Reason.ROAD_WINDS) if winds(surprise.driving, age_s, config.descent) else None
+    return Cause(Reason.ROAD_WINDS) if winds(surprise.driving, late_s, config.descent) else None
 
 
 def _stays(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
     """Return whether the vehicle stands and will do so for a while."""
-    departs = may_depart(memory.vehicle.surprise.driving, situation.vehicle.fix_age_s, config.descent)
+    surprise = memory.vehicle.surprise
+    departs = may_depart(surprise.driving, surprise.lateness_s, config.descent)
     return vehicle_stands(situation, config.chase) and not departs
 
 

@@ -18,7 +18,15 @@ _BYTES_PER_MB = 1_000_000
 def recording_sink(
     folder: Path, config: CompanionConfig, keys: Keys, *, system_id: int = 1, dry_run: bool = False
 ) -> CompanionSink:
-    """Return where a companion's records go: `<folder>/companion_000.mcap` and on.
+    """Return where a companion's records go: into `recording_store` alone, with the same arguments."""
+    store = recording_store(folder, config, keys, system_id=system_id, dry_run=dry_run)
+    return CompanionSink(store, keys, config.descent)
+
+
+def recording_store(
+    folder: Path, config: CompanionConfig, keys: Keys, *, system_id: int = 1, dry_run: bool = False
+) -> McapRecording:
+    """Return a recording of a companion: `<folder>/companion_000.mcap` and on.
 
     Args:
         folder: made when it is missing.
@@ -48,7 +56,7 @@ def recording_sink(
         file_max_bytes=round(config.recording.file_max_mb * _BYTES_PER_MB),
         total_max_bytes=round(config.recording.total_max_mb * _BYTES_PER_MB),
     )
-    return CompanionSink(McapRecording(spec), keys)
+    return McapRecording(spec)
 
 
 def _version(name: str) -> str:

@@ -1,11 +1,14 @@
 """The end of a companion's recording: its records, as messages, with the times of a clock that knows UTC."""
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import Protocol
 
+from companion.config.landing import DescentConfig
 from companion.recording.messages import LONG_EVERY, input_messages, link_message, step_messages, step_time_message
 from companion.recording.records import InputRecord, LinkRecord, Record, StepRecord, StepTimeRecord
+from companion.recording.scenes import scene_messages
 from link.payloads.decklander_msgs import RosMessage
 from link.zenoh.keys import Keys
 
@@ -30,6 +33,31 @@ class MessageStore(Protocol):
         """
 
 
+class MessageStores:
+    """Several stores as one; what fails in one is told once the others have had it."""
+
+    def __init__(self, stores: Sequence[MessageStore]) -> None:
+        self._stores = stores
+
+    def add(self, message: RosMessage, log_ns: int) -> None:
+        """Add a message to all of them."""
+        self._each([partial(store.add, message, log_ns) for store in self._stores])
+
+    def close(self) -> None:
+        """Complete all of them."""
+        self._each([store.close for store in self._stores])
+
+    def _each(self, calls: Sequence[Callable[[], None]]) -> None:
+        failed: OSError | None = None
+        for call in calls:
+            try:
+                call()
+            except OSError as error:
+                failed = error
+        if failed is not None:
+            raise failed
+
+
 class CompanionSink:
     """Writes records of a `RecordingNode`.
 
@@ -38,11 +66,13 @@ class CompanionSink:
     Args:
         store: of the messages.
         keys: of the Zenoh contract.
+        descent: for the cone of the scene; None leaves the scene out.
     """
 
-    def __init__(self, store: MessageStore, keys: Keys) -> None:
+    def __init__(self, store: MessageStore, keys: Keys, descent: DescentConfig | None = None) -> None:
         self._store = store
         self._keys = keys
+        self._descent = descent
         self._early: deque[Record] | None = deque()
         self._utc_from_local_ns = 0
         self._last_local_ns = 0
@@ -87,8 +117,10 @@ class CompanionSink:
             case StepRecord():
                 is_long = self._steps % LONG_EVERY == 0
                 self._steps += 1
-                messages = step_messages(record, self._keys, long=is_long)
-                self._add(messages, record.local_ns + self._utc_from_local_ns)
+                log_ns = record.local_ns + self._utc_from_local_ns
+                self._add(step_messages(record, self._keys, long=is_long), log_ns)
+                if self._descent is not None:
+                    self._add(scene_messages(record, self._descent, self._keys, long=is_long), log_ns)
             case LinkRecord():
                 self._add([link_message(record, self._keys)], self._last_local_ns + self._utc_from_local_ns)
             case StepTimeRecord():

@@ -60,7 +60,7 @@ def build_node(
     publishes: bool = True,
     records_input: bool = False,
     recorder: Recorder | None = None,
-    signing_key: bytes | None = None,
+    signing: Signing | None = None,
 ) -> CompanionNode:
     """Return a companion that has seen nothing yet.
 
@@ -72,7 +72,7 @@ def build_node(
         publishes: put status and plan on Zenoh.
         records_input: keep received frames for a recording of the link.
         recorder: takes all that goes in and out, None where nothing is recorded.
-        signing_key: 32 bytes shared with the autopilot; None sends unsigned and takes everything.
+        signing: by a key shared with the autopilot; None sends unsigned and takes everything.
 
     Raises:
         UserError: what the configuration chooses is not installed.
@@ -84,7 +84,6 @@ def build_node(
         guidance=make_guidance(config.guidance.kind, config.guidance),
     )
     warm_up(system)
-    signing = None if signing_key is None else Signing(signing_key)
     session = MavlinkSession(system_id, target_system_id=system_id, signing=signing, records_input=records_input)
     if recorder is not None:
         return RecordingNode(system, keys, session, recorder, dry_run=dry_run, publishes=publishes)

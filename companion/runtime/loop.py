@@ -13,7 +13,7 @@ from companion.runtime.options import Links, LoopOptions, Timings
 from companion.runtime.own_start import OwnStart
 from companion.runtime.pad_question import PadQuestion
 from companion.runtime.recorded_node import RecordingNode
-from companion.situation.phases import Phase
+from companion.situation.phases import FLYING_PHASES, Phase
 from link.errors import UserError
 from link.mavlink.pinned_peer import PinnedPeer
 from link.mavlink.tlog import TlogFrames, TlogSink
@@ -59,6 +59,7 @@ class _Loop:
         self._node = node
         self._keys = keys = links.keys
         self._transport = links.transport
+        self._signing = links.signing
         self._peer = PinnedPeer(links.transport, node.autopilot.session)
         self._zenoh = zenoh = links.zenoh
         self._options = options
@@ -127,6 +128,8 @@ class _Loop:
     def _turn(self, clock: Clock) -> None:
         """Wait for bytes, take what has come, step if due, send."""
         self._service.alive(time.monotonic_ns())
+        if self._signing is not None:
+            self._signing.poll(time.monotonic_ns())
         if isinstance(clock, SimulatedClock):
             self._tick(clock)
         received = self._transport.receive_by_peer(min(_WAIT_MAX_S, clock.wall_s(_WAIT_MAX_S)))
@@ -205,7 +208,8 @@ class _Loop:
             question.ask_anew()
         self._was_alive = alive
         bad, why = question.bad_answers, question.refused_why
-        pad = question.poll(time.monotonic(), asks=alive or self._fix_seen)
+        may_change = self._node.phase not in FLYING_PHASES
+        pad = question.poll(time.monotonic(), asks=alive or self._fix_seen, may_change=may_change)
         self._node.bad_payloads += question.bad_answers - bad
         if question.refused_why != why:
             self._log.warning("the vehicle's description of its pad is refused", why=question.refused_why)

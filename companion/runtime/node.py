@@ -20,8 +20,9 @@ from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.factory import make_estimator
 from companion.vehicle.inputs import measurements_of
 from link.mavlink.session import MavlinkSession
-from link.messages import LEVER_MAX_M, Command, CommandReply, PadGeometry
+from link.messages import Command, CommandReply, PadGeometry
 from link.payloads.checks import PayloadError
+from link.payloads.json_messages import is_possible
 from link.records import replace
 from link.zenoh.keys import Keys, Publication
 
@@ -119,7 +120,7 @@ class CompanionNode:
 
     def receive_pad(self, pad: PadGeometry) -> None:
         """Take the vehicle's description of its pad; the estimator needs the lever arm for sightings of the pad."""
-        if not all(abs(part_m) <= LEVER_MAX_M for part_m in pad.antenna_to_pad_m):
+        if not is_possible(pad):
             self.bad_payloads += 1
             return
         self._pad = pad

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import psutil  # type: ignore[import-untyped]  # it has no annotations
 
+from link.mavlink.signing_memory import SigningMemory
 from link.mavlink.transports import Transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohSession
@@ -67,8 +68,9 @@ class LoopOptions:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Links:
-    """What connects the node with the world."""
+    """What connects the node with the world; `signing` is where signatures are remembered, if there are any."""
 
     keys: Keys
     transport: Transport
     zenoh: ZenohSession
+    signing: SigningMemory | None = None

@@ -1,4 +1,7 @@
-"""Asking a vehicle for its pad until it has answered with one that fits."""
+"""Asking a vehicle for its pad until it has answered with one that fits.
+
+Anybody on Zenoh may answer. So all that answer have to agree, and a pad that is flown to is never replaced by another.
+"""
 
 from typing import Protocol
 
@@ -8,6 +11,8 @@ from link.payloads.checks import PayloadError
 from link.zenoh.inbox import Inbox
 
 _AGAIN_S = 1.0
+_GATHER_S = 0.5  # for the answers of all who answer; the links of a landing are ten times as quick
+_CHANGED = "another pad than before, while it is flown to; it counts after this flight"
 
 
 class Asks(Protocol):
@@ -26,7 +31,7 @@ class PadQuestion:
 
     Attributes:
         is_answered: whether a pad has come, since it was last asked anew.
-        bad_answers: that were no description of a pad.
+        bad_answers: that were no description of a pad, or not to be believed.
         refused_why: what was wrong with the last one of them, None while there was none.
     """
 
@@ -34,6 +39,8 @@ class PadQuestion:
         self._zenoh = zenoh
         self._key = key
         self._answers: Inbox | None = None
+        self._gathered: list[PadGeometry] = []
+        self._pad: PadGeometry | None = None
         self._asked_s = float("-inf")
         self.is_answered = False
         self.bad_answers = 0
@@ -43,26 +50,42 @@ class PadQuestion:
         """Ask once more, although there was an answer: it may be another vehicle."""
         self.is_answered = False
 
-    def poll(self, now_s: float, *, asks: bool = True) -> PadGeometry | None:
+    def poll(self, now_s: float, *, asks: bool = True, may_change: bool = True) -> PadGeometry | None:
         """Take answers, ask when that is due, and return a pad that has come.
 
         Args:
             now_s: of a monotonic clock.
             asks: whether there is anybody to ask.
+            may_change: whether another pad than that of before is believed.
         """
-        pad = self._take()
+        self._take()
+        pad = self._decide(may_change=may_change) if self._gathered and now_s - self._asked_s >= _GATHER_S else None
         if asks and not self.is_answered and now_s - self._asked_s >= _AGAIN_S:
             self._asked_s = now_s
+            self._gathered.clear()
             self._answers = self._zenoh.ask(self._key, b"", _AGAIN_S)
         return pad
 
-    def _take(self) -> PadGeometry | None:
-        pad: PadGeometry | None = None
+    def _take(self) -> None:
         for sample in () if self._answers is None else self._answers.take():
             try:
-                pad = json_messages.decode(PadGeometry, sample.payload)
-                self.is_answered = True
+                self._gathered.append(json_messages.decode(PadGeometry, sample.payload))
             except PayloadError as error:
-                self.bad_answers += 1
-                self.refused_why = str(error)
-        return pad
+                self._refuse(str(error))
+
+    def _decide(self, *, may_change: bool) -> PadGeometry | None:
+        """Return what all answers say, None when they do not agree or say what is not to be believed."""
+        first, *others = self._gathered
+        self._gathered = []
+        if any(other != first for other in others):
+            self._refuse(f"{len(others) + 1} answers that differ: two answer on {self._key}")
+            return None
+        if not may_change and self._pad not in {None, first}:
+            self._refuse(_CHANGED)
+            return None
+        self._pad, self.is_answered = first, True
+        return first
+
+    def _refuse(self, why: str) -> None:
+        self.bad_answers += 1
+        self.refused_why = why

@@ -14,7 +14,8 @@ doing so: by 0.3 m/s in the half second that poor data are late for one of 0.8 m
 So does a road that bends one way and the other: a curve that is known may last, but where the next one begins, with a
 radius of 16 m at 7 m/s, the vehicle is 1.6 m/s off to the side when that is told; and in the sharpest curves a drone
 leans so far that it has to come level at the right tenth of a second. All of these show in the velocities that were
-driven, long before a belief of the vehicle's speed is found to be wrong.
+driven, long before a belief of the vehicle's speed is found to be wrong. A departure that is over says nothing of the
+driver: everybody departs.
 """
 
 import math
@@ -29,6 +30,7 @@ from link.records import replace
 _DRIVEN_KEPT = 150  # velocities: of 15 s, five times as long as an uneven driver keeps an acceleration
 _APART = 20  # velocities that are compared: 2 s, over which a fix's error counts little
 _APART_MAX_S = 4.0  # farther apart there was an outage
+_DEPARTED_M_S2 = 0.1  # an even driver's
 _CREEPS_M_S = 0.5  # over poor data a parked vehicle seems to move by 0.3 m/s now and then
 
 Driven = tuple[int, float, float]
@@ -44,14 +46,16 @@ class Driving(Struct, frozen=True, kw_only=True):
     Attributes:
         driven: its velocities, ten a second, oldest first.
         changes: up to each of them that has one 2 s before it, oldest first; None over an outage.
-        unevenness_m_s2: root mean square of the accelerations along.
+        unevenness_m_s2: root mean square of the accelerations along, without a departure that is over.
         winding_m_s2: likewise, of how the acceleration to the left differs from the one 2 s before.
+        departs_for: changes since it has left from rest, None once its speed has grown no more.
     """
 
     driven: tuple[Driven, ...] = ()
     changes: tuple[Change | None, ...] = ()
     unevenness_m_s2: float = 0.0
     winding_m_s2: float = 0.0
+    departs_for: int | None = None
 
 
 def with_velocity(driving: Driving, t_ns: int, velocity_enu_m_s: Array) -> Driving:
@@ -59,9 +63,14 @@ def with_velocity(driving: Driving, t_ns: int, velocity_enu_m_s: Array) -> Drivi
     east_m_s, north_m_s = velocity_enu_m_s[:2].tolist()
     newest = (t_ns, east_m_s, north_m_s)
     driven = (*driving.driven, newest)[-_DRIVEN_KEPT:]
+    creeps = math.hypot(east_m_s, north_m_s) < _CREEPS_M_S
     if len(driven) <= _APART:
-        return replace(driving, driven=driven)
-    changes = (*driving.changes, _change_m_s2(driven[-1 - _APART], newest))[_APART - _DRIVEN_KEPT :]
+        return replace(driving, driven=driven, departs_for=0 if creeps else driving.departs_for)
+    change = _change_m_s2(driven[-1 - _APART], newest)
+    changes = (*driving.changes, change)[_APART - _DRIVEN_KEPT :]
+    departs_for = 0 if creeps else None if driving.departs_for is None else driving.departs_for + 1
+    if departs_for is not None and not creeps and change is not None and change[0] < _DEPARTED_M_S2:
+        changes, departs_for = _without_departure(changes, min(departs_for, len(changes))), None
     along_m_s2 = [change[0] for change in changes if change is not None]
     bends_m_s2 = [
         later[1] - before[1]
@@ -73,7 +82,14 @@ def with_velocity(driving: Driving, t_ns: int, velocity_enu_m_s: Array) -> Drivi
         changes=changes,
         unevenness_m_s2=_root_mean_square(along_m_s2),
         winding_m_s2=_root_mean_square(bends_m_s2),
+        departs_for=departs_for,
     )
+
+
+def _without_departure(changes: tuple[Change | None, ...], count: int) -> tuple[Change | None, ...]:
+    """Return the changes without those of the last `count` that speed up."""
+    kept, departing = changes[: len(changes) - count], changes[len(changes) - count :]
+    return kept + tuple(None if change is not None and change[0] > 0.0 else change for change in departing)
 
 
 def brakes_hard(driving: Driving, config: DescentConfig) -> bool:
@@ -88,29 +104,29 @@ def _speeds_up_hard(driving: Driving, config: DescentConfig) -> bool:
     return newest is not None and newest[0] > config.hard_brake_m_s2
 
 
-def drives_unevenly(driving: Driving, fix_age_s: float | None, config: DescentConfig) -> bool:
-    """Return whether a vehicle, whose newest fix is `fix_age_s` old, will have changed its speed by when that is told.
+def drives_unevenly(driving: Driving, lateness_s: float | None, config: DescentConfig) -> bool:
+    """Return whether a vehicle, whose fixes are `lateness_s` old, will have changed its speed by when that is told.
 
     Over fresh data it does not matter.
     """
-    return _is_late(fix_age_s, config) and driving.unevenness_m_s2 > config.uneven_acceleration_m_s2
+    return _is_late(lateness_s, config) and driving.unevenness_m_s2 > config.uneven_acceleration_m_s2
 
 
-def winds(driving: Driving, fix_age_s: float | None, config: DescentConfig) -> bool:
+def winds(driving: Driving, lateness_s: float | None, config: DescentConfig) -> bool:
     """Return whether the road of such a vehicle will have bent by when that is told, likewise."""
-    return _is_late(fix_age_s, config) and driving.winding_m_s2 > config.winding_acceleration_m_s2
+    return _is_late(lateness_s, config) and driving.winding_m_s2 > config.winding_acceleration_m_s2
 
 
-def turns_hard(driving: Driving, fix_age_s: float | None, config: DescentConfig) -> bool:
+def turns_hard(driving: Driving, lateness_s: float | None, config: DescentConfig) -> bool:
     """Return whether such a vehicle turns harder than the drone, over such links, comes level in time to touch it."""
     newest = driving.changes[-1] if driving.changes else None
     is_hard = newest is not None and abs(newest[1]) > config.turning_acceleration_m_s2
-    return is_hard and _is_late(fix_age_s, config)
+    return is_hard and _is_late(lateness_s, config)
 
 
-def may_depart(driving: Driving, fix_age_s: float | None, config: DescentConfig) -> bool:
+def may_depart(driving: Driving, lateness_s: float | None, config: DescentConfig) -> bool:
     """Return whether such a vehicle, which has just stopped, will have departed by when that is told, likewise."""
-    return _is_late(fix_age_s, config) and _stood_s(driving) < config.stop_s
+    return _is_late(lateness_s, config) and _stood_s(driving) < config.stop_s
 
 
 def _stood_s(driving: Driving) -> float:
@@ -121,8 +137,8 @@ def _stood_s(driving: Driving) -> float:
     return math.inf if moved_ns is None else (driving.driven[-1][0] - moved_ns) * 1e-9
 
 
-def _is_late(fix_age_s: float | None, config: DescentConfig) -> bool:
-    return fix_age_s is not None and fix_age_s > config.uneven_age_s
+def _is_late(lateness_s: float | None, config: DescentConfig) -> bool:
+    return lateness_s is not None and lateness_s > config.uneven_age_s
 
 
 def _change_m_s2(before: Driven, then: Driven) -> Change | None:
@@ -142,6 +158,7 @@ def _root_mean_square(values: list[float]) -> float:
 _BELIEF_PERIOD_NS = 100_000_000
 _KNOWN_STD_MAX_M_S = 1.0  # of a velocity that is a belief: in its first second an estimate knows no acceleration
 _SURPRISE_STDS = 2.5  # less was said to be possible: through an outage of 2 s a belief is off by 1 m/s
+_LATENESS_MEAN_S = 1.0  # five periods of the slowest receiver
 _KEPT = 30  # beliefs: of 3 s, longer than any data are awaited
 _SURE_STD_MAX_M_S = 0.3  # of a velocity that was driven; one fix's is 0.1
 
@@ -155,12 +172,17 @@ class Surprise(Struct, frozen=True, kw_only=True):
     Attributes:
         beliefs: not checked yet, oldest first.
         speed_std_m_s: of the newest of all; infinite while the speed is not known.
+        lateness_s: age of the newest fix, a mean of the last second, for between two fixes of a receiver at 5 Hz it
+            grows by 0.2 s; None before the first.
+        aged_ns: when that was last so, monotonic.
         surprised_ns: when the newest wrong one was held, monotonic; None when none was.
         driving: how it has driven up to the times of the beliefs that have been checked.
     """
 
     beliefs: tuple[Belief, ...] = ()
     speed_std_m_s: float = math.inf
+    lateness_s: float | None = None
+    aged_ns: int = 0
     surprised_ns: int | None = None
     driving: Driving = field(default_factory=Driving)
 
@@ -187,6 +209,7 @@ def update_surprise(
     newest_ns = estimator.newest_fix_ns(memory)
     if newest_ns is None:
         return replace(surprise, beliefs=(), speed_std_m_s=math.inf)
+    surprise = _with_age(surprise, (t_ns - newest_ns) * 1e-9, monotonic_ns)
     while surprise.beliefs and surprise.beliefs[0][0] <= newest_ns:
         (then_ns, speed_m_s, std_m_s), *later = surprise.beliefs
         surprise = replace(surprise, beliefs=tuple(later))
@@ -199,7 +222,7 @@ def update_surprise(
             surprise = replace(surprise, driving=with_velocity(surprise.driving, then_ns, known.velocity_enu_m_s))
         # To depart so once more it has to stop first, and over fresh data that surprises by itself if it is as hard.
         departs = faster_m_s > 0.0 or _speeds_up_hard(surprise.driving, config)
-        counts = not departs or _is_late((t_ns - newest_ns) * 1e-9, config)
+        counts = not departs or _is_late(surprise.lateness_s, config)
         is_wrong = counts and abs(faster_m_s) > max(config.surprise_speed_m_s, _SURPRISE_STDS * std_m_s)
         if is_wrong or (is_sure and brakes_hard(surprise.driving, config)):
             wrong_ns, before_ns = then_ns - t_ns + monotonic_ns, surprise.surprised_ns
@@ -212,6 +235,14 @@ def update_surprise(
     std_m_s = _std_m_s(now)
     beliefs = (*surprise.beliefs, (t_ns, _speed_m_s(now), std_m_s))[-_KEPT:]
     return replace(surprise, beliefs=beliefs, speed_std_m_s=std_m_s)
+
+
+def _with_age(surprise: Surprise, age_s: float, monotonic_ns: int) -> Surprise:
+    before_s = surprise.lateness_s
+    if before_s is None:
+        return replace(surprise, lateness_s=age_s, aged_ns=monotonic_ns)
+    share = -math.expm1(-(monotonic_ns - surprise.aged_ns) * 1e-9 / _LATENESS_MEAN_S)
+    return replace(surprise, lateness_s=before_s + share * (age_s - before_s), aged_ns=monotonic_ns)
 
 
 def forget_beliefs(surprise: Surprise) -> Surprise:

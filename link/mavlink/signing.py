@@ -86,6 +86,16 @@ class Signing:
         self._takes_unsigned = takes_unsigned
         self._streams: Streams = {} if streams is None else streams
 
+    @property
+    def timestamp(self) -> int:
+        """The newest of all that was signed and taken."""
+        return self._timestamp
+
+    @property
+    def streams(self) -> Streams:
+        """The newest of each stream."""
+        return dict(self._streams)
+
     def advance(self, t_ns: int) -> None:
         """Takes note of the time, UTC; the timestamp never goes back."""
         self._timestamp = max(self._timestamp, signing_timestamp(t_ns))

@@ -14,7 +14,7 @@ from rosbags.serde import SerdeError
 from rosbags.typesys import get_types_from_msg
 from rosbags.typesys.store import Typestore
 
-from link.payloads import cdr
+from link.payloads import cdr, foxglove_msgs
 from link.payloads.checks import PayloadError
 from link.payloads.ros_fields import WORLD_FRAME, to_header
 
@@ -66,10 +66,12 @@ class RosMessage:
 
 @cache
 def typestore() -> Typestore:
-    """Return the standard messages and ours."""
+    """Return the standard messages, ours and those of a scene."""
     store = cdr.typestore()
     for name, text in DEFINITIONS.items():
         store.register(get_types_from_msg(text, f"{PACKAGE}/{name}"))
+    for name, text in foxglove_msgs.DEFINITIONS.items():
+        store.register(get_types_from_msg(text, f"{foxglove_msgs.PACKAGE}/{name}"))
     return store
 
 

@@ -8,7 +8,14 @@ from typing import Annotated, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from link.messages import LEVER_MAX_M, Command, CommandReply, LandingStatus, PadGeometry
+from link.messages import (
+    VEHICLE_HEIGHT_MAX_M,
+    VEHICLE_LENGTH_MAX_M,
+    Command,
+    CommandReply,
+    LandingStatus,
+    PadGeometry,
+)
 from link.payloads.checks import PayloadError
 
 __all__ = ["JSON_ENCODING", "LANDING_STATUS_SCHEMA", "PayloadError", "decode", "encode"]
@@ -20,8 +27,10 @@ M = TypeVar("M", bound=Message)
 
 Coordinates = tuple[float, float, float]
 Count = Annotated[int, Field(ge=0)]
-Size = Annotated[float, Field(gt=0.0)]
-Lever = Annotated[float, Field(ge=-LEVER_MAX_M, le=LEVER_MAX_M)]
+Size = Annotated[float, Field(gt=0.0, le=VEHICLE_LENGTH_MAX_M)]
+Height = Annotated[float, Field(ge=0.0, le=VEHICLE_HEIGHT_MAX_M)]
+Lever = Annotated[float, Field(ge=-VEHICLE_LENGTH_MAX_M, le=VEHICLE_LENGTH_MAX_M)]
+Rise = Annotated[float, Field(ge=-VEHICLE_HEIGHT_MAX_M, le=VEHICLE_HEIGHT_MAX_M)]
 
 
 class _Report(BaseModel):
@@ -30,8 +39,8 @@ class _Report(BaseModel):
 
 class _PadGeometry(_Report):
     size_m: tuple[Size, Size]
-    height_m: Annotated[float, Field(ge=0.0)]
-    antenna_to_pad_m: tuple[Lever, Lever, Lever]
+    height_m: Height
+    antenna_to_pad_m: tuple[Lever, Lever, Rise]
 
 
 class _Command(_Report):
@@ -112,6 +121,15 @@ def decode(message_type: type[M], payload: bytes) -> M:
     if not isinstance(message, message_type):
         raise TypeError(f"the model of {message_type.__name__} gave a {type(message).__name__}")
     return message
+
+
+def is_possible(pad: PadGeometry) -> bool:
+    """Return whether a vehicle may have such a pad."""
+    try:
+        encode(pad)
+    except PayloadError:
+        return False
+    return True
 
 
 def _payload_error(error: ValidationError) -> PayloadError:

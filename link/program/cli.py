@@ -78,8 +78,6 @@ InsecureOption = Annotated[
         rich_help_panel=_PANEL,
     ),
 ]
-
-
 Ros2Option = Annotated[
     int | None,
     typer.Option(
@@ -88,6 +86,17 @@ Ros2Option = Annotated[
         help="Be a node of a ROS 2 graph over rmw_zenoh [default: ROS_DOMAIN_ID, else 0].",
         show_default=False,
         rich_help_panel="ROS 2",
+    ),
+]
+FoxgloveOption = Annotated[
+    int | None,
+    typer.Option(
+        "--foxglove",
+        metavar="[PORT]",
+        min=0,
+        max=65535,
+        help="Show everything live in Foxglove, at ws://127.0.0.1:PORT [default: 8765].",
+        show_default=False,
     ),
 ]
 Ros2MapOption = Annotated[
@@ -143,7 +152,7 @@ def run_app(name: str, app: typer.Typer, args: Sequence[str] | None = None) -> i
     """
     command = command_of(app)
     try:
-        arguments = _with_domain(sys.argv[1:] if args is None else args)
+        arguments = _with_defaults(sys.argv[1:] if args is None else args)
         result = command.main(args=arguments, prog_name=name, standalone_mode=False)
     except UserError as error:
         return _fail(name, str(error))
@@ -154,13 +163,15 @@ def run_app(name: str, app: typer.Typer, args: Sequence[str] | None = None) -> i
     return result if isinstance(result, int) else EXIT_OK
 
 
-def _with_domain(args: Sequence[str]) -> list[str]:
-    """Return the arguments with the domain that `--ros2` may leave out: typer has no options with optional values."""
+def _with_defaults(args: Sequence[str]) -> list[str]:
+    """Return the arguments with the numbers that some options may leave out: typer has no optional values."""
     given = list(args)
-    if "--ros2" in given:
-        after = given.index("--ros2") + 1
-        if not "".join(given[after : after + 1]).isdigit():
-            given.insert(after, os.environ.get("ROS_DOMAIN_ID") or "0")
+    defaults = {"--ros2": os.environ.get("ROS_DOMAIN_ID") or "0", "--foxglove": "8765"}
+    for option, default in defaults.items():
+        if option in given:
+            after = given.index(option) + 1
+            if not "".join(given[after : after + 1]).isdigit():
+                given.insert(after, default)
     return given
 
 

@@ -14,6 +14,7 @@ EXTRAS: Final = {
     "campaign": ("cma", "loky", "polars"),
     "report": ("jinja2", "matplotlib", "plotly"),
     "view": ("viser", "websockets"),
+    "foxglove": ("foxglove",),
     "dask": ("distributed",),
     "camera": ("cv2", "fpdf"),
 }

@@ -90,19 +90,34 @@ def read_toml(path: Path) -> dict[str, Any]:
         UserError: it cannot be read, or is no TOML.
     """
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
     except OSError as error:
         raise UserError(f"{path}: cannot be read ({error.strerror})") from None
     except UnicodeDecodeError:
         raise UserError(f"{path}: not UTF-8 text") from None
+    return parse_toml(text, str(path))
+
+
+def parse_toml(text: str, source: str) -> dict[str, Any]:
+    """Return the tables of a text, which `source` names.
+
+    Raises:
+        UserError: it is no TOML.
+    """
+    try:
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise UserError(f"{path}: not valid TOML ({error})") from None
+        raise UserError(f"{source}: not valid TOML ({error})") from None
+    except RecursionError:
+        raise UserError(f"{source}: not valid TOML (nested too deep)") from None
 
 
 def _check(model: type[Model], table: Mapping[str, Any], source_of: Callable[[Location], str]) -> Model:
     try:
         # as JSON, whose arrays and texts a strict model takes for tuples and enumerations
         return model.model_validate_json(json.dumps(table, default=str))
+    except RecursionError:
+        raise UserError(f"{source_of(())}: nested too deep") from None
     except ValidationError as error:
         # an unknown key goes first: misspelt, it is why another one is missing
         details = sorted(error.errors(include_url=False), key=lambda one: one["type"] != "extra_forbidden")

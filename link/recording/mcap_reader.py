@@ -1,18 +1,26 @@
-"""Reading recordings: all files of one start, in order, up to where each was written, complete or not."""
+"""Reading recordings: all files of one start, in order, up to where each was written, complete or not.
+
+Anybody may have made a file: what is damaged is one clear line, and nothing in it says how much memory is taken.
+"""
 
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
+from typing import IO, Any
 
-from mcap.exceptions import McapError
-from mcap.records import Attachment, Channel, Message, Metadata, Schema
-from mcap.stream_reader import StreamReader
+import zstandard
+from mcap.exceptions import EndOfFile, McapError
+from mcap.records import Attachment, Channel, Chunk, Message, Metadata, Schema
+from mcap.stream_reader import StreamReader, breakup_chunk
 
 from link.errors import UserError
 from link.payloads.decklander_msgs import RosMessage
 from link.recording.file_names import present_files
+
+_RECORD_BYTES_MAX = 1 << 26  # a hundred times the largest chunk that is written
+_SHOWN = 40  # characters of what a file says
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -27,8 +35,42 @@ class Recorded:
 class RecordingHead:
     """What a recording says of itself."""
 
+    path: Path
     metadata: dict[str, str]
     attachments: dict[str, str]
+
+    def value(self, name: str) -> str:
+        """Return a value of the metadata.
+
+        Raises:
+            UserError: it is not there.
+        """
+        return self._found(self.metadata, name)
+
+    def number(self, name: str) -> int:
+        """Return a whole number of the metadata.
+
+        Raises:
+            UserError: it is not there, or none.
+        """
+        text = self.value(name)
+        try:
+            return int(text)
+        except ValueError:
+            raise UserError(f"{self.path}: its {name} is no number: {text[:_SHOWN]!r}") from None
+
+    def attachment(self, name: str) -> str:
+        """Return the text of an attached file.
+
+        Raises:
+            UserError: it is not there.
+        """
+        return self._found(self.attachments, name)
+
+    def _found(self, table: dict[str, str], name: str) -> str:
+        if name not in table:
+            raise UserError(f"{self.path}: holds no {name}; is it a recording of a run?")
+        return table[name]
 
 
 def recordings(folder: Path, stem: str) -> list[list[Path]]:
@@ -53,7 +95,11 @@ def recording_files(folder: Path, stem: str) -> list[Path]:
 
 
 def read_head(path: Path) -> RecordingHead:
-    """Return what stands at the beginning of a file."""
+    """Return what stands at the beginning of a file.
+
+    Raises:
+        UserError: it cannot be read, or is damaged.
+    """
     metadata: dict[str, str] = {}
     attachments: dict[str, str] = {}
     for record in _records(path):
@@ -61,14 +107,18 @@ def read_head(path: Path) -> RecordingHead:
             case Metadata():
                 metadata |= record.metadata
             case Attachment():
-                attachments[record.name] = record.data.decode()
+                attachments[record.name] = _text(path, record)
             case Message():
                 break
-    return RecordingHead(metadata=metadata, attachments=attachments)
+    return RecordingHead(path=path, metadata=metadata, attachments=attachments)
 
 
 def read_messages(files: list[Path]) -> Iterator[Recorded]:
-    """Return the messages in the order of their recording."""
+    """Return the messages in the order of their recording.
+
+    Raises:
+        UserError: one of the files cannot be read, or is damaged.
+    """
     for path in files:
         schemas: dict[int, str] = {}
         channels: dict[int, tuple[str, str]] = {}
@@ -77,20 +127,69 @@ def read_messages(files: list[Path]) -> Iterator[Recorded]:
                 case Schema():
                     schemas[record.id] = record.name
                 case Channel():
-                    channels[record.id] = (record.topic.removeprefix("/"), schemas[record.schema_id])
+                    channels[record.id] = (record.topic.removeprefix("/"), schemas.get(record.schema_id, ""))
                 case Message():
+                    if record.channel_id not in channels:
+                        raise UserError(_damaged(path, f"there is no channel {record.channel_id}"))
                     topic, type_name = channels[record.channel_id]
                     message = RosMessage(topic=topic, type_name=type_name, payload=record.data)
                     yield Recorded(message=message, log_ns=record.log_time)
+
+
+def _text(path: Path, attachment: Attachment) -> str:
+    try:
+        return attachment.data.decode()
+    except UnicodeDecodeError as error:
+        raise UserError(_damaged(path, f"{attachment.name[:_SHOWN]}: {error.reason}")) from None
 
 
 def _records(path: Path) -> Iterator[object]:
     """Return the records of a file; one that breaks off ends there."""
     try:
         with path.open("rb") as file:
+            stream: Any = _BoundedFile(file, path.stat().st_size)
             try:
-                yield from StreamReader(file).records
-            except (McapError, EOFError, struct.error):
+                for record in StreamReader(stream, emit_chunks=True, record_size_limit=_RECORD_BYTES_MAX).records:
+                    yield from _opened(record)
+            except (EndOfFile, EOFError, struct.error):
                 return
+            except (McapError, zstandard.ZstdError, ValueError, OverflowError, MemoryError) as error:
+                raise UserError(_damaged(path, str(error))) from None
     except OSError as error:
         raise UserError(f"{path}: cannot be read ({error.strerror})") from None
+
+
+class _BoundedFile:
+    """A file of which no more is asked for than there is, whatever a length in it says."""
+
+    def __init__(self, file: IO[bytes], size: int) -> None:
+        self._file = file
+        self._left = size
+
+    def read(self, size: int = -1) -> bytes:
+        """Return the next bytes, fewer at the end."""
+        data = self._file.read(self._left if size < 0 else min(size, self._left))
+        self._left -= len(data)
+        return data
+
+
+def _opened(record: object) -> list[object]:
+    """Return what a chunk holds, any other record by itself.
+
+    Raises:
+        ValueError: it would be larger than any that is written.
+    """
+    if not isinstance(record, Chunk):
+        return [record]
+    if record.compression not in {"", "zstd"}:
+        raise ValueError(f"its compression {record.compression[:_SHOWN]!r} is not one of ours")
+    told = record.uncompressed_size
+    if record.compression:
+        told = max(told, zstandard.get_frame_parameters(record.data).content_size)
+    if told > _RECORD_BYTES_MAX:
+        raise ValueError(f"a chunk of {told} bytes, {_RECORD_BYTES_MAX} are the most")
+    return list(breakup_chunk(record))
+
+
+def _damaged(path: Path, why: str) -> str:
+    return f"{path}: is damaged, or no recording ({why or 'it makes no sense'}); name another one"

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import zenoh
 import zenoh.ext
 
-from link.messages import Command, CommandReply, PadGeometry
+from link.messages import Command, CommandReply
 from link.payloads import json_messages
-from link.payloads.checks import PayloadError
 from link.program.toml_config import load_config
+from link.records import replace
 from link.ros2 import attachment, foreign
 from link.ros2.attachment import Attachment
 from link.ros2.names import (
@@ -31,8 +31,10 @@ from link.ros2.names import (
     token_key,
 )
 from link.ros2.options import Ros2Options
+from link.ros2.pad_source import PadSource
 from link.ros2.routes import Route, changed, routes, topic, trigger, trigger_reply
 from link.ros2.topic_map import PadTopics, TopicMap
+from link.ros2.type_hash import NOT_SUPPORTED
 from link.zenoh.keys import Keys
 from link.zenoh.options import ZenohOptions
 from link.zenoh.session import INBOX_CAPACITY, Alive, Inbox, Sample, ZenohSession, open_library_session
@@ -72,15 +74,12 @@ class Ros2Session(ZenohSession):
     ) -> None:
         super().__init__(session, receive_clock_ns=receive_clock_ns)
         self._domain, self._node, self._keys = domain, node, keys
+        self._has_hashes = topics.distribution != "humble"
         self._routes = routes(keys, topics)
-        self._pad = topics.pad
         self._endpoints: dict[str, _Publisher] = {}
         self._entities = _NODE_ID
-        self._transforms: Inbox | None = None
-        self._known: foreign.Transforms = {}
         self._declare(EntityKind.NODE, None, Qos())
-        if self._pad is not None and self._pad.antenna_to_pad_m is None:
-            self._transforms = self._subscribe_latched(topic(self._pad.tf_static, foreign.TRANSFORMS))
+        self._pad = None if topics.pad is None else self._pad_source(topics.pad)
 
     def _send(self, key: str, payload: bytes, encoding: str) -> None:
         """Send `payload` to whoever subscribes to `key`, or to its topic."""
@@ -129,7 +128,7 @@ class Ros2Session(ZenohSession):
         if key != self._keys.pad or self._pad is None:
             return super().ask(key, payload, timeout_s)
         inbox = Inbox(capacity=1, wake_up=self.wake_up)
-        pad = self._pad_geometry(self._pad)
+        pad = self._pad.geometry()
         if pad is not None:
             inbox.put(Sample(key, json_messages.encode(pad), self._receive_clock_ns()))
         return inbox
@@ -163,6 +162,10 @@ class Ros2Session(ZenohSession):
             self._endpoints[route.endpoint.name] = endpoint
         return endpoint
 
+    def _pad_source(self, pad: PadTopics) -> PadSource:
+        is_placed = pad.antenna_to_pad_m is not None
+        return PadSource(pad, None if is_placed else self._subscribe_latched(topic(pad.tf_static, foreign.TRANSFORMS)))
+
     def _subscribe_latched(self, endpoint: Endpoint) -> Inbox:
         """Subscribe to what was published before, too, and to what later publishers have kept."""
         qos = Qos(is_latched=True, depth=1)
@@ -180,20 +183,10 @@ class Ros2Session(ZenohSession):
 
     def _into(self, inbox: Inbox, key: str, change: Callable[[bytes], bytes]) -> Callable[[zenoh.Sample], None]:
         def receive(sample: zenoh.Sample) -> None:
-            inbox.put(Sample(key, changed(change, sample.payload.to_bytes()), self._receive_clock_ns()))
+            if inbox.has_room(len(sample.payload)):
+                inbox.put(Sample(key, changed(change, sample.payload.to_bytes()), self._receive_clock_ns()))
 
         return receive
-
-    def _pad_geometry(self, pad: PadTopics) -> PadGeometry | None:
-        """Return the pad of the map, None while the transforms do not say where it is."""
-        lever = pad.antenna_to_pad_m
-        if self._transforms is not None:
-            for sample in self._transforms.take():
-                self._known |= _transforms_or_none(sample.payload)
-            lever = foreign.lever(self._known, pad.vehicle_frame, pad.antenna_frame, pad.frame)
-        if lever is None:
-            return None
-        return PadGeometry(size_m=pad.size_m, height_m=pad.height_m, antenna_to_pad_m=lever)
 
     def _declare(self, kind: EntityKind, endpoint: Endpoint | None, qos: Qos) -> str:
         """Show an entity to the graph and return its token's key."""
@@ -206,7 +199,7 @@ class Ros2Session(ZenohSession):
             kind=kind,
             namespace=namespace,
             node=node,
-            endpoint=endpoint,
+            endpoint=None if endpoint is None else self._written(endpoint),
             qos=qos,
         )
         self._entities += 1
@@ -215,14 +208,11 @@ class Ros2Session(ZenohSession):
         return key
 
     def _data_key(self, endpoint: Endpoint) -> str:
-        return data_key(self._domain, endpoint)
+        return data_key(self._domain, self._written(endpoint))
 
-
-def _transforms_or_none(payload: bytes) -> foreign.Transforms:
-    try:
-        return foreign.transforms_of(payload)
-    except PayloadError:
-        return {}
+    def _written(self, endpoint: Endpoint) -> Endpoint:
+        """Return an endpoint as this distribution writes it."""
+        return endpoint if self._has_hashes else replace(endpoint, type_hash=NOT_SUPPORTED)
 
 
 def open_ros2_session(options: ZenohOptions, ros2: Ros2Options, keys: Keys, node: tuple[str, str]) -> Ros2Session:

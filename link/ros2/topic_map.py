@@ -1,5 +1,6 @@
 """Which ROS 2 topics hold what the programs say and hear, as TOML; the defaults are the names of our own keys.
 
+distribution = "humble"  # without it, Jazzy or later
 [vehicle]
 odometry = "/localization/kinematic_state"   # in place of fix, velocity and imu
 odometry_origin = [47.4, 8.5, 400.0]
@@ -56,5 +57,6 @@ class PadTopics(StrictModel):
 class TopicMap(StrictModel):
     """All that can be said about topics."""
 
+    distribution: Literal["jazzy", "humble"] = "jazzy"  # or later; Humble has no hashes of types
     vehicle: VehicleTopics = VehicleTopics()
     pad: PadTopics | None = None

@@ -8,6 +8,9 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from link.payloads import decklander_msgs
 
+NOT_SUPPORTED = "TypeHashNotSupported"
+"""What rmw_zenoh writes for a hash in Humble, whose types have none."""
+
 _CHAR = (Nodetype.BASE, ("char", 0))
 _CHAR_AS_UINT8 = (Nodetype.BASE, ("uint8", 0))
 _EVENT_INFO = "service_msgs/msg/ServiceEventInfo"

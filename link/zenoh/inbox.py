@@ -6,6 +6,9 @@ import threading
 from collections import deque
 from typing import NamedTuple
 
+_SAMPLE_BYTES = 1024  # more than a fix, a velocity, an IMU or a status take
+_BYTES_MIN = 1 << 18  # for a few that are larger, such as plans
+
 
 class Sample(NamedTuple):
     """A payload, the key that it came by and when it was received, on the session's receive clock."""
@@ -59,25 +62,46 @@ class WakeUp:
 
 
 class Inbox:
-    """A bounded queue of samples that drops the oldest when it is full, and counts what it dropped."""
+    """A queue of samples, bounded in number and bytes, that drops the oldest when it is full and counts the dropped.
 
-    def __init__(self, *, capacity: int, wake_up: WakeUp) -> None:
-        self._samples: deque[Sample] = deque(maxlen=capacity)
+    Args:
+        capacity: samples.
+        wake_up: is set by each.
+        bytes_max: of all together; a sample that is larger than that is dropped itself.
+    """
+
+    def __init__(self, *, capacity: int, wake_up: WakeUp, bytes_max: int | None = None) -> None:
+        self._samples: deque[Sample] = deque()
         self._capacity = capacity
+        self._bytes_max = max(_BYTES_MIN, capacity * _SAMPLE_BYTES) if bytes_max is None else bytes_max
+        self._bytes = 0
         self._wake_up = wake_up
         self._lock = threading.Lock()
         self._dropped = 0
 
     @property
     def dropped(self) -> int:
-        """How many samples were dropped because nobody took them in time."""
+        """How many samples were dropped because nobody took them in time, or since they are too large."""
         return self._dropped
+
+    def has_room(self, size: int) -> bool:
+        """Return whether a sample of `size` bytes would be kept, and count it as dropped where it would not."""
+        if size <= self._bytes_max:
+            return True
+        with self._lock:
+            self._dropped += 1
+        return False
 
     def put(self, sample: Sample) -> None:
         """Append a sample; for the receiving thread."""
+        if not self.has_room(len(sample.payload)):
+            return
         with self._lock:
-            self._dropped += len(self._samples) == self._capacity
             self._samples.append(sample)
+            self._bytes += len(sample.payload)
+            while len(self._samples) > self._capacity or self._bytes > self._bytes_max:
+                self._bytes -= len(self._samples.popleft().payload)
+                self._dropped += 1
         self._wake_up.set()
 
     def take(self) -> list[Sample]:
@@ -85,4 +109,5 @@ class Inbox:
         with self._lock:
             samples = list(self._samples)
             self._samples.clear()
+            self._bytes = 0
         return samples

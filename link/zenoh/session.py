@@ -37,6 +37,10 @@ _BLOCK_MAX_US = 200_000
 """A peer that takes nothing for this long while its queue is full is disconnected: a hung dashboard must not
 stall the loop that flies. Less than the half second after which autopilots call a setpoint stream lost."""
 
+_MESSAGE_MAX_KEY = "transport/link/rx/max_message_size"
+_MESSAGE_MAX_BYTES = 1 << 20
+"""Of a message that is put together of fragments; ours are a hundredth of that. A router passes on what others need."""
+
 
 class Replies:
     """Sends answers to queries from a thread of its own: one who does not read them holds nobody else up.
@@ -137,7 +141,8 @@ class ZenohSession:
         inbox = Inbox(capacity=capacity, wake_up=self.wake_up)
 
         def receive(sample: zenoh.Sample) -> None:
-            inbox.put(Sample(str(sample.key_expr), sample.payload.to_bytes(), self._receive_clock_ns()))
+            if inbox.has_room(len(sample.payload)):
+                inbox.put(Sample(str(sample.key_expr), sample.payload.to_bytes(), self._receive_clock_ns()))
 
         self._held.append(self._session.declare_subscriber(key, receive))
         return inbox
@@ -201,8 +206,8 @@ class ZenohSession:
         inbox = Inbox(capacity=INBOX_CAPACITY, wake_up=self.wake_up)
 
         def receive(reply: zenoh.Reply) -> None:
-            if reply.ok is not None:
-                sample = reply.ok
+            sample = reply.ok
+            if sample is not None and inbox.has_room(len(sample.payload)):
                 inbox.put(Sample(str(sample.key_expr), sample.payload.to_bytes(), self._receive_clock_ns()))
 
         self._session.get(key, receive, payload=payload, timeout=timeout_s, target=zenoh.QueryTarget.ALL)
@@ -272,6 +277,8 @@ def _config(options: ZenohOptions) -> zenoh.Config:
         _insert(config, "listen/endpoints", own)
     if not options.insecure:
         _check_exposure(config)
+    if _get(config, "mode") != "router" and _get(config, _MESSAGE_MAX_KEY) == _get(zenoh.Config(), _MESSAGE_MAX_KEY):
+        _insert(config, _MESSAGE_MAX_KEY, _MESSAGE_MAX_BYTES)
     if _get(config, _BLOCK_MAX_KEY) == _get(zenoh.Config(), _BLOCK_MAX_KEY):
         _insert(config, _BLOCK_MAX_KEY, _BLOCK_MAX_US)
     return config

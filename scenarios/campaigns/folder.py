@@ -52,7 +52,7 @@ def read_plan(folder: Path) -> Plan:
         table = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise UserError(f"{path}: cannot be read ({error.strerror}); is this a campaign's folder?") from None
-    except ValueError:
+    except (ValueError, RecursionError):
         raise UserError(f"{path}: not valid JSON") from None
     return validate(Plan, table, source=str(path))
 
@@ -114,7 +114,7 @@ def _list_newest(folder: Path) -> Collection[Flown]:
         return ()
     except OSError as error:
         raise UserError(f"{path}: cannot be read ({error.strerror})") from None
-    return {_task_of(one.row): one for one in _lines(data[: data.rfind(b"\n") + 1])}.values()
+    return {_task_of(one.row): one for one in _lines(path, data[: data.rfind(b"\n") + 1])}.values()
 
 
 class Journal:
@@ -178,12 +178,18 @@ def _read_journal(path: Path, descriptor: int) -> dict[Task, Flown]:
     data = path.read_bytes()
     whole = data.rfind(b"\n") + 1
     os.ftruncate(descriptor, whole)
-    return {_task_of(one.row): one for one in _lines(data[:whole]) if one.row["error"] is None}
+    return {_task_of(one.row): one for one in _lines(path, data[:whole]) if one.row["error"] is None}
 
 
-def _lines(data: bytes) -> list[Flown]:
-    lines = [json.loads(line) for line in data.splitlines()]
-    return [Flown(wall_s=line.pop("wall_s"), times=line.pop("times", {}), row=line) for line in lines]
+def _lines(path: Path, data: bytes) -> list[Flown]:
+    try:
+        lines = [json.loads(line) for line in data.splitlines()]
+        found = [Flown(wall_s=line.pop("wall_s"), times=line.pop("times", {}), row=line) for line in lines]
+        for one in found:
+            _task_of(one.row)
+    except (ValueError, RecursionError, AttributeError, KeyError, TypeError) as error:
+        raise UserError(f"{path}: a line of it is no landing ({error!r}); begin anew in another folder") from None
+    return found
 
 
 def _timing(flown: Flown) -> Row:

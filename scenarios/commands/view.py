@@ -10,6 +10,7 @@ from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
     DroneOption,
+    FoxgloveOption,
     InsecureOption,
     ListenOption,
     ModeOption,
@@ -21,6 +22,7 @@ from link.program.cli import (
 from link.program.extras import require
 
 if TYPE_CHECKING:
+    from link.zenoh.keys import Keys
     from scenarios.view.live import LiveSource
     from scenarios.view.recorded import RecordedSource, Road
 
@@ -62,6 +64,10 @@ def view_command(
     seed: Annotated[
         int | None, typer.Option("--seed", min=0, help="Of that scenario [default: 1, or the world's own].")
     ] = None,
+    foxglove: FoxgloveOption = None,
+    foxglove_layout: Annotated[
+        Path | None, typer.Option("--foxglove-layout", metavar="FILE", help="Write a layout for Foxglove, and end.")
+    ] = None,
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
     drone: DroneOption = "drone",
@@ -76,14 +82,24 @@ def view_command(
 
     From another machine: ssh -L 8080:127.0.0.1:8080 THIS_MACHINE, and http://127.0.0.1:8080 there.
     """
-    require("view", "scenarios view")
+    from link.zenoh.keys import Keys
+
+    keys = Keys(namespace, vehicle, drone)
+    if foxglove_layout is not None:
+        from scenarios.view.foxglove_layout import layout_json
+
+        foxglove_layout.write_text(layout_json(keys) + "\n", encoding="utf-8")
+        return
+    if foxglove is None:
+        require("view", "scenarios view")
+    else:
+        require("foxglove", "scenarios view --foxglove")
     from scenarios.view.recorded import RecordedSource, Road
 
     if recording is not None:
         source = RecordedSource(recording)
-        _show(source, source.road, port)
+        _show(source, source.road, port, keys, foxglove)
         return
-    from link.zenoh.keys import Keys
     from link.zenoh.options import zenoh_options
     from link.zenoh.session import open_session
     from scenarios.catalogue.catalogue import load_scenario
@@ -91,13 +107,22 @@ def view_command(
     from scenarios.view.live import LiveSource
 
     drawn = None if road is None else Road(scenario=load_scenario(road), seed=run_seed(road, seed))
-    keys = Keys(namespace, vehicle, drone)
     with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)) as zenoh:
-        _show(LiveSource(zenoh, keys), drawn, port)
+        _show(LiveSource(zenoh, keys), drawn, port, keys, foxglove)
 
 
-def _show(source: "LiveSource | RecordedSource", road: "Road | None", port: int) -> None:
-    """Serve the page until a signal comes."""
+def _show(
+    source: "LiveSource | RecordedSource", road: "Road | None", port: int, keys: "Keys", foxglove_port: int | None
+) -> None:
+    """Serve the page, or Foxglove, until a signal comes."""
+    if foxglove_port is not None:
+        from companion.config.companion import CompanionConfig
+        from link.recording.foxglove_server import FoxgloveServer
+        from scenarios.view.foxglove import FoxgloveView
+
+        descent = CompanionConfig().descent if road is None else road.scenario.system.companion.descent
+        FoxgloveView(source, descent, keys, FoxgloveServer(foxglove_port)).run()
+        return
     from scenarios.processes.programs import free_tcp_port
     from scenarios.view.page import Page
 

@@ -1,7 +1,6 @@
 """Replay: what a recorded companion was given, given to one of now, and what both made of it compared."""
 
 import math
-import tomllib
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
@@ -18,7 +17,7 @@ from link.errors import UserError
 from link.messages import Command, PadGeometry
 from link.payloads import json_messages
 from link.payloads.decklander_msgs import RosMessage, fields_of
-from link.program.toml_config import validate
+from link.program.toml_config import parse_toml, validate
 from link.recording.mcap_reader import RecordingHead, read_head, read_messages, recordings
 from link.recording.recorder import DirectRecorder
 from link.zenoh.keys import Keys
@@ -64,8 +63,8 @@ class Flight:
     @property
     def config(self) -> CompanionConfig:
         """The companion's configuration."""
-        table = tomllib.loads(self.head.attachments[CONFIG_NAME])
-        return validate(CompanionConfig, table, source=f"{CONFIG_NAME} of the recording")
+        source = f"{CONFIG_NAME} of {self.head.path}"
+        return validate(CompanionConfig, parse_toml(self.head.attachment(CONFIG_NAME), source), source=source)
 
 
 class _MessageLists:
@@ -97,7 +96,7 @@ def _read(files: list[Path]) -> Flight:
     head = read_head(files[0])
     if CONFIG_NAME not in head.attachments:
         raise UserError(f"{files[0]}: holds no configuration; it is no recording of a companion's")
-    keys = Keys(head.metadata["namespace"], head.metadata["vehicle"], head.metadata["drone"])
+    keys = Keys(head.value("namespace"), head.value("vehicle"), head.value("drone"))
     wanted = {keys.record(name) for name in OUTPUTS}
     outputs: dict[str, list[RosMessage]] = defaultdict(list)
     inputs: list[InputRecord] = []
@@ -106,7 +105,7 @@ def _read(files: list[Path]) -> Flight:
         if message.topic in wanted:
             outputs[message.topic].append(message)
         elif message.topic == keys.record("input"):
-            inputs.append(_input(message))
+            inputs.append(_input(message, head.path))
     return Flight(head=head, keys=keys, inputs=tuple(inputs), outputs=dict(outputs))
 
 
@@ -139,8 +138,8 @@ def outputs_of(flight: Flight, config: CompanionConfig) -> dict[str, list[RosMes
     node = build_node(
         config,
         flight.keys,
-        system_id=int(flight.head.metadata["system_id"]),
-        dry_run=flight.head.metadata["dry_run"] == "true",
+        system_id=flight.head.number("system_id"),
+        dry_run=flight.head.value("dry_run") == "true",
         recorder=recorder,
     )
     for record in flight.inputs:
@@ -173,15 +172,18 @@ def give(node: CompanionNode, record: InputRecord) -> None:
             node.autopilot.take_texts()
 
 
-def _input(message: RosMessage) -> InputRecord:
-    fields = fields_of(message.payload, message.type_name)
-    return InputRecord(
-        sequence=int(fields["sequence"]),
-        kind=InputKind(fields["kind"]),
-        local_ns=int(fields["local_ns"]),
-        key=fields["key"],
-        data=bytes(fields["data"]),
-    )
+def _input(message: RosMessage, path: Path) -> InputRecord:
+    try:
+        fields = fields_of(message.payload, message.type_name)
+        return InputRecord(
+            sequence=int(fields["sequence"]),
+            kind=InputKind(fields["kind"]),
+            local_ns=int(fields["local_ns"]),
+            key=fields["key"],
+            data=bytes(fields["data"]),
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise UserError(f"{path}: holds an input that is none ({error}); it cannot be replayed") from error
 
 
 def text_lines(results: Iterable[tuple[str, Replay]], shown: int = 20) -> list[str]:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from link.errors import UserError
 from link.messages import BodyTruth, RotorTruth
 from link.payloads import cdr
 from link.payloads.decklander_msgs import RosMessage
@@ -82,13 +83,16 @@ def read_truth(folder: Path, keys: Keys) -> Recording:
     """Return the truth of the run in `folder`.
 
     Raises:
-        UserError: there is none.
+        UserError: there is none, or it is damaged.
     """
     recording = Recording()
     for recorded in read_messages(recording_files(folder, STEM)):
         message = recorded.message
-        if message.topic == keys.drone_rotors:
-            recording.add(cdr.decode(RotorTruth, message.payload))
-        else:
-            recording.add(cdr.decode(BodyTruth, message.payload), is_drone=message.topic == keys.drone_truth)
+        try:
+            if message.topic == keys.drone_rotors:
+                recording.add(cdr.decode(RotorTruth, message.payload))
+            else:
+                recording.add(cdr.decode(BodyTruth, message.payload), is_drone=message.topic == keys.drone_truth)
+        except cdr.PayloadError as error:
+            raise UserError(f"{folder}: its truth is damaged ({error})") from None
     return recording

@@ -4,7 +4,6 @@ Frames: W world ENU; V the vehicle's body. Where a companion's recording has no 
 """
 
 import json
-import tomllib
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -12,13 +11,15 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel, FiniteFloat, ValidationError
 
 from companion.config.companion import CompanionConfig
 from companion.recording.folder import STEM as COMPANION
 from link.errors import UserError
 from link.frames.local_frame import LocalFrame, Projection
+from link.payloads.checks import PayloadError
 from link.payloads.decklander_msgs import fields_of
-from link.program.toml_config import validate
+from link.program.toml_config import parse_toml, validate
 from link.recording.mcap_reader import RecordingHead, read_head, read_messages, recording_files
 from link.units import NS_PER_S
 from link.zenoh.keys import Keys
@@ -95,18 +96,17 @@ def read_run(folder: Path) -> RunData:
     Raises:
         UserError: it is not one, or was not recorded.
     """
-    result_path = folder / "result.json"
-    try:
-        result = json.loads(result_path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        raise UserError(f"{result_path}: cannot be read; is this the folder of a run that ended?") from None
+    result = read_result(folder / "result.json")
     truth_head = read_head(recording_files(folder, TRUTH)[0])
     head = read_head(recording_files(folder, COMPANION)[0])
-    scenario = validate(Scenario, tomllib.loads(truth_head.attachments["scenario.toml"]), source="scenario.toml")
-    config = validate(CompanionConfig, tomllib.loads(head.attachments["companion.toml"]), source="companion.toml")
-    keys = Keys(head.metadata["namespace"], head.metadata["vehicle"], head.metadata["drone"])
+    scenario = validate(Scenario, _attached(truth_head, "scenario.toml"), source="scenario.toml")
+    config = validate(CompanionConfig, _attached(head, "companion.toml"), source="companion.toml")
+    keys = Keys(head.value("namespace"), head.value("vehicle"), head.value("drone"))
     truth = read_truth(folder, keys)
-    log = truth_log(truth.drone, truth.vehicle, truth.rotors)
+    try:
+        log = truth_log(truth.drone, truth.vehicle, truth.rotors)
+    except ValueError as error:
+        raise UserError(f"{folder}: its truth shows no run ({error}); was it broken off?") from None
     start_ns = int(log.t_ns[0])
     t_s = (log.t_ns - start_ns) / NS_PER_S
     antenna = log.vehicle_position_enu_m + _turn(log, scenario.vehicle.antenna_flu_m)
@@ -124,6 +124,42 @@ def read_run(folder: Path) -> RunData:
         phases=_phases(steps, start_ns, float(t_s[-1])),
         estimate=_estimate(estimates, start_ns, t_s, _in_local_frame(antenna, scenario)),
     )
+
+
+def read_result(path: Path) -> dict[str, Any]:
+    """Return the table of a `result.json`.
+
+    Raises:
+        UserError: it cannot be read, or is no result.
+    """
+    try:
+        table = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        raise UserError(f"{path}: cannot be read; is this the folder of a run that ended?") from None
+    if not isinstance(table, dict):
+        raise UserError(f"{path}: is no result: it has to be one object")
+    try:
+        _Result.model_validate(table)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        where = ".".join(map(str, first["loc"]))
+        raise UserError(f"{path}: is no result of a run ({where}: {first['msg']})") from None
+    return table
+
+
+class _Result(BaseModel):
+    """What is shown of a result by name; the rest is shown as it is."""
+
+    scenario: str
+    seed: int | str
+    tier: str
+    reason: str
+    contact_s: FiniteFloat | None = None
+    approaches: list[dict[str, Any]] = []
+
+
+def _attached(head: RecordingHead, name: str) -> dict[str, Any]:
+    return parse_toml(head.attachment(name), f"{name} of {head.path}")
 
 
 def _turn(log: TruthLog, vector_flu: tuple[float, float, float]) -> Array:
@@ -145,7 +181,10 @@ def _beliefs(folder: Path, keys: Keys) -> tuple[list[Fields], list[Fields]]:
     for recorded in read_messages(recording_files(folder, COMPANION)):
         message = recorded.message
         if message.topic in found:
-            found[message.topic].append(fields_of(message.payload, message.type_name))
+            try:
+                found[message.topic].append(fields_of(message.payload, message.type_name))
+            except PayloadError as error:
+                raise UserError(f"{folder}: the companion's recording is damaged ({error})") from None
     return found[keys.record("step")], found[keys.record("estimate")]
 
 

@@ -1,26 +1,22 @@
 """The pad as its owner describes it: by a TOML file, by options, or both."""
 
 from pathlib import Path
-from typing import Annotated, Any
-
-from pydantic import Field
+from typing import Any
 
 from link.errors import UserError
-from link.messages import LEVER_MAX_M, PadGeometry
+from link.messages import PadGeometry
+from link.payloads.json_messages import Height, Lever, Rise, Size
 from link.program.toml_config import StrictModel, load_config
 
 _OPTIONS = {"size_m": "--pad-size", "height_m": "--pad-height", "antenna_to_pad_m": "--antenna-to-pad"}
-
-Length = Annotated[float, Field(gt=0.0, le=100.0)]
-Lever = Annotated[float, Field(ge=-LEVER_MAX_M, le=LEVER_MAX_M)]
 
 
 class PadConfig(StrictModel):
     """The pad; what is missing is asked for."""
 
-    size_m: tuple[Length, Length] | None = None  # along and across the vehicle
-    height_m: Annotated[float, Field(ge=0.0, le=100.0)] | None = None  # of the pad above the road
-    antenna_to_pad_m: tuple[Lever, Lever, Lever] | None = None  # to the pad's middle: forward, left, up
+    size_m: tuple[Size, Size] | None = None  # along and across the vehicle
+    height_m: Height | None = None  # of the pad above the road
+    antenna_to_pad_m: tuple[Lever, Lever, Rise] | None = None  # to the pad's middle: forward, left, up
 
 
 def pad_geometry(file: Path | None, **options: Any) -> PadGeometry:

@@ -56,8 +56,9 @@ class LiveSource:
     def send(self, command: Command) -> CommandReply:
         """Ask the companion and return its answer; one that is silent refuses."""
         answers = self._zenoh.query(self._keys.landing_command, json_messages.encode(command), _ANSWER_S)
-        if not answers:
-            return CommandReply(accepted=False, reason="no companion answers")
+        if len(answers) != 1:
+            who = f"{len(answers)} programs answer, and one of them is false" if answers else "no companion answers"
+            return CommandReply(accepted=False, reason=who)
         try:
             return json_messages.decode(CommandReply, answers[0])
         except PayloadError as error:

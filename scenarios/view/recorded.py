@@ -1,6 +1,5 @@
 """A recording as the view shows it: its states, 20 a second, and where among them the playback is."""
 
-import tomllib
 from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,7 +12,7 @@ from link.messages import PadGeometry
 from link.payloads import json_messages
 from link.payloads.checks import PayloadError
 from link.payloads.decklander_msgs import fields_of
-from link.program.toml_config import validate
+from link.program.toml_config import parse_toml, validate
 from link.recording.mcap_reader import Recorded, read_head, read_messages, recording_files
 from link.records import replace
 from link.zenoh.keys import Keys
@@ -106,8 +105,8 @@ def _road(truth: list[Path]) -> Road | None:
     head = read_head(truth[0])
     if "scenario.toml" not in head.attachments or "seed" not in head.metadata:
         return None
-    table = tomllib.loads(head.attachments["scenario.toml"])
-    return Road(scenario=validate(Scenario, table, source="scenario.toml"), seed=int(head.metadata["seed"]))
+    table = parse_toml(head.attachment("scenario.toml"), f"scenario.toml of {head.path}")
+    return Road(scenario=validate(Scenario, table, source="scenario.toml"), seed=head.number("seed"))
 
 
 def _merge(companion: list[Path], truth: list[Path]) -> list[Recorded]:
@@ -146,7 +145,10 @@ def _all_taken(reader: StateReader, state: ViewState, newest: dict[str, bytes]) 
 
 def _read_pad(payload: bytes, type_name: str) -> PadGeometry | None:
     """Return the vehicle's description of its pad when this input is it."""
-    fields = fields_of(payload, type_name)
-    if fields["kind"] != InputKind.PAD:
+    try:
+        fields = fields_of(payload, type_name)
+        if fields["kind"] != InputKind.PAD:
+            return None
+        return json_messages.decode(PadGeometry, bytes(fields["data"]))
+    except (PayloadError, KeyError, TypeError):
         return None
-    return json_messages.decode(PadGeometry, bytes(fields["data"]))

@@ -18,6 +18,7 @@ from tests.integration.ros_vehicle import DOMAIN
 
 pytestmark = [pytest.mark.wire, pytest.mark.alone]
 
+SPEED = "2"
 MAP = """
 [vehicle]
 odometry = "/localization/kinematic_state"
@@ -45,7 +46,7 @@ def test_companion_lands_on_a_vehicle_that_only_follows_rmw_zenohs_design(tmp_pa
         bystander = Observer(zenoh, Keys())
         listening = ("--mavlink", f"udpin:127.0.0.1:{port}", "--start", "--use-sim-time")
         programs.start("companion", *listening, *ros2, *client)
-        speaking = ("--mavlink", f"udpout:127.0.0.1:{port}", "--speed", "3")
+        speaking = ("--mavlink", f"udpout:127.0.0.1:{port}", "--speed", SPEED)
         programs.start("scenarios", "world", "straight_5", *speaking, *client)
         bystander.wait_for_relative_position()
         graph = programs.start("scenarios", "ros2", "topics", "--domain", str(DOMAIN), "--json", *client)

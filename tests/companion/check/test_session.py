@@ -121,7 +121,7 @@ def test_pad_is_asked_for_until_the_vehicle_has_heard_the_question(monkeypatch: 
 def test_vehicle_that_is_heard_is_given_some_seconds_more_for_its_pad(monkeypatch: pytest.MonkeyPatch) -> None:
     facts, took_s = listened(monkeypatch, World(heard_from=2), 1.0)
     assert facts.describes_pad
-    assert 1.9 < took_s < 2.2
+    assert 2.4 < took_s < 2.7  # two seconds until it has heard, and half a second for who else answers
 
 
 def test_vehicle_that_never_describes_its_pad_is_told_so_in_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -133,7 +133,7 @@ def test_vehicle_that_never_describes_its_pad_is_told_so_in_the_end(monkeypatch:
 def test_autopilot_that_signs_is_found_with_its_key_and_spoken_to_in_signed_frames() -> None:
     autopilot = SignedAutopilot()
     anything: Any = autopilot
-    session = open_check(anything, "test", system_id=1, signing_key=KEY)
+    session = open_check(anything, "test", system_id=1, signing=Signing(KEY))
     session.find(5.0)
     session.turn()
     signing = Signing(KEY)
@@ -146,4 +146,4 @@ def test_autopilot_that_signs_is_found_with_its_key_and_spoken_to_in_signed_fram
 def test_autopilot_that_signs_with_another_key_is_not_found() -> None:
     anything: Any = SignedAutopilot()
     with pytest.raises(UserError, match=r"no heartbeat .* messages were refused: not signed with this --signing-key"):
-        open_check(anything, "test", system_id=1, signing_key=bytes(32)).find(0.2)
+        open_check(anything, "test", system_id=1, signing=Signing(bytes(32))).find(0.2)

@@ -90,7 +90,7 @@ def test_a_board_that_is_larger_than_the_vehicles_pad_is_an_error(size_m: tuple[
     if fits:
         node.receive_pad(pad)
         return
-    with pytest.raises(UserError, match=r"the board is 1\.5 x 1\.5 m and the vehicle.s pad 1\.5 x 1\.2 m"):
+    with pytest.raises(UserError, match=r"the board is 1\.5 x 1\.5 m and the vehicle's pad 1\.5 x 1\.2 m"):
         node.receive_pad(pad)
 
 

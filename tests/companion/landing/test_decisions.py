@@ -254,6 +254,24 @@ def test_drone_that_the_pad_stops_beside_the_cone_has_landed_though_the_stop_end
     assert decision[0] is Event.CONTACT
 
 
+@pytest.mark.parametrize(
+    ("beside_m", "speed_m_s", "stays"),
+    [(0.1, CONFIG.abort.near_speed_max_m_s + 0.1, True), (0.55, 0.1, True), (0.1, 4.0, False)],
+    ids=["slides to rest on the pad", "stands beside the cone", "slides off"],
+)
+def test_drone_that_stands_on_the_pad_does_not_lift_off_for_where_it_stands(
+    beside_m: float, speed_m_s: float, *, stays: bool
+) -> None:
+    standing = replace(
+        situation(0.0),
+        drone=drone_at(0.0, beside_m, (0.0, speed_m_s, 0.0), pad=pad_at()),
+        reference=reference_at(-CONFIG.touchdown.blocked_depth_m - 0.01),
+    )
+    decision, _ = first_decision(Phase.DESCEND, standing, 1.0)
+    assert decision is not None
+    assert decision[0] is (Event.CONTACT if stays else Event.UNSAFE)
+
+
 def test_jolt_in_the_air_is_no_contact() -> None:
     sinking = replace(situation(LOW_M), drone=drone_at(LOW_M, 0.1, (0.0, 0.0, -0.4), pad=pad_at()))
     decision, _ = first_decision(Phase.DESCEND, _jolted(replace(sinking, reference=reference_at(LOW_M))), 1.0)

@@ -71,10 +71,11 @@ def test_status_says_what_a_descent_waits_for(facts: Situation, surprise: Surpri
     ids=["uneven", "winding", "turning"],
 )
 def test_only_over_late_data_a_descent_waits_for_another_road_or_driver(surprise: Surprise, reason: Reason) -> None:
-    memory = changed(StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED), surprise=surprise)
     driving, late_s = situation(WAITING_M), 2.0 * DESCENT.uneven_age_s
-    assert why_held_up(memory, changed(driving, fix_age_s=late_s), CONFIG) == Cause(reason)
-    assert why_held_up(memory, changed(driving, fix_age_s=0.5 * DESCENT.uneven_age_s), CONFIG) is None
+    for lateness_s, told in ((late_s, Cause(reason)), (0.5 * DESCENT.uneven_age_s, None)):
+        late = replace(surprise, lateness_s=lateness_s)
+        memory = changed(StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED), surprise=late)
+        assert why_held_up(memory, driving, CONFIG) == told
 
 
 def _kept_surprised(flight: Flight, duration_s: float) -> None:
@@ -189,8 +190,9 @@ def test_straying_is_unsafe_once_it_has_been_aligned_again_for_so_often(strays: 
 def test_descent_waits_above_an_uneven_driver_of_whom_is_told_late(
     age_s: float, velocity: Vector3, *, waits: bool
 ) -> None:
-    memory = changed(StepMemory(), phase=Phase.DESCEND, surprise=Surprise(driving=Driving(unevenness_m_s2=0.7)))
-    here = changed(situation(WAITING_M + 0.05, pad=pad_at(velocity)), fix_age_s=age_s)
+    surprise = Surprise(driving=Driving(unevenness_m_s2=0.7), lateness_s=age_s)
+    memory = changed(StepMemory(), phase=Phase.DESCEND, surprise=surprise)
+    here = situation(WAITING_M + 0.05, pad=pad_at(velocity))
     assert waits_at_m(memory, here, CONFIG) == (WAITING_M if waits else None)
     assert why_held_up(memory, here, CONFIG) == (Cause(Reason.SPEED_UNEVEN) if waits else None)
 

@@ -4,12 +4,12 @@ from types import SimpleNamespace
 from typing import Any
 
 from companion.runtime.pad_question import PadQuestion
-from link.messages import LEVER_MAX_M, PadGeometry
+from link.messages import VEHICLE_LENGTH_MAX_M, PadGeometry
 from link.payloads import json_messages
 from link.zenoh.inbox import Inbox, Sample
 from scenarios.vehicle_sources.pad import pad_geometry
 
-PAD = PadGeometry(size_m=(1.5, 1.2), height_m=1.6, antenna_to_pad_m=(LEVER_MAX_M, -0.1, 0.05))
+PAD = PadGeometry(size_m=(1.5, 1.2), height_m=1.6, antenna_to_pad_m=(VEHICLE_LENGTH_MAX_M, -0.1, 0.05))
 WAKE_UP: Any = SimpleNamespace(set=lambda: None)
 KEY = "decklander/car/pad"
 TOO_FAR = b'{"size_m": [2, 1], "height_m": 1, "antenna_to_pad_m": [60, 0, 0]}'
@@ -57,7 +57,7 @@ def test_vehicle_that_has_come_back_is_asked_anew() -> None:
     question.ask_anew()
     assert not question.is_answered
     assert question.poll(20.0) is None
-    assert question.poll(20.1) == other
+    assert question.poll(20.5) == other
 
 
 def test_nobody_is_asked_while_there_is_nobody() -> None:
@@ -72,6 +72,6 @@ def test_pad_further_from_the_antenna_than_any_vehicle_is_long_is_refused_with_t
     assert question.bad_answers == 1
     assert question.refused_why is not None
     assert "antenna_to_pad_m" in question.refused_why
-    assert "50" in question.refused_why
+    assert "25.25" in question.refused_why
     assert polled(question, 3.95) == [PAD]
     assert question.bad_answers == 2

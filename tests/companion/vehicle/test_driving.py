@@ -4,9 +4,11 @@ A vehicle that has done what its late data did not let expect is landed on while
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import pytest
 
 from companion.config.companion import CompanionConfig
@@ -25,6 +27,7 @@ from companion.vehicle.driving import (
     turns_hard,
     update_surprise,
     winds,
+    with_velocity,
 )
 from companion.vehicle.estimator import EstimatorMemory
 from link.messages import Vector3
@@ -44,6 +47,45 @@ from tests.companion.vehicle.drives import (
 from tests.companion.vehicle.hindsight import DESCENT, LATE, Told, after
 from tests.companion.vehicle.rides import estimator, now_ns
 from tests.companion.world import PAD_HEIGHT_M, Flight, KnownVehicle
+
+
+def driven(speed_m_s: Callable[[float], float], until_s: float) -> Driving:
+    """What is noticed of a vehicle that drives east at such a speed, told ten times a second."""
+    driving = Driving()
+    for i in range(round(10.0 * until_s)):
+        velocity = np.array([speed_m_s(0.1 * i), 0.0, 0.0])
+        driving = with_velocity(driving, NOW_NS + i * 100_000_000, velocity)
+    return driving
+
+
+def departing(t_s: float) -> float:
+    """From 1 s on at 2 m/s^2 to 10 m/s, and evenly on."""
+    return min(max(2.0 * (t_s - 1.0), 0.0), 10.0)
+
+
+def test_departure_is_uneven_until_it_is_over_and_says_nothing_of_the_driver_then() -> None:
+    assert driven(departing, 5.0).unevenness_m_s2 > 3.0 * DESCENT.uneven_acceleration_m_s2
+    assert driven(departing, 9.0).unevenness_m_s2 < 0.1 * DESCENT.uneven_acceleration_m_s2
+
+
+def test_changes_of_speed_after_a_departure_count() -> None:
+    brakes = driven(lambda t_s: departing(t_s) - 2.0 * max(0.0, min(t_s - 9.0, 2.0)), 14.0)
+    speeds_up = driven(lambda t_s: departing(t_s) + 2.0 * max(0.0, min(t_s - 9.0, 2.0)), 14.0)
+    for driving in (brakes, speeds_up):
+        assert driving.unevenness_m_s2 > DESCENT.uneven_acceleration_m_s2
+
+
+@pytest.mark.parametrize(("oldest_s", "late"), [(0.38, False), (0.42, True)])
+def test_lateness_is_the_mean_age_however_seldom_a_receiver_tells(oldest_s: float, *, late: bool) -> None:
+    surprise, found = Surprise(), set()
+    for i in range(500):
+        t_ns, age_s = NOW_NS + i * 20_000_000, oldest_s - 0.02 * (9 - i % 10)
+        told: Any = Told(5.0, 0.01)
+        newest_ns: Any = t_ns - round(age_s * 1e9)
+        surprise = update_surprise(surprise, told, newest_ns, t_ns, monotonic_ns=t_ns, config=DESCENT)
+        if i > 150:
+            found.add(drives_unevenly(Driving(unevenness_m_s2=0.7), surprise.lateness_s, DESCENT))
+    assert found == {late}
 
 
 @pytest.mark.slow

@@ -113,7 +113,10 @@ def test_what_is_no_command_is_refused(payload: bytes) -> None:
         {"antenna_to_pad_m": [0.0, 0.0, nan]},
         {"antenna_to_pad_m": [0.0, 0.0, inf]},
         {"antenna_to_pad_m": None},
-        {"antenna_to_pad_m": [0.0, -50.1, 0.0]},
+        {"antenna_to_pad_m": [0.0, -25.3, 0.0]},
+        {"antenna_to_pad_m": [0.0, 0.0, 8.1]},
+        {"size_m": [1.5, 1e308]},
+        {"height_m": 1e308},
     ],
     ids=str,
 )

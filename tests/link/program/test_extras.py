@@ -5,6 +5,8 @@ import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Mapping
+from functools import cache
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
@@ -38,6 +40,12 @@ import scenarios.wire.run, scenarios.wire.world, sim_autopilot.runtime.run
 """
 
 
+@cache
+def brought() -> Mapping[str, list[str]]:
+    """Which distributions bring a module, of all that is installed."""
+    return packages_distributions()
+
+
 def distributions(requirements: list[str]) -> set[str]:
     names = (re.split(r"[\[><=]", requirement)[0] for requirement in requirements)
     return {name.lower() for name in names} - {"decklander"}
@@ -45,9 +53,8 @@ def distributions(requirements: list[str]) -> set[str]:
 
 @pytest.mark.parametrize("extra", EXTRAS)
 def test_modules_of_an_extra_come_with_it(extra: str) -> None:
-    brought = packages_distributions()
     declared = distributions(PROJECT["optional-dependencies"][extra])
-    of_modules = [{name.lower() for name in brought[module]} for module in EXTRAS[extra]]
+    of_modules = [{name.lower() for name in brought()[module]} for module in EXTRAS[extra]]
     assert all(names & declared for names in of_modules)  # two may bring one: OpenCV with windows and without
     assert declared <= set().union(*of_modules)
     assert not declared & distributions(PROJECT["dependencies"])

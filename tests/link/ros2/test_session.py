@@ -107,6 +107,20 @@ def test_samples_are_heard_whatever_is_attached(
     assert (samples[0].key, samples[0].payload) == (KEYS.fix, cdr.encode(FIX))
 
 
+def test_humble_has_no_hashes(endpoint: str, bystander: zenoh.Session, tmp_path: Path) -> None:
+    map_file = tmp_path / "map.toml"
+    map_file.write_text('distribution = "humble"\n', encoding="utf-8")
+    found: list[zenoh.Sample] = []
+    key = f"{DOMAIN}/car/fix/sensor_msgs::msg::dds_::NavSatFix_/TypeHashNotSupported"
+    held = bystander.declare_subscriber(key, found.append)
+    with node(endpoint, map_file) as ours:
+        until_some(ours, found, lambda: ours.publish(KEYS.fix, cdr.encode(FIX), ENCODING))
+        replies = bystander.liveliness().get(f"@ros2_lv/{DOMAIN}/*/*/*/MP/**")
+        (token,) = [str(reply.ok.key_expr) for reply in replies if reply.ok is not None]
+    del held
+    assert token.split("/")[-2] == "TypeHashNotSupported"
+
+
 def test_vehicle_is_alive_while_its_publisher_has_a_token(endpoint: str, bystander: zenoh.Session) -> None:
     with node(endpoint) as ours:
         alive = ours.watch_alive(KEYS.alive)

@@ -18,6 +18,7 @@ from scenarios.processes.programs import free_tcp_endpoint
 from sim_autopilot.__main__ import app as autopilot_app
 
 KEYS = Keys()
+ACCEPTED = json_messages.encode(CommandReply(accepted=True, reason=""))
 ZENOH = ["--mode", "--connect", "--listen", "--multicast-scouting", "--zenoh-config", "--insecure"]
 
 
@@ -67,3 +68,39 @@ def test_operator_whom_nobody_answers_is_told_where_was_looked(monkeypatch: pyte
     monkeypatch.setattr(operator_command, "_MEETING_S", 0.1)
     with pytest.raises(UserError, match=r"no companion answers on .*landing/command at tcp/127\.0\.0\.1:1:"):
         send_command(Command.START, KEYS, ZenohOptions(connect=("tcp/127.0.0.1:1",)))
+
+
+class Answering:
+    """A session on which everybody answers at once."""
+
+    def __init__(self, *answers: bytes) -> None:
+        self._answers = list(answers)
+
+    def __enter__(self) -> "Answering":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Nothing is open."""
+
+    def query(self, _key: str, _payload: bytes, _timeout_s: float) -> list[bytes]:
+        return self._answers
+
+
+@pytest.mark.parametrize(
+    ("answers", "told"),
+    [
+        ((ACCEPTED, ACCEPTED), "2 programs answer on .*one is false; they say: accepted; accepted"),
+        (
+            (json_messages.encode(CommandReply(accepted=False, reason="no")), ACCEPTED),
+            "they say: accepted; refused: no",
+        ),
+        ((b"{}",), "is no companion"),
+        ((b"[" * 10_000,), "is no companion"),
+    ],
+)
+def test_answers_of_others_than_one_companion_are_not_taken_for_its(
+    monkeypatch: pytest.MonkeyPatch, answers: tuple[bytes, ...], told: str
+) -> None:
+    monkeypatch.setattr(operator_command, "open_session", lambda _: Answering(*answers))
+    with pytest.raises(UserError, match=told):
+        send_command(Command.ABORT, KEYS, ZenohOptions())

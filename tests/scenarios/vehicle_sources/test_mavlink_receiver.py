@@ -47,14 +47,14 @@ class Rover:
         self.receiver = MavlinkReceiver()
         self._codec = MavlinkCodec(7, 1)
 
-    def says(self, *messages: Message, t_ns: int = 0) -> list[Reading]:
+    def says(self, *messages: Message, t_ns: int = 10**9) -> list[Reading]:
         return self.receiver.take(b"".join(self._codec.encode(message) for message in messages), t_ns)
 
 
 def rover_with_time() -> Rover:
     rover = Rover()
     system_time = mavlink.MAVLink_system_time_message((BOOT_UTC_NS + 99 * 10**9) // 1000, 99_000)
-    assert rover.says(HEARTBEAT, system_time) == []
+    assert rover.says(HEARTBEAT, system_time, t_ns=0) == []
     return rover
 
 

@@ -1,0 +1,144 @@
+"""Files that somebody else made: what cannot be read is one line, and nothing in them says how much memory is taken."""
+
+import struct
+from collections.abc import Callable
+from contextlib import suppress
+from io import BytesIO
+from pathlib import Path
+
+import pytest
+import zstandard
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mcap.opcode import Opcode
+from mcap.writer import CompressionType, Writer
+
+from link.errors import UserError
+from link.program.toml_config import parse_toml
+from link.recording.mcap_reader import read_head, read_messages
+from scenarios.campaigns.folder import read_landings, read_plan
+from scenarios.recordings.replay import read_flights
+from scenarios.reports.run_data import read_result
+
+MAGIC = b"\x89MCAP0\r\n"
+DEEP = "[" * 200_000
+GB = 1 << 30
+
+
+def record(opcode: int, content: bytes, length: int | None = None) -> bytes:
+    return bytes([opcode]) + struct.pack("<Q", len(content) if length is None else length) + content
+
+
+def chunk(data: bytes, told: int, compression: bytes = b"zstd") -> bytes:
+    head = struct.pack("<QQQI", 0, 0, told, 0) + struct.pack("<I", len(compression)) + compression
+    return record(Opcode.CHUNK, head + struct.pack("<Q", len(data)) + data)
+
+
+def bomb() -> bytes:
+    """A gigabyte of zeros, in some kilobytes that tell of it."""
+    compressor = zstandard.ZstdCompressor(level=1).compressobj(size=GB)
+    zeros = bytes(1 << 24)
+    return b"".join(compressor.compress(zeros) for _ in range(GB >> 24)) + compressor.flush()
+
+
+def recording(changes: Callable[[Writer], None] = lambda _: None) -> bytes:
+    """A short recording of a companion's."""
+    stream = BytesIO()
+    writer = Writer(stream, compression=CompressionType.ZSTD)
+    writer.start()
+    metadata = {"namespace": "ns", "vehicle": "car", "drone": "drone", "system_id": "1", "dry_run": "false"}
+    writer.add_metadata("run", metadata)
+    writer.add_attachment(0, 0, "companion.toml", "text/plain", b"")
+    changes(writer)
+    schema = writer.register_schema("decklander_msgs/msg/NodeInput", "ros2msg", b"")
+    channel = writer.register_channel("/ns/drone/companion/input", "cdr", schema)
+    for number in range(20):
+        writer.add_message(channel, number, b"\0\1\0\0" + bytes(40), number)
+    writer.finish()  # type: ignore[no-untyped-call]  # it has no annotations
+    return stream.getvalue()
+
+
+def read(path: Path) -> None:
+    """Read a recording in every way."""
+    read_head(path)
+    for _ in read_messages([path]):
+        pass
+    for _ in read_flights(path.parent):
+        pass
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        pytest.param(b"not a recording at all", id="no MCAP"),
+        pytest.param(MAGIC + chunk(b"\x28\xb5\x2f\xfdnonsense", 100), id="bad zstd"),
+        pytest.param(MAGIC + chunk(zstandard.compress(b"x"), 1 << 62), id="a chunk of 4 EB"),
+        pytest.param(MAGIC + chunk(b"x", 1, b"lz4"), id="another compression"),
+        pytest.param(MAGIC + record(Opcode.HEADER, b"", length=4 << 30), id="a record of 4 GB"),
+        pytest.param(
+            MAGIC + record(Opcode.METADATA, struct.pack("<I", 4) + b"\xff\xfe\xfd\xfc" + bytes(8)), id="no UTF-8"
+        ),
+        pytest.param(MAGIC + record(Opcode.MESSAGE, struct.pack("<HIQQ", 7, 0, 0, 0)), id="no channel"),
+        pytest.param(recording(lambda w: w.add_attachment(0, 0, "a.toml", "text/plain", b"\xff")), id="no text"),
+    ],
+)
+def test_recording_that_makes_no_sense_is_one_line(tmp_path: Path, data: bytes) -> None:
+    path = tmp_path / "companion_000.mcap"
+    path.write_bytes(data)
+    with pytest.raises(UserError) as caught:
+        read(path)
+    assert str(caught.value).startswith(str(path))
+    assert "\n" not in str(caught.value)
+
+
+def test_gigabyte_in_a_few_kilobytes_is_not_unpacked(tmp_path: Path) -> None:
+    path = tmp_path / "companion_000.mcap"
+    path.write_bytes(MAGIC + chunk(bomb(), 100))
+    with pytest.raises(UserError, match=f"a chunk of {GB} bytes"):
+        read(path)
+
+
+@settings(max_examples=60)
+@given(data=st.data())
+def test_spoiled_recording_is_read_up_to_there_or_is_one_line(
+    data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    whole = bytearray(recording())
+    for _ in range(data.draw(st.integers(1, 4))):
+        whole[data.draw(st.integers(0, len(whole) - 1))] = data.draw(st.integers(0, 255))
+    path = tmp_path_factory.mktemp("run") / "companion_000.mcap"
+    path.write_bytes(whole[: data.draw(st.integers(0, len(whole)))])
+    with suppress(UserError):
+        read(path)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "[]",
+        "{}",
+        "3",
+        DEEP,
+        '{"scenario": 1}',
+        '{"scenario": "a", "seed": 1, "tier": "S1", "reason": "", "contact_s": "x"}',
+    ],
+)
+def test_result_that_is_none_is_one_line(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "result.json"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(UserError, match=r"result\.json"):
+        read_result(path)
+
+
+@pytest.mark.parametrize("text", ["[]", "{}", DEEP, "\x1b[2J"])
+def test_campaign_that_is_none_is_one_line(tmp_path: Path, text: str) -> None:
+    (tmp_path / "campaign.json").write_text(text, encoding="utf-8")
+    with pytest.raises(UserError):
+        read_plan(tmp_path)
+    with pytest.raises(UserError):
+        read_landings(tmp_path)
+
+
+def test_toml_that_is_nested_without_end_is_one_line() -> None:
+    with pytest.raises(UserError, match="nested too deep"):
+        parse_toml(f"a = {DEEP}", "scenario.toml")
