@@ -73,9 +73,23 @@ class Board:
         return {tag.id: _corners(tag) for tag in self.config.tags}
 
     @cached_property
+    def hosts(self) -> frozenset[int]:
+        """The ids of tags in which others stand."""
+        return frozenset(
+            tag.id
+            for tag in self.config.tags
+            for other in self.config.tags
+            if other is not tag and _is_within(other, tag)
+        )
+
+    @cached_property
     def outline_m(self) -> Array:
         """The corners (4, 3) of the plate in P, forward left first, then clockwise seen from above."""
         return np.column_stack([_UNIT_CORNERS * np.array(self.config.size_m), np.zeros(4)])
+
+
+def _is_within(tag: TagConfig, host: TagConfig) -> bool:
+    return all(abs(a - b) < 0.5 * host.side_m for a, b in zip(tag.center_m, host.center_m, strict=True))
 
 
 def _corners(tag: TagConfig) -> Array:

@@ -23,6 +23,7 @@ _HALF_SAMPLES = 7  # to either side of the expected edge
 _END_SHARE = 0.06  # of an edge at either end, where the corner rounds it off
 _BASE = 2  # samples to either side over which the shades' rise is taken
 _RISE_MIN = 5.0  # shades; less is noise
+_RISE_SHARE_MIN = 0.15  # of what most edges rise by: in a shadow a quarter of the light is left
 
 
 class EdgePoints(NamedTuple):
@@ -32,19 +33,20 @@ class EdgePoints(NamedTuple):
         places_m: (N, 3) in P.
         outwards_m: (N, 3) unit vectors in P, from the tag outwards.
         reach_m: (N,) how far across the edge may be looked for: no farther than the next change of colour.
-        tags: (N,) index of the tag.
+        edges: (N,) of which edge each is, numbered.
     """
 
     places_m: Array
     outwards_m: Array
     reach_m: Array
-    tags: NDArray[np.int64]
+    edges: NDArray[np.int64]
 
 
 def edge_points(corners_m: list[Array], sides_px: list[float], cells: int) -> EdgePoints:
     """Return the points of some tags: corners (4, 3) in P, and how many pixels their sides are long about."""
-    places, outwards, reaches, tags = [], [], [], []
-    for index, (corners, side_px) in enumerate(zip(corners_m, sides_px, strict=True)):
+    places, outwards, reaches = [], [], []
+    edges: list[NDArray[np.int64]] = []
+    for corners, side_px in zip(corners_m, sides_px, strict=True):
         count = int(np.clip(side_px / _POINT_SPACING_PX, 3, _POINTS_MAX))
         shares = np.linspace(_END_SHARE, 1.0 - _END_SHARE, count)[:, None]
         center, side_m = corners.mean(axis=0), float(np.linalg.norm(corners[1] - corners[0]))
@@ -53,8 +55,8 @@ def edge_points(corners_m: list[Array], sides_px: list[float], cells: int) -> Ed
             outward = 0.5 * (begin + end) - center
             outwards.append(np.tile(outward / np.linalg.norm(outward), (count, 1)))
             reaches.append(np.full(count, side_m / cells))
-            tags.append(np.full(count, index))
-    return EdgePoints(np.concatenate(places), np.concatenate(outwards), np.concatenate(reaches), np.concatenate(tags))
+            edges.append(np.full(count, len(edges)))
+    return EdgePoints(np.concatenate(places), np.concatenate(outwards), np.concatenate(reaches), np.concatenate(edges))
 
 
 class Crossings(NamedTuple):
@@ -102,5 +104,6 @@ def find_crossings(
     bend = before - 2.0 * at_peak + after
     fraction = np.where(bend < 0.0, 0.5 * (before - after) / np.where(bend < 0.0, bend, -1.0), 0.0)
     distance_px = (peak + fraction - (_HALF_SAMPLES - _BASE)) * step_px
-    is_seen = inside & within & (at_peak >= _RISE_MIN)
+    typical = float(np.quantile(at_peak, 0.9)) if len(at_peak) else 0.0
+    is_seen = inside & within & (at_peak >= max(_RISE_MIN, _RISE_SHARE_MIN * typical))
     return Crossings(distance_px, np.einsum("nk,nkj->nj", normals, slopes), is_seen)

@@ -22,16 +22,17 @@ from companion.eyes.picture import Part
 Array = NDArray[np.float64]
 Pose = tuple[Array, Array]
 
-_CORNER_STD_PX = 1.0  # of what a search finds: OpenCV's corners of blurred tags
-_AGREES_PX = 4.0 * _CORNER_STD_PX
-_TAGS_TRIED = 3
-_REACHES_PX = (12.0, 8.0, 5.0, 4.0)  # of the rounds: first as far as the guess may be off, then as fine as blur allows
+_AGREES_PX = 3.0  # three standard deviations of what a search finds: OpenCV's corners of blurred tags
+_REACHES_PX = (40.0, 12.0, 5.0, 4.0)  # of the rounds: first as far as the guess may be off, then as fine as blur allows
 _EDGE_STD_PX = 0.1  # of one point, at best: what is left of lenses and printing after a calibration
 _HUBER = 1.5  # standard deviations
+_DOUBT_SHARE = 0.25  # of the reach: an edge that is far off is no outlier before the guess has been brought near
 _REWEIGHTINGS = 3
 _DAMPING = 1e-6  # of the largest curvature: one tag far away leaves its tilt nearly open
 _POINTS_MIN = 12
+_INDEPENDENT = 2  # points of an edge
 _SEEN_SHARE_MIN = 0.5
+_EDGE_SHARE_MIN = 0.3  # of each edge of at least one tag: with three edges of one, the fourth may be anywhere
 
 
 @dataclass(frozen=True)
@@ -61,14 +62,15 @@ def guesses(camera: Camera, board: Board, corners_px: dict[int, Array]) -> list[
         board: that they are on.
         corners_px: of each id the corners (4, 2); those of wrong ids agree with no others.
     """
-    sizes = {tag_id: abs(cv2.contourArea(corners.astype(np.float32))) for tag_id, corners in corners_px.items()}
-    largest = sorted(sizes, key=lambda tag_id: -sizes[tag_id])
-    best: list[int] = []
-    for tag_id in largest[:_TAGS_TRIED]:
-        for pose in _two_poses(camera, board, corners_px, [tag_id]):
-            agreeing = [other for other in largest if _agrees(camera, board, corners_px, other, pose)]
-            best = max(best, agreeing, key=len)
-    return _two_poses(camera, board, corners_px, best) if best else []
+    ids = list(corners_px)
+    if len(ids) > 1:
+        places = np.concatenate([board.corners_m[tag_id][:, :2] for tag_id in ids])
+        rays = camera.rays(np.concatenate([corners_px[tag_id] for tag_id in ids]))
+        _, agrees = cv2.findHomography(places, rays, cv2.RANSAC, _AGREES_PX / camera.focal_px)
+        if agrees is not None:
+            kept = np.asarray(np.all(np.asarray(agrees).reshape(-1, 4), axis=1)).tolist()
+            ids = [tag_id for tag_id, is_kept in zip(ids, kept, strict=True) if is_kept]
+    return _two_poses(camera, board, corners_px, ids) if ids else []
 
 
 def _two_poses(camera: Camera, board: Board, corners_px: dict[int, Array], ids: list[int]) -> list[Pose]:
@@ -90,13 +92,6 @@ def _two_poses(camera: Camera, board: Board, corners_px: dict[int, Array], ids: 
     return found
 
 
-def _agrees(camera: Camera, board: Board, corners_px: dict[int, Array], tag_id: int, pose: Pose) -> bool:
-    pixels, _ = camera.pixels(board.corners_m[tag_id], *pose)
-    side_px = float(np.linalg.norm(pixels[1] - pixels[0]))
-    allowed_px = max(_AGREES_PX, 0.5 * side_px / CELLS)
-    return bool(np.max(np.linalg.norm(pixels - corners_px[tag_id], axis=1)) <= allowed_px)
-
-
 def refine(part: Part, camera: Camera, board: Board, pose: Pose, sides_px: dict[int, float]) -> Refined | None:
     """Return the pose that the edges of tags agree with, None where too few of them are seen.
 
@@ -109,7 +104,7 @@ def refine(part: Part, camera: Camera, board: Board, pose: Pose, sides_px: dict[
     """
     points = edge_points([board.corners_m[tag_id] for tag_id in sides_px], list(sides_px.values()), CELLS)
     seen = camera.in_view(points.places_m, *pose)
-    points = EdgePoints(points.places_m[seen], points.outwards_m[seen], points.reach_m[seen], points.tags[seen])
+    points = EdgePoints(points.places_m[seen], points.outwards_m[seen], points.reach_m[seen], points.edges[seen])
     if len(points.places_m) < _POINTS_MIN:
         return None
     found: Refined | None = None
@@ -127,7 +122,10 @@ def _round(part: Part, camera: Camera, points: EdgePoints, pose: Pose, reach_px:
     seen = found.is_seen
     if seen.sum() < max(_POINTS_MIN, _SEEN_SHARE_MIN * len(seen)):
         return None
-    step = _least_squares(found.slopes[seen], found.distance_px[seen])
+    if not _is_outlined(points.edges, seen):
+        return None
+    std_min_px = _EDGE_STD_PX if reach_px == _REACHES_PX[-1] else _DOUBT_SHARE * reach_px
+    step = _least_squares(found.slopes[seen], found.distance_px[seen], std_min_px)
     if step is None:
         return None
     moved = (pose[0] + step.change[:3], pose[1] + step.change[3:])
@@ -136,11 +134,28 @@ def _round(part: Part, camera: Camera, points: EdgePoints, pose: Pose, reach_px:
     rms_px = float(np.sqrt(step.squares_px2 / max(step.weight - 6.0, 1.0)))
     return Refined(
         pose=moved,
-        covariance=max(rms_px, _EDGE_STD_PX) ** 2 * step.inverse,
+        covariance=_points_alike(points.edges[seen]) * max(rms_px, _EDGE_STD_PX) ** 2 * step.inverse,
         rms_px=rms_px,
         points=int(seen.sum()),
         squares_px2=step.squares_px2,
     )
+
+
+def _is_outlined(edges: NDArray[np.int64], seen: NDArray[np.bool_]) -> bool:
+    """Return whether of some tag each edge that is in view is seen; points (N,) by their edge, four edges to a tag."""
+    numbers, index = np.unique(edges, return_inverse=True)
+    shares = np.bincount(index, weights=seen) / np.bincount(index)
+    tags = numbers // 4
+    return any(bool((shares[tags == tag] >= _EDGE_SHARE_MIN).all()) for tag in np.unique(tags))
+
+
+def _points_alike(edges: NDArray[np.int64]) -> float:
+    """Return how many points of an edge (N,: of which each point is) err alike, on average.
+
+    Blur, light and a plate's bend change slowly along an edge; so it tells its place and its slope, whatever the number
+    of points that are looked for on it.
+    """
+    return max(len(edges) / (_INDEPENDENT * len(np.unique(edges))), 1.0)
 
 
 class _Step(NamedTuple):
@@ -152,7 +167,7 @@ class _Step(NamedTuple):
     weight: float
 
 
-def _least_squares(A: Array, distance_px: Array) -> _Step | None:
+def _least_squares(A: Array, distance_px: Array, std_min_px: float) -> _Step | None:
     """Return the step that brings distances (N,) with slopes A (N, 6) to zero; outliers count less, as by Huber."""
     change, inverse = np.zeros(6), np.zeros((6, 6))
     left_px, weights = distance_px, np.ones(len(distance_px))
@@ -164,7 +179,7 @@ def _least_squares(A: Array, distance_px: Array) -> _Step | None:
             return None
         change = inverse @ (A.T @ (weights * distance_px))
         left_px = distance_px - A @ change
-        std_px = max(1.4826 * float(np.median(np.abs(left_px))), _EDGE_STD_PX)
+        std_px = max(1.4826 * float(np.median(np.abs(left_px))), std_min_px)
         weights = np.minimum(1.0, _HUBER * std_px / np.maximum(np.abs(left_px), 1e-9))
     if not np.isfinite(change).all():
         return None

@@ -18,7 +18,7 @@ Pose = tuple[Array, Array]
 
 SIDE_MIN_PX = 12.0  # 1.5 pixels a cell: below, neighbouring cells cannot be told apart
 TAGS_MAX = 12  # that are looked at in a frame: more make it slower and the pose hardly better
-_GRID = 4  # samples along a cell's side
+_GRID, _HOST_GRID = 2, 4  # samples along a cell's side; more where another tag may stand in it
 _CELLS_MIN = 32  # in the picture; chance reads them with at most 12 % wrong less than once in 100,000 times
 _WRONG_SHARE_MAX = 0.12
 _CONTRAST_MIN = 12.0  # shades between black and white
@@ -41,18 +41,28 @@ def expected_tags(camera: Camera, board: Board, pose: Pose) -> dict[int, float]:
 
 def read_tags(part: Part, camera: Camera, board: Board, pose: Pose, ids: list[int]) -> list[int]:
     """Return those of `ids` whose cells are seen at a pose in a part of the picture."""
+    hosts = [tag_id for tag_id in ids if tag_id in board.hosts]
+    others = [tag_id for tag_id in ids if tag_id not in board.hosts]
+    read = _read_alike(part, camera, board, pose, hosts, grid=_HOST_GRID) | _read_alike(
+        part, camera, board, pose, others, grid=_GRID
+    )
+    return [tag_id for tag_id in ids if tag_id in read]
+
+
+def _read_alike(part: Part, camera: Camera, board: Board, pose: Pose, ids: list[int], *, grid: int) -> set[int]:
+    """Return those of `ids` that are read by `grid` samples along each cell's side."""
     if not ids:
-        return []
-    pixels, _ = camera.pixels(np.concatenate([_samples(board, tag_id) for tag_id in ids]), *pose)
+        return set()
+    pixels, _ = camera.pixels(np.concatenate([_samples(board, tag_id, grid) for tag_id in ids]), *pose)
     at = pixels.reshape(len(ids), -1, 2)
     inside = part.holds(at)
     seen = part.sample(at).reshape(len(ids), CELLS * CELLS, -1).mean(axis=2)
     is_inside = np.asarray(inside.reshape(len(ids), CELLS * CELLS, -1).all(axis=2))
-    return [
+    return {
         tag_id
         for index, tag_id in enumerate(ids)
         if _is_read(seen[index], is_inside[index], cells_of(board.config.family, tag_id).ravel())
-    ]
+    }
 
 
 def _is_read(seen: NDArray[np.float32], inside: NDArray[np.bool_], white: NDArray[np.bool_]) -> bool:
@@ -66,17 +76,17 @@ def _is_read(seen: NDArray[np.float32], inside: NDArray[np.bool_], white: NDArra
     return bool(wrong.sum() <= _WRONG_SHARE_MAX * inside.sum())
 
 
-def _samples(board: Board, tag_id: int) -> Array:
-    """Return where a tag's cells are sampled (64 * 16, 3) in P: cell by cell from the upper left, row by row."""
+def _samples(board: Board, tag_id: int, grid: int) -> Array:
+    """Return where a tag's cells are sampled (64 * grid^2, 3) in P: cell by cell from the upper left, row by row."""
     upper_left, upper_right, _, lower_left = board.corners_m[tag_id]
-    rows, columns = _shares()
+    rows, columns = _shares(grid)
     return np.asarray(upper_left + rows * (lower_left - upper_left) + columns * (upper_right - upper_left))
 
 
 @cache
-def _shares() -> tuple[Array, Array]:
+def _shares(grid: int) -> tuple[Array, Array]:
     """Return of each sample how far down the tag it is, and how far to the right, as shares of its side."""
-    within = (np.arange(_GRID) + 0.5) / _GRID
+    within = (np.arange(grid) + 0.5) / grid
     row, column, down, right = np.meshgrid(np.arange(CELLS), np.arange(CELLS), within, within, indexing="ij")
     down_share, right_share = (row + down) / CELLS, (column + right) / CELLS
     return down_share.reshape(-1, 1).astype(np.float64), right_share.reshape(-1, 1).astype(np.float64)

@@ -40,6 +40,8 @@ _BOARD_STD_M = 0.001  # of a print on a plate that is not quite flat
 _RMS_SHARE_MAX = 0.35  # of a cell of the largest tag: edges farther off are other edges
 _RMS_MIN_PX = 1.0
 _ROUNDS_MAX = 4
+_FEW = 3  # tags
+_COMPLETE_SHARE = 0.5  # of the tags that should be seen: with these no other pass is needed
 
 
 class Track(Struct, frozen=True, kw_only=True):
@@ -102,6 +104,7 @@ class _Candidate:
     refined: Refined
     tags: tuple[int, ...]
     tilt_stds: float
+    is_complete: bool
 
 
 def sight_step(memory: SightMemory, frame: Frame, system: SightSystem) -> tuple[SightMemory, Sight]:
@@ -133,9 +136,10 @@ def _track(frame: Frame, system: SightSystem, R_WB: Array, expected: Pose) -> Si
 
 
 def _search(frame: Frame, system: SightSystem, R_WB: Array) -> Sight:
-    """Return the pad wherever it is in the picture."""
+    """Return the pad wherever it is in the picture; where a pass finds few tags, the next may find more."""
     part = frame.picture.part(whole(frame.picture.size_px))
     foreign: frozenset[int] = frozenset()
+    best: tuple[_Candidate, _Candidate | None] | None = None
     for found in search(part, system.board):
         foreign |= found.foreign_ids
         candidates = [
@@ -144,9 +148,13 @@ def _search(frame: Frame, system: SightSystem, R_WB: Array) -> Sight:
             if (candidate := _settle(part, system, R_WB, frame, guess)) is not None
         ]
         chosen = _choose(candidates)
-        if chosen is not None:
-            return _sight(frame, system, *chosen, tracked=False, foreign_ids=foreign)
-    return Sight(foreign_ids=foreign)
+        if chosen is not None and (best is None or chosen[0].refined.points > best[0].refined.points):
+            best = chosen
+        if best is not None and best[0].is_complete:
+            break
+    if best is None:
+        return Sight(foreign_ids=foreign)
+    return _sight(frame, system, *best, tracked=False, foreign_ids=foreign)
 
 
 def _choose(candidates: list[_Candidate]) -> tuple[_Candidate, _Candidate | None] | None:
@@ -170,26 +178,37 @@ def _misread_probability(scores: list[float]) -> float:
 def _settle(part: Part, system: SightSystem, R_WB: Array, frame: Frame, guess: Pose) -> _Candidate | None:
     """Return the pose near a guess; the better it gets, the more tags are read, until these are all."""
     camera, board = system.camera, system.board
-    pose, used, refined = guess, _read(part, system, guess), None
+    pose, refined = guess, None
+    used, expected = _read(part, system, guess)
     for _ in range(_ROUNDS_MAX):
         found = refine(part, camera, board, pose, used) if used else None
         if found is None:
             break
-        pose, refined = found.pose, found
-        before, used = used, _read(part, system, pose)
+        pose, refined, before = found.pose, found, used
+        used, expected = _read(part, system, pose)
         if used.keys() <= before.keys():
             break
     if refined is None or not used or refined.rms_px > max(_RMS_MIN_PX, _RMS_SHARE_MAX * max(used.values()) / CELLS):
         return None
-    tilt_stds = _tilt_stds(pose, R_WB, system.mounting, frame)
-    return _Candidate(refined=refined, tags=tuple(used), tilt_stds=tilt_stds)
+    return _Candidate(
+        refined=refined,
+        tags=tuple(used),
+        tilt_stds=_tilt_stds(pose, R_WB, system.mounting, frame),
+        is_complete=len(used) >= _COMPLETE_SHARE * min(expected, TAGS_MAX),
+    )
 
 
-def _read(part: Part, system: SightSystem, pose: Pose) -> dict[int, float]:
-    """Return the sides in pixels of the tags that are read at a pose, the largest first."""
-    expected = expected_tags(system.camera, system.board, pose)
-    ids = read_tags(part, system.camera, system.board, pose, list(expected)[:TAGS_MAX])
-    return {tag_id: expected[tag_id] for tag_id in ids}
+def _read(part: Part, system: SightSystem, pose: Pose) -> tuple[dict[int, float], int]:
+    """Return the sides in pixels of the tags that are read at a pose, the largest first, and how many might have been.
+
+    Where hardly any of the largest is read, the others are tried: those beside a tag that fits may fit as well.
+    """
+    camera, board = system.camera, system.board
+    expected = expected_tags(camera, board, pose)
+    ids = read_tags(part, camera, board, pose, list(expected)[:TAGS_MAX])
+    if len(ids) < _FEW and len(expected) > TAGS_MAX:
+        ids = read_tags(part, camera, board, pose, list(expected))[:TAGS_MAX]
+    return {tag_id: expected[tag_id] for tag_id in ids}, len(expected)
 
 
 def _tilt_stds(pose: Pose, R_WB: Array, mounting: Mounting, frame: Frame) -> float:

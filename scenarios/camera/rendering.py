@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from companion.eyes.board import BoardConfig
-from companion.eyes.picture import Box, remapped
+from companion.eyes.picture import Box, box_around, remapped
 from scenarios.camera.exposure import develop, exposure_for
 from scenarios.camera.lens import CAMERA, FOCAL_PX, Lens, defocus_std_px, smear
 from scenarios.camera.surfaces import Surface, board_surface, road_surface, roof_surface
@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
 
 _SKY_SHARE = 0.25  # of daylight that comes from all sides, also into a shadow
+_BOARD_MARGIN_PX = 4.0
 _FINE_AREA_PX = 90_000  # smaller parts are rendered twice as finely
 _LAMP_HALF_ANGLE_RAD = math.radians(45.0)
 _GLARE_STD_RAD = 0.12  # of a semi-gloss print: half width of its highlight
@@ -90,9 +91,40 @@ class Renderer:
         self._rng = rng
 
     def render(self, view: View, light: Light, box: Box) -> NDArray[np.uint8]:
-        """Return the shades of a part of the picture; the noise is another one each time."""
+        """Return the shades of a part of the picture; the noise is another one each time.
+
+        A board that fills little of it is rendered more finely than what is around it.
+        """
+        shades = self._render(view, light, box, is_fine=box.area < _FINE_AREA_PX)
+        fine = self._board_box(view, box)
+        if box.area >= _FINE_AREA_PX and 0 < fine.area < _FINE_AREA_PX:
+            rows, columns = (
+                slice(fine.top - box.top, fine.bottom - box.top),
+                slice(fine.left - box.left, fine.right - box.left),
+            )
+            shades[rows, columns] = self._render(view, light, fine, is_fine=True)
+        return shades
+
+    def _board_box(self, view: View, box: Box) -> Box:
+        """Return as much of a box as the board is seen in; all of it where that cannot be told."""
+        if self._board is None:
+            return Box(0, 0, 0, 0)
+        forward_m, left_m = self._board.corner_m
+        corners = np.array([[a * forward_m, b * left_m, self._roof_height_m] for a in (-1, 1) for b in (-1, 1)])
+        in_c = (corners - view.camera_m) @ view.R_VC
+        if (in_c[:, 2] <= 0.05).any() or (np.abs(in_c[:, :2]) > CAMERA.radius_max * in_c[:, 2:]).any():
+            return box
+        pixels, _ = CAMERA.pixels(in_c, np.zeros(3), np.zeros(3))
+        around = box_around(pixels, _BOARD_MARGIN_PX, CAMERA.size_px)
+        return Box(
+            max(around.left, box.left),
+            max(around.top, box.top),
+            min(around.right, box.right),
+            min(around.bottom, box.bottom),
+        )
+
+    def _render(self, view: View, light: Light, box: Box, *, is_fine: bool) -> NDArray[np.uint8]:
         depth_m = self._depth_m(view)
-        is_fine = box.area < _FINE_AREA_PX
         blur_px = math.sqrt(max(defocus_std_px(depth_m) ** 2 - 1.0 / 12.0, 0.1))
         exposure = exposure_for(light.daylight_lx + _lamp_lx(light, depth_m))
         motion_px = self._motion_px(view) * exposure.duration_s
