@@ -93,6 +93,8 @@ def run_detector(
     from companion.eyes.node import EyesNode
     from companion.eyes.opening import SourceOptions, open_source
     from companion.eyes.sight import SightSystem
+    from companion.eyes.zenoh_source import PICTURE_MAX_BYTES
+    from link.records import replace
     from link.zenoh.keys import Keys
     from link.zenoh.options import zenoh_options
     from link.zenoh.session import open_session
@@ -101,7 +103,8 @@ def run_detector(
     camera = load_calibration(calibration)
     system = SightSystem(camera=camera, mounting=load_mounting(mounting), board=load_board(board))
     options = SourceOptions(size_px=size or camera.size_px, latency_s=latency, rate_hz=rate)
-    with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)) as zenoh:
+    endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
+    with open_session(replace(endpoints, message_max_bytes=PICTURE_MAX_BYTES)) as zenoh:
         frames = open_source(source, options, keys, zenoh)
         try:
             EyesLoop(EyesNode(system, keys), frames, keys, zenoh).run()

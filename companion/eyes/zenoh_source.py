@@ -11,6 +11,8 @@ from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohSession
 
 _CAPACITY = 4  # pictures; older ones are worth nothing
+PICTURE_MAX_BYTES = 1 << 26
+"""20 million pixels in three colours."""
 
 
 class ZenohSource:
@@ -28,8 +30,8 @@ class ZenohSource:
         self.bad_payloads = 0
         self.refused_why: str | None = None
         self._zenoh = zenoh
-        self._raw: Inbox = zenoh.subscribe(keys.camera_image, capacity=_CAPACITY)
-        self._files: Inbox = zenoh.subscribe(keys.camera_compressed, capacity=_CAPACITY)
+        self._raw: Inbox = zenoh.subscribe(keys.camera_image, capacity=_CAPACITY, bytes_max=PICTURE_MAX_BYTES)
+        self._files: Inbox = zenoh.subscribe(keys.camera_compressed, capacity=_CAPACITY, bytes_max=PICTURE_MAX_BYTES)
 
     def take(self, timeout_s: float) -> Captured | None:
         """Return the newest picture; what is none is counted."""

@@ -102,12 +102,12 @@ class Ros2Session(ZenohSession):
         status: object = self._endpoint(route).publisher.matching_status  # its stub calls it a plain truth value
         return bool(getattr(status, "matching", status))
 
-    def subscribe(self, key: str, *, capacity: int = INBOX_CAPACITY) -> Inbox:
+    def subscribe(self, key: str, *, capacity: int = INBOX_CAPACITY, bytes_max: int | None = None) -> Inbox:
         """Return the inbox of all that is published on `key`, or on its topic; the samples carry `key`."""
         route = self._routes.get(key)
         if route is None:
-            return super().subscribe(key, capacity=capacity)
-        inbox = Inbox(capacity=capacity, wake_up=self.wake_up)
+            return super().subscribe(key, capacity=capacity, bytes_max=bytes_max)
+        inbox = Inbox(capacity=capacity, wake_up=self.wake_up, bytes_max=bytes_max)
         self._held.append(
             self._session.declare_subscriber(self._data_key(route.endpoint), self._into(inbox, key, route.from_ros))
         )

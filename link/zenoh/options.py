@@ -27,6 +27,8 @@ class ZenohOptions:
         multicast_scouting: whether to look for others by multicast; None is the file's, else no.
         config_file: a Zenoh configuration in JSON5, for what has no option here (TLS, access control).
         insecure: whether strangers on a network may reach the session.
+        message_max_bytes: of a message that is put together of fragments, where the configuration file says nothing;
+            most of ours are a hundredth of the default, pictures are larger. A router passes on what others need.
 
     Raises:
         UserError: If the mode or an endpoint is not one.
@@ -38,6 +40,7 @@ class ZenohOptions:
     multicast_scouting: bool | None = None
     config_file: Path | None = None
     insecure: bool = False
+    message_max_bytes: int = 1 << 20
 
     def __post_init__(self) -> None:
         """Check the mode and the endpoints."""

@@ -38,8 +38,6 @@ _BLOCK_MAX_US = 200_000
 stall the loop that flies. Less than the half second after which autopilots call a setpoint stream lost."""
 
 _MESSAGE_MAX_KEY = "transport/link/rx/max_message_size"
-_MESSAGE_MAX_BYTES = 1 << 20
-"""Of a message that is put together of fragments; ours are a hundredth of that. A router passes on what others need."""
 
 
 class Replies:
@@ -136,9 +134,9 @@ class ZenohSession:
         status: object = self._publisher(key, encoding).matching_status  # its stub calls it a plain truth value
         return bool(getattr(status, "matching", status))
 
-    def subscribe(self, key: str, *, capacity: int = INBOX_CAPACITY) -> Inbox:
+    def subscribe(self, key: str, *, capacity: int = INBOX_CAPACITY, bytes_max: int | None = None) -> Inbox:
         """Return the inbox of all that is published on `key`, which may hold wildcards."""
-        inbox = Inbox(capacity=capacity, wake_up=self.wake_up)
+        inbox = Inbox(capacity=capacity, wake_up=self.wake_up, bytes_max=bytes_max)
 
         def receive(sample: zenoh.Sample) -> None:
             if inbox.has_room(len(sample.payload)):
@@ -278,7 +276,7 @@ def _config(options: ZenohOptions) -> zenoh.Config:
     if not options.insecure:
         _check_exposure(config)
     if _get(config, "mode") != "router" and _get(config, _MESSAGE_MAX_KEY) == _get(zenoh.Config(), _MESSAGE_MAX_KEY):
-        _insert(config, _MESSAGE_MAX_KEY, _MESSAGE_MAX_BYTES)
+        _insert(config, _MESSAGE_MAX_KEY, options.message_max_bytes)
     if _get(config, _BLOCK_MAX_KEY) == _get(zenoh.Config(), _BLOCK_MAX_KEY):
         _insert(config, _BLOCK_MAX_KEY, _BLOCK_MAX_US)
     return config
