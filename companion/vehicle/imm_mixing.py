@@ -29,7 +29,6 @@ from companion.vehicle.imm_sensors import (
     PAD,
     POSITION,
     VELOCITY,
-    YAW_RATE,
     observe,
     turned,
 )
@@ -180,8 +179,6 @@ def update_modes(
     The mixture's NIS tells consistency; an outlier is what even the mode with the wider noise does not expect.
     What a measurement says for either mode counts as that of one component: receivers state the errors of their axes as
     independent, but where they are one and the same (a common delay, a reflection) it would count m times over.
-    What turns a vehicle says nothing of its brakes, so a heading or a yaw rate counts for neither mode. Fifty of them a
-    second, from a road that is straight, would leave so little of the wider mode that a brake is an outlier for both.
 
     Args:
         modes: the filter.
@@ -200,8 +197,6 @@ def update_modes(
         residuals[j] = residual_of(kind, value, expected)
         spreads[j] = carried_through(H, covariances[j]) + R
         xs[j], Ps[j], nis[j], fits[j] = correct(means[j], covariances[j], residuals[j], H, R)
-    if kind in (HEADING, YAW_RATE):
-        fits[:] = 0.0
     likelihood = np.maximum(weights, WEIGHT_MIN) * np.exp((fits - fits.max()) / m)
     after = likelihood / likelihood.sum()
     residual, spread = combine(residuals, spreads, weights)

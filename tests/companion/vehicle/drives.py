@@ -53,7 +53,6 @@ class Sensors:
     yaw_rate_std_rad_s: float = 0.0
     rate_hz: float = 10.0
     delay_s: float = 0.06
-    turn_rate_hz: float | None = None  # of heading and yaw rate; None: they come with the fixes
     frame_offset_m: float = 0.0
     pad_rate_hz: float = 0.0
     pad_std_m: float = 0.05
@@ -171,11 +170,7 @@ def sense(truth: Drive, sensors: Sensors, seed: int) -> list[tuple[int, Measurem
     """Return (arrival time, measurement) in order of arrival."""
     rng = np.random.default_rng(seed)
     offset = sensors.frame_offset_m * _direction(rng)
-    arrivals = [
-        *_vehicle_sensors(truth, sensors, offset, rng),
-        *_pad_sightings(truth, sensors, rng),
-        *_turns(truth, sensors, rng),
-    ]
+    arrivals = [*_vehicle_sensors(truth, sensors, offset, rng), *_pad_sightings(truth, sensors, rng)]
     return sorted(arrivals, key=lambda arrival: arrival[0])
 
 
@@ -218,22 +213,10 @@ def _vehicle_sensors(
         )
         if sensors.outage_s[0] <= t < sensors.outage_s[1]:
             continue
-        for quantity, value, spread in values[:2] if sensors.turn_rate_hz else values:
+        for quantity, value, spread in values:
             covariance = spread if isinstance(spread, np.ndarray) else spread**2 * np.eye(len(value))
             if covariance[0, 0] > 0.0:
                 yield _arrival(t, sensors.delay_s, quantity, value, covariance)
-
-
-def _turns(truth: Drive, sensors: Sensors, rng: np.random.Generator) -> Iterator[tuple[int, Measurement]]:
-    """Heading and yaw rate of an inertial unit with a rate of its own."""
-    rate_hz = sensors.turn_rate_hz or 0.0
-    stds = (sensors.heading_std_rad, sensors.yaw_rate_std_rad_s)
-    for i in range(int(truth.length_s * rate_hz)):
-        t = i / rate_hz
-        told = zip((Quantity.HEADING, Quantity.YAW_RATE), truth.at(t)[2:], stds, strict=True)
-        for quantity, value, std in told:
-            measured = np.array([value + std * rng.standard_normal()])
-            yield _arrival(t, sensors.delay_s, quantity, measured, np.array([[std**2]]))
 
 
 def _pad_sightings(truth: Drive, sensors: Sensors, rng: np.random.Generator) -> Iterator[tuple[int, Measurement]]:

@@ -130,9 +130,9 @@ def test_step_of_the_receiver_does_not_move_a_pad_that_is_seen() -> None:
 @pytest.mark.parametrize(
     ("truth", "sensors", "bound_m"),
     [
-        (circle(), NOMINAL, 0.13),
+        (circle(), NOMINAL, 0.12),
         (circle(), FIX_ONLY, 0.40),
-        (straight(25.0), NOMINAL, 0.16),
+        (straight(25.0), NOMINAL, 0.15),
         (figure_eight(), NOMINAL, 0.45),
         (stop_and_go(), NOMINAL, 0.5),
     ],
@@ -157,32 +157,14 @@ def test_braking_is_in_the_forecast_soon_after_it_began() -> None:
     assert np.linalg.norm(done.ahead_errors(truth, 1.0), axis=1).max() < 0.3 * unaware
 
 
-def braking(deceleration_m_s2: float) -> Drive:
-    """A vehicle that brakes 10.02 s after its start, and is heard of 0.08 s later."""
-    return drive(13.0, lambda t: float(np.clip(15.0 - deceleration_m_s2 * (t - 10.02), 0.0, 15.0)), lambda _: 0.0)
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("turn_rate_hz", [None, 50.0])
 @pytest.mark.parametrize("deceleration_m_s2", [6.0, 9.0])
 @pytest.mark.parametrize("seed", [120, 121, 122, 123])
-def test_emergency_brake_is_not_taken_for_outliers(
-    deceleration_m_s2: float, seed: int, turn_rate_hz: float | None
-) -> None:
+def test_emergency_brake_is_not_taken_for_outliers(deceleration_m_s2: float, seed: int) -> None:
+    truth = drive(13.0, lambda t: float(np.clip(15.0 - deceleration_m_s2 * (t - 10.02), 0.0, 15.0)), lambda _: 0.0)
     chosen = estimator(IMM)
-    sensors = replace(NOMINAL, turn_rate_hz=turn_rate_hz)
-    done = ride(chosen, braking(deceleration_m_s2), sensors, seed, from_s=9.0)
+    done = ride(chosen, truth, NOMINAL, seed, from_s=9.0)
     assert chosen.health(done.memory).gated == 0
-
-
-def test_second_velocity_of_a_brake_tells_it_however_many_yaw_rates_come() -> None:
-    truth, sensors = braking(6.0), replace(NOMINAL, turn_rate_hz=50.0)
-    chosen, now_s, taken_s = estimator(IMM), 10.27, 10.2
-    memory = chosen.fuse(None, [one for one in arrivals(truth, sensors, 120) if one.t_ns <= now_ns(taken_s)])
-    known = chosen.estimate(memory, now_ns(now_s))
-    assert known is not None
-    slower_m_s = float(np.linalg.norm(truth.at(10.0)[1][:2]) - np.linalg.norm(known.velocity_enu_m_s[:2]))
-    assert slower_m_s == pytest.approx(6.0 * (now_s - 10.02), rel=0.35)
 
 
 @pytest.mark.parametrize(("length_s", "bound_m"), [(1.0, 0.15), (2.0, 0.4), (3.0, 0.9)])
