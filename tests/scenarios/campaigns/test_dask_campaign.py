@@ -135,5 +135,5 @@ def test_scheduler_without_workers_is_a_mistake_of_the_user(monkeypatch: pytest.
 
 def test_missing_dask_is_a_mistake_of_the_user(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(UserError, match=r"install decklander\[dask\]"):
+    with pytest.raises(UserError, match=r"needs distributed: pip install 'decklander\[dask\]'"):
         list(none_on("tcp://127.0.0.1:8786"))

@@ -175,7 +175,8 @@ def test_page_about_a_run_needs_nothing_from_elsewhere(run: Path, tmp_path: Path
 
 
 def test_folder_without_a_recording_is_told(tmp_path: Path) -> None:
-    tmp_path.joinpath("result.json").write_text("{}", encoding="utf-8")
+    result = {"scenario": SCENARIO, "seed": 1, "tier": "abort", "reason": "never took off"}
+    tmp_path.joinpath("result.json").write_text(json.dumps(result), encoding="utf-8")
     with pytest.raises(UserError, match="holds no recording"):
         draw_figures(tmp_path, None)
 
