@@ -227,7 +227,7 @@ def test_an_autopilot_s_receiver_reaches_the_companion() -> None:
         assert (degrees(fix.latitude_rad), degrees(fix.longitude_rad)) == pytest.approx((47.2, 8.5), abs=1e-4)
         assert fix.altitude_m == pytest.approx(500.0, abs=5.0)
         assert abs(fix.t_ns * 1e-9 - time.time()) < 30.0  # the autopilot's UTC, not its time since boot
-        assert fix.covariance_enu_m2 == pytest.approx((0.81, 0, 0, 0, 0.81, 0, 0, 0, 1.78**2))
+        assert fix.covariance_enu_m2 == pytest.approx((0.01**2, 0, 0, 0, 0.01**2, 0, 0, 0, 0.02**2))
         attitude = car.attitudes[-1].orientation_wxyz
         assert attitude is not None
         assert abs(yaw_of(attitude)) <= 3.2
