@@ -20,6 +20,7 @@ from companion.autopilots.messages import (
 )
 from companion.autopilots.px4_events import refusal_of
 from companion.autopilots.response import Cascade
+from companion.autopilots.shaping import Shaping
 from companion.core.data import FlightLimits, Setpoint
 from link.frames.local_frame import Projection
 from link.mavlink.dialect import Message, mavlink
@@ -42,7 +43,6 @@ class Px4Driver:
     gain_names = (("MPC_XY_P",), ("MPC_XY_VEL_P_ACC",), ("MPC_XY_VEL_I_ACC",))
     timeout_parameter = "COM_OF_LOSS_T"
     timeout_default_s = 1.0
-    carries_setpoints_on = False  # it holds them as they came
     holds_height_alone = True
     follows_in_failsafe = False  # what it only warns of is none
     speed_parameters: tuple[str, ...] = ("MPC_XY_VEL_MAX",)
@@ -120,6 +120,10 @@ class Px4Driver:
             integral_per_s2=find_gain(parameters, integral, 0.4, INTEGRAL_FACTOR_MAX),
             lead_s=0.01,
         )
+
+    def shaping(self, parameters: Mapping[str, float]) -> Shaping | None:  # noqa: ARG002 (the others' signature)
+        """Return None: PX4 shapes no path, and holds setpoints as they came."""
+        return None
 
 
 def _streamed_s(memory: DriverMemory, monotonic_ns: int) -> float:

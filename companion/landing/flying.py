@@ -4,6 +4,7 @@ import numpy as np
 
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits
+from companion.landing.carried_on import limit_rates
 from companion.landing.flown_plan import extrapolate, flown_plan, state_at
 from companion.landing.levelling import limit_tilt, limits_now
 from companion.landing.memory import ModelMemory, StepMemory
@@ -73,17 +74,17 @@ def fly(
     if is_at_rest(reference, aim):  # there is nothing to plan
         tracking = add_to_past(model.tracking, reference_ns, reference)
         return replace(memory, model=replace(model, reference_ns=reference_ns, plan=None, tracking=tracking)), None
+    limits = limits_now(memory, situation, inputs, system.config)
     request = PlanRequest(
         state=reference,
         target=_for_the_drone(aim.target, memory, inputs),
-        limits=limits_now(memory, situation, inputs, system.config),
+        limits=limit_rates(limits, memory, situation, inputs.shaping, system.config),
         floor_enu_m=aim.floor_enu_m,
         dt_s=period_s,
     )
     request = replace(request, limits=limit_tilt(request, model.tracking.air_enu_m_s2))
     guidance, plan = system.guidance.plan(model.guidance, request)
-    is_carried_on = inputs.driver is not None and inputs.driver.carries_setpoints_on
-    flown = flown_plan(plan, period_s, float(aim.floor_enu_m[0]), inputs.timeout_s if is_carried_on else 0.0)
+    flown = flown_plan(plan, period_s, float(aim.floor_enu_m[0]), inputs.shaping)
     plan = replace(plan, next_state=state_at(flown, period_s))
     model = ModelMemory(
         reference=plan.next_state,

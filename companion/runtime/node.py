@@ -204,7 +204,7 @@ class CompanionNode:
             pad=self._pad,
             command=self._command,
             leaving=self._leaving,
-            timeout_s=self.autopilot.timeout_s,
+            shaping=self.autopilot.shaping,
             link_delay=LinkDelay(mean_s=min(way.one_way_s, _LINK_DELAY_MAX_S), std_s=way.one_way_std_s),
         )
         self._measurements, self._command = [], None
