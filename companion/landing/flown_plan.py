@@ -107,15 +107,16 @@ def limit_sink(reference: ReferenceState, lowest_enu_m: float, shaping: Shaping)
 
     Its acceleration upwards is at least such that the drone, which then brakes, ends above `lowest_enu_m`: ArduCopter
     was flown into the road at 1.6 m/s from a chase whose companion had died. The rate w at the end of the time T obeys
-    `h + (v + w) T / 2 - w^2 / 2A >= 0` with the height h, the rate v and the braking A.
+    `h + (v + w) T / 2 - w^2 / 2A + w A / 2J >= 0` with the height h, the rate v, the braking A and its jerk J.
     """
     duration_s, braking_m_s2 = shaping.carried_s, shaping.vertical_acceleration_m_s2
+    turning_s = braking_m_s2 / shaping.vertical_jerk_m_s3
     above_m = float(reference.position_enu_m[2]) - lowest_enu_m
     ax, ay, az = reference.acceleration_enu_m_s2.tolist()
     climb_m_s, room_m = float(reference.velocity_enu_m_s[2]), 2.0 * above_m
     room_m += climb_m_s * duration_s
     if room_m >= 0.0:
-        brakes_m_s = braking_m_s2 * duration_s
+        brakes_m_s = braking_m_s2 * (duration_s + turning_s)
         end_m_s = 0.5 * (brakes_m_s - math.sqrt(brakes_m_s**2 + 4.0 * braking_m_s2 * room_m))
     else:
         end_m_s = -room_m / duration_s

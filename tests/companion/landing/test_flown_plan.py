@@ -66,7 +66,7 @@ def test_model_that_ends_above_the_lowest_height_is_left_alone(
     reference = _moving(height_m, rate_m_s, up_m_s2)
     carried = extrapolate(reference, duration_s)
     sinks_m_s = max(-float(carried.velocity_enu_m_s[2]), 0.0)
-    lowest_m = float(carried.position_enu_m[2]) - sinks_m_s**2 / (2.0 * BRAKES_M_S2) - 1e-6
+    lowest_m = float(carried.position_enu_m[2]) - sinks_m_s * (sinks_m_s / BRAKES_M_S2 + BRAKES_M_S2 / 5.0) / 2.0 - 1e-6
     assert limit_sink(reference, lowest_m, _carried(duration_s)) is reference
 
 
