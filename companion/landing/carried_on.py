@@ -80,8 +80,8 @@ def limit_rates(
 ) -> FlightLimits:
     """Return the limits of a plan, and for an autopilot that carries setpoints on the rates at which it may.
 
-    It has to be somewhat faster than the vehicle, or it never catches up. A descent sinks as fast as it touches down, or
-    faster as long as it can stop in time.
+    It has to be somewhat faster than the vehicle, or it never catches up. A descent sinks as fast as it touches down,
+    or faster as long as it can stop in time.
     """
     if shaping is None:
         return limits
