@@ -109,7 +109,9 @@ def _update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) 
             monotonic_ns=now_ns,
             config=system.config.descent,
         ),
-        fix_stamps=update_fix_stamps(vehicle.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns),
+        fix_stamps=update_fix_stamps(
+            vehicle.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns, inputs.fix_ahead_s
+        ),
         contradictions=contradictions,
         phases=update_fixed_phases(
             vehicle.phases, inputs.measurements, now_ns, drone_is_fixed=inputs.autopilot.receiver_is_fixed
