@@ -39,6 +39,7 @@ class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
         limits: of the flight, from the configuration and the autopilot's parameters.
         acknowledgements: (command, MAV_RESULT) received since the last step.
         measurements: of the vehicle, received since the last step.
+        fix_ahead_s: by which the newest fix since then came before its stamp, so that it was refused; None if none was.
         vehicle_alive: its liveliness token; None when it never showed one.
         pad: the vehicle's own description of its pad.
         command: an operator's wish.
@@ -56,6 +57,7 @@ class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
     driver: Driver | None = None
     acknowledgements: tuple[tuple[int, int], ...] = ()
     measurements: tuple[Measurement, ...] = ()
+    fix_ahead_s: float | None = None
     vehicle_alive: bool | None = None
     pad: PadGeometry | None = None
     command: Command | None = None

@@ -11,13 +11,14 @@ from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
 
+from companion.core.reasons import Cause, Reason, sentence
 from companion.runtime.node import CompanionNode
 from link.messages import Command, CommandReply
 from link.payloads import json_messages
 from link.payloads.checks import PayloadError
 
 Reply = Callable[[bytes], None]
-_FIRST_TO_LAST = (Command.ABORT, Command.HOLD, Command.START)
+_FIRST_TO_LAST = (Command.ABORT, Command.HOLD, Command.START_ANYWAY, Command.START)
 _WAITING_MAX = 64  # of each command; who comes when so many ask for the same hears nothing, and asks again
 _WAIT_MAX_S = 2.0  # less than an operator's query waits
 _LATE = CommandReply(accepted=False, reason="the companion made no step in time")
@@ -60,9 +61,12 @@ class CommandDesk:
             return None
         for command in _FIRST_TO_LAST:
             self._asked = self._take_waiting(command)
-            if self._asked:
-                node.request(command)
-                return command
+            if self._asked and command is Command.START and node.is_ready_to_start() and not node.vehicle_heard:
+                self.answer([_unheard(node)])
+            elif self._asked:
+                wanted = Command.START if command is Command.START_ANYWAY else command
+                node.request(wanted)
+                return wanted
         return None
 
     def answer(self, replies: list[CommandReply]) -> None:
@@ -79,6 +83,13 @@ class CommandDesk:
         since_s = self._now_s() - _WAIT_MAX_S
         _answer([one for one in waiting if one.came_s < since_s], _LATE)
         return [one for one in waiting if one.came_s >= since_s]
+
+
+def _unheard(node: CompanionNode) -> CommandReply:
+    """Return the answer to a start for a vehicle that nothing has been heard of."""
+    refused = node.samples.refused_lately()
+    why = Cause(Reason.VEHICLE_UNHEARD, (f" ({refused})" if refused else "",))
+    return CommandReply(accepted=False, reason=sentence(why))
 
 
 def _answer(asked: list[_Asked], reply: CommandReply) -> None:
