@@ -54,16 +54,15 @@ class CommandDesk:
             if len(self._waiting[command]) < _WAITING_MAX:
                 self._waiting[command].append(_Asked(self._now_s(), reply))
 
-    def pass_on(self, node: CompanionNode, local_ns: int) -> Command | None:
-        """Give the most urgent command to the node, if it makes a step now; return it."""
+    def pass_on(self, node: CompanionNode, local_ns: int) -> None:
+        """Give the most urgent command to the node, if it makes a step now."""
         if self._asked or not node.is_due(local_ns):
-            return None
+            return
         for command in _FIRST_TO_LAST:
             self._asked = self._take_waiting(command)
             if self._asked:
                 node.request(command)
-                return command
-        return None
+                return
 
     def answer(self, replies: list[CommandReply]) -> None:
         """Give a step's reply to all who have asked for its command."""
