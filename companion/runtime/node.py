@@ -3,18 +3,15 @@
 The wire loop, the lockstep campaigns and the tests all run this one.
 """
 
-from functools import lru_cache
-
 from companion.autopilots.link import AutopilotLink
-from companion.autopilots.response import Cascade, ResponseModel
 from companion.component.component import MavlinkComponent
 from companion.component.identity import ComputerLoad
 from companion.config.companion import CompanionConfig
 from companion.core.data import Measurement, VehicleEstimate
 from companion.landing.memory import StepMemory
 from companion.landing.step_data import LinkDelay, StepInputs, StepOutputs, System
-from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.runtime.publishing import StatusPublisher
+from companion.runtime.response_models import response_to
 from companion.runtime.step_clock import StepClock
 from companion.situation.phases import FLYING_PHASES, Phase
 from companion.step import companion_step
@@ -75,7 +72,8 @@ class CompanionNode:
         self.system = system
         self._keys = keys
         self._measurements: list[Measurement] = []
-        self._pad: PadGeometry | None = None
+        silent = system.config.silent_vehicle
+        self._pad: PadGeometry | None = None if silent is None else silent.pad
         self._vehicle_alive: bool | None = None
         self._command: Command | None = None
         self._leaving = False
@@ -111,7 +109,13 @@ class CompanionNode:
         self.autopilot.receive(data, local_ns, is_datagram=is_datagram)
 
     def receive_sample(self, key: str, payload: bytes) -> None:
-        """Take a Zenoh sample; what cannot be decoded, is absurd or comes from the future is counted and dropped."""
+        """Take a Zenoh sample; what cannot be decoded, is absurd or comes from the future is counted and dropped.
+
+        So is what somebody says of a vehicle that tells nothing.
+        """
+        if self.system.config.silent_vehicle is not None and key != self._keys.pad_pose:
+            self.bad_payloads += 1
+            return
         try:
             measurements = measurements_of(key, payload, self._keys, self.autopilot.state)
         except PayloadError:
@@ -125,7 +129,7 @@ class CompanionNode:
 
     def receive_pad(self, pad: PadGeometry) -> None:
         """Take the vehicle's description of its pad; the estimator needs the lever arm for sightings of the pad."""
-        if not is_possible(pad):
+        if not is_possible(pad) or self.system.config.silent_vehicle is not None:
             self.bad_payloads += 1
             return
         self._pad = pad
@@ -204,7 +208,7 @@ class CompanionNode:
             t_ns=self._clock.t_ns,
             monotonic_ns=self._clock.monotonic_ns,
             limits=self.autopilot.limits(self._limits_wanted),
-            response=None if cascade is None else _response_to(cascade),
+            response=None if cascade is None else response_to(cascade),
             own=state.own,
             autopilot=state.view,
             driver=self.autopilot.driver,
@@ -241,9 +245,3 @@ class CompanionNode:
         if self.publisher.is_due(outputs, self._clock.monotonic_ns):
             bad = self.autopilot.session.statistics.codec.bad_bytes, self.bad_payloads
             self.publisher.publish(outputs, bad, self._clock, self.memory.model.yaw_setpoint_rad)
-
-
-@lru_cache(maxsize=16)  # the gains of some landings; nothing that a link tells fills the memory
-def _response_to(cascade: Cascade) -> ResponseModel:
-    """Return the model of a cascade; 2 ms, and the gains of an autopilot come one by one in each of many landings."""
-    return ResponseModel(cascade, HORIZON_OFFSETS_S)
