@@ -74,6 +74,7 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
         reply=reply,
         status=landing_status(memory, situation, system.config),
         plan=plan,
+        pad=situation.pad,
     )
     return memory, outputs
 

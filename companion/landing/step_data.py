@@ -8,6 +8,7 @@ from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits, Measurement, OwnState, Setpoint
 from companion.planning.guidance import Guidance, PlanResult
 from companion.vehicle.estimator import Estimator
+from companion.vehicle.pad import PadPath
 from link.messages import Command, CommandReply, LandingStatus, PadGeometry
 
 
@@ -80,6 +81,7 @@ class StepOutputs(Struct, frozen=True, kw_only=True, eq=False):
         reply: to the operator's command, None when there was none.
         status: for the world.
         plan: of this step, None while nothing is flown.
+        pad: as this step knew it, None while it is not known.
     """
 
     setpoint: Setpoint | None
@@ -88,3 +90,4 @@ class StepOutputs(Struct, frozen=True, kw_only=True, eq=False):
     reply: CommandReply | None
     status: LandingStatus
     plan: PlanResult | None
+    pad: PadPath | None = None

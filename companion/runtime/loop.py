@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from companion.autopilots.choice import check_autopilot
 from companion.autopilots.driver import Driver
 from companion.runtime.command_desk import CommandDesk
+from companion.runtime.computer import ComputerWatch
 from companion.runtime.live_state import Onlooker, onlookers
 from companion.runtime.node import CompanionNode
 from companion.runtime.options import Links, LoopOptions, Timings
@@ -82,6 +83,7 @@ class _Loop:
         self._pad_question = PadQuestion(zenoh, keys.pad)
         self._link_was_up: bool | None = None
         self._strangers_told = False
+        self._computer = ComputerWatch()
 
     def run(self) -> Timings:
         """Run until a signal comes."""
@@ -142,8 +144,7 @@ class _Loop:
             self._node.receive_mavlink(data, local_ns, is_datagram=self._transport.is_datagram)
         self._record(self._node.autopilot.session.take_input(), local_ns)
         self._take_samples()
-        if self._start.commanded(self._desk.pass_on(self._node, local_ns)):
-            self._log.info("start called off")
+        self._desk.pass_on(self._node, local_ns)
         stepped = self._node.poll(local_ns)
         self._send_frames(local_ns)
         if stepped:
@@ -151,6 +152,9 @@ class _Loop:
             for onlooker in self._onlookers:
                 onlooker.tell(self._node, local_ns)
             self._after_step()
+        load = self._computer.poll()
+        if load is not None:
+            self._node.tell_load(load, local_ns)
 
     def _note_time(self, state_to_setpoint_s: float) -> None:
         self._timings.state_to_setpoint_s.append(state_to_setpoint_s)
@@ -179,6 +183,8 @@ class _Loop:
         """Publish, reply, log; and see to what is still missing."""
         for publication in self._node.take_publications():
             self._zenoh.publish(publication.key, publication.payload, publication.encoding)
+        if self._node.inputs is not None and self._start.commanded(self._node.inputs.command):
+            self._log.info("start called off")
         self._desk.answer(self._start.answered(self._node.take_replies()))
         outputs = self._node.outputs
         if outputs is not None and outputs.text is not None:
