@@ -5,7 +5,7 @@ from msgspec import Struct
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, AutopilotView, Driver
 from companion.autopilots.response import ResponseModel
 from companion.config.companion import CompanionConfig
-from companion.core.data import FlightLimits, Measurement, OwnState, Setpoint
+from companion.core.data import FlightLimits, Measurement, OwnState, Rival, Setpoint
 from companion.planning.guidance import Guidance, PlanResult
 from companion.vehicle.estimator import Estimator
 from link.messages import Command, CommandReply, LandingStatus, PadGeometry
@@ -40,6 +40,7 @@ class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
         acknowledgements: (command, MAV_RESULT) received since the last step.
         measurements: of the vehicle, received since the last step.
         vehicle_alive: its liveliness token; None when it never showed one.
+        rival: a companion that this one keeps out of the way of, None without one.
         pad: the vehicle's own description of its pad.
         command: an operator's wish.
         leaving: the companion is about to end, so the autopilot is to hover by itself, or to finish its disarm.
@@ -57,6 +58,7 @@ class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
     acknowledgements: tuple[tuple[int, int], ...] = ()
     measurements: tuple[Measurement, ...] = ()
     vehicle_alive: bool | None = None
+    rival: Rival | None = None
     pad: PadGeometry | None = None
     command: Command | None = None
     leaving: bool = False

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 from companion.autopilots.link import AutopilotLink
 from companion.autopilots.response import Cascade, ResponseModel
-from companion.core.data import Measurement, VehicleEstimate
+from companion.core.data import Measurement, Rival, VehicleEstimate
 from companion.landing.memory import StepMemory
 from companion.landing.outputs import plan_publication, status_publication
 from companion.landing.step_data import LinkDelay, StepInputs, StepOutputs, System
@@ -69,6 +69,7 @@ class CompanionNode:
         self._measurements: list[Measurement] = []
         self._pad: PadGeometry | None = None
         self._vehicle_alive: bool | None = None
+        self._rival: Rival | None = None
         self._command: Command | None = None
         self._leaving = False
         self._replies: list[CommandReply] = []
@@ -138,6 +139,10 @@ class CompanionNode:
         if alive or self._vehicle_alive is not None:
             self._vehicle_alive = alive
 
+    def receive_rival(self, rival: Rival | None) -> None:
+        """Take who else is there for this drone or on this vehicle, and was there first."""
+        self._rival = rival
+
     def request(self, command: Command) -> None:
         """Take an operator's command; its reply follows the next step."""
         self._command = command
@@ -201,6 +206,7 @@ class CompanionNode:
             acknowledgements=self.autopilot.take_acknowledgements(),
             measurements=tuple(self._measurements),
             vehicle_alive=self._vehicle_alive,
+            rival=self._rival,
             pad=self._pad,
             command=self._command,
             leaving=self._leaving,
