@@ -70,7 +70,7 @@ def test_of_two_drones_that_began_at_the_same_time_one_goes_on(sessions: tuple[Z
     assert older.rival is None
 
 
-@pytest.mark.parametrize("phase", sorted(FLYING_PHASES, key=lambda phase: phase.value))
+@pytest.mark.parametrize("phase", sorted(FLYING_PHASES, key=str))
 def test_companion_of_a_drone_that_another_one_flies_is_out_at_once_in_every_phase(phase: Phase) -> None:
     now = changed(situation(), rival=ITSELF)
     assert decided(progress(phase), now) == (Event.PILOT_TOOK_OVER, Cause(Reason.DRONE_TAKEN))
