@@ -197,6 +197,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             memory.model.reference, inputs.response, inputs.link_delay.std_s, system.config.abort.tracking_stds_max
         ),
         waiting_point_enu_m=memory.places.waiting_point_enu_m,
+        rival=inputs.rival,
         limits=inputs.limits,
         speed_limited_by=() if inputs.driver is None else inputs.driver.speed_parameters,
     )

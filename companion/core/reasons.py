@@ -103,6 +103,8 @@ class Reason(Enum):
     ARMING_REFUSED = "the autopilot did not arm in time: {}"
 
     # A landing on this vehicle cannot be done.
+    DRONE_TAKEN = "another companion is there for this drone, and was there first: end one of them"
+    VEHICLE_TAKEN = "{} lands on this vehicle, or stands on it: wait until it has gone"
     STAMPS_AHEAD = "vehicle's fixes come {:.2f} s before their stamps: set its clock by GNSS or NTP, or the autopilot's"
     VEHICLE_TOO_FAST = "vehicle at {:.1f} m/s needs {:.1f} m/s, the limit is {:.1f}: raise {} or drive slower"
     VEHICLE_TOO_FAR = (

@@ -7,6 +7,7 @@ from contextlib import ExitStack
 
 from companion.autopilots.choice import check_autopilot
 from companion.autopilots.driver import Driver
+from companion.runtime.claims import Claims
 from companion.runtime.command_desk import CommandDesk
 from companion.runtime.computer import ComputerWatch
 from companion.runtime.live_state import Onlooker, onlookers
@@ -75,6 +76,7 @@ class _Loop:
         self._inboxes = [self._inbox, *(zenoh.subscribe(key) for key in (keys.fix_velocity, keys.imu, keys.pad_pose))]
         self._ticks = zenoh.subscribe(keys.clock) if options.use_sim_time else None
         self._alive = zenoh.watch_alive(keys.alive)
+        self._claims = Claims(zenoh, keys)
         self._stopping = False
         self._start = OwnStart(wanted=options.start)
         self._is_silent = node.system.config.silent_vehicle is not None
@@ -167,6 +169,7 @@ class _Loop:
                 self._fix_seen = self._fix_seen or inbox is self._inbox
                 self._node.receive_sample(sample.key, sample.payload)
         self._node.receive_liveliness(alive=self._alive.alive)
+        self._node.receive_rival(self._claims.rival)
 
     def _send_frames(self, local_ns: int) -> None:
         frames = self._node.take_frames()
@@ -194,6 +197,7 @@ class _Loop:
             self._log.info("autopilot", text=text)
         for refused in self._node.samples.refusals.news(time.monotonic_ns()):
             self._log.warning("data refused", what=refused)
+        self._claims.update(self._node.phase, armed=self._node.autopilot.state.view.armed)
         self._say_link()
         self._ask_for_pad()
         self._start.follow(self._node, fix_seen=self._fix_seen)

@@ -7,7 +7,7 @@ from companion.autopilots.link import AutopilotLink
 from companion.component.component import MavlinkComponent
 from companion.component.identity import ComputerLoad
 from companion.config.companion import CompanionConfig
-from companion.core.data import VehicleEstimate
+from companion.core.data import Rival, VehicleEstimate
 from companion.core.reasons import Cause, Reason, sentence
 from companion.landing.memory import StepMemory
 from companion.landing.step_data import LinkDelay, StepInputs, StepOutputs, System
@@ -73,6 +73,7 @@ class CompanionNode:
         silent = system.config.silent_vehicle
         self._pad: PadGeometry | None = None if silent is None else silent.pad
         self._vehicle_alive: bool | None = None
+        self._rival: Rival | None = None
         self._command: Command | None = None
         self._leaving = False
         self._replies: list[CommandReply] = []
@@ -161,6 +162,10 @@ class CompanionNode:
         if alive or self._vehicle_alive is not None:
             self._vehicle_alive = alive
 
+    def receive_rival(self, rival: Rival | None) -> None:
+        """Take who else is there for this drone or on this vehicle, and was there first."""
+        self._rival = rival
+
     def request(self, command: Command) -> None:
         """Take an operator's command; its reply follows the next step."""
         self._command = command
@@ -231,6 +236,7 @@ class CompanionNode:
             measurements=measurements,
             fix_ahead_s=fix_ahead_s,
             vehicle_alive=self._vehicle_alive,
+            rival=self._rival,
             pad=self._pad,
             command=self._command or self._station_command(local_ns),
             leaving=self._leaving,
