@@ -103,6 +103,9 @@ def _find_taken_control(phase: Phase, control: ControlMemory, s: Situation) -> D
     return None
 
 
+_LASTING = (Reason.OFFSET_UNKNOWN, Reason.SEEN_ELSEWHERE, Reason.SIGHTINGS_DISAGREE)
+"""What the drone looked with the first time is all that it has to look with."""
+
 TOO_LONG = {
     Phase.TAKEOFF: Reason.TAKEOFF_TOO_LONG,
     Phase.CHASE: Reason.CHASE_TOO_LONG,
@@ -212,8 +215,8 @@ def _no_retry(progress: Progress, s: Situation, config: CompanionConfig) -> Caus
     }
     first = next((Cause(reason) for reason, holds_now in known.items() if holds_now), None)
     first = first or why_unplaced(s)
-    if first is None and progress.cause.reason is Reason.OFFSET_UNKNOWN:
-        first = progress.cause  # what it looked with the first time is all that it has
+    if first is None and progress.cause.reason in _LASTING:
+        first = progress.cause
     if first is None and is_out_of_range(s, config):
         first = Cause(Reason.TOO_FAR_FROM_START)
     first = first or obstacle(progress.held, s, config)
