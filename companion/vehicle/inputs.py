@@ -8,7 +8,7 @@ from companion.autopilots.state import AutopilotState
 from companion.core.data import Array, Measurement, OwnState, Quantity
 from link.frames.local_frame import LocalFrame, local_from_geodetic, scale_of
 from link.frames.rotations import rotate, yaw_of
-from link.messages import Fix, FixVelocity, Matrix3, PadSighting, VehicleImu
+from link.messages import Fix, FixVelocity, Matrix3, PadSighting, Quaternion, Vector3, VehicleImu
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
 from link.records import replace
@@ -42,7 +42,7 @@ _VALUE_MAX = {
     Quantity.HEADING: 10.0,
     Quantity.YAW_RATE: 10.0,
     Quantity.PAD: 1e5,
-    Quantity.ACCELERATION: 20.0,  # twice what tyres hold
+    Quantity.ACCELERATION: 100.0,
 }
 
 
@@ -152,17 +152,17 @@ def imu_measurements(message: VehicleImu) -> tuple[Measurement, ...]:
         rate_covariance = message.angular_velocity_covariance_rad2_s2
         rate_variance = None if rate_covariance is None else rate_covariance[8]
         found.append(_yaw_rate(message.t_ns, message.angular_velocity_flu_rad_s[2], rate_variance))
-    if message.specific_force_flu_m_s2 is not None:
+    force_m_s2 = message.specific_force_flu_m_s2
+    if force_m_s2 is not None and any(force_m_s2):  # exactly none at all is what drivers without it leave behind
         force_covariance = message.specific_force_covariance_m2_s4
         force_variance = _ACCELERATION_STD_M_S2**2 if force_covariance is None else force_covariance[0]
-        found.append(_scalar(message.t_ns, Quantity.ACCELERATION, _forward_force_m_s2(message), force_variance))
+        forward_m_s2 = _forward_force_m_s2(force_m_s2, message.orientation_wxyz)
+        found.append(_scalar(message.t_ns, Quantity.ACCELERATION, forward_m_s2, force_variance))
     return tuple(found)
 
 
-def _forward_force_m_s2(message: VehicleImu) -> float:
-    """Return the specific force in the direction of the heading, less gravity as far as the message tells its pitch."""
-    force_m_s2 = message.specific_force_flu_m_s2 or (0.0, 0.0, 0.0)
-    q_WV = message.orientation_wxyz
+def _forward_force_m_s2(force_m_s2: Vector3, q_WV: Quaternion | None) -> float:
+    """Return the specific force in the direction of the heading, less gravity as far as the attitude tells it."""
     if q_WV is None:
         return force_m_s2[0]
     east_m_s2, north_m_s2, _ = rotate(q_WV, force_m_s2)
