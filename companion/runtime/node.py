@@ -67,7 +67,8 @@ class CompanionNode:
         self.system = system
         self._keys = keys
         self._measurements: list[Measurement] = []
-        self._pad: PadGeometry | None = None
+        silent = system.config.silent_vehicle
+        self._pad: PadGeometry | None = None if silent is None else silent.pad
         self._vehicle_alive: bool | None = None
         self._command: Command | None = None
         self._leaving = False
@@ -106,7 +107,13 @@ class CompanionNode:
         self.autopilot.receive(data, local_ns, is_datagram=is_datagram)
 
     def receive_sample(self, key: str, payload: bytes) -> None:
-        """Take a Zenoh sample; what cannot be decoded, is absurd or comes from the future is counted and dropped."""
+        """Take a Zenoh sample; what cannot be decoded, is absurd or comes from the future is counted and dropped.
+
+        So is what somebody says of a vehicle that tells nothing.
+        """
+        if self.system.config.silent_vehicle is not None and key != self._keys.pad_pose:
+            self.bad_payloads += 1
+            return
         try:
             measurements = measurements_of(key, payload, self._keys, self.autopilot.state)
         except PayloadError:
@@ -120,7 +127,7 @@ class CompanionNode:
 
     def receive_pad(self, pad: PadGeometry) -> None:
         """Take the vehicle's description of its pad; the estimator needs the lever arm for sightings of the pad."""
-        if not is_possible(pad):
+        if not is_possible(pad) or self.system.config.silent_vehicle is not None:
             self.bad_payloads += 1
             return
         self._pad = pad
