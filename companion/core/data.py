@@ -151,3 +151,10 @@ class FlightLimits(Struct, frozen=True, kw_only=True):
 
 GRAVITY_M_S2 = 9.81
 """At mid latitudes; 9.780 at the equator to 9.832 at the poles (WGS 84)."""
+
+
+class Rival(Struct, frozen=True, kw_only=True):
+    """Another companion that was there first: for this drone, or to land its own on this vehicle."""
+
+    drone: str
+    is_this_drone: bool

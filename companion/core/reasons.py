@@ -103,6 +103,8 @@ class Reason(Enum):
     ARMING_REFUSED = "the autopilot did not arm in time: {}"
 
     # A landing on this vehicle cannot be done.
+    DRONE_TAKEN = "another companion is there for this drone, and was there first: end one of them"
+    VEHICLE_TAKEN = "{} lands on this vehicle, or stands on it: wait until it has gone"
     STAMPS_AHEAD = "vehicle's fixes come {:.2f} s before their stamps: set its clock by GNSS or NTP, or the autopilot's"
     VEHICLE_TOO_FAST = "vehicle at {:.1f} m/s needs {:.1f} m/s, the limit is {:.1f}: raise {} or drive slower"
     VEHICLE_TOO_FAR = (
@@ -131,6 +133,7 @@ class Reason(Enum):
     NOTHING_TO_DO = "nothing to {} in phase {}"
     NO_AUTOPILOT = "no autopilot is connected"
     NO_ORIGIN = "the autopilot has no origin yet"
+    VEHICLE_UNHEARD = "nothing usable has come from the vehicle{}: see its program and clock, --vehicle and -e"
     NO_OWN_POSITION = "the autopilot reports no local position yet"
     NO_OWN_ATTITUDE = "the autopilot's attitude is too old"
     IN_FAILSAFE = "the autopilot is in failsafe"

@@ -27,7 +27,7 @@ from companion.landing.conditions import (
     is_fix_old,
 )
 from companion.landing.entries import DRIVES, ENTRIES, Decision, vehicle_passes
-from companion.landing.feasibility import obstacle
+from companion.landing.feasibility import is_drone_taken, obstacle
 from companion.landing.memory import ControlMemory, Held, Progress
 from companion.landing.waiting import waited_s
 from companion.situation.phases import FLYING_PHASES, Event, Phase
@@ -42,6 +42,8 @@ def decide(progress: Progress, control: ControlMemory, s: Situation, config: Com
     # By then the autopilot's own failsafe acts. PX4 would go back into OFFBOARD with the first setpoint that arrives.
     if progress.phase in FLYING_PHASES and not s.autopilot.link_up:
         return Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_LOST)
+    if progress.phase in FLYING_PHASES and is_drone_taken(s, config):
+        return Event.PILOT_TOOK_OVER, Cause(Reason.DRONE_TAKEN)
     taken = _find_taken_control(progress.phase, control, s)
     if taken is not None:
         return taken

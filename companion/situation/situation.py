@@ -7,7 +7,7 @@ from msgspec import Struct, structs
 
 from companion.autopilots.driver import AutopilotView
 from companion.config.landing import ChaseConfig
-from companion.core.data import Array, FlightLimits, OwnState, RangeReading
+from companion.core.data import Array, FlightLimits, OwnState, RangeReading, Rival
 from companion.planning.guidance import ReferenceState
 from companion.vehicle.pad import PadPath
 from link.frames.rotations import rotate
@@ -111,6 +111,7 @@ class Situation(Struct, frozen=True, kw_only=True, eq=False):
         waiting_point_enu_m: (3,) in W.
         limits: of the flight, the autopilot's own included.
         speed_limited_by: the autopilot's parameters that may bound the speed.
+        rival: another companion that was there first, None without one.
         approach: the drone against the pad, None unless both are known; follows from them.
     """
 
@@ -128,6 +129,7 @@ class Situation(Struct, frozen=True, kw_only=True, eq=False):
     waiting_point_enu_m: Array | None
     limits: FlightLimits | None = None
     speed_limited_by: tuple[str, ...] = ()
+    rival: Rival | None = None
     approach: Approach | None = None
 
     def __post_init__(self) -> None:
