@@ -121,6 +121,7 @@ class Reason(Enum):
 
     # A command is refused.
     NOTHING_TO_DO = "nothing to {} in phase {}"
+    GUIDES_ONLY = "guides the autopilot's own precision landing, and flies nothing: choose that mode"
     NO_AUTOPILOT = "no autopilot is connected"
     NO_ORIGIN = "the autopilot has no origin yet"
     NO_OWN_POSITION = "the autopilot reports no local position yet"
