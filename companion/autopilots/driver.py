@@ -124,6 +124,10 @@ class Driver(Protocol):
         """Parameters that `cascade` goes by, each by all of its names."""
 
     @property
+    def hover_mode(self) -> str:
+        """The mode into which it is released, as its pilots call it."""
+
+    @property
     def timeout_parameter(self) -> str:
         """Parameter that says for how many seconds without a setpoint it still waits for one."""
 

@@ -17,7 +17,7 @@ from link.payloads import json_messages
 from link.payloads.checks import PayloadError
 
 Reply = Callable[[bytes], None]
-_FIRST_TO_LAST = (Command.ABORT, Command.HOLD, Command.START)
+_FIRST_TO_LAST = (Command.ABORT, Command.HOLD, Command.START_ANYWAY, Command.START)
 _WAITING_MAX = 64  # of each command; who comes when so many ask for the same hears nothing, and asks again
 _WAIT_MAX_S = 2.0  # less than an operator's query waits
 _LATE = CommandReply(accepted=False, reason="the companion made no step in time")
@@ -60,8 +60,11 @@ class CommandDesk:
             return
         for command in _FIRST_TO_LAST:
             self._asked = self._take_waiting(command)
-            if self._asked:
-                node.request(command)
+            refusal = node.start_refusal() if self._asked and command is Command.START else None
+            if refusal is not None:
+                self.answer([refusal])
+            elif self._asked:
+                node.request(Command.START if command is Command.START_ANYWAY else command)
                 return
 
     def answer(self, replies: list[CommandReply]) -> None:

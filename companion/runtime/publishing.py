@@ -42,18 +42,21 @@ class StatusPublisher:
         since_ns = math.inf if self._status_ns is None else monotonic_ns - self._status_ns
         return self._is_on and (outputs.text is not None or since_ns >= self._period_ns)
 
-    def publish(self, outputs: StepOutputs, bad: tuple[int, int], clock: StepClock, yaw_rad: float) -> None:
+    def publish(
+        self, outputs: StepOutputs, bad: tuple[int, int], refused: str, clock: StepClock, yaw_rad: float
+    ) -> None:
         """Take a step's outputs.
 
         Args:
             outputs: of the step.
             bad: bytes of MAVLink and payloads of Zenoh that were dropped so far.
+            refused: what was refused lately, and why.
             clock: of the step.
             yaw_rad: the heading that is flown, from East counter-clockwise.
         """
         self._status_ns = clock.monotonic_ns
         self._statuses += 1
-        status = replace(outputs.status, mavlink_bad_bytes=bad[0], zenoh_bad_payloads=bad[1])
+        status = replace(outputs.status, mavlink_bad_bytes=bad[0], zenoh_bad_payloads=bad[1], refused=refused)
         try:
             self._publications.append(status_publication(self._keys, status))
             if outputs.plan is not None and self._statuses % _PLAN_EVERY == 0:
