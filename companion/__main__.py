@@ -17,7 +17,7 @@ from companion.check.command import (
     SystemIdOption,
     check,
 )
-from companion.config.companion import AutopilotKind, ReceiverFrames
+from companion.config.companion import AutopilotKind, Guide, ReceiverFrames
 from companion.runtime.keys import keys
 from companion.runtime.reasons import reasons
 from link.errors import UserError
@@ -62,6 +62,10 @@ _FramesOption = Annotated[
     ReceiverFrames | None,
     typer.Option("--receiver-frames", help="In place of the configuration's: whether both receivers have one frame."),
 ]
+_GuideOption = Annotated[
+    Guide | None,
+    typer.Option("--guide", help="Land by setpoints, or only guide the autopilot's own precision landing."),
+]
 _TlogOption = Annotated[Path | None, typer.Option("--tlog", metavar="FILE", help="Record MAVLink into this file.")]
 _RecordOption = Annotated[
     Path | None, typer.Option("--record", metavar="DIR", help="Record everything into this folder, as MCAP.")
@@ -83,6 +87,7 @@ def companion(
     use_sim_time: _UseSimTimeOption = False,
     autopilot: _AutopilotOption = None,
     receiver_frames: _FramesOption = None,
+    guide: _GuideOption = None,
     system_id: SystemIdOption = 1,
     signing_key: SigningKeyOption = None,
     signing_stamps: SigningStampsOption = None,
@@ -109,8 +114,10 @@ def companion(
     from link.program.toml_config import dump_toml, load_config
 
     settings = load_config(config, CompanionConfig)
-    given = {"autopilot": autopilot, "receiver_frames": receiver_frames}
+    given = {"autopilot": autopilot, "receiver_frames": receiver_frames, "guide": guide}
     settings = settings.model_copy(update={name: value for name, value in given.items() if value is not None})
+    if start and settings.guide is Guide.PRECLAND:
+        raise UserError("--start: with --guide precland the autopilot's own mode begins the landing; leave one out")
     if print_config:
         sys.stdout.write(dump_toml(settings))
         return

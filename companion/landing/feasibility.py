@@ -5,7 +5,7 @@ What cannot be done is not begun. It is told with its numbers, once, and again o
 
 import math
 
-from companion.config.companion import CompanionConfig
+from companion.config.companion import CompanionConfig, Guide
 from companion.core.reasons import Cause, Reason
 from companion.integrity.heights import road_above_ground_m, road_distance_m
 from companion.integrity.vehicle_data import contradicts_itself
@@ -199,4 +199,6 @@ OBSTACLES = (
 
 def obstacle(held: Held, s: Situation, config: CompanionConfig) -> Cause | None:
     """Return what makes a landing impossible now, with its numbers; None without one."""
+    if config.guide is Guide.PRECLAND:
+        return Cause(Reason.GUIDES_ONLY)
     return next((cause_of(one, s, config) for one in OBSTACLES if holds(one, held, s, config)), None)

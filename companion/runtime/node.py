@@ -9,6 +9,7 @@ from companion.component.identity import ComputerLoad
 from companion.config.companion import CompanionConfig
 from companion.core.data import Rival, VehicleEstimate
 from companion.core.reasons import Cause, Reason, sentence
+from companion.landing.guiding import guiding_message
 from companion.landing.memory import StepMemory
 from companion.landing.step_data import LinkDelay, StepInputs, StepOutputs, System
 from companion.runtime.publishing import StatusPublisher
@@ -247,7 +248,7 @@ class CompanionNode:
         self._stepped_ns, self._stepped_own_ns = local_ns, None if state.own is None else state.own.t_ns
         self.inputs = inputs
         self.memory, self.outputs = companion_step(self.memory, inputs, self.system)
-        self._send(self.outputs, local_ns)
+        self._send(inputs, self.outputs, local_ns)
 
     def _station_command(self, local_ns: int) -> Command | None:
         """Return what a ground station commands, after the same question that an operator's start has to pass."""
@@ -264,7 +265,7 @@ class CompanionNode:
             self.system = replace(self.system, config=config)
             self._limits_wanted = config.limits.flight_limits()
 
-    def _send(self, outputs: StepOutputs, local_ns: int) -> None:
+    def _send(self, inputs: StepInputs, outputs: StepOutputs, local_ns: int) -> None:
         reply = outputs.reply
         if reply is not None and not self._component.answer(reply, local_ns):
             self._replies.append(reply)
@@ -272,6 +273,9 @@ class CompanionNode:
             if outputs.setpoint is not None:
                 self.autopilot.send_setpoint(outputs.setpoint, local_ns)
             self.autopilot.send_commands(outputs.commands, local_ns)
+            target = guiding_message(outputs, inputs, self.system.config, local_ns)
+            if target is not None:
+                self.autopilot.session.send(target)
         self._component.tell(outputs, self.phase, self.autopilot.state, self.system.config, local_ns)
         if self.publisher.is_due(outputs, self._clock.monotonic_ns):
             bad = self.autopilot.session.statistics.codec.bad_bytes, self.bad_payloads
