@@ -192,6 +192,7 @@ class Scenario(StrictModel):
     detector: Literal["camera", "model"] = (
         "camera"  # the noise model of `sensors.pattern`, or the camera if there is one
     )
+    telemetry: Literal["vehicle", "none"] = "vehicle"  # none: it tells nothing at all, and has to be seen
     wind: WindConfig = WindConfig()
     link: LinkConfig = LinkConfig()
     vehicle: VehicleConfig = VehicleConfig()
@@ -209,3 +210,8 @@ class Scenario(StrictModel):
     def has_camera(self) -> bool:
         """Whether the pad is seen in rendered frames."""
         return self.camera.sees and self.detector == "camera"
+
+    @property
+    def is_silent(self) -> bool:
+        """Whether the vehicle tells nothing of itself."""
+        return self.telemetry == "none"

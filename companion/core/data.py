@@ -68,7 +68,7 @@ class Forecast(Struct, frozen=True, kw_only=True, eq=False):
         acceleration_enu_m_s2: (n, 3).
         yaw_rad: (n,), None while the heading is unknown.
         position_std_m: (n, 3) standard deviation; the pad's, where the estimator knows its lever arm.
-        is_coarse: the vehicle's fixes alone are too coarse to land by.
+        is_coarse: the vehicle's fixes alone are too coarse to land by, or it sends none.
         yaw_std_rad: standard deviation of the heading now, 0 where there is none.
         grade: (n,) of the road in the direction of the heading, m of height per m; None where it is not estimated.
     """

@@ -16,10 +16,10 @@ from companion.landing.conditions import (
     is_fix_old,
     is_in_contact,
 )
-from companion.landing.targets import changes_speed, is_unseen, is_vague
+from companion.landing.targets import changes_speed
 from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
 from companion.situation.situation import Approach, Situation
-from companion.vehicle.pad import cone_radius_m, over_pad_radius_m
+from companion.vehicle.pad import cone_radius_m, is_unseen, is_vague, over_pad_radius_m
 
 _DESCENT = frozenset({Phase.DESCEND})
 _FRICTION_MIN = 0.5  # of rubber on painted metal when it is wet; dry 0.8
@@ -135,6 +135,7 @@ ABORTS = (
         phases=frozenset({Phase.CHASE}),
         is_true=_is_over_unseen_pad,
         hold_s=lambda c: c.chase.unseen_hold_s,
+        cause=lambda _, c: Cause(Reason.OFFSET_UNKNOWN if c.silent_vehicle is None else Reason.PAD_NOT_SEEN),
     ),
     Condition(reason=Reason.VEHICLE_LINK_LOST, phases=LANDING_PHASES, is_true=_is_token_lost),
     Condition(

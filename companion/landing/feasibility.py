@@ -11,8 +11,8 @@ from companion.integrity.heights import road_above_ground_m, road_distance_m
 from companion.integrity.vehicle_data import contradicts_itself
 from companion.landing.aborts import is_stamped_ahead
 from companion.landing.conditions import Condition, cause_of, holds, is_fix_old
+from companion.landing.following_height import chase_floor_m
 from companion.landing.memory import Held
-from companion.landing.targets import chase_floor_m
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from companion.vehicle.pad import is_too_small

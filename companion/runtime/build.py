@@ -80,7 +80,7 @@ def build_node(
     _check_installed(config)
     system = System(
         config=config,
-        estimator=make_estimator(config.estimator),
+        estimator=make_estimator(config.estimator, is_silent=config.silent_vehicle is not None),
         guidance=make_guidance(config.guidance.kind, config.guidance),
     )
     warm_up(system)

@@ -75,7 +75,8 @@ class _Loop:
         self._alive = zenoh.watch_alive(keys.alive)
         self._stopping = False
         self._start = OwnStart(wanted=options.start)
-        self._fix_seen = False
+        self._is_silent = node.system.config.silent_vehicle is not None
+        self._fix_seen = self._is_silent  # of a vehicle that tells nothing no fix is awaited
         self._was_alive = False
         self._pad_question = PadQuestion(zenoh, keys.pad)
         self._link_was_up: bool | None = None
@@ -206,6 +207,8 @@ class _Loop:
 
     def _ask_for_pad(self) -> None:
         """Ask the vehicle for its pad until it has answered, and again when it has come back: it may be another one."""
+        if self._is_silent:
+            return
         question, alive = self._pad_question, self._alive.alive
         if alive and not self._was_alive:
             question.ask_anew()

@@ -64,7 +64,8 @@ class CompanionNode:
         self.unpublished = 0  # statuses and plans that hold what no message has room for
         self.system = system
         self._keys = keys
-        self._pad: PadGeometry | None = None
+        silent = system.config.silent_vehicle
+        self._pad: PadGeometry | None = None if silent is None else silent.pad
         self._vehicle_alive: bool | None = None
         self._command: Command | None = None
         self._leaving = False
@@ -104,9 +105,19 @@ class CompanionNode:
         self.autopilot.receive(data, local_ns, is_datagram=is_datagram)
 
     def receive_sample(self, key: str, payload: bytes) -> None:
-        """Take a Zenoh sample; what cannot be decoded, is absurd or comes from the future is counted and dropped."""
+        """Take a Zenoh sample; what cannot be decoded, is absurd or comes from the future is counted and dropped.
+
+        So is what somebody says of a vehicle that tells nothing.
+        """
+        if self._tells_nothing and key != self._keys.pad_pose:
+            self.samples.refuse(key.rsplit("/", 1)[-1], "unasked", "the vehicle is said to tell nothing")
+            return
         is_utc_known = self.autopilot.session.clock.is_utc_known
         self.samples.receive(key, payload, self.autopilot.state, is_utc_known=is_utc_known)
+
+    @property
+    def _tells_nothing(self) -> bool:
+        return self.system.config.silent_vehicle is not None
 
     @property
     def bad_payloads(self) -> int:
@@ -115,13 +126,13 @@ class CompanionNode:
 
     @property
     def vehicle_heard(self) -> bool:
-        """Whether a fix of the vehicle has come that could be used."""
-        return self.outputs is not None and self.outputs.status.fix_age_s is not None
+        """Whether a fix of the vehicle has come that could be used, or none is to come."""
+        return self._tells_nothing or (self.outputs is not None and self.outputs.status.fix_age_s is not None)
 
     def receive_pad(self, pad: PadGeometry) -> None:
         """Take the vehicle's description of its pad; the estimator needs the lever arm for sightings of the pad."""
-        if not is_possible(pad):
-            self.samples.refuse("pad", "impossible", "no vehicle has such a pad")
+        if not is_possible(pad) or self._tells_nothing:
+            self.samples.refuse("pad", "impossible", "no vehicle has such a pad, or this one tells nothing")
             return
         self._pad = pad
         estimator = make_estimator(self.system.config.estimator, pad.antenna_to_pad_m)

@@ -173,8 +173,8 @@ class BufferedEstimator(Struct, Generic[S], frozen=True, kw_only=True):
         return None if state is None else self.model.forecast(state, t_ns, offset_s)
 
     def newest_fix_ns(self, memory: DelayBuffer[S] | None) -> int | None:
-        """Return the time at which the newest accepted position was taken."""
-        return self.newest_ns(memory, Quantity.POSITION)
+        """Return the time at which the newest accepted place was taken."""
+        return self.newest_ns(memory, self.model.placed_by)
 
     def newest_ns(self, memory: DelayBuffer[S] | None, quantity: Quantity) -> int | None:
         """Return the time at which the newest accepted `quantity` was taken."""
@@ -222,7 +222,7 @@ class Estimator(Protocol):
         """Return the vehicle at `t_ns + offset_s`, `offset_s` (n,), or None as `estimate` does."""
 
     def newest_fix_ns(self, memory: EstimatorMemory | None) -> int | None:
-        """Return the time at which the newest accepted position was taken."""
+        """Return the time at which the newest accepted place was taken: a fix, or a sighting of a silent vehicle."""
 
     def health(self, memory: EstimatorMemory | None) -> BufferHealth:
         """Return the counters and the consistency of the memory."""

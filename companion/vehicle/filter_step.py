@@ -65,8 +65,12 @@ class Update(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
 class FilterModel(Protocol[S]):
     """A recursive filter as pure functions of its state."""
 
-    def start(self, fix: Measurement) -> S:
-        """Return the state after a first position."""
+    @property
+    def placed_by(self) -> Quantity:
+        """What it starts on, and without which it grows old."""
+
+    def start(self, place: Measurement) -> S:
+        """Return the state after a first place."""
 
     def predict(self, state: S, dt_s: float) -> S:
         """Return the state `dt_s` later."""
@@ -97,7 +101,7 @@ class Tally(Struct, frozen=True, kw_only=True):
 
 
 class Snapshot(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
-    """The filter at `t_ns`; the state is None until the first position."""
+    """The filter at `t_ns`; the state is None until the first place."""
 
     t_ns: int
     state: S | None
@@ -138,11 +142,11 @@ def step(
 
 
 def _start(model: FilterModel[S], snapshot: Snapshot[S], measurement: Measurement) -> Snapshot[S]:
-    """Start on a position; anything else waits for one."""
+    """Start on a place; anything else waits for one."""
     tally = snapshot.tally
-    if measurement.quantity is not Quantity.POSITION:
+    if measurement.quantity is not model.placed_by:
         return Snapshot(t_ns=measurement.t_ns, state=None, tally=tally)
-    accepted = _put(tally.accepted_ns, RANK[Quantity.POSITION], measurement.t_ns)
+    accepted = _put(tally.accepted_ns, RANK[model.placed_by], measurement.t_ns)
     started = replace(tally, fused=tally.fused + 1, accepted_ns=accepted)
     return Snapshot(t_ns=measurement.t_ns, state=model.start(measurement), tally=started)
 

@@ -3,7 +3,8 @@
 State, motion and units are in `imm_kernels`, what sensors read in `imm_sensors`, the interaction in `imm_mixing`.
 The vehicle's fixes are in the frame of its own receiver and dated by its own clock; sightings of the pad are in the
 drone's. The difference of the frames is three states with a slow random walk, that of the clocks is one, so that the
-estimate is right for the drone, and stays right when the sightings end. What a receiver states as its error beyond
+estimate is right for the drone, and stays right when the sightings end. A vehicle that tells nothing is placed by
+sightings alone, without either difference. What a receiver states as its error beyond
 some decimetres is slow (Gauss-Markov) rather than white, and is let into that walk; the drone's own place then wanders
 as well, and from one sighting to the next nothing tells how far.
 """
@@ -61,27 +62,33 @@ class ImmModel:
     Attributes:
         config: its numbers.
         antenna_to_pad_m: lever arm in V; the vehicle turns about the pad's centre, and sightings are of it.
+        placed_by: what it starts on: fixes, or sightings of a vehicle that tells nothing.
         numbers: the same as the kernels take them, derived.
     """
 
     config: ImmConfig
     antenna_to_pad_m: Vector3 = (0.0, 0.0, 0.0)
+    placed_by: Quantity = Quantity.POSITION
     numbers: Numbers = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Derive the kernels' numbers."""
         object.__setattr__(self, "numbers", numbers_of(self.config, self.antenna_to_pad_m))
 
-    def start(self, fix: Measurement) -> ImmState:
-        """Return the state after a first position: anything may be true of the rest."""
-        white, bias_variance = self._split(fix.covariance)
+    def start(self, place: Measurement) -> ImmState:
+        """Return the state after a first place: anything may be true of the rest.
+
+        A sighting is in the drone's own frame and dated by its clock, so that it leaves nothing between the two.
+        """
+        is_fix = place.quantity is Quantity.POSITION
+        white, bias_variance = self._split(place.covariance) if is_fix else (place.covariance, 0.0)
+        offset_variance = self.config.frame_offset_std_m**2 + bias_variance if is_fix else 0.0
         mean = np.zeros(kernels.SIZE)
-        mean[PLACE] = fix.value
+        mean[PLACE] = place.value
         covariance = np.diag(self._prior_variances())
         covariance[np.ix_(PLACE, PLACE)] = white
         covariance[CLOCK, CLOCK] = self.config.clock_std_s**2 if bias_variance else 0.0
-        offset = (self.config.frame_offset_std_m**2 + bias_variance) * np.eye(3)
-        covariances = _with_common_step(np.stack([covariance, covariance]), offset)
+        covariances = _with_common_step(np.stack([covariance, covariance]), offset_variance * np.eye(3))
         dwell_s = self.numbers.dwell_s
         modes = (np.stack([mean, mean]), covariances, dwell_s / dwell_s.sum())
         return ImmState(modes=modes, fix_bias_variance_m2=bias_variance)
@@ -109,13 +116,13 @@ class ImmModel:
         """Open what `measurement` contradicts.
 
         A sighting that contradicts everything means that the drone's frame has stepped: place and offset move
-        together. A fix that does is the receiver's step if the place is known from sightings, else a new start.
+        together. A fix that does is the receiver's step if the place is known from sightings, else a new start, as is
+        a sighting where nothing else places the vehicle.
         """
         match measurement.quantity:
             case Quantity.PAD:
-                step = self._step_size(state, measurement) ** 2 * np.eye(3)
-                means, covariances, weights = state.modes
-                return replace(state, modes=(means, _with_common_step(covariances, step), weights))
+                is_start = self.placed_by is Quantity.PAD
+                return self._restart(state, measurement) if is_start else self._move_frame(state, measurement)
             case Quantity.POSITION:
                 step_m = self._step_size(state, measurement)
                 if self._is_placed_by_sightings(state):
@@ -160,7 +167,7 @@ class ImmModel:
             acceleration_enu_m_s2=acceleration,
             yaw_rad=yaw if heading_variance < self._known_variance else None,
             position_std_m=std,
-            is_coarse=state.fix_bias_variance_m2 > 0.0,
+            is_coarse=state.fix_bias_variance_m2 > 0.0 or self.placed_by is Quantity.PAD,
             grade=grade,
             yaw_std_rad=math.sqrt(heading_variance),
         )
@@ -210,10 +217,16 @@ class ImmModel:
         variance = float(weights @ covariances[:, 0, 0])
         return variance < 0.25 * (self.config.frame_offset_std_m**2 + state.fix_bias_variance_m2)
 
-    def _restart(self, state: ImmState, fix: Measurement) -> ImmState:
-        """A new start at `fix` that keeps offset, heading and clock."""
+    def _move_frame(self, state: ImmState, sighting: Measurement) -> ImmState:
+        """Open place and offset as one unknown."""
+        step = self._step_size(state, sighting) ** 2 * np.eye(3)
+        means, covariances, weights = state.modes
+        return replace(state, modes=(means, _with_common_step(covariances, step), weights))
+
+    def _restart(self, state: ImmState, place: Measurement) -> ImmState:
+        """A new start at `place` that keeps offset, heading and clock."""
         x, P = mixing.combine(*state.modes)
-        means, covariances, weights = self.start(fix).modes
+        means, covariances, weights = self.start(place).modes
         means[:, PLACE] += x[OFFSET]
         means[:, OFFSET] = x[OFFSET]
         for kept in (HEADING, CLOCK):

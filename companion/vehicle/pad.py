@@ -33,7 +33,8 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
         acceleration_enu_m_s2: (n, 3).
         yaw_rad: heading of the vehicle now, None when unknown.
         position_std_m: (n, 3).
-        is_coarse: the vehicle's fixes alone are too coarse to land by: only what the drone sees of the pad places it.
+        is_coarse: the vehicle's fixes alone are too coarse to land by, if it sends any: only what the drone sees of the
+            pad places it.
         has_one_frame: the vehicle's fixes are in the drone's frame; if not, only what the drone sees tells the offset.
         half_width_m: from its centre to the nearest edge; infinite until it is described.
         height_m: of its surface above the vehicle's road.
@@ -155,3 +156,20 @@ def unseen_std_max_m(half_width_m: float, config: CompanionConfig) -> float:
 def is_too_small(pad: PadPath, config: CompanionConfig) -> bool:
     """Return whether the pad is narrower than what a drone can be brought onto."""
     return 2.0 * pad.half_width_m < config.descent.pad_width_min_m
+
+
+def is_vague(pad: PadPath, config: CompanionConfig) -> bool:
+    """Return whether the pad is not known well enough to come near it."""
+    return float(max(pad.position_std_m[0, :2].tolist())) > config.abort.position_std_max_m
+
+
+def is_unseen(pad: PadPath, config: CompanionConfig) -> bool:
+    """Return whether the pad has to be seen (again) before it is landed on.
+
+    Fixes of some decimetres or better place it by themselves where both receivers have one frame. Where they may not,
+    a first sighting tells the offset; between coarser fixes and the drone's own place lie metres, and what a sighting
+    said of them holds for seconds only.
+    """
+    return (pad.is_coarse or not pad.has_one_frame) and float(np.max(pad.position_std_m[0, :2])) > unseen_std_max_m(
+        pad.half_width_m, config
+    )
