@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from companion.eyes.examples import EXAMPLES
 from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
@@ -22,7 +23,7 @@ from link.program.cli import (
 )
 from link.program.extras import require
 
-app = make_app("See the landing pad by a camera on the drone, and publish where it is.")
+app = make_app("See the landing pad by a camera on the drone, and publish where it is.", EXAMPLES)
 
 BoardOption = Annotated[
     Path | None, typer.Option("--board", metavar="FILE", help="The board, in TOML [default: 1.5 m, ids 0 to 62].")
