@@ -18,6 +18,7 @@ from companion.check.command import (
     check,
 )
 from companion.config.companion import AutopilotKind, Guide, ReceiverFrames
+from companion.runtime.examples import EXAMPLES
 from companion.runtime.keys import keys
 from companion.runtime.reasons import reasons
 from link.errors import UserError
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
     from companion.recording.sink import MessageStore
     from link.zenoh.keys import Keys
 
-app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.")
+app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.", EXAMPLES)
 app.command("check")(check)
 app.command("keys")(keys)
 app.command("reasons")(reasons)

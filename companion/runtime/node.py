@@ -114,11 +114,15 @@ class CompanionNode:
 
         So is what somebody says of a vehicle that tells nothing.
         """
-        if self.system.config.silent_vehicle is not None and key != self._keys.pad_pose:
+        if self._tells_nothing and key != self._keys.pad_pose:
             self.samples.refuse(key.rsplit("/", 1)[-1], "uninvited", _UNINVITED)
             return
         is_utc_known = self.autopilot.session.clock.is_utc_known
         self.samples.receive(key, payload, self.autopilot.state, is_utc_known=is_utc_known)
+
+    @property
+    def _tells_nothing(self) -> bool:
+        return self.system.config.silent_vehicle is not None
 
     @property
     def bad_payloads(self) -> int:
@@ -127,14 +131,12 @@ class CompanionNode:
 
     @property
     def vehicle_heard(self) -> bool:
-        """Whether a fix of the vehicle has come that could be used; none is awaited of one that tells nothing."""
-        if self.system.config.silent_vehicle is not None:
-            return True
-        return self.outputs is not None and self.outputs.status.fix_age_s is not None
+        """Whether a fix of the vehicle has come that could be used, or none is to come."""
+        return self._tells_nothing or (self.outputs is not None and self.outputs.status.fix_age_s is not None)
 
     def receive_pad(self, pad: PadGeometry) -> None:
         """Take the vehicle's description of its pad; the estimator needs the lever arm for sightings of the pad."""
-        if self.system.config.silent_vehicle is not None:
+        if self._tells_nothing:
             self.samples.refuse("pad", "uninvited", _UNINVITED)
             return
         if not is_possible(pad):
