@@ -19,6 +19,7 @@ from companion.check.command import (
 )
 from companion.config.companion import AutopilotKind, ReceiverFrames
 from companion.runtime.keys import keys
+from companion.runtime.reasons import reasons
 from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
 app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.")
 app.command("check")(check)
 app.command("keys")(keys)
+app.command("reasons")(reasons)
 
 _PrintConfigOption = Annotated[bool, typer.Option("--print-config", help="Print the configuration and end.")]
 _StartOption = Annotated[bool, typer.Option("--start", help="Arm, take off and land without an operator's command.")]
@@ -152,6 +154,7 @@ def companion(
             keys,
             system_id=system_id,
             dry_run=dry_run,
+            is_component=True,
             records_input=tlog is not None,
             recorder=recorder,
             signing=signing,

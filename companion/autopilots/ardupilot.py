@@ -62,6 +62,7 @@ class ArduPilotDriver:
     projection = Projection.ARDUPILOT
     limit_names = tuple(tuple(named.name for named in names) for names in _LIMITS)
     gain_names = (_POSITION_GAIN, _VELOCITY_GAIN, _INTEGRAL_GAIN)
+    hover_mode = "BRAKE"
     timeout_parameter = "GUID_TIMEOUT"
     timeout_default_s = 3.0
     carries_setpoints_on = True

@@ -40,6 +40,7 @@ class Px4Driver:
     projection = Projection.PX4
     limit_names = (("MPC_XY_VEL_MAX",), ("MPC_Z_VEL_MAX_UP",), ("MPC_Z_VEL_MAX_DN",), ("MPC_TILTMAX_AIR",))
     gain_names = (("MPC_XY_P",), ("MPC_XY_VEL_P_ACC",), ("MPC_XY_VEL_I_ACC",))
+    hover_mode = "Hold"
     timeout_parameter = "COM_OF_LOSS_T"
     timeout_default_s = 1.0
     carries_setpoints_on = False  # it holds them as they came

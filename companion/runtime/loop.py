@@ -6,7 +6,10 @@ from collections.abc import Callable
 from contextlib import ExitStack
 
 from companion.autopilots.choice import check_autopilot
+from companion.autopilots.driver import Driver
+from companion.runtime.claims import Claims
 from companion.runtime.command_desk import CommandDesk
+from companion.runtime.computer import ComputerWatch
 from companion.runtime.live_state import Onlooker, onlookers
 from companion.runtime.node import CompanionNode
 from companion.runtime.options import Links, LoopOptions, Timings
@@ -73,6 +76,7 @@ class _Loop:
         self._inboxes = [self._inbox, *(zenoh.subscribe(key) for key in (keys.fix_velocity, keys.imu, keys.pad_pose))]
         self._ticks = zenoh.subscribe(keys.clock) if options.use_sim_time else None
         self._alive = zenoh.watch_alive(keys.alive)
+        self._claims = Claims(zenoh, keys)
         self._stopping = False
         self._start = OwnStart(wanted=options.start)
         self._is_silent = node.system.config.silent_vehicle is not None
@@ -81,6 +85,7 @@ class _Loop:
         self._pad_question = PadQuestion(zenoh, keys.pad)
         self._link_was_up: bool | None = None
         self._strangers_told = False
+        self._computer = ComputerWatch()
 
     def run(self) -> Timings:
         """Run until a signal comes."""
@@ -112,9 +117,10 @@ class _Loop:
         if self._ticks is not None:
             for sample in self._ticks.take():
                 try:
-                    self._node.bad_payloads += not clock.tick(cdr.decode(ClockTick, sample.payload).t_ns)
-                except PayloadError:
-                    self._node.bad_payloads += 1
+                    if not clock.tick(cdr.decode(ClockTick, sample.payload).t_ns):
+                        self._node.samples.refuse("clock", "stray", "far from the ticks before")
+                except PayloadError as error:
+                    self._node.samples.refuse("clock", "unreadable", str(error))
         return clock.ready
 
     def _wait_for(self, is_there: Callable[[], bool], message: str) -> None:
@@ -140,8 +146,7 @@ class _Loop:
             self._node.receive_mavlink(data, local_ns, is_datagram=self._transport.is_datagram)
         self._record(self._node.autopilot.session.take_input(), local_ns)
         self._take_samples()
-        if self._start.commanded(self._desk.pass_on(self._node, local_ns)):
-            self._log.info("start called off")
+        self._desk.pass_on(self._node, local_ns)
         stepped = self._node.poll(local_ns)
         self._send_frames(local_ns)
         if stepped:
@@ -149,6 +154,9 @@ class _Loop:
             for onlooker in self._onlookers:
                 onlooker.tell(self._node, local_ns)
             self._after_step()
+        load = self._computer.poll()
+        if load is not None:
+            self._node.tell_load(load, local_ns)
 
     def _note_time(self, state_to_setpoint_s: float) -> None:
         self._timings.state_to_setpoint_s.append(state_to_setpoint_s)
@@ -161,6 +169,7 @@ class _Loop:
                 self._fix_seen = self._fix_seen or inbox is self._inbox
                 self._node.receive_sample(sample.key, sample.payload)
         self._node.receive_liveliness(alive=self._alive.alive)
+        self._node.receive_rival(self._claims.rival)
 
     def _send_frames(self, local_ns: int) -> None:
         frames = self._node.take_frames()
@@ -177,6 +186,8 @@ class _Loop:
         """Publish, reply, log; and see to what is still missing."""
         for publication in self._node.take_publications():
             self._zenoh.publish(publication.key, publication.payload, publication.encoding)
+        if self._node.inputs is not None and self._start.commanded(self._node.inputs.command):
+            self._log.info("start called off")
         self._desk.answer(self._start.answered(self._node.take_replies()))
         outputs = self._node.outputs
         if outputs is not None and outputs.text is not None:
@@ -184,6 +195,9 @@ class _Loop:
             self._service.status(f"{outputs.status.phase}: {outputs.status.reason}")
         for text in self._node.autopilot.take_texts():
             self._log.info("autopilot", text=text)
+        for refused in self._node.samples.refusals.news(time.monotonic_ns()):
+            self._log.warning("data refused", what=refused)
+        self._claims.update(self._node.phase, armed=self._node.autopilot.state.view.armed)
         self._say_link()
         self._ask_for_pad()
         self._start.follow(self._node, fix_seen=self._fix_seen)
@@ -210,10 +224,11 @@ class _Loop:
         if alive and not self._was_alive:
             question.ask_anew()
         self._was_alive = alive
-        bad, why = question.bad_answers, question.refused_why
+        why, bad = question.refused_why, question.bad_answers
         may_change = self._node.phase not in FLYING_PHASES
         pad = question.poll(time.monotonic(), asks=alive or self._fix_seen, may_change=may_change)
-        self._node.bad_payloads += question.bad_answers - bad
+        for _ in range(question.bad_answers - bad):
+            self._node.samples.refuse("pad", "refused", question.refused_why or "")
         if question.refused_why != why:
             self._log.warning("the vehicle's description of its pad is refused", why=question.refused_why)
         if pad is not None:
@@ -230,12 +245,24 @@ class _Loop:
 
     def _leave(self, clock: Clock) -> None:
         """Hand a flying drone over to its autopilot, which may take setpoints that stop for a fault or fly on."""
-        if not self._node.flies:
+        driver = self._node.autopilot.driver
+        if not self._node.flies or driver is None:
             return
+        self._log.warning("stopped in flight", phase=self._node.phase.value, asks_for=driver.hover_mode)
         self._node.leave()
         until_s = time.monotonic() + _LEAVE_MAX_S
         while self._node.flies and time.monotonic() < until_s:
             self._turn(clock)
+        self._say_handover(driver)
+
+    def _say_handover(self, driver: Driver) -> None:
+        """Say who flies the drone from here on."""
+        if self._node.flies:
+            self._log.warning("handed over without an answer", autopilot_acts_by=driver.timeout_parameter)
+        elif self._node.autopilot.state.view.armed:
+            self._log.warning("handed over: the autopilot flies the drone", mode=driver.hover_mode)
+        else:
+            self._log.info("the motors are off")
 
     def _send_rest(self) -> None:
         for frame in self._node.take_frames():

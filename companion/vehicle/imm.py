@@ -159,6 +159,7 @@ class ImmModel:
         position, velocity, acceleration, yaw, grade, std, heading_variance = forecasts.forecast_modes(
             state.modes, _own(offset_s), self._noises(state), self.numbers.motion, self._known_variance
         )
+        means, covariances, weights = state.modes
         return Forecast(
             t_ns=t_ns,
             offset_s=offset_s,
@@ -170,6 +171,8 @@ class ImmModel:
             is_coarse=state.fix_bias_variance_m2 > 0.0 or self.placed_by is Quantity.PAD,
             grade=grade,
             yaw_std_rad=math.sqrt(heading_variance),
+            frame_offset_enu_m=(weights @ means)[OFFSET[:2]],
+            frame_offset_std_m=math.sqrt(float((weights @ covariances[:, OFFSET, OFFSET]).max())),
         )
 
     def _split(self, fix_covariance: Array) -> tuple[Array, float]:

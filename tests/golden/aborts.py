@@ -85,8 +85,7 @@ def _vehicle_falls_silent(flight: FaultFlight) -> None:
 
 def _token_is_lost(flight: FaultFlight) -> None:
     _vehicle_falls_silent(flight)
-    flight.companion.receive_liveliness(alive=True)
-    flight.companion.receive_liveliness(alive=False)
+    flight.vehicle_is_alive = False
 
 
 def _own_position_stops(flight: FaultFlight) -> None:
