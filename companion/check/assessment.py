@@ -191,6 +191,8 @@ def _range_finder(seen: AutopilotFacts) -> Finding:
 
 
 def _vehicle(seen: VehicleFacts, config: CompanionConfig) -> list[Finding]:
+    if config.silent_vehicle is not None:
+        return [pass_line("vehicle", "tells nothing, as the configuration says")]
     if seen.rate_hz <= 0.0 and seen.fix_refused_why is not None:
         advice = f"see what the vehicle publishes on {seen.key}, and whether its receiver has a fix"
         return [_finding("vehicle", f"refused: {seen.fix_refused_why}", Level.FAIL, advice)]

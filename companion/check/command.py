@@ -11,6 +11,7 @@ import typer
 from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
+    DroneOption,
     InsecureOption,
     ListenOption,
     ModeOption,
@@ -74,6 +75,7 @@ def check(
     signing_stamps: SigningStampsOption = None,
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
+    drone: DroneOption = "drone",
     mode: ModeOption = None,
     connect: ConnectOption = None,
     listen: ListenOption = None,
@@ -102,7 +104,7 @@ def check(
         if back is not None:
             _write(session, back)
             return 0
-        keys = Keys(namespace, vehicle, "drone")
+        keys = Keys(namespace, vehicle, drone)
         ask = _Question(zenoh=zenoh, keys=keys, duration_s=duration, speed_m_s=speed_max, config=settings)
         findings = _look(session, ask)
         if set_values:
@@ -124,9 +126,11 @@ class _Question:
 
 def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
     from companion.check.assessment import assess
+    from companion.check.detector import judge_detector
 
-    vehicle = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.chase)
-    return assess(session.reader.facts(), vehicle, asked.speed_m_s, asked.config)
+    vehicle, detector = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.chase)
+    findings = assess(session.reader.facts(), vehicle, asked.speed_m_s, asked.config)
+    return [*findings, *judge_detector(detector, asked.config)]
 
 
 def _show(findings: "list[Finding]", speed_m_s: float, *, as_json: bool) -> int:
