@@ -167,3 +167,4 @@ class LandingStatus(Struct, frozen=True, kw_only=True):
     zenoh_bad_payloads: int
     armed: bool
     fix_age_s: float | None
+    open_to_strangers: tuple[str, ...] = ()

@@ -63,6 +63,7 @@ class CompanionNode:
         self.inputs: StepInputs | None = None
         self.outputs: StepOutputs | None = None
         self.bad_payloads = 0
+        self.open_to_strangers: tuple[str, ...] = ()  # which links are, for the status
         self.unpublished = 0  # statuses and plans that hold what no message has room for
         self.system = system
         self._keys = keys
@@ -254,6 +255,7 @@ class CompanionNode:
             outputs.status,
             mavlink_bad_bytes=self.autopilot.session.statistics.codec.bad_bytes,
             zenoh_bad_payloads=self.bad_payloads,
+            open_to_strangers=self.open_to_strangers,
         )
         try:
             self._publications.append(status_publication(self._keys, status))

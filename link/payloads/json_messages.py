@@ -76,6 +76,9 @@ class _LandingStatus(_Report):
     zenoh_bad_payloads: Annotated[Count, Field(description="payloads that were refused")]
     armed: Annotated[bool, Field(description="whether the autopilot reports its motors armed")]
     fix_age_s: Annotated[float | None, Field(description="s since the newest fix was taken; null before the first")]
+    open_to_strangers: Annotated[
+        tuple[str, ...], Field(description="links by which somebody without a key could take part, in words")
+    ]
 
 
 LANDING_STATUS_SCHEMA = {
