@@ -94,6 +94,9 @@ class _Loop:
         self._zenoh.serve_later(self._keys.landing_command, self._desk.take)
         spare_present_objects()
         self._log.info("ready", device=self._options.device)
+        self._node.open_to_strangers = self._options.open_to_strangers
+        for opening in self._options.open_to_strangers:
+            self._log.warning("open to strangers", what=opening)
         while not self._stopping:
             self._turn(clock)
         self._service.stopping()

@@ -21,7 +21,7 @@ from companion.step import companion_step
 from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.factory import make_estimator
 from link.mavlink.session import MavlinkSession
-from link.messages import Command, CommandReply, PadGeometry
+from link.messages import Command, CommandReply, LandingStatus, PadGeometry
 from link.payloads.json_messages import is_possible
 from link.records import replace
 from link.zenoh.keys import Keys, Publication
@@ -69,6 +69,7 @@ class CompanionNode:
         self.memory = StepMemory()
         self.inputs: StepInputs | None = None
         self.outputs: StepOutputs | None = None
+        self.open_to_strangers: tuple[str, ...] = ()  # which links are, for the status
         self.system = system
         self._keys = keys
         silent = system.config.silent_vehicle
@@ -280,7 +281,15 @@ class CompanionNode:
                 self.autopilot.session.send(target)
         self._component.tell(outputs, self.phase, self.autopilot.state, self.system.config, local_ns)
         if self.publisher.is_due(outputs, self._clock.monotonic_ns):
-            bad = self.autopilot.session.statistics.codec.bad_bytes, self.bad_payloads
-            self.publisher.publish(
-                outputs, bad, self.samples.refused_lately(), self._clock, self.memory.model.yaw_setpoint_rad
-            )
+            yaw_rad = self.memory.model.yaw_setpoint_rad
+            self.publisher.publish(self._status(outputs), outputs.plan, self._clock, yaw_rad)
+
+    def _status(self, outputs: StepOutputs) -> LandingStatus:
+        """Return the status of a step, with what is known of the links."""
+        return replace(
+            outputs.status,
+            mavlink_bad_bytes=self.autopilot.session.statistics.codec.bad_bytes,
+            zenoh_bad_payloads=self.bad_payloads,
+            refused=self.samples.refused_lately(),
+            open_to_strangers=self.open_to_strangers,
+        )
