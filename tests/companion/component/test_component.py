@@ -46,7 +46,7 @@ class Station:
 
 def _ready() -> Station:
     station = Station()
-    station.setup.run(3.0)
+    station.setup.run(3.0, station.setup.fix)
     assert station.setup.node.is_ready_to_start()
     return station
 
