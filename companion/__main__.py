@@ -155,6 +155,7 @@ def companion(
             keys,
             system_id=system_id,
             dry_run=dry_run,
+            is_component=True,
             records_input=tlog is not None,
             recorder=recorder,
             signing=signing,

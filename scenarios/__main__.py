@@ -76,7 +76,9 @@ def run_command(
     from scenarios.catalogue.firmware_option import with_firmware
     from scenarios.catalogue.world_names import run_seed
     from scenarios.commands.run_lines import Reporter
-    from scenarios.wire.run import RunOptions, run_folder, run_in_lockstep, run_over_wire
+    from scenarios.lockstep.run import run_in_lockstep
+    from scenarios.recordings.run_folder import RunOptions, run_folder
+    from scenarios.wire.run import run_over_wire
 
     scenario = load_scenario(name if firmware is None else with_firmware(name, firmware))
     view_port = view_command.port_of_run(lockstep=lockstep, as_json=as_json) if view else None

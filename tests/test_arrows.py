@@ -15,7 +15,7 @@ MAY_IMPORT = {
     "scenarios": {"scenarios", "companion", "sim_autopilot", "link"},
 }
 HOMES = {
-    "zenoh": {"link/zenoh/session.py", "link/ros2/session.py"},
+    "zenoh": {*(f"link/zenoh/{name}.py" for name in ("session", "replies", "library_config")), "link/ros2/session.py"},
     "foxglove": {"link/recording/foxglove_server.py", "scenarios/view/foxglove_layout.py"},
     "xxhash": {"link/ros2/attachment.py"},
     "pymavlink": {f"link/mavlink/{name}.py" for name in ("dialect", "draft_messages", "codec")},

@@ -97,6 +97,9 @@ STREAMS_HZ = {
 """Messages that are read of every autopilot beside its motion, by id."""
 
 
+_MOTION_IDS = (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED)
+
+
 class Driver(Protocol):
     """One kind of autopilot."""
 
@@ -182,3 +185,10 @@ class Driver(Protocol):
 
     def cascade(self, parameters: Mapping[str, float]) -> Cascade:
         """Return the gains with which it follows setpoints, and how it takes them, from its own parameters."""
+
+
+def streams_hz(driver: Driver, motion_rate_hz: float, *, stops_unused: bool) -> dict[int, float]:
+    """Return the rate at which each message is asked for, 0 for one that is to be stopped."""
+    motion_hz = dict.fromkeys(_MOTION_IDS, motion_rate_hz)
+    unused_hz = dict.fromkeys(driver.unused_streams if stops_unused else (), 0.0)
+    return motion_hz | STREAMS_HZ | dict(driver.mode_streams_hz) | unused_hz

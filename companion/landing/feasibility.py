@@ -26,6 +26,19 @@ _BEFORE_A_FLIGHT = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD
 _BEFORE_A_CHASE = _BEFORE_A_FLIGHT | {Phase.ABORT}
 
 
+def is_drone_taken(s: Situation, _: CompanionConfig) -> bool:
+    """Return whether another companion is to fly this drone."""
+    return s.rival is not None and s.rival.is_this_drone
+
+
+def _is_taken(s: Situation, _: CompanionConfig) -> bool:
+    return s.rival is not None and not s.rival.is_this_drone
+
+
+def _taken(s: Situation, _: CompanionConfig) -> Cause:
+    return Cause(Reason.VEHICLE_TAKEN, ("nobody" if s.rival is None else s.rival.drone,))
+
+
 def _vehicle_speed_m_s(s: Situation) -> float:
     return 0.0 if s.pad is None else math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist())
 
@@ -125,6 +138,8 @@ def _high(s: Situation, c: CompanionConfig) -> Cause:
 
 # An estimate that has just begun jumps: what is said of the vehicle must hold for a while.
 OBSTACLES = (
+    Condition(reason=Reason.DRONE_TAKEN, phases=_BEFORE_A_CHASE, is_true=is_drone_taken),
+    Condition(reason=Reason.VEHICLE_TAKEN, phases=_BEFORE_A_CHASE, is_true=_is_taken, cause=_taken),
     Condition(
         reason=Reason.STAMPS_AHEAD,
         phases=_BEFORE_A_CHASE,

@@ -17,21 +17,34 @@ from link.records import replace
 _BRAKING_M_S2 = 1.0  # of a drone whose setpoints have stayed away: ArduPilot's WPNAV_ACCEL_Z by default
 
 
+class Carried(Struct, frozen=True, kw_only=True):
+    """What is to come of a setpoint that is carried on because no other follows.
+
+    Attributes:
+        duration_s: for how long it is.
+        lowest_enu_m: height above which it has to end.
+        touch_m_s: rate, upwards, at the end of that time with which what is at that height may be touched; None where
+            it must not be.
+    """
+
+    duration_s: float
+    lowest_enu_m: float
+    touch_m_s: float | None = None
+
+
 class FlownPlan(Struct, frozen=True, kw_only=True, eq=False):
     """A plan, and how it is kept up for an autopilot that carries setpoints on.
 
     Attributes:
         trajectory: of the virtual model, from where it was when the plan was made.
-        lowest_enu_m: height above which a setpoint that is carried on has to end.
-        carried_s: for how long one is; 0 for an autopilot that does not.
+        carried: by the autopilot; None for one that does not.
     """
 
     trajectory: Trajectory
-    lowest_enu_m: float
-    carried_s: float
+    carried: Carried | None
 
 
-def flown_plan(plan: PlanResult, period_s: float, lowest_enu_m: float, carried_s: float) -> FlownPlan:
+def flown_plan(plan: PlanResult, period_s: float, carried: Carried | None) -> FlownPlan:
     """Return the plan as it is flown: its next state, `period_s` after it was made, is one of its instants."""
     path, following = plan.trajectory, plan.next_state
     later = int(np.searchsorted(path.offset_s, period_s, side="right"))
@@ -41,20 +54,20 @@ def flown_plan(plan: PlanResult, period_s: float, lowest_enu_m: float, carried_s
         velocity_enu_m_s=_through(path.velocity_enu_m_s, following.velocity_enu_m_s, later),
         acceleration_enu_m_s2=_through(path.acceleration_enu_m_s2, following.acceleration_enu_m_s2, later),
     )
-    return FlownPlan(trajectory=trajectory, lowest_enu_m=lowest_enu_m, carried_s=carried_s)
+    return FlownPlan(trajectory=trajectory, carried=carried)
 
 
 def state_at(flown: FlownPlan, offset_s: float) -> ReferenceState:
     """Return the model `offset_s` after its plan was made."""
     planned = state_in_plan(flown.trajectory, offset_s)
-    if flown.carried_s <= 0.0:
+    if flown.carried is None:
         return planned
     before = ReferenceState(
         position_enu_m=flown.trajectory.position_enu_m[0],
         velocity_enu_m_s=flown.trajectory.velocity_enu_m_s[0],
         acceleration_enu_m_s2=flown.trajectory.acceleration_enu_m_s2[0],
     )
-    return keep_up(planned, before, flown.lowest_enu_m, flown.carried_s, offset_s)
+    return keep_up(planned, before, flown.carried, offset_s)
 
 
 def _through(path: Array, following: Array, later: int) -> Array:
@@ -77,21 +90,18 @@ def state_in_plan(trajectory: Trajectory, offset_s: float) -> ReferenceState:
     )
 
 
-def keep_up(
-    planned: ReferenceState, before: ReferenceState, lowest_enu_m: float, duration_s: float, elapsed_s: float
-) -> ReferenceState:
-    """Return the planned next state, kept up by `limit_sink`, so that it may be carried on for `duration_s`.
+def keep_up(planned: ReferenceState, before: ReferenceState, carried: Carried, elapsed_s: float) -> ReferenceState:
+    """Return the planned next state, kept up by `limit_sink`, so that it may be carried on.
 
     The model itself is kept up, for the drone follows what is sent, and the next plan begins there.
 
     Args:
         planned: the model `elapsed_s` after `before`.
         before: the model when the plan was made.
-        lowest_enu_m: where it is to end above.
-        duration_s: for which a setpoint is carried on.
+        carried: how a setpoint is carried on.
         elapsed_s: since then.
     """
-    limited = limit_sink(planned, lowest_enu_m, duration_s)
+    limited = limit_sink(planned, carried)
     if limited is planned:
         return planned
     up = extrapolate(replace(before, acceleration_enu_m_s2=limited.acceleration_enu_m_s2), elapsed_s)
@@ -100,19 +110,19 @@ def keep_up(
         velocity_enu_m_s=np.array([*planned.velocity_enu_m_s[:2], up.velocity_enu_m_s[2]]),
         acceleration_enu_m_s2=limited.acceleration_enu_m_s2,
     )
-    return limit_sink(kept_up, lowest_enu_m, duration_s)
+    return limit_sink(kept_up, carried)
 
 
-def limit_sink(reference: ReferenceState, lowest_enu_m: float, duration_s: float) -> ReferenceState:
-    """Return the model for an autopilot that carries a setpoint on for `duration_s`, should no other follow.
+def limit_sink(reference: ReferenceState, carried: Carried) -> ReferenceState:
+    """Return the model for an autopilot that carries a setpoint on, should no other follow.
 
-    Its acceleration upwards is at least such that the drone, which then brakes, ends above `lowest_enu_m`: ArduCopter
-    was flown into the road at 1.6 m/s from a chase whose companion had died. The rate w at the end of the time T obeys
-    `h + (v + w) T / 2 - w^2 / 2A >= 0` with the height h, the rate v and the braking A.
+    Its acceleration upwards is at least such that the drone, which then brakes, ends above the lowest height:
+    ArduCopter was flown into the road at 1.6 m/s from a chase whose companion had died. The rate w at the end of the
+    time T obeys `h + (v + w) T / 2 - w^2 / 2A >= 0` with the height h, the rate v and the braking A; or w is one to
+    touch with.
     """
-    if duration_s <= 0.0:
-        return reference
-    above_m = float(reference.position_enu_m[2]) - lowest_enu_m
+    duration_s = carried.duration_s
+    above_m = float(reference.position_enu_m[2]) - carried.lowest_enu_m
     ax, ay, az = reference.acceleration_enu_m_s2.tolist()
     climb_m_s, room_m = float(reference.velocity_enu_m_s[2]), 2.0 * above_m
     room_m += climb_m_s * duration_s
@@ -121,6 +131,8 @@ def limit_sink(reference: ReferenceState, lowest_enu_m: float, duration_s: float
         end_m_s = 0.5 * (brakes_m_s - math.sqrt(brakes_m_s**2 + 4.0 * _BRAKING_M_S2 * room_m))
     else:
         end_m_s = -room_m / duration_s
+    if carried.touch_m_s is not None:
+        end_m_s = min(end_m_s, carried.touch_m_s)
     least_m_s2 = (end_m_s - climb_m_s) / duration_s
     if az >= least_m_s2:
         return reference

@@ -11,7 +11,6 @@ from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
 
-from companion.core.reasons import Cause, Reason, sentence
 from companion.runtime.node import CompanionNode
 from link.messages import Command, CommandReply
 from link.payloads import json_messages
@@ -55,19 +54,18 @@ class CommandDesk:
             if len(self._waiting[command]) < _WAITING_MAX:
                 self._waiting[command].append(_Asked(self._now_s(), reply))
 
-    def pass_on(self, node: CompanionNode, local_ns: int) -> Command | None:
-        """Give the most urgent command to the node, if it makes a step now; return it."""
+    def pass_on(self, node: CompanionNode, local_ns: int) -> None:
+        """Give the most urgent command to the node, if it makes a step now."""
         if self._asked or not node.is_due(local_ns):
-            return None
+            return
         for command in _FIRST_TO_LAST:
             self._asked = self._take_waiting(command)
-            if self._asked and command is Command.START and node.is_ready_to_start() and not node.vehicle_heard:
-                self.answer([_unheard(node)])
+            refusal = node.start_refusal() if self._asked and command is Command.START else None
+            if refusal is not None:
+                self.answer([refusal])
             elif self._asked:
-                wanted = Command.START if command is Command.START_ANYWAY else command
-                node.request(wanted)
-                return wanted
-        return None
+                node.request(Command.START if command is Command.START_ANYWAY else command)
+                return
 
     def answer(self, replies: list[CommandReply]) -> None:
         """Give a step's reply to all who have asked for its command."""
@@ -83,13 +81,6 @@ class CommandDesk:
         since_s = self._now_s() - _WAIT_MAX_S
         _answer([one for one in waiting if one.came_s < since_s], _LATE)
         return [one for one in waiting if one.came_s >= since_s]
-
-
-def _unheard(node: CompanionNode) -> CommandReply:
-    """Return the answer to a start for a vehicle that nothing has been heard of."""
-    refused = node.samples.refused_lately()
-    why = Cause(Reason.VEHICLE_UNHEARD, (f" ({refused})" if refused else "",))
-    return CommandReply(accepted=False, reason=sentence(why))
 
 
 def _answer(asked: list[_Asked], reply: CommandReply) -> None:

@@ -6,7 +6,9 @@ from collections.abc import Callable
 from contextlib import ExitStack
 
 from companion.autopilots.choice import check_autopilot
+from companion.runtime.claims import Claims
 from companion.runtime.command_desk import CommandDesk
+from companion.runtime.computer import ComputerWatch
 from companion.runtime.handover import hand_over
 from companion.runtime.live_state import Onlooker, onlookers
 from companion.runtime.node import CompanionNode
@@ -73,6 +75,7 @@ class _Loop:
         self._inboxes = [self._inbox, *(zenoh.subscribe(key) for key in (keys.fix_velocity, keys.imu, keys.pad_pose))]
         self._ticks = zenoh.subscribe(keys.clock) if options.use_sim_time else None
         self._alive = zenoh.watch_alive(keys.alive)
+        self._claims = Claims(zenoh, keys)
         self._stopping = False
         self._start = OwnStart(wanted=options.start)
         self._is_silent = node.system.config.silent_vehicle is not None
@@ -81,6 +84,7 @@ class _Loop:
         self._pad_question = PadQuestion(zenoh, keys.pad)
         self._link_was_up: bool | None = None
         self._strangers_told = False
+        self._computer = ComputerWatch()
 
     def run(self) -> Timings:
         """Run until a signal comes."""
@@ -141,8 +145,7 @@ class _Loop:
             self._node.receive_mavlink(data, local_ns, is_datagram=self._transport.is_datagram)
         self._record(self._node.autopilot.session.take_input(), local_ns)
         self._take_samples()
-        if self._start.commanded(self._desk.pass_on(self._node, local_ns)):
-            self._log.info("start called off")
+        self._desk.pass_on(self._node, local_ns)
         stepped = self._node.poll(local_ns)
         self._send_frames(local_ns)
         if stepped:
@@ -150,6 +153,9 @@ class _Loop:
             for onlooker in self._onlookers:
                 onlooker.tell(self._node, local_ns)
             self._after_step()
+        load = self._computer.poll()
+        if load is not None:
+            self._node.tell_load(load, local_ns)
 
     def _note_time(self, state_to_setpoint_s: float) -> None:
         self._timings.state_to_setpoint_s.append(state_to_setpoint_s)
@@ -162,6 +168,7 @@ class _Loop:
                 self._fix_seen = self._fix_seen or inbox is self._inbox
                 self._node.receive_sample(sample.key, sample.payload)
         self._node.receive_liveliness(alive=self._alive.alive)
+        self._node.receive_rival(self._claims.rival)
 
     def _send_frames(self, local_ns: int) -> None:
         frames = self._node.take_frames()
@@ -178,6 +185,8 @@ class _Loop:
         """Publish, reply, log; and see to what is still missing."""
         for publication in self._node.take_publications():
             self._zenoh.publish(publication.key, publication.payload, publication.encoding)
+        if self._node.inputs is not None and self._start.commanded(self._node.inputs.command):
+            self._log.info("start called off")
         self._desk.answer(self._start.answered(self._node.take_replies()))
         outputs = self._node.outputs
         if outputs is not None and outputs.text is not None:
@@ -187,6 +196,7 @@ class _Loop:
             self._log.info("autopilot", text=text)
         for refused in self._node.samples.refusals.news(time.monotonic_ns()):
             self._log.warning("data refused", what=refused)
+        self._claims.update(self._node.phase, armed=self._node.autopilot.state.view.armed)
         self._say_link()
         self._ask_for_pad()
         self._start.follow(self._node, fix_seen=self._fix_seen)

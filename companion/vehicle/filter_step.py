@@ -96,6 +96,7 @@ class Tally(Struct, frozen=True, kw_only=True):
     recoveries: int = 0
     nis_sum: float = 0.0
     nis_dof: int = 0
+    sightings: tuple[int, int] = (0, 0)  # of the pad, accepted and rejected
     accepted_ns: tuple[int | None, ...] = _NEVER
     rejected_since_ns: tuple[int | None, ...] = _NEVER
 
@@ -161,6 +162,7 @@ def _recover(model: FilterModel[S], snapshot: Snapshot[S], measurement: Measurem
     tally = replace(
         snapshot.tally,
         recoveries=snapshot.tally.recoveries + 1,
+        sightings=_count_sighting(snapshot.tally, rank, is_rejected=True),
         accepted_ns=_put(snapshot.tally.accepted_ns, rank, measurement.t_ns),
         rejected_since_ns=_NEVER,
     )
@@ -174,6 +176,7 @@ def _accept(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
         recoveries=tally.recoveries,
         nis_sum=tally.nis_sum + update.nis,
         nis_dof=tally.nis_dof + update.dof,
+        sightings=_count_sighting(tally, rank, is_rejected=False),
         accepted_ns=_put(tally.accepted_ns, rank, t_ns),
         rejected_since_ns=_put(tally.rejected_since_ns, rank, None),
     )
@@ -182,7 +185,15 @@ def _accept(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
 def _reject(tally: Tally, rank: int, t_ns: int) -> Tally:
     since_ns = tally.rejected_since_ns[rank]
     since = _put(tally.rejected_since_ns, rank, t_ns if since_ns is None else since_ns)
-    return replace(tally, gated=tally.gated + 1, rejected_since_ns=since)
+    sightings = _count_sighting(tally, rank, is_rejected=True)
+    return replace(tally, gated=tally.gated + 1, sightings=sightings, rejected_since_ns=since)
+
+
+def _count_sighting(tally: Tally, rank: int, *, is_rejected: bool) -> tuple[int, int]:
+    if rank != RANK[Quantity.PAD]:
+        return tally.sightings
+    accepted, rejected = tally.sightings
+    return accepted + (not is_rejected), rejected + is_rejected
 
 
 def _put(values: tuple[int | None, ...], index: int, value: int | None) -> tuple[int | None, ...]:

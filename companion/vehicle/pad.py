@@ -40,6 +40,8 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
         height_m: of its surface above the vehicle's road.
         needs_heading: it is beside the antenna.
         unplaced: why the pad's place is not known; None when it is. Until then it is not landed on.
+        frame_offset_m: horizontally, of the drone's frame from the vehicle's fixes', as sightings tell; None without.
+        frame_offset_std_m: its standard deviation.
     """
 
     offset_s: Array
@@ -54,6 +56,8 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
     height_m: float = 0.0
     needs_heading: bool = False
     unplaced: Cause | None = None
+    frame_offset_m: float | None = None
+    frame_offset_std_m: float = math.inf
 
 
 def pad_path(forecast: Forecast, pad: PadGeometry | None, *, has_one_frame: bool = True) -> PadPath:
@@ -73,7 +77,7 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None, *, has_one_frame: bool
     lever_x_m, lever_y_m, lever_z_m = pad.antenna_to_pad_m if pad is not None else (0.0, 0.0, 0.0)
     position = forecast.position_enu_m + np.array([0.0, 0.0, lever_z_m])
     velocity = forecast.velocity_enu_m_s
-    is_beside = bool(lever_x_m or lever_y_m)
+    is_beside, frame_offset = bool(lever_x_m or lever_y_m), forecast.frame_offset_enu_m
     if forecast.yaw_rad is not None and is_beside:
         arm, swing = turned_lever(forecast.yaw_rad, forecast.offset_s, lever_x_m, lever_y_m)
         if forecast.grade is not None:
@@ -94,6 +98,8 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None, *, has_one_frame: bool
         height_m=0.0 if pad is None else pad.height_m,
         needs_heading=is_beside,
         unplaced=NOT_DESCRIBED if pad is None else HEADING_UNKNOWN if _is_about(forecast, pad) else None,
+        frame_offset_m=None if frame_offset is None else math.hypot(*frame_offset.tolist()),
+        frame_offset_std_m=forecast.frame_offset_std_m,
     )
 
 

@@ -36,8 +36,9 @@ from link.ros2.routes import Route, changed, routes, topic, trigger, trigger_rep
 from link.ros2.topic_map import PadTopics, TopicMap
 from link.ros2.type_hash import NOT_SUPPORTED
 from link.zenoh.keys import Keys
+from link.zenoh.library_config import open_library_session
 from link.zenoh.options import ZenohOptions
-from link.zenoh.session import INBOX_CAPACITY, Alive, Inbox, Sample, ZenohSession, open_library_session
+from link.zenoh.session import INBOX_CAPACITY, Alive, Inbox, Sample, ZenohSession
 
 _NODE_ID = 0
 _GRAPH_S = 2.0

@@ -97,6 +97,14 @@ class Keys:
         """The queryable that takes `link.messages.Command` and answers `CommandReply`."""
         return f"{self.namespace}/{self.drone}/landing/command"
 
+    def companion_alive(self, companion: str) -> str:
+        """The liveliness token of a companion of this drone; `*` for all of them."""
+        return f"{self.namespace}/{self.drone}/companion/alive/{companion}"
+
+    def landing_claim(self, drone: str, companion: str) -> str:
+        """The liveliness token of a companion that lands `drone` on this vehicle; `*` for all of them."""
+        return f"{self.namespace}/{self.vehicle}/landing/{drone}/{companion}"
+
     @property
     def drone_truth(self) -> str:
         """The drone's true motion, simulation only, `link.messages.BodyTruth`."""

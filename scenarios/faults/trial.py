@@ -3,16 +3,16 @@
 Judged on ground truth and by what goes over the link, never by what the companion believes.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import acos, hypot
 
 from companion.situation.phases import Phase
-from link.mavlink.dialect import Message, mavlink
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import FirmwareName, Scenario
 from scenarios.faults.flight import FaultFlight
-from scenarios.faults.matrix import EXPECTED, Case, Fault
+from scenarios.faults.injection import inject
+from scenarios.faults.matrix import EXPECTED, Case
 from scenarios.recordings.result import score_run
 from scenarios.scoring.score import Tier
 
@@ -20,18 +20,10 @@ SCENARIO = "straight_5"
 SEED = 1
 _PARAMETERS: Mapping[FirmwareName, Mapping[str, float]] = {"px4": {}, "ardupilot": {"GUID_TIMEOUT": 1.0}}
 """Beside those of the scenario, as `companion check` advises them."""
-_PILOTS_MODES: Mapping[FirmwareName, float] = {"px4": 3.0, "ardupilot": 17.0}  # POSCTL, BRAKE: neither needs sticks
-_SPEED_LIMITS: Mapping[FirmwareName, tuple[bytes, float]] = {  # less than the vehicle's 5 m/s
-    "px4": (b"MPC_XY_VEL_MAX", 4.0),
-    "ardupilot": (b"WPNAV_SPEED", 400.0),
-}
-_ORIGIN_MOVED_ENU_M = (30.0, -20.0, 4.0)
-_ESTIMATE_RESET_ENU_M = (3.0, -2.0, 1.0)
-_SILENT_S = 2.0
 _AIRBORNE_M = 2.0  # of the drone above the road: a take-off that is under way, high enough to hover there
 _DELAY_S: Mapping[Phase, float] = {Phase.TAKEOFF: 0.0, Phase.TOUCHDOWN: 0.0}  # the latter: before the motors stop
 _SHORT_S = 0.3
-_LIMIT_S = 25.0
+_LIMIT_S = 40.0  # an approach that is broken off once, and the next one
 _DECIDED_S = 4.0  # a phase that is kept for so long is the one it ends in; the autopilot's time-out is 3 s at most
 _AT_REST_S = 1.5
 _AT_REST_M_S = 0.3
@@ -97,8 +89,7 @@ def fly_on(flight: FaultFlight, case: Case) -> Ended:
         flight.step()
     flight.fly(_DELAY_S.get(case.phase, _SHORT_S))
     began = len(flight.recording.drone)
-    _INJECT[case.fault](flight)
-    setpoints, taken_back = _fly_until_decided(flight)
+    setpoints, taken_back = _fly_until_decided(flight, inject(case.fault, flight))
     _fly_to_rest(flight)
     score = score_run(flight.scenario, SEED, flight.recording)
     return Ended(
@@ -129,22 +120,28 @@ def lost(case: Case, why: str) -> Ended:
     )
 
 
-def _fly_until_decided(flight: FaultFlight) -> tuple[int, bool]:
-    """Go on until a lasting phase has been kept; return the setpoints sent and whether they were flown when out."""
-    phase, since_s, sent = flight.phase, flight.recording.elapsed_s, flight.setpoints
-    end_s, has_left, taken_back = since_s + _LIMIT_S, False, False
+def _fly_until_decided(flight: FaultFlight, lasts_s: float) -> tuple[int, bool]:
+    """Go on until a lasting phase has been kept since a fault that lasts for `lasts_s`.
+
+    Return the setpoints that were sent, and whether they were flown, when the companion was out.
+    """
+    phase, since_s, sent = flight.phase, flight.recording.elapsed_s + lasts_s, flight.setpoints
+    end_s, has_left, left_meanwhile, taken_back = since_s + _LIMIT_S, False, False, False
     while (now_s := flight.recording.elapsed_s) < end_s:
         flight.step()
+        if flight.companion_is_stopped:
+            left_meanwhile = not flight.follows_setpoints
+            continue
         if flight.phase is not phase:
-            phase, since_s, has_left = flight.phase, now_s, False
-        if phase not in _OUT or now_s - since_s < _TAKEN_S:
-            sent = flight.setpoints
-        else:
+            phase, since_s, has_left = flight.phase, max(now_s, since_s), left_meanwhile
+        if phase in _OUT and (left_meanwhile or now_s - since_s >= _TAKEN_S):
             has_left = has_left or not flight.follows_setpoints
             taken_back = taken_back or (has_left and flight.follows_setpoints)
+        elif not left_meanwhile:
+            sent = flight.setpoints
         if phase in _LASTING and now_s - since_s > _DECIDED_S:
             break
-    return flight.setpoints - sent, taken_back
+    return flight.setpoints - sent if phase in _OUT else 0, taken_back
 
 
 def _fly_to_rest(flight: FaultFlight) -> None:
@@ -165,33 +162,3 @@ def _upright(q: tuple[float, float, float, float]) -> float:
     """Return the cosine of the tilt of an orientation."""
     _, x, y, _ = q
     return max(-1.0, min(1.0, 1.0 - 2.0 * (x * x + y * y)))
-
-
-def _command(number: int, *parameters: float) -> Message:
-    return mavlink.MAVLink_command_long_message(1, 1, number, 0, *(*parameters, *[0.0] * (7 - len(parameters))))
-
-
-def _change_mode(flight: FaultFlight) -> None:
-    flight.tell(_command(mavlink.MAV_CMD_DO_SET_MODE, 1.0, _PILOTS_MODES[flight.scenario.firmware]))
-
-
-def _lower_speed_limit(flight: FaultFlight) -> None:
-    name, value = _SPEED_LIMITS[flight.scenario.firmware]
-    flight.tell(mavlink.MAVLink_param_set_message(1, 1, name, value, mavlink.MAV_PARAM_TYPE_REAL32))
-
-
-def _silence_vehicle(flight: FaultFlight) -> None:
-    flight.vehicle_is_silent = True
-
-
-_INJECT: Mapping[Fault, Callable[[FaultFlight], None]] = {
-    Fault.PILOT: _change_mode,
-    Fault.RESTART: lambda flight: flight.simulation.autopilot.restart(),
-    Fault.SILENT: lambda flight: flight.cut_link(_SILENT_S),
-    Fault.LOST: lambda flight: flight.cut_link(),
-    Fault.ORIGIN: lambda flight: flight.set_origin(_ORIGIN_MOVED_ENU_M),
-    Fault.ESTIMATE: lambda flight: flight.simulation.autopilot.reset_estimator(_ESTIMATE_RESET_ENU_M),
-    Fault.PARAMETER: _lower_speed_limit,
-    Fault.VEHICLE: _silence_vehicle,
-    Fault.COMPANION: lambda flight: flight.restart_companion(),
-}

@@ -14,7 +14,7 @@ from link.messages import Command
 from link.recording.recorder import Recorder
 from link.zenoh.keys import Keys
 from scenarios.config import Scenario
-from scenarios.lockstep.channels import Channels, channels_of
+from scenarios.lockstep.channels import Channels, Way, channels_of
 from scenarios.recordings.recording import EndWatch, Recording
 from scenarios.scoring.accuracy import PERIOD_NS, PHASES, Nis, antenna_truth, estimate_error
 from scenarios.simulation.noise import Seed
@@ -56,7 +56,7 @@ class Lockstep:
             self.companion.receive_pad(self.simulation.vehicle.pad)
         self._channels: Channels = channels_of(scenario, seed, START_NS)
         from_vehicle = dict.fromkeys((keys.fix, keys.fix_velocity, keys.imu), self._channels.zenoh)
-        self._ways = {**from_vehicle, keys.pad_pose: self._channels.detector}
+        self._ways: dict[str, Way] = {**from_vehicle, keys.pad_pose: self._channels.detector}
         self._watch = EndWatch(scenario.time_limit_s)
         self._started = False
         pad_flu_m = (0.0, 0.0, scenario.vehicle.roof_height_m)

@@ -117,11 +117,14 @@ class Setup:
     autopilot: FakePx4 = field(default_factory=FakePx4)
     dry_run: bool = False
     publishes: bool = True
+    is_component: bool = False
     t_ns: int = START_NS
     config: CompanionConfig = field(default_factory=_config)
 
     def __post_init__(self) -> None:
-        self.node: CompanionNode = build_node(self.config, KEYS, dry_run=self.dry_run, publishes=self.publishes)
+        self.node: CompanionNode = build_node(
+            self.config, KEYS, dry_run=self.dry_run, publishes=self.publishes, is_component=self.is_component
+        )
 
     @property
     def utc_ns(self) -> int:

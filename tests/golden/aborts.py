@@ -85,8 +85,7 @@ def _vehicle_falls_silent(flight: FaultFlight) -> None:
 
 def _token_is_lost(flight: FaultFlight) -> None:
     _vehicle_falls_silent(flight)
-    flight.companion.receive_liveliness(alive=True)
-    flight.companion.receive_liveliness(alive=False)
+    flight.vehicle_is_alive = False
 
 
 def _own_position_stops(flight: FaultFlight) -> None:
@@ -134,14 +133,10 @@ def _operator(command: Command) -> Fault:
     return lambda flight: flight.companion.request(command)
 
 
-_ARDUPILOT = "straight_5+firmware=ardupilot"
 _POOR_SENSORS = "straight_5+sensors=degraded"
 
 ABORTS: dict[str, Abort] = {
     "vehicle_silent": Abort(reason=Reason.VEHICLE_DATA_OLD, phase=Phase.ALIGN, fault=_vehicle_falls_silent),
-    "vehicle_silent_ardupilot": Abort(
-        reason=Reason.VEHICLE_DATA_OLD, scenario=_ARDUPILOT, phase=Phase.ALIGN, fault=_vehicle_falls_silent
-    ),
     "vehicle_uncertain": Abort(
         reason=Reason.VEHICLE_UNCERTAIN,
         companion={"abort": {"fix_age_max_s": 20.0}, "descent": {"aligned_hold_s": 20.0}},

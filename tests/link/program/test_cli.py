@@ -22,11 +22,12 @@ from link.program.cli import (
     make_app,
     run_app,
 )
+from link.program.help import App
 
 Seen = list[dict[str, object]]
 
 
-def program(seen: Seen) -> typer.Typer:
+def program(seen: Seen) -> App:
     """Return an app that has the common options and two commands that fail."""
     app = make_app("Tests the command line.")
 
