@@ -74,6 +74,7 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
         reply=reply,
         status=landing_status(memory, situation, system.config),
         plan=plan,
+        pad=situation.pad,
     )
     return memory, outputs
 
@@ -112,7 +113,9 @@ def _update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) 
             monotonic_ns=now_ns,
             config=system.config.descent,
         ),
-        fix_stamps=update_fix_stamps(vehicle.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns),
+        fix_stamps=update_fix_stamps(
+            vehicle.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns, inputs.fix_ahead_s
+        ),
         contradictions=contradictions,
         sightings=sightings,
         phases=update_fixed_phases(

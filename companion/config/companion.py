@@ -36,6 +36,21 @@ class ReceiverFrames(Enum):
     APART = "apart"  # by two: the pad has to be seen
 
 
+class Guide(Enum):
+    """What the companion lands by."""
+
+    SETPOINTS = "setpoints"
+    PRECLAND = "precland"  # it tells the autopilot's own precision landing where the pad is, and commands nothing
+
+
+class PadOnMap(Enum):
+    """As what ground stations are told where the pad is."""
+
+    NONE = "none"
+    FOLLOW_TARGET = "follow_target"  # which an autopilot heeds in its follow mode only
+    ADSB = "adsb"  # likewise, and as a vehicle among the traffic, which all ground stations draw
+
+
 class LimitsConfig(StrictModel):
     """What the planner may ask at most; the autopilot's own parameters can only lower it.
 
@@ -99,6 +114,10 @@ class CompanionConfig(StrictModel):
     # A vehicle without telemetry; none: the vehicle tells where it is, and how its pad lies on it.
     silent_vehicle: SilentVehicleConfig | None = None
     stops_unused_streams: bool = True  # on the companion's own link; false where others listen on it, too
+    guide: Guide = Guide.SETPOINTS
+    # Whoever sends to the autopilot's link can start and break off a landing by it, as it can command the autopilot.
+    takes_mavlink_commands: bool = True
+    pad_on_map: PadOnMap = PadOnMap.FOLLOW_TARGET  # told at 2 Hz, by MAVLink
     status_rate_hz: Annotated[float, Field(ge=0.5, le=50.0)] = 10.0
     # By which setpoints are ahead of the drone beside the link's delay; none: as the autopilot takes them.
     setpoint_lead_s: Annotated[float, Field(ge=0.0, le=0.5)] | None = None

@@ -131,8 +131,10 @@ class Reason(Enum):
 
     # A command is refused.
     NOTHING_TO_DO = "nothing to {} in phase {}"
+    GUIDES_ONLY = "guides the autopilot's own precision landing, and flies nothing: choose that mode"
     NO_AUTOPILOT = "no autopilot is connected"
     NO_ORIGIN = "the autopilot has no origin yet"
+    VEHICLE_UNHEARD = "nothing usable has come from the vehicle{}: see its program and clock, --vehicle and -e"
     NO_OWN_POSITION = "the autopilot reports no local position yet"
     NO_OWN_ATTITUDE = "the autopilot's attitude is too old"
     IN_FAILSAFE = "the autopilot is in failsafe"

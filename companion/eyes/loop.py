@@ -19,7 +19,7 @@ from link.zenoh.inbox import Inbox
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohSession
 
-_WAIT_S = 0.1
+_WAIT_S = 0.05
 _RESTART_EVERY_NS = 1_000_000_000
 _ASK_EVERY_NS = 1_000_000_000
 _OWN = "own"

@@ -8,6 +8,7 @@ from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits, Measurement, OwnState, Rival, Setpoint
 from companion.planning.guidance import Guidance, PlanResult
 from companion.vehicle.estimator import Estimator
+from companion.vehicle.pad import PadPath
 from link.messages import Command, CommandReply, LandingStatus, PadGeometry
 
 
@@ -39,6 +40,7 @@ class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
         limits: of the flight, from the configuration and the autopilot's parameters.
         acknowledgements: (command, MAV_RESULT) received since the last step.
         measurements: of the vehicle, received since the last step.
+        fix_ahead_s: by which the newest fix since then came before its stamp, so that it was refused; None if none was.
         vehicle_alive: its liveliness token; None when it never showed one.
         rival: a companion that this one keeps out of the way of, None without one.
         pad: the vehicle's own description of its pad.
@@ -57,6 +59,7 @@ class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
     driver: Driver | None = None
     acknowledgements: tuple[tuple[int, int], ...] = ()
     measurements: tuple[Measurement, ...] = ()
+    fix_ahead_s: float | None = None
     vehicle_alive: bool | None = None
     rival: Rival | None = None
     pad: PadGeometry | None = None
@@ -80,6 +83,7 @@ class StepOutputs(Struct, frozen=True, kw_only=True, eq=False):
         reply: to the operator's command, None when there was none.
         status: for the world.
         plan: of this step, None while nothing is flown.
+        pad: as this step knew it, None while it is not known.
     """
 
     setpoint: Setpoint | None
@@ -88,3 +92,4 @@ class StepOutputs(Struct, frozen=True, kw_only=True, eq=False):
     reply: CommandReply | None
     status: LandingStatus
     plan: PlanResult | None
+    pad: PadPath | None = None

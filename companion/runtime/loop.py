@@ -8,6 +8,8 @@ from contextlib import ExitStack
 from companion.autopilots.choice import check_autopilot
 from companion.runtime.claims import Claims
 from companion.runtime.command_desk import CommandDesk
+from companion.runtime.computer import ComputerWatch
+from companion.runtime.handover import hand_over
 from companion.runtime.live_state import Onlooker, onlookers
 from companion.runtime.node import CompanionNode
 from companion.runtime.options import Links, LoopOptions, Timings
@@ -26,7 +28,6 @@ from link.recording.log import Log
 from link.recording.recorder import BackgroundRecorder, Recorder
 
 _WAIT_MAX_S = 0.005  # for bytes; Zenoh samples wait no longer than this
-_LEAVE_MAX_S = 1.5  # a mode may be confirmed by the next heartbeat only
 
 
 def run(node: CompanionNode, links: Links, options: LoopOptions) -> Timings:
@@ -83,6 +84,7 @@ class _Loop:
         self._pad_question = PadQuestion(zenoh, keys.pad)
         self._link_was_up: bool | None = None
         self._strangers_told = False
+        self._computer = ComputerWatch()
 
     def run(self) -> Timings:
         """Run until a signal comes."""
@@ -92,13 +94,13 @@ class _Loop:
         self._zenoh.serve_later(self._keys.landing_command, self._desk.take)
         spare_present_objects()
         self._log.info("ready", device=self._options.device)
-        self._node.open_to_strangers = self._options.open_to_strangers
+        self._node.publisher.open_to_strangers = self._options.open_to_strangers
         for opening in self._options.open_to_strangers:
             self._log.warning("open to strangers", what=opening)
         while not self._stopping:
             self._turn(clock)
         self._service.stopping()
-        self._leave(clock)
+        hand_over(self._node, lambda: self._turn(clock), self._log)
         self._send_rest()
         self._service.close()
         return self._timings
@@ -117,9 +119,10 @@ class _Loop:
         if self._ticks is not None:
             for sample in self._ticks.take():
                 try:
-                    self._node.bad_payloads += not clock.tick(cdr.decode(ClockTick, sample.payload).t_ns)
-                except PayloadError:
-                    self._node.bad_payloads += 1
+                    if not clock.tick(cdr.decode(ClockTick, sample.payload).t_ns):
+                        self._node.samples.refuse("clock", "stray", "far from the ticks before")
+                except PayloadError as error:
+                    self._node.samples.refuse("clock", "unreadable", str(error))
         return clock.ready
 
     def _wait_for(self, is_there: Callable[[], bool], message: str) -> None:
@@ -145,8 +148,7 @@ class _Loop:
             self._node.receive_mavlink(data, local_ns, is_datagram=self._transport.is_datagram)
         self._record(self._node.autopilot.session.take_input(), local_ns)
         self._take_samples()
-        if self._start.commanded(self._desk.pass_on(self._node, local_ns)):
-            self._log.info("start called off")
+        self._desk.pass_on(self._node, local_ns)
         stepped = self._node.poll(local_ns)
         self._send_frames(local_ns)
         if stepped:
@@ -154,6 +156,9 @@ class _Loop:
             for onlooker in self._onlookers:
                 onlooker.tell(self._node, local_ns)
             self._after_step()
+        load = self._computer.poll()
+        if load is not None:
+            self._node.tell_load(load, local_ns)
 
     def _note_time(self, state_to_setpoint_s: float) -> None:
         self._timings.state_to_setpoint_s.append(state_to_setpoint_s)
@@ -183,6 +188,8 @@ class _Loop:
         """Publish, reply, log; and see to what is still missing."""
         for publication in self._node.take_publications():
             self._zenoh.publish(publication.key, publication.payload, publication.encoding)
+        if self._node.inputs is not None and self._start.commanded(self._node.inputs.command):
+            self._log.info("start called off")
         self._desk.answer(self._start.answered(self._node.take_replies()))
         outputs = self._node.outputs
         if outputs is not None and outputs.text is not None:
@@ -190,6 +197,8 @@ class _Loop:
             self._service.status(f"{outputs.status.phase}: {outputs.status.reason}")
         for text in self._node.autopilot.take_texts():
             self._log.info("autopilot", text=text)
+        for refused in self._node.samples.refusals.news(time.monotonic_ns()):
+            self._log.warning("data refused", what=refused)
         self._claims.update(self._node.phase, armed=self._node.autopilot.state.view.armed)
         self._say_link()
         self._ask_for_pad()
@@ -217,10 +226,11 @@ class _Loop:
         if alive and not self._was_alive:
             question.ask_anew()
         self._was_alive = alive
-        bad, why = question.bad_answers, question.refused_why
+        why, bad = question.refused_why, question.bad_answers
         may_change = self._node.phase not in FLYING_PHASES
         pad = question.poll(time.monotonic(), asks=alive or self._fix_seen, may_change=may_change)
-        self._node.bad_payloads += question.bad_answers - bad
+        for _ in range(question.bad_answers - bad):
+            self._node.samples.refuse("pad", "refused", question.refused_why or "")
         if question.refused_why != why:
             self._log.warning("the vehicle's description of its pad is refused", why=question.refused_why)
         if pad is not None:
@@ -234,15 +244,6 @@ class _Loop:
         timeout_s = self._options.timeout_s
         check_autopilot(self._node.autopilot.session, self._options.device, timeout_s)
         self._start.check_vehicle(self._keys, timeout_s, fix_seen=self._fix_seen, pad_known=self._node.pad_known)
-
-    def _leave(self, clock: Clock) -> None:
-        """Hand a flying drone over to its autopilot, which may take setpoints that stop for a fault or fly on."""
-        if not self._node.flies:
-            return
-        self._node.leave()
-        until_s = time.monotonic() + _LEAVE_MAX_S
-        while self._node.flies and time.monotonic() < until_s:
-            self._turn(clock)
 
     def _send_rest(self) -> None:
         for frame in self._node.take_frames():

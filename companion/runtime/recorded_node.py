@@ -60,8 +60,9 @@ class RecordingNode(CompanionNode):
         *,
         dry_run: bool = False,
         publishes: bool = True,
+        is_component: bool = False,
     ) -> None:
-        super().__init__(system, keys, session, dry_run=dry_run, publishes=publishes)
+        super().__init__(system, keys, session, dry_run=dry_run, publishes=publishes, is_component=is_component)
         self._recorder = recorder
         self._sequence = 0
         self._local_ns = 0

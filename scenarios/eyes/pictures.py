@@ -14,7 +14,9 @@ from companion.eyes.sight import Frame, SightMemory, SightSystem, sight_step
 from link.errors import UserError
 from link.frames.rotations import matrix_from_quaternion, quaternion_from_roll_pitch_yaw
 from scenarios.camera.lens import CAMERA, SIZE_PX
-from scenarios.camera.rendering import Light, Renderer, Vehicle, View
+from scenarios.camera.lighting import Light
+from scenarios.camera.planes import View
+from scenarios.camera.rendering import Renderer, Vehicle
 from scenarios.eyes.study import BOARD_M, ROOF_M
 from scenarios.simulation.camera_scene import MOUNTING, RenderedPicture
 

@@ -141,6 +141,7 @@ def outputs_of(flight: Flight, config: CompanionConfig) -> dict[str, list[RosMes
         flight.keys,
         system_id=flight.head.number("system_id"),
         dry_run=flight.head.value("dry_run") == "true",
+        is_component=True,  # where ground stations were not heard, none has said anything
         recorder=recorder,
     )
     for record in flight.inputs:
