@@ -149,6 +149,7 @@ def companion(
         )
         from companion.runtime.build import build_node
         from companion.runtime.loop import run
+        from companion.runtime.open_links import open_links
         from companion.runtime.options import Links, LoopOptions
 
         if folder is not None or foxglove is not None:
@@ -168,7 +169,14 @@ def companion(
             signing=signing,
         )
         transport.receive(0.0)  # what has come meanwhile is old, and its time of receipt is not known
-        options = LoopOptions(device=mavlink, timeout_s=timeout, start=start, use_sim_time=use_sim_time, tlog=tlog)
+        options = LoopOptions(
+            device=mavlink,
+            timeout_s=timeout,
+            start=start,
+            use_sim_time=use_sim_time,
+            tlog=tlog,
+            open_to_strangers=open_links(endpoints, mavlink, signs=signing is not None),
+        )
         timings = run(node, Links(keys=keys, transport=transport, zenoh=zenoh, signing=memory), options)
     if recorder is not None and recorder.dropped:
         where = "Foxglove's server" if folder is None else f"the disk of {folder}"
