@@ -18,6 +18,7 @@ from companion.check.command import (
     check,
 )
 from companion.config.companion import AutopilotKind, Guide, ReceiverFrames
+from companion.runtime.examples import EXAMPLES
 from companion.runtime.keys import keys
 from companion.runtime.reasons import reasons
 from link.errors import UserError
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
     from companion.recording.sink import MessageStore
     from link.zenoh.keys import Keys
 
-app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.")
+app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.", EXAMPLES)
 app.command("check")(check)
 app.command("keys")(keys)
 app.command("reasons")(reasons)
@@ -148,6 +149,7 @@ def companion(
         )
         from companion.runtime.build import build_node
         from companion.runtime.loop import run
+        from companion.runtime.open_links import open_links
         from companion.runtime.options import Links, LoopOptions
 
         if folder is not None or foxglove is not None:
@@ -167,7 +169,14 @@ def companion(
             signing=signing,
         )
         transport.receive(0.0)  # what has come meanwhile is old, and its time of receipt is not known
-        options = LoopOptions(device=mavlink, timeout_s=timeout, start=start, use_sim_time=use_sim_time, tlog=tlog)
+        options = LoopOptions(
+            device=mavlink,
+            timeout_s=timeout,
+            start=start,
+            use_sim_time=use_sim_time,
+            tlog=tlog,
+            open_to_strangers=open_links(endpoints, mavlink, signs=signing is not None),
+        )
         timings = run(node, Links(keys=keys, transport=transport, zenoh=zenoh, signing=memory), options)
     if recorder is not None and recorder.dropped:
         where = "Foxglove's server" if folder is None else f"the disk of {folder}"

@@ -47,6 +47,7 @@ class EyesLoop:
         self._source = source
         self._keys = keys
         self._zenoh = zenoh
+        zenoh.declare_alive(keys.detector_alive)
         self._own = zenoh.subscribe(keys.record(_OWN))
         self._view_encoding = cdr.encoding_of(CompressedPicture)
         self._question = _PadQuestion()
