@@ -87,6 +87,7 @@ def check(
     from companion.check.findings import read_kept
     from companion.check.session import open_check
     from companion.config.companion import CompanionConfig
+    from companion.runtime.open_links import open_links
     from link.mavlink.signing_memory import open_signing
     from link.mavlink.transports import open_transport
     from link.program.toml_config import load_config
@@ -105,7 +106,14 @@ def check(
             _write(session, back)
             return 0
         keys = Keys(namespace, vehicle, drone)
-        ask = _Question(zenoh=zenoh, keys=keys, duration_s=duration, speed_m_s=speed_max, config=settings)
+        ask = _Question(
+            zenoh=zenoh,
+            keys=keys,
+            duration_s=duration,
+            speed_m_s=speed_max,
+            config=settings,
+            open_links=open_links(options, mavlink, signs=signing is not None),
+        )
         findings = _look(session, ask)
         if set_values:
             _set(session, findings, keep_file, asks=not yes)
@@ -122,15 +130,16 @@ class _Question:
     duration_s: float
     speed_m_s: float
     config: "CompanionConfig"
+    open_links: tuple[str, ...]
 
 
 def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
-    from companion.check.assessment import assess
+    from companion.check.assessment import assess, assess_links
     from companion.check.detector import judge_detector
 
     vehicle, detector = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.chase)
-    findings = assess(session.reader.facts(), vehicle, asked.speed_m_s, asked.config)
-    return [*findings, *judge_detector(detector, asked.config)]
+    seen = assess(session.reader.facts(), vehicle, asked.speed_m_s, asked.config)
+    return [*seen, *judge_detector(detector, asked.config), *assess_links(asked.open_links)]
 
 
 def _show(findings: "list[Finding]", speed_m_s: float, *, as_json: bool) -> int:

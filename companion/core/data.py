@@ -26,6 +26,7 @@ class Quantity(Enum):
     HEADING = "heading"  # yaw of V about W's z, rad (1)
     YAW_RATE = "yaw_rate"  # rad/s (1)
     PAD = "pad"  # the pad's centre in W as seen from the drone, m (3)
+    ACCELERATION = "acceleration"  # along V, horizontal but for gravity by what is not known of the pitch, m/s^2 (1)
 
 
 class Measurement(Struct, frozen=True, kw_only=True, eq=False):

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from companion.eyes import calibration_commands
+from companion.eyes.examples import EXAMPLES
 from companion.eyes.options import BoardOption, CalibrationOption, MountingOption, SizeOption, SourceOption
 from link.errors import UserError
 from link.program.cli import (
@@ -24,7 +25,7 @@ from link.program.cli import (
 )
 from link.program.extras import require
 
-app = make_app("See the landing pad by a camera on the drone, and publish where it is.")
+app = make_app("See the landing pad by a camera on the drone, and publish where it is.", EXAMPLES)
 
 
 @app.callback()

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from contextlib import ExitStack
 
 from companion.autopilots.choice import check_autopilot
-from companion.autopilots.driver import Driver
 from companion.runtime.claims import Claims
 from companion.runtime.command_desk import CommandDesk
 from companion.runtime.computer import ComputerWatch
+from companion.runtime.handover import hand_over
 from companion.runtime.live_state import Onlooker, onlookers
 from companion.runtime.node import CompanionNode
 from companion.runtime.options import Links, LoopOptions, Timings
@@ -28,7 +28,6 @@ from link.recording.log import Log
 from link.recording.recorder import BackgroundRecorder, Recorder
 
 _WAIT_MAX_S = 0.005  # for bytes; Zenoh samples wait no longer than this
-_LEAVE_MAX_S = 1.5  # a mode may be confirmed by the next heartbeat only
 
 
 def run(node: CompanionNode, links: Links, options: LoopOptions) -> Timings:
@@ -95,10 +94,13 @@ class _Loop:
         self._zenoh.serve_later(self._keys.landing_command, self._desk.take)
         spare_present_objects()
         self._log.info("ready", device=self._options.device)
+        self._node.open_to_strangers = self._options.open_to_strangers
+        for opening in self._options.open_to_strangers:
+            self._log.warning("open to strangers", what=opening)
         while not self._stopping:
             self._turn(clock)
         self._service.stopping()
-        self._leave(clock)
+        hand_over(self._node, lambda: self._turn(clock), self._log)
         self._send_rest()
         self._service.close()
         return self._timings
@@ -118,9 +120,9 @@ class _Loop:
             for sample in self._ticks.take():
                 try:
                     if not clock.tick(cdr.decode(ClockTick, sample.payload).t_ns):
-                        self._node.samples.refuse("clock", "stray", "far from the ticks before")
+                        self._node.vehicle.refuse("clock", "stray", "far from the ticks before")
                 except PayloadError as error:
-                    self._node.samples.refuse("clock", "unreadable", str(error))
+                    self._node.vehicle.refuse("clock", "unreadable", str(error))
         return clock.ready
 
     def _wait_for(self, is_there: Callable[[], bool], message: str) -> None:
@@ -195,7 +197,7 @@ class _Loop:
             self._service.status(f"{outputs.status.phase}: {outputs.status.reason}")
         for text in self._node.autopilot.take_texts():
             self._log.info("autopilot", text=text)
-        for refused in self._node.samples.refusals.news(time.monotonic_ns()):
+        for refused in self._node.vehicle.refusals.news(time.monotonic_ns()):
             self._log.warning("data refused", what=refused)
         self._claims.update(self._node.phase, armed=self._node.autopilot.state.view.armed)
         self._say_link()
@@ -228,7 +230,7 @@ class _Loop:
         may_change = self._node.phase not in FLYING_PHASES
         pad = question.poll(time.monotonic(), asks=alive or self._fix_seen, may_change=may_change)
         for _ in range(question.bad_answers - bad):
-            self._node.samples.refuse("pad", "refused", question.refused_why or "")
+            self._node.vehicle.refuse("pad", "refused", question.refused_why or "")
         if question.refused_why != why:
             self._log.warning("the vehicle's description of its pad is refused", why=question.refused_why)
         if pad is not None:
@@ -242,27 +244,6 @@ class _Loop:
         timeout_s = self._options.timeout_s
         check_autopilot(self._node.autopilot.session, self._options.device, timeout_s)
         self._start.check_vehicle(self._keys, timeout_s, fix_seen=self._fix_seen, pad_known=self._node.pad_known)
-
-    def _leave(self, clock: Clock) -> None:
-        """Hand a flying drone over to its autopilot, which may take setpoints that stop for a fault or fly on."""
-        driver = self._node.autopilot.driver
-        if not self._node.flies or driver is None:
-            return
-        self._log.warning("stopped in flight", phase=self._node.phase.value, asks_for=driver.hover_mode)
-        self._node.leave()
-        until_s = time.monotonic() + _LEAVE_MAX_S
-        while self._node.flies and time.monotonic() < until_s:
-            self._turn(clock)
-        self._say_handover(driver)
-
-    def _say_handover(self, driver: Driver) -> None:
-        """Say who flies the drone from here on."""
-        if self._node.flies:
-            self._log.warning("handed over without an answer", autopilot_acts_by=driver.timeout_parameter)
-        elif self._node.autopilot.state.view.armed:
-            self._log.warning("handed over: the autopilot flies the drone", mode=driver.hover_mode)
-        else:
-            self._log.info("the motors are off")
 
     def _send_rest(self) -> None:
         for frame in self._node.take_frames():

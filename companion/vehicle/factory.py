@@ -40,7 +40,7 @@ def make_estimator(
 def _warm_up(kind: EstimatorKind) -> None:
     """Do once all that an estimator can be asked."""
     estimator = _make(EstimatorConfig(), (1.0, 0.0, 0.0), kind)
-    sizes = {Quantity.HEADING: 1, Quantity.YAW_RATE: 1}
+    sizes = {Quantity.HEADING: 1, Quantity.YAW_RATE: 1, Quantity.ACCELERATION: 1}
     memory: EstimatorMemory | None = None
     for i, quantity in enumerate((*Quantity, *Quantity)):
         n = sizes.get(quantity, 3)

@@ -34,12 +34,18 @@ KINDS = {
     Quantity.HEADING: sensors.HEADING,
     Quantity.YAW_RATE: sensors.YAW_RATE,
     Quantity.PAD: sensors.PAD,
+    Quantity.ACCELERATION: sensors.ACCELERATION,
 }
 UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
 PLACE = np.array([0, 1, 8])  # indices of the position
-MOVES = np.array([2, 3, 4, 5, 9, 11, kernels.BEND])  # of what a velocity tells about
 OFFSET = np.array([12, 13, 14])
 CURVATURE, HEADING = 6, 7
+TOLD_BY = {  # what is opened to data of a quantity that were rejected for too long
+    Quantity.VELOCITY: np.array([2, 3, 4, 5, 9, 11, kernels.BEND]),
+    Quantity.HEADING: np.array([HEADING]),
+    Quantity.YAW_RATE: np.array([CURVATURE]),
+    Quantity.ACCELERATION: np.array([kernels.LEAK]),
+}
 CLOCK = kernels.CLOCK
 TURNS = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
 TURN_AGE_MAX_S = 1.0  # of a sensor that is at work: several periods of the slowest
@@ -101,8 +107,10 @@ class ImmModel:
         )
         return replace(state, modes=modes, turn_age_s=state.turn_age_s + dt_s)
 
-    def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState]:
-        """Return the state after any quantity."""
+    def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState] | None:
+        """Return the state after any quantity, None of an acceleration along a heading that is not known."""
+        if measurement.quantity is Quantity.ACCELERATION and not self._is_heading_known(state):
+            return None
         R, bias_variance = measurement.covariance, state.fix_bias_variance_m2
         if measurement.quantity is Quantity.POSITION:
             R, bias_variance = self._split(R)
@@ -124,16 +132,12 @@ class ImmModel:
                 is_start = self.placed_by is Quantity.PAD
                 return self._restart(state, measurement) if is_start else self._move_frame(state, measurement)
             case Quantity.POSITION:
-                step_m = self._step_size(state, measurement)
                 if self._is_placed_by_sightings(state):
-                    return _open(state, OFFSET, np.full(3, step_m**2))
+                    return _open(state, OFFSET, np.full(3, self._step_size(state, measurement) ** 2))
                 return self._restart(state, measurement)
-            case Quantity.VELOCITY:
-                return _open(state, MOVES, self._prior_variances()[MOVES])
-            case Quantity.HEADING:
-                return _open(state, np.array([HEADING]), np.array([UNKNOWN_HEADING_VARIANCE]))
-            case Quantity.YAW_RATE:
-                return _open(state, np.array([CURVATURE]), np.array([self.config.curvature_std_rad_m**2]))
+            case Quantity.VELOCITY | Quantity.HEADING | Quantity.YAW_RATE | Quantity.ACCELERATION:
+                told = TOLD_BY[measurement.quantity]
+                return _open(state, told, self._prior_variances()[told])
             case _:
                 assert_never(measurement.quantity)
 
@@ -186,8 +190,11 @@ class ImmModel:
         """Of a heading that is known, rad^2; while it is not, the kernels leave the lever arm out."""
         return self.config.heading_known_std_rad**2
 
+    def _is_heading_known(self, state: ImmState) -> bool:
+        return bool(mixing.is_heading_known(state.modes, self._known_variance))
+
     def _noises(self, state: ImmState) -> Array:
-        """Both modes' noise, (2, 14), as `imm_kernels.process_noise` takes it."""
+        """Both modes' noise, (2, 15), as `imm_kernels.process_noise` takes it."""
         walk_m2_s = 2.0 * state.fix_bias_variance_m2 / self.config.fix_bias_time_s
         receiver_m2_s = self.config.frame_offset_walk_m2_s + walk_m2_s
         return noises_with(
@@ -198,7 +205,7 @@ class ImmModel:
         )
 
     def _prior_variances(self) -> Array:
-        """Of every state but position, offset and clock, (17,)."""
+        """Of every state but position, offset and clock, (18,)."""
         config = self.config
         speed, acceleration = config.initial_speed_std_m_s**2, config.initial_acceleration_std_m_s2**2
         heave = config.heave_std_m**2
@@ -206,7 +213,8 @@ class ImmModel:
         curvature = config.curvature_std_rad_m**2
         moving = [speed, speed, acceleration, acceleration, curvature, UNKNOWN_HEADING_VARIANCE]
         vertical = [0.0, config.grade_std**2, heave, heave_rate]
-        return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0, config.bend_std_per_m**2])
+        driven = [config.bend_std_per_m**2, config.gravity_leak_std_m_s2**2]
+        return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0, *driven])
 
     def _step_size(self, state: ImmState, measurement: Measurement) -> float:
         """How far, m, a measured place is from the expected one; at least the prior of the offset."""

@@ -52,6 +52,14 @@ def list_scenarios() -> list[Entry]:
     return [Entry(name=name, description=table["description"]) for name, table in sorted(_scenarios().items())]
 
 
+def list_presets() -> dict[str, tuple[str, ...]]:
+    """Return the names of the presets by their section, the default one first."""
+    return {
+        section: tuple(sorted(_presets(section), key=lambda name: (name != default, name)))
+        for section, default in _DEFAULT_PRESETS.items()
+    }
+
+
 def load_scenario(name_or_path: str) -> Scenario:
     """Return the scenario called `name_or_path`, or the one in that TOML file.
 
@@ -77,11 +85,22 @@ def load_scenario(name_or_path: str) -> Scenario:
 
 def _option(option: str, whole: str) -> Table:
     section, equals, preset = option.partition("=")
-    if not equals or section not in {*_DEFAULT_PRESETS, *_PLAIN_OPTIONS}:
-        raise UserError(
-            f"{whole}: '{option}' is none of {', '.join((*_DEFAULT_PRESETS, *_PLAIN_OPTIONS))} with =PRESET"
-        )
+    sections = (*_DEFAULT_PRESETS, *_PLAIN_OPTIONS)
+    if not equals or section not in sections:
+        meant = _meant(section, preset)
+        near = f"did you mean +{meant}?" if meant else f"write one of {', '.join(sections)} with =PRESET"
+        raise UserError(f"{whole}: no preset is called '{option}'; {near} (`scenarios list` shows them)")
     return {section: preset}
+
+
+def _meant(section: str, preset: str) -> str:
+    """Return the option that was probably meant, of any section; empty if none is near."""
+    near = difflib.get_close_matches(section, _DEFAULT_PRESETS, n=1)
+    if preset and near:
+        return f"{near[0]}={preset}"
+    named = {name: f"{one}={name}" for one in _DEFAULT_PRESETS for name in _presets(one)}
+    near = difflib.get_close_matches(preset or section, named, n=1)
+    return named[near[0]] if near else ""
 
 
 def _find_table(name: str, place: str = "") -> Table:
@@ -145,7 +164,9 @@ def _section(section: str, value: object, source: str) -> Table:
         return values
     presets = _presets(section)
     if preset not in presets:
-        raise _unknown(f"preset of {section} ({source})", str(preset), list(presets))
+        others = [one for one in _DEFAULT_PRESETS if preset in _presets(one)]
+        elsewhere = f", or is it +{others[0]}={preset}?" if others else ""
+        raise _unknown(f"preset of {section} ({source})", str(preset), list(presets), elsewhere)
     return merge(presets[preset], values)
 
 

@@ -136,6 +136,28 @@ def test_what_is_asked_for_when_a_step_is_due_is_in_the_next_step() -> None:
     assert len(setup.node.take_replies()) == 1
 
 
+def test_start_for_a_vehicle_that_nothing_is_heard_of_is_refused_with_what_was_refused_and_may_be_forced() -> None:
+    setup = Setup()
+    setup.run(2.0)
+    assert setup.node.is_ready_to_start()
+    setup.fix(late_s=-4.4)
+    setup.run(0.1)
+    desk = CommandDesk()
+    asker, forced = Asker(desk, Command.START), Asker(desk, Command.START_ANYWAY)
+    while not setup.node.is_due(setup.t_ns):
+        setup.t_ns += 1_000_000
+    desk.pass_on(setup.node, setup.t_ns)
+    assert asker.reply() is None
+    desk.answer([ACCEPTED])
+    assert forced.reply() == ACCEPTED
+    desk.pass_on(setup.node, setup.t_ns)
+    reply = asker.reply()
+    assert reply is not None
+    assert not reply.accepted
+    assert "fix: 1 refused, come 4." in reply.reason
+    assert "s before their stamps" in reply.reason
+
+
 def test_reply_that_nobody_waits_for_is_dropped() -> None:
     CommandDesk().answer([ACCEPTED])
 
