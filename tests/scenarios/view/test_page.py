@@ -1,8 +1,8 @@
 """Who may talk to the page, which can fly the drone."""
 
-import socket
 from collections.abc import Iterator
 
+import psutil  # type: ignore[import-untyped]  # it has no annotations
 import pytest
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
@@ -40,6 +40,12 @@ def test_page_of_another_site_is_refused(port: int, origin: str) -> None:
     assert not admits(port, origin)
 
 
-def test_server_listens_on_loopback_only(port: int) -> None:
-    with socket.socket() as other:  # every other address of this machine is still to be had
-        other.bind(("127.0.0.2", port))
+def listening() -> set[tuple[str, int]]:
+    return {tuple(one.laddr) for one in psutil.Process().net_connections(kind="tcp") if one.status == "LISTEN"}
+
+
+def test_server_listens_on_one_port_of_loopback_and_on_no_other() -> None:
+    before = listening()
+    server = open_server(0)
+    assert listening() - before == {("127.0.0.1", server.get_port())}
+    server.stop()
