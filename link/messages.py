@@ -170,3 +170,4 @@ class LandingStatus(Struct, frozen=True, kw_only=True):
     refused: str = ""
     armed: bool
     fix_age_s: float | None
+    open_to_strangers: tuple[str, ...] = ()

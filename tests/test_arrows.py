@@ -27,6 +27,7 @@ HOMES = {
         "link/payloads/ros_images.py",
         "link/payloads/ros_sensors.py",
         "link/ros2/type_hash.py",
+        "link/ros2/gps_fix.py",
     },
     "mcap": {"link/recording/mcap_reader.py", "link/recording/mcap_writer.py"},
     "osqp": {"companion/planning/qp.py"},

@@ -67,6 +67,7 @@ class ArduPilotDriver:
     timeout_default_s = 3.0
     carries_setpoints_on = True
     follows_in_failsafe = True  # a low battery, or a radio lost, with "continue" as its action
+    takes_target_in_body_axes = True
     holds_height_alone = False  # a position that is masked in part is left out as a whole
     speed_parameters = tuple(named.name for names in (_TILT, _TILT_BY_POSITION, _SPEED) for named in names)
     mode_streams_hz: Mapping[int, float] = MappingProxyType({mavlink.MAVLINK_MSG_ID_HEARTBEAT: 10.0})

@@ -144,6 +144,10 @@ class Driver(Protocol):
         """Whether it flies setpoints whose position is a height only, with the velocity on all axes."""
 
     @property
+    def takes_target_in_body_axes(self) -> bool:
+        """Whether its precision landing takes the way to the pad in the drone's axes, no place in the local frame."""
+
+    @property
     def follows_in_failsafe(self) -> bool:
         """Whether it may report a failsafe and follow setpoints on: that a mode is flown by one is told by the mode."""
 

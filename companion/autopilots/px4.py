@@ -45,6 +45,7 @@ class Px4Driver:
     timeout_default_s = 1.0
     carries_setpoints_on = False  # it holds them as they came
     holds_height_alone = True
+    takes_target_in_body_axes = False
     follows_in_failsafe = False  # what it only warns of is none
     speed_parameters: tuple[str, ...] = ("MPC_XY_VEL_MAX",)
     mode_streams_hz: Mapping[int, float] = MappingProxyType({mavlink.MAVLINK_MSG_ID_CURRENT_MODE: 20.0})

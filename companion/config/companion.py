@@ -36,6 +36,13 @@ class ReceiverFrames(Enum):
     APART = "apart"  # by two: the pad has to be seen
 
 
+class Guide(Enum):
+    """What the companion lands by."""
+
+    SETPOINTS = "setpoints"
+    PRECLAND = "precland"  # it tells the autopilot's own precision landing where the pad is, and commands nothing
+
+
 class PadOnMap(Enum):
     """As what ground stations are told where the pad is."""
 
@@ -107,6 +114,7 @@ class CompanionConfig(StrictModel):
     # A vehicle without telemetry; none: the vehicle tells where it is, and how its pad lies on it.
     silent_vehicle: SilentVehicleConfig | None = None
     stops_unused_streams: bool = True  # on the companion's own link; false where others listen on it, too
+    guide: Guide = Guide.SETPOINTS
     # Whoever sends to the autopilot's link can start and break off a landing by it, as it can command the autopilot.
     takes_mavlink_commands: bool = True
     pad_on_map: PadOnMap = PadOnMap.FOLLOW_TARGET  # told at 2 Hz, by MAVLink

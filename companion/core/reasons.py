@@ -131,6 +131,7 @@ class Reason(Enum):
 
     # A command is refused.
     NOTHING_TO_DO = "nothing to {} in phase {}"
+    GUIDES_ONLY = "guides the autopilot's own precision landing, and flies nothing: choose that mode"
     NO_AUTOPILOT = "no autopilot is connected"
     NO_ORIGIN = "the autopilot has no origin yet"
     VEHICLE_UNHEARD = "nothing usable has come from the vehicle{}: see its program and clock, --vehicle and -e"

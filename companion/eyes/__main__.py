@@ -6,7 +6,9 @@ from typing import Annotated
 
 import typer
 
+from companion.eyes import calibration_commands
 from companion.eyes.examples import EXAMPLES
+from companion.eyes.options import BoardOption, CalibrationOption, MountingOption, SizeOption, SourceOption
 from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
@@ -25,10 +27,6 @@ from link.program.extras import require
 
 app = make_app("See the landing pad by a camera on the drone, and publish where it is.", EXAMPLES)
 
-BoardOption = Annotated[
-    Path | None, typer.Option("--board", metavar="FILE", help="The board, in TOML [default: 1.5 m, ids 0 to 62].")
-]
-
 
 @app.callback()
 def pad_detector() -> None:
@@ -36,26 +34,6 @@ def pad_detector() -> None:
     require("camera", "pad-detector")
 
 
-_SourceOption = Annotated[
-    str,
-    typer.Option(
-        "--source",
-        metavar="CAMERA",
-        help="/dev/videoN, rtsp://HOST/PATH, a video file, a folder of pictures, or zenoh.",
-    ),
-]
-_CalibrationOption = Annotated[
-    Path,
-    typer.Option("--calibration", metavar="FILE", help="Of the camera: ROS camera_info or kalibr's camchain, YAML."),
-]
-_MountingOption = Annotated[
-    Path | None,
-    typer.Option("--mounting", metavar="FILE", help="Of the camera on the drone, TOML [default: straight down]."),
-]
-_SizeOption = Annotated[
-    tuple[int, int] | None,
-    typer.Option("--size", metavar="WIDTH HEIGHT", help="Pixels to ask of the camera [default: the calibration's]."),
-]
 _LatencyOption = Annotated[
     float,
     typer.Option(
@@ -69,11 +47,11 @@ _RateOption = Annotated[
 
 @app.command("run")
 def run_detector(
-    calibration: _CalibrationOption,
-    source: _SourceOption = "/dev/video0",
+    calibration: CalibrationOption,
+    source: SourceOption = "/dev/video0",
     board: BoardOption = None,
-    mounting: _MountingOption = None,
-    size: _SizeOption = None,
+    mounting: MountingOption = None,
+    size: SizeOption = None,
     latency: _LatencyOption = 0.03,
     rate: _RateOption = 30.0,
     namespace: NamespaceOption = "decklander",
@@ -155,6 +133,9 @@ def bench_detector(
 
     table = bench()
     sys.stdout.write((json.dumps(table, indent=2) if as_json else "\n".join(text_lines(table))) + "\n")
+
+
+calibration_commands.register(app)
 
 
 def main() -> None:

@@ -19,7 +19,7 @@ from link.zenoh.inbox import Inbox
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohSession
 
-_WAIT_S = 0.1
+_WAIT_S = 0.05
 _RESTART_EVERY_NS = 1_000_000_000
 _ASK_EVERY_NS = 1_000_000_000
 _OWN = "own"
@@ -47,6 +47,7 @@ class EyesLoop:
         self._source = source
         self._keys = keys
         self._zenoh = zenoh
+        zenoh.declare_alive(keys.detector_alive)
         self._own = zenoh.subscribe(keys.record(_OWN))
         self._view_encoding = cdr.encoding_of(CompressedPicture)
         self._question = _PadQuestion()

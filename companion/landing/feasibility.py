@@ -5,13 +5,13 @@ What cannot be done is not begun. It is told with its numbers, once, and again o
 
 import math
 
-from companion.config.companion import CompanionConfig
+from companion.config.companion import CompanionConfig, Guide
 from companion.core.reasons import Cause, Reason
 from companion.integrity.heights import road_above_ground_m, road_distance_m
 from companion.integrity.vehicle_data import contradicts_itself
 from companion.landing.aborts import is_stamped_ahead
 from companion.landing.conditions import Condition, cause_of, holds, is_fix_old
-from companion.landing.following_height import chase_floor_m
+from companion.landing.following_height import chase_floor_m, vague_height_m
 from companion.landing.memory import Held
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
@@ -127,7 +127,8 @@ def _hover_height_m(s: Situation, height_m: float, c: CompanionConfig) -> float:
 def _is_high(s: Situation, c: CompanionConfig) -> bool:
     if s.approach is None or is_fix_old(s, c) or s.approach.distance_m > c.chase.ground_within_m:
         return False
-    return _hover_height_m(s, s.approach.height_m, c) < chase_floor_m(c)
+    unsure_m = 0.0 if s.pad is None else vague_height_m(s.pad, c)
+    return _hover_height_m(s, s.approach.height_m, c) + unsure_m < chase_floor_m(c)
 
 
 def _high(s: Situation, c: CompanionConfig) -> Cause:
@@ -198,4 +199,6 @@ OBSTACLES = (
 
 def obstacle(held: Held, s: Situation, config: CompanionConfig) -> Cause | None:
     """Return what makes a landing impossible now, with its numbers; None without one."""
+    if config.guide is Guide.PRECLAND:
+        return Cause(Reason.GUIDES_ONLY)
     return next((cause_of(one, s, config) for one in OBSTACLES if holds(one, held, s, config)), None)

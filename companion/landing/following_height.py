@@ -1,4 +1,4 @@
-"""How high the drone follows a pad that it does not land on yet; pure numerics in W."""
+"""How high the drone waits for a pad, and follows one that it does not land on yet; pure numerics in W."""
 
 import math
 
@@ -51,3 +51,25 @@ def _sight_height_m(pad: PadPath, reference: ReferenceState, config: CompanionCo
 def chase_floor_m(config: CompanionConfig) -> float:
     """Return how far the feet stay above the pad before the alignment."""
     return 0.8 * config.descent.align_height_m
+
+
+def vague_height_m(pad: PadPath, config: CompanionConfig) -> float:
+    """Return by how much a pad that has to be seen first may be lower than it is said to be; 0 for any other."""
+    if not (pad.is_coarse and is_unseen(pad, config)):
+        return 0.0
+    return min(config.chase.unseen_height_stds * float(pad.position_std_m[0, 2]), config.chase.unseen_height_max_m)
+
+
+def waiting_rise_m(height_m: float, pad: PadPath, config: CompanionConfig) -> float:
+    """Return how much higher the drone waits for a pad whose height is vague, to be clear of where its roof may be.
+
+    A roof that is said to be too high for the chase may well be lower: the drone climbs and looks. One that is too high
+    by more than what its height is unsure is refused.
+
+    Args:
+        height_m: of the place where the drone is to wait above the pad.
+        pad: as it is told.
+        config: all numbers.
+    """
+    lacking_m, unsure_m = chase_floor_m(config) - height_m, vague_height_m(pad, config)
+    return min(lacking_m + config.takeoff.reached_distance_m, unsure_m) if 0.0 < lacking_m < unsure_m else 0.0

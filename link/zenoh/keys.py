@@ -83,6 +83,11 @@ class Keys:
         return f"{self.namespace}/{self.drone}/pad_view/compressed"
 
     @property
+    def detector_alive(self) -> str:
+        """The liveliness token of `pad-detector`."""
+        return f"{self.namespace}/{self.drone}/pad_detector/alive"
+
+    @property
     def landing_status(self) -> str:
         """How the landing goes, `link.messages.LandingStatus`."""
         return f"{self.namespace}/{self.drone}/landing/status"

@@ -2,11 +2,12 @@
 
 import json
 import re
+from typing import TypedDict
 
 import zenoh
 
 from link.errors import UserError
-from link.zenoh.exposure import check_exposure
+from link.zenoh.exposure import check_exposure, openings_of
 from link.zenoh.options import DEFAULT_ENDPOINT, ZenohOptions
 
 _SOURCE_PLACE = re.compile(r"\s+at /\S+\.rs:\d+\.?")
@@ -46,7 +47,7 @@ def _config(options: ZenohOptions) -> zenoh.Config:
         own = [] if options.config_file or _get(config, "mode") == "client" else ["tcp/127.0.0.1:0"]
         _insert(config, "listen/endpoints", own)
     if not options.insecure:
-        _check_exposure(config)
+        check_exposure(**_exposure(config))
     if _get(config, "mode") != "router" and _get(config, _MESSAGE_MAX_KEY) == _get(zenoh.Config(), _MESSAGE_MAX_KEY):
         _insert(config, _MESSAGE_MAX_KEY, options.message_max_bytes)
     if _get(config, _BLOCK_MAX_KEY) == _get(zenoh.Config(), _BLOCK_MAX_KEY):
@@ -54,9 +55,27 @@ def _config(options: ZenohOptions) -> zenoh.Config:
     return config
 
 
-def _check_exposure(config: zenoh.Config) -> None:
+def openings(options: ZenohOptions) -> tuple[str, ...]:
+    """Return by what strangers could take part in a session of these options, in words.
+
+    Raises:
+        UserError: If the configuration file is missing or wrong.
+    """
+    config = _config(options)
+    return openings_of(**_exposure(config), has_rules=_get(config, "access_control/enabled") is True)
+
+
+class _Exposure(TypedDict):
+    connect: list[str]
+    listen: list[str]
+    protocols: list[str] | None
+    is_mutual: bool
+    scouts: bool
+
+
+def _exposure(config: zenoh.Config) -> _Exposure:
     protocols = _get(config, "transport/link/protocols")
-    check_exposure(
+    return _Exposure(
         connect=_endpoints(config, "connect/endpoints"),
         listen=_endpoints(config, "listen/endpoints"),
         protocols=protocols if isinstance(protocols, list) else None,

@@ -18,7 +18,7 @@ from scenarios.simulation.simulation import STEP_NS
 _STEP_S = STEP_NS * 1e-9
 _REACHED_MAX_S = 60.0
 _FOREVER_NS = 2**62
-_COMMANDED: Mapping[Phase, tuple[Phase, Command]] = {
+COMMANDED: Mapping[Phase, tuple[Phase, Command]] = {
     Phase.ABORT: (Phase.CHASE, Command.ABORT),
     Phase.HOLD: (Phase.WAITING, Command.HOLD),
 }
@@ -74,7 +74,7 @@ class FaultFlight(Lockstep):
         Raises:
             ValueError: it is not reached.
         """
-        before, command = _COMMANDED.get(phase, (phase, None))
+        before, command = COMMANDED.get(phase, (phase, None))
         while self.phase is not before:
             self.step()
             if self.recording.elapsed_s > _REACHED_MAX_S:

@@ -1,11 +1,13 @@
-"""One case of the fault matrix, flown in lockstep until it is over.
+"""One case of the fault matrix, flown until it is over, in lockstep or over the wire.
 
 Judged on ground truth and by what goes over the link, never by what the companion believes.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import acos, hypot
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from companion.situation.phases import Phase
 from scenarios.catalogue.catalogue import load_scenario
@@ -13,6 +15,7 @@ from scenarios.config import FirmwareName, Scenario
 from scenarios.faults.flight import FaultFlight
 from scenarios.faults.injection import inject
 from scenarios.faults.matrix import EXPECTED, Case
+from scenarios.faults.wire_flight import WireFlight
 from scenarios.recordings.result import score_run
 from scenarios.scoring.score import Tier
 
@@ -77,19 +80,26 @@ def scenario_of(firmware: FirmwareName) -> Scenario:
 
 
 def fly_case(case: Case) -> Ended:
-    """Fly until the case is over."""
+    """Fly until the case is over, in lockstep."""
     flight = FaultFlight(scenario_of(case.firmware), SEED)
     flight.fly_to(case.phase)
-    return fly_on(flight, case)
+    return _fly_on(flight, case, lambda: inject(case.fault, flight))
 
 
-def fly_on(flight: FaultFlight, case: Case) -> Ended:
+def fly_case_over_wire(case: Case) -> Ended:
+    """Fly until the case is over, with real programs; its fault is one of `WIRE_FAULTS`."""
+    with TemporaryDirectory() as folder, WireFlight(scenario_of(case.firmware), SEED, Path(folder)) as flight:
+        flight.fly_to(case.phase)
+        return _fly_on(flight, case, lambda: flight.inject(case.fault))
+
+
+def _fly_on(flight: FaultFlight | WireFlight, case: Case, fail: Callable[[], float]) -> Ended:
     """Let the case's fault happen in a flight that has just come to its phase, and fly until it is over."""
     while case.phase is Phase.TAKEOFF and flight.height_m < _AIRBORNE_M:
         flight.step()
     flight.fly(_DELAY_S.get(case.phase, _SHORT_S))
     began = len(flight.recording.drone)
-    setpoints, taken_back = _fly_until_decided(flight, inject(case.fault, flight))
+    setpoints, taken_back = _fly_until_decided(flight, fail())
     _fly_to_rest(flight)
     score = score_run(flight.scenario, SEED, flight.recording)
     return Ended(
@@ -120,7 +130,7 @@ def lost(case: Case, why: str) -> Ended:
     )
 
 
-def _fly_until_decided(flight: FaultFlight, lasts_s: float) -> tuple[int, bool]:
+def _fly_until_decided(flight: FaultFlight | WireFlight, lasts_s: float) -> tuple[int, bool]:
     """Go on until a lasting phase has been kept since a fault that lasts for `lasts_s`.
 
     Return the setpoints that were sent, and whether they were flown, when the companion was out.
@@ -144,7 +154,7 @@ def _fly_until_decided(flight: FaultFlight, lasts_s: float) -> tuple[int, bool]:
     return flight.setpoints - sent if phase in _OUT else 0, taken_back
 
 
-def _fly_to_rest(flight: FaultFlight) -> None:
+def _fly_to_rest(flight: FaultFlight | WireFlight) -> None:
     """Go on until the drone hovers or its motors stand still, for what the autopilot does by itself takes its time."""
     now_s = flight.recording.elapsed_s
     end_s, moved_s = now_s + _TO_REST_S, now_s
@@ -154,7 +164,7 @@ def _fly_to_rest(flight: FaultFlight) -> None:
             moved_s = flight.recording.elapsed_s
 
 
-def _are_motors_off(flight: FaultFlight) -> bool:
+def _are_motors_off(flight: FaultFlight | WireFlight) -> bool:
     return max(flight.recording.rotors[-1].speed_rad_s) < _MOTORS_OFF_RAD_S
 
 

@@ -141,8 +141,8 @@ class Setup:
             for frame in self.node.take_frames():
                 self.autopilot.receive(frame, self.t_ns)
 
-    def fix(self, place_enu_m: Vector3 = (-30.0, 0.4, PAD_HEIGHT_M), late_s: float = 0.0) -> None:
-        """Send a fix of a vehicle, made `late_s` ago."""
+    def fix(self, place_enu_m: Vector3 = (-30.0, 0.4, PAD_HEIGHT_M), late_s: float = 0.0, std_m: float = 0.0) -> None:
+        """Send a fix of a vehicle, made `late_s` ago; without a deviation it states none."""
         frame = self.node.autopilot.state.view.frame or FRAME
         latitude_rad, longitude_rad, altitude_m = geodetic_from_local(frame, place_enu_m)
         message = Fix(
@@ -150,5 +150,6 @@ class Setup:
             latitude_rad=latitude_rad,
             longitude_rad=longitude_rad,
             altitude_m=altitude_m,
+            covariance_enu_m2=(std_m**2, 0.0, 0.0, 0.0, std_m**2, 0.0, 0.0, 0.0, std_m**2) if std_m else None,
         )
         self.node.receive_sample(KEYS.fix, cdr.encode(message))

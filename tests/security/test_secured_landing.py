@@ -18,8 +18,8 @@ from tests.integration.observer import Observer
 from tests.integration.programs import Programs, until
 from tests.security.secured import STRANGER, Secured, secured
 
-# Forty seconds, since simulated time, which would be faster, is denied to all by these files.
-pytestmark = [pytest.mark.wire, pytest.mark.alone]
+# Forty seconds of waiting, since simulated time, which would be faster, is denied to all by these files.
+pytestmark = pytest.mark.wire
 
 KEYS = Keys()
 FORGED = b"forged"

@@ -46,9 +46,19 @@ class Station:
 
 def _ready() -> Station:
     station = Station()
-    station.setup.run(3.0)
+    station.setup.run(3.0, station.setup.fix)
     assert station.setup.node.is_ready_to_start()
+    assert station.setup.node.vehicle_heard
     return station
+
+
+def test_start_for_a_vehicle_that_was_never_heard_is_refused() -> None:
+    station = Station()
+    station.setup.run(3.0)
+    station.command(START)
+    station.setup.run(0.5)
+    assert station.answers(START) == [(REJECTED, 255)]
+    assert station.setup.node.phase is Phase.IDLE
 
 
 def test_start_is_in_progress_until_an_abort_cancels_it() -> None:

@@ -147,6 +147,7 @@ def test_start_for_a_vehicle_that_nothing_is_heard_of_is_refused_with_what_was_r
     while not setup.node.is_due(setup.t_ns):
         setup.t_ns += 1_000_000
     desk.pass_on(setup.node, setup.t_ns)
+    assert asker.reply() is None
     desk.answer([ACCEPTED])
     assert forced.reply() == ACCEPTED
     desk.pass_on(setup.node, setup.t_ns)
