@@ -1,6 +1,7 @@
 """Who may talk to the page, which can fly the drone."""
 
 from collections.abc import Iterator
+from urllib.request import urlopen
 
 import psutil  # type: ignore[import-untyped]  # it has no annotations
 import pytest
@@ -8,14 +9,17 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
+from scenarios.view.client_page import write_client_page
 from scenarios.view.page import open_server
 
 WAIT_S = 20.0
 
 
 @pytest.fixture(scope="module")
-def port() -> Iterator[int]:
-    server = open_server(0)
+def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
+    files = tmp_path_factory.mktemp("page")
+    write_client_page(files)
+    server = open_server(0, files)
     yield server.get_port()
     server.stop()
 
@@ -49,3 +53,11 @@ def test_server_listens_on_one_port_of_loopback_and_on_no_other() -> None:
     server = open_server(0)
     assert listening() - before == {("127.0.0.1", server.get_port())}
     server.stop()
+
+
+def test_page_has_our_title_and_icon_and_leaves_room_on_a_phone(port: int) -> None:
+    with urlopen(f"http://127.0.0.1:{port}/", timeout=WAIT_S) as answer:
+        page = answer.read().decode()
+    assert "<title>Decklander</title>" in page
+    assert 'rel="icon"' in page
+    assert "max-height: 40%" in page
