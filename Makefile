@@ -9,33 +9,47 @@ FRAMES ?= 200000
 EXTRA ?=
 LOCK := requirements$(if $(EXTRA),-$(EXTRA)).lock
 
-.PHONY: setup demo test check docs lint lock fuzz clean
+# Two cores: the kernels compile while the sources are checked, and the fast tests run beside the types.
+MAKEFLAGS += --jobs=2
+# Byte code is kept whatever the environment says: the tests start hundreds of programs, and each would compile its sources.
+unexport PYTHONDONTWRITEBYTECODE
+# The only files with tests of the two kinds, so that not all of the others are loaded for them.
+WIRE = $(shell grep -rlF pytest.mark.wire tests --include='test_*.py' | sort)
+ALONE = $(shell grep -rlF pytest.mark.alone tests --include='test_*.py' | sort)
 
-setup: .venv/.complete
+.PHONY: setup demo test check fast docs lint style types lock fuzz clean
 
+setup: .venv/.kernels
+
+# On a drone all is compiled to byte code now, for programs that may write none there; else what is loaded is, when it is.
 .venv/.complete: $(LOCK) pyproject.toml
 	rm -rf .venv
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --no-deps --require-hashes -r $(LOCK)
+	$(BIN)/python -m pip install --quiet --no-deps --require-hashes $(if $(EXTRA),,--no-compile) -r $(LOCK)
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	touch $@
+
+.venv/.kernels: .venv/.complete
 	$(BIN)/python -m scenarios.lockstep.warm_up
 	touch $@
 
-demo: .venv/.complete
+demo: .venv/.kernels
 	$(BIN)/scenarios run $(SCENARIO)$(if $(CAMERA),+camera=$(CAMERA)) --speed $(SPEED) --seed $(SEED)
 
-check: lint
+check: fast lint
+
+fast: .venv/.kernels
 	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "not slow and not wire"
 
 # What keeps time with the clock runs after the rest: what mostly waits three at a time, what takes both cores by itself.
 # A module's tests share what they fly; in the order of the files the many short ones come last.
-test: lint docs
+test: .venv/.kernels lint docs
 	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "not wire"
-	$(BIN)/pytest -q -n 3 --dist loadscope -m "wire and not alone"
-	$(BIN)/pytest -q -m alone
+	$(BIN)/pytest -q -n 3 --dist loadscope -m "wire and not alone" $(WIRE)
+	$(BIN)/pytest -q -m alone $(ALONE)
 
 # Drawn anew each time; FRAMES=10000000 goes on for longer. What it finds becomes an example in tests/security.
-fuzz: .venv/.complete
+fuzz: .venv/.kernels
 	$(BIN)/scenarios fuzz --frames $(FRAMES) --seed $$(od -An -N4 -tu4 /dev/urandom | tr -d ' ')
 	$(BIN)/pytest -q -n 2 --hypothesis-profile=anew -m "hypothesis and not wire"
 
@@ -43,9 +57,13 @@ fuzz: .venv/.complete
 docs: .venv/.complete
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict --config-file docs/manual/mkdocs.yml
 
-lint: .venv/.complete
+lint: types style
+
+style: .venv/.complete
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
+
+types: .venv/.complete
 	$(BIN)/mypy
 
 # Needs uv; the locks carry hashes and name no package index. The drone's has the versions of the other.

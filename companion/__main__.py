@@ -17,8 +17,10 @@ from companion.check.command import (
     SystemIdOption,
     check,
 )
-from companion.config.companion import AutopilotKind, ReceiverFrames
+from companion.config.companion import AutopilotKind, Guide, ReceiverFrames
+from companion.runtime.examples import EXAMPLES
 from companion.runtime.keys import keys
+from companion.runtime.reasons import reasons
 from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
@@ -42,9 +44,10 @@ if TYPE_CHECKING:
     from companion.recording.sink import MessageStore
     from link.zenoh.keys import Keys
 
-app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.")
+app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.", EXAMPLES)
 app.command("check")(check)
 app.command("keys")(keys)
+app.command("reasons")(reasons)
 
 _PrintConfigOption = Annotated[bool, typer.Option("--print-config", help="Print the configuration and end.")]
 _StartOption = Annotated[bool, typer.Option("--start", help="Arm, take off and land without an operator's command.")]
@@ -59,6 +62,10 @@ _AutopilotOption = Annotated[
 _FramesOption = Annotated[
     ReceiverFrames | None,
     typer.Option("--receiver-frames", help="In place of the configuration's: whether both receivers have one frame."),
+]
+_GuideOption = Annotated[
+    Guide | None,
+    typer.Option("--guide", help="Land by setpoints, or only guide the autopilot's own precision landing."),
 ]
 _TlogOption = Annotated[Path | None, typer.Option("--tlog", metavar="FILE", help="Record MAVLink into this file.")]
 _RecordOption = Annotated[
@@ -81,6 +88,7 @@ def companion(
     use_sim_time: _UseSimTimeOption = False,
     autopilot: _AutopilotOption = None,
     receiver_frames: _FramesOption = None,
+    guide: _GuideOption = None,
     system_id: SystemIdOption = 1,
     signing_key: SigningKeyOption = None,
     signing_stamps: SigningStampsOption = None,
@@ -107,8 +115,10 @@ def companion(
     from link.program.toml_config import dump_toml, load_config
 
     settings = load_config(config, CompanionConfig)
-    given = {"autopilot": autopilot, "receiver_frames": receiver_frames}
+    given = {"autopilot": autopilot, "receiver_frames": receiver_frames, "guide": guide}
     settings = settings.model_copy(update={name: value for name, value in given.items() if value is not None})
+    if start and settings.guide is Guide.PRECLAND:
+        raise UserError("--start: with --guide precland the autopilot's own mode begins the landing; leave one out")
     if print_config:
         sys.stdout.write(dump_toml(settings))
         return
@@ -139,6 +149,7 @@ def companion(
         )
         from companion.runtime.build import build_node
         from companion.runtime.loop import run
+        from companion.runtime.open_links import open_links
         from companion.runtime.options import Links, LoopOptions
 
         if folder is not None or foxglove is not None:
@@ -152,12 +163,20 @@ def companion(
             keys,
             system_id=system_id,
             dry_run=dry_run,
+            is_component=True,
             records_input=tlog is not None,
             recorder=recorder,
             signing=signing,
         )
         transport.receive(0.0)  # what has come meanwhile is old, and its time of receipt is not known
-        options = LoopOptions(device=mavlink, timeout_s=timeout, start=start, use_sim_time=use_sim_time, tlog=tlog)
+        options = LoopOptions(
+            device=mavlink,
+            timeout_s=timeout,
+            start=start,
+            use_sim_time=use_sim_time,
+            tlog=tlog,
+            open_to_strangers=open_links(endpoints, mavlink, signs=signing is not None),
+        )
         timings = run(node, Links(keys=keys, transport=transport, zenoh=zenoh, signing=memory), options)
     if recorder is not None and recorder.dropped:
         where = "Foxglove's server" if folder is None else f"the disk of {folder}"

@@ -8,6 +8,7 @@ from companion.config.companion import CompanionConfig
 from companion.core.data import Forecast
 from companion.integrity.frames import are_frames_one, update_fixed_phases
 from companion.integrity.heights import is_road_elsewhere, update_ground, update_pad_raised_m, with_pad_raised
+from companion.integrity.sightings import SightingWatch, update_sightings
 from companion.integrity.vehicle_data import (
     Contradictions,
     FixStamps,
@@ -73,6 +74,7 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
         reply=reply,
         status=landing_status(memory, situation, system.config),
         plan=plan,
+        pad=situation.pad,
     )
     return memory, outputs
 
@@ -95,9 +97,11 @@ def _update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) 
     estimator, now_ns = vehicle.estimator, inputs.monotonic_ns
     if inputs.measurements:
         estimator = system.estimator.fuse(estimator, inputs.measurements)
-    contradictions = vehicle.contradictions
+    contradictions, sightings = vehicle.contradictions, vehicle.sightings
     if contradictions.is_due(now_ns):
-        contradictions = update_contradictions(contradictions, system.estimator.health(estimator), now_ns)
+        health = system.estimator.health(estimator)
+        contradictions = update_contradictions(contradictions, health, now_ns)
+        sightings = update_sightings(sightings, health, system.config)
     return replace(
         vehicle,
         estimator=estimator,
@@ -109,8 +113,11 @@ def _update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) 
             monotonic_ns=now_ns,
             config=system.config.descent,
         ),
-        fix_stamps=update_fix_stamps(vehicle.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns),
+        fix_stamps=update_fix_stamps(
+            vehicle.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns, inputs.fix_ahead_s
+        ),
         contradictions=contradictions,
+        sightings=sightings,
         phases=update_fixed_phases(
             vehicle.phases, inputs.measurements, now_ns, drone_is_fixed=inputs.autopilot.receiver_is_fixed
         ),
@@ -132,6 +139,7 @@ def _in_present_utc(vehicle: VehicleMemory, inputs: StepInputs) -> VehicleMemory
         surprise=forget_beliefs(vehicle.surprise),
         fix_stamps=FixStamps(),
         contradictions=Contradictions(),
+        sightings=SightingWatch(),
     )
 
 
@@ -172,7 +180,9 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             fix_age_on_arrival_s=vehicle.fix_stamps.age_on_arrival_s,
             is_alive=inputs.vehicle_alive,
             speed_std_m_s=vehicle.surprise.speed_std_m_s,
+            fix_std_m=vehicle.phases.vehicle_std_m,
             rejected_share=vehicle.contradictions.rejected_share,
+            are_sightings_mixed=vehicle.sightings.are_mixed,
             is_road_elsewhere=vehicle.is_road_elsewhere,
         ),
         below=Below(
@@ -187,6 +197,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             memory.model.reference, inputs.response, inputs.link_delay.std_s, system.config.abort.tracking_stds_max
         ),
         waiting_point_enu_m=memory.places.waiting_point_enu_m,
+        rival=inputs.rival,
         limits=inputs.limits,
         speed_limited_by=() if inputs.driver is None else inputs.driver.speed_parameters,
     )

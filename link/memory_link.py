@@ -21,6 +21,7 @@ class MemoryLink:
         loss: probability that a packet is lost.
         duplication: probability that a packet comes twice, each copy with its own delay.
         corruption: probability that one bit of a packet is flipped.
+        truncation: probability that a packet is cut short.
         reorder: whether a packet with a shorter delay overtakes one put before it.
         outages_ns: spans from start to end, during which whatever is put is lost.
 
@@ -37,21 +38,31 @@ class MemoryLink:
         loss: float = 0.0,
         duplication: float = 0.0,
         corruption: float = 0.0,
+        truncation: float = 0.0,
         reorder: bool = True,
         outages_ns: Sequence[tuple[int, int]] = (),
     ) -> None:
-        _check(delay_s=delay_s, jitter_s=jitter_s, loss=loss, duplication=duplication, corruption=corruption)
+        _check(delay_s=delay_s, jitter_s=jitter_s, loss=loss, duplication=duplication)
         self._draws = _draws(np.random.default_rng(seed))
         self._delay_ns = round(delay_s * NS_PER_S)
         self._jitter_ns = round(jitter_s * NS_PER_S)
         self._loss = loss
         self._duplication = duplication
-        self._corruption = corruption
+        self.spoil(corruption=corruption, truncation=truncation)
         self._reorder = reorder
         self._outages_ns = tuple(outages_ns)
         self._last_due_ns: int | None = None
         self._packets_put = 0
         self._waiting: list[tuple[int, int, bytes]] = []
+
+    def spoil(self, *, corruption: float = 0.0, truncation: float = 0.0) -> None:
+        """Spoils packets with these probabilities from now on, in place of those before.
+
+        Raises:
+            ValueError: A probability is outside 0 to 1, or both together are.
+        """
+        _check(corruption=corruption, truncation=truncation, spoilt=corruption + truncation)
+        self._corruption, self._truncation = corruption, truncation
 
     def put(self, data: bytes, t_ns: int) -> None:
         """Sends a packet.
@@ -66,6 +77,8 @@ class MemoryLink:
             return
         if spoil < self._corruption and data:
             data = _with_flipped_bit(data, int(place * len(data) * 8))
+        elif spoil > 1.0 - self._truncation:
+            data = data[: int(place * len(data))]
         self._push(data, t_ns, delay)
         if double < self._duplication:
             self._push(data, t_ns, second_delay)
@@ -108,7 +121,7 @@ def _with_flipped_bit(data: bytes, bit: int) -> bytes:
     return bytes(spoiled)
 
 
-def _check(*, delay_s: float, jitter_s: float, **probabilities: float) -> None:
+def _check(*, delay_s: float = 0.0, jitter_s: float = 0.0, **probabilities: float) -> None:
     for name, value in {"delay_s": delay_s, "jitter_s": jitter_s}.items():
         if not value >= 0.0:
             raise ValueError(f"{name} must not be negative, is {value}")

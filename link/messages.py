@@ -139,6 +139,7 @@ class Command(Enum):
     START = "start"
     ABORT = "abort"
     HOLD = "hold"
+    START_ANYWAY = "start_anyway"  # although nothing usable has come from the vehicle
 
 
 class CommandReply(Struct, frozen=True, kw_only=True):
@@ -152,7 +153,8 @@ class LandingStatus(Struct, frozen=True, kw_only=True):
     """What the companion tells the world about the landing; None where it does not know.
 
     `relative_position_enu_m` is of the drone's feet from the pad's centre: east and north are those of the drone, up is
-    `height_above_pad_m`. `reason_code` names the reason without its numbers, for programs.
+    `height_above_pad_m`. `reason_code` names the reason without its numbers, for programs. `refused` says what of the
+    vehicle's data was refused most in the last 5 s, and why.
     """
 
     stamp_ns: int
@@ -165,5 +167,7 @@ class LandingStatus(Struct, frozen=True, kw_only=True):
     time_to_contact_s: float | None
     mavlink_bad_bytes: int
     zenoh_bad_payloads: int
+    refused: str = ""
     armed: bool
     fix_age_s: float | None
+    open_to_strangers: tuple[str, ...] = ()

@@ -22,8 +22,9 @@ from link.program.cli import (
 )
 from scenarios.commands import bench, camera, campaign, eyes, falsify, faults, fly, fuzz, rare, replay, report, ros2
 from scenarios.commands import view as view_command
+from scenarios.commands.examples import SCENARIOS
 
-app = make_app("Experiments: run landings, score them on ground truth, and report.")
+app = make_app("Experiments: run landings, score them on ground truth, and report.", SCENARIOS)
 
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 SeedOption = Annotated[
@@ -36,19 +37,23 @@ NameArgument = Annotated[
 
 @app.command("list")
 def list_command(*, as_json: JsonOption = False) -> None:
-    """List the scenarios."""
+    """List the scenarios, and the presets that go behind their names."""
     import json
 
-    from scenarios.catalogue.catalogue import list_scenarios
+    from scenarios.catalogue.catalogue import list_presets, list_scenarios
 
-    entries = list_scenarios()
+    entries, presets = list_scenarios(), list_presets()
     if as_json:
         rows = [{"name": entry.name, "description": entry.description} for entry in entries]
-        sys.stdout.write(json.dumps({"scenarios": rows}, indent=2) + "\n")
+        sys.stdout.write(json.dumps({"scenarios": rows, "presets": presets}, indent=2) + "\n")
         return
     width = max(len(entry.name) for entry in entries)
     for entry in entries:
         sys.stdout.write(f"{entry.name:{width}}  {entry.description}\n")
+    sys.stdout.write("\nPresets, the first of each line unless told; such as circle_5+wind=gust+link=nominal:\n")
+    for section, names in presets.items():
+        sys.stdout.write(f"  {section:{width - 2}}  {', '.join(names)}\n")
+    sys.stdout.write(f"  {'firmware':{width - 2}}  px4, ardupilot\n")
 
 
 @app.command("run")
@@ -71,7 +76,9 @@ def run_command(
     from scenarios.catalogue.firmware_option import with_firmware
     from scenarios.catalogue.world_names import run_seed
     from scenarios.commands.run_lines import Reporter
-    from scenarios.wire.run import RunOptions, run_folder, run_in_lockstep, run_over_wire
+    from scenarios.lockstep.run import run_in_lockstep
+    from scenarios.recordings.run_folder import RunOptions, run_folder
+    from scenarios.wire.run import run_over_wire
 
     scenario = load_scenario(name if firmware is None else with_firmware(name, firmware))
     view_port = view_command.port_of_run(lockstep=lockstep, as_json=as_json) if view else None
@@ -120,7 +127,9 @@ def world_command(
 
 @app.command("command")
 def command_command(
-    command: Annotated[str, typer.Argument(metavar="start|abort|hold", help="What the companion is asked for.")],
+    command: Annotated[
+        str, typer.Argument(metavar="start|abort|hold|start_anyway", help="What the companion is asked for.")
+    ],
     *,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",

@@ -44,12 +44,14 @@ class VelocityConfig(DelayConfig):
 
 
 class ImuConfig(DelayConfig):
-    """Heading and yaw rate; a plain compass errs slowly, hence the Gauss-Markov part."""
+    """Heading, yaw rate and acceleration; a plain compass errs slowly, hence the Gauss-Markov part."""
 
     heading_white_rad: NotNegative
     heading_bias_rad: NotNegative = 0.0
     heading_bias_tau_s: Positive = 60.0
     yaw_rate_white_rad_s: NotNegative
+    acceleration_white_m_s2: NotNegative | None = None  # on each axis; None: it tells no acceleration
+    acceleration_bias_m_s2: NotNegative = 0.0  # standard deviation of what does not change in a run
 
 
 class PatternConfig(DelayConfig):
@@ -192,6 +194,7 @@ class Scenario(StrictModel):
     detector: Literal["camera", "model"] = (
         "camera"  # the noise model of `sensors.pattern`, or the camera if there is one
     )
+    telemetry: Literal["vehicle", "none"] = "vehicle"  # none: it tells nothing at all, and has to be seen
     wind: WindConfig = WindConfig()
     link: LinkConfig = LinkConfig()
     vehicle: VehicleConfig = VehicleConfig()
@@ -209,3 +212,8 @@ class Scenario(StrictModel):
     def has_camera(self) -> bool:
         """Whether the pad is seen in rendered frames."""
         return self.camera.sees and self.detector == "camera"
+
+    @property
+    def is_silent(self) -> bool:
+        """Whether the vehicle tells nothing of itself."""
+        return self.telemetry == "none"

@@ -22,6 +22,7 @@ from link.program.cli import (
     make_app,
     run_app,
 )
+from scenarios.commands.examples import GROUND_VEHICLE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 _RECEIVER = "A real vehicle"
 _PAD = "Its pad"
 
-app = make_app("Publish a ground vehicle over Zenoh: its position, velocity, heading and pad.")
+app = make_app("Publish a ground vehicle over Zenoh: its position, velocity, heading and pad.", GROUND_VEHICLE)
 
 _ScenarioOption = Annotated[
     str | None, typer.Option("--scenario", metavar="NAME|FILE", help="Drive this scenario's vehicle.")

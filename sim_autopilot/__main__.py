@@ -23,8 +23,9 @@ from link.program.cli import (
     make_app,
     run_app,
 )
+from sim_autopilot.runtime.examples import EXAMPLES
 
-app = make_app("Simulate a quadrotor under an autopilot that speaks MAVLink.")
+app = make_app("Simulate a quadrotor under an autopilot that speaks MAVLink.", EXAMPLES)
 
 _MavlinkOption = Annotated[
     list[str] | None,

@@ -25,8 +25,9 @@ from sim_autopilot.interfaces import NO_SERVICES, Firmware, Services
 from sim_autopilot.missions.fence import Fence
 from sim_autopilot.missions.flight import NO_PROGRESS, Progress
 from sim_autopilot.missions.items import Item
+from sim_autopilot.plant.config import PlantConfig
 from sim_autopilot.plant.own_state import NO_ERROR, OwnStateModel
-from sim_autopilot.plant.plant import PlantConfig, PlantMemory
+from sim_autopilot.plant.plant import PlantMemory
 from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.safety.failsafes import NOTHING_NOTICED, Watch
 from sim_autopilot.safety.failures import NO_FAILURES, Failures

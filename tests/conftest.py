@@ -9,9 +9,16 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from link.program.clock import spare_present_objects
+
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.register_profile("anew", deadline=None)  # make fuzz
 settings.load_profile("repeatable")
+
+
+def pytest_collection_finish() -> None:
+    """Spare the garbage collector what stays for the whole run: some thousand tests and all that they import."""
+    spare_present_objects()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

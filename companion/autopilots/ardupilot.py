@@ -79,9 +79,11 @@ class ArduPilotDriver:
     projection = Projection.ARDUPILOT
     limit_names = tuple(tuple(named.name for named in names) for names in _LIMITS)
     gain_names = (_POSITION_GAIN, _VELOCITY_GAIN, _INTEGRAL_GAIN)
+    hover_mode = "BRAKE"
     timeout_parameter = "GUID_TIMEOUT"
     timeout_default_s = 3.0
     follows_in_failsafe = True  # a low battery, or a radio lost, with "continue" as its action
+    takes_target_in_body_axes = True
     holds_height_alone = False  # a position that is masked in part is left out as a whole
     speed_parameters = tuple(named.name for names in (_TILT, _TILT_BY_POSITION, _SPEED) for named in names)
     mode_streams_hz: Mapping[int, float] = MappingProxyType({mavlink.MAVLINK_MSG_ID_HEARTBEAT: 10.0})

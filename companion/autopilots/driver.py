@@ -98,6 +98,9 @@ STREAMS_HZ = {
 """Messages that are read of every autopilot beside its motion, by id."""
 
 
+_MOTION_IDS = (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED)
+
+
 class Driver(Protocol):
     """One kind of autopilot."""
 
@@ -122,6 +125,10 @@ class Driver(Protocol):
         """Parameters that `cascade` goes by, each by all of its names."""
 
     @property
+    def hover_mode(self) -> str:
+        """The mode into which it is released, as its pilots call it."""
+
+    @property
     def timeout_parameter(self) -> str:
         """Parameter that says for how many seconds without a setpoint it still waits for one."""
 
@@ -132,6 +139,10 @@ class Driver(Protocol):
     @property
     def holds_height_alone(self) -> bool:
         """Whether it flies setpoints whose position is a height only, with the velocity on all axes."""
+
+    @property
+    def takes_target_in_body_axes(self) -> bool:
+        """Whether its precision landing takes the way to the pad in the drone's axes, no place in the local frame."""
 
     @property
     def follows_in_failsafe(self) -> bool:
@@ -178,3 +189,10 @@ class Driver(Protocol):
 
     def shaping(self, parameters: Mapping[str, float]) -> Shaping | None:
         """Return how it carries setpoints on, from its own parameters; None if it holds them as they came."""
+
+
+def streams_hz(driver: Driver, motion_rate_hz: float, *, stops_unused: bool) -> dict[int, float]:
+    """Return the rate at which each message is asked for, 0 for one that is to be stopped."""
+    motion_hz = dict.fromkeys(_MOTION_IDS, motion_rate_hz)
+    unused_hz = dict.fromkeys(driver.unused_streams if stops_unused else (), 0.0)
+    return motion_hz | STREAMS_HZ | dict(driver.mode_streams_hz) | unused_hz

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from itertools import chain
 
 from companion.autopilots.choice import driver_for
-from companion.autopilots.driver import STREAMS_HZ, AutopilotCommand, AutopilotView, Driver
+from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver, streams_hz
 from companion.autopilots.limits import LimitQuestions, parameter_names
 from companion.autopilots.response import Cascade
 from companion.autopilots.shaping import Shaping
@@ -27,11 +27,9 @@ from link.mavlink.parameters import parameter_value
 from link.mavlink.session import MavlinkSession
 from link.records import replace
 
-_MOTION_IDS = (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED)
 _ASK = mavlink.MAV_CMD_REQUEST_MESSAGE
 _ASK_ORIGIN_NS = 1_000_000_000
 _ASK_KNOWN_ORIGIN_NS = 5_000_000_000
-_TEXT_SIZE = 50  # of a STATUSTEXT
 CLOCK_SET_NS = 200_000_000
 """More than the map to UTC is ever refined by at once: beyond it the clock was set."""
 _LimitsAsked = tuple[FlightLimits, Driver, Mapping[str, float]]
@@ -148,11 +146,6 @@ class AutopilotLink:
                 ticket = self.session.command(command.command, command.parameters, local_ns, attempts=1)
                 self._unanswered[command.command] = ticket
 
-    def send_text(self, text: str) -> None:
-        """Tell the pilot; what is longer than a STATUSTEXT is cut."""
-        cut = f"Decklander {text}".encode("ascii", "replace")[:_TEXT_SIZE]
-        self.session.send(mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_INFO, cut))
-
     def _take(self, events: list[Event], local_ns: int) -> None:
         self._follow_clock(local_ns)
         for event in events:
@@ -222,9 +215,7 @@ class AutopilotLink:
         return apart_s > max(_WAITED_SHARE * self.timeout_s, _WAITED_MIN_S)
 
     def _ask_for_streams(self, driver: Driver, local_ns: int) -> None:
-        motion_hz = dict.fromkeys(_MOTION_IDS, self._motion_rate_hz)
-        unused_hz = dict.fromkeys(driver.unused_streams if self._stops_unused else (), 0.0)
-        for message_id, rate_hz in (motion_hz | STREAMS_HZ | dict(driver.mode_streams_hz) | unused_hz).items():
+        for message_id, rate_hz in streams_hz(driver, self._motion_rate_hz, stops_unused=self._stops_unused).items():
             self.session.request_interval(message_id, rate_hz, local_ns)
         for name in chain(*parameter_names(driver)):
             self.session.read_parameter(name, local_ns)

@@ -33,10 +33,15 @@ _NO_BIAS: Vector3 = (0.0, 0.0, 0.0)
 
 
 def carry(own: OwnState, t_ns: int) -> OwnState:
-    """Return the drone at `t_ns`, carried from a report at its velocity and angular velocity."""
+    """Return the drone at `t_ns`, carried from a report at its velocity and angular velocity.
+
+    The orientation is carried from when it was so, which is before the report: at 2 rad/s half a period of 50 Hz turns
+    by 0.02 rad, and what is seen 8 m away is 0.16 m off.
+    """
     dt_s = (t_ns - own.t_ns) * 1e-9
+    turned_s = dt_s + own.attitude_age_s
     p, q, r = own.angular_velocity_flu_rad_s
-    turn = normalized((1.0, 0.5 * p * dt_s, 0.5 * q * dt_s, 0.5 * r * dt_s))
+    turn = normalized((1.0, 0.5 * p * turned_s, 0.5 * q * turned_s, 0.5 * r * turned_s))
     return replace(
         own,
         t_ns=t_ns,

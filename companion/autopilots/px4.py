@@ -41,9 +41,11 @@ class Px4Driver:
     projection = Projection.PX4
     limit_names = (("MPC_XY_VEL_MAX",), ("MPC_Z_VEL_MAX_UP",), ("MPC_Z_VEL_MAX_DN",), ("MPC_TILTMAX_AIR",))
     gain_names = (("MPC_XY_P",), ("MPC_XY_VEL_P_ACC",), ("MPC_XY_VEL_I_ACC",))
+    hover_mode = "Hold"
     timeout_parameter = "COM_OF_LOSS_T"
     timeout_default_s = 1.0
     holds_height_alone = True
+    takes_target_in_body_axes = False
     follows_in_failsafe = False  # what it only warns of is none
     speed_parameters: tuple[str, ...] = ("MPC_XY_VEL_MAX",)
     mode_streams_hz: Mapping[int, float] = MappingProxyType({mavlink.MAVLINK_MSG_ID_CURRENT_MODE: 20.0})

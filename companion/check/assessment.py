@@ -68,6 +68,15 @@ _FIX_AGE_SHARE = 0.5  # of what aborts a landing
 _FIX_STD_GOOD_M = 0.3
 
 
+def assess_links(open_to_strangers: Sequence[str]) -> list[Finding]:
+    """Return a line for each link that is open to somebody without a key, or one that none is."""
+    if not open_to_strangers:
+        return [pass_line("links", "open to nobody without a key, or to this machine only")]
+    advice = "use keys (companion keys, --zenoh-config, --signing-key), or a network on which nobody else is"
+    reason = "whoever reaches it can end the landing, or fly the drone"
+    return [_finding("links", text, Level.WARN, advice, reason) for text in open_to_strangers]
+
+
 def assess(
     autopilot: AutopilotFacts, vehicle: VehicleFacts | None, speed_m_s: float, config: CompanionConfig
 ) -> list[Finding]:
@@ -198,6 +207,8 @@ def _range_finder(seen: AutopilotFacts) -> Finding:
 
 
 def _vehicle(seen: VehicleFacts, config: CompanionConfig) -> list[Finding]:
+    if config.silent_vehicle is not None:
+        return [pass_line("vehicle", "tells nothing, as the configuration says")]
     if seen.rate_hz <= 0.0 and seen.fix_refused_why is not None:
         advice = f"see what the vehicle publishes on {seen.key}, and whether its receiver has a fix"
         return [_finding("vehicle", f"refused: {seen.fix_refused_why}", Level.FAIL, advice)]

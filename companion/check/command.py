@@ -11,6 +11,7 @@ import typer
 from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
+    DroneOption,
     InsecureOption,
     ListenOption,
     ModeOption,
@@ -74,6 +75,7 @@ def check(
     signing_stamps: SigningStampsOption = None,
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
+    drone: DroneOption = "drone",
     mode: ModeOption = None,
     connect: ConnectOption = None,
     listen: ListenOption = None,
@@ -85,6 +87,7 @@ def check(
     from companion.check.findings import read_kept
     from companion.check.session import open_check
     from companion.config.companion import CompanionConfig
+    from companion.runtime.open_links import open_links
     from link.mavlink.signing_memory import open_signing
     from link.mavlink.transports import open_transport
     from link.program.toml_config import load_config
@@ -102,8 +105,15 @@ def check(
         if back is not None:
             _write(session, back)
             return 0
-        keys = Keys(namespace, vehicle, "drone")
-        ask = _Question(zenoh=zenoh, keys=keys, duration_s=duration, speed_m_s=speed_max, config=settings)
+        keys = Keys(namespace, vehicle, drone)
+        ask = _Question(
+            zenoh=zenoh,
+            keys=keys,
+            duration_s=duration,
+            speed_m_s=speed_max,
+            config=settings,
+            open_links=open_links(options, mavlink, signs=signing is not None),
+        )
         findings = _look(session, ask)
         if set_values:
             set_advised(session, findings, keep_file, asks=not yes)
@@ -120,13 +130,16 @@ class _Question:
     duration_s: float
     speed_m_s: float
     config: "CompanionConfig"
+    open_links: tuple[str, ...]
 
 
 def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
-    from companion.check.assessment import assess
+    from companion.check.assessment import assess, assess_links
+    from companion.check.detector import judge_detector
 
-    vehicle = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.chase)
-    return assess(session.reader.facts(), vehicle, asked.speed_m_s, asked.config)
+    vehicle, detector = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.chase)
+    seen = assess(session.reader.facts(), vehicle, asked.speed_m_s, asked.config)
+    return [*seen, *judge_detector(detector, asked.config), *assess_links(asked.open_links)]
 
 
 def _show(findings: "list[Finding]", speed_m_s: float, *, as_json: bool) -> int:

@@ -1,11 +1,11 @@
 """The companion's configuration: one TOML file, validated once, every value with its unit and source."""
 
 from enum import Enum
-from typing import Annotated
+from typing import Annotated, Self
 
-from pydantic import Field, ValidationInfo, field_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from companion.config.estimation import EstimatorConfig
+from companion.config.estimation import EstimatorConfig, EstimatorKind
 from companion.config.landing import (
     AbortConfig,
     ChaseConfig,
@@ -16,6 +16,7 @@ from companion.config.landing import (
 )
 from companion.config.planning import GuidanceConfig
 from companion.core.data import FlightLimits
+from link.messages import PadGeometry
 from link.program.toml_config import NotNegative, Positive, StrictModel
 
 
@@ -33,6 +34,21 @@ class ReceiverFrames(Enum):
     AUTO = "auto"  # while both have fixed carrier phases, which is taken for corrections of one source
     ONE = "one"  # both are corrected by one base station or network
     APART = "apart"  # by two: the pad has to be seen
+
+
+class Guide(Enum):
+    """What the companion lands by."""
+
+    SETPOINTS = "setpoints"
+    PRECLAND = "precland"  # it tells the autopilot's own precision landing where the pad is, and commands nothing
+
+
+class PadOnMap(Enum):
+    """As what ground stations are told where the pad is."""
+
+    NONE = "none"
+    FOLLOW_TARGET = "follow_target"  # which an autopilot heeds in its follow mode only
+    ADSB = "adsb"  # likewise, and as a vehicle among the traffic, which all ground stations draw
 
 
 class LimitsConfig(StrictModel):
@@ -55,6 +71,18 @@ class LimitsConfig(StrictModel):
         """Return the planner's part of them."""
         names = FlightLimits.__struct_fields__
         return FlightLimits(**{name: value for name, value in self.model_dump().items() if name in names})
+
+
+class SilentVehicleConfig(StrictModel):
+    """A vehicle that tells nothing: what whoever flies knows of its pad, which only sightings place."""
+
+    pad_size_m: tuple[Positive, Positive] = (1.5, 1.5)  # MBZIRC 2017, as is the height
+    pad_height_m: NotNegative = 1.5  # above the road
+
+    @property
+    def pad(self) -> PadGeometry:
+        """The pad as such a vehicle would tell it, whose reference point is the pad's centre."""
+        return PadGeometry(size_m=self.pad_size_m, height_m=self.pad_height_m, antenna_to_pad_m=(0.0, 0.0, 0.0))
 
 
 class RecordingConfig(StrictModel):
@@ -83,7 +111,13 @@ class CompanionConfig(StrictModel):
     geoid_height_m: Annotated[float, Field(ge=-120.0, le=120.0)] | None = None
     # Whether the pad's place follows from both receivers' positions, or has to be seen.
     receiver_frames: ReceiverFrames = ReceiverFrames.AUTO
+    # A vehicle without telemetry; none: the vehicle tells where it is, and how its pad lies on it.
+    silent_vehicle: SilentVehicleConfig | None = None
     stops_unused_streams: bool = True  # on the companion's own link; false where others listen on it, too
+    guide: Guide = Guide.SETPOINTS
+    # Whoever sends to the autopilot's link can start and break off a landing by it, as it can command the autopilot.
+    takes_mavlink_commands: bool = True
+    pad_on_map: PadOnMap = PadOnMap.FOLLOW_TARGET  # told at 2 Hz, by MAVLink
     status_rate_hz: Annotated[float, Field(ge=0.5, le=50.0)] = 10.0
     # By which setpoints are ahead of the drone beside the link's delay; none: as the autopilot takes them.
     setpoint_lead_s: Annotated[float, Field(ge=0.0, le=0.5)] | None = None
@@ -105,3 +139,10 @@ class CompanionConfig(StrictModel):
     estimator: EstimatorConfig = EstimatorConfig()
     guidance: GuidanceConfig = GuidanceConfig()
     recording: RecordingConfig = RecordingConfig()
+
+    @model_validator(mode="after")
+    def _can_start_from_sightings(self) -> Self:
+        if self.silent_vehicle is not None and self.estimator.kind is not EstimatorKind.IMM:
+            kind = self.estimator.kind.value
+            raise ValueError(f"silent_vehicle needs estimator.kind 'imm', since '{kind}' starts on fixes only")
+        return self

@@ -98,6 +98,10 @@ class ImmConfig(StrictModel):
     bend_acceleration_std_m_s2: Positive = 0.3
     bend_length_m: Positive = 10.0
     road_psd_m2_m: NotNegative = 1e-5  # of the height, as ISO 8608 has it for a road of class B (waviness 2)
+    # What gravity adds to an accelerometer along the vehicle: that of the grade above, for as long as 50 m of one grade
+    # last at 10 m/s. A sensor's own offset is less (Bosch BMI088: 0.2 m/s^2).
+    gravity_leak_std_m_s2: Positive = 0.6
+    gravity_leak_time_s: Positive = 5.0
     heave_std_m: Positive = 0.04  # benchmark: `rough_road` heaves 0.1 m at 0.5 to 1 Hz, the others not at all
     heave_frequency_hz: Positive = 0.75
     heave_damping: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.3

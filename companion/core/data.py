@@ -26,6 +26,7 @@ class Quantity(Enum):
     HEADING = "heading"  # yaw of V about W's z, rad (1)
     YAW_RATE = "yaw_rate"  # rad/s (1)
     PAD = "pad"  # the pad's centre in W as seen from the drone, m (3)
+    ACCELERATION = "acceleration"  # along V, horizontal but for gravity by what is not known of the pitch, m/s^2 (1)
 
 
 class Measurement(Struct, frozen=True, kw_only=True, eq=False):
@@ -68,9 +69,11 @@ class Forecast(Struct, frozen=True, kw_only=True, eq=False):
         acceleration_enu_m_s2: (n, 3).
         yaw_rad: (n,), None while the heading is unknown.
         position_std_m: (n, 3) standard deviation; the pad's, where the estimator knows its lever arm.
-        is_coarse: the vehicle's fixes alone are too coarse to land by.
+        is_coarse: the vehicle's fixes alone are too coarse to land by, or it sends none.
         yaw_std_rad: standard deviation of the heading now, 0 where there is none.
         grade: (n,) of the road in the direction of the heading, m of height per m; None where it is not estimated.
+        frame_offset_enu_m: (2,) of the drone's frame from the vehicle's fixes', None where it is not estimated.
+        frame_offset_std_m: standard deviation of either, which sightings of the pad make small.
     """
 
     t_ns: int
@@ -83,6 +86,8 @@ class Forecast(Struct, frozen=True, kw_only=True, eq=False):
     is_coarse: bool = False
     yaw_std_rad: float = 0.0
     grade: Array | None = None
+    frame_offset_enu_m: Array | None = None
+    frame_offset_std_m: float = math.inf
 
 
 class OwnState(Struct, frozen=True, kw_only=True):
@@ -147,3 +152,10 @@ class FlightLimits(Struct, frozen=True, kw_only=True):
 
 GRAVITY_M_S2 = 9.81
 """At mid latitudes; 9.780 at the equator to 9.832 at the poles (WGS 84)."""
+
+
+class Rival(Struct, frozen=True, kw_only=True):
+    """Another companion that was there first: for this drone, or to land its own on this vehicle."""
+
+    drone: str
+    is_this_drone: bool

@@ -49,6 +49,14 @@ class Reason(Enum):
     VEHICLE_LINK_LOST = "vehicle's link lost"
     VEHICLE_CLOCK_AHEAD = "vehicle's clock is ahead"
     VEHICLE_CONTRADICTS_ITSELF = "vehicle data contradict themselves"
+    SEEN_ELSEWHERE = (
+        "pad is seen where both receivers say that it is not: see the detector's board and mounting, both receivers, or"
+        " --receiver-frames apart where they have two base stations"
+    )
+    SIGHTINGS_DISAGREE = (
+        "sightings of the pad contradict each other: let one detector alone see one pattern, and nobody else publish"
+        " pad_pose"
+    )
     VEHICLE_OUTRUNS = "vehicle faster than the limit"
     OWN_POSITION_OLD = "own position too old"
     OWN_ATTITUDE_OLD = "own attitude too old"
@@ -95,6 +103,8 @@ class Reason(Enum):
     ARMING_REFUSED = "the autopilot did not arm in time: {}"
 
     # A landing on this vehicle cannot be done.
+    DRONE_TAKEN = "another companion is there for this drone, and was there first: end one of them"
+    VEHICLE_TAKEN = "{} lands on this vehicle, or stands on it: wait until it has gone"
     STAMPS_AHEAD = "vehicle's fixes come {:.2f} s before their stamps: set its clock by GNSS or NTP, or the autopilot's"
     VEHICLE_TOO_FAST = "vehicle at {:.1f} m/s needs {:.1f} m/s, the limit is {:.1f}: raise {} or drive slower"
     VEHICLE_TOO_FAR = (
@@ -121,8 +131,10 @@ class Reason(Enum):
 
     # A command is refused.
     NOTHING_TO_DO = "nothing to {} in phase {}"
+    GUIDES_ONLY = "guides the autopilot's own precision landing, and flies nothing: choose that mode"
     NO_AUTOPILOT = "no autopilot is connected"
     NO_ORIGIN = "the autopilot has no origin yet"
+    VEHICLE_UNHEARD = "nothing usable has come from the vehicle{}: see its program and clock, --vehicle and -e"
     NO_OWN_POSITION = "the autopilot reports no local position yet"
     NO_OWN_ATTITUDE = "the autopilot's attitude is too old"
     IN_FAILSAFE = "the autopilot is in failsafe"

@@ -6,6 +6,9 @@ from typing import Annotated
 
 import typer
 
+from companion.eyes import calibration_commands
+from companion.eyes.examples import EXAMPLES
+from companion.eyes.options import BoardOption, CalibrationOption, MountingOption, SizeOption, SourceOption
 from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
@@ -22,11 +25,7 @@ from link.program.cli import (
 )
 from link.program.extras import require
 
-app = make_app("See the landing pad by a camera on the drone, and publish where it is.")
-
-BoardOption = Annotated[
-    Path | None, typer.Option("--board", metavar="FILE", help="The board, in TOML [default: 1.5 m, ids 0 to 62].")
-]
+app = make_app("See the landing pad by a camera on the drone, and publish where it is.", EXAMPLES)
 
 
 @app.callback()
@@ -35,26 +34,6 @@ def pad_detector() -> None:
     require("camera", "pad-detector")
 
 
-_SourceOption = Annotated[
-    str,
-    typer.Option(
-        "--source",
-        metavar="CAMERA",
-        help="/dev/videoN, rtsp://HOST/PATH, a video file, a folder of pictures, or zenoh.",
-    ),
-]
-_CalibrationOption = Annotated[
-    Path,
-    typer.Option("--calibration", metavar="FILE", help="Of the camera: ROS camera_info or kalibr's camchain, YAML."),
-]
-_MountingOption = Annotated[
-    Path | None,
-    typer.Option("--mounting", metavar="FILE", help="Of the camera on the drone, TOML [default: straight down]."),
-]
-_SizeOption = Annotated[
-    tuple[int, int] | None,
-    typer.Option("--size", metavar="WIDTH HEIGHT", help="Pixels to ask of the camera [default: the calibration's]."),
-]
 _LatencyOption = Annotated[
     float,
     typer.Option(
@@ -68,13 +47,16 @@ _RateOption = Annotated[
 
 @app.command("run")
 def run_detector(
-    calibration: _CalibrationOption,
-    source: _SourceOption = "/dev/video0",
+    calibration: CalibrationOption,
+    source: SourceOption = "/dev/video0",
     board: BoardOption = None,
-    mounting: _MountingOption = None,
-    size: _SizeOption = None,
+    mounting: MountingOption = None,
+    size: SizeOption = None,
     latency: _LatencyOption = 0.03,
     rate: _RateOption = 30.0,
+    record: Annotated[
+        Path | None, typer.Option("--record", metavar="DIR", help="Keep pictures with what was seen here, as MCAP.")
+    ] = None,
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
     drone: DroneOption = "drone",
@@ -92,6 +74,7 @@ def run_detector(
     from companion.eyes.mounting import load_mounting
     from companion.eyes.node import EyesNode
     from companion.eyes.opening import SourceOptions, open_source
+    from companion.eyes.recording import open_recorder
     from companion.eyes.sight import SightSystem
     from companion.eyes.zenoh_source import PICTURE_MAX_BYTES
     from link.records import replace
@@ -106,10 +89,13 @@ def run_detector(
     endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
     with open_session(replace(endpoints, message_max_bytes=PICTURE_MAX_BYTES)) as zenoh:
         frames = open_source(source, options, keys, zenoh)
+        recorder = None if record is None else open_recorder(record, keys)
         try:
-            EyesLoop(EyesNode(system, keys), frames, keys, zenoh).run()
+            EyesLoop(EyesNode(system, keys), frames, keys, zenoh, recorder).run()
         finally:
             frames.close()
+            if recorder is not None:
+                recorder.close()
 
 
 @app.command("print")
@@ -154,6 +140,9 @@ def bench_detector(
 
     table = bench()
     sys.stdout.write((json.dumps(table, indent=2) if as_json else "\n".join(text_lines(table))) + "\n")
+
+
+calibration_commands.register(app)
 
 
 def main() -> None:

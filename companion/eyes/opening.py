@@ -18,7 +18,7 @@ _ZENOH = "zenoh"
 class SourceOptions:
     """How a source is opened: the size to ask a camera for, its latency, and the rate of pictures without times."""
 
-    size_px: tuple[int, int]
+    size_px: tuple[int, int] | None
     latency_s: float
     rate_hz: float
 

@@ -6,7 +6,7 @@ from msgspec import Struct
 
 from companion.eyes.picture import Gray
 
-STOPPED_NS = 500_000_000
+STOPPED_NS = 400_000_000  # with a turn of the loop half a second
 _STEP = 16  # every so many pixels are compared: the noise of a living sensor changes some of them each time
 
 

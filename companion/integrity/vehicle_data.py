@@ -68,21 +68,24 @@ class FixStamps(Struct, frozen=True, kw_only=True):
 
     Attributes:
         newest_ns: when it was taken, by its own stamp; None before the first.
-        age_on_arrival_s: of it in the step that took it in, never negative where both clocks are right.
+        age_on_arrival_s: of it, or of a newer refused one, when it came; never negative where both clocks are right.
     """
 
     newest_ns: int | None = None
     age_on_arrival_s: float | None = None
 
 
-def update_fix_stamps(stamps: FixStamps, newest_ns: int | None, t_ns: int) -> FixStamps:
+def update_fix_stamps(stamps: FixStamps, newest_ns: int | None, t_ns: int, ahead_s: float | None = None) -> FixStamps:
     """Return the stamps with the newest fix as it is known at `t_ns`.
 
     Args:
         stamps: so far.
         newest_ns: stamp of the newest accepted fix.
         t_ns: now.
+        ahead_s: by which a newer one came before its stamp, too far to be accepted; None if none did.
     """
+    if ahead_s is not None:
+        return FixStamps(newest_ns=newest_ns, age_on_arrival_s=-ahead_s)
     if newest_ns == stamps.newest_ns:
         return stamps
     return FixStamps(newest_ns=newest_ns, age_on_arrival_s=None if newest_ns is None else (t_ns - newest_ns) * 1e-9)

@@ -7,6 +7,7 @@ from companion.config.landing import LandingStyle
 from companion.core.data import GRAVITY_M_S2
 from companion.core.reasons import Cause, Reason
 from companion.integrity.heights import is_seen_too_near
+from companion.integrity.sightings import do_sightings_disagree, is_seen_elsewhere
 from companion.integrity.vehicle_data import contradicts_itself
 from companion.landing.conditions import (
     AUTOPILOT_SILENT,
@@ -16,12 +17,13 @@ from companion.landing.conditions import (
     is_fix_old,
     is_in_contact,
 )
-from companion.landing.targets import changes_speed, is_unseen, is_vague
+from companion.landing.targets import changes_speed
 from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
 from companion.situation.situation import Approach, Situation
-from companion.vehicle.pad import cone_radius_m, over_pad_radius_m
+from companion.vehicle.pad import cone_radius_m, is_unseen, is_vague, over_pad_radius_m
 
 _DESCENT = frozenset({Phase.DESCEND})
+_MIXED_HOLD_S = 1.5  # three counts: a step of the drone's own frame has sightings of half a second rejected
 _FRICTION_MIN = 0.5  # of rubber on painted metal when it is wet; dry 0.8
 
 
@@ -135,6 +137,7 @@ ABORTS = (
         phases=frozenset({Phase.CHASE}),
         is_true=_is_over_unseen_pad,
         hold_s=lambda c: c.chase.unseen_hold_s,
+        cause=lambda _, c: Cause(Reason.OFFSET_UNKNOWN if c.silent_vehicle is None else Reason.PAD_NOT_SEEN),
     ),
     Condition(reason=Reason.VEHICLE_LINK_LOST, phases=LANDING_PHASES, is_true=_is_token_lost),
     Condition(
@@ -172,6 +175,18 @@ ABORTS = (
         hold_s=lambda c: c.touchdown.range_off_hold_s,
     ),
     Condition(reason=Reason.VEHICLE_CONTRADICTS_ITSELF, phases=LANDING_PHASES, is_true=contradicts_itself),
+    Condition(
+        reason=Reason.SEEN_ELSEWHERE,
+        phases=LANDING_PHASES,
+        is_true=is_seen_elsewhere,
+        hold_s=lambda c: c.abort.cone_hold_s,
+    ),
+    Condition(
+        reason=Reason.SIGHTINGS_DISAGREE,
+        phases=LANDING_PHASES,
+        is_true=do_sightings_disagree,
+        hold_s=lambda _: _MIXED_HOLD_S,
+    ),
     Condition(
         reason=Reason.VEHICLE_OUTRUNS,
         phases=LANDING_PHASES,

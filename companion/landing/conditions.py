@@ -46,9 +46,14 @@ def cause_of(condition: Condition, s: Situation, config: CompanionConfig) -> Cau
 
 
 def is_fix_old(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether the vehicle has been silent for too long."""
+    """Return whether the vehicle has been silent for too long, or out of sight if it tells nothing."""
     age_s = s.vehicle.fix_age_s
     return s.pad is None or age_s is None or age_s > c.abort.fix_age_max_s
+
+
+def _is_silent(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether a vehicle that tells of itself has fallen silent; any other has to be seen instead."""
+    return c.silent_vehicle is None and is_fix_old(s, c)
 
 
 def is_drone_unknown(s: Situation, _: CompanionConfig) -> bool:
@@ -66,7 +71,7 @@ def _is_heard(s: Situation, c: CompanionConfig) -> bool:
 
 
 SILENCES = (
-    Condition(reason=Reason.VEHICLE_DATA_OLD, phases=LANDING_PHASES, is_true=is_fix_old, is_outage=True),
+    Condition(reason=Reason.VEHICLE_DATA_OLD, phases=LANDING_PHASES, is_true=_is_silent, is_outage=True),
     Condition(reason=Reason.OWN_POSITION_OLD, phases=LANDING_PHASES, is_true=is_drone_unknown, is_outage=True),
     Condition(reason=Reason.OWN_ATTITUDE_OLD, phases=LANDING_PHASES, is_true=is_attitude_unknown, is_outage=True),
 )

@@ -27,7 +27,7 @@ from companion.landing.conditions import (
     is_fix_old,
 )
 from companion.landing.entries import DRIVES, ENTRIES, Decision, vehicle_passes
-from companion.landing.feasibility import obstacle
+from companion.landing.feasibility import is_drone_taken, obstacle
 from companion.landing.memory import ControlMemory, Held, Progress
 from companion.landing.waiting import waited_s
 from companion.situation.phases import FLYING_PHASES, Event, Phase
@@ -42,6 +42,8 @@ def decide(progress: Progress, control: ControlMemory, s: Situation, config: Com
     # By then the autopilot's own failsafe acts. PX4 would go back into OFFBOARD with the first setpoint that arrives.
     if progress.phase in FLYING_PHASES and not s.autopilot.link_up:
         return Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_LOST)
+    if progress.phase in FLYING_PHASES and is_drone_taken(s, config):
+        return Event.PILOT_TOOK_OVER, Cause(Reason.DRONE_TAKEN)
     taken = _find_taken_control(progress.phase, control, s)
     if taken is not None:
         return taken
@@ -102,6 +104,9 @@ def _find_taken_control(phase: Phase, control: ControlMemory, s: Situation) -> D
         return Event.PILOT_TOOK_OVER, Cause(Reason.DISARMED)
     return None
 
+
+_LASTING = (Reason.OFFSET_UNKNOWN, Reason.SEEN_ELSEWHERE, Reason.SIGHTINGS_DISAGREE)
+"""What the drone looked with the first time is all that it has to look with."""
 
 TOO_LONG = {
     Phase.TAKEOFF: Reason.TAKEOFF_TOO_LONG,
@@ -212,8 +217,8 @@ def _no_retry(progress: Progress, s: Situation, config: CompanionConfig) -> Caus
     }
     first = next((Cause(reason) for reason, holds_now in known.items() if holds_now), None)
     first = first or why_unplaced(s)
-    if first is None and progress.cause.reason is Reason.OFFSET_UNKNOWN:
-        first = progress.cause  # what it looked with the first time is all that it has
+    if first is None and progress.cause.reason in _LASTING:
+        first = progress.cause
     if first is None and is_out_of_range(s, config):
         first = Cause(Reason.TOO_FAR_FROM_START)
     first = first or obstacle(progress.held, s, config)

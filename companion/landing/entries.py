@@ -18,8 +18,8 @@ from companion.landing.conditions import (
     Condition,
     is_fix_old,
 )
+from companion.landing.following_height import chase_floor_m
 from companion.landing.memory import Held
-from companion.landing.targets import chase_floor_m
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation, vehicle_stands
 

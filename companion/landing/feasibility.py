@@ -5,14 +5,14 @@ What cannot be done is not begun. It is told with its numbers, once, and again o
 
 import math
 
-from companion.config.companion import CompanionConfig
+from companion.config.companion import CompanionConfig, Guide
 from companion.core.reasons import Cause, Reason
 from companion.integrity.heights import road_above_ground_m, road_distance_m
 from companion.integrity.vehicle_data import contradicts_itself
 from companion.landing.aborts import is_stamped_ahead
 from companion.landing.conditions import Condition, cause_of, holds, is_fix_old
+from companion.landing.following_height import chase_floor_m, vague_height_m
 from companion.landing.memory import Held
-from companion.landing.targets import chase_floor_m
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from companion.vehicle.pad import is_too_small
@@ -24,6 +24,19 @@ _RECEIVER_TOLD_S = 3.0  # it says so once a second
 _ROUNDING = 1e-6
 _BEFORE_A_FLIGHT = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD, Phase.WAITING})
 _BEFORE_A_CHASE = _BEFORE_A_FLIGHT | {Phase.ABORT}
+
+
+def is_drone_taken(s: Situation, _: CompanionConfig) -> bool:
+    """Return whether another companion is to fly this drone."""
+    return s.rival is not None and s.rival.is_this_drone
+
+
+def _is_taken(s: Situation, _: CompanionConfig) -> bool:
+    return s.rival is not None and not s.rival.is_this_drone
+
+
+def _taken(s: Situation, _: CompanionConfig) -> Cause:
+    return Cause(Reason.VEHICLE_TAKEN, ("nobody" if s.rival is None else s.rival.drone,))
 
 
 def _vehicle_speed_m_s(s: Situation) -> float:
@@ -114,7 +127,8 @@ def _hover_height_m(s: Situation, height_m: float, c: CompanionConfig) -> float:
 def _is_high(s: Situation, c: CompanionConfig) -> bool:
     if s.approach is None or is_fix_old(s, c) or s.approach.distance_m > c.chase.ground_within_m:
         return False
-    return _hover_height_m(s, s.approach.height_m, c) < chase_floor_m(c)
+    unsure_m = 0.0 if s.pad is None else vague_height_m(s.pad, c)
+    return _hover_height_m(s, s.approach.height_m, c) + unsure_m < chase_floor_m(c)
 
 
 def _high(s: Situation, c: CompanionConfig) -> Cause:
@@ -126,6 +140,8 @@ def _high(s: Situation, c: CompanionConfig) -> Cause:
 
 # An estimate that has just begun jumps: what is said of the vehicle must hold for a while.
 OBSTACLES = (
+    Condition(reason=Reason.DRONE_TAKEN, phases=_BEFORE_A_CHASE, is_true=is_drone_taken),
+    Condition(reason=Reason.VEHICLE_TAKEN, phases=_BEFORE_A_CHASE, is_true=_is_taken, cause=_taken),
     Condition(
         reason=Reason.STAMPS_AHEAD,
         phases=_BEFORE_A_CHASE,
@@ -184,4 +200,6 @@ OBSTACLES = (
 
 def obstacle(held: Held, s: Situation, config: CompanionConfig) -> Cause | None:
     """Return what makes a landing impossible now, with its numbers; None without one."""
+    if config.guide is Guide.PRECLAND:
+        return Cause(Reason.GUIDES_ONLY)
     return next((cause_of(one, s, config) for one in OBSTACLES if holds(one, held, s, config)), None)

@@ -6,6 +6,7 @@ from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits
 from companion.landing.carried_on import limit_rates
 from companion.landing.flown_plan import extrapolate, flown_plan, state_at
+from companion.landing.following_height import waiting_rise_m
 from companion.landing.levelling import limit_tilt, limits_now
 from companion.landing.memory import ModelMemory, StepMemory
 from companion.landing.step_data import StepInputs, System
@@ -43,7 +44,16 @@ def _aim(memory: StepMemory, situation: Situation, limits: FlightLimits, config:
         case Phase.HOLD:
             return hover_aim(anchor)
         case _:
-            return hover_aim(waiting_point)
+            rise_m = _waiting_rise_m(phase, float(waiting_point[2]), situation, config)
+            return hover_aim(waiting_point + np.array([0.0, 0.0, rise_m]))
+
+
+def _waiting_rise_m(phase: Phase, waiting_enu_m: float, situation: Situation, config: CompanionConfig) -> float:
+    pad = situation.pad
+    if phase is not Phase.WAITING or pad is None or not _is_fresh(situation, config):
+        return 0.0
+    height_m = waiting_enu_m - situation.feet_offset_m - float(pad.position_enu_m[0, 2])
+    return waiting_rise_m(height_m, pad, config)
 
 
 def _is_fresh(situation: Situation, config: CompanionConfig) -> bool:

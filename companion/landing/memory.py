@@ -14,6 +14,7 @@ from companion.autopilots.driver import NO_MOVES, AutopilotView, DriverMemory, F
 from companion.core.data import Array
 from companion.core.reasons import Cause, Reason
 from companion.integrity.frames import FixedPhases
+from companion.integrity.sightings import SightingWatch
 from companion.integrity.vehicle_data import Contradictions, CourseWatch, FixStamps
 from companion.landing.flown_plan import FlownPlan
 from companion.landing.sway import Sway
@@ -70,6 +71,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
         surprise: how the vehicle drives against what was expected.
         fix_stamps: whether its fixes come from the future.
         contradictions: of its data.
+        sightings: whether they agree with each other.
         phases: whether its receiver and the drone's have fixed ones.
         course: how its heading compares with its course.
         utc_ahead_ns: of the monotonic clock, when its stamps were last compared with UTC.
@@ -81,6 +83,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
     surprise: Surprise = field(default_factory=Surprise)
     fix_stamps: FixStamps = field(default_factory=FixStamps)
     contradictions: Contradictions = field(default_factory=Contradictions)
+    sightings: SightingWatch = field(default_factory=SightingWatch)
     phases: FixedPhases = field(default_factory=FixedPhases)
     course: CourseWatch = field(default_factory=CourseWatch)
     utc_ahead_ns: int = 0

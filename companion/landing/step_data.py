@@ -6,9 +6,10 @@ from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, Autopilo
 from companion.autopilots.response import ResponseModel
 from companion.autopilots.shaping import Shaping
 from companion.config.companion import CompanionConfig
-from companion.core.data import FlightLimits, Measurement, OwnState, Setpoint
+from companion.core.data import FlightLimits, Measurement, OwnState, Rival, Setpoint
 from companion.planning.guidance import Guidance, PlanResult
 from companion.vehicle.estimator import Estimator
+from companion.vehicle.pad import PadPath
 from link.messages import Command, CommandReply, LandingStatus, PadGeometry
 
 
@@ -40,7 +41,9 @@ class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
         limits: of the flight, from the configuration and the autopilot's parameters.
         acknowledgements: (command, MAV_RESULT) received since the last step.
         measurements: of the vehicle, received since the last step.
+        fix_ahead_s: by which the newest fix since then came before its stamp, so that it was refused; None if none was.
         vehicle_alive: its liveliness token; None when it never showed one.
+        rival: a companion that this one keeps out of the way of, None without one.
         pad: the vehicle's own description of its pad.
         command: an operator's wish.
         leaving: the companion is about to end, so the autopilot is to hover by itself, or to finish its disarm.
@@ -57,7 +60,9 @@ class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
     driver: Driver | None = None
     acknowledgements: tuple[tuple[int, int], ...] = ()
     measurements: tuple[Measurement, ...] = ()
+    fix_ahead_s: float | None = None
     vehicle_alive: bool | None = None
+    rival: Rival | None = None
     pad: PadGeometry | None = None
     command: Command | None = None
     leaving: bool = False
@@ -79,6 +84,7 @@ class StepOutputs(Struct, frozen=True, kw_only=True, eq=False):
         reply: to the operator's command, None when there was none.
         status: for the world.
         plan: of this step, None while nothing is flown.
+        pad: as this step knew it, None while it is not known.
     """
 
     setpoint: Setpoint | None
@@ -87,3 +93,4 @@ class StepOutputs(Struct, frozen=True, kw_only=True, eq=False):
     reply: CommandReply | None
     status: LandingStatus
     plan: PlanResult | None
+    pad: PadPath | None = None

@@ -13,10 +13,11 @@ from companion.config.companion import CompanionConfig
 from companion.config.landing import DescentConfig, LandingStyle
 from companion.config.planning import GuidanceKind
 from companion.core.data import Array, FlightLimits
+from companion.landing.following_height import chase_floor_m, chase_height_m, unseen_height_m
 from companion.planning.descent_path import descent_path
 from companion.planning.guidance import ReferenceState, Target
 from companion.situation.phases import Phase
-from companion.vehicle.pad import PadPath, unseen_std_max_m
+from companion.vehicle.pad import PadPath
 
 HORIZON_OFFSETS_S: Array = np.arange(0.0, 4.01, 0.2)
 NO_FLOOR_M = -1e4
@@ -173,55 +174,13 @@ def _height_m(phase: Phase, pad: PadPath, reference: ReferenceState, config: Com
     """Return the wanted height over the pad of a phase that does not land."""
     match phase:
         case Phase.ABORT:
-            return _unseen_height_m(config.abort.height_m, pad, config)
+            return unseen_height_m(config.abort.height_m, pad, config)
         case Phase.ALIGN:
             return config.descent.align_height_m
         case _ if config.landing is LandingStyle.DIRECT:
             return 0.0
         case _:
-            return _chase_height_m(pad, reference, config)
-
-
-def is_vague(pad: PadPath, config: CompanionConfig) -> bool:
-    """Return whether the pad is not known well enough to come near it."""
-    return float(max(pad.position_std_m[0, :2].tolist())) > config.abort.position_std_max_m
-
-
-def is_unseen(pad: PadPath, config: CompanionConfig) -> bool:
-    """Return whether the pad has to be seen (again) before it is landed on.
-
-    Fixes of some decimetres or better place it by themselves where both receivers have one frame. Where they may not,
-    a first sighting tells the offset; between coarser fixes and the drone's own place lie metres, and what a sighting
-    said of them holds for seconds only.
-    """
-    return (pad.is_coarse or not pad.has_one_frame) and float(np.max(pad.position_std_m[0, :2])) > unseen_std_max_m(
-        pad.half_width_m, config
-    )
-
-
-def _unseen_height_m(height_m: float, pad: PadPath, config: CompanionConfig) -> float:
-    """Return how high the drone stays above a pad that it has to see first, and `height_m` above any other.
-
-    Higher by what the pad's height is unsure, but not out of its detector's sight: it would never be seen then. Fixes
-    that are not coarse tell heights well enough for the height at which a vehicle is waited for.
-    """
-    if not (pad.is_coarse and is_unseen(pad, config)):
-        return height_m
-    clear_m = height_m + config.chase.unseen_height_stds * float(pad.position_std_m[0, 2])
-    return max(height_m, min(clear_m, config.chase.unseen_height_max_m))
-
-
-def _chase_height_m(pad: PadPath, reference: ReferenceState, config: CompanionConfig) -> float:
-    """Come down towards the height of alignment as the horizontal distance closes, two metres for each.
-
-    Over a vehicle whose place is not known well enough to align with it, nothing says that its side is not below, and
-    as long as its height is as vague, that the roof is not where the drone flies.
-    """
-    if is_vague(pad, config) or is_unseen(pad, config):
-        return _unseen_height_m(config.chase.height_m, pad, config)
-    distance_m = math.hypot(*(reference.position_enu_m[:2] - pad.position_enu_m[0, :2]).tolist())
-    beyond_m = max(distance_m - config.descent.align_distance_m, 0.0)
-    return min(config.descent.align_height_m + 0.5 * beyond_m, config.chase.height_m)
+            return chase_height_m(pad, reference, config)
 
 
 def changes_speed(pad: PadPath, config: DescentConfig) -> bool:
@@ -246,8 +205,3 @@ def _clearance_m(phase: Phase, config: CompanionConfig) -> float:
             return 0.6 * config.descent.align_height_m
         case _:
             return chase_floor_m(config)
-
-
-def chase_floor_m(config: CompanionConfig) -> float:
-    """Return how far the feet stay above the pad before the alignment."""
-    return 0.8 * config.descent.align_height_m

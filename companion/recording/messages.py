@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from companion.autopilots.own_reports import carry
 from companion.core.data import Array, Forecast, OwnState, Setpoint, VehicleEstimate
 from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.planning.guidance import PlanResult, Trajectory
@@ -109,7 +110,8 @@ def _sample_types(keys: Keys) -> dict[str, type[Fix | FixVelocity | VehicleImu |
 
 
 def own_message(own: OwnState, keys: Keys) -> RosMessage:
-    """Return the drone's state as Odometry, which has velocities in the body frame."""
+    """Return the drone's state at its stamp as Odometry, which has velocities in the body frame."""
+    own = carry(own, own.t_ns)
     velocity_flu_m_s = rotate(conjugate(own.orientation_wxyz), own.velocity_enu_m_s)
     motion = BodyTruth(
         t_ns=max(own.t_ns, 0),

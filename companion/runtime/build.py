@@ -58,6 +58,7 @@ def build_node(
     system_id: int = 1,
     dry_run: bool = False,
     publishes: bool = True,
+    is_component: bool = False,
     records_input: bool = False,
     recorder: Recorder | None = None,
     signing: Signing | None = None,
@@ -70,6 +71,7 @@ def build_node(
         system_id: MAVLink's, of the autopilot that is flown and, on the same drone, of the companion.
         dry_run: send neither setpoints nor commands.
         publishes: put status and plan on Zenoh.
+        is_component: hear and tell ground stations, too.
         records_input: keep received frames for a recording of the link.
         recorder: takes all that goes in and out, None where nothing is recorded.
         signing: by a key shared with the autopilot; None sends unsigned and takes everything.
@@ -80,14 +82,16 @@ def build_node(
     _check_installed(config)
     system = System(
         config=config,
-        estimator=make_estimator(config.estimator),
+        estimator=make_estimator(config.estimator, is_silent=config.silent_vehicle is not None),
         guidance=make_guidance(config.guidance.kind, config.guidance),
     )
     warm_up(system)
     session = MavlinkSession(system_id, target_system_id=system_id, signing=signing, records_input=records_input)
     if recorder is not None:
-        return RecordingNode(system, keys, session, recorder, dry_run=dry_run, publishes=publishes)
-    return CompanionNode(system, keys, session, dry_run=dry_run, publishes=publishes)
+        return RecordingNode(
+            system, keys, session, recorder, dry_run=dry_run, publishes=publishes, is_component=is_component
+        )
+    return CompanionNode(system, keys, session, dry_run=dry_run, publishes=publishes, is_component=is_component)
 
 
 def _check_installed(config: CompanionConfig) -> None:

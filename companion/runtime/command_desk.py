@@ -17,7 +17,7 @@ from link.payloads import json_messages
 from link.payloads.checks import PayloadError
 
 Reply = Callable[[bytes], None]
-_FIRST_TO_LAST = (Command.ABORT, Command.HOLD, Command.START)
+_FIRST_TO_LAST = (Command.ABORT, Command.HOLD, Command.START_ANYWAY, Command.START)
 _WAITING_MAX = 64  # of each command; who comes when so many ask for the same hears nothing, and asks again
 _WAIT_MAX_S = 2.0  # less than an operator's query waits
 _LATE = CommandReply(accepted=False, reason="the companion made no step in time")
@@ -54,16 +54,18 @@ class CommandDesk:
             if len(self._waiting[command]) < _WAITING_MAX:
                 self._waiting[command].append(_Asked(self._now_s(), reply))
 
-    def pass_on(self, node: CompanionNode, local_ns: int) -> Command | None:
-        """Give the most urgent command to the node, if it makes a step now; return it."""
+    def pass_on(self, node: CompanionNode, local_ns: int) -> None:
+        """Give the most urgent command to the node, if it makes a step now."""
         if self._asked or not node.is_due(local_ns):
-            return None
+            return
         for command in _FIRST_TO_LAST:
             self._asked = self._take_waiting(command)
-            if self._asked:
-                node.request(command)
-                return command
-        return None
+            refusal = node.start_refusal() if self._asked and command is Command.START else None
+            if refusal is not None:
+                self.answer([refusal])
+            elif self._asked:
+                node.request(Command.START if command is Command.START_ANYWAY else command)
+                return
 
     def answer(self, replies: list[CommandReply]) -> None:
         """Give a step's reply to all who have asked for its command."""

@@ -6,7 +6,10 @@ from collections.abc import Callable
 from contextlib import ExitStack
 
 from companion.autopilots.choice import check_autopilot
+from companion.runtime.claims import Claims
 from companion.runtime.command_desk import CommandDesk
+from companion.runtime.computer import ComputerWatch
+from companion.runtime.handover import hand_over
 from companion.runtime.live_state import Onlooker, onlookers
 from companion.runtime.node import CompanionNode
 from companion.runtime.options import Links, LoopOptions, Timings
@@ -25,7 +28,6 @@ from link.recording.log import Log
 from link.recording.recorder import BackgroundRecorder, Recorder
 
 _WAIT_MAX_S = 0.005  # for bytes; Zenoh samples wait no longer than this
-_LEAVE_MAX_S = 1.5  # a mode may be confirmed by the next heartbeat only
 
 
 def run(node: CompanionNode, links: Links, options: LoopOptions) -> Timings:
@@ -73,13 +75,16 @@ class _Loop:
         self._inboxes = [self._inbox, *(zenoh.subscribe(key) for key in (keys.fix_velocity, keys.imu, keys.pad_pose))]
         self._ticks = zenoh.subscribe(keys.clock) if options.use_sim_time else None
         self._alive = zenoh.watch_alive(keys.alive)
+        self._claims = Claims(zenoh, keys)
         self._stopping = False
         self._start = OwnStart(wanted=options.start)
-        self._fix_seen = False
+        self._is_silent = node.system.config.silent_vehicle is not None
+        self._fix_seen = self._is_silent  # of a vehicle that tells nothing no fix is awaited
         self._was_alive = False
         self._pad_question = PadQuestion(zenoh, keys.pad)
         self._link_was_up: bool | None = None
         self._strangers_told = False
+        self._computer = ComputerWatch()
 
     def run(self) -> Timings:
         """Run until a signal comes."""
@@ -89,10 +94,13 @@ class _Loop:
         self._zenoh.serve_later(self._keys.landing_command, self._desk.take)
         spare_present_objects()
         self._log.info("ready", device=self._options.device)
+        self._node.open_to_strangers = self._options.open_to_strangers
+        for opening in self._options.open_to_strangers:
+            self._log.warning("open to strangers", what=opening)
         while not self._stopping:
             self._turn(clock)
         self._service.stopping()
-        self._leave(clock)
+        hand_over(self._node, lambda: self._turn(clock), self._log)
         self._send_rest()
         self._service.close()
         return self._timings
@@ -111,9 +119,10 @@ class _Loop:
         if self._ticks is not None:
             for sample in self._ticks.take():
                 try:
-                    self._node.bad_payloads += not clock.tick(cdr.decode(ClockTick, sample.payload).t_ns)
-                except PayloadError:
-                    self._node.bad_payloads += 1
+                    if not clock.tick(cdr.decode(ClockTick, sample.payload).t_ns):
+                        self._node.vehicle.refuse("clock", "stray", "far from the ticks before")
+                except PayloadError as error:
+                    self._node.vehicle.refuse("clock", "unreadable", str(error))
         return clock.ready
 
     def _wait_for(self, is_there: Callable[[], bool], message: str) -> None:
@@ -139,8 +148,7 @@ class _Loop:
             self._node.receive_mavlink(data, local_ns, is_datagram=self._transport.is_datagram)
         self._record(self._node.autopilot.session.take_input(), local_ns)
         self._take_samples()
-        if self._start.commanded(self._desk.pass_on(self._node, local_ns)):
-            self._log.info("start called off")
+        self._desk.pass_on(self._node, local_ns)
         stepped = self._node.poll(local_ns)
         self._send_frames(local_ns)
         if stepped:
@@ -148,6 +156,9 @@ class _Loop:
             for onlooker in self._onlookers:
                 onlooker.tell(self._node, local_ns)
             self._after_step()
+        load = self._computer.poll()
+        if load is not None:
+            self._node.tell_load(load, local_ns)
 
     def _note_time(self, state_to_setpoint_s: float) -> None:
         self._timings.state_to_setpoint_s.append(state_to_setpoint_s)
@@ -160,6 +171,7 @@ class _Loop:
                 self._fix_seen = self._fix_seen or inbox is self._inbox
                 self._node.receive_sample(sample.key, sample.payload)
         self._node.receive_liveliness(alive=self._alive.alive)
+        self._node.receive_rival(self._claims.rival)
 
     def _send_frames(self, local_ns: int) -> None:
         frames = self._node.take_frames()
@@ -176,6 +188,8 @@ class _Loop:
         """Publish, reply, log; and see to what is still missing."""
         for publication in self._node.take_publications():
             self._zenoh.publish(publication.key, publication.payload, publication.encoding)
+        if self._node.inputs is not None and self._start.commanded(self._node.inputs.command):
+            self._log.info("start called off")
         self._desk.answer(self._start.answered(self._node.take_replies()))
         outputs = self._node.outputs
         if outputs is not None and outputs.text is not None:
@@ -183,6 +197,9 @@ class _Loop:
             self._service.status(f"{outputs.status.phase}: {outputs.status.reason}")
         for text in self._node.autopilot.take_texts():
             self._log.info("autopilot", text=text)
+        for refused in self._node.vehicle.refusals.news(time.monotonic_ns()):
+            self._log.warning("data refused", what=refused)
+        self._claims.update(self._node.phase, armed=self._node.autopilot.state.view.armed)
         self._say_link()
         self._ask_for_pad()
         self._start.follow(self._node, fix_seen=self._fix_seen)
@@ -203,14 +220,17 @@ class _Loop:
 
     def _ask_for_pad(self) -> None:
         """Ask the vehicle for its pad until it has answered, and again when it has come back: it may be another one."""
+        if self._is_silent:
+            return
         question, alive = self._pad_question, self._alive.alive
         if alive and not self._was_alive:
             question.ask_anew()
         self._was_alive = alive
-        bad, why = question.bad_answers, question.refused_why
+        why, bad = question.refused_why, question.bad_answers
         may_change = self._node.phase not in FLYING_PHASES
         pad = question.poll(time.monotonic(), asks=alive or self._fix_seen, may_change=may_change)
-        self._node.bad_payloads += question.bad_answers - bad
+        for _ in range(question.bad_answers - bad):
+            self._node.vehicle.refuse("pad", "refused", question.refused_why or "")
         if question.refused_why != why:
             self._log.warning("the vehicle's description of its pad is refused", why=question.refused_why)
         if pad is not None:
@@ -224,15 +244,6 @@ class _Loop:
         timeout_s = self._options.timeout_s
         check_autopilot(self._node.autopilot.session, self._options.device, timeout_s)
         self._start.check_vehicle(self._keys, timeout_s, fix_seen=self._fix_seen, pad_known=self._node.pad_known)
-
-    def _leave(self, clock: Clock) -> None:
-        """Hand a flying drone over to its autopilot, which may take setpoints that stop for a fault or fly on."""
-        if not self._node.flies:
-            return
-        self._node.leave()
-        until_s = time.monotonic() + _LEAVE_MAX_S
-        while self._node.flies and time.monotonic() < until_s:
-            self._turn(clock)
 
     def _send_rest(self) -> None:
         for frame in self._node.take_frames():

@@ -3,35 +3,30 @@
 The wire loop, the lockstep campaigns and the tests all run this one.
 """
 
-import math
-from functools import lru_cache
-
 from companion.autopilots.link import AutopilotLink
-from companion.autopilots.response import Cascade, ResponseModel
-from companion.core.data import Measurement, VehicleEstimate
+from companion.component.component import MavlinkComponent
+from companion.component.identity import ComputerLoad
+from companion.config.companion import CompanionConfig
+from companion.core.data import Rival, VehicleEstimate
+from companion.core.reasons import Cause, Reason, sentence
+from companion.landing.guiding import guiding_message
 from companion.landing.memory import StepMemory
-from companion.landing.outputs import plan_publication, status_publication
 from companion.landing.step_data import LinkDelay, StepInputs, StepOutputs, System
-from companion.landing.targets import HORIZON_OFFSETS_S
+from companion.runtime.publishing import StatusPublisher
+from companion.runtime.response_models import response_to
 from companion.runtime.step_clock import StepClock
+from companion.runtime.vehicle_link import VehicleLink
 from companion.situation.phases import FLYING_PHASES, Phase
 from companion.step import companion_step
 from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.factory import make_estimator
-from companion.vehicle.inputs import measurements_of
 from link.mavlink.session import MavlinkSession
-from link.messages import Command, CommandReply, PadGeometry
-from link.payloads.checks import PayloadError
-from link.payloads.json_messages import is_possible
+from link.messages import Command, CommandReply, LandingStatus, PadGeometry
 from link.records import replace
 from link.zenoh.keys import Keys, Publication
 
 _MOTION_RATE_MIN_HZ = 50.0
-_EARLY = 0.75  # of a period: a new state of the drone starts the next step from here on
-_LATE = 2.0  # periods without a new state after which the step is made without one
-_FUTURE_MAX_NS = 500_000_000  # a stamp farther ahead comes from a clock that is wrong
 _LINK_DELAY_MAX_S = 0.3  # a longer way is not led for: the model is too uncertain so far ahead
-_PLAN_EVERY = 2  # statuses
 
 
 class CompanionNode:
@@ -43,10 +38,18 @@ class CompanionNode:
         session: to the autopilot.
         dry_run: send neither setpoints nor commands.
         publishes: put status and plan on Zenoh; where nobody listens, leaving them out saves a hundredth of the time.
+        is_component: hear ground stations and tell them more than texts; where there are none, that saves as much.
     """
 
     def __init__(
-        self, system: System, keys: Keys, session: MavlinkSession, *, dry_run: bool = False, publishes: bool = True
+        self,
+        system: System,
+        keys: Keys,
+        session: MavlinkSession,
+        *,
+        dry_run: bool = False,
+        publishes: bool = True,
+        is_component: bool = False,
     ) -> None:
         self.autopilot = AutopilotLink(
             session,
@@ -56,28 +59,20 @@ class CompanionNode:
             geoid_height_m=system.config.geoid_height_m,
         )
         self._dry_run = dry_run
-        self._publishes = publishes
-        self._response: ResponseModel | None = None
+        self._component = MavlinkComponent(session, is_open=is_component)
+        self.publisher = StatusPublisher(keys, system.config, is_on=publishes)
         self._limits_wanted = system.config.limits.flight_limits()
         self.memory = StepMemory()
         self.inputs: StepInputs | None = None
         self.outputs: StepOutputs | None = None
-        self.bad_payloads = 0
-        self.unpublished = 0  # statuses and plans that hold what no message has room for
+        self.open_to_strangers: tuple[str, ...] = ()  # which links are, for the status
         self.system = system
-        self._keys = keys
-        self._measurements: list[Measurement] = []
-        self._pad: PadGeometry | None = None
-        self._vehicle_alive: bool | None = None
+        self._rival: Rival | None = None
         self._command: Command | None = None
         self._leaving = False
         self._replies: list[CommandReply] = []
-        self._publications: list[Publication] = []
-        self._stepped_ns: int | None = None
-        self._stepped_own_ns: int | None = None
-        self._clock = StepClock()
-        self._status_ns: int | None = None
-        self._statuses = 0
+        self._clock = StepClock(system.config.step_rate_hz)
+        self.vehicle = VehicleLink(keys, self._clock, system.config.silent_vehicle)
 
     @property
     def phase(self) -> Phase:
@@ -87,7 +82,7 @@ class CompanionNode:
     @property
     def pad_known(self) -> bool:
         """Whether the vehicle has described its pad."""
-        return self._pad is not None
+        return self.vehicle.pad is not None
 
     def vehicle_estimate(self, t_ns: int) -> VehicleEstimate | None:
         """Return the vehicle at `t_ns` (UTC) as the last step knew it, None before the first fix."""
@@ -106,26 +101,25 @@ class CompanionNode:
         self.autopilot.receive(data, local_ns, is_datagram=is_datagram)
 
     def receive_sample(self, key: str, payload: bytes) -> None:
-        """Take a Zenoh sample; what cannot be decoded, is absurd or comes from the future is counted and dropped."""
-        try:
-            measurements = measurements_of(key, payload, self._keys, self.autopilot.state)
-        except PayloadError:
-            self.bad_payloads += 1
-            return
-        newest_ns = self._clock.t_ns + _FUTURE_MAX_NS
-        self._measurements += [measurement for measurement in measurements if measurement.t_ns <= newest_ns]
-        # Before UTC is known a stamp ahead of the companion's own clock says nothing about who is wrong.
-        if self.autopilot.session.clock.is_utc_known and any(one.t_ns > newest_ns for one in measurements):
-            self.bad_payloads += 1
+        """Take a Zenoh sample; see `VehicleLink.receive`."""
+        is_utc_known = self.autopilot.session.clock.is_utc_known
+        self.vehicle.receive(key, payload, self.autopilot.state, is_utc_known=is_utc_known)
+
+    @property
+    def bad_payloads(self) -> int:
+        """How many samples and answers were refused."""
+        return self.vehicle.refusals.total
+
+    @property
+    def vehicle_heard(self) -> bool:
+        """Whether a fix of the vehicle has come that could be used, or none is to come."""
+        return self.vehicle.tells_nothing or (self.outputs is not None and self.outputs.status.fix_age_s is not None)
 
     def receive_pad(self, pad: PadGeometry) -> None:
         """Take the vehicle's description of its pad; the estimator needs the lever arm for sightings of the pad."""
-        if not is_possible(pad):
-            self.bad_payloads += 1
-            return
-        self._pad = pad
-        estimator = make_estimator(self.system.config.estimator, pad.antenna_to_pad_m)
-        self.system = replace(self.system, estimator=estimator)
+        if self.vehicle.receive_pad(pad):
+            estimator = make_estimator(self.system.config.estimator, pad.antenna_to_pad_m)
+            self.system = replace(self.system, estimator=estimator)
 
     def is_ready_to_start(self) -> bool:
         """Return whether a start would be accepted now."""
@@ -133,10 +127,21 @@ class CompanionNode:
         placed = state.view.frame is not None and state.view.geoid_known
         return state.view.link_up and placed and state.own is not None
 
+    def start_refusal(self) -> CommandReply | None:
+        """Return the answer to a start for a vehicle that was never heard; None where a step is to judge it."""
+        if self.vehicle_heard or not self.is_ready_to_start():
+            return None
+        refused = self.vehicle.refused_lately()
+        why = Cause(Reason.VEHICLE_UNHEARD, (f" ({refused})" if refused else "",))
+        return CommandReply(accepted=False, reason=sentence(why))
+
     def receive_liveliness(self, *, alive: bool) -> None:
-        """Take the state of the vehicle's liveliness token; one that never was is not lost."""
-        if alive or self._vehicle_alive is not None:
-            self._vehicle_alive = alive
+        """Take the state of the vehicle's liveliness token."""
+        self.vehicle.receive_liveliness(alive=alive)
+
+    def receive_rival(self, rival: Rival | None) -> None:
+        """Take who else is there for this drone or on this vehicle, and was there first."""
+        self._rival = rival
 
     def request(self, command: Command) -> None:
         """Take an operator's command; its reply follows the next step."""
@@ -156,6 +161,8 @@ class CompanionNode:
     def poll(self, local_ns: int) -> bool:
         """Do what is due; return whether a step was made."""
         self.autopilot.poll(local_ns)
+        requests = self.autopilot.session.take_requests()
+        self._apply(self._component.take(requests, self.system.config, self.phase, local_ns))
         if not self.is_due(local_ns):
             return False
         self._step(local_ns)
@@ -167,8 +174,11 @@ class CompanionNode:
 
     def take_publications(self) -> list[Publication]:
         """Return what is to be put on Zenoh, once."""
-        taken, self._publications = self._publications, []
-        return taken
+        return self.publisher.take()
+
+    def tell_load(self, load: ComputerLoad, local_ns: int) -> None:
+        """Tell ground stations what the computer does."""
+        self._component.tell_load(load, local_ns)
 
     def take_replies(self) -> list[CommandReply]:
         """Return the replies to operators' commands, once, in their order."""
@@ -180,78 +190,74 @@ class CompanionNode:
 
         What is asked for by `request` while this is true is in the step of the next `poll`.
         """
-        if self._stepped_ns is None:
-            return True
         own = self.autopilot.state.own
-        periods = (local_ns - self._stepped_ns) * 1e-9 * self.system.config.step_rate_hz
-        is_new = own is not None and own.t_ns != self._stepped_own_ns
-        return periods >= (_EARLY if is_new else _LATE)
+        return self._clock.is_due(local_ns, None if own is None else own.t_ns)
 
     def _step(self, local_ns: int) -> None:
-        state, way = self.autopilot.state, self.autopilot.session.clock
-        self._clock.advance(way.local_to_utc_ns(local_ns), local_ns)
+        state, way, cascade = self.autopilot.state, self.autopilot.session.clock, self.autopilot.cascade
+        self._clock.advance(way.local_to_utc_ns(local_ns), local_ns, None if state.own is None else state.own.t_ns)
+        measurements, fix_ahead_s = self.vehicle.take()
         inputs = StepInputs(
             t_ns=self._clock.t_ns,
             monotonic_ns=self._clock.monotonic_ns,
             limits=self.autopilot.limits(self._limits_wanted),
-            response=self._present_response(),
+            response=None if cascade is None else response_to(cascade),
             own=state.own,
             autopilot=state.view,
             driver=self.autopilot.driver,
             acknowledgements=self.autopilot.take_acknowledgements(),
-            measurements=tuple(self._measurements),
-            vehicle_alive=self._vehicle_alive,
-            pad=self._pad,
-            command=self._command,
+            measurements=measurements,
+            fix_ahead_s=fix_ahead_s,
+            vehicle_alive=self.vehicle.alive,
+            rival=self._rival,
+            pad=self.vehicle.pad,
+            command=self._command or self._station_command(local_ns),
             leaving=self._leaving,
             shaping=self.autopilot.shaping,
             link_delay=LinkDelay(mean_s=min(way.one_way_s, _LINK_DELAY_MAX_S), std_s=way.one_way_std_s),
         )
-        self._measurements, self._command = [], None
-        self._stepped_ns, self._stepped_own_ns = local_ns, None if state.own is None else state.own.t_ns
+        self._command = None
         self.inputs = inputs
         self.memory, self.outputs = companion_step(self.memory, inputs, self.system)
-        self._send(self.outputs, local_ns)
+        self._send(inputs, self.outputs, local_ns)
 
-    def _present_response(self) -> ResponseModel | None:
-        """Return the model of how the autopilot follows setpoints, made anew when its gains have changed."""
-        cascade = self.autopilot.cascade
-        if cascade is not None and (self._response is None or self._response.cascade != cascade):
-            self._response = _response_to(cascade)
-        return self._response
+    def _station_command(self, local_ns: int) -> Command | None:
+        """Return what a ground station commands, after the same question that an operator's start has to pass."""
+        command = self._component.next_command()
+        refusal = self.start_refusal() if command is Command.START else None
+        if refusal is None:
+            return command
+        self._component.answer(refusal, local_ns)
+        return None
 
-    def _send(self, outputs: StepOutputs, local_ns: int) -> None:
+    def _apply(self, config: CompanionConfig) -> None:
+        """Take a configuration that a ground station has changed, between two flights."""
+        if config is not self.system.config:
+            self.system = replace(self.system, config=config)
+            self._limits_wanted = config.limits.flight_limits()
+
+    def _send(self, inputs: StepInputs, outputs: StepOutputs, local_ns: int) -> None:
+        reply = outputs.reply
+        if reply is not None and not self._component.answer(reply, local_ns):
+            self._replies.append(reply)
         if not self._dry_run:
             if outputs.setpoint is not None:
                 self.autopilot.send_setpoint(outputs.setpoint, local_ns)
             self.autopilot.send_commands(outputs.commands, local_ns)
-        if outputs.text is not None:
-            self.autopilot.send_text(outputs.text)
-        if outputs.reply is not None:
-            self._replies.append(outputs.reply)
-        since_ns = math.inf if self._status_ns is None else self._clock.monotonic_ns - self._status_ns
-        is_due = since_ns >= 1e9 / self.system.config.status_rate_hz
-        if self._publishes and (outputs.text is not None or is_due):
-            self._publish(outputs)
+            target = guiding_message(outputs, inputs, self.system.config, local_ns)
+            if target is not None:
+                self.autopilot.session.send(target)
+        self._component.tell(outputs, self.phase, self.autopilot.state, self.system.config, local_ns)
+        if self.publisher.is_due(outputs, self._clock.monotonic_ns):
+            yaw_rad = self.memory.model.yaw_setpoint_rad
+            self.publisher.publish(self._status(outputs), outputs.plan, self._clock, yaw_rad)
 
-    def _publish(self, outputs: StepOutputs) -> None:
-        self._status_ns = self._clock.monotonic_ns
-        self._statuses += 1
-        status = replace(
+    def _status(self, outputs: StepOutputs) -> LandingStatus:
+        """Return the status of a step, with what is known of the links."""
+        return replace(
             outputs.status,
             mavlink_bad_bytes=self.autopilot.session.statistics.codec.bad_bytes,
             zenoh_bad_payloads=self.bad_payloads,
+            refused=self.vehicle.refused_lately(),
+            open_to_strangers=self.open_to_strangers,
         )
-        try:
-            self._publications.append(status_publication(self._keys, status))
-            if outputs.plan is not None and self._statuses % _PLAN_EVERY == 0:
-                plan = plan_publication(self._keys, outputs.plan, self._clock.t_ns, self.memory.model.yaw_setpoint_rad)
-                self._publications.append(plan)
-        except PayloadError:  # a flight goes on without being seen
-            self.unpublished += 1
-
-
-@lru_cache(maxsize=16)  # the gains of some landings; nothing that a link tells fills the memory
-def _response_to(cascade: Cascade) -> ResponseModel:
-    """Return the model of a cascade; 2 ms, and the gains of an autopilot come one by one in each of many landings."""
-    return ResponseModel(cascade, HORIZON_OFFSETS_S)

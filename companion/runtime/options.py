@@ -57,6 +57,7 @@ class LoopOptions:
         start: start the landing without an operator.
         use_sim_time: follow `{ns}/clock` instead of the system's clock.
         tlog: file to record MAVLink into.
+        open_to_strangers: links by which somebody without a key could take part, in words.
     """
 
     device: str
@@ -64,6 +65,7 @@ class LoopOptions:
     start: bool
     use_sim_time: bool
     tlog: Path | None
+    open_to_strangers: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,5 +1,6 @@
 """A companion that records all that goes into it and what its steps make of that."""
 
+from companion.core.data import Rival
 from companion.landing.step_data import System
 from companion.recording.records import InputKind, InputRecord, LinkRecord, StepRecord, StepTimeRecord
 from companion.runtime.node import CompanionNode
@@ -59,13 +60,15 @@ class RecordingNode(CompanionNode):
         *,
         dry_run: bool = False,
         publishes: bool = True,
+        is_component: bool = False,
     ) -> None:
-        super().__init__(system, keys, session, dry_run=dry_run, publishes=publishes)
+        super().__init__(system, keys, session, dry_run=dry_run, publishes=publishes, is_component=is_component)
         self._recorder = recorder
         self._sequence = 0
         self._local_ns = 0
         self._link_ns: int | None = None
         self._recorded_alive: bool | None = None
+        self._recorded_rival: Rival | None = None
 
     def receive_mavlink(self, data: bytes, local_ns: int, *, is_datagram: bool = False) -> None:
         """Take bytes of the autopilot's link.
@@ -93,6 +96,13 @@ class RecordingNode(CompanionNode):
             self._recorded_alive = alive
             self._record(InputKind.ALIVE, bytes([alive]))
         super().receive_liveliness(alive=alive)
+
+    def receive_rival(self, rival: Rival | None) -> None:
+        """Take who else was there first; only its changes are recorded."""
+        if rival != self._recorded_rival:
+            self._recorded_rival = rival
+            self._record(InputKind.RIVAL, b"" if rival is None else rival.drone.encode() + bytes([rival.is_this_drone]))
+        super().receive_rival(rival)
 
     def request(self, command: Command) -> None:
         """Take an operator's command."""

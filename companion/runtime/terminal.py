@@ -9,6 +9,7 @@ from link.messages import LandingStatus
 from link.program.screen import Screen
 from link.program.status_rows import link_rows, number
 from link.recording.recorder import BackgroundRecorder
+from link.records import replace
 
 _EVERY = 25  # steps: twice a second
 _CAPACITY = 2  # a terminal that is stopped gets nothing, and holds nobody up
@@ -36,7 +37,8 @@ class Terminal:
             model = node.memory.model
             error_m = None if model.reference is None else model.tracking.error_m
             record = link_record(node, node.inputs.t_ns, self._recorder.dropped)
-            self._recorder.put((node.outputs.status, error_m, record))
+            status = replace(node.outputs.status, refused=node.vehicle.refused_lately())
+            self._recorder.put((status, error_m, record))
 
     def close(self) -> None:
         """Leave the last panel where it is."""

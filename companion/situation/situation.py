@@ -7,7 +7,7 @@ from msgspec import Struct, structs
 
 from companion.autopilots.driver import AutopilotView
 from companion.config.landing import ChaseConfig
-from companion.core.data import Array, FlightLimits, OwnState, RangeReading
+from companion.core.data import Array, FlightLimits, OwnState, RangeReading, Rival
 from companion.planning.guidance import ReferenceState
 from companion.vehicle.pad import PadPath
 from link.frames.rotations import rotate
@@ -61,17 +61,21 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
     Attributes:
         fix_age_s: since the newest accepted fix was taken.
         fix_age_on_arrival_s: of the newest accepted fix when it was taken in.
+        fix_std_m: that the newest fix states horizontally.
         is_alive: its liveliness token is there; None when it never showed one.
         speed_std_m_s: of its horizontal velocity; infinite while that is not known.
         rejected_share: of its measurements of the last seconds, 0 to 1.
+        are_sightings_mixed: what the drone sees of the pad contradicts itself.
         is_road_elsewhere: it is said to be higher or lower than any hill puts it.
     """
 
     fix_age_s: float | None = None
     fix_age_on_arrival_s: float | None = None
+    fix_std_m: float | None = None
     is_alive: bool | None = None
     speed_std_m_s: float = math.inf
     rejected_share: float = 0.0
+    are_sightings_mixed: bool = False
     is_road_elsewhere: bool = False
 
 
@@ -107,6 +111,7 @@ class Situation(Struct, frozen=True, kw_only=True, eq=False):
         waiting_point_enu_m: (3,) in W.
         limits: of the flight, the autopilot's own included.
         speed_limited_by: the autopilot's parameters that may bound the speed.
+        rival: another companion that was there first, None without one.
         approach: the drone against the pad, None unless both are known; follows from them.
     """
 
@@ -124,6 +129,7 @@ class Situation(Struct, frozen=True, kw_only=True, eq=False):
     waiting_point_enu_m: Array | None
     limits: FlightLimits | None = None
     speed_limited_by: tuple[str, ...] = ()
+    rival: Rival | None = None
     approach: Approach | None = None
 
     def __post_init__(self) -> None:

@@ -141,6 +141,7 @@ class BufferHealth(Struct, frozen=True, kw_only=True):
         nis_per_dof: mean over the whole run, 1 for a consistent filter; None before the second measurement.
         nis_dof: degrees of freedom that it is the mean of.
         recent_nis_per_dof: the same over what the buffer holds, rejected data included.
+        sightings: of the pad, accepted and rejected.
     """
 
     fused: int
@@ -150,6 +151,7 @@ class BufferHealth(Struct, frozen=True, kw_only=True):
     nis_per_dof: float | None
     nis_dof: int
     recent_nis_per_dof: float | None
+    sightings: tuple[int, int] = (0, 0)
 
 
 class BufferedEstimator(Struct, Generic[S], frozen=True, kw_only=True):
@@ -173,8 +175,8 @@ class BufferedEstimator(Struct, Generic[S], frozen=True, kw_only=True):
         return None if state is None else self.model.forecast(state, t_ns, offset_s)
 
     def newest_fix_ns(self, memory: DelayBuffer[S] | None) -> int | None:
-        """Return the time at which the newest accepted position was taken."""
-        return self.newest_ns(memory, Quantity.POSITION)
+        """Return the time at which the newest accepted place was taken."""
+        return self.newest_ns(memory, self.model.placed_by)
 
     def newest_ns(self, memory: DelayBuffer[S] | None, quantity: Quantity) -> int | None:
         """Return the time at which the newest accepted `quantity` was taken."""
@@ -192,6 +194,7 @@ class BufferedEstimator(Struct, Generic[S], frozen=True, kw_only=True):
             nis_per_dof=tally.nis_sum / tally.nis_dof if tally.nis_dof else None,
             nis_dof=tally.nis_dof,
             recent_nis_per_dof=sum(recent) / len(recent) if recent else None,
+            sightings=tally.sightings,
         )
 
     def _state_at(self, memory: DelayBuffer[S] | None, t_ns: int) -> S | None:
@@ -222,7 +225,7 @@ class Estimator(Protocol):
         """Return the vehicle at `t_ns + offset_s`, `offset_s` (n,), or None as `estimate` does."""
 
     def newest_fix_ns(self, memory: EstimatorMemory | None) -> int | None:
-        """Return the time at which the newest accepted position was taken."""
+        """Return the time at which the newest accepted place was taken: a fix, or a sighting of a silent vehicle."""
 
     def health(self, memory: EstimatorMemory | None) -> BufferHealth:
         """Return the counters and the consistency of the memory."""

@@ -13,7 +13,11 @@ from link.messages import Vector3
 
 
 def make_estimator(
-    config: EstimatorConfig, antenna_to_pad_m: Vector3 = (0.0, 0.0, 0.0), kind: EstimatorKind | None = None
+    config: EstimatorConfig,
+    antenna_to_pad_m: Vector3 = (0.0, 0.0, 0.0),
+    kind: EstimatorKind | None = None,
+    *,
+    is_silent: bool = False,
 ) -> Estimator:
     """Return an estimator; each has its own memory, which only it reads.
 
@@ -25,17 +29,18 @@ def make_estimator(
         config: all numbers.
         antenna_to_pad_m: from the vehicle's antenna to its pad's centre in V, for sightings of the pad.
         kind: which one, instead of the one that the configuration names.
+        is_silent: the vehicle tells nothing, and sightings of its pad place it; of the interacting models only.
     """
     kind = config.kind if kind is None else kind
     _warm_up(kind)
-    return _make(config, antenna_to_pad_m, kind)
+    return _make(config, antenna_to_pad_m, kind, is_silent=is_silent)
 
 
 @lru_cache
 def _warm_up(kind: EstimatorKind) -> None:
     """Do once all that an estimator can be asked."""
     estimator = _make(EstimatorConfig(), (1.0, 0.0, 0.0), kind)
-    sizes = {Quantity.HEADING: 1, Quantity.YAW_RATE: 1}
+    sizes = {Quantity.HEADING: 1, Quantity.YAW_RATE: 1, Quantity.ACCELERATION: 1}
     memory: EstimatorMemory | None = None
     for i, quantity in enumerate((*Quantity, *Quantity)):
         n = sizes.get(quantity, 3)
@@ -46,7 +51,9 @@ def _warm_up(kind: EstimatorKind) -> None:
     estimator.forecast(memory, now_ns, np.array([0.0, 1.0]))
 
 
-def _make(config: EstimatorConfig, antenna_to_pad_m: Vector3, kind: EstimatorKind) -> Estimator:
+def _make(
+    config: EstimatorConfig, antenna_to_pad_m: Vector3, kind: EstimatorKind, *, is_silent: bool = False
+) -> Estimator:
     match kind:
         case EstimatorKind.LKF_REPORT | EstimatorKind.LKF:
             return _linear(config, kind)
@@ -57,7 +64,8 @@ def _make(config: EstimatorConfig, antenna_to_pad_m: Vector3, kind: EstimatorKin
                 BufferedEstimator(model=UkfModel(config=config.ukf, point_config=config.lkf), config=config.buffer)
             )
         case EstimatorKind.IMM:
-            imm = ImmModel(config=config.imm, antenna_to_pad_m=antenna_to_pad_m)
+            placed_by = Quantity.PAD if is_silent else Quantity.POSITION
+            imm = ImmModel(config=config.imm, antenna_to_pad_m=antenna_to_pad_m, placed_by=placed_by)
             return _opaque(BufferedEstimator(model=imm, config=config.buffer))
         case _:
             assert_never(kind)

@@ -65,8 +65,12 @@ class Update(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
 class FilterModel(Protocol[S]):
     """A recursive filter as pure functions of its state."""
 
-    def start(self, fix: Measurement) -> S:
-        """Return the state after a first position."""
+    @property
+    def placed_by(self) -> Quantity:
+        """What it starts on, and without which it grows old."""
+
+    def start(self, place: Measurement) -> S:
+        """Return the state after a first place."""
 
     def predict(self, state: S, dt_s: float) -> S:
         """Return the state `dt_s` later."""
@@ -92,12 +96,13 @@ class Tally(Struct, frozen=True, kw_only=True):
     recoveries: int = 0
     nis_sum: float = 0.0
     nis_dof: int = 0
+    sightings: tuple[int, int] = (0, 0)  # of the pad, accepted and rejected
     accepted_ns: tuple[int | None, ...] = _NEVER
     rejected_since_ns: tuple[int | None, ...] = _NEVER
 
 
 class Snapshot(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
-    """The filter at `t_ns`; the state is None until the first position."""
+    """The filter at `t_ns`; the state is None until the first place."""
 
     t_ns: int
     state: S | None
@@ -138,11 +143,11 @@ def step(
 
 
 def _start(model: FilterModel[S], snapshot: Snapshot[S], measurement: Measurement) -> Snapshot[S]:
-    """Start on a position; anything else waits for one."""
+    """Start on a place; anything else waits for one."""
     tally = snapshot.tally
-    if measurement.quantity is not Quantity.POSITION:
+    if measurement.quantity is not model.placed_by:
         return Snapshot(t_ns=measurement.t_ns, state=None, tally=tally)
-    accepted = _put(tally.accepted_ns, RANK[Quantity.POSITION], measurement.t_ns)
+    accepted = _put(tally.accepted_ns, RANK[model.placed_by], measurement.t_ns)
     started = replace(tally, fused=tally.fused + 1, accepted_ns=accepted)
     return Snapshot(t_ns=measurement.t_ns, state=model.start(measurement), tally=started)
 
@@ -157,6 +162,7 @@ def _recover(model: FilterModel[S], snapshot: Snapshot[S], measurement: Measurem
     tally = replace(
         snapshot.tally,
         recoveries=snapshot.tally.recoveries + 1,
+        sightings=_count_sighting(snapshot.tally, rank, is_rejected=True),
         accepted_ns=_put(snapshot.tally.accepted_ns, rank, measurement.t_ns),
         rejected_since_ns=_NEVER,
     )
@@ -170,6 +176,7 @@ def _accept(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
         recoveries=tally.recoveries,
         nis_sum=tally.nis_sum + update.nis,
         nis_dof=tally.nis_dof + update.dof,
+        sightings=_count_sighting(tally, rank, is_rejected=False),
         accepted_ns=_put(tally.accepted_ns, rank, t_ns),
         rejected_since_ns=_put(tally.rejected_since_ns, rank, None),
     )
@@ -178,7 +185,15 @@ def _accept(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
 def _reject(tally: Tally, rank: int, t_ns: int) -> Tally:
     since_ns = tally.rejected_since_ns[rank]
     since = _put(tally.rejected_since_ns, rank, t_ns if since_ns is None else since_ns)
-    return replace(tally, gated=tally.gated + 1, rejected_since_ns=since)
+    sightings = _count_sighting(tally, rank, is_rejected=True)
+    return replace(tally, gated=tally.gated + 1, sightings=sightings, rejected_since_ns=since)
+
+
+def _count_sighting(tally: Tally, rank: int, *, is_rejected: bool) -> tuple[int, int]:
+    if rank != RANK[Quantity.PAD]:
+        return tally.sightings
+    accepted, rejected = tally.sightings
+    return accepted + (not is_rejected), rejected + is_rejected
 
 
 def _put(values: tuple[int | None, ...], index: int, value: int | None) -> tuple[int | None, ...]:

@@ -3,7 +3,8 @@
 State, motion and units are in `imm_kernels`, what sensors read in `imm_sensors`, the interaction in `imm_mixing`.
 The vehicle's fixes are in the frame of its own receiver and dated by its own clock; sightings of the pad are in the
 drone's. The difference of the frames is three states with a slow random walk, that of the clocks is one, so that the
-estimate is right for the drone, and stays right when the sightings end. What a receiver states as its error beyond
+estimate is right for the drone, and stays right when the sightings end. A vehicle that tells nothing is placed by
+sightings alone, without either difference. What a receiver states as its error beyond
 some decimetres is slow (Gauss-Markov) rather than white, and is let into that walk; the drone's own place then wanders
 as well, and from one sighting to the next nothing tells how far.
 """
@@ -33,12 +34,18 @@ KINDS = {
     Quantity.HEADING: sensors.HEADING,
     Quantity.YAW_RATE: sensors.YAW_RATE,
     Quantity.PAD: sensors.PAD,
+    Quantity.ACCELERATION: sensors.ACCELERATION,
 }
 UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
 PLACE = np.array([0, 1, 8])  # indices of the position
-MOVES = np.array([2, 3, 4, 5, 9, 11, kernels.BEND])  # of what a velocity tells about
 OFFSET = np.array([12, 13, 14])
 CURVATURE, HEADING = 6, 7
+TOLD_BY = {  # what is opened to data of a quantity that were rejected for too long
+    Quantity.VELOCITY: np.array([2, 3, 4, 5, 9, 11, kernels.BEND]),
+    Quantity.HEADING: np.array([HEADING]),
+    Quantity.YAW_RATE: np.array([CURVATURE]),
+    Quantity.ACCELERATION: np.array([kernels.LEAK]),
+}
 CLOCK = kernels.CLOCK
 TURNS = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
 TURN_AGE_MAX_S = 1.0  # of a sensor that is at work: several periods of the slowest
@@ -61,27 +68,33 @@ class ImmModel:
     Attributes:
         config: its numbers.
         antenna_to_pad_m: lever arm in V; the vehicle turns about the pad's centre, and sightings are of it.
+        placed_by: what it starts on: fixes, or sightings of a vehicle that tells nothing.
         numbers: the same as the kernels take them, derived.
     """
 
     config: ImmConfig
     antenna_to_pad_m: Vector3 = (0.0, 0.0, 0.0)
+    placed_by: Quantity = Quantity.POSITION
     numbers: Numbers = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Derive the kernels' numbers."""
         object.__setattr__(self, "numbers", numbers_of(self.config, self.antenna_to_pad_m))
 
-    def start(self, fix: Measurement) -> ImmState:
-        """Return the state after a first position: anything may be true of the rest."""
-        white, bias_variance = self._split(fix.covariance)
+    def start(self, place: Measurement) -> ImmState:
+        """Return the state after a first place: anything may be true of the rest.
+
+        A sighting is in the drone's own frame and dated by its clock, so that it leaves nothing between the two.
+        """
+        is_fix = place.quantity is Quantity.POSITION
+        white, bias_variance = self._split(place.covariance) if is_fix else (place.covariance, 0.0)
+        offset_variance = self.config.frame_offset_std_m**2 + bias_variance if is_fix else 0.0
         mean = np.zeros(kernels.SIZE)
-        mean[PLACE] = fix.value
+        mean[PLACE] = place.value
         covariance = np.diag(self._prior_variances())
         covariance[np.ix_(PLACE, PLACE)] = white
         covariance[CLOCK, CLOCK] = self.config.clock_std_s**2 if bias_variance else 0.0
-        offset = (self.config.frame_offset_std_m**2 + bias_variance) * np.eye(3)
-        covariances = _with_common_step(np.stack([covariance, covariance]), offset)
+        covariances = _with_common_step(np.stack([covariance, covariance]), offset_variance * np.eye(3))
         dwell_s = self.numbers.dwell_s
         modes = (np.stack([mean, mean]), covariances, dwell_s / dwell_s.sum())
         return ImmState(modes=modes, fix_bias_variance_m2=bias_variance)
@@ -94,8 +107,10 @@ class ImmModel:
         )
         return replace(state, modes=modes, turn_age_s=state.turn_age_s + dt_s)
 
-    def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState]:
-        """Return the state after any quantity."""
+    def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState] | None:
+        """Return the state after any quantity, None of an acceleration along a heading that is not known."""
+        if measurement.quantity is Quantity.ACCELERATION and not self._is_heading_known(state):
+            return None
         R, bias_variance = measurement.covariance, state.fix_bias_variance_m2
         if measurement.quantity is Quantity.POSITION:
             R, bias_variance = self._split(R)
@@ -109,24 +124,20 @@ class ImmModel:
         """Open what `measurement` contradicts.
 
         A sighting that contradicts everything means that the drone's frame has stepped: place and offset move
-        together. A fix that does is the receiver's step if the place is known from sightings, else a new start.
+        together. A fix that does is the receiver's step if the place is known from sightings, else a new start, as is
+        a sighting where nothing else places the vehicle.
         """
         match measurement.quantity:
             case Quantity.PAD:
-                step = self._step_size(state, measurement) ** 2 * np.eye(3)
-                means, covariances, weights = state.modes
-                return replace(state, modes=(means, _with_common_step(covariances, step), weights))
+                is_start = self.placed_by is Quantity.PAD
+                return self._restart(state, measurement) if is_start else self._move_frame(state, measurement)
             case Quantity.POSITION:
-                step_m = self._step_size(state, measurement)
                 if self._is_placed_by_sightings(state):
-                    return _open(state, OFFSET, np.full(3, step_m**2))
+                    return _open(state, OFFSET, np.full(3, self._step_size(state, measurement) ** 2))
                 return self._restart(state, measurement)
-            case Quantity.VELOCITY:
-                return _open(state, MOVES, self._prior_variances()[MOVES])
-            case Quantity.HEADING:
-                return _open(state, np.array([HEADING]), np.array([UNKNOWN_HEADING_VARIANCE]))
-            case Quantity.YAW_RATE:
-                return _open(state, np.array([CURVATURE]), np.array([self.config.curvature_std_rad_m**2]))
+            case Quantity.VELOCITY | Quantity.HEADING | Quantity.YAW_RATE | Quantity.ACCELERATION:
+                told = TOLD_BY[measurement.quantity]
+                return _open(state, told, self._prior_variances()[told])
             case _:
                 assert_never(measurement.quantity)
 
@@ -152,6 +163,7 @@ class ImmModel:
         position, velocity, acceleration, yaw, grade, std, heading_variance = forecasts.forecast_modes(
             state.modes, _own(offset_s), self._noises(state), self.numbers.motion, self._known_variance
         )
+        means, covariances, weights = state.modes
         return Forecast(
             t_ns=t_ns,
             offset_s=offset_s,
@@ -160,9 +172,11 @@ class ImmModel:
             acceleration_enu_m_s2=acceleration,
             yaw_rad=yaw if heading_variance < self._known_variance else None,
             position_std_m=std,
-            is_coarse=state.fix_bias_variance_m2 > 0.0,
+            is_coarse=state.fix_bias_variance_m2 > 0.0 or self.placed_by is Quantity.PAD,
             grade=grade,
             yaw_std_rad=math.sqrt(heading_variance),
+            frame_offset_enu_m=(weights @ means)[OFFSET[:2]],
+            frame_offset_std_m=math.sqrt(float((weights @ covariances[:, OFFSET, OFFSET]).max())),
         )
 
     def _split(self, fix_covariance: Array) -> tuple[Array, float]:
@@ -176,8 +190,11 @@ class ImmModel:
         """Of a heading that is known, rad^2; while it is not, the kernels leave the lever arm out."""
         return self.config.heading_known_std_rad**2
 
+    def _is_heading_known(self, state: ImmState) -> bool:
+        return bool(mixing.is_heading_known(state.modes, self._known_variance))
+
     def _noises(self, state: ImmState) -> Array:
-        """Both modes' noise, (2, 14), as `imm_kernels.process_noise` takes it."""
+        """Both modes' noise, (2, 15), as `imm_kernels.process_noise` takes it."""
         walk_m2_s = 2.0 * state.fix_bias_variance_m2 / self.config.fix_bias_time_s
         receiver_m2_s = self.config.frame_offset_walk_m2_s + walk_m2_s
         return noises_with(
@@ -188,7 +205,7 @@ class ImmModel:
         )
 
     def _prior_variances(self) -> Array:
-        """Of every state but position, offset and clock, (17,)."""
+        """Of every state but position, offset and clock, (18,)."""
         config = self.config
         speed, acceleration = config.initial_speed_std_m_s**2, config.initial_acceleration_std_m_s2**2
         heave = config.heave_std_m**2
@@ -196,7 +213,8 @@ class ImmModel:
         curvature = config.curvature_std_rad_m**2
         moving = [speed, speed, acceleration, acceleration, curvature, UNKNOWN_HEADING_VARIANCE]
         vertical = [0.0, config.grade_std**2, heave, heave_rate]
-        return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0, config.bend_std_per_m**2])
+        driven = [config.bend_std_per_m**2, config.gravity_leak_std_m_s2**2]
+        return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0, *driven])
 
     def _step_size(self, state: ImmState, measurement: Measurement) -> float:
         """How far, m, a measured place is from the expected one; at least the prior of the offset."""
@@ -210,10 +228,16 @@ class ImmModel:
         variance = float(weights @ covariances[:, 0, 0])
         return variance < 0.25 * (self.config.frame_offset_std_m**2 + state.fix_bias_variance_m2)
 
-    def _restart(self, state: ImmState, fix: Measurement) -> ImmState:
-        """A new start at `fix` that keeps offset, heading and clock."""
+    def _move_frame(self, state: ImmState, sighting: Measurement) -> ImmState:
+        """Open place and offset as one unknown."""
+        step = self._step_size(state, sighting) ** 2 * np.eye(3)
+        means, covariances, weights = state.modes
+        return replace(state, modes=(means, _with_common_step(covariances, step), weights))
+
+    def _restart(self, state: ImmState, place: Measurement) -> ImmState:
+        """A new start at `place` that keeps offset, heading and clock."""
         x, P = mixing.combine(*state.modes)
-        means, covariances, weights = self.start(fix).modes
+        means, covariances, weights = self.start(place).modes
         means[:, PLACE] += x[OFFSET]
         means[:, OFFSET] = x[OFFSET]
         for kept in (HEADING, CLOCK):

@@ -1,6 +1,6 @@
 """What the interacting turning models tell: the antenna's motion now and over the horizon, compiled.
 
-`motion` (8,) is as `imm_mixing` has it, with the lever arm at its end.
+`motion` (9,) is as `imm_mixing` has it.
 """
 
 import numpy as np
@@ -14,7 +14,7 @@ from companion.vehicle.imm_sensors import antenna_velocity, horizontal_accelerat
 
 @compiled_kernel
 def kinematics(states: Array, motion: Array) -> tuple[Array, Array, Array]:
-    """Return the antenna's position and velocity and the pad's acceleration in W, each (n, 3), of `states` (n, 17)."""
+    """Return the antenna's position and velocity and the pad's acceleration in W, each (n, 3), of `states` (n, 18)."""
     n = len(states)
     position, velocity, acceleration = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
     for i in range(n):
@@ -31,7 +31,7 @@ def kinematics(states: Array, motion: Array) -> tuple[Array, Array, Array]:
 
 @compiled_kernel
 def kinematics_jacobian(x: Array, motion: Array) -> Array:
-    """Return the Jacobian `(9, 17)` of position, velocity and acceleration."""
+    """Return the Jacobian `(9, 18)` of position, velocity and acceleration."""
     G = np.zeros((9, SIZE))
     G[0, 0], G[1, 1], G[2, 8], G[2, 10] = 1.0, 1.0, 1.0, 1.0
     _, G[3:6] = antenna_velocity(x, motion[5:8])
@@ -47,7 +47,7 @@ def kinematics_jacobian(x: Array, motion: Array) -> Array:
 
 @compiled_kernel
 def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) -> tuple[Array, Array]:
-    """Return the means `(n, 17)` and the pad's position variances `(n, 3)` at `offset_s` (n,), not falling.
+    """Return the means `(n, 18)` and the pad's position variances `(n, 3)` at `offset_s` (n,), not falling.
 
     The pad's, because a heading that is not well known moves it about an antenna that is.
     """
@@ -75,7 +75,7 @@ def forecast_modes(
     Args:
         modes: the filter.
         offset_s: (n,) not falling.
-        noises: (2, 14) of both modes.
+        noises: (2, 15) of both modes.
         motion: its numbers.
         known_variance: of a heading that is known, rad^2; without one the lever arm has no direction.
 
@@ -104,7 +104,7 @@ def describe_modes(
         known_variance: as above.
 
     Returns:
-        Mean (17,) and covariance (17, 17), position, velocity and acceleration, each (1, 3), their Jacobian (9, 17),
+        Mean (18,) and covariance (18, 18), position, velocity and acceleration, each (1, 3), their Jacobian (9, 18),
         and the variance of the heading, rad^2.
     """
     directed = with_direction(motion, modes, known_variance)

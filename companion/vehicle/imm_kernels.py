@@ -1,6 +1,6 @@
 """Compiled arithmetic of the turning model: one step of motion, its noise, and the Kalman update.
 
-State `x` (17,) of the vehicle in W:
+State `x` (18,) of the vehicle in W:
   0:2  p   horizontal position, m: the antenna's, and the pad's while it moves (`imm_mixing.glide`)
   2:4  v   horizontal velocity of the pad's centre, m/s, where the vehicle's body follows the road
   4:6  b   what changes the velocity apart from turning, m/s^2; decays with time constant tau
@@ -12,6 +12,8 @@ State `x` (17,) of the vehicle in W:
   12:15 o  what the vehicle's receiver must be corrected by to be in the drone's frame, m
   15   c   how far the vehicle's clock is ahead of the drone's, s: what it stamps with now was true c ago
   16  e    change of the grade per metre, 1/m
+  17  f    what the vehicle's accelerometer reads too much along V, m/s^2: gravity by a pitch that it does not tell, and
+           its own offset (Gauss-Markov)
 With `w = k |v|` and J the turn by +90 degrees: `dp = v, dv = w J v + b, db = w J b - b/tau, dpsi = w`. At constant
 `w` this has a closed form: in a frame that turns with the vehicle, `v` relaxes along `b` and nothing else happens.
 At rest `w` is zero, so a standing vehicle cannot turn. Braking ends at standstill. The curvature is driven by the
@@ -32,12 +34,12 @@ from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.small_matrices import inverse_of, less_outer, times
 
-SIZE = 17
+SIZE = 18
 MOTION = 8  # leading states that the non-linear motion touches
 FOLLOWS = (0, 0, 1, 1, 1, 1, 2, 1)  # each of them: 2 is the curvature, 1 its integral, 0 its second one
-CLOCK, BEND = 15, 16
+CLOCK, BEND, LEAK = 15, 16, 17
 HEADING_NOISE, CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST = 4, 8, 9, 10  # their places in the noise
-BEND_STD, BEND_ACCELERATION_STD, BEND_LENGTH, ROAD_NOISE = 5, 11, 12, 13
+BEND_STD, BEND_ACCELERATION_STD, BEND_LENGTH, ROAD_NOISE, LEAK_NOISE = 5, 11, 12, 13, 14
 
 
 @compiled_kernel
@@ -56,7 +58,7 @@ def climb(x: Array, y: Array, F: Array, by_v_s: float, by_b_s2: float) -> None:
     """Write height and grade into `y`, and their rows into `F`, after a drive from `x`.
 
     Args:
-        x: state (17,) before.
+        x: state (18,) before.
         y: the state afterwards, under way.
         F: its Jacobian, under way.
         by_v_s: what the velocity adds to the place, s.
@@ -77,10 +79,10 @@ def climb(x: Array, y: Array, F: Array, by_v_s: float, by_b_s2: float) -> None:
 
 @compiled_kernel
 def advance(x: Array, dt_s: float, tau_s: float, heave: Array) -> tuple[Array, Array]:
-    """Return the state `dt_s` later and its Jacobian `(17, 17)`.
+    """Return the state `dt_s` later and its Jacobian `(18, 18)`.
 
     Args:
-        x: state (17,).
+        x: state (18,).
         dt_s: step, short against a turn (0.1 s).
         tau_s: time constant of `b`.
         heave: transition (2, 2) of the heave over `dt_s`.
@@ -181,16 +183,16 @@ def heave_step(dt_s: float, frequency_rad_s: float, damping: float, std_m: float
 
 @compiled_kernel
 def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array) -> Array:
-    """Return Q `(17, 17)` over `dt_s`.
+    """Return Q `(18, 18)` over `dt_s`.
 
     Args:
-        x: state (17,), whose velocity says what is along and what is across.
+        x: state (18,), whose velocity says what is along and what is across.
         dt_s: step.
-        noise: (14,) jerk along and across the track, m^2/s^5; lateral acceleration, m^2/s^5; lowest speed for the
+        noise: (15,) jerk along and across the track, m^2/s^5; lateral acceleration, m^2/s^5; lowest speed for the
             curvature, m/s; heading, rad^2/s; standard deviation of the grade's change, 1/m; the receiver's and the
             drone's own wandering, m^2/s; clock, s^2/s; standard deviation of the curvature in the long run, rad/m;
             heading at rest, rad^2/s; standard deviation of a vertical curve's acceleration, m/s^2; its length, m;
-            height of the road, m^2/m.
+            height of the road, m^2/m; what the accelerometer reads too much, m^2/s^5.
         heave_noise: (2, 2) of the heave over `dt_s`.
     """
     Q = np.zeros((SIZE, SIZE))
@@ -228,7 +230,7 @@ def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array) -> Ar
         Q[place, place] += noise[7] * d
         Q[place, offset] = Q[offset, place] = noise[7] * d
         Q[offset, offset] = (noise[6] + noise[7]) * d
-    Q[CLOCK, CLOCK] = noise[CLOCK_NOISE] * d
+    Q[CLOCK, CLOCK], Q[LEAK, LEAK] = noise[CLOCK_NOISE] * d, noise[LEAK_NOISE] * d
     return Q
 
 

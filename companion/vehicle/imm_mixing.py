@@ -1,9 +1,10 @@
 """Compiled steps of two interacting turning models that differ in their noise only (Blom and Bar-Shalom 1988).
 
-`Modes` are means (2, 17), covariances (2, 17, 17) and probabilities (2,). Between measurements the vehicle may change
-from one mode to the other as a continuous Markov chain with the given mean dwell times. `motion` (8,) is the time
+`Modes` are means (2, 18), covariances (2, 18, 18) and probabilities (2,). Between measurements the vehicle may change
+from one mode to the other as a continuous Markov chain with the given mean dwell times. `motion` (9,) is the time
 constant of the acceleration, s, the heave's angular frequency, rad/s, damping and standard deviation, m, the time
-constant of the clock's difference, s, and the lever arm (3,) from the antenna to the pad in V, m.
+constant of the clock's difference, s, the lever arm (3,) from the antenna to the pad in V, m, and the time constant of
+what the accelerometer reads too much, s.
 """
 
 import math
@@ -15,6 +16,7 @@ from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_kernels import (
     BEND,
     CLOCK,
+    LEAK,
     SIZE,
     advance,
     bend_step,
@@ -100,16 +102,16 @@ def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple
     It is the pad's centre that moves as `advance` says, and the antenna swings about it.
 
     Args:
-        x: mean (17,).
-        P: covariance (17, 17).
+        x: mean (18,).
+        P: covariance (18, 18).
         dt_s: time to pass.
-        noise: (14,) as `process_noise` takes it.
-        motion: (8,), see the module; a lever arm of zero where it has no known direction.
+        noise: (15,) as `process_noise` takes it.
+        motion: (9,), see the module; a lever arm of zero where it has no known direction.
     """
     steps = max(math.ceil(dt_s / STEP_MAX_S - 1e-9), 1)
     step_s = dt_s / steps
     heave, heave_noise = heave_step(step_s, motion[1], motion[2], motion[3])
-    clock_left = math.exp(-step_s / motion[4])
+    clock_left, leak_left = math.exp(-step_s / motion[4]), math.exp(-step_s / motion[8])
     x, P = shifted(x, P, motion[5:8], 1.0)
     for _ in range(steps):
         Q = process_noise(x, step_s, noise, heave_noise)
@@ -122,6 +124,8 @@ def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple
         F[BEND, BEND] = bend_left
         x[CLOCK] *= clock_left
         F[CLOCK, CLOCK] = clock_left
+        x[LEAK] *= leak_left
+        F[LEAK, LEAK] = leak_left
         P = carried_through(F, P) + Q
     x, P = shifted(x, P, motion[5:8], -1.0)
     return x, 0.5 * (P + P.T)
@@ -153,7 +157,7 @@ def with_direction(motion: Array, modes: Modes, known_variance: float) -> Array:
 def predict_modes(
     modes: Modes, dt_s: float, noises: Array, dwell_s: Array, motion: Array, known_variance: float
 ) -> Modes:
-    """Return the filter `dt_s` later; `noises` (2, 14), `dwell_s` (2,), the others as `with_direction` has them."""
+    """Return the filter `dt_s` later; `noises` (2, 15), `dwell_s` (2,), the others as `with_direction` has them."""
     directed = with_direction(motion, modes, known_variance)
     means, covariances, weights = mix(modes, switching(dwell_s, dt_s))
     for j in range(2):

@@ -19,9 +19,9 @@ class Numbers:
     """A configuration as the kernels take it.
 
     Attributes:
-        motion: (8,) as `imm_mixing` has it.
+        motion: (9,) as `imm_mixing` has it.
         dwell_s: (2,) of both modes.
-        noises: (2, 14) as `imm_kernels.process_noise` takes them, but for what depends on the state (`noises_with`).
+        noises: (2, 15) as `imm_kernels.process_noise` takes them, but for what depends on the state (`noises_with`).
         lever_m: (3,) from the antenna to the pad in V.
         course: (3,) as `imm_mixing.take_reading` takes it.
     """
@@ -38,7 +38,9 @@ def numbers_of(config: ImmConfig, antenna_to_pad_m: Vector3) -> Numbers:
     heave = (2.0 * math.pi * config.heave_frequency_hz, config.heave_damping, config.heave_std_m)
     modes = (config.steady, config.manoeuvre)
     return Numbers(
-        motion=np.array([config.acceleration_decay_s, *heave, config.clock_time_s, *antenna_to_pad_m]),
+        motion=np.array(
+            [config.acceleration_decay_s, *heave, config.clock_time_s, *antenna_to_pad_m, config.gravity_leak_time_s]
+        ),
         dwell_s=np.array([mode.dwell_s for mode in modes]),
         noises=np.array([_noise(config, mode) for mode in modes]),
         lever_m=np.array(antenna_to_pad_m),
@@ -48,7 +50,7 @@ def numbers_of(config: ImmConfig, antenna_to_pad_m: Vector3) -> Numbers:
 
 @lru_cache(maxsize=4)  # it changes with a fix's stated error only
 def noises_with(numbers: Numbers, receiver_m2_s: float, own_m2_s: float, *, turn_is_measured: bool) -> Array:
-    """Return both modes' noise (2, 14) with the wandering of the vehicle's receiver and of the drone's own place.
+    """Return both modes' noise (2, 15) with the wandering of the vehicle's receiver and of the drone's own place.
 
     Where the drone's own place does not wander, fixes have corrections, and are dated without an error.
     A vehicle whose turning is measured may be one that turns on the spot. Any other is taken for a car: it turns no
@@ -80,4 +82,5 @@ def _noise(config: ImmConfig, mode: ImmModeConfig) -> tuple[float, ...]:
         config.bend_acceleration_std_m_s2,
         config.bend_length_m,
         config.road_psd_m2_m,
+        2.0 * config.gravity_leak_std_m_s2**2 / config.gravity_leak_time_s,
     )

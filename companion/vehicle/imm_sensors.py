@@ -10,9 +10,9 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
-from companion.vehicle.imm_kernels import BEND, CLOCK, SIZE
+from companion.vehicle.imm_kernels import BEND, CLOCK, LEAK, SIZE
 
-POSITION, VELOCITY, HEADING, YAW_RATE, PAD, COURSE = range(6)
+POSITION, VELOCITY, HEADING, YAW_RATE, PAD, COURSE, ACCELERATION = range(7)
 
 
 @compiled_kernel
@@ -42,13 +42,13 @@ def turned(lever: Array, yaw_rad: float) -> tuple[float, float]:
 
 @compiled_kernel
 def antenna_velocity(x: Array, lever: Array) -> tuple[Array, Array]:
-    """Return the antenna's velocity (3,), m/s, and its Jacobian (3, 17).
+    """Return the antenna's velocity (3,), m/s, and its Jacobian (3, 18).
 
     The pad's centre goes where the road goes; behind it by `lever` the antenna swings out as the vehicle turns, and
     is still lower where the road begins to climb.
 
     Args:
-        x: state (17,).
+        x: state (18,).
         lever: (3,) from the antenna to the pad in V, m, zero where it has no known direction.
     """
     speed, ux, uy = course(x)
@@ -68,16 +68,16 @@ def antenna_velocity(x: Array, lever: Array) -> tuple[Array, Array]:
 
 @compiled_kernel
 def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Array, Array]:
-    """Return what a sensor reads at `x`, `(m,)`, and its Jacobian `(m, 17)`.
+    """Return what a sensor reads at `x`, `(m,)`, and its Jacobian `(m, 18)`.
 
     Args:
-        kind: POSITION, VELOCITY, HEADING, YAW_RATE, PAD, or COURSE (the course minus the heading).
-        x: state (17,).
+        kind: POSITION, VELOCITY, HEADING, YAW_RATE, PAD, ACCELERATION, or COURSE (the course minus the heading).
+        x: state (18,).
         lever: (3,) from the antenna to the pad in V, m.
         sees_heading: whether the heading is known, so that the lever arm has a direction.
     """
     speed, ux, uy = course(x)
-    m = 1 if kind in (HEADING, YAW_RATE, COURSE) else 3
+    m = 3 if kind in (POSITION, VELOCITY, PAD) else 1
     z, H = np.zeros(m), np.zeros((m, SIZE))
     if kind in (POSITION, PAD):
         z[0], z[1], z[2] = x[0], x[1], x[8] + x[10]
@@ -109,6 +109,10 @@ def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Arra
     elif kind == YAW_RATE:
         z[0], H[0, 6] = x[6] * speed, speed
         H[0, 2], H[0, 3] = x[6] * ux, x[6] * uy
+    elif kind == ACCELERATION:
+        hx, hy = math.cos(x[7]), math.sin(x[7])
+        z[0] = hx * x[4] + hy * x[5] + x[LEAK]
+        H[0, 4], H[0, 5], H[0, 7], H[0, LEAK] = hx, hy, hx * x[5] - hy * x[4], 1.0
     elif kind == COURSE:
         z[0], H[0, 7] = math.atan2(x[3], x[2]) - x[7], -1.0
         H[0, 2], H[0, 3] = -x[3] / speed**2, x[2] / speed**2

@@ -1,12 +1,14 @@
 """From the vehicle's messages to measurements in the drone's local frame W."""
 
+import math
+
 import numpy as np
 
 from companion.autopilots.state import AutopilotState
 from companion.core.data import Array, Measurement, OwnState, Quantity
 from link.frames.local_frame import LocalFrame, local_from_geodetic, scale_of
 from link.frames.rotations import rotate, yaw_of
-from link.messages import Fix, FixVelocity, Matrix3, PadSighting, VehicleImu
+from link.messages import Fix, FixVelocity, Matrix3, PadSighting, Quaternion, Vector3, VehicleImu
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
 from link.records import replace
@@ -18,6 +20,9 @@ _VELOCITY_STD_M_S = 0.3
 _VERTICAL_VELOCITY_STD_M_S = 100.0  # of one that is not measured: says nothing
 _HEADING_STD_RAD = 0.1
 _YAW_RATE_STD_RAD_S = 0.02
+# At least: data sheets state the noise at rest (0.02 m/s^2), not how a body shakes and pitches on its wheels.
+# ISO 2631-1 calls less than 0.315 m/s^2 not uncomfortable.
+_ACCELERATION_STD_M_S2 = 0.3
 
 # No sensor is better than this; a smaller stated variance (0 for one axis is not rare) is a singular one to a filter.
 _STD_MIN = {
@@ -26,6 +31,7 @@ _STD_MIN = {
     Quantity.HEADING: 0.002,
     Quantity.YAW_RATE: 0.001,
     Quantity.PAD: 0.002,
+    Quantity.ACCELERATION: _ACCELERATION_STD_M_S2,
 }
 _ATTITUDE_AGE_MAX_S = 0.15  # of a drone that turns at 0.5 rad/s: what it sees 5 m away is then 0.4 m off
 _STD_MAX = 1e4  # says nothing at all
@@ -36,6 +42,7 @@ _VALUE_MAX = {
     Quantity.HEADING: 10.0,
     Quantity.YAW_RATE: 10.0,
     Quantity.PAD: 1e5,
+    Quantity.ACCELERATION: 100.0,
 }
 
 
@@ -135,7 +142,7 @@ def velocity_measurements(message: FixVelocity, frame: LocalFrame) -> tuple[Meas
 
 
 def imu_measurements(message: VehicleImu) -> tuple[Measurement, ...]:
-    """Return the heading and the yaw rate, as far as the message has them."""
+    """Return the heading, the yaw rate and the acceleration along the vehicle, as far as the message has them."""
     found: list[Measurement] = []
     if message.orientation_wxyz is not None:
         covariance = message.orientation_covariance_rad2
@@ -145,7 +152,22 @@ def imu_measurements(message: VehicleImu) -> tuple[Measurement, ...]:
         rate_covariance = message.angular_velocity_covariance_rad2_s2
         rate_variance = None if rate_covariance is None else rate_covariance[8]
         found.append(_yaw_rate(message.t_ns, message.angular_velocity_flu_rad_s[2], rate_variance))
+    force_m_s2 = message.specific_force_flu_m_s2
+    if force_m_s2 is not None and any(force_m_s2):  # exactly none at all is what drivers without it leave behind
+        force_covariance = message.specific_force_covariance_m2_s4
+        force_variance = _ACCELERATION_STD_M_S2**2 if force_covariance is None else force_covariance[0]
+        forward_m_s2 = _forward_force_m_s2(force_m_s2, message.orientation_wxyz)
+        found.append(_scalar(message.t_ns, Quantity.ACCELERATION, forward_m_s2, force_variance))
     return tuple(found)
+
+
+def _forward_force_m_s2(force_m_s2: Vector3, q_WV: Quaternion | None) -> float:
+    """Return the specific force in the direction of the heading, less gravity as far as the attitude tells it."""
+    if q_WV is None:
+        return force_m_s2[0]
+    east_m_s2, north_m_s2, _ = rotate(q_WV, force_m_s2)
+    yaw_rad = yaw_of(q_WV)
+    return math.cos(yaw_rad) * east_m_s2 + math.sin(yaw_rad) * north_m_s2
 
 
 def sighting_measurement(sighting: PadSighting, own_then: OwnState) -> Measurement:

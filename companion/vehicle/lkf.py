@@ -113,6 +113,11 @@ class LkfModel:
 
     noise: LkfNoise
 
+    @property
+    def placed_by(self) -> Quantity:
+        """The vehicle's fixes."""
+        return Quantity.POSITION
+
     def start(self, fix: Measurement) -> Gaussian:
         """Return the state after a first position: at rest, as far as known."""
         return Gaussian(mean=np.concatenate([fix.value, np.zeros(6)]), covariance=self.noise.initial(fix))

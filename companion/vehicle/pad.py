@@ -33,12 +33,15 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
         acceleration_enu_m_s2: (n, 3).
         yaw_rad: heading of the vehicle now, None when unknown.
         position_std_m: (n, 3).
-        is_coarse: the vehicle's fixes alone are too coarse to land by: only what the drone sees of the pad places it.
+        is_coarse: the vehicle's fixes alone are too coarse to land by, if it sends any: only what the drone sees of the
+            pad places it.
         has_one_frame: the vehicle's fixes are in the drone's frame; if not, only what the drone sees tells the offset.
         half_width_m: from its centre to the nearest edge; infinite until it is described.
         height_m: of its surface above the vehicle's road.
         needs_heading: it is beside the antenna.
         unplaced: why the pad's place is not known; None when it is. Until then it is not landed on.
+        frame_offset_m: horizontally, of the drone's frame from the vehicle's fixes', as sightings tell; None without.
+        frame_offset_std_m: its standard deviation.
     """
 
     offset_s: Array
@@ -53,6 +56,8 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
     height_m: float = 0.0
     needs_heading: bool = False
     unplaced: Cause | None = None
+    frame_offset_m: float | None = None
+    frame_offset_std_m: float = math.inf
 
 
 def pad_path(forecast: Forecast, pad: PadGeometry | None, *, has_one_frame: bool = True) -> PadPath:
@@ -72,7 +77,7 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None, *, has_one_frame: bool
     lever_x_m, lever_y_m, lever_z_m = pad.antenna_to_pad_m if pad is not None else (0.0, 0.0, 0.0)
     position = forecast.position_enu_m + np.array([0.0, 0.0, lever_z_m])
     velocity = forecast.velocity_enu_m_s
-    is_beside = bool(lever_x_m or lever_y_m)
+    is_beside, frame_offset = bool(lever_x_m or lever_y_m), forecast.frame_offset_enu_m
     if forecast.yaw_rad is not None and is_beside:
         arm, swing = turned_lever(forecast.yaw_rad, forecast.offset_s, lever_x_m, lever_y_m)
         if forecast.grade is not None:
@@ -93,6 +98,8 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None, *, has_one_frame: bool
         height_m=0.0 if pad is None else pad.height_m,
         needs_heading=is_beside,
         unplaced=NOT_DESCRIBED if pad is None else HEADING_UNKNOWN if _is_about(forecast, pad) else None,
+        frame_offset_m=None if frame_offset is None else math.hypot(*frame_offset.tolist()),
+        frame_offset_std_m=forecast.frame_offset_std_m,
     )
 
 
@@ -155,3 +162,20 @@ def unseen_std_max_m(half_width_m: float, config: CompanionConfig) -> float:
 def is_too_small(pad: PadPath, config: CompanionConfig) -> bool:
     """Return whether the pad is narrower than what a drone can be brought onto."""
     return 2.0 * pad.half_width_m < config.descent.pad_width_min_m
+
+
+def is_vague(pad: PadPath, config: CompanionConfig) -> bool:
+    """Return whether the pad is not known well enough to come near it."""
+    return float(max(pad.position_std_m[0, :2].tolist())) > config.abort.position_std_max_m
+
+
+def is_unseen(pad: PadPath, config: CompanionConfig) -> bool:
+    """Return whether the pad has to be seen (again) before it is landed on.
+
+    Fixes of some decimetres or better place it by themselves where both receivers have one frame. Where they may not,
+    a first sighting tells the offset; between coarser fixes and the drone's own place lie metres, and what a sighting
+    said of them holds for seconds only.
+    """
+    return (pad.is_coarse or not pad.has_one_frame) and float(np.max(pad.position_std_m[0, :2])) > unseen_std_max_m(
+        pad.half_width_m, config
+    )

@@ -80,6 +80,11 @@ class UkfModel:
         object.__setattr__(self, "_points", points)
         object.__setattr__(self, "_scratch", UnscentedKalmanFilter(SIZE, 3, STEP_MAX_S, _position, fx, points))
 
+    @property
+    def placed_by(self) -> Quantity:
+        """The vehicle's fixes."""
+        return Quantity.POSITION
+
     def start(self, fix: Measurement) -> UkfState:
         """Return the state after a first position: a point of unknown heading."""
         return self._point.start(fix)

@@ -5,6 +5,7 @@ import re
 from dataclasses import dataclass
 
 from link.errors import UserError
+from link.hosts import is_this_machine
 
 FORMS = "udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT, tcpin:HOST:PORT or /dev/ttyX,BAUD"
 _NETWORK = re.compile(
@@ -76,6 +77,19 @@ def parse_device(device: str) -> NetworkDevice | SerialDevice:
         port=_port(device, kind, match["port"]),
         own_port=None if own_port is None else _port(device, "udpin", own_port),
     )
+
+
+def opening_of(device: str, *, signs: bool) -> str | None:
+    """Return by what a stranger could speak as the autopilot, None where only this machine or a cable is there.
+
+    Args:
+        device: in one of `FORMS`.
+        signs: whether only signed frames are taken.
+    """
+    parts = parse_device(device)
+    if signs or isinstance(parts, SerialDevice) or is_this_machine(parts.host):
+        return None
+    return f"MAVLink on {parts} is not signed"
 
 
 def _serial(device: str) -> SerialDevice:

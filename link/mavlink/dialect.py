@@ -10,4 +10,9 @@ Message: TypeAlias = mavlink.MAVLink_message
 
 mavlink.mavlink_map.update(DRAFT_MESSAGES)
 
-__all__ = ["Message", "mavlink"]
+COMMAND_CANCEL_ID, COMPONENT_INFORMATION_BASIC_ID = 80, 396
+"""Of drafts, which the dialect has no names for."""
+MAV_RESULT_CANCELLED = 6
+"""Likewise."""
+
+__all__ = ["COMMAND_CANCEL_ID", "COMPONENT_INFORMATION_BASIC_ID", "MAV_RESULT_CANCELLED", "Message", "mavlink"]

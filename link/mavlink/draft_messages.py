@@ -1,9 +1,9 @@
-"""Messages that PX4 sends and pymavlink leaves out, since MAVLink still calls them drafts.
+"""Messages that PX4 sends or a component hears or tells, and that pymavlink leaves out as drafts.
 
 A frame of a message that the dialect does not hold cannot be checked, and its content is lost: PX4's reasons for not
 arming among them.
 
-Source: MAVLink common, messages 8, 300, 380, 397, 410, 411; wire order and checksum seed: https://mavlink.io/en/guide/serialization.html.
+Source: MAVLink common, messages 8, 80, 300, 380, 396, 397, 410, 411; wire order and checksum seed: https://mavlink.io/en/guide/serialization.html.
 """
 
 import struct
@@ -44,6 +44,11 @@ _DRAFTS = (
         ),
     ),
     (
+        80,
+        "COMMAND_CANCEL",
+        (_Field("uint8_t", "target_system"), _Field("uint8_t", "target_component"), _Field("uint16_t", "command")),
+    ),
+    (
         380,
         "TIME_ESTIMATE_TO_TARGET",
         tuple(
@@ -60,6 +65,20 @@ _DRAFTS = (
             _Field("uint16_t", "max_version"),
             _Field("uint8_t", "spec_version_hash", 8),
             _Field("uint8_t", "library_version_hash", 8),
+        ),
+    ),
+    (
+        396,
+        "COMPONENT_INFORMATION_BASIC",
+        (
+            _Field("uint32_t", "time_boot_ms"),
+            _Field("uint64_t", "capabilities"),
+            _Field("uint32_t", "time_manufacture_s"),
+            _Field("char", "vendor_name", 32),
+            _Field("char", "model_name", 32),
+            _Field("char", "software_version", 24),
+            _Field("char", "hardware_version", 24),
+            _Field("char", "serial_number", 32),
         ),
     ),
     (

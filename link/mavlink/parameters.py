@@ -10,6 +10,7 @@ import struct
 from link.mavlink.dialect import Message, mavlink
 
 NAME_LENGTH_MAX = 16
+_BY_NAME = -1  # param_index of a PARAM_REQUEST_READ that goes by name
 
 _BYTEWISE_FORMATS = {
     mavlink.MAV_PARAM_TYPE_UINT8: "<Bxxx",
@@ -61,6 +62,13 @@ def parameter_on_wire(value: float, parameter_type: int, autopilot: int) -> floa
         return float(struct.unpack("<f", struct.pack(form, int(value)))[0])
     except struct.error as error:
         raise ValueError(f"{value} does not fit parameter type {parameter_type}: {error}") from error
+
+
+def parameter_question(target_system: int, name: str) -> Message:
+    """Returns the PARAM_REQUEST_READ to an autopilot."""
+    return mavlink.MAVLink_param_request_read_message(
+        target_system, mavlink.MAV_COMP_ID_AUTOPILOT1, name.encode("ascii"), _BY_NAME
+    )
 
 
 def parameter_set_message(name: str, value: float, parameter_type: int, autopilot: int, target_system: int) -> Message:

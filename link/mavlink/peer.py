@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from link.mavlink.dialect import Message, mavlink
+from link.mavlink.dialect import COMMAND_CANCEL_ID, Message, mavlink
 from link.mavlink.events import AutopilotRestarted, Event, LinkFound, LinkLost, LinkRegained
 
 _BROADCAST = 0
@@ -25,6 +25,29 @@ class Address:
         return system in (_BROADCAST, self.system_id) and component in (_BROADCAST, self.component_id)
 
 
+_TO_ONE = frozenset(
+    {
+        mavlink.MAVLINK_MSG_ID_COMMAND_LONG,
+        mavlink.MAVLINK_MSG_ID_COMMAND_INT,
+        COMMAND_CANCEL_ID,
+        mavlink.MAVLINK_MSG_ID_PARAM_SET,
+    }
+)
+_REQUESTS_MAX = 100  # between two calls; a ground station asks for some at once
+_TO_ALL = frozenset({mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_LIST, mavlink.MAVLINK_MSG_ID_PARAM_REQUEST_READ})
+
+
+def is_request(message: Message, own: Address) -> bool:
+    """Whether a message asks something of the component `own`.
+
+    What changes anything has to name it: ground stations send the autopilot's own commands to all components, too.
+    """
+    kind = message.get_msgId()
+    if kind in _TO_ONE:
+        return bool(message.target_system == own.system_id and message.target_component == own.component_id)
+    return kind in _TO_ALL and own.is_meant_by(message)
+
+
 class Peer:
     """The autopilot as seen from a companion.
 
@@ -41,10 +64,13 @@ class Peer:
         self.others: set[int] = set()
         """Systems of further autopilots that were heard."""
         self._own = own
+        self._requests: list[Message] = []
         self._last_heard_ns = 0
 
     def accepts(self, message: Message) -> bool:
-        """Whether a message is from the autopilot and for us or for everybody."""
+        """Whether a message is from the autopilot and for us or for everybody; anybody's requests are kept."""
+        if is_request(message, self._own) and len(self._requests) < _REQUESTS_MAX:
+            self._requests.append(message)
         if self.target_system_id is None:
             return is_autopilot_heartbeat(message)
         if message.get_srcSystem() != self.target_system_id and is_autopilot_heartbeat(message):
@@ -54,6 +80,11 @@ class Peer:
             and message.get_srcComponent() == AUTOPILOT_COMPONENT_ID
             and self._own.is_meant_by(message)
         )
+
+    def take_requests(self) -> list[Message]:
+        """Gives what was asked of us as a component since the last call."""
+        taken, self._requests = self._requests, []
+        return taken
 
     def heard(self, message: Message, t_ns: int) -> list[Event]:
         """Takes note of an accepted message; returns what it says about the link."""
@@ -109,6 +140,11 @@ class RestartWatch:
         self._ahead_in_a_row = (self._ahead_in_a_row + 1) % _JUMP_CONFIRMATIONS
         return self._ahead_in_a_row > 0
 
+    @property
+    def is_behind(self) -> bool:
+        """Whether the boot time seen last is so far behind that further ones have to confirm a restart."""
+        return self._earlier_in_a_row > 0
+
     def see(self, boot_ns: int, t_ns: int) -> AutopilotRestarted | None:
         """Takes note of a boot time of the autopilot; returns the restart that it proves, if it does."""
         if boot_ns >= self._newest_ns - _JUMP_NS:
@@ -128,14 +164,19 @@ AUTOPILOT_COMPONENT_ID: int = mavlink.MAV_COMP_ID_AUTOPILOT1
 _MAVLINK_VERSION = 3  # of the messages' definitions, the same for all of MAVLink 1 and 2
 
 
-def companion_heartbeat() -> Message:
-    """The heartbeat of an onboard computer, which flies nothing itself."""
+def companion_heartbeat(status: int = mavlink.MAV_STATE_ACTIVE, mode: int = 0) -> Message:
+    """The heartbeat of an onboard computer, which flies nothing itself.
+
+    Args:
+        status: MAV_STATE.
+        mode: a number of its own.
+    """
     return mavlink.MAVLink_heartbeat_message(
         type=mavlink.MAV_TYPE_ONBOARD_CONTROLLER,
         autopilot=mavlink.MAV_AUTOPILOT_INVALID,
         base_mode=0,
-        custom_mode=0,
-        system_status=mavlink.MAV_STATE_ACTIVE,
+        custom_mode=mode,
+        system_status=status,
         mavlink_version=_MAVLINK_VERSION,
     )
 

@@ -16,6 +16,7 @@ from link.mavlink.parameters import NAME_LENGTH_MAX, parameter_value
 
 CommandParams = tuple[float, float, float, float, float, float, float]
 _PARAMS = 7
+_AUTOPILOT = mavlink.MAV_COMP_ID_AUTOPILOT1
 _CONFIRMATION_MAX = 255
 _COMMAND_RETRY_NS = 500_000_000  # without an acknowledgement
 _PROGRESS_NS = 10_000_000_000  # patience after an IN_PROGRESS
@@ -31,6 +32,11 @@ def command_params(params: Sequence[float]) -> CommandParams:
         raise ValueError(f"a command has up to {_PARAMS} parameters, none of them infinite, not {params}")
     one, two, three, four, five, six, seven = (*params, *([0.0] * (_PARAMS - len(params))))
     return one, two, three, four, five, six, seven
+
+
+def command_message(target_system: int, command: int, params: CommandParams, confirmation: int) -> Message:
+    """Returns the COMMAND_LONG to an autopilot, sent for the `confirmation`-th time again."""
+    return mavlink.MAVLink_command_long_message(target_system, _AUTOPILOT, command, confirmation, *params)
 
 
 @dataclass(slots=True)

@@ -10,15 +10,15 @@ from link.mavlink.clock_map import ClockMap
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import AutopilotRestarted, CommandTimedOut, Event, MessageReceived
-from link.mavlink.peer import AUTOPILOT_COMPONENT_ID, Address, Peer, RestartWatch, companion_heartbeat
-from link.mavlink.requests import CommandParams, CommandSender, ParameterReader, command_params
+from link.mavlink.parameters import parameter_question
+from link.mavlink.peer import Address, Peer, RestartWatch, companion_heartbeat
+from link.mavlink.requests import CommandParams, CommandSender, ParameterReader, command_message, command_params
 from link.mavlink.signing import Signing
 from link.mavlink.statistics import SessionStatistics
 from link.mavlink.streams import StreamRequests
 from link.mavlink.timer import Timer
 from link.mavlink.timesync import ClockSync, boot_time_ns
 
-_BY_NAME = -1  # param_index of a PARAM_REQUEST_READ that goes by name
 _HEARTBEAT_PERIOD_NS = 1_000_000_000  # by the MAVLink heartbeat protocol
 _COMMAND_ATTEMPTS = 5
 _INTERVAL_ATTEMPTS = 3  # of one message's interval, before the next one has its turn
@@ -53,6 +53,8 @@ class MavlinkSession:
         self._streams = StreamRequests(self._command_stream)
         self._parameters = ParameterReader(self._send_parameter_request)
         self._heartbeat = Timer(_HEARTBEAT_PERIOD_NS)
+        self.heartbeat_state: tuple[int, int] = (mavlink.MAV_STATE_ACTIVE, 0)
+        """MAV_STATE and the custom mode that our heartbeats tell."""
         self._filtered = 0
         self._output: list[bytes] = []
 
@@ -105,9 +107,6 @@ class MavlinkSession:
             data: bytes as they came.
             t_ns: local time now.
             is_datagram: they are whole frames, not a piece of a stream.
-
-        Returns:
-            What they mean, in order.
         """
         events: list[Event] = []
         for message in self._codec.decode(data, t_ns=t_ns, is_datagram=is_datagram):
@@ -115,18 +114,14 @@ class MavlinkSession:
         return events
 
     def poll(self, t_ns: int) -> list[Event]:
-        """Does what is due: heartbeat, clock questions, everything that has to be sent again, and looking for silence.
-
-        Returns:
-            What has run out of time at local time `t_ns`, and what was behind a frame that was never completed.
-        """
+        """Does what is due at local time `t_ns`: heartbeat, questions, sending again, looking for silence."""
         if self._signing is not None:
             self._signing.advance(t_ns)
         events: list[Event] = [*self._peer.poll(t_ns)]
         for _, message in self._codec.flush(t_ns):
             events += self._take(message, t_ns)
         if self._heartbeat.is_due(t_ns):
-            self.send(companion_heartbeat())
+            self.send(companion_heartbeat(*self.heartbeat_state))
         if self._peer.is_up and (question := self._clock_sync.poll(t_ns)) is not None:
             self.send(question)
         events += self._without_streams(self._commands.poll(t_ns))
@@ -191,6 +186,10 @@ class MavlinkSession:
         """Gives the frames received since the last call, all senders', for a recording; see `records_input`."""
         return self._codec.take_input()
 
+    def take_requests(self) -> list[Message]:
+        """Gives what was asked of us as a component since the last call, by whatever system the autopilot passes on."""
+        return self._peer.take_requests()
+
     def _take(self, message: Message, t_ns: int) -> list[Event]:
         if not self._peer.accepts(message):
             self._filtered += 1
@@ -200,8 +199,10 @@ class MavlinkSession:
             self._filtered += 1
             return []
         events = self._peer.heard(message, t_ns)
-        if boot_ns:
-            events += self._watch_restart(boot_ns, t_ns)
+        events += self._watch_restart(boot_ns, t_ns) if boot_ns else []
+        if boot_ns and self._restarts.is_behind:
+            self._filtered += 1
+            return events
         events.append(MessageReceived(message, t_ns))
         return [*events, *self._handle(message, t_ns)]
 
@@ -243,15 +244,9 @@ class MavlinkSession:
     def _send_command(self, command: int, params: CommandParams, confirmation: int) -> None:
         target = self._peer.target_system_id
         if target is not None:
-            self.send(
-                mavlink.MAVLink_command_long_message(target, AUTOPILOT_COMPONENT_ID, command, confirmation, *params)
-            )
+            self.send(command_message(target, command, params, confirmation))
 
     def _send_parameter_request(self, name: str) -> None:
         target = self._peer.target_system_id
         if target is not None:
-            self.send(
-                mavlink.MAVLink_param_request_read_message(
-                    target, AUTOPILOT_COMPONENT_ID, name.encode("ascii"), _BY_NAME
-                )
-            )
+            self.send(parameter_question(target, name))

@@ -74,8 +74,12 @@ class _LandingStatus(_Report):
     time_to_contact_s: Annotated[float | None, Field(description="s; null unless descending")]
     mavlink_bad_bytes: Annotated[Count, Field(description="bytes from the autopilot that were no message")]
     zenoh_bad_payloads: Annotated[Count, Field(description="payloads that were refused")]
+    refused: Annotated[str, Field(description="what was refused most in the last 5 s, and why; empty if nothing")]
     armed: Annotated[bool, Field(description="whether the autopilot reports its motors armed")]
     fix_age_s: Annotated[float | None, Field(description="s since the newest fix was taken; null before the first")]
+    open_to_strangers: Annotated[
+        tuple[str, ...], Field(description="links by which somebody without a key could take part, in words")
+    ]
 
 
 LANDING_STATUS_SCHEMA = {

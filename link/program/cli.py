@@ -14,6 +14,7 @@ import typer
 from typer.main import get_command
 
 from link.errors import UserError
+from link.program.help import NO_EXAMPLES, App, Examples, explain
 from link.program.printable import printable
 
 EXIT_OK = 0
@@ -105,17 +106,30 @@ Ros2MapOption = Annotated[
 ]
 
 
-def make_app(description: str) -> typer.Typer:
-    """Return an empty app whose help and errors are plain text; `description` heads its `--help`."""
-    return typer.Typer(help=description, rich_markup_mode=None, pretty_exceptions_enable=False)
+def make_app(description: str, examples: Examples = NO_EXAMPLES) -> App:
+    """Return an empty app whose help and errors are plain text.
+
+    Args:
+        description: heads its `--help`.
+        examples: end the helps.
+    """
+    app = App(
+        help=description,
+        rich_markup_mode=None,
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+    app.examples = examples
+    return app
 
 
-def command_of(app: typer.Typer) -> Any:  # of a class that is private to typer
+def command_of(app: App) -> Any:  # of a class that is private to typer
     """Return an app from `make_app` as a command, with the options that all programs have."""
     command = get_command(app)
     versioned = typer.Typer(add_completion=False)
     versioned.command()(_with_version)
     command.params[:0] = get_command(versioned).params
+    explain(command, app.examples)
     return command
 
 
@@ -137,14 +151,15 @@ def _with_version(
     """Hold the option `--version`."""
 
 
-def run_app(name: str, app: typer.Typer, args: Sequence[str] | None = None) -> int:
+def run_app(name: str, app: App, args: Sequence[str] | None = None) -> int:
     """Run a command line and return its exit code.
 
     A mistake of the user is one line, `name: message`, on stderr.
 
     Args:
         name: the program's name.
-        app: from `make_app`; its functions may return an exit code, or nothing for 0.
+        app: from `make_app`; its functions may return an exit code, or nothing for 0. Alone, one that only has
+            commands prints its help.
         args: the arguments, `sys.argv[1:]` by default.
 
     Returns:
@@ -153,11 +168,14 @@ def run_app(name: str, app: typer.Typer, args: Sequence[str] | None = None) -> i
     command = command_of(app)
     try:
         arguments = _with_defaults(sys.argv[1:] if args is None else args)
+        if not arguments and getattr(command, "commands", None) and not command.invoke_without_command:
+            arguments = ["--help"]
         result = command.main(args=arguments, prog_name=name, standalone_mode=False)
     except UserError as error:
         return _fail(name, str(error))
     except typer.TyperException as error:
-        return _fail(name, error.format_message(), hint=f"(see {name} --help)")
+        context = getattr(error, "ctx", None)
+        return _fail(name, error.format_message(), hint=f"(see {name if context is None else context.command_path} -h)")
     except (KeyboardInterrupt, typer.Abort):
         return EXIT_INTERRUPTED
     return result if isinstance(result, int) else EXIT_OK

@@ -18,6 +18,7 @@ def status_rows(status: LandingStatus | None) -> list[Row]:
         ("relative velocity", _vector(velocity, "m/s")),
         ("time to touchdown", number(None if status is None else status.time_to_contact_s, "s")),
         ("age of the last fix", number(None if status is None else status.fix_age_s, "s")),
+        ("refused data", "-" if status is None or not status.refused else status.refused),
     ]
 
 

@@ -1,9 +1,8 @@
 """Configuration in TOML: read once, checked against a model, printed back; mistakes name the file and the key."""
 
-import difflib
 import json
 import tomllib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
@@ -12,6 +11,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from link.errors import UserError
+from link.program.near_names import key_hint, models_in
 
 Location = tuple[int | str, ...]
 Fields = Mapping[str, FieldInfo]
@@ -20,7 +20,8 @@ Positive = Annotated[float, Field(gt=0.0, le=1e4)]
 NotNegative = Annotated[float, Field(ge=0.0, le=1e4)]
 """Lengths, times, speeds and their kin: what is beyond the bound was meant in another unit."""
 
-_LINE_MAX = 200  # characters of what is said about a file
+_LINE_MAX = 200  # characters of what is said about one mistake
+_MISTAKES_MAX = 3  # told of one file, the others are counted
 _SOURCE_MAX, _VALUE_MAX = 100, 40  # of them, for the file's name and for a value
 _CUT = "..."
 _BOUNDS = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most"}
@@ -121,8 +122,22 @@ def _check(model: type[Model], table: Mapping[str, Any], source_of: Callable[[Lo
     except ValidationError as error:
         # an unknown key goes first: misspelt, it is why another one is missing
         details = sorted(error.errors(include_url=False), key=lambda one: one["type"] != "extra_forbidden")
-        location, fields = _place(details[0]["loc"], model)
-        raise UserError(_sentence(details[0], location, fields, source_of(location), len(details) - 1)) from None
+        raise UserError(_report(details, model, source_of)) from None
+
+
+def _report(details: Sequence[ErrorDetails], model: type[BaseModel], source_of: Callable[[Location], str]) -> str:
+    """Return the first mistakes in one line; a source is named where it is another one than before."""
+    told: dict[str, None] = {}
+    before = ""
+    for one in details[:_MISTAKES_MAX]:
+        location, fields = _place(one["loc"], model)
+        source = source_of(location)
+        source = source if len(source) <= _SOURCE_MAX else _CUT + source[-_SOURCE_MAX:]
+        text = _cut(" ".join(_sentence(one, location, fields, model).split()), _LINE_MAX - len(source) - 2)
+        told[text if source == before else f"{source}: {text}"] = None
+        before = source
+    further = len(details) - _MISTAKES_MAX
+    return "; ".join((*told, *([f"and {further} more"] if further > 0 else [])))
 
 
 def _is_in(location: Location, table: Mapping[str, Any]) -> bool:
@@ -137,21 +152,17 @@ def _is_in(location: Location, table: Mapping[str, Any]) -> bool:
     return bool(location)  # what does not fit as a whole is the file's
 
 
-def _sentence(details: ErrorDetails, location: Location, fields: Fields, source: str, further: int) -> str:
-    """Return one line of bounded length that names the file, the key, the value and what would fit."""
+def _sentence(details: ErrorDetails, location: Location, fields: Fields, model: type[BaseModel]) -> str:
+    """Return what names the key, the value and what would fit."""
     key = _key(location)
-    source = source if len(source) <= _SOURCE_MAX else _CUT + source[-_SOURCE_MAX:]
     if details["type"] == "extra_forbidden":
-        text = f"{source}: unknown key '{key}'{_nearest(str(location[-1]), list(fields))}"
-    elif details["type"] == "missing":
-        text = f"{source}: key '{key}' is missing"
-    else:
-        field = fields.get(str(location[-1])) if location else None
-        is_ours = details["type"] == "value_error"  # a check of the model's own, beyond the range of one number
-        expected = ("" if is_ours or field is None else _range_of(field)) or _lower_first(details["msg"])
-        text = f"{source}: {_describe_value(key, details['input'])} does not fit: {expected}"
-    more = f" ({further} more like this)" if further else ""
-    return _cut(" ".join(text.split()), _LINE_MAX - len(more)) + more
+        return f"unknown key '{key}'{key_hint(key, list(fields), model)}"
+    if details["type"] == "missing":
+        return f"key '{key}' is missing"
+    field = fields.get(str(location[-1])) if location else None
+    is_ours = details["type"] == "value_error"  # a check of the model's own, beyond the range of one number
+    expected = ("" if is_ours or field is None else _range_of(field)) or _lower_first(details["msg"])
+    return f"{_describe_value(key, details['input'])} does not fit: {expected}"
 
 
 def _key(location: Location) -> str:
@@ -187,14 +198,6 @@ def _range_of(field: FieldInfo) -> str:
     return f"it must be {kind} {' and '.join(bounds)}" if bounds and field.annotation in {int, float} else ""
 
 
-def _nearest(name: str, known: list[str]) -> str:
-    """Return a hint to the nearest of the `known` names, or all of them when none is near."""
-    near = difflib.get_close_matches(name, known, n=1)
-    if near:
-        return f", did you mean '{near[0]}'?"
-    return f"; valid are {', '.join(known)}" if known else ""
-
-
 def _place(location: Location, model: type[BaseModel]) -> tuple[Location, Fields]:
     """Return where in the file a mistake is, and the fields of the table that its last part is in.
 
@@ -212,7 +215,7 @@ def _place(location: Location, model: type[BaseModel]) -> tuple[Location, Fields
         beside = below
         field = beside.get(part) if isinstance(part, str) else None
         if field is not None:
-            models = list(_models_in(field.annotation))
+            models = list(models_in(field.annotation))
             below, by_kind = (models[0].model_fields if models else {}), _by_kind(models, field.discriminator)
     return tuple(kept), beside
 
@@ -222,10 +225,3 @@ def _by_kind(models: Sequence[type[BaseModel]], discriminator: object) -> Mappin
     if not isinstance(discriminator, str):
         return {}
     return {kind: model for model in models for kind in get_args(model.model_fields[discriminator].annotation)}
-
-
-def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        yield annotation
-    for argument in get_args(annotation):
-        yield from _models_in(argument)

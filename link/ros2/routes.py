@@ -13,7 +13,7 @@ from msgspec import Struct
 from link.frames.geodesy import Datum
 from link.payloads import cdr, decklander_msgs
 from link.payloads.checks import PayloadError
-from link.ros2 import foreign
+from link.ros2 import foreign, gps_fix
 from link.ros2.names import Endpoint
 from link.ros2.topic_map import TopicMap, VehicleTopics
 from link.ros2.type_hash import service_hash, type_hash
@@ -74,6 +74,9 @@ def _vehicle_routes(keys: Keys, topics: VehicleTopics) -> dict[str, Route]:
     if topics.odometry is not None and topics.odometry_origin is not None:
         return _odometry_routes(keys, topics.odometry, topics.odometry_frame, topics.odometry_origin)
     vehicle = f"/{keys.vehicle}"
+    imu = _unchanged(topics.imu or f"{vehicle}/imu", "sensor_msgs/msg/Imu")
+    if topics.gps is not None:
+        return _gps_routes(keys, topics.gps, topics.gps_geoid_height_m) | {keys.imu: imu}
     velocity = topics.velocity or f"{vehicle}/fix_velocity"
     has_covariance = topics.velocity_type != foreign.TWIST
     return {
@@ -81,7 +84,7 @@ def _vehicle_routes(keys: Keys, topics: VehicleTopics) -> dict[str, Route]:
         keys.fix_velocity: _unchanged(velocity, topics.velocity_type)
         if has_covariance
         else _read_only(topic(velocity, foreign.TWIST), foreign.velocity_of_twist),
-        keys.imu: _unchanged(topics.imu or f"{vehicle}/imu", "sensor_msgs/msg/Imu"),
+        keys.imu: imu,
     }
 
 
@@ -93,6 +96,15 @@ def _odometry_routes(keys: Keys, name: str, frame: str, origin_deg_m: tuple[floa
         keys.fix: _read_only(endpoint, lambda payload: foreign.fix_of_odometry(payload, frame, origin)),
         keys.fix_velocity: _read_only(endpoint, lambda payload: foreign.velocity_of_odometry(payload, frame)),
         keys.imu: _read_only(endpoint, lambda payload: foreign.imu_of_odometry(payload, frame)),
+    }
+
+
+def _gps_routes(keys: Keys, name: str, geoid_height_m: float) -> dict[str, Route]:
+    gps_fix.register()
+    endpoint = topic(name, gps_fix.GPS_FIX)
+    return {
+        keys.fix: _read_only(endpoint, lambda payload: gps_fix.fix_of_gps(payload, geoid_height_m)),
+        keys.fix_velocity: _read_only(endpoint, gps_fix.velocity_of_gps),
     }
 
 

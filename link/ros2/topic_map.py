@@ -19,6 +19,7 @@ from link.program.toml_config import NotNegative, Positive, StrictModel
 VelocityType = Literal["geometry_msgs/msg/TwistWithCovarianceStamped", "geometry_msgs/msg/TwistStamped"]
 Name = Annotated[str, Field(pattern=r"^(/[A-Za-z_][A-Za-z0-9_]*)+$")]
 Degrees = Annotated[float, Field(ge=-180.0, le=180.0)]
+Geoid = Annotated[float, Field(ge=-120.0, le=120.0)]
 Metres = Annotated[float, Field(ge=-1000.0, le=10000.0)]
 
 
@@ -29,6 +30,8 @@ class VehicleTopics(StrictModel):
     velocity: Name | None = None  # in ENU; /{vehicle}/fix_velocity
     velocity_type: VelocityType = "geometry_msgs/msg/TwistWithCovarianceStamped"
     imu: Name | None = None  # sensor_msgs/msg/Imu; /{vehicle}/imu
+    gps: Name | None = None  # gps_msgs/msg/GPSFix, in place of fix and velocity
+    gps_geoid_height_m: Geoid = 0.0  # added to its altitude: of the sea above the ellipsoid where it is above the sea
     odometry: Name | None = None  # nav_msgs/msg/Odometry, in place of the three
     odometry_frame: str = "map"  # its header's, with axes east, north and up
     odometry_origin: tuple[Degrees, Degrees, Metres] | None = None  # of that frame: degrees, m above the ellipsoid
@@ -37,8 +40,10 @@ class VehicleTopics(StrictModel):
     def _check_odometry(self) -> "VehicleTopics":
         if (self.odometry is None) != (self.odometry_origin is None):
             raise ValueError("odometry and odometry_origin belong together")
-        if self.odometry is not None and any((self.fix, self.velocity, self.imu)):
-            raise ValueError("odometry takes the place of fix, velocity and imu: leave them out")
+        if self.odometry is not None and any((self.fix, self.velocity, self.imu, self.gps)):
+            raise ValueError("odometry takes the place of fix, velocity, imu and gps: leave them out")
+        if self.gps is not None and any((self.fix, self.velocity)):
+            raise ValueError("gps takes the place of fix and velocity: leave them out")
         return self
 
 

@@ -1,9 +1,9 @@
 """What of a Zenoh session strangers can reach: endpoints beyond this machine that do not prove who is at the end."""
 
-import ipaddress
 from collections.abc import Iterable, Sequence
 
 from link.errors import UserError
+from link.hosts import is_this_machine
 
 _ENCRYPTED = frozenset({"tls", "quic"})
 _OF_THIS_MACHINE = frozenset({"unixsock-stream", "unixpipe", "serial", "vsock"})
@@ -48,8 +48,40 @@ def check_exposure(
                 f"--listen {endpoint}: takes anybody; set transport/link/tls/enable_mtls, or say --insecure"
             )
         raise UserError(f"--listen {endpoint}: whoever is on that network could give orders; {_REMEDY}")
-    if scouts and not (protocols and set(protocols) <= _ENCRYPTED | _OF_THIS_MACHINE):
+    if scouts and not _is_encrypted_only(protocols):
         raise UserError(f"--multicast-scouting: whoever is on that network could give orders; {_REMEDY}")
+
+
+def openings_of(
+    *,
+    connect: Sequence[str],
+    listen: Sequence[str],
+    protocols: Sequence[str] | None,
+    is_mutual: bool,
+    scouts: bool,
+    has_rules: bool,
+) -> tuple[str, ...]:
+    """Return by what strangers could take part, as `check_exposure` refuses it, and where no rule says who may do what.
+
+    Args:
+        connect: as there.
+        listen: as there.
+        protocols: as there.
+        is_mutual: as there.
+        scouts: as there.
+        has_rules: whether access control is on.
+    """
+    open_ends = [*exposed(connect), *exposed(listen, is_mutual=is_mutual)]
+    found = [f"Zenoh on {endpoint} takes anybody" for endpoint in open_ends]
+    if scouts and not _is_encrypted_only(protocols):
+        found.append("Zenoh's multicast scouting meets anybody")
+    remote = [endpoint for endpoint in listen if not _is_local(endpoint) and endpoint not in open_ends]
+    found += [f"Zenoh on {endpoint} has no access control" for endpoint in remote if not has_rules]
+    return tuple(found)
+
+
+def _is_encrypted_only(protocols: Sequence[str] | None) -> bool:
+    return bool(protocols) and set(protocols or ()) <= _ENCRYPTED | _OF_THIS_MACHINE
 
 
 def _is_encrypted(endpoint: str) -> bool:
@@ -61,7 +93,4 @@ def _is_local(endpoint: str) -> bool:
     if protocol in _OF_THIS_MACHINE:
         return True
     host = address.partition("?")[0].partition("#")[0].rpartition(":")[0].strip("[]")
-    try:
-        return ipaddress.ip_address(host.partition("%")[0]).is_loopback
-    except ValueError:
-        return host == "localhost"
+    return is_this_machine(host)

@@ -83,6 +83,16 @@ class Keys:
         return f"{self.namespace}/{self.drone}/pad_view/compressed"
 
     @property
+    def pad_annotations(self) -> str:
+        """In recordings, what the detector saw, to be drawn on the picture of the same stamp."""
+        return f"{self.namespace}/{self.drone}/pad_view/annotations"
+
+    @property
+    def detector_alive(self) -> str:
+        """The liveliness token of `pad-detector`."""
+        return f"{self.namespace}/{self.drone}/pad_detector/alive"
+
+    @property
     def landing_status(self) -> str:
         """How the landing goes, `link.messages.LandingStatus`."""
         return f"{self.namespace}/{self.drone}/landing/status"
@@ -96,6 +106,14 @@ class Keys:
     def landing_command(self) -> str:
         """The queryable that takes `link.messages.Command` and answers `CommandReply`."""
         return f"{self.namespace}/{self.drone}/landing/command"
+
+    def companion_alive(self, companion: str) -> str:
+        """The liveliness token of a companion of this drone; `*` for all of them."""
+        return f"{self.namespace}/{self.drone}/companion/alive/{companion}"
+
+    def landing_claim(self, drone: str, companion: str) -> str:
+        """The liveliness token of a companion that lands `drone` on this vehicle; `*` for all of them."""
+        return f"{self.namespace}/{self.vehicle}/landing/{drone}/{companion}"
 
     @property
     def drone_truth(self) -> str:

@@ -1,96 +1,29 @@
-"""The Zenoh session: the only place that knows the Zenoh library.
+"""The Zenoh session: with the files beside it the only place that knows the Zenoh library.
 
 Zenoh calls back on threads of its own; here these only put samples into inboxes, so that everything else runs in
 the program's own loop. Samples are sent with congestion control BLOCK and default priority: with REAL_TIME and DROP
 samples were seen to get lost on a busy machine.
 """
 
-import json
-import re
 import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from types import TracebackType
 from typing import Self
 
 import zenoh
 
-from link.errors import UserError
 from link.payloads.checks import PayloadError
-from link.zenoh.exposure import check_exposure
+from link.zenoh.alive import Alive
 from link.zenoh.inbox import Inbox, Sample, WakeUp
+from link.zenoh.library_config import open_library_session
 from link.zenoh.options import DEFAULT_ENDPOINT, ZenohOptions
+from link.zenoh.replies import Replies
 
 __all__ = ["DEFAULT_ENDPOINT", "Alive", "Inbox", "Sample", "WakeUp", "ZenohOptions", "ZenohSession", "open_session"]
 
 INBOX_CAPACITY = 1024
 """Ten seconds of a 100 Hz stream."""
-
-_REPLIES_MAX = 256
-"""Answers to queries that wait to be sent; more are asked for by nobody who means it."""
-
-_SOURCE_PLACE = re.compile(r"\s+at /\S+\.rs:\d+\.?")
-_CLIENT_CONNECT_TIMEOUT_MS = 5000
-_BLOCK_MAX_KEY = "transport/link/tx/queue/congestion_control/block/wait_before_close"
-_BLOCK_MAX_US = 200_000
-"""A peer that takes nothing for this long while its queue is full is disconnected: a hung dashboard must not
-stall the loop that flies. Less than the half second after which autopilots call a setpoint stream lost."""
-
-_MESSAGE_MAX_KEY = "transport/link/rx/max_message_size"
-
-
-class Replies:
-    """Sends answers to queries from a thread of its own: one who does not read them holds nobody else up.
-
-    Attributes:
-        lost: answers to who has gone, or that came after the end.
-    """
-
-    def __init__(self) -> None:
-        self._pool = ThreadPoolExecutor(1, thread_name_prefix="replies")
-        self._places = threading.BoundedSemaphore(_REPLIES_MAX)
-        self.lost = 0
-
-    def put(self, query: zenoh.Query, send: Callable[[], None]) -> None:
-        """Answer `query` by `send` later, or never where too many wait already."""
-        if not self._places.acquire(blocking=False):
-            return
-        try:
-            self._pool.submit(self._send, query, send)
-        except RuntimeError:  # it is closed
-            self.lost += 1
-
-    def close(self) -> None:
-        """Send none of those that wait."""
-        self._pool.shutdown(wait=False, cancel_futures=True)
-
-    def _send(self, query: zenoh.Query, send: Callable[[], None]) -> None:
-        try:
-            send()
-        except zenoh.ZError:
-            self.lost += 1
-        finally:
-            query.drop()  # type: ignore[no-untyped-call]  # its stub has no return type
-            self._places.release()
-
-
-class Alive:
-    """Whether anybody declares a liveliness token on a key."""
-
-    def __init__(self, wake_up: WakeUp) -> None:
-        self._wake_up = wake_up
-        self._keys: set[str] = set()
-
-    @property
-    def alive(self) -> bool:
-        """Whether a token is there now."""
-        return bool(self._keys)
-
-    def update(self, key: str, *, is_alive: bool) -> None:
-        """Take the news of a token; for the receiving thread."""
-        (self._keys.add if is_alive else self._keys.discard)(key)
-        self._wake_up.set()
 
 
 class ZenohSession:
@@ -145,9 +78,20 @@ class ZenohSession:
         self._held.append(self._session.declare_subscriber(key, receive))
         return inbox
 
-    def declare_alive(self, key: str) -> None:
-        """Show, by a token on `key`, that this program lives; the token goes when the session closes or dies."""
-        self._held.append(self._session.liveliness().declare_token(key))
+    def declare_alive(self, key: str) -> Callable[[], None]:
+        """Show, by a token on `key`, that this program lives; the token goes when the session closes or dies.
+
+        What is returned takes the token back.
+        """
+        token = self._session.liveliness().declare_token(key)
+        self._held.append(token)
+
+        def take_back() -> None:
+            if token in self._held:
+                self._held.remove(token)
+                token.undeclare()  # type: ignore[no-untyped-call]  # its stub has no return type
+
+        return take_back
 
     def watch_alive(self, key: str) -> Alive:
         """Return whether there is a token on `key`, from now on; a token that is already there is seen, too."""
@@ -179,8 +123,8 @@ class ZenohSession:
     def serve_later(self, key: str, take: Callable[[bytes, Callable[[bytes], None]], None]) -> None:
         """Answer queries on `key` with JSON, by `take(payload, reply)`, which returns at once.
 
-        `reply(answer)` may be called then or later, once, from any thread, and never waits or raises. Where more than
-        `_REPLIES_MAX` answers are on their way it has no effect. A query whose `reply` is forgotten has no answer.
+        `reply(answer)` may be called then or later, once, from any thread, and never waits or raises. Where as many
+        answers as `Replies` holds are on their way it has no effect. A query whose `reply` is forgotten has no answer.
         """
 
         def receive(query: zenoh.Query) -> None:
@@ -245,105 +189,3 @@ def open_session(options: ZenohOptions, *, receive_clock_ns: Callable[[], int] =
         UserError: If the configuration file is missing or wrong, a port is in use or a client finds no router.
     """
     return ZenohSession(open_library_session(options), receive_clock_ns=receive_clock_ns)
-
-
-def open_library_session(options: ZenohOptions) -> zenoh.Session:
-    """Return the library's own session, for other layouts; see `open_session`."""
-    config = _config(options)
-    try:
-        return zenoh.open(config)
-    except zenoh.ZError as error:
-        raise UserError(_open_failure(options, config, str(error))) from error
-
-
-def _config(options: ZenohOptions) -> zenoh.Config:
-    config = zenoh.Config() if options.config_file is None else _config_from_file(options)
-    if options.mode is not None:
-        _insert(config, "mode", options.mode)
-    if options.connect:
-        _insert(config, "connect/endpoints", list(options.connect))
-    if options.multicast_scouting is not None:
-        _insert(config, "scouting/multicast/enabled", options.multicast_scouting)
-    _fill(config, "mode", "peer")
-    _fill(config, "scouting/multicast/enabled", False)
-    _fill_connection(config)
-    if options.listen:
-        _insert(config, "listen/endpoints", list(options.listen))
-    elif _get(config, "listen/endpoints") == _get(zenoh.Config(), "listen/endpoints"):
-        # Zenoh's own default is plain TCP on all interfaces, beside whatever a file says of TLS.
-        own = [] if options.config_file or _get(config, "mode") == "client" else ["tcp/127.0.0.1:0"]
-        _insert(config, "listen/endpoints", own)
-    if not options.insecure:
-        _check_exposure(config)
-    if _get(config, "mode") != "router" and _get(config, _MESSAGE_MAX_KEY) == _get(zenoh.Config(), _MESSAGE_MAX_KEY):
-        _insert(config, _MESSAGE_MAX_KEY, options.message_max_bytes)
-    if _get(config, _BLOCK_MAX_KEY) == _get(zenoh.Config(), _BLOCK_MAX_KEY):
-        _insert(config, _BLOCK_MAX_KEY, _BLOCK_MAX_US)
-    return config
-
-
-def _check_exposure(config: zenoh.Config) -> None:
-    protocols = _get(config, "transport/link/protocols")
-    check_exposure(
-        connect=_endpoints(config, "connect/endpoints"),
-        listen=_endpoints(config, "listen/endpoints"),
-        protocols=protocols if isinstance(protocols, list) else None,
-        is_mutual=_get(config, "transport/link/tls/enable_mtls") is True,
-        scouts=_get(config, "scouting/multicast/enabled") is True,
-    )
-
-
-def _endpoints(config: zenoh.Config, key: str) -> list[str]:
-    """Return endpoints of all modes: those of the session's own, or a table with a list for each mode."""
-    found = _get(config, key)
-    lists = found.values() if isinstance(found, dict) else (found,)
-    return [str(endpoint) for one in lists for endpoint in (one if isinstance(one, list) else ())]
-
-
-def _fill_connection(config: zenoh.Config) -> None:
-    """Make peers and routers connect for ever in the background, and clients, whose opening waits, give up."""
-    is_client = _get(config, "mode") == "client"
-    if is_client and not _get(config, "connect/endpoints") and not _get(config, "scouting/multicast/enabled"):
-        raise UserError(f"--mode client needs a router to connect to: add --connect {DEFAULT_ENDPOINT}")
-    _fill(config, "connect/timeout_ms", _CLIENT_CONNECT_TIMEOUT_MS if is_client else -1)
-    _fill(config, "connect/exit_on_failure", is_client)
-
-
-def _config_from_file(options: ZenohOptions) -> zenoh.Config:
-    path = options.config_file
-    if path is None or not path.is_file():
-        raise UserError(f"--zenoh-config {path}: there is no such file")
-    try:
-        return zenoh.Config.from_json5(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, zenoh.ZError) as error:
-        raise UserError(f"--zenoh-config {path}: {_plain(str(error))}") from error
-
-
-def _get(config: zenoh.Config, key: str) -> object:
-    return json.loads(config.get_json(key))
-
-
-def _insert(config: zenoh.Config, key: str, value: object) -> None:
-    config.insert_json5(key, json.dumps(value))
-
-
-def _fill(config: zenoh.Config, key: str, value: object) -> None:
-    """Set what the configuration file leaves open."""
-    if _get(config, key) is None:
-        _insert(config, key, value)
-
-
-def _open_failure(options: ZenohOptions, config: zenoh.Config, text: str) -> str:
-    endpoints = ", ".join(options.listen) or f"the endpoints of {options.config_file}"
-    if "Address already in use" in text:
-        return f"--listen {endpoints}: the port is in use, stop the other program or choose another port"
-    if _get(config, "mode") == "client":
-        return (
-            f"--connect {', '.join(_endpoints(config, 'connect/endpoints'))}: no router answers there ({_plain(text)})"
-        )
-    return f"cannot open the Zenoh session (--listen {endpoints}): {_plain(text)}"
-
-
-def _plain(text: str) -> str:
-    """Return a message of the library on one line, without the places in its source code."""
-    return " ".join(_SOURCE_PLACE.sub("", text).split())

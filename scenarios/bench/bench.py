@@ -16,7 +16,8 @@ from scenarios.config import Scenario
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.lockstep.stopwatch import quantiles_ms, ratio_of, timed_steps
 from scenarios.lockstep.warm_up import warm_process
-from scenarios.wire.run import RunOptions, run_over_wire
+from scenarios.recordings.run_folder import RunOptions
+from scenarios.wire.run import run_over_wire
 
 Table = dict[str, Any]
 Announce = Callable[[str], None]

@@ -14,10 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from companion.eyes.board import BoardConfig
-from companion.eyes.picture import Box, box_around, remapped
+from companion.eyes.picture import Box, box_around
 from scenarios.camera.exposure import develop, exposure_for
 from scenarios.camera.lens import CAMERA, FOCAL_PX, Lens, defocus_std_px, smear
-from scenarios.camera.surfaces import Surface, board_surface, road_surface, roof_surface
+from scenarios.camera.lighting import Light, glare, lamp_lit, lamp_lx
+from scenarios.camera.planes import View, fills, on_plane, paint, to_plane, where_on_plane
+from scenarios.camera.surfaces import board_surface, road_surface, roof_surface
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
@@ -25,40 +27,10 @@ Floats = NDArray[np.float32]
 _SKY_SHARE = 0.25  # of daylight that comes from all sides, also into a shadow
 _BOARD_MARGIN_PX = 4.0
 _FINE_AREA_PX = 90_000  # smaller parts are rendered twice as finely
-_LAMP_HALF_ANGLE_RAD = math.radians(45.0)
-_GLARE_STD_RAD = 0.12  # of a semi-gloss print: half width of its highlight
-_GLARE_PEAK = 4.0  # in units of what white paper throws back
 _SHADOW_BODY_M, _SHADOW_ROTOR_M, _ROTOR_ARM_M, _ROTOR_SHARE = 0.13, 0.127, 0.215, 0.4
 _SUN_RADIUS_RAD = 0.0047
+_MOTION_MAX_PX = 400.0  # while it is exposed: more leaves no edge of a tag, and a pad far beside is said to move so
 _NOISE_SIZE = 2048  # of the field from which each picture's is cut
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Light:
-    """What shines: the day, and a lamp beside the camera.
-
-    Attributes:
-        daylight_lx: on level ground, of sun and sky together.
-        sun_v: unit vector in V towards the sun; None where the sky is overcast or the sun has set.
-        lamp_lm: of the lamp.
-        is_glossy: the board mirrors the sun.
-    """
-
-    daylight_lx: float
-    sun_v: Array | None = None
-    lamp_lm: float = 0.0
-    is_glossy: bool = False
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class View:
-    """Where the camera is and how it moves against the vehicle: R_VC, places and velocity in V, turning in C."""
-
-    R_VC: Array
-    camera_m: Array
-    velocity_m_s: Array
-    turning_c_rad_s: Array
-    drone_m: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,8 +98,8 @@ class Renderer:
     def _render(self, view: View, light: Light, box: Box, *, is_fine: bool) -> NDArray[np.uint8]:
         depth_m = self._depth_m(view)
         blur_px = math.sqrt(max(defocus_std_px(depth_m) ** 2 - 1.0 / 12.0, 0.1))
-        exposure = exposure_for(light.daylight_lx + _lamp_lx(light, depth_m))
-        motion_px = self._motion_px(view) * exposure.duration_s
+        exposure = exposure_for(light.daylight_lx + lamp_lx(light, depth_m))
+        motion_px = _at_most(self._motion_px(view) * exposure.duration_s, _MOTION_MAX_PX)
         margin = math.ceil(3.0 * blur_px + 0.5 * float(np.hypot(*motion_px)) + 1.0)
         inner = self._lens.within(Box(box.left - margin, box.top - margin, box.right + margin, box.bottom + margin))
         lit = self._lit(view, light, self._lens.rays(inner, is_fine=is_fine))
@@ -156,18 +128,18 @@ class Renderer:
         if self._board is not None:
             planes.append((self._board, self._roof_height_m))
         lit = np.full(rays.shape[:2], 0.1, np.float32)
-        hidden = [index for index, (surface, height_m) in enumerate(planes) if _fills(surface, view, height_m, rays)]
+        hidden = [index for index, (surface, height_m) in enumerate(planes) if fills(surface, view, height_m, rays)]
         for surface, height_m in planes[max(hidden, default=0) :]:
-            _paint(lit, surface, _to_plane(view, height_m), rays)
+            paint(lit, surface, to_plane(view, height_m), rays)
         _hide_horizon(lit, view, rays)
         if light.lamp_lm > 0.0:
-            lit *= light.daylight_lx + _lamp_lit(light, rays, self._depth_m(view))
+            lit *= light.daylight_lx + lamp_lit(light, rays, self._depth_m(view))
         else:
             lit *= np.float32(light.daylight_lx)
         if light.sun_v is not None:
             self._cast_shadow(lit, view, light.sun_v, rays)
             if light.is_glossy:
-                lit += _glare(light.sun_v, light.daylight_lx, view, rays)
+                lit += glare(light.sun_v, light.daylight_lx, view, rays)
         return lit
 
     def _cast_shadow(self, lit: Floats, view: View, sun_v: Array, rays: Floats) -> None:
@@ -177,11 +149,11 @@ class Renderer:
             return
         center = view.drone_m[:2] - sun_v[:2] / sun_v[2] * height_m
         soft_m = 0.01 + 2.0 * _SUN_RADIUS_RAD * height_m
-        onto_roof = _to_plane(view, self._roof_height_m)
-        rows, columns = _where_on_plane(onto_roof, rays, center, _ROTOR_ARM_M + _SHADOW_ROTOR_M + soft_m)
+        onto_roof = to_plane(view, self._roof_height_m)
+        rows, columns = where_on_plane(onto_roof, rays, center, _ROTOR_ARM_M + _SHADOW_ROTOR_M + soft_m)
         if rows.start == rows.stop or columns.start == columns.stop:
             return
-        at = _on_plane(onto_roof, np.ascontiguousarray(rays[rows, columns]))
+        at = on_plane(onto_roof, np.ascontiguousarray(rays[rows, columns]))
         discs = [(center, _SHADOW_BODY_M, 1.0)]
         arms = ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0))
         discs += [
@@ -206,86 +178,6 @@ def _hide_horizon(lit: Floats, view: View, rays: Floats) -> None:
         lit[rays @ slope + level > -0.02] = 0.3
 
 
-def _where_on_plane(homography: Array, rays: Floats, center: Array, radius_m: float) -> tuple[slice, slice]:
-    """Return the rows and columns that show a square on a plane; all of them where that cannot be told simply."""
-    square = center + radius_m * np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, -1.0], [-1.0, 1.0]])
-    seen = np.column_stack([square, np.ones(4)]) @ np.linalg.inv(homography).T
-    height, width = rays.shape[:2]
-    if (seen[:, 2] <= 0.0).any():
-        return slice(0, height), slice(0, width)
-    directions = seen[:, :2] / seen[:, 2:]
-    along, down = rays[height // 2, :, 0], rays[:, width // 2, 1]
-    spare = 0.1  # of the tangent: lines of equal direction are bent by the distortion
-    first, last = np.searchsorted(along, [directions[:, 0].min() - spare, directions[:, 0].max() + spare]).tolist()
-    top, bottom = np.searchsorted(down, [directions[:, 1].min() - spare, directions[:, 1].max() + spare]).tolist()
-    return slice(top, bottom), slice(first, last)
-
-
-def _to_plane(view: View, height_m: float) -> Array:
-    """Return the homography (3, 3) from a ray (x, y, 1) in C to (forward, left, 1) on V's plane at a height."""
-    from_plane = view.R_VC.T @ np.column_stack(
-        [np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, height_m]) - view.camera_m]
-    )
-    return np.asarray(np.linalg.inv(from_plane))
-
-
-def _on_plane(homography: Array, rays: Floats) -> Floats:
-    flat = cv2.perspectiveTransform(np.ascontiguousarray(rays).reshape(-1, 1, 2), homography)
-    return np.asarray(flat, np.float32).reshape(rays.shape)
-
-
-def _fills(surface: Surface, view: View, height_m: float, rays: Floats) -> bool:
-    """Return whether nothing but a surface is seen."""
-    edges = np.concatenate([rays[[0, -1]].reshape(-1, 1, 2), rays[:, [0, -1]].reshape(-1, 1, 2)])
-    if surface.repeats or float(np.max(edges @ view.R_VC[2, :2] + view.R_VC[2, 2])) > 0.0:
-        return False
-    at = _on_plane(surface.from_plane(0) @ _to_plane(view, height_m), edges.astype(np.float32))
-    limit = np.array(surface.levels[0].shape[::-1]) - 0.5
-    return bool(((at > -0.5) & (at < limit)).all())
-
-
-def _paint(albedo: Floats, surface: Surface, onto_plane: Array, rays: Floats) -> None:
-    """Lay a surface over what is there already."""
-    middle = rays[rays.shape[0] // 2, rays.shape[1] // 2]
-    texels = _texels_per_point(surface, onto_plane, rays, middle)
-    level = min(max(math.floor(math.log2(max(texels, 1e-6))), 0), len(surface.levels) - 1)
-    texture = surface.levels[level]
-    at = _on_plane(surface.from_plane(level) @ onto_plane, rays)
-    if surface.repeats:
-        albedo[:] = remapped(texture, at, cv2.BORDER_WRAP)
-        return
-    shape = texture.shape
-    inside = (at[..., 0] > -0.5) & (at[..., 0] < shape[1] - 0.5) & (at[..., 1] > -0.5) & (at[..., 1] < shape[0] - 0.5)
-    if inside.any():
-        np.copyto(albedo, remapped(texture, at, cv2.BORDER_REPLICATE), where=inside)
-
-
-def _texels_per_point(surface: Surface, onto_plane: Array, rays: Floats, middle: Floats) -> float:
-    """Return how many of the finest texels a point of the picture is wide, in its middle."""
-    step = float(rays[0, 1, 0] - rays[0, 0, 0])
-    three = (middle + np.array([[0.0, 0.0], [step, 0.0], [0.0, step]])).reshape(-1, 1, 2)
-    at = cv2.perspectiveTransform(three, surface.from_plane(0) @ onto_plane).reshape(3, 2)
-    return float(math.sqrt(abs(np.linalg.det(at[1:] - at[0]))))
-
-
-def _lamp_lx(light: Light, depth_m: float) -> float:
-    """Return what the lamp throws on a surface before the camera."""
-    solid_sr = 2.0 * math.pi * (1.0 - math.cos(_LAMP_HALF_ANGLE_RAD))
-    return light.lamp_lm / solid_sr / max(depth_m, 0.05) ** 2
-
-
-def _lamp_lit(light: Light, rays: Floats, depth_m: float) -> Floats:
-    """Return the lamp's light on a plane across the axis: the cosine to the fourth power, and less off its cone."""
-    tangent2 = rays[..., 0] ** 2 + rays[..., 1] ** 2
-    falloff = 1.0 / (1.0 + tangent2) ** 2 / (1.0 + (tangent2 / math.tan(_LAMP_HALF_ANGLE_RAD) ** 2) ** 2)
-    return np.asarray(_lamp_lx(light, depth_m) * falloff, np.float32)
-
-
-def _glare(sun_v: Array, daylight_lx: float, view: View, rays: Floats) -> Floats:
-    """Return the highlight where level surfaces mirror the sun into the camera, and the veil it lays over all."""
-    mirrored_c = view.R_VC.T @ (np.array([sun_v[0], sun_v[1], -sun_v[2]]))
-    cosine = (rays @ mirrored_c[:2].astype(np.float32) + np.float32(mirrored_c[2])) / np.sqrt(
-        1.0 + rays[..., 0] ** 2 + rays[..., 1] ** 2
-    )
-    angle2 = 2.0 * (1.0 - np.clip(cosine, -1.0, 1.0))
-    return np.asarray(0.8 * daylight_lx * (_GLARE_PEAK * np.exp(-0.5 * angle2 / _GLARE_STD_RAD**2) + 0.05), np.float32)
+def _at_most(vector: Array, length_max: float) -> Array:
+    """Return a vector, shortened to a length."""
+    return vector * (length_max / max(float(np.hypot(*vector)), length_max))

@@ -21,6 +21,7 @@ from link.errors import UserError
 from link.program.toml_config import merge, read_toml, validate
 from scenarios.catalogue.placement import keep_clear_of_vehicle
 from scenarios.catalogue.receivers import tell_of_one_frame
+from scenarios.catalogue.silence import look_out_for_silent_vehicle
 from scenarios.catalogue.world_names import names_worlds, parse_world_name
 from scenarios.catalogue.worlds import named_world
 from scenarios.config import Scenario
@@ -34,7 +35,7 @@ _DEFAULT_PRESETS = {
     "system": "default",
     "camera": "none",
 }
-_PLAIN_OPTIONS = ("firmware", "start", "detector")
+_PLAIN_OPTIONS = ("firmware", "start", "detector", "telemetry")
 _SUFFIX = ".toml"
 
 
@@ -49,6 +50,14 @@ class Entry:
 def list_scenarios() -> list[Entry]:
     """Return the catalogue's scenarios in the order of their names."""
     return [Entry(name=name, description=table["description"]) for name, table in sorted(_scenarios().items())]
+
+
+def list_presets() -> dict[str, tuple[str, ...]]:
+    """Return the names of the presets by their section, the default one first."""
+    return {
+        section: tuple(sorted(_presets(section), key=lambda name: (name != default, name)))
+        for section, default in _DEFAULT_PRESETS.items()
+    }
 
 
 def load_scenario(name_or_path: str) -> Scenario:
@@ -71,16 +80,27 @@ def load_scenario(name_or_path: str) -> Scenario:
     for option in options:
         table |= _option(option, name_or_path)
     scenario = validate(Scenario, _resolve(table, name_or_path), source=name_or_path)
-    return keep_clear_of_vehicle(tell_of_one_frame(scenario))
+    return keep_clear_of_vehicle(look_out_for_silent_vehicle(tell_of_one_frame(scenario)))
 
 
 def _option(option: str, whole: str) -> Table:
     section, equals, preset = option.partition("=")
-    if not equals or section not in {*_DEFAULT_PRESETS, *_PLAIN_OPTIONS}:
-        raise UserError(
-            f"{whole}: '{option}' is none of {', '.join((*_DEFAULT_PRESETS, *_PLAIN_OPTIONS))} with =PRESET"
-        )
+    sections = (*_DEFAULT_PRESETS, *_PLAIN_OPTIONS)
+    if not equals or section not in sections:
+        meant = _meant(section, preset)
+        near = f"did you mean +{meant}?" if meant else f"write one of {', '.join(sections)} with =PRESET"
+        raise UserError(f"{whole}: no preset is called '{option}'; {near} (`scenarios list` shows them)")
     return {section: preset}
+
+
+def _meant(section: str, preset: str) -> str:
+    """Return the option that was probably meant, of any section; empty if none is near."""
+    near = difflib.get_close_matches(section, _DEFAULT_PRESETS, n=1)
+    if preset and near:
+        return f"{near[0]}={preset}"
+    named = {name: f"{one}={name}" for one in _DEFAULT_PRESETS for name in _presets(one)}
+    near = difflib.get_close_matches(preset or section, named, n=1)
+    return named[near[0]] if near else ""
 
 
 def _find_table(name: str, place: str = "") -> Table:
@@ -144,7 +164,9 @@ def _section(section: str, value: object, source: str) -> Table:
         return values
     presets = _presets(section)
     if preset not in presets:
-        raise _unknown(f"preset of {section} ({source})", str(preset), list(presets))
+        others = [one for one in _DEFAULT_PRESETS if preset in _presets(one)]
+        elsewhere = f", or is it +{others[0]}={preset}?" if others else ""
+        raise _unknown(f"preset of {section} ({source})", str(preset), list(presets), elsewhere)
     return merge(presets[preset], values)
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 _WIDTHS = {
     "firmware": 11,
-    "fault": 32,
+    "fault": 40,
     "phase": 11,
     "ended": 18,
     "tier": 8,
@@ -39,20 +39,38 @@ def faults_command(
     firmware: Annotated[
         str | None, typer.Option("--firmware", metavar="px4|ardupilot", help="Only this one [default: both].")
     ] = None,
+    fault: Annotated[
+        str | None, typer.Option("--fault", metavar="TEXT", help="Only those with this in their name.")
+    ] = None,
+    phase: Annotated[str | None, typer.Option("--phase", metavar="NAME", help="Only in this one.")] = None,
+    wire: Annotated[
+        bool, typer.Option("--wire", help="With real programs, at the speed of the clock: those that can be.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> int:
     """Let every fault happen in every phase of a landing; exit code 1 when a reaction is not as expected."""
     require("campaign", "scenarios faults")
     from scenarios.config import FIRMWARES
     from scenarios.faults.matrix import EXPECTED
-    from scenarios.faults.trial import fly_case, lost
+    from scenarios.faults.trial import fly_case, fly_case_over_wire, lost
+    from scenarios.faults.wire_flight import WIRE_FAULTS
     from scenarios.processes.local_workers import LocalWorkers, core_count
     from scenarios.processes.pool import run_tasks
 
     if firmware is not None and firmware not in FIRMWARES:
         raise UserError(f"--firmware is one of {', '.join(FIRMWARES)}, not '{firmware}'")
-    cases = [case for case in EXPECTED if firmware in {None, case.firmware}]
-    with closing(run_tasks(LocalWorkers(fly_case, workers or core_count()), cases, lost=lost)) as results:
+    cases = [
+        case
+        for case in EXPECTED
+        if firmware in {None, case.firmware}
+        and (fault is None or fault in case.fault.value)
+        and phase in {None, case.phase.value}
+        and (not wire or case.fault in WIRE_FAULTS)
+    ]
+    if not cases:
+        raise UserError(f"no fault has {fault!r} in its name, or no landing has a phase {phase!r}: leave one out")
+    fliers = LocalWorkers(fly_case_over_wire, workers or 1) if wire else LocalWorkers(fly_case, workers or core_count())
+    with closing(run_tasks(fliers, cases, lost=lost)) as results:
         found = {ended.case: ended for ended in results}
     rows = [_row(found[case]) for case in cases]
     if as_json:

@@ -43,7 +43,7 @@ def fly_command(
     from scenarios.catalogue.world_names import run_seed
     from scenarios.commands.run_lines import Reporter
     from scenarios.firmware.fly import FlyOptions, fly
-    from scenarios.wire.run import run_folder
+    from scenarios.recordings.run_folder import run_folder
 
     scenario = load_scenario(name)
     folder = run_folder(out, scenario.name)

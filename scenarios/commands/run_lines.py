@@ -13,8 +13,8 @@ from scenarios.commands.approach_lines import approach_lines
 from scenarios.config import Scenario
 from scenarios.recordings.recording import Recording
 from scenarios.recordings.result import LANDED
+from scenarios.recordings.run_folder import RunOutcome
 from scenarios.scoring.score import Tier
-from scenarios.wire.run import RunOutcome
 
 _PLAIN_EVERY_S = 2.0  # simulated, between lines that are not overwritten
 

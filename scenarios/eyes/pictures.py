@@ -6,7 +6,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from companion.eyes.annotation import annotate
+from companion.eyes.annotation import annotate, drawing_of
 from companion.eyes.board import Board, nested_board
 from companion.eyes.mounting import mounting_of
 from companion.eyes.picture import whole
@@ -14,7 +14,9 @@ from companion.eyes.sight import Frame, SightMemory, SightSystem, sight_step
 from link.errors import UserError
 from link.frames.rotations import matrix_from_quaternion, quaternion_from_roll_pitch_yaw
 from scenarios.camera.lens import CAMERA, SIZE_PX
-from scenarios.camera.rendering import Light, Renderer, Vehicle, View
+from scenarios.camera.lighting import Light
+from scenarios.camera.planes import View
+from scenarios.camera.rendering import Renderer, Vehicle
 from scenarios.eyes.study import BOARD_M, ROOF_M
 from scenarios.simulation.camera_scene import MOUNTING, RenderedPicture
 
@@ -40,7 +42,7 @@ def write_pictures(folder: Path, seed: int) -> None:
         picture = RenderedPicture(renderer, _view(height_m, system, q_VB), light, may_show_pad=True)
         shades = picture.part(whole(SIZE_PX)).shades
         _, sight = sight_step(SightMemory(), Frame(t_ns=0, picture=picture, orientation_wxyz=q_VB), system)
-        drawn = annotate(shades, sight, system)
+        drawn = annotate(shades, drawing_of(sight, system))
         small = cv2.resize(drawn, (_WIDTH_PX, _WIDTH_PX * SIZE_PX[1] // SIZE_PX[0]), interpolation=cv2.INTER_AREA)
         path = folder / f"eyes_{height_m:g}m.jpg"
         if not folder.is_dir() or not cv2.imwrite(str(path), small):

@@ -11,13 +11,14 @@ from link.mavlink.dialect import Message, mavlink
 from link.messages import Command, Vector3
 from link.zenoh.keys import Keys
 from scenarios.config import Scenario
+from scenarios.faults.held_way import HeldWay
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.simulation.simulation import STEP_NS
 
 _STEP_S = STEP_NS * 1e-9
 _REACHED_MAX_S = 60.0
 _FOREVER_NS = 2**62
-_COMMANDED: Mapping[Phase, tuple[Phase, Command]] = {
+COMMANDED: Mapping[Phase, tuple[Phase, Command]] = {
     Phase.ABORT: (Phase.CHASE, Command.ABORT),
     Phase.HOLD: (Phase.WAITING, Command.HOLD),
 }
@@ -36,8 +37,15 @@ class FaultFlight(Lockstep):
         super().__init__(scenario, seed)
         self.setpoints = 0
         self.vehicle_is_silent = False
+        self.vehicle_is_alive = True
         self.scenario = scenario
         self._cut_until_s = 0.0
+        self._stopped_until_s = 0.0
+        self._vehicle_held_until_s = 0.0
+        self._vehicle_cut_until_s = 0.0
+        self._vehicle_slew = 0.0
+        self._way = HeldWay(self._channels.zenoh)
+        self._ways = {key: self._way if way is self._channels.zenoh else way for key, way in self._ways.items()}
         self._ground_station = MavlinkCodec(255, mavlink.MAV_COMP_ID_MISSIONPLANNER)
 
     @property
@@ -66,7 +74,7 @@ class FaultFlight(Lockstep):
         Raises:
             ValueError: it is not reached.
         """
-        before, command = _COMMANDED.get(phase, (phase, None))
+        before, command = COMMANDED.get(phase, (phase, None))
         while self.phase is not before:
             self.step()
             if self.recording.elapsed_s > _REACHED_MAX_S:
@@ -84,6 +92,33 @@ class FaultFlight(Lockstep):
         """Let nothing through between companion and autopilot."""
         self._cut_until_s = self.recording.elapsed_s + duration_s
 
+    def stop_companion(self, duration_s: float) -> None:
+        """Let the companion's process stand still, as by SIGSTOP; what is sent to it waits for it."""
+        self._stopped_until_s = self.recording.elapsed_s + duration_s
+
+    @property
+    def companion_is_stopped(self) -> bool:
+        """Whether its process stands still."""
+        return self.recording.elapsed_s < self._stopped_until_s
+
+    def hold_vehicle(self, duration_s: float) -> None:
+        """Let the vehicle's program stand still; what its receiver tells meanwhile comes at once, afterwards."""
+        self._vehicle_held_until_s = self.recording.elapsed_s + duration_s
+
+    def cut_vehicle(self, duration_s: float) -> None:
+        """Let nothing of the vehicle through, as without a router: neither its data nor that it lives."""
+        self._vehicle_cut_until_s = self.recording.elapsed_s + duration_s
+
+    def set_vehicle_clock(self, ahead_s: float, slew: float) -> None:
+        """Set the vehicle's clock ahead, and let it gain `slew` seconds a second."""
+        self.simulation.vehicle.set_clock(ahead_s)
+        self._vehicle_slew = slew
+
+    def spoil_links(self, share: float) -> None:
+        """Flip a bit in `share` of what goes over the autopilot's link, and cut as much short."""
+        for link in (self._channels.down, self._channels.up):
+            link.spoil(corruption=share, truncation=share)
+
     def set_origin(self, by_enu_m: Vector3) -> None:
         """Let a ground station move the autopilot's local frame under the drone."""
         origin = self.simulation.autopilot.memory.places.origin
@@ -96,7 +131,20 @@ class FaultFlight(Lockstep):
         self.companion = build_node(self.scenario.system.companion, Keys())
         self.companion.receive_pad(self.simulation.vehicle.pad)
 
+    def step(self) -> None:
+        """Advance by one step of the simulation."""
+        now_s = self.recording.elapsed_s
+        self._way.holds = now_s < self._vehicle_held_until_s
+        self._way.loses = now_s < self._vehicle_cut_until_s
+        if self._vehicle_slew:
+            self.simulation.vehicle.set_clock(self._vehicle_slew * _STEP_S)
+        super().step()
+
     def _advance_companion(self, t_ns: int) -> None:
+        if self.companion_is_stopped:
+            self._send([], t_ns)
+            return
+        self.companion.receive_liveliness(alive=self.vehicle_is_alive and not self._way.loses)
         if self._link_is_cut:
             self._channels.down.take(_FOREVER_NS)
         if self.vehicle_is_silent:

@@ -31,7 +31,19 @@ class Fault(Enum):
     ESTIMATE = "estimator reset"
     PARAMETER = "speed limit lowered"
     VEHICLE = "vehicle's data stop"
+    VEHICLE_KILLED = "vehicle's program killed"
+    VEHICLE_STOPPED_SHORTLY = "vehicle's program stopped for 0.5 s"
+    VEHICLE_STOPPED = "vehicle's program stopped for 2 s"
+    VEHICLE_STOPPED_LONG = "vehicle's program stopped for 10 s"
+    ROUTER = "Zenoh router gone for 3 s"
+    CLOCK_AHEAD = "vehicle's clock set an hour ahead"
+    CLOCK_BACK = "vehicle's clock set an hour back"
+    STAMPS = "vehicle's stamps 60 ms early, drifting"
+    SPOILT = "1 % of frames corrupt, 1 % cut"
     COMPANION = "companion killed and restarted"
+    COMPANION_STOPPED_SHORTLY = "companion stopped for 0.5 s"
+    COMPANION_STOPPED = "companion stopped for 2 s"
+    COMPANION_STOPPED_LONG = "companion stopped for 10 s"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,11 +122,23 @@ def _matrix(firmware: FirmwareName, silent: tuple[tuple[tuple[Phase, ...], Expec
         **_rows(firmware, Fault.PILOT, *lets_go),
         **_rows(firmware, Fault.RESTART, (_IN_THE_AIR, _FALLS), (_ON_THE_PAD, _LANDS)),
         **_rows(firmware, Fault.SILENT, *silent),
+        **_rows(firmware, Fault.COMPANION_STOPPED, *silent),
         **_rows(firmware, Fault.LOST, *lets_go),
         **_rows(firmware, Fault.ORIGIN, *goes_on),
         **_rows(firmware, Fault.ESTIMATE, *goes_on),
         **_rows(firmware, Fault.PARAMETER, *breaks_off),
+        **_rows(firmware, Fault.COMPANION_STOPPED_SHORTLY, *goes_on),
+        **_rows(firmware, Fault.COMPANION_STOPPED_LONG, *lets_go),
         **_rows(firmware, Fault.VEHICLE, *breaks_off),
+        **_rows(firmware, Fault.VEHICLE_KILLED, *breaks_off),
+        **_rows(firmware, Fault.VEHICLE_STOPPED_SHORTLY, *goes_on),
+        **_rows(firmware, Fault.VEHICLE_STOPPED, *goes_on),
+        **_rows(firmware, Fault.VEHICLE_STOPPED_LONG, (_BEFORE, _LANDS), *breaks_off[1:]),
+        **_rows(firmware, Fault.ROUTER, *goes_on),
+        **_rows(firmware, Fault.CLOCK_AHEAD, *breaks_off),
+        **_rows(firmware, Fault.CLOCK_BACK, *breaks_off),
+        **_rows(firmware, Fault.STAMPS, *goes_on),
+        **_rows(firmware, Fault.SPOILT, *goes_on),
         **_rows(firmware, Fault.COMPANION, (_IN_THE_AIR, _IS_IDLE), (_ON_THE_PAD, _IS_IDLE_ON_PAD)),
     }
 

@@ -1,4 +1,4 @@
-"""One case of the fault matrix, flown in lockstep until it is over.
+"""One case of the fault matrix, flown until it is over, in lockstep or over the wire.
 
 Judged on ground truth and by what goes over the link, never by what the companion believes.
 """
@@ -6,13 +6,16 @@ Judged on ground truth and by what goes over the link, never by what the compani
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import acos, hypot
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from companion.situation.phases import Phase
-from link.mavlink.dialect import Message, mavlink
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import FirmwareName, Scenario
 from scenarios.faults.flight import FaultFlight
-from scenarios.faults.matrix import EXPECTED, Case, Fault
+from scenarios.faults.injection import inject
+from scenarios.faults.matrix import EXPECTED, Case
+from scenarios.faults.wire_flight import WireFlight
 from scenarios.recordings.result import score_run
 from scenarios.scoring.score import Tier
 
@@ -20,18 +23,10 @@ SCENARIO = "straight_5"
 SEED = 1
 _PARAMETERS: Mapping[FirmwareName, Mapping[str, float]] = {"px4": {}, "ardupilot": {"GUID_TIMEOUT": 1.0}}
 """Beside those of the scenario, as `companion check` advises them."""
-_PILOTS_MODES: Mapping[FirmwareName, float] = {"px4": 3.0, "ardupilot": 17.0}  # POSCTL, BRAKE: neither needs sticks
-_SPEED_LIMITS: Mapping[FirmwareName, tuple[bytes, float]] = {  # less than the vehicle's 5 m/s
-    "px4": (b"MPC_XY_VEL_MAX", 4.0),
-    "ardupilot": (b"WPNAV_SPEED", 400.0),
-}
-_ORIGIN_MOVED_ENU_M = (30.0, -20.0, 4.0)
-_ESTIMATE_RESET_ENU_M = (3.0, -2.0, 1.0)
-_SILENT_S = 2.0
 _AIRBORNE_M = 2.0  # of the drone above the road: a take-off that is under way, high enough to hover there
 _DELAY_S: Mapping[Phase, float] = {Phase.TAKEOFF: 0.0, Phase.TOUCHDOWN: 0.0}  # the latter: before the motors stop
 _SHORT_S = 0.3
-_LIMIT_S = 25.0
+_LIMIT_S = 40.0  # an approach that is broken off once, and the next one
 _DECIDED_S = 4.0  # a phase that is kept for so long is the one it ends in; the autopilot's time-out is 3 s at most
 _AT_REST_S = 1.5
 _AT_REST_M_S = 0.3
@@ -85,20 +80,26 @@ def scenario_of(firmware: FirmwareName) -> Scenario:
 
 
 def fly_case(case: Case) -> Ended:
-    """Fly until the case is over."""
+    """Fly until the case is over, in lockstep."""
     flight = FaultFlight(scenario_of(case.firmware), SEED)
     flight.fly_to(case.phase)
-    return fly_on(flight, case)
+    return _fly_on(flight, case, lambda: inject(case.fault, flight))
 
 
-def fly_on(flight: FaultFlight, case: Case) -> Ended:
+def fly_case_over_wire(case: Case) -> Ended:
+    """Fly until the case is over, with real programs; its fault is one of `WIRE_FAULTS`."""
+    with TemporaryDirectory() as folder, WireFlight(scenario_of(case.firmware), SEED, Path(folder)) as flight:
+        flight.fly_to(case.phase)
+        return _fly_on(flight, case, lambda: flight.inject(case.fault))
+
+
+def _fly_on(flight: FaultFlight | WireFlight, case: Case, fail: Callable[[], float]) -> Ended:
     """Let the case's fault happen in a flight that has just come to its phase, and fly until it is over."""
     while case.phase is Phase.TAKEOFF and flight.height_m < _AIRBORNE_M:
         flight.step()
     flight.fly(_DELAY_S.get(case.phase, _SHORT_S))
     began = len(flight.recording.drone)
-    _INJECT[case.fault](flight)
-    setpoints, taken_back = _fly_until_decided(flight)
+    setpoints, taken_back = _fly_until_decided(flight, fail())
     _fly_to_rest(flight)
     score = score_run(flight.scenario, SEED, flight.recording)
     return Ended(
@@ -129,25 +130,31 @@ def lost(case: Case, why: str) -> Ended:
     )
 
 
-def _fly_until_decided(flight: FaultFlight) -> tuple[int, bool]:
-    """Go on until a lasting phase has been kept; return the setpoints sent and whether they were flown when out."""
-    phase, since_s, sent = flight.phase, flight.recording.elapsed_s, flight.setpoints
-    end_s, has_left, taken_back = since_s + _LIMIT_S, False, False
+def _fly_until_decided(flight: FaultFlight | WireFlight, lasts_s: float) -> tuple[int, bool]:
+    """Go on until a lasting phase has been kept since a fault that lasts for `lasts_s`.
+
+    Return the setpoints that were sent, and whether they were flown, when the companion was out.
+    """
+    phase, since_s, sent = flight.phase, flight.recording.elapsed_s + lasts_s, flight.setpoints
+    end_s, has_left, left_meanwhile, taken_back = since_s + _LIMIT_S, False, False, False
     while (now_s := flight.recording.elapsed_s) < end_s:
         flight.step()
+        if flight.companion_is_stopped:
+            left_meanwhile = not flight.follows_setpoints
+            continue
         if flight.phase is not phase:
-            phase, since_s, has_left = flight.phase, now_s, False
-        if phase not in _OUT or now_s - since_s < _TAKEN_S:
-            sent = flight.setpoints
-        else:
+            phase, since_s, has_left = flight.phase, max(now_s, since_s), left_meanwhile
+        if phase in _OUT and (left_meanwhile or now_s - since_s >= _TAKEN_S):
             has_left = has_left or not flight.follows_setpoints
             taken_back = taken_back or (has_left and flight.follows_setpoints)
+        elif not left_meanwhile:
+            sent = flight.setpoints
         if phase in _LASTING and now_s - since_s > _DECIDED_S:
             break
-    return flight.setpoints - sent, taken_back
+    return flight.setpoints - sent if phase in _OUT else 0, taken_back
 
 
-def _fly_to_rest(flight: FaultFlight) -> None:
+def _fly_to_rest(flight: FaultFlight | WireFlight) -> None:
     """Go on until the drone hovers or its motors stand still, for what the autopilot does by itself takes its time."""
     now_s = flight.recording.elapsed_s
     end_s, moved_s = now_s + _TO_REST_S, now_s
@@ -157,7 +164,7 @@ def _fly_to_rest(flight: FaultFlight) -> None:
             moved_s = flight.recording.elapsed_s
 
 
-def _are_motors_off(flight: FaultFlight) -> bool:
+def _are_motors_off(flight: FaultFlight | WireFlight) -> bool:
     return max(flight.recording.rotors[-1].speed_rad_s) < _MOTORS_OFF_RAD_S
 
 
@@ -165,33 +172,3 @@ def _upright(q: tuple[float, float, float, float]) -> float:
     """Return the cosine of the tilt of an orientation."""
     _, x, y, _ = q
     return max(-1.0, min(1.0, 1.0 - 2.0 * (x * x + y * y)))
-
-
-def _command(number: int, *parameters: float) -> Message:
-    return mavlink.MAVLink_command_long_message(1, 1, number, 0, *(*parameters, *[0.0] * (7 - len(parameters))))
-
-
-def _change_mode(flight: FaultFlight) -> None:
-    flight.tell(_command(mavlink.MAV_CMD_DO_SET_MODE, 1.0, _PILOTS_MODES[flight.scenario.firmware]))
-
-
-def _lower_speed_limit(flight: FaultFlight) -> None:
-    name, value = _SPEED_LIMITS[flight.scenario.firmware]
-    flight.tell(mavlink.MAVLink_param_set_message(1, 1, name, value, mavlink.MAV_PARAM_TYPE_REAL32))
-
-
-def _silence_vehicle(flight: FaultFlight) -> None:
-    flight.vehicle_is_silent = True
-
-
-_INJECT: Mapping[Fault, Callable[[FaultFlight], None]] = {
-    Fault.PILOT: _change_mode,
-    Fault.RESTART: lambda flight: flight.simulation.autopilot.restart(),
-    Fault.SILENT: lambda flight: flight.cut_link(_SILENT_S),
-    Fault.LOST: lambda flight: flight.cut_link(),
-    Fault.ORIGIN: lambda flight: flight.set_origin(_ORIGIN_MOVED_ENU_M),
-    Fault.ESTIMATE: lambda flight: flight.simulation.autopilot.reset_estimator(_ESTIMATE_RESET_ENU_M),
-    Fault.PARAMETER: _lower_speed_limit,
-    Fault.VEHICLE: _silence_vehicle,
-    Fault.COMPANION: lambda flight: flight.restart_companion(),
-}

@@ -22,11 +22,11 @@ from scenarios.firmware.watch import FirmwareWatch
 from scenarios.processes.programs import MODULES, ProcessGroup, Program, free_tcp_endpoint
 from scenarios.recordings.recording import EndWatch, Recording
 from scenarios.recordings.result import result_table, write_json, write_text
+from scenarios.recordings.run_folder import Progress, RunOutcome
 from scenarios.recordings.truth_file import TruthFile
 from scenarios.recordings.watcher import Watcher
 from scenarios.scoring.touchdown import rules_of
 from scenarios.simulation.vehicle_node import STEP_PERIOD_NS, VehicleNode, datum_of
-from scenarios.wire.run import Progress, RunOutcome
 from sim_autopilot.runtime.config import DatumConfig
 
 _WAIT_S = 0.004  # for bytes

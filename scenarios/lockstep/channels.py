@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 from link.memory_link import MemoryLink
 from scenarios.config import ChannelConfig, Scenario
@@ -9,6 +10,13 @@ from scenarios.simulation.disturbances import Span, outages_ns
 from scenarios.simulation.noise import Seed, named_rng
 
 _SEPARATOR = b"\0"
+
+
+class Way(Protocol):
+    """What payloads are sent by."""
+
+    def put(self, key: str, payload: bytes, t_ns: int) -> None:
+        """Send a payload."""
 
 
 class KeyedLink:

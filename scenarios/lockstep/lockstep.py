@@ -14,7 +14,7 @@ from link.messages import Command
 from link.recording.recorder import Recorder
 from link.zenoh.keys import Keys
 from scenarios.config import Scenario
-from scenarios.lockstep.channels import Channels, channels_of
+from scenarios.lockstep.channels import Channels, Way, channels_of
 from scenarios.recordings.recording import EndWatch, Recording
 from scenarios.scoring.accuracy import PERIOD_NS, PHASES, Nis, antenna_truth, estimate_error
 from scenarios.simulation.noise import Seed
@@ -52,13 +52,15 @@ class Lockstep:
         self.simulation = Simulation(scenario, seed, keys, START_NS, instant=instant, publishes_truth=False)
         flown = scenario.system.companion if config is None else config
         self.companion = build_node(flown, keys, recorder=recorder, publishes=publishes)
-        self.companion.receive_pad(self.simulation.vehicle.pad)
+        if not scenario.is_silent:
+            self.companion.receive_pad(self.simulation.vehicle.pad)
         self._channels: Channels = channels_of(scenario, seed, START_NS)
         from_vehicle = dict.fromkeys((keys.fix, keys.fix_velocity, keys.imu), self._channels.zenoh)
-        self._ways = {**from_vehicle, keys.pad_pose: self._channels.detector}
+        self._ways: dict[str, Way] = {**from_vehicle, keys.pad_pose: self._channels.detector}
         self._watch = EndWatch(scenario.time_limit_s)
         self._started = False
-        self._antenna_flu_m = scenario.vehicle.antenna_flu_m
+        pad_flu_m = (0.0, 0.0, scenario.vehicle.roof_height_m)
+        self._point_flu_m = pad_flu_m if scenario.is_silent else scenario.vehicle.antenna_flu_m
         self._compared_ns = START_NS
 
     def run(self) -> str:
@@ -116,7 +118,7 @@ class Lockstep:
         if vehicle is None or estimate is None:
             return
         self._compared_ns = t_ns
-        truth = antenna_truth(vehicle, self._antenna_flu_m, self.simulation.autopilot.memory)
+        truth = antenna_truth(vehicle, self._point_flu_m, self.simulation.autopilot.memory)
         in_descent = node.phase is Phase.DESCEND
         self.recording.estimate_errors.append(estimate_error(estimate, truth, in_descent=in_descent))
         health = node.estimator_health()

@@ -29,7 +29,7 @@ KEYS = Keys(namespace="{ns}", vehicle="{vehicle}", drone="{drone}")
 MESSAGE_NAMES: Mapping[int, str] = {number: one.msgname for number, one in mavlink.mavlink_map.items()}
 ZENOH = """Payloads with a ROS 2 type are that message in CDR, with the Zenoh encoding `application/cdr;TYPE`; the
 others are JSON. `{ns}`, `{vehicle}` and `{drone}` are what `--ns`, `--vehicle` and `--drone` say: `decklander`,
-`vehicle` and `drone` unless told otherwise. [Architecture](../architecture.md) says which are optional and what
+`vehicle` and `drone` unless told otherwise. [Keys and messages](../wire.md) says which are optional and what
 a -1 in a covariance means."""
 MAVLINK = """What the companion takes from an autopilot and what it sends there. "Asks for" means that it sets the
 message's rate. A message that is not listed is not read."""

@@ -79,6 +79,17 @@ class ProcessGroup:
             if code is not None:
                 raise UserError(f"{name} {_describe_end(code)}: {self._last_words(name)}; see {self._log(name)}")
 
+    def send(self, name: str, number: signal.Signals) -> None:
+        """Send a signal to a program."""
+        self._processes[name].send_signal(number)
+
+    def restart(self, program: Program) -> None:
+        """Kill the program of this name without a word, and start it as it is now."""
+        process = self._processes[program.name]
+        process.kill()
+        process.wait()
+        self._start(program)
+
     def _start(self, program: Program) -> None:
         with self._log(program.name).open("wb") as log:
             self._processes[program.name] = subprocess.Popen(

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from companion.config.companion import CompanionConfig
+from companion.core.data import Rival
 from companion.recording.folder import CONFIG_NAME, STEM
 from companion.recording.records import InputKind, InputRecord
 from companion.recording.sink import CompanionSink
@@ -140,6 +141,7 @@ def outputs_of(flight: Flight, config: CompanionConfig) -> dict[str, list[RosMes
         flight.keys,
         system_id=flight.head.number("system_id"),
         dry_run=flight.head.value("dry_run") == "true",
+        is_component=True,  # where ground stations were not heard, none has said anything
         recorder=recorder,
     )
     for record in flight.inputs:
@@ -160,6 +162,9 @@ def give(node: CompanionNode, record: InputRecord) -> None:
             node.receive_pad(json_messages.decode(PadGeometry, record.data))
         case InputKind.ALIVE:
             node.receive_liveliness(alive=bool(record.data[0]))
+        case InputKind.RIVAL:
+            name, is_own = record.data[:-1].decode(), bool(record.data[-1:] == b"\x01")
+            node.receive_rival(Rival(drone=name, is_this_drone=is_own) if record.data else None)
         case InputKind.COMMAND:
             node.request(Command(record.data.decode()))
         case InputKind.LEAVE:

@@ -18,7 +18,9 @@ from companion.eyes.sight import SightSystem
 from link.frames.rotations import matrix_from_quaternion, quaternion_from_roll_pitch_yaw
 from link.messages import BodyTruth
 from scenarios.camera.lens import CAMERA, SIZE_PX
-from scenarios.camera.rendering import Light, Renderer, Vehicle, View
+from scenarios.camera.lighting import Light
+from scenarios.camera.planes import View
+from scenarios.camera.rendering import Renderer, Vehicle
 from scenarios.config import Scenario
 from scenarios.simulation.noise import Seed, named_rng
 

@@ -14,11 +14,13 @@ from typing import Protocol
 import numpy as np
 
 from link.frames.geodesy import Datum, geodetic_from_enu
-from link.frames.rotations import canonical, conjugate, multiply, quaternion_from_yaw, rotate
-from link.messages import BodyTruth, Fix, FixVelocity, Matrix3, PadSighting, Quaternion, Vector3, VehicleImu
+from link.frames.rotations import canonical, conjugate, multiply, rotate
+from link.messages import BodyTruth, Fix, FixVelocity, PadSighting, Vector3, VehicleImu
 from link.records import replace
-from scenarios.config import FixConfig, ImuConfig, PatternConfig, SensorsConfig, VelocityConfig
+from scenarios.config import FixConfig, PatternConfig, SensorsConfig, VelocityConfig
+from scenarios.simulation.inertial_unit import InertialUnit
 from scenarios.simulation.noise import Dropouts, GaussMarkov, Seed, SensorSchedule, StampClock, named_rng, normal3
+from scenarios.simulation.vectors import cross, diagonal, scaled, small_turn, total
 from scenarios.simulation.vehicle import VehicleState
 
 Sample = Fix | FixVelocity | VehicleImu | PadSighting
@@ -44,7 +46,7 @@ class _FixSensor:
         self._rng = named_rng(seed, "fix")
         self._bias = GaussMarkov(named_rng(seed, "fix bias"), std=config.bias_m, tau_s=config.bias_tau_s)
         self._config = config
-        self._covariance = _diagonal(max(_STATED_STD_MIN_M, math.hypot(config.white_m, config.bias_m)) ** 2)
+        self._covariance = diagonal(max(_STATED_STD_MIN_M, math.hypot(config.white_m, config.bias_m)) ** 2)
         self._mounting = mounting
         self._offset_enu_m = offset_enu_m
         self._datum = datum
@@ -52,7 +54,7 @@ class _FixSensor:
     def sample(self, stamp_ns: int, vehicle: VehicleState, elapsed_s: float) -> Fix:
         lever_m = rotate(vehicle.orientation_wxyz, self._mounting.antenna_flu_m)
         errors_m = (self._offset_enu_m, self._bias.step(elapsed_s), white_error_m(self._config, self._rng))
-        position_enu_m = _sum(vehicle.position_enu_m, lever_m, *errors_m)
+        position_enu_m = total(vehicle.position_enu_m, lever_m, *errors_m)
         latitude_rad, longitude_rad, altitude_m = geodetic_from_enu(self._datum, position_enu_m)
         return Fix(
             t_ns=stamp_ns,
@@ -78,42 +80,15 @@ class _VelocitySensor:
         self.schedule = SensorSchedule(config, seed, "velocity")
         self._rng = named_rng(seed, "velocity")
         self._white_m_s = config.white_m_s
-        self._covariance = _diagonal(max(_STATED_STD_MIN_M, config.white_m_s) ** 2)
+        self._covariance = diagonal(max(_STATED_STD_MIN_M, config.white_m_s) ** 2)
         self._mounting = mounting
 
     def sample(self, stamp_ns: int, vehicle: VehicleState, _elapsed_s: float) -> FixVelocity:
-        swing_flu_m_s = _cross(vehicle.angular_velocity_flu_rad_s, self._mounting.antenna_flu_m)
+        swing_flu_m_s = cross(vehicle.angular_velocity_flu_rad_s, self._mounting.antenna_flu_m)
         swing_enu_m_s = rotate(vehicle.orientation_wxyz, swing_flu_m_s)
-        velocity_enu_m_s = _sum(vehicle.velocity_enu_m_s, swing_enu_m_s, normal3(self._rng, self._white_m_s))
+        velocity_enu_m_s = total(vehicle.velocity_enu_m_s, swing_enu_m_s, normal3(self._rng, self._white_m_s))
         return FixVelocity(
             t_ns=stamp_ns, velocity_enu_m_s=velocity_enu_m_s, velocity_covariance_enu_m2_s2=self._covariance
-        )
-
-
-class _ImuSensor:
-    """Heading and yaw rate; roll and pitch are reported as level, with the same doubt as the heading."""
-
-    def __init__(self, config: ImuConfig, seed: Seed) -> None:
-        self.schedule = SensorSchedule(config, seed, "imu")
-        self._rng = named_rng(seed, "imu")
-        self._bias = GaussMarkov(
-            named_rng(seed, "imu bias"), std=config.heading_bias_rad, tau_s=config.heading_bias_tau_s
-        )
-        self._config = config
-        self._heading_covariance = _diagonal(math.hypot(config.heading_white_rad, config.heading_bias_rad) ** 2)
-        self._rate_covariance = _diagonal(config.yaw_rate_white_rad_s**2)
-
-    def sample(self, stamp_ns: int, vehicle: VehicleState, elapsed_s: float) -> VehicleImu:
-        heading_white, rate_white = self._rng.standard_normal(2).tolist()
-        bias_rad = self._bias.step(elapsed_s)[2]
-        yaw_rad = vehicle.yaw_rad + bias_rad + self._config.heading_white_rad * heading_white
-        yaw_rate_rad_s = vehicle.angular_velocity_flu_rad_s[2] + self._config.yaw_rate_white_rad_s * rate_white
-        return VehicleImu(
-            t_ns=stamp_ns,
-            orientation_wxyz=quaternion_from_yaw(yaw_rad),
-            orientation_covariance_rad2=self._heading_covariance,
-            angular_velocity_flu_rad_s=(0.0, 0.0, yaw_rate_rad_s),
-            angular_velocity_covariance_rad2_s2=self._rate_covariance,
         )
 
 
@@ -135,19 +110,19 @@ class _PatternSensor:
         hidden = self._dropouts.step(elapsed_s)
         age_s = (vehicle.t_ns - drone.t_ns) * 1e-9
         pad_enu_m = rotate(vehicle.orientation_wxyz, (0.0, 0.0, self._mounting.pad_height_m))
-        moved_m = _scale(vehicle.velocity_enu_m_s, -age_s)
-        away_enu_m = _sum(vehicle.position_enu_m, pad_enu_m, moved_m, _scale(drone.position_enu_m, -1.0))
+        moved_m = scaled(vehicle.velocity_enu_m_s, -age_s)
+        away_enu_m = total(vehicle.position_enu_m, pad_enu_m, moved_m, scaled(drone.position_enu_m, -1.0))
         away_flu_m = rotate(conjugate(drone.orientation_wxyz), away_enu_m)
         if hidden or age_s > _DRONE_AGE_MAX_S or not self._sees(away_flu_m):
             return None
         std_m = self._config.range_share * math.hypot(*away_flu_m) + self._config.white_m
-        turn = _small_turn(_scale((errors[3], errors[4], errors[5]), self._config.white_rad))
+        turn = small_turn(scaled((errors[3], errors[4], errors[5]), self._config.white_rad))
         attitude = multiply(conjugate(drone.orientation_wxyz), vehicle.orientation_wxyz)
         return PadSighting(
             t_ns=drone.t_ns,
-            position_flu_m=_sum(away_flu_m, _scale((errors[0], errors[1], errors[2]), std_m)),
+            position_flu_m=total(away_flu_m, scaled((errors[0], errors[1], errors[2]), std_m)),
             orientation_wxyz=canonical(multiply(attitude, turn)),
-            position_covariance_m2=_diagonal(std_m**2),
+            position_covariance_m2=diagonal(std_m**2),
         )
 
     def _sees(self, away_flu_m: Vector3) -> bool:
@@ -186,11 +161,11 @@ class SensorSuite:
         angle_rad = float(named_rng(seed, "frame offset").uniform(0.0, 2.0 * math.pi))
         offset_enu_m = (config.frame_offset_m * math.cos(angle_rad), config.frame_offset_m * math.sin(angle_rad), 0.0)
         fix = _FixSensor(config.fix, seed, mounting=mounting, offset_enu_m=offset_enu_m, datum=datum)
-        self._on_vehicle: list[_FixSensor | _VelocitySensor | _ImuSensor] = [fix]
+        self._on_vehicle: list[_FixSensor | _VelocitySensor | InertialUnit] = [fix]
         if config.velocity is not None:
             self._on_vehicle.append(_VelocitySensor(config.velocity, seed, mounting=mounting))
         if config.imu is not None:
-            self._on_vehicle.append(_ImuSensor(config.imu, seed))
+            self._on_vehicle.append(InertialUnit(config.imu, seed))
         self._pattern = detector
         if detector is None and config.pattern is not None:
             self._pattern = _PatternSensor(config.pattern, seed, mounting=mounting)
@@ -223,27 +198,3 @@ class SensorSuite:
         if sample is not None and release_ns is not None:
             heapq.heappush(self._queue, (release_ns, self._count, sample))
             self._count += 1
-
-
-def _diagonal(variance: float) -> Matrix3:
-    return (variance, 0.0, 0.0, 0.0, variance, 0.0, 0.0, 0.0, variance)
-
-
-def _sum(*vectors: Vector3) -> Vector3:
-    return sum(v[0] for v in vectors), sum(v[1] for v in vectors), sum(v[2] for v in vectors)
-
-
-def _scale(vector: Vector3, factor: float) -> Vector3:
-    return factor * vector[0], factor * vector[1], factor * vector[2]
-
-
-def _cross(a: Vector3, b: Vector3) -> Vector3:
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-
-
-def _small_turn(rotation_vector_rad: Vector3) -> Quaternion:
-    """Return the unit quaternion of a rotation vector."""
-    angle_rad = math.hypot(*rotation_vector_rad)
-    scale = 0.5 if angle_rad < 1e-9 else math.sin(0.5 * angle_rad) / angle_rad
-    x, y, z = _scale(rotation_vector_rad, scale)
-    return math.cos(0.5 * angle_rad), x, y, z

@@ -44,6 +44,7 @@ class VehicleNode:
         plan: what the vehicle does.
         memory: what has happened to it.
         state: where it is, None before the first step.
+        is_silent: it tells nothing; only what sees its pad from the drone publishes.
     """
 
     def __init__(
@@ -71,6 +72,7 @@ class VehicleNode:
         }
         self._encodings = {kind: cdr.encoding_of(kind) for kind in self._keys}
         self._publishes_truth = publishes_truth
+        self.is_silent = scenario.is_silent
         self._truth_due_ns = 0
 
     def set_clock(self, ahead_s: float) -> None:
@@ -92,7 +94,8 @@ class VehicleNode:
     def published(self, state: VehicleState, drone: BodyTruth | None) -> list[Publication]:
         """Return what is to be published of a vehicle in `state`, truth first."""
         t_ns = state.t_ns
-        publications = [self._publish(sample) for sample in self._sensors.step(t_ns, state, drone)]
+        samples = self._sensors.step(t_ns, state, drone)
+        publications = [self._publish(one) for one in samples if not self.is_silent or isinstance(one, PadSighting)]
         if not self._publishes_truth or t_ns < self._truth_due_ns:
             return publications
         self._truth_due_ns = max(self._truth_due_ns + TRUTH_PERIOD_NS, t_ns + 1)

@@ -13,7 +13,8 @@ from sim_autopilot.control.lqr import StepResponse, linear_step, measured_step
 from sim_autopilot.control.parameters import ControllerKind
 from sim_autopilot.core.data import Array, Reference
 from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, REPORT_AIRFRAME, Airframe
-from sim_autopilot.plant.plant import PlantConfig, PlantMemory, fly, initial_plant
+from sim_autopilot.plant.config import PlantConfig
+from sim_autopilot.plant.plant import PlantMemory, fly, initial_plant
 
 AXES = ("x", "y", "z", "yaw")
 _STEP_M = 1.0

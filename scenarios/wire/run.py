@@ -1,28 +1,21 @@
 """A run over the wire: three programs as processes, real UDP and real Zenoh, watched and scored."""
 
 import json
-import os
 import time
-from collections.abc import Callable
 from contextlib import closing, nullcontext
-from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from companion.recording.folder import recording_sink
 from link.errors import UserError
 from link.program.extras import require
 from link.program.toml_config import dump_toml
-from link.recording.recorder import DirectRecorder
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohOptions, open_session
 from scenarios.config import Scenario
-from scenarios.lockstep.lockstep import Lockstep
-from scenarios.lockstep.stopwatch import quantiles_ms, timed_steps
 from scenarios.processes.programs import MODULES, ProcessGroup, Program, free_tcp_endpoint, free_udp_port
 from scenarios.recordings.recording import EndWatch, Recording
-from scenarios.recordings.result import result_table, write_json, write_text
+from scenarios.recordings.result import result_table, write_text
+from scenarios.recordings.run_folder import Progress, RunOptions, RunOutcome, count_lost, write_outcome
 from scenarios.recordings.truth_file import TruthFile
 from scenarios.recordings.watcher import Watcher
 from scenarios.simulation.drone import sim_autopilot_config
@@ -32,65 +25,6 @@ _COMPANION_TIMING = "companion.json"
 _PROGRESS_S = 0.2
 _SETTLING_S = 1.0  # of wall time after the first truth, not counted in the real-time factor
 _FIRST_TRUTH_S = 60.0  # of wall time; the first start after an installation compiles the physics
-
-Progress = Callable[[Recording, float], None]
-"""Called a few times a second with what is recorded so far and the real-time factor."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RunOptions:
-    """How a run is made.
-
-    Attributes:
-        seed: of everything random.
-        speed: simulated seconds per wall second.
-        folder: to be made for the run.
-        record: write what goes in and out of the companion, and the truth, as MCAP.
-        view_port: of a page that shows the landing; None for none.
-    """
-
-    seed: int
-    speed: float
-    folder: Path
-    record: bool = False
-    view_port: int | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RunOutcome:
-    """What came of a run: the content of `result.json` and `timing.json`."""
-
-    result: dict[str, Any]
-    timing: dict[str, Any]
-
-
-def run_folder(parent: Path, name: str) -> Path:
-    """Make the folder of a run and let `latest` beside it point there.
-
-    Raises:
-        UserError: `parent` cannot be written.
-    """
-    try:
-        folder = _new_folder(parent, name)
-        link = parent / f".latest-{os.getpid()}"
-        link.symlink_to(folder.name)
-        link.replace(parent / "latest")
-    except OSError as error:
-        raise UserError(f"{parent}: no folder can be made there ({error.strerror}); choose another --out") from None
-    return folder
-
-
-def _new_folder(parent: Path, name: str) -> Path:
-    """Make a folder named by the time; where another run took this millisecond, by the next."""
-    while True:
-        folder = parent / f"{datetime.now(UTC).strftime('%Y%m%dT%H%M%S.%f')[:-3]}-{name}"
-        try:
-            folder.mkdir(parents=True)
-        except FileExistsError:
-            if not folder.is_dir():
-                raise
-        else:
-            return folder
 
 
 def run_over_wire(scenario: Scenario, options: RunOptions, progress: Progress) -> RunOutcome:
@@ -120,7 +54,7 @@ def run_over_wire(scenario: Scenario, options: RunOptions, progress: Progress) -
         ended, factor = _watch(watcher, processes, scenario, recording, keep)
     result = result_table(scenario, options.seed, recording, ended)
     timing = {"real_time_factor": round(factor, 4), "speed": options.speed, **_companion_timing(options.folder)}
-    return _write(options.folder, result, timing | _count_lost(truth))
+    return write_outcome(options.folder, result, timing | count_lost(truth))
 
 
 def _programs(scenario: Scenario, options: RunOptions, endpoint: str) -> list[Program]:
@@ -162,7 +96,8 @@ def _eyes(scenario: Scenario, options: RunOptions, endpoint: str) -> list[Progra
 
     write_camera_files(scenario, options.seed, options.folder)
     seen = ["camera", str(options.folder / "scenario.toml"), "--seed", str(options.seed), "-e", endpoint]
-    sees = ["run", "--source", "zenoh", *detector_arguments(options.folder), "-e", endpoint]
+    kept = ("--record", str(options.folder)) if options.record else ()
+    sees = ["run", "--source", "zenoh", *detector_arguments(options.folder), "-e", endpoint, *kept]
     return [
         Program(name="camera", module=MODULES["scenarios"], arguments=seen),
         Program(name="pad-detector", module=MODULES["pad-detector"], arguments=sees),
@@ -228,41 +163,3 @@ def _companion_timing(folder: Path) -> dict[str, Any]:
     path.unlink()
     step_ms = {name: table.pop(f"state_to_setpoint_{name}_ms") for name in ("median", "p99", "max")}
     return {"step_ms": {"companion": step_ms}, "companion": table}
-
-
-def run_in_lockstep(scenario: Scenario, options: RunOptions, progress: Progress) -> RunOutcome:
-    """Run a scenario in this process on a simulated clock, score it on truth and write the run's folder."""
-    write_text(options.folder / "scenario.toml", dump_toml(scenario))
-    recorder = _direct_recorder(scenario, options.folder) if options.record else None
-    truth = TruthFile(options.folder, scenario, options.seed, Keys()) if options.record else None
-    lockstep = Lockstep(scenario, options.seed, recorder=recorder)
-    with timed_steps() as durations_s:
-        began_s = time.monotonic()
-        ended = lockstep.run()
-        factor = lockstep.recording.elapsed_s / (time.monotonic() - began_s)
-    if recorder is not None:
-        recorder.close()
-    if truth is not None:
-        truth.take(lockstep.recording)
-        truth.close()
-    progress(lockstep.recording, factor)
-    result = result_table(scenario, options.seed, lockstep.recording, ended)
-    step_ms = {name: quantiles_ms(durations) for name, durations in durations_s.items() if durations}
-    timing = {"real_time_factor": round(factor, 4), "step_ms": step_ms}
-    return _write(options.folder, result, timing | _count_lost(truth, recorder))
-
-
-def _direct_recorder(scenario: Scenario, folder: Path) -> DirectRecorder:
-    return DirectRecorder(recording_sink(folder, scenario.system.companion, Keys()))
-
-
-def _count_lost(*recorders: DirectRecorder | TruthFile | None) -> dict[str, int]:
-    """Return how many records a failing disk has cost; nothing where nothing was recorded."""
-    dropped = [recorder.dropped for recorder in recorders if recorder is not None]
-    return {"records_dropped": sum(dropped)} if dropped else {}
-
-
-def _write(folder: Path, result: dict[str, Any], timing: dict[str, Any]) -> RunOutcome:
-    write_json(folder / "result.json", result)
-    write_json(folder / "timing.json", timing)
-    return RunOutcome(result=result, timing=timing)

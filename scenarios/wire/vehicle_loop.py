@@ -44,9 +44,10 @@ class VehicleLoop:
         self._ticks = zenoh.subscribe(keys.clock) if use_sim_time else None
         self._stopping = False
         self._log = structlog.get_logger("ground-vehicle")
-        pad = json_messages.encode(node.pad)
-        zenoh.serve(keys.pad, lambda _: pad)
-        zenoh.declare_alive(keys.alive)
+        if not node.is_silent:
+            pad = json_messages.encode(node.pad)
+            zenoh.serve(keys.pad, lambda _: pad)
+            zenoh.declare_alive(keys.alive)
 
     def run(self) -> None:
         """Run until a signal comes.

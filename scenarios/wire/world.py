@@ -40,9 +40,10 @@ class WorldLoop:
         self._zenoh = zenoh
         self._speed = speed
         self._stopping = False
-        pad = json_messages.encode(self._simulation.vehicle.pad)
-        zenoh.serve(keys.pad, lambda _: pad)
-        zenoh.declare_alive(keys.alive)
+        if not self._simulation.vehicle.is_silent:
+            pad = json_messages.encode(self._simulation.vehicle.pad)
+            zenoh.serve(keys.pad, lambda _: pad)
+            zenoh.declare_alive(keys.alive)
 
     def run(self) -> None:
         """Run until interrupted."""

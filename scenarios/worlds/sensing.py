@@ -53,6 +53,7 @@ def _velocity(draws: Draws) -> VelocityConfig:
 
 
 def _imu(draws: Draws) -> ImuConfig:
+    white_m_s2 = draws.number("sensors.acceleration_white_m_s2")
     return ImuConfig(
         rate_hz=50.0,  # the benchmark's, and what an autopilot or a ROS 2 driver sends by default; a choice
         delay_s=draws.number("sensors.imu_delay_s"),
@@ -60,6 +61,8 @@ def _imu(draws: Draws) -> ImuConfig:
         heading_bias_rad=draws.number("sensors.heading_bias_rad"),
         heading_bias_tau_s=draws.number("sensors.heading_bias_s"),
         yaw_rate_white_rad_s=draws.number("sensors.yaw_rate_white_rad_s"),
+        acceleration_white_m_s2=white_m_s2 if draws.yes("sensors.acceleration") else None,
+        acceleration_bias_m_s2=draws.number("sensors.acceleration_bias_m_s2"),
     )
 
 

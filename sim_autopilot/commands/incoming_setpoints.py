@@ -11,7 +11,7 @@ from sim_autopilot.flight.follow import with_word
 from sim_autopilot.flight.precision_landing import place_seen, with_sighting
 from sim_autopilot.flight.repositioning import place_asked
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
-from sim_autopilot.telemetry.motion import height_over_surface_m
+from sim_autopilot.telemetry.range_finder import height_over_surface_m
 
 Result = tuple[AutopilotMemory, tuple[Message, ...]]
 

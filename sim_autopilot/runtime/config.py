@@ -25,8 +25,8 @@ from sim_autopilot.memory import AutopilotConfig
 from sim_autopilot.physics.airframe import ARDUCOPTER_AIRFRAME, BENCHMARK_AIRFRAME, REPORT_AIRFRAME, Airframe
 from sim_autopilot.physics.contact import GEAR_HEIGHT_M
 from sim_autopilot.physics.wind import Gust, Turbulence, WindModel
+from sim_autopilot.plant.config import PlantConfig
 from sim_autopilot.plant.own_state import OwnStateModel
-from sim_autopilot.plant.plant import PlantConfig
 
 _FIRMWARES: Mapping[str, tuple[Firmware, Services]] = MappingProxyType(
     {"px4": (PX4, PX4_STATION), "ardupilot": (ARDUPILOT, ARDUPILOT_STATION)}

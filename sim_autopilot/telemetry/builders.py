@@ -8,7 +8,7 @@ from sim_autopilot.core.streams import Stream
 from sim_autopilot.interfaces import Builder
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
 from sim_autopilot.missions.step import mission_current
-from sim_autopilot.telemetry import high_latency, motion, sensors, status, versions
+from sim_autopilot.telemetry import high_latency, motion, range_finder, sensors, status, versions
 
 BUILDERS: Mapping[int, Builder] = MappingProxyType(
     {
@@ -42,7 +42,7 @@ BUILDERS: Mapping[int, Builder] = MappingProxyType(
         mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED: motion.position_target,
         mavlink.MAVLINK_MSG_ID_HIGHRES_IMU: sensors.highres_imu,
         mavlink.MAVLINK_MSG_ID_RC_CHANNELS: sensors.rc_channels,
-        mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: motion.distance_sensor,
+        mavlink.MAVLINK_MSG_ID_DISTANCE_SENSOR: range_finder.distance_sensor,
         mavlink.MAVLINK_MSG_ID_VFR_HUD: motion.vfr_hud,
         mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: motion.global_position_int,
         mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: motion.gps_raw_int,

@@ -1,16 +1,14 @@
 """Messages about where the drone is and how it moves, in MAVLink's frames and units."""
 
-from math import atan2, degrees, hypot, inf, pi
+from math import atan2, degrees, hypot, pi
 
 from link.frames.geodesy import geodetic_from_enu
 from link.frames.local_frame import local_from_geodetic
 from link.frames.rotations import (
-    conjugate,
     frd_from_flu,
     ned_from_enu,
     quaternion_ned_frd_from_enu_flu,
     roll_pitch_yaw_of,
-    rotate,
     yaw_ned_from_enu,
 )
 from link.mavlink.dialect import Message, mavlink
@@ -24,7 +22,6 @@ _NONE = (0.0, 0.0, 0.0)
 _IGNORE = (0b0000_0000_0000_0111, 0b0000_0000_0011_1000, 0b0000_0001_1100_0000)
 _IGNORE_YAW = 0b0000_0100_0000_0000
 _IGNORE_YAW_RATE = 0b0000_1000_0000_0000
-_RANGE_MAX_CM = 10000
 _POSITION_VARIANCE_M2 = 1e-4
 _VELOCITY_VARIANCE_M2_S2 = 1e-4
 _ANGLE_VARIANCE_RAD2 = 1e-6
@@ -117,62 +114,6 @@ def position_target(memory: AutopilotMemory, _config: AutopilotConfig) -> Messag
         yaw_ned_from_enu(following.yaw_rad or 0.0),
         -(following.yaw_rate_rad_s or 0.0),
     )
-
-
-def distance_sensor(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
-    """Return DISTANCE_SENSOR: how far off the ground or the roof is, downwards along the body's own axis."""
-    distance_cm = round(100.0 * min(max(0.0, _distance_down_m(memory)), 0.01 * _RANGE_MAX_CM))
-    return mavlink.MAVLink_distance_sensor_message(
-        boot_ms(memory),
-        0,
-        _RANGE_MAX_CM,
-        distance_cm,
-        mavlink.MAV_DISTANCE_SENSOR_LASER,
-        0,
-        mavlink.MAV_SENSOR_ROTATION_PITCH_270,
-        0,
-    )
-
-
-def height_over_surface_m(memory: AutopilotMemory) -> float:
-    """Return how far the ground or the roof is below the centre of mass."""
-    return _distance_to_surface_m(memory, (0.0, 0.0, -1.0))
-
-
-def _distance_down_m(memory: AutopilotMemory) -> float:
-    q_WB = memory.plant.state.orientation_wxyz
-    return _distance_to_surface_m(memory, rotate(q_WB, (0.0, 0.0, -1.0)))
-
-
-def _distance_to_surface_m(memory: AutopilotMemory, beam: Vector3) -> float:
-    """Return how far the roof, or else the ground, is from the centre of mass along `beam`, infinity where neither is.
-
-    The simulation measures, so what the autopilot believes does not matter. The vehicle's sides are not seen.
-
-    Args:
-        memory: of the autopilot.
-        beam: unit vector in W.
-    """
-    state, deck = memory.plant.state, memory.world.deck
-    ground_m = _along(float(state.position_enu_m[2]), beam[2])
-    if deck is None:
-        return ground_m
-    age_s = (state.t_ns - deck.t_ns) * 1e-9
-    away = state.position_enu_m - deck.position_enu_m - age_s * deck.velocity_enu_m_s
-    q_VW = conjugate(deck.orientation_wxyz)
-    x, y, z = rotate(q_VW, (float(away[0]), float(away[1]), float(away[2])))
-    forward, left, up = rotate(q_VW, beam)
-    roof_m = _along(z - deck.roof_height_m, up)
-    if not 0.0 <= roof_m < inf:
-        return ground_m
-    length_m, width_m = deck.roof_size_m
-    is_on_roof = abs(x + roof_m * forward) <= 0.5 * length_m and abs(y + roof_m * left) <= 0.5 * width_m
-    return roof_m if is_on_roof else ground_m
-
-
-def _along(height_m: float, rise: float) -> float:
-    """Return the length of a beam down to a plane `height_m` below its start, which it rises by `rise` per length."""
-    return height_m / -rise if rise < 0.0 else inf
 
 
 def vfr_hud(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:

@@ -10,7 +10,7 @@ from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.places import geodetic
 from sim_autopilot.flight.manual import sticks_in_effect
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
-from sim_autopilot.telemetry.motion import height_over_surface_m
+from sim_autopilot.telemetry.range_finder import height_over_surface_m
 from sim_autopilot.telemetry.status import boot_ms
 
 _SEA_LEVEL_HPA = 1013.25

@@ -117,11 +117,14 @@ class Setup:
     autopilot: FakePx4 = field(default_factory=FakePx4)
     dry_run: bool = False
     publishes: bool = True
+    is_component: bool = False
     t_ns: int = START_NS
     config: CompanionConfig = field(default_factory=_config)
 
     def __post_init__(self) -> None:
-        self.node: CompanionNode = build_node(self.config, KEYS, dry_run=self.dry_run, publishes=self.publishes)
+        self.node: CompanionNode = build_node(
+            self.config, KEYS, dry_run=self.dry_run, publishes=self.publishes, is_component=self.is_component
+        )
 
     @property
     def utc_ns(self) -> int:
@@ -138,8 +141,8 @@ class Setup:
             for frame in self.node.take_frames():
                 self.autopilot.receive(frame, self.t_ns)
 
-    def fix(self, place_enu_m: Vector3 = (-30.0, 0.4, PAD_HEIGHT_M), late_s: float = 0.0) -> None:
-        """Send a fix of a vehicle, made `late_s` ago."""
+    def fix(self, place_enu_m: Vector3 = (-30.0, 0.4, PAD_HEIGHT_M), late_s: float = 0.0, std_m: float = 0.0) -> None:
+        """Send a fix of a vehicle, made `late_s` ago; without a deviation it states none."""
         frame = self.node.autopilot.state.view.frame or FRAME
         latitude_rad, longitude_rad, altitude_m = geodetic_from_local(frame, place_enu_m)
         message = Fix(
@@ -147,5 +150,6 @@ class Setup:
             latitude_rad=latitude_rad,
             longitude_rad=longitude_rad,
             altitude_m=altitude_m,
+            covariance_enu_m2=(std_m**2, 0.0, 0.0, 0.0, std_m**2, 0.0, 0.0, 0.0, std_m**2) if std_m else None,
         )
         self.node.receive_sample(KEYS.fix, cdr.encode(message))

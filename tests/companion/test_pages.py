@@ -1,4 +1,4 @@
-"""The pages that a pilot reads say what the program does: aborts with their limits, parameters with their values."""
+"""The pages that a pilot reads say what the program does: reasons with their limits, parameters with their values."""
 
 import re
 from pathlib import Path
@@ -8,8 +8,11 @@ import pytest
 from companion.check.assessment import FIRMWARES
 from companion.check.rules import ParameterRule
 from companion.config.companion import CompanionConfig
+from companion.core.reason_help import reason_helps
+from companion.core.reasons import Reason
 from companion.landing.feasibility import OBSTACLES
 from link.mavlink.dialect import mavlink
+from scenarios.manual.reasons import PATH, reasons_page
 from tests.golden.reasons import CONDITIONS
 
 SINK_M_S = CompanionConfig().descent.descent_rate_max_m_s
@@ -25,17 +28,17 @@ def rows(page: str) -> list[list[str]]:
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("|")]
 
 
-@pytest.mark.parametrize("reason", [one.reason.value for one in CONDITIONS])
-def test_each_abort_is_explained(reason: str) -> None:
-    told = [row for row in rows("safety.md") if reason in row[0] and len(row) == 3]
-    assert told
-    assert all(row[-1] for row in told)
+def test_each_reason_is_explained_and_what_ends_an_approach_or_forbids_it_has_a_remedy() -> None:
+    helps = {one.reason: one for one in reason_helps(CompanionConfig())}
+    assert set(helps) == set(Reason)
+    assert all(one.meaning for one in helps.values())
+    for condition in (*CONDITIONS, *OBSTACLES):
+        assert helps[condition.reason].remedy, condition.reason
 
 
-def test_each_reason_for_no_retry_is_explained() -> None:
-    cells = " ".join(row[0] for row in rows("safety.md"))
-    for obstacle in OBSTACLES:
-        assert f"`{obstacle.reason.name}`" in cells
+def test_the_page_of_reasons_is_the_one_that_is_made() -> None:
+    """`python -m scenarios.manual.reasons` writes it anew."""
+    assert PATH.read_text(encoding="utf-8") == reasons_page()
 
 
 @pytest.mark.parametrize(("page", "rules"), [("px4.md", PX4_RULES), ("ardupilot.md", ARDUPILOT_RULES)])

@@ -12,7 +12,7 @@ from companion.autopilots.driver import AutopilotView, Driver, FrameMoves
 from companion.autopilots.px4 import Px4Driver
 from companion.autopilots.response import Cascade, ResponseModel
 from companion.config.companion import CompanionConfig, ReceiverFrames
-from companion.core.data import Array, Forecast, Measurement, OwnState, Quantity, VehicleEstimate
+from companion.core.data import Array, Forecast, Measurement, OwnState, Quantity, Rival, VehicleEstimate
 from companion.core.reasons import Reason, sentence
 from companion.landing.memory import StepMemory
 from companion.landing.step_data import StepInputs, StepOutputs, System
@@ -128,6 +128,7 @@ class Flight:
     sends_fixes: bool = True
     own_is_silent: bool = False
     alive: bool | None = True
+    rival: Rival | None = None
     leaving: bool = False
     stamps_ahead_s: float = 0.0
     driver: Driver = field(default_factory=Px4Driver)
@@ -190,6 +191,7 @@ class Flight:
             acknowledgements=tuple(self.acknowledgements),
             measurements=(fix(self.t_ns + round(self.stamps_ahead_s * 1e9)),) if self.sends_fixes else (),
             vehicle_alive=self.alive,
+            rival=self.rival,
             pad=self.pad,
             command=command,
             leaving=self.leaving,

@@ -17,7 +17,7 @@ from link.records import replace
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import Scenario
 from scenarios.faults.flight import FaultFlight
-from tests.golden.wrong_data import velocity_is_in_ned
+from tests.golden.wrong_data import every_third_sighting_is_beside, velocity_is_in_ned
 
 SEED = 1
 _PARKED = {"chase": {"parked_wait_s": 0.5}}
@@ -85,8 +85,7 @@ def _vehicle_falls_silent(flight: FaultFlight) -> None:
 
 def _token_is_lost(flight: FaultFlight) -> None:
     _vehicle_falls_silent(flight)
-    flight.companion.receive_liveliness(alive=True)
-    flight.companion.receive_liveliness(alive=False)
+    flight.vehicle_is_alive = False
 
 
 def _own_position_stops(flight: FaultFlight) -> None:
@@ -134,14 +133,10 @@ def _operator(command: Command) -> Fault:
     return lambda flight: flight.companion.request(command)
 
 
-_ARDUPILOT = "straight_5+firmware=ardupilot"
 _POOR_SENSORS = "straight_5+sensors=degraded"
 
 ABORTS: dict[str, Abort] = {
     "vehicle_silent": Abort(reason=Reason.VEHICLE_DATA_OLD, phase=Phase.ALIGN, fault=_vehicle_falls_silent),
-    "vehicle_silent_ardupilot": Abort(
-        reason=Reason.VEHICLE_DATA_OLD, scenario=_ARDUPILOT, phase=Phase.ALIGN, fault=_vehicle_falls_silent
-    ),
     "vehicle_uncertain": Abort(
         reason=Reason.VEHICLE_UNCERTAIN,
         companion={"abort": {"fix_age_max_s": 20.0}, "descent": {"aligned_hold_s": 20.0}},
@@ -194,6 +189,16 @@ ABORTS: dict[str, Abort] = {
     ),
     "offset_unknown": Abort(
         reason=Reason.OFFSET_UNKNOWN, companion={"receiver_frames": "apart", "chase": {"unseen_hold_s": 2.0}}
+    ),
+    "seen_elsewhere": Abort(
+        reason=Reason.SEEN_ELSEWHERE, scenario="straight_5+sensors=nominal", companion={"receiver_frames": "one"}
+    ),
+    "sightings_disagree": Abort(
+        reason=Reason.SIGHTINGS_DISAGREE,
+        scenario="straight_5+sensors=nominal",
+        companion={"receiver_frames": "apart", "descent": {"aligned_hold_s": 20.0, "strays_max": 20}},
+        phase=Phase.ALIGN,
+        fault=every_third_sighting_is_beside,
     ),
     "seen_too_near": Abort(
         reason=Reason.SEEN_TOO_NEAR,

@@ -28,7 +28,6 @@ LANDINGS: dict[str, tuple[str, int]] = {
     "landing": ("straight_5", 1),
     "wave_off": ("brake_7", 2),
     "ardupilot": ("straight_5+firmware=ardupilot", 1),
-    "wave_off_ardupilot": ("brake_7+firmware=ardupilot", 3),
 }
 TOLERANCES = {"contact_s": 0.5, "horizontal_error_m": 0.1, "relative_speed_m_s": 0.15, "sink_rate_m_s": 0.15}
 

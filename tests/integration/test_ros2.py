@@ -18,7 +18,7 @@ from tests.integration.ros_vehicle import DOMAIN
 
 pytestmark = [pytest.mark.wire, pytest.mark.alone]
 
-SPEED = "2"
+SPEED = "3"
 MAP = """
 [vehicle]
 odometry = "/localization/kinematic_state"

@@ -11,7 +11,7 @@ import pytest
 
 from tests.integration.programs import Program, Programs, all_end, until
 
-pytestmark = [pytest.mark.wire, pytest.mark.alone]
+pytestmark = pytest.mark.wire
 
 NAMES = ("ground-vehicle", "sim-autopilot", "companion")
 
@@ -36,6 +36,7 @@ def read(folder: Path, name: str) -> dict[str, Any]:
     return table
 
 
+@pytest.mark.alone
 def test_two_runs_at_once_both_land_and_leave_their_folders(tmp_path: Path) -> None:
     seeds = (1, 2)
     with Programs() as programs:
@@ -59,6 +60,7 @@ def test_two_runs_at_once_both_land_and_leave_their_folders(tmp_path: Path) -> N
         assert (folder / "flight.tlog").stat().st_size > 100_000
 
 
+@pytest.mark.alone
 def test_a_run_that_ends_by_its_time_limit_has_its_result_and_its_timing(tmp_path: Path) -> None:
     short = tmp_path / "short.toml"
     short.write_text('base = "straight_5"\ntime_limit_s = 9.0\n', encoding="utf-8")

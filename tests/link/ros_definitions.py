@@ -4,16 +4,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from pycdr2 import IdlStruct
-from pycdr2.types import array, float64, int8, int32, sequence, uint8, uint16, uint32
+from pycdr2.types import array, float64, int8, int16, int32, sequence, uint8, uint16, uint32
 
 if TYPE_CHECKING:  # the library's own container types are opaque to type checkers
     Floats = list[float]
     Floats9 = list[float]
     Floats36 = list[float]
     Strings = list[str]
+    Ints = list[int]
 else:
     Floats, Floats9, Floats36 = sequence[float64], array[float64, 9], array[float64, 36]
     Strings = sequence[str]
+    Ints = sequence[int32]
 
 
 @dataclass
@@ -169,3 +171,52 @@ class Path(IdlStruct):
 @dataclass
 class Clock(IdlStruct):
     clock: Time
+
+
+@dataclass
+class GPSStatus(IdlStruct):
+    header: Header
+    satellites_used: uint16
+    satellite_used_prn: Ints
+    satellites_visible: uint16
+    satellite_visible_prn: Ints
+    satellite_visible_z: Ints
+    satellite_visible_azimuth: Ints
+    satellite_visible_snr: Ints
+    status: int16
+    motion_source: uint16
+    orientation_source: uint16
+    position_source: uint16
+
+
+@dataclass
+class GPSFix(IdlStruct):
+    header: Header
+    status: GPSStatus
+    latitude: float64
+    longitude: float64
+    altitude: float64
+    track: float64
+    speed: float64
+    climb: float64
+    pitch: float64
+    roll: float64
+    dip: float64
+    time: float64
+    gdop: float64
+    pdop: float64
+    hdop: float64
+    vdop: float64
+    tdop: float64
+    err: float64
+    err_horz: float64
+    err_vert: float64
+    err_track: float64
+    err_speed: float64
+    err_climb: float64
+    err_time: float64
+    err_pitch: float64
+    err_roll: float64
+    err_dip: float64
+    position_covariance: Floats9
+    position_covariance_type: uint8

@@ -97,3 +97,15 @@ def test_more_loss_loses_the_same_packets_and_some_more() -> None:
 def test_a_number_that_cannot_be_is_an_error_of_the_caller(name: str, make: Callable[[], MemoryLink]) -> None:
     with pytest.raises(ValueError, match=name):
         make()
+
+
+def test_spoiling_from_now_on_cuts_some_packets_short_and_flips_a_bit_in_as_many_others() -> None:
+    link = MemoryLink(seed=4)
+    link.spoil(corruption=0.1, truncation=0.1)
+    for k in range(4000):
+        link.put(bytes(20), k)
+    got = link.take(10**9)
+    short, flipped = sum(len(one) < 20 for one in got), sum(any(one) for one in got)
+    assert short / 4000 == pytest.approx(0.1, abs=4.0 * math.sqrt(0.09 / 4000))
+    assert flipped / 4000 == pytest.approx(0.1, abs=4.0 * math.sqrt(0.09 / 4000))
+    assert not any(len(one) < 20 and any(one) for one in got)

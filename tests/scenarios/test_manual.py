@@ -1,21 +1,26 @@
 """The manual builds without a warning and without the network; what is made from the program is all there."""
 
 import re
+import shlex
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from companion.config.companion import CompanionConfig
 from companion.situation.phases import TRANSITIONS, Phase
 from link.payloads.cdr import ROS_TYPES
+from link.program.cli import command_of
 from link.program.toml_config import StrictModel
 from scenarios.catalogue.catalogue import list_scenarios, load_scenario
 from scenarios.catalogue.world_names import names_worlds, parse_world_name
 from scenarios.config import Scenario
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.manual.commands import PROGRAMS, helps
+from scenarios.manual.meanings import meaning_of
 from scenarios.manual.pages import PAGES
 from scenarios.manual.phase_chart import FROM_ANYWHERE, PLACES, arrows, phase_chart
 from scenarios.manual.settings import keys_of, tables_of
@@ -53,10 +58,42 @@ def test_reference_has_every_key_of_a_configuration(path: str, model: type[Stric
             assert any(f"| `{key}` |" in one for one in part), (table.path, key)
 
 
+@pytest.mark.parametrize("model", [CompanionConfig, SimAutopilotConfig, Scenario])
+def test_every_setting_has_a_meaning(model: type[StrictModel]) -> None:
+    for table in tables_of(model, elsewhere={CompanionConfig} - {model}):
+        missing = [key for key in keys_of(table.model) if not meaning_of(table.model, key)]
+        assert missing == [], table.path
+
+
 def test_reference_has_every_command() -> None:
     names = {name for name, _ in helps()}
     assert {*PROGRAMS, "companion check", "scenarios run", "scenarios view", "scenarios campaign"} <= names
     assert all(text.startswith(f"Usage: {name} ") for name, text in helps())
+
+
+def test_each_help_ends_with_examples_that_its_command_takes() -> None:
+    for name, text in helps():
+        assert "Examples:" in text, name
+        for line in text.split("Examples:")[1].strip().splitlines():
+            program, *arguments = shlex.split(line.split(">")[0], comments=True)
+            command = command_of(import_module(PROGRAMS[program]).app)
+            with command.make_context(program, list(arguments)) as context:
+                _parse_below(command, context)
+
+
+def _parse_below(command: Any, context: Any) -> None:
+    """Parse the arguments of the command below a program, as running it would, without running it."""
+    words = [*getattr(context, "_protected_args", ()), *context.args]
+    if not words or not getattr(command, "commands", {}):
+        return
+    name, part, arguments = command.resolve_command(context, words)
+    with part.make_context(name, arguments, parent=context) as inner:
+        _parse_below(part, inner)
+
+
+def test_no_help_has_a_value_of_a_kind_that_only_typer_knows() -> None:
+    for name, text in helps():
+        assert " range>" not in text, name
 
 
 @pytest.mark.slow

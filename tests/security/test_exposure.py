@@ -5,6 +5,9 @@ from pathlib import Path
 import psutil  # type: ignore[import-untyped]  # it has no annotations
 import pytest
 
+from companion.check.assessment import assess_links
+from companion.check.findings import Level
+from companion.runtime.open_links import open_links
 from link.errors import UserError
 from link.zenoh.exposure import exposed
 from link.zenoh.session import ZenohOptions, open_session
@@ -72,3 +75,43 @@ def test_shipped_files_listen_with_certificates_only(tmp_path: Path, name: str) 
 
 def test_all_shipped_files_are_tried() -> None:
     assert {path.stem for path in SHIPPED.glob("*.json5")} == {"vehicle", "companion", "operator", "router"}
+
+
+CABLE = "/dev/ttyACM0,921600"
+
+
+@pytest.mark.parametrize(
+    ("zenoh", "device", "signs", "told"),
+    [
+        (ZenohOptions(), CABLE, False, []),
+        (ZenohOptions(), "udpin:127.0.0.1:14540", False, []),
+        (ZenohOptions(), "udpin:0.0.0.0:14540", True, []),
+        (ZenohOptions(), "udpin:0.0.0.0:14540", False, ["MAVLink on udpin:0.0.0.0:14540 is not signed"]),
+        (ZenohOptions(), "tcp:radio.local:5760", False, ["MAVLink on tcp:radio.local:5760 is not signed"]),
+        (
+            ZenohOptions(listen=("tcp/0.0.0.0:7447",), multicast_scouting=True, insecure=True),
+            CABLE,
+            False,
+            ["Zenoh on tcp/0.0.0.0:7447 takes anybody", "Zenoh's multicast scouting meets anybody"],
+        ),
+    ],
+)
+def test_what_is_open_to_strangers_is_told_by_the_status_and_by_the_check(
+    zenoh: ZenohOptions, device: str, signs: bool, told: list[str]
+) -> None:
+    assert list(open_links(zenoh, device, signs=signs)) == told
+    findings = assess_links(told)
+    assert {one.level for one in findings} == {Level.WARN if told else Level.PASS}
+    assert all(opening in {one.found for one in findings} for opening in told)
+
+
+def test_tls_without_access_control_is_told_and_the_shipped_files_leave_nothing_open(tmp_path: Path) -> None:
+    files = secured(tmp_path / "keys")
+    for name in ("vehicle", "router", "companion", "operator"):
+        assert open_links(ZenohOptions(config_file=files.file(name)), CABLE, signs=False) == ()
+    path = tmp_path / "no_rules.json5"
+    text = "{listen: {endpoints: ['tls/0.0.0.0:7447']}, transport: {link: {tls: {enable_mtls: true}}}}"
+    path.write_text(text, encoding="utf-8")
+    assert open_links(ZenohOptions(config_file=path), CABLE, signs=False) == (
+        "Zenoh on tls/0.0.0.0:7447 has no access control",
+    )

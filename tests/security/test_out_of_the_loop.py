@@ -5,7 +5,7 @@ import struct
 
 import pytest
 
-from companion.runtime import node as node_module
+from companion.runtime import publishing
 from link.errors import UserError
 from link.payloads.checks import PayloadError
 from link.program.cli import make_app, run_app
@@ -78,10 +78,10 @@ def test_status_that_no_message_can_hold_is_counted_and_the_flight_goes_on(monke
     def refuse(*_: object) -> None:
         raise PayloadError("t_ns is out of range")
 
-    monkeypatch.setattr(node_module, "status_publication", refuse)
+    monkeypatch.setattr(publishing, "status_publication", refuse)
     setup = Setup()
     setup.run(1.0)
-    assert setup.node.unpublished > 5
+    assert setup.node.publisher.unpublished > 5
     assert setup.node.outputs is not None
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from companion.runtime.claims import Claims
 from link.errors import UserError
 from link.messages import Command
 from link.payloads import json_messages
@@ -17,8 +18,8 @@ from tests.integration.observer import Observer
 from tests.integration.programs import Programs, until
 from tests.security.secured import STRANGER, Secured, secured
 
-# Forty seconds, since simulated time, which would be faster, is denied to all by these files.
-pytestmark = [pytest.mark.wire, pytest.mark.alone]
+# Forty seconds of waiting, since simulated time, which would be faster, is denied to all by these files.
+pytestmark = pytest.mark.wire
 
 KEYS = Keys()
 FORGED = b"forged"
@@ -36,6 +37,10 @@ class Stranger:
         """Publish on `keys`."""
         for key in keys:
             self._zenoh.publish(key, FORGED, "application/json")
+
+    def claim(self) -> None:
+        """Say that a companion of this drone runs, and was there first."""
+        self._zenoh.declare_alive(KEYS.companion_alive("0"))
 
     def order(self) -> None:
         """Ask for the landing's end."""
@@ -92,6 +97,10 @@ def test_landing_by_the_shipped_files_is_told_to_no_stranger_and_ended_by_none(t
         companion = programs.start("companion", "--mavlink", f"udpin:{device}", *as_("companion"))
         bystander.wait_for_relative_position()
         intruders = strangers(stack, files, other.folder)
+        for impostor in (crooked, *intruders):
+            impostor.claim()
+        second = Claims(stack.enter_context(open_session(ZenohOptions(config_file=files.file("companion")))), KEYS)
+        until(lambda: second.rival is not None, "a second companion knows of the first")
         start = programs.start("scenarios", "command", "start", *as_("operator"))
         assert (start.wait(), start.out.all) == (0, ["accepted"])
 

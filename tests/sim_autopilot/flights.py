@@ -7,7 +7,8 @@ import numpy as np
 
 from link.records import replace
 from sim_autopilot.core.data import Array, Deck, Reference, Surface
-from sim_autopilot.plant.plant import PlantConfig, PlantMemory, fly, initial_plant
+from sim_autopilot.plant.config import PlantConfig
+from sim_autopilot.plant.plant import PlantMemory, fly, initial_plant
 
 DT_S = 0.01
 CALM = np.zeros(3)

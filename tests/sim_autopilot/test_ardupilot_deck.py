@@ -8,7 +8,7 @@ import pytest
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.data import Deck, Surface
 from sim_autopilot.physics.airframe import ARDUCOPTER_AIRFRAME
-from sim_autopilot.plant.plant import PlantConfig
+from sim_autopilot.plant.config import PlantConfig
 from tests.sim_autopilot.copter import GUIDED, LAND, ardupilot, every, mode, take_off
 from tests.sim_autopilot.pilot import START_NS, Pilot, arm
 

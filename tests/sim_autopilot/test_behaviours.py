@@ -1,10 +1,10 @@
-"""The table of behaviours in the documentation names tests that there are."""
+"""The table of behaviours names tests that there are."""
 
 import re
 from pathlib import Path
 
 _TESTS = Path(__file__).parent
-_DOCUMENT = _TESTS.parents[1] / "docs" / "sim_autopilot.md"
+_DOCUMENT = _TESTS / "behaviours.md"
 
 
 def test_every_behaviour_that_is_listed_has_the_test_that_it_names() -> None:

@@ -6,8 +6,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from companion.autopilots.own_reports import as_seen_with, velocity_bias, without_bias
+from companion.autopilots.own_reports import as_seen_with, carry, velocity_bias, without_bias
 from companion.core.data import OwnState, Setpoint
+from link.frames.rotations import quaternion_from_roll_pitch_yaw
 from link.messages import Vector3
 
 REPORT_NS = 20_000_000
@@ -94,3 +95,18 @@ def test_setpoint_asks_for_the_velocity_that_the_autopilot_will_report() -> None
     assert asked.velocity_enu_m_s == pytest.approx((5.3, -1.45, 0.2))
     assert without_bias(asked.velocity_enu_m_s or (0.0, 0.0, 0.0), WRONG_BY) == pytest.approx(wanted.velocity_enu_m_s)
     assert asked.position_enu_m == wanted.position_enu_m
+
+
+def test_orientation_is_carried_from_when_it_was_so() -> None:
+    rate_rad_s, attitude_age_s, ahead_s = -2.5, 0.012, 0.007
+    own = OwnState(
+        t_ns=10**18,
+        position_enu_m=(1.0, 2.0, 3.0),
+        velocity_enu_m_s=(0.0, 0.0, 0.0),
+        orientation_wxyz=quaternion_from_roll_pitch_yaw(0.0, 0.3, 0.0),
+        angular_velocity_flu_rad_s=(0.0, rate_rad_s, 0.0),
+        attitude_age_s=attitude_age_s,
+    )
+    carried = carry(own, own.t_ns + round(ahead_s * 1e9))
+    pitch_rad = 0.3 + rate_rad_s * (attitude_age_s + ahead_s)
+    assert carried.orientation_wxyz == pytest.approx(quaternion_from_roll_pitch_yaw(0.0, pitch_rad, 0.0), abs=1e-5)

@@ -31,6 +31,7 @@ def test_printed_configuration_reads_back_as_the_same(tmp_path: Path) -> None:
         ("step_rate_hz = 0.0\n", "step_rate_hz"),
         ("[descent]\ncommit_height_m = 'low'\n", "commit_height_m"),
         ("[landing]\nheight_m = 1.0\n", "landing"),
+        ("[silent_vehicle]\n[estimator]\nkind = 'ukf'\n", "silent_vehicle"),
     ],
 )
 def test_mistake_is_one_line_that_names_file_and_key(tmp_path: Path, text: str, key: str) -> None:

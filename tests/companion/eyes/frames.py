@@ -13,7 +13,9 @@ from companion.eyes.picture import WholePicture, whole
 from companion.eyes.sight import Frame, SightSystem
 from link.frames.rotations import matrix_from_quaternion, quaternion_from_roll_pitch_yaw
 from scenarios.camera.lens import CAMERA, SIZE_PX
-from scenarios.camera.rendering import Light, Renderer, Vehicle, View
+from scenarios.camera.lighting import Light
+from scenarios.camera.planes import View
+from scenarios.camera.rendering import Renderer, Vehicle
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from companion.eyes.picture import WholePicture
 from companion.eyes.sight import Frame, Sight, SightMemory, sight_step
 from link.frames.rotations import matrix_from_quaternion
 from link.records import replace
-from scenarios.camera.rendering import Light
+from scenarios.camera.lighting import Light
 from tests.companion.eyes.frames import DAY, Case, case, system
 
 BOARD = load_board(None).config

@@ -13,7 +13,8 @@ from link.records import replace
 from tests.companion.facts import CONFIG, drone_at, pad_at, situation
 from tests.companion.world import PAD_HEIGHT_M, SET_MODE, Flight, KnownVehicle, own_state
 
-PAIRS = list(itertools.product(Command, Phase))
+ASKED = (Command.START, Command.ABORT, Command.HOLD)  # the desk makes a start of "start anyway"
+PAIRS = list(itertools.product(ASKED, Phase))
 STARTABLE = {Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD}
 
 

@@ -64,6 +64,8 @@ UNSAFE: dict[Reason, Situation] = {
     ),
     Reason.VEHICLE_OUTRUNS: replace(situation(), limits=replace(CONFIG.limits.flight_limits(), speed_max_m_s=4.1)),
     Reason.VEHICLE_CONTRADICTS_ITSELF: changed(situation(), rejected_share=CONFIG.abort.rejected_share_max + 0.01),
+    Reason.SEEN_ELSEWHERE: situation(pad=replace(pad_at(), frame_offset_m=1.0, frame_offset_std_m=0.01)),
+    Reason.SIGHTINGS_DISAGREE: changed(situation(), are_sightings_mixed=True),
     Reason.SEEN_TOO_NEAR: changed(situation(), range_height_m=0.5),
     Reason.BELOW_PAD: situation(-CONFIG.descent.press_depth_m - CONFIG.touchdown.height_max_m - 0.01),
     Reason.NOTHING_TOUCHED: situation(-CONFIG.touchdown.missed_depth_m - 0.01),

@@ -1,14 +1,52 @@
 """What cannot be landed on is refused with its numbers, once, and not chased."""
 
+from dataclasses import dataclass
+
 import pytest
 
 from companion.config.companion import CompanionConfig
+from companion.core.data import Array, Forecast
+from companion.core.reasons import Reason
 from companion.landing.aborts import ABORTS
 from companion.landing.feasibility import OBSTACLES
+from companion.landing.following_height import chase_floor_m
 from companion.situation.phases import Phase
 from link.messages import Command
 from link.records import replace
-from tests.companion.world import CONFIG, PAD_HEIGHT_M, START_NS, Flight, KnownVehicle
+from tests.companion.world import CONFIG, GEAR_M, PAD, PAD_HEIGHT_M, START_NS, Flight, KnownVehicle
+
+ROOF_M = CONFIG.takeoff.waiting_height_m  # as high as the drone hovers: no chase begins there
+
+
+@dataclass(frozen=True)
+class VagueVehicle(KnownVehicle):
+    """One whose fixes are coarse, so that its pad has to be seen."""
+
+    def forecast(self, memory: int | None, t_ns: int, offset_s: Array) -> Forecast | None:
+        known = super().forecast(memory, t_ns, offset_s)
+        return None if known is None else replace(known, is_coarse=True)
+
+
+def passing_at(roof_m: float, height_std_m: float) -> Flight:
+    vehicle = VagueVehicle((-60.0, 0.4, roof_m), (4.0, 0.0, 0.0), std_m=height_std_m)
+    return Flight(vehicle=vehicle, pad=replace(PAD, height_m=roof_m))
+
+
+@pytest.mark.parametrize("lower_m", [0.1, 2.0])
+def test_drone_climbs_to_look_at_a_pad_whose_height_is_vague(lower_m: float) -> None:
+    flight = passing_at(ROOF_M - lower_m, height_std_m=1.45)
+    flight.start_and_reach(Phase.CHASE)
+    assert flight.own.position_enu_m[2] - flight.vehicle.at(flight.t_ns)[2] - GEAR_M >= chase_floor_m(CONFIG)
+
+
+@pytest.mark.parametrize(("roof_m", "height_std_m"), [(ROOF_M - 0.1, 0.05), (ROOF_M + 2.0, 1.45)])
+def test_roof_that_is_too_high_as_far_as_is_known_is_not_chased(roof_m: float, height_std_m: float) -> None:
+    flight = passing_at(roof_m, height_std_m)
+    flight.start_and_reach(Phase.WAITING)
+    outputs = flight.run(15.0)
+    assert Phase.CHASE not in flight.history
+    assert Reason.ROOF_TOO_HIGH.name in {one.status.reason_code for one in outputs}
+
 
 FAST = KnownVehicle((-60.0, 0.4, PAD_HEIGHT_M), (14.2, 0.0, 0.0))
 

@@ -14,10 +14,10 @@ from companion.core.data import Quantity
 from companion.core.reasons import Cause, Reason
 from companion.landing.entries import Decision, update_held
 from companion.landing.memory import Held
-from companion.landing.targets import is_unseen, pad_aim
+from companion.landing.targets import pad_aim
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
-from companion.vehicle.pad import PadPath, pad_path
+from companion.vehicle.pad import PadPath, is_unseen, pad_path
 from link.records import replace
 from scenarios.config import PatternConfig
 from tests.companion.facts import GEAR_M, LONG_HEARD, TICK_NS, decided, later, pad_at, progress, reference_at, situation

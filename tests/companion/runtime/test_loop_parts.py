@@ -53,7 +53,7 @@ def asked(node: CompanionNode, monkeypatch: pytest.MonkeyPatch) -> list[Command]
 def test_reply_goes_to_who_asked(node: CompanionNode, asked: list[Command]) -> None:
     desk = CommandDesk()
     asker = Asker(desk, Command.START)
-    assert desk.pass_on(node, 1) is Command.START
+    desk.pass_on(node, 1)
     assert asker.reply() is None
     desk.answer([ACCEPTED])
     assert asker.reply() == ACCEPTED
@@ -134,6 +134,28 @@ def test_what_is_asked_for_when_a_step_is_due_is_in_the_next_step() -> None:
     setup.node.request(Command.HOLD)
     assert setup.node.poll(setup.t_ns)
     assert len(setup.node.take_replies()) == 1
+
+
+def test_start_for_a_vehicle_that_nothing_is_heard_of_is_refused_with_what_was_refused_and_may_be_forced() -> None:
+    setup = Setup()
+    setup.run(2.0)
+    assert setup.node.is_ready_to_start()
+    setup.fix(late_s=-4.4)
+    setup.run(0.1)
+    desk = CommandDesk()
+    asker, forced = Asker(desk, Command.START), Asker(desk, Command.START_ANYWAY)
+    while not setup.node.is_due(setup.t_ns):
+        setup.t_ns += 1_000_000
+    desk.pass_on(setup.node, setup.t_ns)
+    assert asker.reply() is None
+    desk.answer([ACCEPTED])
+    assert forced.reply() == ACCEPTED
+    desk.pass_on(setup.node, setup.t_ns)
+    reply = asker.reply()
+    assert reply is not None
+    assert not reply.accepted
+    assert "fix: 1 refused, come 4." in reply.reason
+    assert "s before their stamps" in reply.reason
 
 
 def test_reply_that_nobody_waits_for_is_dropped() -> None:

@@ -207,6 +207,18 @@ def test_node_that_nobody_listens_to_says_the_same_to_its_autopilot() -> None:
     assert len(said[0]) > 100
 
 
+def test_fixes_from_far_in_the_future_forbid_a_landing_and_say_by_how_much() -> None:
+    setup = _ready()
+    for _ in range(20):
+        setup.fix(late_s=-4.4)
+        setup.run(0.1)
+    assert setup.node.outputs is not None
+    status = setup.node.outputs.status
+    assert status.reason_code == "STAMPS_AHEAD"
+    assert "4.4" in status.reason
+    assert setup.node.vehicle.refused_lately().startswith("fix: 20 refused, come 4.4 s before their stamps")
+
+
 @pytest.mark.slow
 def test_pilot_reads_every_phase() -> None:
     setup = _flying()

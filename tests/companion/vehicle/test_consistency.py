@@ -89,6 +89,7 @@ def wander(x: Array, rng: np.random.Generator) -> Array:
             config.bend_acceleration_std_m_s2,
             config.bend_length_m,
             config.road_psd_m2_m,
+            0.0,
         ]
     )
     Q = kernels.process_noise(x, DT_S, noise, heave_noise)

@@ -14,20 +14,21 @@ from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_sensors as sensors
 
 TAU_S = 3.0
-MOTION = np.array([TAU_S, 2.0 * math.pi * 0.75, 0.3, 0.04, 180.0, -0.7, 0.1, 0.3])
-NOISE = np.array([12.0, 0.005, 20.0, 3.0, 1e-4, 0.003, 1e-5, 2e-3, 1e-7, 0.1, 0.0, 0.5, 10.0, 1e-5])
+MOTION = np.array([TAU_S, 2.0 * math.pi * 0.75, 0.3, 0.04, 180.0, -0.7, 0.1, 0.3, 5.0])
+NOISE = np.array([12.0, 0.005, 20.0, 3.0, 1e-4, 0.003, 1e-5, 2e-3, 1e-7, 0.1, 0.0, 0.5, 10.0, 1e-5, 0.15])
 LEVER = MOTION[5:8]
 HEAVE = np.array([[0.91, 0.08], [-1.7, 0.69]])
 
 
 def a_state(seed: int) -> Array:
     rng = np.random.default_rng(seed)
-    x = rng.standard_normal(kernels.SIZE)
+    x = np.append(rng.standard_normal(kernels.LEAK), 0.0)
     x[2:4] = rng.uniform(2.0, 9.0, 2)
     x[4:6] = rng.uniform(-1.5, 1.5, 2)
     x[6] = rng.uniform(-0.08, 0.08)
     x[kernels.CLOCK] = rng.uniform(-0.1, 0.1)
     x[9], x[kernels.BEND] = rng.uniform(-0.12, 0.12), rng.uniform(-0.006, 0.006)
+    x[kernels.LEAK] = rng.uniform(-1.0, 1.0)
     return x
 
 
@@ -72,7 +73,7 @@ def test_jacobian_is_the_derivative_of_the_motion(seed: int) -> None:
     assert pytest.approx(numeric, abs=2e-3) == F
 
 
-@pytest.mark.parametrize("kind", range(6))
+@pytest.mark.parametrize("kind", range(7))
 def test_jacobian_is_the_derivative_of_what_a_sensor_reads(kind: int) -> None:
     x = a_state(7)
     _, H = sensors.observe(kind, x, LEVER, True)

@@ -22,7 +22,7 @@ from companion.vehicle.inputs import (
 )
 from link.frames.geodesy import geodetic_from_enu
 from link.frames.local_frame import LocalFrame, Projection, geodetic_from_local
-from link.frames.rotations import quaternion_from_roll_pitch_yaw
+from link.frames.rotations import conjugate, quaternion_from_roll_pitch_yaw, rotate
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, Vector3, VehicleImu
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
@@ -116,8 +116,33 @@ def test_heading_is_the_yaw_of_the_attitude(roll: float, pitch: float, yaw: floa
     assert heading.value[0] == pytest.approx(yaw, abs=1e-9)
 
 
-def test_imu_without_attitude_and_rate_says_nothing() -> None:
-    assert imu_measurements(VehicleImu(t_ns=1, specific_force_flu_m_s2=(0.0, 0.0, 9.8))) == ()
+@pytest.mark.parametrize("force", [None, (0.0, 0.0, 0.0)])
+def test_imu_without_attitude_rate_and_force_says_nothing(force: Vector3 | None) -> None:
+    assert imu_measurements(VehicleImu(t_ns=1, specific_force_flu_m_s2=force)) == ()
+
+
+@given(roll=st.floats(-0.3, 0.3), pitch=st.floats(-0.3, 0.3), yaw=st.floats(-3.1, 3.1), braking=st.floats(0.0, 9.0))
+def test_acceleration_is_without_gravity_where_the_attitude_is_told(
+    roll: float, pitch: float, yaw: float, braking: float
+) -> None:
+    attitude = quaternion_from_roll_pitch_yaw(roll, pitch, yaw)
+    felt = rotate(conjugate(attitude), (-braking * math.cos(yaw), -braking * math.sin(yaw), 9.80665))
+    imu = VehicleImu(t_ns=1, orientation_wxyz=attitude, specific_force_flu_m_s2=felt)
+    _, acceleration = imu_measurements(imu)
+    assert acceleration.quantity is Quantity.ACCELERATION
+    assert acceleration.value[0] == pytest.approx(-braking, abs=1e-9)
+
+
+def test_acceleration_without_an_attitude_is_what_is_felt_forward() -> None:
+    (acceleration,) = imu_measurements(VehicleImu(t_ns=1, specific_force_flu_m_s2=(-2.5, 0.4, 9.7)))
+    assert acceleration.value.tolist() == [-2.5]
+
+
+def test_accelerometer_at_the_noise_of_its_data_sheet_is_not_better_than_the_body_that_it_is_on() -> None:
+    at_rest: Matrix3 = (4e-4, 0.0, 0.0, 0.0, 4e-4, 0.0, 0.0, 0.0, 4e-4)
+    imu = VehicleImu(t_ns=1, specific_force_flu_m_s2=(0.1, 0.0, 9.8), specific_force_covariance_m2_s4=at_rest)
+    (acceleration,) = imu_measurements(imu)
+    assert 0.3**2 <= plausible(acceleration).covariance[0, 0] < 0.31**2
 
 
 def test_imu_variances_are_those_about_the_vertical() -> None:

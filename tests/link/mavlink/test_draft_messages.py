@@ -8,7 +8,8 @@ from link.mavlink.draft_messages import DRAFT_MESSAGES
 
 # CRC_EXTRA and payload length as in the C headers that PX4 is built with.
 @pytest.mark.parametrize(
-    ("message_id", "crc_extra", "length"), [(8, 117, 36), (380, 232, 20), (410, 160, 53), (411, 106, 3)]
+    ("message_id", "crc_extra", "length"),
+    [(8, 117, 36), (80, 14, 4), (380, 232, 20), (396, 50, 160), (410, 160, 53), (411, 106, 3)],
 )
 def test_seed_and_length_are_those_of_the_c_headers(message_id: int, crc_extra: int, length: int) -> None:
     draft = DRAFT_MESSAGES[message_id]

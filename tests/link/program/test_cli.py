@@ -22,11 +22,12 @@ from link.program.cli import (
     make_app,
     run_app,
 )
+from link.program.help import App
 
 Seen = list[dict[str, object]]
 
 
-def program(seen: Seen) -> typer.Typer:
+def program(seen: Seen) -> App:
     """Return an app that has the common options and two commands that fail."""
     app = make_app("Tests the command line.")
 
@@ -87,7 +88,6 @@ def test_options_left_out_are_none() -> None:
         ("run --seed three", "'--seed': Input should be a valid integer"),
         ("run --seed", "--seed"),
         ("run extra", "extra"),
-        ("", "Missing command"),
     ],
 )
 def test_a_mistake_is_one_line_on_stderr_and_exit_code_2(
@@ -99,6 +99,17 @@ def test_a_mistake_is_one_line_on_stderr_and_exit_code_2(
     assert output.err.startswith("tool: ")
     assert output.err.count("\n") == 1
     assert expected in output.err
+
+
+@pytest.mark.parametrize("line", ["", "-h", "run -h"])
+def test_a_program_without_a_command_and_minus_h_print_the_help(line: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_app("tool", program([]), line.split()) == 0
+    assert "--help" in capsys.readouterr().out
+
+
+def test_a_mistake_points_at_the_help_of_its_own_command(capsys: pytest.CaptureFixture[str]) -> None:
+    run_app("tool", program([]), ["run", "extra"])
+    assert "(see tool run -h)" in capsys.readouterr().err
 
 
 def test_interrupt_is_quiet(capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,11 +2,13 @@
 
 import io
 
+import pytest
 from rich.console import Console
 
 from link.messages import LandingStatus
 from link.program.screen import Screen
 from link.program.status_rows import status_rows
+from link.records import replace
 
 STATUS = LandingStatus(
     stamp_ns=1,
@@ -44,3 +46,18 @@ def test_panel_shows_phase_reason_and_further_rows_below_the_lines_that_stay() -
     for words in ("run [1]", "descend", "aligned [within 0.2 m]", "1.23 m", "2.00x"):
         assert words in text
     assert text.index("10.0 s [chase]") < text.index("run [1]")
+
+
+@pytest.mark.parametrize("width", [60, 80, 200])
+def test_panel_has_the_same_height_and_fits_whatever_it_has_to_say(width: int) -> None:
+    heights = set()
+    for reason in ("", "aligned", "the vehicle's road is said to be 30.0 m below the ground 12 m from it: " * 5):
+        drawn = io.StringIO()
+        screen = Screen("companion on " + "x" * 90, Console(file=drawn, width=width))
+        screen.start()
+        screen.show(replace(STATUS, reason=reason, refused=reason), [("pace", reason)])
+        screen.stop()
+        lines = [line for line in drawn.getvalue().splitlines() if line.strip()]
+        assert max(map(len, lines)) <= min(width, 80)
+        heights.add(len(lines))
+    assert len(heights) == 1

@@ -145,13 +145,13 @@ def test_one_bad_number_in_a_long_list_is_told_by_its_place_in_one_short_line(wr
 
 
 @given(speeds_m_s=st.lists(st.text(min_size=100), min_size=2), source=st.text("abc/", max_size=300), name=st.integers())
-def test_whatever_is_wrong_in_a_file_is_one_line_of_at_most_200_characters(
+def test_whatever_is_wrong_in_a_file_is_one_line_of_at_most_200_characters_for_each_of_three_mistakes(
     speeds_m_s: list[str], source: str, name: int
 ) -> None:
     with pytest.raises(UserError) as caught:
         validate(Trip, {"legs": {"speeds_m_s": speeds_m_s}, "name": name}, source=source)
     assert len(str(caught.value).splitlines()) == 1
-    assert len(str(caught.value)) <= 200
+    assert len(str(caught.value)) <= 3 * 200 + len("; and 9999 more")
 
 
 class Road(StrictModel):
@@ -189,8 +189,16 @@ def test_a_file_that_holds_no_table_is_told_so() -> None:
         validate(Config, [], source="x.json")  # type: ignore[arg-type]  # as JSON may hold it
 
 
-def test_further_mistakes_are_counted(tmp_path: Path) -> None:
-    assert complaint(tmp_path, "name = 3\nfast = 1\nnme = 2").endswith("(2 more like this)")
+def test_three_mistakes_are_told_and_further_ones_counted(tmp_path: Path) -> None:
+    text = "name = 3\nfast = 1\nnme = 2\n[guidance]\nhorizon_s = -1.0"
+    told = complaint(tmp_path, text).split("; ")
+    assert [one.split(" ")[0] for one in told] == ["unknown", "name", "fast", "and"]
+    assert told[-1] == "and 1 more"
+
+
+def test_a_key_that_another_table_has_is_told_by_its_place(tmp_path: Path) -> None:
+    told = complaint(tmp_path, "tolerance = 0.1")
+    assert told.startswith("unknown key 'tolerance', did you mean guidance.solver.tolerance or ")
 
 
 def test_a_misspelt_key_is_named_before_the_key_that_is_missing_for_it() -> None:

@@ -1,3 +1,5 @@
+import tracemalloc
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -8,7 +10,9 @@ from companion.eyes.picture import Box, whole
 from link.records import replace
 from scenarios.camera.exposure import EXPOSURE_MAX_S, GAIN_MAX, develop, exposure_for
 from scenarios.camera.lens import CAMERA, SIZE_PX, defocus_std_px, smear
-from scenarios.camera.rendering import Light, Renderer, Vehicle, View
+from scenarios.camera.lighting import Light
+from scenarios.camera.planes import View
+from scenarios.camera.rendering import Renderer, Vehicle
 from tests.companion.eyes.frames import DAY, MOUNTING, ROOF_M
 
 CAR = Vehicle(board=load_board(None).config, length_m=4.2, width_m=1.8, roof_height_m=ROOF_M)
@@ -81,6 +85,17 @@ def test_a_camera_that_turns_smears_edges_along_its_motion_only() -> None:
     )
     assert along < 0.5
     assert across > 0.7
+
+
+def test_a_pad_far_beside_a_drone_on_the_road_takes_no_more_memory_than_one_in_view() -> None:
+    # as a scenario begins: the vehicle 40 m away, in its roof's plane, and 8 ms of exposure at dusk
+    beside = np.array([40.0, 2.0, ROOF_M - 1.4])
+    view = replace(STILL, camera_m=beside, drone_m=beside, velocity_m_s=np.array([0.0, 0.0, 0.05]))
+    tracemalloc.start()
+    render(Light(daylight_lx=40.0), view, Box(0, 0, 64, 48))
+    _, peak_bytes = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak_bytes < 500e6
 
 
 def test_smearing_keeps_the_light_and_moves_nothing() -> None:

@@ -9,6 +9,7 @@ import pytest
 from link.frames.geodesy import Datum, enu_from_geodetic
 from link.frames.rotations import quaternion_from_roll_pitch_yaw, quaternion_from_yaw, rotate, yaw_of
 from link.messages import BodyTruth, Fix, FixVelocity, PadSighting, Quaternion, Vector3, VehicleImu
+from link.records import replace
 from scenarios.config import ClockConfig, FixConfig, ImuConfig, PatternConfig, SensorsConfig, VelocityConfig
 from scenarios.simulation.noise import Dropouts, GaussMarkov, named_rng
 from scenarios.simulation.sensors import Mounting, Sample, SensorSuite
@@ -195,6 +196,44 @@ def test_heading_errs_by_its_noise_and_states_it() -> None:
     assert np.std(headings_rad) == pytest.approx(0.02, rel=0.06)
     assert np.std(rates_rad_s) == pytest.approx(0.009, rel=0.06)
     assert samples[0].orientation_covariance_rad2[8] == pytest.approx(0.02**2)
+
+
+def test_force_has_gravity_in_it_by_the_pitch_and_states_the_noise_only() -> None:
+    imu = ImuConfig(
+        rate_hz=50.0,
+        heading_white_rad=0.0,
+        yaw_rate_white_rad_s=0.0,
+        acceleration_white_m_s2=0.3,
+        acceleration_bias_m_s2=0.2,
+    )
+
+    def braking(t_ns: int) -> VehicleState:
+        attitude = quaternion_from_roll_pitch_yaw(0.0, 0.05, 1.1)
+        slows = (-2.5 * math.cos(1.1), -2.5 * math.sin(1.1), 0.0)
+        return replace(vehicle_at(t_ns, yaw_rad=1.1), orientation_wxyz=attitude, acceleration_enu_m_s2=slows)
+
+    runs = [
+        of_kind(sampled(SensorsConfig(fix=SILENT, imu=imu), 4.0, seed=seed, vehicle=braking), VehicleImu)
+        for seed in range(40)
+    ]
+    forces_m_s2 = np.array([[sample.specific_force_flu_m_s2[0] for sample in run] for run in runs])
+    offsets_m_s2 = forces_m_s2.mean(axis=1)
+    assert offsets_m_s2.mean() == pytest.approx(-2.5 * math.cos(0.05) - 9.80665 * math.sin(0.05), abs=0.1)
+    assert offsets_m_s2.std() == pytest.approx(0.2, rel=0.4)
+    assert (forces_m_s2 - offsets_m_s2[:, None]).std() == pytest.approx(0.3, rel=0.05)
+    assert runs[0][0].specific_force_covariance_m2_s4[0] == pytest.approx(0.3**2)
+
+
+def test_accelerations_change_nothing_about_headings_and_yaw_rates() -> None:
+    plain = ImuConfig(rate_hz=50.0, heading_white_rad=0.1, heading_bias_rad=0.05, yaw_rate_white_rad_s=0.1)
+    feeling = plain.model_copy(update={"acceleration_white_m_s2": 0.2, "acceleration_bias_m_s2": 0.2})
+    without, with_force = (
+        of_kind(sampled(SensorsConfig(fix=SILENT, imu=imu), 1.0), VehicleImu) for imu in (plain, feeling)
+    )
+    assert all(sample.specific_force_flu_m_s2 is None for sample in without)
+    assert [
+        replace(sample, specific_force_flu_m_s2=None, specific_force_covariance_m2_s4=None) for sample in with_force
+    ] == [replace(sample, specific_force_covariance_m2_s4=None) for sample in without]
 
 
 def pattern_config(**changes: Any) -> SensorsConfig:

@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 
 from scenarios.catalogue.catalogue import load_scenario
+from scenarios.lockstep.run import run_in_lockstep
 from scenarios.recordings.replay import read_flights, replay
-from scenarios.wire.run import RunOptions, run_in_lockstep
+from scenarios.recordings.run_folder import RunOptions
 from scenarios.worlds.world import draw_world
 
 pytestmark = pytest.mark.slow

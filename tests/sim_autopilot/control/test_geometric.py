@@ -8,7 +8,7 @@ from sim_autopilot.control.geometric import MOTOR_POLE_RAD_S, PLACE_POLE_RAD_S, 
 from sim_autopilot.control.lqr import measured_step
 from sim_autopilot.core.data import Array, Reference
 from sim_autopilot.core.limits import Envelope
-from sim_autopilot.plant.plant import PlantConfig
+from sim_autopilot.plant.config import PlantConfig
 from tests.sim_autopilot.flights import flown, going, holding, hovering
 
 CONFIG = PlantConfig()

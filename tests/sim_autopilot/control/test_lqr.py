@@ -7,7 +7,7 @@ from sim_autopilot.control.lqr import linear_model, linear_step, measured_step, 
 from sim_autopilot.control.parameters import ControllerKind
 from sim_autopilot.core.data import Reference
 from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, REPORT_AIRFRAME
-from sim_autopilot.plant.plant import PlantConfig
+from sim_autopilot.plant.config import PlantConfig
 from tests.sim_autopilot.flights import flown, going, holding, hovering
 
 LQR = PlantConfig(airframe=REPORT_AIRFRAME, controller=ControllerKind.LQR)

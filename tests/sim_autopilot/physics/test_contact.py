@@ -10,7 +10,8 @@ from sim_autopilot.core.data import Deck, Surface
 from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, GRAVITY_M_S2, REPORT_AIRFRAME
 from sim_autopilot.physics.contact import GEAR_HEIGHT_M
 from sim_autopilot.physics.ground_effect import thrust_gain
-from sim_autopilot.plant.plant import PlantConfig, PlantMemory, fly
+from sim_autopilot.plant.config import PlantConfig
+from sim_autopilot.plant.plant import PlantMemory, fly
 from tests.sim_autopilot.flights import CALM, at_rest, driving, flown, going, holding, hovering
 
 CONFIG = PlantConfig()

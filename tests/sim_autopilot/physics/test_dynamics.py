@@ -6,7 +6,8 @@ from scipy.spatial.transform import Rotation
 from link.records import replace
 from sim_autopilot.core.data import Array
 from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, GRAVITY_M_S2, REPORT_AIRFRAME
-from sim_autopilot.plant.plant import PlantConfig, PlantMemory, fly
+from sim_autopilot.plant.config import PlantConfig
+from sim_autopilot.plant.plant import PlantMemory, fly
 from tests.sim_autopilot.flights import CALM, at_rest, flown, holding, hovering
 
 WIND = np.array([4.0, -2.0, 1.0])

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from sim_autopilot.control.parameters import ControllerKind
+from sim_autopilot.plant.config import PlantConfig
 from sim_autopilot.plant.own_state import NO_ERROR, OwnStateError, OwnStateModel
-from sim_autopilot.plant.plant import PlantConfig, fly
+from sim_autopilot.plant.plant import fly
 from tests.sim_autopilot.flights import CALM, DT_S, holding, hovering
 from tests.sim_autopilot.pilot import Pilot, px4, setpoint
 

@@ -15,7 +15,8 @@ from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME, REPORT_AIRFRAME, 
 from sim_autopilot.physics.contact import GEAR_HEIGHT_M
 from sim_autopilot.plant import kernel as kernel_module
 from sim_autopilot.plant import plant as plant_module
-from sim_autopilot.plant.plant import PlantConfig, PlantMemory, fly, initial_plant
+from sim_autopilot.plant.config import PlantConfig
+from sim_autopilot.plant.plant import PlantMemory, fly, initial_plant
 from tests.sim_autopilot.flights import CALM, at_rest, driving, flown, going, holding, hovering
 
 CONFIG = PlantConfig()

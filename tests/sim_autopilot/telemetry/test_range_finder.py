@@ -8,7 +8,7 @@ import pytest
 from link.messages import Quaternion
 from link.records import replace
 from sim_autopilot.core.data import Deck
-from sim_autopilot.telemetry.motion import distance_sensor
+from sim_autopilot.telemetry.range_finder import distance_sensor
 from tests.sim_autopilot.pilot import START_NS, Pilot, px4
 
 ROOF_M = 1.5

@@ -4,7 +4,7 @@ import pytest
 
 from sim_autopilot.control.geometric import geometric_gains
 from sim_autopilot.firmware.px4.px4 import PX4
-from sim_autopilot.plant.plant import OBSERVER_POLE_RAD_S
+from sim_autopilot.plant.config import OBSERVER_POLE_RAD_S
 
 
 def test_stated_gains_are_those_of_the_controller_that_flies() -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from link.errors import UserError
-from scenarios.wire.run import run_folder
+from scenarios.recordings.run_folder import run_folder
 
 
 def test_runs_that_start_in_the_same_millisecond_have_folders_of_their_own(tmp_path: Path) -> None:

@@ -1,0 +1,75 @@
+"""How high the drone waits for a pad, and follows one that it does not land on yet; pure numerics in W."""
+
+import math
+
+import numpy as np
+
+from companion.config.companion import CompanionConfig
+from companion.planning.guidance import ReferenceState
+from companion.vehicle.pad import PadPath, is_unseen, is_vague
+
+
+def unseen_height_m(height_m: float, pad: PadPath, config: CompanionConfig) -> float:
+    """Return how high the drone stays above a pad that it has to see first, and `height_m` above any other.
+
+    Higher by what the pad's height is unsure, but not out of its detector's sight: it would never be seen then. Fixes
+    that are not coarse tell heights well enough for the height at which a vehicle is waited for.
+    """
+    if not (pad.is_coarse and is_unseen(pad, config)):
+        return height_m
+    clear_m = height_m + config.chase.unseen_height_stds * float(pad.position_std_m[0, 2])
+    return max(height_m, min(clear_m, config.chase.unseen_height_max_m))
+
+
+def chase_height_m(pad: PadPath, reference: ReferenceState, config: CompanionConfig) -> float:
+    """Come down towards the height of alignment as the horizontal distance closes, two metres for each.
+
+    Over a vehicle whose place is not known well enough to align with it, nothing says that its side is not below, and
+    as long as its height is as vague, that the roof is not where the drone flies.
+    """
+    if config.silent_vehicle is not None:
+        return _sight_height_m(pad, reference, config)
+    if is_vague(pad, config) or is_unseen(pad, config):
+        return unseen_height_m(config.chase.height_m, pad, config)
+    distance_m = math.hypot(*(reference.position_enu_m[:2] - pad.position_enu_m[0, :2]).tolist())
+    beyond_m = max(distance_m - config.descent.align_distance_m, 0.0)
+    return min(config.descent.align_height_m + 0.5 * beyond_m, config.chase.height_m)
+
+
+def _sight_height_m(pad: PadPath, reference: ReferenceState, config: CompanionConfig) -> float:
+    """Return the height over a pad that tells nothing, so that it stays in sight.
+
+    A camera that sees 45 degrees to each side has it in view then, with what its place is unsure by.
+    """
+    distance_m = math.hypot(*(reference.position_enu_m[:2] - pad.position_enu_m[0, :2]).tolist())
+    unsure_m = config.chase.unseen_height_stds * float(np.max(pad.position_std_m[0, :2]))
+    beyond_m = max(distance_m + unsure_m - config.descent.align_distance_m, 0.0)
+    lowest_m = config.chase.height_m if is_unseen(pad, config) else config.descent.align_height_m
+    return min(max(config.descent.align_height_m + beyond_m, lowest_m), config.chase.unseen_height_max_m)
+
+
+def chase_floor_m(config: CompanionConfig) -> float:
+    """Return how far the feet stay above the pad before the alignment."""
+    return 0.8 * config.descent.align_height_m
+
+
+def vague_height_m(pad: PadPath, config: CompanionConfig) -> float:
+    """Return by how much a pad that has to be seen first may be lower than it is said to be; 0 for any other."""
+    if not (pad.is_coarse and is_unseen(pad, config)):
+        return 0.0
+    return min(config.chase.unseen_height_stds * float(pad.position_std_m[0, 2]), config.chase.unseen_height_max_m)
+
+
+def waiting_rise_m(height_m: float, pad: PadPath, config: CompanionConfig) -> float:
+    """Return how much higher the drone waits for a pad whose height is vague, to be clear of where its roof may be.
+
+    A roof that is said to be too high for the chase may well be lower: the drone climbs and looks. One that is too high
+    by more than what its height is unsure is refused.
+
+    Args:
+        height_m: of the place where the drone is to wait above the pad.
+        pad: as it is told.
+        config: all numbers.
+    """
+    lacking_m, unsure_m = chase_floor_m(config) - height_m, vague_height_m(pad, config)
+    return min(lacking_m + config.takeoff.reached_distance_m, unsure_m) if 0.0 < lacking_m < unsure_m else 0.0

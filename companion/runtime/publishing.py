@@ -1,0 +1,62 @@
+"""When status and plan are put on Zenoh, and as what."""
+
+import math
+
+from companion.config.companion import CompanionConfig
+from companion.landing.outputs import plan_publication, status_publication
+from companion.landing.step_data import StepOutputs
+from companion.planning.guidance import PlanResult
+from companion.runtime.step_clock import StepClock
+from link.messages import LandingStatus
+from link.payloads.checks import PayloadError
+from link.zenoh.keys import Keys, Publication
+
+_PLAN_EVERY = 2  # statuses
+
+
+class StatusPublisher:
+    """Makes publications of what steps bring, at the status's rate and whenever there is news.
+
+    Args:
+        keys: of the Zenoh contract.
+        config: with the rate.
+        is_on: make any.
+    """
+
+    def __init__(self, keys: Keys, config: CompanionConfig, *, is_on: bool) -> None:
+        self._is_on = is_on
+        self.unpublished = 0
+        """Statuses and plans that hold what no message has room for."""
+        self._keys = keys
+        self._period_ns = 1e9 / config.status_rate_hz
+        self._publications: list[Publication] = []
+        self._status_ns: int | None = None
+        self._statuses = 0
+
+    def take(self) -> list[Publication]:
+        """Return what is to be put on Zenoh, once."""
+        taken, self._publications = self._publications, []
+        return taken
+
+    def is_due(self, outputs: StepOutputs, monotonic_ns: int) -> bool:
+        """Return whether the outputs of this step are published."""
+        since_ns = math.inf if self._status_ns is None else monotonic_ns - self._status_ns
+        return self._is_on and (outputs.text is not None or since_ns >= self._period_ns)
+
+    def publish(self, status: LandingStatus, plan: PlanResult | None, clock: StepClock, yaw_rad: float) -> None:
+        """Take what a step brought.
+
+        Args:
+            status: with what is known of the links.
+            plan: of the step, None while nothing is flown.
+            clock: of the step.
+            yaw_rad: the heading that is flown, from East counter-clockwise.
+        """
+        self._status_ns = clock.monotonic_ns
+        self._statuses += 1
+        try:
+            self._publications.append(status_publication(self._keys, status))
+            if plan is not None and self._statuses % _PLAN_EVERY == 0:
+                self._publications.append(plan_publication(self._keys, plan, clock.t_ns, yaw_rad))
+        except PayloadError:  # a flight goes on without being seen
+            self.unpublished += 1

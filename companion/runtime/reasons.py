@@ -1,0 +1,37 @@
+"""`companion reasons`: what the companion means by a reason, and what to do about it."""
+
+import difflib
+import sys
+import textwrap
+from typing import Annotated
+
+import typer
+
+from companion.config.companion import CompanionConfig
+from companion.core.reason_help import reason_helps
+from link.errors import UserError
+
+_WIDTH = 78
+
+_NamesArgument = Annotated[
+    list[str] | None, typer.Argument(metavar="[NAME]...", help="Such as OFFSET_UNKNOWN; all of them if none is given.")
+]
+
+
+def reasons(names: _NamesArgument = None) -> None:
+    """Explain the reasons that the panel, the log and `landing/status` tell.
+
+    Example: companion reasons VEHICLE_CLOCK_AHEAD
+    """
+    helps = {one.reason.name: one for one in reason_helps(CompanionConfig())}
+    wanted = [name.upper() for name in names or helps]
+    unknown = [name for name in wanted if name not in helps]
+    if unknown:
+        near = difflib.get_close_matches(unknown[0], helps, cutoff=0.5)
+        told = f"; did you mean {', '.join(near)}?" if near else "; `companion reasons` lists them all"
+        raise UserError(f"no reason is called {unknown[0]}{told}")
+    for name in wanted:
+        one = helps[name]
+        sys.stdout.write(f"{name}: {one.reason.value}\n")
+        for text in (f"({one.group}) {one.meaning}", one.remedy):
+            sys.stdout.write(textwrap.indent(textwrap.fill(text, _WIDTH), "  ") + ("\n" if text else ""))

@@ -1,0 +1,140 @@
+"""A pad that is seen where neither receiver allows it, and sightings that contradict each other, end an approach."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from companion.config.companion import CompanionConfig, ReceiverFrames
+from companion.config.estimation import EstimatorKind
+from companion.core.data import Measurement, Quantity
+from companion.core.reasons import Cause, Reason
+from companion.integrity.frames import FIXED_STD_MAX_M
+from companion.integrity.sightings import SightingWatch, is_seen_elsewhere, update_sightings
+from companion.situation.phases import Event, Phase
+from companion.situation.situation import Situation
+from companion.vehicle.estimator import BufferHealth
+from companion.vehicle.pad import cone_radius_at_pad_m, pad_path
+from link.messages import PadGeometry
+from link.records import replace
+from tests.companion.facts import CONFIG, LONG_HEARD, changed, decided, pad_at, progress, situation
+from tests.companion.vehicle.drives import NOMINAL, Sensors, circle
+from tests.companion.vehicle.rides import arrivals, estimator, now_ns
+
+AUTO = CONFIG
+ONE = CompanionConfig(receiver_frames=ReceiverFrames.ONE)
+HALF_M = 0.75
+SHARE = CONFIG.abort.rejected_share_max
+RTK = replace(NOMINAL, pad_rate_hz=30.0, frame_offset_m=0.0)
+
+
+def seen(off_m: float, *, std_m: float = 0.01, fix_std_m: float = 0.02, has_one_frame: bool = True) -> Situation:
+    pad = replace(pad_at(), frame_offset_m=off_m, frame_offset_std_m=std_m, has_one_frame=has_one_frame)
+    return changed(situation(pad=pad), fix_std_m=fix_std_m)
+
+
+@pytest.mark.parametrize(
+    ("config", "harmless_m"), [(ONE, cone_radius_at_pad_m(HALF_M, ONE)), (AUTO, HALF_M)], ids=["known", "taken"]
+)
+def test_pad_seen_beside_what_both_receivers_say_is_elsewhere(config: CompanionConfig, harmless_m: float) -> None:
+    assert not is_seen_elsewhere(seen(harmless_m - 0.01), config)
+    assert is_seen_elsewhere(seen(harmless_m + 0.01), config)
+
+
+@given(off_m=st.floats(0.0, 50.0), std_m=st.floats(0.0, 10.0), fix_std_m=st.floats(0.0, 10.0))
+@pytest.mark.parametrize("config", [ONE, AUTO])
+def test_nothing_is_elsewhere_by_less_than_three_deviations_of_what_is_stated(
+    config: CompanionConfig, off_m: float, std_m: float, fix_std_m: float
+) -> None:
+    facts = seen(off_m, std_m=std_m, fix_std_m=fix_std_m)
+    if is_seen_elsewhere(facts, config):
+        assert off_m > 3.0 * math.hypot(std_m, *2 * [max(fix_std_m, FIXED_STD_MAX_M)])
+        assert is_seen_elsewhere(seen(off_m + 1.0, std_m=std_m, fix_std_m=fix_std_m), config)
+
+
+def test_between_two_frames_and_after_a_jump_of_its_own_frame_any_offset_may_be_true() -> None:
+    assert not is_seen_elsewhere(seen(5.0, has_one_frame=False), AUTO)
+    facts = seen(5.0)
+    moved = replace(facts.autopilot.frame_moves, shift_enu_m=(2.0, 0.0, 0.0))
+    assert is_seen_elsewhere(facts, AUTO)
+    assert not is_seen_elsewhere(replace(facts, autopilot=replace(facts.autopilot, frame_moves=moved)), AUTO)
+
+
+def test_what_no_sighting_has_shown_is_nowhere_else() -> None:
+    assert not is_seen_elsewhere(situation(), ONE)
+    assert not is_seen_elsewhere(seen(0.9, std_m=1.0), ONE)
+
+
+def beside(measurement: Measurement, off_m: float) -> Measurement:
+    if measurement.quantity is not Quantity.PAD:
+        return measurement
+    return replace(measurement, value=measurement.value + np.array([0.6 * off_m, -0.8 * off_m, 0.0]))
+
+
+@pytest.mark.parametrize(("off_m", "is_elsewhere"), [(1.0, True), (0.0, False)])
+def test_estimate_shows_a_detector_that_is_off(off_m: float, *, is_elsewhere: bool) -> None:
+    facts = after_ride(RTK, off_m)
+    assert facts.pad is not None
+    assert facts.pad.frame_offset_m == pytest.approx(off_m, abs=0.1)
+    assert is_seen_elsewhere(facts, ONE) is is_elsewhere
+    assert is_seen_elsewhere(facts, AUTO) is is_elsewhere
+
+
+def after_ride(sensors: Sensors, off_m: float) -> Situation:
+    chosen = estimator(EstimatorKind.IMM)
+    memory = chosen.fuse(None, [])
+    for measurement in arrivals(circle(), sensors, 5):
+        if measurement.t_ns < now_ns(5.0):
+            memory = chosen.fuse(memory, [beside(measurement, off_m)])
+    forecast = chosen.forecast(memory, now_ns(5.0), np.arange(0.0, 1.0, 0.2))
+    assert forecast is not None
+    described = PadGeometry(size_m=(2.0 * HALF_M, 2.0 * HALF_M), height_m=1.5, antenna_to_pad_m=(0.0, 0.0, 0.0))
+    return changed(situation(pad=pad_path(forecast, described)), fix_std_m=0.02)
+
+
+def health(accepted: int, rejected: int) -> BufferHealth:
+    return BufferHealth(
+        fused=0,
+        gated=0,
+        late=0,
+        recoveries=0,
+        nis_per_dof=None,
+        nis_dof=0,
+        recent_nis_per_dof=None,
+        sightings=(accepted, rejected),
+    )
+
+
+@given(
+    before=st.tuples(st.integers(0, 500), st.integers(0, 500)), now=st.tuples(st.integers(0, 99), st.integers(0, 99))
+)
+def test_sightings_are_mixed_while_more_than_the_share_of_those_that_came_is_rejected(
+    before: tuple[int, int], now: tuple[int, int]
+) -> None:
+    watch = update_sightings(SightingWatch(counted=before), health(before[0] + now[0], before[1] + now[1]), CONFIG)
+    assert watch.are_mixed is (now[1] > SHARE * sum(now))
+
+
+def test_estimate_that_begins_anew_is_counted_anew() -> None:
+    assert not update_sightings(SightingWatch(counted=(90, 9)), health(3, 8), CONFIG).are_mixed
+
+
+def test_estimator_counts_what_it_rejects_of_two_detectors() -> None:
+    chosen = estimator(EstimatorKind.IMM)
+    memory = chosen.fuse(None, [])
+    sightings = 0
+    for measurement in arrivals(circle(), RTK, 5):
+        if measurement.t_ns < now_ns(4.0):
+            sightings += measurement.quantity is Quantity.PAD
+            memory = chosen.fuse(memory, [beside(measurement, 2.0 * (sightings % 3 == 0))])
+    accepted, rejected = chosen.health(memory).sightings
+    assert accepted + rejected == sightings
+    assert rejected > SHARE * sightings
+
+
+@pytest.mark.parametrize("reason", [Reason.SEEN_ELSEWHERE, Reason.SIGHTINGS_DISAGREE])
+def test_no_other_approach_is_made_by_the_same_sightings(reason: Reason) -> None:
+    climbed = replace(progress(Phase.ABORT, CONFIG.abort.time_limit_s + 0.1), cause=Cause(reason))
+    assert decided(climbed, situation(CONFIG.abort.height_m), LONG_HEARD) == (Event.CLEAR_TO_HOLD, Cause(reason))

@@ -1,0 +1,62 @@
+"""A vehicle that tells nothing is flown over so high that it is seen; out of sight the chase goes on for a while."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from companion.config.companion import CompanionConfig, SilentVehicleConfig
+from companion.core.reasons import Cause, Reason
+from companion.landing.decisions import decide
+from companion.landing.entries import Decision, update_held
+from companion.landing.following_height import chase_height_m
+from companion.landing.memory import ControlMemory, Held
+from companion.situation.phases import Event, Phase
+from companion.situation.situation import VehicleNews
+from link.records import replace
+from tests.companion.facts import CONFIG, TICK_NS, changed, later, pad_at, progress, reference_at, situation
+
+SILENT = CONFIG.model_copy(update={"silent_vehicle": SilentVehicleConfig()})
+HIGHEST_M = CONFIG.chase.unseen_height_max_m
+
+
+def decision_within(phase: Phase, std_m: float, limit_s: float, config: CompanionConfig) -> Decision | None:
+    """The first decision over a pad that was seen 2 s ago, or told of, and is not seen again."""
+    facts = situation(HIGHEST_M, pad=replace(pad_at(std_m=std_m), is_coarse=True))
+    facts = changed(facts, vehicle=VehicleNews(fix_age_s=2.0, is_alive=None))
+    held: Held = {}
+    for tick in range(round(limit_s * 1e9 / TICK_NS) + 1):
+        now = later(facts, tick * TICK_NS)
+        held = update_held(held, phase, now, config)
+        decision = decide(replace(progress(phase, 0.0), held=held), ControlMemory(), now, config)
+        if decision is not None:
+            return decision
+    return None
+
+
+def test_a_chase_goes_on_out_of_sight_where_one_by_telemetry_breaks_off() -> None:
+    assert decision_within(Phase.CHASE, 1.0, 5.0, SILENT) is None
+    told = decision_within(Phase.CHASE, 1.0, 5.0, CONFIG)
+    assert told == (Event.UNSAFE, Cause(Reason.VEHICLE_DATA_OLD))
+
+
+def test_a_chase_that_looks_for_too_long_says_that_the_pad_is_not_seen() -> None:
+    decision = decision_within(Phase.CHASE, 3.0, CONFIG.chase.unseen_hold_s + 1.0, SILENT)
+    assert decision == (Event.UNSAFE, Cause(Reason.PAD_NOT_SEEN))
+
+
+@pytest.mark.parametrize("phase", [Phase.ALIGN, Phase.DESCEND])
+def test_near_the_pad_it_has_to_be_seen(phase: Phase) -> None:
+    decision = decision_within(phase, 1.0, 5.0, SILENT)
+    assert decision is not None
+    assert decision[0] is Event.OUT_OF_ALIGNMENT
+
+
+@given(away_m=st.floats(0.0, 30.0), std_m=st.floats(0.01, 10.0))
+def test_height_keeps_the_pad_in_a_view_of_45_degrees_as_far_as_a_detector_sees(away_m: float, std_m: float) -> None:
+    pad = replace(pad_at(std_m=std_m), is_coarse=True)
+    at = reference_at(HIGHEST_M)
+    at = replace(at, position_enu_m=at.position_enu_m + np.array([away_m, 0.0, 0.0]))
+    height_m = chase_height_m(pad, at, SILENT)
+    assert CONFIG.descent.align_height_m <= height_m <= HIGHEST_M
+    assert height_m > min(away_m + 2.0 * std_m, HIGHEST_M) - 1e-9
