@@ -116,6 +116,7 @@ class MissionRules:
         holds_at_the_end: whether the hold mode follows a mission that ends in the air.
         arms_to_start: whether MISSION_START arms.
         describe: what is said of the items that a step of the flight finished or began.
+        flies_single_items: whether an item that belongs to no mission is flown to at once.
     """
 
     home_first: bool
@@ -123,6 +124,7 @@ class MissionRules:
     holds_at_the_end: bool
     arms_to_start: bool
     describe: "Callable[[Progress, MissionStep, tuple[Item, ...]], tuple[Message, ...]]" = _says_nothing
+    flies_single_items: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

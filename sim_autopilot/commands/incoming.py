@@ -19,6 +19,7 @@ from sim_autopilot.commands.incoming_setpoints import (
 from sim_autopilot.commands.mode_request import try_mode
 from sim_autopilot.commands.origin import move_origin
 from sim_autopilot.commands.requests import is_for_us, is_ours
+from sim_autopilot.commands.single_items import is_single_item, take_single_item
 from sim_autopilot.core.streams import with_interval
 from sim_autopilot.flight.manual import sticks_from_message
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed, with_link
@@ -36,6 +37,8 @@ def take(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> 
     """Return the memory after `message` and the answers to it; most messages change nothing."""
     if config.firmware.texts.everybody and not memory.links.here.ground_station:
         memory = _with_station(memory)
+    if is_single_item(message, config):
+        return take_single_item(memory, message, config)
     served = config.services.handle(memory, message, config)
     if served is not None:
         return served

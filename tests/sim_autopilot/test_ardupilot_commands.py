@@ -2,10 +2,10 @@ from math import hypot, nan
 
 import pytest
 
-from link.mavlink.dialect import mavlink
+from link.mavlink.dialect import Message, mavlink
 from tests.sim_autopilot.copter import BRAKE, GUIDED, ardupilot, copter_in_the_air, heartbeat, mode
-from tests.sim_autopilot.pilot import Pilot, command
-from tests.sim_autopilot.planner import EAST_M, LATITUDE, LONGITUDE, NORTH_M
+from tests.sim_autopilot.pilot import Pilot, command, px4
+from tests.sim_autopilot.planner import EAST_M, LATITUDE, LONGITUDE, NORTH_M, plan_messages
 
 ACCEPTED, DENIED, UNSUPPORTED, FAILED = 0, 2, 3, 4
 REPOSITION, SPEED = mavlink.MAV_CMD_DO_REPOSITION, mavlink.MAV_CMD_DO_CHANGE_SPEED
@@ -34,6 +34,42 @@ def test_a_reposition_of_an_unarmed_drone_only_changes_the_mode() -> None:
     pilot = Pilot(ardupilot())
     assert reposition(pilot, 12.0, 16.0, 8.0) == [ACCEPTED]
     assert heartbeat(pilot)[1] == GUIDED
+
+
+def _single_item(current: int, east_m: float, north_m: float, above_home_m: float) -> Message:
+    """What DroneKit's `simple_goto` sends."""
+    return mavlink.MAVLink_mission_item_message(
+        1,
+        1,
+        0,
+        mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT,
+        mavlink.MAV_CMD_NAV_WAYPOINT,
+        current,
+        0,
+        *(0.0, 0.0, 0.0, 0.0),
+        (LATITUDE + north_m * NORTH_M) * 1e-7,
+        (LONGITUDE + east_m * EAST_M) * 1e-7,
+        above_home_m,
+    )
+
+
+@pytest.mark.slow
+def test_a_single_item_is_flown_to_in_guided_and_refused_in_another_mode() -> None:
+    pilot = copter_in_the_air()
+    (answer,) = plan_messages(pilot.step(_single_item(2, 12.0, 16.0, 8.0)))
+    assert answer.type == mavlink.MAV_MISSION_ACCEPTED
+    pilot.run(14.0)
+    assert pilot.position == pytest.approx((12.0, 16.0, 8.1), abs=0.5)
+    pilot.acknowledged(mode(BRAKE))
+    (answer,) = plan_messages(pilot.step(_single_item(2, 0.0, 0.0, 8.0)))
+    assert answer.type == mavlink.MAV_MISSION_ERROR
+
+
+def test_a_single_item_that_changes_the_height_is_accepted_and_px4_knows_none() -> None:
+    (answer,) = plan_messages(Pilot(ardupilot()).step(_single_item(3, 0.0, 0.0, 8.0)))
+    assert answer.type == mavlink.MAV_MISSION_ACCEPTED
+    (answer,) = plan_messages(Pilot(px4()).step(_single_item(2, 0.0, 0.0, 8.0)))
+    assert answer.type == mavlink.MAV_MISSION_ERROR
 
 
 def test_a_speed_holds_as_long_as_guided_does_and_brake_takes_none() -> None:

@@ -147,7 +147,12 @@ ARDUPILOT = Firmware(
     setpoints=GuidedFlight(),
     origin=OriginRules(projection=Projection.ARDUPILOT, stays=True, announces_home=True),
     missions=MissionRules(
-        home_first=True, returns_itself=True, holds_at_the_end=False, arms_to_start=False, describe=mission_texts
+        home_first=True,
+        returns_itself=True,
+        holds_at_the_end=False,
+        arms_to_start=False,
+        describe=mission_texts,
+        flies_single_items=True,
     ),
     links=LinkRules(defaults=_default_links, answers_ping=False, takes_signing=True, ground_rates_hz=None),
 )
