@@ -66,7 +66,7 @@ class RecordedSource:
         if not self._states:
             raise UserError(f"{path}: the recording holds no motion of a drone")
         self.position_s = 0.0
-        self.playing = True
+        self.playing = False
         self.rate = 1.0
         self._last_s: float | None = None
 
@@ -84,6 +84,7 @@ class RecordedSource:
         """Move on by the wall time since the last call, and return the state there."""
         if self._last_s is not None and self.playing:
             self.position_s = min(self.position_s + self.rate * (now_s - self._last_s), self.duration_s)
+            self.playing = self.position_s < self.duration_s
         self._last_s = now_s
         return self._states[self.shown - 1]
 
