@@ -71,6 +71,7 @@ def test_reference_has_every_command() -> None:
     assert all(text.startswith(f"Usage: {name} ") for name, text in helps())
 
 
+@pytest.mark.slow
 def test_each_help_ends_with_examples_that_its_command_takes() -> None:
     for name, text in helps():
         assert "Examples:" in text, name
