@@ -68,15 +68,6 @@ _FIX_AGE_SHARE = 0.5  # of what aborts a landing
 _FIX_STD_GOOD_M = 0.3
 
 
-def assess_links(open_to_strangers: Sequence[str]) -> list[Finding]:
-    """Return a line for each link that is open to somebody without a key, or one that none is."""
-    if not open_to_strangers:
-        return [pass_line("links", "open to nobody without a key, or to this machine only")]
-    advice = "use keys (companion keys, --zenoh-config, --signing-key), or a network on which nobody else is"
-    reason = "whoever reaches it can end the landing, or fly the drone"
-    return [_finding("links", text, Level.WARN, advice, reason) for text in open_to_strangers]
-
-
 def assess(
     autopilot: AutopilotFacts, vehicle: VehicleFacts | None, speed_m_s: float, config: CompanionConfig
 ) -> list[Finding]:
@@ -96,7 +87,7 @@ def assess(
     if autopilot.autopilot_id in FIRMWARES:
         rules = FIRMWARES[autopilot.autopilot_id].rules_for(config.descent.descent_rate_max_m_s)
         found += judge(rules, autopilot.parameters, speed_m_s)
-    return found if vehicle is None else [*found, *_vehicle(vehicle, config)]
+    return found if vehicle is None else [*found, *_vehicle(vehicle, speed_m_s, config)]
 
 
 def is_ready(findings: Sequence[Finding]) -> bool:
@@ -199,7 +190,7 @@ def _range_finder(seen: AutopilotFacts) -> Finding:
     return _finding("range finder", text, _level(seen.has_range_finder, Level.WARN), advice, reason)
 
 
-def _vehicle(seen: VehicleFacts, config: CompanionConfig) -> list[Finding]:
+def _vehicle(seen: VehicleFacts, speed_m_s: float, config: CompanionConfig) -> list[Finding]:
     if seen.rate_hz <= 0.0 and seen.fix_refused_why is not None:
         advice = f"see what the vehicle publishes on {seen.key}, and whether its receiver has a fix"
         return [_finding("vehicle", f"refused: {seen.fix_refused_why}", Level.FAIL, advice)]
@@ -215,7 +206,8 @@ def _vehicle(seen: VehicleFacts, config: CompanionConfig) -> list[Finding]:
     )
     level = _level(seen.rate_hz >= _FIX_RATE_MIN_HZ, Level.WARN)
     rate = _finding("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, "set its receiver to 5 Hz or more")
-    known = [_vehicle_age(seen, config.abort), _vehicle_accuracy(seen, config.abort.position_std_max_m)]
+    known = [_vehicle_age(seen, config.abort), _vehicle_stamps(speed_m_s, config)]
+    known.append(_vehicle_accuracy(seen, config.abort.position_std_max_m))
     return [rate, *known, *_vehicle_heading(seen, config.chase), pad]
 
 
@@ -235,6 +227,15 @@ def _vehicle_age(seen: VehicleFacts, limits: AbortConfig) -> Finding:
     is_fit = -limits.fix_ahead_max_s <= seen.age_s <= _FIX_AGE_SHARE * limits.fix_age_max_s
     advice = "set its clock by GNSS or NTP, or use a faster link"
     return _finding("vehicle age", f"{1e3 * seen.age_s:.0f} ms", _level(is_fit, Level.FAIL), advice)
+
+
+def _vehicle_stamps(speed_m_s: float, config: CompanionConfig) -> Finding:
+    """Return the line on what cannot be known without sightings: stamps that are off put the pad beside its place."""
+    off_m, room_m = speed_m_s * config.abort.fix_ahead_max_s, config.descent.cone_radius_at_pad_m
+    text = f"off by {1e3 * config.abort.fix_ahead_max_s:.0f} ms they put the pad {off_m:.2f} m off"
+    advice = "let the receiver date its fixes by GNSS, not a program as they arrive"
+    reason = "only a detector of the pad would tell"
+    return _finding("vehicle stamps", text, _level(off_m <= room_m, Level.WARN), advice, reason)
 
 
 def _vehicle_accuracy(seen: VehicleFacts, std_max_m: float) -> Finding:

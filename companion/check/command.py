@@ -132,7 +132,8 @@ class _Question:
 
 
 def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
-    from companion.check.assessment import assess, assess_links
+    from companion.check.assessment import assess
+    from companion.check.links import assess_links
 
     vehicle = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.chase)
     seen = assess(session.reader.facts(), vehicle, asked.speed_m_s, asked.config)
