@@ -87,7 +87,7 @@ def assess(
     if autopilot.autopilot_id in FIRMWARES:
         rules = FIRMWARES[autopilot.autopilot_id].rules_for(config.descent.descent_rate_max_m_s)
         found += judge(rules, autopilot.parameters, speed_m_s)
-    return found if vehicle is None else [*found, *_vehicle(vehicle, speed_m_s, config)]
+    return found if vehicle is None else [*found, *_vehicle(vehicle, config)]
 
 
 def is_ready(findings: Sequence[Finding]) -> bool:
@@ -190,7 +190,9 @@ def _range_finder(seen: AutopilotFacts) -> Finding:
     return _finding("range finder", text, _level(seen.has_range_finder, Level.WARN), advice, reason)
 
 
-def _vehicle(seen: VehicleFacts, speed_m_s: float, config: CompanionConfig) -> list[Finding]:
+def _vehicle(seen: VehicleFacts, config: CompanionConfig) -> list[Finding]:
+    if config.silent_vehicle is not None:
+        return [pass_line("vehicle", "tells nothing, as the configuration says")]
     if seen.rate_hz <= 0.0 and seen.fix_refused_why is not None:
         advice = f"see what the vehicle publishes on {seen.key}, and whether its receiver has a fix"
         return [_finding("vehicle", f"refused: {seen.fix_refused_why}", Level.FAIL, advice)]
@@ -206,8 +208,7 @@ def _vehicle(seen: VehicleFacts, speed_m_s: float, config: CompanionConfig) -> l
     )
     level = _level(seen.rate_hz >= _FIX_RATE_MIN_HZ, Level.WARN)
     rate = _finding("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, "set its receiver to 5 Hz or more")
-    known = [_vehicle_age(seen, config.abort), _vehicle_stamps(speed_m_s, config)]
-    known.append(_vehicle_accuracy(seen, config.abort.position_std_max_m))
+    known = [_vehicle_age(seen, config.abort), _vehicle_accuracy(seen, config.abort.position_std_max_m)]
     return [rate, *known, *_vehicle_heading(seen, config.chase), pad]
 
 
@@ -227,15 +228,6 @@ def _vehicle_age(seen: VehicleFacts, limits: AbortConfig) -> Finding:
     is_fit = -limits.fix_ahead_max_s <= seen.age_s <= _FIX_AGE_SHARE * limits.fix_age_max_s
     advice = "set its clock by GNSS or NTP, or use a faster link"
     return _finding("vehicle age", f"{1e3 * seen.age_s:.0f} ms", _level(is_fit, Level.FAIL), advice)
-
-
-def _vehicle_stamps(speed_m_s: float, config: CompanionConfig) -> Finding:
-    """Return the line on what cannot be known without sightings: stamps that are off put the pad beside its place."""
-    off_m, room_m = speed_m_s * config.abort.fix_ahead_max_s, config.descent.cone_radius_at_pad_m
-    text = f"off by {1e3 * config.abort.fix_ahead_max_s:.0f} ms they put the pad {off_m:.2f} m off"
-    advice = "let the receiver date its fixes by GNSS, not a program as they arrive"
-    reason = "only a detector of the pad would tell"
-    return _finding("vehicle stamps", text, _level(off_m <= room_m, Level.WARN), advice, reason)
 
 
 def _vehicle_accuracy(seen: VehicleFacts, std_max_m: float) -> Finding:

@@ -11,6 +11,7 @@ import typer
 from link.errors import UserError
 from link.program.cli import (
     ConnectOption,
+    DroneOption,
     InsecureOption,
     ListenOption,
     ModeOption,
@@ -74,6 +75,7 @@ def check(
     signing_stamps: SigningStampsOption = None,
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
+    drone: DroneOption = "drone",
     mode: ModeOption = None,
     connect: ConnectOption = None,
     listen: ListenOption = None,
@@ -103,7 +105,7 @@ def check(
         if back is not None:
             _write(session, back)
             return 0
-        keys = Keys(namespace, vehicle, "drone")
+        keys = Keys(namespace, vehicle, drone)
         ask = _Question(
             zenoh=zenoh,
             keys=keys,
@@ -133,11 +135,12 @@ class _Question:
 
 def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
     from companion.check.assessment import assess
+    from companion.check.detector import judge_detector
     from companion.check.links import assess_links
 
-    vehicle = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.chase)
+    vehicle, detector = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.chase)
     seen = assess(session.reader.facts(), vehicle, asked.speed_m_s, asked.config)
-    return [*seen, *assess_links(asked.open_links)]
+    return [*seen, *judge_detector(detector, asked.speed_m_s, asked.config), *assess_links(asked.open_links)]
 
 
 def _show(findings: "list[Finding]", speed_m_s: float, *, as_json: bool) -> int:

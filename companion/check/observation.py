@@ -1,4 +1,4 @@
-"""What a check has seen of an autopilot and a vehicle, as plain data."""
+"""What a check has seen of an autopilot, a vehicle and a detector of the pad, as plain data."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -69,3 +69,24 @@ class VehicleFacts:
     describes_pad: bool = False
     pad_refused_why: str | None = None
     heading_off_rad: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DetectorFacts:
+    """What was received of a detector of the pad; None where nothing was.
+
+    Attributes:
+        is_alive: `pad-detector` shows that it runs, whether it sees the pad or not.
+        sightings: that came.
+        rate_hz: of them.
+        age_s: median from the picture to the sighting's arrival.
+        std_m: median of the largest standard deviation of any axis.
+        refused_why: what was wrong with the last one that was refused, None where none was.
+    """
+
+    is_alive: bool = False
+    sightings: int = 0
+    rate_hz: float = 0.0
+    age_s: float | None = None
+    std_m: float | None = None
+    refused_why: str | None = None

@@ -4,7 +4,8 @@ import time
 from dataclasses import dataclass
 
 from companion.autopilots.choice import check_autopilot
-from companion.check.observation import VehicleFacts
+from companion.check.detector import DetectorReader
+from companion.check.observation import DetectorFacts, VehicleFacts
 from companion.check.reading import Reader
 from companion.check.vehicle_reading import VehicleReader
 from companion.config.landing import ChaseConfig
@@ -26,12 +27,13 @@ _EQUAL = 1e-4  # parameters are 32-bit floats
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inboxes:
-    """Where a vehicle's samples arrive."""
+    """Where the samples of a vehicle and of a detector arrive."""
 
     fix: Inbox
     velocity: Inbox
     imu: Inbox
     pad: PadQuestion
+    sightings: Inbox
 
 
 def open_check(transport: Transport, device: str, *, system_id: int, signing: Signing | None = None) -> "CheckSession":
@@ -74,18 +76,22 @@ class CheckSession:
                 check_autopilot(self.reader.session, self._device, timeout_s)
             self.turn()
 
-    def listen(self, duration_s: float, zenoh: ZenohSession, keys: Keys, config: ChaseConfig) -> VehicleFacts:
-        """Count messages for `duration_s`, read all parameters, and return what the vehicle told meanwhile.
+    def listen(
+        self, duration_s: float, zenoh: ZenohSession, keys: Keys, config: ChaseConfig
+    ) -> tuple[VehicleFacts, DetectorFacts]:
+        """Count messages for `duration_s`, read all parameters, and return what vehicle and detector told meanwhile.
 
         A vehicle that is heard and has not answered for its pad is listened to for some seconds more.
         """
         self.reader.count_anew(time.time_ns())
-        vehicle = VehicleReader(keys.fix, config)
+        vehicle, detector = VehicleReader(keys.fix, config), DetectorReader()
+        detector_alive = zenoh.watch_alive(keys.detector_alive)
         inboxes = Inboxes(
             fix=zenoh.subscribe(keys.fix),
             velocity=zenoh.subscribe(keys.fix_velocity),
             imu=zenoh.subscribe(keys.imu),
             pad=PadQuestion(zenoh, keys.pad),
+            sightings=zenoh.subscribe(keys.pad_pose),
         )
         patience_s = time.monotonic() + duration_s + _PARAMETERS_MAX_S
         pad_patience_s = time.monotonic() + duration_s + _PAD_MAX_S
@@ -93,9 +99,9 @@ class CheckSession:
             awaits_pad = vehicle.is_heard and not inboxes.pad.is_answered and time.monotonic() <= pad_patience_s
             if self.reader.listened_s >= duration_s and self.reader.parameters_done and not awaits_pad:
                 break
-            self._hear_vehicle(vehicle, inboxes)
+            self._hear(vehicle, detector, inboxes)
             self.turn()
-        return vehicle.facts(inboxes.pad)
+        return vehicle.facts(inboxes.pad), detector.facts(is_alive=detector_alive.alive)
 
     def set_parameter(self, name: str, value: float) -> bool:
         """Write a parameter and return whether the autopilot then says that it has this value."""
@@ -132,7 +138,7 @@ class CheckSession:
             self.turn()
         return self.reader.value(name)
 
-    def _hear_vehicle(self, vehicle: VehicleReader, inboxes: Inboxes) -> None:
+    def _hear(self, vehicle: VehicleReader, detector: DetectorReader, inboxes: Inboxes) -> None:
         now_ns, clock = time.time_ns(), self.reader.session.clock
         utc_ns = clock.local_to_utc_ns(now_ns) if clock.is_utc_known else None
         for sample in inboxes.fix.take():
@@ -141,4 +147,6 @@ class CheckSession:
             vehicle.imu(sample.payload)
         for sample in inboxes.velocity.take():
             vehicle.velocity(sample.payload)
+        for sample in inboxes.sightings.take():
+            detector.sighting(sample.payload, now_ns, utc_ns)
         inboxes.pad.poll(time.monotonic())

@@ -94,7 +94,7 @@ class _Loop:
         self._zenoh.serve_later(self._keys.landing_command, self._desk.take)
         spare_present_objects()
         self._log.info("ready", device=self._options.device)
-        self._node.publisher.open_to_strangers = self._options.open_to_strangers
+        self._node.open_to_strangers = self._options.open_to_strangers
         for opening in self._options.open_to_strangers:
             self._log.warning("open to strangers", what=opening)
         while not self._stopping:
@@ -120,9 +120,9 @@ class _Loop:
             for sample in self._ticks.take():
                 try:
                     if not clock.tick(cdr.decode(ClockTick, sample.payload).t_ns):
-                        self._node.samples.refuse("clock", "stray", "far from the ticks before")
+                        self._node.vehicle.refuse("clock", "stray", "far from the ticks before")
                 except PayloadError as error:
-                    self._node.samples.refuse("clock", "unreadable", str(error))
+                    self._node.vehicle.refuse("clock", "unreadable", str(error))
         return clock.ready
 
     def _wait_for(self, is_there: Callable[[], bool], message: str) -> None:
@@ -197,7 +197,7 @@ class _Loop:
             self._service.status(f"{outputs.status.phase}: {outputs.status.reason}")
         for text in self._node.autopilot.take_texts():
             self._log.info("autopilot", text=text)
-        for refused in self._node.samples.refusals.news(time.monotonic_ns()):
+        for refused in self._node.vehicle.refusals.news(time.monotonic_ns()):
             self._log.warning("data refused", what=refused)
         self._claims.update(self._node.phase, armed=self._node.autopilot.state.view.armed)
         self._say_link()
@@ -230,7 +230,7 @@ class _Loop:
         may_change = self._node.phase not in FLYING_PHASES
         pad = question.poll(time.monotonic(), asks=alive or self._fix_seen, may_change=may_change)
         for _ in range(question.bad_answers - bad):
-            self._node.samples.refuse("pad", "refused", question.refused_why or "")
+            self._node.vehicle.refuse("pad", "refused", question.refused_why or "")
         if question.refused_why != why:
             self._log.warning("the vehicle's description of its pad is refused", why=question.refused_why)
         if pad is not None:

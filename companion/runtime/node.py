@@ -14,22 +14,18 @@ from companion.landing.memory import StepMemory
 from companion.landing.step_data import LinkDelay, StepInputs, StepOutputs, System
 from companion.runtime.publishing import StatusPublisher
 from companion.runtime.response_models import response_to
-from companion.runtime.samples import VehicleSamples
 from companion.runtime.step_clock import StepClock
+from companion.runtime.vehicle_link import VehicleLink
 from companion.situation.phases import FLYING_PHASES, Phase
 from companion.step import companion_step
 from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.factory import make_estimator
 from link.mavlink.session import MavlinkSession
-from link.messages import Command, CommandReply, PadGeometry
-from link.payloads.json_messages import is_possible
+from link.messages import Command, CommandReply, LandingStatus, PadGeometry
 from link.records import replace
 from link.zenoh.keys import Keys, Publication
 
-_UNINVITED = "comes for a vehicle of which the configuration says that it tells nothing (silent_vehicle)"
 _MOTION_RATE_MIN_HZ = 50.0
-_EARLY = 0.75  # of a period: a new state of the drone starts the next step from here on
-_LATE = 2.0  # periods without a new state after which the step is made without one
 _LINK_DELAY_MAX_S = 0.3  # a longer way is not led for: the model is too uncertain so far ahead
 
 
@@ -69,19 +65,14 @@ class CompanionNode:
         self.memory = StepMemory()
         self.inputs: StepInputs | None = None
         self.outputs: StepOutputs | None = None
+        self.open_to_strangers: tuple[str, ...] = ()  # which links are, for the status
         self.system = system
-        self._keys = keys
-        silent = system.config.silent_vehicle
-        self._pad: PadGeometry | None = None if silent is None else silent.pad
-        self._vehicle_alive: bool | None = None
         self._rival: Rival | None = None
         self._command: Command | None = None
         self._leaving = False
         self._replies: list[CommandReply] = []
-        self._stepped_ns: int | None = None
-        self._stepped_own_ns: int | None = None
-        self._clock = StepClock()
-        self.samples = VehicleSamples(keys, self._clock)
+        self._clock = StepClock(system.config.step_rate_hz)
+        self.vehicle = VehicleLink(keys, self._clock, system.config.silent_vehicle)
 
     @property
     def phase(self) -> Phase:
@@ -91,7 +82,7 @@ class CompanionNode:
     @property
     def pad_known(self) -> bool:
         """Whether the vehicle has described its pad."""
-        return self._pad is not None
+        return self.vehicle.pad is not None
 
     def vehicle_estimate(self, t_ns: int) -> VehicleEstimate | None:
         """Return the vehicle at `t_ns` (UTC) as the last step knew it, None before the first fix."""
@@ -110,41 +101,25 @@ class CompanionNode:
         self.autopilot.receive(data, local_ns, is_datagram=is_datagram)
 
     def receive_sample(self, key: str, payload: bytes) -> None:
-        """Take a Zenoh sample; what cannot be decoded, is absurd or comes from the future is counted and dropped.
-
-        So is what somebody says of a vehicle that tells nothing.
-        """
-        if self._tells_nothing and key != self._keys.pad_pose:
-            self.samples.refuse(key.rsplit("/", 1)[-1], "uninvited", _UNINVITED)
-            return
+        """Take a Zenoh sample; see `VehicleLink.receive`."""
         is_utc_known = self.autopilot.session.clock.is_utc_known
-        self.samples.receive(key, payload, self.autopilot.state, is_utc_known=is_utc_known)
-
-    @property
-    def _tells_nothing(self) -> bool:
-        return self.system.config.silent_vehicle is not None
+        self.vehicle.receive(key, payload, self.autopilot.state, is_utc_known=is_utc_known)
 
     @property
     def bad_payloads(self) -> int:
         """How many samples and answers were refused."""
-        return self.samples.refusals.total
+        return self.vehicle.refusals.total
 
     @property
     def vehicle_heard(self) -> bool:
         """Whether a fix of the vehicle has come that could be used, or none is to come."""
-        return self._tells_nothing or (self.outputs is not None and self.outputs.status.fix_age_s is not None)
+        return self.vehicle.tells_nothing or (self.outputs is not None and self.outputs.status.fix_age_s is not None)
 
     def receive_pad(self, pad: PadGeometry) -> None:
         """Take the vehicle's description of its pad; the estimator needs the lever arm for sightings of the pad."""
-        if self._tells_nothing:
-            self.samples.refuse("pad", "uninvited", _UNINVITED)
-            return
-        if not is_possible(pad):
-            self.samples.refuse("pad", "impossible", "no vehicle has such a pad")
-            return
-        self._pad = pad
-        estimator = make_estimator(self.system.config.estimator, pad.antenna_to_pad_m)
-        self.system = replace(self.system, estimator=estimator)
+        if self.vehicle.receive_pad(pad):
+            estimator = make_estimator(self.system.config.estimator, pad.antenna_to_pad_m)
+            self.system = replace(self.system, estimator=estimator)
 
     def is_ready_to_start(self) -> bool:
         """Return whether a start would be accepted now."""
@@ -156,14 +131,13 @@ class CompanionNode:
         """Return the answer to a start for a vehicle that was never heard; None where a step is to judge it."""
         if self.vehicle_heard or not self.is_ready_to_start():
             return None
-        refused = self.samples.refused_lately()
+        refused = self.vehicle.refused_lately()
         why = Cause(Reason.VEHICLE_UNHEARD, (f" ({refused})" if refused else "",))
         return CommandReply(accepted=False, reason=sentence(why))
 
     def receive_liveliness(self, *, alive: bool) -> None:
-        """Take the state of the vehicle's liveliness token; one that never was is not lost."""
-        if alive or self._vehicle_alive is not None:
-            self._vehicle_alive = alive
+        """Take the state of the vehicle's liveliness token."""
+        self.vehicle.receive_liveliness(alive=alive)
 
     def receive_rival(self, rival: Rival | None) -> None:
         """Take who else is there for this drone or on this vehicle, and was there first."""
@@ -216,17 +190,13 @@ class CompanionNode:
 
         What is asked for by `request` while this is true is in the step of the next `poll`.
         """
-        if self._stepped_ns is None:
-            return True
         own = self.autopilot.state.own
-        periods = (local_ns - self._stepped_ns) * 1e-9 * self.system.config.step_rate_hz
-        is_new = own is not None and own.t_ns != self._stepped_own_ns
-        return periods >= (_EARLY if is_new else _LATE)
+        return self._clock.is_due(local_ns, None if own is None else own.t_ns)
 
     def _step(self, local_ns: int) -> None:
         state, way, cascade = self.autopilot.state, self.autopilot.session.clock, self.autopilot.cascade
-        self._clock.advance(way.local_to_utc_ns(local_ns), local_ns)
-        measurements, fix_ahead_s = self.samples.take()
+        self._clock.advance(way.local_to_utc_ns(local_ns), local_ns, None if state.own is None else state.own.t_ns)
+        measurements, fix_ahead_s = self.vehicle.take()
         inputs = StepInputs(
             t_ns=self._clock.t_ns,
             monotonic_ns=self._clock.monotonic_ns,
@@ -238,16 +208,15 @@ class CompanionNode:
             acknowledgements=self.autopilot.take_acknowledgements(),
             measurements=measurements,
             fix_ahead_s=fix_ahead_s,
-            vehicle_alive=self._vehicle_alive,
+            vehicle_alive=self.vehicle.alive,
             rival=self._rival,
-            pad=self._pad,
+            pad=self.vehicle.pad,
             command=self._command or self._station_command(local_ns),
             leaving=self._leaving,
             timeout_s=self.autopilot.timeout_s,
             link_delay=LinkDelay(mean_s=min(way.one_way_s, _LINK_DELAY_MAX_S), std_s=way.one_way_std_s),
         )
         self._command = None
-        self._stepped_ns, self._stepped_own_ns = local_ns, None if state.own is None else state.own.t_ns
         self.inputs = inputs
         self.memory, self.outputs = companion_step(self.memory, inputs, self.system)
         self._send(inputs, self.outputs, local_ns)
@@ -280,7 +249,15 @@ class CompanionNode:
                 self.autopilot.session.send(target)
         self._component.tell(outputs, self.phase, self.autopilot.state, self.system.config, local_ns)
         if self.publisher.is_due(outputs, self._clock.monotonic_ns):
-            bad = self.autopilot.session.statistics.codec.bad_bytes, self.bad_payloads
-            self.publisher.publish(
-                outputs, bad, self.samples.refused_lately(), self._clock, self.memory.model.yaw_setpoint_rad
-            )
+            yaw_rad = self.memory.model.yaw_setpoint_rad
+            self.publisher.publish(self._status(outputs), outputs.plan, self._clock, yaw_rad)
+
+    def _status(self, outputs: StepOutputs) -> LandingStatus:
+        """Return the status of a step, with what is known of the links."""
+        return replace(
+            outputs.status,
+            mavlink_bad_bytes=self.autopilot.session.statistics.codec.bad_bytes,
+            zenoh_bad_payloads=self.bad_payloads,
+            refused=self.vehicle.refused_lately(),
+            open_to_strangers=self.open_to_strangers,
+        )

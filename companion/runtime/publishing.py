@@ -5,9 +5,10 @@ import math
 from companion.config.companion import CompanionConfig
 from companion.landing.outputs import plan_publication, status_publication
 from companion.landing.step_data import StepOutputs
+from companion.planning.guidance import PlanResult
 from companion.runtime.step_clock import StepClock
+from link.messages import LandingStatus
 from link.payloads.checks import PayloadError
-from link.records import replace
 from link.zenoh.keys import Keys, Publication
 
 _PLAN_EVERY = 2  # statuses
@@ -26,8 +27,6 @@ class StatusPublisher:
         self._is_on = is_on
         self.unpublished = 0
         """Statuses and plans that hold what no message has room for."""
-        self.open_to_strangers: tuple[str, ...] = ()
-        """Links that are, in words, for the status."""
         self._keys = keys
         self._period_ns = 1e9 / config.status_rate_hz
         self._publications: list[Publication] = []
@@ -44,30 +43,20 @@ class StatusPublisher:
         since_ns = math.inf if self._status_ns is None else monotonic_ns - self._status_ns
         return self._is_on and (outputs.text is not None or since_ns >= self._period_ns)
 
-    def publish(
-        self, outputs: StepOutputs, bad: tuple[int, int], refused: str, clock: StepClock, yaw_rad: float
-    ) -> None:
-        """Take a step's outputs.
+    def publish(self, status: LandingStatus, plan: PlanResult | None, clock: StepClock, yaw_rad: float) -> None:
+        """Take what a step brought.
 
         Args:
-            outputs: of the step.
-            bad: bytes of MAVLink and payloads of Zenoh that were dropped so far.
-            refused: what was refused lately, and why.
+            status: with what is known of the links.
+            plan: of the step, None while nothing is flown.
             clock: of the step.
             yaw_rad: the heading that is flown, from East counter-clockwise.
         """
         self._status_ns = clock.monotonic_ns
         self._statuses += 1
-        status = replace(
-            outputs.status,
-            mavlink_bad_bytes=bad[0],
-            zenoh_bad_payloads=bad[1],
-            refused=refused,
-            open_to_strangers=self.open_to_strangers,
-        )
         try:
             self._publications.append(status_publication(self._keys, status))
-            if outputs.plan is not None and self._statuses % _PLAN_EVERY == 0:
-                self._publications.append(plan_publication(self._keys, outputs.plan, clock.t_ns, yaw_rad))
+            if plan is not None and self._statuses % _PLAN_EVERY == 0:
+                self._publications.append(plan_publication(self._keys, plan, clock.t_ns, yaw_rad))
         except PayloadError:  # a flight goes on without being seen
             self.unpublished += 1

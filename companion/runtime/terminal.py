@@ -37,7 +37,7 @@ class Terminal:
             model = node.memory.model
             error_m = None if model.reference is None else model.tracking.error_m
             record = link_record(node, node.inputs.t_ns, self._recorder.dropped)
-            status = replace(node.outputs.status, refused=node.samples.refused_lately())
+            status = replace(node.outputs.status, refused=node.vehicle.refused_lately())
             self._recorder.put((status, error_m, record))
 
     def close(self) -> None:

@@ -13,6 +13,7 @@ from pydantic.fields import FieldInfo
 from link.program.toml_config import StrictModel
 from scenarios.manual.field_comments import comments_of
 from scenarios.manual.markdown import code, page, table
+from scenarios.manual.meanings import meaning_of
 from scenarios.manual.types_in_words import type_in_words, unit_of
 
 
@@ -93,8 +94,7 @@ def _heading(one: Table) -> str:
 
 def _row(one: Table, name: str) -> tuple[str, ...]:
     field = one.model.model_fields[name]
-    comment = comments_of(one.model).get(name, "")
-    meaning = "; ".join(part for part in (comment, _choices(field.annotation)) if part)
+    meaning = "; ".join(part for part in (meaning_of(one.model, name), _choices(field.annotation)) if part)
     value = getattr(one.values, name) if one.values is not None else _value(field)
     default = "must be given" if one.values is None and field.is_required() else _write(value)
     return code(name), _type(field), unit_of(name), default, meaning

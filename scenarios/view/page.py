@@ -11,14 +11,18 @@ import sys
 import time
 from contextlib import redirect_stdout
 from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 import viser
+import viser.infra
 import websockets.asyncio.server
 
 from companion.config.companion import CompanionConfig
 from scenarios.simulation.vehicle_node import plan_of
+from scenarios.view.client_page import write_client_page
 from scenarios.view.live import LiveSource
 from scenarios.view.panel import Panel
 from scenarios.view.recorded import RecordedSource, Road
@@ -46,7 +50,9 @@ class Page:
 
     def __init__(self, source: LiveSource | RecordedSource, road: Road | None, port: int) -> None:
         self._source = source
-        self._server = open_server(port)
+        self._files = TemporaryDirectory(prefix="decklander-view-")
+        write_client_page(Path(self._files.name))
+        self._server = open_server(port, Path(self._files.name))
         descent = CompanionConfig().descent if road is None else road.scenario.system.companion.descent
         self._scene = Scene(self._server, descent)
         if road is not None:
@@ -57,7 +63,7 @@ class Page:
         else:
             self._panel.add_commands(source.send)
         self._panel.add_camera_and_plots()
-        self._stopping = False
+        self._stopping = self._was_playing = False
         self._stamp_ns: int | None = None
         self._stamp_seen_s = 0.0
 
@@ -69,6 +75,7 @@ class Page:
     ) -> None:
         with redirect_stdout(io.StringIO()):  # nor has its end anything to say
             self._server.stop()
+        self._files.cleanup()
 
     @property
     def address(self) -> str:
@@ -104,10 +111,13 @@ class Page:
         if tick % _TEXT_EVERY == 0:
             t_s = history.times_s[end - 1] if end else 0.0
             self._panel.show(state, t_s=t_s, stale=self._is_stale(now_s))
-            if isinstance(source, RecordedSource) and source.playing:
-                self._panel.show_position(source.position_s)
-        if tick % _PLOTS_EVERY == 0:
+            if isinstance(source, RecordedSource) and (source.playing or self._was_playing):
+                self._was_playing = source.playing
+                self._panel.follow(source)
+        if isinstance(source, LiveSource) and tick % _PLOTS_EVERY == 0:
             self._panel.plot(history, end)
+        elif tick == 0:  # of a recording all is known
+            self._panel.plot(history, len(history.times_s))
 
     def _is_stale(self, now_s: float) -> bool:
         """Return whether a live companion has fallen silent."""
@@ -119,15 +129,25 @@ class Page:
         return now_s - self._stamp_seen_s > _STALE_S
 
 
-def open_server(port: int) -> viser.ViserServer:
+def open_server(port: int, files: Path) -> viser.ViserServer:
     """Return viser's server on loopback, at a later port if `port` is taken, at any free one if it is 0.
 
     It takes WebSockets of its own page only: viser itself does not ask where a browser got the page from.
+
+    Args:
+        port: where.
+        files: folder of the page, in place of viser's.
     """
-    plain = websockets.asyncio.server.serve
+    plain, plain_http = websockets.asyncio.server.serve, viser.infra.WebsockServer
+
+    def our_http(**options: Any) -> viser.infra.WebsockServer:
+        return plain_http(**options | {"http_server_root": files})
+
     websockets.asyncio.server.serve = partial(plain, origins=_OWN_ORIGINS)  # type: ignore[assignment,misc]  # for viser
+    viser.infra.WebsockServer = our_http  # type: ignore[assignment,misc]  # likewise
     try:
         with redirect_stdout(io.StringIO()):  # it has a banner of its own
             return viser.ViserServer(host=_LOOPBACK, port=port, verbose=False)
-    finally:
-        websockets.asyncio.server.serve = plain  # type: ignore[misc]  # for everybody else
+    finally:  # for everybody else
+        websockets.asyncio.server.serve = plain  # type: ignore[misc]
+        viser.infra.WebsockServer = plain_http  # type: ignore[misc]

@@ -9,9 +9,10 @@ import numpy as np
 import viser
 from viser import uplot
 
-from link.messages import Command, CommandReply
+from link.messages import Command, CommandReply, CompressedPicture
 from link.program.status_rows import link_rows, number, status_rows
 from scenarios.view.history import NAMES, History
+from scenarios.view.picture import pixels_of
 from scenarios.view.recorded import RecordedSource
 from scenarios.view.scene import BLUE, FOLLOWED, GREEN, GREY, ORANGE, Scene
 from scenarios.view.state import ViewState
@@ -22,8 +23,8 @@ _LEGEND = ((BLUE, "flown"), (GREY, "pad's way"), (GREEN, "plan, cone"), (ORANGE,
 _PLOTS = (
     ("height and distance [m]", (("height_m", "height", BLUE), ("distance_m", "distance", ORANGE))),
     ("speed [m/s]", (("drone_speed_m_s", "drone", BLUE), ("vehicle_speed_m_s", "vehicle", GREY))),
-    ("relative speed [m/s], error of the estimate [m]", (
-        ("relative_speed_m_s", "relative", GREEN), ("error_m", "error", ORANGE))),
+    ("relative speed [m/s]", (("relative_speed_m_s", "relative", GREEN),)),
+    ("error of the estimate [m]", (("error_m", "error", ORANGE),)),
 )  # fmt: skip
 _VALUE = "text-align:right;white-space:nowrap"
 _PAINT = {
@@ -43,26 +44,46 @@ class Panel:
         self._scene = scene
         self._reply: Any = None
         self._slider: Any = None
+        self._button: Any = None
         self._moves = False
         self._plots: list[tuple[Any, tuple[str, ...]]] = []
+        self._picture: Any = None
+        self._picture_ns: int | None = None
 
     def add_commands(self, send: Callable[[Command], CommandReply]) -> None:
         """Add the operator's buttons."""
-        buttons = self._gui.add_button_group("Command", ("Start", "Hold", "Abort"))
-        self._reply = reply = self._gui.add_html("")
+        gui = self._gui
 
-        def pressed(_: object) -> None:
-            command = Command(str(buttons.value).lower())
+        def ask(command: Command) -> None:
             answer = send(command)
             told = "accepted" if answer.accepted else f"refused: {answer.reason}"
             reply.content = _small(f"{command.value}: {told}")
 
-        buttons.on_click(pressed)
+        def confirm(_: object) -> None:
+            with gui.add_modal("Abort the landing?") as question:
+                gui.add_html(_small("The drone climbs away from the vehicle and hovers."))
+                yes, no = gui.add_button("Abort now", color="red"), gui.add_button("Go on", color="gray")
+
+            def abort_now(_: object) -> None:
+                question.close()
+                ask(Command.ABORT)
+
+            yes.on_click(abort_now)
+            no.on_click(lambda _: question.close())
+
+        start = gui.add_button("Start", color="green", icon=viser.Icon.PLAYER_PLAY)
+        hold = gui.add_button("Hold", color="yellow", icon=viser.Icon.HAND_STOP)
+        abort = gui.add_button("Abort ...", color="red", icon=viser.Icon.ALERT_TRIANGLE)
+        self._reply = reply = gui.add_html("")
+        start.on_click(lambda _: ask(Command.START))
+        hold.on_click(lambda _: ask(Command.HOLD))
+        abort.on_click(confirm)
 
     def add_playback(self, source: RecordedSource) -> None:
         """Add play, speed and the slider over time."""
         gui = self._gui
-        button = gui.add_button("Pause", icon=viser.Icon.PLAYER_PAUSE)
+        button = gui.add_button("Play", icon=viser.Icon.PLAYER_PLAY)
+        self._button = button
         self._slider = slider = gui.add_slider("Time [s]", 0.0, max(round(source.duration_s, 1), 0.1), 0.1, 0.0)
         rate = gui.add_dropdown("Speed", _RATES, initial_value="1")
 
@@ -101,12 +122,28 @@ class Panel:
     def show(self, state: ViewState, *, t_s: float, stale: bool) -> None:
         """Write what is known now."""
         self._text.content = _text(state, t_s, stale=stale)
+        self._show_picture(state.picture)
 
-    def show_position(self, position_s: float) -> None:
-        """Move the slider along with the playback."""
+    def _show_picture(self, picture: CompressedPicture | None) -> None:
+        """Show what the detector looks at, once there is such a thing."""
+        if picture is None or picture.t_ns == self._picture_ns:
+            return
+        self._picture_ns = picture.t_ns
+        pixels = pixels_of(picture)
+        if pixels is None:
+            return
+        if self._picture is None:
+            self._picture = self._gui.add_image(pixels, label="What the detector sees", format="jpeg")
+        else:
+            self._picture.image = pixels
+
+    def follow(self, source: RecordedSource) -> None:
+        """Move the slider along with the playback; at its end the button plays it again."""
         self._moves = True
-        self._slider.value = round(position_s, 1)
+        self._slider.value = round(source.position_s, 1)
         self._moves = False
+        if not source.playing:
+            self._show_playing(self._button, playing=False)
 
     def plot(self, history: History, end: int) -> None:
         """Draw the history up to row `end`."""
@@ -161,10 +198,20 @@ def _rows(state: ViewState, t_s: float) -> list[tuple[str, str]]:
         vehicle_m_s = math.hypot(*state.vehicle_truth.velocity_flu_m_s)
     elif state.estimate is not None:
         vehicle_m_s = math.hypot(*(float(value) for value in state.estimate.velocity_enu_m_s))
-    rows.append(("vehicle's speed", number(vehicle_m_s, "m/s")))
+    rows += [("vehicle's speed", number(vehicle_m_s, "m/s")), ("pad seen", seen_text(state))]
     if state.link is not None:
         link = state.link
         rows += link_rows(
             link.messages_received, link.messages_sent, link.lost_messages, link.bad_bytes, link.bad_payloads
         )
     return rows
+
+
+def seen_text(state: ViewState) -> str:
+    """Return how far away the detector last saw the pad, how well, and how long ago."""
+    sighting = state.sighting
+    if sighting is None:
+        return "-"
+    age_s = (state.t_ns - sighting.t_ns) * 1e-9
+    std_m = math.sqrt(max(0.0, *sighting.position_covariance_m2[::4]))
+    return f"{math.hypot(*sighting.position_flu_m):.2f} m away to {std_m:.2f} m, {max(age_s, 0.0):.1f} s ago"

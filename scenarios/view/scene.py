@@ -35,6 +35,9 @@ _ARM_M, _ROTOR_M, _FEET_M = 0.26, 0.16, 0.15
 _SIGMAS = 1.0
 _HOME_PAD = PadGeometry(size_m=(1.5, 1.5), height_m=1.5, antenna_to_pad_m=(0.0, 0.0, 0.0))
 _LEVEL: Quaternion = (1.0, 0.0, 0.0, 0.0)
+_CONE_PHASES = frozenset({"chase", "align", "descend"})
+_PLANNED_PHASES = _CONE_PHASES | {"takeoff", "waiting", "touchdown", "abort", "hold"}
+_SKY_TOP, _SKY_HORIZON = (146, 186, 224), (226, 231, 223)
 FOLLOWED = ("vehicle", "drone", "nothing")
 
 
@@ -48,6 +51,7 @@ class Scene:
         scene.configure_environment_map(hdri=None)
         scene.configure_default_lights(enabled=True, cast_shadow=True)
         scene.add_light_ambient("/ambient", intensity=1.6)
+        scene.set_background_image(_sky())
         server.initial_camera.position = (-5.6, -5.4, 4.2)
         server.initial_camera.look_at = (0.7, 0.5, 1.6)
         self._world = scene.add_frame("/world", show_axes=False)
@@ -94,14 +98,16 @@ class Scene:
         shown = true or estimated
         drone = None if state.drone is None else (state.drone.position_enu_m, state.drone.orientation_wxyz)
         _place(self._drone, drone)
-        _place(self._cone, None if shown is None else (_raise_by(shown[0], self._pad.height_m), _LEVEL))
+        matters = shown is not None and _phase(state) in _CONE_PHASES
+        _place(self._cone, (_raise_by(shown[0], self._pad.height_m), _LEVEL) if shown and matters else None)
         followed = {"vehicle": shown or drone, "drone": drone}.get(self.followed)
         if followed is not None:
             self._world.position = _negative(followed[0])
 
     def show_lines(self, state: ViewState, drone: Array, pad: Array) -> None:
         """Draw trails, forecast and plan; fewer times a second do."""
-        forecast, plan = state.forecast, state.plan_enu_m
+        flies = _phase(state) in _PLANNED_PHASES
+        forecast, plan = (state.forecast, state.plan_enu_m) if flies else (None, None)
         empty = np.empty((0, 2, 3))
         self._draw("drone", polyline(drone))
         self._draw("pad", polyline(pad))
@@ -128,6 +134,17 @@ class Scene:
             frame.remove()
         self._vehicle = _vehicle(self._scene, pad)
         self._estimated = _outline(self._scene, pad)
+
+
+def _phase(state: ViewState) -> str:
+    return "" if state.status is None else state.status.phase
+
+
+def _sky() -> Array:
+    """Return an image, (rows, columns, rgb): blue above, and below the middle, where the horizon is, as the ground."""
+    rows = np.clip(np.linspace(0.0, 2.0, 64), 0.0, 1.0)[:, None, None]
+    shades = (1.0 - rows) * np.array(_SKY_TOP) + rows * np.array(_SKY_HORIZON)
+    return np.broadcast_to(shades, (64, 8, 3)).astype(np.uint8)
 
 
 def _place(handle: Any, pose: Pose | None) -> None:

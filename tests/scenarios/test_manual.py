@@ -20,6 +20,7 @@ from scenarios.catalogue.world_names import names_worlds, parse_world_name
 from scenarios.config import Scenario
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.manual.commands import PROGRAMS, helps
+from scenarios.manual.meanings import meaning_of
 from scenarios.manual.pages import PAGES
 from scenarios.manual.phase_chart import FROM_ANYWHERE, PLACES, arrows, phase_chart
 from scenarios.manual.settings import keys_of, tables_of
@@ -55,6 +56,13 @@ def test_reference_has_every_key_of_a_configuration(path: str, model: type[Stric
             continue
         for key in keys_of(table.model):
             assert any(f"| `{key}` |" in one for one in part), (table.path, key)
+
+
+@pytest.mark.parametrize("model", [CompanionConfig, SimAutopilotConfig, Scenario])
+def test_every_setting_has_a_meaning(model: type[StrictModel]) -> None:
+    for table in tables_of(model, elsewhere={CompanionConfig} - {model}):
+        missing = [key for key in keys_of(table.model) if not meaning_of(table.model, key)]
+        assert missing == [], table.path
 
 
 def test_reference_has_every_command() -> None:

@@ -46,7 +46,7 @@ VEHICLE = VehicleFacts(
 
 
 def test_everything_in_order_is_all_pass() -> None:
-    findings = assess(GOOD, VEHICLE, 5.0, CONFIG)
+    findings = assess(GOOD, VEHICLE, 10.0, CONFIG)
     assert {one.level for one in findings} == {Level.PASS}
     assert is_ready(findings)
 
@@ -125,15 +125,7 @@ def test_advised_values_make_an_arducopter_pass() -> None:
     before = assess(seen, VEHICLE, 12.0, CONFIG)
     assert not is_ready(before)
     after = assess(replace(seen, parameters={**ARDUCOPTER_46, **advised_values(before)}), VEHICLE, 12.0, CONFIG)
-    assert {one.name for one in after if one.level is not Level.PASS} == {"vehicle stamps"}
-
-
-@pytest.mark.parametrize(("speed_m_s", "level"), [(5.0, Level.PASS), (8.0, Level.WARN)])
-def test_stamps_that_put_the_pad_beside_the_drone_are_warned_of(speed_m_s: float, level: Level) -> None:
-    """Nothing but sightings of the pad tells stamps that are off: 60 ms at 15 m/s were a contact beside the pad."""
-    by_name = {one.name: one for one in assess(GOOD, VEHICLE, speed_m_s, CONFIG)}
-    assert by_name["vehicle stamps"].level is level
-    assert f"{0.05 * speed_m_s:.2f} m" in by_name["vehicle stamps"].found
+    assert {one.level for one in after} == {Level.PASS}
 
 
 @pytest.mark.parametrize(

@@ -69,6 +69,9 @@ class World(Transport):
             self._fixes.put(Sample(key, FIX, 0))
         return self._fixes
 
+    def watch_alive(self, _: str) -> SimpleNamespace:
+        return SimpleNamespace(alive=None)
+
     def ask(self, key: str, _: bytes, timeout_s: float) -> Inbox:
         assert timeout_s > 0.0
         inbox = Inbox(capacity=1, wake_up=WAKE_UP)
@@ -109,7 +112,8 @@ def listened(monkeypatch: pytest.MonkeyPatch, world: World, duration_s: float) -
     monkeypatch.setattr(Reader, "listened_s", property(lambda _: world.now_s - began_s))
     anything: Any = world
     session = CheckSession(Reader(MavlinkSession(1, target_system_id=1)), anything, "test")
-    return session.listen(duration_s, anything, KEYS, ChaseConfig()), world.now_s - began_s
+    vehicle, _ = session.listen(duration_s, anything, KEYS, ChaseConfig())
+    return vehicle, world.now_s - began_s
 
 
 def test_pad_is_asked_for_until_the_vehicle_has_heard_the_question(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -216,7 +216,7 @@ def test_fixes_from_far_in_the_future_forbid_a_landing_and_say_by_how_much() -> 
     status = setup.node.outputs.status
     assert status.reason_code == "STAMPS_AHEAD"
     assert "4.4" in status.reason
-    assert setup.node.samples.refused_lately().startswith("fix: 20 refused, come 4.4 s before their stamps")
+    assert setup.node.vehicle.refused_lately().startswith("fix: 20 refused, come 4.4 s before their stamps")
 
 
 @pytest.mark.slow

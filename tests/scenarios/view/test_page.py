@@ -1,6 +1,8 @@
 """Who may talk to the page, which can fly the drone."""
 
 from collections.abc import Iterator
+from pathlib import Path
+from urllib.request import urlopen
 
 import psutil  # type: ignore[import-untyped]  # it has no annotations
 import pytest
@@ -8,14 +10,17 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
+from scenarios.view.client_page import write_client_page
 from scenarios.view.page import open_server
 
 WAIT_S = 20.0
 
 
 @pytest.fixture(scope="module")
-def port() -> Iterator[int]:
-    server = open_server(0)
+def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
+    files = tmp_path_factory.mktemp("page")
+    write_client_page(files)
+    server = open_server(0, files)
     yield server.get_port()
     server.stop()
 
@@ -44,8 +49,17 @@ def listening() -> set[tuple[str, int]]:
     return {tuple(one.laddr) for one in psutil.Process().net_connections(kind="tcp") if one.status == "LISTEN"}
 
 
-def test_server_listens_on_one_port_of_loopback_and_on_no_other() -> None:
+def test_server_listens_on_one_port_of_loopback_and_on_no_other(tmp_path: Path) -> None:
+    write_client_page(tmp_path)
     before = listening()
-    server = open_server(0)
+    server = open_server(0, tmp_path)
     assert listening() - before == {("127.0.0.1", server.get_port())}
     server.stop()
+
+
+def test_page_has_our_title_and_icon_and_leaves_room_on_a_phone(port: int) -> None:
+    with urlopen(f"http://127.0.0.1:{port}/", timeout=WAIT_S) as answer:
+        page = answer.read().decode()
+    assert "<title>Decklander</title>" in page
+    assert 'rel="icon"' in page
+    assert "max-height: 40%" in page

@@ -1,28 +1,38 @@
-"""What the vehicle sent since the last step, as measurements; what cannot be used is counted by its reason."""
+"""What the vehicle sends, as measurements for the next step; what cannot be used is counted by its reason."""
 
 from companion.autopilots.state import AutopilotState
+from companion.config.companion import SilentVehicleConfig
 from companion.core.data import Measurement
 from companion.runtime.refusals import Refusals
 from companion.runtime.step_clock import StepClock
 from companion.vehicle.inputs import measurements_of
+from link.messages import PadGeometry
 from link.payloads.checks import PayloadError
+from link.payloads.json_messages import is_possible
 from link.zenoh.keys import Keys
 
+_UNINVITED = "comes for a vehicle of which the configuration says that it tells nothing (silent_vehicle)"
 _FUTURE_MAX_NS = 500_000_000  # a stamp farther ahead comes from a clock that is wrong
 
 
-class VehicleSamples:
-    """Takes samples from Zenoh until the next step takes their measurements.
+class VehicleLink:
+    """Takes samples from Zenoh until the next step takes their measurements, the pad's description, and the token.
 
     Args:
         keys: of the Zenoh contract.
         clock: of the steps.
+        silent: what is known of a vehicle that tells nothing, None for one that does.
 
     Attributes:
         refusals: what was refused, and why.
+        pad: as the vehicle describes it, None before.
+        alive: the state of its liveliness token, None if it never had one.
     """
 
-    def __init__(self, keys: Keys, clock: StepClock) -> None:
+    def __init__(self, keys: Keys, clock: StepClock, silent: SilentVehicleConfig | None) -> None:
+        self.pad: PadGeometry | None = None if silent is None else silent.pad
+        self.alive: bool | None = None
+        self.tells_nothing = silent is not None
         self.refusals = Refusals()
         self._keys = keys
         self._clock = clock
@@ -32,12 +42,17 @@ class VehicleSamples:
     def receive(self, key: str, payload: bytes, state: AutopilotState, *, is_utc_known: bool) -> None:
         """Take a sample; what cannot be decoded, is absurd or comes from the future is counted and dropped.
 
+        So is what somebody says of a vehicle that tells nothing.
+
         Args:
             key: that it was put on.
             payload: CDR.
             state: of the autopilot.
             is_utc_known: before, a stamp ahead of the companion's own clock says nothing about who is wrong.
         """
+        if self.tells_nothing and key != self._keys.pad_pose:
+            self.refuse(key.rsplit("/", 1)[-1], "uninvited", _UNINVITED)
+            return
         try:
             measurements = measurements_of(key, payload, self._keys, state)
         except PayloadError as error:
@@ -47,6 +62,22 @@ class VehicleSamples:
         self._measurements += [measurement for measurement in measurements if measurement.t_ns <= newest_ns]
         if is_utc_known and any(one.t_ns > newest_ns for one in measurements):
             self._refuse_ahead(key, max(one.t_ns for one in measurements))
+
+    def receive_pad(self, pad: PadGeometry) -> bool:
+        """Take the description of the pad; return whether it is one that can be."""
+        if self.tells_nothing:
+            self.refuse("pad", "uninvited", _UNINVITED)
+            return False
+        if not is_possible(pad):
+            self.refuse("pad", "impossible", "no vehicle has such a pad")
+            return False
+        self.pad = pad
+        return True
+
+    def receive_liveliness(self, *, alive: bool) -> None:
+        """Take the state of the token; one that never was is not lost."""
+        if alive or self.alive is not None:
+            self.alive = alive
 
     def refuse(self, what: str, why: str, words: str) -> None:
         """Count what came and cannot be used; see `Refusals.count`."""
