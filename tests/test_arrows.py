@@ -15,7 +15,11 @@ MAY_IMPORT = {
     "scenarios": {"scenarios", "companion", "sim_autopilot", "link"},
 }
 HOMES = {
-    "zenoh": {*(f"link/zenoh/{name}.py" for name in ("session", "replies", "library_config")), "link/ros2/session.py"},
+    "zenoh": {
+        *(f"link/zenoh/{name}.py" for name in ("session", "replies", "library_config")),
+        "link/ros2/session.py",
+        "link/ros2/ros_node.py",
+    },
     "foxglove": {"link/recording/foxglove_server.py", "scenarios/view/foxglove_layout.py"},
     "xxhash": {"link/ros2/attachment.py"},
     "pymavlink": {f"link/mavlink/{name}.py" for name in ("dialect", "draft_messages", "codec")},
@@ -28,6 +32,7 @@ HOMES = {
         "link/payloads/ros_sensors.py",
         "link/ros2/type_hash.py",
         "link/ros2/gps_fix.py",
+        "link/ros2/land_types.py",
     },
     "mcap": {"link/recording/mcap_reader.py", "link/recording/mcap_writer.py"},
     "osqp": {"companion/planning/qp.py"},

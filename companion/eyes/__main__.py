@@ -54,6 +54,9 @@ def run_detector(
     size: SizeOption = None,
     latency: _LatencyOption = 0.03,
     rate: _RateOption = 30.0,
+    record: Annotated[
+        Path | None, typer.Option("--record", metavar="DIR", help="Keep pictures with what was seen here, as MCAP.")
+    ] = None,
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
     drone: DroneOption = "drone",
@@ -71,6 +74,7 @@ def run_detector(
     from companion.eyes.mounting import load_mounting
     from companion.eyes.node import EyesNode
     from companion.eyes.opening import SourceOptions, open_source
+    from companion.eyes.recording import open_recorder
     from companion.eyes.sight import SightSystem
     from companion.eyes.zenoh_source import PICTURE_MAX_BYTES
     from link.records import replace
@@ -85,10 +89,13 @@ def run_detector(
     endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
     with open_session(replace(endpoints, message_max_bytes=PICTURE_MAX_BYTES)) as zenoh:
         frames = open_source(source, options, keys, zenoh)
+        recorder = None if record is None else open_recorder(record, keys)
         try:
-            EyesLoop(EyesNode(system, keys), frames, keys, zenoh).run()
+            EyesLoop(EyesNode(system, keys), frames, keys, zenoh, recorder).run()
         finally:
             frames.close()
+            if recorder is not None:
+                recorder.close()
 
 
 @app.command("print")

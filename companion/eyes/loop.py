@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import structlog
 
-from companion.eyes.frames import Source
+from companion.eyes.frames import Captured, Source
 from companion.eyes.node import EyesNode
+from companion.eyes.recording import PERIOD_NS, PictureRecord
 from companion.eyes.watch import CameraWatch, Failure, failure_of, note_frame
 from link.errors import UserError
 from link.messages import CompressedPicture, PadGeometry
@@ -15,6 +16,7 @@ from link.payloads import cdr, json_messages
 from link.payloads.checks import PayloadError
 from link.program.clock import spare_present_objects
 from link.program.service import Service
+from link.recording.recorder import Recorder
 from link.zenoh.inbox import Inbox
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohSession
@@ -40,9 +42,12 @@ class EyesLoop:
         source: of frames.
         keys: of the Zenoh contract.
         zenoh: an open session.
+        recorder: takes a frame now and then, None where nothing is recorded.
     """
 
-    def __init__(self, node: EyesNode, source: Source, keys: Keys, zenoh: ZenohSession) -> None:
+    def __init__(
+        self, node: EyesNode, source: Source, keys: Keys, zenoh: ZenohSession, recorder: Recorder | None = None
+    ) -> None:
         self._node = node
         self._source = source
         self._keys = keys
@@ -53,6 +58,8 @@ class EyesLoop:
         self._question = _PadQuestion()
         self._failed: Failure | None = None
         self._restarted_ns = 0
+        self._recorder = recorder
+        self._recorded_ns = 0
         self._stopping = False
         self._service = Service()
         self._log = structlog.get_logger("pad-detector")
@@ -92,10 +99,16 @@ class EyesLoop:
             shows = self._zenoh.is_heard(self._keys.pad_view, self._view_encoding)
             for publication in self._node.look(captured, shows=shows):
                 self._zenoh.publish(publication.key, publication.payload, publication.encoding)
+            self._record(captured, now_ns)
         for line in self._node.take_news():
             self._log.info(line)
         self._ask_for_pad(now_ns)
         return self._look_after(watch, now_ns) if self._source.is_live else watch
+
+    def _record(self, captured: Captured, now_ns: int) -> None:
+        if self._recorder is not None and now_ns - self._recorded_ns >= PERIOD_NS:
+            self._recorded_ns = now_ns
+            self._recorder.put(PictureRecord(captured=captured, drawing=self._node.drawing()))
 
     def _look_after(self, watch: CameraWatch, now_ns: int) -> CameraWatch:
         """Say when the camera fails and when it is back, and start it again."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from companion.eyes.annotation import annotate, jpeg_of
+from companion.eyes.annotation import Drawing, annotate, drawing_of, jpeg_of
 from companion.eyes.attitude import Attitude, attitude_at
 from companion.eyes.calibration import check_size
 from companion.eyes.frames import Captured
@@ -49,7 +49,12 @@ class EyesNode:
         self._keys = keys
         self._memory = SightMemory()
         self._attitudes: tuple[Attitude, ...] = ()
+        self._sight = Sight()
         self._news = _News()
+
+    def drawing(self) -> Drawing:
+        """Return what is to be drawn on the frame that was looked at last."""
+        return drawing_of(self._sight, self._system)
 
     def receive_own(self, payload: bytes) -> None:
         """Take what the companion tells of the drone; bad bytes are counted."""
@@ -90,12 +95,13 @@ class EyesNode:
         )
         self._memory, sight = sight_step(self._memory, frame, self._system)
         self._count(sight)
+        self._sight = sight
         found: list[Publication] = []
         if sight.sighting is not None:
             payload = cdr.encode(sight.sighting)
             found.append(Publication(self._keys.pad_pose, payload, cdr.encoding_of(PadSighting)))
         if shows:
-            drawn = jpeg_of(annotate(captured.shades, sight, self._system))
+            drawn = jpeg_of(annotate(captured.shades, drawing_of(sight, self._system)))
             shown = CompressedPicture(t_ns=captured.t_ns, format="jpeg", data=drawn)
             found.append(Publication(self._keys.pad_view, cdr.encode(shown), cdr.encoding_of(CompressedPicture)))
         return found

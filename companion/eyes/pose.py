@@ -45,6 +45,7 @@ class Refined:
         rms_px: of the distances.
         points: how many edges' points it rests on.
         squares_px2: sum of the squared distances, each of them by Huber's weight.
+        variance_px2: by which that sum is a number of standard deviations squared: points that err alike count once.
     """
 
     pose: Pose
@@ -52,6 +53,7 @@ class Refined:
     rms_px: float
     points: int
     squares_px2: float
+    variance_px2: float
 
 
 def guesses(camera: Camera, board: Board, corners_px: dict[int, Array]) -> list[Pose]:
@@ -132,12 +134,14 @@ def _round(part: Part, camera: Camera, points: EdgePoints, pose: Pose, reach_px:
     if moved[1][2] <= 0.0:
         return None
     rms_px = float(np.sqrt(step.squares_px2 / max(step.weight - 6.0, 1.0)))
+    variance_px2 = _points_alike(points.edges[seen]) * max(rms_px, _EDGE_STD_PX) ** 2
     return Refined(
         pose=moved,
-        covariance=_points_alike(points.edges[seen]) * max(rms_px, _EDGE_STD_PX) ** 2 * step.inverse,
+        covariance=variance_px2 * step.inverse,
         rms_px=rms_px,
         points=int(seen.sum()),
         squares_px2=step.squares_px2,
+        variance_px2=variance_px2,
     )
 
 

@@ -3,12 +3,10 @@
 A pad that has just been seen is looked for where it should be now (tracking): no tag is searched, those that are read
 at the expected pose give it by their edges. Only when that fails is the picture searched.
 
-The two poses that explain tags seen from afar are told apart by gravity: decks lie within some degrees of level.
 Frames: W with z up, B the drone's body (FLU), C the camera, P the pad. Without the drone's attitude B is taken for
 level.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,42 +14,27 @@ from msgspec import Struct
 from numpy.typing import NDArray
 
 from companion.eyes.board import Board
-from companion.eyes.camera import Camera, matrix_of, vector_of
+from companion.eyes.camera import Camera, matrix_of
+from companion.eyes.choosing import TILT_STDS_MAX, Candidate, choose, mirrored, tilt_stds
 from companion.eyes.family import CELLS
 from companion.eyes.mounting import Mounting
 from companion.eyes.picture import Part, Picture, box_around, whole
-from companion.eyes.pose import Pose, Refined, guesses, refine
+from companion.eyes.pose import Pose, guesses, refine
 from companion.eyes.reading import TAGS_MAX, expected_tags, read_tags
 from companion.eyes.search import search
+from companion.eyes.track import Track, expected_pose, update_track
 from link.frames.rotations import matrix_from_quaternion, quaternion_from_matrix
-from link.messages import Matrix3, PadSighting, Quaternion
+from link.messages import PadSighting, Quaternion
 
 Array = NDArray[np.float64]
 
-_TRACK_MAX_S = 0.3  # since the pad was seen: a drone's speed against it changes by 1 m/s within that
-_VELOCITY_GAIN = 0.5
-_VELOCITY_SPAN_MAX_S = 0.2
 _MARGIN_SHARE, _MARGIN_PX = 0.1, 12.0  # about the pad where it is looked for: of its size in the picture, and at least
-_DECK_TILT_STD_RAD = 0.1  # roads of up to 12 % (7 degrees), and a body's roll on its springs
-_DRONE_TILT_STD_RAD = 0.25  # of a drone of unknown attitude
-_TILT_STDS_MAX = 4.0
-_MISREAD_MAX = 1e-3  # probability that the other of the two poses was the right one; beyond, both are allowed for
 _BOARD_STD_M = 0.001  # of a print on a plate that is not quite flat
 _RMS_SHARE_MAX = 0.35  # of a cell of the largest tag: edges farther off are other edges
 _RMS_MIN_PX = 1.0
 _ROUNDS_MAX = 4
 _FEW = 3  # tags
 _COMPLETE_SHARE = 0.5  # of the tags that should be seen: with these no other pass is needed
-
-
-class Track(Struct, frozen=True, kw_only=True):
-    """Where the pad was: its middle from the camera in W's axes (m), its velocity there (m/s), and R_WP."""
-
-    t_ns: int
-    away_m: tuple[float, float, float]
-    velocity_m_s: tuple[float, float, float]
-    R_WP: Matrix3
-    has_velocity: bool
 
 
 class SightMemory(Struct, frozen=True, kw_only=True):
@@ -99,24 +82,17 @@ class Sight:
     foreign_ids: frozenset[int] = frozenset()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Candidate:
-    refined: Refined
-    tags: tuple[int, ...]
-    tilt_stds: float
-    is_complete: bool
-
-
 def sight_step(memory: SightMemory, frame: Frame, system: SightSystem) -> tuple[SightMemory, Sight]:
     """Return what is kept for the next frame, and what was seen in this one."""
     R_WB = np.eye(3) if frame.orientation_wxyz is None else matrix_from_quaternion(frame.orientation_wxyz)
-    expected = _expected_pose(memory.track, frame.t_ns, R_WB, system)
-    if expected is not None:
-        sight = _track(frame, system, R_WB, expected)
-        if sight is not None:
-            return _remember(memory, frame, sight, R_WB, system), sight
-    sight = _search(frame, system, R_WB)
-    return _remember(memory, frame, sight, R_WB, system), sight
+    R_WC = R_WB @ system.mounting.R_BC
+    expected = expected_pose(memory.track, frame.t_ns, R_WC)
+    sight = None if expected is None else _track(frame, system, R_WB, expected)
+    if sight is None:
+        sight = _search(frame, system, R_WB)
+    if sight.pose is None:  # it is expected for a while where it was going
+        return memory, sight
+    return SightMemory(track=update_track(memory.track, frame.t_ns, sight.pose, R_WC)), sight
 
 
 def _track(frame: Frame, system: SightSystem, R_WB: Array, expected: Pose) -> Sight | None:
@@ -130,7 +106,7 @@ def _track(frame: Frame, system: SightSystem, R_WB: Array, expected: Pose) -> Si
     if box.area == 0:
         return None
     candidate = _settle(frame.picture.part(box), system, R_WB, frame, expected)
-    if candidate is None or candidate.tilt_stds > _TILT_STDS_MAX:
+    if candidate is None or candidate.tilt_stds > TILT_STDS_MAX:
         return None
     return _sight(frame, system, candidate, None, tracked=True)
 
@@ -139,15 +115,10 @@ def _search(frame: Frame, system: SightSystem, R_WB: Array) -> Sight:
     """Return the pad wherever it is in the picture; where a pass finds few tags, the next may find more."""
     part = frame.picture.part(whole(frame.picture.size_px))
     foreign: frozenset[int] = frozenset()
-    best: tuple[_Candidate, _Candidate | None] | None = None
+    best: tuple[Candidate, Candidate | None] | None = None
     for found in search(part, system.board):
         foreign |= found.foreign_ids
-        candidates = [
-            candidate
-            for guess in guesses(system.camera, system.board, found.corners_px)
-            if (candidate := _settle(part, system, R_WB, frame, guess)) is not None
-        ]
-        chosen = _choose(candidates)
+        chosen = choose(_candidates(part, system, R_WB, frame, guesses(system.camera, system.board, found.corners_px)))
         if chosen is not None and (best is None or chosen[0].refined.points > best[0].refined.points):
             best = chosen
         if best is not None and best[0].is_complete:
@@ -157,25 +128,16 @@ def _search(frame: Frame, system: SightSystem, R_WB: Array) -> Sight:
     return _sight(frame, system, *best, tracked=False, foreign_ids=foreign)
 
 
-def _choose(candidates: list[_Candidate]) -> tuple[_Candidate, _Candidate | None] | None:
-    """Return the more probable of up to two poses, and the other one where it may as well be; None if none can be."""
-    if not candidates:
-        return None
-    std_px = max(min(one.refined.rms_px for one in candidates), 1e-3)
-    scores = [one.refined.squares_px2 / std_px**2 + one.tilt_stds**2 for one in candidates]
-    best = int(np.argmin(scores))
-    if candidates[best].tilt_stds > _TILT_STDS_MAX:
-        return None
-    is_open = len(candidates) > 1 and _misread_probability(scores) > _MISREAD_MAX
-    return candidates[best], candidates[1 - best] if is_open else None
+def _candidates(part: Part, system: SightSystem, R_WB: Array, frame: Frame, near: list[Pose]) -> list[Candidate]:
+    """Return the poses near guesses; where there is one only, the one that mirrors it is looked for as well."""
+    found = [one for guess in near if (one := _settle(part, system, R_WB, frame, guess)) is not None]
+    if len(found) == 1:
+        other = _settle(part, system, R_WB, frame, mirrored(found[0].refined.pose))
+        found += [] if other is None else [other]
+    return found
 
 
-def _misread_probability(scores: list[float]) -> float:
-    """Return how probable the worse of two poses is, each with the likelihood exp(-score / 2)."""
-    return 1.0 / (1.0 + math.exp(min(0.5 * abs(scores[0] - scores[1]), 700.0)))
-
-
-def _settle(part: Part, system: SightSystem, R_WB: Array, frame: Frame, guess: Pose) -> _Candidate | None:
+def _settle(part: Part, system: SightSystem, R_WB: Array, frame: Frame, guess: Pose) -> Candidate | None:
     """Return the pose near a guess; the better it gets, the more tags are read, until these are all."""
     camera, board = system.camera, system.board
     pose, refined = guess, None
@@ -190,10 +152,12 @@ def _settle(part: Part, system: SightSystem, R_WB: Array, frame: Frame, guess: P
             break
     if refined is None or not used or refined.rms_px > max(_RMS_MIN_PX, _RMS_SHARE_MAX * max(used.values()) / CELLS):
         return None
-    return _Candidate(
+    return Candidate(
         refined=refined,
         tags=tuple(used),
-        tilt_stds=_tilt_stds(pose, R_WB, system.mounting, frame),
+        tilt_stds=tilt_stds(
+            R_WB @ system.mounting.R_BC @ matrix_of(pose[0]), is_level_known=frame.orientation_wxyz is not None
+        ),
         is_complete=len(used) >= _COMPLETE_SHARE * min(expected, TAGS_MAX),
     )
 
@@ -211,18 +175,11 @@ def _read(part: Part, system: SightSystem, pose: Pose) -> tuple[dict[int, float]
     return {tag_id: expected[tag_id] for tag_id in ids}, len(expected)
 
 
-def _tilt_stds(pose: Pose, R_WB: Array, mounting: Mounting, frame: Frame) -> float:
-    """Return how far from level the board would be, in standard deviations of decks."""
-    up = (R_WB @ mounting.R_BC @ matrix_of(pose[0]))[2, 2]
-    drone_rad = _DRONE_TILT_STD_RAD if frame.orientation_wxyz is None else 0.0
-    return math.acos(min(max(float(up), -1.0), 1.0)) / math.hypot(_DECK_TILT_STD_RAD, drone_rad)
-
-
 def _sight(
     frame: Frame,
     system: SightSystem,
-    candidate: _Candidate,
-    other: _Candidate | None,
+    candidate: Candidate,
+    other: Candidate | None,
     *,
     tracked: bool,
     foreign_ids: frozenset[int] = frozenset(),
@@ -254,42 +211,3 @@ def _sight(
         tracked=tracked,
         foreign_ids=foreign_ids,
     )
-
-
-def _expected_pose(track: Track | None, t_ns: int, R_WB: Array, system: SightSystem) -> Pose | None:
-    """Return where a pad that was seen not long ago should be in the camera now."""
-    if track is None:
-        return None
-    elapsed_s = (t_ns - track.t_ns) * 1e-9
-    if not 0.0 <= elapsed_s <= _TRACK_MAX_S:
-        return None
-    R_CW = (R_WB @ system.mounting.R_BC).T
-    away = np.array(track.away_m) + elapsed_s * np.array(track.velocity_m_s)
-    return vector_of(R_CW @ np.array(track.R_WP).reshape(3, 3)), R_CW @ away
-
-
-def _remember(memory: SightMemory, frame: Frame, sight: Sight, R_WB: Array, system: SightSystem) -> SightMemory:
-    """Return the memory with what was seen; unseen, the pad is expected for a while where it was going."""
-    if sight.pose is None:
-        return memory
-    R_WC = R_WB @ system.mounting.R_BC
-    away = R_WC @ sight.pose[1]
-    velocity, has_velocity = np.zeros(3), False
-    before = memory.track
-    elapsed_s = np.inf if before is None else (frame.t_ns - before.t_ns) * 1e-9
-    if before is not None and 0.0 < elapsed_s <= _VELOCITY_SPAN_MAX_S:
-        measured = (away - np.array(before.away_m)) / elapsed_s
-        gain = _VELOCITY_GAIN if before.has_velocity else 1.0
-        velocity = np.array(before.velocity_m_s) + gain * (measured - np.array(before.velocity_m_s))
-        has_velocity = True
-    a, b, c, d, e, f, g, h, i = (R_WC @ matrix_of(sight.pose[0])).ravel().tolist()
-    x, y, z = away.tolist()
-    u, v, w = velocity.tolist()
-    track = Track(
-        t_ns=frame.t_ns,
-        away_m=(x, y, z),
-        velocity_m_s=(u, v, w),
-        R_WP=(a, b, c, d, e, f, g, h, i),
-        has_velocity=has_velocity,
-    )
-    return SightMemory(track=track)

@@ -58,7 +58,8 @@ class Claims:
             return Rival(drone=self._keys.drone, is_this_drone=True)
         claims = sorted((name, drone) for drone, name in _ends(self._landings.keys, 2))
         for name, drone in claims:
-            if drone != self._keys.drone and (self._release is None or name < self._name):
+            is_first = (name, drone) < (self._name, self._keys.drone)
+            if drone != self._keys.drone and (self._release is None or is_first):
                 return Rival(drone=drone, is_this_drone=False)
         return None
 

@@ -140,6 +140,11 @@ class RestartWatch:
         self._ahead_in_a_row = (self._ahead_in_a_row + 1) % _JUMP_CONFIRMATIONS
         return self._ahead_in_a_row > 0
 
+    @property
+    def is_behind(self) -> bool:
+        """Whether the boot time seen last is so far behind that further ones have to confirm a restart."""
+        return self._earlier_in_a_row > 0
+
     def see(self, boot_ns: int, t_ns: int) -> AutopilotRestarted | None:
         """Takes note of a boot time of the autopilot; returns the restart that it proves, if it does."""
         if boot_ns >= self._newest_ns - _JUMP_NS:

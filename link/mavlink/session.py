@@ -199,8 +199,10 @@ class MavlinkSession:
             self._filtered += 1
             return []
         events = self._peer.heard(message, t_ns)
-        if boot_ns:
-            events += self._watch_restart(boot_ns, t_ns)
+        events += self._watch_restart(boot_ns, t_ns) if boot_ns else []
+        if boot_ns and self._restarts.is_behind:
+            self._filtered += 1
+            return events
         events.append(MessageReceived(message, t_ns))
         return [*events, *self._handle(message, t_ns)]
 

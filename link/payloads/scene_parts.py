@@ -34,7 +34,7 @@ def make_entity(name: str, t_ns: int, frame: str, **primitives: list[Any]) -> An
 
 def make_cube(place: Vector3, size_m: Vector3, color: Color) -> Any:
     """Return a box about `place`."""
-    return make_message("CubePrimitive", pose=_pose(place), size=make_vector(size_m), color=_color(color))
+    return make_message("CubePrimitive", pose=_pose(place), size=make_vector(size_m), color=make_color(color))
 
 
 def make_cylinder(place: Vector3, size_m: Vector3, color: Color, bottom_scale: float = 1.0) -> Any:
@@ -45,7 +45,7 @@ def make_cylinder(place: Vector3, size_m: Vector3, color: Color, bottom_scale: f
         size=make_vector(size_m),
         bottom_scale=bottom_scale,
         top_scale=1.0,
-        color=_color(color),
+        color=make_color(color),
     )
 
 
@@ -59,7 +59,7 @@ def make_line(points: list[Any], color: Color, *, is_closed: bool = False) -> An
         thickness=2.0,
         scale_invariant=True,
         points=[point(x, y, z) for x, y, z in points],
-        color=_color(color),
+        color=make_color(color),
         colors=[],
         indices=np.empty(0, dtype=np.uint32),
     )
@@ -73,7 +73,7 @@ def make_text(text: str) -> Any:
         billboard=True,
         font_size=14.0,
         scale_invariant=True,
-        color=_color(_DARK),
+        color=make_color(_DARK),
         text=text,
     )
 
@@ -94,7 +94,8 @@ def make_quaternion(wxyz: Quaternion) -> Any:
     return typestore().types["geometry_msgs/msg/Quaternion"](x, y, z, w)
 
 
-def _color(color: Color) -> Any:
+def make_color(color: Color) -> Any:
+    """Return a color: red, green, blue and opacity, each from 0 to 1."""
     return make_message("Color", r=color[0], g=color[1], b=color[2], a=color[3])
 
 

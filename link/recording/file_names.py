@@ -21,6 +21,10 @@ class RecordingFile(NamedTuple):
     path: Path
 
 
+EYES_STEM = "eyes"
+"""Of the recordings of what a detector saw, beside those of a companion."""
+
+
 def recording_path(folder: Path, stem: str, start: int, number: int) -> Path:
     """Return where a file belongs."""
     return folder / (f"{stem}_{number:03d}.mcap" if start == 1 else f"{stem}_{start}_{number:03d}.mcap")

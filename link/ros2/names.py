@@ -19,8 +19,8 @@ _DEPTH_DEFAULT = 42
 """What rmw_zenoh leaves out of a token."""
 
 _NAME = re.compile(r"(/[A-Za-z_][A-Za-z0-9_]*)+")
-_TYPE = re.compile(r"(?P<package>[A-Za-z]\w*)/(?P<kind>msg|srv)/(?P<name>[A-Za-z]\w*)")
-_DDS_TYPE = re.compile(r"(?P<package>[A-Za-z]\w*)::(?P<kind>msg|srv)::dds_::(?P<name>[A-Za-z]\w*)_")
+_TYPE = re.compile(r"(?P<package>[A-Za-z]\w*)/(?P<kind>msg|srv|action)/(?P<name>[A-Za-z]\w*)")
+_DDS_TYPE = re.compile(r"(?P<package>[A-Za-z]\w*)::(?P<kind>msg|srv|action)::dds_::(?P<name>[A-Za-z]\w*)_")
 
 
 class EntityKind(Enum):

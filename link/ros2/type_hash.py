@@ -23,7 +23,7 @@ def type_hash(type_name: str) -> str:
 
 
 @cache
-def service_hash(type_name: str, request: str, response: str) -> str:
+def service_hash(type_name: str, request: str, response: str, parts_of: tuple[tuple[str, str], ...] = ()) -> str:
     """Return the hash of a service type.
 
     REP-2016 describes a service as a type of three fields: its request, its response and its event.
@@ -32,8 +32,11 @@ def service_hash(type_name: str, request: str, response: str) -> str:
         type_name: such as `std_srvs/srv/Trigger`.
         request: the definition of the request, in ROS's own form.
         response: the definition of the response.
+        parts_of: names and definitions of types that these refer to and ROS itself does not have.
     """
     store = get_typestore(Stores.ROS2_JAZZY)  # the first release that has events of services
+    for name, text in parts_of:
+        store.register(get_types_from_msg(text, name))
     constants, fields = store.fielddefs[_EVENT_INFO]
     store.fielddefs[_EVENT_INFO] = (constants, [(name, _as_described(field)) for name, field in fields])
     parts = {part: f"{type_name}_{part.capitalize()}" for part in ("request", "response", "event")}

@@ -83,6 +83,11 @@ class Keys:
         return f"{self.namespace}/{self.drone}/pad_view/compressed"
 
     @property
+    def pad_annotations(self) -> str:
+        """In recordings, what the detector saw, to be drawn on the picture of the same stamp."""
+        return f"{self.namespace}/{self.drone}/pad_view/annotations"
+
+    @property
     def detector_alive(self) -> str:
         """The liveliness token of `pad-detector`."""
         return f"{self.namespace}/{self.drone}/pad_detector/alive"

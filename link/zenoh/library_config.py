@@ -20,9 +20,16 @@ stall the loop that flies. Less than the half second after which autopilots call
 _MESSAGE_MAX_KEY = "transport/link/rx/max_message_size"
 
 
-def open_library_session(options: ZenohOptions) -> zenoh.Session:
-    """Return the library's own session, for other layouts; see `open_session`."""
+def open_library_session(options: ZenohOptions, *, stamps: bool = False) -> zenoh.Session:
+    """Return the library's own session, for other layouts; see `open_session`.
+
+    Args:
+        options: how to meet others.
+        stamps: put Zenoh's own time stamps on samples, which those that are kept for who comes later need.
+    """
     config = _config(options)
+    if stamps:
+        _insert(config, "timestamping/enabled", True)
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:

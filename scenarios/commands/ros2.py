@@ -48,7 +48,7 @@ def topics_command(
 ) -> None:
     """List topics and services with their types and nodes, as the liveliness tokens of the graph tell them."""
     from link.errors import UserError
-    from link.ros2.session import read_graph
+    from link.ros2.ros_node import read_graph
     from link.zenoh.options import zenoh_options
 
     text = os.environ.get("ROS_DOMAIN_ID") or "0"

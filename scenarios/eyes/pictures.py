@@ -6,7 +6,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from companion.eyes.annotation import annotate
+from companion.eyes.annotation import annotate, drawing_of
 from companion.eyes.board import Board, nested_board
 from companion.eyes.mounting import mounting_of
 from companion.eyes.picture import whole
@@ -42,7 +42,7 @@ def write_pictures(folder: Path, seed: int) -> None:
         picture = RenderedPicture(renderer, _view(height_m, system, q_VB), light, may_show_pad=True)
         shades = picture.part(whole(SIZE_PX)).shades
         _, sight = sight_step(SightMemory(), Frame(t_ns=0, picture=picture, orientation_wxyz=q_VB), system)
-        drawn = annotate(shades, sight, system)
+        drawn = annotate(shades, drawing_of(sight, system))
         small = cv2.resize(drawn, (_WIDTH_PX, _WIDTH_PX * SIZE_PX[1] // SIZE_PX[0]), interpolation=cv2.INTER_AREA)
         path = folder / f"eyes_{height_m:g}m.jpg"
         if not folder.is_dir() or not cv2.imwrite(str(path), small):

@@ -6,6 +6,8 @@ import time
 from collections.abc import Iterator
 
 from companion.config.landing import DescentConfig
+from link.messages import CompressedPicture
+from link.payloads import cdr
 from link.payloads.decklander_msgs import RosMessage
 from link.payloads.scene import Cone, Scene, log_message, scene_message, transform_message
 from link.recording.foxglove_server import FoxgloveServer
@@ -57,6 +59,7 @@ class FoxgloveView:
         self._keys = keys
         self._server = server
         self._told = ""
+        self._picture_ns = 0
         self._stopping = False
 
     def run(self) -> None:
@@ -79,6 +82,13 @@ class FoxgloveView:
         if state.t_ns:
             for message in self._messages(scene_of(state, self._descent), tick):
                 self._server.add(message, state.t_ns)
+        picture = state.picture
+        if picture is not None and picture.t_ns != self._picture_ns:
+            self._picture_ns = picture.t_ns
+            kind = cdr.ROS_TYPES[CompressedPicture]
+            self._server.add(
+                RosMessage(topic=self._keys.pad_view, type_name=kind, payload=cdr.encode(picture)), picture.t_ns
+            )
 
     def _messages(self, scene: Scene, tick: int) -> Iterator[RosMessage]:
         transforms = transform_message(scene)

@@ -49,13 +49,19 @@ def layout_json(keys: Keys) -> str:
         north=f"{topic('step')}.relative_velocity_m_s[1]",
         up=f"{topic('step')}.relative_velocity_m_s[2]",
     )
+    image_mode = fl.ImageModeConfig(
+        image_topic=f"/{keys.camera_compressed}",
+        annotations={f"/{keys.pad_annotations}": fl.ImageAnnotationSettings(visible=True)},
+        synchronize=True,
+    )
+    seen = fl.ImagePanel(title="What the detector sees", config=fl.ImageConfig(image_mode=image_mode))
     where = fl.MapPanel(title="Where", config=fl.MapConfig(follow_topic=topic("location")))
     log = fl.LogPanel(title="Log", config=fl.LogConfig(topic_to_render=topic("log")))
     left = fl.SplitContainer(
         direction="column", items=[fl.SplitItem(proportion=4, content=scene), fl.SplitItem(content=phases)]
     )
     right = fl.SplitContainer(
-        direction="column", items=[fl.SplitItem(content=panel) for panel in (height, speed, where, log)]
+        direction="column", items=[fl.SplitItem(content=panel) for panel in (height, speed, seen, where, log)]
     )
     content = fl.SplitContainer(
         direction="row", items=[fl.SplitItem(proportion=2, content=left), fl.SplitItem(content=right)]

@@ -33,7 +33,7 @@ class LiveSource:
         self._zenoh = zenoh
         self._keys = keys
         self._reader = StateReader(keys)
-        unpublished = {keys.pad, keys.record("plan"), keys.record("step")}
+        unpublished = {keys.pad, keys.record("plan"), keys.record("step"), keys.camera_compressed}
         self._inboxes: list[Inbox] = [zenoh.subscribe(topic) for topic in self._reader.topics - unpublished]
         self._pads: Inbox | None = None
         self._asked_s = -_ASK_PAD_S

@@ -9,9 +9,10 @@ import numpy as np
 import viser
 from viser import uplot
 
-from link.messages import Command, CommandReply
+from link.messages import Command, CommandReply, CompressedPicture
 from link.program.status_rows import link_rows, number, status_rows
 from scenarios.view.history import NAMES, History
+from scenarios.view.picture import pixels_of
 from scenarios.view.recorded import RecordedSource
 from scenarios.view.scene import BLUE, FOLLOWED, GREEN, GREY, ORANGE, Scene
 from scenarios.view.state import ViewState
@@ -46,6 +47,8 @@ class Panel:
         self._button: Any = None
         self._moves = False
         self._plots: list[tuple[Any, tuple[str, ...]]] = []
+        self._picture: Any = None
+        self._picture_ns: int | None = None
 
     def add_commands(self, send: Callable[[Command], CommandReply]) -> None:
         """Add the operator's buttons."""
@@ -119,6 +122,20 @@ class Panel:
     def show(self, state: ViewState, *, t_s: float, stale: bool) -> None:
         """Write what is known now."""
         self._text.content = _text(state, t_s, stale=stale)
+        self._show_picture(state.picture)
+
+    def _show_picture(self, picture: CompressedPicture | None) -> None:
+        """Show what the detector looks at, once there is such a thing."""
+        if picture is None or picture.t_ns == self._picture_ns:
+            return
+        self._picture_ns = picture.t_ns
+        pixels = pixels_of(picture)
+        if pixels is None:
+            return
+        if self._picture is None:
+            self._picture = self._gui.add_image(pixels, label="What the detector sees", format="jpeg")
+        else:
+            self._picture.image = pixels
 
     def follow(self, source: RecordedSource) -> None:
         """Move the slider along with the playback; at its end the button plays it again."""
@@ -181,10 +198,20 @@ def _rows(state: ViewState, t_s: float) -> list[tuple[str, str]]:
         vehicle_m_s = math.hypot(*state.vehicle_truth.velocity_flu_m_s)
     elif state.estimate is not None:
         vehicle_m_s = math.hypot(*(float(value) for value in state.estimate.velocity_enu_m_s))
-    rows.append(("vehicle's speed", number(vehicle_m_s, "m/s")))
+    rows += [("vehicle's speed", number(vehicle_m_s, "m/s")), ("pad seen", seen_text(state))]
     if state.link is not None:
         link = state.link
         rows += link_rows(
             link.messages_received, link.messages_sent, link.lost_messages, link.bad_bytes, link.bad_payloads
         )
     return rows
+
+
+def seen_text(state: ViewState) -> str:
+    """Return how far away the detector last saw the pad, how well, and how long ago."""
+    sighting = state.sighting
+    if sighting is None:
+        return "-"
+    age_s = (state.t_ns - sighting.t_ns) * 1e-9
+    std_m = math.sqrt(max(0.0, *sighting.position_covariance_m2[::4]))
+    return f"{math.hypot(*sighting.position_flu_m):.2f} m away to {std_m:.2f} m, {max(age_s, 0.0):.1f} s ago"

@@ -13,6 +13,7 @@ from link.payloads import json_messages
 from link.payloads.checks import PayloadError
 from link.payloads.decklander_msgs import fields_of
 from link.program.toml_config import parse_toml, validate
+from link.recording.file_names import EYES_STEM
 from link.recording.mcap_reader import Recorded, read_head, read_messages, recording_files
 from link.records import replace
 from link.zenoh.keys import Keys
@@ -36,7 +37,7 @@ class RecordedSource:
     """A recording that plays.
 
     Args:
-        path: a folder with a companion's recording, and the truth where there is one; or one MCAP file.
+        path: a folder with a companion's recording, and the truth and the detector's where there are such; or one file.
 
     Attributes:
         history: of the whole recording.
@@ -50,14 +51,14 @@ class RecordedSource:
     """
 
     def __init__(self, path: Path) -> None:
-        companion, truth = _files(path)
+        companion, truth, eyes = _files(path)
         head = read_head((companion or truth)[0])
         names = head.metadata
         keys = Keys(names.get("namespace", "decklander"), names.get("vehicle", "vehicle"), names.get("drone", "drone"))
         self.road = _road(truth)
         self.history = History()
         self._states: list[ViewState] = []
-        for state in _states(_merge(companion, truth), keys, self._pad()):
+        for state in _states(_merge(companion, truth, eyes), keys, self._pad()):
             rows = len(self.history.times_s)
             self.history.add(state)
             if len(self.history.times_s) > rows:
@@ -91,13 +92,14 @@ class RecordedSource:
         return None if self.road is None else self.road.scenario.vehicle.pad
 
 
-def _files(path: Path) -> tuple[list[Path], list[Path]]:
-    """Return the files of the companion's recording and those of the truth."""
+def _files(path: Path) -> tuple[list[Path], list[Path], list[Path]]:
+    """Return the files of the companion's recording, of the truth, and of the detector's."""
     if path.is_file():
-        return ([], [path]) if path.name.startswith(TRUTH) else ([path], [])
+        return ([], [path], []) if path.name.startswith(TRUTH) else ([path], [], [])
     if not path.is_dir():
         raise UserError(f"{path}: there is no such folder or file; give a run's folder or an MCAP file")
-    return recording_files(path, COMPANION), sorted(path.glob(f"{TRUTH}_*.mcap"))
+    truth, eyes = (sorted(path.glob(f"{stem}_*.mcap")) for stem in (TRUTH, EYES_STEM))
+    return recording_files(path, COMPANION), truth, eyes
 
 
 def _road(truth: list[Path]) -> Road | None:
@@ -110,8 +112,8 @@ def _road(truth: list[Path]) -> Road | None:
     return Road(scenario=validate(Scenario, table, source="scenario.toml"), seed=head.number("seed"))
 
 
-def _merge(companion: list[Path], truth: list[Path]) -> list[Recorded]:
-    messages = [*read_messages(companion), *read_messages(truth)]
+def _merge(*recordings: list[Path]) -> list[Recorded]:
+    messages = [message for files in recordings for message in read_messages(files)]
     return sorted(messages, key=lambda recorded: recorded.log_ns)
 
 

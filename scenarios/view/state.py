@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from link.messages import BodyTruth, LandingStatus, PadGeometry, Plan, Vector3
+from link.messages import BodyTruth, CompressedPicture, LandingStatus, PadGeometry, PadSighting, Plan, Vector3
 from link.payloads import cdr, json_messages
 from link.payloads.decklander_msgs import PACKAGE, fields_of
 from link.records import replace
@@ -58,6 +58,8 @@ class ViewState:
         drone_truth: simulation only, as is the vehicle's.
         own: the drone as its autopilot reports it.
         plan_enu_m: (n, 3).
+        sighting: of the pad, by the detector.
+        picture: that it was made of: with what was seen drawn in, live; as it was taken, from a recording.
     """
 
     t_ns: int = 0
@@ -70,6 +72,8 @@ class ViewState:
     status: LandingStatus | None = None
     pad: PadGeometry | None = None
     link: LinkCounters | None = None
+    sighting: PadSighting | None = None
+    picture: CompressedPicture | None = None
 
     @property
     def drone(self) -> BodyTruth | None:
@@ -97,6 +101,9 @@ class StateReader:
             keys.landing_plan: _plan,
             keys.landing_status: _status,
             keys.pad: lambda payload: {"pad": json_messages.decode(PadGeometry, payload)},
+            keys.pad_pose: lambda payload: {"sighting": cdr.decode(PadSighting, payload)},
+            keys.pad_view: _picture,
+            keys.camera_compressed: _picture,
         }
 
     @property
@@ -116,6 +123,10 @@ class StateReader:
         if is_drone or (state.drone is None and t_ns):
             changes["t_ns"] = t_ns
         return replace(state, **changes)
+
+
+def _picture(payload: bytes) -> dict[str, Any]:
+    return {"picture": cdr.decode(CompressedPicture, payload)}
 
 
 def _drone_truth(payload: bytes) -> dict[str, Any]:

@@ -96,7 +96,8 @@ def _eyes(scenario: Scenario, options: RunOptions, endpoint: str) -> list[Progra
 
     write_camera_files(scenario, options.seed, options.folder)
     seen = ["camera", str(options.folder / "scenario.toml"), "--seed", str(options.seed), "-e", endpoint]
-    sees = ["run", "--source", "zenoh", *detector_arguments(options.folder), "-e", endpoint]
+    kept = ("--record", str(options.folder)) if options.record else ()
+    sees = ["run", "--source", "zenoh", *detector_arguments(options.folder), "-e", endpoint, *kept]
     return [
         Program(name="camera", module=MODULES["scenarios"], arguments=seen),
         Program(name="pad-detector", module=MODULES["pad-detector"], arguments=sees),

@@ -62,12 +62,25 @@ def test_vehicle_is_claimed_while_a_drone_lands_or_stands_there_and_no_longer(
     soon(sessions[1], lambda: waits.rival is None, "the claim has gone")
 
 
-def test_of_two_drones_that_began_at_the_same_time_one_goes_on(sessions: tuple[ZenohSession, ZenohSession]) -> None:
-    older, newer = Claims(sessions[0], OTHER, 100), Claims(sessions[1], KEYS, 200)
-    for one in (older, newer):
+@pytest.mark.parametrize("begun_ns", [(100, 200), (100, 100)])
+def test_of_two_drones_that_start_at_the_same_time_one_goes_on(
+    sessions: tuple[ZenohSession, ZenohSession], begun_ns: tuple[int, int]
+) -> None:
+    first, second = Claims(sessions[0], KEYS, begun_ns[0]), Claims(sessions[1], OTHER, begun_ns[1])
+    for one in (first, second):
         one.update(Phase.TAKEOFF, armed=True)
-    soon(sessions[1], lambda: newer.rival is not None, "the older claim is seen")
-    assert older.rival is None
+    soon(sessions[1], lambda: second.rival == Rival(drone=KEYS.drone, is_this_drone=False), "the first claim is seen")
+    assert first.rival is None
+
+
+def test_claim_of_a_second_companion_does_not_keep_the_first_from_its_own_drone(
+    sessions: tuple[ZenohSession, ZenohSession],
+) -> None:
+    first, second = Claims(sessions[0], KEYS, 100), Claims(sessions[1], KEYS, 200)
+    second.update(Phase.CHASE, armed=True)
+    claims = sessions[0].watch_alive(KEYS.landing_claim("*", "*"))
+    soon(sessions[0], lambda: claims.alive, "the claim is seen")
+    assert first.rival is None
 
 
 @pytest.mark.parametrize("phase", sorted(FLYING_PHASES, key=str))

@@ -2,6 +2,7 @@
 
 import hashlib
 import itertools
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
@@ -153,3 +154,27 @@ def test_a_session_with_a_key_finds_an_autopilot_that_requires_one_and_no_other(
     session.poll(NOW_NS)
     assert session.link_up
     assert len(signed.decode(b"".join(session.take_output()))) == 2
+
+
+def test_timestamps_count_tens_of_microseconds_since_2015() -> None:
+    begun_ns = round(datetime(2015, 1, 1, tzinfo=UTC).timestamp()) * 10**9
+    assert [signing_timestamp(begun_ns + later_ns) for later_ns in (-1, 0, 9_999, 10_000, 10**9)] == [0, 0, 0, 1, S]
+
+
+def test_each_system_component_and_link_has_a_stream_of_its_own() -> None:
+    signing = Signing(KEY, 5, NOW)
+    senders = [(1, 1, 3), (2, 1, 3), (1, 2, 3), (1, 1, 4)]
+    later_first = [
+        MavlinkCodec(system, component, signing=Signing(KEY, link_id, NOW + 100 - 10 * number)).encode(beat())
+        for number, (system, component, link_id) in enumerate(senders)
+    ]
+    assert all(signing.accepts(frame) for frame in later_first)
+    assert not any(signing.accepts(frame) for frame in later_first)  # the same again
+
+
+@pytest.mark.parametrize("version", [1, 2])
+def test_of_what_is_unsigned_only_a_radios_own_status_is_taken(version: int) -> None:
+    other = mavlink.MAVLink(None, srcSystem=51, srcComponent=68)
+    radio = mavlink.MAVLink_radio_status_message(1, 2, 3, 4, 5, 6, 7)
+    frames = [message.pack(other, force_mavlink1=version == 1) for message in (radio, beat())]
+    assert [Signing(KEY, 5, NOW).accepts(frame) for frame in frames] == [True, False]

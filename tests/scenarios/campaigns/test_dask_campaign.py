@@ -80,7 +80,7 @@ def quiet(_flown: Flown | None, _done: int, _total: int) -> None:
 
 def plan_of(folder: Path) -> Plan:
     cells = [short_cell(folder, "short"), short_cell(folder, "longer", time_limit_s=2.5), failing_cell(folder)]
-    return make_plan(cells, first_seed=3, seeds=3, config=None)
+    return make_plan(cells, first_seed=3, seeds=2, config=None)
 
 
 @pytest.fixture(scope="module")
@@ -89,11 +89,11 @@ def local(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     folder = tmp_path_factory.mktemp("local")
     plan = plan_of(folder)
     rows = fly_campaign(create_folder(folder / "out", plan), plan, Where(workers=1), quiet)
-    assert sum(row["error"] is None for row in rows) == 6
+    assert sum(row["error"] is None for row in rows) == 4
     return (folder / "out" / "landings.parquet").read_bytes()
 
 
-def test_dask_gives_the_bytes_of_one_local_process_though_a_worker_is_killed_in_the_middle(
+def test_dask_gives_the_bytes_of_one_local_process_though_a_worker_is_killed_and_refuses_other_sources(
     local: bytes, tmp_path: Path
 ) -> None:
     plan = plan_of(tmp_path)
@@ -106,13 +106,9 @@ def test_dask_gives_the_bytes_of_one_local_process_though_a_worker_is_killed_in_
 
         fly_campaign(remote, plan, Where(scheduler=address), kill)
         assert victim.wait(DEADLINE_S) == -signal.SIGKILL
-    assert (remote / "landings.parquet").read_bytes() == local
+        assert (remote / "landings.parquet").read_bytes() == local
 
-
-def test_dask_worker_with_other_sources_is_refused(tmp_path: Path) -> None:
-    plan = plan_of(tmp_path)
-    flights = Flights(cells=plan.flown, sources="0123456789ab")
-    with scheduler() as address, worker(address, tmp_path):
+        flights = Flights(cells=plan.flown, sources="0123456789ab")
         workers: DaskWorkers[Task, Flown] = DaskWorkers(address, lambda _: flights)
         with pytest.raises(UserError, match="other sources"):
             list(run_tasks(workers, plan.tasks(), lost=lambda task, why: pytest.fail(f"{task}: {why}")))

@@ -29,10 +29,10 @@ def quiet(_flown: Flown | None, _done: int, _total: int) -> None:
 
 @pytest.fixture(scope="module")
 def flown(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A campaign of some worlds by two processes."""
+    """A campaign of some worlds by another process."""
     folder = tmp_path_factory.mktemp("worlds") / "out"
     plan = make_plan([CELL], first_seed=FIRST_SEED, seeds=SEEDS, config=None)
-    rows = fly_campaign(create_folder(folder, plan), plan, Where(workers=2), quiet)
+    rows = fly_campaign(create_folder(folder, plan), plan, Where(workers=1), quiet)
     assert [row["error"] for row in rows] == [None] * SEEDS
     return folder
 

@@ -46,9 +46,9 @@ def test_redrawn_landing_flies_the_same_again(tmp_path: Path) -> None:
 def test_chains_end_in_other_processes_as_in_this_one(tmp_path: Path) -> None:
     subject = Cell(cell=load_scenario(short_cell(tmp_path)))
     steps = (WholeStep(seed=6, angle_rad=0.5), LaterStep(seed=7, share=0.3))
-    walks = [Walk(noise=FIRST), Walk(noise=BESIDE, steps=steps)]
+    walks = [Walk(noise=BESIDE, steps=steps)]
     chains = Chains(subject=subject)
-    with flying(subject, 2) as fly:
+    with flying(subject, 1) as fly:
         assert fly(walks) == [chains(walk) for walk in walks]
 
 

@@ -12,7 +12,7 @@ pytestmark = pytest.mark.slow
 
 def test_page_and_figures_of_a_campaign_show_every_landing(tmp_path: Path) -> None:
     folder = tmp_path / "two"
-    assert scenarios("campaign", "straight_5", "--seeds", 2, "--out", folder) == 0
+    assert scenarios("campaign", "straight_5", "--seeds", 2, "--workers", 1, "--out", folder) == 0
     assert scenarios("report", folder) == 0
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "2 of 2 landings reached S3" in page

@@ -37,15 +37,9 @@ def test_report_lands_when_and_where_it_published(scenario: str, within_s: float
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("system", ["report", "report_unboosted"])
-def test_report_does_not_land_in_scenario_2(system: str) -> None:
-    assert flight("report_2", system).landing(noisy=True) is None
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("scenario", ["report_1", "report_3"])
-def test_report_without_the_velocity_factor_does_not_land(scenario: str) -> None:
-    assert flight(scenario, "report_unboosted").landing(noisy=True) is None
+@pytest.mark.parametrize(("scenario", "system"), [("report_2", "report"), ("report_3", "report_unboosted")])
+def test_report_does_not_land_in_scenario_2_nor_without_the_velocity_factor(scenario: str, system: str) -> None:
+    assert flight(scenario, system).landing(noisy=True) is None
 
 
 @pytest.mark.slow

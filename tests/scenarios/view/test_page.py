@@ -1,9 +1,10 @@
 """Who may talk to the page, which can fly the drone."""
 
-import socket
 from collections.abc import Iterator
+from pathlib import Path
 from urllib.request import urlopen
 
+import psutil  # type: ignore[import-untyped]  # it has no annotations
 import pytest
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
@@ -44,9 +45,16 @@ def test_page_of_another_site_is_refused(port: int, origin: str) -> None:
     assert not admits(port, origin)
 
 
-def test_server_listens_on_loopback_only(port: int) -> None:
-    with socket.socket() as other:  # every other address of this machine is still to be had
-        other.bind(("127.0.0.2", port))
+def listening() -> set[tuple[str, int]]:
+    return {tuple(one.laddr) for one in psutil.Process().net_connections(kind="tcp") if one.status == "LISTEN"}
+
+
+def test_server_listens_on_one_port_of_loopback_and_on_no_other(tmp_path: Path) -> None:
+    write_client_page(tmp_path)
+    before = listening()
+    server = open_server(0, tmp_path)
+    assert listening() - before == {("127.0.0.1", server.get_port())}
+    server.stop()
 
 
 def test_page_has_our_title_and_icon_and_leaves_room_on_a_phone(port: int) -> None:

@@ -1,0 +1,47 @@
+"""docs/licences.md, from what the installed packages of the drone's lock say of themselves.
+
+`python -m scenarios.manual.licences` writes it anew.
+"""
+
+import re
+from email.message import Message
+from importlib.metadata import metadata
+from pathlib import Path
+from typing import cast
+
+from scenarios.manual.markdown import page, table
+
+ROOT = Path(__file__).parents[2]
+PATH = ROOT / "docs" / "licences.md"
+LOCK = ROOT / "requirements-companion.lock"
+TEXT = """What `make setup EXTRA=companion` installs on a drone, and under which licence, as each package says it.
+Decklander itself is under Apache-2.0."""
+_TEXT_MAX = 40  # a longer entry is the licence itself
+_REQUIREMENT = re.compile(r"^([a-z0-9._-]+)==", re.MULTILINE)
+
+
+def packages() -> list[str]:
+    """Return the names in the drone's lock."""
+    return sorted(set(_REQUIREMENT.findall(LOCK.read_text(encoding="utf-8"))))
+
+
+def licence_of(package: str) -> str:
+    """Return what an installed package says of its licence: as an expression, by its classifiers, or in words."""
+    said = cast("Message", metadata(package))  # which it is, and its protocol has no `get`
+    if expression := said.get("License-Expression"):
+        return str(expression)
+    classifiers = [str(one).split(" :: ")[-1] for one in said.get_all("Classifier") or [] if one.startswith("License")]
+    if classifiers:
+        return ", ".join(classifiers)
+    words = str(said.get("License") or "")
+    return words if 0 < len(words) <= _TEXT_MAX else "not said"
+
+
+def licences_page() -> str:
+    """Return the page, as it stands in docs/licences.md."""
+    rows = [(name, licence_of(name)) for name in packages()]
+    return page("Licences", TEXT, table(("package", "licence"), rows))
+
+
+if __name__ == "__main__":
+    PATH.write_text(licences_page(), encoding="utf-8")
