@@ -6,7 +6,9 @@ from companion.core.data import Measurement
 from companion.runtime.refusals import Refusals
 from companion.runtime.step_clock import StepClock
 from companion.vehicle.inputs import measurements_of
-from link.messages import PadGeometry
+from companion.vehicle.seen_turning import SeenYaw, update_turning
+from link.messages import PadGeometry, PadSighting
+from link.payloads import cdr
 from link.payloads.checks import PayloadError
 from link.payloads.json_messages import is_possible
 from link.zenoh.keys import Keys
@@ -38,6 +40,7 @@ class VehicleLink:
         self._clock = clock
         self._measurements: list[Measurement] = []
         self._fix_ahead_s: float | None = None
+        self._seen_yaw: SeenYaw | None = None
 
     def receive(self, key: str, payload: bytes, state: AutopilotState, *, is_utc_known: bool) -> None:
         """Take a sample; what cannot be decoded, is absurd or comes from the future is counted and dropped.
@@ -59,9 +62,20 @@ class VehicleLink:
             self.refuse(key.rsplit("/", 1)[-1], "unreadable", str(error))
             return
         newest_ns = self._clock.t_ns + _FUTURE_MAX_NS
+        if self.tells_nothing and measurements:
+            measurements = [*measurements, *self._turning_of(payload, state)]
         self._measurements += [measurement for measurement in measurements if measurement.t_ns <= newest_ns]
         if is_utc_known and any(one.t_ns > newest_ns for one in measurements):
             self._refuse_ahead(key, max(one.t_ns for one in measurements))
+
+    def _turning_of(self, payload: bytes, state: AutopilotState) -> list[Measurement]:
+        """Return how the vehicle turns, as a sighting that could be used shows after an earlier one."""
+        sighting = cdr.decode(PadSighting, payload)
+        own_then = state.own_at(sighting.t_ns)
+        if own_then is None:
+            return []
+        self._seen_yaw, rate = update_turning(self._seen_yaw, sighting, own_then)
+        return [] if rate is None else [rate]
 
     def receive_pad(self, pad: PadGeometry) -> bool:
         """Take the description of the pad; return whether it is one that can be."""

@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 
-from companion.config.estimation import EstimatorConfig
-from companion.core.data import Measurement, Quantity
+from companion.config.estimation import EstimatorConfig, ImmConfig
+from companion.core.data import Measurement, OwnState, Quantity
 from companion.vehicle.estimator import Estimator, EstimatorMemory
 from companion.vehicle.factory import make_estimator
+from companion.vehicle.seen_turning import SeenYaw, update_turning
+from link.frames.rotations import quaternion_from_yaw
+from link.messages import PadSighting
 from link.records import replace
 from tests.companion.vehicle.drives import NOMINAL, Drive, circle, pad_centre, straight
 from tests.companion.vehicle.rides import arrivals, now_ns
@@ -68,3 +71,63 @@ def test_a_pad_that_is_seen_elsewhere_for_good_is_started_on_anew() -> None:
     assert estimate is not None
     assert estimate.position_enu_m == pytest.approx(elsewhere, abs=0.3)
     assert np.linalg.norm(estimate.velocity_enu_m_s) < 2.0
+
+
+def beside_m(turning_std_m_s2: float) -> float:
+    """How far beside a straight road a vehicle is sought 3 s after it was seen for 0.8 s, root mean square."""
+    config = EstimatorConfig(imm=ImmConfig(turning_std_m_s2=turning_std_m_s2))
+    found_m = []
+    for seed in range(20, 26):
+        truth, chosen = straight(9.0), make_estimator(config, is_silent=True)
+        seen = [one for one in only(Quantity.PAD, truth, seed) if one.t_ns < now_ns(0.8)]
+        forecast = chosen.forecast(chosen.fuse(None, seen), seen[-1].t_ns, np.array([0.0, 3.0]))
+        assert forecast is not None
+        position, velocity, _, _ = truth.at((seen[-1].t_ns - now_ns(0.0)) * 1e-9 + 3.0)
+        left = np.array([-velocity[1], velocity[0], 0.0]) / np.linalg.norm(velocity)
+        found_m.append(float(left @ (forecast.position_enu_m[1] - position)))
+    return float(np.sqrt(np.mean(np.square(found_m))))
+
+
+def test_what_was_seen_for_a_moment_is_sought_along_a_curve_that_somebody_drives() -> None:
+    assert beside_m(ImmConfig().turning_std_m_s2) < 0.9 * beside_m(1e4)
+
+
+def sighting(t_s: float, yaw_rad: float) -> PadSighting:
+    return PadSighting(
+        t_ns=now_ns(t_s),
+        position_flu_m=(0.0, 0.0, -3.0),
+        orientation_wxyz=quaternion_from_yaw(yaw_rad),
+        position_covariance_m2=(1e-4, 0.0, 0.0, 0.0, 1e-4, 0.0, 0.0, 0.0, 1e-4),
+    )
+
+
+def drone(t_s: float, yaw_rad: float) -> OwnState:
+    return OwnState(
+        t_ns=now_ns(t_s),
+        position_enu_m=(0.0, 0.0, 5.0),
+        velocity_enu_m_s=(0.0, 0.0, 0.0),
+        orientation_wxyz=quaternion_from_yaw(yaw_rad),
+        angular_velocity_flu_rad_s=(0.0, 0.0, 0.0),
+    )
+
+
+@pytest.mark.parametrize("board_rad", [0.0, 1.7, -3.0])
+def test_turning_is_seen_however_the_board_lies_and_the_drone_turns(board_rad: float) -> None:
+    rate_rad_s, rates = 0.4, []
+    before: SeenYaw | None = None
+    for t_s in np.arange(0.0, 3.0, 0.05).tolist():
+        drone_rad = 2.0 - 0.9 * t_s
+        seen = sighting(t_s, board_rad + rate_rad_s * t_s - drone_rad)
+        before, rate = update_turning(before, seen, drone(t_s, drone_rad))
+        rates += [] if rate is None else [rate]
+    assert [float(rate.value[0]) for rate in rates] == pytest.approx([rate_rad_s] * len(rates))
+    assert 4 <= len(rates) <= 8
+
+
+def test_nothing_is_said_of_turning_over_a_gap_or_a_clock_that_was_set_back() -> None:
+    for later_s in (2.0, -1.0):
+        before, rate = update_turning(
+            SeenYaw(t_ns=now_ns(0.0), yaw_rad=0.1), sighting(later_s, 0.5), drone(later_s, 0.0)
+        )
+        assert rate is None
+        assert before.t_ns == now_ns(later_s)
