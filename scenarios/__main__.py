@@ -92,7 +92,10 @@ def run_command(
             reporter.progress(*told)
 
         run = run_in_lockstep if lockstep else run_over_wire
-        outcome = run(scenario, options, progress)
+        try:
+            outcome = run(scenario, options, progress)
+        except UserError as error:
+            raise UserError(f"{error} (what was written: {folder})") from error
     return reporter.conclude(outcome)
 
 
