@@ -43,7 +43,8 @@ DEFINITIONS: dict[str, str] = {
     "float64 font_size\nfoxglove_msgs/Color text_color\nfoxglove_msgs/Color background_color\n"
     "foxglove_msgs/KeyValuePair[] metadata\n",
     "ImageAnnotations": "builtin_interfaces/Time timestamp\nfoxglove_msgs/CircleAnnotation[] circles\n"
-    "foxglove_msgs/PointsAnnotation[] points\nfoxglove_msgs/TextAnnotation[] texts\nfoxglove_msgs/KeyValuePair[] metadata\n",
+    "foxglove_msgs/PointsAnnotation[] points\nfoxglove_msgs/TextAnnotation[] texts\n"
+    "foxglove_msgs/KeyValuePair[] metadata\n",
     "SceneUpdate": "foxglove_msgs/SceneEntityDeletion[] deletions\nfoxglove_msgs/SceneEntity[] entities\n",
 }
 """Each message's definition in ROS 2's own form."""
