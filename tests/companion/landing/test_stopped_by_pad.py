@@ -57,6 +57,7 @@ def _forced_after_s(flight: Flight, *, falls_m_s2: float, limit_s: float = 2.0) 
     return None
 
 
+@pytest.mark.slow
 def test_motors_go_off_though_the_pad_has_left_and_the_estimate_still_sinks() -> None:
     after_s = _forced_after_s(_stopped(), falls_m_s2=0.4)
     assert after_s is not None
