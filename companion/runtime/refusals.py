@@ -48,9 +48,11 @@ class Refusals:
     def recent(self, now_ns: int) -> str:
         """Return what has been refused most in the last seconds, empty if nothing has."""
         found = [
-            (kind.count, kind.sentence(what)) for (what, _), kind in self._kinds.items() if _is_recent(kind, now_ns)
+            (kind.count, -len(what), kind.sentence(what))
+            for (what, _), kind in self._kinds.items()
+            if _is_recent(kind, now_ns)
         ]
-        return max(found)[1] if found else ""
+        return max(found)[-1] if found else ""
 
     def news(self, now_ns: int) -> list[str]:
         """Return what is to be logged now: each kind at its first refusal, and again while its count rises."""

@@ -44,6 +44,7 @@ def shots(count: int, tilt_rad: float = 0.6, *, is_fisheye: bool = False) -> tup
     return tuple(found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("camera", [CAMERA, FISHEYE], ids=["pinhole", "fisheye"])
 def test_camera_is_found_again(camera: Camera) -> None:
     found, quality = calibrate(shots(16, is_fisheye=camera is FISHEYE), BOARD, SIZE_PX, camera.model)
@@ -61,6 +62,7 @@ def test_tags_that_do_not_fit_are_left_out() -> None:
     assert found.focal_px == pytest.approx(CAMERA.focal_px, abs=2.0)
 
 
+@pytest.mark.slow
 def test_too_few_pictures_and_a_board_that_was_never_tilted_say_what_to_do() -> None:
     with pytest.raises(UserError, match="8 are needed"):
         calibrate(shots(12)[:7], BOARD, SIZE_PX, "pinhole")
