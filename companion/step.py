@@ -68,7 +68,7 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
     memory, plan = fly(memory, situation, inputs, system)
     memory, commands = _drive(memory, situation, inputs, system.config)
     outputs = StepOutputs(
-        setpoint=setpoint(memory, inputs, system.config, is_planned=plan is not None),
+        setpoint=setpoint(memory, inputs, situation, system.config, is_planned=plan is not None),
         commands=commands,
         text=news(before, memory.progress),
         reply=reply,

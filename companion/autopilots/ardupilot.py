@@ -23,6 +23,7 @@ from companion.autopilots.messages import (
     without_disarm,
 )
 from companion.autopilots.response import Cascade
+from companion.autopilots.shaping import Shaping
 from companion.core.data import GRAVITY_M_S2, FlightLimits, Setpoint
 from link.frames.local_frame import Projection
 from link.mavlink.dialect import Message, mavlink
@@ -48,7 +49,23 @@ _JERK = (Named("PSC_JERK_XY"), Named("PSC_JERK_NE"))  # it follows no accelerati
 # It bounds that jerk by what its attitude controller can do, too (AC_PosControl::set_max_speed_accel_xy).
 _ACCELERATION = (Named("WPNAV_ACCEL", _CENTI), Named("WP_ACC"))
 _ATTITUDE_RAD_S2 = math.radians(1100.0)  # ATC_ACCEL_P_MAX by default
-_LIMITS = (_TILT, _TILT_BY_POSITION, _SPEED, _CLIMB, _DESCENT, _JERK, _ACCELERATION)
+_VERTICAL_ACCELERATION = (Named("WPNAV_ACCEL_Z", _CENTI), Named("WP_ACC_Z"))
+_VERTICAL_JERK = (Named("PSC_JERK_Z"), Named("PSC_JERK_D"))
+_LIMITS = (
+    _TILT,
+    _TILT_BY_POSITION,
+    _SPEED,
+    _CLIMB,
+    _DESCENT,
+    _JERK,
+    _ACCELERATION,
+    _VERTICAL_ACCELERATION,
+    _VERTICAL_JERK,
+)
+# Taken while the parameters are unknown: the defaults of release 4.6.
+_JERK_DEFAULT_M_S3 = 5.0  # horizontally and vertically
+_ACCELERATION_DEFAULT_M_S2 = 2.5
+_VERTICAL_ACCELERATION_DEFAULT_M_S2 = 1.0
 _POSITION_GAIN = ("PSC_POSXY_P", "PSC_NE_POS_P")
 _VELOCITY_GAIN = ("PSC_VELXY_P", "PSC_NE_VEL_P")
 _INTEGRAL_GAIN = ("PSC_VELXY_I", "PSC_NE_VEL_I")
@@ -65,7 +82,6 @@ class ArduPilotDriver:
     hover_mode = "BRAKE"
     timeout_parameter = "GUID_TIMEOUT"
     timeout_default_s = 3.0
-    carries_setpoints_on = True
     follows_in_failsafe = True  # a low battery, or a radio lost, with "continue" as its action
     takes_target_in_body_axes = True
     holds_height_alone = False  # a position that is masked in part is left out as a whole
@@ -134,6 +150,22 @@ class ArduPilotDriver:
             integral_per_s2=find_gain(parameters, _INTEGRAL_GAIN, 1.0, INTEGRAL_FACTOR_MAX),
             lead_s=0.0,
         )
+
+    def shaping(self, parameters: Mapping[str, float]) -> Shaping | None:
+        """Return the path by which GUIDED carries setpoints on."""
+        return Shaping(
+            carried_s=parameters.get(self.timeout_parameter, self.timeout_default_s),
+            acceleration_m_s2=_known(find_limit(parameters, _ACCELERATION), _ACCELERATION_DEFAULT_M_S2),
+            jerk_m_s3=_known(_shaping_jerk_m_s3(parameters), _JERK_DEFAULT_M_S3),
+            vertical_acceleration_m_s2=_known(
+                find_limit(parameters, _VERTICAL_ACCELERATION), _VERTICAL_ACCELERATION_DEFAULT_M_S2
+            ),
+            vertical_jerk_m_s3=_known(find_limit(parameters, _VERTICAL_JERK), _JERK_DEFAULT_M_S3),
+        )
+
+
+def _known(limit: float, default: float) -> float:
+    return limit if math.isfinite(limit) else default
 
 
 def _shaping_jerk_m_s3(parameters: Mapping[str, float]) -> float:

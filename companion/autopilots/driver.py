@@ -9,6 +9,7 @@ from typing import Protocol
 from msgspec import Struct
 
 from companion.autopilots.response import Cascade
+from companion.autopilots.shaping import Shaping
 from companion.core.data import FlightLimits, RangeReading, Setpoint
 from link.frames.local_frame import LocalFrame, Projection
 from link.mavlink.dialect import Message, mavlink
@@ -136,10 +137,6 @@ class Driver(Protocol):
         """What that is taken for while it is unknown."""
 
     @property
-    def carries_setpoints_on(self) -> bool:
-        """Whether it moves a setpoint on with its velocity and acceleration until the next one comes."""
-
-    @property
     def holds_height_alone(self) -> bool:
         """Whether it flies setpoints whose position is a height only, with the velocity on all axes."""
 
@@ -189,6 +186,9 @@ class Driver(Protocol):
 
     def cascade(self, parameters: Mapping[str, float]) -> Cascade:
         """Return the gains with which it follows setpoints, and how it takes them, from its own parameters."""
+
+    def shaping(self, parameters: Mapping[str, float]) -> Shaping | None:
+        """Return how it carries setpoints on, from its own parameters; None if it holds them as they came."""
 
 
 def streams_hz(driver: Driver, motion_rate_hz: float, *, stops_unused: bool) -> dict[int, float]:

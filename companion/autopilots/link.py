@@ -7,6 +7,7 @@ from companion.autopilots.choice import driver_for
 from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver, streams_hz
 from companion.autopilots.limits import LimitQuestions, parameter_names
 from companion.autopilots.response import Cascade
+from companion.autopilots.shaping import Shaping
 from companion.autopilots.state import AutopilotState, shift_reports, update_state
 from companion.config.companion import AutopilotKind
 from companion.core.data import FlightLimits, Setpoint
@@ -68,7 +69,6 @@ class AutopilotLink:
         self._unanswered: dict[int, int] = {}
         self._origin_asked_ns: int | None = None
         self._limits: tuple[_LimitsAsked, FlightLimits] | None = None
-        self._cascade: tuple[Driver, Mapping[str, float], Cascade] | None = None
         self._heard_ns: int | None = None
         self._polled_ns: int | None = None
         self._questions = LimitQuestions()
@@ -115,12 +115,12 @@ class AutopilotLink:
     @property
     def cascade(self) -> Cascade | None:
         """How the autopilot follows setpoints, by its parameters as far as they are known; None before it is found."""
-        if self.driver is None:
-            return None
-        driver, parameters = self.driver, self.state.parameters
-        if self._cascade is None or self._cascade[0] is not driver or self._cascade[1] is not parameters:
-            self._cascade = (driver, parameters, driver.cascade(parameters))
-        return self._cascade[2]
+        return None if self.driver is None else self.driver.cascade(self.state.parameters)
+
+    @property
+    def shaping(self) -> Shaping | None:
+        """How the autopilot carries setpoints on; None before it is found, and of one that does not."""
+        return None if self.driver is None else self.driver.shaping(self.state.parameters)
 
     def send_setpoint(self, setpoint: Setpoint, local_ns: int) -> None:
         """Send a setpoint for the flight; one that the message cannot hold is counted and left out."""

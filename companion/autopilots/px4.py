@@ -20,6 +20,7 @@ from companion.autopilots.messages import (
 )
 from companion.autopilots.px4_events import refusal_of
 from companion.autopilots.response import Cascade
+from companion.autopilots.shaping import Shaping
 from companion.core.data import FlightLimits, Setpoint
 from link.frames.local_frame import Projection
 from link.mavlink.dialect import Message, mavlink
@@ -43,7 +44,6 @@ class Px4Driver:
     hover_mode = "Hold"
     timeout_parameter = "COM_OF_LOSS_T"
     timeout_default_s = 1.0
-    carries_setpoints_on = False  # it holds them as they came
     holds_height_alone = True
     takes_target_in_body_axes = False
     follows_in_failsafe = False  # what it only warns of is none
@@ -122,6 +122,10 @@ class Px4Driver:
             integral_per_s2=find_gain(parameters, integral, 0.4, INTEGRAL_FACTOR_MAX),
             lead_s=0.01,
         )
+
+    def shaping(self, parameters: Mapping[str, float]) -> Shaping | None:  # noqa: ARG002 (the others' signature)
+        """Return None: PX4 shapes no path, and holds setpoints as they came."""
+        return None
 
 
 def _streamed_s(memory: DriverMemory, monotonic_ns: int) -> float:

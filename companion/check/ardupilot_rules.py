@@ -10,6 +10,7 @@ from companion.check.rules import GRADE_MAX, SPEED_SHARE_ADVISED, ParameterRule,
 _CENTI = 100.0
 _CLIMB_M_S = 2.0
 _JERK_M_S3 = 10.0  # its own shaping allows 10.8 m/s^3 by default: 0.5 sqrt(WPNAV_ACCEL by g by ATC_ACCEL_P_MAX)
+_VERTICAL_M_S2 = 3.0  # limits.vertical_acceleration_max_m_s2
 _CORRECTED_PER_S = (
     2.0  # jerk by acceleration, as by default; corrected faster, the jitter of setpoints takes all the jerk
 )
@@ -69,6 +70,22 @@ ARDUPILOT_RULES = (
         unit="m/s",
         level=Level.WARN,
         reason="the climb of an abort, away from a deck that drives uphill",
+    ),
+    at_least(
+        lambda _: _VERTICAL_M_S2,
+        step=0.5,
+        spellings=(Spelling("WP_ACC_Z"), Spelling("WPNAV_ACCEL_Z", _CENTI)),
+        unit="m/s^2",
+        level=Level.WARN,
+        reason="what the height is corrected with; with 1 an abort climbs on for 2.5 s into the next approach",
+    ),
+    at_least(
+        lambda _: _JERK_M_S3,
+        step=1.0,
+        spellings=(Spelling("PSC_JERK_D"), Spelling("PSC_JERK_Z")),
+        unit="m/s^3",
+        level=Level.WARN,
+        reason="how quickly a climb turns into a descent; planned with the jerk that is set horizontally",
     ),
     ParameterRule(
         spellings=(Spelling("GUID_TIMEOUT"),),

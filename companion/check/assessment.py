@@ -164,14 +164,21 @@ def _clock(seen: AutopilotFacts) -> Finding:
 def _rate(seen: AutopilotFacts, name: str) -> Finding:
     rate_hz = seen.rates_hz.get(name, 0.0)
     level = Level.FAIL if rate_hz <= 0.0 else _level(rate_hz >= _MOTION_RATE_MIN_HZ, Level.WARN)
-    return _finding(name, f"{rate_hz:.0f} Hz", level, "raise the link's baud rate; 50 Hz are asked for")
+    advice = "raise the link's baud rate; 50 Hz are asked for"
+    if rate_hz <= 0.0 and any(other_hz > 0.0 for other_hz in seen.rates_hz.values()):
+        advice = "wait for a GNSS fix: it is not sent before the estimator has a position"
+    return _finding(name, f"{rate_hz:.0f} Hz", level, advice)
 
 
 def _latency(seen: AutopilotFacts) -> Finding:
     if seen.latency_s is None:
         return _finding("latency", "unknown", Level.WARN, "needs clock and position")
+    unsure_s = _CLOCK_STD_MAX_S if seen.clock_std_s is None else 2.0 * seen.clock_std_s
+    if seen.latency_s < -unsure_s:
+        text = f"{1e3 * seen.latency_s:.0f} ms: positions come before they are taken"
+        return _finding("latency", text, Level.WARN, "let it settle and check again, or use a link without a queue")
     level = _level(seen.latency_s <= _LATENCY_MAX_S, Level.WARN)
-    return _finding("latency", f"{1e3 * seen.latency_s:.0f} ms", level, "use a wire instead of a radio")
+    return _finding("latency", f"{1e3 * max(seen.latency_s, 0.0):.0f} ms", level, "use a wire instead of a radio")
 
 
 def _battery(seen: AutopilotFacts, share_min: float) -> Finding:

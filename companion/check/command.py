@@ -116,7 +116,7 @@ def check(
         )
         findings = _look(session, ask)
         if set_values:
-            _set(session, findings, keep_file, asks=not yes)
+            set_advised(session, findings, keep_file, asks=not yes)
             findings = _look(session, ask)
     return _show(findings, speed_max, as_json=as_json)
 
@@ -154,8 +154,8 @@ def _show(findings: "list[Finding]", speed_m_s: float, *, as_json: bool) -> int:
     return 0 if is_ready(findings) else _FAILED
 
 
-def _set(session: "CheckSession", findings: "list[Finding]", keep_file: Path, *, asks: bool) -> None:
-    """Keep the present values, then write the advised ones."""
+def set_advised(session: "CheckSession", findings: "list[Finding]", keep_file: Path, *, asks: bool) -> None:
+    """Keep the present values, then write the advised ones, unless the user says no."""
     from companion.check.findings import advised_values, keep
 
     advised = advised_values(findings)
@@ -164,8 +164,9 @@ def _set(session: "CheckSession", findings: "list[Finding]", keep_file: Path, *,
     known = session.reader.facts().parameters
     for name, value in advised.items():
         typer.echo(f"{name}: {known[name]:g} -> {value:g}", err=True)
-    if asks:
-        typer.confirm(f"write these {len(advised)} parameters?", abort=True, err=True)
+    if asks and not typer.confirm(f"write these {len(advised)} parameters?", err=True):
+        typer.echo("nothing was written", err=True)
+        return
     keep(keep_file, {name: known[name] for name in advised})
     typer.echo(f"the values before are in {keep_file}: companion check --restore {keep_file}", err=True)
     _write(session, advised)

@@ -96,15 +96,17 @@ def verdict(signs: Signs, config: CompanionConfig, *, is_pressed: bool = False) 
 
 
 def is_stopped_by_pad(signs: Signs, config: CompanionConfig) -> bool:
-    """Return whether a jolt came from the pad: it is where the drone is, and the range finder or all signs say so.
+    """Return whether a jolt came from the pad: it is where the drone is, and a range finder or all signs agree.
 
     One that sees nothing any more is asked what it saw last: no flying explains the jolt, and it was sinking onto that.
+    Where there is none the estimated height is asked: an estimator needs 0.1 s to see that the sinking has ended, too.
     """
     # By the report that shows the stop a pad that drives on is up to half a metre farther than it was at the contact.
     if signs.distance_m is not None and signs.passed_m is not None:
         signs = replace(signs, distance_m=min(signs.distance_m, signs.passed_m))
     seen_m = signs.range_carried_m if signs.range_height_m is None else signs.range_height_m
-    touches = seen_m is not None and seen_m <= config.touchdown.range_height_max_m
+    feet_m = signs.height_m if seen_m is None else seen_m
+    touches = feet_m is not None and feet_m <= config.touchdown.range_height_max_m
     return _is_at_pad(signs, config) and (touches or verdict(signs, config) is Verdict.CONTACT)
 
 

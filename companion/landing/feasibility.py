@@ -134,7 +134,8 @@ def _is_high(s: Situation, c: CompanionConfig) -> bool:
 def _high(s: Situation, c: CompanionConfig) -> Cause:
     height_m = 0.0 if s.approach is None else _hover_height_m(s, s.approach.height_m, c)
     more_m = math.ceil(10.0 * (chase_floor_m(c) - height_m) - _ROUNDING) / 10.0
-    return Cause(Reason.ROOF_TOO_HIGH, (height_m, chase_floor_m(c), more_m))
+    told_m = math.ceil(10.0 * chase_floor_m(c) - _ROUNDING) / 10.0
+    return Cause(Reason.ROOF_TOO_HIGH, (told_m - more_m, told_m, more_m))
 
 
 # An estimate that has just begun jumps: what is said of the vehicle must hold for a while.

@@ -10,26 +10,10 @@ import math
 import numpy as np
 from msgspec import Struct
 
+from companion.autopilots.shaping import Shaping
 from companion.core.data import Array
 from companion.planning.guidance import PlanResult, ReferenceState, Trajectory
 from link.records import replace
-
-_BRAKING_M_S2 = 1.0  # of a drone whose setpoints have stayed away: ArduPilot's WPNAV_ACCEL_Z by default
-
-
-class Carried(Struct, frozen=True, kw_only=True):
-    """What is to come of a setpoint that is carried on because no other follows.
-
-    Attributes:
-        duration_s: for how long it is.
-        lowest_enu_m: height above which it has to end.
-        touch_m_s: rate, upwards, at the end of that time with which what is at that height may be touched; None where
-            it must not be.
-    """
-
-    duration_s: float
-    lowest_enu_m: float
-    touch_m_s: float | None = None
 
 
 class FlownPlan(Struct, frozen=True, kw_only=True, eq=False):
@@ -37,14 +21,16 @@ class FlownPlan(Struct, frozen=True, kw_only=True, eq=False):
 
     Attributes:
         trajectory: of the virtual model, from where it was when the plan was made.
-        carried: by the autopilot; None for one that does not.
+        lowest_enu_m: height above which a setpoint that is carried on has to end.
+        shaping: of the autopilot; None of one that holds setpoints as they came.
     """
 
     trajectory: Trajectory
-    carried: Carried | None
+    lowest_enu_m: float
+    shaping: Shaping | None
 
 
-def flown_plan(plan: PlanResult, period_s: float, carried: Carried | None) -> FlownPlan:
+def flown_plan(plan: PlanResult, period_s: float, lowest_enu_m: float, shaping: Shaping | None) -> FlownPlan:
     """Return the plan as it is flown: its next state, `period_s` after it was made, is one of its instants."""
     path, following = plan.trajectory, plan.next_state
     later = int(np.searchsorted(path.offset_s, period_s, side="right"))
@@ -54,20 +40,20 @@ def flown_plan(plan: PlanResult, period_s: float, carried: Carried | None) -> Fl
         velocity_enu_m_s=_through(path.velocity_enu_m_s, following.velocity_enu_m_s, later),
         acceleration_enu_m_s2=_through(path.acceleration_enu_m_s2, following.acceleration_enu_m_s2, later),
     )
-    return FlownPlan(trajectory=trajectory, carried=carried)
+    return FlownPlan(trajectory=trajectory, lowest_enu_m=lowest_enu_m, shaping=shaping)
 
 
 def state_at(flown: FlownPlan, offset_s: float) -> ReferenceState:
     """Return the model `offset_s` after its plan was made."""
     planned = state_in_plan(flown.trajectory, offset_s)
-    if flown.carried is None:
+    if flown.shaping is None:
         return planned
     before = ReferenceState(
         position_enu_m=flown.trajectory.position_enu_m[0],
         velocity_enu_m_s=flown.trajectory.velocity_enu_m_s[0],
         acceleration_enu_m_s2=flown.trajectory.acceleration_enu_m_s2[0],
     )
-    return keep_up(planned, before, flown.carried, offset_s)
+    return keep_up(planned, before, flown.lowest_enu_m, flown.shaping, offset_s)
 
 
 def _through(path: Array, following: Array, later: int) -> Array:
@@ -90,7 +76,9 @@ def state_in_plan(trajectory: Trajectory, offset_s: float) -> ReferenceState:
     )
 
 
-def keep_up(planned: ReferenceState, before: ReferenceState, carried: Carried, elapsed_s: float) -> ReferenceState:
+def keep_up(
+    planned: ReferenceState, before: ReferenceState, lowest_enu_m: float, shaping: Shaping, elapsed_s: float
+) -> ReferenceState:
     """Return the planned next state, kept up by `limit_sink`, so that it may be carried on.
 
     The model itself is kept up, for the drone follows what is sent, and the next plan begins there.
@@ -98,10 +86,11 @@ def keep_up(planned: ReferenceState, before: ReferenceState, carried: Carried, e
     Args:
         planned: the model `elapsed_s` after `before`.
         before: the model when the plan was made.
-        carried: how a setpoint is carried on.
+        lowest_enu_m: where it is to end above.
+        shaping: of the autopilot.
         elapsed_s: since then.
     """
-    limited = limit_sink(planned, carried)
+    limited = limit_sink(planned, lowest_enu_m, shaping)
     if limited is planned:
         return planned
     up = extrapolate(replace(before, acceleration_enu_m_s2=limited.acceleration_enu_m_s2), elapsed_s)
@@ -110,29 +99,27 @@ def keep_up(planned: ReferenceState, before: ReferenceState, carried: Carried, e
         velocity_enu_m_s=np.array([*planned.velocity_enu_m_s[:2], up.velocity_enu_m_s[2]]),
         acceleration_enu_m_s2=limited.acceleration_enu_m_s2,
     )
-    return limit_sink(kept_up, carried)
+    return limit_sink(kept_up, lowest_enu_m, shaping)
 
 
-def limit_sink(reference: ReferenceState, carried: Carried) -> ReferenceState:
+def limit_sink(reference: ReferenceState, lowest_enu_m: float, shaping: Shaping) -> ReferenceState:
     """Return the model for an autopilot that carries a setpoint on, should no other follow.
 
-    Its acceleration upwards is at least such that the drone, which then brakes, ends above the lowest height:
-    ArduCopter was flown into the road at 1.6 m/s from a chase whose companion had died. The rate w at the end of the
-    time T obeys `h + (v + w) T / 2 - w^2 / 2A >= 0` with the height h, the rate v and the braking A; or w is one to
-    touch with.
+    Its acceleration upwards is at least such that the drone, which then brakes, ends above `lowest_enu_m`: ArduCopter
+    was flown into the road at 1.6 m/s from a chase whose companion had died. The rate w at the end of the time T obeys
+    `h + (v + w) T / 2 - w^2 / 2A + w A / 2J >= 0` with the height h, the rate v, the braking A and its jerk J.
     """
-    duration_s = carried.duration_s
-    above_m = float(reference.position_enu_m[2]) - carried.lowest_enu_m
+    duration_s, braking_m_s2 = shaping.carried_s, shaping.vertical_acceleration_m_s2
+    turning_s = braking_m_s2 / shaping.vertical_jerk_m_s3
+    above_m = float(reference.position_enu_m[2]) - lowest_enu_m
     ax, ay, az = reference.acceleration_enu_m_s2.tolist()
     climb_m_s, room_m = float(reference.velocity_enu_m_s[2]), 2.0 * above_m
     room_m += climb_m_s * duration_s
     if room_m >= 0.0:
-        brakes_m_s = _BRAKING_M_S2 * duration_s
-        end_m_s = 0.5 * (brakes_m_s - math.sqrt(brakes_m_s**2 + 4.0 * _BRAKING_M_S2 * room_m))
+        brakes_m_s = braking_m_s2 * (duration_s + turning_s)
+        end_m_s = 0.5 * (brakes_m_s - math.sqrt(brakes_m_s**2 + 4.0 * braking_m_s2 * room_m))
     else:
         end_m_s = -room_m / duration_s
-    if carried.touch_m_s is not None:
-        end_m_s = min(end_m_s, carried.touch_m_s)
     least_m_s2 = (end_m_s - climb_m_s) / duration_s
     if az >= least_m_s2:
         return reference

@@ -4,7 +4,8 @@ import numpy as np
 
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits
-from companion.landing.flown_plan import Carried, extrapolate, flown_plan, state_at
+from companion.landing.carried_on import limit_rates
+from companion.landing.flown_plan import extrapolate, flown_plan, state_at
 from companion.landing.following_height import waiting_rise_m
 from companion.landing.levelling import limit_tilt, limits_now
 from companion.landing.memory import ModelMemory, StepMemory
@@ -22,7 +23,6 @@ from link.frames.rotations import wrap_angle
 from link.records import replace
 
 _STEP_MAX_S = 0.1  # a longer pause does not let the virtual model jump
-_DESCENT_CARRIED_MAX_S = 1.0  # as `companion check` advises; 3 s, the default, would lengthen each descent by 5 s
 
 
 def _aim(memory: StepMemory, situation: Situation, limits: FlightLimits, config: CompanionConfig) -> Aim:
@@ -84,16 +84,17 @@ def fly(
     if is_at_rest(reference, aim):  # there is nothing to plan
         tracking = add_to_past(model.tracking, reference_ns, reference)
         return replace(memory, model=replace(model, reference_ns=reference_ns, plan=None, tracking=tracking)), None
+    limits = limits_now(memory, situation, inputs, system.config)
     request = PlanRequest(
         state=reference,
         target=_for_the_drone(aim.target, memory, inputs),
-        limits=limits_now(memory, situation, inputs, system.config),
+        limits=limit_rates(limits, memory, situation, inputs.shaping, system.config),
         floor_enu_m=aim.floor_enu_m,
         dt_s=period_s,
     )
     request = replace(request, limits=limit_tilt(request, model.tracking.air_enu_m_s2))
     guidance, plan = system.guidance.plan(model.guidance, request)
-    flown = flown_plan(plan, period_s, _carried(memory, aim, situation, inputs, system.config))
+    flown = flown_plan(plan, period_s, float(aim.floor_enu_m[0]), inputs.shaping)
     plan = replace(plan, next_state=state_at(flown, period_s))
     model = ModelMemory(
         reference=plan.next_state,
@@ -105,27 +106,6 @@ def fly(
         yaw_setpoint_rad=_slew_yaw_rad(memory, situation.pad, period_s, system.config),
     )
     return _update_anchor(replace(memory, model=model), situation, system.config), plan
-
-
-def _carried(
-    memory: StepMemory, aim: Aim, situation: Situation, inputs: StepInputs, config: CompanionConfig
-) -> Carried | None:
-    """Return what may come of a setpoint that the autopilot carries on, None where it carries none.
-
-    From above the height at which a descent waits it ends in the air, for a drone that brakes on the pad is left behind
-    by it. From below it may touch the pad as gently as it is let near it.
-    """
-    reference, phase = memory.model.reference, memory.progress.phase
-    if inputs.driver is None or not inputs.driver.carries_setpoints_on or inputs.timeout_s <= 0.0:
-        return None
-    if phase is not Phase.DESCEND or situation.pad is None or reference is None:
-        return Carried(duration_s=inputs.timeout_s, lowest_enu_m=float(aim.floor_enu_m[0]))
-    duration_s = min(inputs.timeout_s, _DESCENT_CARRIED_MAX_S)
-    touched_enu_m = float(situation.pad.position_enu_m[0, 2]) + situation.feet_offset_m
-    if float(reference.position_enu_m[2]) - touched_enu_m > config.descent.waiting_height_m:
-        return Carried(duration_s=duration_s, lowest_enu_m=touched_enu_m + config.descent.commit_height_m)
-    touch_m_s = float(situation.pad.velocity_enu_m_s[0, 2]) - config.abort.near_speed_max_m_s
-    return Carried(duration_s=duration_s, lowest_enu_m=touched_enu_m, touch_m_s=touch_m_s)
 
 
 def _model_at(model: ModelMemory, monotonic_ns: int, period_s: float) -> ReferenceState:

@@ -10,6 +10,7 @@ from companion.config.landing import DescentConfig
 from companion.core.data import Array, FlightLimits, Setpoint
 from companion.core.reasons import Cause, Reason, sentence
 from companion.landing.aborts import why_unplaced
+from companion.landing.carried_on import bound_carried
 from companion.landing.flown_plan import extrapolate, state_at
 from companion.landing.memory import Progress, StepMemory
 from companion.landing.step_data import StepInputs
@@ -28,13 +29,14 @@ _FREE_PLACE_PHASES = (Phase.ALIGN, Phase.DESCEND, Phase.TOUCHDOWN)
 
 
 def setpoint(
-    memory: StepMemory, inputs: StepInputs, config: CompanionConfig, *, is_planned: bool = False
+    memory: StepMemory, inputs: StepInputs, situation: Situation, config: CompanionConfig, *, is_planned: bool = False
 ) -> Setpoint | None:
     """Return what the autopilot is to follow now, None while nothing is flown.
 
     Args:
         memory: after this step's plan.
         inputs: of this step.
+        situation: likewise.
         config: all numbers.
         is_planned: whether this step has planned; there may be nothing to plan.
     """
@@ -53,7 +55,7 @@ def setpoint(
     if press_m_s2 is not None:
         reference = press_down(reference, press_m_s2, ahead_s)
     wanted = setpoint_at(
-        reference,
+        bound_carried(reference, memory, situation, inputs.shaping, config),
         inputs.t_ns + round(ahead_s * 1e9),
         model.yaw_setpoint_rad,
         position_only=config.position_only,

@@ -4,6 +4,7 @@ from msgspec import Struct
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, AutopilotView, Driver
 from companion.autopilots.response import ResponseModel
+from companion.autopilots.shaping import Shaping
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits, Measurement, OwnState, Rival, Setpoint
 from companion.planning.guidance import Guidance, PlanResult
@@ -47,7 +48,7 @@ class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
         command: an operator's wish.
         leaving: the companion is about to end, so the autopilot is to hover by itself, or to finish its disarm.
         link_delay: from the companion to the autopilot.
-        timeout_s: for how long the autopilot goes on without a setpoint.
+        shaping: of the path by which the autopilot carries setpoints on; None of one that holds them as they came.
     """
 
     t_ns: int
@@ -66,7 +67,7 @@ class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
     command: Command | None = None
     leaving: bool = False
     link_delay: LinkDelay = LinkDelay()
-    timeout_s: float = 0.0
+    shaping: Shaping | None = None
 
     def monotonic_at(self, t_ns: int) -> int:
         """Return the monotonic time of a stamp in UTC."""

@@ -135,6 +135,19 @@ def _escape(model: ModelMemory, situation: Situation, config: CompanionConfig) -
     return replace(model, reference=escaping, plan=None, guidance=None)
 
 
+def _climb_m(height_enu_m: float, situation: Situation, config: CompanionConfig) -> float:
+    """Return how far the waiting point is above a drone at this height in W: one that flies may wait higher already.
+
+    Where no range finder has told the ground, it is taken to be where the autopilot's local frame began.
+    """
+    wait_m = config.takeoff.waiting_height_m
+    if not (situation.autopilot.armed and situation.autopilot.landed is False):
+        return wait_m
+    ground = situation.below.ground_enu_m
+    ground_m = 0.0 if ground is None else float(ground[2])
+    return min(max(ground_m + situation.feet_offset_m + wait_m - height_enu_m, 0.0), wait_m)
+
+
 def _begin_flight(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
     """Start the virtual model where the drone is, and place the waiting point above it."""
     drone = situation.drone
@@ -142,8 +155,7 @@ def _begin_flight(memory: StepMemory, situation: Situation, config: CompanionCon
         nowhere = replace(memory.progress, phase=Phase.IDLE, cause=Cause(Reason.DRONE_UNKNOWN))
         return replace(memory, progress=nowhere)
     position, zero = drone.position_enu_m, np.zeros(3)
-    airborne = situation.autopilot.armed and situation.autopilot.landed is False
-    climb_m = 0.0 if airborne else config.takeoff.waiting_height_m
+    climb_m = _climb_m(float(position[2]), situation, config)
     model = replace(
         memory.model,
         reference=ReferenceState(position_enu_m=position, velocity_enu_m_s=zero, acceleration_enu_m_s2=zero),

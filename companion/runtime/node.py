@@ -213,7 +213,7 @@ class CompanionNode:
             pad=self.vehicle.pad,
             command=self._command or self._station_command(local_ns),
             leaving=self._leaving,
-            timeout_s=self.autopilot.timeout_s,
+            shaping=self.autopilot.shaping,
             link_delay=LinkDelay(mean_s=min(way.one_way_s, _LINK_DELAY_MAX_S), std_s=way.one_way_std_s),
         )
         self._command = None

@@ -78,7 +78,8 @@ def test_start_in_the_air_waits_where_the_drone_is() -> None:
 
 
 def test_drone_that_waits_lower_than_the_pad_does_not_chase() -> None:
-    flight = Flight()
+    low = CONFIG.takeoff.model_copy(update={"waiting_height_m": 1.0})
+    flight = Flight(config=CONFIG.model_copy(update={"takeoff": low}))
     flight.own = own_state(flight.t_ns, (1.0, 0.4, 1.0))
     flight.view = replace(flight.view, armed=True, landed=False)
     flight.start_and_reach(Phase.WAITING)

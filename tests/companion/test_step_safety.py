@@ -13,10 +13,14 @@ from tests.companion.world import (
     CONFIG,
     DISARM,
     FLYING,
+    GEAR_M,
     IMPATIENT,
     LANDING,
+    PAD_HEIGHT_M,
     SET_MODE,
     Flight,
+    KnownVehicle,
+    own_state,
     reached,
 )
 
@@ -106,6 +110,17 @@ def test_airborne_drone_whose_control_is_refused_does_not_wait_for_it_for_ever()
     flight.start_and_reach(Phase.TAKEOFF)
     flight.run(IMPATIENT.takeoff.refused_after_s + 1.0)
     assert flight.phase is Phase.IDLE
+
+
+@pytest.mark.parametrize(("height_m", "waits_m"), [(1.0, 5.0), (7.0, 7.0)])
+def test_drone_that_flies_at_a_start_waits_no_lower_than_one_that_takes_off(height_m: float, waits_m: float) -> None:
+    flight = Flight(vehicle=KnownVehicle((-400.0, 0.4, PAD_HEIGHT_M), (0.0, 0.0, 0.0)))
+    flight.view = replace(flight.view, armed=True, landed=False)
+    flight.own = own_state(flight.t_ns, (2.0, -1.0, GEAR_M + height_m))
+    flight.start_and_reach(Phase.WAITING)
+    flight.run(5.0)
+    assert flight.phase is Phase.WAITING
+    assert flight.own.position_enu_m == pytest.approx((2.0, -1.0, GEAR_M + waits_m), abs=0.1)
 
 
 def test_hold_before_the_motors_turn_ends_in_idle() -> None:

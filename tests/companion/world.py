@@ -132,7 +132,6 @@ class Flight:
     leaving: bool = False
     stamps_ahead_s: float = 0.0
     driver: Driver = field(default_factory=Px4Driver)
-    timeout_s: float = 0.0
 
     def __post_init__(self) -> None:
         self.memory = StepMemory()
@@ -188,7 +187,7 @@ class Flight:
             autopilot=self.view,
             response=response_of(self.driver),
             driver=self.driver,
-            timeout_s=self.timeout_s,
+            shaping=self.driver.shaping({}),
             acknowledgements=tuple(self.acknowledgements),
             measurements=(fix(self.t_ns + round(self.stamps_ahead_s * 1e9)),) if self.sends_fixes else (),
             vehicle_alive=self.alive,

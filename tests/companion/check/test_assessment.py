@@ -79,6 +79,27 @@ def test_autopilot_amiss_is_told(changed: dict[str, Any], line: str, level: Leve
     assert by_name[line].advice
 
 
+def test_position_that_comes_before_it_was_taken_is_told_unless_the_clocks_are_no_better_known() -> None:
+    early, unsure = (
+        {one.name: one for one in assess(replace(GOOD, latency_s=-0.002, clock_std_s=std_s), VEHICLE, 10.0, CONFIG)}
+        for std_s in (0.0002, 0.0015)
+    )
+    assert early["latency"].level is Level.WARN
+    assert early["latency"].found == "-2 ms: positions come before they are taken"
+    assert (unsure["latency"].level, unsure["latency"].found) == (Level.PASS, "0 ms")
+
+
+def test_position_that_is_not_sent_yet_is_waited_for_and_a_silent_link_is_mended() -> None:
+    position, attitude = MOTION
+    waits, silent = (
+        {one.name: one for one in assess(replace(GOOD, rates_hz=rates_hz), VEHICLE, 10.0, CONFIG)}[position]
+        for rates_hz in ({position: 0.0, attitude: 50.0}, {position: 0.0, attitude: 0.0})
+    )
+    assert waits.level is silent.level is Level.FAIL
+    assert "GNSS fix" in waits.advice
+    assert "baud rate" in silent.advice
+
+
 @pytest.mark.parametrize("vehicle_type", range(0, 50, 3))
 def test_what_the_companion_would_not_fly_fails_by_its_type(vehicle_type: int) -> None:
     by_name = {one.name: one for one in assess(replace(GOOD, vehicle_type=vehicle_type), VEHICLE, 10.0, CONFIG)}

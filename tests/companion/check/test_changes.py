@@ -1,10 +1,14 @@
-"""The file that keeps parameters from before a change."""
+"""Parameters are changed as the user answers, and a file keeps those from before."""
 
+import io
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
-from companion.check.findings import keep, read_kept
+from companion.check.command import set_advised
+from companion.check.findings import Finding, Level, keep, read_kept
 from link.errors import UserError
 
 
@@ -26,3 +30,22 @@ def test_other_files_are_refused_with_their_name(text: str, tmp_path: Path) -> N
 def test_file_that_is_not_there_is_told(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="cannot be read"):
         read_kept(tmp_path / "none.json")
+
+
+@pytest.mark.parametrize(("answer", "is_written"), [("n", False), ("y", True)])
+def test_parameters_are_written_only_after_a_yes_and_a_no_is_no_error(
+    answer: str, *, is_written: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: dict[str, float] = {}
+
+    def write(name: str, value: float) -> bool:
+        written[name] = value
+        return True
+
+    reader = SimpleNamespace(facts=lambda: SimpleNamespace(parameters={"A": 1.0}))
+    session = SimpleNamespace(reader=reader, read_parameter=lambda _: 1.0, set_parameter=write)
+    findings = [Finding(name="A", level=Level.WARN, found="1", advice="A", set_to=2.0)]
+    monkeypatch.setattr("sys.stdin", io.StringIO(f"{answer}\n"))
+    set_advised(cast("Any", session), findings, tmp_path / "before.json", asks=True)
+    assert written == ({"A": 2.0} if is_written else {})
+    assert (tmp_path / "before.json").exists() is is_written

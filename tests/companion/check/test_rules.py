@@ -28,6 +28,8 @@ ARDUCOPTER_46 = {
     "FS_EKF_ACTION": 1.0,
     "DISARM_DELAY": 10.0,
     "PSC_JERK_XY": 5.0,
+    "WPNAV_ACCEL_Z": 100.0,
+    "PSC_JERK_Z": 5.0,
 }
 """Defaults, with which 3, 5 and 8 m/s were flown, and 10.2 m/s was the ceiling."""
 ARDUCOPTER_47 = {
@@ -37,8 +39,10 @@ ARDUCOPTER_47 = {
     "WP_ACC": 2.5,
     "WP_SPD_DN": 1.5,
     "WP_SPD_UP": 2.5,
-    **{name: ARDUCOPTER_46[name] for name in list(ARDUCOPTER_46)[6:-1]},
+    **{name: ARDUCOPTER_46[name] for name in list(ARDUCOPTER_46)[6:-3]},
     "PSC_JERK_NE": 5.0,
+    "WP_ACC_Z": 1.0,
+    "PSC_JERK_D": 5.0,
 }
 PX4_DEFAULTS = {
     "MPC_XY_VEL_MAX": 12.0,

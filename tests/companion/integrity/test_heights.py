@@ -140,6 +140,14 @@ def test_start_beside_a_roof_that_is_too_high_says_how_much_higher_to_wait() -> 
     )
 
 
+def test_heights_that_are_told_differ_by_what_they_are_to_be_raised() -> None:
+    """Waiting 1.16 m above a pad is not to be told as the 1.2 m that are needed."""
+    facts = changed(situation(1.16), armed=True, landed=False)
+    told = obstacle({one.reason: 0 for one in OBSTACLES if one.is_true(facts, CONFIG)}, facts, CONFIG)
+    assert told is not None
+    assert sentence(told).startswith("waiting 1.1 m above the pad, 1.2 m are needed: raise")
+
+
 @pytest.mark.slow
 def test_drone_that_hovers_too_low_says_so_while_it_waits() -> None:
     flight = Flight(vehicle=KnownVehicle((-400.0, 0.0, 4.0), (8.0, 0.0, 0.0)), pad=replace(PAD, height_m=4.0))

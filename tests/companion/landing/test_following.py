@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.px4 import Px4Driver
 from companion.autopilots.response import Cascade
 from companion.core.data import Array
@@ -18,14 +19,14 @@ from tests.companion.world import CONFIG, GEAR_M, PAD_HEIGHT_M, STEP_NS, Flight,
 
 SPEED_M_S = 5.0
 SUBSTEPS = 5
-TIMEOUT_S = 3.0
+TIMEOUT_S = ArduPilotDriver.timeout_default_s
 JERKS_M_S3 = (5.0, 20.0)
 
 
 class CarryingDriver(Px4Driver):
     """A driver of an autopilot that carries setpoints on, as ArduPilot does, but takes off as PX4 does."""
 
-    carries_setpoints_on = True
+    shaping = ArduPilotDriver().shaping
 
 
 class CascadeFlight(Flight):
@@ -134,7 +135,7 @@ def test_what_jitter_does_to_the_drone_is_not_taken_for_how_it_follows(
 @pytest.mark.parametrize("speed_m_s", [4.0, 9.0])
 def test_model_of_an_autopilot_that_carries_setpoints_on_never_ends_low(speed_m_s: float) -> None:
     vehicle = KnownVehicle((-10.0 * speed_m_s, 0.4, PAD_HEIGHT_M), (speed_m_s, 0.0, 0.0))
-    flight = Flight(vehicle=vehicle, driver=CarryingDriver(), timeout_s=TIMEOUT_S)
+    flight = Flight(vehicle=vehicle, driver=CarryingDriver())
     flight.start_and_reach(Phase.CHASE)
     floors_m = {Phase.CHASE: chase_floor_m(CONFIG), Phase.ALIGN: 0.0}
     while flight.phase is not Phase.DESCEND:

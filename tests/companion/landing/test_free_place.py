@@ -13,10 +13,11 @@ from companion.landing.virtual_model import Tracking
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
 from link.records import replace
-from tests.companion.facts import CONFIG, NOW_NS, PAD_ENU_M, changed
+from tests.companion.facts import CONFIG, NOW_NS, PAD_ENU_M, changed, situation
 
 LIMITS = CONFIG.limits.flight_limits()
 JITTER_S = 0.04
+SITUATION = situation()
 
 
 def _memory(phase: Phase, speed_m_s: float = 8.0) -> StepMemory:
@@ -69,7 +70,7 @@ def test_place_is_held_for_an_autopilot_that_takes_it_as_a_whole_and_where_nothi
 
 
 def test_drone_behind_its_free_place_is_asked_to_fly_faster_and_one_with_a_held_place_is_not() -> None:
-    free, held = (setpoint(_memory(Phase.DESCEND), _inputs(std_s), CONFIG) for std_s in (JITTER_S, 0.0))
+    free, held = (setpoint(_memory(Phase.DESCEND), _inputs(std_s), SITUATION, CONFIG) for std_s in (JITTER_S, 0.0))
     assert free is not None
     assert held is not None
     assert (free.is_place_free, held.is_place_free) == (True, False)

@@ -36,12 +36,19 @@ def _held(flight: Flight, *, falls_m_s2: float, jolt_m_s2: float | None) -> None
     flight.step()
 
 
-def _stopped() -> Flight:
+def _jolted(seen_m: float | None) -> Flight:
+    """The drone just above the pad after a jolt; its range finder, if there is one, sees something under its feet."""
     flight = _just_above_the_pad()
-    seen_m = 0.02 + CONFIG.touchdown.range_finder_height_m
-    range_down = RangeReading(t_ns=flight.t_ns, distance_m=seen_m, up_m=flight.own.position_enu_m[2])
-    flight.view = replace(flight.view, range_down=range_down)
+    if seen_m is not None:
+        distance_m = seen_m + CONFIG.touchdown.range_finder_height_m
+        range_down = RangeReading(t_ns=flight.t_ns, distance_m=distance_m, up_m=flight.own.position_enu_m[2])
+        flight.view = replace(flight.view, range_down=range_down)
     _held(flight, falls_m_s2=-3.0, jolt_m_s2=80.0)
+    return flight
+
+
+def _stopped(seen_m: float | None = 0.02) -> Flight:
+    flight = _jolted(seen_m)
     assert flight.phase is Phase.TOUCHDOWN
     assert flight.memory.progress.stopped_by_pad
     return flight
@@ -58,10 +65,15 @@ def _forced_after_s(flight: Flight, *, falls_m_s2: float, limit_s: float = 2.0) 
 
 
 @pytest.mark.slow
-def test_motors_go_off_though_the_pad_has_left_and_the_estimate_still_sinks() -> None:
-    after_s = _forced_after_s(_stopped(), falls_m_s2=0.4)
+@pytest.mark.parametrize("seen_m", [0.02, None])
+def test_motors_go_off_though_the_pad_has_left_and_the_estimate_still_sinks(seen_m: float | None) -> None:
+    after_s = _forced_after_s(_stopped(seen_m), falls_m_s2=0.4)
     assert after_s is not None
     assert HOLD_S <= after_s <= HOLD_S + 0.25  # a disarm is asked for again every 0.2 s
+
+
+def test_jolt_that_the_range_finder_contradicts_is_none_of_the_pad() -> None:
+    assert not _jolted(CONFIG.touchdown.range_height_max_m + 0.05).memory.progress.stopped_by_pad
 
 
 def test_motors_stay_on_where_nothing_holds_the_drone_up() -> None:
