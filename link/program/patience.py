@@ -6,7 +6,9 @@ from types import TracebackType
 from typing import Self
 
 _AFTER_S = 3.0
-_WORDS = "loading the numerics; after an installation or an update they are compiled first, which takes a minute or two"
+PATIENCE = (
+    "loading the numerics; after an installation or an update they are compiled first, which takes a minute or two"
+)
 
 
 class Patience:
@@ -18,7 +20,7 @@ class Patience:
     """
 
     def __init__(self, program: str, after_s: float = _AFTER_S) -> None:
-        self._timer = threading.Timer(after_s, lambda: sys.stderr.write(f"{program}: {_WORDS}\n"))
+        self._timer = threading.Timer(after_s, lambda: sys.stderr.write(f"{program}: {PATIENCE}\n"))
         self._timer.daemon = True
 
     def __enter__(self) -> Self:

@@ -92,16 +92,16 @@ def test_a_program_that_dies_ends_the_run_with_one_line_that_names_it(tmp_path: 
         victim = next(child for child in children if f"{name}.log" in Path(f"/proc/{child.pid}/fd/1").readlink().name)
         victim.kill()
         assert run.wait() == 2
-        assert len(run.err.all) == 1, run.err.all
-        assert run.err.all[0].startswith(f"scenarios: {name} was ended by SIGKILL: ")
-        assert str((tmp_path / "latest").resolve().name) in run.err.all[0]
+        assert len(run.told) == 1, run.err.all
+        assert run.told[0].startswith(f"scenarios: {name} was ended by SIGKILL: ")
+        assert str((tmp_path / "latest").resolve().name) in run.told[0]
         assert all_end(children)
 
 
 def test_page_of_a_run_is_served_until_it_is_interrupted_and_all_programs_have_ended(tmp_path: Path) -> None:
     with Programs() as programs:
         run = start_run(programs, tmp_path, "--speed", "3", "--view")
-        address = run.out.wait_for("view: ").removeprefix("view: ")
+        address = run.out.wait_for("view: ").removeprefix("view: ").split()[0]
 
         def is_served() -> bool:
             assert run.runs, run.err.all
@@ -116,5 +116,5 @@ def test_page_of_a_run_is_served_until_it_is_interrupted_and_all_programs_have_e
         assert len(children) == len(NAMES) + 1
         run.send(signal.SIGINT)
         assert run.wait() == 130
-        assert run.err.all == []
+        assert run.told == []
         assert all_end(children)
