@@ -123,6 +123,9 @@ def test_commands_can_be_denied_by_the_configuration() -> None:
     station.setup.run(0.2)
     assert station.answers(START) == [(mavlink.MAV_RESULT_DENIED, 255)]
     assert station.setup.node.phase is Phase.IDLE
+    station.send(mavlink.MAVLink_param_set_message(*OWN, b"DL_WAIT_ALT", 7.3, REAL32))
+    station.setup.run(0.2)
+    assert station.setup.node.system.config == config
 
 
 def test_component_tells_who_it_is_and_refuses_what_it_does_not_know() -> None:

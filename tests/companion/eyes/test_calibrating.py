@@ -2,6 +2,7 @@
 
 import math
 from functools import cache
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -86,7 +87,7 @@ def test_no_corner_covers_nothing_and_many_shots_nearly_all() -> None:
 
 
 @pytest.mark.slow  # twelve pictures are rendered in full and searched in all passes
-def test_rendered_pictures_in_a_folder_give_their_camera(tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_rendered_pictures_in_a_folder_give_their_camera(tmp_path: Path) -> None:
     rng = np.random.default_rng(4)
     for index in range(14):
         roll, pitch = rng.uniform(-0.6, 0.6, 2).tolist()
