@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullLocator
 
 from scenarios.campaigns.intervals import mean_band
+from scenarios.reports.estimate_track import EstimateTrack
 from scenarios.reports.figure_files import BLUE, LIGHT, MIDDLE, VERMILLION
 from scenarios.reports.motion_figure import shade
-from scenarios.reports.estimate_track import EstimateTrack
 from scenarios.reports.run_data import RunData
 from scenarios.reports.run_shown import FLOWN, Array, Flags, landing_window, title
 
