@@ -49,11 +49,11 @@ def _funnel(run: RunData) -> Figure:
         axes.plot(distance_m[contact], height_m[contact], color=DARK, marker="v", linestyle="none", label="contact")
     descent = run.config.descent
     cone_m = np.array([0.0, _CONE_M])
-    axes.plot(descent.cone_radius_at_pad_m + descent.cone_slope * cone_m, cone_m, color=MIDDLE, label="descent cone")
+    axes.plot(descent.cone.radius_at_pad_m + descent.cone.slope * cone_m, cone_m, color=MIDDLE, label="descent cone")
     axes.axvline(0.5 * min(run.scenario.vehicle.pad_size_m), color=MIDDLE, linestyle=":", label="pad's edge")
     axes.set(xlabel="distance from pad's centre [m]", ylabel="height of the feet above the pad [m]", title=title(run))
     reach_m = float(
-        np.max(distance_m[approaching], initial=descent.cone_radius_at_pad_m + descent.cone_slope * _CONE_M)
+        np.max(distance_m[approaching], initial=descent.cone.radius_at_pad_m + descent.cone.slope * _CONE_M)
     )
     axes.set_xlim(0.0, 1.05 * reach_m)
     axes.legend(loc="lower right")
