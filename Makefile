@@ -39,7 +39,7 @@ demo: .venv/.kernels
 check: fast lint
 
 fast: .venv/.kernels
-	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "not slow and not wire"
+	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder --hypothesis-profile=quick -m "not slow and not wire"
 
 # What keeps time with the clock runs after the rest: what mostly waits three at a time, what takes both cores by itself.
 # A module's tests share what they fly; in the order of the files the many short ones come last.

@@ -38,6 +38,7 @@ from link.program.cli import (
     make_app,
     run_app,
 )
+from link.program.patience import Patience
 
 if TYPE_CHECKING:
     from companion.config.companion import CompanionConfig
@@ -147,27 +148,28 @@ def companion(
         zenoh = stack.enter_context(
             open_layout(endpoints, ros2_options(ros2, ros2_map), keys, (f"/{drone}", "companion"))
         )
-        from companion.runtime.build import build_node
-        from companion.runtime.loop import run
-        from companion.runtime.open_links import open_links
-        from companion.runtime.options import Links, LoopOptions
+        with Patience("companion"):
+            from companion.runtime.build import build_node
+            from companion.runtime.loop import run
+            from companion.runtime.open_links import open_links
+            from companion.runtime.options import Links, LoopOptions
 
-        if folder is not None or foxglove is not None:
-            from companion.recording.sink import CompanionSink, MessageStores
+            if folder is not None or foxglove is not None:
+                from companion.recording.sink import CompanionSink, MessageStores
 
-            stores = _stores(folder, foxglove, settings, keys, system_id=system_id, dry_run=dry_run)
-            recorder = BackgroundRecorder(CompanionSink(MessageStores(stores), keys, settings.descent))
-            stack.callback(recorder.close)
-        node = build_node(
-            settings,
-            keys,
-            system_id=system_id,
-            dry_run=dry_run,
-            is_component=True,
-            records_input=tlog is not None,
-            recorder=recorder,
-            signing=signing,
-        )
+                stores = _stores(folder, foxglove, settings, keys, system_id=system_id, dry_run=dry_run)
+                recorder = BackgroundRecorder(CompanionSink(MessageStores(stores), keys, settings.descent))
+                stack.callback(recorder.close)
+            node = build_node(
+                settings,
+                keys,
+                system_id=system_id,
+                dry_run=dry_run,
+                is_component=True,
+                records_input=tlog is not None,
+                recorder=recorder,
+                signing=signing,
+            )
         transport.receive(0.0)  # what has come meanwhile is old, and its time of receipt is not known
         options = LoopOptions(
             device=mavlink,

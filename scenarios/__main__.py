@@ -2,7 +2,7 @@
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -72,6 +72,7 @@ def run_command(
     as_json: JsonOption = False,
 ) -> int:
     """Run a landing and score it on ground truth; exit code 1 when it does not land."""
+    from link.program.patience import Patience
     from scenarios.catalogue.catalogue import load_scenario
     from scenarios.catalogue.firmware_option import with_firmware
     from scenarios.catalogue.world_names import run_seed
@@ -84,9 +85,17 @@ def run_command(
     view_port = view_command.port_of_run(lockstep=lockstep, as_json=as_json) if view else None
     folder = run_folder(out, scenario.name)
     options = RunOptions(seed=run_seed(name, seed), speed=speed, folder=folder, record=record, view_port=view_port)
-    with Reporter(scenario, folder, as_json=as_json) as reporter:
+    with Reporter(scenario, folder, as_json=as_json) as reporter, Patience("scenarios") as patience:
+
+        def progress(*told: Any) -> None:
+            patience.end()
+            reporter.progress(*told)
+
         run = run_in_lockstep if lockstep else run_over_wire
-        outcome = run(scenario, options, reporter.progress)
+        try:
+            outcome = run(scenario, options, progress)
+        except UserError as error:
+            raise UserError(f"{error} (what was written: {folder})") from error
     return reporter.conclude(outcome)
 
 

@@ -12,6 +12,7 @@ from hypothesis import settings
 from link.program.clock import spare_present_objects
 
 settings.register_profile("repeatable", derandomize=True, deadline=None)
+settings.register_profile("quick", derandomize=True, deadline=None, max_examples=20)  # make check
 settings.register_profile("anew", deadline=None)  # make fuzz
 settings.load_profile("repeatable")
 

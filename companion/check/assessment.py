@@ -68,15 +68,6 @@ _FIX_AGE_SHARE = 0.5  # of what aborts a landing
 _FIX_STD_GOOD_M = 0.3
 
 
-def assess_links(open_to_strangers: Sequence[str]) -> list[Finding]:
-    """Return a line for each link that is open to somebody without a key, or one that none is."""
-    if not open_to_strangers:
-        return [pass_line("links", "open to nobody without a key, or to this machine only")]
-    advice = "use keys (companion keys, --zenoh-config, --signing-key), or a network on which nobody else is"
-    reason = "whoever reaches it can end the landing, or fly the drone"
-    return [_finding("links", text, Level.WARN, advice, reason) for text in open_to_strangers]
-
-
 def assess(
     autopilot: AutopilotFacts, vehicle: VehicleFacts | None, speed_m_s: float, config: CompanionConfig
 ) -> list[Finding]:

@@ -134,12 +134,13 @@ class _Question:
 
 
 def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
-    from companion.check.assessment import assess, assess_links
+    from companion.check.assessment import assess
     from companion.check.detector import judge_detector
+    from companion.check.links import assess_links
 
     vehicle, detector = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.chase)
     seen = assess(session.reader.facts(), vehicle, asked.speed_m_s, asked.config)
-    return [*seen, *judge_detector(detector, asked.config), *assess_links(asked.open_links)]
+    return [*seen, *judge_detector(detector, asked.speed_m_s, asked.config), *assess_links(asked.open_links)]
 
 
 def _show(findings: "list[Finding]", speed_m_s: float, *, as_json: bool) -> int:

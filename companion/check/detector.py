@@ -47,8 +47,8 @@ class DetectorReader:
         )
 
 
-def judge_detector(seen: DetectorFacts, config: CompanionConfig) -> list[Finding]:
-    """Return the lines on the detector."""
+def judge_detector(seen: DetectorFacts, speed_m_s: float, config: CompanionConfig) -> list[Finding]:
+    """Return the lines on the detector, for a vehicle of `speed_m_s`, and on what cannot be known without one."""
     if seen.sightings:
         return [_rate(seen), *_age(seen, config), *_accuracy(seen, config)]
     if seen.refused_why is not None:
@@ -58,9 +58,18 @@ def judge_detector(seen: DetectorFacts, config: CompanionConfig) -> list[Finding
     if config.silent_vehicle is not None:
         return [_line("detector", "none", Level.FAIL, "start pad-detector: nothing else places a silent vehicle")]
     if config.receiver_frames is ReceiverFrames.ONE:
-        return [pass_line("detector", "none, and both receivers have one frame")]
+        return [pass_line("detector", "none, and both receivers have one frame"), _stamps(speed_m_s, config)]
     advice = "start pad-detector, or check --drone and -e; without one only RTK of one source places the pad"
-    return [_line("detector", "none", Level.WARN, advice)]
+    return [_line("detector", "none", Level.WARN, advice), _stamps(speed_m_s, config)]
+
+
+def _stamps(speed_m_s: float, config: CompanionConfig) -> Finding:
+    off_m, room_m = speed_m_s * config.abort.fix_ahead_max_s, config.descent.cone_radius_at_pad_m
+    found = f"off by {1e3 * config.abort.fix_ahead_max_s:.0f} ms they put the pad {off_m:.2f} m off"
+    advice = (
+        "let the vehicle's receiver date its fixes by GNSS, not a program as they arrive; only a detector would tell"
+    )
+    return _line("vehicle stamps", found, Level.PASS if off_m <= room_m else Level.WARN, advice)
 
 
 def _line(name: str, found: str, level: Level, advice: str) -> Finding:

@@ -1,8 +1,9 @@
 """Commands for the companion from ground stations and scripts, and their acknowledgements, without I/O.
 
-MAV_CMD_USER_1 starts a landing, USER_2 holds it, USER_3 aborts it. A start is acknowledged as in progress, once a
-second with its percentage, until it has ended. Each has to name the component: nothing that a ground station sends to
-all components does any of it. Source: MAVLink command protocol, https://mavlink.io/en/services/command.html.
+MAV_CMD_USER_1 starts a landing, USER_2 holds it, USER_3 aborts it. A start is acknowledged as in progress with its
+percentage, once a second and with each phase, until it has ended. Each has to name the component: nothing that a ground
+station sends to all components does any of it.
+Source: MAVLink command protocol, https://mavlink.io/en/services/command.html.
 """
 
 from collections import deque
@@ -58,6 +59,7 @@ class StationCommands:
         self._running: _Asked | None = None
         self._answered: dict[_Asked, tuple[int, int]] = {}
         self._progress = Timer(_PROGRESS_NS)
+        self._told: Phase | None = None
 
     def take(self, message: Message, local_ns: int) -> list[Message]:
         """Take a COMMAND_LONG or COMMAND_INT of ours; return what is to be answered at once."""
@@ -97,8 +99,7 @@ class StationCommands:
         if not reply.accepted:
             return [asked.acknowledge(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)]
         if asked.number == _START:
-            self._running = asked
-            self._progress.restart()
+            self._running, self._told = asked, None
             return []  # the first of its progress follows at once
         self._note(asked, mavlink.MAV_RESULT_ACCEPTED, local_ns)
         return [asked.acknowledge(mavlink.MAV_RESULT_ACCEPTED)]
@@ -109,6 +110,9 @@ class StationCommands:
         if running is None:
             return []
         if phase in _PERCENT:
+            if phase is not self._told:
+                self._told = phase
+                self._progress.restart()
             is_due = self._progress.is_due(local_ns)
             return [running.acknowledge(mavlink.MAV_RESULT_IN_PROGRESS, _PERCENT[phase])] if is_due else []
         self._running = None

@@ -47,7 +47,8 @@ class MavlinkComponent:
             elif kind == COMMAND_CANCEL_ID:
                 self._send(self._commands.cancel(message))
             else:
-                config, told = answers(message, config, may_change=phase not in FLYING_PHASES)
+                may_change = config.takes_mavlink_commands and phase not in FLYING_PHASES
+                config, told = answers(message, config, may_change=may_change)
                 self._send(told)
         return config
 

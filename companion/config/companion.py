@@ -114,7 +114,7 @@ class CompanionConfig(StrictModel):
     # A vehicle without telemetry; none: the vehicle tells where it is, and how its pad lies on it.
     silent_vehicle: SilentVehicleConfig | None = None
     stops_unused_streams: bool = True  # on the companion's own link; false where others listen on it, too
-    guide: Guide = Guide.SETPOINTS
+    guide: Guide = Guide.SETPOINTS  # the companion flies by setpoints, or tells the autopilot's own precision landing
     # Whoever sends to the autopilot's link can start and break off a landing by it, as it can command the autopilot.
     takes_mavlink_commands: bool = True
     pad_on_map: PadOnMap = PadOnMap.FOLLOW_TARGET  # told at 2 Hz, by MAVLink

@@ -90,6 +90,9 @@ class ImmConfig(StrictModel):
     course_speed_min_m_s: Positive = 1.0
     heading_known_std_rad: Positive = 0.5  # worse than this the heading is not told
     curvature_std_rad_m: Positive = 0.1  # at the start; a car's tightest turn is some 0.2
+    # Of drivers in curves, 0.2 g: streets for 30 to 60 km/h are built with side frictions of 0.28 to 0.17 (AASHTO 2011,
+    # table 3-7). For the forecast of a vehicle of which only sightings tell.
+    turning_std_m_s2: Positive = 2.0
     # The change of the grade in vertical curves of streets: the root mean square of 1 % in K for the least K of crests
     # (2, 4, 7, 11 m) and sags (6, 9, 13, 18 m) for 30 to 60 km/h (AASHTO Green Book 2011, 3.4.6). Faster roads bend
     # less: sags are made for the comfort of 0.3 m/s^2. Curves are 10 m long and longer.

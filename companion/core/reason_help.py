@@ -1,10 +1,9 @@
 """What each reason means and what to do about it, from `reasons.toml` beside this file."""
 
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from importlib.resources import files
-from typing import Any
 
 from companion.core.reasons import Reason
 
@@ -30,11 +29,11 @@ class ReasonHelp:
     remedy: str
 
 
-def reason_helps(values: Any) -> Iterator[ReasonHelp]:
+def reason_helps(values: Iterable[tuple[str, object]]) -> Iterator[ReasonHelp]:
     """Yield the help of every reason, group by group.
 
     Args:
-        values: the configuration whose values the texts tell, such as a `CompanionConfig`.
+        values: the names and values that the texts tell, such as those of a `CompanionConfig`.
 
     Raises:
         ValueError: the file has a name that no reason has, or lacks one.

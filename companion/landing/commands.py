@@ -10,7 +10,12 @@ from companion.situation.situation import Situation, vehicle_stands
 from link.messages import Command, CommandReply
 
 _ON_ROOF_M = 1.0  # above or below it: the road is farther below
-_EVENTS = {Command.START: Event.START, Command.ABORT: Event.ABORT, Command.HOLD: Event.HOLD}
+_EVENTS = {
+    Command.START: Event.START,
+    Command.START_ANYWAY: Event.START,  # the question that it skips is asked before the step
+    Command.ABORT: Event.ABORT,
+    Command.HOLD: Event.HOLD,
+}
 
 
 def answer(
@@ -26,17 +31,18 @@ def answer(
         obstacle: why no landing can be done, None when one can.
     """
     event = _EVENTS[command]
-    if phase is Phase.TAKEOFF and command is not Command.START and not situation.autopilot.armed:
+    is_start = event is Event.START
+    if phase is Phase.TAKEOFF and not is_start and not situation.autopilot.armed:
         event = Event.CALLED_OFF  # on the ground there is nothing to hold
     flies = situation.autopilot.in_control and situation.autopilot.armed
-    if phase is Phase.HOLD and command is Command.START and not flies:
+    if phase is Phase.HOLD and is_start and not flies:
         event = Event.START_AGAIN  # called off before the autopilot gave control: it has to be asked for again
-    if phase is Phase.ABORT and command is not Command.START:
+    if phase is Phase.ABORT and not is_start:
         return None, CommandReply(accepted=True, reason="")  # the climb goes on, but to no retry
     if next_phase(phase, event) is phase:
         return None, _refuse(Cause(Reason.NOTHING_TO_DO, (command.value, phase.value)))
     missing = None
-    if command is Command.START:
+    if is_start:
         missing = _missing_for_start(situation) or _rides_along(situation, config) or obstacle
     if missing is not None:
         return None, _refuse(missing)

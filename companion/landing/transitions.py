@@ -26,6 +26,7 @@ BRAKING_M_S2 = 2.0
 _OUTAGES = frozenset(condition.reason for condition in ABORTS if condition.is_outage)
 _COMMANDED = {
     Command.START: Cause(Reason.OPERATOR_STARTS),
+    Command.START_ANYWAY: Cause(Reason.OPERATOR_STARTS),
     Command.ABORT: Cause(Reason.OPERATOR_ABORTS),
     Command.HOLD: Cause(Reason.OPERATOR_HOLDS),
 }
@@ -43,7 +44,7 @@ def take_events(
         if event is not None:
             memory = _enter(memory, event, _COMMANDED[inputs.command], situation, config)
         if reply.accepted:
-            may_retry = inputs.command is Command.START
+            may_retry = inputs.command in (Command.START, Command.START_ANYWAY)
             memory = replace(memory, progress=replace(memory.progress, may_retry=may_retry))
     progress = update_wait(memory, situation, config)
     held = update_held(progress.held, progress.phase, situation, config, others=OBSTACLES)

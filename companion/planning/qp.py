@@ -6,9 +6,12 @@ solver state survives a call, so the same problem gives the same bits in any ord
 
 import importlib
 import math
-from typing import Any, Protocol
+from collections.abc import Mapping
+from types import ModuleType
+from typing import Protocol, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from companion.config.planning import SolverKind
 from companion.core.data import Array
@@ -123,11 +126,20 @@ OSQP_STATUS = {
 """All of OSQP's statuses; unknown ones count as FAILED."""
 
 
+class _Daqp(Protocol):
+    """What is used of the library."""
+
+    def solve(
+        self, H: Array, f: Array, A: Array, upper: Array, lower: Array, sense: NDArray[np.int32], /
+    ) -> tuple[Array, float, int, Mapping[str, float]]:
+        """Return the minimiser, its cost, the exit flag and figures of the way there."""
+
+
 class DaqpSolver:
     """DAQP, a dual active-set method (Arnstrom, Bemporad, Axehill 2022)."""
 
     def __init__(self) -> None:
-        self._daqp: Any = importlib.import_module("daqp")
+        self._daqp = cast("_Daqp", importlib.import_module("daqp"))
 
     def call(self, H: Array, f: Array, A: Array, lower: Array, upper: Array) -> QpSolution:
         """Return the answer; the meaning of the arguments is the interface's."""
@@ -147,8 +159,8 @@ class OsqpSolver:
     ITERATIONS_MAX = 20000
 
     def __init__(self) -> None:
-        self._osqp: Any = importlib.import_module("osqp")
-        self._sparse: Any = importlib.import_module("scipy.sparse")
+        self._osqp: ModuleType = importlib.import_module("osqp")
+        self._sparse: ModuleType = importlib.import_module("scipy.sparse")
 
     def call(self, H: Array, f: Array, A: Array, lower: Array, upper: Array) -> QpSolution:
         """Return the answer; the meaning of the arguments is the interface's."""

@@ -64,7 +64,7 @@ class CommandDesk:
             if refusal is not None:
                 self.answer([refusal])
             elif self._asked:
-                node.request(Command.START if command is Command.START_ANYWAY else command)
+                node.request(command)
                 return
 
     def answer(self, replies: list[CommandReply]) -> None:

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from link.program.printable import printable
+
 _RECENT_NS = 5_000_000_000
 _AGAIN_NS = 10_000_000_000
 _WORDS_MAX = 90  # of the reason of one refusal, which quotes what a peer sent
@@ -42,15 +44,17 @@ class Refusals:
             now_ns: monotonic.
         """
         self.total += 1
-        kind = self._kinds.setdefault((what, why), _Kind(0, words, now_ns))
-        kind.count, kind.words, kind.newest_ns = kind.count + 1, words[:_WORDS_MAX], now_ns
+        kind = self._kinds.setdefault((what, why), _Kind(0, "", now_ns))
+        kind.count, kind.words, kind.newest_ns = kind.count + 1, printable(words)[:_WORDS_MAX], now_ns
 
     def recent(self, now_ns: int) -> str:
         """Return what has been refused most in the last seconds, empty if nothing has."""
         found = [
-            (kind.count, kind.sentence(what)) for (what, _), kind in self._kinds.items() if _is_recent(kind, now_ns)
+            (kind.count, -len(what), kind.sentence(what))
+            for (what, _), kind in self._kinds.items()
+            if _is_recent(kind, now_ns)
         ]
-        return max(found)[1] if found else ""
+        return max(found)[-1] if found else ""
 
     def news(self, now_ns: int) -> list[str]:
         """Return what is to be logged now: each kind at its first refusal, and again while its count rises."""

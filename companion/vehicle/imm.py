@@ -120,7 +120,8 @@ class ImmModel:
             noise = self._noises(state)[1]
             modes = judgement.expect_manoeuvre(modes, state.unmeasured_s, numbers.dwell_s, noise)
         modes, nis, gate_nis = judgement.take_reading(modes, reading, numbers.lever_m, numbers.course)
-        turn_age_s = 0.0 if measurement.quantity in TURNS else state.turn_age_s
+        tells_turn = measurement.quantity in TURNS and self.placed_by is Quantity.POSITION
+        turn_age_s = 0.0 if tells_turn else state.turn_age_s  # what is only seen to turn is taken for a car
         updated = ImmState(
             modes=modes,
             fix_bias_variance_m2=bias_variance,
@@ -172,6 +173,8 @@ class ImmModel:
 
     def forecast(self, state: ImmState, t_ns: int, offset_s: Array) -> Forecast:
         """Return the future along the present curvature, with an acceleration that fades and stops at standstill."""
+        if self.placed_by is Quantity.PAD:
+            state = self._as_driven(state, t_ns)
         position, velocity, acceleration, yaw, grade, std, heading_variance = forecasts.forecast_modes(
             state.modes, _own(offset_s), self._noises(state), self.numbers.motion, self._known_variance
         )
@@ -227,6 +230,23 @@ class ImmModel:
         _, covariances, weights = state.modes
         variance = float(weights @ covariances[:, 0, 0])
         return variance < 0.25 * (self.config.frame_offset_std_m**2 + state.fix_bias_variance_m2)
+
+    def _as_driven(self, state: ImmState, t_ns: int) -> ImmState:
+        """Return the state with what is known of drivers: how hard they turn.
+
+        What was seen for a second only may as well be a curve that nobody drives, and a vehicle that nothing more is
+        heard of would be sought along it. For a forecast only: fused once for each, it would be believed too much.
+        """
+        means, _, weights = state.modes
+        speed_m_s = max(math.hypot(*(weights @ means)[2:4].tolist()), self.config.course_speed_min_m_s)
+        straight = Measurement(
+            t_ns=t_ns,
+            quantity=Quantity.YAW_RATE,
+            value=np.zeros(1),
+            covariance=np.array([[(self.config.turning_std_m_s2 / speed_m_s) ** 2]]),
+        )
+        update = self.update(state, straight)
+        return state if update is None else update.state
 
     def _move_frame(self, state: ImmState, sighting: Measurement) -> ImmState:
         """Open place and offset as one unknown."""

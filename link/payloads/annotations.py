@@ -38,6 +38,7 @@ def annotations_message(
             outline_colors=[],
             fill_color=make_color(_NO_COLOR),
             thickness=_THICK_PX,
+            metadata=[],
         )
         for pixels, color in outlines
     ]
@@ -51,10 +52,11 @@ def annotations_message(
             font_size=_FONT_PX,
             text_color=make_color(color),
             background_color=make_color(_SHADE),
+            metadata=[],
         )
     ]
     name = f"{PACKAGE}/ImageAnnotations"
-    message = make_message("ImageAnnotations", circles=[], points=points, texts=texts)
+    message = make_message("ImageAnnotations", timestamp=stamp, circles=[], points=points, texts=texts, metadata=[])
     return RosMessage(
         topic=topic, type_name=name, payload=bytes(typestore().serialize_cdr(message, name, little_endian=True))
     )

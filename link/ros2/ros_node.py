@@ -12,7 +12,7 @@ from link.ros2 import attachment
 from link.ros2.attachment import Attachment
 from link.ros2.names import ADMIN_SPACE, Endpoint, EntityKind, Qos, Token, data_key, parse_token, token_key
 from link.ros2.type_hash import NOT_SUPPORTED
-from link.zenoh.library_config import open_library_session
+from link.zenoh.library_config import is_matched, open_library_session
 from link.zenoh.options import ZenohOptions
 from link.zenoh.replies import Replies
 
@@ -48,8 +48,7 @@ class RosPublisher:
     @property
     def is_heard(self) -> bool:
         """Whether anybody subscribes."""
-        status: object = getattr(self._publisher, "matching_status", True)  # its stub calls it a plain truth value
-        return bool(getattr(status, "matching", status))
+        return is_matched(self._publisher)
 
 
 class RosNode:

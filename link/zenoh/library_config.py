@@ -36,6 +36,12 @@ def open_library_session(options: ZenohOptions, *, stamps: bool = False) -> zeno
         raise UserError(_open_failure(options, config, str(error))) from error
 
 
+def is_matched(entity: object) -> bool:
+    """Return whether anybody is there for a publisher or a querier of the library; True where it cannot tell."""
+    status: object = getattr(entity, "matching_status", True)  # its stub calls it a plain truth value
+    return bool(getattr(status, "matching", status))
+
+
 def _config(options: ZenohOptions) -> zenoh.Config:
     config = zenoh.Config() if options.config_file is None else _config_from_file(options)
     if options.mode is not None:

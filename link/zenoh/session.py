@@ -16,7 +16,7 @@ import zenoh
 from link.payloads.checks import PayloadError
 from link.zenoh.alive import Alive
 from link.zenoh.inbox import Inbox, Sample, WakeUp
-from link.zenoh.library_config import open_library_session
+from link.zenoh.library_config import is_matched, open_library_session
 from link.zenoh.options import DEFAULT_ENDPOINT, ZenohOptions
 from link.zenoh.replies import Replies
 
@@ -64,8 +64,7 @@ class ZenohSession:
 
     def is_heard(self, key: str, encoding: str) -> bool:
         """Return whether anybody subscribes to `key` now; `encoding` as it is published there."""
-        status: object = self._publisher(key, encoding).matching_status  # its stub calls it a plain truth value
-        return bool(getattr(status, "matching", status))
+        return is_matched(self._publisher(key, encoding))
 
     def subscribe(self, key: str, *, capacity: int = INBOX_CAPACITY, bytes_max: int | None = None) -> Inbox:
         """Return the inbox of all that is published on `key`, which may hold wildcards."""

@@ -46,7 +46,7 @@ def topics_command(
     zenoh_config: ZenohConfigOption = None,
     insecure: InsecureOption = False,
 ) -> None:
-    """List topics and services with their types and nodes, as the liveliness tokens of the graph tell them."""
+    """List topics, services and actions with their types and nodes, as the liveliness tokens of the graph tell them."""
     from link.errors import UserError
     from link.ros2.ros_node import read_graph
     from link.zenoh.options import zenoh_options
@@ -61,27 +61,37 @@ def topics_command(
         return
     for row in rows:
         sys.stdout.write(f"{row['topic']}  {row['type']}\n")
-        for role in ("publishers", "subscriptions", "services", "clients"):
+        for role in _ROLES:
             if row[role]:
-                sys.stdout.write(f"    {role}: {', '.join(row[role])}\n")
+                sys.stdout.write(f"    {role.replace('_', ' ')}: {', '.join(row[role])}\n")
+
+
+_ROLES = ("publishers", "subscriptions", "services", "clients", "actions", "action_clients")
+_ACTION = "/_action/feedback"
+_ACTION_TYPE = "_FeedbackMessage"
+_ACTION_ROLES = {"publishers": "actions", "subscriptions": "action_clients"}
 
 
 def topic_rows(tokens: "list[Token]") -> list[dict[str, Any]]:
-    """Return a row for each topic and service with the full names of its nodes."""
+    """Return a row for each topic, service and action with the full names of its nodes, without what ROS hides."""
     found: dict[tuple[str, str], dict[str, Any]] = {}
     for token in tokens:
         if token.endpoint is None:
             continue
-        topic, type_name = token.endpoint.name, token.endpoint.type_name
-        row = found.setdefault(
-            (topic, type_name),
-            {"topic": topic, "type": type_name, "publishers": [], "subscriptions": [], "services": [], "clients": []},
-        )
+        name, type_name, role = token.endpoint.name, token.endpoint.type_name, f"{token.kind.name.lower()}s"
+        if name.endswith(_ACTION) and role in _ACTION_ROLES:
+            name, type_name, role = (
+                name.removesuffix(_ACTION),
+                type_name.removesuffix(_ACTION_TYPE),
+                _ACTION_ROLES[role],
+            )
+        if "/_" in name:
+            continue
+        row = found.setdefault((name, type_name), {"topic": name, "type": type_name} | {one: [] for one in _ROLES})
         node = f"{token.namespace.rstrip('/')}/{token.node}"
-        nodes = row[f"{token.kind.name.lower()}s"]
-        if node not in nodes:
-            nodes.append(node)
+        if node not in row[role]:
+            row[role].append(node)
     for row in found.values():
-        for role in ("publishers", "subscriptions", "services", "clients"):
+        for role in _ROLES:
             row[role].sort()
     return [found[key] for key in sorted(found)]

@@ -15,6 +15,7 @@ from typing import IO, Self
 
 import psutil  # type: ignore[import-untyped]  # it has no annotations
 
+from link.program.patience import PATIENCE
 from scenarios.processes.programs import MODULES
 
 DEADLINE_S = 90.0
@@ -87,6 +88,11 @@ class Program:
     @property
     def runs(self) -> bool:
         return self._process.poll() is None
+
+    @property
+    def told(self) -> list[str]:
+        """The lines on stderr, but for the one that a slow computer's user is to be patient."""
+        return [line for line in self.err.all if not line.endswith(PATIENCE)]
 
     def send(self, number: signal.Signals) -> None:
         self._process.send_signal(number)

@@ -14,8 +14,8 @@ pytestmark = pytest.mark.wire
 def last_line(companion: Program) -> str:
     """Return the one line on stderr with which it ended, by exit code 2."""
     assert companion.wait() == 2
-    assert len(companion.err.all) == 1, companion.err.all
-    line = companion.err.all[0]
+    assert len(companion.told) == 1, companion.err.all
+    line = companion.told[0]
     assert line.startswith("companion: ")
     return line
 

@@ -11,7 +11,7 @@ import pytest
 
 from tests.integration.programs import Program, Programs, all_end, until
 
-pytestmark = pytest.mark.wire
+pytestmark = [pytest.mark.wire, pytest.mark.alone]
 
 NAMES = ("ground-vehicle", "sim-autopilot", "companion")
 
@@ -36,7 +36,6 @@ def read(folder: Path, name: str) -> dict[str, Any]:
     return table
 
 
-@pytest.mark.alone
 def test_two_runs_at_once_both_land_and_leave_their_folders(tmp_path: Path) -> None:
     seeds = (1, 2)
     with Programs() as programs:
@@ -60,7 +59,6 @@ def test_two_runs_at_once_both_land_and_leave_their_folders(tmp_path: Path) -> N
         assert (folder / "flight.tlog").stat().st_size > 100_000
 
 
-@pytest.mark.alone
 def test_a_run_that_ends_by_its_time_limit_has_its_result_and_its_timing(tmp_path: Path) -> None:
     short = tmp_path / "short.toml"
     short.write_text('base = "straight_5"\ntime_limit_s = 9.0\n', encoding="utf-8")
@@ -92,16 +90,16 @@ def test_a_program_that_dies_ends_the_run_with_one_line_that_names_it(tmp_path: 
         victim = next(child for child in children if f"{name}.log" in Path(f"/proc/{child.pid}/fd/1").readlink().name)
         victim.kill()
         assert run.wait() == 2
-        assert len(run.err.all) == 1, run.err.all
-        assert run.err.all[0].startswith(f"scenarios: {name} was ended by SIGKILL: ")
-        assert str((tmp_path / "latest").resolve().name) in run.err.all[0]
+        assert len(run.told) == 1, run.err.all
+        assert run.told[0].startswith(f"scenarios: {name} was ended by SIGKILL: ")
+        assert str((tmp_path / "latest").resolve().name) in run.told[0]
         assert all_end(children)
 
 
 def test_page_of_a_run_is_served_until_it_is_interrupted_and_all_programs_have_ended(tmp_path: Path) -> None:
     with Programs() as programs:
-        run = start_run(programs, tmp_path, "--speed", "3", "--view")
-        address = run.out.wait_for("view: ").removeprefix("view: ")
+        run = start_run(programs, tmp_path, "--view")
+        address = run.out.wait_for("view: ").removeprefix("view: ").split()[0]
 
         def is_served() -> bool:
             assert run.runs, run.err.all
@@ -116,5 +114,5 @@ def test_page_of_a_run_is_served_until_it_is_interrupted_and_all_programs_have_e
         assert len(children) == len(NAMES) + 1
         run.send(signal.SIGINT)
         assert run.wait() == 130
-        assert run.err.all == []
+        assert run.told == []
         assert all_end(children)

@@ -56,6 +56,7 @@ def on_deck_m(pilot: Pilot) -> tuple[float, float]:
     return float(pilot.position[1]) - vehicle_y_m(pilot.t_s), float(pilot.position[2]) - ROOF_M
 
 
+@pytest.mark.slow
 def test_on_a_deck_at_five_metres_a_second_a_plain_disarm_is_refused_and_a_forced_one_works() -> None:
     pilot = Pilot(deck=deck)
     landed_on_the_roof(pilot)

@@ -60,6 +60,7 @@ def test_whatever_is_received_it_goes_on_and_sends_only_finite_numbers(
     assert np.isfinite(node.state.position_enu_m).all()
 
 
+@pytest.mark.slow
 def test_a_setpoint_that_cannot_be_flown_leaves_the_flight_undisturbed() -> None:
     garbage = (
         setpoint((nan, 0.0, -5.0)),

@@ -31,6 +31,7 @@ def test_gains_that_nothing_could_fly_with_are_taken_for_the_defaults(driver: Dr
     assert driver.cascade(dict.fromkeys(chain(*driver.gain_names), value)) == driver.cascade({})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("driver", DRIVERS, ids=["px4", "ardupilot"])
 @given(data=st.data())
 @settings(max_examples=50, deadline=None)

@@ -90,6 +90,7 @@ def estimated(model: ResponseModel, reports: Array) -> Array:
     return np.array(states)
 
 
+@pytest.mark.slow
 def test_estimate_errs_by_its_covariance(model: ResponseModel) -> None:
     truth, reports = drone(model, 1, 200.0)
     error = (estimated(model, reports) - truth)[500:]
@@ -97,6 +98,7 @@ def test_estimate_errs_by_its_covariance(model: ResponseModel) -> None:
     assert ratio == pytest.approx(np.ones(STATES), abs=0.2)
 
 
+@pytest.mark.slow
 def test_drone_spreads_as_far_as_the_model_says(model: ResponseModel) -> None:
     truth, _ = drone(model, 2, 2000.0)
     assert truth[500:].std(axis=0) / np.sqrt(np.diag(model.spread)) == pytest.approx(np.ones(STATES), abs=0.2)

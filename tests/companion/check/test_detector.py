@@ -9,6 +9,8 @@ from companion.config.companion import CompanionConfig, ReceiverFrames, SilentVe
 from link.messages import PadSighting
 from link.payloads import cdr
 
+SPEED_M_S = 8.0
+
 CONFIG = CompanionConfig()
 SILENT = CONFIG.model_copy(update={"silent_vehicle": SilentVehicleConfig()})
 ONE_FRAME = CONFIG.model_copy(update={"receiver_frames": ReceiverFrames.ONE})
@@ -36,13 +38,13 @@ def test_rate_lateness_and_accuracy_are_those_of_its_sightings() -> None:
     assert facts.rate_hz == pytest.approx(25.0)
     assert facts.age_s == pytest.approx(0.07)
     assert facts.std_m == pytest.approx(0.03)
-    assert {one.level for one in judge_detector(facts, CONFIG)} == {Level.PASS}
+    assert {one.level for one in judge_detector(facts, SPEED_M_S, CONFIG)} == {Level.PASS}
 
 
 def test_bytes_that_are_no_sighting_are_told() -> None:
     reader = DetectorReader()
     reader.sighting(b"\x00\x01\x00\x00no", 0, START_NS)
-    (line,) = judge_detector(reader.facts(is_alive=True), CONFIG)
+    (line,) = judge_detector(reader.facts(is_alive=True), SPEED_M_S, CONFIG)
     assert line.level is Level.FAIL
     assert "refused" in line.found
 
@@ -59,7 +61,7 @@ def test_bytes_that_are_no_sighting_are_told() -> None:
 def test_a_detector_that_is_not_there_matters_as_far_as_it_is_needed(
     facts: DetectorFacts, config: CompanionConfig, level: Level
 ) -> None:
-    (line,) = judge_detector(facts, config)
+    line, *_ = judge_detector(facts, SPEED_M_S, config)
     assert line.level is level
 
 
@@ -77,6 +79,16 @@ def test_what_is_late_or_poor_is_named_with_what_to_change(
     changed: dict[str, float | None], name: str, level: Level
 ) -> None:
     facts = DetectorFacts(**{field: getattr(GOOD, field) for field in GOOD.__slots__} | changed)
-    by_name = {one.name: one for one in judge_detector(facts, CONFIG)}
+    by_name = {one.name: one for one in judge_detector(facts, SPEED_M_S, CONFIG)}
     assert by_name[name].level is level
     assert by_name[name].advice
+
+
+@pytest.mark.parametrize(("speed_m_s", "level"), [(5.0, Level.PASS), (8.0, Level.WARN)])
+def test_stamps_that_put_the_pad_beside_the_drone_are_warned_of_where_nothing_sees_the_pad(
+    speed_m_s: float, level: Level
+) -> None:
+    """Stamps 60 ms off were a contact beside the pad at 15 m/s."""
+    _, stamps = judge_detector(DetectorReader().facts(is_alive=False), speed_m_s, CONFIG)
+    assert (stamps.name, stamps.level) == ("vehicle stamps", level)
+    assert f"{0.05 * speed_m_s:.2f} m" in stamps.found

@@ -52,6 +52,7 @@ def _ready() -> Station:
     return station
 
 
+@pytest.mark.slow
 def test_start_for_a_vehicle_that_was_never_heard_is_refused() -> None:
     station = Station()
     station.setup.run(3.0)
@@ -61,6 +62,7 @@ def test_start_for_a_vehicle_that_was_never_heard_is_refused() -> None:
     assert station.setup.node.phase is Phase.IDLE
 
 
+@pytest.mark.slow
 def test_start_is_in_progress_until_an_abort_cancels_it() -> None:
     station = _ready()
     station.command(START)
@@ -82,6 +84,7 @@ def test_start_is_cancelled_by_its_own_message() -> None:
     assert station.answers(START)[-1] == (CANCELLED, 255)
 
 
+@pytest.mark.slow
 def test_command_that_is_sent_again_is_not_done_again() -> None:
     station = _ready()
     station.command(START)
@@ -120,6 +123,9 @@ def test_commands_can_be_denied_by_the_configuration() -> None:
     station.setup.run(0.2)
     assert station.answers(START) == [(mavlink.MAV_RESULT_DENIED, 255)]
     assert station.setup.node.phase is Phase.IDLE
+    station.send(mavlink.MAVLink_param_set_message(*OWN, b"DL_WAIT_ALT", 7.3, REAL32))
+    station.setup.run(0.2)
+    assert station.setup.node.system.config == config
 
 
 def test_component_tells_who_it_is_and_refuses_what_it_does_not_know() -> None:
@@ -156,6 +162,7 @@ def test_value_that_was_set_is_flown_by_and_none_is_set_in_flight() -> None:
     assert station.heard("PARAM_VALUE")[-1].param_value == pytest.approx(7.3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("on_map", "kinds"), [(PadOnMap.NONE, 0), (PadOnMap.FOLLOW_TARGET, 1), (PadOnMap.ADSB, 2)])
 def test_pad_is_told_where_it_is(on_map: PadOnMap, kinds: int) -> None:
     setup = Setup(is_component=True, config=CompanionConfig(pad_on_map=on_map))

@@ -2,6 +2,7 @@
 
 import math
 from functools import cache
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -44,6 +45,7 @@ def shots(count: int, tilt_rad: float = 0.6, *, is_fisheye: bool = False) -> tup
     return tuple(found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("camera", [CAMERA, FISHEYE], ids=["pinhole", "fisheye"])
 def test_camera_is_found_again(camera: Camera) -> None:
     found, quality = calibrate(shots(16, is_fisheye=camera is FISHEYE), BOARD, SIZE_PX, camera.model)
@@ -61,6 +63,7 @@ def test_tags_that_do_not_fit_are_left_out() -> None:
     assert found.focal_px == pytest.approx(CAMERA.focal_px, abs=2.0)
 
 
+@pytest.mark.slow
 def test_too_few_pictures_and_a_board_that_was_never_tilted_say_what_to_do() -> None:
     with pytest.raises(UserError, match="8 are needed"):
         calibrate(shots(12)[:7], BOARD, SIZE_PX, "pinhole")
@@ -84,7 +87,7 @@ def test_no_corner_covers_nothing_and_many_shots_nearly_all() -> None:
 
 
 @pytest.mark.slow  # twelve pictures are rendered in full and searched in all passes
-def test_rendered_pictures_in_a_folder_give_their_camera(tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_rendered_pictures_in_a_folder_give_their_camera(tmp_path: Path) -> None:
     rng = np.random.default_rng(4)
     for index in range(14):
         roll, pitch = rng.uniform(-0.6, 0.6, 2).tolist()

@@ -57,6 +57,7 @@ def test_files_of_random_bytes_are_refused(data: bytes) -> None:
         gray_of_file(CompressedPicture(t_ns=1, format="jpeg", data=data))
 
 
+@pytest.mark.slow
 @given(shades=arrays(np.uint8, (720, 1280), elements=st.integers(0, 255), fill=st.integers(0, 255)))
 @settings(max_examples=15, deadline=None)
 def test_no_picture_stops_the_detector(shades: np.ndarray[tuple[int, int], np.dtype[np.uint8]]) -> None:

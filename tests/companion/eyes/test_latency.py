@@ -46,6 +46,7 @@ def flown(late_s: float, *, share: float = 1.0, count: int = 240) -> tuple[list[
     return attitudes, sightings
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("late_s", [-0.03, 0.0, 0.043, 0.31])
 def test_rotation_tells_the_latency_to_its_own_deviation(late_s: float) -> None:
     found = fit_latency(*flown(late_s))
@@ -63,6 +64,7 @@ def test_too_few_sightings_tell_nothing() -> None:
         fit_latency(*flown(0.04, count=SIGHTINGS_MIN - 1))
 
 
+@pytest.mark.slow
 def test_stamps_of_another_clock_are_named() -> None:
     attitudes, _ = flown(0.04)
     with pytest.raises(UserError, match="clocks"):

@@ -39,6 +39,7 @@ def own(one: Case) -> bytes:
     )
 
 
+@pytest.mark.slow
 def test_a_frame_brings_the_sighting_that_the_companion_reads() -> None:
     one = case(4.0, board=BOARD)
     node = EyesNode(system(), KEYS)
@@ -52,6 +53,7 @@ def test_a_frame_brings_the_sighting_that_the_companion_reads() -> None:
     assert (node.counts.frames, node.counts.seen) == (1, 1)
 
 
+@pytest.mark.slow
 def test_a_frame_without_the_pad_brings_nothing_but_news() -> None:
     node = EyesNode(system(), KEYS)
     node.look(captured(case(4.0, board=BOARD)), shows=False)
@@ -60,6 +62,7 @@ def test_a_frame_without_the_pad_brings_nothing_but_news() -> None:
     assert node.take_news() == ["pad lost"]
 
 
+@pytest.mark.slow
 def test_ids_of_another_board_are_told_once() -> None:
     node = EyesNode(system(), KEYS)
     frame = captured(case(4.0, board=nested_board(1.5, 63)))

@@ -49,6 +49,7 @@ def test_tracking_gives_what_a_search_gives() -> None:
     assert tracked.sighting.position_flu_m == pytest.approx(searched.sighting.position_flu_m, abs=0.002)
 
 
+@pytest.mark.slow
 def test_tracking_follows_a_pad_that_moves_as_before() -> None:
     # 0.1 m between frames is a third of the picture at this range: it is where it was going
     memory, sights = EMPTY, []

@@ -13,8 +13,7 @@ from link.records import replace
 from tests.companion.facts import CONFIG, drone_at, pad_at, situation
 from tests.companion.world import PAD_HEIGHT_M, SET_MODE, Flight, KnownVehicle, own_state
 
-ASKED = (Command.START, Command.ABORT, Command.HOLD)  # the desk makes a start of "start anyway"
-PAIRS = list(itertools.product(ASKED, Phase))
+PAIRS = list(itertools.product(Command, Phase))
 STARTABLE = {Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD}
 
 
@@ -31,8 +30,9 @@ def test_accepted_command_changes_the_phase_or_is_said_during_the_climb(command:
 
 
 @pytest.mark.parametrize("phase", Phase)
-def test_start_is_accepted_where_a_landing_can_begin_only(phase: Phase) -> None:
-    _, reply = answer(Command.START, phase, situation(), CONFIG)
+@pytest.mark.parametrize("command", [Command.START, Command.START_ANYWAY])
+def test_start_is_accepted_where_a_landing_can_begin_only(phase: Phase, command: Command) -> None:
+    _, reply = answer(command, phase, situation(), CONFIG)
     assert reply.accepted == (phase in STARTABLE)
 
 

@@ -79,6 +79,7 @@ def on_pad() -> Situation:
     return changed(situation(0.0, 0.1), reference=reference_at(-0.5 * DESCENT.press_depth_m), range_height_m=0.01)
 
 
+@pytest.mark.slow
 @settings(max_examples=400, deadline=None)
 @given(facts=airborne(), source=st.sampled_from(SOURCES), value=ABSURD)
 def test_no_single_faulty_source_makes_a_contact_in_the_air(facts: Situation, source: str, value: float) -> None:

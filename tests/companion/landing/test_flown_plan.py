@@ -162,6 +162,7 @@ class LateFlight(Flight):
         return outputs
 
 
+@pytest.mark.slow
 def test_chase_of_limited_jerk_swings_no_farther_past_the_pad_where_steps_come_late() -> None:
     """With the acceleration of one period for each step of two, half of the jerk would be left."""
     config = CONFIG.model_copy(update={"limits": CONFIG.limits.model_copy(update={"jerk_max_m_s3": 4.0})})

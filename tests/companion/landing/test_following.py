@@ -101,6 +101,7 @@ OFF: dict[str, Any] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(OFF))
 def test_drone_that_is_lastingly_off_its_setpoints_is_brought_over_the_pad(name: str) -> None:
     led, left = (max(_flown(*OFF[name], corrects_lag=corrects_lag)) for corrects_lag in (True, False))
@@ -108,6 +109,7 @@ def test_drone_that_is_lastingly_off_its_setpoints_is_brought_over_the_pad(name:
     assert led < 0.25 * left
 
 
+@pytest.mark.slow
 def test_drone_that_follows_exactly_is_not_led_off_the_pad() -> None:
     assert max(_flown(0.0, (0.0, 0.0), Px4Driver().cascade({}), corrects_lag=True)) < 0.05
 
@@ -146,6 +148,7 @@ def test_model_of_an_autopilot_that_carries_setpoints_on_never_ends_low(speed_m_
     assert flight.history[-3:] == [Phase.CHASE, Phase.ALIGN, Phase.DESCEND]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jerk_max_m_s3", JERKS_M_S3)
 def test_descent_sinks_no_faster_than_the_fastest_rate(jerk_max_m_s3: float) -> None:
     config = CONFIG.model_copy(

@@ -64,6 +64,7 @@ def _forced_after_s(flight: Flight, *, falls_m_s2: float, limit_s: float = 2.0) 
     return None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seen_m", [0.02, None])
 def test_motors_go_off_though_the_pad_has_left_and_the_estimate_still_sinks(seen_m: float | None) -> None:
     after_s = _forced_after_s(_stopped(seen_m), falls_m_s2=0.4)

@@ -40,6 +40,7 @@ def _flying() -> Setup:
     return setup
 
 
+@pytest.mark.slow
 def test_node_arms_changes_mode_and_streams_only_after_a_start() -> None:
     setup = _ready()
     setup.run(3.0, setup.fix)
@@ -145,6 +146,7 @@ def _in_phase_s(setup: Setup) -> float:
     return (setup.node.inputs.monotonic_ns - setup.node.memory.progress.since_ns) * 1e-9
 
 
+@pytest.mark.slow
 def test_response_of_the_autopilot_is_made_anew_when_a_gain_changes_and_only_then() -> None:
     setup = Setup(autopilot=FakePx4(parameters={"MPC_XY_P": (0.8, mavlink.MAV_PARAM_TYPE_REAL32)}))
     setup.run(8.0)

@@ -34,6 +34,7 @@ def test_memory_without_a_fix_gives_no_estimate(kind: EstimatorKind) -> None:
     assert chosen.newest_fix_ns(memory) is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", [11, 12])
 def test_covariance_is_symmetric_and_positive_after_every_step(kind: EstimatorKind, seed: int) -> None:

@@ -50,6 +50,7 @@ def speed_error_m_s(truth: Drive, t_s: float, arrivals: list[tuple[int, Measurem
     return float(np.linalg.norm(estimate.velocity_enu_m_s[:2]) - np.linalg.norm(truth.at(t_s)[1][:2]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("deceleration_m_s2", [2.5, 6.0])
 def test_brake_is_known_a_tenth_of_a_second_after_it_began(deceleration_m_s2: float) -> None:
     truth, t_s = braking(deceleration_m_s2), BRAKES_AT_S + 0.1
@@ -63,6 +64,7 @@ def test_brake_is_known_a_tenth_of_a_second_after_it_began(deceleration_m_s2: fl
     assert abs(np.mean(feeling)) < 0.035 * deceleration_m_s2
 
 
+@pytest.mark.slow
 def test_gravity_on_a_climb_is_not_taken_for_an_acceleration() -> None:
     truth = climb(0.08, 8.0)
     slope = np.arctan(truth.grade)

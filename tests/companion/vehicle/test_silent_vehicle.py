@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from companion.config.estimation import EstimatorConfig
+from companion.config.estimation import EstimatorConfig, ImmConfig
 from companion.core.data import Measurement, Quantity
 from companion.vehicle.estimator import Estimator, EstimatorMemory
 from companion.vehicle.factory import make_estimator
@@ -68,3 +68,22 @@ def test_a_pad_that_is_seen_elsewhere_for_good_is_started_on_anew() -> None:
     assert estimate is not None
     assert estimate.position_enu_m == pytest.approx(elsewhere, abs=0.3)
     assert np.linalg.norm(estimate.velocity_enu_m_s) < 2.0
+
+
+def beside_m(turning_std_m_s2: float) -> float:
+    """How far beside a straight road a vehicle is sought 3 s after it was seen for 0.8 s, root mean square."""
+    config = EstimatorConfig(imm=ImmConfig(turning_std_m_s2=turning_std_m_s2))
+    found_m = []
+    for seed in range(20, 26):
+        truth, chosen = straight(9.0), make_estimator(config, is_silent=True)
+        seen = [one for one in only(Quantity.PAD, truth, seed) if one.t_ns < now_ns(0.8)]
+        forecast = chosen.forecast(chosen.fuse(None, seen), seen[-1].t_ns, np.array([0.0, 3.0]))
+        assert forecast is not None
+        position, velocity, _, _ = truth.at((seen[-1].t_ns - now_ns(0.0)) * 1e-9 + 3.0)
+        left = np.array([-velocity[1], velocity[0], 0.0]) / np.linalg.norm(velocity)
+        found_m.append(float(left @ (forecast.position_enu_m[1] - position)))
+    return float(np.sqrt(np.mean(np.square(found_m))))
+
+
+def test_what_was_seen_for_a_moment_is_sought_along_a_curve_that_somebody_drives() -> None:
+    assert beside_m(ImmConfig().turning_std_m_s2) < 0.9 * beside_m(1e4)

@@ -178,3 +178,20 @@ def test_of_what_is_unsigned_only_a_radios_own_status_is_taken(version: int) -> 
     radio = mavlink.MAVLink_radio_status_message(1, 2, 3, 4, 5, 6, 7)
     frames = [message.pack(other, force_mavlink1=version == 1) for message in (radio, beat())]
     assert [Signing(KEY, 5, NOW).accepts(frame) for frame in frames] == [True, False]
+
+
+@pytest.mark.parametrize("length", [0, 31, 33])
+def test_key_of_another_length_is_refused(length: int) -> None:
+    with pytest.raises(ValueError, match=f"not {length}"):
+        Signing(bytes(length))
+
+
+def test_last_timestamp_is_signed_again_and_none_is_beyond_it() -> None:
+    frame = Signing(KEY, timestamp=2**48 - 1).sign(MavlinkCodec(1, 1).encode(beat()))
+    assert frame[-12:-6] == b"\xff" * 6
+
+
+def test_first_frame_of_a_stream_is_taken_up_to_a_minute_late_and_not_longer() -> None:
+    for late, is_taken in ((60 * S, True), (60 * S + 1, False)):
+        frame = MavlinkCodec(1, 1, signing=Signing(KEY, 3, NOW - late - 1)).encode(beat())  # signs the next one
+        assert Signing(KEY, 5, NOW).accepts(frame) is is_taken

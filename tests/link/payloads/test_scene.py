@@ -43,11 +43,12 @@ def read_back(folder: Path, messages: list[RosMessage]) -> dict[str, Any]:
 
 
 def published_fields() -> dict[str, list[str]]:
-    """The fields of the messages of a SceneUpdate, by name, as Foxglove's library has them in protobuf."""
-    files = FileDescriptorSet.FromString(foxglove.messages.SceneUpdate.get_schema().data)
+    """The fields of the messages of a scene and of a picture's annotations, as Foxglove's library has them."""
+    kinds = foxglove.messages.SceneUpdate, foxglove.messages.ImageAnnotations
     return {
         message.name: [field.name for field in message.field]
-        for file in files.file
+        for kind in kinds
+        for file in FileDescriptorSet.FromString(kind.get_schema().data).file
         if file.package == "foxglove"
         for message in file.message_type
     }

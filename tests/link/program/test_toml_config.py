@@ -144,6 +144,7 @@ def test_one_bad_number_in_a_long_list_is_told_by_its_place_in_one_short_line(wr
     assert str(caught.value) == f"x.toml: {expected}"
 
 
+@pytest.mark.slow
 @given(speeds_m_s=st.lists(st.text(min_size=100), min_size=2), source=st.text("abc/", max_size=300), name=st.integers())
 def test_whatever_is_wrong_in_a_file_is_one_line_of_at_most_200_characters_for_each_of_three_mistakes(
     speeds_m_s: list[str], source: str, name: int

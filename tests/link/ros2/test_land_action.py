@@ -17,6 +17,7 @@ from link.ros2.options import Ros2Options
 from link.ros2.session import Ros2Session, open_ros2_session
 from link.ros2.type_hash import service_hash
 from link.zenoh.keys import Keys
+from link.zenoh.library_config import is_matched
 from link.zenoh.session import ZenohOptions, open_session
 from tests.link.zenoh.test_session import free_endpoint, until
 
@@ -81,6 +82,7 @@ class Client:
             session.declare_subscriber(self._key("status"), lambda one: self.statuses.append(one.payload.to_bytes())),
         )
         ours.serve_later(KEYS.landing_command, self._take)
+        self._wait_for_server()
 
     def call(self, part: str, request: bytes) -> bytes:
         replies = self._session.get(self._key(part), payload=HEAD + request, timeout=20.0)
@@ -111,6 +113,11 @@ class Client:
         until(self.ours, lambda: bool(self.results))
         status, success, length = struct.unpack_from("<b?2xI", self.results[0], 4)
         return status, success, self.results[0][12 : 12 + length - 1].decode()
+
+    def _wait_for_server(self) -> None:
+        """Wait, as a ROS client does, until the router has told this side of every service of the action."""
+        parts = [self._session.declare_querier(self._key(part)) for part in ("send", "cancel", "get")]
+        until(self.ours, lambda: all(is_matched(part) for part in parts))
 
     def _take(self, payload: bytes, reply: object) -> None:
         self.commands.append(json_messages.decode(Command, payload))

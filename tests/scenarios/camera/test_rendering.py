@@ -40,6 +40,7 @@ def shade_at(picture: NDArray[np.uint8], forward_m: float, left_m: float, view: 
     return float(picture[row - 1 : row + 2, column - 1 : column + 2].mean())
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_picture_and_another_one_other_noise() -> None:
     assert (render() == render()).all()
     assert (render(seed=1) != render(seed=2)).any()
@@ -52,6 +53,7 @@ def test_places_of_the_board_are_seen_where_the_camera_model_has_them() -> None:
     assert shade_at(picture, 0.68, -0.68) > 2.5 * shade_at(picture, 0.52, -0.52)
 
 
+@pytest.mark.slow
 def test_a_part_is_what_the_whole_has_there() -> None:
     # without their noise: large parts are rendered by one point a pixel, small ones by four
     box = Box(500, 250, 700, 450)
@@ -61,6 +63,7 @@ def test_a_part_is_what_the_whole_has_there() -> None:
     assert np.corrcoef(part.ravel(), there.ravel())[0, 1] > 0.98
 
 
+@pytest.mark.slow
 def test_the_drone_shades_the_pad_under_the_sun_and_not_under_clouds() -> None:
     sun = np.array([0.0, 0.0, 1.0])
     under = (ABOVE[0], ABOVE[1])
@@ -69,6 +72,7 @@ def test_the_drone_shades_the_pad_under_the_sun_and_not_under_clouds() -> None:
     assert shade_at(sunny, 0.68, 0.68) == pytest.approx(shade_at(cloudy, 0.68, 0.68), rel=0.1)
 
 
+@pytest.mark.slow
 def test_a_lamp_lights_what_is_near_and_nothing_far_off() -> None:
     lamp = Light(daylight_lx=0.1, lamp_lm=1500.0)
     far = replace(STILL, camera_m=40.0 * UP + ABOVE, drone_m=40.0 * UP + ABOVE)
@@ -76,6 +80,7 @@ def test_a_lamp_lights_what_is_near_and_nothing_far_off() -> None:
     assert np.percentile(render(lamp, far), 99) < 30
 
 
+@pytest.mark.slow
 def test_a_camera_that_turns_smears_edges_along_its_motion_only() -> None:
     turning = replace(STILL, turning_c_rad_s=np.array([0.0, 3.0, 0.0]))  # about the picture's vertical
     dusk = Light(daylight_lx=40.0)
@@ -87,6 +92,7 @@ def test_a_camera_that_turns_smears_edges_along_its_motion_only() -> None:
     assert across > 0.7
 
 
+@pytest.mark.slow
 def test_a_pad_far_beside_a_drone_on_the_road_takes_no_more_memory_than_one_in_view() -> None:
     # as a scenario begins: the vehicle 40 m away, in its roof's plane, and 8 ms of exposure at dusk
     beside = np.array([40.0, 2.0, ROOF_M - 1.4])

@@ -59,6 +59,7 @@ def test_plan_mixes_slices_and_scenarios() -> None:
         Plan.model_validate({**plan.model_dump(), "populations": {}})
 
 
+@pytest.mark.slow
 def test_world_that_cannot_be_drawn_is_a_row_with_its_error(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object) -> World:
         raise ArithmeticError("no road is that\n short")

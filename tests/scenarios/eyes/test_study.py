@@ -14,6 +14,7 @@ from tests.companion.eyes.frames import MOUNTING, ROOF_M
 CAR = Vehicle(board=load_board(None).config, length_m=4.2, width_m=1.8, roof_height_m=ROOF_M)
 
 
+@pytest.mark.slow
 def test_drawn_frames_are_within_their_ranges_and_show_a_place_near_the_pad() -> None:
     rng = np.random.default_rng(1)
     renderer = Renderer(CAR, 0.0, rng)

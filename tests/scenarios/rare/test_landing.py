@@ -24,6 +24,7 @@ def scenarios(*args: object) -> int:
     return run_app("scenarios", app, ["rare", *(str(arg) for arg in args)])
 
 
+@pytest.mark.slow
 def test_noise_decides_the_landing_and_a_move_changes_it(tmp_path: Path) -> None:
     subject = Cell(cell=load_scenario(short_cell(tmp_path)))
     first, again, beside = (fly_landing(subject, NoiseInFlight(noise)) for noise in (FIRST, FIRST, BESIDE))
@@ -52,6 +53,7 @@ def test_chains_end_in_other_processes_as_in_this_one(tmp_path: Path) -> None:
         assert fly(walks) == [chains(walk) for walk in walks]
 
 
+@pytest.mark.slow
 def test_landings_that_raise_are_told_and_give_no_probability(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -68,6 +68,7 @@ def test_one_in_a_million_is_found_with_thousands_of_landings() -> None:
     assert population.flown < 10_000
 
 
+@pytest.mark.slow
 def test_both_ways_of_failing_are_found() -> None:
     margin_of = two_regions(1e-3)
     population = split_margin(margin_of, particles=100, seed=2)

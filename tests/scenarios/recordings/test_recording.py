@@ -199,6 +199,7 @@ def test_run_into_a_full_folder_ends_in_one_line_that_says_what_to_change(small_
 
 def test_view_of_a_recording_has_the_motion_the_phases_and_the_road(run: Path, flight: Flight) -> None:
     source = RecordedSource(run)
+    source.playing = True
     source.advance(0.0)
     halfway = source.advance(0.5 * source.duration_s)
     assert source.position_s == pytest.approx(0.5 * source.duration_s)
@@ -218,6 +219,7 @@ def test_view_of_a_real_flight_needs_no_truth(run: Path, tmp_path: Path) -> None
     for file in recording_files(run, "companion"):
         shutil.copy(file, tmp_path)
     source = RecordedSource(tmp_path)
+    source.playing = True
     source.advance(0.0)
     end = source.advance(source.duration_s)
     assert (source.road, end.drone_truth) == (None, None)

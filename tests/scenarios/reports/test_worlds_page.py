@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pytest
+
 from scenarios.campaigns.folder import create_folder, open_journal
 from scenarios.campaigns.landing_task import Flown
 from scenarios.campaigns.plan import make_plan
@@ -20,6 +22,7 @@ def campaign(folder: Path) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_page_shows_rates_causes_and_the_worst_and_opens_offline(tmp_path: Path) -> None:
     page = write_report(campaign(tmp_path / "worlds"), None).read_text(encoding="utf-8")
     assert "<h3>world:urban: tiers in % (95 % intervals)</h3>" in page

@@ -66,6 +66,7 @@ def test_contact_is_less_safe_the_nearer_its_feet_are_to_the_edge_of_the_pad() -
     assert margins[-1] == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(
     error_m=st.tuples(st.floats(-1.0, 1.0), st.floats(-1.5, 1.5)),

@@ -48,6 +48,7 @@ def pad_from(body: BodyTruth, sighting: PadSighting) -> NDArray[np.float64]:
     return np.array(body.position_enu_m) + rotate(body.orientation_wxyz, sighting.position_flu_m)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("age_s", [0.0, 0.01])
 def test_the_pad_is_seen_where_it_is_at_the_drones_own_time(age_s: float) -> None:
     body = drone((0.4, -0.3, 6.0), age_s)
@@ -69,6 +70,7 @@ def test_a_pad_beside_or_above_the_camera_and_one_of_an_old_truth_is_not_seen(
     assert CameraSensor(SCENARIO, 3).sample(VEHICLE, drone(above_enu_m, age_s), 0.0) is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", [name for name in list_presets("camera") if name != "none"])
 def test_every_camera_sees_the_pad_from_three_metres_and_alike_for_the_same_seed(preset: str) -> None:
     scenario = load_scenario(f"straight_5+camera={preset}")

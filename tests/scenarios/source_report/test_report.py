@@ -130,6 +130,7 @@ def test_table_counts_landings_and_tells_their_median_and_range() -> None:
     json.dumps(cell, allow_nan=False)
 
 
+@pytest.mark.slow
 def test_printed_table_has_a_line_for_each_case_and_each_response() -> None:
     rows = [row_of(ReportTask(scenario="report_2", system="report", seed=1), straight_flight([5.0], t_s=[6.0]))]
     out = io.StringIO()

@@ -1,6 +1,7 @@
 """Who may talk to the page, which can fly the drone."""
 
 from collections.abc import Iterator
+from pathlib import Path
 from urllib.request import urlopen
 
 import psutil  # type: ignore[import-untyped]  # it has no annotations
@@ -48,9 +49,10 @@ def listening() -> set[tuple[str, int]]:
     return {tuple(one.laddr) for one in psutil.Process().net_connections(kind="tcp") if one.status == "LISTEN"}
 
 
-def test_server_listens_on_one_port_of_loopback_and_on_no_other() -> None:
+def test_server_listens_on_one_port_of_loopback_and_on_no_other(tmp_path: Path) -> None:
+    write_client_page(tmp_path)
     before = listening()
-    server = open_server(0)
+    server = open_server(0, tmp_path)
     assert listening() - before == {("127.0.0.1", server.get_port())}
     server.stop()
 

@@ -117,6 +117,7 @@ LAWS = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.__name__)
 def test_law_holds_in_a_few_worlds(law: Callable[[World, Vehicle], None]) -> None:
     for name, seed in product(SLICES, FEW):

@@ -97,6 +97,7 @@ def rank_correlations(uniforms: list[list[float]]) -> np.ndarray:
     return matrix[np.triu_indices(len(uniforms[0]), 1)]
 
 
+@pytest.mark.slow
 def test_quantities_are_independent_of_each_other() -> None:
     names = [name for name in NAMES if not isinstance(WHOLE[name], Cases)][:60]
     worlds = [Draws(WHOLE, seed, {}) for seed in SEEDS]

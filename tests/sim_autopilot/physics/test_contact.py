@@ -71,6 +71,7 @@ def test_touchdown_bounces_less_than_two_centimetres(sink_m_s: float) -> None:
     assert flight.position_m[:, 2].min() > GEAR_HEIGHT_M - 0.03
 
 
+@pytest.mark.slow
 @given(
     st.tuples(*[st.floats(-4, 4)] * 2, st.floats(-6, 0)),
     st.tuples(*[st.floats(-6, 6)] * 3),
