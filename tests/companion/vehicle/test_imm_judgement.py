@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig
+from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig, ReceiversConfig
 from companion.core.data import Quantity
 from companion.vehicle import imm_judgement as judgement
 from companion.vehicle import imm_kernels as kernels
@@ -18,7 +18,9 @@ from tests.companion.vehicle.rides import estimator, now_ns
 from tests.companion.vehicle.test_imm_kernels import LEVER, NOISE, a_covariance, a_state
 
 DWELL_S = np.array([40.0, 0.4])
-SAME_FRAME = EstimatorConfig(imm=ImmConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
+SAME_FRAME = EstimatorConfig(
+    imm=ImmConfig(receivers=ReceiversConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
+)
 
 
 def two_modes(weight: float) -> mixing.Modes:
