@@ -34,6 +34,7 @@ from link.program.cli import (
     NamespaceOption,
     Ros2MapOption,
     Ros2Option,
+    SetOption,
     VehicleOption,
     ZenohConfigOption,
     make_app,
@@ -58,8 +59,9 @@ _TimeoutOption = Annotated[
 ]
 _DryRunOption = Annotated[bool, typer.Option("--dry-run", help="Do everything but send setpoints and commands.")]
 _UseSimTimeOption = Annotated[bool, typer.Option("--use-sim-time", help="Follow the simulation's clock on Zenoh.")]
-_AutopilotOption = Annotated[
-    AutopilotKind | None, typer.Option("--autopilot", help="In place of the configuration's kind of autopilot.")
+_FirmwareOption = Annotated[
+    AutopilotKind | None,
+    typer.Option("--firmware", metavar="px4|ardupilot", help="In place of what the autopilot says of itself."),
 ]
 _FramesOption = Annotated[
     ReceiverFrames | None,
@@ -83,12 +85,13 @@ def companion(
     context: typer.Context,
     mavlink: DeviceOption = "udpin:127.0.0.1:14540",
     config: ConfigOption = None,
+    changes: SetOption = None,
     print_config: _PrintConfigOption = False,
     start: _StartOption = False,
     timeout: _TimeoutOption = 60.0,
     dry_run: _DryRunOption = False,
     use_sim_time: _UseSimTimeOption = False,
-    autopilot: _AutopilotOption = None,
+    firmware: _FirmwareOption = None,
     receiver_frames: _FramesOption = None,
     guide: _GuideOption = None,
     system_id: SystemIdOption = 1,
@@ -114,13 +117,14 @@ def companion(
     if context.invoked_subcommand is not None:
         return
     from companion.config.companion import CompanionConfig
-    from link.program.toml_config import dump_toml, load_config
+    from link.program.settings import COMPANION, load_settings
+    from link.program.toml_config import dump_toml
 
     above = {
-        "autopilot": {"kind": autopilot and autopilot.value, "guide": guide and guide.value},
+        "autopilot": {"kind": firmware and firmware.value, "guide": guide and guide.value},
         "integrity": {"receiver_frames": receiver_frames and receiver_frames.value},
     }
-    settings = load_config(config, CompanionConfig, above)
+    settings = load_settings(config, CompanionConfig, COMPANION, changes, above)
     if start and settings.autopilot.guide is Guide.PRECLAND:
         raise UserError("--start: with --guide precland the autopilot's own mode begins the landing; leave one out")
     if print_config:

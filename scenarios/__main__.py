@@ -15,6 +15,7 @@ from link.program.cli import (
     ModeOption,
     MulticastOption,
     NamespaceOption,
+    SetOption,
     VehicleOption,
     ZenohConfigOption,
     make_app,
@@ -63,17 +64,20 @@ def run_command(
     seed: SeedOption = None,
     speed: Annotated[float, typer.Option("--speed", min=0.1, max=50.0, help="Simulated seconds a second.")] = 1.0,
     lockstep: Annotated[bool, typer.Option("--lockstep", help="In one process on a simulated clock.")] = False,
-    firmware: Annotated[str | None, typer.Option("--firmware", metavar="NAME", help="px4 or ardupilot.")] = None,
+    firmware: Annotated[
+        str | None, typer.Option("--firmware", metavar="px4|ardupilot", help="In place of the scenario's.")
+    ] = None,
+    changes: SetOption = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the run's folder is made.")] = Path("runs"),
     record: Annotated[
-        bool, typer.Option("--record/--no-record", help="Record what goes in and out of the companion, and the truth.")
+        bool, typer.Option(" /--no-record", help="Record neither the companion nor the truth; else both are, as MCAP.")
     ] = True,
     view: Annotated[bool, typer.Option("--view", help="Show the landing in the browser.")] = False,
     as_json: JsonOption = False,
 ) -> int:
     """Run a landing and score it on ground truth; exit code 1 when it does not land."""
     from link.program.patience import Patience
-    from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.changed import load_changed_scenario
     from scenarios.catalogue.firmware_option import with_firmware
     from scenarios.catalogue.world_names import run_seed
     from scenarios.commands.run_lines import Reporter
@@ -81,7 +85,7 @@ def run_command(
     from scenarios.recordings.run_folder import RunOptions, run_folder
     from scenarios.wire.run import run_over_wire
 
-    scenario = load_scenario(name if firmware is None else with_firmware(name, firmware))
+    scenario = load_changed_scenario(name if firmware is None else with_firmware(name, firmware), changes)
     view_port = view_command.port_of_run(lockstep=lockstep, as_json=as_json) if view else None
     folder = run_folder(out, scenario.name)
     options = RunOptions(seed=run_seed(name, seed), speed=speed, folder=folder, record=record, view_port=view_port)
@@ -108,6 +112,7 @@ def world_command(
     mavlink: Annotated[
         str, typer.Option("--mavlink", metavar="DEVICE", help="Where the companion listens.")
     ] = "udpout:127.0.0.1:14540",
+    changes: SetOption = None,
     namespace: NamespaceOption = "decklander",
     vehicle: VehicleOption = "vehicle",
     drone: DroneOption = "drone",
@@ -123,11 +128,11 @@ def world_command(
     from link.zenoh.keys import Keys
     from link.zenoh.options import zenoh_options
     from link.zenoh.session import open_session
-    from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.changed import load_changed_scenario
     from scenarios.catalogue.world_names import run_seed
     from scenarios.wire.world import WorldLoop
 
-    scenario = load_scenario(name)
+    scenario = load_changed_scenario(name, changes)
     keys = Keys(namespace, vehicle, drone)
     options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure, listens=True)
     with open_transport(mavlink, is_patient=True) as transport, open_session(options) as zenoh:

@@ -1,6 +1,7 @@
 """The `ground-vehicle` command."""
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
@@ -17,6 +18,7 @@ from link.program.cli import (
     NamespaceOption,
     Ros2MapOption,
     Ros2Option,
+    SetOption,
     VehicleOption,
     ZenohConfigOption,
     make_app,
@@ -114,6 +116,7 @@ def ground_vehicle(
     pad_height: _PadHeightOption = None,
     antenna_to_pad: _AntennaToPadOption = None,
     seed: _SeedOption = None,
+    changes: SetOption = None,
     use_sim_time: _UseSimTimeOption = False,
     depart_at_once: _DepartAtOnceOption = False,
     timeout: _TimeoutOption = 60.0,
@@ -151,9 +154,11 @@ def ground_vehicle(
                 "--pad and what else describes a pad are for a real vehicle: leave them out with --scenario, whose "
                 "file says pad_size_m, roof_height_m and antenna_flu_m of its [vehicle]"
             )
-        simulation = _Simulation(scenario, seed, depart_at_once, use_sim_time, timeout)
+        simulation = _Simulation(scenario, changes, seed, depart_at_once, use_sim_time, timeout)
         _drive(simulation, keys, open_zenoh)
         return
+    if changes:
+        raise UserError("--set changes a scenario: leave it out with a real vehicle, whose pad has options of its own")
     source = _source(gpsd, nmea, mavlink)
     from scenarios.vehicle_sources.pad import pad_geometry
 
@@ -163,6 +168,7 @@ def ground_vehicle(
 
 class _Simulation(NamedTuple):
     scenario: str
+    changes: Sequence[str] | None
     seed: int | None
     departs_at_once: bool
     uses_sim_time: bool
@@ -212,12 +218,12 @@ def _listen(source: _Source, pad: "PadGeometry", keys: "Keys", open_zenoh: "Open
 
 def _drive(simulation: _Simulation, keys: "Keys", open_zenoh: "OpenZenoh") -> None:
     """Publish a scenario's vehicle."""
-    from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.changed import load_changed_scenario
     from scenarios.catalogue.world_names import run_seed
     from scenarios.simulation.vehicle_node import VehicleNode, departing_at_once
     from scenarios.wire.vehicle_loop import VehicleLoop
 
-    driven = load_scenario(simulation.scenario)
+    driven = load_changed_scenario(simulation.scenario, simulation.changes)
     seed = run_seed(simulation.scenario, simulation.seed)
     driven = departing_at_once(driven) if simulation.departs_at_once else driven
     node = VehicleNode(driven, seed, keys, has_eyes=False)

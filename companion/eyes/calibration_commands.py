@@ -119,7 +119,7 @@ def latency_command(
     board: BoardOption = None,
     mounting: MountingOption = None,
     size: SizeOption = None,
-    seconds: Annotated[float, typer.Option("--seconds", min=3.0, max=600.0, help="For which it is turned.")] = 15.0,
+    seconds: Annotated[float, typer.Option("--duration", min=3.0, max=600.0, help="For which it is turned.")] = 15.0,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",
     mode: ModeOption = None,

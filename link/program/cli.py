@@ -26,6 +26,14 @@ _PANEL = "Zenoh"
 NamespaceOption = Annotated[str, typer.Option("--ns", metavar="NAME", help="Namespace of all Zenoh keys.")]
 VehicleOption = Annotated[str, typer.Option("--vehicle", metavar="ID", help="Name of the ground vehicle.")]
 DroneOption = Annotated[str, typer.Option("--drone", metavar="ID", help="Name of the drone.")]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change one setting, by its dotted key; over the file and the environment. May be repeated.",
+    ),
+]
 
 ModeOption = Annotated[
     str | None,

@@ -11,7 +11,7 @@ Examples = Mapping[str, Sequence[str]]
 
 NO_EXAMPLES: Examples = MappingProxyType({})
 
-_KINDS = {"float": "NUMBER", "int": "INTEGER"}
+_KINDS = {"float": "NUMBER", "int": "N"}
 """How a kind of value is written, by typer's name of it."""
 
 
