@@ -9,11 +9,11 @@ from link.messages import BodyTruth
 from scenarios.view.state import ViewState
 
 _INK = (45, 55, 72)
-_PLACE_M = (1.4, -3.4)  # of compass and scale from what the camera follows, beside the road
+_PLACE_M = (2.4, -4.6)  # of compass and scale from what the camera follows, beside the road
 _NORTH_M, _HEAD_M = 2.0, 0.3
 _SCALE_M, _TICK_M = 5.0, 0.2
 _RISE_M = 0.03  # over the ground, so that the grid does not cut them
-_DRONE_LABEL_M, _VEHICLE_LABEL_M = (0.0, 0.0, 0.35), (2.4, 0.0, 0.8)
+_DRONE_LABEL_M, _VEHICLE_LABEL_M = (0.0, 0.0, 0.35), (-2.3, 0.0, 0.1)
 
 
 class Marks:
@@ -33,7 +33,7 @@ class Marks:
         scene.add_label("/compass/north", "N", position=(0.0, _NORTH_M + 0.3, 0.0), anchor="center-center")
         scene.add_label("/compass/scale", f"{_SCALE_M:g} m", position=(0.0, -0.5, 0.0), anchor="center-center")
         self._drone = scene.add_label("/world/drone/label", "", position=_DRONE_LABEL_M, anchor="bottom-center")
-        self._vehicle = scene.add_label("/world/vehicle/label", "", position=_VEHICLE_LABEL_M, anchor="bottom-center")
+        self._vehicle = scene.add_label("/world/vehicle/label", "", position=_VEHICLE_LABEL_M, anchor="top-center")
 
     def show(self, state: ViewState, *, ground_m: float) -> None:
         """Move and write everything as it is now.

@@ -6,13 +6,13 @@ from typing import Any
 
 import viser
 
-from link.messages import Command, CommandReply, CompressedPicture
+from link.messages import Command, CommandReply, CompressedPicture, Vector3
 from scenarios.view.history import History
 from scenarios.view.panel_text import panel_text
 from scenarios.view.picture import pixels_of
 from scenarios.view.plots import Plots
 from scenarios.view.recorded import RecordedSource
-from scenarios.view.scene import FOLLOWED, Scene
+from scenarios.view.scene import CAMERAS, FOLLOWED, Scene
 from scenarios.view.state import ViewState
 
 _RATES = ("0.25", "0.5", "1", "2", "4")
@@ -90,6 +90,8 @@ class Panel:
 
     def add_camera_and_plots(self, *, with_cursor: bool) -> None:
         """Add what is below; the plots of a recording mark the instant that is shown."""
+        views = self._gui.add_button_group("Camera", tuple(CAMERAS))
+        views.on_click(lambda event: _place_camera(event.client, CAMERAS[views.value]))
         camera = self._gui.add_dropdown("Camera follows", FOLLOWED, initial_value=FOLLOWED[0])
         camera.on_update(lambda _: setattr(self._scene, "followed", camera.value))
         self._plots = Plots(self._gui, with_cursor=with_cursor)
@@ -129,6 +131,12 @@ class Panel:
     def _show_playing(button: Any, *, playing: bool) -> None:
         button.label = "Pause" if playing else "Play"
         button.icon = viser.Icon.PLAYER_PAUSE if playing else viser.Icon.PLAYER_PLAY
+
+
+def _place_camera(client: Any, place: tuple[Vector3, Vector3]) -> None:
+    """Move the camera of who asked for it; of a page that has been closed meanwhile there is none."""
+    if client is not None:
+        client.camera.position, client.camera.look_at = place
 
 
 def _small(text: str) -> str:

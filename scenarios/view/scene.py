@@ -4,6 +4,8 @@ The camera follows a vehicle by moving the world instead: everything hangs on on
 turning and zooming as it likes.
 """
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -32,8 +34,18 @@ _SIGMAS = 1.0
 _HOME_PAD = PadGeometry(size_m=(1.5, 1.5), height_m=1.5, antenna_to_pad_m=(0.0, 0.0, 0.0))
 _LEVEL: Quaternion = (1.0, 0.0, 0.0, 0.0)
 _CONE_PHASES = frozenset({"chase", "align", "descend"})
-_PLANNED_PHASES = _CONE_PHASES | {"takeoff", "waiting", "touchdown", "abort", "hold"}
+_PLANNED_PHASES = _CONE_PHASES | {"takeoff", "waiting", "abort", "hold"}
 _SKY_TOP, _SKY_HORIZON = (146, 186, 224), (226, 231, 223)
+CAMERAS: Mapping[str, tuple[Vector3, Vector3]] = MappingProxyType(
+    {
+        "chase": ((-5.6, -5.4, 4.2), (0.7, 0.5, 1.6)),
+        "side": ((0.6, -9.0, 2.6), (0.6, 0.0, 2.0)),
+        "top": ((-0.1, 0.0, 16.0), (0.0, 0.0, 0.0)),
+        "pad": ((-2.6, -1.6, 2.6), (0.0, 0.0, 1.6)),
+    }
+)
+"""Of each name: where the camera stands and what it looks at, from what it follows, along east, north and up."""
+
 FOLLOWED = ("vehicle", "drone", "nothing")
 
 
@@ -48,8 +60,7 @@ class Scene:
         scene.configure_default_lights(enabled=True, cast_shadow=True)
         scene.add_light_ambient("/ambient", intensity=1.6)
         scene.set_background_image(_sky())
-        server.initial_camera.position = (-5.6, -5.4, 4.2)
-        server.initial_camera.look_at = (0.7, 0.5, 1.6)
+        server.initial_camera.position, server.initial_camera.look_at = CAMERAS["chase"]
         self._world = scene.add_frame("/world", show_axes=False)
         scene.add_grid(
             "/world/ground",
