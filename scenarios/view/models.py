@@ -9,7 +9,7 @@ from link.messages import PadGeometry, Vector3
 from scenarios.view.shapes import box_edges, cone
 
 BLUE, ORANGE, GREEN, GREY = (0, 114, 178), (213, 94, 0), (0, 158, 115), (110, 118, 130)
-"""Told apart with any kind of colour vision: blue, vermillion and bluish green of Okabe and Ito."""
+"""Told apart with any kind of colour vision: blue, vermilion and bluish green of Okabe and Ito."""
 
 _BODY, _GLASS, _DARK, _WHITE = (186, 196, 208), (70, 84, 100), (40, 44, 52), (245, 245, 245)
 _CAR_M = (4.2, 1.8)  # where the vehicle does not tell: a car's length and width
