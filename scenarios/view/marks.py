@@ -45,7 +45,7 @@ class Marks:
         self._compass.position = (*_PLACE_M, ground_m + _RISE_M)
         status = state.status
         height_m = None if status is None else status.height_above_pad_m
-        _write(self._drone, "drone" if height_m is None else f"drone {height_m:.1f} m above the pad")
+        _write(self._drone, "drone" if height_m is None else f"drone {round(height_m, 1) + 0.0:.1f} m above the pad")
         speed = _speed_m_s(state.vehicle_truth)
         _write(self._vehicle, "vehicle" if speed is None else f"vehicle {speed:.1f} m/s")
 
