@@ -145,6 +145,7 @@ def command_command(
         str, typer.Argument(metavar="start|abort|hold|start_anyway", help="What the companion is asked for.")
     ],
     *,
+    as_json: JsonOption = False,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",
     mode: ModeOption = None,
@@ -155,6 +156,8 @@ def command_command(
     insecure: InsecureOption = False,
 ) -> int:
     """Send a command to the companion; exit code 1 when it is refused."""
+    import json
+
     from link.messages import Command
     from link.program.printable import printable
     from link.zenoh.keys import Keys
@@ -168,7 +171,8 @@ def command_command(
         raise UserError(f"command '{command}' does not exist: give one of {known}") from None
     options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
     reply = send_command(wanted, Keys(namespace, "vehicle", drone), options)
-    sys.stdout.write("accepted\n" if reply.accepted else f"refused: {printable(reply.reason)}\n")
+    told = "accepted" if reply.accepted else f"refused: {printable(reply.reason)}"
+    sys.stdout.write((json.dumps({"accepted": reply.accepted, "reason": reply.reason}) if as_json else told) + "\n")
     return 0 if reply.accepted else 1
 
 

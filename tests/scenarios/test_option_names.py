@@ -29,6 +29,12 @@ SAME = (
 )
 """Other words, and the one that is used."""
 
+PRINT_NO_RESULT = {
+    "companion", "companion keys", "pad-detector run", "pad-detector print", "ground-vehicle", "sim-autopilot",
+    "scenarios world", "scenarios figures", "scenarios report", "scenarios view", "scenarios camera",
+}  # fmt: skip
+"""They run until they are ended, or write files."""
+
 
 def commands(command: Any, name: str) -> Iterator[tuple[str, Any]]:
     """Yield a command and all below it, by their names."""
@@ -77,3 +83,10 @@ def test_every_program_has_version_help_and_completion() -> None:
         words = {word for one in options(command) for word in one.opts}
         assert {"--version", "--install-completion"} <= words, program
         assert {"-h", "--help"} <= set(command.context_settings["help_option_names"]), program
+
+
+def test_every_command_that_prints_a_result_prints_it_as_json_too() -> None:
+    for name, command in ALL:
+        words = {word for one in options(command) for word in one.opts}
+        groups_only = bool(getattr(command, "commands", None)) and not command.invoke_without_command
+        assert ("--json" in words) == (name not in PRINT_NO_RESULT and not groups_only), name
