@@ -35,7 +35,7 @@ SCENARIOS = {
     "view": ("scenarios view", "scenarios view runs/latest", "scenarios view runs/latest --foxglove 8765"),
     "falsify": ("scenarios falsify world:urban --landings 500 --seed 1 --out runs/urban",),
     "rare": ("scenarios rare brake_7+sensors=degraded+link=degraded --particles 100",),
-    "bench": ("scenarios bench", "scenarios bench --json"),
+    "bench": ("scenarios bench", "scenarios bench straight_5+sensors=nominal --against ../before"),
     "fuzz": ("scenarios fuzz --end autopilot --firmware ardupilot --link tcpin --frames 100000",),
     "faults": ("scenarios faults --workers 1 --firmware px4",),
     "fly": ("scenarios fly straight_5 --ship 5     # with ArduPilot's own simulation, started before",),
