@@ -149,11 +149,11 @@ def test_model_of_an_autopilot_that_carries_setpoints_on_never_ends_low(speed_m_
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("jerk_max_m_s3", JERKS_M_S3)
-def test_descent_sinks_no_faster_than_the_fastest_rate(jerk_max_m_s3: float) -> None:
+@pytest.mark.parametrize("vertical_jerk_max_m_s3", JERKS_M_S3)
+def test_descent_sinks_no_faster_than_the_fastest_rate(vertical_jerk_max_m_s3: float) -> None:
     config = CONFIG.model_copy(
         update={
-            "limits": CONFIG.limits.model_copy(update={"jerk_max_m_s3": jerk_max_m_s3}),
+            "limits": CONFIG.limits.model_copy(update={"vertical_jerk_max_m_s3": vertical_jerk_max_m_s3}),
             "descent": CONFIG.descent.model_copy(update={"align_height_m": 3.0}),
         }
     )
