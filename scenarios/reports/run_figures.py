@@ -121,7 +121,7 @@ def _funnel(run: RunData) -> Figure:
             axes.plot(distance_m, shown, color=DARK, linestyle=line, linewidth=width, label=phase)
     descent = run.config.descent
     cone_m = np.array([0.0, 3.0])
-    axes.plot(descent.cone_radius_at_pad_m + descent.cone_slope * cone_m, cone_m, color=MIDDLE, label="descent cone")
+    axes.plot(descent.cone.radius_at_pad_m + descent.cone.slope * cone_m, cone_m, color=MIDDLE, label="descent cone")
     axes.axvline(0.5 * min(run.scenario.vehicle.pad_size_m), color=MIDDLE, linestyle=":", label="pad's edge")
     axes.set(xlabel="distance from pad's centre [m]", ylabel="height of the feet above the pad [m]", title=title(run))
     axes.set_xlim(0.0, _FUNNEL_MAX_M)

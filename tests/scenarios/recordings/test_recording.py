@@ -104,7 +104,7 @@ def test_companion_that_was_started_again_leaves_two_flights_that_are_replayed_a
 
 
 def test_replay_with_another_gain_names_the_fields_largest_difference_first(flight: Flight) -> None:
-    table = merge(flight.config.model_dump(mode="json"), {"descent": {"descent_gain_hz": 1.1}})
+    table = merge(flight.config.model_dump(mode="json"), {"descent": {"sink": {"gain_hz": 1.1}}})
     result = replay(flight, validate(CompanionConfig, table, source="test"))
     named = [one.field for one in result.differences]
     assert "setpoint.position_m" in named
@@ -158,7 +158,7 @@ def test_page_about_a_run_needs_nothing_from_elsewhere(run: Path, tmp_path: Path
         assert fetched not in outside_script
     for told in (
         "S3: landed",
-        "descent_gain_hz",
+        "gain_hz",
         "numpy",
         "<code>CONTACT</code>",
         "px4, seed 2",
