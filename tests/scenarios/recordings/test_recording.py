@@ -31,6 +31,7 @@ from scenarios.view.recorded import RecordedSource
 
 pytestmark = pytest.mark.slow
 SCENARIO = "straight_5+sensors=nominal"
+PAGE_MAX = 2_000_000  # characters
 
 
 @pytest.fixture(scope="module")
@@ -153,9 +154,9 @@ def test_run_as_arrays_agrees_with_its_result(run: Path) -> None:
 
 def test_page_about_a_run_needs_nothing_from_elsewhere(run: Path, tmp_path: Path) -> None:
     page = write_report(run, tmp_path / "report.html").read_text(encoding="utf-8")
-    outside_script = page.split("</script>", 1)[1]
+    assert len(page) < PAGE_MAX
     for fetched in ('src="http', "src='http", '<link rel="stylesheet"', "@import"):
-        assert fetched not in outside_script
+        assert fetched not in page
     for told in (
         "S3: landed",
         "gain_hz",
@@ -163,9 +164,8 @@ def test_page_about_a_run_needs_nothing_from_elsewhere(run: Path, tmp_path: Path
         "<code>CONTACT</code>",
         "px4, seed 2",
         "<svg",
-        "plotly-graph-div",
     ):
-        assert told in outside_script
+        assert told in page
 
 
 def test_folder_without_a_recording_is_told(tmp_path: Path) -> None:
