@@ -10,6 +10,7 @@ from companion.config.landing import (
     AbortConfig,
     ChaseConfig,
     DescentConfig,
+    ForecastConfig,
     LandingStyle,
     TakeoffConfig,
     TouchdownConfig,
@@ -136,6 +137,7 @@ class CompanionConfig(StrictModel):
     descent: DescentConfig = DescentConfig()
     touchdown: TouchdownConfig = TouchdownConfig()
     abort: AbortConfig = AbortConfig()
+    forecast: ForecastConfig = ForecastConfig()
     estimator: EstimatorConfig = EstimatorConfig()
     guidance: GuidanceConfig = GuidanceConfig()
     recording: RecordingConfig = RecordingConfig()

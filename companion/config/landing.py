@@ -202,3 +202,9 @@ class AbortConfig(StrictModel):
     heard_hold_s: NotNegative = 1.0
     time_limit_s: Positive = 10.0
     retries_max: Annotated[int, Field(ge=0, le=20)] = 3
+
+
+class ForecastConfig(StrictModel):
+    """The forecast of the contact that a descent leads to; it is told, and decides nothing."""
+
+    period_s: Annotated[float, Field(ge=0.02, le=0.1)] = 0.1  # between two of them; a descent sinks 0.05 m meanwhile

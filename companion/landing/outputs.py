@@ -122,6 +122,7 @@ def landing_status(memory: StepMemory, situation: Situation, config: CompanionCo
         zenoh_bad_payloads=0,
         armed=situation.autopilot.armed,
         fix_age_s=situation.vehicle.fix_age_s,
+        contact_forecast=memory.forecast.contact,
     )
 
 
