@@ -72,9 +72,9 @@ def update_drivers(drivers: Drivers, driven: tuple[Driven, ...]) -> Drivers:
     speed_m_s, later_m_s = math.hypot(*before[1:]), math.hypot(*now[1:])
     turned_rad = math.atan2(before[1] * now[2] - before[2] * now[1], before[1] * now[1] + before[2] * now[2])
     along_m_s2, left_m_s2 = (later_m_s - speed_m_s) / passed_s, min(speed_m_s, later_m_s) * turned_rad / passed_s
-    stood = speed_m_s < _STANDS_M_S
+    departs = speed_m_s < _STANDS_M_S or drivers.under_way[DEPARTS] > 0.0
     turns_m_s2 = abs(left_m_s2 - drivers.left_m_s2)
-    sizes = (-along_m_s2, 0.0 if stood else along_m_s2, turns_m_s2, along_m_s2 if stood else 0.0)
+    sizes = (-along_m_s2, 0.0 if departs else along_m_s2, turns_m_s2, along_m_s2 if departs else 0.0)
     since_s = min((now[0] - drivers.seen_ns) * 1e-9, _APART_MAX_S)
     drivers = _forget(drivers, since_s, stands=later_m_s < _STANDS_M_S)
     share = min(since_s / passed_s, 1.0)

@@ -24,6 +24,7 @@ from companion.situation.situation import Situation, vehicle_stands
 from link.messages import ContactForecast
 from link.records import replace
 
+_PERIOD_S = 0.1  # between two of them, in which a descent sinks by 0.05 m
 _AGE_MAX_S = 1.0  # of data, beyond which the landing is broken off anyway
 
 
@@ -39,7 +40,7 @@ def update_forecast(memory: StepMemory, situation: Situation, inputs: StepInputs
     known = replace(before, drivers=drivers, gusts=gusts, acceleration_ns=told_ns)
     if memory.progress.phase is not Phase.DESCEND:
         return replace(memory, forecast=replace(known, contact=None, made_ns=None))
-    period_ns = round(system.config.forecast.period_s * 1e9)
+    period_ns = round(_PERIOD_S * 1e9)
     if known.made_ns is not None and now_ns - known.made_ns < period_ns:
         return replace(memory, forecast=known)
     memory = replace(memory, forecast=replace(known, made_ns=now_ns))

@@ -188,12 +188,12 @@ def rules_of(relative: Approach, inputs: StepInputs, config: CompanionConfig) ->
     """Return what the drone waits for and breaks off on."""
     half_width_m, delay = relative.pad_half_width_m, inputs.link_delay
     return Rules(
-        waits_below_m=config.descent.waiting_height_m,
+        waits_below_m=config.descent.wait.height_m,
         commits_below_m=config.descent.commit_height_m,
-        waiting_speed_m_s=config.descent.waiting_speed_m_s,
-        waiting_brake_m_s2=config.descent.speed_change_max_m_s2,
+        waiting_speed_m_s=config.descent.wait.speed_m_s,
+        waiting_brake_m_s2=config.descent.wait.speed_change_max_m_s2,
         cone_at_pad_m=cone_radius_at_pad_m(half_width_m, config),
-        cone_slope=config.descent.cone_slope,
+        cone_slope=config.descent.cone.slope,
         near_speed_m_s=config.abort.near_speed_max_m_s,
         over_pad_m=over_pad_radius_m(half_width_m, config),
         stops_sinking_s=ATTITUDE_LAG_S + delay.mean_s + delay.std_s + config.abort.near_speed_hold_s,

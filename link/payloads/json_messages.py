@@ -102,7 +102,7 @@ class _LandingStatus(_Report):
     ]
     contact_forecast: Annotated[
         _ContactForecast | None, Field(description="of the contact, while it descends; it decides nothing")
-    ] = None
+    ]
 
 
 LANDING_STATUS_SCHEMA = {

@@ -7,7 +7,7 @@ height of waiting, and where it commits. Of earlier approaches it is known that 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from companion.config.landing import DescentConfig
+from companion.config.descent import DescentConfig
 from companion.situation.phases import Phase
 from link.messages import ContactForecast, LandingStatus
 from link.units import NS_PER_S
@@ -36,7 +36,7 @@ def forecast_columns(
         descent: heights of waiting and of commitment.
     """
     approach = _last_approach(statuses)
-    heights_m = {WAITING: descent.waiting_height_m - _LEFT_M, COMMIT: descent.commit_height_m}
+    heights_m = {WAITING: descent.wait.height_m - _LEFT_M, COMMIT: descent.commit_height_m}
     columns: Columns = {}
     for name, height_m in heights_m.items():
         columns |= _columns(name, _first_below(approach, height_m), start_ns, result)

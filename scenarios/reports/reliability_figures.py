@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from scenarios.recordings.contact_forecasts import INSTANTS
-from scenarios.reports.figure_files import DARK, LIGHT
+from scenarios.reports.figure_files import BLUE, LIGHT
 
 
 def draw_reliability(found: Sequence[Mapping[str, Any]]) -> Figure:
@@ -27,6 +27,6 @@ def _draw_panel(axes: Axes, one: Mapping[str, Any]) -> None:
     most = max(0.05, *said, *came, *(each["high"] for each in bins)) * 1.05
     axes.plot([0.0, most], [0.0, most], color=LIGHT, linewidth=0.8, zorder=0)
     axes.vlines(said, [each["low"] for each in bins], [each["high"] for each in bins], color=LIGHT, linewidth=4.0)
-    axes.plot(said, came, color=DARK, marker="o", markersize=4, linestyle="none")
+    axes.plot(said, came, color=BLUE, marker="o", markersize=4, linestyle="none")
     axes.set(xlim=(0.0, most), ylim=(-0.02 * most, most), xlabel="forecast", ylabel="came true")
     axes.set_title(f"{one['outcome']}, at {one['instant']}: {one['said']:.1f}, came {one['came']}", fontsize=8)
