@@ -11,6 +11,7 @@ from companion.forecast.gusts import update_gusts
 from companion.forecast.rollout import Descent, Samples, roll_out
 from companion.landing.memory import StepMemory
 from companion.landing.rollout_inputs import (
+    as_driven,
     course_of,
     deviation_now,
     draw_errors,
@@ -33,7 +34,9 @@ def update_forecast(memory: StepMemory, situation: Situation, inputs: StepInputs
     now_ns, before = situation.monotonic_ns, memory.forecast
     drivers = update_drivers(before.drivers, memory.vehicle.surprise.driving.driven)
     gusts, tracking = before.gusts, memory.model.tracking
-    if tracking.compared_ns is not None and inputs.response is not None and tracking.deviation.any():
+    # In a chase what looks like a push is what the model does not know of a hard flight.
+    flies_evenly = memory.progress.phase in (Phase.ALIGN, Phase.DESCEND) and bool(tracking.deviation.any())
+    if flies_evenly and tracking.compared_ns is not None and inputs.response is not None:
         gusts = update_gusts(gusts, tracking.compared_ns, tracking.deviation, inputs.response)
     is_told = any(one.quantity is Quantity.ACCELERATION for one in inputs.measurements)
     told_ns = now_ns if is_told else before.acceleration_ns
@@ -65,7 +68,7 @@ def forecast_contact(
     course = course_of(memory, relative, pad, way_down, deviation)
     numbers = draws()
     stands = vehicle_stands(situation, config.chase)
-    errors = draw_errors(then, pad, inputs.response, numbers.normals, stands=stands)
+    errors = draw_errors(then, pad, inputs.response, numbers.normals)
     late_s = memory.vehicle.surprise.lateness_s or age_s
     delay_s = late_s + 0.5 / config.step_rate_hz + inputs.link_delay.mean_s + inputs.link_delay.std_s * errors.late
     speed_m_s = float(course.speed_m_s[0])
@@ -78,7 +81,7 @@ def forecast_contact(
         stands=stands,
     )
     samples = Samples(
-        vehicle=errors.vehicle,
+        vehicle=as_driven(errors.vehicle, memory.vehicle.surprise.driving, course.direction[0], stands=stands),
         kind=events.kind,
         event=events.event,
         delay_s=np.maximum(delay_s, 0.0),

@@ -16,6 +16,7 @@ from companion.landing.outputs import has_jittery_place
 from companion.landing.step_data import StepInputs
 from companion.landing.targets import way_down
 from companion.situation.situation import Approach, Situation
+from companion.vehicle.driving import Driving
 from companion.vehicle.pad import PadPath, cone_radius_at_pad_m, over_pad_radius_m
 
 _OFFSETS_S = DT_S * np.arange(STEPS_MAX, dtype=np.float64)
@@ -24,6 +25,8 @@ _REPORT_AGE_MAX_S = 0.25
 _SLOW_M_S = 0.3  # slower than this a vehicle has no direction but its heading
 _SLOPE_FROM_M_S = 1.0  # from here on a vertical speed tells the grade
 _PLACE_STD_MIN_M = 0.02  # of a receiver with corrections
+_CHANGE_S = 0.1  # between two changes of speed that `Driving` keeps
+_PRIOR_DRIVEN_S = 2.0  # what the estimator believes of drivers counts as one such change, which is over 2 s
 _OWN_HEIGHT_STD_M = 0.05  # of the drone's height beside the vehicle's: receivers with corrections, or a range finder
 _OWN_CLIMB_STD_M_S = 0.1  # of its rate, gusts included
 # Lag with which an acceleration is believed: velocities at 10 Hz show a brake in 0.3 s, an accelerometer at once.
@@ -124,9 +127,7 @@ def _at(offset_s: Array, pad: PadPath, values: Array) -> Array:
     return np.column_stack([np.interp(offset_s, pad.offset_s, values[:, axis]) for axis in range(3)])
 
 
-def draw_errors(
-    then: VehicleEstimate, pad: PadPath, response: ResponseModel, normals: Array, *, stands: bool
-) -> Errors:
+def draw_errors(then: VehicleEstimate, pad: PadPath, response: ResponseModel, normals: Array) -> Errors:
     """Return what may be wrong.
 
     Args:
@@ -134,7 +135,6 @@ def draw_errors(
         pad: now; where its place is known less well than the antenna's, that is the heading's.
         response: of the autopilot.
         normals: (n, 20) standard normal.
-        stands: whether the vehicle does, which then has neither a velocity nor an acceleration until it departs.
     """
     covariance = then.covariance.copy()
     # That frames which count as one are one is not for the forecast to doubt: that would be a wrong model, no bad luck.
@@ -143,8 +143,6 @@ def draw_errors(
         stated_m2 = max(covariance[axis, axis], float(pad.position_std_m[0, axis]) ** 2)
         covariance[axis, axis] = max(stated_m2 - apart_m2, _PLACE_STD_MIN_M**2)
     vehicle = normals[:, :9] @ _root(covariance).T
-    if stands:
-        vehicle[:, 3:] = 0.0
     own = normals[:, 17:19] * np.array([_OWN_HEIGHT_STD_M, _OWN_CLIMB_STD_M_S])
     return Errors(
         vehicle=np.ascontiguousarray(vehicle.reshape(-1, 3, 3)[:, :, :2]),
@@ -152,6 +150,31 @@ def draw_errors(
         vertical=own - np.column_stack([vehicle[:, 2], -vehicle[:, 5]]),
         late=normals[:, 19],
     )
+
+
+def as_driven(vehicle: Array, driving: Driving, direction: Array, *, stands: bool) -> Array:
+    """Return what the vehicle may be off its estimate with what is known of how it is driven.
+
+    One that stands has neither a velocity nor an acceleration until it departs. One that drives is as uneven along its
+    way as it has been, rather than as the estimator takes all drivers to be.
+
+    Args:
+        vehicle: (n, 3, 2) as `Errors` has it.
+        driving: the last 15 s.
+        direction: (2,) unit vector along its way.
+        stands: whether it does.
+    """
+    off = vehicle.copy()
+    if stands:
+        off[:, 1:] = 0.0
+        return off
+    along = off[:, 2] @ direction
+    believed_m2_s4, seen_s = float(np.mean(np.square(along))), _CHANGE_S * len(driving.changes)
+    squares = _PRIOR_DRIVEN_S * believed_m2_s4 + seen_s * driving.unevenness_m_s2**2
+    shown_m2_s4 = squares / (_PRIOR_DRIVEN_S + seen_s)
+    less = 1.0 - math.sqrt(min(shown_m2_s4 / max(believed_m2_s4, 1e-9), 1.0))
+    off[:, 2] -= less * along[:, None] * direction
+    return off
 
 
 def _root(covariance: Array) -> Array:
