@@ -37,6 +37,7 @@ SCENARIOS = {
     "rare": ("scenarios rare brake_7+sensors=degraded+link=degraded --particles 100",),
     "bench": ("scenarios bench", "scenarios bench straight_5+sensors=nominal --against ../before"),
     "fuzz": ("scenarios fuzz --end autopilot --firmware ardupilot --link tcpin --frames 100000",),
+    "retries": ("scenarios retries --seeds 20", "scenarios retries circle_5 --height 0.5 --firmware ardupilot"),
     "faults": ("scenarios faults --workers 1 --firmware px4",),
     "fly": ("scenarios fly straight_5 --ship 5     # with ArduPilot's own simulation, started before",),
     "camera": ("scenarios camera straight_5+camera=day",),
