@@ -7,20 +7,8 @@ from typing import Annotated, Any
 import typer
 
 from link.errors import UserError
-from link.program.cli import (
-    ConnectOption,
-    DroneOption,
-    InsecureOption,
-    ListenOption,
-    ModeOption,
-    MulticastOption,
-    NamespaceOption,
-    SetOption,
-    VehicleOption,
-    ZenohConfigOption,
-    make_app,
-    run_app,
-)
+from link.program.cli import SetOption, make_app, run_app
+from link.zenoh.command_line import DroneOption, NameArguments, NamespaceOption, ZenohArguments
 from scenarios.commands import bench, camera, campaign, eyes, falsify, faults, fly, fuzz, rare, replay, report, ros2
 from scenarios.commands import view as view_command
 from scenarios.commands.examples import SCENARIOS
@@ -113,28 +101,19 @@ def world_command(
         str, typer.Option("--mavlink", metavar="DEVICE", help="Where the companion listens.")
     ] = "udpout:127.0.0.1:14540",
     changes: SetOption = None,
-    namespace: NamespaceOption = "decklander",
-    vehicle: VehicleOption = "vehicle",
-    drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
+    names: NameArguments,
+    endpoints: ZenohArguments,
 ) -> None:
     """Run the simulated side of a scenario, the autopilot with the vehicle in it, in one process."""
     from link.mavlink.transports import open_transport
-    from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
     from link.zenoh.session import open_session
     from scenarios.catalogue.changed import load_changed_scenario
     from scenarios.catalogue.world_names import run_seed
     from scenarios.wire.world import WorldLoop
 
     scenario = load_changed_scenario(name, changes)
-    keys = Keys(namespace, vehicle, drone)
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure, listens=True)
+    keys = names.keys()
+    options = endpoints.options(listens=True)
     with open_transport(mavlink, is_patient=True) as transport, open_session(options) as zenoh:
         WorldLoop(scenario, run_seed(name, seed), keys, transport, zenoh, speed=speed).run()
 
@@ -148,12 +127,7 @@ def command_command(
     as_json: JsonOption = False,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
+    endpoints: ZenohArguments,
 ) -> int:
     """Send a command to the companion; exit code 1 when it is refused."""
     import json
@@ -161,7 +135,6 @@ def command_command(
     from link.messages import Command
     from link.program.printable import printable
     from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
     from scenarios.commands.operator import send_command
 
     try:
@@ -169,7 +142,7 @@ def command_command(
     except ValueError:
         known = ", ".join(one.value for one in Command)
         raise UserError(f"command '{command}' does not exist: give one of {known}") from None
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
+    options = endpoints.options()
     reply = send_command(wanted, Keys(namespace, "vehicle", drone), options)
     told = "accepted" if reply.accepted else f"refused: {printable(reply.reason)}"
     sys.stdout.write((json.dumps({"accepted": reply.accepted, "reason": reply.reason}) if as_json else told) + "\n")

@@ -8,22 +8,9 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from link.errors import UserError
-from link.program.cli import (
-    ConnectOption,
-    DroneOption,
-    InsecureOption,
-    ListenOption,
-    ModeOption,
-    MulticastOption,
-    NamespaceOption,
-    Ros2MapOption,
-    Ros2Option,
-    SetOption,
-    VehicleOption,
-    ZenohConfigOption,
-    make_app,
-    run_app,
-)
+from link.program.cli import SetOption, make_app, run_app
+from link.ros2.command_line import Ros2Arguments
+from link.zenoh.command_line import NameArguments, ZenohArguments
 from scenarios.commands.examples import GROUND_VEHICLE
 
 if TYPE_CHECKING:
@@ -120,30 +107,20 @@ def ground_vehicle(
     use_sim_time: _UseSimTimeOption = False,
     depart_at_once: _DepartAtOnceOption = False,
     timeout: _TimeoutOption = 60.0,
-    namespace: NamespaceOption = "decklander",
-    vehicle: VehicleOption = "vehicle",
-    drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
-    ros2: Ros2Option = None,
-    ros2_map: Ros2MapOption = None,
+    names: NameArguments,
+    endpoints: ZenohArguments,
+    ros2: Ros2Arguments,
 ) -> None:
     """Publish a ground vehicle over Zenoh: its position, velocity, heading and pad."""
-    from link.ros2.options import open_layout, ros2_options
-    from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
+    from link.ros2.options import open_layout
 
     if sum(one is not None for one in (scenario, gpsd, nmea, mavlink)) > 1:
         raise UserError("--scenario, --gpsd, --nmea and --mavlink are one vehicle each: give one of them")
-    keys = Keys(namespace, vehicle, drone)
-    layout = ros2_options(ros2, ros2_map)
+    keys = names.keys()
+    layout = ros2.options()
     # a ROS 2 graph has its router at the default endpoint; else the vehicle waits there for the others
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure, listens=layout is None)
-    node = (f"/{vehicle}", "ground_vehicle")
+    options = endpoints.options(listens=layout is None)
+    node = (f"/{keys.vehicle}", "ground_vehicle")
 
     def open_zenoh() -> "ZenohSession":
         return open_layout(options, layout, keys, node)

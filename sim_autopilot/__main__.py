@@ -8,22 +8,8 @@ from typing import Annotated, Any
 
 import typer
 
-from link.program.cli import (
-    EXIT_INTERRUPTED,
-    EXIT_OK,
-    ConnectOption,
-    DroneOption,
-    InsecureOption,
-    ListenOption,
-    ModeOption,
-    MulticastOption,
-    NamespaceOption,
-    SetOption,
-    VehicleOption,
-    ZenohConfigOption,
-    make_app,
-    run_app,
-)
+from link.program.cli import EXIT_INTERRUPTED, EXIT_OK, SetOption, make_app, run_app
+from link.zenoh.command_line import NameArguments, ZenohArguments
 from sim_autopilot.runtime.examples import EXAMPLES
 
 app = make_app("Simulate a quadrotor under an autopilot that speaks MAVLink.", EXAMPLES)
@@ -64,6 +50,7 @@ _PrintConfigOption = Annotated[bool, typer.Option("--print-config", help="Print 
 
 @app.callback(invoke_without_command=True)
 def sim_autopilot(
+    *,
     mavlink: _MavlinkOption = None,
     firmware: _FirmwareOption = None,
     instance: _InstanceOption = None,
@@ -77,15 +64,8 @@ def sim_autopilot(
     config: _ConfigOption = None,
     changes: SetOption = None,
     print_config: _PrintConfigOption = False,
-    namespace: NamespaceOption = "decklander",
-    vehicle: VehicleOption = "vehicle",
-    drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
+    names: NameArguments,
+    endpoints: ZenohArguments,
 ) -> int:
     """Simulate a quadrotor under an autopilot that speaks MAVLink."""
     from link.program.settings import SIM_AUTOPILOT, load_settings
@@ -101,13 +81,10 @@ def sim_autopilot(
     if print_config:
         sys.stdout.write(dump_toml(settings))
         return EXIT_OK
-    from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
     from sim_autopilot.runtime.run import RunOptions, run
 
-    zenoh = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
     devices = tuple(link.device for link in settings.links)
-    options = RunOptions(devices=devices, speed=speed, keys=Keys(namespace, vehicle, drone), zenoh=zenoh)
+    options = RunOptions(devices=devices, speed=speed, keys=names.keys(), zenoh=endpoints.options())
     signal.signal(signal.SIGTERM, _interrupt)
     run(settings, autopilot, options)
     return EXIT_INTERRUPTED

@@ -12,16 +12,7 @@ from msgspec import structs
 
 from companion.eyes.options import BoardOption, CalibrationOption, MountingOption, SizeOption, SourceOption
 from link.errors import UserError
-from link.program.cli import (
-    ConnectOption,
-    DroneOption,
-    InsecureOption,
-    ListenOption,
-    ModeOption,
-    MulticastOption,
-    NamespaceOption,
-    ZenohConfigOption,
-)
+from link.zenoh.command_line import DroneOption, NamespaceOption, ZenohArguments
 
 if TYPE_CHECKING:
     from companion.eyes.calibrating import Quality
@@ -50,12 +41,7 @@ def calibrate_command(
     as_json: _JsonOption = False,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
+    endpoints: ZenohArguments,
 ) -> None:
     """Calibrate a camera by pictures of the board, say how good that is, and write it as ROS's camera_info.
 
@@ -69,12 +55,10 @@ def calibrate_command(
     from companion.eyes.zenoh_source import PICTURE_MAX_BYTES
     from link.records import replace
     from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
     from link.zenoh.session import open_session
 
     plate = load_board(board)
-    endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
-    with open_session(replace(endpoints, message_max_bytes=PICTURE_MAX_BYTES)) as zenoh:
+    with open_session(replace(endpoints.options(), message_max_bytes=PICTURE_MAX_BYTES)) as zenoh:
         options = SourceOptions(size_px=size, latency_s=0.0, rate_hz=30.0)
         frames = open_source(source, options, Keys(namespace, drone=drone), zenoh)
         try:
@@ -134,12 +118,7 @@ def latency_command(
     as_json: _JsonOption = False,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
+    endpoints: ZenohArguments,
 ) -> None:
     """Measure how late a camera's pictures are stamped, while the drone is turned to and fro over a pad that stands.
 
@@ -155,13 +134,11 @@ def latency_command(
     from companion.eyes.zenoh_source import PICTURE_MAX_BYTES
     from link.records import replace
     from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
     from link.zenoh.session import open_session
 
     keys, camera = Keys(namespace, drone=drone), load_calibration(calibration)
     system = SightSystem(camera=camera, mounting=load_mounting(mounting), board=load_board(board))
-    endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
-    with open_session(replace(endpoints, message_max_bytes=PICTURE_MAX_BYTES)) as zenoh:
+    with open_session(replace(endpoints.options(), message_max_bytes=PICTURE_MAX_BYTES)) as zenoh:
         own = zenoh.subscribe(keys.record("own"))
         options = SourceOptions(size_px=size or camera.size_px, latency_s=0.0, rate_hz=30.0)
         frames = open_source(source, options, keys, zenoh)
