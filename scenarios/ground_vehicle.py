@@ -1,13 +1,14 @@
 """The `ground-vehicle` command."""
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
 from link.errors import UserError
-from link.program.cli import make_app, run_app
+from link.program.cli import SetOption, make_app, run_app
 from link.ros2.command_line import Ros2Arguments
 from link.zenoh.command_line import NameArguments, ZenohArguments
 from scenarios.commands.examples import GROUND_VEHICLE
@@ -102,6 +103,7 @@ def ground_vehicle(
     pad_height: _PadHeightOption = None,
     antenna_to_pad: _AntennaToPadOption = None,
     seed: _SeedOption = None,
+    changes: SetOption = None,
     use_sim_time: _UseSimTimeOption = False,
     depart_at_once: _DepartAtOnceOption = False,
     timeout: _TimeoutOption = 60.0,
@@ -129,9 +131,11 @@ def ground_vehicle(
                 "--pad and what else describes a pad are for a real vehicle: leave them out with --scenario, whose "
                 "file says pad_size_m, roof_height_m and antenna_flu_m of its [vehicle]"
             )
-        simulation = _Simulation(scenario, seed, depart_at_once, use_sim_time, timeout)
+        simulation = _Simulation(scenario, changes, seed, depart_at_once, use_sim_time, timeout)
         _drive(simulation, keys, open_zenoh)
         return
+    if changes:
+        raise UserError("--set changes a scenario: leave it out with a real vehicle, whose pad has options of its own")
     source = _source(gpsd, nmea, mavlink)
     from scenarios.vehicle_sources.pad import pad_geometry
 
@@ -141,6 +145,7 @@ def ground_vehicle(
 
 class _Simulation(NamedTuple):
     scenario: str
+    changes: Sequence[str] | None
     seed: int | None
     departs_at_once: bool
     uses_sim_time: bool
@@ -190,12 +195,12 @@ def _listen(source: _Source, pad: "PadGeometry", keys: "Keys", open_zenoh: "Open
 
 def _drive(simulation: _Simulation, keys: "Keys", open_zenoh: "OpenZenoh") -> None:
     """Publish a scenario's vehicle."""
-    from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.changed import load_changed_scenario
     from scenarios.catalogue.world_names import run_seed
     from scenarios.simulation.vehicle_node import VehicleNode, departing_at_once
     from scenarios.wire.vehicle_loop import VehicleLoop
 
-    driven = load_scenario(simulation.scenario)
+    driven = load_changed_scenario(simulation.scenario, simulation.changes)
     seed = run_seed(simulation.scenario, simulation.seed)
     driven = departing_at_once(driven) if simulation.departs_at_once else driven
     node = VehicleNode(driven, seed, keys, has_eyes=False)

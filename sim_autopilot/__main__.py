@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from link.program.cli import EXIT_INTERRUPTED, EXIT_OK, make_app, run_app
+from link.program.cli import EXIT_INTERRUPTED, EXIT_OK, SetOption, make_app, run_app
 from link.zenoh.command_line import NameArguments, ZenohArguments
 from sim_autopilot.runtime.examples import EXAMPLES
 
@@ -23,9 +23,7 @@ _MavlinkOption = Annotated[
         "tcpin:HOST:PORT or /dev/ttyX,BAUD [default: those of the firmware's own simulator].",
     ),
 ]
-_FirmwareOption = Annotated[
-    str | None, typer.Option("--firmware", metavar="NAME", help="px4 or ardupilot [default: px4].")
-]
+_FirmwareOption = Annotated[str | None, typer.Option("--firmware", metavar="px4|ardupilot", help="[default: px4].")]
 _InstanceOption = Annotated[
     int | None, typer.Option("--instance", min=0, max=249, help="Number of the drone; system id - 1 [default: 0].")
 ]
@@ -64,19 +62,21 @@ def sim_autopilot(
     turbulence: _TurbulenceOption = None,
     seed: _SeedOption = None,
     config: _ConfigOption = None,
+    changes: SetOption = None,
     print_config: _PrintConfigOption = False,
     names: NameArguments,
     endpoints: ZenohArguments,
 ) -> int:
     """Simulate a quadrotor under an autopilot that speaks MAVLink."""
-    from link.program.toml_config import dump_toml, load_config
+    from link.program.settings import SIM_AUTOPILOT, load_settings
+    from link.program.toml_config import dump_toml
     from sim_autopilot.runtime.config import SimAutopilotConfig, autopilot_config, with_default_links
 
     given = _given(firmware=firmware, instance=instance, instant=instant, core=core, seed=seed)
     if mavlink:
         given["links"] = [{"device": device} for device in mavlink]
     given |= {"wind": _given(mean_m_s=wind, turbulence=turbulence), "datum": _datum(datum)}
-    settings = with_default_links(load_config(config, SimAutopilotConfig, given))
+    settings = with_default_links(load_settings(config, SimAutopilotConfig, SIM_AUTOPILOT, changes, given))
     autopilot = autopilot_config(settings)
     if print_config:
         sys.stdout.write(dump_toml(settings))

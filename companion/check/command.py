@@ -10,6 +10,7 @@ import typer
 
 from companion.runtime.command_line import ConfigOption, MavlinkArguments
 from link.errors import UserError
+from link.program.cli import SetOption
 from link.zenoh.command_line import NameArguments, ZenohArguments
 
 if TYPE_CHECKING:
@@ -30,16 +31,17 @@ def check(
     ] = 5.0,
     duration: Annotated[float, typer.Option("--duration", min=1.0, help="Seconds that rates are counted for.")] = 4.0,
     timeout: Annotated[float, typer.Option("--timeout", min=0.0, help="Seconds without an autopilot.")] = 30.0,
-    set_values: Annotated[bool, typer.Option("--set", help="Write the advised parameters, after asking.")] = False,
+    set_values: Annotated[bool, typer.Option("--write", help="Write the advised parameters, after asking.")] = False,
     yes: Annotated[bool, typer.Option("--yes", help="Write without asking.")] = False,
     keep_file: Annotated[
-        Path, typer.Option("--keep", metavar="FILE", help="Where --set keeps the parameters before it.")
+        Path, typer.Option("--keep", metavar="FILE", help="Where --write keeps the parameters before it.")
     ] = Path("parameters_before.json"),
     restore: Annotated[
-        Path | None, typer.Option("--restore", metavar="FILE", help="Write back what --set kept there, and end.")
+        Path | None, typer.Option("--restore", metavar="FILE", help="Write back what --write kept there, and end.")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
     config: ConfigOption = None,
+    changes: SetOption = None,
     names: NameArguments,
     endpoints: ZenohArguments,
 ) -> int:
@@ -49,10 +51,10 @@ def check(
     from companion.config.companion import CompanionConfig
     from companion.runtime.open_links import open_links
     from link.mavlink.transports import open_transport
-    from link.program.toml_config import load_config
+    from link.program.settings import COMPANION, load_settings
     from link.zenoh.session import open_session
 
-    settings = load_config(config, CompanionConfig)
+    settings = load_settings(config, CompanionConfig, COMPANION, changes)
     signing = mavlink.signing()
     back = None if restore is None else read_kept(restore)
     options = endpoints.options()

@@ -83,9 +83,9 @@ def print_board(
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="Write the PDF here.")] = Path("pad.pdf"),
     board: BoardOption = None,
     size: Annotated[
-        float | None, typer.Option("--size", metavar="M", help="A nested board of this side in place of --board.")
+        float | None, typer.Option("--side", metavar="M", help="A nested board of this side in place of --board.")
     ] = None,
-    first_id: Annotated[int, typer.Option("--first-id", min=0, help="With --size: the board's lowest id.")] = 0,
+    first_id: Annotated[int, typer.Option("--first-id", min=0, help="With --side: the board's lowest id.")] = 0,
     save_board: Annotated[
         Path | None, typer.Option("--save-board", metavar="FILE", help="Write the board here, for `run --board`.")
     ] = None,
@@ -96,9 +96,9 @@ def print_board(
     from link.program.toml_config import dump_toml
 
     if size is not None and board is not None:
-        raise UserError("--size makes a board and --board names one: give one of them")
+        raise UserError("--side makes a board and --board names one: give one of them")
     if size is not None and not 0.1 <= size <= 5.0:
-        raise UserError(f"--size {size:g} is not from 0.1 to 5 m")
+        raise UserError(f"--side {size:g} is not from 0.1 to 5 m")
     config = load_board(board).config if size is None else nested_board(size, first_id)
     write_pdf(config, out)
     if save_board is not None:

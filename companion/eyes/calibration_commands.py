@@ -1,11 +1,14 @@
 """`pad-detector calibrate` and `pad-detector latency`: what has to be known of a camera before it is flown."""
 
+import json
 import math
 import sys
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from msgspec import structs
 
 from companion.eyes.options import BoardOption, CalibrationOption, MountingOption, SizeOption, SourceOption
 from link.errors import UserError
@@ -16,6 +19,9 @@ if TYPE_CHECKING:
 
 _RMS_GOOD_PX, _HALVES_GOOD_PX, _FOCAL_GOOD, _COVERED_GOOD, _TILT_GOOD_RAD = 0.5, 1.0, 0.002, 0.7, math.radians(30.0)
 _STD_GOOD_S = 0.002  # a drone that turns at 0.5 rad/s sees a pad 5 m away 5 mm beside its place
+
+
+_JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 
 
 def register(app: typer.Typer) -> None:
@@ -32,6 +38,7 @@ def calibrate_command(
     fisheye: Annotated[bool, typer.Option("--fisheye", help="For lenses of more than 120 degrees.")] = False,
     pictures: Annotated[int, typer.Option("--pictures", min=8, max=500, help="That show the board elsewhere.")] = 40,
     size: SizeOption = None,
+    as_json: _JsonOption = False,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",
     endpoints: ZenohArguments,
@@ -63,6 +70,10 @@ def calibrate_command(
         out.write_text(dump_calibration(camera), encoding="utf-8")
     except OSError as error:
         raise UserError(f"{out}: cannot be written ({error.strerror}); choose another --out") from None
+    if as_json:
+        told = {"camera": str(out), "focal_px": camera.focal_px, **structs.asdict(quality)}
+        sys.stdout.write(json.dumps(told, indent=2) + "\n")
+        return
     sys.stdout.write("\n".join([*quality_lines(quality, camera.focal_px), f"written to {out}"]) + "\n")
 
 
@@ -103,7 +114,8 @@ def latency_command(
     board: BoardOption = None,
     mounting: MountingOption = None,
     size: SizeOption = None,
-    seconds: Annotated[float, typer.Option("--seconds", min=3.0, max=600.0, help="For which it is turned.")] = 15.0,
+    seconds: Annotated[float, typer.Option("--duration", min=3.0, max=600.0, help="For which it is turned.")] = 15.0,
+    as_json: _JsonOption = False,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",
     endpoints: ZenohArguments,
@@ -135,6 +147,9 @@ def latency_command(
         finally:
             frames.close()
     latency = fit_latency(*found)
+    if as_json:
+        sys.stdout.write(json.dumps(asdict(latency), indent=2) + "\n")
+        return
     poor = "" if latency.std_s <= _STD_GOOD_S else ": poor, turn it faster or for longer"
     sys.stdout.write(
         f"latency {1e3 * latency.latency_s:.1f} ms, standard deviation {1e3 * latency.std_s:.1f} ms{poor}\n"

@@ -13,7 +13,7 @@ import typer
 from companion.config.autopilot import AutopilotKind, Guide
 from companion.config.integrity import ReceiverFrames
 from link.errors import UserError
-from link.program.cli import FoxgloveOption
+from link.program.cli import FoxgloveOption, SetOption
 from link.program.option_groups import OptionGroup
 
 if TYPE_CHECKING:
@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     from link.mavlink.signing_memory import SigningMemory
 
 ConfigOption = Annotated[Path | None, typer.Option("--config", metavar="FILE", help="Configuration in TOML.")]
-_AutopilotOption = Annotated[
-    AutopilotKind | None, typer.Option("--autopilot", help="In place of the configuration's kind of autopilot.")
+_FirmwareOption = Annotated[
+    AutopilotKind | None,
+    typer.Option("--firmware", metavar="px4|ardupilot", help="In place of what the autopilot says of itself."),
 ]
 _FramesOption = Annotated[
     ReceiverFrames | None,
@@ -101,7 +102,8 @@ class ConfigArguments(OptionGroup):
     """The configuration, and what stands above it."""
 
     config: ConfigOption = None
-    autopilot: _AutopilotOption = None
+    changes: SetOption = None
+    firmware: _FirmwareOption = None
     receiver_frames: _FramesOption = None
     guide: _GuideOption = None
 
@@ -109,17 +111,17 @@ class ConfigArguments(OptionGroup):
         """Return the configuration.
 
         Raises:
-            UserError: the file cannot be read, or a key or value does not fit.
+            UserError: something cannot be read, or a key or value does not fit.
         """
         from companion.config.companion import CompanionConfig
-        from link.program.toml_config import load_config
+        from link.program.settings import COMPANION, load_settings
 
         frames = self.receiver_frames
         above = {
-            "autopilot": {"kind": self.autopilot and self.autopilot.value, "guide": self.guide and self.guide.value},
+            "autopilot": {"kind": self.firmware and self.firmware.value, "guide": self.guide and self.guide.value},
             "integrity": {"receiver_frames": frames and frames.value},
         }
-        return load_config(self.config, CompanionConfig, above)
+        return load_settings(self.config, CompanionConfig, COMPANION, self.changes, above)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

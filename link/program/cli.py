@@ -20,6 +20,14 @@ EXIT_OK = 0
 EXIT_USER_ERROR = 2
 EXIT_INTERRUPTED = 130
 
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change one setting, by its dotted key; over the file and the environment. May be repeated.",
+    ),
+]
 FoxgloveOption = Annotated[
     int | None,
     typer.Option(

@@ -15,7 +15,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 NO_EXAMPLES: Examples = MappingProxyType({})
 
-_KINDS = {"float": "NUMBER", "int": "INTEGER"}
+_KINDS = {"float": "NUMBER", "int": "N"}
 """How a kind of value is written, by typer's name of it."""
 
 

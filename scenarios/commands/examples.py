@@ -16,6 +16,7 @@ SCENARIOS = {
     "list": ("scenarios list", "scenarios list --json"),
     "run": (
         "scenarios run straight_5 --view",
+        "scenarios run straight_5 --set track.speed_m_s=6 --set system.companion.descent.wait.height_m=1.05",
         "scenarios run circle_5+sensors=nominal+wind=gust --lockstep --seed 7",
         "scenarios run world:urban@123 --lockstep --firmware ardupilot",
     ),
