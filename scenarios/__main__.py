@@ -9,7 +9,21 @@ import typer
 from link.errors import UserError
 from link.program.cli import SetOption, make_app, run_app
 from link.zenoh.command_line import DroneOption, NameArguments, NamespaceOption, ZenohArguments
-from scenarios.commands import bench, camera, campaign, eyes, falsify, faults, fly, fuzz, rare, replay, report, ros2
+from scenarios.commands import (
+    bench,
+    camera,
+    campaign,
+    eyes,
+    falsify,
+    faults,
+    fly,
+    fuzz,
+    rare,
+    replay,
+    report,
+    retries,
+    ros2,
+)
 from scenarios.commands import view as view_command
 from scenarios.commands.examples import SCENARIOS
 
@@ -149,7 +163,22 @@ def command_command(
     return 0 if reply.accepted else 1
 
 
-for command in (campaign, falsify, rare, bench, fuzz, faults, report, replay, fly, view_command, ros2, camera, eyes):
+for command in (
+    campaign,
+    falsify,
+    rare,
+    bench,
+    fuzz,
+    faults,
+    retries,
+    report,
+    replay,
+    fly,
+    view_command,
+    ros2,
+    camera,
+    eyes,
+):
     command.register(app)
 
 
