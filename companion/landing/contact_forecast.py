@@ -38,7 +38,7 @@ def update_forecast(memory: StepMemory, situation: Situation, inputs: StepInputs
     flies_evenly = memory.progress.phase in (Phase.ALIGN, Phase.DESCEND) and bool(tracking.deviation.any())
     if flies_evenly and tracking.compared_ns is not None and inputs.response is not None:
         gusts = update_gusts(gusts, tracking.compared_ns, tracking.deviation, inputs.response)
-    is_told = any(one.quantity is Quantity.ACCELERATION for one in inputs.measurements)
+    is_told = any(one.quantity is Quantity.ACCELERATION for one in inputs.vehicle.measurements)
     told_ns = now_ns if is_told else before.acceleration_ns
     known = replace(before, drivers=drivers, gusts=gusts, acceleration_ns=told_ns)
     if memory.progress.phase is not Phase.DESCEND:
