@@ -154,7 +154,8 @@ class LandingStatus(Struct, frozen=True, kw_only=True):
 
     `relative_position_enu_m` is of the drone's feet from the pad's centre: east and north are those of the drone, up is
     `height_above_pad_m`. `reason_code` names the reason without its numbers, for programs. `refused` says what of the
-    vehicle's data was refused most in the last 5 s, and why.
+    vehicle's data was refused most in the last 5 s, and why. `flown_by` is "companion" while the autopilot follows its
+    setpoints, "failsafe" while one flies, else "other"; empty without an autopilot. `battery_share` is left, 0 to 1.
     """
 
     stamp_ns: int
@@ -171,3 +172,5 @@ class LandingStatus(Struct, frozen=True, kw_only=True):
     armed: bool
     fix_age_s: float | None
     open_to_strangers: tuple[str, ...] = ()
+    flown_by: str = ""
+    battery_share: float | None = None

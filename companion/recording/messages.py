@@ -136,7 +136,7 @@ def _step(record: StepRecord, keys: Keys) -> RosMessage:
         text=outputs.text or "",
         reply=[] if reply is None else [f"accepted: {reply.reason}" if reply.accepted else f"refused: {reply.reason}"],
         armed=status.armed,
-        measurements=len(record.inputs.measurements),
+        measurements=len(record.inputs.vehicle.measurements),
         commands=ids_array([command.command for command in outputs.commands]),
         command_parameters=floats([command.parameters for command in outputs.commands]),
         relative_position_m=floats(status.relative_position_enu_m),

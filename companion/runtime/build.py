@@ -48,7 +48,7 @@ def warm_up(system: System) -> None:
             dt_s=1.0 / system.config.step_rate_hz,
         )
         memory, _ = system.guidance.plan(memory, request)
-    turned_lever(np.zeros_like(offset_s), offset_s, 1.0, 0.0)
+    turned_lever(np.zeros_like(offset_s), np.zeros_like(offset_s), offset_s, 1.0, 0.0)
 
 
 def build_node(

@@ -80,6 +80,10 @@ class _LandingStatus(_Report):
     open_to_strangers: Annotated[
         tuple[str, ...], Field(description="links by which somebody without a key could take part, in words")
     ]
+    flown_by: Annotated[
+        str, Field(description="companion while it follows the setpoints, failsafe, else other; empty if unknown")
+    ]
+    battery_share: Annotated[float | None, Field(description="left of the battery, 0 to 1; null if unknown")]
 
 
 LANDING_STATUS_SCHEMA = {

@@ -25,6 +25,8 @@ STATUS = LandingStatus(
     zenoh_bad_payloads=0,
     armed=True,
     fix_age_s=0.12,
+    flown_by="companion",
+    battery_share=0.73,
 )
 UNKNOWING = replace(
     STATUS,
@@ -33,6 +35,8 @@ UNKNOWING = replace(
     height_above_pad_m=None,
     time_to_contact_s=None,
     fix_age_s=None,
+    flown_by="",
+    battery_share=None,
 )
 MESSAGES: list[Message] = [
     PAD,
