@@ -9,6 +9,7 @@ from companion.integrity.heights import is_road_elsewhere, update_ground, update
 from companion.integrity.vehicle_data import update_course
 from companion.landing.conditions import HELD_UP, holds
 from companion.landing.contact import may_force_motors_off, signs_of
+from companion.landing.contact_forecast import update_forecast
 from companion.landing.flying import fly
 from companion.landing.memory import ModelMemory, StepMemory, to_present_frame
 from companion.landing.outputs import has_jittery_place, landing_status, news, setpoint
@@ -53,6 +54,7 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
     if phase in FOLLOWING_PHASES and before.phase not in FOLLOWING_PHASES:
         vehicle, pad = predict_pad(phase, memory.vehicle, inputs, system)
         memory, situation = replace(memory, vehicle=vehicle), with_pad(situation, pad)
+    memory = update_forecast(memory, situation, inputs, system)
     memory, plan = fly(memory, situation, inputs, system)
     memory, commands = _drive(memory, situation, inputs, system.config)
     outputs = StepOutputs(

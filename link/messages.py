@@ -149,6 +149,32 @@ class CommandReply(Struct, frozen=True, kw_only=True):
     reason: str
 
 
+class ContactForecast(Struct, frozen=True, kw_only=True):
+    """How a descent that goes on now ends: probabilities of the contact that it leads to.
+
+    Attributes:
+        in_s: until the contact, a mean; None where none is expected.
+        s1: a contact within the limits of S1, those of S2 included.
+        s2: one within the limits of S2.
+        unsafe: one beyond those of S1.
+        broken_off: none, since the drone waits or breaks off before.
+        misses_position: unsafe, and the place is farthest beyond its limit.
+        misses_speed: likewise, the horizontal speed against the deck.
+        misses_sink: likewise, the sink rate.
+        misses_tilt: likewise, the tilt.
+    """
+
+    in_s: float | None
+    s1: float
+    s2: float
+    unsafe: float
+    broken_off: float
+    misses_position: float
+    misses_speed: float
+    misses_sink: float
+    misses_tilt: float
+
+
 class LandingStatus(Struct, frozen=True, kw_only=True):
     """What the companion tells the world about the landing; None where it does not know.
 
@@ -174,3 +200,4 @@ class LandingStatus(Struct, frozen=True, kw_only=True):
     open_to_strangers: tuple[str, ...] = ()
     flown_by: str = ""
     battery_share: float | None = None
+    contact_forecast: ContactForecast | None = None

@@ -125,6 +125,7 @@ def landing_status(memory: StepMemory, situation: Situation, config: CompanionCo
         fix_age_s=situation.vehicle.fix_age_s,
         flown_by=_flown_by(situation.autopilot),
         battery_share=situation.autopilot.battery_share,
+        contact_forecast=memory.forecast.contact,
     )
 
 

@@ -177,6 +177,7 @@ def _fly(folder: Path, plan: "Plan", where: "Where", *, as_json: bool) -> int:
 
 
 def _print_summary(rows: Sequence["Row"], times: Sequence["Row"], plan: "Plan", *, as_json: bool) -> None:
+    from scenarios.campaigns.reliability import reliability, reliability_sheets
     from scenarios.campaigns.sheets import print_sheets
     from scenarios.campaigns.summary import summarize
     from scenarios.campaigns.tables import print_summary
@@ -185,15 +186,19 @@ def _print_summary(rows: Sequence["Row"], times: Sequence["Row"], plan: "Plan", 
 
     summary, worlds = summarize(rows, times), worlds_report(rows, plan.populations)
     if as_json:
-        _print_json(summary | ({"worlds": worlds} if worlds else {}))
+        forecasts = reliability(rows)
+        found = ({"worlds": worlds} if worlds else {}) | ({"forecasts": forecasts} if forecasts else {})
+        _print_json(summary | found)
         return
     print_summary(summary, sys.stdout)
     for report in worlds:
         print_sheets(worlds_sheets(report), sys.stdout)
+    print_sheets(reliability_sheets(reliability(rows)), sys.stdout)
 
 
 def _write_markdown(rows: Sequence["Row"], plan: "Plan") -> None:
     from scenarios.campaigns.markdown import write_markdown
+    from scenarios.campaigns.reliability import reliability, reliability_sheets
     from scenarios.campaigns.sheets import write_sheets
     from scenarios.campaigns.summary import summarize
     from scenarios.campaigns.worlds_report import worlds_report
@@ -202,6 +207,7 @@ def _write_markdown(rows: Sequence["Row"], plan: "Plan") -> None:
     write_markdown(summarize(rows), sys.stdout)
     for report in worlds_report(rows, plan.populations):
         write_sheets(worlds_sheets(report), sys.stdout)
+    write_sheets(reliability_sheets(reliability(rows)), sys.stdout)
 
 
 def _print_json(table: Mapping[str, Any]) -> None:

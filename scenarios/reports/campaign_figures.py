@@ -15,10 +15,12 @@ from scenarios.campaigns.cells import Cell
 from scenarios.campaigns.intervals import wilson
 from scenarios.campaigns.landing_task import Row
 from scenarios.campaigns.plan import Plan
+from scenarios.campaigns.reliability import reliability
 from scenarios.campaigns.worlds_report import worlds_report
 from scenarios.catalogue.firmware_option import without_firmware
 from scenarios.config import Scenario
 from scenarios.reports.figure_files import BLUE, GREEN, LIGHT, MIDDLE, ORANGE, PURPLE, STYLES, VERMILION
+from scenarios.reports.reliability_figures import draw_reliability
 from scenarios.reports.run_figures import draw_pad, show_around_pad
 from scenarios.reports.worlds_figures import draw_rates
 from scenarios.scoring.limits import S1_LIMITS, S2_LIMITS
@@ -35,6 +37,9 @@ def campaign_figures(plan: Plan, rows: Sequence[Row]) -> dict[str, Figure]:
     """Return the figures by the names of their files."""
     with mpl.rc_context(STYLES):
         figures = {"touchdowns": _touchdowns(plan, rows), "errors": _errors(plan, rows)}
+        forecasts = reliability(rows)
+        if forecasts:
+            figures["reliability"] = draw_reliability(forecasts)
         reports = {report["worlds"].replace(":", "_"): report for report in worlds_report(rows, plan.populations)}
         return figures | {f"rates_{worlds}": draw_rates(report) for worlds, report in reports.items()}
 
