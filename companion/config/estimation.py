@@ -72,6 +72,18 @@ class ImmModeConfig(StrictModel):
     dwell_s: Positive  # mean time until the vehicle leaves this mode
 
 
+class SwingConfig(StrictModel):
+    """How a deck heaves and tilts that nobody has watched yet: damped oscillators, driven to a standard deviation."""
+
+    heave_std_m: Positive
+    heave_frequency_hz: Positive
+    heave_damping: Annotated[float, Field(gt=0.0, lt=1.0)]
+    tilt_std_rad: Positive  # of roll and of pitch, once the vehicle tells them
+    tilt_frequency_hz: Positive
+    tilt_damping: Annotated[float, Field(gt=0.0, lt=1.0)]
+    lag_s: Positive  # over which swinging is compared with itself to learn it: a tenth of a period or so
+
+
 class ImmConfig(StrictModel):
     """Two turning models, one for steady driving and one for manoeuvres."""
 
@@ -105,9 +117,28 @@ class ImmConfig(StrictModel):
     # last at 10 m/s. A sensor's own offset is less (Bosch BMI088: 0.2 m/s^2).
     gravity_leak_std_m_s2: Positive = 0.6
     gravity_leak_time_s: Positive = 5.0
-    heave_std_m: Positive = 0.04  # benchmark: `rough_road` heaves 0.1 m at 0.5 to 1 Hz, the others not at all
-    heave_frequency_hz: Positive = 0.75
-    heave_damping: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.3
+    # Benchmark: `rough_road` heaves 0.1 m at 0.5 to 1 Hz, the others not at all; bodies pitch and roll on their wheels
+    # at some 1.5 Hz (Gillespie 1992, chapter 5).
+    on_road: SwingConfig = SwingConfig(
+        heave_std_m=0.04,
+        heave_frequency_hz=0.75,
+        heave_damping=0.3,
+        tilt_std_rad=0.03,
+        tilt_frequency_hz=1.0,
+        tilt_damping=0.3,
+        lag_s=0.1,
+    )
+    # Sea state 5 in STANAG 4194: 3.25 m of significant height, four standard deviations, with 9.7 s; a ship tilts by
+    # the slope of such waves at most.
+    afloat: SwingConfig = SwingConfig(
+        heave_std_m=0.8,
+        heave_frequency_hz=0.1,
+        heave_damping=0.2,
+        tilt_std_rad=0.03,
+        tilt_frequency_hz=0.1,
+        tilt_damping=0.2,
+        lag_s=0.5,
+    )
     initial_speed_std_m_s: Positive = 15.0
     initial_acceleration_std_m_s2: Positive = 3.0
     frame_offset_std_m: NotNegative = 1.0  # between the two receivers' frames; benchmark: 0.5 and 1.2 m

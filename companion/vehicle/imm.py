@@ -17,15 +17,16 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from companion.config.estimation import ImmConfig
+from companion.config.estimation import ImmConfig, SwingConfig
 from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
 from companion.vehicle import imm_forecast as forecasts
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_sensors as sensors
+from companion.vehicle.deck_motion import DeckMotion, first_motion, learn, passed
 from companion.vehicle.filter_step import Update, wrapped
-from companion.vehicle.imm_numbers import Numbers, noises_with, numbers_of
-from link.messages import Vector3
+from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, swing_of
+from companion.vehicle.imm_swing import MOUNT, ROLL
 from link.records import replace
 
 KINDS = {
@@ -35,16 +36,20 @@ KINDS = {
     Quantity.YAW_RATE: sensors.YAW_RATE,
     Quantity.PAD: sensors.PAD,
     Quantity.ACCELERATION: sensors.ACCELERATION,
+    Quantity.TILT: sensors.TILT,
 }
 UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
 PLACE = np.array([0, 1, 8])  # indices of the position
 OFFSET = np.array([12, 13, 14])
+TILT, DECK = np.arange(ROLL, MOUNT), np.arange(ROLL, kernels.SIZE)
+SWINGING = np.array([10, 11, *TILT])
 CURVATURE, HEADING = 6, 7
 TOLD_BY = {  # what is opened to data of a quantity that were rejected for too long
     Quantity.VELOCITY: np.array([2, 3, 4, 5, 9, 11, kernels.BEND]),
     Quantity.HEADING: np.array([HEADING]),
     Quantity.YAW_RATE: np.array([CURVATURE]),
     Quantity.ACCELERATION: np.array([kernels.LEAK]),
+    Quantity.TILT: TILT,
 }
 CLOCK = kernels.CLOCK
 TURNS = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
@@ -54,11 +59,19 @@ IndexArray = NDArray[np.intp]
 
 
 class ImmState(Struct, frozen=True, kw_only=True, eq=False):
-    """Both modes, the slow part of the fixes' variance, and how long ago a sensor told the heading or the yaw rate."""
+    """The filter.
+
+    Attributes:
+        modes: both.
+        fix_bias_variance_m2: the slow part of the fixes' variance.
+        turn_age_s: how long ago a sensor told the heading or the yaw rate.
+        deck: how the deck swings; None until the vehicle has told its tilt.
+    """
 
     modes: mixing.Modes
     fix_bias_variance_m2: float
     turn_age_s: float = math.inf
+    deck: DeckMotion | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -67,19 +80,19 @@ class ImmModel:
 
     Attributes:
         config: its numbers.
-        antenna_to_pad_m: lever arm in V; the vehicle turns about the pad's centre, and sightings are of it.
+        deck: what the vehicle tells of its pad; it turns about the pad's centre, and sightings are of it.
         placed_by: what it starts on: fixes, or sightings of a vehicle that tells nothing.
         numbers: the same as the kernels take them, derived.
     """
 
     config: ImmConfig
-    antenna_to_pad_m: Vector3 = (0.0, 0.0, 0.0)
+    deck: Deck = field(default_factory=Deck)
     placed_by: Quantity = Quantity.POSITION
     numbers: Numbers = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Derive the kernels' numbers."""
-        object.__setattr__(self, "numbers", numbers_of(self.config, self.antenna_to_pad_m))
+        object.__setattr__(self, "numbers", numbers_of(self.config, self.deck))
 
     def start(self, place: Measurement) -> ImmState:
         """Return the state after a first place: anything may be true of the rest.
@@ -92,6 +105,7 @@ class ImmModel:
         mean = np.zeros(kernels.SIZE)
         mean[PLACE] = place.value
         covariance = np.diag(self._prior_variances())
+        covariance[DECK, DECK] = 0.0
         covariance[np.ix_(PLACE, PLACE)] = white
         covariance[CLOCK, CLOCK] = self.config.clock_std_s**2 if bias_variance else 0.0
         covariances = _with_common_step(np.stack([covariance, covariance]), offset_variance * np.eye(3))
@@ -103,14 +117,17 @@ class ImmModel:
         """Return the state `dt_s` later."""
         numbers = self.numbers
         modes = mixing.predict_modes(
-            state.modes, dt_s, self._noises(state), numbers.dwell_s, numbers.motion, self._known_variance
+            state.modes, dt_s, self._noises(state), numbers.dwell_s, self._motion(state), self._known_variance
         )
-        return replace(state, modes=modes, turn_age_s=state.turn_age_s + dt_s)
+        deck = None if state.deck is None else passed(state.deck, dt_s)
+        return replace(state, modes=modes, turn_age_s=state.turn_age_s + dt_s, deck=deck)
 
     def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState] | None:
         """Return the state after any quantity, None of an acceleration along a heading that is not known."""
         if measurement.quantity is Quantity.ACCELERATION and not self._is_heading_known(state):
             return None
+        if measurement.quantity is Quantity.TILT and state.deck is None:
+            state = self._with_deck(state, measurement)
         R, bias_variance = measurement.covariance, state.fix_bias_variance_m2
         if measurement.quantity is Quantity.POSITION:
             R, bias_variance = self._split(R)
@@ -118,7 +135,10 @@ class ImmModel:
         modes, nis, gate_nis = mixing.take_reading(state.modes, reading, self.numbers.lever_m, self.numbers.course)
         tells_turn = measurement.quantity in TURNS and self.placed_by is Quantity.POSITION
         turn_age_s = 0.0 if tells_turn else state.turn_age_s  # what is only seen to turn is taken for a car
-        updated = ImmState(modes=modes, fix_bias_variance_m2=bias_variance, turn_age_s=turn_age_s)
+        deck = state.deck
+        if deck is not None and measurement.quantity is Quantity.TILT:
+            deck = learn(deck, (modes[2] @ modes[0])[SWINGING].tolist(), self._swing.lag_s)
+        updated = ImmState(modes=modes, fix_bias_variance_m2=bias_variance, turn_age_s=turn_age_s, deck=deck)
         return Update(state=updated, nis=nis, gate_nis=gate_nis, dof=len(measurement.value))
 
     def recover(self, state: ImmState, measurement: Measurement) -> ImmState:
@@ -136,7 +156,7 @@ class ImmModel:
                 if self._is_placed_by_sightings(state):
                     return _open(state, OFFSET, np.full(3, self._step_size(state, measurement) ** 2))
                 return self._restart(state, measurement)
-            case Quantity.VELOCITY | Quantity.HEADING | Quantity.YAW_RATE | Quantity.ACCELERATION:
+            case Quantity.VELOCITY | Quantity.HEADING | Quantity.YAW_RATE | Quantity.ACCELERATION | Quantity.TILT:
                 told = TOLD_BY[measurement.quantity]
                 return _open(state, told, self._prior_variances()[told])
             case _:
@@ -145,7 +165,7 @@ class ImmModel:
     def describe(self, state: ImmState, t_ns: int) -> VehicleEstimate:
         """Return the mixture of both modes."""
         x, P, position, velocity, acceleration, G, heading_variance = forecasts.describe_modes(
-            state.modes, self.numbers.motion, self._known_variance
+            state.modes, self._motion(state), self._known_variance
         )
         covariance = G @ P @ G.T
         known = heading_variance < self._known_variance
@@ -163,8 +183,8 @@ class ImmModel:
         """Return the future along the present curvature, with an acceleration that fades and stops at standstill."""
         if self.placed_by is Quantity.PAD:
             state = self._as_driven(state, t_ns)
-        position, velocity, acceleration, yaw, grade, std, heading_variance = forecasts.forecast_modes(
-            state.modes, _own(offset_s), self._noises(state), self.numbers.motion, self._known_variance
+        position, velocity, acceleration, yaw, grade, tilt, std, heading_variance = forecasts.forecast_modes(
+            state.modes, _own(offset_s), self._noises(state), self._motion(state), self._known_variance
         )
         means, covariances, weights = state.modes
         return Forecast(
@@ -177,6 +197,7 @@ class ImmModel:
             position_std_m=std,
             is_coarse=state.fix_bias_variance_m2 > 0.0 or self.placed_by is Quantity.PAD,
             grade=grade,
+            tilt_rad=None if state.deck is None else tilt,
             yaw_std_rad=math.sqrt(heading_variance),
             frame_offset_enu_m=(weights @ means)[OFFSET[:2]],
             frame_offset_std_m=math.sqrt(float((weights @ covariances[:, OFFSET, OFFSET]).max())),
@@ -197,7 +218,7 @@ class ImmModel:
         return bool(mixing.is_heading_known(state.modes, self._known_variance))
 
     def _noises(self, state: ImmState) -> Array:
-        """Both modes' noise, (2, 15), as `imm_kernels.process_noise` takes it."""
+        """Both modes' noise, (2, 16), as `imm_kernels.process_noise` takes it."""
         walk_m2_s = 2.0 * state.fix_bias_variance_m2 / self.config.fix_bias_time_s
         receiver_m2_s = self.config.frame_offset_walk_m2_s + walk_m2_s
         return noises_with(
@@ -207,17 +228,37 @@ class ImmModel:
             turn_is_measured=state.turn_age_s < TURN_AGE_MAX_S,
         )
 
+    @property
+    def _swing(self) -> SwingConfig:
+        return swing_of(self.config, is_afloat=self.deck.is_afloat)
+
+    def _motion(self, state: ImmState) -> Array:
+        """Return the numbers (16,) of the motion, with what has been learnt of the deck's."""
+        if state.deck is None:
+            return self.numbers.motion
+        motion = self.numbers.motion.copy()
+        motion[1:4], motion[10:16] = state.deck.oscillators[:3], state.deck.oscillators[3:]
+        return motion
+
+    def _with_deck(self, state: ImmState, tilt: Measurement) -> ImmState:
+        """Return the state of a vehicle that begins to tell its tilt; what it states may err for ever, too."""
+        opened = _open(state, DECK, np.append(self._prior_variances()[TILT], tilt.covariance.diagonal()[:2]))
+        return replace(opened, deck=first_motion(self._swing))
+
     def _prior_variances(self) -> Array:
-        """Of every state but position, offset and clock, (18,)."""
-        config = self.config
+        """Of every state but position, offset and clock, (24,)."""
+        config, swing = self.config, self._swing
         speed, acceleration = config.initial_speed_std_m_s**2, config.initial_acceleration_std_m_s2**2
-        heave = config.heave_std_m**2
+        heave = swing.heave_std_m**2
         heave_rate = heave * float(self.numbers.motion[1]) ** 2
         curvature = config.curvature_std_rad_m**2
         moving = [speed, speed, acceleration, acceleration, curvature, UNKNOWN_HEADING_VARIANCE]
-        vertical = [0.0, config.grade_std**2, heave, heave_rate]
-        driven = [config.bend_std_per_m**2, config.gravity_leak_std_m_s2**2]
-        return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0, *driven])
+        grade, bend = (0.0, 0.0) if self.deck.is_afloat else (config.grade_std**2, config.bend_std_per_m**2)
+        vertical = [0.0, grade, heave, heave_rate]
+        tilt = swing.tilt_std_rad**2
+        tilting = [tilt, tilt * float(self.numbers.motion[10]) ** 2]
+        driven = [bend, config.gravity_leak_std_m_s2**2, *tilting, *tilting]
+        return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0, *driven, 0.0, 0.0])
 
     def _step_size(self, state: ImmState, measurement: Measurement) -> float:
         """How far, m, a measured place is from the expected one; at least the prior of the offset."""
@@ -260,7 +301,7 @@ class ImmModel:
         means, covariances, weights = self.start(place).modes
         means[:, PLACE] += x[OFFSET]
         means[:, OFFSET] = x[OFFSET]
-        for kept in (HEADING, CLOCK):
+        for kept in (HEADING, CLOCK, *DECK):
             means[:, kept], covariances[:, kept, kept] = x[kept], P[kept, kept]
         return replace(state, modes=(means, covariances, weights))
 

@@ -6,12 +6,32 @@ from functools import lru_cache
 
 import numpy as np
 
-from companion.config.estimation import ImmConfig, ImmModeConfig
+from companion.config.estimation import ImmConfig, ImmModeConfig, SwingConfig
 from companion.core.data import Array
 from companion.vehicle.imm_kernels import CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST, HEADING_NOISE
-from link.messages import Vector3
+from link.messages import PadGeometry, Vector3
 
 ON_THE_SPOT_RAD_M = 10.0  # 1 rad/s while the middle moves at 0.1 m/s
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Deck:
+    """Where the pad is on the vehicle, as it tells it.
+
+    Attributes:
+        antenna_to_pad_m: lever arm in V.
+        pad_height_m: above the road or the water, about which the body is taken to tilt.
+        is_afloat: it floats.
+    """
+
+    antenna_to_pad_m: Vector3 = (0.0, 0.0, 0.0)
+    pad_height_m: float = 0.0
+    is_afloat: bool = False
+
+
+def deck_of(pad: PadGeometry) -> Deck:
+    """Return the deck that `pad` is on."""
+    return Deck(antenna_to_pad_m=pad.antenna_to_pad_m, pad_height_m=pad.height_m, is_afloat=pad.is_afloat)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -19,10 +39,10 @@ class Numbers:
     """A configuration as the kernels take it.
 
     Attributes:
-        motion: (9,) as `imm_mixing` has it.
+        motion: (16,) as `imm_mixing` has it.
         dwell_s: (2,) of both modes.
-        noises: (2, 15) as `imm_kernels.process_noise` takes them, but for what depends on the state (`noises_with`).
-        lever_m: (3,) from the antenna to the pad in V.
+        noises: (2, 16) as `imm_kernels.process_noise` takes them, but for what depends on the state (`noises_with`).
+        lever_m: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll.
         course: (3,) as `imm_mixing.take_reading` takes it.
     """
 
@@ -33,24 +53,40 @@ class Numbers:
     course: Array
 
 
-def numbers_of(config: ImmConfig, antenna_to_pad_m: Vector3) -> Numbers:
-    """Return the numbers of `config` with the lever arm (3,) in V from the antenna to the pad, m."""
-    heave = (2.0 * math.pi * config.heave_frequency_hz, config.heave_damping, config.heave_std_m)
+def swing_of(config: ImmConfig, *, is_afloat: bool) -> SwingConfig:
+    """Return how a deck swings that has not been watched, on the water or on a road."""
+    return config.afloat if is_afloat else config.on_road
+
+
+def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
+    """Return the numbers of `config` for a pad on `deck`."""
+    swing = swing_of(config, is_afloat=deck.is_afloat)
+    heave = (2.0 * math.pi * swing.heave_frequency_hz, swing.heave_damping, swing.heave_std_m)
+    level = (2.0 * math.pi * swing.tilt_frequency_hz, swing.tilt_damping, 0.0)  # until it is told
+    lever_m = (*deck.antenna_to_pad_m, deck.pad_height_m)
     modes = (config.steady, config.manoeuvre)
     return Numbers(
         motion=np.array(
-            [config.acceleration_decay_s, *heave, config.clock_time_s, *antenna_to_pad_m, config.gravity_leak_time_s]
+            [
+                config.acceleration_decay_s,
+                *heave,
+                config.clock_time_s,
+                *lever_m,
+                config.gravity_leak_time_s,
+                *level,
+                *level,
+            ]
         ),
         dwell_s=np.array([mode.dwell_s for mode in modes]),
-        noises=np.array([_noise(config, mode) for mode in modes]),
-        lever_m=np.array(antenna_to_pad_m),
+        noises=np.array([_noise(config, mode, is_afloat=deck.is_afloat) for mode in modes]),
+        lever_m=np.array(lever_m),
         course=np.array([config.course_speed_min_m_s, config.course_std_rad**2, config.heading_known_std_rad**2]),
     )
 
 
 @lru_cache(maxsize=4)  # it changes with a fix's stated error only
 def noises_with(numbers: Numbers, receiver_m2_s: float, own_m2_s: float, *, turn_is_measured: bool) -> Array:
-    """Return both modes' noise (2, 15) with the wandering of the vehicle's receiver and of the drone's own place.
+    """Return both modes' noise (2, 16) with the wandering of the vehicle's receiver and of the drone's own place.
 
     Where the drone's own place does not wander, fixes have corrections, and are dated without an error.
     A vehicle whose turning is measured may be one that turns on the spot. Any other is taken for a car: it turns no
@@ -66,14 +102,15 @@ def noises_with(numbers: Numbers, receiver_m2_s: float, own_m2_s: float, *, turn
     return noises
 
 
-def _noise(config: ImmConfig, mode: ImmModeConfig) -> tuple[float, ...]:
+def _noise(config: ImmConfig, mode: ImmModeConfig, *, is_afloat: bool) -> tuple[float, ...]:
+    """Return one mode's noise; water has no grades."""
     return (
         mode.jerk_psd_m2_s5,
         config.side_jerk_psd_m2_s5,
         mode.lateral_acceleration_psd_m2_s5,
         config.curvature_speed_min_m_s,
         config.heading_psd_rad2_s,
-        config.bend_std_per_m,
+        0.0 if is_afloat else config.bend_std_per_m,
         0.0,
         0.0,
         2.0 * config.clock_std_s**2 / config.clock_time_s,
@@ -81,6 +118,7 @@ def _noise(config: ImmConfig, mode: ImmModeConfig) -> tuple[float, ...]:
         0.0,
         config.bend_acceleration_std_m_s2,
         config.bend_length_m,
-        config.road_psd_m2_m,
+        0.0 if is_afloat else config.road_psd_m2_m,
         2.0 * config.gravity_leak_std_m_s2**2 / config.gravity_leak_time_s,
+        float(is_afloat),
     )
