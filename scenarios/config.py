@@ -44,7 +44,7 @@ class VelocityConfig(DelayConfig):
 
 
 class ImuConfig(DelayConfig):
-    """Heading, roll and pitch, turn rates and acceleration; a plain compass errs slowly, hence the Gauss-Markov part."""
+    """Attitude, turn rates and acceleration; a plain compass errs slowly, hence the Gauss-Markov part."""
 
     heading_white_rad: NotNegative
     heading_bias_rad: NotNegative = 0.0

@@ -138,7 +138,7 @@ def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
     from companion.check.detector import judge_detector
     from companion.check.links import assess_links
 
-    vehicle, detector = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.chase)
+    vehicle, detector = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.integrity)
     seen = assess(session.reader.facts(), vehicle, asked.speed_m_s, asked.config)
     return [*seen, *judge_detector(detector, asked.speed_m_s, asked.config), *assess_links(asked.open_links)]
 

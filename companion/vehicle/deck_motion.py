@@ -3,7 +3,8 @@
 Each is taken for a damped oscillator driven by noise, whose value and rate `z` the filter follows. Over pairs that lie
 a lag apart the sums S0 of `z z'` and S1 of `z(later) z'` fade with `MEMORY_S`. The transition that fits best in the
 least squares is A = S1 / S0, the first-order vector autoregression; its eigenvalues are
-exp((-d +- i sqrt(1 - d^2)) w t). The sums begin as those of an ordinary deck, as if it had been watched for `PRIOR_S`.
+exp((-d +- i sqrt(1 - d^2)) w t). The sums begin as those of an ordinary deck, as if it had been watched for `PRIOR_PERIODS`.
+The value is taken against its mean, for neither a list nor a height that is not known apart is swinging.
 Source: Lütkepohl, New Introduction to Multiple Time Series Analysis (2005), 3.2.
 """
 
@@ -13,24 +14,27 @@ from collections.abc import Sequence
 import numpy as np
 from msgspec import Struct
 
-from companion.config.estimation import SwingConfig
+from companion.config.estimation import OscillatorConfig, SwingConfig
 from companion.core.data import Array
 from companion.vehicle.imm_kernels import heave_step
 from link.records import replace
 
 MEMORY_S = 60.0  # some six waves; a road of one kind lasts longer
-PRIOR_S = 5.0
+PRIOR_PERIODS = 2.0
 _FREQUENCY_RANGE_RAD_S = (2.0 * math.pi * 0.03, 2.0 * math.pi * 5.0)  # from swell of 33 s to a stiff suspension
-_DAMPING_RANGE = (0.01, 0.95)
+# A narrower band would tell the middle of a swing from a part of it: seas have bands of some 0.4 of their frequency
+# (Longuet-Higgins 1975), bodies on wheels a damping of 0.2 and more.
+_DAMPING_RANGE = (0.1, 0.95)
 _STD_MIN = (0.005, 0.001, 0.001)  # m, rad, rad: no receiver and no inertial unit tells less
 
 
 class Axis(Struct, frozen=True, kw_only=True):
-    """What has been seen of one of them; S0 as (xx, xv, vv), S1 as (xx, xv, vx, vv), later one first."""
+    """What has been seen of one of them: the mean, and S0 as (xx, xv, vv), S1 as (xx, xv, vx, vv), later one first."""
 
     last: tuple[float, float]
     weight: float
     lag_s: float
+    mean: float
     at_once: tuple[float, float, float]
     later: tuple[float, float, float, float]
 
@@ -51,21 +55,21 @@ class DeckMotion(Struct, frozen=True, kw_only=True, eq=False):
 
 def first_motion(swing: SwingConfig) -> DeckMotion:
     """Return what is taken for granted of a deck that has not been watched."""
-    w_heave, w_tilt = 2.0 * math.pi * swing.heave_frequency_hz, 2.0 * math.pi * swing.tilt_frequency_hz
-    heave = _first_axis(w_heave, swing.heave_damping, swing.heave_std_m, swing.lag_s)
-    tilt = _first_axis(w_tilt, swing.tilt_damping, swing.tilt_std_rad, swing.lag_s)
+    heave, tilt = _first_axis(swing.heave, swing.lag_s), _first_axis(swing.tilt, swing.lag_s)
     axes = (heave, tilt, tilt)
     return DeckMotion(axes=axes, passed_s=0.0, oscillators=_oscillators(axes))
 
 
-def _first_axis(frequency_rad_s: float, damping: float, std: float, lag_s: float) -> Axis:
-    A, _ = heave_step(lag_s, frequency_rad_s, damping, std)
-    weight = PRIOR_S / lag_s
+def _first_axis(oscillator: OscillatorConfig, lag_s: float) -> Axis:
+    frequency_rad_s, std = 2.0 * math.pi * oscillator.frequency_hz, oscillator.std
+    A, _ = heave_step(lag_s, frequency_rad_s, oscillator.damping, std)
+    weight = PRIOR_PERIODS / (oscillator.frequency_hz * lag_s)
     place, rate = weight * std**2, weight * (std * frequency_rad_s) ** 2
     return Axis(
         last=(0.0, 0.0),
         weight=weight,
         lag_s=lag_s,
+        mean=0.0,
         at_once=(place, 0.0, rate),
         later=(float(A[0, 0]) * place, float(A[0, 1]) * rate, float(A[1, 0]) * place, float(A[1, 1]) * rate),
     )
@@ -98,15 +102,17 @@ def learn(motion: DeckMotion, mean: Sequence[float], lag_s: float) -> DeckMotion
 
 def _with_pair(axis: Axis, state: tuple[float, float], lag_s: float) -> Axis:
     keep = math.exp(-lag_s / MEMORY_S)
-    x, v = axis.last
-    later_x, later_v = state
+    (before, v), (after, later_v) = axis.last, state
     xx, xv, vv = axis.at_once
     a, b, c, d = axis.later
     weight = keep * axis.weight + 1.0
+    mean = axis.mean + (after - axis.mean) / weight
+    x, later_x = before - mean, after - mean
     return Axis(
         last=state,
         weight=weight,
         lag_s=axis.lag_s + (lag_s - axis.lag_s) / weight,
+        mean=mean,
         at_once=(keep * xx + x * x, keep * xv + x * v, keep * vv + v * v),
         later=(keep * a + later_x * x, keep * b + later_x * v, keep * c + later_v * x, keep * d + later_v * v),
     )

@@ -197,7 +197,8 @@ def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array, tilt_
             curvature, m/s; heading, rad^2/s; standard deviation of the grade's change, 1/m; the receiver's and the
             drone's own wandering, m^2/s; clock, s^2/s; standard deviation of the curvature in the long run, rad/m;
             heading at rest, rad^2/s; standard deviation of a vertical curve's acceleration, m/s^2; its length, m;
-            height of the road, m^2/m; what the accelerometer reads too much, m^2/s^5; 1 for a vehicle that heaves at rest, too, else 0.
+            height of the road, m^2/m; what the accelerometer reads too much, m^2/s^5; 1 for a vehicle that heaves at
+            rest, too, else 0.
         heave_noise: (2, 2) of the heave over `dt_s`.
         tilt_noise: (2, 2, 2) of roll and pitch.
     """

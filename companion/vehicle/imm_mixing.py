@@ -3,9 +3,9 @@
 `Modes` are means (2, 24), covariances (2, 24, 24) and probabilities (2,). Between measurements the vehicle may change
 from one mode to the other as a continuous Markov chain with the given mean dwell times. `motion` (16,) is the time
 constant of the acceleration, s, the heave's angular frequency, rad/s, damping and standard deviation, m, the time
-constant of the clock's difference, s, the lever arm (3,) from the antenna to the pad in V and the pad's height above the
-axis of roll, m, the time constant of what the accelerometer reads too much, s, and the same three numbers of roll and of
-pitch as of heave, rad.
+constant of the clock's difference, s, the lever arm (3,) from the antenna to the pad in V and the pad's height above
+the axis of roll, m, the time constant of what the accelerometer reads too much, s, and the same three numbers of roll
+and of pitch as of heave, rad.
 """
 
 import math

@@ -61,18 +61,18 @@ def swing_of(config: ImmConfig, *, is_afloat: bool) -> SwingConfig:
 def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
     """Return the numbers of `config` for a pad on `deck`."""
     swing = swing_of(config, is_afloat=deck.is_afloat)
-    heave = (2.0 * math.pi * swing.heave_frequency_hz, swing.heave_damping, swing.heave_std_m)
-    level = (2.0 * math.pi * swing.tilt_frequency_hz, swing.tilt_damping, 0.0)  # until it is told
+    heave = (2.0 * math.pi * swing.heave.frequency_hz, swing.heave.damping, swing.heave.std)
+    level = (2.0 * math.pi * swing.tilt.frequency_hz, swing.tilt.damping, 0.0)  # until it is told
     lever_m = (*deck.antenna_to_pad_m, deck.pad_height_m)
-    modes = (config.steady, config.manoeuvre)
+    modes, heading = (config.steady, config.manoeuvre), config.heading
     return Numbers(
         motion=np.array(
             [
                 config.acceleration_decay_s,
                 *heave,
-                config.clock_time_s,
+                config.receivers.clock_time_s,
                 *lever_m,
-                config.gravity_leak_time_s,
+                config.road.gravity_leak_time_s,
                 *level,
                 *level,
             ]
@@ -80,7 +80,7 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
         dwell_s=np.array([mode.dwell_s for mode in modes]),
         noises=np.array([_noise(config, mode, is_afloat=deck.is_afloat) for mode in modes]),
         lever_m=np.array(lever_m),
-        course=np.array([config.course_speed_min_m_s, config.course_std_rad**2, config.heading_known_std_rad**2]),
+        course=np.array([heading.course_speed_min_m_s, heading.course_std_rad**2, heading.known_std_rad**2]),
     )
 
 
@@ -108,17 +108,17 @@ def _noise(config: ImmConfig, mode: ImmModeConfig, *, is_afloat: bool) -> tuple[
         mode.jerk_psd_m2_s5,
         config.side_jerk_psd_m2_s5,
         mode.lateral_acceleration_psd_m2_s5,
-        config.curvature_speed_min_m_s,
-        config.heading_psd_rad2_s,
-        0.0 if is_afloat else config.bend_std_per_m,
+        config.heading.curvature_speed_min_m_s,
+        config.heading.psd_rad2_s,
+        0.0 if is_afloat else config.road.bend_std_per_m,
         0.0,
         0.0,
-        2.0 * config.clock_std_s**2 / config.clock_time_s,
-        config.curvature_std_rad_m,
+        2.0 * config.receivers.clock_std_s**2 / config.receivers.clock_time_s,
+        config.heading.curvature_std_rad_m,
         0.0,
-        config.bend_acceleration_std_m_s2,
-        config.bend_length_m,
-        0.0 if is_afloat else config.road_psd_m2_m,
-        2.0 * config.gravity_leak_std_m_s2**2 / config.gravity_leak_time_s,
+        config.road.bend_acceleration_std_m_s2,
+        config.road.bend_length_m,
+        0.0 if is_afloat else config.road.height_psd_m2_m,
+        2.0 * config.road.gravity_leak_std_m_s2**2 / config.road.gravity_leak_time_s,
         float(is_afloat),
     )

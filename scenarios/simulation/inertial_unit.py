@@ -1,7 +1,7 @@
 """The inertial unit on the vehicle: heading, yaw rate and, if it tells them, roll, pitch and the specific force.
 
-Model: white noise on each reading; the heading errs slowly as well (Gauss-Markov), the force by what stays in a run,
-such as the sensor's offset and the angle at which it is mounted, and so do roll and pitch. Frames: W is ENU, V the vehicle's body in FLU.
+Model: white noise on each reading; the heading errs slowly as well (Gauss-Markov), the others by what stays in a run,
+such as a sensor's offset and the angle at which it is mounted. Frames: W is ENU, V the vehicle's body in FLU.
 """
 
 import math

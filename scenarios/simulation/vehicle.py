@@ -152,7 +152,7 @@ def state_on_road(
         motion: along the road.
         at: the road there.
         roughness: that shakes the body along the road, None for none.
-        swaying: heave (m), pitch and roll (rad) of the body on its wheels or in waves, each with its rate and acceleration.
+        swaying: heave (m), pitch and roll (rad) of the body on its wheels or in waves, each with rate and acceleration.
     """
     v, a = motion.speed_m_s, motion.acceleration_m_s2
     heave = roll = shake = _NO_WAVE

@@ -2,8 +2,8 @@
 
 Model: Bretschneider's (ITTC's two-parameter) spectrum, S(w) = 5/16 H^2 wp^4 / w^5 exp(-5/4 (wp/w)^4), of which
 exp(-5/4 (wp/w)^4) is the share of the variance below w. `COMPONENTS` waves of equal variance, one drawn frequency in
-each band and a drawn phase, are superposed; a wave's phase at the ship is w t - k s cos(beta) + e, so that what the ship
-meets is right at any speed. The hull answers as it does at the cruising speed (`scenarios.tracks.hull`).
+each band and a drawn phase, are superposed; a wave's phase at the ship is w t - k s cos(beta) + e, so that what the
+ship meets is right at any speed. The hull answers as it does at the cruising speed (`scenarios.tracks.hull`).
 Source: Bretschneider 1959; ITTC Recommended Procedures 7.5-02-07-01.1; sea states: STANAG 4194, table for the open
 North Atlantic (Bales 1983), in the catalogue.
 """
@@ -71,7 +71,7 @@ def draw_waves(significant_height_m: float, modal_period_s: float, rng: np.rando
 
 
 def seaway_of(track: VesselTrack, speed_m_s: float, beta_rad: float, rng: np.random.Generator) -> Seaway:
-    """Return how the deck of `track` moves at a cruising speed in waves that go in direction `beta_rad` of the bow's."""
+    """Return how the deck of `track` moves at a cruising speed in waves that go at `beta_rad` from the bow's way."""
     waves = draw_waves(track.significant_height_m, track.modal_period_s, rng)
     answers = [response(track.hull, omega, beta_rad, speed_m_s) for omega in waves.omega_rad_s.tolist()]
     heave = np.array([answer.heave - track.deck_forward_m * answer.pitch_rad_m for answer in answers])

@@ -43,7 +43,7 @@ _SPEED_BAND = 0.5  # a random vehicle keeps within this share of its mean speed
 _TURN_RADIUS_MIN_M = 6.0  # of a car
 
 
-def course_of(track: TrackConfig, rng: np.random.Generator) -> Course:  # noqa: C901, PLR0911 (one case for each kind of track)
+def course_of(track: TrackConfig, rng: np.random.Generator) -> Course:  # noqa: C901, PLR0911, PLR0912 (one case for each kind of track)
     """Return the course of `track`; `rng` decides what is random in it."""
     match track:
         case StaticTrack():

@@ -1,17 +1,18 @@
 """A vehicle that is known exactly, an autopilot that follows exactly, and a companion's step between them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
 from functools import cache
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
 from companion.autopilots.driver import AutopilotView, Driver, FrameMoves
 from companion.autopilots.px4 import Px4Driver
 from companion.autopilots.response import Cascade, ResponseModel
-from companion.config.companion import CompanionConfig, ReceiverFrames
+from companion.config.companion import CompanionConfig
+from companion.config.integrity import IntegrityConfig, ReceiverFrames
 from companion.core.data import Array, Forecast, Measurement, OwnState, Quantity, Rival, VehicleEstimate
 from companion.core.reasons import Reason, sentence
 from companion.landing.memory import StepMemory
@@ -26,14 +27,22 @@ from link.frames.local_frame import LocalFrame, Projection
 from link.frames.rotations import quaternion_from_yaw
 from link.mavlink.dialect import mavlink
 from link.messages import Command, PadGeometry, Vector3
+from link.program.toml_config import merge, validate
 from link.records import replace
 
-CONFIG = CompanionConfig(receiver_frames=ReceiverFrames.ONE)
-IMPATIENT = CONFIG.model_copy(
-    update={
-        "takeoff": CONFIG.takeoff.model_copy(update={"refused_after_s": 3.0}),
-        "chase": CONFIG.chase.model_copy(update={"parked_wait_s": 2.0}),
-        "descent": CONFIG.descent.model_copy(update={"align_time_limit_s": 4.0}),
+CONFIG = CompanionConfig(integrity=IntegrityConfig(receiver_frames=ReceiverFrames.ONE))
+
+
+def configured(table: Mapping[str, Any], below: CompanionConfig = CONFIG) -> CompanionConfig:
+    """Return a configuration with the keys of `table`, as a file would have them, laid over those `below`."""
+    return validate(CompanionConfig, merge(below.model_dump(mode="json"), table), source="the test")
+
+
+IMPATIENT = configured(
+    {
+        "takeoff": {"refused_after_s": 3.0},
+        "chase": {"parked_wait_s": 2.0},
+        "descent": {"alignment": {"time_limit_s": 4.0}},
     }
 )
 START_NS = 1_795_000_000_000_000_000

@@ -6,15 +6,17 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig
+from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig, ReceiversConfig
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle.pad import pad_path
 from link.messages import PadGeometry
 from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, NOMINAL, climb
 from tests.companion.vehicle.rides import estimator, ride
-from tests.companion.vehicle.test_imm_kernels import HEAVE, NOISE, TAU_S
+from tests.companion.vehicle.test_imm_kernels import HEAVE, NOISE, TAU_S, TILT, TILT_NOISE
 
-SAME_FRAME = EstimatorConfig(imm=ImmConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
+SAME_FRAME = EstimatorConfig(
+    imm=ImmConfig(receivers=ReceiversConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
+)
 PAD = PadGeometry(size_m=(1.5, 1.5), height_m=1.5, antenna_to_pad_m=ANTENNA_TO_PAD_M)
 VERTICAL = np.array([2, 5])
 GRADES_AND_SPEEDS = [(0.03, 3.0), (0.12, 3.0), (0.08, 8.0), (-0.08, 8.0), (0.03, 12.0), (0.08, 12.0)]
@@ -24,7 +26,7 @@ def test_height_is_that_of_a_vertical_curve() -> None:
     x = np.zeros(kernels.SIZE)
     x[2:4], x[7] = 8.0 * np.array([math.cos(0.4), math.sin(0.4)]), 0.4
     x[8], x[9], x[kernels.BEND] = 2.0, 0.03, 0.004
-    after, _ = kernels.advance(x, 0.1, TAU_S, HEAVE)
+    after, _ = kernels.advance(x, 0.1, TAU_S, HEAVE, TILT)
     assert after[8] == pytest.approx(2.0 + 0.03 * 0.8 + 0.5 * 0.004 * 0.8**2)
     assert after[9] == pytest.approx(0.03 + 0.004 * 0.8)
 
@@ -32,11 +34,11 @@ def test_height_is_that_of_a_vertical_curve() -> None:
 def test_vehicle_that_reverses_goes_down_what_it_has_climbed() -> None:
     x = np.zeros(kernels.SIZE)
     x[2], x[9] = -2.0, 0.1
-    assert kernels.advance(x, 0.1, TAU_S, HEAVE)[0][8] == pytest.approx(-0.02)
+    assert kernels.advance(x, 0.1, TAU_S, HEAVE, TILT)[0][8] == pytest.approx(-0.02)
 
 
 def test_standing_vehicle_neither_climbs_nor_heaves() -> None:
-    Q = kernels.process_noise(np.zeros(kernels.SIZE), 0.1, NOISE, 1e-4 * np.eye(2))
+    Q = kernels.process_noise(np.zeros(kernels.SIZE), 0.1, NOISE, 1e-4 * np.eye(2), TILT_NOISE)
     assert np.abs(Q[[9, 10, 11, kernels.BEND]]).max() == 0.0
     assert Q[8, 8] == pytest.approx(NOISE[7] * 0.1)  # how far the drone errs about itself
 
@@ -55,9 +57,9 @@ def test_noise_of_the_grade_is_that_of_many_small_steps() -> None:
     x = np.zeros(kernels.SIZE)
     x[2] = 8.0
     rows = np.array([8, 9, kernels.BEND])
-    whole = kernels.process_noise(x, 0.02, NOISE, np.zeros((2, 2)))[np.ix_(rows, rows)]
-    _, F = kernels.advance(x, 0.0004, TAU_S, HEAVE)
-    once = kernels.process_noise(x, 0.0004, NOISE, np.zeros((2, 2)))
+    whole = kernels.process_noise(x, 0.02, NOISE, np.zeros((2, 2)), TILT_NOISE)[np.ix_(rows, rows)]
+    _, F = kernels.advance(x, 0.0004, TAU_S, HEAVE, TILT)
+    once = kernels.process_noise(x, 0.0004, NOISE, np.zeros((2, 2)), TILT_NOISE)
     parts = np.zeros_like(once)
     for _ in range(50):
         parts = F @ parts @ F.T + once
