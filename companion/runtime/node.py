@@ -120,6 +120,8 @@ class CompanionNode:
         """Take the vehicle's description of its pad; the estimator needs the lever arm for sightings of the pad."""
         if self.vehicle.receive_pad(pad):
             estimator = make_estimator(self.system.config.estimator, deck_of(pad))
+            if pad.is_afloat:  # what has been learnt of it as of a car is wrong, and believed
+                self.memory = replace(self.memory, vehicle=replace(self.memory.vehicle, estimator=None))
             self.system = replace(self.system, estimator=estimator)
 
     def is_ready_to_start(self) -> bool:

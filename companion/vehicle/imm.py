@@ -26,7 +26,7 @@ from companion.vehicle import imm_sensors as sensors
 from companion.vehicle.deck_motion import DeckMotion, first_motion, learn, passed
 from companion.vehicle.filter_step import Update, wrapped
 from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, swing_of
-from companion.vehicle.imm_swing import MOUNT, ROLL
+from companion.vehicle.imm_swing import MOUNT, ROLL, antenna_swing
 from link.records import replace
 
 KINDS = {
@@ -40,6 +40,7 @@ KINDS = {
 }
 UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
 PLACE = np.array([0, 1, 8])  # indices of the position
+RATE = np.array([2, 3, 11])  # what the velocity of the antenna has beside its swing
 OFFSET = np.array([12, 13, 14])
 TILT, DECK = np.arange(ROLL, MOUNT), np.arange(ROLL, kernels.SIZE)
 SWINGING = np.array([10, 11, *TILT])
@@ -53,6 +54,7 @@ TOLD_BY = {  # what is opened to data of a quantity that were rejected for too l
 }
 CLOCK = kernels.CLOCK
 TURNS = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
+_SETTLED_STD_M_S = 0.3  # of the speed; a receiver's velocity is as good, two fixes in a second are
 TURN_AGE_MAX_S = 1.0  # of a sensor that is at work: several periods of the slowest
 
 IndexArray = NDArray[np.intp]
@@ -123,10 +125,12 @@ class ImmModel:
         return replace(state, modes=modes, turn_age_s=state.turn_age_s + dt_s, deck=deck)
 
     def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState] | None:
-        """Return the state after any quantity, None of an acceleration along a heading that is not known."""
+        """Return the state after any quantity, None of an acceleration or a tilt for which it is too early."""
         if measurement.quantity is Quantity.ACCELERATION and not self._is_heading_known(state):
             return None
         if measurement.quantity is Quantity.TILT and state.deck is None:
+            if not self._has_settled(state):
+                return None
             state = self._with_deck(state, measurement)
         R, bias_variance = measurement.covariance, state.fix_bias_variance_m2
         if measurement.quantity is Quantity.POSITION:
@@ -240,10 +244,25 @@ class ImmModel:
         motion[1:4], motion[10:16] = state.deck.oscillators[:3], state.deck.oscillators[3:]
         return motion
 
+    def _has_settled(self, state: ImmState) -> bool:
+        """Whether the first fixes are in: what a vehicle of any speed does would be learnt about its tilt, too."""
+        _, covariances, _ = state.modes
+        speed_variance = float((covariances[:, 2, 2] + covariances[:, 3, 3]).max())
+        return self._is_heading_known(state) and speed_variance < _SETTLED_STD_M_S**2
+
     def _with_deck(self, state: ImmState, tilt: Measurement) -> ImmState:
-        """Return the state of a vehicle that begins to tell its tilt; what it states may err for ever, too."""
-        opened = _open(state, DECK, np.append(self._prior_variances()[TILT], tilt.covariance.diagonal()[:2]))
-        return replace(opened, deck=first_motion(self._swing))
+        """Return the state of a vehicle that begins to tell its tilt; what it states may err for ever, too.
+
+        Where the antenna was and how fast stays as it was known: of it, a part becomes that of the swing.
+        """
+        means, covariances, weights = state.modes
+        swung = np.zeros((kernels.SIZE, len(DECK)))
+        swung[DECK, np.arange(len(DECK))] = 1.0
+        for first, moved in ((ROLL, PLACE), (ROLL + 1, RATE)):
+            swung[moved] -= antenna_swing(weights @ means, first, self.numbers.lever_m)[1][:, DECK]
+        variances = np.append(self._prior_variances()[TILT], tilt.covariance.diagonal()[:2])
+        opened = covariances + swung @ (variances[:, None] * swung.T)
+        return replace(state, modes=(means, opened, weights), deck=first_motion(self._swing))
 
     def _prior_variances(self) -> Array:
         """Of every state but position, offset and clock, (24,)."""
