@@ -3,8 +3,8 @@
 Each is taken for a damped oscillator driven by noise, whose value and rate `z` the filter follows. Over pairs that lie
 a lag apart the sums S0 of `z z'` and S1 of `z(later) z'` fade with `MEMORY_S`. The transition that fits best in the
 least squares is A = S1 / S0, the first-order vector autoregression; its eigenvalues are
-exp((-d +- i sqrt(1 - d^2)) w t). The sums begin as those of an ordinary deck, as if it had been watched for `PRIOR_PERIODS`.
-The value is taken against its mean, for neither a list nor a height that is not known apart is swinging.
+exp((-d +- i sqrt(1 - d^2)) w t). The sums begin as those of an ordinary deck that has been watched for
+`PRIOR_PERIODS`. The value is taken against its mean, for a list, or a height that is not known apart, is no swinging.
 Source: Lütkepohl, New Introduction to Multiple Time Series Analysis (2005), 3.2.
 """
 

@@ -15,18 +15,19 @@ from typing import assert_never
 
 import numpy as np
 from msgspec import Struct
-from numpy.typing import NDArray
 
 from companion.config.estimation import ImmConfig, SwingConfig
 from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
 from companion.vehicle import imm_forecast as forecasts
+from companion.vehicle import imm_judgement as judgement
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_sensors as sensors
 from companion.vehicle.deck_motion import DeckMotion, first_motion, learn, passed
 from companion.vehicle.filter_step import Update, wrapped
 from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, swing_of
-from companion.vehicle.imm_swing import MOUNT, ROLL, antenna_swing
+from companion.vehicle.imm_opening import DECK, OFFSET, PLACE, TILT, open_deck, open_place_and_offset, open_states
+from companion.vehicle.imm_swing import SIZE
 from link.records import replace
 
 KINDS = {
@@ -38,11 +39,6 @@ KINDS = {
     Quantity.ACCELERATION: sensors.ACCELERATION,
     Quantity.TILT: sensors.TILT,
 }
-UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
-PLACE = np.array([0, 1, 8])  # indices of the position
-RATE = np.array([2, 3, 11])  # what the velocity of the antenna has beside its swing
-OFFSET = np.array([12, 13, 14])
-TILT, DECK = np.arange(ROLL, MOUNT), np.arange(ROLL, kernels.SIZE)
 SWINGING = np.array([10, 11, *TILT])
 CURVATURE, HEADING = 6, 7
 TOLD_BY = {  # what is opened to data of a quantity that were rejected for too long
@@ -55,9 +51,8 @@ TOLD_BY = {  # what is opened to data of a quantity that were rejected for too l
 CLOCK = kernels.CLOCK
 TURNS = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
 _SETTLED_STD_M_S = 0.3  # of the speed; a receiver's velocity is as good, two fixes in a second are
+MOTIONS = frozenset({Quantity.POSITION, Quantity.VELOCITY})
 TURN_AGE_MAX_S = 1.0  # of a sensor that is at work: several periods of the slowest
-
-IndexArray = NDArray[np.intp]
 
 
 class ImmState(Struct, frozen=True, kw_only=True, eq=False):
@@ -67,12 +62,14 @@ class ImmState(Struct, frozen=True, kw_only=True, eq=False):
         modes: both.
         fix_bias_variance_m2: the slow part of the fixes' variance.
         turn_age_s: how long ago a sensor told the heading or the yaw rate.
+        unmeasured_s: how long ago place or velocity was told.
         deck: how the deck swings; None until the vehicle has told its tilt.
     """
 
     modes: mixing.Modes
     fix_bias_variance_m2: float
     turn_age_s: float = math.inf
+    unmeasured_s: float = 0.0
     deck: DeckMotion | None = None
 
 
@@ -104,13 +101,13 @@ class ImmModel:
         is_fix = place.quantity is Quantity.POSITION
         white, bias_variance = self._split(place.covariance) if is_fix else (place.covariance, 0.0)
         offset_variance = self.config.receivers.frame_offset_std_m**2 + bias_variance if is_fix else 0.0
-        mean = np.zeros(kernels.SIZE)
+        mean = np.zeros(SIZE)
         mean[PLACE] = place.value
-        covariance = np.diag(self._prior_variances())
+        covariance = np.diag(self.numbers.prior_variances)
         covariance[DECK, DECK] = 0.0
         covariance[np.ix_(PLACE, PLACE)] = white
         covariance[CLOCK, CLOCK] = self.config.receivers.clock_std_s**2 if bias_variance else 0.0
-        covariances = _with_common_step(np.stack([covariance, covariance]), offset_variance * np.eye(3))
+        covariances = open_place_and_offset(np.stack([covariance, covariance]), offset_variance * np.eye(3))
         dwell_s = self.numbers.dwell_s
         modes = (np.stack([mean, mean]), covariances, dwell_s / dwell_s.sum())
         return ImmState(modes=modes, fix_bias_variance_m2=bias_variance)
@@ -121,8 +118,13 @@ class ImmModel:
         modes = mixing.predict_modes(
             state.modes, dt_s, self._noises(state), numbers.dwell_s, self._motion(state), self._known_variance
         )
-        deck = None if state.deck is None else passed(state.deck, dt_s)
-        return replace(state, modes=modes, turn_age_s=state.turn_age_s + dt_s, deck=deck)
+        return replace(
+            state,
+            modes=modes,
+            turn_age_s=state.turn_age_s + dt_s,
+            unmeasured_s=state.unmeasured_s + dt_s,
+            deck=None if state.deck is None else passed(state.deck, dt_s),
+        )
 
     def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState] | None:
         """Return the state after any quantity, None of an acceleration or a tilt for which it is too early."""
@@ -136,13 +138,25 @@ class ImmModel:
         if measurement.quantity is Quantity.POSITION:
             R, bias_variance = self._split(R)
         reading = (KINDS[measurement.quantity], _own(measurement.value), _own(R))
-        modes, nis, gate_nis = mixing.take_reading(state.modes, reading, self.numbers.lever_m, self.numbers.course)
+        numbers = self.numbers
+        tells_motion = measurement.quantity in MOTIONS
+        modes = state.modes
+        if tells_motion and state.unmeasured_s > 0.0:
+            noise = self._noises(state)[1]
+            modes = judgement.expect_manoeuvre(modes, state.unmeasured_s, numbers.dwell_s, noise)
+        modes, nis, gate_nis = judgement.take_reading(modes, reading, numbers.lever_m, numbers.course)
         tells_turn = measurement.quantity in TURNS and self.placed_by is Quantity.POSITION
         turn_age_s = 0.0 if tells_turn else state.turn_age_s  # what is only seen to turn is taken for a car
         deck = state.deck
         if deck is not None and measurement.quantity is Quantity.TILT:
             deck = learn(deck, (modes[2] @ modes[0])[SWINGING].tolist(), self._swing.lag_s)
-        updated = ImmState(modes=modes, fix_bias_variance_m2=bias_variance, turn_age_s=turn_age_s, deck=deck)
+        updated = ImmState(
+            modes=modes,
+            fix_bias_variance_m2=bias_variance,
+            turn_age_s=turn_age_s,
+            unmeasured_s=0.0 if tells_motion else state.unmeasured_s,
+            deck=deck,
+        )
         return Update(state=updated, nis=nis, gate_nis=gate_nis, dof=len(measurement.value))
 
     def recover(self, state: ImmState, measurement: Measurement) -> ImmState:
@@ -158,11 +172,14 @@ class ImmModel:
                 return self._restart(state, measurement) if is_start else self._move_frame(state, measurement)
             case Quantity.POSITION:
                 if self._is_placed_by_sightings(state):
-                    return _open(state, OFFSET, np.full(3, self._step_size(state, measurement) ** 2))
+                    return replace(
+                        state,
+                        modes=open_states(state.modes, OFFSET, np.full(3, self._step_size(state, measurement) ** 2)),
+                    )
                 return self._restart(state, measurement)
             case Quantity.VELOCITY | Quantity.HEADING | Quantity.YAW_RATE | Quantity.ACCELERATION | Quantity.TILT:
                 told = TOLD_BY[measurement.quantity]
-                return _open(state, told, self._prior_variances()[told])
+                return replace(state, modes=open_states(state.modes, told, self.numbers.prior_variances[told]))
             case _:
                 assert_never(measurement.quantity)
 
@@ -251,33 +268,10 @@ class ImmModel:
         return self._is_heading_known(state) and speed_variance < _SETTLED_STD_M_S**2
 
     def _with_deck(self, state: ImmState, tilt: Measurement) -> ImmState:
-        """Return the state of a vehicle that begins to tell its tilt; what it states may err for ever, too.
-
-        Where the antenna was and how fast stays as it was known: of it, a part becomes that of the swing.
-        """
-        means, covariances, weights = state.modes
-        swung = np.zeros((kernels.SIZE, len(DECK)))
-        swung[DECK, np.arange(len(DECK))] = 1.0
-        for first, moved in ((ROLL, PLACE), (ROLL + 1, RATE)):
-            swung[moved] -= antenna_swing(weights @ means, first, self.numbers.lever_m)[1][:, DECK]
-        variances = np.append(self._prior_variances()[TILT], tilt.covariance.diagonal()[:2])
-        opened = covariances + swung @ (variances[:, None] * swung.T)
-        return replace(state, modes=(means, opened, weights), deck=first_motion(self._swing))
-
-    def _prior_variances(self) -> Array:
-        """Of every state but position, offset and clock, (24,)."""
-        config, swing = self.config, self._swing
-        speed, acceleration = config.initial_speed_std_m_s**2, config.initial_acceleration_std_m_s2**2
-        heave = swing.heave.std**2
-        heave_rate = heave * float(self.numbers.motion[1]) ** 2
-        curvature = config.heading.curvature_std_rad_m**2
-        moving = [speed, speed, acceleration, acceleration, curvature, UNKNOWN_HEADING_VARIANCE]
-        grade, bend = (0.0, 0.0) if self.deck.is_afloat else (config.road.grade_std**2, config.road.bend_std_per_m**2)
-        vertical = [0.0, grade, heave, heave_rate]
-        tilt = swing.tilt.std**2
-        tilting = [tilt, tilt * float(self.numbers.motion[10]) ** 2]
-        driven = [bend, config.road.gravity_leak_std_m_s2**2, *tilting, *tilting]
-        return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0, *driven, 0.0, 0.0])
+        """Return the state of a vehicle that begins to tell its tilt; what it states may err for ever, too."""
+        variances = np.append(self.numbers.prior_variances[TILT], tilt.covariance.diagonal()[:2])
+        modes = open_deck(state.modes, self.numbers.lever_m, variances)
+        return replace(state, modes=modes, deck=first_motion(self._swing))
 
     def _step_size(self, state: ImmState, measurement: Measurement) -> float:
         """How far, m, a measured place is from the expected one; at least the prior of the offset."""
@@ -312,7 +306,7 @@ class ImmModel:
         """Open place and offset as one unknown."""
         step = self._step_size(state, sighting) ** 2 * np.eye(3)
         means, covariances, weights = state.modes
-        return replace(state, modes=(means, _with_common_step(covariances, step), weights))
+        return replace(state, modes=(means, open_place_and_offset(covariances, step), weights))
 
     def _restart(self, state: ImmState, place: Measurement) -> ImmState:
         """A new start at `place` that keeps offset, heading and clock."""
@@ -328,19 +322,3 @@ class ImmModel:
 def _own(array: Array) -> Array:
     """A plain copy: kernels are compiled anew for read-only or strided arrays, which takes seconds."""
     return np.array(array, dtype=np.float64, order="C")
-
-
-def _open(state: ImmState, indices: IndexArray, variances: Array) -> ImmState:
-    means, covariances, weights = state.modes
-    opened = covariances.copy()
-    opened[:, indices, indices] += variances
-    return replace(state, modes=(means, opened, weights))
-
-
-def _with_common_step(covariances: Array, step: Array) -> Array:
-    """Add `step` (3, 3), m^2, to position and offset as one unknown that moves both."""
-    moved = covariances.copy()
-    for rows in (PLACE, OFFSET):
-        for columns in (PLACE, OFFSET):
-            moved[:, rows[:, None], columns] += step
-    return moved

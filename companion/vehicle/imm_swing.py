@@ -1,8 +1,8 @@
 """How a deck's tilt moves what is on it, compiled: the last six states of the turning model of `imm_kernels`.
 
 State: 18 phi, 19 its rate, 20 theta, 21 its rate: roll (port up positive) and pitch (bow down positive) of V against
-the road, rad and rad/s, each a damped oscillator; 22 and 23 what the vehicle's unit tells of roll and of pitch too much,
-rad, as it is not mounted along the deck. The body tilts about an axis below the pad, on the road or the water.
+the road, rad and rad/s, each a damped oscillator; 22 and 23 what the vehicle's unit tells of roll and of pitch too
+much, rad, as it is not mounted along the deck. The body tilts about an axis below the pad, on the road or the water.
 Heave is that of the pad, so that what pitching lifts there is part of it.
 To the first order in the tilt an arm `a` in V moves by (theta a_z, -phi a_z, phi a_y - theta a_x).
 """

@@ -20,6 +20,7 @@ from companion.vehicle.filter_step import Gaussian
 from companion.vehicle.imm import ImmModel, ImmState
 from companion.vehicle.imm_kernels import heave_step
 from companion.vehicle.imm_mixing import combine
+from companion.vehicle.imm_swing import SIZE
 from companion.vehicle.lkf import LkfModel, WhiteJerkNoise, transition
 from tests.companion.vehicle.rides import now_ns
 
@@ -109,7 +110,7 @@ def wander(x: Array, rng: np.random.Generator) -> Array:
 
 def imm_run(curvature: float, seed: int) -> tuple[float, float, int]:
     rng = np.random.default_rng(seed)
-    x = np.zeros(kernels.SIZE)
+    x = np.zeros(SIZE)
     x[2], x[6] = 8.0, curvature
     buffer: DelayBuffer[ImmState] | None = None
     at_settled = (0.0, 0)

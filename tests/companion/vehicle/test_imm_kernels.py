@@ -9,9 +9,11 @@ from scipy.stats import multivariate_normal
 
 from companion.core.data import Array
 from companion.vehicle import imm_forecast as forecasts
+from companion.vehicle import imm_judgement as judgement
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_sensors as sensors
+from companion.vehicle.imm_swing import SIZE
 
 TAU_S = 3.0
 ROLL, PITCH = (2.0 * math.pi * 1.1, 0.25, 0.03), (2.0 * math.pi * 0.8, 0.15, 0.02)
@@ -25,7 +27,7 @@ TILT_NOISE = np.array([[[2e-6, 1e-6], [1e-6, 3e-4]], [[1e-6, 0.0], [0.0, 2e-4]]]
 
 def a_state(seed: int) -> Array:
     rng = np.random.default_rng(seed)
-    x = np.zeros(kernels.SIZE)
+    x = np.zeros(SIZE)
     x[: kernels.LEAK] = rng.standard_normal(kernels.LEAK)
     x[2:4] = rng.uniform(2.0, 9.0, 2)
     x[4:6] = rng.uniform(-1.5, 1.5, 2)
@@ -37,7 +39,7 @@ def a_state(seed: int) -> Array:
     return x
 
 
-def a_covariance(seed: int, n: int = kernels.SIZE) -> Array:
+def a_covariance(seed: int, n: int = SIZE) -> Array:
     root = np.random.default_rng(seed).standard_normal((n, n))
     return np.asarray(root @ root.T + 0.1 * np.eye(n))
 
@@ -58,7 +60,7 @@ def test_motion_solves_its_differential_equation(seed: int) -> None:
 
 
 def test_motion_without_acceleration_is_a_circle_exactly() -> None:
-    x = np.zeros(kernels.SIZE)
+    x = np.zeros(SIZE)
     x[2], x[6] = 8.0, 1.0 / 20.0
     after, _ = kernels.advance(x, 0.5, TAU_S, HEAVE, TILT)
     turned = 8.0 * 0.5 / 20.0
@@ -70,9 +72,9 @@ def test_motion_without_acceleration_is_a_circle_exactly() -> None:
 def test_jacobian_is_the_derivative_of_the_motion(seed: int) -> None:
     x = a_state(seed)
     _, F = kernels.advance(x, 0.05, TAU_S, HEAVE, TILT)
-    numeric = np.empty((kernels.SIZE, kernels.SIZE))
-    for i in range(kernels.SIZE):
-        step = 1e-6 * np.eye(kernels.SIZE)[i]
+    numeric = np.empty((SIZE, SIZE))
+    for i in range(SIZE):
+        step = 1e-6 * np.eye(SIZE)[i]
         up, down = (kernels.advance(x + side * step, 0.05, TAU_S, HEAVE, TILT)[0] for side in (1.0, -1.0))
         numeric[:, i] = (up - down) / 2e-6
     assert pytest.approx(numeric, abs=2e-3) == F
@@ -82,8 +84,8 @@ def test_jacobian_is_the_derivative_of_the_motion(seed: int) -> None:
 def test_jacobian_is_the_derivative_of_what_a_sensor_reads(kind: int) -> None:
     x = a_state(7)
     _, H = sensors.observe(kind, x, LEVER, True)
-    for i in range(kernels.SIZE):
-        step = 1e-6 * np.eye(kernels.SIZE)[i]
+    for i in range(SIZE):
+        step = 1e-6 * np.eye(SIZE)[i]
         up, down = sensors.observe(kind, x + step, LEVER, True)[0], sensors.observe(kind, x - step, LEVER, True)[0]
         assert H[:, i] == pytest.approx((up - down) / 2e-6, abs=1e-6)
 
@@ -92,15 +94,16 @@ def test_jacobian_is_the_derivative_of_what_a_sensor_reads(kind: int) -> None:
 def test_kinematics_jacobian_is_the_derivative_of_the_kinematics(seed: int) -> None:
     x = a_state(seed)
     G = forecasts.kinematics_jacobian(x, MOTION)
-    numeric = np.empty((9, kernels.SIZE))
-    for i in range(kernels.SIZE):
-        around = np.hstack(forecasts.kinematics(x + 1e-6 * np.outer([1.0, -1.0], np.eye(kernels.SIZE)[i]), MOTION))
+    numeric = np.empty((9, SIZE))
+    for i in range(SIZE):
+        step: Array = 1e-6 * np.outer([1.0, -1.0], np.eye(SIZE)[i])
+        around = np.hstack(forecasts.kinematics(x + step, MOTION))
         numeric[:, i] = (around[0] - around[1]) / 2e-6
     assert pytest.approx(numeric, abs=1e-5) == G
 
 
 def test_braking_stops_where_the_fading_acceleration_stops_it() -> None:
-    x = np.zeros(kernels.SIZE)
+    x = np.zeros(SIZE)
     x[2], x[4] = 0.4, -6.0
     after, _ = kernels.advance(x, 0.1, TAU_S, HEAVE, TILT)
     stop = solve_ivp(
@@ -123,8 +126,8 @@ def _at_standstill(_: float, s: Array) -> float:
 @pytest.mark.parametrize("seed", range(3))
 def test_update_equals_that_of_filterpy(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    x, P, R = rng.standard_normal(kernels.SIZE), a_covariance(seed), a_covariance(seed + 50, 3)
-    H, z = rng.standard_normal((3, kernels.SIZE)), rng.standard_normal(3)
+    x, P, R = rng.standard_normal(SIZE), a_covariance(seed), a_covariance(seed + 50, 3)
+    H, z = rng.standard_normal((3, SIZE)), rng.standard_normal(3)
     mean, covariance, nis, log_likelihood = kernels.correct(x, P, z - H @ x, H, R)
     other_mean, other_covariance, y, _, S, _ = filterpy_update(x, P, z, R, H, return_all=True)
     assert mean == pytest.approx(other_mean)
@@ -156,7 +159,7 @@ def test_compiled_kernels_equal_their_python(seed: int) -> None:
 
 @pytest.mark.parametrize("speed_m_s", [0.0, 2.0, 7.0])
 def test_curvature_stays_as_uncertain_as_a_vehicle_can_steer(speed_m_s: float) -> None:
-    std, dt_s, x = NOISE[kernels.CURVATURE_STD], 0.1, np.zeros(kernels.SIZE)
+    std, dt_s, x = NOISE[kernels.CURVATURE_STD], 0.1, np.zeros(SIZE)
     x[2] = speed_m_s
     left = kernels.curvature_left(speed_m_s, dt_s, NOISE)
     fed = kernels.process_noise(x, dt_s, NOISE, np.zeros((2, 2)), TILT_NOISE)[6, 6]
@@ -165,7 +168,7 @@ def test_curvature_stays_as_uncertain_as_a_vehicle_can_steer(speed_m_s: float) -
 
 
 def test_heading_of_a_vehicle_at_rest_is_fed_by_no_noise() -> None:
-    Q = kernels.process_noise(np.zeros(kernels.SIZE), 0.1, NOISE, np.zeros((2, 2)), TILT_NOISE)
+    Q = kernels.process_noise(np.zeros(SIZE), 0.1, NOISE, np.zeros((2, 2)), TILT_NOISE)
     assert np.abs(Q[7]).max() == 0.0
 
 
@@ -208,22 +211,10 @@ def test_mixing_keeps_mean_and_covariance_of_the_mixture() -> None:
 def test_mode_that_was_ruled_out_comes_back() -> None:
     means = np.stack([a_state(1), a_state(1)])
     means[1, 0] += 5.0
-    covariances = np.stack([1e-2 * np.eye(kernels.SIZE), 1e-2 * np.eye(kernels.SIZE)])
+    covariances = np.stack([1e-2 * np.eye(SIZE), 1e-2 * np.eye(SIZE)])
     value = sensors.observe(sensors.POSITION, means[1], LEVER, True)[0]
     modes, reading = (means, covariances, np.array([1.0, 0.0])), (sensors.POSITION, value, 1e-4 * np.eye(3))
-    (_, _, weights), nis, gate_nis = mixing.update_modes(modes, reading, LEVER, True)
+    (_, _, weights), nis, gate_nis = judgement.update_modes(modes, reading, LEVER, True)
     assert weights[1] > 0.99
     assert nis > 100.0
     assert gate_nis == pytest.approx(0.0, abs=1e-9)
-
-
-@pytest.mark.parametrize("axes", [1, 3])
-def test_measurement_tells_the_modes_apart_as_one_component_would(axes: int) -> None:
-    means = np.stack([a_state(2), a_state(2)])
-    covariances = np.stack([0.03 * np.eye(kernels.SIZE), 0.7 * np.eye(kernels.SIZE)])
-    kind = sensors.POSITION if axes == 3 else sensors.HEADING
-    expected, H = sensors.observe(kind, means[0], LEVER, True)
-    error, R, before = np.full(axes, 0.9), 0.01 * np.eye(axes), np.array([0.8, 0.2])
-    (_, _, after), _, _ = mixing.update_modes((means, covariances, before), (kind, expected + error, R), LEVER, True)
-    fits = [multivariate_normal.logpdf(error, cov=H @ P @ H.T + R) for P in covariances]
-    assert math.log(after[1] / after[0]) == pytest.approx(math.log(0.2 / 0.8) + (fits[1] - fits[0]) / axes)
