@@ -7,20 +7,23 @@ from typing import Annotated, Any
 import typer
 
 from link.errors import UserError
-from link.program.cli import (
-    ConnectOption,
-    DroneOption,
-    InsecureOption,
-    ListenOption,
-    ModeOption,
-    MulticastOption,
-    NamespaceOption,
-    VehicleOption,
-    ZenohConfigOption,
-    make_app,
-    run_app,
+from link.program.cli import SetOption, make_app, run_app
+from link.zenoh.command_line import DroneOption, NameArguments, NamespaceOption, ZenohArguments
+from scenarios.commands import (
+    bench,
+    camera,
+    campaign,
+    eyes,
+    falsify,
+    faults,
+    fly,
+    fuzz,
+    rare,
+    replay,
+    report,
+    retries,
+    ros2,
 )
-from scenarios.commands import bench, camera, campaign, eyes, falsify, faults, fly, fuzz, rare, replay, report, ros2
 from scenarios.commands import view as view_command
 from scenarios.commands.examples import SCENARIOS
 
@@ -63,17 +66,20 @@ def run_command(
     seed: SeedOption = None,
     speed: Annotated[float, typer.Option("--speed", min=0.1, max=50.0, help="Simulated seconds a second.")] = 1.0,
     lockstep: Annotated[bool, typer.Option("--lockstep", help="In one process on a simulated clock.")] = False,
-    firmware: Annotated[str | None, typer.Option("--firmware", metavar="NAME", help="px4 or ardupilot.")] = None,
+    firmware: Annotated[
+        str | None, typer.Option("--firmware", metavar="px4|ardupilot", help="In place of the scenario's.")
+    ] = None,
+    changes: SetOption = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the run's folder is made.")] = Path("runs"),
     record: Annotated[
-        bool, typer.Option("--record/--no-record", help="Record what goes in and out of the companion, and the truth.")
+        bool, typer.Option(" /--no-record", help="Record neither the companion nor the truth; else both are, as MCAP.")
     ] = True,
     view: Annotated[bool, typer.Option("--view", help="Show the landing in the browser.")] = False,
     as_json: JsonOption = False,
 ) -> int:
     """Run a landing and score it on ground truth; exit code 1 when it does not land."""
     from link.program.patience import Patience
-    from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.changed import load_changed_scenario
     from scenarios.catalogue.firmware_option import with_firmware
     from scenarios.catalogue.world_names import run_seed
     from scenarios.commands.run_lines import Reporter
@@ -81,7 +87,7 @@ def run_command(
     from scenarios.recordings.run_folder import RunOptions, run_folder
     from scenarios.wire.run import run_over_wire
 
-    scenario = load_scenario(name if firmware is None else with_firmware(name, firmware))
+    scenario = load_changed_scenario(name if firmware is None else with_firmware(name, firmware), changes)
     view_port = view_command.port_of_run(lockstep=lockstep, as_json=as_json) if view else None
     folder = run_folder(out, scenario.name)
     options = RunOptions(seed=run_seed(name, seed), speed=speed, folder=folder, record=record, view_port=view_port)
@@ -108,28 +114,20 @@ def world_command(
     mavlink: Annotated[
         str, typer.Option("--mavlink", metavar="DEVICE", help="Where the companion listens.")
     ] = "udpout:127.0.0.1:14540",
-    namespace: NamespaceOption = "decklander",
-    vehicle: VehicleOption = "vehicle",
-    drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
+    changes: SetOption = None,
+    names: NameArguments,
+    endpoints: ZenohArguments,
 ) -> None:
     """Run the simulated side of a scenario, the autopilot with the vehicle in it, in one process."""
     from link.mavlink.transports import open_transport
-    from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
     from link.zenoh.session import open_session
-    from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.changed import load_changed_scenario
     from scenarios.catalogue.world_names import run_seed
     from scenarios.wire.world import WorldLoop
 
-    scenario = load_scenario(name)
-    keys = Keys(namespace, vehicle, drone)
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure, listens=True)
+    scenario = load_changed_scenario(name, changes)
+    keys = names.keys()
+    options = endpoints.options(listens=True)
     with open_transport(mavlink, is_patient=True) as transport, open_session(options) as zenoh:
         WorldLoop(scenario, run_seed(name, seed), keys, transport, zenoh, speed=speed).run()
 
@@ -140,20 +138,17 @@ def command_command(
         str, typer.Argument(metavar="start|abort|hold|start_anyway", help="What the companion is asked for.")
     ],
     *,
+    as_json: JsonOption = False,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
+    endpoints: ZenohArguments,
 ) -> int:
     """Send a command to the companion; exit code 1 when it is refused."""
+    import json
+
     from link.messages import Command
     from link.program.printable import printable
     from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
     from scenarios.commands.operator import send_command
 
     try:
@@ -161,13 +156,29 @@ def command_command(
     except ValueError:
         known = ", ".join(one.value for one in Command)
         raise UserError(f"command '{command}' does not exist: give one of {known}") from None
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
+    options = endpoints.options()
     reply = send_command(wanted, Keys(namespace, "vehicle", drone), options)
-    sys.stdout.write("accepted\n" if reply.accepted else f"refused: {printable(reply.reason)}\n")
+    told = "accepted" if reply.accepted else f"refused: {printable(reply.reason)}"
+    sys.stdout.write((json.dumps({"accepted": reply.accepted, "reason": reply.reason}) if as_json else told) + "\n")
     return 0 if reply.accepted else 1
 
 
-for command in (campaign, falsify, rare, bench, fuzz, faults, report, replay, fly, view_command, ros2, camera, eyes):
+for command in (
+    campaign,
+    falsify,
+    rare,
+    bench,
+    fuzz,
+    faults,
+    retries,
+    report,
+    replay,
+    fly,
+    view_command,
+    ros2,
+    camera,
+    eyes,
+):
     command.register(app)
 
 

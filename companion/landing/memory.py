@@ -13,6 +13,8 @@ from msgspec import Struct, field
 from companion.autopilots.driver import NO_MOVES, AutopilotView, DriverMemory, FrameMoves
 from companion.core.data import Array
 from companion.core.reasons import Cause, Reason
+from companion.forecast.drivers import Drivers
+from companion.forecast.gusts import Gusts
 from companion.integrity.frames import FixedPhases
 from companion.integrity.sightings import SightingWatch
 from companion.integrity.vehicle_data import Contradictions, CourseWatch, FixStamps
@@ -23,6 +25,7 @@ from companion.planning.guidance import GuidanceMemory, ReferenceState
 from companion.situation.phases import Phase
 from companion.vehicle.driving import Surprise
 from companion.vehicle.estimator import EstimatorMemory
+from link.messages import ContactForecast
 from link.records import replace
 
 Held = Mapping[Reason, int]
@@ -143,6 +146,24 @@ class Places(Struct, frozen=True, kw_only=True, eq=False):
     frame_moves: FrameMoves = NO_MOVES
 
 
+class ForecastMemory(Struct, frozen=True, kw_only=True, eq=False):
+    """The forecast of the contact, and what it is made from beside the estimate.
+
+    Attributes:
+        contact: the newest forecast of this descent, None without one.
+        made_ns: when it was made, monotonic; None in any other phase.
+        drivers: how the vehicle's driver drives.
+        gusts: how hard the air pushes the drone.
+        acceleration_ns: when the vehicle last told its acceleration, monotonic; None if it never did.
+    """
+
+    contact: ContactForecast | None = None
+    made_ns: int | None = None
+    drivers: Drivers = field(default_factory=Drivers)
+    gusts: Gusts = field(default_factory=Gusts)
+    acceleration_ns: int | None = None
+
+
 class StepMemory(Struct, frozen=True, kw_only=True, eq=False):
     """What a step hands to the next."""
 
@@ -151,6 +172,7 @@ class StepMemory(Struct, frozen=True, kw_only=True, eq=False):
     model: ModelMemory = field(default_factory=ModelMemory)
     control: ControlMemory = field(default_factory=ControlMemory)
     places: Places = field(default_factory=Places)
+    forecast: ForecastMemory = field(default_factory=ForecastMemory)
 
 
 def to_present_frame(memory: StepMemory, view: AutopilotView) -> StepMemory:

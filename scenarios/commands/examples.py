@@ -16,6 +16,7 @@ SCENARIOS = {
     "list": ("scenarios list", "scenarios list --json"),
     "run": (
         "scenarios run straight_5 --view",
+        "scenarios run straight_5 --set track.speed_m_s=6 --set system.companion.descent.wait.height_m=1.05",
         "scenarios run circle_5+sensors=nominal+wind=gust --lockstep --seed 7",
         "scenarios run world:urban@123 --lockstep --firmware ardupilot",
     ),
@@ -34,8 +35,9 @@ SCENARIOS = {
     "view": ("scenarios view", "scenarios view runs/latest", "scenarios view runs/latest --foxglove 8765"),
     "falsify": ("scenarios falsify world:urban --landings 500 --seed 1 --out runs/urban",),
     "rare": ("scenarios rare brake_7+sensors=degraded+link=degraded --particles 100",),
-    "bench": ("scenarios bench", "scenarios bench --json"),
+    "bench": ("scenarios bench", "scenarios bench straight_5+sensors=nominal --against ../before"),
     "fuzz": ("scenarios fuzz --end autopilot --firmware ardupilot --link tcpin --frames 100000",),
+    "retries": ("scenarios retries --seeds 20", "scenarios retries circle_5 --height 0.5 --firmware ardupilot"),
     "faults": ("scenarios faults --workers 1 --firmware px4",),
     "fly": ("scenarios fly straight_5 --ship 5     # with ArduPilot's own simulation, started before",),
     "camera": ("scenarios camera straight_5+camera=day",),
