@@ -137,9 +137,19 @@ def world_command(
 @app.command("command")
 def command_command(
     command: Annotated[
-        str, typer.Argument(metavar="start|abort|hold|start_anyway", help="What the companion is asked for.")
+        str,
+        typer.Argument(
+            metavar="start|abort|hold|launch|follow|return|start_anyway", help="What the companion is asked for."
+        ),
     ],
     *,
+    offset: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(help="Of a follow: metres ahead, left and up of the pad's centre."),
+    ] = None,
+    frame: Annotated[
+        str | None, typer.Option(metavar="vehicle|course|north", help="Of a follow: which way is ahead.")
+    ] = None,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",
     mode: ModeOption = None,
@@ -150,19 +160,14 @@ def command_command(
     insecure: InsecureOption = False,
 ) -> int:
     """Send a command to the companion; exit code 1 when it is refused."""
-    from link.messages import Command
     from link.program.printable import printable
     from link.zenoh.keys import Keys
     from link.zenoh.options import zenoh_options
-    from scenarios.commands.operator import send_command
+    from scenarios.commands.operator import order_of, send_order
 
-    try:
-        wanted = Command(command)
-    except ValueError:
-        known = ", ".join(one.value for one in Command)
-        raise UserError(f"command '{command}' does not exist: give one of {known}") from None
+    order = order_of(command, offset, frame)
     options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
-    reply = send_command(wanted, Keys(namespace, "vehicle", drone), options)
+    reply = send_order(order, Keys(namespace, "vehicle", drone), options)
     sys.stdout.write("accepted\n" if reply.accepted else f"refused: {printable(reply.reason)}\n")
     return 0 if reply.accepted else 1
 

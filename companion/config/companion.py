@@ -15,6 +15,7 @@ from companion.config.landing import (
     TouchdownConfig,
 )
 from companion.config.planning import GuidanceConfig
+from companion.config.sortie import SortieConfig
 from companion.core.data import FlightLimits
 from link.messages import PadGeometry
 from link.program.toml_config import NotNegative, Positive, StrictModel
@@ -136,6 +137,7 @@ class CompanionConfig(StrictModel):
     descent: DescentConfig = DescentConfig()
     touchdown: TouchdownConfig = TouchdownConfig()
     abort: AbortConfig = AbortConfig()
+    sortie: SortieConfig = SortieConfig()
     estimator: EstimatorConfig = EstimatorConfig()
     guidance: GuidanceConfig = GuidanceConfig()
     recording: RecordingConfig = RecordingConfig()

@@ -100,7 +100,7 @@ def _find_taken_control(phase: Phase, control: ControlMemory, s: Situation) -> D
     if not s.autopilot.in_control:
         restarted = s.autopilot.restarted
         return Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_RESTARTED if restarted else Reason.MODE_CHANGED)
-    if control.was_armed and not s.autopilot.armed:
+    if control.was_armed and not s.autopilot.armed and phase is not Phase.ON_DECK:  # there it times out by itself
         return Event.PILOT_TOOK_OVER, Cause(Reason.DISARMED)
     return None
 

@@ -1,0 +1,121 @@
+"""A sortie in one process on a simulated clock: an operator who launches, changes stations, holds and calls home.
+
+The drone stands on the deck of a vehicle that drives. It follows at three stations for 20 s each, then stays behind
+while the vehicle drives on, until that is 300 m away or a minute has passed; then it comes home and lands.
+"""
+
+import math
+
+from companion.config.companion import CompanionConfig
+from companion.landing.sortie_orders import why_no_station
+from companion.runtime.node import CompanionNode
+from companion.situation.phases import Phase
+from link.messages import Command, Station, StationFrame
+from scenarios.config import Scenario
+from scenarios.lockstep.lockstep import Lockstep
+from scenarios.simulation.noise import Seed
+from sim_autopilot.core.data import Surface
+
+__all__ = ["HELD_S", "STATIONS", "SortieFlight", "why_no_station"]
+
+STATIONS = (
+    Station(offset_m=(-6.0, 0.0, 4.0), frame=StationFrame.VEHICLE),
+    Station(offset_m=(2.0, 6.0, 3.0), frame=StationFrame.VEHICLE),
+    Station(offset_m=(0.0, -7.0, 2.0), frame=StationFrame.COURSE),
+)
+"""Behind and above, then to the left, then across the vehicle to its right: the way there leads round it."""
+HELD_S = 20.0
+"""At each station."""
+_AWAY_M = 300.0
+_AWAY_MAX_S = 60.0
+_SETTLED_S = 1.0  # before the launch: the first fixes have come
+_END_S = 2.5  # after the motors are off; the score looks at the drone 2 s after
+_LANDING_MAX_S = 240.0  # from the return to the end
+_OVER = frozenset({Phase.SECURED, Phase.PILOT})
+
+
+class SortieFlight(Lockstep):
+    """A sortie that is advanced step by step.
+
+    Args:
+        scenario: whose drone stands on the deck.
+        seed: of everything random.
+        config: of the companion, None for the scenario's own.
+    """
+
+    def __init__(self, scenario: Scenario, seed: Seed, config: CompanionConfig | None = None) -> None:
+        super().__init__(scenario, seed, config)
+        self.orders: list[tuple[int, Station]] = []
+        self.times_ns: dict[str, int] = {}
+        self.contacts_ns: list[int] = []
+        self._next_ns = 0
+        self._over_ns: int | None = None
+
+    def fly(self) -> str:
+        """Fly to the end and return the phase that it ended in."""
+        while not self._is_over():
+            self.step()
+            self._note_contact()
+        return self.companion.phase.value
+
+    @property
+    def elapsed_s(self) -> float:
+        """Simulated time since the beginning."""
+        return self.recording.elapsed_s
+
+    def _command(self, node: CompanionNode) -> None:
+        t_ns, phase = self.simulation.t_ns, node.phase
+        if t_ns < self._next_ns:
+            return
+        match phase:
+            case Phase.IDLE if "launch" not in self.times_ns or not node.is_ready_to_start():
+                if self.elapsed_s > _SETTLED_S and node.is_ready_to_start():
+                    self._mark("launch")
+                    node.request(Command.LAUNCH)
+            case Phase.FOLLOW if len(self.orders) < len(STATIONS):
+                station = STATIONS[len(self.orders)]
+                self.orders.append((t_ns, station))
+                node.request(Command.FOLLOW, station)
+                self._next_ns = t_ns + round(HELD_S * 1e9)
+            case Phase.FOLLOW if "hold" not in self.times_ns:
+                self._mark("hold")
+                node.request(Command.HOLD)
+            case Phase.HOLD if "hold" in self.times_ns and "return" not in self.times_ns and self._is_away():
+                self._mark("return")
+                node.request(Command.RETURN)
+            case _:
+                pass
+
+    def _mark(self, what: str) -> None:
+        self.times_ns[what] = self.simulation.t_ns
+
+    def _is_away(self) -> bool:
+        vehicle = self.simulation.vehicle.state
+        if vehicle is None:
+            return False
+        x, y, _ = self.simulation.autopilot.state.position_enu_m.tolist()
+        since_s = (self.simulation.t_ns - self.times_ns["hold"]) * 1e-9
+        away_m = math.hypot(x - vehicle.position_enu_m[0], y - vehicle.position_enu_m[1])
+        return away_m > _AWAY_M or since_s > _AWAY_MAX_S
+
+    def _note_contact(self) -> None:
+        """Take note of what is touched between the climb clear of the deck and the last descent."""
+        phase = self.companion.phase
+        if phase is Phase.FOLLOW and "follow" not in self.times_ns:
+            self._mark("follow")
+        is_landing = phase in (Phase.DESCEND, Phase.TOUCHDOWN, Phase.SECURED) or "return" not in self.times_ns
+        flies = "follow" in self.times_ns and not (is_landing and "return" in self.times_ns)
+        if flies and self.simulation.autopilot.state.surface is not Surface.NONE:
+            self.contacts_ns.append(self.simulation.t_ns)
+
+    def _is_over(self) -> bool:
+        t_ns = self.simulation.t_ns
+        if "launch" in self.times_ns and self.companion.phase in _OVER:
+            self._over_ns = t_ns if self._over_ns is None else self._over_ns
+            if (t_ns - self._over_ns) * 1e-9 > _END_S:
+                return True
+        else:
+            self._over_ns = None
+        began_ns = self.times_ns.get("return")
+        limit_s = 3.0 * HELD_S + _AWAY_MAX_S + _LANDING_MAX_S
+        return self.elapsed_s > limit_s or (began_ns is not None and (t_ns - began_ns) * 1e-9 > _LANDING_MAX_S)
