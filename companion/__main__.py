@@ -17,7 +17,8 @@ from companion.check.command import (
     SystemIdOption,
     check,
 )
-from companion.config.companion import AutopilotKind, Guide, ReceiverFrames
+from companion.config.autopilot import AutopilotKind, Guide
+from companion.config.integrity import ReceiverFrames
 from companion.runtime.examples import EXAMPLES
 from companion.runtime.keys import keys
 from companion.runtime.reasons import reasons
@@ -115,10 +116,12 @@ def companion(
     from companion.config.companion import CompanionConfig
     from link.program.toml_config import dump_toml, load_config
 
-    settings = load_config(config, CompanionConfig)
-    given = {"autopilot": autopilot, "receiver_frames": receiver_frames, "guide": guide}
-    settings = settings.model_copy(update={name: value for name, value in given.items() if value is not None})
-    if start and settings.guide is Guide.PRECLAND:
+    above = {
+        "autopilot": {"kind": autopilot and autopilot.value, "guide": guide and guide.value},
+        "integrity": {"receiver_frames": receiver_frames and receiver_frames.value},
+    }
+    settings = load_config(config, CompanionConfig, above)
+    if start and settings.autopilot.guide is Guide.PRECLAND:
         raise UserError("--start: with --guide precland the autopilot's own mode begins the landing; leave one out")
     if print_config:
         sys.stdout.write(dump_toml(settings))

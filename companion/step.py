@@ -86,10 +86,9 @@ def _update_model(memory: StepMemory, inputs: StepInputs, system: System) -> Mod
     if own is None or model.reference is None:
         return model
     # What the link's jitter does to a drone is not how its autopilot follows: led by that, both would swing.
-    flies_place = memory.progress.phase in LANDING_PHASES | STATION_PHASES and not has_jittery_place(
-        memory, inputs, system.config
-    )
-    estimates = system.config.corrects_lag and flies_place
+    places = memory.progress.phase in LANDING_PHASES | STATION_PHASES
+    flies_place = places and not has_jittery_place(memory, inputs, system.config)
+    estimates = system.config.setpoints.corrects_lag and flies_place
     own_ns = inputs.monotonic_at(own.t_ns)
     return replace(model, tracking=update_tracking(model.tracking, own_ns, own, inputs.response, estimates=estimates))
 
@@ -114,7 +113,7 @@ def _update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) 
             estimator,
             inputs.t_ns,
             monotonic_ns=now_ns,
-            config=system.config.descent,
+            config=system.config.descent.uneven,
         ),
         fix_stamps=update_fix_stamps(
             vehicle.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns, inputs.fix_ahead_s
@@ -155,7 +154,7 @@ def _pad(
     if forecast is None:
         return vehicle, None
     if _is_finite(forecast):
-        has_one_frame = are_frames_one(vehicle.phases, system.config.receiver_frames, inputs.monotonic_ns)
+        has_one_frame = are_frames_one(vehicle.phases, system.config.integrity.receiver_frames, inputs.monotonic_ns)
         pad = pad_path(forecast, inputs.pad, has_one_frame=has_one_frame)
         return vehicle, without_contradicted_heading(pad, vehicle.course)
     return replace(vehicle, estimator=None), None
@@ -171,7 +170,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
     newest_ns = system.estimator.newest_fix_ns(vehicle.estimator)
     yaw_rad = 0.0 if inputs.own is None else yaw_of(inputs.own.orientation_wxyz)
     drone = drone_now(inputs.own, inputs.t_ns, yaw_rad, system.config.abort.own_age_max_s)
-    seen, sensor_m = inputs.autopilot.range_down, touchdown.range_finder_height_m
+    seen, sensor_m = inputs.autopilot.range_down, touchdown.range_finder.height_m
     return Situation(
         t_ns=inputs.t_ns,
         monotonic_ns=inputs.monotonic_ns,
@@ -260,7 +259,7 @@ def _desire(memory: StepMemory, situation: Situation, config: CompanionConfig) -
             return Desire(takeoff_height_m=config.sortie.launch.clear_height_m, leaves_deck=True)
         case Phase.TOUCHDOWN:
             # Without accelerations in its setpoints an autopilot is not pressed down so hard that it would fall.
-            held_up = holds(HELD_UP, progress.held, situation, config) and not config.position_only
+            held_up = holds(HELD_UP, progress.held, situation, config) and not config.setpoints.position_only
             evidence = may_force_motors_off(
                 signs_of(situation),
                 _in_phase_s(memory, situation),

@@ -20,7 +20,21 @@ from link.program.cli import (
     make_app,
     run_app,
 )
-from scenarios.commands import bench, camera, campaign, eyes, falsify, faults, fly, fuzz, rare, replay, report, ros2
+from scenarios.commands import (
+    bench,
+    camera,
+    campaign,
+    eyes,
+    falsify,
+    faults,
+    fly,
+    fuzz,
+    rare,
+    replay,
+    report,
+    ros2,
+    sortie,
+)
 from scenarios.commands import view as view_command
 from scenarios.commands.examples import SCENARIOS
 
@@ -172,7 +186,22 @@ def command_command(
     return 0 if reply.accepted else 1
 
 
-for command in (campaign, falsify, rare, bench, fuzz, faults, report, replay, fly, view_command, ros2, camera, eyes):
+for command in (
+    campaign,
+    sortie,
+    falsify,
+    rare,
+    bench,
+    fuzz,
+    faults,
+    report,
+    replay,
+    fly,
+    view_command,
+    ros2,
+    camera,
+    eyes,
+):
     command.register(app)
 
 

@@ -9,7 +9,7 @@ from companion.autopilots.limits import LimitQuestions, parameter_names
 from companion.autopilots.response import Cascade
 from companion.autopilots.shaping import Shaping
 from companion.autopilots.state import AutopilotState, shift_reports, update_state
-from companion.config.companion import AutopilotKind
+from companion.config.autopilot import AutopilotKind
 from companion.core.data import FlightLimits, Setpoint
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import (

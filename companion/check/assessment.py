@@ -5,13 +5,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from companion.autopilots.choice import MULTIROTORS
-from companion.check.ardupilot_rules import ARDUPILOT_RULES, ARDUPILOT_SINK
+from companion.check.ardupilot_rules import ARDUPILOT_LAUNCH_RULES, ARDUPILOT_RULES, ARDUPILOT_SINK
 from companion.check.findings import Finding, Level, pass_line
 from companion.check.observation import AutopilotFacts, VehicleFacts
-from companion.check.px4_rules import PX4_RULES, PX4_SINK
+from companion.check.px4_rules import PX4_LAUNCH_RULES, PX4_RULES, PX4_SINK
 from companion.check.rules import ParameterRule, Spelling, judge, names_of, sink_rule
-from companion.config.companion import AutopilotKind, CompanionConfig
-from companion.config.landing import AbortConfig, ChaseConfig
+from companion.config.autopilot import AutopilotKind
+from companion.config.companion import CompanionConfig
+from companion.config.integrity import IntegrityConfig
 from link.mavlink.dialect import mavlink
 
 
@@ -24,13 +25,15 @@ class Firmware:
         kind: what a configuration calls it.
         oldest: release that is known to work.
         rules: of its parameters, but for the one that limits the descent.
-        sink: names of that one.
+        launch: likewise, for a launch from the deck of a vehicle that drives.
+        sink: names of the descent's.
     """
 
     name: str
     kind: AutopilotKind
     oldest: tuple[int, int]
     rules: Sequence[ParameterRule]
+    launch: Sequence[ParameterRule]
     sink: tuple[Spelling, ...]
 
     def rules_for(self, sink_m_s: float) -> tuple[ParameterRule, ...]:
@@ -40,18 +43,19 @@ class Firmware:
     @property
     def parameters(self) -> tuple[str, ...]:
         """Every name that the rules look for."""
-        return (*names_of(self.rules), *(spelling.name for spelling in self.sink))
+        return (*names_of((*self.rules, *self.launch)), *(spelling.name for spelling in self.sink))
 
 
 FIRMWARES = {
     mavlink.MAV_AUTOPILOT_PX4: Firmware(
-        name="PX4", kind=AutopilotKind.PX4, oldest=(1, 14), rules=PX4_RULES, sink=PX4_SINK
+        name="PX4", kind=AutopilotKind.PX4, oldest=(1, 14), rules=PX4_RULES, launch=PX4_LAUNCH_RULES, sink=PX4_SINK
     ),
     mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA: Firmware(
         name="ArduPilot",
         kind=AutopilotKind.ARDUPILOT,
         oldest=(4, 5),
         rules=ARDUPILOT_RULES,
+        launch=ARDUPILOT_LAUNCH_RULES,
         sink=ARDUPILOT_SINK,
     ),
 }
@@ -69,7 +73,12 @@ _FIX_STD_GOOD_M = 0.3
 
 
 def assess(
-    autopilot: AutopilotFacts, vehicle: VehicleFacts | None, speed_m_s: float, config: CompanionConfig
+    autopilot: AutopilotFacts,
+    vehicle: VehicleFacts | None,
+    speed_m_s: float,
+    config: CompanionConfig,
+    *,
+    launches: bool = False,
 ) -> list[Finding]:
     """Return the lines of the check.
 
@@ -78,15 +87,17 @@ def assess(
         vehicle: as received, None when it was not to be looked at.
         speed_m_s: of the vehicle, for which the parameters are judged.
         config: the companion's, whose limits are to hold.
+        launches: the drone is to leave a vehicle that drives, too.
     """
-    found = [_firmware(autopilot, config.autopilot), _readiness(autopilot), _origin(autopilot)]
-    found += [_heights(autopilot, config.geoid_height_m), _clock(autopilot)]
+    found = [_firmware(autopilot, config.autopilot.kind), _readiness(autopilot), _origin(autopilot)]
+    found += [_heights(autopilot, config.autopilot.geoid_height_m), _clock(autopilot)]
     found += [_rate(autopilot, name) for name in MOTION]
     found += [_latency(autopilot), _battery(autopilot, config.limits.battery_min_share)]
     found.append(_range_finder(autopilot))
     if autopilot.autopilot_id in FIRMWARES:
-        rules = FIRMWARES[autopilot.autopilot_id].rules_for(config.descent.descent_rate_max_m_s)
-        found += judge(rules, autopilot.parameters, speed_m_s)
+        firmware = FIRMWARES[autopilot.autopilot_id]
+        rules = firmware.rules_for(config.descent.sink.rate_max_m_s)
+        found += judge((*rules, *(firmware.launch if launches else ())), autopilot.parameters, speed_m_s)
     return found if vehicle is None else [*found, *_vehicle(vehicle, config)]
 
 
@@ -143,7 +154,7 @@ def _origin(seen: AutopilotFacts) -> Finding:
 def _heights(seen: AutopilotFacts, configured_m: float | None) -> Finding:
     height_m = configured_m if seen.geoid_height_m is None else seen.geoid_height_m
     if height_m is None:
-        advice = "let its receiver tell alt_ellipsoid, or set geoid_height_m in the companion's configuration"
+        advice = "let its receiver tell alt_ellipsoid, or set autopilot.geoid_height_m in the companion's configuration"
         reason = "the vehicle's heights are above the ellipsoid, the autopilot's above the sea; without it no start"
         return _finding("heights", "geoid not told", Level.FAIL, advice, reason)
     source = "by the configuration" if seen.geoid_height_m is None else "by its receiver"
@@ -215,11 +226,11 @@ def _vehicle(seen: VehicleFacts, config: CompanionConfig) -> list[Finding]:
     )
     level = _level(seen.rate_hz >= _FIX_RATE_MIN_HZ, Level.WARN)
     rate = _finding("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, "set its receiver to 5 Hz or more")
-    known = [_vehicle_age(seen, config.abort), _vehicle_accuracy(seen, config.abort.position_std_max_m)]
-    return [rate, *known, *_vehicle_heading(seen, config.chase), pad]
+    known = [_vehicle_age(seen, config), _vehicle_accuracy(seen, config.abort.position_std_max_m)]
+    return [rate, *known, *_vehicle_heading(seen, config.integrity), pad]
 
 
-def _vehicle_heading(seen: VehicleFacts, config: ChaseConfig) -> list[Finding]:
+def _vehicle_heading(seen: VehicleFacts, config: IntegrityConfig) -> list[Finding]:
     """Return the line on a heading that was compared with the course: of a vehicle that drove meanwhile."""
     if seen.heading_off_rad is None:
         return []
@@ -229,10 +240,10 @@ def _vehicle_heading(seen: VehicleFacts, config: ChaseConfig) -> list[Finding]:
     return [_finding("vehicle heading", text, level, advice, "the pad is not placed by it")]
 
 
-def _vehicle_age(seen: VehicleFacts, limits: AbortConfig) -> Finding:
+def _vehicle_age(seen: VehicleFacts, config: CompanionConfig) -> Finding:
     if seen.age_s is None:
         return _finding("vehicle age", "unknown", Level.WARN, "needs the autopilot's time of day")
-    is_fit = -limits.fix_ahead_max_s <= seen.age_s <= _FIX_AGE_SHARE * limits.fix_age_max_s
+    is_fit = -config.integrity.fix_ahead_max_s <= seen.age_s <= _FIX_AGE_SHARE * config.abort.fix_age_max_s
     advice = "set its clock by GNSS or NTP, or use a faster link"
     return _finding("vehicle age", f"{1e3 * seen.age_s:.0f} ms", _level(is_fit, Level.FAIL), advice)
 

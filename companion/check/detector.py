@@ -5,7 +5,8 @@ import statistics
 
 from companion.check.findings import Finding, Level, pass_line
 from companion.check.observation import DetectorFacts
-from companion.config.companion import CompanionConfig, ReceiverFrames
+from companion.config.companion import CompanionConfig
+from companion.config.integrity import ReceiverFrames
 from link.messages import PadSighting
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
@@ -57,15 +58,15 @@ def judge_detector(seen: DetectorFacts, speed_m_s: float, config: CompanionConfi
         return [_line("detector", "runs, sees no pad", Level.WARN, "hold the drone over the pad to see how good it is")]
     if config.silent_vehicle is not None:
         return [_line("detector", "none", Level.FAIL, "start pad-detector: nothing else places a silent vehicle")]
-    if config.receiver_frames is ReceiverFrames.ONE:
+    if config.integrity.receiver_frames is ReceiverFrames.ONE:
         return [pass_line("detector", "none, and both receivers have one frame"), _stamps(speed_m_s, config)]
     advice = "start pad-detector, or check --drone and -e; without one only RTK of one source places the pad"
     return [_line("detector", "none", Level.WARN, advice), _stamps(speed_m_s, config)]
 
 
 def _stamps(speed_m_s: float, config: CompanionConfig) -> Finding:
-    off_m, room_m = speed_m_s * config.abort.fix_ahead_max_s, config.descent.cone_radius_at_pad_m
-    found = f"off by {1e3 * config.abort.fix_ahead_max_s:.0f} ms they put the pad {off_m:.2f} m off"
+    off_m, room_m = speed_m_s * config.integrity.fix_ahead_max_s, config.descent.cone.radius_at_pad_m
+    found = f"off by {1e3 * config.integrity.fix_ahead_max_s:.0f} ms they put the pad {off_m:.2f} m off"
     advice = (
         "let the vehicle's receiver date its fixes by GNSS, not a program as they arrive; only a detector would tell"
     )
@@ -86,7 +87,7 @@ def _rate(seen: DetectorFacts) -> Finding:
 def _age(seen: DetectorFacts, config: CompanionConfig) -> list[Finding]:
     if seen.age_s is None:
         return [_line("detector age", "unknown", Level.WARN, "needs the autopilot's time of day")]
-    is_early, is_late = seen.age_s < -config.abort.fix_ahead_max_s, seen.age_s > config.descent.uneven_age_s
+    is_early, is_late = seen.age_s < -config.integrity.fix_ahead_max_s, seen.age_s > config.descent.uneven.age_s
     advice = "set its clock by GNSS or NTP, see --latency" if is_early else "use smaller pictures or a faster computer"
     level = Level.FAIL if is_early else Level.WARN if is_late else Level.PASS
     return [_line("detector age", f"{1e3 * seen.age_s:.0f} ms", level, advice)]
@@ -94,5 +95,5 @@ def _age(seen: DetectorFacts, config: CompanionConfig) -> list[Finding]:
 
 def _accuracy(seen: DetectorFacts, config: CompanionConfig) -> list[Finding]:
     std_m = seen.std_m or 0.0
-    level = Level.PASS if std_m <= config.descent.unseen_std_max_m else Level.FAIL
+    level = Level.PASS if std_m <= config.descent.unseen.std_max_m else Level.FAIL
     return [_line("detector accuracy", f"{std_m:.3f} m", level, "come nearer, calibrate, see rotation_std_rad")]

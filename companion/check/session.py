@@ -8,7 +8,7 @@ from companion.check.detector import DetectorReader
 from companion.check.observation import DetectorFacts, VehicleFacts
 from companion.check.reading import Reader
 from companion.check.vehicle_reading import VehicleReader
-from companion.config.landing import ChaseConfig
+from companion.config.integrity import IntegrityConfig
 from companion.runtime.pad_question import PadQuestion
 from link.mavlink.parameters import parameter_set_message
 from link.mavlink.pinned_peer import PinnedPeer
@@ -77,7 +77,7 @@ class CheckSession:
             self.turn()
 
     def listen(
-        self, duration_s: float, zenoh: ZenohSession, keys: Keys, config: ChaseConfig
+        self, duration_s: float, zenoh: ZenohSession, keys: Keys, config: IntegrityConfig
     ) -> tuple[VehicleFacts, DetectorFacts]:
         """Count messages for `duration_s`, read all parameters, and return what vehicle and detector told meanwhile.
 

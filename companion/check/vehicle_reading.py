@@ -5,7 +5,7 @@ import math
 import statistics
 
 from companion.check.observation import VehicleFacts
-from companion.config.landing import ChaseConfig
+from companion.config.integrity import IntegrityConfig
 from companion.runtime.pad_question import PadQuestion
 from link.frames.rotations import yaw_of
 from link.messages import Fix, FixVelocity, VehicleImu
@@ -24,7 +24,7 @@ class VehicleReader:
         config: from which speed on it has a course.
     """
 
-    def __init__(self, key: str, config: ChaseConfig) -> None:
+    def __init__(self, key: str, config: IntegrityConfig) -> None:
         self._key = key
         self._course_speed_min_m_s = config.course_speed_min_m_s
         self._arrived_ns: list[int] = []

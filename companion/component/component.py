@@ -8,7 +8,8 @@ from companion.component.identity import ComputerLoad, component_information, co
 from companion.component.pad_messages import adsb_vehicle, follow_target
 from companion.component.parameters import answers
 from companion.component.texts import Texts, cut_text
-from companion.config.companion import CompanionConfig, PadOnMap
+from companion.config.autopilot import PadOnMap
+from companion.config.companion import CompanionConfig
 from companion.landing.step_data import StepOutputs
 from companion.situation.phases import FLYING_PHASES, Phase
 from link.mavlink.dialect import COMMAND_CANCEL_ID, COMPONENT_INFORMATION_BASIC_ID, Message, mavlink
@@ -47,7 +48,7 @@ class MavlinkComponent:
             elif kind == COMMAND_CANCEL_ID:
                 self._send(self._commands.cancel(message))
             else:
-                may_change = config.takes_mavlink_commands and phase not in FLYING_PHASES
+                may_change = config.ground_station.takes_mavlink_commands and phase not in FLYING_PHASES
                 config, told = answers(message, config, may_change=may_change)
                 self._send(told)
         return config
@@ -80,9 +81,9 @@ class MavlinkComponent:
         self._send(self._commands.follow(phase, outputs.status, local_ns))
         if outputs.pad is not None and self._pad_timer.is_due(local_ns):
             boot_ms = (self._session.clock.local_to_boot_ns(local_ns) or 0) // 1_000_000
-            if config.pad_on_map is not PadOnMap.NONE:
+            if config.ground_station.pad_on_map is not PadOnMap.NONE:
                 self._send([follow_target(outputs.pad, state, boot_ms)])
-            if config.pad_on_map is PadOnMap.ADSB:
+            if config.ground_station.pad_on_map is PadOnMap.ADSB:
                 self._send([adsb_vehicle(outputs.pad, state)])
 
     def tell_load(self, load: ComputerLoad, local_ns: int) -> None:
@@ -93,7 +94,7 @@ class MavlinkComponent:
     def _take_command(self, message: Message, config: CompanionConfig, local_ns: int) -> None:
         if message.command == mavlink.MAV_CMD_REQUEST_MESSAGE:
             self._take_question(message, local_ns)
-        elif message.command in COMMANDS and not config.takes_mavlink_commands:
+        elif message.command in COMMANDS and not config.ground_station.takes_mavlink_commands:
             self._acknowledge(message, mavlink.MAV_RESULT_DENIED)
         else:
             self._send(self._commands.take(message, local_ns))

@@ -6,11 +6,13 @@ Source: MAVLink parameter protocol, https://mavlink.io/en/services/parameter.htm
 """
 
 from collections.abc import Iterator
+from operator import attrgetter
 from typing import NamedTuple
 
 from pydantic import ValidationError
 
-from companion.config.companion import CompanionConfig, ReceiverFrames
+from companion.config.companion import CompanionConfig
+from companion.config.integrity import ReceiverFrames
 from link.mavlink.dialect import Message, mavlink
 
 _FRAMES = (ReceiverFrames.AUTO, ReceiverFrames.ONE, ReceiverFrames.APART)
@@ -18,25 +20,24 @@ _SINGLE_DIGITS = 7  # that a single-precision number keeps
 
 
 class _Parameter(NamedTuple):
-    """Where in the configuration a parameter is; in no section where that is empty."""
+    """Where in the configuration a parameter is, as `takeoff.waiting_height_m`."""
 
     name: str
-    section: str
     key: str
     is_whole: bool = False
 
 
 PARAMETERS = (
-    _Parameter("DL_WAIT_ALT", "takeoff", "waiting_height_m"),
-    _Parameter("DL_CHASE_ALT", "chase", "height_m"),
-    _Parameter("DL_CHASE_TIME", "chase", "time_limit_s"),
-    _Parameter("DL_PAD_WAIT", "descent", "waiting_height_m"),
-    _Parameter("DL_RETRIES", "abort", "retries_max", is_whole=True),
-    _Parameter("DL_SPEED_MAX", "limits", "speed_max_m_s"),
-    _Parameter("DL_SINK_MAX", "limits", "descent_max_m_s"),
-    _Parameter("DL_RANGE_MAX", "limits", "range_max_m"),
-    _Parameter("DL_BATT_MIN", "limits", "battery_min_share"),
-    _Parameter("DL_FRAMES", "", "receiver_frames", is_whole=True),
+    _Parameter("DL_WAIT_ALT", "takeoff.waiting_height_m"),
+    _Parameter("DL_CHASE_ALT", "chase.height_m"),
+    _Parameter("DL_CHASE_TIME", "chase.time_limit_s"),
+    _Parameter("DL_PAD_WAIT", "descent.wait.height_m"),
+    _Parameter("DL_RETRIES", "abort.retries_max", is_whole=True),
+    _Parameter("DL_SPEED_MAX", "limits.speed_max_m_s"),
+    _Parameter("DL_SINK_MAX", "limits.descent_max_m_s"),
+    _Parameter("DL_RANGE_MAX", "limits.range_max_m"),
+    _Parameter("DL_BATT_MIN", "limits.battery_min_share"),
+    _Parameter("DL_FRAMES", "integrity.receiver_frames", is_whole=True),
 )
 """What can be set between flights, in SI units and shares; DL_FRAMES is 0 auto, 1 one, 2 apart."""
 
@@ -83,8 +84,7 @@ def _told(place: int, config: CompanionConfig) -> Message:
 
 
 def _value(config: CompanionConfig, one: _Parameter) -> float:
-    table = getattr(config, one.section) if one.section else config
-    value = getattr(table, one.key)
+    value = attrgetter(one.key)(config)
     return float(_FRAMES.index(value) if isinstance(value, ReceiverFrames) else value)
 
 
@@ -93,12 +93,16 @@ def _with_value(config: CompanionConfig, one: _Parameter, value: float) -> Compa
     given = float(f"{value:.{_SINGLE_DIGITS}g}")  # as it was written before it became single precision
     if one.is_whole and not given.is_integer():
         return config
-    is_choice = not one.section
+    is_choice = isinstance(attrgetter(one.key)(config), ReceiverFrames)
     if is_choice and given not in range(len(_FRAMES)):
         return config
     whole = int(given) if one.is_whole else given
+    *sections, key = one.key.split(".")
     table = config.model_dump()
-    (table[one.section] if one.section else table)[one.key] = _FRAMES[int(given)] if is_choice else whole
+    inner = table
+    for section in sections:
+        inner = inner[section]
+    inner[key] = _FRAMES[int(given)] if is_choice else whole
     try:
         return CompanionConfig.model_validate(table)
     except ValidationError:

@@ -1,55 +1,20 @@
 """The companion's configuration: one TOML file, validated once, every value with its unit and source."""
 
-from enum import Enum
 from typing import Annotated, Self
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
+from companion.config.autopilot import AutopilotConfig, GroundStationConfig, SetpointConfig
+from companion.config.descent import DescentConfig
 from companion.config.estimation import EstimatorConfig, EstimatorKind
-from companion.config.landing import (
-    AbortConfig,
-    ChaseConfig,
-    DescentConfig,
-    LandingStyle,
-    TakeoffConfig,
-    TouchdownConfig,
-)
+from companion.config.integrity import IntegrityConfig
+from companion.config.landing import AbortConfig, ChaseConfig, TakeoffConfig
 from companion.config.planning import GuidanceConfig
 from companion.config.sortie import SortieConfig
+from companion.config.touchdown import TouchdownConfig
 from companion.core.data import FlightLimits
 from link.messages import PadGeometry
 from link.program.toml_config import NotNegative, Positive, StrictModel
-
-
-class AutopilotKind(Enum):
-    """What a user says of the autopilot."""
-
-    AUTO = "auto"  # its heartbeat tells
-    PX4 = "px4"
-    ARDUPILOT = "ardupilot"
-
-
-class ReceiverFrames(Enum):
-    """What a user says of the drone's and the vehicle's receivers: whether their positions are in one frame."""
-
-    AUTO = "auto"  # while both have fixed carrier phases, which is taken for corrections of one source
-    ONE = "one"  # both are corrected by one base station or network
-    APART = "apart"  # by two: the pad has to be seen
-
-
-class Guide(Enum):
-    """What the companion lands by."""
-
-    SETPOINTS = "setpoints"
-    PRECLAND = "precland"  # it tells the autopilot's own precision landing where the pad is, and commands nothing
-
-
-class PadOnMap(Enum):
-    """As what ground stations are told where the pad is."""
-
-    NONE = "none"
-    FOLLOW_TARGET = "follow_target"  # which an autopilot heeds in its follow mode only
-    ADSB = "adsb"  # likewise, and as a vehicle among the traffic, which all ground stations draw
 
 
 class LimitsConfig(StrictModel):
@@ -107,30 +72,12 @@ class CompanionConfig(StrictModel):
     """Everything that can be set about the companion."""
 
     step_rate_hz: Annotated[float, Field(ge=10.0, le=200.0)] = 50.0
-    autopilot: AutopilotKind = AutopilotKind.AUTO  # any other than the one named is refused
-    # Of mean sea level above the ellipsoid, where the autopilot's receiver does not tell it; none: then no start.
-    geoid_height_m: Annotated[float, Field(ge=-120.0, le=120.0)] | None = None
-    # Whether the pad's place follows from both receivers' positions, or has to be seen.
-    receiver_frames: ReceiverFrames = ReceiverFrames.AUTO
     # A vehicle without telemetry; none: the vehicle tells where it is, and how its pad lies on it.
     silent_vehicle: SilentVehicleConfig | None = None
-    stops_unused_streams: bool = True  # on the companion's own link; false where others listen on it, too
-    guide: Guide = Guide.SETPOINTS  # the companion flies by setpoints, or tells the autopilot's own precision landing
-    # Whoever sends to the autopilot's link can start and break off a landing by it, as it can command the autopilot.
-    takes_mavlink_commands: bool = True
-    pad_on_map: PadOnMap = PadOnMap.FOLLOW_TARGET  # told at 2 Hz, by MAVLink
-    status_rate_hz: Annotated[float, Field(ge=0.5, le=50.0)] = 10.0
-    # By which setpoints are ahead of the drone beside the link's delay; none: as the autopilot takes them.
-    setpoint_lead_s: Annotated[float, Field(ge=0.0, le=0.5)] | None = None
-    # So far a link's jitter may move the place that a landing drone is asked for: 0.1 m leans the benchmark's by 5
-    # degrees. Beyond that it is asked for velocities, which make up for what it is off its place by a gain.
-    place_jitter_max_m: NotNegative = 0.1
-    place_gain_hz: Positive = 1.0  # as PX4's MPC_XY_P, 0.95; the delay of a poor link leaves no room for more
-    yaw_rate_max_rad_s: Positive = 0.8  # ArduCopter slews at 60 degrees a second
-    position_only: bool = False  # leave velocity and acceleration out of the setpoints, as the source report does
-    corrects_lag: bool = True  # plan by how far the drone will be off its setpoints
-    follows_heading: bool = True  # turn with the vehicle; False keeps the heading of the start
-    landing: LandingStyle = LandingStyle.STAGED
+    autopilot: AutopilotConfig = AutopilotConfig()
+    setpoints: SetpointConfig = SetpointConfig()
+    ground_station: GroundStationConfig = GroundStationConfig()
+    integrity: IntegrityConfig = IntegrityConfig()
     limits: LimitsConfig = LimitsConfig()
     takeoff: TakeoffConfig = TakeoffConfig()
     chase: ChaseConfig = ChaseConfig()

@@ -72,6 +72,61 @@ class ImmModeConfig(StrictModel):
     dwell_s: Positive  # mean time until the vehicle leaves this mode
 
 
+class HeadingConfig(StrictModel):
+    """How the vehicle turns, and where it points."""
+
+    curvature_speed_min_m_s: Positive = 3.0  # below it the curvature's noise grows no further
+    psd_rad2_s: Positive = 1e-4  # side slip; 0.6 degrees in 1 s
+    course_std_rad: Positive = 0.3  # side slip of 3 degrees that lasts 5 s, as white noise at 10 Hz
+    course_speed_min_m_s: Positive = 1.0
+    known_std_rad: Positive = 0.5  # worse than this the heading is not told
+    curvature_std_rad_m: Positive = 0.1  # at the start; a car's tightest turn is some 0.2
+    # Of drivers in curves, 0.2 g: streets for 30 to 60 km/h are built with side frictions of 0.28 to 0.17 (AASHTO 2011,
+    # table 3-7). For the forecast of a vehicle of which only sightings tell.
+    turning_std_m_s2: Positive = 2.0
+
+
+class RoadConfig(StrictModel):
+    """The road's grade, its bends and its roughness."""
+
+    # The change of the grade in vertical curves of streets: the root mean square of 1 % in K for the least K of crests
+    # (2, 4, 7, 11 m) and sags (6, 9, 13, 18 m) for 30 to 60 km/h (AASHTO Green Book 2011, 3.4.6). Faster roads bend
+    # less: sags are made for the comfort of 0.3 m/s^2. Curves are 10 m long and longer.
+    grade_std: Positive = 0.06  # at the start; 12 % is steep for a street
+    bend_std_per_m: Positive = 0.002
+    bend_acceleration_std_m_s2: Positive = 0.3
+    bend_length_m: Positive = 10.0
+    height_psd_m2_m: NotNegative = 1e-5  # of the height, as ISO 8608 has it for a road of class B (waviness 2)
+    # What gravity adds to an accelerometer along the vehicle: that of the grade above, for as long as 50 m of one grade
+    # last at 10 m/s. A sensor's own offset is less (Bosch BMI088: 0.2 m/s^2).
+    gravity_leak_std_m_s2: Positive = 0.6
+    gravity_leak_time_s: Positive = 5.0
+
+
+class HeaveConfig(StrictModel):
+    """The body on its springs."""
+
+    std_m: Positive = 0.04  # benchmark: `rough_road` heaves 0.1 m at 0.5 to 1 Hz, the others not at all
+    frequency_hz: Positive = 0.75
+    damping: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.3
+
+
+class ReceiversConfig(StrictModel):
+    """The errors of the vehicle's and the drone's receivers, and of the clock that dates the vehicle's fixes."""
+
+    frame_offset_std_m: NotNegative = 1.0  # between the two receivers' frames; benchmark: 0.5 and 1.2 m
+    frame_offset_walk_m2_s: NotNegative = 1e-5
+    fix_white_std_max_m: Positive = 0.3  # what a fix states beyond this is slow (Gauss-Markov) error; benchmark
+    fix_bias_time_s: Positive = 60.0  # its time constant; benchmark
+    # A drone over a vehicle without corrections has none either: its own place wanders by so much of the same
+    # variance in a second. Benchmark: 0.5 m, of which 0.36 m are new after 10 s.
+    own_walk_share: NotNegative = 0.13
+    # Of the clock that dates such coarse fixes, against the drone's; benchmark: up to 0.1 s. Receivers with corrections
+    # date their fixes themselves, to microseconds.
+    clock_std_s: NotNegative = 0.03
+    clock_time_s: Positive = 180.0  # in which it may become another; also what a wrong lever arm taught is forgotten
+
+
 class ImmConfig(StrictModel):
     """Two turning models, one for steady driving and one for manoeuvres."""
 
@@ -84,43 +139,12 @@ class ImmConfig(StrictModel):
     manoeuvre: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=300.0, lateral_acceleration_psd_m2_s5=20.0, dwell_s=0.4)
     side_jerk_psd_m2_s5: Positive = 0.005  # across the track, apart from turning; measured
     acceleration_decay_s: Positive = 3.0  # measured
-    curvature_speed_min_m_s: Positive = 3.0  # below it the curvature's noise grows no further
-    heading_psd_rad2_s: Positive = 1e-4  # side slip; 0.6 degrees in 1 s
-    course_std_rad: Positive = 0.3  # side slip of 3 degrees that lasts 5 s, as white noise at 10 Hz
-    course_speed_min_m_s: Positive = 1.0
-    heading_known_std_rad: Positive = 0.5  # worse than this the heading is not told
-    curvature_std_rad_m: Positive = 0.1  # at the start; a car's tightest turn is some 0.2
-    # Of drivers in curves, 0.2 g: streets for 30 to 60 km/h are built with side frictions of 0.28 to 0.17 (AASHTO 2011,
-    # table 3-7). For the forecast of a vehicle of which only sightings tell.
-    turning_std_m_s2: Positive = 2.0
-    # The change of the grade in vertical curves of streets: the root mean square of 1 % in K for the least K of crests
-    # (2, 4, 7, 11 m) and sags (6, 9, 13, 18 m) for 30 to 60 km/h (AASHTO Green Book 2011, 3.4.6). Faster roads bend
-    # less: sags are made for the comfort of 0.3 m/s^2. Curves are 10 m long and longer.
-    grade_std: Positive = 0.06  # at the start; 12 % is steep for a street
-    bend_std_per_m: Positive = 0.002
-    bend_acceleration_std_m_s2: Positive = 0.3
-    bend_length_m: Positive = 10.0
-    road_psd_m2_m: NotNegative = 1e-5  # of the height, as ISO 8608 has it for a road of class B (waviness 2)
-    # What gravity adds to an accelerometer along the vehicle: that of the grade above, for as long as 50 m of one grade
-    # last at 10 m/s. A sensor's own offset is less (Bosch BMI088: 0.2 m/s^2).
-    gravity_leak_std_m_s2: Positive = 0.6
-    gravity_leak_time_s: Positive = 5.0
-    heave_std_m: Positive = 0.04  # benchmark: `rough_road` heaves 0.1 m at 0.5 to 1 Hz, the others not at all
-    heave_frequency_hz: Positive = 0.75
-    heave_damping: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.3
     initial_speed_std_m_s: Positive = 15.0
     initial_acceleration_std_m_s2: Positive = 3.0
-    frame_offset_std_m: NotNegative = 1.0  # between the two receivers' frames; benchmark: 0.5 and 1.2 m
-    frame_offset_walk_m2_s: NotNegative = 1e-5
-    fix_white_std_max_m: Positive = 0.3  # what a fix states beyond this is slow (Gauss-Markov) error; benchmark
-    fix_bias_time_s: Positive = 60.0  # its time constant; benchmark
-    # A drone over a vehicle without corrections has none either: its own place wanders by so much of the same
-    # variance in a second. Benchmark: 0.5 m, of which 0.36 m are new after 10 s.
-    own_walk_share: NotNegative = 0.13
-    # Of the clock that dates such coarse fixes, against the drone's; benchmark: up to 0.1 s. Receivers with corrections
-    # date their fixes themselves, to microseconds.
-    clock_std_s: NotNegative = 0.03
-    clock_time_s: Positive = 180.0  # in which it may become another; also what a wrong lever arm taught is forgotten
+    heading: HeadingConfig = HeadingConfig()
+    road: RoadConfig = RoadConfig()
+    heave: HeaveConfig = HeaveConfig()
+    receivers: ReceiversConfig = ReceiversConfig()
 
 
 class EstimatorConfig(StrictModel):

@@ -87,10 +87,18 @@ class PnConfig(StrictModel):
     far_hysteresis: Annotated[float, Field(gt=1.0, le=10.0)] = 1.5
 
 
+class LandingStyle(Enum):
+    """The way from the waiting point onto the pad."""
+
+    STAGED = "staged"  # chase above the vehicle, align, descend inside the cone, switch off
+    DIRECT = "direct"  # the pad's centre is the target from the start, contact or not; the source report
+
+
 class GuidanceConfig(StrictModel):
-    """The guidance law and the numbers of all of them."""
+    """The way onto the pad, the guidance law and the numbers of all of them."""
 
     kind: GuidanceKind = GuidanceKind.MPC
+    style: LandingStyle = LandingStyle.STAGED
     mpc: MpcConfig = MpcConfig()
     mpc_report: ReportMpcConfig = ReportMpcConfig()
     pn: PnConfig = PnConfig()

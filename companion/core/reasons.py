@@ -125,7 +125,7 @@ class Reason(Enum):
     )
     HEIGHTS_APART = (
         "heights cannot be compared: the vehicle's are above the ellipsoid, and the autopilot tells its own above the "
-        "sea only (no alt_ellipsoid in GPS_RAW_INT): set geoid_height_m"
+        "sea only (no alt_ellipsoid in GPS_RAW_INT): set autopilot.geoid_height_m"
     )
     AUTOPILOT_WARNS = (
         "the autopilot reports a failsafe (battery, radio, ground station): end its cause, see its own messages"

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 
 from msgspec import Struct
 
-from companion.config.companion import ReceiverFrames
+from companion.config.integrity import ReceiverFrames
 from companion.core.data import Measurement, Quantity
 from link.records import replace
 

@@ -31,7 +31,7 @@ def update_pad_raised_m(raised_m: float, phase: Phase, situation: Situation, con
         situation: with the pad where the vehicle says that it is.
         config: all numbers.
     """
-    if phase not in _OVER_PHASES or not config.touchdown.range_corrects_height:
+    if phase not in _OVER_PHASES or not config.touchdown.range_finder.corrects_height:
         return 0.0
     relative, seen_m = situation.approach, situation.below.range_height_m
     if relative is None or seen_m is None:
@@ -114,10 +114,10 @@ def is_road_elsewhere(was: bool, phase: Phase, s: Situation, c: CompanionConfig)
 
 def _is_off_the_ground(s: Situation, c: CompanionConfig) -> bool:
     above_m, distance_m = road_above_ground_m(s), road_distance_m(s)
-    if s.pad is None or above_m is None or distance_m > c.chase.ground_within_m:
+    if s.pad is None or above_m is None or distance_m > c.integrity.ground_within_m:
         return False
     unsure_m = _STDS * float(s.pad.position_std_m[0, 2]) if s.pad.is_coarse else 0.0
-    return abs(above_m) > max(c.chase.ground_step_max_m, unsure_m) + c.chase.ground_slope_max * distance_m
+    return abs(above_m) > max(c.integrity.ground_step_max_m, unsure_m) + c.integrity.ground_slope_max * distance_m
 
 
 def is_seen_too_near(s: Situation, c: CompanionConfig) -> bool:
@@ -128,9 +128,9 @@ def is_seen_too_near(s: Situation, c: CompanionConfig) -> bool:
     a, seen_m = s.approach, s.below.range_height_m
     if s.pad is None or a is None or s.drone is None or seen_m is None or s.drone.lean > _LEAN_MAX:
         return False
-    about_m = c.touchdown.range_off_max_m
-    if c.touchdown.range_corrects_height:
+    about_m = c.touchdown.range_finder.off_max_m
+    if c.touchdown.range_finder.corrects_height:
         about_m = max(about_m, RAISED_MAX_M)
     if s.pad.is_coarse:
         about_m = max(about_m, _COARSE_OFF_M, _STDS * float(s.pad.position_std_m[0, 2]))
-    return a.height_m - seen_m > about_m + c.chase.ground_slope_max * a.distance_m
+    return a.height_m - seen_m > about_m + c.integrity.ground_slope_max * a.distance_m

@@ -11,7 +11,8 @@ import math
 
 from msgspec import Struct
 
-from companion.config.companion import CompanionConfig, ReceiverFrames
+from companion.config.companion import CompanionConfig
+from companion.config.integrity import ReceiverFrames
 from companion.integrity.frames import FIXED_STD_MAX_M
 from companion.situation.situation import Situation
 from companion.vehicle.estimator import BufferHealth
@@ -36,7 +37,7 @@ def update_sightings(before: SightingWatch, health: BufferHealth, config: Compan
     """Return the watch with what the estimator has counted by now; one that was begun anew is counted anew."""
     accepted, rejected = (now - then for now, then in zip(health.sightings, before.counted, strict=True))
     is_anew = accepted < 0 or rejected < 0
-    are_mixed = not is_anew and rejected > config.abort.rejected_share_max * (accepted + rejected)
+    are_mixed = not is_anew and rejected > config.integrity.rejected_share_max * (accepted + rejected)
     return SightingWatch(counted=health.sightings, are_mixed=are_mixed)
 
 
@@ -64,7 +65,9 @@ def _offset_max_m(pad: PadPath, fix_std_m: float | None, c: CompanionConfig) -> 
     comes down on it all the same.
     """
     harmless_m = (
-        cone_radius_at_pad_m(pad.half_width_m, c) if c.receiver_frames is ReceiverFrames.ONE else pad.half_width_m
+        cone_radius_at_pad_m(pad.half_width_m, c)
+        if c.integrity.receiver_frames is ReceiverFrames.ONE
+        else pad.half_width_m
     )
     receiver_m = max(fix_std_m or 0.0, FIXED_STD_MAX_M)
     return max(harmless_m, _STDS * math.hypot(pad.frame_offset_std_m, receiver_m, receiver_m))

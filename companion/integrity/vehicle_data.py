@@ -60,7 +60,7 @@ def update_contradictions(before: Contradictions, health: BufferHealth, t_ns: in
 
 def contradicts_itself(s: Situation, c: CompanionConfig) -> bool:
     """Return whether so many of the vehicle's measurements were rejected that nothing says which are right."""
-    return s.vehicle.rejected_share > c.abort.rejected_share_max
+    return s.vehicle.rejected_share > c.integrity.rejected_share_max
 
 
 class FixStamps(Struct, frozen=True, kw_only=True):
@@ -131,7 +131,7 @@ def update_course(
         return watch
     (vx, vy), (ax, ay) = pad.velocity_enu_m_s[0, :2].tolist(), pad.acceleration_enu_m_s2[0, :2].tolist()
     speed_m_s = math.hypot(vx, vy)
-    if speed_m_s < config.chase.course_speed_min_m_s:
+    if speed_m_s < config.integrity.course_speed_min_m_s:
         return watch if watch.compared_s == 0.0 else replace(watch, compared_s=0.0)
     if speed_std_m_s > _COURSE_STD_MAX * speed_m_s:
         return watch
@@ -150,7 +150,7 @@ def update_course(
     return (
         watch
         if compared_s < _COURSE_OVER_S
-        else _judge(watch, config.chase.heading_off_max_rad + slip_rad + unsure_rad)
+        else _judge(watch, config.integrity.heading_off_max_rad + slip_rad + unsure_rad)
     )
 
 

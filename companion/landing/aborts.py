@@ -3,7 +3,7 @@
 import math
 
 from companion.config.companion import CompanionConfig
-from companion.config.landing import LandingStyle
+from companion.config.planning import LandingStyle
 from companion.core.data import GRAVITY_M_S2
 from companion.core.reasons import Cause, Reason
 from companion.integrity.heights import is_seen_too_near
@@ -39,7 +39,7 @@ def must_be_seen(s: Situation, c: CompanionConfig) -> bool:
 
 def _is_over_unseen_pad(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the drone has to see the pad, and is where a camera would that sees 45 degrees to each side."""
-    if s.approach is None or c.landing is LandingStyle.DIRECT:
+    if s.approach is None or c.guidance.style is LandingStyle.DIRECT:
         return False
     return must_be_seen(s, c) and s.approach.distance_m < c.chase.height_m
 
@@ -53,7 +53,7 @@ def is_token_lost(s: Situation, c: CompanionConfig) -> bool:
 def is_stamped_ahead(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the newest fix came before it was taken: the vehicle's clock, or ours, is wrong."""
     age_s = s.vehicle.fix_age_on_arrival_s
-    return age_s is not None and age_s < -c.abort.fix_ahead_max_s
+    return age_s is not None and age_s < -c.integrity.fix_ahead_max_s
 
 
 def is_pad_unplaced(s: Situation, _: CompanionConfig) -> bool:
@@ -145,7 +145,7 @@ ABORTS = (
         reason=Reason.VEHICLE_CLOCK_AHEAD,
         phases=LANDING_PHASES,
         is_true=is_stamped_ahead,
-        hold_s=lambda c: c.abort.fix_ahead_hold_s,
+        hold_s=lambda c: c.integrity.fix_ahead_hold_s,
     ),
     *AUTOPILOT_SILENT,
     Condition(
@@ -173,7 +173,7 @@ ABORTS = (
         reason=Reason.SEEN_TOO_NEAR,
         phases=LANDING_PHASES,
         is_true=is_seen_too_near,
-        hold_s=lambda c: c.touchdown.range_off_hold_s,
+        hold_s=lambda c: c.touchdown.range_finder.off_hold_s,
     ),
     Condition(reason=Reason.VEHICLE_CONTRADICTS_ITSELF, phases=LANDING_PHASES, is_true=contradicts_itself),
     Condition(

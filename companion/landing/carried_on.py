@@ -91,7 +91,7 @@ def limit_rates(
     if lowest_m is None or pad is None or drone is None:
         return limits
     room_m = max(float(drone.position_enu_m[2]) - lowest_m, 0.0)
-    sink_m_s = max(_rate_of(room_m, shaping), config.descent.touchdown_sink_rate_m_s)
+    sink_m_s = max(_rate_of(room_m, shaping), config.descent.sink.contact_rate_m_s)
     sink_m_s += max(-float(pad.velocity_enu_m_s[0, 2]), 0.0)
     return replace(limits, descent_max_m_s=min(limits.descent_max_m_s, sink_m_s))
 

@@ -117,13 +117,13 @@ def _is_lifted(s: Situation, c: CompanionConfig) -> bool:
 
 def is_below_pad(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the drone is lower than anything that presses it onto the pad could bring it."""
-    lowest_m = -c.descent.press_depth_m - c.touchdown.height_max_m
+    lowest_m = -c.descent.sink.press_depth_m - c.touchdown.height_max_m
     return s.approach is not None and s.approach.height_m < lowest_m
 
 
 def _is_sunk(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the drone is so low that it stands on the pad, which is soon believed, or has none below it."""
-    return s.approach is not None and s.approach.height_m < -c.touchdown.missed_depth_m
+    return s.approach is not None and s.approach.height_m < -c.touchdown.lost.missed_depth_m
 
 
 TOUCHED = Condition(
@@ -139,7 +139,7 @@ TOUCHED_BY_DISPUTE = Condition(
     reason=Reason.DISPUTED_CONTACT,
     phases=_DESCENT,
     is_true=_is_in_disputed_contact,
-    hold_s=lambda c: c.touchdown.disputed_hold_s,
+    hold_s=lambda c: c.touchdown.range_finder.disputed_hold_s,
     cause=lambda s, _: Cause(Reason.DISPUTED_CONTACT, (signs_text(signs_of(s)),)),
 )
 """All but the range finder's."""
@@ -155,7 +155,10 @@ STOPPED_BY_PAD = Condition(
 MISSED = (
     Condition(reason=Reason.BELOW_PAD, phases=_DESCENT, is_true=is_below_pad),
     Condition(
-        reason=Reason.NOTHING_TOUCHED, phases=_DESCENT, is_true=_is_sunk, hold_s=lambda c: c.touchdown.missed_hold_s
+        reason=Reason.NOTHING_TOUCHED,
+        phases=_DESCENT,
+        is_true=_is_sunk,
+        hold_s=lambda c: c.touchdown.lost.missed_hold_s,
     ),
 )
 """What ends a commitment to land as well: the pad is not where it is said to be."""
@@ -166,6 +169,6 @@ HELD_UP = Condition(
 """Completes the evidence of a hard contact."""
 
 LIFTED = Condition(
-    reason=Reason.ABOVE_AFTER_CONTACT, phases=_STANDING, is_true=_is_lifted, hold_s=lambda c: c.touchdown.lost_hold_s
+    reason=Reason.ABOVE_AFTER_CONTACT, phases=_STANDING, is_true=_is_lifted, hold_s=lambda c: c.touchdown.lost.hold_s
 )
 """For so long no motors were switched off, and so high they are not by force."""

@@ -15,7 +15,7 @@ from enum import Enum
 from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
-from companion.config.landing import TouchdownConfig
+from companion.config.touchdown import TouchdownConfig
 from companion.situation.situation import Approach, Situation
 from companion.vehicle.pad import over_pad_radius_m
 from link.records import replace
@@ -92,7 +92,11 @@ def verdict(signs: Signs, config: CompanionConfig, *, is_pressed: bool = False) 
     if not (_is_at_pad(signs, config) and stands and _is_supported(signs, config.touchdown)):
         return Verdict.AIRBORNE
     seen_m = signs.range_height_m
-    return Verdict.CONTACT if seen_m is None or seen_m <= config.touchdown.range_height_max_m else Verdict.DISPUTED
+    return (
+        Verdict.CONTACT
+        if seen_m is None or seen_m <= config.touchdown.range_finder.contact_height_max_m
+        else Verdict.DISPUTED
+    )
 
 
 def is_stopped_by_pad(signs: Signs, config: CompanionConfig) -> bool:
@@ -106,7 +110,7 @@ def is_stopped_by_pad(signs: Signs, config: CompanionConfig) -> bool:
         signs = replace(signs, distance_m=min(signs.distance_m, signs.passed_m))
     seen_m = signs.range_carried_m if signs.range_height_m is None else signs.range_height_m
     feet_m = signs.height_m if seen_m is None else seen_m
-    touches = feet_m is not None and feet_m <= config.touchdown.range_height_max_m
+    touches = feet_m is not None and feet_m <= config.touchdown.range_finder.contact_height_max_m
     return _is_at_pad(signs, config) and (touches or verdict(signs, config) is Verdict.CONTACT)
 
 
@@ -132,12 +136,12 @@ def may_force_motors_off(
     if stopped_and_held:
         return True
     # Without accelerations in its setpoints an autopilot is not pressed down so hard that it would fall.
-    is_pressed = since_contact_s >= config.touchdown.stopped_hold_s and not config.position_only
+    is_pressed = since_contact_s >= config.touchdown.stopped_hold_s and not config.setpoints.position_only
     match verdict(signs, config, is_pressed=is_pressed):
         case Verdict.CONTACT:
             return True
         case Verdict.DISPUTED:
-            return since_contact_s >= config.touchdown.disputed_hold_s
+            return since_contact_s >= config.touchdown.range_finder.disputed_hold_s
         case Verdict.AIRBORNE:
             return False
 
@@ -171,7 +175,7 @@ def _passed_m(relative: Approach, within_s: float) -> float:
 def _is_at_pad(signs: Signs, config: CompanionConfig) -> bool:
     if signs.height_m is None or signs.distance_m is None:
         return False
-    lowest_m = -config.descent.press_depth_m - config.touchdown.height_max_m
+    lowest_m = -config.descent.sink.press_depth_m - config.touchdown.height_max_m
     is_low = lowest_m <= signs.height_m <= config.touchdown.height_max_m
     return is_low and signs.distance_m < over_pad_radius_m(signs.pad_half_width_m, config)
 
@@ -188,7 +192,7 @@ def _stands_pressed(signs: Signs, config: TouchdownConfig) -> bool:
     Over poor data the difference of two climb rates is off by 0.2 m/s. The range finder has to see the pad for it.
     """
     seen_m, climb_m_s = signs.range_height_m, signs.climb_m_s
-    if seen_m is None or climb_m_s is None or not seen_m <= config.range_height_max_m:
+    if seen_m is None or climb_m_s is None or not seen_m <= config.range_finder.contact_height_max_m:
         return False
     falls = signs.acceleration_up_m_s2 is not None and not _is_no_fall(signs.acceleration_up_m_s2, config)
     return abs(climb_m_s) < config.pressed_speed_m_s and not falls

@@ -3,7 +3,7 @@
 import math
 
 from companion.config.companion import CompanionConfig
-from companion.config.landing import LandingStyle
+from companion.config.planning import LandingStyle
 from companion.core.reasons import Cause, Reason
 from companion.landing.aborts import (
     ABORTS,
@@ -30,7 +30,7 @@ from companion.landing.entries import DRIVES, ENTRIES, Decision, vehicle_passes
 from companion.landing.feasibility import is_drone_taken, obstacle
 from companion.landing.memory import ControlMemory, Held, Progress
 from companion.landing.waiting import waited_s
-from companion.situation.phases import FLYING_PHASES, Event, Phase
+from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase
 from companion.situation.situation import Situation
 
 
@@ -52,7 +52,8 @@ def decide(progress: Progress, control: ControlMemory, s: Situation, config: Com
         return Event.CONTACT, cause_of(STOPPED_BY_PAD, s, config)
     # On the pad and committed, cutting the approach short is the more dangerous way, unless there is no pad.
     committed = progress.phase is Phase.DESCEND and _is_committed(s, config)
-    broken_off = _unsafe(MISSED if committed else ABORTS, s, progress.held, config)
+    is_landing = progress.phase in LANDING_PHASES  # in a sortie the same reasons lead elsewhere
+    broken_off = _unsafe(MISSED if committed else ABORTS, s, progress.held, config) if is_landing else None
     if broken_off is None and not committed:
         broken_off = _time_limit(progress, control, s, config)
     return _go_on(progress, s, config) if broken_off is None else broken_off
@@ -84,7 +85,7 @@ def _is_committed(s: Situation, config: CompanionConfig) -> bool:
     return (
         relative is not None
         and not is_pad_unplaced(s, config)
-        and -config.descent.press_depth_m < relative.height_m < config.descent.commit_height_m
+        and -config.descent.sink.press_depth_m < relative.height_m < config.descent.commit_height_m
         and is_over_pad(relative, config)
         and relative.speed_m_s < config.abort.near_speed_max_m_s
     )
@@ -124,7 +125,7 @@ def _time_limit(progress: Progress, control: ControlMemory, s: Situation, config
         if not s.autopilot.armed:
             return Event.REFUSED, Cause(Reason.ARMING_REFUSED, (s.autopilot.refusal or "it said no reason",))
     limit_s = _longest_s(progress.phase, config)
-    waits_s = min(waited_s(progress, s.monotonic_ns), config.descent.surprise_wait_max_s)
+    waits_s = min(waited_s(progress, s.monotonic_ns), config.descent.uneven.wait_max_s)
     if limit_s is not None and in_phase_s - waits_s > limit_s:
         not_placed = why_unplaced(s) if progress.phase is Phase.ALIGN else None
         return Event.TIME_LIMIT, not_placed or Cause(TOO_LONG[progress.phase], (limit_s,))
@@ -139,7 +140,7 @@ def _longest_s(phase: Phase, config: CompanionConfig) -> float | None:
         case Phase.CHASE:
             return config.chase.time_limit_s
         case Phase.ALIGN:
-            return config.descent.align_time_limit_s
+            return config.descent.alignment.time_limit_s
         case Phase.DESCEND:
             return config.descent.time_limit_s
         case _:
@@ -172,10 +173,10 @@ def _at_waiting_point(s: Situation, config: CompanionConfig) -> Decision | None:
 
 
 def _over_pad(s: Situation, config: CompanionConfig) -> Decision | None:
-    if s.approach is None or config.landing is LandingStyle.DIRECT:
+    if s.approach is None or config.guidance.style is LandingStyle.DIRECT:
         return None
     known = not is_uncertain(s, config) and not must_be_seen(s, config)
-    if s.approach.distance_m < config.descent.align_distance_m and known:
+    if s.approach.distance_m < config.descent.alignment.begin_distance_m and known:
         return Event.OVER_PAD, Cause(Reason.OVER_PAD, (s.approach.distance_m,))
     return None
 
@@ -184,7 +185,7 @@ def _on_the_pad(s: Situation, held: Held, config: CompanionConfig) -> Decision |
     if not s.autopilot.armed:
         return Event.MOTORS_OFF, Cause(Reason.MOTORS_OFF)
     relative = s.approach
-    is_lost = relative is not None and relative.height_m > config.touchdown.lost_height_m
+    is_lost = relative is not None and relative.height_m > config.touchdown.lost.height_m
     if relative is not None and (is_lost or holds(LIFTED, held, s, config)):
         return Event.CONTACT_LOST, Cause(Reason.ABOVE_AFTER_CONTACT, (relative.height_m,))
     if is_below_pad(s, config):

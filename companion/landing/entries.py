@@ -5,7 +5,7 @@ from functools import cache
 
 from companion.autopilots.response import DRAG_PER_S
 from companion.config.companion import CompanionConfig
-from companion.config.landing import LandingStyle
+from companion.config.planning import LandingStyle
 from companion.core.reasons import Cause, Reason
 from companion.landing.aborts import ABORTS, is_pad_unplaced, must_be_seen, strays
 from companion.landing.conditions import (
@@ -48,15 +48,15 @@ def _is_aligned(s: Situation, c: CompanionConfig) -> bool:
     if s.approach is None or is_pad_unplaced(s, c) or must_be_seen(s, c):
         return False
     # A drone that is higher has that much longer to come nearer and to become slower.
-    higher = max(s.approach.height_m / c.descent.align_height_m, 1.0)
-    is_over = s.approach.distance_m < higher * c.descent.aligned_distance_m
-    return is_over and s.approach.speed_m_s < higher * c.descent.aligned_speed_m_s
+    higher = max(s.approach.height_m / c.descent.alignment.height_m, 1.0)
+    is_over = s.approach.distance_m < higher * c.descent.alignment.distance_m
+    return is_over and s.approach.speed_m_s < higher * c.descent.alignment.speed_m_s
 
 
 def _is_far_off(s: Situation, c: CompanionConfig) -> bool:
-    if s.approach is None or c.landing is LandingStyle.DIRECT:
+    if s.approach is None or c.guidance.style is LandingStyle.DIRECT:
         return False
-    return s.approach.distance_m > 2.0 * c.descent.align_distance_m
+    return s.approach.distance_m > 2.0 * c.descent.alignment.begin_distance_m
 
 
 def is_too_low(s: Situation, c: CompanionConfig) -> bool:
@@ -133,7 +133,7 @@ TO_BE_SEEN = Condition(
     reason=Reason.PAD_TO_BE_SEEN,
     phases=_DESCENT,
     is_true=_must_be_seen_above,
-    anew_max=lambda c: c.descent.unseen_max,
+    anew_max=lambda c: c.descent.unseen.anew_max,
 )
 """Without a hold time, or it slips below."""
 
@@ -141,8 +141,8 @@ NOT_SEEN = Condition(
     reason=Reason.PAD_NOT_SEEN,
     phases=_ALIGNMENT,
     is_true=must_be_seen,
-    hold_s=lambda c: c.descent.unseen_hold_s,
-    anew_max=lambda c: c.descent.unseen_max,
+    hold_s=lambda c: c.descent.unseen.hold_s,
+    anew_max=lambda c: c.descent.unseen.anew_max,
 )
 
 VEHICLE_STANDS = Condition(
@@ -154,7 +154,7 @@ VEHICLE_STANDS = Condition(
 """A vehicle that stands may be about to depart, so it is landed on only after it has stood for a while."""
 
 ALIGNED = Condition(
-    reason=Reason.ALIGNED, phases=_ALIGNMENT, is_true=_is_aligned, hold_s=lambda c: c.descent.aligned_hold_s
+    reason=Reason.ALIGNED, phases=_ALIGNMENT, is_true=_is_aligned, hold_s=lambda c: c.descent.alignment.hold_s
 )
 
 ENTRIES = (

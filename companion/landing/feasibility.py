@@ -5,7 +5,8 @@ What cannot be done is not begun. It is told with its numbers, once, and again o
 
 import math
 
-from companion.config.companion import CompanionConfig, Guide
+from companion.config.autopilot import Guide
+from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
 from companion.integrity.heights import road_above_ground_m, road_distance_m
 from companion.integrity.vehicle_data import contradicts_itself
@@ -127,7 +128,7 @@ def _hover_height_m(s: Situation, height_m: float, c: CompanionConfig) -> float:
 
 
 def _is_high(s: Situation, c: CompanionConfig) -> bool:
-    if s.approach is None or is_fix_old(s, c) or s.approach.distance_m > c.chase.ground_within_m:
+    if s.approach is None or is_fix_old(s, c) or s.approach.distance_m > c.integrity.ground_within_m:
         return False
     unsure_m = 0.0 if s.pad is None else vague_height_m(s.pad, c)
     return _hover_height_m(s, s.approach.height_m, c) + unsure_m < chase_floor_m(c)
@@ -148,7 +149,7 @@ OBSTACLES = (
         reason=Reason.STAMPS_AHEAD,
         phases=_BEFORE_ANY_CHASE,
         is_true=is_stamped_ahead,
-        hold_s=lambda c: c.abort.fix_ahead_hold_s,
+        hold_s=lambda c: c.integrity.fix_ahead_hold_s,
         cause=_tell_stamped_ahead,
     ),
     Condition(
@@ -202,6 +203,6 @@ OBSTACLES = (
 
 def obstacle(held: Held, s: Situation, config: CompanionConfig) -> Cause | None:
     """Return what makes a landing impossible now, with its numbers; None without one."""
-    if config.guide is Guide.PRECLAND:
+    if config.autopilot.guide is Guide.PRECLAND:
         return Cause(Reason.GUIDES_ONLY)
     return next((cause_of(one, s, config) for one in OBSTACLES if holds(one, held, s, config)), None)

@@ -75,7 +75,7 @@ def fly(
         return memory, None
     if inputs.own is not None:
         own_ns = inputs.monotonic_at(inputs.own.t_ns)
-        sway = update_sway(memory.model.sway, inputs.own, own_ns, system.config.descent)
+        sway = update_sway(memory.model.sway, inputs.own, own_ns, system.config.descent.sway)
         memory = replace(memory, model=replace(memory.model, sway=sway))
     memory = _to_lost_drone(memory, situation)
     model = memory.model
@@ -158,7 +158,7 @@ def _at_drone(
     if drone is None or not (memory.control.driver.climbs_by_itself or sinking):
         return reference
     depth_m, sink_m_s = (
-        (config.descent.press_depth_m, config.descent.touchdown_sink_rate_m_s) if sinking else (0.0, 0.0)
+        (config.descent.sink.press_depth_m, config.descent.sink.contact_rate_m_s) if sinking else (0.0, 0.0)
     )
     return ReferenceState(
         position_enu_m=drone.position_enu_m - np.array([0.0, 0.0, depth_m]),
@@ -178,7 +178,7 @@ def _with_deck(drone: Drone, phase: Phase, situation: Situation, config: Compani
     The setpoint has the deck's velocity from the first instant, so that no lift-off begins with a brake.
     """
     velocity = drone.velocity_enu_m_s if situation.pad is None else situation.pad.velocity_enu_m_s[0]
-    up_m = _LIFT_M if phase is Phase.LIFT_OFF else -config.descent.press_depth_m
+    up_m = _LIFT_M if phase is Phase.LIFT_OFF else -config.descent.sink.press_depth_m
     return ReferenceState(
         position_enu_m=drone.position_enu_m + np.array([0.0, 0.0, up_m]),
         velocity_enu_m_s=velocity,
@@ -235,8 +235,8 @@ def _slew_yaw_rad(memory: StepMemory, pad: PadPath | None, dt_s: float, config: 
     """Turn towards the vehicle's heading while it is followed, at a bounded rate."""
     phase, yaw_rad = memory.progress.phase, memory.model.yaw_setpoint_rad
     follows = phase in LANDING_PHASES | STATION_PHASES or phase is Phase.TOUCHDOWN
-    if not (follows and config.follows_heading) or pad is None or pad.yaw_rad is None:
+    if not (follows and config.setpoints.follows_heading) or pad is None or pad.yaw_rad is None:
         return yaw_rad
-    turn_max_rad = config.yaw_rate_max_rad_s * dt_s
+    turn_max_rad = config.setpoints.yaw_rate_max_rad_s * dt_s
     turn_rad = wrap_angle(pad.yaw_rad - yaw_rad)
     return wrap_angle(yaw_rad + min(max(turn_rad, -turn_max_rad), turn_max_rad))

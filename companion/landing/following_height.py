@@ -32,8 +32,8 @@ def chase_height_m(pad: PadPath, reference: ReferenceState, config: CompanionCon
     if is_vague(pad, config) or is_unseen(pad, config):
         return unseen_height_m(config.chase.height_m, pad, config)
     distance_m = math.hypot(*(reference.position_enu_m[:2] - pad.position_enu_m[0, :2]).tolist())
-    beyond_m = max(distance_m - config.descent.align_distance_m, 0.0)
-    return min(config.descent.align_height_m + 0.5 * beyond_m, config.chase.height_m)
+    beyond_m = max(distance_m - config.descent.alignment.begin_distance_m, 0.0)
+    return min(config.descent.alignment.height_m + 0.5 * beyond_m, config.chase.height_m)
 
 
 def _sight_height_m(pad: PadPath, reference: ReferenceState, config: CompanionConfig) -> float:
@@ -43,14 +43,14 @@ def _sight_height_m(pad: PadPath, reference: ReferenceState, config: CompanionCo
     """
     distance_m = math.hypot(*(reference.position_enu_m[:2] - pad.position_enu_m[0, :2]).tolist())
     unsure_m = config.chase.unseen_height_stds * float(np.max(pad.position_std_m[0, :2]))
-    beyond_m = max(distance_m + unsure_m - config.descent.align_distance_m, 0.0)
-    lowest_m = config.chase.height_m if is_unseen(pad, config) else config.descent.align_height_m
-    return min(max(config.descent.align_height_m + beyond_m, lowest_m), config.chase.unseen_height_max_m)
+    beyond_m = max(distance_m + unsure_m - config.descent.alignment.begin_distance_m, 0.0)
+    lowest_m = config.chase.height_m if is_unseen(pad, config) else config.descent.alignment.height_m
+    return min(max(config.descent.alignment.height_m + beyond_m, lowest_m), config.chase.unseen_height_max_m)
 
 
 def chase_floor_m(config: CompanionConfig) -> float:
     """Return how far the feet stay above the pad before the alignment."""
-    return 0.8 * config.descent.align_height_m
+    return 0.8 * config.descent.alignment.height_m
 
 
 def vague_height_m(pad: PadPath, config: CompanionConfig) -> float:

@@ -2,7 +2,8 @@
 
 from companion.autopilots.landing_target import landing_target
 from companion.autopilots.own_reports import carry
-from companion.config.companion import CompanionConfig, Guide
+from companion.config.autopilot import Guide
+from companion.config.companion import CompanionConfig
 from companion.landing.step_data import StepInputs, StepOutputs
 from companion.vehicle.pad import is_unseen
 from link.mavlink.dialect import Message
@@ -19,7 +20,7 @@ def guiding_message(outputs: StepOutputs, inputs: StepInputs, config: CompanionC
         config: all numbers.
         local_ns: now, on the companion's own clock.
     """
-    if config.guide is not Guide.PRECLAND:
+    if config.autopilot.guide is not Guide.PRECLAND:
         return None
     pad, own, driver, fix_age_s = outputs.pad, inputs.own, inputs.driver, outputs.status.fix_age_s
     if pad is None or own is None or driver is None or pad.unplaced is not None or is_unseen(pad, config):

@@ -35,8 +35,8 @@ def limits_now(memory: StepMemory, situation: Situation, inputs: StepInputs, con
     turns_m_s2 = 0.0 if situation.pad is None else math.hypot(*situation.pad.acceleration_enu_m_s2[0, :2].tolist())
     kept_m_s2 = min(_kept_m_s2(turns_m_s2, limits.jerk_max_m_s3, config), limits.acceleration_max_m_s2)
     takes_s = max(turns_m_s2 - kept_m_s2, 0.0) / limits.jerk_max_m_s3
-    early_m = max(-relative.climb_m_s, 0.0) * (takes_s + touchdown.level_late_stds * inputs.link_delay.std_s)
-    if lowest_foot_m(situation, relative, config) > touchdown.level_height_m + early_m + escape_m:
+    early_m = max(-relative.climb_m_s, 0.0) * (takes_s + touchdown.level.late_stds * inputs.link_delay.std_s)
+    if lowest_foot_m(situation, relative, config) > touchdown.level.height_m + early_m + escape_m:
         return limits
     return replace(limits, acceleration_max_m_s2=kept_m_s2)
 
@@ -81,8 +81,8 @@ def _kept_m_s2(turns_m_s2: float, jerk_m_s3: float, config: CompanionConfig) -> 
     That bounds x.
     """
     touchdown = config.touchdown
-    left_s = touchdown.level_height_m / config.descent.touchdown_sink_rate_m_s
-    gained_m_s = touchdown.level_speed_max_m_s
+    left_s = touchdown.level.height_m / config.descent.sink.contact_rate_m_s
+    gained_m_s = touchdown.level.speed_max_m_s
     less_m_s2 = math.sqrt((jerk_m_s3 * left_s) ** 2 + 2.0 * jerk_m_s3 * gained_m_s) - jerk_m_s3 * left_s
-    kept_m_s2 = max(touchdown.level_share * turns_m_s2, touchdown.level_acceleration_min_m_s2)
-    return max(min(kept_m_s2, touchdown.level_acceleration_max_m_s2), turns_m_s2 - less_m_s2)
+    kept_m_s2 = max(touchdown.level.share * turns_m_s2, touchdown.level.acceleration_min_m_s2)
+    return max(min(kept_m_s2, touchdown.level.acceleration_max_m_s2), turns_m_s2 - less_m_s2)

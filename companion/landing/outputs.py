@@ -6,7 +6,7 @@ import numpy as np
 
 from companion.autopilots.own_reports import as_seen_with
 from companion.config.companion import CompanionConfig
-from companion.config.landing import DescentConfig
+from companion.config.descent import DescentConfig
 from companion.core.data import Array, FlightLimits, Setpoint
 from companion.core.reasons import Cause, Reason, sentence
 from companion.landing.aborts import why_unplaced
@@ -43,7 +43,7 @@ def setpoint(
     model = memory.model
     if model.reference is None or memory.control.driver.climbs_by_itself:
         return None
-    lead_s = config.setpoint_lead_s
+    lead_s = config.setpoints.lead_s
     if lead_s is None:
         lead_s = 0.0 if inputs.response is None else inputs.response.cascade.lead_s
     ahead_s = inputs.link_delay.mean_s + lead_s
@@ -58,17 +58,17 @@ def setpoint(
         bound_carried(reference, memory, situation, inputs.shaping, config),
         inputs.t_ns + round(ahead_s * 1e9),
         model.yaw_setpoint_rad,
-        position_only=config.position_only,
+        position_only=config.setpoints.position_only,
     )
     if has_free_place(memory, inputs, config):
-        wanted = free_place(wanted, model.tracking.behind_enu_m, config.place_gain_hz)
+        wanted = free_place(wanted, model.tracking.behind_enu_m, config.setpoints.place_gain_hz)
     return wanted if inputs.own is None else as_seen_with(wanted, inputs.own.velocity_bias_enu_m_s)
 
 
 def has_free_place(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) -> bool:
     """Return whether the place is left out of what is asked for, since the link's jitter moves it too far."""
     driver = inputs.driver
-    if memory.progress.phase not in _FREE_PLACE_PHASES or config.position_only:
+    if memory.progress.phase not in _FREE_PLACE_PHASES or config.setpoints.position_only:
         return False
     return driver is not None and driver.holds_height_alone and has_jittery_place(memory, inputs, config)
 
@@ -82,7 +82,7 @@ def has_jittery_place(memory: StepMemory, inputs: StepInputs, config: CompanionC
     if reference is None:
         return False
     speed_m_s = math.hypot(*reference.velocity_enu_m_s[:2].tolist())
-    return speed_m_s * inputs.link_delay.std_s > config.place_jitter_max_m
+    return speed_m_s * inputs.link_delay.std_s > config.setpoints.place_jitter_max_m
 
 
 def _press_m_s2(memory: StepMemory, config: CompanionConfig) -> float | None:

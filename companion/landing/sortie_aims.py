@@ -33,7 +33,7 @@ def keep_out_of(pad: PadPath, config: CompanionConfig) -> KeepOut:
     pad_m = math.sqrt(2.0) * pad.half_width_m if math.isfinite(pad.half_width_m) else 0.0
     return KeepOut(
         radius_m=max(sortie.vehicle_radius_m, pad_m) + sortie.keep_out_margin_m,
-        over_m=config.descent.align_height_m,
+        over_m=config.descent.alignment.height_m,
         lowest_m=sortie.ground_clearance_m - pad.height_m,
     )
 

@@ -41,7 +41,7 @@ LOST = (
         reason=Reason.VEHICLE_CLOCK_AHEAD,
         phases=_TOGETHER,
         is_true=is_stamped_ahead,
-        hold_s=lambda c: c.abort.fix_ahead_hold_s,
+        hold_s=lambda c: c.integrity.fix_ahead_hold_s,
     ),
     Condition(reason=Reason.VEHICLE_CONTRADICTS_ITSELF, phases=_TOGETHER, is_true=contradicts_itself),
 )

@@ -2,7 +2,8 @@
 
 import math
 
-from companion.config.companion import CompanionConfig, Guide
+from companion.config.autopilot import Guide
+from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
 from companion.landing.aborts import why_unplaced
 from companion.landing.conditions import is_fix_old
@@ -31,7 +32,7 @@ def missing_for_sortie(
         config: all numbers.
         obstacle: why no landing can be done.
     """
-    if config.guide is Guide.PRECLAND:
+    if config.autopilot.guide is Guide.PRECLAND:
         return Cause(Reason.GUIDES_ONLY)
     if s.pad is None or is_fix_old(s, config):
         return Cause(Reason.NO_VEHICLE_DATA)

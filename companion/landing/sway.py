@@ -10,7 +10,7 @@ import math
 
 from msgspec import Struct
 
-from companion.config.landing import DescentConfig
+from companion.config.descent import SwayConfig
 from companion.core.data import GRAVITY_M_S2, OwnState
 from link.frames.rotations import rotate
 
@@ -32,7 +32,7 @@ class Sway(Struct, frozen=True, kw_only=True):
     swayed_ns: int | None = None
 
 
-def update_sway(sway: Sway, own: OwnState, own_ns: int, config: DescentConfig) -> Sway:
+def update_sway(sway: Sway, own: OwnState, own_ns: int, config: SwayConfig) -> Sway:
     """Return the sway after the drone's newest report `own`, of `own_ns` (monotonic); an older one changes nothing."""
     if sway.t_ns is not None and own_ns <= sway.t_ns:
         return sway
@@ -41,10 +41,10 @@ def update_sway(sway: Sway, own: OwnState, own_ns: int, config: DescentConfig) -
     share = 1.0 if sway.t_ns is None else -math.expm1(-(own_ns - sway.t_ns) * 1e-9 / _MEAN_S)
     mean_x, mean_y = sway.mean_enu_m_s2
     mean = (mean_x + share * (per_up * x - mean_x), mean_y + share * (per_up * y - mean_y))
-    is_too_much = per_up * math.hypot(x, y) - math.hypot(*mean) > config.sway_max_m_s2
+    is_too_much = per_up * math.hypot(x, y) - math.hypot(*mean) > config.acceleration_max_m_s2
     return Sway(t_ns=own_ns, mean_enu_m_s2=mean, swayed_ns=own_ns if is_too_much else sway.swayed_ns)
 
 
-def is_swaying(sway: Sway, monotonic_ns: int, config: DescentConfig) -> bool:
+def is_swaying(sway: Sway, monotonic_ns: int, config: SwayConfig) -> bool:
     """Return whether the drone leans too hard at `monotonic_ns`, or did a moment ago."""
     return sway.swayed_ns is not None and (monotonic_ns - sway.swayed_ns) * 1e-9 < config.calm_hold_s

@@ -10,8 +10,8 @@ import numpy as np
 from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
-from companion.config.landing import DescentConfig, LandingStyle
-from companion.config.planning import GuidanceKind
+from companion.config.descent import DescentConfig
+from companion.config.planning import GuidanceKind, LandingStyle
 from companion.core.data import Array, FlightLimits
 from companion.landing.following_height import chase_floor_m, chase_height_m, unseen_height_m
 from companion.planning.descent_path import descent_path
@@ -111,7 +111,7 @@ def pad_aim(
     position, velocity, accelerated = (
         path.copy() for path in (pad.position_enu_m, pad.velocity_enu_m_s, pad.acceleration_enu_m_s2)
     )
-    if phase is Phase.CHASE and config.landing is LandingStyle.STAGED:
+    if phase is Phase.CHASE and config.guidance.style is LandingStyle.STAGED:
         position[:, :2] += _short_enu_m(pad, reference, config)
     position[:, 2] += feet_offset_m + height
     velocity[:, 2] += rate
@@ -132,7 +132,7 @@ def _short_enu_m(pad: PadPath, reference: ReferenceState, config: CompanionConfi
     What is then seen to be farther away is reached a moment later; for what is nearer there may be no jerk left.
     """
     off = reference.position_enu_m[:2] - pad.position_enu_m[0, :2]
-    short_m = min(float(np.max(pad.position_std_m[0, :2])), _SHORT_SHARE * config.descent.align_distance_m)
+    short_m = min(float(np.max(pad.position_std_m[0, :2])), _SHORT_SHARE * config.descent.alignment.begin_distance_m)
     return np.asarray(off * (short_m / max(math.hypot(*off.tolist()), short_m, _REST_M)))
 
 
@@ -140,9 +140,9 @@ def _without_preview(
     state: tuple[float, float, float], descent: DescentConfig, lowest_m: float | None
 ) -> tuple[float, float, float]:
     """Return height, rate and acceleration for a law that looks at the present alone: the rate that is wanted there."""
-    wanted_m_s = max(descent.descent_gain_hz * state[0], descent.touchdown_sink_rate_m_s)
+    wanted_m_s = max(descent.sink.gain_hz * state[0], descent.sink.contact_rate_m_s)
     sinks = lowest_m is None or state[0] > lowest_m
-    return state[0], -min(wanted_m_s, descent.descent_rate_max_m_s) if sinks else 0.0, 0.0
+    return state[0], -min(wanted_m_s, descent.sink.rate_max_m_s) if sinks else 0.0, 0.0
 
 
 def way_down(
@@ -161,10 +161,10 @@ def way_down(
         descent: its rates.
         lowest_m: where it waits; None for one that goes on, to below the pad.
     """
-    lowest_m = -descent.press_depth_m if lowest_m is None else lowest_m
+    lowest_m = -descent.sink.press_depth_m if lowest_m is None else lowest_m
     return descent_path(
         state,
-        (descent.descent_gain_hz, descent.descent_rate_max_m_s, descent.touchdown_sink_rate_m_s, lowest_m),
+        (descent.sink.gain_hz, descent.sink.rate_max_m_s, descent.sink.contact_rate_m_s, lowest_m),
         (_DESCENT_SHARE * limits.vertical_acceleration_max_m_s2, min(limits.jerk_max_m_s3, _DESCENT_JERK_MAX_M_S3)),
         offset_s,
     )
@@ -176,8 +176,8 @@ def _height_m(phase: Phase, pad: PadPath, reference: ReferenceState, config: Com
         case Phase.ABORT:
             return unseen_height_m(config.abort.height_m, pad, config)
         case Phase.ALIGN:
-            return config.descent.align_height_m
-        case _ if config.landing is LandingStyle.DIRECT:
+            return config.descent.alignment.height_m
+        case _ if config.guidance.style is LandingStyle.DIRECT:
             return 0.0
         case _:
             return chase_height_m(pad, reference, config)
@@ -191,7 +191,7 @@ def changes_speed(pad: PadPath, config: DescentConfig) -> bool:
     velocity, acceleration = pad.velocity_enu_m_s[0, :2], pad.acceleration_enu_m_s2[0, :2]
     speed_m_s = math.hypot(*velocity[:2].tolist())
     along_m_s2 = abs(float(velocity @ acceleration)) / max(speed_m_s, _SLOW_M_S)
-    return along_m_s2 > config.speed_change_max_m_s2
+    return along_m_s2 > config.wait.speed_change_max_m_s2
 
 
 def _clearance_m(phase: Phase, config: CompanionConfig) -> float:
@@ -199,9 +199,9 @@ def _clearance_m(phase: Phase, config: CompanionConfig) -> float:
     match phase:
         case Phase.DESCEND | Phase.TOUCHDOWN:
             return NO_FLOOR_M
-        case Phase.CHASE if config.landing is LandingStyle.DIRECT:
+        case Phase.CHASE if config.guidance.style is LandingStyle.DIRECT:
             return NO_FLOOR_M
         case Phase.ALIGN:
-            return 0.6 * config.descent.align_height_m
+            return 0.6 * config.descent.alignment.height_m
         case _:
             return chase_floor_m(config)

@@ -142,7 +142,7 @@ def _escape(model: ModelMemory, situation: Situation, config: CompanionConfig) -
     reference, pad, limits, relative = model.reference, situation.pad, situation.limits, situation.approach
     if reference is None or pad is None or limits is None or relative is None:
         return model
-    if relative.height_m > config.descent.waiting_height_m:
+    if relative.height_m > config.descent.wait.height_m:
         return model
     velocity, acceleration = reference.velocity_enu_m_s.copy(), reference.acceleration_enu_m_s2.copy()
     velocity[2] = max(velocity[2], pad.velocity_enu_m_s[0, 2])

@@ -27,7 +27,7 @@ def waits_at_m(memory: StepMemory, situation: Situation, config: CompanionConfig
 
 def _waiting_height_m(situation: Situation, config: CompanionConfig) -> float:
     is_coarse = situation.pad is not None and situation.pad.is_coarse
-    return config.descent.waiting_height_coarse_m if is_coarse else config.descent.waiting_height_m
+    return config.descent.wait.height_coarse_m if is_coarse else config.descent.wait.height_m
 
 
 def why_held_up(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause | None:
@@ -60,19 +60,19 @@ def _find_unpredictable(memory: StepMemory, situation: Situation, config: Compan
         return None
     surprise = memory.vehicle.surprise
     late_s = surprise.lateness_s
-    if may_surprise(surprise, situation.monotonic_ns, config.descent):
+    if may_surprise(surprise, situation.monotonic_ns, config.descent.uneven):
         return Cause(Reason.SPEED_SURPRISED)
-    if drives_unevenly(surprise.driving, late_s, config.descent):
+    if drives_unevenly(surprise.driving, late_s, config.descent.uneven):
         return Cause(Reason.SPEED_UNEVEN)
-    if turns_hard(surprise.driving, late_s, config.descent):
+    if turns_hard(surprise.driving, late_s, config.descent.uneven):
         return Cause(Reason.ROAD_TURNS_HARD)
-    return Cause(Reason.ROAD_WINDS) if winds(surprise.driving, late_s, config.descent) else None
+    return Cause(Reason.ROAD_WINDS) if winds(surprise.driving, late_s, config.descent.uneven) else None
 
 
 def _stays(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
     """Return whether the vehicle stands and will do so for a while."""
     surprise = memory.vehicle.surprise
-    departs = may_depart(surprise.driving, surprise.lateness_s, config.descent)
+    departs = may_depart(surprise.driving, surprise.lateness_s, config.descent.uneven)
     return vehicle_stands(situation, config.chase) and not departs
 
 
@@ -94,9 +94,9 @@ def _find_awaited(memory: StepMemory, situation: Situation, config: CompanionCon
         brakes = situation.pad is not None and changes_speed(situation.pad, config.descent)
         return Cause(Reason.SPEED_CHANGES if brakes else Reason.NOT_OVER_PAD)
     if _is_off_centre(situation, relative, config):
-        return Cause(Reason.OFF_CENTRE, (config.descent.aligned_distance_m,))
+        return Cause(Reason.OFF_CENTRE, (config.descent.alignment.distance_m,))
     if _is_unsettled(memory, relative, config):
-        return Cause(Reason.UNSETTLED, (config.descent.waiting_speed_m_s,))
+        return Cause(Reason.UNSETTLED, (config.descent.wait.speed_m_s,))
     return None
 
 
@@ -105,15 +105,15 @@ def _is_off_centre(situation: Situation, relative: Approach, config: CompanionCo
 
     What it makes up for in the last second is speed against the pad, and where fixes are coarse nothing corrects it.
     """
-    if situation.pad is None or not situation.pad.is_coarse or relative.height_m < config.descent.centred_height_m:
+    if situation.pad is None or not situation.pad.is_coarse or relative.height_m < config.descent.wait.centred_height_m:
         return False
-    return relative.distance_m > config.descent.aligned_distance_m
+    return relative.distance_m > config.descent.alignment.distance_m
 
 
 def _is_unsettled(memory: StepMemory, relative: Approach, config: CompanionConfig) -> bool:
     """Return whether the drone has to become slower against the pad first, as far as that speed is known."""
-    known_m_s = config.descent.waiting_speed_stds * memory.vehicle.surprise.speed_std_m_s
-    return relative.speed_m_s > max(config.descent.waiting_speed_m_s, known_m_s)
+    known_m_s = config.descent.wait.speed_stds * memory.vehicle.surprise.speed_std_m_s
+    return relative.speed_m_s > max(config.descent.wait.speed_m_s, known_m_s)
 
 
 def waits_for_calm(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
@@ -122,6 +122,6 @@ def waits_for_calm(memory: StepMemory, situation: Situation, config: CompanionCo
     if memory.progress.phase is not Phase.DESCEND or relative is None or drone is None:
         return False
     lowest_m = relative.height_m - config.touchdown.foot_radius_m * drone.lean
-    return lowest_m > config.descent.sway_height_m and is_swaying(
-        memory.model.sway, situation.monotonic_ns, config.descent
+    return lowest_m > config.descent.sway.height_min_m and is_swaying(
+        memory.model.sway, situation.monotonic_ns, config.descent.sway
     )

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 
-from companion.config.landing import DescentConfig
+from companion.config.descent import DescentConfig
 from companion.core.data import Forecast
 from companion.recording.messages import forecast_of
 from companion.recording.records import StepRecord
@@ -65,7 +65,7 @@ def scene_of(record: StepRecord, forecast: Forecast | None, descent: DescentConf
         drone=_drone(record),
         vehicle=None if forecast is None else _vehicle(record, forecast),
         pad=record.inputs.pad,
-        cone=Cone(radius_at_pad_m=descent.cone_radius_at_pad_m, slope=descent.cone_slope),
+        cone=Cone(radius_at_pad_m=descent.cone.radius_at_pad_m, slope=descent.cone.slope),
         forecast_enu_m=None if forecast is None else forecast.position_enu_m,
         forecast_std_m=None if forecast is None else forecast.position_std_m,
         plan_enu_m=None if plan is None else plan.trajectory.position_enu_m,

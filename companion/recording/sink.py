@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import Protocol
 
-from companion.config.landing import DescentConfig
+from companion.config.descent import DescentConfig
 from companion.recording.messages import LONG_EVERY, input_messages, link_message, step_messages, step_time_message
 from companion.recording.records import InputRecord, LinkRecord, Record, StepRecord, StepTimeRecord
 from companion.recording.scenes import scene_messages

@@ -54,9 +54,9 @@ class CompanionNode:
         self.autopilot = AutopilotLink(
             session,
             motion_rate_hz=max(system.config.step_rate_hz, _MOTION_RATE_MIN_HZ),
-            stops_unused_streams=system.config.stops_unused_streams,
-            kind=system.config.autopilot,
-            geoid_height_m=system.config.geoid_height_m,
+            stops_unused_streams=system.config.autopilot.stops_unused_streams,
+            kind=system.config.autopilot.kind,
+            geoid_height_m=system.config.autopilot.geoid_height_m,
         )
         self._dry_run = dry_run
         self._component = MavlinkComponent(session, is_open=is_component)

@@ -28,7 +28,7 @@ class StatusPublisher:
         self.unpublished = 0
         """Statuses and plans that hold what no message has room for."""
         self._keys = keys
-        self._period_ns = 1e9 / config.status_rate_hz
+        self._period_ns = 1e9 / config.ground_station.status_rate_hz
         self._publications: list[Publication] = []
         self._status_ns: int | None = None
         self._statuses = 0

@@ -18,6 +18,7 @@ from link.messages import StationFrame, Vector3
 
 _SLOW_M_S = 1.0  # slower than this a course is known to no better than 0.1 rad from velocities of 0.1 m/s
 _OVER_SHARE = 0.5  # of the radius: farther out the nearest way out of the vehicle is to the side
+_ROUNDING_M = 1e-6
 _ARRIVED_M = 0.3  # nearer than this a station is aimed at as it is: the planner makes up for the rest
 
 
@@ -101,7 +102,7 @@ def _next_place(here: Array, wanted_m: Array, keep_out: KeepOut, dt_s: float, ra
     if is_clear(here, wanted_m, keep_out):
         return _towards(here, wanted_m, dt_s, rates)
     radius_m, aim_radius_m = math.hypot(*here[:2].tolist()), math.hypot(*wanted_m[:2].tolist())
-    if radius_m < keep_out.radius_m:
+    if radius_m < keep_out.radius_m - _ROUNDING_M:
         if here[2] < keep_out.over_m and radius_m < _OVER_SHARE * keep_out.radius_m:  # too low over it: up first
             return _towards(here, np.array([*here[:2], keep_out.over_m]), dt_s, rates)
         if here[2] < keep_out.over_m:  # pushed too near its side
@@ -135,4 +136,4 @@ def is_clear(start_m: Array, end_m: Array, keep_out: KeepOut) -> bool:
     length2 = float(way @ way)
     share = 0.0 if length2 == 0.0 else min(max(-float(start_m[:2] @ way) / length2, 0.0), 1.0)
     nearest_m = math.hypot(*(start_m[:2] + share * way).tolist())
-    return nearest_m >= keep_out.radius_m
+    return nearest_m >= keep_out.radius_m - _ROUNDING_M

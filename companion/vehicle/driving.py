@@ -22,7 +22,7 @@ import math
 
 from msgspec import Struct, field
 
-from companion.config.landing import DescentConfig
+from companion.config.descent import UnevenConfig
 from companion.core.data import Array, VehicleEstimate
 from companion.vehicle.estimator import Estimator, EstimatorMemory
 from link.records import replace
@@ -92,39 +92,39 @@ def _without_departure(changes: tuple[Change | None, ...], count: int) -> tuple[
     return kept + tuple(None if change is not None and change[0] > 0.0 else change for change in departing)
 
 
-def brakes_hard(driving: Driving, config: DescentConfig) -> bool:
+def brakes_hard(driving: Driving, config: UnevenConfig) -> bool:
     """Return whether the vehicle has just braked as hard as the drone, above the pad, follows too late."""
     newest = driving.changes[-1] if driving.changes else None
     return newest is not None and newest[0] < -config.hard_brake_m_s2
 
 
-def _speeds_up_hard(driving: Driving, config: DescentConfig) -> bool:
+def _speeds_up_hard(driving: Driving, config: UnevenConfig) -> bool:
     """Return whether the vehicle has just sped up as hard as it would have to brake to be waited above."""
     newest = driving.changes[-1] if driving.changes else None
     return newest is not None and newest[0] > config.hard_brake_m_s2
 
 
-def drives_unevenly(driving: Driving, lateness_s: float | None, config: DescentConfig) -> bool:
+def drives_unevenly(driving: Driving, lateness_s: float | None, config: UnevenConfig) -> bool:
     """Return whether a vehicle, whose fixes are `lateness_s` old, will have changed its speed by when that is told.
 
     Over fresh data it does not matter.
     """
-    return _is_late(lateness_s, config) and driving.unevenness_m_s2 > config.uneven_acceleration_m_s2
+    return _is_late(lateness_s, config) and driving.unevenness_m_s2 > config.acceleration_m_s2
 
 
-def winds(driving: Driving, lateness_s: float | None, config: DescentConfig) -> bool:
+def winds(driving: Driving, lateness_s: float | None, config: UnevenConfig) -> bool:
     """Return whether the road of such a vehicle will have bent by when that is told, likewise."""
     return _is_late(lateness_s, config) and driving.winding_m_s2 > config.winding_acceleration_m_s2
 
 
-def turns_hard(driving: Driving, lateness_s: float | None, config: DescentConfig) -> bool:
+def turns_hard(driving: Driving, lateness_s: float | None, config: UnevenConfig) -> bool:
     """Return whether such a vehicle turns harder than the drone, over such links, comes level in time to touch it."""
     newest = driving.changes[-1] if driving.changes else None
     is_hard = newest is not None and abs(newest[1]) > config.turning_acceleration_m_s2
     return is_hard and _is_late(lateness_s, config)
 
 
-def may_depart(driving: Driving, lateness_s: float | None, config: DescentConfig) -> bool:
+def may_depart(driving: Driving, lateness_s: float | None, config: UnevenConfig) -> bool:
     """Return whether such a vehicle, which has just stopped, will have departed by when that is told, likewise."""
     return _is_late(lateness_s, config) and _stood_s(driving) < config.stop_s
 
@@ -137,8 +137,8 @@ def _stood_s(driving: Driving) -> float:
     return math.inf if moved_ns is None else (driving.driven[-1][0] - moved_ns) * 1e-9
 
 
-def _is_late(lateness_s: float | None, config: DescentConfig) -> bool:
-    return lateness_s is not None and lateness_s > config.uneven_age_s
+def _is_late(lateness_s: float | None, config: UnevenConfig) -> bool:
+    return lateness_s is not None and lateness_s > config.age_s
 
 
 def _change_m_s2(before: Driven, then: Driven) -> Change | None:
@@ -194,7 +194,7 @@ def update_surprise(
     t_ns: int,
     *,
     monotonic_ns: int,
-    config: DescentConfig,
+    config: UnevenConfig,
 ) -> Surprise:
     """Return the surprise at `t_ns`: beliefs are checked whose time the vehicle's data have reached, and one is added.
 
@@ -250,10 +250,10 @@ def forget_beliefs(surprise: Surprise) -> Surprise:
     return replace(surprise, beliefs=(), driving=replace(surprise.driving, driven=(), changes=()))
 
 
-def may_surprise(surprise: Surprise, monotonic_ns: int, config: DescentConfig) -> bool:
+def may_surprise(surprise: Surprise, monotonic_ns: int, config: UnevenConfig) -> bool:
     """Return whether a driving vehicle is to be expected to do at `monotonic_ns` what it has done."""
     since_ns = surprise.surprised_ns
-    return since_ns is not None and (monotonic_ns - since_ns) * 1e-9 < config.surprise_hold_s
+    return since_ns is not None and (monotonic_ns - since_ns) * 1e-9 < config.hold_s
 
 
 def _speed_m_s(estimate: VehicleEstimate) -> float:

@@ -88,12 +88,12 @@ class ImmModel:
         """
         is_fix = place.quantity is Quantity.POSITION
         white, bias_variance = self._split(place.covariance) if is_fix else (place.covariance, 0.0)
-        offset_variance = self.config.frame_offset_std_m**2 + bias_variance if is_fix else 0.0
+        offset_variance = self.config.receivers.frame_offset_std_m**2 + bias_variance if is_fix else 0.0
         mean = np.zeros(kernels.SIZE)
         mean[PLACE] = place.value
         covariance = np.diag(self._prior_variances())
         covariance[np.ix_(PLACE, PLACE)] = white
-        covariance[CLOCK, CLOCK] = self.config.clock_std_s**2 if bias_variance else 0.0
+        covariance[CLOCK, CLOCK] = self.config.receivers.clock_std_s**2 if bias_variance else 0.0
         covariances = _with_common_step(np.stack([covariance, covariance]), offset_variance * np.eye(3))
         dwell_s = self.numbers.dwell_s
         modes = (np.stack([mean, mean]), covariances, dwell_s / dwell_s.sum())
@@ -185,25 +185,25 @@ class ImmModel:
     def _split(self, fix_covariance: Array) -> tuple[Array, float]:
         """A fix's covariance as its white part (3, 3) and the variance of the slow rest, m^2."""
         stated = float(fix_covariance.diagonal().max())
-        white = min(stated, self.config.fix_white_std_max_m**2)
+        white = min(stated, self.config.receivers.fix_white_std_max_m**2)
         return fix_covariance * (white / stated), stated - white
 
     @property
     def _known_variance(self) -> float:
         """Of a heading that is known, rad^2; while it is not, the kernels leave the lever arm out."""
-        return self.config.heading_known_std_rad**2
+        return self.config.heading.known_std_rad**2
 
     def _is_heading_known(self, state: ImmState) -> bool:
         return bool(mixing.is_heading_known(state.modes, self._known_variance))
 
     def _noises(self, state: ImmState) -> Array:
         """Both modes' noise, (2, 15), as `imm_kernels.process_noise` takes it."""
-        walk_m2_s = 2.0 * state.fix_bias_variance_m2 / self.config.fix_bias_time_s
-        receiver_m2_s = self.config.frame_offset_walk_m2_s + walk_m2_s
+        walk_m2_s = 2.0 * state.fix_bias_variance_m2 / self.config.receivers.fix_bias_time_s
+        receiver_m2_s = self.config.receivers.frame_offset_walk_m2_s + walk_m2_s
         return noises_with(
             self.numbers,
             receiver_m2_s,
-            self.config.own_walk_share * walk_m2_s,
+            self.config.receivers.own_walk_share * walk_m2_s,
             turn_is_measured=state.turn_age_s < TURN_AGE_MAX_S,
         )
 
@@ -211,25 +211,25 @@ class ImmModel:
         """Of every state but position, offset and clock, (18,)."""
         config = self.config
         speed, acceleration = config.initial_speed_std_m_s**2, config.initial_acceleration_std_m_s2**2
-        heave = config.heave_std_m**2
+        heave = config.heave.std_m**2
         heave_rate = heave * float(self.numbers.motion[1]) ** 2
-        curvature = config.curvature_std_rad_m**2
+        curvature = config.heading.curvature_std_rad_m**2
         moving = [speed, speed, acceleration, acceleration, curvature, UNKNOWN_HEADING_VARIANCE]
-        vertical = [0.0, config.grade_std**2, heave, heave_rate]
-        driven = [config.bend_std_per_m**2, config.gravity_leak_std_m_s2**2]
+        vertical = [0.0, config.road.grade_std**2, heave, heave_rate]
+        driven = [config.road.bend_std_per_m**2, config.road.gravity_leak_std_m_s2**2]
         return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0, *driven])
 
     def _step_size(self, state: ImmState, measurement: Measurement) -> float:
         """How far, m, a measured place is from the expected one; at least the prior of the offset."""
         means, _, weights = state.modes
         expected, _ = sensors.observe(KINDS[measurement.quantity], weights @ means, self.numbers.lever_m, False)
-        return max(float(np.linalg.norm(measurement.value - expected)), self.config.frame_offset_std_m)
+        return max(float(np.linalg.norm(measurement.value - expected)), self.config.receivers.frame_offset_std_m)
 
     def _is_placed_by_sightings(self, state: ImmState) -> bool:
         """Whether the place is known better than the fixes alone could tell it in the drone's frame."""
         _, covariances, weights = state.modes
         variance = float(weights @ covariances[:, 0, 0])
-        return variance < 0.25 * (self.config.frame_offset_std_m**2 + state.fix_bias_variance_m2)
+        return variance < 0.25 * (self.config.receivers.frame_offset_std_m**2 + state.fix_bias_variance_m2)
 
     def _as_driven(self, state: ImmState, t_ns: int) -> ImmState:
         """Return the state with what is known of drivers: how hard they turn.
@@ -238,12 +238,12 @@ class ImmModel:
         heard of would be sought along it. For a forecast only: fused once for each, it would be believed too much.
         """
         means, _, weights = state.modes
-        speed_m_s = max(math.hypot(*(weights @ means)[2:4].tolist()), self.config.course_speed_min_m_s)
+        speed_m_s = max(math.hypot(*(weights @ means)[2:4].tolist()), self.config.heading.course_speed_min_m_s)
         straight = Measurement(
             t_ns=t_ns,
             quantity=Quantity.YAW_RATE,
             value=np.zeros(1),
-            covariance=np.array([[(self.config.turning_std_m_s2 / speed_m_s) ** 2]]),
+            covariance=np.array([[(self.config.heading.turning_std_m_s2 / speed_m_s) ** 2]]),
         )
         update = self.update(state, straight)
         return state if update is None else update.state

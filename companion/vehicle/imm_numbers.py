@@ -35,16 +35,22 @@ class Numbers:
 
 def numbers_of(config: ImmConfig, antenna_to_pad_m: Vector3) -> Numbers:
     """Return the numbers of `config` with the lever arm (3,) in V from the antenna to the pad, m."""
-    heave = (2.0 * math.pi * config.heave_frequency_hz, config.heave_damping, config.heave_std_m)
-    modes = (config.steady, config.manoeuvre)
+    heave = (2.0 * math.pi * config.heave.frequency_hz, config.heave.damping, config.heave.std_m)
+    modes, heading = (config.steady, config.manoeuvre), config.heading
     return Numbers(
         motion=np.array(
-            [config.acceleration_decay_s, *heave, config.clock_time_s, *antenna_to_pad_m, config.gravity_leak_time_s]
+            [
+                config.acceleration_decay_s,
+                *heave,
+                config.receivers.clock_time_s,
+                *antenna_to_pad_m,
+                config.road.gravity_leak_time_s,
+            ]
         ),
         dwell_s=np.array([mode.dwell_s for mode in modes]),
         noises=np.array([_noise(config, mode) for mode in modes]),
         lever_m=np.array(antenna_to_pad_m),
-        course=np.array([config.course_speed_min_m_s, config.course_std_rad**2, config.heading_known_std_rad**2]),
+        course=np.array([heading.course_speed_min_m_s, heading.course_std_rad**2, heading.known_std_rad**2]),
     )
 
 
@@ -71,16 +77,16 @@ def _noise(config: ImmConfig, mode: ImmModeConfig) -> tuple[float, ...]:
         mode.jerk_psd_m2_s5,
         config.side_jerk_psd_m2_s5,
         mode.lateral_acceleration_psd_m2_s5,
-        config.curvature_speed_min_m_s,
-        config.heading_psd_rad2_s,
-        config.bend_std_per_m,
+        config.heading.curvature_speed_min_m_s,
+        config.heading.psd_rad2_s,
+        config.road.bend_std_per_m,
         0.0,
         0.0,
-        2.0 * config.clock_std_s**2 / config.clock_time_s,
-        config.curvature_std_rad_m,
+        2.0 * config.receivers.clock_std_s**2 / config.receivers.clock_time_s,
+        config.heading.curvature_std_rad_m,
         0.0,
-        config.bend_acceleration_std_m_s2,
-        config.bend_length_m,
-        config.road_psd_m2_m,
-        2.0 * config.gravity_leak_std_m_s2**2 / config.gravity_leak_time_s,
+        config.road.bend_acceleration_std_m_s2,
+        config.road.bend_length_m,
+        config.road.height_psd_m2_m,
+        2.0 * config.road.gravity_leak_std_m_s2**2 / config.road.gravity_leak_time_s,
     )

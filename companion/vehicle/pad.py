@@ -141,22 +141,22 @@ def turned_lever(yaw_rad: Array, offset_s: Array, lever_x_m: float, lever_y_m: f
 
 def cone_radius_at_pad_m(half_width_m: float, config: CompanionConfig) -> float:
     """Return the radius of the descent's cone at the height of a pad that is twice `half_width_m` wide."""
-    return min(config.descent.cone_radius_at_pad_m, _CONE_SHARE * half_width_m)
+    return min(config.descent.cone.radius_at_pad_m, _CONE_SHARE * half_width_m)
 
 
 def cone_radius_m(height_m: float, half_width_m: float, config: CompanionConfig) -> float:
     """Return how far beside the centre of a pad the drone may be at `height_m` above it while it descends."""
-    return cone_radius_at_pad_m(half_width_m, config) + config.descent.cone_slope * max(height_m, 0.0)
+    return cone_radius_at_pad_m(half_width_m, config) + config.descent.cone.slope * max(height_m, 0.0)
 
 
 def over_pad_radius_m(half_width_m: float, config: CompanionConfig) -> float:
     """Return how far from the pad's centre what is touched is still the pad."""
-    return min(2.0 * config.descent.cone_radius_at_pad_m, _CONTACT_SHARE * half_width_m)
+    return min(2.0 * config.descent.cone.radius_at_pad_m, _CONTACT_SHARE * half_width_m)
 
 
 def unseen_std_max_m(half_width_m: float, config: CompanionConfig) -> float:
     """Return up to which standard deviation a pad is landed on that only what is seen of it can place."""
-    return min(config.descent.unseen_std_max_m, _KNOWN_SHARE * half_width_m)
+    return min(config.descent.unseen.std_max_m, _KNOWN_SHARE * half_width_m)
 
 
 def is_too_small(pad: PadPath, config: CompanionConfig) -> bool:

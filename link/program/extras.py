@@ -12,7 +12,7 @@ from link.errors import UserError
 EXTRAS: Final = {
     "sim": ("filterpy", "osqp"),
     "campaign": ("cma", "loky", "polars"),
-    "report": ("jinja2", "matplotlib", "plotly"),
+    "report": ("jinja2", "matplotlib"),
     "view": ("viser", "websockets"),
     "foxglove": ("foxglove",),
     "dask": ("distributed",),

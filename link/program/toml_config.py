@@ -72,8 +72,8 @@ def merge(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
         if value is None:
             continue
         under = both.get(key)
-        tables = isinstance(under, Mapping) and isinstance(value, Mapping)
-        both[key] = merge(under, value) if tables else value  # type: ignore[arg-type]  # both are mappings here
+        is_table = isinstance(value, Mapping)
+        both[key] = merge(under if isinstance(under, Mapping) else {}, value) if is_table else value
     return both
 
 

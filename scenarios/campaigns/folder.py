@@ -148,8 +148,10 @@ class Journal:
         """Write the Parquet files of what is flown, if anything is."""
         if not self._done:
             return
-        write_rows(self._folder / _LANDINGS, [flown.row for flown in self._done.values()])
-        write_rows(self._folder / _TIMING, [_timing(flown) for flown in self._done.values()])
+        plan = read_plan(self._folder)
+        versions = {"commit": plan.commit or "not known"} | plan.versions
+        write_rows(self._folder / _LANDINGS, [flown.row for flown in self._done.values()], versions)
+        write_rows(self._folder / _TIMING, [_timing(flown) for flown in self._done.values()], versions)
 
 
 @contextmanager

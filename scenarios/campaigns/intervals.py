@@ -49,6 +49,14 @@ def mean_band(dof: int) -> tuple[float, float] | tuple[None, None]:
     return float(low) / dof, float(high) / dof
 
 
+def banded(value: float, low: float | None, high: float | None) -> str:
+    """Return a value with the band that it should lie in, and on which side it is out of it."""
+    if low is None or high is None:
+        return f"{value:.2f}"
+    side = " above" if value > high else " below" if value < low else ""
+    return f"{value:.2f}{side} ({low:.2f} to {high:.2f})"
+
+
 def mcnemar_p(only_first: int, only_second: int) -> float:
     """Return how likely so uneven a split is (two-sided, exact) if neither variant is better.
 

@@ -1,12 +1,17 @@
-"""A campaign's rows as Parquet: columns in a fixed order and type, rows by cell and seed."""
+"""A campaign's rows as Parquet: columns in a fixed order and type, rows by cell and seed.
 
-from collections.abc import Sequence
+Beside the schema stand `decklander.units`, the unit of each column that has one, and `decklander.versions`, both JSON.
+"""
+
+import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import polars as pl
 
 from link.errors import UserError
 from scenarios.campaigns.landing_task import Row
+from scenarios.recordings.units import units_of
 
 _FIRST = ("cell", "firmware", "seed", "error")
 _TYPES: dict[str, pl.DataType] = {
@@ -34,11 +39,19 @@ _TYPES: dict[str, pl.DataType] = {
 """Columns that are no decimal numbers, so that one without any value has its type too."""
 
 
-def write_rows(path: Path, rows: Sequence[Row]) -> None:
-    """Write rows into a Parquet file, at once or not at all; the same rows in any order make the same file."""
+def write_rows(path: Path, rows: Sequence[Row], versions: Mapping[str, str]) -> None:
+    """Write rows into a Parquet file, at once or not at all; the same rows in any order make the same file.
+
+    Args:
+        path: of the file.
+        rows: any number of them.
+        versions: of what decided them, by name.
+    """
     frame = _frame(rows)
     unfinished = path.with_suffix(".unfinished")
-    frame.write_parquet(unfinished, compression="zstd", statistics=False)
+    about = {"decklander.units": units_of(frame.columns), "decklander.versions": versions}
+    metadata = {name: json.dumps(value) for name, value in about.items()}
+    frame.write_parquet(unfinished, compression="zstd", statistics=False, metadata=metadata)
     unfinished.replace(path)
 
 

@@ -1,12 +1,11 @@
-"""Summaries and comparisons for people: framed on a terminal, plain columns elsewhere."""
+"""Summaries and comparisons as sheets of text, which a terminal and the page show alike."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TextIO
 
-from rich.console import Console
-
-from scenarios.campaigns.sheets import open_console, open_table
+from scenarios.campaigns.intervals import banded
+from scenarios.campaigns.sheets import Sheet, open_console, print_sheets
 from scenarios.catalogue.firmware_option import firmware_text
 from scenarios.recordings.reason_counts import add_counts, counts_text
 from scenarios.scoring.score import Tier
@@ -16,9 +15,9 @@ _UNITS = {
     "horizontal_error_m": ("error", "m", 1.0, 3),
     "relative_speed_m_s": ("speed", "m/s", 1.0, 2),
     "sink_rate_m_s": ("sink", "m/s", 1.0, 2),
-    "tilt_over_trim_rad": ("tilt", "deg", _DEG, 1),
+    "tilt_over_trim_rad": ("tilt", "degrees", _DEG, 1),
     "time_to_contact_s": ("time", "s", 1.0, 1),
-    "tilt_rad": ("raw tilt", "deg", _DEG, 1),
+    "tilt_rad": ("raw tilt", "degrees", _DEG, 1),
     "position_rmse_m": ("estimate", "m", 1.0, 3),
     "velocity_rmse_m_s": ("estimate", "m/s", 1.0, 3),
     "pass_to_contact_s": ("from passing", "s", 1.0, 1),
@@ -30,36 +29,47 @@ Column = tuple[str, Callable[[Cell], str]]
 
 
 def print_summary(summary: Mapping[str, Any], out: TextIO) -> None:
-    """Print a campaign's summary: what was reached, the shares, and the contacts."""
+    """Print a campaign's summary."""
+    print_sheets(summary_sheets(summary), out)
+
+
+def summary_sheets(summary: Mapping[str, Any]) -> list[Sheet]:
+    """Return a campaign's summary: what was reached, why not more, the shares, the contacts, the consistency."""
     cells: Sequence[Cell] = summary["cells"]
     reached: list[Column] = [("seeds", lambda cell: str(cell["seeds"])), *(_tier_column(tier) for tier in Tier)]
     reached += [(name, _count_of(name)) for name in ("aborts", "retries")]
     if any(cell["errors"] for cell in cells):
         reached.append(("errors", _count_of("errors")))
-    console = open_console(out)
-    _print(console, "Landings", reached, cells)
-    _print_reasons(console, cells)
     shares = [(f"{heading} [%]", _share_of(name)) for name, heading in _SHARES.items()]
-    _print(console, "Shares (95 % intervals)", shares, cells)
     contact: list[Column] = [("contacts", _count_of("contacts"))]
     contact += [(f"{_UNITS[name][0]} [{_UNITS[name][1]}]", _measure_of(name)) for name in _UNITS]
-    title = "At contact (median, 95th percentile; tilt over trim), and the estimate's error in the descent"
-    _print(console, title, contact, cells)
     consistency: list[Column] = [("NEES", _band_of("nees")), ("NIS per dof", _band_of("nis_per_dof"))]
-    _print(console, "The estimate's consistency (95 % band)", consistency, cells)
+    sheets = [
+        _sheet("Landings", reached, cells),
+        *_reasons_sheet(cells),
+        _sheet("Shares (95 % intervals)", shares, cells),
+        _sheet(_CONTACT_TITLE, contact, cells),
+        _sheet("The estimate's consistency (95 % band); what lies out of it is above or below", consistency, cells),
+    ]
     if all("planner_ms" in cell for cell in cells):
-        _print(console, "Computing (medians over landings; the planner's max is the worst of all)", _COMPUTING, cells)
+        sheets.append(
+            _sheet("Computing (medians over landings; the planner's max is the worst of all)", _COMPUTING, cells)
+        )
+    return sheets
 
 
 def print_comparison(comparison: Mapping[str, Any], out: TextIO) -> None:
     """Print a comparison of two campaigns A and B."""
-    console = open_console(out)
     cells: Sequence[Cell] = comparison["cells"]
     shares: list[Column] = [("pairs", lambda cell: str(cell["pairs"]))]
     shares += [(_SHARES[name], _mcnemar_of(name)) for name in _SHARES]
-    _print(console, "A, B, and McNemar's exact p (pairs that only A, only B reached)", shares, cells)
     measures: list[Column] = [(f"{_UNITS[name][0]} [{_UNITS[name][1]}]", _difference_of(name)) for name in _UNITS]
-    _print(console, "Median of B - A over pairs with contact (95 % bootstrap interval)", measures, cells)
+    sheets = (
+        _sheet("A, B, and McNemar's exact p (pairs that only A, only B reached)", shares, cells),
+        _sheet("Median of B - A over pairs with contact (95 % bootstrap interval)", measures, cells),
+    )
+    print_sheets(sheets, out)
+    console = open_console(out)
     for difference in comparison["differences"]:
         console.print(f"{difference['key']}: {difference['a']} | {difference['b']}", markup=False, soft_wrap=True)
     unpaired = comparison["unpaired"]
@@ -78,6 +88,7 @@ _COMPUTING: tuple[Column, ...] = (
 )
 
 _HEAD = ("cell", "firmware")
+_CONTACT_TITLE = "At contact (median, 95th percentile; tilt over trim), and the estimate's error in the descent"
 _WHY = "Why: approaches broken off, approaches aligned or chased anew, ends of landings that were none"
 _REASONS = {
     "aborts_by_reason": "broken off by",
@@ -88,34 +99,33 @@ _REASONS = {
 _SHARES = {"s1_or_better": "S1 or better", "s2_quality": "S2 quality", "unsafe": "unsafe"}
 
 
-def _print(console: Console, title: str, columns: Sequence[Column], cells: Sequence[Cell]) -> None:
-    table = open_table(console, title)
-    for heading in _HEAD:
-        table.add_column(heading, overflow="fold")
-    for heading, _ in columns:
-        table.add_column(heading.replace("[", "\\["), justify="right", no_wrap=True)
-    for cell in cells:
-        table.add_row(cell["cell"], cell["firmware"], *(text(cell) for _, text in columns))
-    console.print(table)
+def _sheet(title: str, columns: Sequence[Column], cells: Sequence[Cell]) -> Sheet:
+    """Return a row a cell."""
+    rows = tuple((cell["cell"], cell["firmware"], *(text(cell) for _, text in columns)) for cell in cells)
+    return Sheet(title=title, head=(*_HEAD, *(heading for heading, _ in columns)), rows=rows, texts=len(_HEAD))
 
 
-def _print_reasons(console: Console, cells: Sequence[Cell]) -> None:
-    """Print why approaches and landings failed, cell by cell and together; nothing where none did."""
+def _reasons_sheet(cells: Sequence[Cell]) -> list[Sheet]:
+    """Return why approaches and landings failed, cell by cell and together; nothing where none did."""
     total = {name: add_counts(cell[name] for cell in cells) for name in _REASONS}
     if not any(total.values()):
-        return
-    table = open_table(console, _WHY)
-    for heading in (*_HEAD, "approaches", *_REASONS.values()):
-        table.add_column(heading, overflow="fold")
+        return []
     told = [cell for cell in cells if any(cell[name] for name in _REASONS)]
     if len(cells) > 1:
         firmware = firmware_text([cell["firmware"] for cell in cells])
         approaches = sum(cell["approaches"] for cell in cells)
         told.append({"cell": "all", "firmware": firmware, "approaches": approaches} | total)
-    for cell in told:
-        counts = (counts_text(cell[name]) or "-" for name in _REASONS)
-        table.add_row(cell["cell"], cell["firmware"], str(cell["approaches"]), *counts)
-    console.print(table)
+    head = (*_HEAD, "approaches", *_REASONS.values())
+    rows = tuple(
+        (
+            cell["cell"],
+            cell["firmware"],
+            str(cell["approaches"]),
+            *(counts_text(cell[name]) or "-" for name in _REASONS),
+        )
+        for cell in told
+    )
+    return [Sheet(title=_WHY, head=head, rows=rows, texts=len(head))]
 
 
 def _tier_column(tier: Tier) -> Column:
@@ -144,7 +154,7 @@ def _measure_of(name: str) -> Callable[[Cell], str]:
 def _band_of(name: str) -> Callable[[Cell], str]:
     def text(cell: Cell) -> str:
         found = cell[name]
-        return "-" if found["mean"] is None else f"{found['mean']:.2f} ({found['low']:.2f} to {found['high']:.2f})"
+        return "-" if found["mean"] is None else banded(found["mean"], found["low"], found["high"])
 
     return text
 

@@ -1,6 +1,6 @@
 """What whoever flies a scenario knows of its receivers, and tells the companion."""
 
-from companion.config.companion import ReceiverFrames
+from companion.config.integrity import ReceiverFrames
 from scenarios.config import Scenario
 
 
@@ -10,7 +10,9 @@ def tell_of_one_frame(scenario: Scenario) -> Scenario:
     What the file says of `receiver_frames` stays.
     """
     system = scenario.system
-    if scenario.sensors.frame_offset_m > 0.0 or "receiver_frames" in system.companion.model_fields_set:
+    integrity = system.companion.integrity
+    if scenario.sensors.frame_offset_m > 0.0 or "receiver_frames" in integrity.model_fields_set:
         return scenario
-    companion = system.companion.model_copy(update={"receiver_frames": ReceiverFrames.ONE})
+    integrity = integrity.model_copy(update={"receiver_frames": ReceiverFrames.ONE})
+    companion = system.companion.model_copy(update={"integrity": integrity})
     return scenario.model_copy(update={"system": system.model_copy(update={"companion": companion})})

@@ -99,7 +99,7 @@ def _score_lines(result: dict[str, Any], timing: dict[str, Any]) -> list[str]:
         ("horizontal_error_m", "horizontal error", "m", 1.0),
         ("relative_speed_m_s", "relative speed", "m/s", 1.0),
         ("sink_rate_m_s", "sink rate", "m/s", 1.0),
-        ("tilt_over_trim_rad", "tilt over trim", "deg", 57.29577951308232),
+        ("tilt_over_trim_rad", "tilt over trim", "degrees", 57.29577951308232),
         ("time_to_contact_s", "time from the vehicle's passing to contact", "s", 1.0),
         ("pass_to_contact_s", "the same, from passing where the drone waited", "s", 1.0),
         ("motors_off_s", "motors off after contact", "s", 1.0),

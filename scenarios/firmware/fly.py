@@ -35,7 +35,7 @@ _PROGRESS_S = 0.2
 # The ground is the roof, with the pad on it.
 _BODY = {"roof_height_m": 0.0, "antenna_flu_m": (0.0, 0.0, 0.0), "length_m": 400.0, "width_m": 400.0}
 # The simulations tell the place of the feet, and PX4's own height wanders by half a metre.
-_TOUCHDOWN = {"gear_height_m": 0.0, "range_finder_height_m": 0.0, "range_corrects_height": True}
+_RANGE_FINDER = {"height_m": 0.0, "corrects_height": True}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,7 +104,8 @@ def _place(scenario: Scenario, datum: Datum) -> Scenario:
     """Return the scenario about the drone's place, for ground at a fixed height and positions told of the feet."""
     vehicle = scenario.vehicle.model_copy(update=_BODY)
     companion = scenario.system.companion
-    touchdown = companion.touchdown.model_copy(update=_TOUCHDOWN)
+    range_finder = companion.touchdown.range_finder.model_copy(update=_RANGE_FINDER)
+    touchdown = companion.touchdown.model_copy(update={"gear_height_m": 0.0, "range_finder": range_finder})
     system = scenario.system.model_copy(update={"companion": companion.model_copy(update={"touchdown": touchdown})})
     place = DatumConfig(
         latitude_deg=math.degrees(datum.latitude_rad),

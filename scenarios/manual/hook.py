@@ -1,18 +1,25 @@
 """What mkdocs calls while it builds the manual: adds the pages that are made, and links what the written ones name."""
 
+from pathlib import Path
 from typing import Any
 
+import ziamath
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
 from scenarios.manual.pages import PAGES, with_links
 
+LETTERS = "STIXTwoMath-Regular.ttf"
+"""With brackets, roots and dots that fit what they belong to (SIL Open Font License)."""
+
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Add the pages that are made from the program."""
+    """Add the pages that are made from the program, and the letters of equations, which few machines have."""
     for path, make in PAGES.items():
         files.append(File.generated(config, path, content=make()))
+    letters = Path(ziamath.__file__).parent / "fonts" / LETTERS
+    files.append(File.generated(config, f"assets/{LETTERS}", abs_src_path=str(letters)))
     return files
 
 

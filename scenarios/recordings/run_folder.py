@@ -12,6 +12,8 @@ from link.recording.recorder import DirectRecorder
 from scenarios.recordings.recording import Recording
 from scenarios.recordings.result import write_json
 from scenarios.recordings.truth_file import TruthFile
+from scenarios.recordings.units import units_of
+from scenarios.recordings.versions import versions
 
 Progress = Callable[[Recording, float], None]
 """Called a few times a second with what is recorded so far and the real-time factor."""
@@ -80,7 +82,8 @@ def count_lost(*recorders: DirectRecorder | TruthFile | None) -> dict[str, int]:
 
 
 def write_outcome(folder: Path, result: dict[str, Any], timing: dict[str, Any]) -> RunOutcome:
-    """Write what came of a run into its folder and return it."""
-    write_json(folder / "result.json", result)
+    """Write what came of a run into its folder, the result with its units and the versions behind it, and return it."""
+    about = {"units": units_of(result), "versions": versions()}
+    write_json(folder / "result.json", result | {"about": about})
     write_json(folder / "timing.json", timing)
     return RunOutcome(result=result, timing=timing)

@@ -3,7 +3,7 @@
 import math
 import textwrap
 from collections.abc import Sequence
-from itertools import cycle
+from itertools import cycle, islice
 
 import matplotlib as mpl
 import numpy as np
@@ -12,12 +12,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from scenarios.campaigns.cells import Cell
+from scenarios.campaigns.intervals import wilson
 from scenarios.campaigns.landing_task import Row
 from scenarios.campaigns.plan import Plan
 from scenarios.campaigns.worlds_report import worlds_report
 from scenarios.catalogue.firmware_option import without_firmware
 from scenarios.config import Scenario
-from scenarios.reports.figure_files import DARK, LIGHT, MIDDLE, STYLES
+from scenarios.reports.figure_files import BLUE, GREEN, LIGHT, MIDDLE, ORANGE, PURPLE, STYLES, VERMILLION
 from scenarios.reports.run_figures import draw_pad, show_around_pad
 from scenarios.reports.worlds_figures import draw_rates
 from scenarios.scoring.limits import S1_LIMITS, S2_LIMITS
@@ -26,6 +27,8 @@ _TITLE_WIDTH = 34  # characters over a panel
 _COLUMNS_MAX = 3
 _S1_M, _S2_M = S1_LIMITS.horizontal_error_m, S2_LIMITS.horizontal_error_m
 _WORLDS_REACH_M = 1.0
+_REACH_MAX_M = 3.0  # beyond, no landing is on a pad
+_INTERVALS_MAX = 6  # cells; the intervals of more would cover each other
 
 
 def campaign_figures(plan: Plan, rows: Sequence[Row]) -> dict[str, Figure]:
@@ -47,13 +50,13 @@ def _touchdowns(plan: Plan, rows: Sequence[Row]) -> Figure:
     for axes, cell in zip(grid.flat, plan.cells, strict=False):
         _draw_target(axes, plan.flown[cell])
         touched = [row for row in rows if row["cell"] == cell and row.get("contact_forward_m") is not None]
-        for secured, marker in ((True, "o"), (False, "x")):
+        for secured, marker, color in ((True, "o", BLUE), (False, "x", VERMILLION)):
             chosen = [row for row in touched if (row["tier"] == "S3") is secured]
             if chosen:
                 axes.plot(
                     [-row["contact_left_m"] for row in chosen],
                     [row["contact_forward_m"] for row in chosen],
-                    color=DARK,
+                    color=color,
                     marker=marker,
                     markersize=4,
                     alpha=0.6,
@@ -72,8 +75,9 @@ def _draw_target(axes: Axes, cell: Cell) -> None:
         draw_pad(axes, cell.vehicle.pad_size_m)
         return
     show_around_pad(axes, _WORLDS_REACH_M)
-    for limit_m in (_S1_M, _S2_M):
+    for limit_m, tier in ((_S1_M, "S1"), (_S2_M, "S2")):
         axes.add_patch(Circle((0.0, 0.0), limit_m, fill=False, linewidth=0.8, color=MIDDLE))
+        axes.annotate(tier, (0.0, -limit_m), ha="center", va="top", fontsize=7, color=MIDDLE)
 
 
 def _name(plan: Plan, cell: str) -> str:
@@ -82,30 +86,31 @@ def _name(plan: Plan, cell: str) -> str:
 
 
 def _errors(plan: Plan, rows: Sequence[Row]) -> Figure:
-    """Share of the landings whose contact is within a distance of the pad's centre."""
+    """Share of the landings whose contact is within a distance of the pad's centre, with its 95 % interval."""
     figure = Figure(figsize=(7.5, 5.0), layout="constrained")
     axes = figure.subplots()
-    styles = cycle([(DARK, "-"), (DARK, "--"), (MIDDLE, "-"), (DARK, ":"), (MIDDLE, "--"), (LIGHT, "-"), (DARK, "-.")])
-    reach_m = _S1_M
-    for cell, (grey, dashes) in zip(plan.cells, styles, strict=False):
+    styles = [(color, dashes) for dashes in ("-", "--", ":") for color in (BLUE, VERMILLION, GREEN, PURPLE, ORANGE)]
+    with_intervals = len(plan.cells) <= _INTERVALS_MAX
+    reach_m = 0.0
+    for cell, (color, dashes) in zip(plan.cells, islice(cycle(styles), len(plan.cells)), strict=True):
         flown = [row for row in rows if row["cell"] == cell]
         errors_m = np.sort([row["horizontal_error_m"] for row in flown if row.get("horizontal_error_m") is not None])
-        share = np.arange(1, len(errors_m) + 1) / max(len(flown), 1)
-        if len(errors_m):
-            reach_m = max(reach_m, float(errors_m[-1]))
-            axes.step(
-                [0.0, *errors_m, 10.0],
-                [0.0, *share, share[-1]],
-                where="post",
-                color=grey,
-                linestyle=dashes,
-                label=_name(plan, cell),
-            )
+        if not len(errors_m):
+            continue
+        reach_m = max(reach_m, float(errors_m[-1]))
+        edges_m = np.array([0.0, *errors_m, _REACH_MAX_M])
+        shares = [wilson(count, len(flown)) for count in (*range(len(errors_m) + 1), len(errors_m))]
+        share = [one.value for one in shares]
+        axes.step(edges_m, share, where="post", color=color, linestyle=dashes, label=_name(plan, cell))
+        if with_intervals:
+            low, high = [one.low for one in shares], [one.high for one in shares]
+            axes.fill_between(edges_m, low, high, step="post", color=color, alpha=0.12, linewidth=0)
+    axes.set(xlim=(0.0, 1.1 * min(reach_m, _REACH_MAX_M) or _S1_M), ylim=(0.0, 1.0))
     for limit_m, tier in ((_S2_M, "S2"), (_S1_M, "S1")):
-        axes.axvline(limit_m, color=LIGHT, linewidth=0.8)
-        axes.text(limit_m, 1.01, tier, ha="center", va="bottom", fontsize=8)
-    axes.set(xlim=(0.0, 1.05 * min(reach_m, 3.0)), ylim=(0.0, 1.0))
+        if limit_m <= axes.get_xlim()[1]:
+            axes.axvline(limit_m, color=LIGHT, linewidth=0.8)
+            axes.text(limit_m, 1.01, tier, ha="center", va="bottom", fontsize=8)
     axes.set(xlabel="horizontal error at contact [m]", ylabel="share of landings flown")
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="lower right")
+        axes.legend(loc="lower right", fontsize=8)
     return figure

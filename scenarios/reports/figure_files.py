@@ -1,4 +1,4 @@
-"""What all figures share: their style, legible in grey, and their two forms, PNG and SVG."""
+"""What all figures share: their style, colours that no kind of sight confuses, and their two forms, PNG and SVG."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -19,6 +19,25 @@ STYLES: dict[Any, Any] = {
     "grid.linewidth": 0.5,
 }
 DARK, MIDDLE, LIGHT = "0.0", "0.4", "0.65"
+BLUE, VERMILLION, GREEN, ORANGE, SKY, PURPLE = "#0072b2", "#d55e00", "#009e73", "#e69f00", "#56b4e9", "#cc79a7"
+"""Colours that are told apart with any kind of colour vision. Lines also differ in dashes, for prints in grey.
+
+Source: Okabe and Ito, Color Universal Design (2008).
+"""
+
+PHASE_COLORS = {
+    "takeoff": LIGHT,
+    "waiting": LIGHT,
+    "chase": SKY,
+    "align": ORANGE,
+    "descend": BLUE,
+    "touchdown": GREEN,
+    "secured": GREEN,
+    "abort": VERMILLION,
+    "hold": PURPLE,
+    "pilot in command": DARK,
+}
+"""Of each phase in which something is flown or has landed; the others are as `LIGHT`."""
 
 
 def save_all(figures: Mapping[str, Figure], folder: Path) -> list[Path]:

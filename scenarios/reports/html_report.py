@@ -1,6 +1,6 @@
 """One page about a run or a campaign that opens offline: verdict, figures, tables, configuration and versions.
 
-The figures are those of `scenarios figures`; a run's path and motion can also be turned and zoomed (plotly, embedded).
+The figures are those of `scenarios figures`; `scenarios view` turns and plays a run.
 What the pages look like is in `templates`.
 """
 
@@ -17,28 +17,28 @@ from link.errors import UserError
 from link.program.toml_config import dump_toml
 from scenarios.campaigns.folder import read_landings, read_plan
 from scenarios.campaigns.summary import summarize
-from scenarios.campaigns.tables import print_summary
+from scenarios.campaigns.tables import summary_sheets
 from scenarios.campaigns.worlds_report import worlds_report
 from scenarios.campaigns.worlds_sheets import worlds_sheets
 from scenarios.reports.campaign_figures import campaign_figures
-from scenarios.reports.charts import motion_chart, path_chart, plotly_script
 from scenarios.reports.figure_files import STYLES
 from scenarios.reports.figures import is_campaign
+from scenarios.reports.result_rows import result_rows
 from scenarios.reports.run_data import RunData, read_run
 from scenarios.reports.run_figures import run_figures
 
 _CAPTIONS = {
-    "path_3d": "The way in space",
-    "path_above": "The way from above, and where each phase began",
-    "motion": "Position, speed, height and distance; phases shaded, the contact dotted",
-    "funnel": "The approach as the deck sees it",
-    "touchdown": "The touchdown on the pad",
-    "estimate": "The estimate's error inside its band of two standard deviations",
+    "path_3d": "The way in space; scenarios view turns it",
+    "path_above": "The way from above, in the colours of the phases",
+    "motion": "Speed, height, distance and tilt; phases shaded, the contact dotted",
+    "funnel": "The approach as the deck sees it: while it sinks, the drone has to stay left of the cone's wall",
+    "touchdown": "The touchdown on the pad, forward up",
+    "estimate": "The estimate's error, its band of two standard deviations, and its NEES: the squared error over the"
+    " covariance, 3 on average if that is right. Axes fit the landing; before it both may go beyond",
     "touchdowns": "First contacts on the pad, forward up",
-    "errors": "Share of the landings within a distance of the pad's centre",
+    "errors": "Share of the landings within a distance of the pad's centre, with its 95 % intervals",
     "rates": "Landings of the worlds that were unsafe, and that were given up, with 95 % intervals",
 }
-_UNITS = (("_m_s", "m/s"), ("_rad", "rad"), ("_m", "m"), ("_s", "s"))
 
 
 def write_report(folder: Path, out: Path | None) -> Path:
@@ -63,10 +63,7 @@ def _run_page(run: RunData) -> str:
         title=f"{result['scenario']}, {run.scenario.firmware}, seed {result['seed']}",
         verdict=f"{result['tier']}: {result['reason']}",
         description=run.scenario.description,
-        result=_known(result),
-        plotly=plotly_script(),
-        path_chart=path_chart(run),
-        motion_chart=motion_chart(run),
+        result=result_rows(result),
         figures=_captions(run_figures(run)),
         phases=run.phases,
         approaches=result.get("approaches", ()),
@@ -78,14 +75,12 @@ def _run_page(run: RunData) -> str:
 
 def _campaign_page(folder: Path) -> str:
     plan, rows = read_plan(folder), read_landings(folder)
-    text = io.StringIO()
-    print_summary(summarize(rows), text)
     landed = sum(row.get("tier") == "S3" for row in rows)
     return _page(
         "campaign.html",
         title=f"Campaign {folder.resolve().name}",
         verdict=f"{landed} of {len(rows)} landings reached S3",
-        summary=text.getvalue(),
+        summary=summary_sheets(summarize(rows)),
         worlds=[worlds_sheets(report) for report in worlds_report(rows, plan.populations)],
         figures=_captions(campaign_figures(plan, rows)),
         scenarios={name: dump_toml(cell) for name, cell in plan.flown.items()},
@@ -122,26 +117,3 @@ def _svg(figure: Figure, name: str) -> str:
         figure.savefig(text, format="svg", metadata={"Date": None})
     svg = text.getvalue()
     return svg[svg.index("<svg") :]
-
-
-def _known(result: Mapping[str, Any]) -> dict[str, str]:
-    """Return the rows of a result's table; what a run of its kind cannot know is left out."""
-    told_elsewhere = {"phases_s", "reason", "approaches"}
-    return {_label(k): _value(v) for k, v in result.items() if v is not None and k not in told_elsewhere}
-
-
-def _label(key: str) -> str:
-    for ending, unit in _UNITS:
-        if key.endswith(ending):
-            return f"{key.removesuffix(ending).replace('_', ' ')} [{unit}]"
-    return key.replace("_", " ")
-
-
-def _value(value: Any) -> str:
-    match value:
-        case bool():
-            return "yes" if value else "no"
-        case float():
-            return f"{value:.3f}"
-        case _:
-            return str(value)

@@ -7,13 +7,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from scenarios.reports.figure_files import DARK, LIGHT, MIDDLE
+from scenarios.reports.figure_files import BLUE, DARK, LIGHT, PHASE_COLORS, VERMILLION
 from scenarios.reports.run_data import RunData
-from scenarios.reports.run_shown import AXIS_MIN_M, FLOWN, contact_index, is_shown, title
+from scenarios.reports.run_shown import AXIS_MIN_M, contact_index, is_shown, shown_spans, title
 
-_WIDTH_IN = 8.0
-_SLOPE_MIN = 0.4  # height over width of a figure of a straight road
-_LABEL_SHARE = 0.12  # of the path's extent, above and below it: room for the phases' names
+_SIZE_IN, _SIZE_MIN_IN = 6.5, 1.0  # of the longer and of the shorter side of what is seen from above
+_LEGEND_IN, _LABELS_IN = 1.6, 0.9  # room beside it and below
 
 
 def path_3d(run: RunData) -> Figure:
@@ -23,8 +22,8 @@ def path_3d(run: RunData) -> Figure:
     shown = is_shown(run)
     drone, roof = run.log.position_enu_m[shown], run.log.vehicle_position_enu_m[shown].copy()
     roof[:, 2] += run.scenario.vehicle.roof_height_m
-    axes.plot(*drone.T, color=DARK, linewidth=1.8, label="drone")
-    axes.plot(*roof.T, color=MIDDLE, linestyle="--", label="pad")
+    axes.plot(*drone.T, color=BLUE, linewidth=1.8, label="drone")
+    axes.plot(*roof.T, color=VERMILLION, linestyle="--", label="pad")
     axes.plot(*drone.T[:2], 0.0, color=LIGHT, linewidth=0.8, label="drone's shadow")
     contact = contact_index(run)
     if contact is not None:
@@ -50,51 +49,36 @@ def bounds_m(values_m: NDArray[np.float64]) -> tuple[float, float]:
 
 
 def path_above(run: RunData) -> Figure:
-    """Draw the drone and the vehicle from above, and where each phase began."""
+    """Draw the vehicle and the drone from above, the drone's way in the colours of its phases."""
     shown = is_shown(run)
     drone, vehicle = run.log.position_enu_m[shown], run.log.vehicle_position_enu_m[shown]
     both = np.concatenate([drone, vehicle])
     (left_m, right_m), (low_m, high_m) = bounds_m(both[:, 0]), bounds_m(both[:, 1])
-    room_m = _LABEL_SHARE * (high_m - low_m)
-    low_m, high_m = low_m - room_m, high_m + room_m
-    slope = min(max((high_m - low_m) / (right_m - left_m), _SLOPE_MIN), 1.0)
-    x_limits_m = _widen_m(left_m, right_m, (high_m - low_m) / slope)
-    y_limits_m = _widen_m(low_m, high_m, (right_m - left_m) * slope)
-    figure = Figure(figsize=(_WIDTH_IN, _WIDTH_IN * slope), layout="constrained")
+    across, along = right_m - left_m, high_m - low_m
+    scale = _SIZE_IN / max(across, along)
+    size_in = (max(scale * across, _SIZE_MIN_IN) + _LEGEND_IN, max(scale * along, _SIZE_MIN_IN) + _LABELS_IN)
+    figure = Figure(figsize=size_in, layout="constrained")
     axes = figure.subplots()
-    axes.plot(vehicle[:, 0], vehicle[:, 1], color=LIGHT, linewidth=5, solid_capstyle="butt", label="vehicle")
-    axes.plot(drone[:, 0], drone[:, 1], color=DARK, linewidth=1.4, label="drone")
+    axes.plot(vehicle[:, 0], vehicle[:, 1], color=LIGHT, linewidth=6, solid_capstyle="butt", label="vehicle")
+    _draw_phases(run, axes)
     contact = contact_index(run)
     if contact is not None:
         x_m, y_m, _ = run.log.position_enu_m[contact]
         axes.plot(x_m, y_m, color=DARK, marker="v", linestyle="none", label="contact")
-    _mark_phases(run, axes)
-    axes.set(xlabel="East [m]", ylabel="North [m]", title=title(run), xlim=x_limits_m, ylim=y_limits_m)
+    axes.set(xlabel="East [m]", ylabel="North [m]", xlim=(left_m, right_m), ylim=(low_m, high_m))
+    axes.locator_params(axis="y" if across > along else "x", nbins=5)
     axes.set_aspect("equal")
-    axes.legend(loc="best")
+    figure.suptitle(title(run))
+    figure.legend(loc="outside right upper", fontsize=8)
     return figure
 
 
-def _widen_m(low_m: float, high_m: float, extent_m: float) -> tuple[float, float]:
-    """Return the limits, widened on both sides where they span less than `extent_m`."""
-    margin_m = max(0.5 * (extent_m - (high_m - low_m)), 0.0)
-    return low_m - margin_m, high_m + margin_m
-
-
-def _mark_phases(run: RunData, axes: Axes) -> None:
-    """Write where each phase of the landing began, in turns above and below the path."""
-    begun = [span for span in run.phases if span.phase in FLOWN]
-    for index, span in enumerate(begun[:8]):
-        x_m, y_m, _ = run.log.position_enu_m[int(np.searchsorted(run.t_s, span.from_s))]
-        axes.plot(x_m, y_m, color=DARK, marker="o", markersize=3)
-        rise = (16 + 13 * (index // 2)) * (1 if index % 2 == 0 else -1)
-        axes.annotate(
-            span.phase,
-            (x_m, y_m),
-            xytext=(0, rise),
-            textcoords="offset points",
-            ha="center",
-            va="center",
-            fontsize=8,
-            arrowprops={"arrowstyle": "-", "color": MIDDLE, "linewidth": 0.6},
-        )
+def _draw_phases(run: RunData, axes: Axes) -> None:
+    """Draw the drone's way, each phase in its colour and once in the legend."""
+    named: set[str] = set()
+    for span in shown_spans(run):
+        during = (run.t_s >= span.from_s) & (run.t_s <= span.to_s) & is_shown(run)
+        way = run.log.position_enu_m[during]
+        label = None if span.phase in named else f"drone: {span.phase}"
+        named.add(span.phase)
+        axes.plot(way[:, 0], way[:, 1], color=PHASE_COLORS.get(span.phase, LIGHT), linewidth=1.8, label=label)

@@ -16,7 +16,8 @@ from pydantic import BaseModel, FiniteFloat, ValidationError
 from companion.config.companion import CompanionConfig
 from companion.recording.folder import STEM as COMPANION
 from link.errors import UserError
-from link.frames.local_frame import LocalFrame, Projection
+from link.messages import BodyTruth
+from link.payloads import cdr
 from link.payloads.checks import PayloadError
 from link.payloads.decklander_msgs import fields_of
 from link.program.toml_config import parse_toml, validate
@@ -26,12 +27,10 @@ from link.zenoh.keys import Keys
 from scenarios.config import Scenario
 from scenarios.recordings.truth_file import STEM as TRUTH
 from scenarios.recordings.truth_file import read_truth
+from scenarios.reports.estimate_track import EstimateTrack, Fields, estimate_track, time_s
 from scenarios.scoring.truth_log import TruthLog, truth_log
-from scenarios.simulation.vehicle_node import datum_of
-from sim_autopilot.core.places import Origin, local_from_world
 
 Array = NDArray[np.float64]
-Fields = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,21 +41,6 @@ class PhaseSpan:
     reason: str
     from_s: float
     to_s: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class EstimateTrack:
-    """The companion's estimate of the antenna against the truth at the same instants.
-
-    Attributes:
-        t_s: (n,).
-        error_m: (n, 3) in the local frame that the drone flies in.
-        std_m: (n, 3).
-    """
-
-    t_s: Array
-    error_m: Array
-    std_m: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -110,7 +94,7 @@ def read_run(folder: Path) -> RunData:
     start_ns = int(log.t_ns[0])
     t_s = (log.t_ns - start_ns) / NS_PER_S
     antenna = log.vehicle_position_enu_m + _turn(log, scenario.vehicle.antenna_flu_m)
-    steps, estimates = _beliefs(folder, keys)
+    steps, estimates, own = _beliefs(folder, keys)
     return RunData(
         name=folder.resolve().name,
         result=result,
@@ -122,7 +106,7 @@ def read_run(folder: Path) -> RunData:
         vehicle_velocity_enu_m_s=np.gradient(log.vehicle_position_enu_m, t_s, axis=0),
         antenna_enu_m=antenna,
         phases=_phases(steps, start_ns, float(t_s[-1])),
-        estimate=_estimate(estimates, start_ns, t_s, _in_local_frame(antenna, scenario)),
+        estimate=estimate_track(estimates, own, log, antenna, scenario),
     )
 
 
@@ -168,35 +152,26 @@ def _turn(log: TruthLog, vector_flu: tuple[float, float, float]) -> Array:
     return np.asarray(rotation_wv @ np.array(vector_flu))
 
 
-def _in_local_frame(positions_enu_m: Array, scenario: Scenario) -> Array:
-    """Return places in W (n, 3) as the scenario's firmware lays them out about the datum, its origin at boot."""
-    datum = datum_of(scenario.datum)
-    origin = Origin(world=datum, frame=LocalFrame(origin=datum, projection=Projection(scenario.firmware)))
-    return np.array([local_from_world(origin, (x, y, z)) for x, y, z in positions_enu_m.tolist()])
-
-
-def _beliefs(folder: Path, keys: Keys) -> tuple[list[Fields], list[Fields]]:
-    """Return the fields of the steps and of the estimates."""
+def _beliefs(folder: Path, keys: Keys) -> tuple[list[Fields], list[Fields], list[BodyTruth]]:
+    """Return the fields of the steps and of the estimates, and the drone as its autopilot reported it."""
     found: dict[str, list[Fields]] = {keys.record("step"): [], keys.record("estimate"): []}
+    own: list[BodyTruth] = []
     for recorded in read_messages(recording_files(folder, COMPANION)):
         message = recorded.message
-        if message.topic in found:
-            try:
+        try:
+            if message.topic in found:
                 found[message.topic].append(fields_of(message.payload, message.type_name))
-            except PayloadError as error:
-                raise UserError(f"{folder}: the companion's recording is damaged ({error})") from None
-    return found[keys.record("step")], found[keys.record("estimate")]
-
-
-def _time_s(fields: Fields, start_ns: int) -> float:
-    t_ns = int(fields["header.stamp.sec"]) * 1_000_000_000 + int(fields["header.stamp.nanosec"])
-    return (t_ns - start_ns) / NS_PER_S
+            elif message.topic == keys.record("own"):
+                own.append(cdr.decode(BodyTruth, message.payload))
+        except PayloadError as error:
+            raise UserError(f"{folder}: the companion's recording is damaged ({error})") from None
+    return found[keys.record("step")], found[keys.record("estimate")], own
 
 
 def _phases(steps: list[Fields], start_ns: int, end_s: float) -> tuple[PhaseSpan, ...]:
     changes: list[tuple[float, str, str]] = []
     for fields in steps:
-        t_s = _time_s(fields, start_ns)
+        t_s = time_s(fields, start_ns)
         if t_s >= 0.0 and (not changes or changes[-1][1] != fields["phase"]):
             changes.append((t_s, fields["phase"], fields["reason"]))
     closed = [*changes, (end_s, "", "")]
@@ -204,14 +179,3 @@ def _phases(steps: list[Fields], start_ns: int, end_s: float) -> tuple[PhaseSpan
         PhaseSpan(phase=phase, reason=reason, from_s=from_s, to_s=to_s)
         for (from_s, phase, reason), (to_s, _, _) in pairwise(closed)
     )
-
-
-def _estimate(estimates: list[Fields], start_ns: int, t_s: Array, antenna: Array) -> EstimateTrack | None:
-    if not estimates:
-        return None
-    times_s = np.array([_time_s(fields, start_ns) for fields in estimates])
-    inside = (times_s >= 0.0) & (times_s <= t_s[-1])
-    position = np.array([fields["position_m"] for fields in estimates])
-    true = np.stack([np.interp(times_s, t_s, column) for column in antenna.T], axis=1)
-    variance = np.array([np.diag(fields["covariance"].reshape(9, 9))[:3] for fields in estimates])
-    return EstimateTrack(t_s=times_s[inside], error_m=(position - true)[inside], std_m=np.sqrt(variance[inside]))

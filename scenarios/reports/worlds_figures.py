@@ -8,12 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from scenarios.campaigns.worlds_sheets import heading_of
-from scenarios.reports.figure_files import DARK, MIDDLE
+from scenarios.reports.figure_files import BLUE, VERMILLION
 from scenarios.scoring.score import Tier
 
 _COLUMNS = 3
-_SHOWN = ((Tier.UNSAFE, DARK, "o", -0.02), (Tier.ABORT, MIDDLE, "s", 0.02))
-"""Tier, grey, marker, and how far aside of a bin's middle, as a share of the axis: bars do not cover each other."""
+_SHOWN = ((Tier.UNSAFE, VERMILLION, "o", -0.02), (Tier.ABORT, BLUE, "s", 0.02))
+"""Tier, colour, marker, and how far aside of a bin's middle, as a share of the axis: bars do not cover each other."""
 
 
 def draw_rates(report: Mapping[str, Any]) -> Figure:
@@ -32,7 +32,7 @@ def draw_rates(report: Mapping[str, Any]) -> Figure:
 
 def _draw_panel(axes: Axes, name: str, bins: Sequence[Mapping[str, Any]]) -> None:
     span = bins[-1]["high"] - bins[0]["low"]
-    for tier, grey, marker, aside in _SHOWN:
+    for tier, color, marker, aside in _SHOWN:
         rates = [one["tiers"][tier.value] for one in bins]
         axes.errorbar(
             [0.5 * (one["low"] + one["high"]) + aside * span for one in bins],
@@ -41,7 +41,7 @@ def _draw_panel(axes: Axes, name: str, bins: Sequence[Mapping[str, Any]]) -> Non
                 [100.0 * (rate["share"] - rate["low"]) for rate in rates],
                 [100.0 * (rate["high"] - rate["share"]) for rate in rates],
             ],
-            color=grey,
+            color=color,
             marker=marker,
             markersize=4,
             capsize=2,

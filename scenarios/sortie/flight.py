@@ -7,7 +7,6 @@ while the vehicle drives on, until that is 300 m away or a minute has passed; th
 import math
 
 from companion.config.companion import CompanionConfig
-from companion.landing.sortie_orders import why_no_station
 from companion.runtime.node import CompanionNode
 from companion.situation.phases import Phase
 from link.messages import Command, Station, StationFrame
@@ -16,14 +15,12 @@ from scenarios.lockstep.lockstep import Lockstep
 from scenarios.simulation.noise import Seed
 from sim_autopilot.core.data import Surface
 
-__all__ = ["HELD_S", "STATIONS", "SortieFlight", "why_no_station"]
-
 STATIONS = (
     Station(offset_m=(-6.0, 0.0, 4.0), frame=StationFrame.VEHICLE),
-    Station(offset_m=(2.0, 6.0, 3.0), frame=StationFrame.VEHICLE),
-    Station(offset_m=(0.0, -7.0, 2.0), frame=StationFrame.COURSE),
+    Station(offset_m=(2.0, 6.0, 1.0), frame=StationFrame.VEHICLE),
+    Station(offset_m=(0.0, -7.0, 1.0), frame=StationFrame.COURSE),
 )
-"""Behind and above, then to the left, then across the vehicle to its right: the way there leads round it."""
+"""Behind and above, then low to the left, then low to the right: the way there leads round the vehicle."""
 HELD_S = 20.0
 """At each station."""
 _AWAY_M = 300.0
@@ -31,6 +28,8 @@ _AWAY_MAX_S = 60.0
 _SETTLED_S = 1.0  # before the launch: the first fixes have come
 _END_S = 2.5  # after the motors are off; the score looks at the drone 2 s after
 _LANDING_MAX_S = 240.0  # from the return to the end
+_LIFTED_NS = 200_000_000  # off the deck for so long: a rough road's shaking is over in less
+_TOUCHING = frozenset({Phase.DESCEND, Phase.TOUCHDOWN, Phase.SECURED})
 _OVER = frozenset({Phase.SECURED, Phase.PILOT})
 
 
@@ -45,6 +44,10 @@ class SortieFlight(Lockstep):
 
     def __init__(self, scenario: Scenario, seed: Seed, config: CompanionConfig | None = None) -> None:
         super().__init__(scenario, seed, config)
+        self.scenario = scenario
+        self.seed = seed
+        self.return_from_m: float | None = None
+        self._on_deck_ns = 0
         self.orders: list[tuple[int, Station]] = []
         self.times_ns: dict[str, int] = {}
         self.contacts_ns: list[int] = []
@@ -82,6 +85,7 @@ class SortieFlight(Lockstep):
                 node.request(Command.HOLD)
             case Phase.HOLD if "hold" in self.times_ns and "return" not in self.times_ns and self._is_away():
                 self._mark("return")
+                self.return_from_m = self._distance_m()
                 node.request(Command.RETURN)
             case _:
                 pass
@@ -90,23 +94,26 @@ class SortieFlight(Lockstep):
         self.times_ns[what] = self.simulation.t_ns
 
     def _is_away(self) -> bool:
+        since_s = (self.simulation.t_ns - self.times_ns["hold"]) * 1e-9
+        return self._distance_m() > _AWAY_M or since_s > _AWAY_MAX_S
+
+    def _distance_m(self) -> float:
         vehicle = self.simulation.vehicle.state
         if vehicle is None:
-            return False
+            raise ValueError("the vehicle has made no step")
         x, y, _ = self.simulation.autopilot.state.position_enu_m.tolist()
-        since_s = (self.simulation.t_ns - self.times_ns["hold"]) * 1e-9
-        away_m = math.hypot(x - vehicle.position_enu_m[0], y - vehicle.position_enu_m[1])
-        return away_m > _AWAY_M or since_s > _AWAY_MAX_S
+        return math.hypot(x - vehicle.position_enu_m[0], y - vehicle.position_enu_m[1])
 
     def _note_contact(self) -> None:
-        """Take note of what is touched between the climb clear of the deck and the last descent."""
-        phase = self.companion.phase
-        if phase is Phase.FOLLOW and "follow" not in self.times_ns:
-            self._mark("follow")
-        is_landing = phase in (Phase.DESCEND, Phase.TOUCHDOWN, Phase.SECURED) or "return" not in self.times_ns
-        flies = "follow" in self.times_ns and not (is_landing and "return" in self.times_ns)
-        if flies and self.simulation.autopilot.state.surface is not Surface.NONE:
-            self.contacts_ns.append(self.simulation.t_ns)
+        """Take note of the lift-off, and of what is touched between that and the last descent."""
+        phase, t_ns = self.companion.phase, self.simulation.t_ns
+        touches = self.simulation.autopilot.state.surface is not Surface.NONE
+        if "lifted" not in self.times_ns:
+            self._on_deck_ns = t_ns if touches or phase is not Phase.LIFT_OFF else self._on_deck_ns
+            if t_ns - self._on_deck_ns > _LIFTED_NS:
+                self.times_ns["lifted"] = self._on_deck_ns
+        elif touches and not ("return" in self.times_ns and phase in _TOUCHING):
+            self.contacts_ns.append(t_ns)
 
     def _is_over(self) -> bool:
         t_ns = self.simulation.t_ns

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from companion.config.landing import LandingStyle
+from companion.config.planning import LandingStyle
 from link.errors import UserError
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import Scenario
@@ -86,7 +86,7 @@ def fly(task: ReportTask) -> ReportFlight:
         raise UserError(f"{task.scenario} does not drive along waypoints, as the report's scenarios do")
     lockstep, watch = Lockstep(scenario, task.seed), EndWatch(scenario.time_limit_s)
     drive_s = _drive_s(lockstep.simulation.vehicle.plan.course)
-    direct = scenario.system.companion.landing is LandingStyle.DIRECT
+    direct = scenario.system.companion.guidance.style is LandingStyle.DIRECT
     while watch.reason(lockstep.recording) is None:
         lockstep.step()
         departs_ns = lockstep.simulation.vehicle.memory.departs_ns

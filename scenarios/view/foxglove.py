@@ -5,7 +5,7 @@ import sys
 import time
 from collections.abc import Iterator
 
-from companion.config.landing import DescentConfig
+from companion.config.descent import DescentConfig
 from link.messages import CompressedPicture
 from link.payloads import cdr
 from link.payloads.decklander_msgs import RosMessage
@@ -29,7 +29,7 @@ def scene_of(state: ViewState, descent: DescentConfig) -> Scene:
         drone=None if state.drone is None else (state.drone.position_enu_m, state.drone.orientation_wxyz),
         vehicle=true_vehicle(state) or estimated_vehicle(state),
         pad=state.pad,
-        cone=Cone(radius_at_pad_m=descent.cone_radius_at_pad_m, slope=descent.cone_slope),
+        cone=Cone(radius_at_pad_m=descent.cone.radius_at_pad_m, slope=descent.cone.slope),
         forecast_enu_m=None if state.forecast is None else state.forecast.position_enu_m,
         forecast_std_m=None if state.forecast is None else state.forecast.std_m,
         plan_enu_m=state.plan_enu_m,

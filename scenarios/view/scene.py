@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import viser
 
-from companion.config.landing import DescentConfig
+from companion.config.descent import DescentConfig
 from link.messages import PadGeometry, Quaternion, Vector3
 from scenarios.tracks.roads import Road
 from scenarios.view.shapes import (
@@ -231,7 +231,7 @@ def _pad_marks(scene: Any, name: str, pad: PadGeometry) -> None:
 
 def _cone(scene: Any, descent: DescentConfig) -> Any:
     frame = scene.add_frame("/world/cone", show_axes=False)
-    vertices, faces = cone(descent.cone_radius_at_pad_m, descent.cone_slope, _CONE_HEIGHT_M)
+    vertices, faces = cone(descent.cone.radius_at_pad_m, descent.cone.slope, _CONE_HEIGHT_M)
     scene.add_mesh_simple(
         "/world/cone/wall", vertices, faces, color=GREEN, opacity=0.13, side="double", cast_shadow=False
     )

@@ -15,7 +15,7 @@ from link.mavlink.dialect import mavlink
 from scenarios.manual.reasons import PATH, reasons_page
 from tests.golden.reasons import CONDITIONS
 
-SINK_M_S = CompanionConfig().descent.descent_rate_max_m_s
+SINK_M_S = CompanionConfig().descent.sink.rate_max_m_s
 ARDUPILOT_RULES = FIRMWARES[mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA].rules_for(SINK_M_S)
 PX4_RULES = FIRMWARES[mavlink.MAV_AUTOPILOT_PX4].rules_for(SINK_M_S)
 DOCS = Path(__file__).parents[2] / "docs"

@@ -173,7 +173,7 @@ def test_unknown_heading_with_a_lever_arm_keeps_the_drone_above_the_height_of_al
         if flight.phase in LANDING_PHASES:
             lowest_m = min(lowest_m, flight.own.position_enu_m[2] - GEAR_M - PAD_HEIGHT_M)
             assert outputs.status.reason == "vehicle heading unknown"
-    assert lowest_m > 0.9 * CONFIG.descent.align_height_m
+    assert lowest_m > 0.9 * CONFIG.descent.alignment.height_m
     assert flight.reason is Reason.HEADING_UNKNOWN
     assert Phase.DESCEND not in flight.history
 

@@ -104,7 +104,7 @@ def test_disarm_is_forced_only_on_the_pad_and_after_a_refusal(  # noqa: PLR0917 
     if forced:
         assert after.progress.phase is Phase.TOUCHDOWN
         assert height_m < CONFIG.descent.commit_height_m + 1e-6
-        assert abs(beside_m) < 2.0 * CONFIG.descent.cone_radius_at_pad_m + 1e-6
+        assert abs(beside_m) < 2.0 * CONFIG.descent.cone.radius_at_pad_m + 1e-6
         assert refused
 
 

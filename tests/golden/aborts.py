@@ -21,6 +21,7 @@ from tests.golden.wrong_data import every_third_sighting_is_beside, velocity_is_
 
 SEED = 1
 _PARKED = {"chase": {"parked_wait_s": 0.5}}
+_LONG_ALIGNMENT = {"alignment": {"hold_s": 20.0}}
 _ANTENNA_OVER_PAD = {"antenna_flu_m": (0.0, 0.0, 1.6)}  # no heading is needed to place the pad
 _RAISED_M = 3.0
 _LOWER_M = 0.8
@@ -139,7 +140,7 @@ ABORTS: dict[str, Abort] = {
     "vehicle_silent": Abort(reason=Reason.VEHICLE_DATA_OLD, phase=Phase.ALIGN, fault=_vehicle_falls_silent),
     "vehicle_uncertain": Abort(
         reason=Reason.VEHICLE_UNCERTAIN,
-        companion={"abort": {"fix_age_max_s": 20.0}, "descent": {"aligned_hold_s": 20.0}},
+        companion={"abort": {"fix_age_max_s": 20.0}, "descent": _LONG_ALIGNMENT},
         phase=Phase.ALIGN,
         fault=_vehicle_falls_silent,
     ),
@@ -147,7 +148,7 @@ ABORTS: dict[str, Abort] = {
     "own_position_stops": Abort(reason=Reason.OWN_POSITION_OLD, phase=Phase.ALIGN, fault=_own_position_stops),
     "clock_ahead": Abort(
         reason=Reason.VEHICLE_CLOCK_AHEAD,
-        companion={"descent": {"aligned_hold_s": 20.0}},
+        companion={"descent": _LONG_ALIGNMENT},
         phase=Phase.ALIGN,
         fault=_vehicles_clock_is_set,
     ),
@@ -160,7 +161,7 @@ ABORTS: dict[str, Abort] = {
     ),
     "not_followed": Abort(  # flown for half a second later than it is: the drone is ahead of where it is asked to be
         reason=Reason.SETPOINT_NOT_FOLLOWED,
-        companion={"setpoint_lead_s": 0.5, "corrects_lag": False, "abort": {"tracking_stds_max": 4.0}},
+        companion={"setpoints": {"lead_s": 0.5, "corrects_lag": False}, "abort": {"tracking_stds_max": 4.0}},
     ),
     "outside_cone": Abort(
         reason=Reason.OUTSIDE_CONE, fault=_when_low(_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0))
@@ -172,7 +173,7 @@ ABORTS: dict[str, Abort] = {
     ),
     "contradicting": Abort(
         reason=Reason.VEHICLE_CONTRADICTS_ITSELF,
-        companion={"descent": {"aligned_hold_s": 20.0, "strays_max": 20}},
+        companion={"descent": {**_LONG_ALIGNMENT, "strays_max": 20}},
         phase=Phase.ALIGN,
         fault=velocity_is_in_ned,
     ),
@@ -185,18 +186,26 @@ ABORTS: dict[str, Abort] = {
     "not_seen": Abort(
         reason=Reason.PAD_NOT_SEEN,
         scenario=_POOR_SENSORS,
-        companion={"descent": {"unseen_max": 0, "unseen_std_max_m": 0.1, "unseen_hold_s": 0.5, "aligned_hold_s": 20.0}},
+        companion={
+            "descent": {"unseen": {"anew_max": 0, "std_max_m": 0.1, "hold_s": 0.5}, "alignment": {"hold_s": 20.0}}
+        },
     ),
     "offset_unknown": Abort(
-        reason=Reason.OFFSET_UNKNOWN, companion={"receiver_frames": "apart", "chase": {"unseen_hold_s": 2.0}}
+        reason=Reason.OFFSET_UNKNOWN,
+        companion={"integrity": {"receiver_frames": "apart"}, "chase": {"unseen_hold_s": 2.0}},
     ),
     "seen_elsewhere": Abort(
-        reason=Reason.SEEN_ELSEWHERE, scenario="straight_5+sensors=nominal", companion={"receiver_frames": "one"}
+        reason=Reason.SEEN_ELSEWHERE,
+        scenario="straight_5+sensors=nominal",
+        companion={"integrity": {"receiver_frames": "one"}},
     ),
     "sightings_disagree": Abort(
         reason=Reason.SIGHTINGS_DISAGREE,
         scenario="straight_5+sensors=nominal",
-        companion={"receiver_frames": "apart", "descent": {"aligned_hold_s": 20.0, "strays_max": 20}},
+        companion={
+            "integrity": {"receiver_frames": "apart"},
+            "descent": {**_LONG_ALIGNMENT, "strays_max": 20},
+        },
         phase=Phase.ALIGN,
         fault=every_third_sighting_is_beside,
     ),

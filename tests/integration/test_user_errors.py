@@ -27,7 +27,7 @@ APPS = {
 FREE = "--mavlink udpin:127.0.0.1:0"
 
 FILES = {
-    "key.toml": "[descent]\nalign_distnce_m = 1.0\n",
+    "key.toml": "[descent.alignment]\nbegin_distnce_m = 1.0\n",
     "range.toml": "[abort]\nfix_age_max_s = -1.0\n",
     "kind.toml": '[guidance]\nkind = "mpcc"\n',
     "not.toml": "= 3\n",
@@ -66,7 +66,7 @@ MISTAKES = [
     ("scenarios", "run scenario.toml", ["scenario.toml", "'time_limits_s'", "'time_limit_s'"]),
     # configurations
     ("companion", "--config not.toml", ["not.toml", "line 1"]),
-    ("companion", "--config key.toml", ["key.toml", "'descent.align_distnce_m'", "'align_distance_m'"]),
+    ("companion", "--config key.toml", ["key.toml", "'descent.alignment.begin_distnce_m'", "'begin_distance_m'"]),
     ("companion", "--config range.toml", ["range.toml", "abort.fix_age_max_s = -1.0", "above 0"]),
     ("companion", "--config kind.toml", ["kind.toml", "guidance.kind", '"mpcc"', "'mpc'"]),
     ("sim-autopilot", "--config wind.toml", ["wind.toml", "'wind.mean_mps'", "'mean_m_s'"]),

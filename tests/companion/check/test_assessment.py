@@ -15,6 +15,7 @@ from link.mavlink.dialect import mavlink
 from link.program.toml_config import validate
 from link.records import replace
 from tests.companion.check.test_rules import ARDUCOPTER_46, PX4_DEFAULTS
+from tests.companion.world import configured
 
 GOOD = AutopilotFacts(
     autopilot_id=mavlink.MAV_AUTOPILOT_PX4,
@@ -152,8 +153,8 @@ def test_advised_values_make_an_arducopter_pass() -> None:
 @pytest.mark.parametrize(
     ("table", "line", "level"),
     [
-        ({"autopilot": "ardupilot"}, "firmware", Level.FAIL),
-        ({"descent": {"descent_rate_max_m_s": 2.0}}, "MPC_Z_VEL_MAX_DN", Level.WARN),
+        ({"autopilot": {"kind": "ardupilot"}}, "firmware", Level.FAIL),
+        ({"descent": {"sink": {"rate_max_m_s": 2.0}}}, "MPC_Z_VEL_MAX_DN", Level.WARN),
         ({"limits": {"battery_min_share": 0.85}}, "battery", Level.FAIL),
         ({"limits": {"battery_min_share": 0.7}}, "battery", Level.WARN),
         ({"abort": {"position_std_max_m": 0.04}}, "vehicle accuracy", Level.FAIL),
@@ -171,6 +172,6 @@ def test_what_passes_with_the_defaults_is_judged_by_the_configuration_given(
 
 def test_geoid_of_the_configuration_is_as_good_as_one_that_is_told() -> None:
     untold = replace(GOOD, geoid_height_m=None)
-    for facts, config in ((untold, CONFIG.model_copy(update={"geoid_height_m": 47.3})), (GOOD, CONFIG)):
+    for facts, config in ((untold, configured({"autopilot": {"geoid_height_m": 47.3}}, CONFIG)), (GOOD, CONFIG)):
         by_name = {one.name: one for one in assess(facts, VEHICLE, 10.0, config)}
         assert by_name["heights"].level is Level.PASS

@@ -5,15 +5,16 @@ import pytest
 from companion.check.detector import DetectorReader, judge_detector
 from companion.check.findings import Level
 from companion.check.observation import DetectorFacts
-from companion.config.companion import CompanionConfig, ReceiverFrames, SilentVehicleConfig
+from companion.config.companion import CompanionConfig, SilentVehicleConfig
 from link.messages import PadSighting
 from link.payloads import cdr
+from tests.companion.world import configured
 
 SPEED_M_S = 8.0
 
 CONFIG = CompanionConfig()
 SILENT = CONFIG.model_copy(update={"silent_vehicle": SilentVehicleConfig()})
-ONE_FRAME = CONFIG.model_copy(update={"receiver_frames": ReceiverFrames.ONE})
+ONE_FRAME = configured({"integrity": {"receiver_frames": "one"}}, CONFIG)
 START_NS = 1_795_000_000_000_000_000
 PERIOD_NS = 40_000_000
 LATE_NS = 70_000_000

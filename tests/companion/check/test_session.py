@@ -10,7 +10,7 @@ from companion.check import session as session_module
 from companion.check.observation import VehicleFacts
 from companion.check.reading import Reader
 from companion.check.session import CheckSession, open_check
-from companion.config.landing import ChaseConfig
+from companion.config.integrity import IntegrityConfig
 from link.errors import UserError
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
@@ -112,7 +112,7 @@ def listened(monkeypatch: pytest.MonkeyPatch, world: World, duration_s: float) -
     monkeypatch.setattr(Reader, "listened_s", property(lambda _: world.now_s - began_s))
     anything: Any = world
     session = CheckSession(Reader(MavlinkSession(1, target_system_id=1)), anything, "test")
-    vehicle, _ = session.listen(duration_s, anything, KEYS, ChaseConfig())
+    vehicle, _ = session.listen(duration_s, anything, KEYS, IntegrityConfig())
     return vehicle, world.now_s - began_s
 
 

@@ -7,7 +7,7 @@ import pytest
 from rosbags.typesys.stores import ros2_humble as ros
 
 from companion.check.vehicle_reading import VehicleReader
-from companion.config.landing import ChaseConfig
+from companion.config.integrity import IntegrityConfig
 from companion.runtime.pad_question import PadQuestion
 from link.frames.rotations import quaternion_from_yaw
 from link.messages import Fix, FixVelocity, VehicleImu
@@ -16,7 +16,7 @@ from link.zenoh.inbox import Inbox
 
 START_NS = 1_795_000_000_000_000_000
 PERIOD_NS = 100_000_000
-CONFIG = ChaseConfig()
+CONFIG = IntegrityConfig()
 
 
 class Nobody:
@@ -30,7 +30,7 @@ NOT_ASKED = PadQuestion(Nobody(), "decklander/vehicle/pad")
 
 
 def _after_a_drive(
-    course_rad: float, off_rad: float, speed_m_s: float, imu_late_ns: int = 0, config: ChaseConfig = CONFIG
+    course_rad: float, off_rad: float, speed_m_s: float, imu_late_ns: int = 0, config: IntegrityConfig = CONFIG
 ) -> VehicleReader:
     reader = VehicleReader("decklander/vehicle/fix", config)
     for k in range(10):

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from companion.config.companion import CompanionConfig, PadOnMap
+from companion.config.autopilot import GroundStationConfig, PadOnMap
+from companion.config.companion import CompanionConfig
 from companion.situation.phases import Phase
 from link.frames.geodesy import Datum
 from link.mavlink.codec import MavlinkCodec
@@ -116,7 +117,7 @@ def test_command_that_does_not_name_the_component_does_nothing() -> None:
 
 
 def test_commands_can_be_denied_by_the_configuration() -> None:
-    config = CompanionConfig(takes_mavlink_commands=False)
+    config = CompanionConfig(ground_station=GroundStationConfig(takes_mavlink_commands=False))
     station = Station(Setup(is_component=True, config=config))
     station.setup.run(3.0)
     station.command(START)
@@ -165,7 +166,7 @@ def test_value_that_was_set_is_flown_by_and_none_is_set_in_flight() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(("on_map", "kinds"), [(PadOnMap.NONE, 0), (PadOnMap.FOLLOW_TARGET, 1), (PadOnMap.ADSB, 2)])
 def test_pad_is_told_where_it_is(on_map: PadOnMap, kinds: int) -> None:
-    setup = Setup(is_component=True, config=CompanionConfig(pad_on_map=on_map))
+    setup = Setup(is_component=True, config=CompanionConfig(ground_station=GroundStationConfig(pad_on_map=on_map)))
     setup.node.receive_pad(PadGeometry(size_m=(1.5, 1.5), height_m=1.5, antenna_to_pad_m=(0.0, 0.0, 0.0)))
     setup.run(6.0, lambda: setup.fix((-30.0, 40.0, 1.5)))
     told = [setup.autopilot.of_type(kind) for kind in ("FOLLOW_TARGET", "ADSB_VEHICLE")]

@@ -81,8 +81,8 @@ def test_recording_of_one_file_only_is_taken(tmp_path: Path) -> None:
 
 def test_thresholds_of_the_landing_are_in_order() -> None:
     config = CompanionConfig()
-    assert config.descent.touchdown_sink_rate_m_s < config.descent.descent_rate_max_m_s <= config.limits.descent_max_m_s
-    assert config.descent.commit_height_m < config.descent.align_height_m <= config.chase.height_m
-    assert config.touchdown.height_max_m < config.touchdown.lost_height_m < config.abort.height_m
-    assert config.touchdown.blocked_depth_m < config.descent.press_depth_m
-    assert config.descent.aligned_distance_m < config.descent.align_distance_m
+    assert config.descent.sink.contact_rate_m_s < config.descent.sink.rate_max_m_s <= config.limits.descent_max_m_s
+    assert config.descent.commit_height_m < config.descent.alignment.height_m <= config.chase.height_m
+    assert config.touchdown.height_max_m < config.touchdown.lost.height_m < config.abort.height_m
+    assert config.touchdown.blocked_depth_m < config.descent.sink.press_depth_m
+    assert config.descent.alignment.distance_m < config.descent.alignment.begin_distance_m

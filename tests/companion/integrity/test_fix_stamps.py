@@ -9,7 +9,7 @@ from link.messages import Command
 from tests.companion.world import CONFIG, LANDING, START_NS, Flight, reached
 
 AHEAD_S = 0.3
-HOLD_S = CONFIG.abort.fix_ahead_hold_s
+HOLD_S = CONFIG.integrity.fix_ahead_hold_s
 
 
 @pytest.mark.slow
@@ -34,7 +34,7 @@ def test_landing_on_fixes_from_the_future_is_not_begun() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("ahead_s", [-0.4, -0.1, 0.0, 0.9 * CONFIG.abort.fix_ahead_max_s])
+@pytest.mark.parametrize("ahead_s", [-0.4, -0.1, 0.0, 0.9 * CONFIG.integrity.fix_ahead_max_s])
 def test_late_fixes_and_clocks_that_err_a_little_are_landed_on(ahead_s: float) -> None:
     flight = Flight(stamps_ahead_s=ahead_s)
     flight.start_and_reach(Phase.SECURED)

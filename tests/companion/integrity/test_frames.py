@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.config.companion import ReceiverFrames
+from companion.config.integrity import ReceiverFrames
 from companion.core.data import Measurement, Quantity
 from companion.integrity.frames import FIXED_STD_MAX_M, FixedPhases, are_frames_one, update_fixed_phases
 

@@ -6,8 +6,9 @@ from companion.integrity.heights import update_pad_raised_m, with_pad_raised
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from tests.companion.facts import CONFIG, changed, situation
+from tests.companion.world import configured
 
-BELIEVING = CONFIG.model_copy(update={"touchdown": CONFIG.touchdown.model_copy(update={"range_corrects_height": True})})
+BELIEVING = configured({"touchdown": {"range_finder": {"corrects_height": True}}})
 STEPS = 200
 
 

@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.config.companion import CompanionConfig, ReceiverFrames
+from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
+from companion.config.integrity import IntegrityConfig, ReceiverFrames
 from companion.core.data import Measurement, Quantity
 from companion.core.reasons import Cause, Reason
 from companion.integrity.frames import FIXED_STD_MAX_M
@@ -24,9 +25,9 @@ from tests.companion.vehicle.drives import NOMINAL, Sensors, circle
 from tests.companion.vehicle.rides import arrivals, estimator, now_ns
 
 AUTO = CONFIG
-ONE = CompanionConfig(receiver_frames=ReceiverFrames.ONE)
+ONE = CompanionConfig(integrity=IntegrityConfig(receiver_frames=ReceiverFrames.ONE))
 HALF_M = 0.75
-SHARE = CONFIG.abort.rejected_share_max
+SHARE = CONFIG.integrity.rejected_share_max
 RTK = replace(NOMINAL, pad_rate_hz=30.0, frame_offset_m=0.0)
 
 

@@ -181,7 +181,7 @@ def test_vehicle_with_a_wrong_heading_is_followed_not_landed_on_and_the_status_s
     vehicle = DrivingVehicle((-20.0, 0.4, PAD_HEIGHT_M), (4.0, 0.0, 0.0), yaw_rad=math.pi)
     flight = Flight(vehicle=vehicle, pad=BESIDE)
     flight.start_and_reach(Phase.ALIGN)
-    outputs = flight.run(CONFIG.descent.align_time_limit_s - 1.0)
+    outputs = flight.run(CONFIG.descent.alignment.time_limit_s - 1.0)
     assert flight.phase is Phase.ALIGN
     assert outputs[-1].status.reason == "vehicle heading is 180 degrees off its course"
     flight.run_until(Phase.HOLD)

@@ -13,6 +13,7 @@ from companion.vehicle.pad import over_pad_radius_m
 from link.messages import Vector3
 from link.records import replace
 from tests.companion.facts import CONFIG, GEAR_M, changed, drone_at, pad_at, reference_at, situation
+from tests.companion.world import configured
 
 TOUCHDOWN, DESCENT = CONFIG.touchdown, CONFIG.descent
 ABSURD = st.one_of(st.floats(-1e6, 1e6), st.sampled_from([float("nan"), float("inf"), -float("inf"), 0.0, 1e30, -1e30]))
@@ -76,7 +77,7 @@ def with_fault(facts: Situation, source: str, value: float) -> Situation:
 
 def on_pad() -> Situation:
     """Standing on the pad, the setpoint half sunk into it, the autopilot not believing it."""
-    return changed(situation(0.0, 0.1), reference=reference_at(-0.5 * DESCENT.press_depth_m), range_height_m=0.01)
+    return changed(situation(0.0, 0.1), reference=reference_at(-0.5 * DESCENT.sink.press_depth_m), range_height_m=0.01)
 
 
 @pytest.mark.slow
@@ -124,10 +125,10 @@ def test_range_finder_and_autopilots_word_are_not_needed(landed: bool | None, ra
 
 
 def test_range_finder_that_sees_the_pad_far_below_puts_off_the_forced_disarm() -> None:
-    signs = signs_of(changed(on_pad(), range_height_m=TOUCHDOWN.range_height_max_m + 0.01))
+    signs = signs_of(changed(on_pad(), range_height_m=TOUCHDOWN.range_finder.contact_height_max_m + 0.01))
     assert verdict(signs, CONFIG) is Verdict.DISPUTED
-    assert not may_force_motors_off(signs, TOUCHDOWN.disputed_hold_s - 0.01, CONFIG)
-    assert may_force_motors_off(signs, TOUCHDOWN.disputed_hold_s, CONFIG)
+    assert not may_force_motors_off(signs, TOUCHDOWN.range_finder.disputed_hold_s - 0.01, CONFIG)
+    assert may_force_motors_off(signs, TOUCHDOWN.range_finder.disputed_hold_s, CONFIG)
 
 
 @pytest.mark.parametrize(
@@ -137,7 +138,7 @@ def test_range_finder_that_sees_the_pad_far_below_puts_off_the_forced_disarm() -
         (-0.4, 0.0, TOUCHDOWN.stopped_hold_s, True),
         (-0.4, 0.0, TOUCHDOWN.stopped_hold_s - 0.01, False),
         (-0.4, None, TOUCHDOWN.stopped_hold_s, False),
-        (-0.4, TOUCHDOWN.range_height_max_m + 0.01, TOUCHDOWN.stopped_hold_s, False),
+        (-0.4, TOUCHDOWN.range_finder.contact_height_max_m + 0.01, TOUCHDOWN.stopped_hold_s, False),
         (-TOUCHDOWN.pressed_speed_m_s - 0.01, 0.0, TOUCHDOWN.stopped_hold_s, False),
         (float("nan"), 0.0, TOUCHDOWN.stopped_hold_s, False),
     ],
@@ -150,7 +151,7 @@ def test_pressed_drone_whose_speeds_are_known_badly_is_switched_off_where_the_ra
     signs = signs_of(changed(on_pad(), drone=drone, range_height_m=range_height_m))
     assert verdict(signs, CONFIG) is Verdict.AIRBORNE
     assert may_force_motors_off(signs, since_s, CONFIG) is is_forced
-    assert not may_force_motors_off(signs, since_s, CONFIG.model_copy(update={"position_only": True}))
+    assert not may_force_motors_off(signs, since_s, configured({"setpoints": {"position_only": True}}))
 
 
 @pytest.mark.parametrize(

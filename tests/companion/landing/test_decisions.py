@@ -36,8 +36,8 @@ from tests.companion.facts import (
 from tests.companion.world import FLYING, LANDING
 
 HALF_M = pad_at().half_width_m
-OVER_PAD_M = 2.0 * CONFIG.descent.cone_radius_at_pad_m
-HIGH_M = CONFIG.descent.align_height_m
+OVER_PAD_M = 2.0 * CONFIG.descent.cone.radius_at_pad_m
+HIGH_M = CONFIG.descent.alignment.height_m
 NEAR_M = 0.9 * CONFIG.abort.near_height_m
 LOW_M = 0.5 * CONFIG.descent.commit_height_m
 
@@ -49,7 +49,7 @@ UNSAFE: dict[Reason, Situation] = {
     Reason.VEHICLE_LINK_LOST: changed(
         situation(), is_alive=False, fix_age_s=CONFIG.abort.alive_lost_fix_age_max_s + 0.01
     ),
-    Reason.VEHICLE_CLOCK_AHEAD: changed(situation(), fix_age_on_arrival_s=-CONFIG.abort.fix_ahead_max_s - 0.01),
+    Reason.VEHICLE_CLOCK_AHEAD: changed(situation(), fix_age_on_arrival_s=-CONFIG.integrity.fix_ahead_max_s - 0.01),
     Reason.OWN_POSITION_OLD: replace(situation(), drone=None),
     Reason.OWN_ATTITUDE_OLD: replace(situation(), drone=replace(drone_at(1.5, pad=pad_at()), attitude_known=False)),
     Reason.HEADING_UNKNOWN: situation(pad=pad_at(placed=False)),
@@ -63,12 +63,12 @@ UNSAFE: dict[Reason, Situation] = {
         situation(), waiting_point_enu_m=np.array([CONFIG.limits.range_max_m + 10.0, 0.0, 5.0])
     ),
     Reason.VEHICLE_OUTRUNS: replace(situation(), limits=replace(CONFIG.limits.flight_limits(), speed_max_m_s=4.1)),
-    Reason.VEHICLE_CONTRADICTS_ITSELF: changed(situation(), rejected_share=CONFIG.abort.rejected_share_max + 0.01),
+    Reason.VEHICLE_CONTRADICTS_ITSELF: changed(situation(), rejected_share=CONFIG.integrity.rejected_share_max + 0.01),
     Reason.SEEN_ELSEWHERE: situation(pad=replace(pad_at(), frame_offset_m=1.0, frame_offset_std_m=0.01)),
     Reason.SIGHTINGS_DISAGREE: changed(situation(), are_sightings_mixed=True),
     Reason.SEEN_TOO_NEAR: changed(situation(), range_height_m=0.5),
-    Reason.BELOW_PAD: situation(-CONFIG.descent.press_depth_m - CONFIG.touchdown.height_max_m - 0.01),
-    Reason.NOTHING_TOUCHED: situation(-CONFIG.touchdown.missed_depth_m - 0.01),
+    Reason.BELOW_PAD: situation(-CONFIG.descent.sink.press_depth_m - CONFIG.touchdown.height_max_m - 0.01),
+    Reason.NOTHING_TOUCHED: situation(-CONFIG.touchdown.lost.missed_depth_m - 0.01),
 }
 # Below the commit height these still count: without them nobody knows where the pad is.
 BLIND = (Reason.OWN_POSITION_OLD, Reason.HEADING_UNKNOWN, Reason.BELOW_PAD, Reason.NOTHING_TOUCHED)
@@ -85,7 +85,7 @@ CASES = [(test, phase) for test in ABORTS for phase in Phase if phase in test.ph
 
 def _before_the_next_phase(facts: Situation, phase: Phase) -> Situation:
     """The same with the drone beside the pad, so that an approach goes on from `phase` by nothing but an abort."""
-    beside_m = {Phase.CHASE: 2.0, Phase.ALIGN: 0.5}.get(phase, 0.0) * CONFIG.descent.align_distance_m
+    beside_m = {Phase.CHASE: 2.0, Phase.ALIGN: 0.5}.get(phase, 0.0) * CONFIG.descent.alignment.begin_distance_m
     if facts.drone is None:
         return facts
     place = facts.drone.position_enu_m + np.array([beside_m, 0.0, 0.0])
@@ -151,8 +151,8 @@ def test_below_the_commit_height_it_does_not_land_where_nobody_knows_the_pad_to_
         (situation(HIGH_M, cone_radius_m(HIGH_M, HALF_M, CONFIG) + 0.01), True),
         (_moving(CONFIG.abort.near_speed_max_m_s - 0.01), False),
         (_moving(CONFIG.abort.near_speed_max_m_s + 0.01), True),
-        (situation(pad=braking_pad(CONFIG.descent.speed_change_max_m_s2 - 0.01)), False),
-        (situation(pad=braking_pad(CONFIG.descent.speed_change_max_m_s2 + 0.01)), True),
+        (situation(pad=braking_pad(CONFIG.descent.wait.speed_change_max_m_s2 - 0.01)), False),
+        (situation(pad=braking_pad(CONFIG.descent.wait.speed_change_max_m_s2 + 0.01)), True),
     ],
 )
 def test_descent_waits_for_what_passes(drifting: Situation, wanted: bool) -> None:
@@ -190,7 +190,7 @@ def test_jolt_with_the_pad_in_the_range_finders_sight_needs_no_sunken_setpoint()
     decision, _ = first_decision(Phase.DESCEND, stopped, 0.0)
     assert decision is not None
     assert decision[0] is Event.CONTACT
-    far = changed(stopped, range_height_m=CONFIG.touchdown.range_height_max_m + 0.01)
+    far = changed(stopped, range_height_m=CONFIG.touchdown.range_finder.contact_height_max_m + 0.01)
     assert first_decision(Phase.DESCEND, far, 0.0)[0] is None
 
 
@@ -291,9 +291,9 @@ def test_landing_goes_on_exactly_after_the_hold_time(event: Event, test: Conditi
         case Event.OUT_OF_ALIGNMENT if test.reason is Reason.STRAYS:
             facts = situation(HIGH_M, cone_radius_m(HIGH_M, HALF_M, CONFIG) + 0.01)
         case Event.OUT_OF_ALIGNMENT if test.reason is Reason.ALIGNMENT_LOST:
-            facts = situation(HIGH_M, 2.0 * CONFIG.descent.align_distance_m + 0.01)
+            facts = situation(HIGH_M, 2.0 * CONFIG.descent.alignment.begin_distance_m + 0.01)
         case Event.OUT_OF_ALIGNMENT:
-            facts = situation(pad=replace(pad_at(std_m=CONFIG.descent.unseen_std_max_m + 0.01), is_coarse=True))
+            facts = situation(pad=replace(pad_at(std_m=CONFIG.descent.unseen.std_max_m + 0.01), is_coarse=True))
         case _:
             facts = replace(situation(0.0), reference=reference_at(-CONFIG.touchdown.blocked_depth_m - 0.01))
     if test.reason is Reason.DISPUTED_CONTACT:
@@ -312,7 +312,7 @@ def test_landing_goes_on_exactly_after_the_hold_time(event: Event, test: Conditi
     ("phase", "limit_s"),
     [
         (Phase.CHASE, CONFIG.chase.time_limit_s),
-        (Phase.ALIGN, CONFIG.descent.align_time_limit_s),
+        (Phase.ALIGN, CONFIG.descent.alignment.time_limit_s),
         (Phase.DESCEND, CONFIG.descent.time_limit_s),
         (Phase.TAKEOFF, CONFIG.takeoff.time_limit_s),
     ],
@@ -367,24 +367,24 @@ def test_retries_are_counted_down_to_a_hold() -> None:
 
 
 def test_bounce_is_seen_above_its_height_only() -> None:
-    facts = situation(CONFIG.touchdown.lost_height_m - 0.01)
+    facts = situation(CONFIG.touchdown.lost.height_m - 0.01)
     assert decided(progress(Phase.TOUCHDOWN), facts, {}) is None
-    decision = decided(progress(Phase.TOUCHDOWN), situation(CONFIG.touchdown.lost_height_m + 0.01), {})
+    decision = decided(progress(Phase.TOUCHDOWN), situation(CONFIG.touchdown.lost.height_m + 0.01), {})
     assert decision is not None
     assert decision[0] is Event.CONTACT_LOST
 
 
 def test_drone_that_stays_above_the_pad_after_contact_has_left_it() -> None:
     height_m = CONFIG.touchdown.height_max_m + 0.01
-    decision, ticks = first_decision(Phase.TOUCHDOWN, situation(height_m), CONFIG.touchdown.lost_hold_s + 1.0)
+    decision, ticks = first_decision(Phase.TOUCHDOWN, situation(height_m), CONFIG.touchdown.lost.hold_s + 1.0)
     assert decision is not None
     assert decision[1].reason is Reason.ABOVE_AFTER_CONTACT
     assert sentence(decision[1]) == "0.4 m above the pad after contact"
-    assert ticks == math.ceil(CONFIG.touchdown.lost_hold_s * 1e9 / TICK_NS - 1e-9)
+    assert ticks == math.ceil(CONFIG.touchdown.lost.hold_s * 1e9 / TICK_NS - 1e-9)
 
 
 def test_drone_that_slid_off_the_pad_is_not_pressed_down_any_longer() -> None:
-    lowest_m = -CONFIG.descent.press_depth_m - CONFIG.touchdown.height_max_m
+    lowest_m = -CONFIG.descent.sink.press_depth_m - CONFIG.touchdown.height_max_m
     assert decided(progress(Phase.TOUCHDOWN), situation(lowest_m + 0.01), {}) is None
     decision = decided(progress(Phase.TOUCHDOWN), situation(lowest_m - 0.01, 2.0), {})
     assert decision == (Event.CONTACT_LOST, Cause(Reason.BELOW_AFTER_CONTACT))
@@ -392,7 +392,7 @@ def test_drone_that_slid_off_the_pad_is_not_pressed_down_any_longer() -> None:
 
 def test_pad_that_was_not_described_is_not_landed_on_and_it_is_said_why() -> None:
     facts = situation(pad=replace(pad_at(), unplaced=NOT_DESCRIBED))
-    late = progress(Phase.ALIGN, CONFIG.descent.align_time_limit_s + 1.0)
+    late = progress(Phase.ALIGN, CONFIG.descent.alignment.time_limit_s + 1.0)
     aligned = {Reason.ALIGNED: NOW_NS - 10**12}
     held = update_held(aligned, Phase.ALIGN, facts, CONFIG)
     assert Reason.ALIGNED not in held

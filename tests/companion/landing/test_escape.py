@@ -36,7 +36,7 @@ def broken_off(height_m: float, roof_m_s: float) -> tuple[StepMemory, StepMemory
 
 @pytest.mark.parametrize("roof_m_s", [0.0, 0.3, -0.2])
 def test_abort_near_the_roof_sinks_no_further_towards_it(roof_m_s: float) -> None:
-    before, after = broken_off(0.9 * CONFIG.descent.waiting_height_m, roof_m_s)
+    before, after = broken_off(0.9 * CONFIG.descent.wait.height_m, roof_m_s)
     assert before.model.reference is not None
     assert after.model.reference is not None
     assert after.model.reference.velocity_enu_m_s[2] == pytest.approx(roof_m_s)
@@ -48,5 +48,5 @@ def test_abort_near_the_roof_sinks_no_further_towards_it(roof_m_s: float) -> Non
 
 
 def test_abort_higher_up_goes_on_from_the_plan() -> None:
-    before, after = broken_off(1.1 * CONFIG.descent.waiting_height_m, 0.0)
+    before, after = broken_off(1.1 * CONFIG.descent.wait.height_m, 0.0)
     assert after.model.reference is before.model.reference

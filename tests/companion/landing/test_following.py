@@ -15,7 +15,7 @@ from companion.landing.step_data import LinkDelay, StepInputs, StepOutputs
 from companion.situation.phases import Phase
 from link.messages import Command, Vector3
 from link.records import replace
-from tests.companion.world import CONFIG, GEAR_M, PAD_HEIGHT_M, STEP_NS, Flight, KnownVehicle, own_state
+from tests.companion.world import CONFIG, GEAR_M, PAD_HEIGHT_M, STEP_NS, Flight, KnownVehicle, configured, own_state
 
 SPEED_M_S = 5.0
 SUBSTEPS = 5
@@ -77,10 +77,10 @@ def _beside_pad_m(flight: Flight) -> float:
 
 def _flown(late_s: float, push_enu_m_s2: tuple[float, float], gains: Cascade, *, corrects_lag: bool) -> list[float]:
     """The distances from the pad's centre in the fourth second of the alignment."""
-    waits = CONFIG.model_copy(
-        update={
-            "corrects_lag": corrects_lag,
-            "descent": CONFIG.descent.model_copy(update={"aligned_hold_s": 60.0, "align_time_limit_s": 90.0}),
+    waits = configured(
+        {
+            "setpoints": {"corrects_lag": corrects_lag},
+            "descent": {"alignment": {"hold_s": 60.0, "time_limit_s": 90.0}},
         }
     )
     flight = CascadeFlight(vehicle=_vehicle(), config=waits)
@@ -151,12 +151,7 @@ def test_model_of_an_autopilot_that_carries_setpoints_on_never_ends_low(speed_m_
 @pytest.mark.slow
 @pytest.mark.parametrize("jerk_max_m_s3", JERKS_M_S3)
 def test_descent_sinks_no_faster_than_the_fastest_rate(jerk_max_m_s3: float) -> None:
-    config = CONFIG.model_copy(
-        update={
-            "limits": CONFIG.limits.model_copy(update={"jerk_max_m_s3": jerk_max_m_s3}),
-            "descent": CONFIG.descent.model_copy(update={"align_height_m": 3.0}),
-        }
-    )
+    config = configured({"limits": {"jerk_max_m_s3": jerk_max_m_s3}, "descent": {"alignment": {"height_m": 3.0}}})
     flight = Flight(config=config)
     flight.start_and_reach(Phase.DESCEND)
     fastest_m_s = 0.0
@@ -166,4 +161,4 @@ def test_descent_sinks_no_faster_than_the_fastest_rate(jerk_max_m_s3: float) -> 
         fastest_m_s = max(fastest_m_s, -float(reference.velocity_enu_m_s[2]))
         flight.step()
     assert flight.phase is Phase.TOUCHDOWN
-    assert fastest_m_s <= config.descent.descent_rate_max_m_s + 0.02
+    assert fastest_m_s <= config.descent.sink.rate_max_m_s + 0.02

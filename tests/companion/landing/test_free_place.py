@@ -14,6 +14,7 @@ from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
 from link.records import replace
 from tests.companion.facts import CONFIG, NOW_NS, PAD_ENU_M, changed, situation
+from tests.companion.world import configured
 
 LIMITS = CONFIG.limits.flight_limits()
 JITTER_S = 0.04
@@ -65,7 +66,7 @@ def test_place_is_held_for_an_autopilot_that_takes_it_as_a_whole_and_where_nothi
     memory = _memory(Phase.DESCEND)
     assert not has_free_place(memory, _inputs(JITTER_S, ArduPilotDriver()), CONFIG)
     assert not has_free_place(memory, replace(_inputs(JITTER_S), driver=None), CONFIG)
-    position_only = CONFIG.model_copy(update={"position_only": True})
+    position_only = configured({"setpoints": {"position_only": True}})
     assert not has_free_place(memory, _inputs(JITTER_S), position_only)
 
 
@@ -75,5 +76,5 @@ def test_drone_behind_its_free_place_is_asked_to_fly_faster_and_one_with_a_held_
     assert held is not None
     assert (free.is_place_free, held.is_place_free) == (True, False)
     assert held.velocity_enu_m_s == pytest.approx((4.8, -6.4, 0.0))
-    assert free.velocity_enu_m_s == pytest.approx((4.8 + 0.3 * CONFIG.place_gain_hz, -6.4, 0.0))
+    assert free.velocity_enu_m_s == pytest.approx((4.8 + 0.3 * CONFIG.setpoints.place_gain_hz, -6.4, 0.0))
     assert free.position_enu_m[2] == held.position_enu_m[2]

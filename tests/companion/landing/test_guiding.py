@@ -2,7 +2,8 @@
 
 import pytest
 
-from companion.config.companion import CompanionConfig, Guide
+from companion.config.autopilot import Guide
+from companion.config.companion import CompanionConfig
 from companion.situation.phases import Phase
 from link.messages import Command, PadGeometry
 from tests.companion.peer import Setup
@@ -12,7 +13,8 @@ PLACE = (-30.0, 40.0, 1.5)
 
 
 def _guiding(guide: Guide = Guide.PRECLAND, *, dry_run: bool = False) -> Setup:
-    config = CompanionConfig.model_validate({"guide": guide, "receiver_frames": "one"}, strict=False)
+    table = {"autopilot": {"guide": guide}, "integrity": {"receiver_frames": "one"}}
+    config = CompanionConfig.model_validate(table, strict=False)
     setup = Setup(config=config, dry_run=dry_run)
     setup.node.receive_pad(PAD)
     setup.run(3.0)

@@ -4,14 +4,13 @@ import numpy as np
 import pytest
 
 from companion.config.companion import CompanionConfig
-from companion.config.landing import LandingStyle
 from companion.landing.step_data import StepOutputs
 from companion.situation.phases import Phase
 from link.frames.rotations import yaw_of
 from link.records import replace
-from tests.companion.world import CONFIG, PAD_HEIGHT_M, UTC_AHEAD_NS, Flight
+from tests.companion.world import PAD_HEIGHT_M, UTC_AHEAD_NS, Flight, configured
 
-DIRECT = CONFIG.model_copy(update={"landing": LandingStyle.DIRECT})
+DIRECT = configured({"guidance": {"style": "direct"}})
 
 
 class TrailingFlight(Flight):
@@ -48,7 +47,7 @@ def test_staged_chase_keeps_above_the_pad() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("corrects_lag", [True, False])
 def test_deviation_from_the_setpoint_is_estimated_only_where_wanted(corrects_lag: bool) -> None:
-    flight = TrailingFlight(config=DIRECT.model_copy(update={"corrects_lag": corrects_lag}))
+    flight = TrailingFlight(config=configured({"setpoints": {"corrects_lag": corrects_lag}}, DIRECT))
     flight.start_and_reach(Phase.CHASE)
     flight.run(1.0)
     assert bool(np.any(flight.memory.model.tracking.deviation)) is corrects_lag
@@ -57,7 +56,7 @@ def test_deviation_from_the_setpoint_is_estimated_only_where_wanted(corrects_lag
 @pytest.mark.slow
 @pytest.mark.parametrize("follows", [True, False])
 def test_heading_of_the_vehicle_is_followed_only_where_wanted(follows: bool) -> None:
-    config: CompanionConfig = DIRECT.model_copy(update={"follows_heading": follows})
+    config: CompanionConfig = configured({"setpoints": {"follows_heading": follows}}, DIRECT)
     flight = Flight(config=config)
     start_rad = yaw_of(flight.own.orientation_wxyz)
     flight.start_and_reach(Phase.CHASE)

@@ -22,7 +22,7 @@ from tests.companion.facts import NOW_NS, changed, drone_at, pad_at, situation
 CONFIG = CompanionConfig()
 LIMITS = CONFIG.limits.flight_limits()
 INPUTS = StepInputs(t_ns=NOW_NS, monotonic_ns=NOW_NS, limits=LIMITS)
-LEVEL_M_S2 = CONFIG.touchdown.level_acceleration_min_m_s2
+LEVEL_M_S2 = CONFIG.touchdown.level.acceleration_min_m_s2
 DESCENDS = changed(StepMemory(), phase=Phase.DESCEND)
 
 
@@ -46,9 +46,9 @@ def test_a_leaning_drone_is_levelled_as_much_higher_as_its_lowest_foot_hangs_dow
 @pytest.mark.parametrize(
     ("turns_m_s2", "level_m_s2"),
     [
-        (0.0, CONFIG.touchdown.level_acceleration_min_m_s2),
-        (1.25, CONFIG.touchdown.level_share * 1.25),
-        (2.8, CONFIG.touchdown.level_acceleration_max_m_s2),
+        (0.0, CONFIG.touchdown.level.acceleration_min_m_s2),
+        (1.25, CONFIG.touchdown.level.share * 1.25),
+        (2.8, CONFIG.touchdown.level.acceleration_max_m_s2),
     ],
     ids=["straight on", "a circle of 20 m at 5 m/s", "harder than it may lean"],
 )
@@ -62,14 +62,14 @@ def test_a_drone_that_is_levelled_gains_no_more_speed_against_the_pad_than_it_ma
 ) -> None:
     limits = replace(LIMITS, jerk_max_m_s3=jerk_m_s3, acceleration_max_m_s2=100.0)
     less_m_s2 = max(turns_m_s2 - _levelled_m_s2(situation(0.05, pad=_turning(turns_m_s2)), limits), 0.0)
-    left_s = CONFIG.touchdown.level_height_m / CONFIG.descent.touchdown_sink_rate_m_s
+    left_s = CONFIG.touchdown.level.height_m / CONFIG.descent.sink.contact_rate_m_s
     changes_s = less_m_s2 / jerk_m_s3
-    assert less_m_s2 * (0.5 * changes_s + left_s) <= CONFIG.touchdown.level_speed_max_m_s + 1e-9
+    assert less_m_s2 * (0.5 * changes_s + left_s) <= CONFIG.touchdown.level.speed_max_m_s + 1e-9
 
 
 @pytest.mark.parametrize(("jerk_m_s3", "levels"), [(2.0, True), (20.0, False)])
 def test_a_drone_that_turns_slower_is_levelled_earlier(jerk_m_s3: float, *, levels: bool) -> None:
-    height_m, pad = CONFIG.touchdown.level_height_m + 0.1, _turning(2.5)
+    height_m, pad = CONFIG.touchdown.level.height_m + 0.1, _turning(2.5)
     facts = replace(situation(height_m, pad=pad), drone=drone_at(height_m, 0.0, (0.0, 0.0, -0.4), pad=pad))
     limits = replace(LIMITS, jerk_max_m_s3=jerk_m_s3)
     assert (_levelled_m_s2(facts, limits) < LIMITS.acceleration_max_m_s2) is levels
@@ -94,8 +94,8 @@ def _sinking(height_m: float, sink_m_s: float) -> Situation:
 def test_a_drone_is_levelled_earlier_by_what_its_setpoints_may_be_late(
     sink_m_s: float, late_s: float, *, levels: bool
 ) -> None:
-    facts = _sinking(CONFIG.touchdown.level_height_m + 0.025, sink_m_s)  # 0.4 m/s for 0.08 s are 32 mm
-    inputs = replace(INPUTS, link_delay=LinkDelay(std_s=late_s / CONFIG.touchdown.level_late_stds))
+    facts = _sinking(CONFIG.touchdown.level.height_m + 0.025, sink_m_s)  # 0.4 m/s for 0.08 s are 32 mm
+    inputs = replace(INPUTS, link_delay=LinkDelay(std_s=late_s / CONFIG.touchdown.level.late_stds))
     limit_m_s2 = limits_now(DESCENDS, facts, inputs, CONFIG).acceleration_max_m_s2
     assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
 

@@ -54,4 +54,4 @@ def test_drone_stays_above_the_lower_deck_while_nothing_is_touched() -> None:
         flight.step()
         told_m = float(flight.vehicle.at(flight.t_ns)[2])
         lowest_m = min(lowest_m, flight.own.position_enu_m[2] - GEAR_M - told_m)
-    assert -CONFIG.descent.press_depth_m <= lowest_m < -CONFIG.touchdown.missed_depth_m
+    assert -CONFIG.descent.sink.press_depth_m <= lowest_m < -CONFIG.touchdown.lost.missed_depth_m

@@ -43,8 +43,8 @@ def test_time_to_contact_of_a_drone_that_sinks_as_wanted_is_that_of_the_sink_pro
     descent, pad = CONFIG.descent, pad_at()
 
     def rate(_: float, h: np.ndarray) -> list[float]:
-        wanted = descent.descent_gain_hz * h[0]
-        return [-min(max(wanted, descent.touchdown_sink_rate_m_s), descent.descent_rate_max_m_s)]
+        wanted = descent.sink.gain_hz * h[0]
+        return [-min(max(wanted, descent.sink.contact_rate_m_s), descent.sink.rate_max_m_s)]
 
     def contact(_: float, h: np.ndarray) -> float:
         return float(h[0])

@@ -15,7 +15,7 @@ from companion.situation.situation import vehicle_stands
 from link.records import replace
 from tests.companion.facts import CONFIG, TICK_NS, changed, drone_at, first_decision, pad_at, situation
 
-HIGH_M = CONFIG.descent.align_height_m
+HIGH_M = CONFIG.descent.alignment.height_m
 
 
 def test_vehicle_that_stands_is_not_taken_for_one_that_passes() -> None:

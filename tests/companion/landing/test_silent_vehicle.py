@@ -58,5 +58,5 @@ def test_height_keeps_the_pad_in_a_view_of_45_degrees_as_far_as_a_detector_sees(
     at = reference_at(HIGHEST_M)
     at = replace(at, position_enu_m=at.position_enu_m + np.array([away_m, 0.0, 0.0]))
     height_m = chase_height_m(pad, at, SILENT)
-    assert CONFIG.descent.align_height_m <= height_m <= HIGHEST_M
+    assert CONFIG.descent.alignment.height_m <= height_m <= HIGHEST_M
     assert height_m > min(away_m + 2.0 * std_m, HIGHEST_M) - 1e-9

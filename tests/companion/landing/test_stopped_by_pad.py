@@ -7,7 +7,7 @@ from companion.situation.phases import Phase
 from link.messages import Vector3
 from link.records import replace
 from tests.companion.facts import changed
-from tests.companion.world import CONFIG, DISARM, GEAR_M, STEP_NS, Flight, reached
+from tests.companion.world import CONFIG, DISARM, GEAR_M, STEP_NS, Flight, configured, reached
 
 FORCED = 21196.0
 HOLD_S = CONFIG.touchdown.stopped_hold_s
@@ -40,7 +40,7 @@ def _jolted(seen_m: float | None) -> Flight:
     """The drone just above the pad after a jolt; its range finder, if there is one, sees something under its feet."""
     flight = _just_above_the_pad()
     if seen_m is not None:
-        distance_m = seen_m + CONFIG.touchdown.range_finder_height_m
+        distance_m = seen_m + CONFIG.touchdown.range_finder.height_m
         range_down = RangeReading(t_ns=flight.t_ns, distance_m=distance_m, up_m=flight.own.position_enu_m[2])
         flight.view = replace(flight.view, range_down=range_down)
     _held(flight, falls_m_s2=-3.0, jolt_m_s2=80.0)
@@ -73,7 +73,7 @@ def test_motors_go_off_though_the_pad_has_left_and_the_estimate_still_sinks(seen
 
 
 def test_jolt_that_the_range_finder_contradicts_is_none_of_the_pad() -> None:
-    assert not _jolted(CONFIG.touchdown.range_height_max_m + 0.05).memory.progress.stopped_by_pad
+    assert not _jolted(CONFIG.touchdown.range_finder.contact_height_max_m + 0.05).memory.progress.stopped_by_pad
 
 
 def test_motors_stay_on_where_nothing_holds_the_drone_up() -> None:
@@ -99,7 +99,7 @@ def test_evidence_is_the_jolt_the_press_and_the_pads_height_together(change: str
         case "no jolt":
             flight.memory = changed(flight.memory, stopped_by_pad=False)
         case "position only":
-            flight.config = CONFIG.model_copy(update={"position_only": True})
+            flight.config = configured({"setpoints": {"position_only": True}})
         case "lifted":
             x, y, z = flight.own.position_enu_m
             lifted_m = CONFIG.descent.commit_height_m + 0.05

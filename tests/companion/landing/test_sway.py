@@ -16,8 +16,8 @@ from tests.companion.facts import NOW_NS, TICK_NS, changed, pad_at, situation
 CONFIG = CompanionConfig()
 DESCENT = CONFIG.descent
 STEADY_RAD = math.radians(17.0)
-TOO_MUCH_RAD = math.atan(math.tan(STEADY_RAD) + (DESCENT.sway_max_m_s2 + 0.2) / GRAVITY_M_S2)
-NOT_YET_RAD = math.atan(math.tan(STEADY_RAD) + (DESCENT.sway_max_m_s2 - 0.2) / GRAVITY_M_S2)
+TOO_MUCH_RAD = math.atan(math.tan(STEADY_RAD) + (DESCENT.sway.acceleration_max_m_s2 + 0.2) / GRAVITY_M_S2)
+NOT_YET_RAD = math.atan(math.tan(STEADY_RAD) + (DESCENT.sway.acceleration_max_m_s2 - 0.2) / GRAVITY_M_S2)
 
 
 def leaning(t_ns: int, tilt_rad: float, towards_rad: float = 0.4) -> OwnState:
@@ -43,7 +43,7 @@ def after(tilt_rad: float, length_s: float, sway: Sway | None = None, turn_rad_s
     for i in range(1, round(length_s * 1e9 / TICK_NS) + 1):
         own_ns = start_ns + i * TICK_NS
         own = leaning(own_ns, tilt_rad, 0.4 + turn_rad_s * i * TICK_NS * 1e-9)
-        sway = update_sway(sway, own, own_ns, DESCENT)
+        sway = update_sway(sway, own, own_ns, DESCENT.sway)
     return sway
 
 
@@ -55,27 +55,27 @@ def test_lean_that_lasts_is_no_sway(turn_rad_s: float) -> None:
 @pytest.mark.parametrize(("tilt_rad", "is_sway"), [(TOO_MUCH_RAD, True), (NOT_YET_RAD, False), (0.0, False)])
 def test_lean_far_beyond_that_of_the_last_second_is_sway_at_once(tilt_rad: float, *, is_sway: bool) -> None:
     sway = after(tilt_rad, 0.02, after(STEADY_RAD, 4.0))
-    assert is_swaying(sway, _newest_ns(sway), DESCENT) is is_sway
+    assert is_swaying(sway, _newest_ns(sway), DESCENT.sway) is is_sway
 
 
 def test_sway_counts_until_the_drone_has_been_calm_for_a_while() -> None:
     sway = after(TOO_MUCH_RAD, 0.02, after(STEADY_RAD, 4.0))
-    calm = after(STEADY_RAD, DESCENT.calm_hold_s + 0.1, sway)
-    assert is_swaying(calm, _newest_ns(sway) + round(0.9e9 * DESCENT.calm_hold_s), DESCENT)
-    assert not is_swaying(calm, _newest_ns(calm), DESCENT)
+    calm = after(STEADY_RAD, DESCENT.sway.calm_hold_s + 0.1, sway)
+    assert is_swaying(calm, _newest_ns(sway) + round(0.9e9 * DESCENT.sway.calm_hold_s), DESCENT.sway)
+    assert not is_swaying(calm, _newest_ns(calm), DESCENT.sway)
 
 
 def test_report_that_is_taken_again_changes_nothing() -> None:
     sway = after(STEADY_RAD, 1.0)
-    assert update_sway(sway, leaning(_newest_ns(sway), 0.6), _newest_ns(sway), DESCENT) is sway
+    assert update_sway(sway, leaning(_newest_ns(sway), 0.6), _newest_ns(sway), DESCENT.sway) is sway
 
 
 @pytest.mark.parametrize(
     ("phase", "height_m", "lean", "waits"),
     [
         (Phase.DESCEND, 1.0, 0.3, True),
-        (Phase.DESCEND, DESCENT.sway_height_m + 0.07, 0.3, True),
-        (Phase.DESCEND, DESCENT.sway_height_m + 0.05, 0.3, False),
+        (Phase.DESCEND, DESCENT.sway.height_min_m + 0.07, 0.3, True),
+        (Phase.DESCEND, DESCENT.sway.height_min_m + 0.05, 0.3, False),
         (Phase.TOUCHDOWN, 0.3, 0.3, False),
         (Phase.ALIGN, 1.0, 0.3, False),
     ],
@@ -93,7 +93,7 @@ def test_only_a_descent_that_can_still_be_stopped_waits(
 
 
 @pytest.mark.parametrize(
-    ("is_coarse", "waiting_m"), [(False, DESCENT.commit_height_m), (True, DESCENT.waiting_height_coarse_m)]
+    ("is_coarse", "waiting_m"), [(False, DESCENT.commit_height_m), (True, DESCENT.wait.height_coarse_m)]
 )
 def test_drone_that_leans_waits_no_lower_than_the_pad_is_known(waiting_m: float, *, is_coarse: bool) -> None:
     memory = changed(StepMemory(), phase=Phase.DESCEND, sway=Sway(t_ns=NOW_NS, swayed_ns=NOW_NS))

@@ -49,7 +49,9 @@ def test_pad_aim_follows_the_pad_horizontally(phase: Phase) -> None:
     np.testing.assert_array_equal(aim.target.velocity_enu_m_s[:, :2], pad.velocity_enu_m_s[:, :2])
 
 
-@pytest.mark.parametrize(("std_m", "short_m"), [(0.05, 0.05), (0.4, 0.4), (2.0, 0.5 * DESCENT.align_distance_m)])
+@pytest.mark.parametrize(
+    ("std_m", "short_m"), [(0.05, 0.05), (0.4, 0.4), (2.0, 0.5 * DESCENT.alignment.begin_distance_m)]
+)
 def test_chase_aims_short_of_a_pad_by_what_its_place_is_unsure(std_m: float, short_m: float) -> None:
     pad = replace(_pad_path(5.0), position_std_m=np.full((len(HORIZON_OFFSETS_S), 3), std_m))
     aim = pad_aim(Phase.CHASE, pad, _at(9.0, -10.0, 5.0), FEET_M, CONFIG, limits=LIMITS)
@@ -82,12 +84,12 @@ def test_chase_comes_lower_as_the_distance_closes() -> None:
 def test_chase_stays_high_over_a_vehicle_whose_place_is_vague() -> None:
     known = _pad_path(5.0)
     vague = replace(known, position_std_m=np.full_like(known.position_std_m, CONFIG.abort.position_std_max_m + 0.01))
-    near = _at(3.1, -2.0, 1.5 + CONFIG.descent.align_height_m)
+    near = _at(3.1, -2.0, 1.5 + CONFIG.descent.alignment.height_m)
     heights = [
         pad_aim(Phase.CHASE, pad, near, FEET_M, CONFIG, limits=LIMITS).target.position_enu_m[:, 2]
         for pad in (known, vague)
     ]
-    np.testing.assert_allclose(heights[0], 1.5 + FEET_M + CONFIG.descent.align_height_m)
+    np.testing.assert_allclose(heights[0], 1.5 + FEET_M + CONFIG.descent.alignment.height_m)
     np.testing.assert_allclose(heights[1], 1.5 + FEET_M + CONFIG.chase.height_m)
 
 

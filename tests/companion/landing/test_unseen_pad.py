@@ -26,10 +26,10 @@ from tests.companion.vehicle.rides import arrivals, estimator, now_ns
 
 CONFIG = CompanionConfig()
 LIMITS = CONFIG.limits.flight_limits()
-HIGH_M = CONFIG.descent.align_height_m
+HIGH_M = CONFIG.descent.alignment.height_m
 LOW_M = 0.5 * CONFIG.descent.commit_height_m
-VAGUE_M = CONFIG.descent.unseen_std_max_m + 0.01
-SURE_M = CONFIG.descent.unseen_std_max_m - 0.01
+VAGUE_M = CONFIG.descent.unseen.std_max_m + 0.01
+SURE_M = CONFIG.descent.unseen.std_max_m - 0.01
 PLAIN = replace(DEGRADED, pad_rate_hz=10.0, pad_delay_s=0.15, frame_offset_m=1.2)
 RTK = replace(NOMINAL, pad_rate_hz=30.0, frame_offset_m=0.5)
 

@@ -30,13 +30,13 @@ from tests.companion.facts import (
 from tests.companion.world import PAD_HEIGHT_M, Flight, reached
 
 DESCENT = CONFIG.descent
-WAITING_M = DESCENT.waiting_height_m
+WAITING_M = DESCENT.wait.height_m
 SURPRISED = Surprise(surprised_ns=NOW_NS)
 KNOWN = Surprise(speed_std_m_s=0.05)
-UNEVEN = replace(KNOWN, driving=Driving(unevenness_m_s2=2.0 * DESCENT.uneven_acceleration_m_s2))
-WINDING = replace(KNOWN, driving=Driving(winding_m_s2=2.0 * DESCENT.winding_acceleration_m_s2))
-TURNING = replace(KNOWN, driving=Driving(changes=((0.0, -1.5 * DESCENT.turning_acceleration_m_s2),)))
-STRAYING = situation(DESCENT.align_height_m, 2.0)
+UNEVEN = replace(KNOWN, driving=Driving(unevenness_m_s2=2.0 * DESCENT.uneven.acceleration_m_s2))
+WINDING = replace(KNOWN, driving=Driving(winding_m_s2=2.0 * DESCENT.uneven.winding_acceleration_m_s2))
+TURNING = replace(KNOWN, driving=Driving(changes=((0.0, -1.5 * DESCENT.uneven.turning_acceleration_m_s2),)))
+STRAYING = situation(DESCENT.alignment.height_m, 2.0)
 
 
 def _moving(height_m: float, speed_m_s: float) -> Situation:
@@ -51,7 +51,7 @@ def _moving(height_m: float, speed_m_s: float) -> Situation:
         (situation(WAITING_M, 0.8), KNOWN, Reason.NOT_OVER_PAD),
         (situation(WAITING_M, pad=braking_pad(2.0)), KNOWN, Reason.SPEED_CHANGES),
         (_moving(WAITING_M, 0.5), KNOWN, Reason.UNSETTLED),
-        (situation(DESCENT.align_height_m), SURPRISED, Reason.ALIGNED),
+        (situation(DESCENT.alignment.height_m), SURPRISED, Reason.ALIGNED),
         (situation(0.9 * DESCENT.commit_height_m), SURPRISED, Reason.ALIGNED),
     ],
     ids=["goes on", "surprised", "beside", "brakes", "unsettled", "still sinking", "committed"],
@@ -71,8 +71,8 @@ def test_status_says_what_a_descent_waits_for(facts: Situation, surprise: Surpri
     ids=["uneven", "winding", "turning"],
 )
 def test_only_over_late_data_a_descent_waits_for_another_road_or_driver(surprise: Surprise, reason: Reason) -> None:
-    driving, late_s = situation(WAITING_M), 2.0 * DESCENT.uneven_age_s
-    for lateness_s, told in ((late_s, Cause(reason)), (0.5 * DESCENT.uneven_age_s, None)):
+    driving, late_s = situation(WAITING_M), 2.0 * DESCENT.uneven.age_s
+    for lateness_s, told in ((late_s, Cause(reason)), (0.5 * DESCENT.uneven.age_s, None)):
         late = replace(surprise, lateness_s=lateness_s)
         memory = changed(StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED), surprise=late)
         assert why_held_up(memory, driving, CONFIG) == told
@@ -103,7 +103,7 @@ def test_descent_outlasts_its_time_limit_above_a_vehicle_that_surprises_and_then
     flight = reached(Phase.DESCEND)
     _kept_surprised(flight, DESCENT.time_limit_s + 5.0)
     assert flight.phase is Phase.DESCEND
-    flight.run_until(Phase.SECURED, limit_s=DESCENT.surprise_hold_s + 10.0)
+    flight.run_until(Phase.SECURED, limit_s=DESCENT.uneven.hold_s + 10.0)
     assert Phase.ABORT not in flight.history
     assert flight.memory.progress.waited_s == 0.0
 
@@ -111,7 +111,7 @@ def test_descent_outlasts_its_time_limit_above_a_vehicle_that_surprises_and_then
 @pytest.mark.slow
 def test_descent_above_a_vehicle_that_surprises_for_ever_is_broken_off() -> None:
     flight = reached(Phase.DESCEND)
-    limit_s = DESCENT.time_limit_s + DESCENT.surprise_wait_max_s
+    limit_s = DESCENT.time_limit_s + DESCENT.uneven.wait_max_s
     _kept_surprised(flight, limit_s - 1.0)
     assert flight.phase is Phase.DESCEND
     _kept_surprised(flight, 2.0)
@@ -145,7 +145,7 @@ def test_approach_that_strays_again_and_again_is_broken_off() -> None:
 
 def test_approach_that_loses_its_alignment_again_and_again_is_broken_off() -> None:
     memory, facts = changed(StepMemory(), phase=Phase.ALIGN, since_ns=NOW_NS), situation()
-    far = situation(2.0, 2.0 * DESCENT.align_distance_m + 0.1)
+    far = situation(2.0, 2.0 * DESCENT.alignment.begin_distance_m + 0.1)
     for _ in range(DESCENT.strays_max):
         memory, facts = _after(memory, at_time(far, facts.t_ns), 1.0)
         assert (memory.progress.phase, memory.progress.cause.reason) == (Phase.CHASE, Reason.ALIGNMENT_LOST)
@@ -160,10 +160,10 @@ def test_approach_that_loses_its_alignment_again_and_again_is_broken_off() -> No
 def test_approach_to_a_pad_that_is_lost_from_sight_again_and_again_is_broken_off() -> None:
     memory, facts = changed(StepMemory(), phase=Phase.DESCEND, since_ns=NOW_NS), situation()
     unseen = replace(pad_at(std_m=0.5), is_coarse=True)
-    for _ in range(DESCENT.unseen_max):
+    for _ in range(DESCENT.unseen.anew_max):
         memory, facts = _after(memory, at_time(situation(pad=unseen), facts.t_ns), 0.1)
         assert (memory.progress.phase, memory.progress.cause.reason) == (Phase.ALIGN, Reason.PAD_TO_BE_SEEN)
-        memory, facts = _after(memory, at_time(situation(pad=unseen), facts.t_ns), DESCENT.unseen_hold_s + 0.1)
+        memory, facts = _after(memory, at_time(situation(pad=unseen), facts.t_ns), DESCENT.unseen.hold_s + 0.1)
         assert (memory.progress.phase, memory.progress.cause.reason) == (Phase.CHASE, Reason.PAD_NOT_SEEN)
         memory, facts = _after(memory, at_time(situation(), facts.t_ns), 0.1)
         memory, facts = _after(memory, at_time(situation(), facts.t_ns), 1.0)
@@ -200,10 +200,10 @@ def test_descent_waits_above_an_uneven_driver_of_whom_is_told_late(
 @pytest.mark.parametrize(
     ("beside_m", "height_m", "is_coarse", "waits"),
     [
-        (DESCENT.aligned_distance_m + 0.01, 0.9, True, True),
-        (DESCENT.aligned_distance_m - 0.01, 0.9, True, False),
-        (DESCENT.aligned_distance_m + 0.01, 0.9, False, False),
-        (DESCENT.aligned_distance_m + 0.01, 0.95 * DESCENT.centred_height_m, True, False),
+        (DESCENT.alignment.distance_m + 0.01, 0.9, True, True),
+        (DESCENT.alignment.distance_m - 0.01, 0.9, True, False),
+        (DESCENT.alignment.distance_m + 0.01, 0.9, False, False),
+        (DESCENT.alignment.distance_m + 0.01, 0.95 * DESCENT.wait.centred_height_m, True, False),
     ],
     ids=["beside", "centred", "placed by fixes", "already below"],
 )
@@ -212,4 +212,4 @@ def test_descent_onto_a_pad_that_only_the_detector_places_is_centred_while_it_is
 ) -> None:
     memory = changed(StepMemory(), phase=Phase.DESCEND, surprise=Surprise(speed_std_m_s=0.05))
     here = situation(height_m, beside_m, replace(pad_at(), is_coarse=is_coarse))
-    assert waits_at_m(memory, here, CONFIG) == (DESCENT.waiting_height_coarse_m if waits else None)
+    assert waits_at_m(memory, here, CONFIG) == (DESCENT.wait.height_coarse_m if waits else None)

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from companion.autopilots.response import ResponseModel
+from companion.config.autopilot import AutopilotConfig
 from companion.config.companion import CompanionConfig
 from companion.situation.phases import Phase
 from companion.vehicle.estimator import DelayBuffer
@@ -270,7 +271,7 @@ def test_autopilot_that_tells_no_height_above_the_ellipsoid_is_not_started_and_s
 
 @pytest.mark.slow
 def test_geoid_of_the_configuration_counts_where_the_autopilot_tells_none() -> None:
-    config = CompanionConfig(geoid_height_m=47.3)
+    config = CompanionConfig(autopilot=AutopilotConfig(geoid_height_m=47.3))
     for told_m, taken_m in ((None, 47.3), (-30.0, -30.0)):
         setup = Setup(autopilot=FakePx4(geoid_height_m=told_m), config=config)
         setup.run(2.0)

@@ -18,6 +18,7 @@ from tests.companion.vehicle.drives import (
 from tests.companion.vehicle.rides import estimator, now_ns
 
 DESCENT = CompanionConfig().descent
+UNEVEN = DESCENT.uneven
 LATE = replace(DEGRADED, delay_s=0.5)
 TICK_S = 0.02
 
@@ -33,7 +34,7 @@ def after(truth: Drive, sensors: Sensors, seed: int, until_s: float) -> Surprise
             batch.append(waiting.pop()[1])
         memory = chosen.fuse(memory, batch)
         t_ns = now_ns(i * TICK_S)
-        surprise = update_surprise(surprise, chosen, memory, t_ns, monotonic_ns=t_ns, config=DESCENT)
+        surprise = update_surprise(surprise, chosen, memory, t_ns, monotonic_ns=t_ns, config=UNEVEN)
     return surprise
 
 

@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from companion.config.estimation import BufferConfig, EstimatorConfig, ImmConfig, ImmModeConfig, LkfConfig
+from companion.config.estimation import (
+    BufferConfig,
+    EstimatorConfig,
+    HeadingConfig,
+    ImmConfig,
+    ImmModeConfig,
+    LkfConfig,
+    ReceiversConfig,
+)
 from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle.estimator import DelayBuffer, fuse
@@ -23,10 +31,8 @@ IMM = ImmModel(
     config=ImmConfig(
         steady=MODE,
         manoeuvre=MODE,
-        frame_offset_std_m=0.0,
-        frame_offset_walk_m2_s=0.0,
-        clock_std_s=0.0,
-        course_std_rad=1e3,
+        receivers=ReceiversConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0, clock_std_s=0.0),
+        heading=HeadingConfig(course_std_rad=1e3),
     )
 )
 LKF = LkfModel(noise=WhiteJerkNoise(config=LkfConfig()))
@@ -71,24 +77,24 @@ def drawn(covariance: Array, rng: np.random.Generator) -> Array:
 def wander(x: Array, rng: np.random.Generator) -> Array:
     """The turning model's own motion with its own noise, one step."""
     config = IMM.config
-    frequency = 2.0 * np.pi * config.heave_frequency_hz
-    heave, heave_noise = heave_step(DT_S, frequency, config.heave_damping, config.heave_std_m)
+    frequency = 2.0 * np.pi * config.heave.frequency_hz
+    heave, heave_noise = heave_step(DT_S, frequency, config.heave.damping, config.heave.std_m)
     noise = np.array(
         [
             MODE.jerk_psd_m2_s5,
             config.side_jerk_psd_m2_s5,
             MODE.lateral_acceleration_psd_m2_s5,
-            config.curvature_speed_min_m_s,
-            config.heading_psd_rad2_s,
-            config.bend_std_per_m,
+            config.heading.curvature_speed_min_m_s,
+            config.heading.psd_rad2_s,
+            config.road.bend_std_per_m,
             0.0,
             0.0,
             0.0,
-            config.curvature_std_rad_m,
+            config.heading.curvature_std_rad_m,
             0.0,
-            config.bend_acceleration_std_m_s2,
-            config.bend_length_m,
-            config.road_psd_m2_m,
+            config.road.bend_acceleration_std_m_s2,
+            config.road.bend_length_m,
+            config.road.height_psd_m2_m,
             0.0,
         ]
     )

@@ -44,7 +44,7 @@ from tests.companion.vehicle.drives import (
     random_drive,
     straight,
 )
-from tests.companion.vehicle.hindsight import DESCENT, LATE, Told, after
+from tests.companion.vehicle.hindsight import DESCENT, LATE, UNEVEN, Told, after
 from tests.companion.vehicle.rides import estimator, now_ns
 from tests.companion.world import PAD_HEIGHT_M, Flight, KnownVehicle
 
@@ -64,15 +64,15 @@ def departing(t_s: float) -> float:
 
 
 def test_departure_is_uneven_until_it_is_over_and_says_nothing_of_the_driver_then() -> None:
-    assert driven(departing, 5.0).unevenness_m_s2 > 3.0 * DESCENT.uneven_acceleration_m_s2
-    assert driven(departing, 9.0).unevenness_m_s2 < 0.1 * DESCENT.uneven_acceleration_m_s2
+    assert driven(departing, 5.0).unevenness_m_s2 > 3.0 * UNEVEN.acceleration_m_s2
+    assert driven(departing, 9.0).unevenness_m_s2 < 0.1 * UNEVEN.acceleration_m_s2
 
 
 def test_changes_of_speed_after_a_departure_count() -> None:
     brakes = driven(lambda t_s: departing(t_s) - 2.0 * max(0.0, min(t_s - 9.0, 2.0)), 14.0)
     speeds_up = driven(lambda t_s: departing(t_s) + 2.0 * max(0.0, min(t_s - 9.0, 2.0)), 14.0)
     for driving in (brakes, speeds_up):
-        assert driving.unevenness_m_s2 > DESCENT.uneven_acceleration_m_s2
+        assert driving.unevenness_m_s2 > UNEVEN.acceleration_m_s2
 
 
 @pytest.mark.parametrize(("oldest_s", "late"), [(0.38, False), (0.42, True)])
@@ -82,9 +82,9 @@ def test_lateness_is_the_mean_age_however_seldom_a_receiver_tells(oldest_s: floa
         t_ns, age_s = NOW_NS + i * 20_000_000, oldest_s - 0.02 * (9 - i % 10)
         told: Any = Told(5.0, 0.01)
         newest_ns: Any = t_ns - round(age_s * 1e9)
-        surprise = update_surprise(surprise, told, newest_ns, t_ns, monotonic_ns=t_ns, config=DESCENT)
+        surprise = update_surprise(surprise, told, newest_ns, t_ns, monotonic_ns=t_ns, config=UNEVEN)
         if i > 150:
-            found.add(drives_unevenly(Driving(unevenness_m_s2=0.7), surprise.lateness_s, DESCENT))
+            found.add(drives_unevenly(Driving(unevenness_m_s2=0.7), surprise.lateness_s, UNEVEN))
     assert found == {late}
 
 
@@ -99,9 +99,9 @@ def test_driver_who_changes_speed_time_and_again_is_told_from_an_even_one(
     truth: Drive, seed: int, *, uneven: bool
 ) -> None:
     found = after(truth, LATE, seed, 18.0)
-    assert drives_unevenly(found.driving, LATE.delay_s, DESCENT) is uneven
-    assert not drives_unevenly(found.driving, DESCENT.uneven_age_s, DESCENT)
-    assert not drives_unevenly(found.driving, None, DESCENT)
+    assert drives_unevenly(found.driving, LATE.delay_s, UNEVEN) is uneven
+    assert not drives_unevenly(found.driving, UNEVEN.age_s, UNEVEN)
+    assert not drives_unevenly(found.driving, None, UNEVEN)
 
 
 @pytest.mark.parametrize("seed", [1, 2])
@@ -120,9 +120,9 @@ def test_road_that_bends_hard_one_way_and_the_other_is_told_from_a_circle(
     truth: Drive, seed: int, *, winding: bool
 ) -> None:
     found = after(truth, LATE, seed, 18.0)
-    assert winds(found.driving, LATE.delay_s, DESCENT) is winding
-    assert not winds(found.driving, DESCENT.uneven_age_s, DESCENT)
-    assert not winds(found.driving, None, DESCENT)
+    assert winds(found.driving, LATE.delay_s, UNEVEN) is winding
+    assert not winds(found.driving, UNEVEN.age_s, UNEVEN)
+    assert not winds(found.driving, None, UNEVEN)
 
 
 @pytest.mark.slow
@@ -138,15 +138,15 @@ def test_curve_in_which_the_drone_leans_far_is_told_over_late_data_only(
 ) -> None:
     curve = drive(18.0, lambda _: speed_m_s, lambda _: side / radius_m)
     found = after(curve, LATE, seed, 18.0)
-    assert turns_hard(found.driving, LATE.delay_s, DESCENT) is hard
-    assert not turns_hard(found.driving, DESCENT.uneven_age_s, DESCENT)
-    assert not turns_hard(found.driving, None, DESCENT)
+    assert turns_hard(found.driving, LATE.delay_s, UNEVEN) is hard
+    assert not turns_hard(found.driving, UNEVEN.age_s, UNEVEN)
+    assert not turns_hard(found.driving, None, UNEVEN)
 
 
 def test_curve_is_over_when_the_road_is_straight_again() -> None:
     corner = drive(20.0, lambda _: 6.0, lambda t_s: 0.1 if 8.0 <= t_s < 12.0 else 0.0)
-    assert turns_hard(after(corner, LATE, 1, 11.5).driving, LATE.delay_s, DESCENT)
-    assert not turns_hard(after(corner, LATE, 1, 16.0).driving, LATE.delay_s, DESCENT)
+    assert turns_hard(after(corner, LATE, 1, 11.5).driving, LATE.delay_s, UNEVEN)
+    assert not turns_hard(after(corner, LATE, 1, 16.0).driving, LATE.delay_s, UNEVEN)
 
 
 def test_uneven_driving_is_told_from_the_last_seconds_only() -> None:
@@ -154,7 +154,7 @@ def test_uneven_driving_is_told_from_the_last_seconds_only() -> None:
     surprise, t_ns = Surprise(), NOW_NS
     for i in range(400):
         told: Any = Told(4.0 if i < 200 and i // 20 % 2 else 5.0, 0.01)
-        surprise = update_surprise(surprise, told, EstimatorMemory(t_ns), t_ns, monotonic_ns=t_ns, config=DESCENT)
+        surprise = update_surprise(surprise, told, EstimatorMemory(t_ns), t_ns, monotonic_ns=t_ns, config=UNEVEN)
         t_ns += 100_000_000
         if i == 199:
             assert surprise.driving.unevenness_m_s2 == pytest.approx(0.5, rel=0.05)
@@ -166,7 +166,7 @@ def test_speeds_before_and_after_an_outage_are_not_compared() -> None:
     for speed_m_s in (1.0, 9.0):
         told: Any = Told(speed_m_s, 0.01)
         for _ in range(22):
-            surprise = update_surprise(surprise, told, EstimatorMemory(t_ns), t_ns, monotonic_ns=t_ns, config=DESCENT)
+            surprise = update_surprise(surprise, told, EstimatorMemory(t_ns), t_ns, monotonic_ns=t_ns, config=UNEVEN)
             t_ns += 100_000_000
         t_ns, surprise = t_ns + 10_000_000_000, replace(surprise, beliefs=())
     assert len(surprise.driving.driven) == 42
@@ -185,14 +185,14 @@ STOP_S = 10.0 + 10.0 / 6.0
 def test_vehicle_that_has_just_stopped_may_depart_before_that_is_told(until_s: float, *, departs: bool) -> None:
     stays = drive(20.0, lambda t_s: min(max(10.0 - 6.0 * (t_s - 10.0), 0.0), 10.0), lambda _: 0.0)
     found = after(stays, LATE, 3, until_s)
-    assert may_depart(found.driving, LATE.delay_s, DESCENT) is departs
-    assert not may_depart(found.driving, DESCENT.uneven_age_s, DESCENT)
-    assert not may_depart(found.driving, None, DESCENT)
+    assert may_depart(found.driving, LATE.delay_s, UNEVEN) is departs
+    assert not may_depart(found.driving, UNEVEN.age_s, UNEVEN)
+    assert not may_depart(found.driving, None, UNEVEN)
 
 
 def test_vehicle_that_has_not_driven_is_parked() -> None:
-    assert not may_depart(Driving(), LATE.delay_s, DESCENT)
-    assert not may_depart(after(straight(0.0), LATE, 3, 8.0).driving, LATE.delay_s, DESCENT)
+    assert not may_depart(Driving(), LATE.delay_s, UNEVEN)
+    assert not may_depart(after(straight(0.0), LATE, 3, 8.0).driving, LATE.delay_s, UNEVEN)
 
 
 CONFIG = CompanionConfig()
@@ -242,22 +242,22 @@ def test_belief_surprises_by_more_than_it_was_said_to_be_off(
         EstimatorMemory(NOW_NS),
         NOW_NS,
         monotonic_ns=NOW_NS,
-        config=DESCENT,
+        config=UNEVEN,
     )
     assert (found.surprised_ns is not None) is surprises
 
 
 def test_surprise_holds_for_its_time_and_no_longer() -> None:
     surprise = Surprise(surprised_ns=NOW_NS)
-    hold_ns = round(DESCENT.surprise_hold_s * 1e9)
-    assert may_surprise(surprise, NOW_NS + hold_ns - 1, DESCENT)
-    assert not may_surprise(surprise, NOW_NS + hold_ns + 1, DESCENT)
-    assert not may_surprise(Surprise(), NOW_NS, DESCENT)
+    hold_ns = round(UNEVEN.hold_s * 1e9)
+    assert may_surprise(surprise, NOW_NS + hold_ns - 1, UNEVEN)
+    assert not may_surprise(surprise, NOW_NS + hold_ns + 1, UNEVEN)
+    assert not may_surprise(Surprise(), NOW_NS, UNEVEN)
 
 
 def test_beliefs_end_with_the_estimate_that_they_were() -> None:
     surprise = Surprise(beliefs=((NOW_NS, 5.0, 0.1),), speed_std_m_s=0.1, surprised_ns=NOW_NS)
-    found = update_surprise(surprise, estimator(EstimatorKind.IMM), None, NOW_NS, monotonic_ns=NOW_NS, config=DESCENT)
+    found = update_surprise(surprise, estimator(EstimatorKind.IMM), None, NOW_NS, monotonic_ns=NOW_NS, config=UNEVEN)
     assert found == Surprise(surprised_ns=NOW_NS)
 
 
@@ -269,7 +269,12 @@ def test_beliefs_end_with_the_estimate_that_they_were() -> None:
 def test_speed_is_as_uncertain_as_it_is_told_and_unknown_once_it_is_lost(variance_m2_s2: float, std_m_s: float) -> None:
     told: Any = Told(5.0, variance_m2_s2)
     found = update_surprise(
-        Surprise(speed_std_m_s=0.1), told, EstimatorMemory(NOW_NS - 10), NOW_NS, monotonic_ns=NOW_NS, config=DESCENT
+        Surprise(speed_std_m_s=0.1),
+        told,
+        EstimatorMemory(NOW_NS - 10),
+        NOW_NS,
+        monotonic_ns=NOW_NS,
+        config=UNEVEN,
     )
     assert found.speed_std_m_s == pytest.approx(std_m_s)
 
@@ -283,7 +288,7 @@ def test_surprise_outlasts_a_clock_that_is_set() -> None:
     )
     kept = replace(surprise, beliefs=(), driving=Driving(unevenness_m_s2=0.5))
     assert forget_beliefs(surprise) == kept
-    assert may_surprise(kept, NOW_NS, DESCENT)
+    assert may_surprise(kept, NOW_NS, UNEVEN)
     assert forget_beliefs(Surprise()) == Surprise()
 
 
@@ -303,16 +308,16 @@ def test_step_looks_back_at_what_it_has_believed(kind: type[KnownVehicle]) -> No
     flight.run(0.5)
     flight.sends_fixes = True
     flight.run(0.1)
-    assert may_surprise(flight.memory.vehicle.surprise, flight.monotonic_ns, DESCENT) is (kind is Braking)
+    assert may_surprise(flight.memory.vehicle.surprise, flight.monotonic_ns, UNEVEN) is (kind is Braking)
 
 
 @pytest.mark.parametrize(
     ("speed_m_s", "std_m_s", "waits"),
     [
-        (DESCENT.waiting_speed_m_s - 0.01, 0.05, False),
-        (DESCENT.waiting_speed_m_s + 0.01, 0.05, True),
-        (DESCENT.waiting_speed_m_s + 0.01, 0.3, False),
-        (DESCENT.waiting_speed_m_s + 0.01, math.inf, False),
+        (DESCENT.wait.speed_m_s - 0.01, 0.05, False),
+        (DESCENT.wait.speed_m_s + 0.01, 0.05, True),
+        (DESCENT.wait.speed_m_s + 0.01, 0.3, False),
+        (DESCENT.wait.speed_m_s + 0.01, math.inf, False),
         (CONFIG.abort.near_speed_max_m_s + 0.01, math.inf, True),
     ],
     ids=["settled", "too fast", "hardly known", "not known", "too fast by far"],
@@ -323,7 +328,7 @@ def test_descent_waits_until_the_drone_has_settled_as_far_as_that_is_known(
     pad = pad_at()
     here = replace(situation(0.9), drone=drone_at(0.9, 0.0, (0.6 * speed_m_s, -0.8 * speed_m_s, 0.0), pad=pad))
     memory = changed(StepMemory(), phase=Phase.DESCEND, surprise=Surprise(speed_std_m_s=std_m_s))
-    assert waits_at_m(memory, here, CONFIG) == (DESCENT.waiting_height_m if waits else None)
+    assert waits_at_m(memory, here, CONFIG) == (DESCENT.wait.height_m if waits else None)
 
 
 @pytest.mark.parametrize(
@@ -343,4 +348,4 @@ def test_descent_waits_above_a_driving_vehicle_that_has_surprised(
     surprise = Surprise(surprised_ns=NOW_NS - 10 if surprised else None)
     memory = changed(StepMemory(), phase=phase, surprise=surprise)
     waiting_m = waits_at_m(memory, situation(height_m, pad=pad_at(velocity)), CONFIG)
-    assert waiting_m == (DESCENT.waiting_height_m if waits else None)
+    assert waiting_m == (DESCENT.wait.height_m if waits else None)

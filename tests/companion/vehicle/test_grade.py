@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig
+from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig, ReceiversConfig
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle.pad import pad_path
 from link.messages import PadGeometry
@@ -14,7 +14,9 @@ from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, NOMINAL, climb
 from tests.companion.vehicle.rides import estimator, ride
 from tests.companion.vehicle.test_imm_kernels import HEAVE, NOISE, TAU_S
 
-SAME_FRAME = EstimatorConfig(imm=ImmConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
+SAME_FRAME = EstimatorConfig(
+    imm=ImmConfig(receivers=ReceiversConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
+)
 PAD = PadGeometry(size_m=(1.5, 1.5), height_m=1.5, antenna_to_pad_m=ANTENNA_TO_PAD_M)
 VERTICAL = np.array([2, 5])
 GRADES_AND_SPEEDS = [(0.03, 3.0), (0.12, 3.0), (0.08, 8.0), (-0.08, 8.0), (0.03, 12.0), (0.08, 12.0)]

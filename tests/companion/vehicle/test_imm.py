@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from companion.config.companion import CompanionConfig
-from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig
+from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig, ReceiversConfig
 from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle.factory import make_estimator
 from link.records import replace
@@ -27,7 +27,9 @@ from tests.companion.vehicle.drives import (
 from tests.companion.vehicle.rides import Ride, arrivals, estimator, now_ns, ride, rms
 
 IMM = EstimatorKind.IMM
-SAME_FRAME = EstimatorConfig(imm=ImmConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
+SAME_FRAME = EstimatorConfig(
+    imm=ImmConfig(receivers=ReceiversConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
+)
 WITH_PAD = replace(NOMINAL, pad_rate_hz=30.0, frame_offset_m=0.5)
 DEGRADED_WITH_PAD = replace(DEGRADED, pad_rate_hz=10.0, pad_delay_s=0.15, frame_offset_m=1.2)
 

@@ -6,14 +6,16 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig
+from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig, ReceiversConfig
 from companion.core.data import Measurement, Quantity
 from companion.vehicle.estimator import EstimatorMemory
 from link.records import replace
 from tests.companion.vehicle.drives import NOMINAL, Drive, climb, drive, sense, straight
 from tests.companion.vehicle.rides import estimator, now_ns
 
-SAME_FRAME = EstimatorConfig(imm=ImmConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
+SAME_FRAME = EstimatorConfig(
+    imm=ImmConfig(receivers=ReceiversConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
+)
 LATE = replace(NOMINAL, delay_s=0.15)
 RATE_HZ, BRAKES_AT_S, WHITE_M_S2, OFFSET_M_S2 = 50.0, 10.02, 0.2, 0.2
 GRAVITY_M_S2 = 9.80665

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from companion.config.estimation import EstimatorConfig, ImmConfig
+from companion.config.estimation import EstimatorConfig, HeadingConfig, ImmConfig
 from companion.core.data import Measurement, Quantity
 from companion.vehicle.estimator import Estimator, EstimatorMemory
 from companion.vehicle.factory import make_estimator
@@ -72,7 +72,7 @@ def test_a_pad_that_is_seen_elsewhere_for_good_is_started_on_anew() -> None:
 
 def beside_m(turning_std_m_s2: float) -> float:
     """How far beside a straight road a vehicle is sought 3 s after it was seen for 0.8 s, root mean square."""
-    config = EstimatorConfig(imm=ImmConfig(turning_std_m_s2=turning_std_m_s2))
+    config = EstimatorConfig(imm=ImmConfig(heading=HeadingConfig(turning_std_m_s2=turning_std_m_s2)))
     found_m = []
     for seed in range(20, 26):
         truth, chosen = straight(9.0), make_estimator(config, is_silent=True)
@@ -86,4 +86,4 @@ def beside_m(turning_std_m_s2: float) -> float:
 
 
 def test_what_was_seen_for_a_moment_is_sought_along_a_curve_that_somebody_drives() -> None:
-    assert beside_m(ImmConfig().turning_std_m_s2) < 0.9 * beside_m(1e4)
+    assert beside_m(ImmConfig().heading.turning_std_m_s2) < 0.9 * beside_m(1e4)

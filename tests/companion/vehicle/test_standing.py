@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig
+from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig, ReceiversConfig
 from companion.core.data import Array
 from link.frames.rotations import wrap_angle
 from link.records import replace
@@ -13,7 +13,9 @@ from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, NOMINAL, Drive, dri
 from tests.companion.vehicle.rides import Ride, estimator, ride
 
 FIX_AND_VELOCITY = replace(NOMINAL, heading_std_rad=0.0, yaw_rate_std_rad_s=0.0)
-SAME_FRAME = EstimatorConfig(imm=ImmConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
+SAME_FRAME = EstimatorConfig(
+    imm=ImmConfig(receivers=ReceiversConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
+)
 STOPS_S, ENDS_S = 12.0, 40.0
 
 

@@ -59,6 +59,14 @@ def test_rows_hold_every_phase_and_no_wall_clock(reference: Path) -> None:
     assert frame["on_pad"].dtype == pl.Boolean
 
 
+def test_parquet_tells_units_and_versions_beside_its_columns(reference: Path) -> None:
+    for name in ("landings.parquet", "timing.parquet"):
+        about = pl.read_parquet_metadata(reference / name)
+        assert json.loads(about["decklander.versions"])["sources"] == read_plan(reference).versions["sources"]
+        units = json.loads(about["decklander.units"])
+    assert units["wall_s"] == "s"
+
+
 def test_seeds_make_a_difference(reference: Path) -> None:
     assert pl.read_parquet(reference / "landings.parquet")["closest_m"].n_unique() == 2 * SEEDS
 

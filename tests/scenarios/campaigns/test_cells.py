@@ -37,11 +37,11 @@ def test_scenario_flies_itself_with_every_seed() -> None:
 
 def test_configuration_is_laid_over_that_of_each_world() -> None:
     plain = Population(slice="world")
-    changed = with_companion(plain, {"descent": {"align_height_m": 1.25}}, "own.toml")
+    changed = with_companion(plain, {"descent": {"alignment": {"height_m": 1.25}}}, "own.toml")
     for seed in (1, 2):
         before, after = (draw(one, seed).scenario.model_dump() for one in (plain, changed))
-        assert after["system"]["companion"]["descent"].pop("align_height_m") == 1.25
-        assert before["system"]["companion"]["descent"].pop("align_height_m") != 1.25
+        assert after["system"]["companion"]["descent"]["alignment"].pop("height_m") == 1.25
+        assert before["system"]["companion"]["descent"]["alignment"].pop("height_m") != 1.25
         assert after == before
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from companion.config.companion import ReceiverFrames
+from companion.config.integrity import ReceiverFrames
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.simulation.drone import sim_autopilot_config
 
@@ -13,13 +13,13 @@ ONE, AUTO, APART = ReceiverFrames.ONE, ReceiverFrames.AUTO, ReceiverFrames.APART
 
 @pytest.mark.parametrize(("sensors", "frames"), [("rtk", ONE), ("report", ONE), ("nominal", AUTO), ("degraded", AUTO)])
 def test_companion_is_told_of_receivers_in_one_frame_only(sensors: str, frames: ReceiverFrames) -> None:
-    assert load_scenario(f"straight_5+sensors={sensors}").system.companion.receiver_frames is frames
+    assert load_scenario(f"straight_5+sensors={sensors}").system.companion.integrity.receiver_frames is frames
 
 
 def test_what_a_file_says_of_its_receivers_stays(tmp_path: Path) -> None:
     path = tmp_path / "own.toml"
-    path.write_text('base = "straight_5"\n[system.companion]\nreceiver_frames = "apart"\n', encoding="utf-8")
-    assert load_scenario(str(path)).system.companion.receiver_frames is APART
+    path.write_text('base = "straight_5"\n[system.companion.integrity]\nreceiver_frames = "apart"\n', encoding="utf-8")
+    assert load_scenario(str(path)).system.companion.integrity.receiver_frames is APART
 
 
 @pytest.mark.parametrize(("sensors", "accuracy_m"), [("rtk", 0.01), ("nominal", 0.02), ("degraded", 1.2)])

@@ -58,7 +58,7 @@ def test_compare_pairs_two_campaigns_and_tells_what_differs(tmp_path: Path, caps
 
 def test_config_changes_only_what_it_sets(tmp_path: Path) -> None:
     config = tmp_path / "companion.toml"
-    config.write_text("[descent]\nalign_height_m = 1.25\n", encoding="utf-8")
+    config.write_text("[descent.alignment]\nheight_m = 1.25\n", encoding="utf-8")
     cells = ["straight_5+system=pn", "straight_5+system=lkf", "straight_5"]
     own = make_plan(cells, first_seed=1, seeds=1, config=None).scenarios
     laid = make_plan(cells, first_seed=1, seeds=1, config=config).scenarios
@@ -66,15 +66,15 @@ def test_config_changes_only_what_it_sets(tmp_path: Path) -> None:
     assert laid["straight_5+system=lkf"].system.companion.estimator.kind.value == "lkf"
     for cell in cells:
         before, after = own[cell].model_dump(), laid[cell].model_dump()
-        assert after["system"]["companion"]["descent"].pop("align_height_m") == 1.25
-        assert before["system"]["companion"]["descent"].pop("align_height_m") != 1.25
+        assert after["system"]["companion"]["descent"]["alignment"].pop("height_m") == 1.25
+        assert before["system"]["companion"]["descent"]["alignment"].pop("height_m") != 1.25
         assert after == before
 
 
 def test_config_that_does_not_fit_over_a_cell_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     config = tmp_path / "companion.toml"
-    config.write_text("[descent]\nalign_hight_m = 1.25\n", encoding="utf-8")
-    assert "align_height_m" in refusal(capsys, "campaign", "straight_5", "--config", config)
+    config.write_text("[descent.alignment]\nhight_m = 1.25\n", encoding="utf-8")
+    assert "'height_m'" in refusal(capsys, "campaign", "straight_5", "--config", config)
 
 
 def test_campaign_refuses_a_cell_twice(capsys: pytest.CaptureFixture[str]) -> None:

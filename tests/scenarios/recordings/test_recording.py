@@ -31,6 +31,7 @@ from scenarios.view.recorded import RecordedSource
 
 pytestmark = pytest.mark.slow
 SCENARIO = "straight_5+sensors=nominal"
+PAGE_MAX = 2_000_000  # characters
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +105,7 @@ def test_companion_that_was_started_again_leaves_two_flights_that_are_replayed_a
 
 
 def test_replay_with_another_gain_names_the_fields_largest_difference_first(flight: Flight) -> None:
-    table = merge(flight.config.model_dump(mode="json"), {"descent": {"descent_gain_hz": 1.1}})
+    table = merge(flight.config.model_dump(mode="json"), {"descent": {"sink": {"gain_hz": 1.1}}})
     result = replay(flight, validate(CompanionConfig, table, source="test"))
     named = [one.field for one in result.differences]
     assert "setpoint.position_m" in named
@@ -153,19 +154,18 @@ def test_run_as_arrays_agrees_with_its_result(run: Path) -> None:
 
 def test_page_about_a_run_needs_nothing_from_elsewhere(run: Path, tmp_path: Path) -> None:
     page = write_report(run, tmp_path / "report.html").read_text(encoding="utf-8")
-    outside_script = page.split("</script>", 1)[1]
+    assert len(page) < PAGE_MAX
     for fetched in ('src="http', "src='http", '<link rel="stylesheet"', "@import"):
-        assert fetched not in outside_script
+        assert fetched not in page
     for told in (
         "S3: landed",
-        "descent_gain_hz",
+        "gain_hz",
         "numpy",
         "<code>CONTACT</code>",
         "px4, seed 2",
         "<svg",
-        "plotly-graph-div",
     ):
-        assert told in outside_script
+        assert told in page
 
 
 def test_folder_without_a_recording_is_told(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from companion.config.landing import DescentConfig
+from companion.config.descent import DescentConfig
 from link.messages import CompressedPicture, PadSighting
 from link.payloads import cdr
 from link.payloads.decklander_msgs import RosMessage

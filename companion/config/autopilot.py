@@ -1,0 +1,65 @@
+"""What can be set about the autopilot, the setpoints that it gets, and what ground stations on its link may do."""
+
+from enum import Enum
+from typing import Annotated
+
+from pydantic import Field
+
+from link.program.toml_config import NotNegative, Positive, StrictModel
+
+
+class AutopilotKind(Enum):
+    """What a user says of the autopilot."""
+
+    AUTO = "auto"  # its heartbeat tells
+    PX4 = "px4"
+    ARDUPILOT = "ardupilot"
+
+
+class Guide(Enum):
+    """What the companion lands by."""
+
+    SETPOINTS = "setpoints"
+    PRECLAND = "precland"  # it tells the autopilot's own precision landing where the pad is, and commands nothing
+
+
+class PadOnMap(Enum):
+    """As what ground stations are told where the pad is."""
+
+    NONE = "none"
+    FOLLOW_TARGET = "follow_target"  # which an autopilot heeds in its follow mode only
+    ADSB = "adsb"  # likewise, and as a vehicle among the traffic, which all ground stations draw
+
+
+class AutopilotConfig(StrictModel):
+    """Which autopilot it is, and what the companion does on its link."""
+
+    kind: AutopilotKind = AutopilotKind.AUTO  # any other than the one named is refused
+    guide: Guide = Guide.SETPOINTS  # the companion flies by setpoints, or tells the autopilot's own precision landing
+    # Of mean sea level above the ellipsoid, where the autopilot's receiver does not tell it; none: then no start.
+    geoid_height_m: Annotated[float, Field(ge=-120.0, le=120.0)] | None = None
+    stops_unused_streams: bool = True  # on the companion's own link; false where others listen on it, too
+
+
+class GroundStationConfig(StrictModel):
+    """What ground stations and dashboards may ask, and what they are told."""
+
+    # Whoever sends to the autopilot's link can start and break off a landing by it, as it can command the autopilot.
+    takes_mavlink_commands: bool = True
+    pad_on_map: PadOnMap = PadOnMap.FOLLOW_TARGET  # told at 2 Hz, by MAVLink
+    status_rate_hz: Annotated[float, Field(ge=0.5, le=50.0)] = 10.0
+
+
+class SetpointConfig(StrictModel):
+    """What the setpoints say, and when they are for."""
+
+    # By which they are ahead of the drone beside the link's delay; none: as the autopilot takes them.
+    lead_s: Annotated[float, Field(ge=0.0, le=0.5)] | None = None
+    # So far a link's jitter may move the place that a landing drone is asked for: 0.1 m leans the benchmark's by 5
+    # degrees. Beyond that it is asked for velocities, which make up for what it is off its place by a gain.
+    place_jitter_max_m: NotNegative = 0.1
+    place_gain_hz: Positive = 1.0  # as PX4's MPC_XY_P, 0.95; the delay of a poor link leaves no room for more
+    yaw_rate_max_rad_s: Positive = 0.8  # ArduCopter slews at 60 degrees a second
+    position_only: bool = False  # leave velocity and acceleration out, as the source report does
+    corrects_lag: bool = True  # plan by how far the drone will be off its setpoints
+    follows_heading: bool = True  # turn with the vehicle; False keeps the heading of the start

@@ -1,0 +1,71 @@
+"""What can be set about the last moments above the pad, the contact and the switching off of the motors."""
+
+from typing import Annotated
+
+from pydantic import Field, ValidationInfo, field_validator
+
+from link.program.toml_config import NotNegative, Positive, StrictModel
+
+
+class RangeFinderConfig(StrictModel):
+    """What a range finder that looks down says of the pad."""
+
+    height_m: NotNegative = 0.12  # of the range finder above the feet
+    corrects_height: bool = False  # for a drone whose own height wanders: the pad is where the range finder sees it
+    off_max_m: Positive = 0.4  # what it sees may be nearer than the pad by so much before a landing is broken off
+    off_hold_s: NotNegative = 0.3  # so long readings and attitude belong together
+    contact_height_max_m: Positive = 0.15  # seen under the feet at which it still agrees with a contact
+    disputed_hold_s: NotNegative = 1.0  # in place of `touchdown.hold_s`, when it does not agree
+
+
+class LevelConfig(StrictModel):
+    """The drone turns less than the deck below a height, to touch down level."""
+
+    height_m: NotNegative = 0.08
+    late_stds: NotNegative = 1.5  # of the link's delay, by which it begins earlier: so late a setpoint may be
+    # By so much of the pad's own acceleration, between these: what it turns more makes the contact slower than tilted,
+    # and there is no time for what else would have it lean.
+    share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.6
+    acceleration_min_m_s2: Positive = 0.6  # 3.5 degrees
+    acceleration_max_m_s2: Positive = 1.6  # 9 degrees; S2 allows 10 over trim
+    speed_max_m_s: Positive = 0.35  # that this may bring against the pad; S2 asks for 0.5 at contact
+
+
+class LostConfig(StrictModel):
+    """A pad that is not there, and a contact that was none."""
+
+    # So far below the pad's surface for so long, and nothing was touched: it is not there. Heights are off by 0.4 m
+    # over poor receivers, and a contact that the range finder disputes is believed after its own hold.
+    missed_depth_m: Positive = 0.2
+    missed_hold_s: Positive = 2.0
+    height_m: Positive = 0.6  # higher than this after a contact is a bounce or a slide
+    hold_s: NotNegative = 5.0  # higher than `touchdown.height_max_m` for so long is none either, or the motors stop
+
+
+class TouchdownConfig(StrictModel):
+    """The signs of a contact, what is pressed, and what shows that there was none."""
+
+    gear_height_m: NotNegative = 0.12  # from the feet to the point whose position the autopilot reports
+    foot_radius_m: NotNegative = 0.2  # of the feet about the drone's axis: the lowest of a leaning drone touches first
+    height_max_m: Positive = 0.35  # estimated height over the pad at which a contact is believed
+    blocked_depth_m: Positive = 0.06  # how far the setpoint has sunk below the drone
+    blocked_speed_m_s: Positive = 0.2  # relative vertical speed that counts as standing
+    pressed_speed_m_s: Positive = 0.5  # likewise where it is pressed down and the range finder sees the pad at its feet
+    falling_acceleration_m_s2: Positive = 3.5  # downwards faster than this nothing stands on a pad; half of the presses
+    hold_s: NotNegative = 0.1
+    jolt_m_s2: Positive = 25.0  # horizontally: no flying changes the velocity so fast, and no hold is waited for
+    stopped_hold_s: Positive = 0.3  # after a jolt, pressed down without falling: in the air it would sink at 2 m/s then
+    # Downwards, while the signs of a contact hold, and once they are believed: nearly the whole weight on the gear.
+    try_acceleration_m_s2: Annotated[float, Field(ge=0.0, le=9.0)] = 5.0
+    press_acceleration_m_s2: Annotated[float, Field(ge=0.0, le=9.0)] = 9.0
+    range_finder: RangeFinderConfig = RangeFinderConfig()
+    level: LevelConfig = LevelConfig()
+    lost: LostConfig = LostConfig()
+
+    @field_validator("try_acceleration_m_s2", "press_acceleration_m_s2")
+    @classmethod
+    def _would_fall(cls, value: float, info: ValidationInfo) -> float:
+        falling_m_s2 = info.data.get("falling_acceleration_m_s2")
+        if falling_m_s2 is not None and value <= falling_m_s2:
+            raise ValueError(f"it must be more than falling_acceleration_m_s2, {falling_m_s2:g}, to tell pad from air")
+        return value
