@@ -10,6 +10,7 @@ FILES = (
     "imm_kernels.py",
     "imm_sensors.py",
     "imm_mixing.py",
+    "imm_judgement.py",
     "imm_forecast.py",
     "ukf_motion.py",
 )

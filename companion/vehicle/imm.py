@@ -15,16 +15,17 @@ from typing import assert_never
 
 import numpy as np
 from msgspec import Struct
-from numpy.typing import NDArray
 
 from companion.config.estimation import ImmConfig
 from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
 from companion.vehicle import imm_forecast as forecasts
+from companion.vehicle import imm_judgement as judgement
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_sensors as sensors
 from companion.vehicle.filter_step import Update, wrapped
 from companion.vehicle.imm_numbers import Numbers, noises_with, numbers_of
+from companion.vehicle.imm_opening import OFFSET, PLACE, open_place_and_offset, open_states
 from link.messages import Vector3
 from link.records import replace
 
@@ -36,9 +37,6 @@ KINDS = {
     Quantity.PAD: sensors.PAD,
     Quantity.ACCELERATION: sensors.ACCELERATION,
 }
-UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
-PLACE = np.array([0, 1, 8])  # indices of the position
-OFFSET = np.array([12, 13, 14])
 CURVATURE, HEADING = 6, 7
 TOLD_BY = {  # what is opened to data of a quantity that were rejected for too long
     Quantity.VELOCITY: np.array([2, 3, 4, 5, 9, 11, kernels.BEND]),
@@ -48,17 +46,17 @@ TOLD_BY = {  # what is opened to data of a quantity that were rejected for too l
 }
 CLOCK = kernels.CLOCK
 TURNS = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
+MOTIONS = frozenset({Quantity.POSITION, Quantity.VELOCITY})
 TURN_AGE_MAX_S = 1.0  # of a sensor that is at work: several periods of the slowest
-
-IndexArray = NDArray[np.intp]
 
 
 class ImmState(Struct, frozen=True, kw_only=True, eq=False):
-    """Both modes, the slow part of the fixes' variance, and how long ago a sensor told the heading or the yaw rate."""
+    """Both modes, the slow part of the fixes' variance, and how long ago turning, and place or velocity, were told."""
 
     modes: mixing.Modes
     fix_bias_variance_m2: float
     turn_age_s: float = math.inf
+    unmeasured_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -91,10 +89,10 @@ class ImmModel:
         offset_variance = self.config.receivers.frame_offset_std_m**2 + bias_variance if is_fix else 0.0
         mean = np.zeros(kernels.SIZE)
         mean[PLACE] = place.value
-        covariance = np.diag(self._prior_variances())
+        covariance = np.diag(self.numbers.prior_variances)
         covariance[np.ix_(PLACE, PLACE)] = white
         covariance[CLOCK, CLOCK] = self.config.receivers.clock_std_s**2 if bias_variance else 0.0
-        covariances = _with_common_step(np.stack([covariance, covariance]), offset_variance * np.eye(3))
+        covariances = open_place_and_offset(np.stack([covariance, covariance]), offset_variance * np.eye(3))
         dwell_s = self.numbers.dwell_s
         modes = (np.stack([mean, mean]), covariances, dwell_s / dwell_s.sum())
         return ImmState(modes=modes, fix_bias_variance_m2=bias_variance)
@@ -105,7 +103,7 @@ class ImmModel:
         modes = mixing.predict_modes(
             state.modes, dt_s, self._noises(state), numbers.dwell_s, numbers.motion, self._known_variance
         )
-        return replace(state, modes=modes, turn_age_s=state.turn_age_s + dt_s)
+        return replace(state, modes=modes, turn_age_s=state.turn_age_s + dt_s, unmeasured_s=state.unmeasured_s + dt_s)
 
     def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState] | None:
         """Return the state after any quantity, None of an acceleration along a heading that is not known."""
@@ -115,10 +113,21 @@ class ImmModel:
         if measurement.quantity is Quantity.POSITION:
             R, bias_variance = self._split(R)
         reading = (KINDS[measurement.quantity], _own(measurement.value), _own(R))
-        modes, nis, gate_nis = mixing.take_reading(state.modes, reading, self.numbers.lever_m, self.numbers.course)
+        numbers = self.numbers
+        tells_motion = measurement.quantity in MOTIONS
+        modes = state.modes
+        if tells_motion and state.unmeasured_s > 0.0:
+            noise = self._noises(state)[1]
+            modes = judgement.expect_manoeuvre(modes, state.unmeasured_s, numbers.dwell_s, noise)
+        modes, nis, gate_nis = judgement.take_reading(modes, reading, numbers.lever_m, numbers.course)
         tells_turn = measurement.quantity in TURNS and self.placed_by is Quantity.POSITION
         turn_age_s = 0.0 if tells_turn else state.turn_age_s  # what is only seen to turn is taken for a car
-        updated = ImmState(modes=modes, fix_bias_variance_m2=bias_variance, turn_age_s=turn_age_s)
+        updated = ImmState(
+            modes=modes,
+            fix_bias_variance_m2=bias_variance,
+            turn_age_s=turn_age_s,
+            unmeasured_s=0.0 if tells_motion else state.unmeasured_s,
+        )
         return Update(state=updated, nis=nis, gate_nis=gate_nis, dof=len(measurement.value))
 
     def recover(self, state: ImmState, measurement: Measurement) -> ImmState:
@@ -134,11 +143,14 @@ class ImmModel:
                 return self._restart(state, measurement) if is_start else self._move_frame(state, measurement)
             case Quantity.POSITION:
                 if self._is_placed_by_sightings(state):
-                    return _open(state, OFFSET, np.full(3, self._step_size(state, measurement) ** 2))
+                    return replace(
+                        state,
+                        modes=open_states(state.modes, OFFSET, np.full(3, self._step_size(state, measurement) ** 2)),
+                    )
                 return self._restart(state, measurement)
             case Quantity.VELOCITY | Quantity.HEADING | Quantity.YAW_RATE | Quantity.ACCELERATION:
                 told = TOLD_BY[measurement.quantity]
-                return _open(state, told, self._prior_variances()[told])
+                return replace(state, modes=open_states(state.modes, told, self.numbers.prior_variances[told]))
             case _:
                 assert_never(measurement.quantity)
 
@@ -207,18 +219,6 @@ class ImmModel:
             turn_is_measured=state.turn_age_s < TURN_AGE_MAX_S,
         )
 
-    def _prior_variances(self) -> Array:
-        """Of every state but position, offset and clock, (18,)."""
-        config = self.config
-        speed, acceleration = config.initial_speed_std_m_s**2, config.initial_acceleration_std_m_s2**2
-        heave = config.heave.std_m**2
-        heave_rate = heave * float(self.numbers.motion[1]) ** 2
-        curvature = config.heading.curvature_std_rad_m**2
-        moving = [speed, speed, acceleration, acceleration, curvature, UNKNOWN_HEADING_VARIANCE]
-        vertical = [0.0, config.road.grade_std**2, heave, heave_rate]
-        driven = [config.road.bend_std_per_m**2, config.road.gravity_leak_std_m_s2**2]
-        return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0, *driven])
-
     def _step_size(self, state: ImmState, measurement: Measurement) -> float:
         """How far, m, a measured place is from the expected one; at least the prior of the offset."""
         means, _, weights = state.modes
@@ -252,7 +252,7 @@ class ImmModel:
         """Open place and offset as one unknown."""
         step = self._step_size(state, sighting) ** 2 * np.eye(3)
         means, covariances, weights = state.modes
-        return replace(state, modes=(means, _with_common_step(covariances, step), weights))
+        return replace(state, modes=(means, open_place_and_offset(covariances, step), weights))
 
     def _restart(self, state: ImmState, place: Measurement) -> ImmState:
         """A new start at `place` that keeps offset, heading and clock."""
@@ -268,19 +268,3 @@ class ImmModel:
 def _own(array: Array) -> Array:
     """A plain copy: kernels are compiled anew for read-only or strided arrays, which takes seconds."""
     return np.array(array, dtype=np.float64, order="C")
-
-
-def _open(state: ImmState, indices: IndexArray, variances: Array) -> ImmState:
-    means, covariances, weights = state.modes
-    opened = covariances.copy()
-    opened[:, indices, indices] += variances
-    return replace(state, modes=(means, opened, weights))
-
-
-def _with_common_step(covariances: Array, step: Array) -> Array:
-    """Add `step` (3, 3), m^2, to position and offset as one unknown that moves both."""
-    moved = covariances.copy()
-    for rows in (PLACE, OFFSET):
-        for columns in (PLACE, OFFSET):
-            moved[:, rows[:, None], columns] += step
-    return moved

@@ -20,26 +20,15 @@ from companion.vehicle.imm_kernels import (
     SIZE,
     advance,
     bend_step,
-    correct,
     curvature_left,
     heave_step,
     process_noise,
 )
-from companion.vehicle.imm_sensors import (
-    COURSE,
-    HEADING,
-    PAD,
-    POSITION,
-    VELOCITY,
-    observe,
-    turned,
-)
-from companion.vehicle.small_matrices import carried_through, inverse_of
+from companion.vehicle.imm_sensors import turned
+from companion.vehicle.small_matrices import carried_through
 
 Modes = tuple[Array, Array, Array]
 
-WEIGHT_MIN = 1e-12  # a mode that rounding has ruled out could never come back
-SIDEWAYS_RAD = 1.0  # so far from its heading, or from the opposite, no vehicle goes that is known well
 STEP_MAX_S = 0.1  # 0.04 rad in the tightest of the benchmark's curves
 
 
@@ -163,100 +152,3 @@ def predict_modes(
     for j in range(2):
         means[j], covariances[j] = glide(means[j], covariances[j], dt_s, noises[j], directed)
     return means, covariances, weights
-
-
-@compiled_kernel
-def residual_of(kind: int, value: Array, expected: Array) -> Array:
-    """Return measured minus expected, the short way round for angles."""
-    residual = value - expected
-    if kind in (HEADING, COURSE):
-        residual[0] = (residual[0] + math.pi) % (2.0 * math.pi) - math.pi
-    return residual
-
-
-@compiled_kernel
-def update_modes(
-    modes: Modes, reading: tuple[int, Array, Array], lever: Array, sees_heading: bool
-) -> tuple[Modes, float, float]:
-    """Return the filter after a measurement, the mixture's NIS, and the smaller of the modes' NIS.
-
-    The mixture's NIS tells consistency; an outlier is what even the mode with the wider noise does not expect.
-    What a measurement says for either mode counts as that of one component: receivers state the errors of their axes as
-    independent, but where they are one and the same (a common delay, a reflection) it would count m times over.
-
-    Args:
-        modes: the filter.
-        reading: kind as `observe` takes it, value (m,), covariance (m, m).
-        lever: (3,) from the antenna to the pad in V, m.
-        sees_heading: whether the heading is known, so that the lever arm has a direction.
-    """
-    means, covariances, weights = modes
-    kind, value, R = reading
-    m = len(value)
-    xs, Ps = np.empty_like(means), np.empty_like(covariances)
-    fits, nis = np.empty(2), np.empty(2)
-    residuals, spreads = np.empty((2, m)), np.empty((2, m, m))
-    for j in range(2):
-        expected, H = observe(kind, means[j], lever, sees_heading)
-        residuals[j] = residual_of(kind, value, expected)
-        spreads[j] = carried_through(H, covariances[j]) + R
-        xs[j], Ps[j], nis[j], fits[j] = correct(means[j], covariances[j], residuals[j], H, R)
-    likelihood = np.maximum(weights, WEIGHT_MIN) * np.exp((fits - fits.max()) / m)
-    after = likelihood / likelihood.sum()
-    residual, spread = combine(residuals, spreads, weights)
-    inverse, _ = inverse_of(spread)
-    mixture_nis = (residual * inverse * residual.reshape(m, 1)).sum()
-    return (xs, Ps, after), float(mixture_nis), float(nis.min())
-
-
-@compiled_kernel
-def align_modes(
-    means: Array, covariances: Array, speed_min_m_s: float, course_variance: float, known_variance: float
-) -> tuple[Array, Array]:
-    """Return the modes after the rule that a driving vehicle heads where it goes.
-
-    One that is known to head against its course drives backwards. Nothing is learnt while it is slow, while the course
-    itself is vague, or when it goes sideways.
-    """
-    xs, Ps = means.copy(), covariances.copy()
-    lever, zero = np.zeros(3), np.zeros(1)
-    for j in range(2):
-        x, P = means[j], covariances[j]
-        speed = math.hypot(x[2], x[3])
-        if speed < speed_min_m_s or P[2, 2] + P[3, 3] > (0.3 * speed) ** 2:
-            continue
-        known = P[7, 7] < known_variance
-        expected, H = observe(COURSE, x, lever, False)
-        residual = residual_of(COURSE, zero, expected)
-        if known and abs(residual[0]) > math.pi - SIDEWAYS_RAD:
-            residual[0] -= math.copysign(math.pi, residual[0])
-        if known and abs(residual[0]) > SIDEWAYS_RAD:
-            continue
-        R = np.array([[course_variance if known else min(course_variance, 0.01)]])
-        xs[j], Ps[j], _, _ = correct(x, P, residual, H, R)
-    return xs, Ps
-
-
-@compiled_kernel
-def take_reading(
-    modes: Modes, reading: tuple[int, Array, Array], lever: Array, course: Array
-) -> tuple[Modes, float, float]:
-    """Return what `update_modes` does, with the heading judged and, after a fix or a velocity, aligned.
-
-    Args:
-        modes: the filter.
-        reading: kind as `observe` takes it, value (m,), covariance (m, m).
-        lever: (3,) from the antenna to the pad in V, m.
-        course: (3,) `align_modes`' speed, m/s, and variances of course and known heading, rad^2.
-    """
-    kind, value, R = reading
-    known = is_heading_known(modes, course[2])
-    if kind == PAD and not known:
-        arm2 = math.hypot(lever[0], lever[1]) ** 2
-        R = R.copy()
-        R[0, 0] += arm2
-        R[1, 1] += arm2
-    (means, covariances, weights), nis, gate_nis = update_modes(modes, (kind, value, R), lever, known)
-    if kind in (POSITION, VELOCITY):
-        means, covariances = align_modes(means, covariances, course[0], course[1], course[2])
-    return (means, covariances, weights), nis, gate_nis

@@ -11,6 +11,7 @@ from companion.core.data import Array
 from companion.vehicle.imm_kernels import CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST, HEADING_NOISE
 from link.messages import Vector3
 
+UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
 ON_THE_SPOT_RAD_M = 10.0  # 1 rad/s while the middle moves at 0.1 m/s
 
 
@@ -23,13 +24,15 @@ class Numbers:
         dwell_s: (2,) of both modes.
         noises: (2, 15) as `imm_kernels.process_noise` takes them, but for what depends on the state (`noises_with`).
         lever_m: (3,) from the antenna to the pad in V.
-        course: (3,) as `imm_mixing.take_reading` takes it.
+        prior_variances: (18,) of every state but position, offset and clock, when nothing else is known.
+        course: (3,) as `imm_judgement.take_reading` takes it.
     """
 
     motion: Array
     dwell_s: Array
     noises: Array
     lever_m: Array
+    prior_variances: Array
     course: Array
 
 
@@ -50,6 +53,7 @@ def numbers_of(config: ImmConfig, antenna_to_pad_m: Vector3) -> Numbers:
         dwell_s=np.array([mode.dwell_s for mode in modes]),
         noises=np.array([_noise(config, mode) for mode in modes]),
         lever_m=np.array(antenna_to_pad_m),
+        prior_variances=_prior_variances(config),
         course=np.array([heading.course_speed_min_m_s, heading.course_std_rad**2, heading.known_std_rad**2]),
     )
 
@@ -70,6 +74,17 @@ def noises_with(numbers: Numbers, receiver_m2_s: float, own_m2_s: float, *, turn
         noises[:, CURVATURE_STD] = ON_THE_SPOT_RAD_M
         noises[:, HEADING_AT_REST] = noises[:, HEADING_NOISE]
     return noises
+
+
+def _prior_variances(config: ImmConfig) -> Array:
+    speed, acceleration = config.initial_speed_std_m_s**2, config.initial_acceleration_std_m_s2**2
+    heave = config.heave.std_m**2
+    heave_rate = heave * (2.0 * math.pi * config.heave.frequency_hz) ** 2
+    curvature = config.heading.curvature_std_rad_m**2
+    moving = [speed, speed, acceleration, acceleration, curvature, UNKNOWN_HEADING_VARIANCE]
+    vertical = [0.0, config.road.grade_std**2, heave, heave_rate]
+    driven = [config.road.bend_std_per_m**2, config.road.gravity_leak_std_m_s2**2]
+    return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0, *driven])
 
 
 def _noise(config: ImmConfig, mode: ImmModeConfig) -> tuple[float, ...]:

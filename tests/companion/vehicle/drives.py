@@ -216,19 +216,17 @@ def _vehicle_sensors(
         for quantity, value, spread in values:
             covariance = spread if isinstance(spread, np.ndarray) else spread**2 * np.eye(len(value))
             if covariance[0, 0] > 0.0:
-                yield _arrival(t, sensors.delay_s, quantity, value, covariance)
+                yield arrival(t, sensors.delay_s, quantity, value, covariance)
 
 
 def _pad_sightings(truth: Drive, sensors: Sensors, rng: np.random.Generator) -> Iterator[tuple[int, Measurement]]:
     for i in range(int(truth.length_s * sensors.pad_rate_hz)):
         t = i / sensors.pad_rate_hz
         value = truth.pad_at(t) + sensors.pad_std_m * rng.standard_normal(3)
-        yield _arrival(t, sensors.pad_delay_s, Quantity.PAD, value, sensors.pad_std_m**2 * np.eye(3))
+        yield arrival(t, sensors.pad_delay_s, Quantity.PAD, value, sensors.pad_std_m**2 * np.eye(3))
 
 
-def _arrival(
-    t_s: float, delay_s: float, quantity: Quantity, value: Array, covariance: Array
-) -> tuple[int, Measurement]:
+def arrival(t_s: float, delay_s: float, quantity: Quantity, value: Array, covariance: Array) -> tuple[int, Measurement]:
     t_ns = EPOCH_NS + round(t_s * 1e9)
     measurement = Measurement(t_ns=t_ns, quantity=quantity, value=value, covariance=covariance)
     return t_ns + round(delay_s * 1e9), measurement

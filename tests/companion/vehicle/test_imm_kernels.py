@@ -9,6 +9,7 @@ from scipy.stats import multivariate_normal
 
 from companion.core.data import Array
 from companion.vehicle import imm_forecast as forecasts
+from companion.vehicle import imm_judgement as judgement
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_sensors as sensors
@@ -204,19 +205,7 @@ def test_mode_that_was_ruled_out_comes_back() -> None:
     covariances = np.stack([1e-2 * np.eye(kernels.SIZE), 1e-2 * np.eye(kernels.SIZE)])
     value = sensors.observe(sensors.POSITION, means[1], LEVER, True)[0]
     modes, reading = (means, covariances, np.array([1.0, 0.0])), (sensors.POSITION, value, 1e-4 * np.eye(3))
-    (_, _, weights), nis, gate_nis = mixing.update_modes(modes, reading, LEVER, True)
+    (_, _, weights), nis, gate_nis = judgement.update_modes(modes, reading, LEVER, True)
     assert weights[1] > 0.99
     assert nis > 100.0
     assert gate_nis == pytest.approx(0.0, abs=1e-9)
-
-
-@pytest.mark.parametrize("axes", [1, 3])
-def test_measurement_tells_the_modes_apart_as_one_component_would(axes: int) -> None:
-    means = np.stack([a_state(2), a_state(2)])
-    covariances = np.stack([0.03 * np.eye(kernels.SIZE), 0.7 * np.eye(kernels.SIZE)])
-    kind = sensors.POSITION if axes == 3 else sensors.HEADING
-    expected, H = sensors.observe(kind, means[0], LEVER, True)
-    error, R, before = np.full(axes, 0.9), 0.01 * np.eye(axes), np.array([0.8, 0.2])
-    (_, _, after), _, _ = mixing.update_modes((means, covariances, before), (kind, expected + error, R), LEVER, True)
-    fits = [multivariate_normal.logpdf(error, cov=H @ P @ H.T + R) for P in covariances]
-    assert math.log(after[1] / after[0]) == pytest.approx(math.log(0.2 / 0.8) + (fits[1] - fits[0]) / axes)

@@ -1,0 +1,175 @@
+"""Compiled steps that change both modes by a reading, and judge by it which of them the vehicle is in.
+
+`Modes` are as `imm_mixing` has them: the steady model first, that of manoeuvres second.
+"""
+
+import math
+
+import numpy as np
+
+from companion.core.data import Array
+from companion.vehicle.compiled import compiled_kernel
+from companion.vehicle.imm_kernels import correct, process_noise
+from companion.vehicle.imm_mixing import Modes, combine, is_heading_known, switching
+from companion.vehicle.imm_sensors import COURSE, HEADING, PAD, POSITION, VELOCITY, course, observe
+from companion.vehicle.small_matrices import carried_through, inverse_of
+
+WEIGHT_MIN = 1e-12  # a mode that rounding has ruled out could never come back
+FIT_MAX = 700.0  # of a logarithm whose exponential is a number
+SIDEWAYS_RAD = 1.0  # so far from its heading, or from the opposite, no vehicle goes that is known well
+
+
+@compiled_kernel
+def residual_of(kind: int, value: Array, expected: Array) -> Array:
+    """Return measured minus expected, the short way round for angles."""
+    residual = value - expected
+    if kind in (HEADING, COURSE):
+        residual[0] = (residual[0] + math.pi) % (2.0 * math.pi) - math.pi
+    return residual
+
+
+@compiled_kernel
+def expect_manoeuvre(modes: Modes, unmeasured_s: float, dwell_s: Array, noise: Array) -> Modes:
+    """Return the filter with a manoeuvre that may have begun since the vehicle's motion was measured last.
+
+    Yaw rates come fifty times a second. Those of a straight road all but rule the manoeuvre model out, and leave it
+    mixed with the steady one of the instant before; yet of a brake, in the tenths of a second from one velocity to the
+    next, they say nothing. So each velocity is asked anew with the probability that the vehicle alone has.
+
+    Args:
+        modes: the filter at the time of the reading.
+        unmeasured_s: time since the last fix or velocity.
+        dwell_s: (2,) mean dwell times of both modes.
+        noise: (15,) of the manoeuvre model.
+    """
+    means, covariances, weights = modes
+    begun = switching(dwell_s, unmeasured_s)[0, 1]
+    if weights[1] >= begun:
+        return modes
+    lasted_s = min(unmeasured_s, dwell_s[1])
+    fresh = covariances[0] + process_noise(means[0], lasted_s, noise, np.zeros((2, 2)))
+    share = weights[1] / begun
+    shares = np.array([1.0 - share, share])
+    mean, covariance = combine(means, np.stack((fresh, covariances[1])), shares)
+    return np.stack((means[0], mean)), np.stack((covariances[0], covariance)), np.array([1.0 - begun, begun])
+
+
+@compiled_kernel
+def log_likelihood_along(residual: Array, spread: Array, x: float, y: float) -> float:
+    """Return the log-likelihood of a residual's component along the unit vector (x, y), less a constant."""
+    along = x * residual[0] + y * residual[1]
+    variance = x * x * spread[0, 0] + y * y * spread[1, 1] + x * y * (spread[0, 1] + spread[1, 0])
+    return -0.5 * float(along * along / variance + math.log(variance))
+
+
+@compiled_kernel
+def manoeuvre_ratio(residuals: Array, spreads: Array, ux: float, uy: float) -> float:
+    """Return how much better the manoeuvre model expected a velocity than the steady one, as a ratio.
+
+    A manoeuvre is a brake or a turn: the mean of what the components along and across the track say for it. So neither
+    speaks against the other. Both models expect the same of the height.
+
+    Args:
+        residuals: (2, m) of both modes, m = 3.
+        spreads: (2, m, m), their covariances.
+        ux: the direction of the track in W, east.
+        uy: north.
+    """
+    ratio = 0.0
+    for x, y in ((ux, uy), (-uy, ux)):
+        steady = log_likelihood_along(residuals[0], spreads[0], x, y)
+        manoeuvre = log_likelihood_along(residuals[1], spreads[1], x, y)
+        ratio += 0.5 * math.exp(min(max(manoeuvre - steady, -FIT_MAX), FIT_MAX))
+    return ratio
+
+
+@compiled_kernel
+def update_modes(
+    modes: Modes, reading: tuple[int, Array, Array], lever: Array, sees_heading: bool
+) -> tuple[Modes, float, float]:
+    """Return the filter after a measurement, the mixture's NIS, and the smaller of the modes' NIS.
+
+    The mixture's NIS tells consistency; an outlier is what even the mode with the wider noise does not expect.
+    What a place says for either mode counts as that of one component: receivers state the errors of their axes as
+    independent, but where they are one and the same (a common delay, a reflection) it would count m times over.
+
+    Args:
+        modes: the filter.
+        reading: kind as `observe` takes it, value (m,), covariance (m, m).
+        lever: (3,) from the antenna to the pad in V, m.
+        sees_heading: whether the heading is known, so that the lever arm has a direction.
+    """
+    means, covariances, weights = modes
+    kind, value, R = reading
+    m = len(value)
+    xs, Ps = np.empty_like(means), np.empty_like(covariances)
+    fits, nis = np.empty(2), np.empty(2)
+    residuals, spreads = np.empty((2, m)), np.empty((2, m, m))
+    for j in range(2):
+        expected, H = observe(kind, means[j], lever, sees_heading)
+        residuals[j] = residual_of(kind, value, expected)
+        spreads[j] = carried_through(H, covariances[j]) + R
+        xs[j], Ps[j], nis[j], fits[j] = correct(means[j], covariances[j], residuals[j], H, R)
+    ratio = math.exp(min(max((fits[1] - fits[0]) / m, -FIT_MAX), FIT_MAX))
+    if kind == VELOCITY:
+        speed, ux, uy = course(means[0])
+        ratio = manoeuvre_ratio(residuals, spreads, ux if speed > 1e-6 else 1.0, uy)
+    steady, manoeuvre = max(weights[0], WEIGHT_MIN), max(weights[1], WEIGHT_MIN) * ratio
+    after = np.array([steady, manoeuvre]) / (steady + manoeuvre)
+    residual, spread = combine(residuals, spreads, weights)
+    inverse, _ = inverse_of(spread)
+    mixture_nis = (residual * inverse * residual.reshape(m, 1)).sum()
+    return (xs, Ps, after), float(mixture_nis), float(nis.min())
+
+
+@compiled_kernel
+def align_modes(
+    means: Array, covariances: Array, speed_min_m_s: float, course_variance: float, known_variance: float
+) -> tuple[Array, Array]:
+    """Return the modes after the rule that a driving vehicle heads where it goes.
+
+    One that is known to head against its course drives backwards. Nothing is learnt while it is slow, while the course
+    itself is vague, or when it goes sideways.
+    """
+    xs, Ps = means.copy(), covariances.copy()
+    lever, zero = np.zeros(3), np.zeros(1)
+    for j in range(2):
+        x, P = means[j], covariances[j]
+        speed = math.hypot(x[2], x[3])
+        if speed < speed_min_m_s or P[2, 2] + P[3, 3] > (0.3 * speed) ** 2:
+            continue
+        known = P[7, 7] < known_variance
+        expected, H = observe(COURSE, x, lever, False)
+        residual = residual_of(COURSE, zero, expected)
+        if known and abs(residual[0]) > math.pi - SIDEWAYS_RAD:
+            residual[0] -= math.copysign(math.pi, residual[0])
+        if known and abs(residual[0]) > SIDEWAYS_RAD:
+            continue
+        R = np.array([[course_variance if known else min(course_variance, 0.01)]])
+        xs[j], Ps[j], _, _ = correct(x, P, residual, H, R)
+    return xs, Ps
+
+
+@compiled_kernel
+def take_reading(
+    modes: Modes, reading: tuple[int, Array, Array], lever: Array, course: Array
+) -> tuple[Modes, float, float]:
+    """Return what `update_modes` does, with the heading judged and, after a fix or a velocity, aligned.
+
+    Args:
+        modes: the filter.
+        reading: kind as `observe` takes it, value (m,), covariance (m, m).
+        lever: (3,) from the antenna to the pad in V, m.
+        course: (3,) `align_modes`' speed, m/s, and variances of course and known heading, rad^2.
+    """
+    kind, value, R = reading
+    known = is_heading_known(modes, course[2])
+    if kind == PAD and not known:
+        arm2 = math.hypot(lever[0], lever[1]) ** 2
+        R = R.copy()
+        R[0, 0] += arm2
+        R[1, 1] += arm2
+    (means, covariances, weights), nis, gate_nis = update_modes(modes, (kind, value, R), lever, known)
+    if kind in (POSITION, VELOCITY):
+        means, covariances = align_modes(means, covariances, course[0], course[1], course[2])
+    return (means, covariances, weights), nis, gate_nis

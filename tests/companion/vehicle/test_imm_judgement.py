@@ -1,0 +1,99 @@
+"""Which of the models the vehicle is in, as its readings tell."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig, ReceiversConfig
+from companion.core.data import Quantity
+from companion.vehicle import imm_judgement as judgement
+from companion.vehicle import imm_kernels as kernels
+from companion.vehicle import imm_mixing as mixing
+from companion.vehicle import imm_sensors as sensors
+from link.records import replace
+from tests.companion.vehicle.drives import NOMINAL, arrival, drive, sense
+from tests.companion.vehicle.rides import estimator, now_ns
+from tests.companion.vehicle.test_imm_kernels import LEVER, NOISE, a_covariance, a_state
+
+DWELL_S = np.array([40.0, 0.4])
+SAME_FRAME = EstimatorConfig(
+    imm=ImmConfig(receivers=ReceiversConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
+)
+
+
+def two_modes(weight: float) -> mixing.Modes:
+    means = np.stack([a_state(2), a_state(2)])
+    covariances = np.stack([0.03 * np.eye(kernels.SIZE), 0.7 * np.eye(kernels.SIZE)])
+    return means, covariances, np.array([1.0 - weight, weight])
+
+
+def test_scalar_tells_the_modes_apart_by_its_likelihood() -> None:
+    modes, error, R = two_modes(0.2), 0.9, 0.01 * np.eye(1)
+    expected, H = sensors.observe(sensors.HEADING, modes[0][0], LEVER, True)
+    (_, _, after), _, _ = judgement.update_modes(modes, (sensors.HEADING, expected + error, R), LEVER, True)
+    spreads = [math.sqrt(float((H @ P @ H.T + R)[0, 0])) for P in modes[1]]
+    ratio = norm.pdf(error, scale=spreads[1]) / norm.pdf(error, scale=spreads[0])
+    assert after[1] / after[0] == pytest.approx(0.25 * ratio)
+
+
+def test_velocity_tells_the_modes_apart_by_the_mean_of_along_and_across() -> None:
+    modes, R = two_modes(0.2), 0.01 * np.eye(3)
+    course = modes[0][0][2:4] / np.hypot(*modes[0][0][2:4])
+    along, across = np.append(course, 0.0), np.array([-course[1], course[0], 0.0])
+    expected, H = sensors.observe(sensors.VELOCITY, modes[0][0], LEVER, True)
+    value = expected + 0.9 * along + 0.3 * across + np.array([0.0, 0.0, 5.0])
+    (_, _, after), _, _ = judgement.update_modes(modes, (sensors.VELOCITY, value, R), LEVER, True)
+    ratios = []
+    for axis, error in ((along, 0.9), (across, 0.3)):
+        steady, manoeuvre = (math.sqrt(float(axis @ (H @ P @ H.T + R) @ axis)) for P in modes[1])
+        ratios.append(norm.pdf(error, scale=manoeuvre) / norm.pdf(error, scale=steady))
+    assert after[1] / after[0] == pytest.approx(0.25 * np.mean(ratios))
+
+
+def test_error_that_nothing_expects_leaves_probabilities() -> None:
+    modes = two_modes(0.01)
+    value = sensors.observe(sensors.VELOCITY, modes[0][0], LEVER, True)[0] + 1e4
+    (_, _, after), _, _ = judgement.update_modes(modes, (sensors.VELOCITY, value, 1e-4 * np.eye(3)), LEVER, True)
+    assert after[1] == pytest.approx(1.0)
+    assert after.sum() == pytest.approx(1.0)
+
+
+def test_manoeuvre_is_expected_with_the_probability_that_it_has_begun() -> None:
+    means, covariances = np.stack([a_state(3), a_state(4)]), np.stack([a_covariance(3), a_covariance(4)])
+    modes = (means, covariances, np.array([1.0, 0.0]))
+    after = judgement.expect_manoeuvre(modes, 0.2, DWELL_S, NOISE)
+    begun = 0.4 / 40.4 * (1.0 - math.exp(-0.2 * (1.0 / 40.0 + 1.0 / 0.4)))
+    assert after[2] == pytest.approx([1.0 - begun, begun])
+    assert after[0] == pytest.approx(np.stack([means[0], means[0]]))
+    assert after[1][0] == pytest.approx(covariances[0])
+    jerk = after[1][1] - covariances[0]
+    ux, uy = means[0][2:4] / np.hypot(*means[0][2:4])
+    grown = np.array([ux, uy]) @ jerk[2:4, 2:4] @ np.array([ux, uy])
+    assert grown == pytest.approx(NOISE[0] * 0.2**3 / 3.0, rel=1e-6)
+
+
+def test_manoeuvre_that_is_under_way_is_left_alone() -> None:
+    modes = (np.stack([a_state(3), a_state(4)]), np.stack([a_covariance(3), a_covariance(4)]), np.array([0.3, 0.7]))
+    for before, after in zip(modes, judgement.expect_manoeuvre(modes, 0.2, DWELL_S, NOISE), strict=True):
+        assert after == pytest.approx(before)
+
+
+@pytest.mark.parametrize("deceleration_m_s2", [2.5, 6.0])
+def test_yaw_rates_of_a_straight_road_do_not_hide_a_brake(deceleration_m_s2: float) -> None:
+    truth = drive(12.0, lambda t: float(np.clip(12.0 - deceleration_m_s2 * (t - 10.02), 0.0, 12.0)), lambda _: 0.0)
+    late = replace(NOMINAL, heading_std_rad=0.0, yaw_rate_std_rad_s=0.0, velocity_std_m_s=0.08, fix_std_m=0.06)
+    errors = []
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        rates = [
+            arrival(i / 50.0, 0.06, Quantity.YAW_RATE, 0.009 * rng.standard_normal(1), 0.009**2 * np.eye(1))
+            for i in range(600)
+        ]
+        told = [measured for at_ns, measured in (*sense(truth, late, seed), *rates) if at_ns <= now_ns(10.48)]
+        chosen = estimator(EstimatorKind.IMM, SAME_FRAME)
+        estimate = chosen.estimate(chosen.fuse(None, told), now_ns(10.48))
+        assert estimate is not None
+        errors.append(np.linalg.norm(estimate.velocity_enu_m_s[:2]) - np.linalg.norm(truth.at(10.48)[1][:2]))
+    assert abs(np.mean(errors)) < 0.06 * deceleration_m_s2
