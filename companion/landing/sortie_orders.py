@@ -38,7 +38,7 @@ def missing_for_sortie(
         return Cause(Reason.NO_VEHICLE_DATA)
     match event:
         case Event.LAUNCH:
-            return _missing_for_launch(s) or obstacle
+            return _missing_for_launch(s) or _unless_ground_is_deck(obstacle)
         case Event.FOLLOW if station is not None:
             return why_no_station(station, s, config)
         case _:
@@ -71,6 +71,11 @@ def _missing_for_launch(s: Situation) -> Cause | None:
     if unplaced is not None:
         return unplaced
     return None if stands_on_deck(s, ON_DECK_M, _DECK_HEIGHT_M) else Cause(Reason.NOT_ON_DECK)
+
+
+def _unless_ground_is_deck(obstacle: Cause | None) -> Cause | None:
+    """Return what stands in a landing's way; to a drone whose ground was the deck the road seems elsewhere."""
+    return None if obstacle is not None and obstacle.reason is Reason.ROAD_ELSEWHERE else obstacle
 
 
 def _out_of_reach(s: Situation, config: CompanionConfig) -> Cause | None:

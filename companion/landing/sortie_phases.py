@@ -37,11 +37,10 @@ def begin_phase_of_sortie(
     """Return the memory with what a sortie's phase needs at its beginning; `before` led to the present one."""
     sortie, phase = memory.sortie, memory.progress.phase
     match phase:
-        case Phase.LIFT_OFF:
-            return replace(memory, sortie=_at_its_place_on_deck(sortie, situation, config))
-        case Phase.FOLLOW if before is Phase.LIFT_OFF:
-            above = Station(offset_m=(0.0, 0.0, config.chase.height_m))
-            return replace(memory, sortie=replace(sortie, station=above))
+        case Phase.ON_DECK:
+            return _without_ground(memory)
+        case Phase.LIFT_OFF | Phase.FOLLOW if before in (Phase.ON_DECK, Phase.LIFT_OFF):
+            return replace(memory, sortie=_over_deck(sortie, phase, situation, config))
         case Phase.RALLY:
             return _to_rally(memory, before, situation, config)
         case Phase.CHASE if before in STATION_PHASES:
@@ -69,7 +68,16 @@ def clear_of_vehicle(anchor_enu_m: Array, memory: StepMemory, situation: Situati
     return np.array([*anchor_enu_m[:2], max(float(anchor_enu_m[2]), clear_m)])
 
 
-def _at_its_place_on_deck(sortie: SortieMemory, s: Situation, config: CompanionConfig) -> SortieMemory:
+def _without_ground(memory: StepMemory) -> StepMemory:
+    """Return the memory of a drone on the deck: what it has stood on is no ground."""
+    vehicle = replace(memory.vehicle, is_road_elsewhere=False)
+    return replace(memory, vehicle=vehicle, places=replace(memory.places, ground_enu_m=None))
+
+
+def _over_deck(sortie: SortieMemory, phase: Phase, s: Situation, config: CompanionConfig) -> SortieMemory:
+    """Return the sortie with its first stations: over where on the deck it stood, then over the pad."""
+    if phase is Phase.FOLLOW:
+        return replace(sortie, station=Station(offset_m=(0.0, 0.0, config.chase.height_m)))
     if s.approach is None or s.pad is None:
         return sortie
     ahead = ahead_rad(StationFrame.VEHICLE, s.pad, sortie.ahead_rad)

@@ -26,6 +26,7 @@ HELD_S = 20.0
 _AWAY_M = 300.0
 _AWAY_MAX_S = 60.0
 _SETTLED_S = 1.0  # before the launch: the first fixes have come
+_ASKS_AGAIN_NS = 1_000_000_000  # an operator whose launch is refused
 _END_S = 2.5  # after the motors are off; the score looks at the drone 2 s after
 _LANDING_MAX_S = 240.0  # from the return to the end
 _LIFTED_NS = 200_000_000  # off the deck for so long: a rough road's shaking is over in less
@@ -71,10 +72,10 @@ class SortieFlight(Lockstep):
         if t_ns < self._next_ns:
             return
         match phase:
-            case Phase.IDLE if "launch" not in self.times_ns or not node.is_ready_to_start():
-                if self.elapsed_s > _SETTLED_S and node.is_ready_to_start():
-                    self._mark("launch")
-                    node.request(Command.LAUNCH)
+            case Phase.IDLE if self.elapsed_s > _SETTLED_S and node.is_ready_to_start():
+                self._mark("launch")
+                node.request(Command.LAUNCH)
+                self._next_ns = t_ns + _ASKS_AGAIN_NS
             case Phase.FOLLOW if len(self.orders) < len(STATIONS):
                 station = STATIONS[len(self.orders)]
                 self.orders.append((t_ns, station))
