@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from companion.core.data import Array
 from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from link.messages import Command, Station, StationFrame
@@ -15,9 +16,10 @@ RADIUS_M = CONFIG.sortie.vehicle_radius_m + CONFIG.sortie.keep_out_margin_m
 LOW = Station(offset_m=(5.0, -4.0, 1.0), frame=StationFrame.COURSE)
 
 
-def offset_m(flight: Flight) -> np.ndarray:
+def offset_m(flight: Flight) -> Array:
     """Of the drone's feet from the pad's centre, in W; the vehicle drives east."""
-    return np.array(flight.own.position_enu_m) - flight.vehicle.at(flight.own.t_ns) - np.array([0.0, 0.0, GEAR_M])
+    offset = np.array(flight.own.position_enu_m) - flight.vehicle.at(flight.own.t_ns) - np.array([0.0, 0.0, GEAR_M])
+    return np.asarray(offset)
 
 
 def at_station(station: Station) -> Flight:
