@@ -53,8 +53,9 @@ fuzz: .venv/.kernels
 	$(BIN)/scenarios fuzz --frames $(FRAMES) --seed $$(od -An -N4 -tu4 /dev/urandom | tr -d ' ')
 	$(BIN)/pytest -q -n 2 --hypothesis-profile=anew -m "hypothesis and not wire"
 
-# The manual, in build/manual/index.html; needs no network. A warning, such as a broken link, fails it.
+# The manual, in build/manual/index.html; needs no network. A warning, such as a broken link, or a misspelt word fails it.
 docs: .venv/.complete
+	$(BIN)/codespell README.md CHANGELOG.md docs companion link scenarios sim_autopilot tests
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict --config-file docs/manual/mkdocs.yml
 
 lint: types style

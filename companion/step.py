@@ -5,32 +5,23 @@ Pure: the same memory, inputs and system give the same result, in flight, in sim
 
 from companion.autopilots.driver import AutopilotCommand, Desire
 from companion.config.companion import CompanionConfig
-from companion.core.data import Forecast
-from companion.integrity.frames import are_frames_one, update_fixed_phases
 from companion.integrity.heights import is_road_elsewhere, update_ground, update_pad_raised_m, with_pad_raised
-from companion.integrity.sightings import SightingWatch, update_sightings
-from companion.integrity.vehicle_data import (
-    Contradictions,
-    FixStamps,
-    update_contradictions,
-    update_course,
-    update_fix_stamps,
-    without_contradicted_heading,
-)
+from companion.integrity.vehicle_data import update_course
 from companion.landing.conditions import HELD_UP, holds
 from companion.landing.contact import may_force_motors_off, signs_of
+from companion.landing.contact_forecast import update_forecast
 from companion.landing.flying import fly
-from companion.landing.memory import ModelMemory, StepMemory, VehicleMemory, to_present_frame
+from companion.landing.memory import ModelMemory, StepMemory, to_present_frame
 from companion.landing.outputs import has_jittery_place, landing_status, news, news_of_sortie, setpoint
 from companion.landing.sortie_decisions import is_quiet_for_long
 from companion.landing.step_data import StepInputs, StepOutputs, System
-from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.landing.transitions import take_events
+from companion.landing.vehicle_update import predict_pad, update_vehicle
 from companion.landing.virtual_model import tracking_error_max_m, update_tracking
-from companion.planning.requests import are_finite
 from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, STATION_PHASES, Phase
 from companion.situation.situation import (
     Below,
+    Following,
     Situation,
     VehicleNews,
     drone_now,
@@ -38,13 +29,11 @@ from companion.situation.situation import (
     range_height_m,
     with_pad,
 )
-from companion.vehicle.driving import forget_beliefs, update_surprise
-from companion.vehicle.pad import PadPath, pad_path
+from companion.vehicle.pad import PadPath
 from link.frames.rotations import yaw_of
 from link.records import replace
 
 _DISARM_MAX_S = 1.0  # it takes 0.6 s where the plain one is refused; the companion waits for 1.5 s before it ends
-_PRESENT_OFFSETS_S = HORIZON_OFFSETS_S[:2]  # a second point tells how the lever arm turns
 
 
 def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tuple[StepMemory, StepOutputs]:
@@ -56,16 +45,17 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
         system: configuration, estimator and guidance law.
     """
     memory = to_present_frame(memory, inputs.autopilot)
-    model, vehicle = _update_model(memory, inputs, system), _update_vehicle(memory.vehicle, inputs, system)
-    vehicle, pad = _pad(memory.progress.phase, vehicle, inputs, system)
+    model, vehicle = _update_model(memory, inputs, system), update_vehicle(memory.vehicle, inputs, system)
+    vehicle, pad = predict_pad(memory.progress.phase, vehicle, inputs, system)
     memory = replace(memory, model=model, vehicle=vehicle)
     memory, situation = _look(memory, _situation(memory, pad, inputs, system), pad, system.config)
     before, warned = memory.progress, memory.sortie.warning
     memory, reply = take_events(memory, situation, inputs, system.config)
     phase = memory.progress.phase
     if phase in FOLLOWING_PHASES and before.phase not in FOLLOWING_PHASES:
-        vehicle, pad = _pad(phase, memory.vehicle, inputs, system)
+        vehicle, pad = predict_pad(phase, memory.vehicle, inputs, system)
         memory, situation = replace(memory, vehicle=vehicle), with_pad(situation, pad)
+    memory = update_forecast(memory, situation, inputs, system)
     memory, plan = fly(memory, situation, inputs, system)
     memory, commands = _drive(memory, situation, inputs, system.config)
     outputs = StepOutputs(
@@ -93,78 +83,6 @@ def _update_model(memory: StepMemory, inputs: StepInputs, system: System) -> Mod
     return replace(model, tracking=update_tracking(model.tracking, own_ns, own, inputs.response, estimates=estimates))
 
 
-def _update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -> VehicleMemory:
-    """Fuse what the vehicle sent, and compare it with what was known before."""
-    vehicle = _in_present_utc(vehicle, inputs)
-    estimator, now_ns = vehicle.estimator, inputs.monotonic_ns
-    if inputs.measurements:
-        estimator = system.estimator.fuse(estimator, inputs.measurements)
-    contradictions, sightings = vehicle.contradictions, vehicle.sightings
-    if contradictions.is_due(now_ns):
-        health = system.estimator.health(estimator)
-        contradictions = update_contradictions(contradictions, health, now_ns)
-        sightings = update_sightings(sightings, health, system.config)
-    return replace(
-        vehicle,
-        estimator=estimator,
-        surprise=update_surprise(
-            vehicle.surprise,
-            system.estimator,
-            estimator,
-            inputs.t_ns,
-            monotonic_ns=now_ns,
-            config=system.config.descent.uneven,
-        ),
-        fix_stamps=update_fix_stamps(
-            vehicle.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns, inputs.fix_ahead_s
-        ),
-        contradictions=contradictions,
-        sightings=sightings,
-        phases=update_fixed_phases(
-            vehicle.phases, inputs.measurements, now_ns, drone_is_fixed=inputs.autopilot.receiver_is_fixed
-        ),
-    )
-
-
-def _in_present_utc(vehicle: VehicleMemory, inputs: StepInputs) -> VehicleMemory:
-    """Forget what the vehicle's stamps have been compared with, once UTC was set.
-
-    The estimate keeps its times: they are the vehicle's, whose clock is another one, so that what was believed of it
-    cannot be checked any more.
-    """
-    utc_ahead_ns = inputs.t_ns - inputs.monotonic_ns
-    if utc_ahead_ns == vehicle.utc_ahead_ns:
-        return vehicle
-    return replace(
-        vehicle,
-        utc_ahead_ns=utc_ahead_ns,
-        surprise=forget_beliefs(vehicle.surprise),
-        fix_stamps=FixStamps(),
-        contradictions=Contradictions(),
-        sightings=SightingWatch(),
-    )
-
-
-def _pad(
-    phase: Phase, vehicle: VehicleMemory, inputs: StepInputs, system: System
-) -> tuple[VehicleMemory, PadPath | None]:
-    """Return the pad as far ahead as the phase looks; an estimate that is not finite is given up and starts anew."""
-    offset_s = HORIZON_OFFSETS_S if phase in FOLLOWING_PHASES else _PRESENT_OFFSETS_S
-    forecast = system.estimator.forecast(vehicle.estimator, inputs.t_ns, offset_s)
-    if forecast is None:
-        return vehicle, None
-    if _is_finite(forecast):
-        has_one_frame = are_frames_one(vehicle.phases, system.config.integrity.receiver_frames, inputs.monotonic_ns)
-        pad = pad_path(forecast, inputs.pad, has_one_frame=has_one_frame)
-        return vehicle, without_contradicted_heading(pad, vehicle.course)
-    return replace(vehicle, estimator=None), None
-
-
-def _is_finite(forecast: Forecast) -> bool:
-    path = (forecast.position_enu_m, forecast.velocity_enu_m_s, forecast.acceleration_enu_m_s2)
-    return are_finite(*path, forecast.position_std_m, *(() if forecast.yaw_rad is None else (forecast.yaw_rad,)))
-
-
 def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, system: System) -> Situation:
     vehicle, touchdown = memory.vehicle, system.config.touchdown
     newest_ns = system.estimator.newest_fix_ns(vehicle.estimator)
@@ -180,7 +98,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
         vehicle=VehicleNews(
             fix_age_s=None if newest_ns is None else (inputs.t_ns - newest_ns) * 1e-9,
             fix_age_on_arrival_s=vehicle.fix_stamps.age_on_arrival_s,
-            is_alive=inputs.vehicle_alive,
+            is_alive=inputs.vehicle.is_alive,
             speed_std_m_s=vehicle.surprise.speed_std_m_s,
             fix_std_m=vehicle.phases.vehicle_std_m,
             rejected_share=vehicle.contradictions.rejected_share,
@@ -194,9 +112,11 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
         ),
         feet_offset_m=touchdown.gear_height_m,
         reference=memory.model.reference,
-        tracking_error_m=memory.model.tracking.error_m,
-        tracking_error_max_m=tracking_error_max_m(
-            memory.model.reference, inputs.response, inputs.link_delay.std_s, system.config.abort.tracking_stds_max
+        following=Following(
+            error_m=memory.model.tracking.error_m,
+            error_max_m=tracking_error_max_m(
+                memory.model.reference, inputs.response, inputs.link_delay.std_s, system.config.abort.tracking_stds_max
+            ),
         ),
         waiting_point_enu_m=memory.places.waiting_point_enu_m,
         rival=inputs.rival,

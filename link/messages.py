@@ -174,12 +174,39 @@ class CommandReply(Struct, frozen=True, kw_only=True):
     reason: str
 
 
+class ContactForecast(Struct, frozen=True, kw_only=True):
+    """How a descent that goes on now ends: probabilities of the contact that it leads to.
+
+    Attributes:
+        in_s: until the contact, a mean; None where none is expected.
+        s1: a contact within the limits of S1, those of S2 included.
+        s2: one within the limits of S2.
+        unsafe: one beyond those of S1.
+        broken_off: none, since the drone waits or breaks off before.
+        misses_position: unsafe, and the place is farthest beyond its limit.
+        misses_speed: likewise, the horizontal speed against the deck.
+        misses_sink: likewise, the sink rate.
+        misses_tilt: likewise, the tilt.
+    """
+
+    in_s: float | None
+    s1: float
+    s2: float
+    unsafe: float
+    broken_off: float
+    misses_position: float
+    misses_speed: float
+    misses_sink: float
+    misses_tilt: float
+
+
 class LandingStatus(Struct, frozen=True, kw_only=True):
     """What the companion tells the world about the landing; None where it does not know.
 
     `relative_position_enu_m` is of the drone's feet from the pad's centre: east and north are those of the drone, up is
     `height_above_pad_m`. `reason_code` names the reason without its numbers, for programs. `refused` says what of the
-    vehicle's data was refused most in the last 5 s, and why.
+    vehicle's data was refused most in the last 5 s, and why. `flown_by` is "companion" while the autopilot follows its
+    setpoints, "failsafe" while one flies, else "other"; empty without an autopilot. `battery_share` is left, 0 to 1.
     """
 
     stamp_ns: int
@@ -196,3 +223,6 @@ class LandingStatus(Struct, frozen=True, kw_only=True):
     armed: bool
     fix_age_s: float | None
     open_to_strangers: tuple[str, ...] = ()
+    flown_by: str = ""
+    battery_share: float | None = None
+    contact_forecast: ContactForecast | None = None

@@ -7,19 +7,8 @@ from typing import Annotated, Any
 import typer
 
 from link.errors import UserError
-from link.program.cli import (
-    ConnectOption,
-    DroneOption,
-    InsecureOption,
-    ListenOption,
-    ModeOption,
-    MulticastOption,
-    NamespaceOption,
-    VehicleOption,
-    ZenohConfigOption,
-    make_app,
-    run_app,
-)
+from link.program.cli import SetOption, make_app, run_app
+from link.zenoh.command_line import DroneOption, NameArguments, NamespaceOption, ZenohArguments
 from scenarios.commands import (
     bench,
     camera,
@@ -32,6 +21,7 @@ from scenarios.commands import (
     rare,
     replay,
     report,
+    retries,
     ros2,
     sortie,
 )
@@ -77,17 +67,20 @@ def run_command(
     seed: SeedOption = None,
     speed: Annotated[float, typer.Option("--speed", min=0.1, max=50.0, help="Simulated seconds a second.")] = 1.0,
     lockstep: Annotated[bool, typer.Option("--lockstep", help="In one process on a simulated clock.")] = False,
-    firmware: Annotated[str | None, typer.Option("--firmware", metavar="NAME", help="px4 or ardupilot.")] = None,
+    firmware: Annotated[
+        str | None, typer.Option("--firmware", metavar="px4|ardupilot", help="In place of the scenario's.")
+    ] = None,
+    changes: SetOption = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the run's folder is made.")] = Path("runs"),
     record: Annotated[
-        bool, typer.Option("--record/--no-record", help="Record what goes in and out of the companion, and the truth.")
+        bool, typer.Option(" /--no-record", help="Record neither the companion nor the truth; else both are, as MCAP.")
     ] = True,
     view: Annotated[bool, typer.Option("--view", help="Show the landing in the browser.")] = False,
     as_json: JsonOption = False,
 ) -> int:
     """Run a landing and score it on ground truth; exit code 1 when it does not land."""
     from link.program.patience import Patience
-    from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.changed import load_changed_scenario
     from scenarios.catalogue.firmware_option import with_firmware
     from scenarios.catalogue.world_names import run_seed
     from scenarios.commands.run_lines import Reporter
@@ -95,7 +88,7 @@ def run_command(
     from scenarios.recordings.run_folder import RunOptions, run_folder
     from scenarios.wire.run import run_over_wire
 
-    scenario = load_scenario(name if firmware is None else with_firmware(name, firmware))
+    scenario = load_changed_scenario(name if firmware is None else with_firmware(name, firmware), changes)
     view_port = view_command.port_of_run(lockstep=lockstep, as_json=as_json) if view else None
     folder = run_folder(out, scenario.name)
     options = RunOptions(seed=run_seed(name, seed), speed=speed, folder=folder, record=record, view_port=view_port)
@@ -122,28 +115,20 @@ def world_command(
     mavlink: Annotated[
         str, typer.Option("--mavlink", metavar="DEVICE", help="Where the companion listens.")
     ] = "udpout:127.0.0.1:14540",
-    namespace: NamespaceOption = "decklander",
-    vehicle: VehicleOption = "vehicle",
-    drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
+    changes: SetOption = None,
+    names: NameArguments,
+    endpoints: ZenohArguments,
 ) -> None:
     """Run the simulated side of a scenario, the autopilot with the vehicle in it, in one process."""
     from link.mavlink.transports import open_transport
-    from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
     from link.zenoh.session import open_session
-    from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.changed import load_changed_scenario
     from scenarios.catalogue.world_names import run_seed
     from scenarios.wire.world import WorldLoop
 
-    scenario = load_scenario(name)
-    keys = Keys(namespace, vehicle, drone)
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure, listens=True)
+    scenario = load_changed_scenario(name, changes)
+    keys = names.keys()
+    options = endpoints.options(listens=True)
     with open_transport(mavlink, is_patient=True) as transport, open_session(options) as zenoh:
         WorldLoop(scenario, run_seed(name, seed), keys, transport, zenoh, speed=speed).run()
 
@@ -164,25 +149,21 @@ def command_command(
     frame: Annotated[
         str | None, typer.Option(metavar="vehicle|course|north", help="Of a follow: which way is ahead.")
     ] = None,
+    as_json: JsonOption = False,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
+    endpoints: ZenohArguments,
 ) -> int:
     """Send a command to the companion; exit code 1 when it is refused."""
+    import json
+
     from link.program.printable import printable
     from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
     from scenarios.commands.operator import order_of, send_order
 
-    order = order_of(command, offset, frame)
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
-    reply = send_order(order, Keys(namespace, "vehicle", drone), options)
-    sys.stdout.write("accepted\n" if reply.accepted else f"refused: {printable(reply.reason)}\n")
+    reply = send_order(order_of(command, offset, frame), Keys(namespace, "vehicle", drone), endpoints.options())
+    told = "accepted" if reply.accepted else f"refused: {printable(reply.reason)}"
+    sys.stdout.write((json.dumps({"accepted": reply.accepted, "reason": reply.reason}) if as_json else told) + "\n")
     return 0 if reply.accepted else 1
 
 
@@ -194,6 +175,7 @@ for command in (
     bench,
     fuzz,
     faults,
+    retries,
     report,
     replay,
     fly,

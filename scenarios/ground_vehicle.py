@@ -1,27 +1,16 @@
 """The `ground-vehicle` command."""
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
 from link.errors import UserError
-from link.program.cli import (
-    ConnectOption,
-    DroneOption,
-    InsecureOption,
-    ListenOption,
-    ModeOption,
-    MulticastOption,
-    NamespaceOption,
-    Ros2MapOption,
-    Ros2Option,
-    VehicleOption,
-    ZenohConfigOption,
-    make_app,
-    run_app,
-)
+from link.program.cli import SetOption, make_app, run_app
+from link.ros2.command_line import Ros2Arguments
+from link.zenoh.command_line import NameArguments, ZenohArguments
 from scenarios.commands.examples import GROUND_VEHICLE
 
 if TYPE_CHECKING:
@@ -114,33 +103,24 @@ def ground_vehicle(
     pad_height: _PadHeightOption = None,
     antenna_to_pad: _AntennaToPadOption = None,
     seed: _SeedOption = None,
+    changes: SetOption = None,
     use_sim_time: _UseSimTimeOption = False,
     depart_at_once: _DepartAtOnceOption = False,
     timeout: _TimeoutOption = 60.0,
-    namespace: NamespaceOption = "decklander",
-    vehicle: VehicleOption = "vehicle",
-    drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
-    ros2: Ros2Option = None,
-    ros2_map: Ros2MapOption = None,
+    names: NameArguments,
+    endpoints: ZenohArguments,
+    ros2: Ros2Arguments,
 ) -> None:
     """Publish a ground vehicle over Zenoh: its position, velocity, heading and pad."""
-    from link.ros2.options import open_layout, ros2_options
-    from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
+    from link.ros2.options import open_layout
 
     if sum(one is not None for one in (scenario, gpsd, nmea, mavlink)) > 1:
         raise UserError("--scenario, --gpsd, --nmea and --mavlink are one vehicle each: give one of them")
-    keys = Keys(namespace, vehicle, drone)
-    layout = ros2_options(ros2, ros2_map)
+    keys = names.keys()
+    layout = ros2.options()
     # a ROS 2 graph has its router at the default endpoint; else the vehicle waits there for the others
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure, listens=layout is None)
-    node = (f"/{vehicle}", "ground_vehicle")
+    options = endpoints.options(listens=layout is None)
+    node = (f"/{keys.vehicle}", "ground_vehicle")
 
     def open_zenoh() -> "ZenohSession":
         return open_layout(options, layout, keys, node)
@@ -151,9 +131,11 @@ def ground_vehicle(
                 "--pad and what else describes a pad are for a real vehicle: leave them out with --scenario, whose "
                 "file says pad_size_m, roof_height_m and antenna_flu_m of its [vehicle]"
             )
-        simulation = _Simulation(scenario, seed, depart_at_once, use_sim_time, timeout)
+        simulation = _Simulation(scenario, changes, seed, depart_at_once, use_sim_time, timeout)
         _drive(simulation, keys, open_zenoh)
         return
+    if changes:
+        raise UserError("--set changes a scenario: leave it out with a real vehicle, whose pad has options of its own")
     source = _source(gpsd, nmea, mavlink)
     from scenarios.vehicle_sources.pad import pad_geometry
 
@@ -163,6 +145,7 @@ def ground_vehicle(
 
 class _Simulation(NamedTuple):
     scenario: str
+    changes: Sequence[str] | None
     seed: int | None
     departs_at_once: bool
     uses_sim_time: bool
@@ -212,12 +195,12 @@ def _listen(source: _Source, pad: "PadGeometry", keys: "Keys", open_zenoh: "Open
 
 def _drive(simulation: _Simulation, keys: "Keys", open_zenoh: "OpenZenoh") -> None:
     """Publish a scenario's vehicle."""
-    from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.changed import load_changed_scenario
     from scenarios.catalogue.world_names import run_seed
     from scenarios.simulation.vehicle_node import VehicleNode, departing_at_once
     from scenarios.wire.vehicle_loop import VehicleLoop
 
-    driven = load_scenario(simulation.scenario)
+    driven = load_changed_scenario(simulation.scenario, simulation.changes)
     seed = run_seed(simulation.scenario, simulation.seed)
     driven = departing_at_once(driven) if simulation.departs_at_once else driven
     node = VehicleNode(driven, seed, keys, has_eyes=False)

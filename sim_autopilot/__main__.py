@@ -8,21 +8,8 @@ from typing import Annotated, Any
 
 import typer
 
-from link.program.cli import (
-    EXIT_INTERRUPTED,
-    EXIT_OK,
-    ConnectOption,
-    DroneOption,
-    InsecureOption,
-    ListenOption,
-    ModeOption,
-    MulticastOption,
-    NamespaceOption,
-    VehicleOption,
-    ZenohConfigOption,
-    make_app,
-    run_app,
-)
+from link.program.cli import EXIT_INTERRUPTED, EXIT_OK, SetOption, make_app, run_app
+from link.zenoh.command_line import NameArguments, ZenohArguments
 from sim_autopilot.runtime.examples import EXAMPLES
 
 app = make_app("Simulate a quadrotor under an autopilot that speaks MAVLink.", EXAMPLES)
@@ -36,9 +23,7 @@ _MavlinkOption = Annotated[
         "tcpin:HOST:PORT or /dev/ttyX,BAUD [default: those of the firmware's own simulator].",
     ),
 ]
-_FirmwareOption = Annotated[
-    str | None, typer.Option("--firmware", metavar="NAME", help="px4 or ardupilot [default: px4].")
-]
+_FirmwareOption = Annotated[str | None, typer.Option("--firmware", metavar="px4|ardupilot", help="[default: px4].")]
 _InstanceOption = Annotated[
     int | None, typer.Option("--instance", min=0, max=249, help="Number of the drone; system id - 1 [default: 0].")
 ]
@@ -65,6 +50,7 @@ _PrintConfigOption = Annotated[bool, typer.Option("--print-config", help="Print 
 
 @app.callback(invoke_without_command=True)
 def sim_autopilot(
+    *,
     mavlink: _MavlinkOption = None,
     firmware: _FirmwareOption = None,
     instance: _InstanceOption = None,
@@ -76,37 +62,29 @@ def sim_autopilot(
     turbulence: _TurbulenceOption = None,
     seed: _SeedOption = None,
     config: _ConfigOption = None,
+    changes: SetOption = None,
     print_config: _PrintConfigOption = False,
-    namespace: NamespaceOption = "decklander",
-    vehicle: VehicleOption = "vehicle",
-    drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
+    names: NameArguments,
+    endpoints: ZenohArguments,
 ) -> int:
     """Simulate a quadrotor under an autopilot that speaks MAVLink."""
-    from link.program.toml_config import dump_toml, load_config
+    from link.program.settings import SIM_AUTOPILOT, load_settings
+    from link.program.toml_config import dump_toml
     from sim_autopilot.runtime.config import SimAutopilotConfig, autopilot_config, with_default_links
 
     given = _given(firmware=firmware, instance=instance, instant=instant, core=core, seed=seed)
     if mavlink:
         given["links"] = [{"device": device} for device in mavlink]
     given |= {"wind": _given(mean_m_s=wind, turbulence=turbulence), "datum": _datum(datum)}
-    settings = with_default_links(load_config(config, SimAutopilotConfig, given))
+    settings = with_default_links(load_settings(config, SimAutopilotConfig, SIM_AUTOPILOT, changes, given))
     autopilot = autopilot_config(settings)
     if print_config:
         sys.stdout.write(dump_toml(settings))
         return EXIT_OK
-    from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
     from sim_autopilot.runtime.run import RunOptions, run
 
-    zenoh = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
     devices = tuple(link.device for link in settings.links)
-    options = RunOptions(devices=devices, speed=speed, keys=Keys(namespace, vehicle, drone), zenoh=zenoh)
+    options = RunOptions(devices=devices, speed=speed, keys=names.keys(), zenoh=endpoints.options())
     signal.signal(signal.SIGTERM, _interrupt)
     run(settings, autopilot, options)
     return EXIT_INTERRUPTED

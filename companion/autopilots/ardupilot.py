@@ -126,7 +126,11 @@ class ArduPilotDriver:
         return local_ned_setpoint(setpoint, boot_ms, target_system)
 
     def limits(self, wanted: FlightLimits, parameters: Mapping[str, float]) -> FlightLimits:
-        """Return `wanted` cut to ArduCopter's limits of speed, climb, descent, tilt and jerk."""
+        """Return `wanted` cut to ArduCopter's limits of speed, climb, descent, tilt and jerk.
+
+        Its limits of acceleration bound its corrections alone: what a setpoint brings along is added to them
+        (AC_PosControl's shape_vel_accel without `limit_total_accel`), and the jerk of the sum is bounded.
+        """
         tilt_deg = find_limit(parameters, _TILT)
         tilt_deg = min(tilt_deg, _TILT_MAX_DEG) if math.isfinite(tilt_deg) else _TILT_DEG
         tilt_deg = min(tilt_deg, find_limit(parameters, _TILT_BY_POSITION))
@@ -137,6 +141,9 @@ class ArduPilotDriver:
             descent_max_m_s=min(wanted.descent_max_m_s, find_limit(parameters, _DESCENT)),
             tilt_acceleration_m_s2=acceleration_of_tilt_m_s2(tilt_deg),
             jerk_max_m_s3=min(wanted.jerk_max_m_s3, _JERK_SHARE * _shaping_jerk_m_s3(parameters)),
+            vertical_jerk_max_m_s3=min(
+                wanted.vertical_jerk_max_m_s3, _JERK_SHARE * find_limit(parameters, _VERTICAL_JERK)
+            ),
         )
 
     def cascade(self, parameters: Mapping[str, float]) -> Cascade:

@@ -35,7 +35,7 @@ def driver_for(autopilot_id: int, vehicle_type: int, kind: AutopilotKind = Autop
     for driver in _DRIVERS:
         if driver.autopilot_id == autopilot_id:
             if kind.value not in (AutopilotKind.AUTO.value, driver.name):
-                raise UserError(f"the autopilot is {driver.name}, not {kind.value}: use --autopilot auto")
+                raise UserError(f"the autopilot is {driver.name}, not {kind.value}: use --firmware auto")
             return driver
     raise UserError(f"the autopilot is of MAV_AUTOPILOT {autopilot_id}, which is not supported: use one of {known}")
 

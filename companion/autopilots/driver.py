@@ -26,6 +26,13 @@ class FrameMoves(Struct, frozen=True, kw_only=True):
 NO_MOVES = FrameMoves()
 
 
+class Receiver(Struct, frozen=True, kw_only=True):
+    """What the drone's receiver tells."""
+
+    is_fixed: bool = False  # its carrier phases, so that it is right to centimetres
+    knows_geoid: bool = False  # without it the height of the frame's origin is one above the sea
+
+
 class AutopilotView(Struct, frozen=True, kw_only=True):
     """The autopilot as its messages tell; None where it has not said yet."""
 
@@ -40,8 +47,7 @@ class AutopilotView(Struct, frozen=True, kw_only=True):
     taking_off: bool = False  # by itself, after a command
     refusal: str | None = None  # what it last said against arming
     frame: LocalFrame | None = None  # W; its origin above the ellipsoid
-    receiver_is_fixed: bool = False  # its carrier phases, so that it is right to centimetres
-    geoid_known: bool = False  # without it the height of that origin is one above the sea
+    receiver: Receiver = Receiver()
     frame_moves: FrameMoves = NO_MOVES
     range_down: RangeReading | None = None
     battery_share: float | None = None  # left, 0 to 1

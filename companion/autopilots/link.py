@@ -9,7 +9,7 @@ from companion.autopilots.limits import LimitQuestions, parameter_names
 from companion.autopilots.response import Cascade
 from companion.autopilots.shaping import Shaping
 from companion.autopilots.state import AutopilotState, shift_reports, update_state
-from companion.config.autopilot import AutopilotKind
+from companion.config.autopilot import AutopilotConfig
 from companion.core.data import FlightLimits, Setpoint
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import (
@@ -32,6 +32,7 @@ _ASK_ORIGIN_NS = 1_000_000_000
 _ASK_KNOWN_ORIGIN_NS = 5_000_000_000
 CLOCK_SET_NS = 200_000_000
 """More than the map to UTC is ever refined by at once: beyond it the clock was set."""
+_BY_ITSELF = AutopilotConfig()
 _LimitsAsked = tuple[FlightLimits, Driver, Mapping[str, float]]
 _WAITED_SHARE = 0.9  # of the autopilot's time-out; the rest is for the way there and back
 _WAITED_MIN_S = 0.5  # a shorter time-out cannot be told from a late message
@@ -42,27 +43,20 @@ class AutopilotLink:
 
     Args:
         session: to the autopilot.
+        config: of the autopilot and its link.
         motion_rate_hz: of the drone's position and attitude.
-        stops_unused_streams: ask the autopilot not to send what the companion does not read.
-        kind: of the autopilot.
-        geoid_height_m: of mean sea level above the ellipsoid, until the autopilot's receiver tells it.
     """
 
     def __init__(
         self,
         session: MavlinkSession,
+        config: AutopilotConfig = _BY_ITSELF,
         motion_rate_hz: float = 50.0,
-        *,
-        stops_unused_streams: bool = True,
-        kind: AutopilotKind = AutopilotKind.AUTO,
-        geoid_height_m: float | None = None,
     ) -> None:
         self.session = session
-        self._kind = kind
-        self._stops_unused = stops_unused_streams
+        self._config = config
         self._motion_rate_hz = motion_rate_hz
-        self._geoid_height_m = geoid_height_m
-        self.state = AutopilotState(geoid_height_m=geoid_height_m)
+        self.state = AutopilotState(geoid_height_m=config.geoid_height_m)
         self.driver: Driver | None = None
         self.bad_setpoints = 0
         self._acknowledgements: list[tuple[int, int]] = []
@@ -154,7 +148,7 @@ class AutopilotLink:
                     self._heard_ns = local_ns
                     self._hear(event.message, self.driver)
                 case LinkFound():
-                    self.driver = driver_for(event.autopilot, event.vehicle_type, self._kind)
+                    self.driver = driver_for(event.autopilot, event.vehicle_type, self._config.kind)
                     self._ask_for_streams(self.driver, local_ns)
                 case LinkLost() | LinkRegained():
                     self._set_link(up=isinstance(event, LinkRegained))
@@ -189,7 +183,7 @@ class AutopilotLink:
         old = self.state.view
         moves = replace(old.frame_moves, origin_count=old.frame_moves.origin_count + 1)
         view = replace(view, frame_moves=moves)
-        parameters, geoid_m = self.state.parameters, self._geoid_height_m
+        parameters, geoid_m = self.state.parameters, self._config.geoid_height_m
         self.state = AutopilotState(view=view, parameters=parameters, geoid_height_m=geoid_m)
         self._origin_asked_ns = None
 
@@ -215,7 +209,9 @@ class AutopilotLink:
         return apart_s > max(_WAITED_SHARE * self.timeout_s, _WAITED_MIN_S)
 
     def _ask_for_streams(self, driver: Driver, local_ns: int) -> None:
-        for message_id, rate_hz in streams_hz(driver, self._motion_rate_hz, stops_unused=self._stops_unused).items():
+        for message_id, rate_hz in streams_hz(
+            driver, self._motion_rate_hz, stops_unused=self._config.stops_unused_streams
+        ).items():
             self.session.request_interval(message_id, rate_hz, local_ns)
         for name in chain(*parameter_names(driver)):
             self.session.read_parameter(name, local_ns)

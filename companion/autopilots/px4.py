@@ -98,7 +98,11 @@ class Px4Driver:
         return local_ned_setpoint(setpoint, boot_ms, target_system)
 
     def limits(self, wanted: FlightLimits, parameters: Mapping[str, float]) -> FlightLimits:
-        """Return `wanted` cut to PX4's speed, climb, descent and tilt limits."""
+        """Return `wanted` cut to PX4's speed, climb, descent and tilt limits.
+
+        MPC_ACC_*_MAX and MPC_JERK_MAX belong to the flight tasks of its own modes; OFFBOARD gives a setpoint to the
+        position controller as it is (MulticopterPositionControl).
+        """
         speed_m_s, climb_m_s, descent_m_s, tilt_deg = (
             find_limit(parameters, (Named(name),)) for (name,) in self.limit_names
         )

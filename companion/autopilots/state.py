@@ -82,7 +82,8 @@ def update_state(state: AutopilotState, message: Message, clock: ClockMap, drive
             )
         case "GPS_RAW_INT":
             height_m = geoid_height_m(state.geoid_height_m, message)
-            view = replace(state.view, receiver_is_fixed=message.fix_type == mavlink.GPS_FIX_TYPE_RTK_FIXED)
+            is_fixed = message.fix_type == mavlink.GPS_FIX_TYPE_RTK_FIXED
+            view = replace(state.view, receiver=replace(state.view.receiver, is_fixed=is_fixed))
             state = _place_origin(replace(state, geoid_height_m=height_m, view=view), driver.projection)
         case "DISTANCE_SENSOR" | "BATTERY_STATUS":
             up_m = None if state.own is None else state.own.position_enu_m[2]
@@ -200,14 +201,15 @@ def _place_origin(state: AutopilotState, projection: Projection) -> AutopilotSta
     if state.origin_msl is None:
         return state
     origin = above_ellipsoid(state.origin_msl, state.geoid_height_m)
-    known, moves, geoid_known = state.view.frame, state.view.frame_moves, state.geoid_height_m is not None
+    known, moves = state.view.frame, state.view.frame_moves
+    receiver = replace(state.view.receiver, knows_geoid=state.geoid_height_m is not None)
     if known is not None and known.projection is projection and is_same(origin, known.origin):
-        return replace(state, view=replace(state.view, geoid_known=geoid_known))
+        return replace(state, view=replace(state.view, receiver=receiver))
     # The newest report stays, for the next one tells by how much the drone's own position jumps with the origin.
     view = replace(
         state.view,
         frame=LocalFrame(origin=origin, projection=projection),
-        geoid_known=geoid_known,
+        receiver=receiver,
         frame_moves=replace(moves, origin_count=moves.origin_count + 1),
     )
     return replace(state, view=view, history=state.history[-1:])

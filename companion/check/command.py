@@ -8,18 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from companion.runtime.command_line import ConfigOption, MavlinkArguments
 from link.errors import UserError
-from link.program.cli import (
-    ConnectOption,
-    DroneOption,
-    InsecureOption,
-    ListenOption,
-    ModeOption,
-    MulticastOption,
-    NamespaceOption,
-    VehicleOption,
-    ZenohConfigOption,
-)
+from link.program.cli import SetOption
+from link.zenoh.command_line import NameArguments, ZenohArguments
 
 if TYPE_CHECKING:
     from companion.check.findings import Finding
@@ -30,31 +22,10 @@ if TYPE_CHECKING:
 
 _FAILED = 1
 
-DeviceOption = Annotated[
-    str,
-    typer.Option(
-        "--mavlink", metavar="DEVICE", help="udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT or /dev/ttyX,BAUD."
-    ),
-]
-ConfigOption = Annotated[Path | None, typer.Option("--config", metavar="FILE", help="Configuration in TOML.")]
-SigningKeyOption = Annotated[
-    Path | None,
-    typer.Option("--signing-key", metavar="FILE", help="Sign MAVLink with this key: 32 bytes or 64 hex digits."),
-]
-SigningStampsOption = Annotated[
-    Path | None,
-    typer.Option(
-        "--signing-stamps",
-        metavar="FILE",
-        help="Where the time stamps of signatures are kept [default: the key's name with .stamps].",
-        show_default=False,
-    ),
-]
-SystemIdOption = Annotated[int, typer.Option("--system-id", min=1, max=255, help="MAVLink system id of the drone.")]
-
 
 def check(
-    mavlink: DeviceOption = "udpin:127.0.0.1:14540",
+    *,
+    mavlink: MavlinkArguments,
     speed_max: Annotated[
         float, typer.Option("--speed-max", metavar="M_S", min=0.0, max=50.0, help="Of the vehicle to be landed on.")
     ] = 5.0,
@@ -63,52 +34,40 @@ def check(
     ] = False,
     duration: Annotated[float, typer.Option("--duration", min=1.0, help="Seconds that rates are counted for.")] = 4.0,
     timeout: Annotated[float, typer.Option("--timeout", min=0.0, help="Seconds without an autopilot.")] = 30.0,
-    set_values: Annotated[bool, typer.Option("--set", help="Write the advised parameters, after asking.")] = False,
+    set_values: Annotated[bool, typer.Option("--write", help="Write the advised parameters, after asking.")] = False,
     yes: Annotated[bool, typer.Option("--yes", help="Write without asking.")] = False,
     keep_file: Annotated[
-        Path, typer.Option("--keep", metavar="FILE", help="Where --set keeps the parameters before it.")
+        Path, typer.Option("--keep", metavar="FILE", help="Where --write keeps the parameters before it.")
     ] = Path("parameters_before.json"),
     restore: Annotated[
-        Path | None, typer.Option("--restore", metavar="FILE", help="Write back what --set kept there, and end.")
+        Path | None, typer.Option("--restore", metavar="FILE", help="Write back what --write kept there, and end.")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
     config: ConfigOption = None,
-    system_id: SystemIdOption = 1,
-    signing_key: SigningKeyOption = None,
-    signing_stamps: SigningStampsOption = None,
-    namespace: NamespaceOption = "decklander",
-    vehicle: VehicleOption = "vehicle",
-    drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
+    changes: SetOption = None,
+    names: NameArguments,
+    endpoints: ZenohArguments,
 ) -> int:
     """Read the autopilot and the vehicle, and say what to change before a landing; exit code 1 when something fails."""
     from companion.check.findings import read_kept
     from companion.check.session import open_check
     from companion.config.companion import CompanionConfig
     from companion.runtime.open_links import open_links
-    from link.mavlink.signing_memory import open_signing
     from link.mavlink.transports import open_transport
-    from link.program.toml_config import load_config
-    from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
+    from link.program.settings import COMPANION, load_settings
     from link.zenoh.session import open_session
 
-    settings = load_config(config, CompanionConfig)
-    signing = None if signing_key is None else open_signing(signing_key, signing_stamps)
+    settings = load_settings(config, CompanionConfig, COMPANION, changes)
+    signing = mavlink.signing()
     back = None if restore is None else read_kept(restore)
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
-    with open_transport(mavlink) as transport, open_session(options) as zenoh:
-        session = open_check(transport, mavlink, system_id=system_id, signing=signing)
+    options = endpoints.options()
+    with open_transport(mavlink.mavlink) as transport, open_session(options) as zenoh:
+        session = open_check(transport, mavlink.mavlink, system_id=mavlink.system_id, signing=signing)
         session.find(timeout)
         if back is not None:
             _write(session, back)
             return 0
-        keys = Keys(namespace, vehicle, drone)
+        keys = names.keys()
         ask = _Question(
             zenoh=zenoh,
             keys=keys,
@@ -116,7 +75,7 @@ def check(
             speed_m_s=speed_max,
             config=settings,
             launches=launch,
-            open_links=open_links(options, mavlink, signs=signing is not None),
+            open_links=open_links(options, mavlink.mavlink, signs=signing is not None),
         )
         findings = _look(session, ask)
         if set_values:

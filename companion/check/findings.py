@@ -71,7 +71,7 @@ def read_kept(path: Path) -> dict[str, float]:
     try:
         values = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise UserError(f"{path}: cannot be read ({error.strerror}); name the file that --set kept") from error
+        raise UserError(f"{path}: cannot be read ({error.strerror}); name the file that --write kept") from error
     except (ValueError, RecursionError) as error:
         raise UserError(f"{path}: is no file of parameters: {error}") from error
     is_numbers = isinstance(values, dict) and all(

@@ -29,6 +29,7 @@ class LimitsConfig(StrictModel):
     acceleration_max_m_s2: Positive = 5.0
     vertical_acceleration_max_m_s2: Positive = 3.0
     jerk_max_m_s3: Positive = 20.0
+    vertical_jerk_max_m_s3: Positive = 20.0
     range_max_m: Positive = 2000.0  # from the waiting point, where an abort begins; it ends v^2 / 4 + 2 v farther
     landing_time_s: Positive = 15.0  # from the chase's beginning to the pad, for the way that takes
     battery_min_share: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.2  # below this no landing is begun

@@ -147,6 +147,7 @@ class FlightLimits(Struct, frozen=True, kw_only=True):
     acceleration_max_m_s2: float
     vertical_acceleration_max_m_s2: float
     jerk_max_m_s3: float
+    vertical_jerk_max_m_s3: float
     tilt_acceleration_m_s2: float = math.inf
 
 

@@ -10,20 +10,9 @@ from companion.eyes import calibration_commands
 from companion.eyes.examples import EXAMPLES
 from companion.eyes.options import BoardOption, CalibrationOption, MountingOption, SizeOption, SourceOption
 from link.errors import UserError
-from link.program.cli import (
-    ConnectOption,
-    DroneOption,
-    InsecureOption,
-    ListenOption,
-    ModeOption,
-    MulticastOption,
-    NamespaceOption,
-    VehicleOption,
-    ZenohConfigOption,
-    make_app,
-    run_app,
-)
+from link.program.cli import make_app, run_app
 from link.program.extras import require
+from link.zenoh.command_line import NameArguments, ZenohArguments
 
 app = make_app("See the landing pad by a camera on the drone, and publish where it is.", EXAMPLES)
 
@@ -47,6 +36,7 @@ _RateOption = Annotated[
 
 @app.command("run")
 def run_detector(
+    *,
     calibration: CalibrationOption,
     source: SourceOption = "/dev/video0",
     board: BoardOption = None,
@@ -57,15 +47,8 @@ def run_detector(
     record: Annotated[
         Path | None, typer.Option("--record", metavar="DIR", help="Keep pictures with what was seen here, as MCAP.")
     ] = None,
-    namespace: NamespaceOption = "decklander",
-    vehicle: VehicleOption = "vehicle",
-    drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
+    names: NameArguments,
+    endpoints: ZenohArguments,
 ) -> None:
     """Look at a camera's frames and publish where the pad is."""
     from companion.eyes.board import load_board
@@ -78,16 +61,13 @@ def run_detector(
     from companion.eyes.sight import SightSystem
     from companion.eyes.zenoh_source import PICTURE_MAX_BYTES
     from link.records import replace
-    from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
     from link.zenoh.session import open_session
 
-    keys = Keys(namespace, vehicle, drone)
+    keys = names.keys()
     camera = load_calibration(calibration)
     system = SightSystem(camera=camera, mounting=load_mounting(mounting), board=load_board(board))
     options = SourceOptions(size_px=size or camera.size_px, latency_s=latency, rate_hz=rate)
-    endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
-    with open_session(replace(endpoints, message_max_bytes=PICTURE_MAX_BYTES)) as zenoh:
+    with open_session(replace(endpoints.options(), message_max_bytes=PICTURE_MAX_BYTES)) as zenoh:
         frames = open_source(source, options, keys, zenoh)
         recorder = None if record is None else open_recorder(record, keys)
         try:
@@ -103,9 +83,9 @@ def print_board(
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="Write the PDF here.")] = Path("pad.pdf"),
     board: BoardOption = None,
     size: Annotated[
-        float | None, typer.Option("--size", metavar="M", help="A nested board of this side in place of --board.")
+        float | None, typer.Option("--side", metavar="M", help="A nested board of this side in place of --board.")
     ] = None,
-    first_id: Annotated[int, typer.Option("--first-id", min=0, help="With --size: the board's lowest id.")] = 0,
+    first_id: Annotated[int, typer.Option("--first-id", min=0, help="With --side: the board's lowest id.")] = 0,
     save_board: Annotated[
         Path | None, typer.Option("--save-board", metavar="FILE", help="Write the board here, for `run --board`.")
     ] = None,
@@ -116,9 +96,9 @@ def print_board(
     from link.program.toml_config import dump_toml
 
     if size is not None and board is not None:
-        raise UserError("--size makes a board and --board names one: give one of them")
+        raise UserError("--side makes a board and --board names one: give one of them")
     if size is not None and not 0.1 <= size <= 5.0:
-        raise UserError(f"--size {size:g} is not from 0.1 to 5 m")
+        raise UserError(f"--side {size:g} is not from 0.1 to 5 m")
     config = load_board(board).config if size is None else nested_board(size, first_id)
     write_pdf(config, out)
     if save_board is not None:

@@ -1,30 +1,27 @@
 """`pad-detector calibrate` and `pad-detector latency`: what has to be known of a camera before it is flown."""
 
+import json
 import math
 import sys
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from msgspec import structs
 
 from companion.eyes.options import BoardOption, CalibrationOption, MountingOption, SizeOption, SourceOption
 from link.errors import UserError
-from link.program.cli import (
-    ConnectOption,
-    DroneOption,
-    InsecureOption,
-    ListenOption,
-    ModeOption,
-    MulticastOption,
-    NamespaceOption,
-    ZenohConfigOption,
-)
+from link.zenoh.command_line import DroneOption, NamespaceOption, ZenohArguments
 
 if TYPE_CHECKING:
     from companion.eyes.calibrating import Quality
 
 _RMS_GOOD_PX, _HALVES_GOOD_PX, _FOCAL_GOOD, _COVERED_GOOD, _TILT_GOOD_RAD = 0.5, 1.0, 0.002, 0.7, math.radians(30.0)
 _STD_GOOD_S = 0.002  # a drone that turns at 0.5 rad/s sees a pad 5 m away 5 mm beside its place
+
+
+_JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 
 
 def register(app: typer.Typer) -> None:
@@ -41,14 +38,10 @@ def calibrate_command(
     fisheye: Annotated[bool, typer.Option("--fisheye", help="For lenses of more than 120 degrees.")] = False,
     pictures: Annotated[int, typer.Option("--pictures", min=8, max=500, help="That show the board elsewhere.")] = 40,
     size: SizeOption = None,
+    as_json: _JsonOption = False,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
+    endpoints: ZenohArguments,
 ) -> None:
     """Calibrate a camera by pictures of the board, say how good that is, and write it as ROS's camera_info.
 
@@ -62,12 +55,10 @@ def calibrate_command(
     from companion.eyes.zenoh_source import PICTURE_MAX_BYTES
     from link.records import replace
     from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
     from link.zenoh.session import open_session
 
     plate = load_board(board)
-    endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
-    with open_session(replace(endpoints, message_max_bytes=PICTURE_MAX_BYTES)) as zenoh:
+    with open_session(replace(endpoints.options(), message_max_bytes=PICTURE_MAX_BYTES)) as zenoh:
         options = SourceOptions(size_px=size, latency_s=0.0, rate_hz=30.0)
         frames = open_source(source, options, Keys(namespace, drone=drone), zenoh)
         try:
@@ -79,6 +70,10 @@ def calibrate_command(
         out.write_text(dump_calibration(camera), encoding="utf-8")
     except OSError as error:
         raise UserError(f"{out}: cannot be written ({error.strerror}); choose another --out") from None
+    if as_json:
+        told = {"camera": str(out), "focal_px": camera.focal_px, **structs.asdict(quality)}
+        sys.stdout.write(json.dumps(told, indent=2) + "\n")
+        return
     sys.stdout.write("\n".join([*quality_lines(quality, camera.focal_px), f"written to {out}"]) + "\n")
 
 
@@ -119,15 +114,11 @@ def latency_command(
     board: BoardOption = None,
     mounting: MountingOption = None,
     size: SizeOption = None,
-    seconds: Annotated[float, typer.Option("--seconds", min=3.0, max=600.0, help="For which it is turned.")] = 15.0,
+    seconds: Annotated[float, typer.Option("--duration", min=3.0, max=600.0, help="For which it is turned.")] = 15.0,
+    as_json: _JsonOption = False,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
+    endpoints: ZenohArguments,
 ) -> None:
     """Measure how late a camera's pictures are stamped, while the drone is turned to and fro over a pad that stands.
 
@@ -143,13 +134,11 @@ def latency_command(
     from companion.eyes.zenoh_source import PICTURE_MAX_BYTES
     from link.records import replace
     from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
     from link.zenoh.session import open_session
 
     keys, camera = Keys(namespace, drone=drone), load_calibration(calibration)
     system = SightSystem(camera=camera, mounting=load_mounting(mounting), board=load_board(board))
-    endpoints = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
-    with open_session(replace(endpoints, message_max_bytes=PICTURE_MAX_BYTES)) as zenoh:
+    with open_session(replace(endpoints.options(), message_max_bytes=PICTURE_MAX_BYTES)) as zenoh:
         own = zenoh.subscribe(keys.record("own"))
         options = SourceOptions(size_px=size or camera.size_px, latency_s=0.0, rate_hz=30.0)
         frames = open_source(source, options, keys, zenoh)
@@ -158,6 +147,9 @@ def latency_command(
         finally:
             frames.close()
     latency = fit_latency(*found)
+    if as_json:
+        sys.stdout.write(json.dumps(asdict(latency), indent=2) + "\n")
+        return
     poor = "" if latency.std_s <= _STD_GOOD_S else ": poor, turn it faster or for longer"
     sys.stdout.write(
         f"latency {1e3 * latency.latency_s:.1f} ms, standard deviation {1e3 * latency.std_s:.1f} ms{poor}\n"

@@ -6,7 +6,7 @@ EXAMPLES = {
         "pad-detector run --source /dev/video0 --calibration camera.yaml --mounting mounting.toml",
         "pad-detector run --source zenoh --calibration camera.yaml --mounting mounting.toml --board b.toml",
     ),
-    "print": ("pad-detector print --out pad.pdf", "pad-detector print --size 0.5 --first-id 63 --out small.pdf"),
+    "print": ("pad-detector print --out pad.pdf", "pad-detector print --side 0.5 --first-id 63 --out small.pdf"),
     "calibrate": (
         "pad-detector calibrate --source /dev/video0 --out camera.yaml",
         "pad-detector calibrate --source pictures/ --pictures 60 --out camera.yaml",

@@ -67,7 +67,7 @@ def why_unplaced(s: Situation) -> Cause | None:
 
 
 def _is_not_followed(s: Situation, _: CompanionConfig) -> bool:
-    return s.tracking_error_m > s.tracking_error_max_m
+    return s.following.error_m > s.following.error_max_m
 
 
 def _is_beside_cone(a: Approach, c: CompanionConfig) -> bool:

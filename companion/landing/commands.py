@@ -89,7 +89,7 @@ def _missing_for_start(situation: Situation) -> Cause | None:
     missing = {
         Reason.NO_AUTOPILOT: not view.link_up,
         Reason.NO_ORIGIN: view.frame is None,
-        Reason.HEIGHTS_APART: not view.geoid_known,
+        Reason.HEIGHTS_APART: not view.receiver.knows_geoid,
         Reason.NO_OWN_POSITION: drone is None,
         Reason.NO_OWN_ATTITUDE: drone is not None and not drone.attitude_known,
         Reason.IN_FAILSAFE: view.failsafe,

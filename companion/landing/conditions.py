@@ -11,9 +11,9 @@ from companion.situation.phases import LANDING_PHASES, Phase
 from companion.situation.situation import Situation
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Condition:
-    """What must be true without a break for a while.
+    """What must be true without a break for a while; each is itself only, so that a step need not compare their fields.
 
     Attributes:
         reason: that it gives, one of its own.

@@ -96,7 +96,7 @@ def _too_narrow(s: Situation, c: CompanionConfig) -> Cause:
 
 
 def _lacks_geoid(s: Situation, _: CompanionConfig) -> bool:
-    return s.autopilot.frame is not None and not s.autopilot.geoid_known
+    return s.autopilot.frame is not None and not s.autopilot.receiver.knows_geoid
 
 
 def _tell_stamped_ahead(s: Situation, _: CompanionConfig) -> Cause:

@@ -33,7 +33,7 @@ class FlownPlan(Struct, frozen=True, kw_only=True, eq=False):
 def flown_plan(plan: PlanResult, period_s: float, lowest_enu_m: float, shaping: Shaping | None) -> FlownPlan:
     """Return the plan as it is flown: its next state, `period_s` after it was made, is one of its instants."""
     path, following = plan.trajectory, plan.next_state
-    later = int(np.searchsorted(path.offset_s, period_s, side="right"))
+    later = int(path.offset_s.searchsorted(period_s, side="right"))
     trajectory = Trajectory(
         offset_s=np.concatenate((path.offset_s[:1], [period_s], path.offset_s[later:])),
         position_enu_m=_through(path.position_enu_m, following.position_enu_m, later),
@@ -63,16 +63,18 @@ def _through(path: Array, following: Array, later: int) -> Array:
 def state_in_plan(trajectory: Trajectory, offset_s: float) -> ReferenceState:
     """Return the model `offset_s` after its plan was made; between two instants of a plan the jerk is constant."""
     last = len(trajectory.offset_s) - 2
-    node = min(max(int(np.searchsorted(trajectory.offset_s, offset_s, side="right")) - 1, 0), last)
+    node = min(max(int(trajectory.offset_s.searchsorted(offset_s, side="right")) - 1, 0), last)
     start_s, end_s = trajectory.offset_s[node : node + 2].tolist()
-    position, velocity = trajectory.position_enu_m[node], trajectory.velocity_enu_m_s[node]
-    acceleration = trajectory.acceleration_enu_m_s2[node]
-    jerk = (trajectory.acceleration_enu_m_s2[node + 1] - acceleration) / (end_s - start_s)
-    t_s = offset_s - start_s
+    duration_s, t_s = end_s - start_s, offset_s - start_s
+    # Axis by axis in plain numbers: of three at a time arrays take twice as long.
+    position, velocity = trajectory.position_enu_m[node].tolist(), trajectory.velocity_enu_m_s[node].tolist()
+    acceleration, later = trajectory.acceleration_enu_m_s2[node : node + 2].tolist()
+    jerk = [(end - start) / duration_s for start, end in zip(acceleration, later, strict=True)]
+    motion = list(zip(position, velocity, acceleration, jerk, strict=True))
     return ReferenceState(
-        position_enu_m=position + (velocity + (acceleration / 2.0 + jerk * t_s / 6.0) * t_s) * t_s,
-        velocity_enu_m_s=velocity + (acceleration + jerk * t_s / 2.0) * t_s,
-        acceleration_enu_m_s2=acceleration + jerk * t_s,
+        position_enu_m=np.array([p + (v + (a / 2.0 + j * t_s / 6.0) * t_s) * t_s for p, v, a, j in motion]),
+        velocity_enu_m_s=np.array([v + (a + j * t_s / 2.0) * t_s for _, v, a, j in motion]),
+        acceleration_enu_m_s2=np.array([a + j * t_s for _, _, a, j in motion]),
     )
 
 

@@ -201,7 +201,7 @@ def _to_lost_drone(memory: StepMemory, situation: Situation) -> StepMemory:
     """
     phase, drone, tracking = memory.progress.phase, situation.drone, memory.model.tracking
     lands = phase in LANDING_PHASES or phase is Phase.TOUCHDOWN
-    if lands or drone is None or tracking.error_m < situation.tracking_error_max_m:
+    if lands or drone is None or tracking.error_m < situation.following.error_max_m:
         return memory
     reference = ReferenceState(
         position_enu_m=drone.position_enu_m, velocity_enu_m_s=drone.velocity_enu_m_s, acceleration_enu_m_s2=np.zeros(3)

@@ -13,7 +13,7 @@ from companion.landing.step_data import StepInputs
 from companion.planning.guidance import PlanRequest
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation
-from companion.vehicle.pad import over_pad_radius_m
+from companion.vehicle.pad import PadPath, over_pad_radius_m
 from link.records import replace
 
 _LEFT_MIN_SHARE = 0.2  # of the tilt limit: with less no plan brakes, and a steady wind that needs more is not flown in
@@ -30,15 +30,23 @@ def limits_now(memory: StepMemory, situation: Situation, inputs: StepInputs, con
     limits, relative, drone = inputs.limits, situation.approach, situation.drone
     if memory.progress.phase not in (Phase.DESCEND, Phase.ABORT) or relative is None or drone is None:
         return limits
-    touchdown = config.touchdown
     escape_m = 0.0 if memory.progress.phase is Phase.DESCEND else config.descent.commit_height_m
-    turns_m_s2 = 0.0 if situation.pad is None else math.hypot(*situation.pad.acceleration_enu_m_s2[0, :2].tolist())
+    kept_m_s2, below_m = level_end(situation.pad, relative, inputs, config)
+    if lowest_foot_m(situation, relative, config) > below_m + escape_m:
+        return limits
+    return replace(limits, acceleration_max_m_s2=kept_m_s2)
+
+
+def level_end(
+    pad: PadPath | None, relative: Approach, inputs: StepInputs, config: CompanionConfig
+) -> tuple[float, float]:
+    """Return the acceleration that is left to a drone that levels, and the height of its lowest foot to begin at."""
+    limits, touchdown = inputs.limits, config.touchdown
+    turns_m_s2 = 0.0 if pad is None else math.hypot(*pad.acceleration_enu_m_s2[0, :2].tolist())
     kept_m_s2 = min(_kept_m_s2(turns_m_s2, limits.jerk_max_m_s3, config), limits.acceleration_max_m_s2)
     takes_s = max(turns_m_s2 - kept_m_s2, 0.0) / limits.jerk_max_m_s3
     early_m = max(-relative.climb_m_s, 0.0) * (takes_s + touchdown.level.late_stds * inputs.link_delay.std_s)
-    if lowest_foot_m(situation, relative, config) > touchdown.level.height_m + early_m + escape_m:
-        return limits
-    return replace(limits, acceleration_max_m_s2=kept_m_s2)
+    return kept_m_s2, touchdown.level.height_m + early_m
 
 
 def limit_tilt(request: PlanRequest, air_enu_m_s2: Array) -> FlightLimits:

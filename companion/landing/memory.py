@@ -13,6 +13,8 @@ from msgspec import Struct, field
 from companion.autopilots.driver import NO_MOVES, AutopilotView, DriverMemory, FrameMoves
 from companion.core.data import Array
 from companion.core.reasons import Cause, Reason
+from companion.forecast.drivers import Drivers
+from companion.forecast.gusts import Gusts
 from companion.integrity.frames import FixedPhases
 from companion.integrity.sightings import SightingWatch
 from companion.integrity.vehicle_data import Contradictions, CourseWatch, FixStamps
@@ -24,6 +26,7 @@ from companion.situation.phases import Phase
 from companion.sortie.memory import SortieMemory, move_sortie
 from companion.vehicle.driving import Surprise
 from companion.vehicle.estimator import EstimatorMemory
+from link.messages import ContactForecast
 from link.records import replace
 
 Held = Mapping[Reason, int]
@@ -144,6 +147,24 @@ class Places(Struct, frozen=True, kw_only=True, eq=False):
     frame_moves: FrameMoves = NO_MOVES
 
 
+class ForecastMemory(Struct, frozen=True, kw_only=True, eq=False):
+    """The forecast of the contact, and what it is made from beside the estimate.
+
+    Attributes:
+        contact: the newest forecast of this descent, None without one.
+        made_ns: when it was made, monotonic; None in any other phase.
+        drivers: how the vehicle's driver drives.
+        gusts: how hard the air pushes the drone.
+        acceleration_ns: when the vehicle last told its acceleration, monotonic; None if it never did.
+    """
+
+    contact: ContactForecast | None = None
+    made_ns: int | None = None
+    drivers: Drivers = field(default_factory=Drivers)
+    gusts: Gusts = field(default_factory=Gusts)
+    acceleration_ns: int | None = None
+
+
 class StepMemory(Struct, frozen=True, kw_only=True, eq=False):
     """What a step hands to the next."""
 
@@ -153,6 +174,7 @@ class StepMemory(Struct, frozen=True, kw_only=True, eq=False):
     control: ControlMemory = field(default_factory=ControlMemory)
     places: Places = field(default_factory=Places)
     sortie: SortieMemory = field(default_factory=SortieMemory)
+    forecast: ForecastMemory = field(default_factory=ForecastMemory)
 
 
 def to_present_frame(memory: StepMemory, view: AutopilotView) -> StepMemory:

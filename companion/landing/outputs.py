@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from companion.autopilots.driver import AutopilotView
 from companion.autopilots.own_reports import as_seen_with
 from companion.config.companion import CompanionConfig
 from companion.config.descent import DescentConfig
@@ -122,7 +123,17 @@ def landing_status(memory: StepMemory, situation: Situation, config: CompanionCo
         zenoh_bad_payloads=0,
         armed=situation.autopilot.armed,
         fix_age_s=situation.vehicle.fix_age_s,
+        flown_by=_flown_by(situation.autopilot),
+        battery_share=situation.autopilot.battery_share,
+        contact_forecast=memory.forecast.contact,
     )
+
+
+def _flown_by(autopilot: AutopilotView) -> str:
+    """Return who flies the drone, for people; empty while the autopilot is silent."""
+    if not autopilot.link_up:
+        return ""
+    return "companion" if autopilot.in_control else "failsafe" if autopilot.failsafe else "other"
 
 
 def _cause(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause:

@@ -28,6 +28,22 @@ class LinkDelay(Struct, frozen=True, kw_only=True):
     std_s: float = 0.0
 
 
+class VehicleInputs(Struct, frozen=True, kw_only=True, eq=False):
+    """What has come from the vehicle.
+
+    Attributes:
+        measurements: received since the last step, sightings of its pad included.
+        fix_ahead_s: by which the newest fix since then came before its stamp, so that it was refused; None if none was.
+        is_alive: its liveliness token is there; None when it never showed one.
+        pad: its own description of its pad.
+    """
+
+    measurements: tuple[Measurement, ...] = ()
+    fix_ahead_s: float | None = None
+    is_alive: bool | None = None
+    pad: PadGeometry | None = None
+
+
 class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
     """What a step is told.
 
@@ -40,11 +56,8 @@ class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
         driver: of the connected autopilot, None while none is connected.
         limits: of the flight, from the configuration and the autopilot's parameters.
         acknowledgements: (command, MAV_RESULT) received since the last step.
-        measurements: of the vehicle, received since the last step.
-        fix_ahead_s: by which the newest fix since then came before its stamp, so that it was refused; None if none was.
-        vehicle_alive: its liveliness token; None when it never showed one.
+        vehicle: what has come from it.
         rival: a companion that this one keeps out of the way of, None without one.
-        pad: the vehicle's own description of its pad.
         command: an operator's wish.
         station: of a command to follow, None with any other.
         leaving: the companion is about to end, so the autopilot is to hover by itself, or to finish its disarm.
@@ -60,11 +73,8 @@ class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
     autopilot: AutopilotView = NO_AUTOPILOT
     driver: Driver | None = None
     acknowledgements: tuple[tuple[int, int], ...] = ()
-    measurements: tuple[Measurement, ...] = ()
-    fix_ahead_s: float | None = None
-    vehicle_alive: bool | None = None
+    vehicle: VehicleInputs = VehicleInputs()
     rival: Rival | None = None
-    pad: PadGeometry | None = None
     command: Command | None = None
     station: Station | None = None
     leaving: bool = False

@@ -165,7 +165,10 @@ def way_down(
     return descent_path(
         state,
         (descent.sink.gain_hz, descent.sink.rate_max_m_s, descent.sink.contact_rate_m_s, lowest_m),
-        (_DESCENT_SHARE * limits.vertical_acceleration_max_m_s2, min(limits.jerk_max_m_s3, _DESCENT_JERK_MAX_M_S3)),
+        (
+            _DESCENT_SHARE * limits.vertical_acceleration_max_m_s2,
+            min(limits.vertical_jerk_max_m_s3, _DESCENT_JERK_MAX_M_S3),
+        ),
         offset_s,
     )
 

@@ -51,9 +51,11 @@ def _motion(state: ReferenceState, wanted: Array, limits: FlightLimits, t_s: Arr
     """Return position, velocity and acceleration (n, 3) at `t_s`; each horizontal axis gets 1/sqrt(2) of a norm."""
     path = np.empty((3, t_s.size, 3))
     for axis, share in enumerate((math.sqrt(0.5), math.sqrt(0.5), 1.0)):
-        bound = limits.vertical_acceleration_max_m_s2 if axis == 2 else share * limits.acceleration_max_m_s2
+        is_up = axis == 2
+        bound = limits.vertical_acceleration_max_m_s2 if is_up else share * limits.acceleration_max_m_s2
+        jerk = limits.vertical_jerk_max_m_s3 if is_up else share * limits.jerk_max_m_s3
         error, push = state.velocity_enu_m_s[axis] - wanted[axis], state.acceleration_enu_m_s2[axis]
-        way = fastest_way(error, push, share * limits.jerk_max_m_s3, -bound, bound)
+        way = fastest_way(error, push, jerk, -bound, bound)
         for i, t in enumerate(t_s):
             covered, rate, acceleration, _ = way_at(error, push, way, t)
             path[0, i, axis] = state.position_enu_m[axis] + wanted[axis] * t + covered

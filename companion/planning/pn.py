@@ -118,7 +118,7 @@ def advance(state: ReferenceState, wanted: Array, limits: FlightLimits, floor_m:
     bound = limits.vertical_acceleration_max_m_s2
     push[2] = min(max(min(max(wanted[2], lowest), highest), -bound), bound)
     change = (push - old) / dt_s
-    jerk = np.append(_short(change[:2], limits.jerk_max_m_s3), _short(change[2:], limits.jerk_max_m_s3))
+    jerk = np.append(_short(change[:2], limits.jerk_max_m_s3), _short(change[2:], limits.vertical_jerk_max_m_s3))
     return ReferenceState(
         position_enu_m=state.position_enu_m + velocity * dt_s + old * dt_s**2 / 2.0 + jerk * dt_s**3 / 6.0,
         velocity_enu_m_s=velocity + old * dt_s + jerk * dt_s**2 / 2.0,

@@ -43,7 +43,7 @@ class Grid(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """What may be asked of the drone; accelerations are horizontal but for the vertical one."""
+    """What may be asked of the drone; accelerations and jerks are horizontal but for the vertical ones."""
 
     speed_m_s: float
     climb_m_s: float
@@ -51,6 +51,7 @@ class Limits(NamedTuple):
     acceleration_m_s2: float
     vertical_acceleration_m_s2: float
     jerk_m_s3: float
+    vertical_jerk_m_s3: float
 
 
 class Numbers(NamedTuple):
@@ -63,7 +64,7 @@ class Numbers(NamedTuple):
     slack_weight: float
 
 
-PlainLimits = tuple[float, float, float, float, float, float]
+PlainLimits = tuple[float, float, float, float, float, float, float]
 """`Limits` as a plain tuple."""
 
 PlainGrid = tuple[Array, Array, Array]
@@ -132,7 +133,7 @@ def pose(
     ends, jerk = at_ends(turned[2], statics[1], grid.move_s)
     norms = (most.speed_m_s, most.acceleration_m_s2, most.jerk_m_s3)
     way = (split, push[1], numbers.lateral_speed_fraction)
-    vertical = (most.descent_m_s, most.climb_m_s, most.vertical_acceleration_m_s2, most.jerk_m_s3)
+    vertical = (most.descent_m_s, most.climb_m_s, most.vertical_acceleration_m_s2, most.vertical_jerk_m_s3)
     frame, major, minor, upright = posed
     for axis in range(3):
         frame[0, axis], frame[1, axis], frame[2, axis] = x[0, axis], x[1, axis], x[2, axis]

@@ -23,7 +23,7 @@ def with_finite_state(last: ReferenceState | None, request: PlanRequest) -> Plan
     return replace(request, state=last)
 
 
-def limits_of(request: PlanRequest) -> tuple[float, float, float, float, float, float]:
+def limits_of(request: PlanRequest) -> tuple[float, float, float, float, float, float, float]:
     """Return the limits as the compiled calls take them: a whole number would have them compiled anew, in flight.
 
     Raises:
@@ -39,6 +39,7 @@ def limits_of(request: PlanRequest) -> tuple[float, float, float, float, float, 
         float(limits.acceleration_max_m_s2),
         float(limits.vertical_acceleration_max_m_s2),
         float(limits.jerk_max_m_s3),
+        float(limits.vertical_jerk_max_m_s3),
     )
     if not (math.isfinite(sum(values)) and min(values) > 0.0):
         raise ValueError(f"the drone's limits must be positive: {limits}")

@@ -8,7 +8,7 @@ from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.planning.guidance import PlanResult, Trajectory
 from companion.recording.records import InputRecord, LinkRecord, StepRecord, StepTimeRecord
 from link.frames.rotations import conjugate, rotate
-from link.messages import BodyTruth, Fix, FixVelocity, PadSighting, Plan, PlannedPose, VehicleImu
+from link.messages import BodyTruth, ContactForecast, Fix, FixVelocity, PadSighting, Plan, PlannedPose, VehicleImu
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
 from link.payloads.decklander_msgs import RosMessage, bytes_array, floats, ids_array, ros_message
@@ -52,6 +52,8 @@ def step_messages(record: StepRecord, keys: Keys, *, long: bool) -> Iterator[Ros
     if not long:
         return
     yield from _vehicle_messages(record, keys)
+    if outputs.status.contact_forecast is not None:
+        yield _contact_forecast(outputs.status.contact_forecast, t_ns, keys)
     if outputs.plan is not None:
         yaw_rad = 0.0 if outputs.setpoint is None else outputs.setpoint.yaw_rad
         yield _plan(outputs.plan, t_ns, keys)
@@ -136,7 +138,7 @@ def _step(record: StepRecord, keys: Keys) -> RosMessage:
         text=outputs.text or "",
         reply=[] if reply is None else [f"accepted: {reply.reason}" if reply.accepted else f"refused: {reply.reason}"],
         armed=status.armed,
-        measurements=len(record.inputs.measurements),
+        measurements=len(record.inputs.vehicle.measurements),
         commands=ids_array([command.command for command in outputs.commands]),
         command_parameters=floats([command.parameters for command in outputs.commands]),
         relative_position_m=floats(status.relative_position_enu_m),
@@ -163,6 +165,11 @@ def _setpoint(setpoint: Setpoint, keys: Keys) -> RosMessage:
         acceleration_m_s2=floats(setpoint.acceleration_enu_m_s2),
         yaw_rad=setpoint.yaw_rad,
     )
+
+
+def _contact_forecast(forecast: ContactForecast, t_ns: int, keys: Keys) -> RosMessage:
+    values = {name: getattr(forecast, name) for name in ContactForecast.__struct_fields__ if name != "in_s"}
+    return ros_message(keys.record("contact_forecast"), "ContactForecast", t_ns, in_s=floats(forecast.in_s), **values)
 
 
 def estimate_message(estimate: VehicleEstimate, keys: Keys) -> RosMessage:

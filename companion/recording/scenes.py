@@ -64,7 +64,7 @@ def scene_of(record: StepRecord, forecast: Forecast | None, descent: DescentConf
         t_ns=record.inputs.t_ns,
         drone=_drone(record),
         vehicle=None if forecast is None else _vehicle(record, forecast),
-        pad=record.inputs.pad,
+        pad=record.inputs.vehicle.pad,
         cone=Cone(radius_at_pad_m=descent.cone.radius_at_pad_m, slope=descent.cone.slope),
         forecast_enu_m=None if forecast is None else forecast.position_enu_m,
         forecast_std_m=None if forecast is None else forecast.position_std_m,
@@ -80,7 +80,7 @@ def _drone(record: StepRecord) -> Pose | None:
 
 def _vehicle(record: StepRecord, forecast: Forecast) -> Pose | None:
     """Return the point on the road under the pad and its heading; while that is unknown, the course."""
-    pad = record.inputs.pad
+    pad = record.inputs.vehicle.pad
     if pad is None:
         return None
     path = pad_path(forecast, pad)

@@ -7,6 +7,7 @@ import numpy as np
 from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.config.planning import GuidanceConfig, GuidanceKind, SolverKind
+from companion.forecast.warm_up import compile_rollout
 from companion.landing.step_data import System
 from companion.planning.guidance import Guidance, GuidanceMemory, PlanRequest, ReferenceState, Target
 from companion.planning.mpc import Mpc
@@ -48,7 +49,8 @@ def warm_up(system: System) -> None:
             dt_s=1.0 / system.config.step_rate_hz,
         )
         memory, _ = system.guidance.plan(memory, request)
-    turned_lever(np.zeros_like(offset_s), offset_s, 1.0, 0.0)
+    turned_lever(np.zeros_like(offset_s), np.zeros_like(offset_s), offset_s, 1.0, 0.0)
+    compile_rollout()
 
 
 def build_node(

@@ -8,7 +8,7 @@ EXAMPLES = {
     ),
     "check": (
         "companion check --mavlink /dev/ttyACM0,921600 --speed-max 8",
-        "companion check --mavlink udpin:0.0.0.0:14540 --set",
+        "companion check --mavlink udpin:0.0.0.0:14540 --write",
         "companion check --mavlink udpin:0.0.0.0:14540 --restore parameters_before.json",
     ),
     "keys": ("companion keys keys --host 192.168.4.1",),

@@ -51,13 +51,8 @@ class CompanionNode:
         publishes: bool = True,
         is_component: bool = False,
     ) -> None:
-        self.autopilot = AutopilotLink(
-            session,
-            motion_rate_hz=max(system.config.step_rate_hz, _MOTION_RATE_MIN_HZ),
-            stops_unused_streams=system.config.autopilot.stops_unused_streams,
-            kind=system.config.autopilot.kind,
-            geoid_height_m=system.config.autopilot.geoid_height_m,
-        )
+        motion_rate_hz = max(system.config.step_rate_hz, _MOTION_RATE_MIN_HZ)
+        self.autopilot = AutopilotLink(session, system.config.autopilot, motion_rate_hz)
         self._dry_run = dry_run
         self._component = MavlinkComponent(session, is_open=is_component)
         self.publisher = StatusPublisher(keys, system.config, is_on=publishes)
@@ -125,7 +120,7 @@ class CompanionNode:
     def is_ready_to_start(self) -> bool:
         """Return whether a start would be accepted now."""
         state = self.autopilot.state
-        placed = state.view.frame is not None and state.view.geoid_known
+        placed = state.view.frame is not None and state.view.receiver.knows_geoid
         return state.view.link_up and placed and state.own is not None
 
     def start_refusal(self) -> CommandReply | None:
@@ -197,7 +192,6 @@ class CompanionNode:
     def _step(self, local_ns: int) -> None:
         state, way, cascade = self.autopilot.state, self.autopilot.session.clock, self.autopilot.cascade
         self._clock.advance(way.local_to_utc_ns(local_ns), local_ns, None if state.own is None else state.own.t_ns)
-        measurements, fix_ahead_s = self.vehicle.take()
         inputs = StepInputs(
             t_ns=self._clock.t_ns,
             monotonic_ns=self._clock.monotonic_ns,
@@ -207,11 +201,8 @@ class CompanionNode:
             autopilot=state.view,
             driver=self.autopilot.driver,
             acknowledgements=self.autopilot.take_acknowledgements(),
-            measurements=measurements,
-            fix_ahead_s=fix_ahead_s,
-            vehicle_alive=self.vehicle.alive,
+            vehicle=self.vehicle.take(),
             rival=self._rival,
-            pad=self.vehicle.pad,
             command=self._command or self._station_command(local_ns),
             station=self._station,
             leaving=self._leaving,

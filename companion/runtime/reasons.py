@@ -1,6 +1,7 @@
 """`companion reasons`: what the companion means by a reason, and what to do about it."""
 
 import difflib
+import json
 import sys
 import textwrap
 from typing import Annotated
@@ -8,7 +9,7 @@ from typing import Annotated
 import typer
 
 from companion.config.companion import CompanionConfig
-from companion.core.reason_help import reason_helps
+from companion.core.reason_help import ReasonHelp, reason_helps
 from link.errors import UserError
 
 _WIDTH = 78
@@ -18,7 +19,11 @@ _NamesArgument = Annotated[
 ]
 
 
-def reasons(names: _NamesArgument = None) -> None:
+def reasons(
+    names: _NamesArgument = None,
+    *,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+) -> None:
     """Explain the reasons that the panel, the log and `landing/status` tell.
 
     Example: companion reasons VEHICLE_CLOCK_AHEAD
@@ -30,8 +35,16 @@ def reasons(names: _NamesArgument = None) -> None:
         near = difflib.get_close_matches(unknown[0], helps, cutoff=0.5)
         told = f"; did you mean {', '.join(near)}?" if near else "; `companion reasons` lists them all"
         raise UserError(f"no reason is called {unknown[0]}{told}")
+    if as_json:
+        told_of = [{"name": name, "sentence": helps[name].reason.value} | _words(helps[name]) for name in wanted]
+        sys.stdout.write(json.dumps({"reasons": told_of}, indent=2) + "\n")
+        return
     for name in wanted:
         one = helps[name]
         sys.stdout.write(f"{name}: {one.reason.value}\n")
         for text in (f"({one.group}) {one.meaning}", one.remedy):
             sys.stdout.write(textwrap.indent(textwrap.fill(text, _WIDTH), "  ") + ("\n" if text else ""))
+
+
+def _words(help_: ReasonHelp) -> dict[str, str]:
+    return {"group": help_.group, "meaning": help_.meaning, "remedy": help_.remedy}

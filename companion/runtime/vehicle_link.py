@@ -3,6 +3,7 @@
 from companion.autopilots.state import AutopilotState
 from companion.config.companion import SilentVehicleConfig
 from companion.core.data import Measurement
+from companion.landing.step_data import VehicleInputs
 from companion.runtime.refusals import Refusals
 from companion.runtime.step_clock import StepClock
 from companion.vehicle.inputs import measurements_of
@@ -87,11 +88,11 @@ class VehicleLink:
         """Return what was refused most in the last seconds, and why; empty if nothing was."""
         return self.refusals.recent(self._clock.monotonic_ns)
 
-    def take(self) -> tuple[tuple[Measurement, ...], float | None]:
-        """Return the measurements, and by which the newest fix that was refused came before its stamp, once."""
+    def take(self) -> VehicleInputs:
+        """Return what has come; the measurements, and by which a fix was ahead of its stamp, once."""
         taken, self._measurements = tuple(self._measurements), []
         ahead_s, self._fix_ahead_s = self._fix_ahead_s, None
-        return taken, ahead_s
+        return VehicleInputs(measurements=taken, fix_ahead_s=ahead_s, is_alive=self.alive, pad=self.pad)
 
     def _refuse_ahead(self, key: str, t_ns: int) -> None:
         ahead_s = (t_ns - self._clock.t_ns) * 1e-9

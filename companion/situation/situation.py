@@ -93,6 +93,18 @@ class Below(Struct, frozen=True, kw_only=True, eq=False):
     ground_enu_m: Array | None = None
 
 
+class Following(Struct, frozen=True, kw_only=True):
+    """How the drone follows its setpoints.
+
+    Attributes:
+        error_m: its distance from where it was asked to be at that time.
+        error_max_m: of one that follows them as its autopilot does in gusts over this link.
+    """
+
+    error_m: float
+    error_max_m: float
+
+
 class Situation(Struct, frozen=True, kw_only=True, eq=False):
     """What is known in this step; None where it is not.
 
@@ -106,8 +118,7 @@ class Situation(Struct, frozen=True, kw_only=True, eq=False):
         below: the drone.
         feet_offset_m: of the drone's reported position above its feet.
         reference: the virtual model that the setpoints follow.
-        tracking_error_m: distance of the drone from where it was asked to be at that time.
-        tracking_error_max_m: of a drone that follows its setpoints as its autopilot does in gusts over this link.
+        following: how the drone follows that.
         waiting_point_enu_m: (3,) in W.
         limits: of the flight, the autopilot's own included.
         speed_limited_by: the autopilot's parameters that may bound the speed.
@@ -124,8 +135,7 @@ class Situation(Struct, frozen=True, kw_only=True, eq=False):
     below: Below
     feet_offset_m: float
     reference: ReferenceState | None
-    tracking_error_m: float
-    tracking_error_max_m: float
+    following: Following
     waiting_point_enu_m: Array | None
     limits: FlightLimits | None = None
     speed_limited_by: tuple[str, ...] = ()

@@ -79,10 +79,8 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None, *, has_one_frame: bool
     velocity = forecast.velocity_enu_m_s
     is_beside, frame_offset = bool(lever_x_m or lever_y_m), forecast.frame_offset_enu_m
     if forecast.yaw_rad is not None and is_beside:
-        arm, swing = turned_lever(forecast.yaw_rad, forecast.offset_s, lever_x_m, lever_y_m)
-        if forecast.grade is not None:
-            arm[:, 2] = lever_x_m * forecast.grade
-            swing[:, 2] = lever_x_m * np.gradient(forecast.grade, forecast.offset_s)
+        grade = np.zeros_like(forecast.yaw_rad) if forecast.grade is None else forecast.grade
+        arm, swing = turned_lever(forecast.yaw_rad, grade, forecast.offset_s, lever_x_m, lever_y_m)
         position += arm
         velocity = velocity + swing
     return PadPath(
@@ -114,11 +112,14 @@ def _is_about(forecast: Forecast, pad: PadGeometry) -> bool:
 
 
 @compiled_kernel
-def turned_lever(yaw_rad: Array, offset_s: Array, lever_x_m: float, lever_y_m: float) -> tuple[Array, Array]:
+def turned_lever(
+    yaw_rad: Array, grade: Array, offset_s: Array, lever_x_m: float, lever_y_m: float
+) -> tuple[Array, Array]:
     """Return a horizontal lever arm of V in W over a horizon, and its rate of change, each (n, 3).
 
     Args:
         yaw_rad: (n,) of V, wrapped or not; n > 1.
+        grade: (n,) by which V pitches, m of height per m.
         offset_s: (n,) rising.
         lever_x_m: forward in V.
         lever_y_m: left in V.
@@ -136,7 +137,25 @@ def turned_lever(yaw_rad: Array, offset_s: Array, lever_x_m: float, lever_y_m: f
         share = step_s[before] / (step_s[before] + step_s[after])
         rate = (1.0 - share) * turn_rad[before] / step_s[before] + share * turn_rad[after] / step_s[after]
         swing[i, 0], swing[i, 1] = -rate * arm[i, 1], rate * arm[i, 0]
+        arm[i, 2], swing[i, 2] = lever_x_m * grade[i], lever_x_m * slope_at(i, grade, step_s)
     return arm, swing
+
+
+@compiled_kernel
+def slope_at(i: int, values: Array, step_s: Array) -> float:
+    """Return the derivative of `values` (n,) at the `i`-th of them, of second order within (numpy's `gradient`).
+
+    Args:
+        i: from 0.
+        values: at n instants.
+        step_s: (n - 1,) between these.
+    """
+    if i in (0, len(step_s)):
+        last = max(i - 1, 0)
+        return float((values[last + 1] - values[last]) / step_s[last])
+    before, after = step_s[i - 1], step_s[i]
+    back, ahead = -after / (before * (before + after)), before / (after * (before + after))
+    return float(back * values[i - 1] + (after - before) / (before * after) * values[i] + ahead * values[i + 1])
 
 
 def cone_radius_at_pad_m(half_width_m: float, config: CompanionConfig) -> float:

@@ -108,10 +108,8 @@ class MavlinkSession:
             t_ns: local time now.
             is_datagram: they are whole frames, not a piece of a stream.
         """
-        events: list[Event] = []
-        for message in self._codec.decode(data, t_ns=t_ns, is_datagram=is_datagram):
-            events += self._take(message, t_ns)
-        return events
+        decoded = self._codec.decode(data, t_ns=t_ns, is_datagram=is_datagram)
+        return [event for message in decoded for event in self._take(message, t_ns)]
 
     def poll(self, t_ns: int) -> list[Event]:
         """Does what is due at local time `t_ns`: heartbeat, questions, sending again, looking for silence."""
@@ -154,8 +152,7 @@ class MavlinkSession:
         Raises:
             ValueError: There are too many parameters, or one is infinite.
         """
-        attempts_max = attempts or _COMMAND_ATTEMPTS
-        return self._commands.submit(command_id, command_params(params), attempts_max, t_ns)
+        return self._commands.submit(command_id, command_params(params), attempts or _COMMAND_ATTEMPTS, t_ns)
 
     def request_interval(self, message_id: int, rate_hz: float, t_ns: int) -> None:
         """Asks for a message at a rate until it is granted, and again after a restart or when it stays away.
@@ -191,15 +188,13 @@ class MavlinkSession:
         return self._peer.take_requests()
 
     def _take(self, message: Message, t_ns: int) -> list[Event]:
-        if not self._peer.accepts(message):
-            self._filtered += 1
-            return []
         boot_ns = boot_time_ns(message)
-        if boot_ns and self._restarts.doubts(boot_ns, t_ns):
+        if not self._peer.accepts(message) or (boot_ns and self._restarts.doubts(boot_ns, t_ns)):
             self._filtered += 1
             return []
         events = self._peer.heard(message, t_ns)
-        events += self._watch_restart(boot_ns, t_ns) if boot_ns else []
+        if boot_ns and (restart := self._restarts.see(boot_ns, t_ns)) is not None:
+            events += [restart, *self._start_over(restart)]
         if boot_ns and self._restarts.is_behind:
             self._filtered += 1
             return events
@@ -210,8 +205,7 @@ class MavlinkSession:
         message_id = message.get_msgId()
         self._streams.seen(message_id, t_ns)
         if message_id == mavlink.MAVLINK_MSG_ID_TIMESYNC:
-            answer = self._clock_sync.timesync(message, t_ns)
-            if answer is not None:
+            if (answer := self._clock_sync.timesync(message, t_ns)) is not None:
                 self.send(answer)
         elif message_id == mavlink.MAVLINK_MSG_ID_SYSTEM_TIME:
             self._clock_sync.system_time(message)
@@ -222,10 +216,6 @@ class MavlinkSession:
         elif message_id == mavlink.MAVLINK_MSG_ID_PARAM_VALUE and self._peer.autopilot is not None:
             return [*self._parameters.received(message, self._peer.autopilot, t_ns)]
         return []
-
-    def _watch_restart(self, boot_ns: int, t_ns: int) -> list[Event]:
-        restart = self._restarts.see(boot_ns, t_ns)
-        return [] if restart is None else [restart, *self._start_over(restart)]
 
     def _start_over(self, restart: AutopilotRestarted) -> list[Event]:
         self._clock_sync.start_over()

@@ -40,6 +40,9 @@ DEFINITIONS: dict[str, str] = {
     + "float64[] time_to_contact_s\nfloat64[] fix_age_s\n"
     + "string plan_status\nfloat64 plan_limit_excess\nuint32 plan_iterations\n"
     + "float64[] next_position_m\nfloat64[] next_velocity_m_s\nfloat64[] next_acceleration_m_s2\n",
+    "ContactForecast": _HEADER
+    + "float64[] in_s\nfloat64 s1\nfloat64 s2\nfloat64 unsafe\nfloat64 broken_off\n"
+    + "float64 misses_position\nfloat64 misses_speed\nfloat64 misses_sink\nfloat64 misses_tilt\n",
     "StepTime": _HEADER + "float64 state_to_setpoint_s\n",
     "LinkStatistics": _HEADER
     + "uint64 bytes_received\nuint64 messages_received\nuint64 messages_sent\nuint64 bad_bytes\n"

@@ -13,6 +13,7 @@ from link.messages import (
     VEHICLE_LENGTH_MAX_M,
     Command,
     CommandReply,
+    ContactForecast,
     LandingStatus,
     Order,
     PadGeometry,
@@ -67,6 +68,25 @@ class _CommandReply(_Report):
     reason: str
 
 
+Probability = Annotated[float, Field(ge=0.0, le=1.0)]
+
+
+class _ContactForecast(_Report):
+    """How a descent that goes on now ends, in probabilities."""
+
+    model_config = ConfigDict(title="Contact forecast", from_attributes=True)
+
+    in_s: Annotated[float | None, Field(description="s until the contact; null where none is expected")]
+    s1: Annotated[Probability, Field(description="a contact within the limits of S1 or S2")]
+    s2: Annotated[Probability, Field(description="within those of S2")]
+    unsafe: Annotated[Probability, Field(description="beyond those of S1")]
+    broken_off: Annotated[Probability, Field(description="none: the drone waits or breaks off before")]
+    misses_position: Annotated[Probability, Field(description="unsafe, by its place most of all")]
+    misses_speed: Annotated[Probability, Field(description="unsafe, by its horizontal speed")]
+    misses_sink: Annotated[Probability, Field(description="unsafe, by its sink rate")]
+    misses_tilt: Annotated[Probability, Field(description="unsafe, by its tilt")]
+
+
 class _LandingStatus(_Report):
     """How the landing of the drone on the vehicle goes."""
 
@@ -92,6 +112,13 @@ class _LandingStatus(_Report):
     fix_age_s: Annotated[float | None, Field(description="s since the newest fix was taken; null before the first")]
     open_to_strangers: Annotated[
         tuple[str, ...], Field(description="links by which somebody without a key could take part, in words")
+    ]
+    flown_by: Annotated[
+        str, Field(description="companion while it follows the setpoints, failsafe, else other; empty if unknown")
+    ]
+    battery_share: Annotated[float | None, Field(description="left of the battery, 0 to 1; null if unknown")]
+    contact_forecast: Annotated[
+        _ContactForecast | None, Field(description="of the contact, while it descends; it decides nothing")
     ]
 
 
@@ -136,6 +163,9 @@ def decode(message_type: type[M], payload: bytes) -> M:
     except ValidationError as error:
         raise _payload_error(error) from error
     fields = {name: getattr(model, name) for name in type(model).model_fields}
+    forecast = fields.get("contact_forecast")
+    if isinstance(forecast, _ContactForecast):
+        fields["contact_forecast"] = ContactForecast(**forecast.model_dump())
     message = _order(model) if isinstance(model, _Order) else message_type(**fields)
     if not isinstance(message, message_type):
         raise TypeError(f"the model of {message_type.__name__} gave a {type(message).__name__}")

@@ -1,4 +1,4 @@
-"""What the commands share: common options, and errors as one line on stderr with exit code 2.
+"""What the programs share: an app with plain help, and errors as one line on stderr with exit code 2.
 
 Kept light, so that `--help` is quick: no numerics and no Zenoh are imported here.
 """
@@ -7,7 +7,6 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -21,72 +20,12 @@ EXIT_OK = 0
 EXIT_USER_ERROR = 2
 EXIT_INTERRUPTED = 130
 
-_PANEL = "Zenoh"
-
-NamespaceOption = Annotated[str, typer.Option("--ns", metavar="NAME", help="Namespace of all Zenoh keys.")]
-VehicleOption = Annotated[str, typer.Option("--vehicle", metavar="ID", help="Name of the ground vehicle.")]
-DroneOption = Annotated[str, typer.Option("--drone", metavar="ID", help="Name of the drone.")]
-
-ModeOption = Annotated[
-    str | None,
-    typer.Option(
-        "-m", "--mode", metavar="MODE", help="peer, client or router [default: peer].", rich_help_panel=_PANEL
-    ),
-]
-ConnectOption = Annotated[
+SetOption = Annotated[
     list[str] | None,
     typer.Option(
-        "-e",
-        "--connect",
-        metavar="ENDPOINT",
-        help="Endpoint to connect to, such as tls/192.168.1.5:7447. May be repeated.",
-        rich_help_panel=_PANEL,
-    ),
-]
-ListenOption = Annotated[
-    list[str] | None,
-    typer.Option(
-        "-l",
-        "--listen",
-        metavar="ENDPOINT",
-        help="Endpoint to listen on, such as tls/0.0.0.0:7447. May be repeated.",
-        rich_help_panel=_PANEL,
-    ),
-]
-MulticastOption = Annotated[
-    bool | None,
-    typer.Option(
-        "--multicast-scouting/--no-multicast-scouting",
-        help="Look for others by multicast, or not [default: not].",
-        show_default=False,
-        rich_help_panel=_PANEL,
-    ),
-]
-ZenohConfigOption = Annotated[
-    Path | None,
-    typer.Option(
-        "--zenoh-config",
-        metavar="FILE",
-        help="Zenoh configuration (JSON5), for TLS and access control.",
-        rich_help_panel=_PANEL,
-    ),
-]
-InsecureOption = Annotated[
-    bool,
-    typer.Option(
-        "--insecure",
-        help="Meet others beyond this machine without certificates: anybody on that network can give orders.",
-        rich_help_panel=_PANEL,
-    ),
-]
-Ros2Option = Annotated[
-    int | None,
-    typer.Option(
-        "--ros2",
-        metavar="[DOMAIN]",
-        help="Be a node of a ROS 2 graph over rmw_zenoh [default: ROS_DOMAIN_ID, else 0].",
-        show_default=False,
-        rich_help_panel="ROS 2",
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change one setting, by its dotted key; over the file and the environment. May be repeated.",
     ),
 ]
 FoxgloveOption = Annotated[
@@ -99,10 +38,6 @@ FoxgloveOption = Annotated[
         help="Show everything live in Foxglove, at ws://127.0.0.1:PORT [default: 8765].",
         show_default=False,
     ),
-]
-Ros2MapOption = Annotated[
-    Path | None,
-    typer.Option("--ros2-map", metavar="FILE", help="Which topics are what, in TOML.", rich_help_panel="ROS 2"),
 ]
 
 

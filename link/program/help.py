@@ -1,17 +1,21 @@
 """What every help says beside its options: examples, and what kind of value an option takes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypeVar
 
 import typer
+
+from link.program.option_groups import ungrouped
 
 Examples = Mapping[str, Sequence[str]]
 """Command lines, by the command below the program, such as `check`; the program's own by the empty name."""
 
+Command = TypeVar("Command", bound=Callable[..., Any])
+
 NO_EXAMPLES: Examples = MappingProxyType({})
 
-_KINDS = {"float": "NUMBER", "int": "INTEGER"}
+_KINDS = {"float": "NUMBER", "int": "N"}
 """How a kind of value is written, by typer's name of it."""
 
 
@@ -23,6 +27,22 @@ class App(typer.Typer):
     """
 
     examples: Examples = NO_EXAMPLES
+
+    def command(self, name: str | None = None, **kwargs: Any) -> Callable[[Command], Command]:
+        """Take a command, whose arguments may be groups of options."""
+        return _ungrouping(super().command(name, **kwargs))
+
+    def callback(self, **kwargs: Any) -> Callable[[Command], Command]:
+        """Take what is done without a command, likewise."""
+        return _ungrouping(super().callback(**kwargs))
+
+
+def _ungrouping(register: Callable[[Any], Any]) -> Callable[[Command], Command]:
+    def take(function: Command) -> Command:
+        register(ungrouped(function))
+        return function
+
+    return take
 
 
 def explain(command: Any, examples: Examples, below: str = "") -> None:  # of a class that is private to typer

@@ -2,7 +2,7 @@
 
 import math
 
-from link.messages import LandingStatus, Vector3
+from link.messages import ContactForecast, LandingStatus, Vector3
 
 Row = tuple[str, str]
 
@@ -17,6 +17,7 @@ def status_rows(status: LandingStatus | None) -> list[Row]:
         ("east, north, up", _vector(position, "m")),
         ("relative velocity", _vector(velocity, "m/s")),
         ("time to touchdown", number(None if status is None else status.time_to_contact_s, "s")),
+        ("contact, if it goes on", _forecast(None if status is None else status.contact_forecast)),
         ("age of the last fix", number(None if status is None else status.fix_age_s, "s")),
         ("refused data", "-" if status is None or not status.refused else status.refused),
     ]
@@ -33,6 +34,12 @@ def link_rows(received: int, sent: int, lost: int, bad_bytes: int, bad_payloads:
 def number(value: float | None, unit: str) -> str:
     """Return a value with its unit, a dash for an unknown one."""
     return "-" if value is None else f"{value:.2f} {unit}"
+
+
+def _forecast(forecast: ContactForecast | None) -> str:
+    if forecast is None:
+        return "-"
+    return f"{100.0 * forecast.s2:.0f} % S2, {100.0 * forecast.unsafe:.1f} % unsafe"
 
 
 def _vector(vector: Vector3 | None, unit: str) -> str:

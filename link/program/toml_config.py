@@ -39,30 +39,49 @@ class StrictModel(BaseModel):
 Model = TypeVar("Model", bound=StrictModel)
 
 
-def load_config(path: Path | None, model: type[Model], overrides: Mapping[str, Any] | None = None) -> Model:
+def load_config(
+    path: Path | None,
+    model: type[Model],
+    overrides: Mapping[str, Any] | None = None,
+    environment: Mapping[str, Any] | None = None,
+) -> Model:
     """Return the configuration in a file.
 
     Args:
         path: of the TOML file; None is an empty one.
         model: what it must fit.
-        overrides: laid over the file's values, table by table; from the command line.
+        overrides: laid over all else, table by table; from the command line.
+        environment: laid over the file's values; from variables.
 
     Raises:
         UserError: the file cannot be read, is no TOML, or a key or value does not fit.
     """
     table = {} if path is None else read_toml(path)
-    above = overrides or {}
     source = "the defaults" if path is None else str(path)
-    return _check(model, merge(table, above), lambda location: "command line" if _is_in(location, above) else source)
+    return validate(model, table, source=source, overrides=overrides, environment=environment)
 
 
-def validate(model: type[Model], table: Mapping[str, Any], *, source: str) -> Model:
-    """Return `table` as a `model`.
+def validate(
+    model: type[Model],
+    table: Mapping[str, Any],
+    *,
+    source: str,
+    overrides: Mapping[str, Any] | None = None,
+    environment: Mapping[str, Any] | None = None,
+) -> Model:
+    """Return `table` as a `model`, with what is laid over it as `load_config` says.
 
     Raises:
         UserError: with `source`, the first key that does not fit, its value and what would.
     """
-    return _check(model, table, lambda _: source)
+    above, between = overrides or {}, environment or {}
+
+    def source_of(location: Location) -> str:
+        if _is_in(location, above):
+            return "command line"
+        return "environment" if _is_in(location, between) else source
+
+    return _check(model, merge(merge(table, between), above) if between or above else table, source_of)
 
 
 def merge(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:

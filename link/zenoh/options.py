@@ -1,7 +1,6 @@
 """How a program meets others over Zenoh, and the checks that turn a mistyped endpoint into one clear line."""
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,7 +17,7 @@ _INTERNET_ADDRESS = re.compile(r"(?P<host>\[[0-9A-Fa-f:.%\w]+\]|[^\s:/\[\]]+):(?
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ZenohOptions:
-    """What a user may say about the Zenoh session; the fields are the command line's options.
+    """What a user may say about the Zenoh session.
 
     Attributes:
         mode: `peer`, `client` or `router`; None is the configuration file's, else peer.
@@ -50,39 +49,6 @@ class ZenohOptions:
             _check_endpoint("--connect", endpoint, port_min=1)
         for endpoint in self.listen:
             _check_endpoint("--listen", endpoint, port_min=0)
-
-
-def zenoh_options(
-    mode: str | None,
-    connect: Sequence[str] | None,
-    listen: Sequence[str] | None,
-    multicast: bool | None,
-    config_file: Path | None,
-    *,
-    insecure: bool = False,
-    listens: bool = False,
-) -> ZenohOptions:
-    """Return the options of a command line; one that says nothing connects to the default endpoint.
-
-    With `listens` it waits there for the others instead, unless it is a client, which cannot.
-
-    Raises:
-        UserError: If the mode or an endpoint is not one.
-    """
-    if not (connect or listen or config_file or multicast):
-        connect, listen = ((), _default_listen(mode)) if listens else ((DEFAULT_ENDPOINT,), ())
-    return ZenohOptions(
-        mode=mode,
-        connect=tuple(connect or ()),
-        listen=tuple(listen or ()),
-        multicast_scouting=multicast,
-        config_file=config_file,
-        insecure=insecure,
-    )
-
-
-def _default_listen(mode: str | None) -> tuple[str, ...]:
-    return () if mode == "client" else (DEFAULT_ENDPOINT,)
 
 
 def _check_endpoint(option: str, endpoint: str, *, port_min: int) -> None:

@@ -16,6 +16,7 @@ from scenarios.config import Scenario
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.lockstep.stopwatch import quantiles_ms, timed_steps
 from scenarios.lockstep.warm_up import warm_process
+from scenarios.recordings.contact_forecasts import forecast_columns
 from scenarios.recordings.reason_counts import Approaches, abort_reasons, anew_reasons, counts_of, counts_text
 from scenarios.recordings.recording import Recording
 from scenarios.recordings.result import result_table
@@ -107,6 +108,8 @@ def fly(task: Task, scenario: Scenario) -> Row:
     lockstep = Lockstep(scenario, task.seed)
     ended = lockstep.run()
     row = row_of(task, result_table(scenario, task.seed, lockstep.recording, ended), lockstep.recording)
+    start_ns = lockstep.recording.drone[0].t_ns
+    row |= forecast_columns(lockstep.recording.statuses, start_ns, row, scenario.system.companion.descent)
     return row | conditions_of(scenario) | disturbances_before(scenario, task.seed, row["instant_s"])
 
 

@@ -28,6 +28,8 @@ _TYPES: dict[str, pl.DataType] = {
     "last_abort": pl.String(),
     "aborts_by_reason": pl.String(),
     "begun_anew_by_reason": pl.String(),
+    "forecast_waiting_came": pl.String(),
+    "forecast_commit_came": pl.String(),
     "on_pad": pl.Boolean(),
     "s2_quality": pl.Boolean(),
     "aborts": pl.Int64(),

@@ -8,7 +8,8 @@ from pydantic import Field, model_validator
 
 from companion.config.companion import CompanionConfig
 from link.errors import UserError
-from link.program.toml_config import StrictModel, load_config, read_toml
+from link.program.settings import COMPANION, load_settings, settings_of_environment, settings_of_options
+from link.program.toml_config import StrictModel, merge, read_toml
 from scenarios.campaigns.cells import Cell, Population, load_cell, with_companion
 from scenarios.campaigns.landing_task import Task
 from scenarios.catalogue.firmware_option import cells_with
@@ -60,7 +61,13 @@ class Plan(StrictModel):
 
 
 def make_plan(
-    cells: Sequence[str], *, first_seed: int, seeds: int, config: Path | None, firmware: str | None = None
+    cells: Sequence[str],
+    *,
+    first_seed: int,
+    seeds: int,
+    config: Path | None,
+    given: Sequence[str] | None = None,
+    firmware: str | None = None,
 ) -> Plan:
     """Return what a campaign flies.
 
@@ -70,6 +77,7 @@ def make_plan(
         first_seed: the others follow.
         seeds: how many.
         config: the companion's, laid over each scenario's own: only what it sets is changed.
+        given: single settings of it, by `--set`.
 
     Raises:
         UserError: no such cell or firmware, two cells of one name, or a configuration that does not fit.
@@ -79,10 +87,11 @@ def make_plan(
     double = next((name for name in names if names.count(name) > 1), None)
     if double is not None:
         raise UserError(f"cell '{double}' is given twice")
-    if config is not None:
-        load_config(config, CompanionConfig)  # by itself it has to fit as well
-        table = read_toml(config)
-        loaded = [with_companion(cell, table, str(config)) for cell in loaded]
+    load_settings(config, CompanionConfig, COMPANION, given)  # by itself it has to fit as well
+    changes = merge(settings_of_environment(COMPANION, CompanionConfig), settings_of_options(given))
+    table = merge({} if config is None else read_toml(config), changes)
+    if table:
+        loaded = [with_companion(cell, table, "--set" if config is None else str(config)) for cell in loaded]
     return Plan(
         cells=names,
         first_seed=first_seed,

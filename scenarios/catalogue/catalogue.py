@@ -79,7 +79,15 @@ def load_scenario(name_or_path: str) -> Scenario:
         table = _find_table(name) | {"name": name_or_path}
     for option in options:
         table |= _option(option, name_or_path)
-    scenario = validate(Scenario, _resolve(table, name_or_path), source=name_or_path)
+    return complete(validate(Scenario, _resolve(table, name_or_path), source=name_or_path))
+
+
+def complete(scenario: Scenario) -> Scenario:
+    """Return a scenario whose companion knows what its owner would tell it of the receivers and of a silent vehicle.
+
+    Raises:
+        UserError: the drone waits inside the vehicle.
+    """
     return place_drone(look_out_for_silent_vehicle(tell_of_one_frame(scenario)))
 
 

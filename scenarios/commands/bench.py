@@ -2,6 +2,7 @@
 
 import json
 import sys
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -20,6 +21,11 @@ def bench_command(
     seed: Annotated[
         int | None, typer.Option("--seed", min=0, help="Of everything random [default: 1, or the world's own].")
     ] = None,
+    against: Annotated[
+        Path | None,
+        typer.Option("--against", metavar="FOLDER", help="Only fly in turn with another checkout: which is faster?"),
+    ] = None,
+    pairs: Annotated[int, typer.Option("--pairs", help="Landings on each, with --against.")] = 15,
     as_json: JsonOption = False,
 ) -> None:
     """Measure step times, speed, memory and start-up against their budgets; takes about a minute."""
@@ -27,8 +33,24 @@ def bench_command(
     from scenarios.catalogue.catalogue import load_scenario
     from scenarios.catalogue.world_names import run_seed
 
+    if against is not None:
+        _bench_against(against, name, pairs, run_seed(name, seed), as_json=as_json)
+        return
     table = bench(load_scenario(name), run_seed(name, seed), lambda what: _announce(what, as_json=as_json))
     text = json.dumps(table, indent=2) if as_json else "\n".join(text_lines(table))
+    sys.stdout.write(f"{text}\n")
+
+
+def _bench_against(there: Path, name: str, pairs: int, first_seed: int, *, as_json: bool) -> None:
+    from scenarios.bench.against import against_lines, against_table, check_pairs, fly_pairs
+    from scenarios.catalogue.catalogue import load_scenario
+
+    check_pairs(there, pairs)
+    load_scenario(name)
+    seeds = range(first_seed, first_seed + pairs)
+    flown = fly_pairs(there, name, seeds, lambda what: _announce(what, as_json=as_json))
+    table = against_table(there, name, flown)
+    text = json.dumps(table, indent=2) if as_json else "\n".join(against_lines(table))
     sys.stdout.write(f"{text}\n")
 
 

@@ -6,17 +6,8 @@ from typing import Annotated
 import typer
 
 from link.errors import UserError
-from link.program.cli import (
-    ConnectOption,
-    DroneOption,
-    ListenOption,
-    ModeOption,
-    MulticastOption,
-    NamespaceOption,
-    VehicleOption,
-    ZenohConfigOption,
-)
 from link.program.extras import require
+from link.zenoh.command_line import NameArguments, ZenohArguments
 
 
 def register(app: typer.Typer) -> None:
@@ -34,19 +25,11 @@ def camera_command(
         Path | None,
         typer.Option("--files", metavar="DIR", help="Only write camera.yaml, mounting.toml and board.toml here."),
     ] = None,
-    namespace: NamespaceOption = "decklander",
-    vehicle: VehicleOption = "vehicle",
-    drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
+    names: NameArguments,
+    endpoints: ZenohArguments,
 ) -> None:
     """Publish what the camera on the simulated drone sees, for `pad-detector run --source zenoh`."""
     require("camera", "scenarios camera")
-    from link.zenoh.keys import Keys
-    from link.zenoh.options import zenoh_options
     from link.zenoh.session import open_session
     from scenarios.catalogue.catalogue import load_scenario
     from scenarios.catalogue.world_names import run_seed
@@ -60,6 +43,6 @@ def camera_command(
     if files is not None:
         write_camera_files(scenario, drawn, files)
         return
-    keys = Keys(namespace, vehicle, drone)
-    with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config)) as zenoh:
+    keys = names.keys()
+    with open_session(endpoints.options()) as zenoh:
         CameraLoop(scenario, drawn, keys, zenoh).run()

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from link.errors import UserError
+from link.program.cli import SetOption
 from link.program.extras import require
 
 if TYPE_CHECKING:
@@ -59,8 +60,9 @@ def campaign_command(
     config: Annotated[
         Path | None, typer.Option("--config", metavar="FILE", help="The companion's configuration for all cells.")
     ] = None,
+    changes: SetOption = None,
     firmware: Annotated[
-        str | None, typer.Option("--firmware", metavar="px4|ardupilot|both", help="Of each cell [default: its own].")
+        str | None, typer.Option("--firmware", metavar="px4|ardupilot|both", help="In place of each cell's.")
     ] = None,
     held_back: Annotated[
         bool, typer.Option("--held-back", help="Fly worlds from seed 500000 on, for a published figure, once.")
@@ -78,10 +80,10 @@ def campaign_command(
     if workers is not None and scheduler is not None:
         raise UserError("--workers is about local processes: leave it out with --scheduler")
     if resume is not None:
-        if cells or held_back or any(one is not None for one in (config, out, seeds, first_seed, firmware)):
+        if cells or held_back or any(one is not None for one in (config, changes, out, seeds, first_seed, firmware)):
             raise UserError(
-                f"{resume} says what is flown: with --resume leave out cells, --config, --firmware, --held-back, "
-                "--out, --seeds and --first-seed"
+                f"{resume} says what is flown: with --resume leave out cells, --config, --set, --firmware, "
+                "--held-back, --out, --seeds and --first-seed"
             )
         plan = read_plan(resume)
         check_same_versions(plan)
@@ -93,6 +95,7 @@ def campaign_command(
         first_seed=_FIRST_SEED if first_seed is None else first_seed,
         seeds=_SEEDS if seeds is None else seeds,
         config=config,
+        given=changes,
         firmware=firmware,
     )
     check_worlds(plan, held_back=held_back)
@@ -174,6 +177,7 @@ def _fly(folder: Path, plan: "Plan", where: "Where", *, as_json: bool) -> int:
 
 
 def _print_summary(rows: Sequence["Row"], times: Sequence["Row"], plan: "Plan", *, as_json: bool) -> None:
+    from scenarios.campaigns.reliability import reliability, reliability_sheets
     from scenarios.campaigns.sheets import print_sheets
     from scenarios.campaigns.summary import summarize
     from scenarios.campaigns.tables import print_summary
@@ -182,15 +186,19 @@ def _print_summary(rows: Sequence["Row"], times: Sequence["Row"], plan: "Plan", 
 
     summary, worlds = summarize(rows, times), worlds_report(rows, plan.populations)
     if as_json:
-        _print_json(summary | ({"worlds": worlds} if worlds else {}))
+        forecasts = reliability(rows)
+        found = ({"worlds": worlds} if worlds else {}) | ({"forecasts": forecasts} if forecasts else {})
+        _print_json(summary | found)
         return
     print_summary(summary, sys.stdout)
     for report in worlds:
         print_sheets(worlds_sheets(report), sys.stdout)
+    print_sheets(reliability_sheets(reliability(rows)), sys.stdout)
 
 
 def _write_markdown(rows: Sequence["Row"], plan: "Plan") -> None:
     from scenarios.campaigns.markdown import write_markdown
+    from scenarios.campaigns.reliability import reliability, reliability_sheets
     from scenarios.campaigns.sheets import write_sheets
     from scenarios.campaigns.summary import summarize
     from scenarios.campaigns.worlds_report import worlds_report
@@ -199,6 +207,7 @@ def _write_markdown(rows: Sequence["Row"], plan: "Plan") -> None:
     write_markdown(summarize(rows), sys.stdout)
     for report in worlds_report(rows, plan.populations):
         write_sheets(worlds_sheets(report), sys.stdout)
+    write_sheets(reliability_sheets(reliability(rows)), sys.stdout)
 
 
 def _print_json(table: Mapping[str, Any]) -> None:

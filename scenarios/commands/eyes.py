@@ -23,7 +23,7 @@ def eyes_command(
     bare: Annotated[int, typer.Option("--bare", min=0, help="Without it, half of them with another board.")] = 250,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of everything drawn.")] = 1,
     pictures: Annotated[
-        Path | None, typer.Option("--pictures", metavar="DIR", help="Only draw what it sees from 8, 2 and 0.2 m there.")
+        Path | None, typer.Option("--examples", metavar="DIR", help="Only draw what it sees from 8, 2 and 0.2 m there.")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> None:

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from link.program.cli import SetOption
+
 _NAME = "Scenario whose track, sensors and companion are used; `scenarios list` shows them."
 
 
@@ -30,8 +32,9 @@ def fly_command(
         int | None, typer.Option("--seed", min=0, help="Of the vehicle's sensors [default: 1, or the world's own].")
     ] = None,
     record: Annotated[
-        bool, typer.Option("--record", help="Record the companion and the truth, as MCAP, into the run's folder.")
-    ] = False,
+        bool, typer.Option(" /--no-record", help="Record neither the companion nor the truth; else both are, as MCAP.")
+    ] = True,
+    changes: SetOption = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the run's folder is made.")] = Path("runs"),
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> int:
@@ -39,13 +42,13 @@ def fly_command(
 
     The vehicle drives by the place where the simulated drone stands, its pad at the height of the ground.
     """
-    from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.changed import load_changed_scenario
     from scenarios.catalogue.world_names import run_seed
     from scenarios.commands.run_lines import Reporter
     from scenarios.firmware.fly import FlyOptions, fly
     from scenarios.recordings.run_folder import run_folder
 
-    scenario = load_scenario(name)
+    scenario = load_changed_scenario(name, changes)
     folder = run_folder(out, scenario.name)
     options = FlyOptions(
         mavlink=mavlink,

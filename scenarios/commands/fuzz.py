@@ -26,7 +26,7 @@ def fuzz_command(
     link: Annotated[
         str, typer.Option("--link", metavar="KIND", help="Of the autopilot: udpin, udpout, tcpin, serial or all.")
     ] = _ALL,
-    firmware: Annotated[str, typer.Option("--firmware", metavar="NAME", help="px4 or ardupilot.")] = "px4",
+    firmware: Annotated[str, typer.Option("--firmware", metavar="px4|ardupilot", help="Of the autopilot.")] = "px4",
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of the frames.")] = 1,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> None:

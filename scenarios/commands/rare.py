@@ -39,9 +39,7 @@ def rare_command(
     workers: Annotated[
         int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
     ] = None,
-    firmware: Annotated[
-        str | None, typer.Option("--firmware", metavar="NAME", help="px4 or ardupilot, of a cell.")
-    ] = None,
+    firmware: Annotated[str | None, typer.Option("--firmware", metavar="px4|ardupilot", help="Of a cell.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> int:
     """Estimate the probability of an unsafe outcome; exit code 1 when the splitting has not converged."""

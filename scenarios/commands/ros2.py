@@ -7,15 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from link.program.cli import (
-    ConnectOption,
-    InsecureOption,
-    ListenOption,
-    ModeOption,
-    MulticastOption,
-    ZenohConfigOption,
-    make_app,
-)
+from link.program.cli import make_app
+from link.zenoh.command_line import ZenohArguments
 
 if TYPE_CHECKING:
     from link.ros2.names import Token
@@ -39,22 +32,16 @@ def topics_command(
         int | None, typer.Option("--domain", min=0, max=232, help="[default: ROS_DOMAIN_ID, else 0].")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
+    endpoints: ZenohArguments,
 ) -> None:
     """List topics, services and actions with their types and nodes, as the liveliness tokens of the graph tell them."""
     from link.errors import UserError
     from link.ros2.ros_node import read_graph
-    from link.zenoh.options import zenoh_options
 
     text = os.environ.get("ROS_DOMAIN_ID") or "0"
     if domain is None and not text.isdigit():
         raise UserError(f"ROS_DOMAIN_ID is {text!r}: give --domain, a number from 0 to 232")
-    options = zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)
+    options = endpoints.options()
     rows = topic_rows(read_graph(options, int(text) if domain is None else domain))
     if as_json:
         sys.stdout.write(json.dumps({"topics": rows}, indent=2) + "\n")

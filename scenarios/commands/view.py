@@ -7,19 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from link.errors import UserError
-from link.program.cli import (
-    ConnectOption,
-    DroneOption,
-    FoxgloveOption,
-    InsecureOption,
-    ListenOption,
-    ModeOption,
-    MulticastOption,
-    NamespaceOption,
-    VehicleOption,
-    ZenohConfigOption,
-)
+from link.program.cli import FoxgloveOption
 from link.program.extras import require
+from link.zenoh.command_line import NameArguments, ZenohArguments
 
 if TYPE_CHECKING:
     from link.zenoh.keys import Keys
@@ -68,23 +58,14 @@ def view_command(
     foxglove_layout: Annotated[
         Path | None, typer.Option("--foxglove-layout", metavar="FILE", help="Write a layout for Foxglove, and end.")
     ] = None,
-    namespace: NamespaceOption = "decklander",
-    vehicle: VehicleOption = "vehicle",
-    drone: DroneOption = "drone",
-    mode: ModeOption = None,
-    connect: ConnectOption = None,
-    listen: ListenOption = None,
-    multicast: MulticastOption = None,
-    zenoh_config: ZenohConfigOption = None,
-    insecure: InsecureOption = False,
+    names: NameArguments,
+    endpoints: ZenohArguments,
 ) -> None:
     """Show a landing in the browser as it goes on, or play a recording.
 
     From another machine: ssh -L 8080:127.0.0.1:8080 THIS_MACHINE, and http://127.0.0.1:8080 there.
     """
-    from link.zenoh.keys import Keys
-
-    keys = Keys(namespace, vehicle, drone)
+    keys = names.keys()
     if foxglove_layout is not None:
         from scenarios.view.foxglove_layout import layout_json
 
@@ -100,14 +81,13 @@ def view_command(
         source = RecordedSource(recording)
         _show(source, source.road, port, keys, foxglove)
         return
-    from link.zenoh.options import zenoh_options
     from link.zenoh.session import open_session
     from scenarios.catalogue.catalogue import load_scenario
     from scenarios.catalogue.world_names import run_seed
     from scenarios.view.live import LiveSource
 
     drawn = None if road is None else Road(scenario=load_scenario(road), seed=run_seed(road, seed))
-    with open_session(zenoh_options(mode, connect, listen, multicast, zenoh_config, insecure=insecure)) as zenoh:
+    with open_session(endpoints.options()) as zenoh:
         _show(LiveSource(zenoh, keys), drawn, port, keys, foxglove)
 
 

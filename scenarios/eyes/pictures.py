@@ -46,7 +46,7 @@ def write_pictures(folder: Path, seed: int) -> None:
         small = cv2.resize(drawn, (_WIDTH_PX, _WIDTH_PX * SIZE_PX[1] // SIZE_PX[0]), interpolation=cv2.INTER_AREA)
         path = folder / f"eyes_{height_m:g}m.jpg"
         if not folder.is_dir() or not cv2.imwrite(str(path), small):
-            raise UserError(f"{path}: cannot be written; choose another --pictures")
+            raise UserError(f"{path}: cannot be written; choose another --examples")
 
 
 def _view(height_m: float, system: SightSystem, q_VB: tuple[float, float, float, float]) -> View:

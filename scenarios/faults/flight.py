@@ -9,6 +9,7 @@ from link.frames.geodesy import geodetic_from_enu
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Command, Vector3
+from link.records import replace
 from link.zenoh.keys import Keys
 from scenarios.config import Scenario
 from scenarios.faults.held_way import HeldWay
@@ -80,9 +81,33 @@ class FaultFlight(Lockstep):
             if self.recording.elapsed_s > _REACHED_MAX_S:
                 raise ValueError(f"phase {before.value} is not reached in {_REACHED_MAX_S:g} s")
         if command is not None:
-            self.companion.request(command)
-            while self.phase is not phase:
-                self.step()
+            self._order(command, phase)
+
+    def _order(self, command: Command, phase: Phase) -> None:
+        """Let the operator give a command, and go on to the phase that it leads to."""
+        self.companion.request(command)
+        while self.phase is not phase:
+            self.step()
+
+    def break_off_at(self, height_m: float) -> bool:
+        """Go on until the feet are so high over the pad in a descent, and break it off; another approach follows.
+
+        An operator's abort is followed by none. That this one is, is all that it differs by. Return whether a descent
+        came so low before the run was over.
+        """
+        while self.phase is not Phase.DESCEND or not self._is_below(height_m):
+            if self._watch.reason(self.recording) is not None:
+                return False
+            self.step()
+        self._order(Command.ABORT, Phase.ABORT)
+        memory = self.companion.memory
+        self.companion.memory = replace(memory, progress=replace(memory.progress, may_retry=True))
+        return True
+
+    def _is_below(self, height_m: float) -> bool:
+        status = self.recording.status
+        told_m = None if status is None else status.height_above_pad_m
+        return told_m is not None and told_m < height_m
 
     def tell(self, message: Message) -> None:
         """Let a ground station send a message to the autopilot."""

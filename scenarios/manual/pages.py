@@ -15,14 +15,18 @@ from scenarios.manual.wire import wire_page
 from sim_autopilot.runtime.config import SimAutopilotConfig
 
 COMPANION = """The file is given as `companion --config FILE`; what it leaves out has its default, and an unknown
-or unfit key is refused with its name. `companion --print-config` prints all of it, as a file to start from.
+or unfit key is refused with its name. `companion --print-config` prints all of it, as a file to start from. A variable
+`DECKLANDER_COMPANION__DESCENT__CONE__SLOPE=0.3` stands above the file, `--set descent.cone.slope=0.3` above both.
 [Tuning](../tuning.md) says which keys are worth a change."""
 SIM_AUTOPILOT = """The file is given as `sim-autopilot --config FILE`; what it leaves out has its default, and
-`sim-autopilot --print-config` prints all of it. Options of the command line stand above the file. Firmware
+`sim-autopilot --print-config` prints all of it. Variables such as `DECKLANDER_SIM_AUTOPILOT__WIND__MEAN_M_S=4` stand
+above the file, options of the command line and `--set wind.mean_m_s=4` above both. Firmware
 parameters go below `[parameters]`, by their own names."""
 SCENARIO = """What a scenario's file may hold; [a scenario of your own](../own_scenario.md) shows how to write one.
 `base` names a scenario to start from. `sensors`, `wind`, `link`, `vehicle` and `system` may be the name of a
-preset instead of a table, or a table with `preset` as one of its keys."""
+preset instead of a table, or a table with `preset` as one of its keys. For `run`, `world`, `fly` and `ground-vehicle
+--scenario`, variables such as `DECKLANDER_SCENARIO__TRACK__SPEED_M_S=6` stand above all that, `--set
+system.companion.descent.cone.slope=0.3` above both."""
 
 ELSEWHERE: Mapping[type, str] = MappingProxyType(
     {CompanionConfig: "All tables of the [companion's configuration](companion.md) may stand below this one."}

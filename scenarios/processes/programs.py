@@ -12,6 +12,7 @@ from types import TracebackType
 from typing import Self
 
 from link.errors import UserError
+from link.program.settings import without_settings
 
 MODULES = {
     "companion": "companion",
@@ -97,6 +98,7 @@ class ProcessGroup:
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=subprocess.STDOUT,
+                env=without_settings(os.environ),  # all that they are to do is in their arguments and files
             )
 
     def _stop(self) -> None:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from companion.core.reasons import Reason
 from companion.situation.phases import FLYING_PHASES, Phase
 from link.messages import BodyTruth, LandingStatus, RotorTruth
 from link.units import NS_PER_S
@@ -57,6 +58,17 @@ class Recording:
     def status(self) -> LandingStatus | None:
         """The newest one."""
         return self.statuses[-1] if self.statuses else None
+
+    def status_at_end(self, ended: str) -> LandingStatus | None:
+        """Return the status that says why a run ended: at its time limit, what was waited for before it was called off.
+
+        Args:
+            ended: as `EndWatch.reason` has it.
+        """
+        if ended != TIME_LIMIT:
+            return self.status
+        called_off = Reason.OPERATOR_ABORTS.name
+        return next((one for one in reversed(self.statuses) if one.reason_code != called_off), self.status)
 
     def phase_times_s(self) -> dict[str, float]:
         """Return when each phase was first seen, in seconds since the drone's first sample."""

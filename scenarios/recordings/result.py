@@ -48,7 +48,7 @@ def result_table(
     relative = {key.removesuffix("_t_ns") + "_s": _since_s(value, start_ns) for key, value in times.items()}
     phases = {phase: round(t_s, 3) for phase, t_s in recording.phase_times_s().items()}
     rounded = {key: round(value, _DIGITS) if isinstance(value, float) else value for key, value in table.items()}
-    status = recording.status
+    status = recording.status_at_end(ended)
     return {
         "scenario": scenario.name,
         "firmware": scenario.firmware,

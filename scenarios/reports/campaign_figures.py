@@ -15,10 +15,12 @@ from scenarios.campaigns.cells import Cell
 from scenarios.campaigns.intervals import wilson
 from scenarios.campaigns.landing_task import Row
 from scenarios.campaigns.plan import Plan
+from scenarios.campaigns.reliability import reliability
 from scenarios.campaigns.worlds_report import worlds_report
 from scenarios.catalogue.firmware_option import without_firmware
 from scenarios.config import Scenario
-from scenarios.reports.figure_files import BLUE, GREEN, LIGHT, MIDDLE, ORANGE, PURPLE, STYLES, VERMILLION
+from scenarios.reports.figure_files import BLUE, GREEN, LIGHT, MIDDLE, ORANGE, PURPLE, STYLES, VERMILION
+from scenarios.reports.reliability_figures import draw_reliability
 from scenarios.reports.run_figures import draw_pad, show_around_pad
 from scenarios.reports.worlds_figures import draw_rates
 from scenarios.scoring.limits import S1_LIMITS, S2_LIMITS
@@ -35,6 +37,9 @@ def campaign_figures(plan: Plan, rows: Sequence[Row]) -> dict[str, Figure]:
     """Return the figures by the names of their files."""
     with mpl.rc_context(STYLES):
         figures = {"touchdowns": _touchdowns(plan, rows), "errors": _errors(plan, rows)}
+        forecasts = reliability(rows)
+        if forecasts:
+            figures["reliability"] = draw_reliability(forecasts)
         reports = {report["worlds"].replace(":", "_"): report for report in worlds_report(rows, plan.populations)}
         return figures | {f"rates_{worlds}": draw_rates(report) for worlds, report in reports.items()}
 
@@ -50,7 +55,7 @@ def _touchdowns(plan: Plan, rows: Sequence[Row]) -> Figure:
     for axes, cell in zip(grid.flat, plan.cells, strict=False):
         _draw_target(axes, plan.flown[cell])
         touched = [row for row in rows if row["cell"] == cell and row.get("contact_forward_m") is not None]
-        for secured, marker, color in ((True, "o", BLUE), (False, "x", VERMILLION)):
+        for secured, marker, color in ((True, "o", BLUE), (False, "x", VERMILION)):
             chosen = [row for row in touched if (row["tier"] == "S3") is secured]
             if chosen:
                 axes.plot(
@@ -89,7 +94,7 @@ def _errors(plan: Plan, rows: Sequence[Row]) -> Figure:
     """Share of the landings whose contact is within a distance of the pad's centre, with its 95 % interval."""
     figure = Figure(figsize=(7.5, 5.0), layout="constrained")
     axes = figure.subplots()
-    styles = [(color, dashes) for dashes in ("-", "--", ":") for color in (BLUE, VERMILLION, GREEN, PURPLE, ORANGE)]
+    styles = [(color, dashes) for dashes in ("-", "--", ":") for color in (BLUE, VERMILION, GREEN, PURPLE, ORANGE)]
     with_intervals = len(plan.cells) <= _INTERVALS_MAX
     reach_m = 0.0
     for cell, (color, dashes) in zip(plan.cells, islice(cycle(styles), len(plan.cells)), strict=True):

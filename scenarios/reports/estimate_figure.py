@@ -9,7 +9,7 @@ from matplotlib.ticker import FixedLocator, NullLocator
 
 from scenarios.campaigns.intervals import mean_band
 from scenarios.reports.estimate_track import EstimateTrack
-from scenarios.reports.figure_files import BLUE, LIGHT, MIDDLE, VERMILLION
+from scenarios.reports.figure_files import BLUE, LIGHT, MIDDLE, VERMILION
 from scenarios.reports.motion_figure import shade
 from scenarios.reports.run_data import RunData
 from scenarios.reports.run_shown import FLOWN, Array, Flags, landing_window, title
@@ -56,7 +56,7 @@ def _draw_error(axes: Axes, track: EstimateTrack, index: int, shown: Flags, scal
     outside = np.abs(error_m) > band_m
     axes.fill_between(t_s, -band_m, band_m, color=LIGHT, alpha=0.5, linewidth=0, label="2 sigma")
     axes.plot(t_s, error_m, color=BLUE, linewidth=1.0, label="error")
-    axes.plot(t_s[outside], error_m[outside], ".", color=VERMILLION, markersize=3, label="out of band")
+    axes.plot(t_s[outside], error_m[outside], ".", color=VERMILION, markersize=3, label="out of band")
     axes.axhline(0.0, color=MIDDLE, linewidth=0.6)
     if scaled_by.any():
         widest_m = _SIGMAS * float(np.median(track.std_m[scaled_by, index]))
@@ -76,7 +76,7 @@ def _draw_nees(axes: Axes, track: EstimateTrack, shown: Flags) -> None:
     outside = (nees < low) | (nees > high)
     axes.axhspan(low, high, color=LIGHT, alpha=0.5, linewidth=0, label="95 % band")
     axes.plot(t_s, nees, color=BLUE, linewidth=1.0, label="NEES")
-    axes.plot(t_s[outside], nees[outside], ".", color=VERMILLION, markersize=3, label="out of band")
+    axes.plot(t_s[outside], nees[outside], ".", color=VERMILION, markersize=3, label="out of band")
     axes.set(ylabel="NEES of position\n(mean 3 expected)", yscale="log", ylim=(min(_NEES_TICKS), max(_NEES_TICKS)))
     axes.yaxis.set_major_locator(FixedLocator(list(_NEES_TICKS)))
     axes.yaxis.set_minor_locator(NullLocator())

@@ -19,7 +19,7 @@ STYLES: dict[Any, Any] = {
     "grid.linewidth": 0.5,
 }
 DARK, MIDDLE, LIGHT = "0.0", "0.4", "0.65"
-BLUE, VERMILLION, GREEN, ORANGE, SKY, PURPLE = "#0072b2", "#d55e00", "#009e73", "#e69f00", "#56b4e9", "#cc79a7"
+BLUE, VERMILION, GREEN, ORANGE, SKY, PURPLE = "#0072b2", "#d55e00", "#009e73", "#e69f00", "#56b4e9", "#cc79a7"
 """Colours that are told apart with any kind of colour vision. Lines also differ in dashes, for prints in grey.
 
 Source: Okabe and Ito, Color Universal Design (2008).
@@ -33,7 +33,7 @@ PHASE_COLORS = {
     "descend": BLUE,
     "touchdown": GREEN,
     "secured": GREEN,
-    "abort": VERMILLION,
+    "abort": VERMILION,
     "hold": PURPLE,
     "pilot in command": DARK,
 }

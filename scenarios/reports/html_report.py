@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from link.errors import UserError
 from link.program.toml_config import dump_toml
 from scenarios.campaigns.folder import read_landings, read_plan
+from scenarios.campaigns.reliability import reliability, reliability_sheets
 from scenarios.campaigns.summary import summarize
 from scenarios.campaigns.tables import summary_sheets
 from scenarios.campaigns.worlds_report import worlds_report
@@ -37,6 +38,7 @@ _CAPTIONS = {
     " covariance, 3 on average if that is right. Axes fit the landing; before it both may go beyond",
     "touchdowns": "First contacts on the pad, forward up",
     "errors": "Share of the landings within a distance of the pad's centre, with its 95 % intervals",
+    "reliability": "How often what was forecast of the contact came true; the bars are where right forecasts lie, 95 %",
     "rates": "Landings of the worlds that were unsafe, and that were given up, with 95 % intervals",
 }
 
@@ -81,7 +83,10 @@ def _campaign_page(folder: Path) -> str:
         title=f"Campaign {folder.resolve().name}",
         verdict=f"{landed} of {len(rows)} landings reached S3",
         summary=summary_sheets(summarize(rows)),
-        worlds=[worlds_sheets(report) for report in worlds_report(rows, plan.populations)],
+        worlds=[
+            *(worlds_sheets(report) for report in worlds_report(rows, plan.populations)),
+            reliability_sheets(reliability(rows)),
+        ],
         figures=_captions(campaign_figures(plan, rows)),
         scenarios={name: dump_toml(cell) for name, cell in plan.flown.items()},
         versions={"commit": plan.commit or "not known"} | plan.versions,

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from scenarios.reports.figure_files import BLUE, DARK, LIGHT, MIDDLE, PHASE_COLORS, VERMILLION
+from scenarios.reports.figure_files import BLUE, DARK, LIGHT, MIDDLE, PHASE_COLORS, VERMILION
 from scenarios.reports.run_data import RunData
 from scenarios.reports.run_shown import Array, distances, heights, is_shown, landing_window, shown_spans, title
 
@@ -25,7 +25,7 @@ def motion(run: RunData) -> Figure:
     drone_m_s = np.linalg.norm(run.log.velocity_enu_m_s[shown, :2], axis=1)
     vehicle_m_s = np.linalg.norm(run.vehicle_velocity_enu_m_s[shown, :2], axis=1)
     panels[0].plot(t_s, drone_m_s, color=BLUE, label="drone")
-    panels[0].plot(t_s, vehicle_m_s, color=VERMILLION, linestyle="--", label="vehicle")
+    panels[0].plot(t_s, vehicle_m_s, color=VERMILION, linestyle="--", label="vehicle")
     panels[0].set_ylabel("speed [m/s]")
     panels[1].plot(t_s, heights(run)[shown], color=BLUE)
     panels[1].set_ylabel("height above\npad [m]")
@@ -48,7 +48,7 @@ def _draw_offsets(axes: Axes, run: RunData, t_s: Array) -> None:
     """Draw where the drone is from the pad's centre, as large as the pad: what is farther is in the panel above."""
     shown = is_shown(run)
     axes.plot(t_s, run.log.position_v_m[shown, 0], color=BLUE, label="ahead of the centre")
-    axes.plot(t_s, run.log.position_v_m[shown, 1], color=VERMILLION, linestyle="--", label="left of it")
+    axes.plot(t_s, run.log.position_v_m[shown, 1], color=VERMILION, linestyle="--", label="left of it")
     half_m = 0.5 * max(run.scenario.vehicle.pad_size_m)
     axes.set(ylabel="from pad's\ncentre [m]", ylim=(-half_m, half_m))
 

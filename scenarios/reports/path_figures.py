@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from scenarios.reports.figure_files import BLUE, DARK, LIGHT, PHASE_COLORS, VERMILLION
+from scenarios.reports.figure_files import BLUE, DARK, LIGHT, PHASE_COLORS, VERMILION
 from scenarios.reports.run_data import RunData
 from scenarios.reports.run_shown import AXIS_MIN_M, contact_index, is_shown, shown_spans, title
 
@@ -23,7 +23,7 @@ def path_3d(run: RunData) -> Figure:
     drone, roof = run.log.position_enu_m[shown], run.log.vehicle_position_enu_m[shown].copy()
     roof[:, 2] += run.scenario.vehicle.roof_height_m
     axes.plot(*drone.T, color=BLUE, linewidth=1.8, label="drone")
-    axes.plot(*roof.T, color=VERMILLION, linestyle="--", label="pad")
+    axes.plot(*roof.T, color=VERMILION, linestyle="--", label="pad")
     axes.plot(*drone.T[:2], 0.0, color=LIGHT, linewidth=0.8, label="drone's shadow")
     contact = contact_index(run)
     if contact is not None:

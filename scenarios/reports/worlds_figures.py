@@ -8,11 +8,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from scenarios.campaigns.worlds_sheets import heading_of
-from scenarios.reports.figure_files import BLUE, VERMILLION
+from scenarios.reports.figure_files import BLUE, VERMILION
 from scenarios.scoring.score import Tier
 
 _COLUMNS = 3
-_SHOWN = ((Tier.UNSAFE, VERMILLION, "o", -0.02), (Tier.ABORT, BLUE, "s", 0.02))
+_SHOWN = ((Tier.UNSAFE, VERMILION, "o", -0.02), (Tier.ABORT, BLUE, "s", 0.02))
 """Tier, colour, marker, and how far aside of a bin's middle, as a share of the axis: bars do not cover each other."""
 
 

@@ -5,6 +5,7 @@ another site opens in a browser here.
 """
 
 import io
+import math
 import re
 import signal
 import sys
@@ -62,10 +63,11 @@ class Page:
             self._panel.add_playback(source)
         else:
             self._panel.add_commands(source.send)
-        self._panel.add_camera_and_plots()
+        self._panel.add_camera_and_plots(with_cursor=isinstance(source, RecordedSource))
         self._stopping = self._was_playing = False
         self._stamp_ns: int | None = None
         self._stamp_seen_s = 0.0
+        self._plotted_s: float | None = None
 
     def __enter__(self) -> Self:
         return self
@@ -114,10 +116,17 @@ class Page:
             if isinstance(source, RecordedSource) and (source.playing or self._was_playing):
                 self._was_playing = source.playing
                 self._panel.follow(source)
-        if isinstance(source, LiveSource) and tick % _PLOTS_EVERY == 0:
-            self._panel.plot(history, end)
-        elif tick == 0:  # of a recording all is known
-            self._panel.plot(history, len(history.times_s))
+        if tick % _PLOTS_EVERY == 0:
+            self._plot()
+
+    def _plot(self) -> None:
+        """Draw a landing up to now; of a recording, all of it, when another instant is shown."""
+        source, history = self._source, self._source.history
+        if isinstance(source, LiveSource):
+            self._panel.plot(history, source.shown, math.inf)
+        elif source.position_s != self._plotted_s:
+            self._plotted_s = source.position_s
+            self._panel.plot(history, len(history.times_s), source.position_s)
 
     def _is_stale(self, now_s: float) -> bool:
         """Return whether a live companion has fallen silent."""

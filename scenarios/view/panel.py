@@ -1,36 +1,21 @@
 """The view's panel: what the landing does now, the operator's buttons or the playback, and the plots."""
 
-import math
 from collections.abc import Callable
 from html import escape
 from typing import Any
 
-import numpy as np
 import viser
-from viser import uplot
 
-from link.messages import Command, CommandReply, CompressedPicture
-from link.program.status_rows import link_rows, number, status_rows
-from scenarios.view.history import NAMES, History
+from link.messages import Command, CommandReply, CompressedPicture, Vector3
+from scenarios.view.history import History
+from scenarios.view.panel_text import panel_text
 from scenarios.view.picture import pixels_of
+from scenarios.view.plots import Plots
 from scenarios.view.recorded import RecordedSource
-from scenarios.view.scene import BLUE, FOLLOWED, GREEN, GREY, ORANGE, Scene
+from scenarios.view.scene import CAMERAS, FOLLOWED, Scene
 from scenarios.view.state import ViewState
 
-_POINTS_MIN, _POINTS_MAX = 2, 300
 _RATES = ("0.25", "0.5", "1", "2", "4")
-_LEGEND = ((BLUE, "flown"), (GREY, "pad's way"), (GREEN, "plan, cone"), (ORANGE, "estimate, forecast"))
-_PLOTS = (
-    ("height and distance [m]", (("height_m", "height", BLUE), ("distance_m", "distance", ORANGE))),
-    ("speed [m/s]", (("drone_speed_m_s", "drone", BLUE), ("vehicle_speed_m_s", "vehicle", GREY))),
-    ("relative speed [m/s]", (("relative_speed_m_s", "relative", GREEN),)),
-    ("error of the estimate [m]", (("error_m", "error", ORANGE),)),
-)  # fmt: skip
-_VALUE = "text-align:right;white-space:nowrap"
-_PAINT = {
-    "descend": "#169146", "touchdown": "#169146", "secured": "#0f6b33", "abort": "#c62828", "hold": "#b26a00",
-    "pilot in command": "#c62828",
-}  # fmt: skip
 
 
 class Panel:
@@ -46,7 +31,7 @@ class Panel:
         self._slider: Any = None
         self._button: Any = None
         self._moves = False
-        self._plots: list[tuple[Any, tuple[str, ...]]] = []
+        self._plots: Plots | None = None
         self._picture: Any = None
         self._picture_ns: int | None = None
 
@@ -103,25 +88,17 @@ class Panel:
         slider.on_update(scrubbed)
         rate.on_update(lambda _: setattr(source, "rate", float(rate.value)))
 
-    def add_camera_and_plots(self) -> None:
-        """Add what is below."""
+    def add_camera_and_plots(self, *, with_cursor: bool) -> None:
+        """Add what is below; the plots of a recording mark the instant that is shown."""
+        views = self._gui.add_button_group("Camera", tuple(CAMERAS))
+        views.on_click(lambda event: _place_camera(event.client, CAMERAS[views.value]))
         camera = self._gui.add_dropdown("Camera follows", FOLLOWED, initial_value=FOLLOWED[0])
         camera.on_update(lambda _: setattr(self._scene, "followed", camera.value))
-        for title, lines in _PLOTS:
-            series = tuple(uplot.Series(label=label, stroke=_css(color), width=2) for _, label, color in lines)
-            plot = self._gui.add_uplot(
-                tuple(np.zeros(2) for _ in range(len(lines) + 1)),
-                (uplot.Series(label="t [s]"), *series),
-                title=title,
-                scales={"x": uplot.Scale(time=False, auto=True)},
-                legend=uplot.Legend(show=True),
-                height=165,
-            )
-            self._plots.append((plot, tuple(name for name, _, _ in lines)))
+        self._plots = Plots(self._gui, with_cursor=with_cursor)
 
     def show(self, state: ViewState, *, t_s: float, stale: bool) -> None:
         """Write what is known now."""
-        self._text.content = _text(state, t_s, stale=stale)
+        self._text.content = panel_text(state, t_s, stale=stale)
         self._show_picture(state.picture)
 
     def _show_picture(self, picture: CompressedPicture | None) -> None:
@@ -145,14 +122,10 @@ class Panel:
         if not source.playing:
             self._show_playing(self._button, playing=False)
 
-    def plot(self, history: History, end: int) -> None:
+    def plot(self, history: History, end: int, now_s: float) -> None:
         """Draw the history up to row `end`."""
-        times_s, values = history.columns(end, _POINTS_MAX)
-        for plot, names in self._plots:
-            shown = values[:, [NAMES.index(name) for name in names]]
-            known = np.isfinite(shown).all(axis=1)
-            if known.sum() >= _POINTS_MIN:
-                plot.data = (times_s[known], *np.ascontiguousarray(shown[known].T))
+        if self._plots is not None:
+            self._plots.draw(history, end, now_s)
 
     @staticmethod
     def _show_playing(button: Any, *, playing: bool) -> None:
@@ -160,58 +133,11 @@ class Panel:
         button.icon = viser.Icon.PLAYER_PAUSE if playing else viser.Icon.PLAYER_PLAY
 
 
-def _css(color: tuple[int, int, int]) -> str:
-    return "rgb({}, {}, {})".format(*color)
+def _place_camera(client: Any, place: tuple[Vector3, Vector3]) -> None:
+    """Move the camera of who asked for it; of a page that has been closed meanwhile there is none."""
+    if client is not None:
+        client.camera.position, client.camera.look_at = place
 
 
 def _small(text: str) -> str:
     return f'<div style="font-size:.8rem;padding:0 .8rem" id="reply">{escape(text)}</div>'
-
-
-def _text(state: ViewState, t_s: float, *, stale: bool) -> str:
-    status = state.status
-    phase = "no companion" if status is None or stale else status.phase
-    reason = "waiting for its status" if status is None or stale else status.reason
-    paint = _PAINT.get(phase, "#2563eb")
-    rows = "".join(
-        f'<tr><td style="color:#667">{escape(name)}</td><td style="{_VALUE}">{escape(value)}</td></tr>'
-        for name, value in _rows(state, t_s)
-    )
-    legend = " ".join(
-        f'<span style="white-space:nowrap"><span style="color:{_css(color)}">&#9632;</span> {name}</span>'
-        for color, name in _LEGEND
-    )
-    return (
-        '<div style="padding:.2rem .8rem;font-size:.78rem;line-height:1.35">'
-        f'<div id="phase" style="font-size:1.35rem;font-weight:700;color:{paint}">{escape(phase)}</div>'
-        f'<div id="reason" style="min-height:2.7em;color:#334">{escape(reason)}</div>'
-        f'<table style="width:100%;font-variant-numeric:tabular-nums">{rows}</table>'
-        f'<div style="margin-top:.3rem;font-size:.72rem">{legend}</div></div>'
-    )
-
-
-def _rows(state: ViewState, t_s: float) -> list[tuple[str, str]]:
-    speed_m_s = None if state.drone is None else math.hypot(*state.drone.velocity_flu_m_s)
-    rows = [("time", f"{t_s:.1f} s"), *status_rows(state.status), ("drone's speed", number(speed_m_s, "m/s"))]
-    vehicle_m_s = None
-    if state.vehicle_truth is not None:
-        vehicle_m_s = math.hypot(*state.vehicle_truth.velocity_flu_m_s)
-    elif state.estimate is not None:
-        vehicle_m_s = math.hypot(*(float(value) for value in state.estimate.velocity_enu_m_s))
-    rows += [("vehicle's speed", number(vehicle_m_s, "m/s")), ("pad seen", seen_text(state))]
-    if state.link is not None:
-        link = state.link
-        rows += link_rows(
-            link.messages_received, link.messages_sent, link.lost_messages, link.bad_bytes, link.bad_payloads
-        )
-    return rows
-
-
-def seen_text(state: ViewState) -> str:
-    """Return how far away the detector last saw the pad, how well, and how long ago."""
-    sighting = state.sighting
-    if sighting is None:
-        return "-"
-    age_s = (state.t_ns - sighting.t_ns) * 1e-9
-    std_m = math.sqrt(max(0.0, *sighting.position_covariance_m2[::4]))
-    return f"{math.hypot(*sighting.position_flu_m):.2f} m away to {std_m:.2f} m, {max(age_s, 0.0):.1f} s ago"

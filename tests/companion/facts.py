@@ -5,7 +5,7 @@ from typing import Any, TypeVar
 import numpy as np
 from msgspec import Struct, structs
 
-from companion.autopilots.driver import AutopilotView
+from companion.autopilots.driver import AutopilotView, Receiver
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Reason
 from companion.landing.decisions import decide
@@ -13,7 +13,7 @@ from companion.landing.entries import Decision, update_held
 from companion.landing.memory import ControlMemory, Held, Progress, StepMemory
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
-from companion.situation.situation import Below, Drone, Situation, VehicleNews
+from companion.situation.situation import Below, Drone, Following, Situation, VehicleNews
 from companion.vehicle.pad import HEADING_UNKNOWN, PadPath
 from link.frames.geodesy import Datum
 from link.frames.local_frame import LocalFrame, Projection
@@ -35,7 +35,7 @@ FLIES = AutopilotView(
     frame=LocalFrame(
         origin=Datum(latitude_rad=0.8, longitude_rad=0.1, altitude_m=100.0), projection=Projection.TANGENT_PLANE
     ),
-    geoid_known=True,
+    receiver=Receiver(knows_geoid=True),
 )
 
 
@@ -93,8 +93,7 @@ def situation(height_m: float = 1.5, beside_m: float = 0.0, pad: PadPath | None 
         below=Below(),
         feet_offset_m=GEAR_M,
         reference=reference_at(height_m),
-        tracking_error_m=0.05,
-        tracking_error_max_m=1.0,
+        following=Following(error_m=0.05, error_max_m=1.0),
         waiting_point_enu_m=np.array([0.0, 0.0, 5.0]),
     )
 

@@ -5,11 +5,12 @@ from types import ModuleType
 
 import pytest
 
+from companion.forecast import compiled as forecast
 from companion.planning import compiled as planning
 from companion.vehicle import compiled as estimation
 
 
-@pytest.mark.parametrize("package", [estimation, planning])
+@pytest.mark.parametrize("package", [estimation, planning, forecast])
 def test_every_file_with_kept_functions_is_in_the_digest(package: ModuleType) -> None:
     assert package.__file__ is not None
     folder = Path(package.__file__).parent

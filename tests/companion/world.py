@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from companion.autopilots.driver import AutopilotView, Driver, FrameMoves
+from companion.autopilots.driver import AutopilotView, Driver, FrameMoves, Receiver
 from companion.autopilots.px4 import Px4Driver
 from companion.autopilots.response import Cascade, ResponseModel
 from companion.config.companion import CompanionConfig
@@ -16,7 +16,7 @@ from companion.config.integrity import IntegrityConfig, ReceiverFrames
 from companion.core.data import Array, Forecast, Measurement, OwnState, Quantity, Rival, VehicleEstimate
 from companion.core.reasons import Reason, sentence
 from companion.landing.memory import StepMemory
-from companion.landing.step_data import StepInputs, StepOutputs, System
+from companion.landing.step_data import StepInputs, StepOutputs, System, VehicleInputs
 from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.runtime.build import make_guidance
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
@@ -154,7 +154,7 @@ class Flight:
             failsafe=False,
             landed=True,
             frame=FRAME,
-            geoid_known=True,
+            receiver=Receiver(knows_geoid=True),
             frame_moves=FrameMoves(origin_count=1),
         )
         self.own = own_state(START_NS, (0.0, 0.0, GEAR_M))
@@ -200,10 +200,12 @@ class Flight:
             driver=self.driver,
             shaping=self.driver.shaping({}),
             acknowledgements=tuple(self.acknowledgements),
-            measurements=(fix(self.t_ns + round(self.stamps_ahead_s * 1e9)),) if self.sends_fixes else (),
-            vehicle_alive=self.alive,
+            vehicle=VehicleInputs(
+                measurements=(fix(self.t_ns + round(self.stamps_ahead_s * 1e9)),) if self.sends_fixes else (),
+                is_alive=self.alive,
+                pad=self.pad,
+            ),
             rival=self.rival,
-            pad=self.pad,
             command=command,
             station=self.station if command is Command.FOLLOW else None,
             leaving=self.leaving,

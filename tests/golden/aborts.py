@@ -154,7 +154,7 @@ ABORTS: dict[str, Abort] = {
     ),
     "heading_unknown": Abort(
         reason=Reason.HEADING_UNKNOWN,
-        scenario="static",
+        scenario="static+sensors=rtk",
         vehicle=_ANTENNA_OVER_PAD,
         companion=_PARKED,
         fault=_pad_is_described(forward_m=_BESIDE_M, up_m=0.0),

@@ -32,7 +32,7 @@ def test_check_names_what_must_change_sets_it_and_puts_it_back(tmp_path: Path) -
             program = programs.start("companion", "check", *link, "--duration", "2", *arguments)
             return program.wait(), program.out.all
 
-        _, lines = check("--json", "--set", "--yes", "--keep", str(before))
+        _, lines = check("--json", "--write", "--yes", "--keep", str(before))
         anew = json.loads("\n".join(lines))
         assert set(parameters(anew).values()) == {"pass"}
         assert {"vehicle fixes", "vehicle age", "vehicle pad"} <= {one["name"] for one in anew["findings"]}

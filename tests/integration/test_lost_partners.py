@@ -41,12 +41,11 @@ def test_the_companion_outlives_a_simulator_killed_in_flight_and_flies_with_the_
         assert companion.runs
 
 
-@pytest.mark.alone
 def test_the_drone_climbs_away_when_the_vehicle_is_killed_in_the_chase() -> None:
     port, endpoint = free_udp_port(), free_tcp_endpoint()
     with Programs() as programs, observer(endpoint) as bystander:
         vehicle = programs.start("ground-vehicle", "--scenario", "straight_5", "--use-sim-time", "-l", endpoint)
-        programs.start("sim-autopilot", "--mavlink", f"udpout:127.0.0.1:{port}", "-e", endpoint, "--speed", "4")
+        programs.start("sim-autopilot", "--mavlink", f"udpout:127.0.0.1:{port}", "-e", endpoint)
         programs.start("companion", "--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint, "--use-sim-time", "--start")
         bystander.wait_for_phase(Phase.CHASE, Phase.ALIGN)
         vehicle.kill()

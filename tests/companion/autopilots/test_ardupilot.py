@@ -136,6 +136,14 @@ def test_limits_are_read_by_the_names_of_old_and_new_releases(parameters: dict[s
     assert cut.tilt_acceleration_m_s2 == pytest.approx(acceleration_of_tilt_m_s2(22.0))
 
 
+@pytest.mark.parametrize("name", ["PSC_JERK_Z", "PSC_JERK_D"])
+def test_vertical_jerk_is_bounded_by_a_parameter_of_its_own(name: str) -> None:
+    wanted = CompanionConfig().limits.flight_limits()
+    cut = DRIVER.limits(wanted, {name: 7.0})
+    assert 3.5 < cut.vertical_jerk_max_m_s3 < 7.0  # some of it is for corrections
+    assert cut.jerk_max_m_s3 == wanted.jerk_max_m_s3
+
+
 @pytest.mark.parametrize(("acceleration_m_s2", "most_m_s3"), [(2.5, 10.8), (3.5, 12.8)])
 def test_jerk_is_no_more_than_the_attitude_controller_allows(acceleration_m_s2: float, most_m_s3: float) -> None:
     """As AC_PosControl: half the root of the acceleration by that of the tilt, 1100 degrees/s^2 by default."""

@@ -151,14 +151,14 @@ def test_receiver_that_does_not_know_the_geoid_says_nothing(receiver: Message) -
     state = _hear(_origin(475_000_000, 80_000_000, 400_000), receiver)
     assert state.view.frame is not None
     assert state.view.frame.origin.altitude_m == 400.0
-    assert not state.view.geoid_known
+    assert not state.view.receiver.knows_geoid
 
 
 @pytest.mark.parametrize("geoid_mm", [-32_400, -950, -3, 0, 600, 990, 47_300])
 def test_first_geoid_height_is_taken_whatever_it_is(geoid_mm: int) -> None:
     state = _hear(_origin(475_000_000, 80_000_000, 400_000), _receiver(3, 410_000, 410_000 + geoid_mm))
     assert state.view.frame is not None
-    assert state.view.geoid_known
+    assert state.view.receiver.knows_geoid
     assert state.view.frame.origin.altitude_m == pytest.approx(400.0 + geoid_mm * 1e-3, abs=0.05)
 
 
@@ -174,8 +174,8 @@ def test_later_geoid_height_counts_when_it_is_another_one() -> None:
 @pytest.mark.parametrize(("fix", "is_fixed"), [(3, False), (5, False), (6, True)])
 def test_receiver_tells_whether_its_phases_are_fixed(fix: int, *, is_fixed: bool) -> None:
     state = _hear(_receiver(fix, 410_000, 457_300))
-    assert state.view.receiver_is_fixed is is_fixed
-    assert not _hear(_receiver(5, 410_000, 457_300), state=state).view.receiver_is_fixed
+    assert state.view.receiver.is_fixed is is_fixed
+    assert not _hear(_receiver(5, 410_000, 457_300), state=state).view.receiver.is_fixed
 
 
 OFFBOARD, LOITER, GUIDED, RTL = 0x0006_0000, 0x0304_0000, 4, 6

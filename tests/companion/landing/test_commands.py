@@ -4,6 +4,7 @@ import itertools
 
 import pytest
 
+from companion.autopilots.driver import Receiver
 from companion.core.reasons import Reason
 from companion.landing.commands import answer
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, STATION_PHASES, Event, Phase, next_phase
@@ -69,7 +70,7 @@ def test_start_says_what_is_missing() -> None:
     for missing, reason in (
         (replace(facts, autopilot=replace(view, link_up=False)), "no autopilot is connected"),
         (replace(facts, autopilot=replace(view, frame=None)), "the autopilot has no origin yet"),
-        (replace(facts, autopilot=replace(view, geoid_known=False)), Reason.HEIGHTS_APART.value),
+        (replace(facts, autopilot=replace(view, receiver=Receiver())), Reason.HEIGHTS_APART.value),
         (replace(facts, drone=None), "the autopilot reports no local position yet"),
         (replace(facts, drone=replace(drone, attitude_known=False)), "the autopilot's attitude is too old"),
         (replace(facts, autopilot=replace(view, failsafe=True)), "the autopilot is in failsafe"),

@@ -13,7 +13,7 @@ from companion.landing.conditions import Condition
 from companion.landing.entries import ENTRIES, update_held
 from companion.landing.memory import Held
 from companion.situation.phases import Event, Phase
-from companion.situation.situation import Situation
+from companion.situation.situation import Following, Situation
 from companion.vehicle.pad import NOT_DESCRIBED, cone_radius_m
 from link.messages import Vector3
 from link.records import replace
@@ -53,7 +53,7 @@ UNSAFE: dict[Reason, Situation] = {
     Reason.OWN_POSITION_OLD: replace(situation(), drone=None),
     Reason.OWN_ATTITUDE_OLD: replace(situation(), drone=replace(drone_at(1.5, pad=pad_at()), attitude_known=False)),
     Reason.HEADING_UNKNOWN: situation(pad=pad_at(placed=False)),
-    Reason.SETPOINT_NOT_FOLLOWED: replace(situation(), tracking_error_m=situation().tracking_error_max_m + 0.01),
+    Reason.SETPOINT_NOT_FOLLOWED: replace(situation(), following=Following(error_m=1.01, error_max_m=1.0)),
     Reason.OUTSIDE_CONE: situation(NEAR_M, cone_radius_m(NEAR_M, HALF_M, CONFIG) + 0.01),
     Reason.TOO_FAST_NEAR_PAD: replace(
         situation(),

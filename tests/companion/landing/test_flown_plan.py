@@ -165,7 +165,9 @@ class LateFlight(Flight):
 @pytest.mark.slow
 def test_chase_of_limited_jerk_swings_no_farther_past_the_pad_where_steps_come_late() -> None:
     """With the acceleration of one period for each step of two, half of the jerk would be left."""
-    config = CONFIG.model_copy(update={"limits": CONFIG.limits.model_copy(update={"jerk_max_m_s3": 4.0})})
+    config = CONFIG.model_copy(
+        update={"limits": CONFIG.limits.model_copy(update={"jerk_max_m_s3": 4.0, "vertical_jerk_max_m_s3": 4.0})}
+    )
     vehicle = KnownVehicle((-40.0, 4.0, PAD_HEIGHT_M), (5.0, 0.0, 0.0))
     passed_m = []
     for kind in (Flight, LateFlight):

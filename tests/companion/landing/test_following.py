@@ -149,9 +149,11 @@ def test_model_of_an_autopilot_that_carries_setpoints_on_never_ends_low(speed_m_
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("jerk_max_m_s3", JERKS_M_S3)
-def test_descent_sinks_no_faster_than_the_fastest_rate(jerk_max_m_s3: float) -> None:
-    config = configured({"limits": {"jerk_max_m_s3": jerk_max_m_s3}, "descent": {"alignment": {"height_m": 3.0}}})
+@pytest.mark.parametrize("vertical_jerk_max_m_s3", JERKS_M_S3)
+def test_descent_sinks_no_faster_than_the_fastest_rate(vertical_jerk_max_m_s3: float) -> None:
+    config = configured(
+        {"limits": {"vertical_jerk_max_m_s3": vertical_jerk_max_m_s3}, "descent": {"alignment": {"height_m": 3.0}}}
+    )
     flight = Flight(config=config)
     flight.start_and_reach(Phase.DESCEND)
     fastest_m_s = 0.0

@@ -61,7 +61,7 @@ def test_time_to_contact_of_a_drone_that_does_not_sink_yet_is_longer_and_with_li
         replace(situation(), drone=drone_at(1.5, 0.0, (0.0, 0.0, rate_m_s), pad=pad_at()), pad=pad_at())
         for rate_m_s in (-1.2, 0.0)
     )
-    smooth = replace(hovering, limits=replace(CONFIG.limits.flight_limits(), jerk_max_m_s3=4.0))
+    smooth = replace(hovering, limits=replace(CONFIG.limits.flight_limits(), vertical_jerk_max_m_s3=4.0))
     times_s = [landing_status(MEMORY, one, CONFIG).time_to_contact_s or 0.0 for one in (sinking, hovering, smooth)]
     assert times_s[0] + 0.3 < times_s[1] < times_s[2] - 0.05
 

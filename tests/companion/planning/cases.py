@@ -16,6 +16,7 @@ LIMITS = FlightLimits(
     acceleration_max_m_s2=5.0,
     vertical_acceleration_max_m_s2=3.0,
     jerk_max_m_s3=20.0,
+    vertical_jerk_max_m_s3=15.0,
 )
 OFFSETS_S: Array = np.linspace(0.0, 3.0, 31)
 NO_FLOOR_M = -1e3

@@ -44,6 +44,7 @@ def test_the_fallback_stays_inside_acceleration_and_jerk() -> None:
         state = after
     jerk, push = np.array(jerks), np.array(pushes)
     assert np.hypot(jerk[:, 0], jerk[:, 1]).max() <= LIMITS.jerk_max_m_s3 + 1e-6
+    assert np.abs(jerk[:, 2]).max() <= LIMITS.vertical_jerk_max_m_s3 + 1e-6
     assert np.hypot(push[:, 0], push[:, 1]).max() <= LIMITS.acceleration_max_m_s2 + 1e-9
     assert np.abs(push[:, 2]).max() <= LIMITS.vertical_acceleration_max_m_s2 + 1e-9
     np.testing.assert_allclose(state.velocity_enu_m_s, 0.0, atol=1e-6)

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from companion.core.data import Array, Forecast
-from companion.vehicle.pad import HEADING_UNKNOWN, NOT_DESCRIBED, pad_path
+from companion.vehicle.pad import HEADING_UNKNOWN, NOT_DESCRIBED, pad_path, turned_lever
 from link.frames.rotations import quaternion_from_yaw, rotate
 from link.messages import PadGeometry, Vector3
 from link.records import replace
@@ -54,6 +54,14 @@ def test_velocity_is_the_derivative_of_the_position(lever: Vector3, yaw_rad: flo
     path = pad_path(_forecast(yaw_rad + rate_rad_s * OFFSETS_S), _pad(lever))
     moved = np.gradient(path.position_enu_m, OFFSETS_S, axis=0, edge_order=2)
     np.testing.assert_allclose(path.velocity_enu_m_s[1:-1], moved[1:-1], atol=2e-3)
+
+
+@given(grade=st.lists(st.floats(-0.2, 0.2), min_size=5, max_size=5))
+def test_lever_arm_rises_with_the_grade_as_numpy_derives_it(grade: list[float]) -> None:
+    offset_s, pitch = np.array([0.0, 0.1, 0.35, 0.4, 1.0]), np.array(grade)
+    arm, swing = turned_lever(np.zeros(5), pitch, offset_s, 1.2, 0.3)
+    np.testing.assert_array_equal(arm[:, 2], 1.2 * pitch)
+    np.testing.assert_array_equal(swing[:, 2], 1.2 * np.gradient(pitch, offset_s))
 
 
 def test_unknown_heading_leaves_a_horizontal_lever_arm_out_and_says_so() -> None:

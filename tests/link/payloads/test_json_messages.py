@@ -8,7 +8,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from link.messages import Command, CommandReply, LandingStatus, Order, PadGeometry, Station, StationFrame
+from link.messages import (
+    Command,
+    CommandReply,
+    ContactForecast,
+    LandingStatus,
+    Order,
+    PadGeometry,
+    Station,
+    StationFrame,
+)
 from link.payloads.json_messages import LANDING_STATUS_SCHEMA, Message, PayloadError, decode, encode
 from link.records import replace
 
@@ -25,6 +34,8 @@ STATUS = LandingStatus(
     zenoh_bad_payloads=0,
     armed=True,
     fix_age_s=0.12,
+    flown_by="companion",
+    battery_share=0.73,
 )
 UNKNOWING = replace(
     STATUS,
@@ -33,6 +44,22 @@ UNKNOWING = replace(
     height_above_pad_m=None,
     time_to_contact_s=None,
     fix_age_s=None,
+    flown_by="",
+    battery_share=None,
+)
+DESCENDING = replace(
+    STATUS,
+    contact_forecast=ContactForecast(
+        in_s=1.2,
+        s1=0.9,
+        s2=0.8,
+        unsafe=0.02,
+        broken_off=0.08,
+        misses_position=0.005,
+        misses_speed=0.015,
+        misses_sink=0.0,
+        misses_tilt=0.0,
+    ),
 )
 MESSAGES: list[Message] = [
     PAD,
@@ -41,6 +68,7 @@ MESSAGES: list[Message] = [
     Order(command=Command.FOLLOW, station=Station(offset_m=(-6.5, 2.25, 3.0), frame=StationFrame.NORTH)),
     CommandReply(accepted=False, reason="der Pilot fliegt: «höher»"),
     STATUS,
+    DESCENDING,
     UNKNOWING,
 ]
 TYPES: list[type[Message]] = [PadGeometry, Order, CommandReply, LandingStatus]

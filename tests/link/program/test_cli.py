@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import time
+from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 
@@ -10,19 +11,9 @@ import pytest
 import typer
 
 from link.errors import UserError
-from link.program.cli import (
-    ConnectOption,
-    DroneOption,
-    ListenOption,
-    ModeOption,
-    MulticastOption,
-    NamespaceOption,
-    VehicleOption,
-    ZenohConfigOption,
-    make_app,
-    run_app,
-)
+from link.program.cli import make_app, run_app
 from link.program.help import App
+from link.zenoh.command_line import NameArguments, ZenohArguments
 
 Seen = list[dict[str, object]]
 
@@ -34,18 +25,12 @@ def program(seen: Seen) -> App:
     @app.command()
     def run(
         *,
-        ns: NamespaceOption = "decklander",
-        vehicle: VehicleOption = "vehicle",
-        drone: DroneOption = "drone",
-        mode: ModeOption = None,
-        connect: ConnectOption = None,
-        listen: ListenOption = None,
-        multicast: MulticastOption = None,
-        zenoh_config: ZenohConfigOption = None,
+        names: NameArguments,
+        endpoints: ZenohArguments,
         seed: int = 0,
     ) -> None:
         """Record the options."""
-        seen.append(locals())
+        seen.append(asdict(names) | asdict(endpoints) | {"seed": seed})
 
     @app.command()
     def fail(code: int = 0) -> int:
@@ -67,7 +52,7 @@ def test_common_options_reach_the_command() -> None:
     line = "run --ns site -m client -e tcp/a:1 -e tcp/b:2 -l tcp/c:3 --no-multicast-scouting --zenoh-config z.json5"
     assert run_app("tool", program(seen), line.split()) == 0
     options = seen[0]
-    assert (options["ns"], options["vehicle"], options["drone"]) == ("site", "vehicle", "drone")
+    assert (options["namespace"], options["vehicle"], options["drone"]) == ("site", "vehicle", "drone")
     assert (options["mode"], options["connect"], options["listen"]) == ("client", ["tcp/a:1", "tcp/b:2"], ["tcp/c:3"])
     assert (options["multicast"], options["zenoh_config"]) == (False, Path("z.json5"))
 

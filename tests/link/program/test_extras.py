@@ -81,6 +81,7 @@ def test_drone_vehicle_and_simulation_need_no_extra() -> None:
         (["table", "runs/none"], "campaign"),
         (["compare", "runs/a", "runs/b"], "campaign"),
         (["faults"], "campaign"),
+        (["retries"], "campaign"),
         (["falsify", "world"], "campaign"),
         (["rare", "world"], "campaign"),
         (["figures", "runs/none"], "report"),

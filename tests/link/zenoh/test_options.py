@@ -2,7 +2,8 @@
 
 import pytest
 
-from link.zenoh.options import DEFAULT_ENDPOINT, zenoh_options
+from link.zenoh.command_line import ZenohArguments
+from link.zenoh.options import DEFAULT_ENDPOINT
 
 HERE = (DEFAULT_ENDPOINT,)
 
@@ -20,12 +21,12 @@ HERE = (DEFAULT_ENDPOINT,)
 def test_who_says_nothing_meets_at_the_default_endpoint(
     mode: str | None, listens: bool, connect: tuple[str, ...], listen: tuple[str, ...]
 ) -> None:
-    options = zenoh_options(mode, None, None, None, None, listens=listens)
+    options = ZenohArguments(mode=mode).options(listens=listens)
     assert (options.mode, options.connect, options.listen) == (mode, connect, listen)
 
 
 @pytest.mark.parametrize("listens", [False, True])
 def test_what_is_said_stands_alone(listens: bool) -> None:
     there = "tcp/192.0.2.5:7447"
-    options = zenoh_options(None, [there], None, None, None, listens=listens)
+    options = ZenohArguments(connect=[there]).options(listens=listens)
     assert (options.connect, options.listen) == ((there,), ())

@@ -100,7 +100,6 @@ def test_cost_of_recording_is_measured_on_a_whole_recording(tmp_path: Path) -> N
 
 
 @pytest.mark.wire
-@pytest.mark.alone
 def test_the_command_prints_every_figure_with_its_budget(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -116,7 +115,7 @@ def test_the_command_prints_every_figure_with_its_budget(
         assert 0.0 < step["median"] <= step["p99"] <= step["max"]
     assert 0.0 < table["companion"]["cpu_share"] < 2.0
     assert 50.0 < table["companion"]["own_memory_mb"] < table["companion"]["memory_mb"] < 1000.0
-    assert table["full_speed_factor"] > 1.0
+    assert table["full_speed_factor"] > table["real_time_factor"]
     assert set(table["help_s"]) == set(MODULES)
     assert set(table["first_heartbeat_s"]) == {"companion", "sim-autopilot"}
     assert all(isinstance(check["met"], bool) and check["value"] is not None for check in table["budgets"])

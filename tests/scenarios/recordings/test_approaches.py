@@ -11,6 +11,7 @@ from link.messages import BodyTruth, LandingStatus, RotorTruth
 from scenarios.commands.approach_lines import approach_lines
 from scenarios.recordings.approaches import Approach, approaches_of
 from scenarios.recordings.reason_counts import abort_reasons, add_counts, counts_of, counts_text, reasons_in
+from scenarios.recordings.recording import TIME_LIMIT, Recording
 from scenarios.scoring.truth_log import TruthLog, truth_log
 
 START_NS = 1_800_000_000_000_000_000
@@ -159,3 +160,10 @@ def test_lines_of_a_landing_are_those_of_its_approaches_only() -> None:
     contact, off = (11.0, Phase.TOUCHDOWN, Reason.CONTACT), (12.0, Phase.SECURED, Reason.MOTORS_OFF)
     table = result(approaches(CHASE, ALIGN, DESCEND, contact, off), "secured", Reason.MOTORS_OFF)
     assert len(list(approach_lines(table))) == 2
+
+
+def test_run_at_its_time_limit_ended_in_what_was_waited_for_before_it_was_called_off() -> None:
+    waits = status(1.0, Phase.WAITING, Reason.HEADING_UNKNOWN)
+    recording = Recording(statuses=[waits, status(2.0, Phase.HOLD, Reason.OPERATOR_ABORTS)])
+    assert recording.status_at_end(TIME_LIMIT) is waits
+    assert recording.status_at_end(Phase.HOLD.value) is recording.statuses[-1]

@@ -11,10 +11,13 @@ from link.frames.rotations import quaternion_from_roll_pitch_yaw, rotate
 from link.messages import BodyTruth, LandingStatus, PadGeometry, Vector3
 from link.payloads import json_messages
 from link.payloads.checks import PayloadError
+from link.records import replace
 from link.zenoh.keys import Keys
 from scenarios.__main__ import app
 from scenarios.tracks.roads import road_of
 from scenarios.view.history import NAMES, History
+from scenarios.view.panel_text import panel_text
+from scenarios.view.plots import with_cursor
 from scenarios.view.shapes import box_edges, centre_line, cone, ellipses, estimated_vehicle, polyline, ribbon
 from scenarios.view.state import Estimate, ForecastPath, StateReader, ViewState
 
@@ -156,3 +159,27 @@ def test_command_refuses_what_cannot_be_shown(arguments: list[str], told: str) -
     result = CliRunner().invoke(app, arguments)
     assert isinstance(result.exception, UserError)
     assert told in str(result.exception)
+
+
+def test_cursor_steps_at_its_instant_within_the_range_and_bends_no_curve() -> None:
+    times_s, values = np.array([0.0, 1.0, 2.0, 4.0]), np.array([1.0, 3.0, 2.0, -1.0])
+    at_s, curve, cursor = with_cursor((times_s, values), 3.0)
+    assert np.all(np.diff(at_s) > 0.0)
+    assert np.allclose(curve, np.interp(at_s, times_s, values))
+    assert (cursor.min(), cursor.max()) == (-1.0, 3.0)
+    assert at_s[np.flatnonzero(np.diff(cursor))[0]] == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize("now_s", [-5.0, 0.0, 4.0, math.inf])
+def test_cursor_outside_of_what_is_known_is_at_its_edge(now_s: float) -> None:
+    at_s, _, cursor = with_cursor((np.array([0.0, 4.0]), np.array([1.0, 2.0])), now_s)
+    assert at_s[0] >= 0.0
+    assert at_s[-1] == pytest.approx(4.0)
+    assert cursor[-1] == 2.0
+
+
+def test_panel_tells_attitude_in_degrees_and_the_heading_by_compass() -> None:
+    turned = quaternion_from_roll_pitch_yaw(math.radians(10.0), math.radians(-5.0), math.radians(60.0))
+    text = panel_text(ViewState(own=replace(drone_at(1), orientation_wxyz=turned)), 0.0, stale=False)
+    assert "+10 right, +5 nose up, degrees" in text
+    assert "030 degrees from north" in text

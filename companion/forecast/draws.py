@@ -1,0 +1,58 @@
+"""The random numbers of all forecasts, made once: the same in each step, so that a forecast changes by what it knows.
+
+Each branch is a Latin hypercube (McKay, Beckman and Conover 1979): of every number of a sample's, each n-th of its
+distribution is drawn once. Gusts are drawn independently.
+"""
+
+from functools import cache
+
+import numpy as np
+from msgspec import Struct
+from scipy.special import ndtri
+
+from companion.core.data import Array
+from companion.forecast.rollout import IndexArray
+
+STEPS_MAX = 128
+_SEED = 1_912
+_STEADY_COUNT, _EVENT_COUNT = 64, 32
+_NORMALS, _UNIFORMS = 20, 7
+
+
+class Draws(Struct, frozen=True, kw_only=True, eq=False):
+    """Numbers of n samples in four branches.
+
+    Attributes:
+        branch: (n,) what the sample's vehicle does, as `branches` counts them.
+        share: (n,) of a sample in its branch.
+        normals: (n, 20) standard normal.
+        uniforms: (n, 7) from 0 to 1, exclusive.
+        pushes: (n, `STEPS_MAX`, 2) standard normal.
+    """
+
+    branch: IndexArray
+    share: Array
+    normals: Array
+    uniforms: Array
+    pushes: Array
+
+
+@cache
+def draws() -> Draws:
+    """Return the numbers."""
+    counts = (_STEADY_COUNT, _EVENT_COUNT, _EVENT_COUNT, _EVENT_COUNT)
+    generator = np.random.default_rng(_SEED)
+    numbers = np.concatenate([_hypercube(generator, count) for count in counts])
+    return Draws(
+        branch=np.repeat(np.arange(len(counts)), counts),
+        share=np.repeat(1.0 / np.array(counts), counts),
+        normals=np.asarray(ndtri(numbers[:, :_NORMALS])),
+        uniforms=numbers[:, _NORMALS:].copy(),
+        pushes=generator.standard_normal((sum(counts), STEPS_MAX, 2)),
+    )
+
+
+def _hypercube(generator: np.random.Generator, count: int) -> Array:
+    """Return (count, 27) numbers from 0 to 1, exclusive."""
+    places = generator.permuted(np.tile(np.arange(count)[:, None], (1, _NORMALS + _UNIFORMS)), axis=0)
+    return np.asarray((places + generator.uniform(0.05, 0.95, places.shape)) / count)

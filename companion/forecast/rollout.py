@@ -1,0 +1,297 @@
+"""Samples of how a descent ends: the vehicle, what is known of it, and the drone that follows that; compiled.
+
+All horizontal motion is told as its deviation from the pad's forecast, in W. A sample's vehicle begins at the newest
+datum, off the forecast by what the estimate may err, keeps its acceleration until that is released, and may brake,
+depart or turn in. What is known of it is `delay` older, but for the error of the estimate, which stays; a change of its
+acceleration is believed with the filter's lag, and what is known is carried on to the present with it.
+The virtual model follows what is known as the planner does near its target, by the jerk of a linear regulator of
+bandwidth W (Butterworth's third-order polynomial) within jerk and acceleration,
+
+    j = W^3 (p - e) + 2 W^2 (v - e') + 2 W (a - s'')
+
+and the drone follows the model by its autopilot's cascade (`autopilots.response`), whose deviation gusts move. The way
+down is the planned one. A drone that sees, above where it commits, what it waits for does not come to the contact; nor
+does one that breaks off below while it still can stop sinking.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from companion.core.data import GRAVITY_M_S2, Array
+from companion.forecast.compiled import compiled_kernel
+
+IndexArray = NDArray[np.intp]
+
+DT_S = 0.03
+STEADY, ALONG, ASIDE = 0, 1, 2
+"""What a sample's vehicle does: nothing new, another acceleration along its way, or to its left."""
+
+CONTACT, IN_S, ERROR, SPEED, SINK, TILT = range(6)
+"""Columns of what a sample ends with: 1 for a contact, after which time, and what the limits bound."""
+
+
+class Follower(NamedTuple):
+    """How the drone follows: gains and lags of its cascade, of its planner, and the limits of both."""
+
+    stiffness_per_s2: float
+    damping_per_s: float
+    turns_hz: float
+    forgets_hz: float
+    drag_per_s: float
+    push_std_m_s2: float
+    bandwidth_hz: float
+    believes_s: float
+    acceleration_max_m_s2: float
+    jerk_max_m_s3: float
+    level_m_s2: float
+    level_below_m: float
+
+
+class Rules(NamedTuple):
+    """What keeps a descent from its contact, and the drone's feet."""
+
+    waits_below_m: float
+    commits_below_m: float
+    waiting_speed_m_s: float
+    waiting_brake_m_s2: float
+    cone_at_pad_m: float
+    cone_slope: float
+    near_speed_m_s: float
+    over_pad_m: float
+    stops_sinking_s: float
+    climbs_m_s2: float
+    foot_radius_m: float
+
+
+class Course(NamedTuple):
+    """What is expected, each step from now on.
+
+    Attributes:
+        direction: (m, 2) of the vehicle, a unit vector.
+        speed_m_s: (m,) along it.
+        along_m_s2: (m,) acceleration along it.
+        left_m_s2: (m,) to its left.
+        way_down: (3, m) height over the pad, rate and acceleration.
+        slope: (2,) of the deck, height per length in W.
+        air_enu_m_s2: (2,) horizontal thrust by mass that holds against the air.
+        model: (3, 2) place, velocity and acceleration of the virtual model beside the pad now.
+    """
+
+    direction: Array
+    speed_m_s: Array
+    along_m_s2: Array
+    left_m_s2: Array
+    way_down: Array
+    slope: Array
+    air_enu_m_s2: Array
+    model: Array
+
+
+class Samples(NamedTuple):
+    """What differs from sample to sample.
+
+    Attributes:
+        vehicle: (n, 3, 2) place, velocity and acceleration of the vehicle off its forecast at the newest datum.
+        kind: (n,) what it does.
+        event: (n, 4) when that begins, s after the newest datum; to which acceleration, m/s^2; within which time, s;
+            and after which time the acceleration of before is released, s.
+        delay_s: (n,) of what is known of it.
+        deviation: (n, 4, 2) state of the cascade now.
+        vertical: (n, 2) height that the drone is lower than believed, m, and how much faster it sinks, m/s.
+        pushes: (n, m, 2) standard normal.
+    """
+
+    vehicle: Array
+    kind: IndexArray
+    event: Array
+    delay_s: Array
+    deviation: Array
+    vertical: Array
+    pushes: Array
+
+
+class Descent(NamedTuple):
+    """What all samples have in common."""
+
+    course: Course
+    drone: Follower
+    rules: Rules
+
+
+@compiled_kernel
+def _drive(samples: Samples, sample: int, course: Course, before: int) -> Array:
+    """Return place, velocity and acceleration (b + m, 3, 2) of a sample's vehicle off its forecast.
+
+    Args:
+        samples: all of them.
+        sample: which.
+        course: expected, m steps from now on.
+        before: b, steps from the newest datum to the present.
+    """
+    vehicle, kind, event = samples.vehicle[sample], samples.kind[sample], samples.event[sample]
+    steps = before + len(course.speed_m_s)
+    path = np.empty((steps, 3, 2))
+    x, y, vx, vy = vehicle[0, 0], vehicle[0, 1], vehicle[1, 0], vehicle[1, 1]
+    cx, cy = course.direction[0, 0], course.direction[0, 1]
+    off_along, off_left = vehicle[2, 0] * cx + vehicle[2, 1] * cy, vehicle[2, 1] * cx - vehicle[2, 0] * cy
+    first_along = course.along_m_s2[0] + off_along
+    onset_s, size_m_s2, ramp_s, release_s = event[0], event[1], event[2], event[3]
+    for k in range(steps):
+        at, t_s = max(k - before, 0), k * DT_S
+        cx, cy = course.direction[at, 0], course.direction[at, 1]
+        expected_along, expected_left = course.along_m_s2[at], course.left_m_s2[at]
+        along = first_along if t_s < release_s else 0.0
+        left = expected_left + off_left
+        if t_s > onset_s:
+            share = min((t_s - onset_s) / ramp_s, 1.0)
+            if kind == ALONG:
+                along += share * (size_m_s2 - along)
+            elif kind == ASIDE:
+                left += share * (size_m_s2 - left)
+        speed = course.speed_m_s[at] + vx * cx + vy * cy
+        if speed + along * DT_S < 0.0 and along < 0.0:
+            along = -speed / DT_S if speed > 0.0 else 0.0
+        more_along, more_left = along - expected_along, left - expected_left
+        ax, ay = more_along * cx - more_left * cy, more_along * cy + more_left * cx
+        path[k, 0, 0], path[k, 0, 1], path[k, 1, 0], path[k, 1, 1] = x, y, vx, vy
+        path[k, 2, 0], path[k, 2, 1] = ax, ay
+        x += (vx + 0.5 * ax * DT_S) * DT_S
+        y += (vy + 0.5 * ay * DT_S) * DT_S
+        vx += ax * DT_S
+        vy += ay * DT_S
+    return path
+
+
+@compiled_kernel
+def _know(seen: Array, first: Array, delay_s: float, believes_s: float, known: Array) -> None:
+    """Write into `known` (3, 2) what is known of a vehicle's place, velocity and acceleration off its forecast.
+
+    At the newest datum it is nothing: what its place and velocity were off then is the estimate's error, which stays.
+
+    Args:
+        seen: (3, 2) the vehicle `delay_s` ago.
+        first: (3, 2) at the newest datum.
+        delay_s: since then.
+        believes_s: lag of the acceleration.
+        known: of the step before.
+    """
+    for i in range(2):
+        known[2, i] += (seen[2, i] - known[2, i]) * min(DT_S / believes_s, 1.0)
+        rate = seen[1, i] - first[1, i]
+        known[1, i] = rate + known[2, i] * delay_s
+        known[0, i] = seen[0, i] - first[0, i] + (rate + 0.5 * known[2, i] * delay_s) * delay_s
+
+
+@compiled_kernel
+def _does_not_land(off: Array, along_m_s2: float, height_m: float, sink_m_s: float, rules: Rules) -> bool:
+    """Return whether a drone that is seen `off` (2, 2) its pad by so much waits or breaks off here."""
+    beside_m, rate_m_s = math.hypot(off[0, 0], off[0, 1]), math.hypot(off[1, 0], off[1, 1])
+    if height_m > rules.waits_below_m:
+        return False
+    if height_m > rules.commits_below_m:
+        is_beside = beside_m > rules.cone_at_pad_m + rules.cone_slope * height_m
+        return is_beside or rate_m_s > rules.waiting_speed_m_s or abs(along_m_s2) > rules.waiting_brake_m_s2
+    stops_m = sink_m_s * rules.stops_sinking_s + 0.5 * sink_m_s**2 / rules.climbs_m_s2
+    return (rate_m_s > rules.near_speed_m_s or beside_m > rules.over_pad_m) and height_m > stops_m
+
+
+@compiled_kernel
+def _plan(model: Array, off: Array, known: Array, expected: Array, bounds: tuple[float, float, float]) -> None:
+    """Move the virtual model (3, 2) by one step, so that the drone comes over what is known of the pad.
+
+    Args:
+        model: off the pad's forecast.
+        off: (2, 2) place and velocity of the drone off what is known of the pad.
+        known: (3, 2) of the pad, off its forecast.
+        expected: (2,) acceleration of the forecast.
+        bounds: bandwidth (rad/s), largest jerk (m/s^3) and acceleration (m/s^2).
+    """
+    w, jerk_max_m_s3, most_m_s2 = bounds
+    jx = -w * (w * (w * off[0, 0] + 2.0 * off[1, 0]) + 2.0 * (model[2, 0] - known[2, 0]))
+    jy = -w * (w * (w * off[0, 1] + 2.0 * off[1, 1]) + 2.0 * (model[2, 1] - known[2, 1]))
+    share = DT_S * min(1.0, jerk_max_m_s3 / max(math.hypot(jx, jy), 1e-9))
+    ax, ay = expected[0] + model[2, 0] + jx * share, expected[1] + model[2, 1] + jy * share
+    size = math.hypot(ax, ay)
+    back = 1.0 if size <= most_m_s2 else max(most_m_s2, size - jerk_max_m_s3 * DT_S) / size
+    model[2, 0], model[2, 1] = ax * back - expected[0], ay * back - expected[1]
+    for i in range(2):
+        model[0, i] += (model[1, i] + 0.5 * model[2, i] * DT_S) * DT_S
+        model[1, i] += model[2, i] * DT_S
+
+
+@compiled_kernel
+def _follow(state: Array, acceleration: Array, pushes: Array, drone: Follower) -> None:
+    """Move the cascade's state (4, 2) by one step behind a model with that `acceleration` (2,), in gusts."""
+    push = drone.push_std_m_s2 * math.sqrt(2.0 * drone.forgets_hz * DT_S)
+    turned = 1.0 - math.exp(-drone.turns_hz * DT_S)
+    for i in range(2):
+        rate = state[2, i] + state[3, i] - acceleration[i]
+        wanted = acceleration[i] - drone.damping_per_s * state[1, i] - drone.stiffness_per_s2 * state[0, i]
+        state[2, i] += (wanted - state[2, i]) * turned
+        state[3, i] -= (drone.forgets_hz * state[3, i] + drone.drag_per_s * acceleration[i]) * DT_S
+        state[3, i] += push * pushes[i]
+        state[1, i] += rate * DT_S
+        state[0, i] += state[1, i] * DT_S
+
+
+@compiled_kernel
+def _touch(off: Array, lean: Array, sink_m_s: float, course: Course, out: Array) -> None:
+    """Write into `out` (6,) what a contact is like: `off` (2, 2) its pad, with that thrust by mass to the side."""
+    air = course.air_enu_m_s2
+    trim = math.atan(math.hypot(air[0], air[1]) / GRAVITY_M_S2)
+    tilt = math.hypot(lean[0] / GRAVITY_M_S2 + course.slope[0], lean[1] / GRAVITY_M_S2 + course.slope[1])
+    out[CONTACT], out[SINK], out[TILT] = 1.0, sink_m_s, math.atan(tilt) - trim
+    out[ERROR], out[SPEED] = math.hypot(off[0, 0], off[0, 1]), math.hypot(off[1, 0], off[1, 1])
+
+
+@compiled_kernel
+def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Array) -> None:
+    """Write into `out` (6,) how the descent of one sample ends over a vehicle that drives `path`."""
+    course, drone, rules = descent.course, descent.drone, descent.rules
+    steps = len(course.speed_m_s)
+    before, late = len(path) - steps, samples.delay_s[sample] / DT_S
+    model, state = course.model.copy(), samples.deviation[sample].copy()
+    known, off, expected, lean = np.zeros((3, 2)), np.empty((2, 2)), np.empty(2), np.empty(2)
+    for k in range(steps):
+        seen = max(before + k - late, 0.0)
+        _know(path[int(seen)], path[0], (before + k - seen) * DT_S, drone.believes_s, known)
+        height_m, sink_m_s = course.way_down[0, k], -course.way_down[1, k]
+        cx, cy = course.direction[k, 0], course.direction[k, 1]
+        expected[0] = course.along_m_s2[k] * cx - course.left_m_s2[k] * cy
+        expected[1] = course.along_m_s2[k] * cy + course.left_m_s2[k] * cx
+        for i in range(2):
+            off[0, i] = model[0, i] + state[0, i] - known[0, i]
+            off[1, i] = model[1, i] + state[1, i] - known[1, i]
+            lean[i] = expected[i] + state[2, i] + course.air_enu_m_s2[i]
+        along_m_s2 = course.along_m_s2[k] + known[2, 0] * cx + known[2, 1] * cy
+        if _does_not_land(off, along_m_s2, height_m, sink_m_s, rules):
+            return
+        lowest_m = rules.foot_radius_m * min(math.hypot(lean[0], lean[1]) / GRAVITY_M_S2, 1.0)
+        if height_m - samples.vertical[sample, 0] - lowest_m <= 0.0:
+            out[IN_S] = k * DT_S
+            off += known[:2] - path[before + k, :2]
+            _touch(off, lean, sink_m_s + samples.vertical[sample, 1], course, out)
+            return
+        most_m_s2 = drone.level_m_s2 if height_m < drone.level_below_m else drone.acceleration_max_m_s2
+        _plan(model, off, known, expected, (drone.bandwidth_hz, drone.jerk_max_m_s3, most_m_s2))
+        _follow(state, model[2], samples.pushes[sample, k], drone)
+
+
+@compiled_kernel
+def roll_out(samples: Samples, descent: Descent, age_s: float) -> Array:
+    """Return how the descent ends in each sample, (n, 6), zeros where it does not come to a contact.
+
+    Args:
+        samples: what differs.
+        descent: what does not.
+        age_s: of the newest datum.
+    """
+    before = int(age_s / DT_S + 0.5)
+    out = np.zeros((len(samples.delay_s), 6))
+    for sample in range(len(out)):
+        path = _drive(samples, sample, descent.course, before)
+        _fly(path, samples, sample, descent, out[sample])
+    return out

@@ -1,0 +1,114 @@
+"""Single settings beside a file: `--set KEY=VALUE` and environment variables, over what the file says.
+
+A key is dotted, as in `descent.cone.slope`; a value is written as in TOML, a word may go without quotes. The variable
+of that key is `DECKLANDER_COMPANION__DESCENT__CONE__SLOPE`: the prefix names what is configured. The environment stands
+above a file, the command line above both.
+"""
+
+import os
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel
+
+from link.errors import UserError
+from link.program.near_names import models_in
+from link.program.toml_config import Model, load_config, merge
+
+COMPANION, SIM_AUTOPILOT, SCENARIO = "DECKLANDER_COMPANION", "DECKLANDER_SIM_AUTOPILOT", "DECKLANDER_SCENARIO"
+"""What the variables of each configuration begin with."""
+
+PREFIXES = (COMPANION, SIM_AUTOPILOT, SCENARIO)
+_BELOW = "__"
+
+
+def load_settings(
+    path: Path | None,
+    model: type[Model],
+    prefix: str,
+    given: Sequence[str] | None,
+    above: Mapping[str, Any] | None = None,
+) -> Model:
+    """Return the configuration in a file, with the environment over it, and the command line over both.
+
+    Args:
+        path: of the file, None for none.
+        model: what it must fit.
+        prefix: of the environment's variables, one of `PREFIXES`.
+        given: by `--set`.
+        above: from options of their own.
+
+    Raises:
+        UserError: something cannot be read, or does not fit.
+    """
+    return load_config(path, model, settings_of_options(given, above), settings_of_environment(prefix, model))
+
+
+def settings_of_options(given: Sequence[str] | None, above: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """Return what `--set` says as tables.
+
+    Args:
+        given: as it was written, each `KEY=VALUE`.
+        above: laid over it: settings that have an option of their own.
+
+    Raises:
+        UserError: one is no `KEY=VALUE`.
+    """
+    tables: dict[str, Any] = {}
+    for one in given or ():
+        key, equals, value = one.partition("=")
+        parts = key.strip().split(".")
+        if not equals or not all(parts):
+            raise UserError(f"--set {one}: is no KEY=VALUE; write it as descent.cone.slope=0.3")
+        tables = merge(tables, _nested(parts, _value(value)))
+    return merge(tables, above or {})
+
+
+def settings_of_environment(
+    prefix: str, model: type[BaseModel], environment: Mapping[str, str] = os.environ
+) -> dict[str, Any]:
+    """Return what the variables that begin with `prefix` say, as tables.
+
+    Args:
+        prefix: one of `PREFIXES`.
+        model: of the configuration: its keys are lower case, and what it leaves open keeps the case it has.
+        environment: the variables.
+    """
+    tables: dict[str, Any] = {}
+    for name in sorted(environment):
+        start, below, key = name.partition(_BELOW)
+        if start == prefix and below:
+            tables = merge(tables, _nested(_keys(key.split(_BELOW), model), _value(environment[name])))
+    return tables
+
+
+def without_settings(environment: Mapping[str, str]) -> dict[str, str]:
+    """Return the environment of a child process that is told all its settings otherwise."""
+    return {name: value for name, value in environment.items() if not name.startswith(PREFIXES)}
+
+
+def _keys(parts: Sequence[str], model: type[BaseModel]) -> list[str]:
+    """Return the keys that parts of a variable's name stand for."""
+    keys: list[str] = []
+    models: Sequence[type[BaseModel]] = [model]
+    for part in parts:
+        keys.append(part.lower() if models else part)
+        fields = [one.model_fields[keys[-1]] for one in models if keys[-1] in one.model_fields]
+        models = [below for field in fields for below in models_in(field.annotation)] if fields else models
+    return keys
+
+
+def _nested(parts: Sequence[str], value: Any) -> dict[str, Any]:
+    first, *others = parts
+    return {first: _nested(others, value) if others else value}
+
+
+def _value(text: str) -> Any:
+    """Return a value as TOML reads it; what is none, such as a bare word, is a text."""
+    try:
+        table = tomllib.loads(f"value = {text}")
+    except (tomllib.TOMLDecodeError, RecursionError):
+        return text
+    return table["value"] if table.keys() == {"value"} else text

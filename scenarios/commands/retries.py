@@ -1,0 +1,144 @@
+"""The command `retries`."""
+
+import json
+import sys
+from collections.abc import Sequence
+from contextlib import closing
+from statistics import median
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from link.errors import UserError
+from link.program.extras import require
+
+if TYPE_CHECKING:
+    from scenarios.faults.retry import Retried
+
+_SCENARIOS = (
+    "straight_5+sensors=nominal+wind=nominal+link=nominal",
+    "straight_10+sensors=nominal+wind=nominal+link=nominal",
+)
+_HEIGHTS_M = (1.0, 0.3)  # where a descent may still wait, and where it is committed
+_SHARE_MIN = 0.95  # accepted: of the next approaches that land
+_OVERSHOOT_MAX_M = 0.5  # accepted
+_WIDTHS = {
+    "firmware": 11,
+    "height_m": 10,
+    "seeds": 7,
+    "broken_off": 12,
+    "lands_at_once": 15,
+    "lands": 7,
+    "unsafe": 8,
+    "overshoot_m": 13,
+    "overshoot_max_m": 17,
+    "takes_s": 9,
+}
+
+
+def register(app: typer.Typer) -> None:
+    """Add `retries` to `app`."""
+    app.command("retries")(retries_command)
+
+
+def retries_command(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="SCENARIO...", help="What is flown [default: straight_5 and straight_10, nominal]."),
+    ] = None,
+    *,
+    height: Annotated[
+        list[float] | None,
+        typer.Option("--height", min=0.05, metavar="M", help="Over the pad, may be repeated [default: 1 and 0.3]."),
+    ] = None,
+    seeds: Annotated[int, typer.Option("--seeds", min=1, metavar="N", help="Of each scenario and height.")] = 10,
+    first_seed: Annotated[int, typer.Option("--first-seed", min=0, metavar="N", help="The others follow.")] = 1,
+    firmware: Annotated[
+        str | None, typer.Option("--firmware", metavar="px4|ardupilot", help="Only this one [default: both].")
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+) -> int:
+    """Break descents off and see whether the next approach lands; exit code 1 when fewer than 95 % do."""
+    require("campaign", "scenarios retries")
+    from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.config import FIRMWARES
+    from scenarios.faults.retry import RetryCase, fly_retry, lost
+    from scenarios.processes.local_workers import LocalWorkers, core_count
+    from scenarios.processes.pool import run_tasks
+
+    if firmware is not None and firmware not in FIRMWARES:
+        raise UserError(f"--firmware is one of {', '.join(FIRMWARES)}, not '{firmware}'")
+    for name in names or ():
+        load_scenario(name)  # tells what is wrong with it before anything is flown
+    groups = [
+        [
+            RetryCase(scenario=name, firmware=one, height_m=height_m, seed=seed)
+            for seed in range(first_seed, first_seed + seeds)
+        ]
+        for name in names or _SCENARIOS
+        for one in FIRMWARES
+        if firmware in {None, one}
+        for height_m in height or _HEIGHTS_M
+    ]
+    fliers = LocalWorkers(fly_retry, workers or core_count())
+    with closing(run_tasks(fliers, [case for group in groups for case in group], lost=lost)) as results:
+        found = {retried.case: retried for retried in results}
+    rows = [_row([found[case] for case in group]) for group in groups]
+    if as_json:
+        sys.stdout.write(json.dumps({"groups": rows}, indent=2) + "\n")
+    else:
+        sys.stdout.writelines(_lines(rows))
+    return 0 if all(row["right"] for row in rows) else 1
+
+
+def _row(group: "Sequence[Retried]") -> dict[str, Any]:
+    """Return the figures of the landings of one scenario, firmware and height."""
+    from scenarios.recordings.result import LANDED
+    from scenarios.scoring.score import Tier
+
+    case = group[0].case
+    climbs_m = [one.overshoot_m for one in group if one.overshoot_m is not None]
+    times_s = [one.takes_s for one in group if one.takes_s is not None and one.lands_at_once]
+    at_once = sum(one.lands_at_once for one in group)
+    most_m = max(climbs_m, default=None)
+    return {
+        "scenario": case.scenario,
+        "firmware": case.firmware,
+        "height_m": case.height_m,
+        "seeds": len(group),
+        "broken_off": len(climbs_m),
+        "lands_at_once": at_once,
+        "lands": sum(one.tier in LANDED for one in group),
+        "unsafe": sum(one.tier is Tier.UNSAFE for one in group),
+        "overshoot_m": _rounded(median(climbs_m) if climbs_m else None),
+        "overshoot_max_m": _rounded(most_m),
+        "takes_s": _rounded(median(times_s) if times_s else None),
+        "others": [
+            {"seed": one.case.seed, "tier": one.tier.value, "judged": one.judged, "reasons": list(one.reasons)}
+            for one in group
+            if not one.lands_at_once
+        ],
+        "right": at_once >= _SHARE_MIN * len(group) and most_m is not None and most_m <= _OVERSHOOT_MAX_M,
+    }
+
+
+def _rounded(value: float | None) -> float | None:
+    return None if value is None else round(value, 2)
+
+
+def _lines(rows: Sequence[dict[str, Any]]) -> list[str]:
+    lines = [_line({name: name for name in _WIDTHS}, "scenario")]
+    for row in rows:
+        lines.append(_line(row, row["scenario"] + ("" if row["right"] else "  NOT RIGHT")))
+        lines += [
+            f"  seed {one['seed']}: {one['tier']}, {one['judged']} {' '.join(one['reasons'])}\n"
+            for one in row["others"]
+        ]
+    return lines
+
+
+def _line(row: dict[str, Any], last: str) -> str:
+    return "".join(f"{row[name]!s:{width}}" for name, width in _WIDTHS.items()) + f"{last}\n"

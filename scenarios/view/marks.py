@@ -1,0 +1,59 @@
+"""The view's compass and scale on the ground, and the labels of drone and vehicle."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from link.messages import BodyTruth
+from scenarios.view.state import ViewState
+
+_INK = (45, 55, 72)
+_PLACE_M = (2.4, -4.6)  # of compass and scale from what the camera follows, beside the road
+_NORTH_M, _HEAD_M = 2.0, 0.3
+_SCALE_M, _TICK_M = 5.0, 0.2
+_RISE_M = 0.03  # over the ground, so that the grid does not cut them
+_DRONE_LABEL_M, _VEHICLE_LABEL_M = (0.0, 0.0, 0.35), (-2.3, 0.0, 0.1)
+
+
+class Marks:
+    """What helps to read the scene; it hangs on the frames of drone and vehicle."""
+
+    def __init__(self, scene: Any) -> None:
+        self._compass = scene.add_frame("/compass", show_axes=False)
+        lines = [
+            ((0.0, 0.0), (0.0, _NORTH_M)),
+            ((0.0, _NORTH_M), (-0.5 * _HEAD_M, _NORTH_M - _HEAD_M)),
+            ((0.0, _NORTH_M), (0.5 * _HEAD_M, _NORTH_M - _HEAD_M)),
+            ((-0.5 * _SCALE_M, 0.0), (0.5 * _SCALE_M, 0.0)),
+            *(((x * _SCALE_M, -_TICK_M), (x * _SCALE_M, _TICK_M)) for x in (-0.5, 0.5)),
+        ]
+        points = np.array([[(*start, 0.0), (*end, 0.0)] for start, end in lines], dtype=np.float32)
+        scene.add_line_segments("/compass/lines", points, _INK, thickness=2.5, thickness_units="screen")
+        scene.add_label("/compass/north", "N", position=(0.0, _NORTH_M + 0.3, 0.0), anchor="center-center")
+        scene.add_label("/compass/scale", f"{_SCALE_M:g} m", position=(0.0, -0.5, 0.0), anchor="center-center")
+        self._drone = scene.add_label("/world/drone/label", "", position=_DRONE_LABEL_M, anchor="bottom-center")
+        self._vehicle = scene.add_label("/world/vehicle/label", "", position=_VEHICLE_LABEL_M, anchor="top-center")
+
+    def show(self, state: ViewState, *, ground_m: float) -> None:
+        """Move and write everything as it is now.
+
+        Args:
+            state: what is known.
+            ground_m: height of the ground in the scene.
+        """
+        self._compass.position = (*_PLACE_M, ground_m + _RISE_M)
+        status = state.status
+        height_m = None if status is None else status.height_above_pad_m
+        _write(self._drone, "drone" if height_m is None else f"drone {round(height_m, 1) + 0.0:.1f} m above the pad")
+        speed = _speed_m_s(state.vehicle_truth)
+        _write(self._vehicle, "vehicle" if speed is None else f"vehicle {speed:.1f} m/s")
+
+
+def _write(label: Any, text: str) -> None:
+    if label.text != text:
+        label.text = text
+
+
+def _speed_m_s(body: BodyTruth | None) -> float | None:
+    return None if body is None else math.hypot(*body.velocity_flu_m_s)

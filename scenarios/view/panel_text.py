@@ -1,0 +1,88 @@
+"""The text of the view's panel: what the landing does now, and what is known of drone, vehicle and links."""
+
+import math
+from html import escape
+
+from link.frames.rotations import roll_pitch_yaw_of
+from link.messages import BodyTruth, LandingStatus
+from link.program.status_rows import link_rows, number, status_rows
+from scenarios.view.models import BLUE, GREEN, GREY, ORANGE
+from scenarios.view.plots import css
+from scenarios.view.state import ViewState
+
+_LEGEND = ((BLUE, "flown"), (GREY, "pad's way"), (GREEN, "plan, cone"), (ORANGE, "estimate, forecast"))
+_FLOWN_BY = {"companion": "follows the companion", "failsafe": "flies a failsafe", "other": "in a mode of its own"}
+_VALUE = "text-align:right;white-space:nowrap"
+_PAINT = {
+    "descend": "#169146", "touchdown": "#169146", "secured": "#0f6b33", "abort": "#c62828", "hold": "#b26a00",
+    "pilot in command": "#c62828",
+}  # fmt: skip
+
+
+def panel_text(state: ViewState, t_s: float, *, stale: bool) -> str:
+    """Return the panel's text: the phase, why, and what is known of drone, vehicle and links, as HTML."""
+    status = state.status
+    phase = "no companion" if status is None or stale else status.phase
+    reason = "waiting for its status" if status is None or stale else status.reason
+    paint = _PAINT.get(phase, "#2563eb")
+    rows = "".join(
+        f'<tr><td style="color:#667">{escape(name)}</td><td style="{_VALUE}">{escape(value)}</td></tr>'
+        for name, value in _rows(state, t_s)
+    )
+    legend = " ".join(
+        f'<span style="white-space:nowrap"><span style="color:{css(color)}">&#9632;</span> {name}</span>'
+        for color, name in _LEGEND
+    )
+    return (
+        '<div style="padding:.2rem .8rem;font-size:.78rem;line-height:1.35">'
+        f'<div id="phase" style="font-size:1.35rem;font-weight:700;color:{paint}">{escape(phase)}</div>'
+        f'<div id="reason" style="min-height:2.7em;color:#334">{escape(reason)}</div>'
+        f'<table style="width:100%;font-variant-numeric:tabular-nums">{rows}</table>'
+        f'<div style="margin-top:.3rem;font-size:.72rem">{legend}</div></div>'
+    )
+
+
+def _rows(state: ViewState, t_s: float) -> list[tuple[str, str]]:
+    speed_m_s = None if state.drone is None else math.hypot(*state.drone.velocity_flu_m_s)
+    rows = [("time", f"{t_s:.1f} s"), *status_rows(state.status), ("drone's speed", number(speed_m_s, "m/s"))]
+    vehicle_m_s = None
+    if state.vehicle_truth is not None:
+        vehicle_m_s = math.hypot(*state.vehicle_truth.velocity_flu_m_s)
+    elif state.estimate is not None:
+        vehicle_m_s = math.hypot(*(float(value) for value in state.estimate.velocity_enu_m_s))
+    rows += [("vehicle's speed", number(vehicle_m_s, "m/s")), ("pad seen", seen_text(state))]
+    rows += _drone_rows(state.drone, state.status)
+    if state.link is not None:
+        link = state.link
+        rows += link_rows(
+            link.messages_received, link.messages_sent, link.lost_messages, link.bad_bytes, link.bad_payloads
+        )
+    return rows
+
+
+def _drone_rows(drone: BodyTruth | None, status: LandingStatus | None) -> list[tuple[str, str]]:
+    """Return how the drone lies in the air, and what its autopilot says; angles in degrees, the heading by compass."""
+    attitude, heading = "-", "-"
+    if drone is not None:
+        roll, pitch, yaw = (math.degrees(angle_rad) for angle_rad in roll_pitch_yaw_of(drone.orientation_wxyz))
+        attitude = f"{roll:+.0f} right, {-pitch:+.0f} nose up, degrees"
+        heading = f"{(90.0 - yaw) % 360.0:03.0f} degrees from north"
+    share = None if status is None else status.battery_share
+    armed = "-" if status is None else "armed" if status.armed else "not armed"
+    flown_by = "" if status is None or not status.flown_by else f", {_FLOWN_BY.get(status.flown_by, status.flown_by)}"
+    return [
+        ("attitude", attitude),
+        ("heading", heading),
+        ("autopilot", armed + flown_by),
+        ("battery", "-" if share is None else f"{100.0 * share:.0f} %"),
+    ]
+
+
+def seen_text(state: ViewState) -> str:
+    """Return how far away the detector last saw the pad, how well, and how long ago."""
+    sighting = state.sighting
+    if sighting is None:
+        return "-"
+    age_s = (state.t_ns - sighting.t_ns) * 1e-9
+    std_m = math.sqrt(max(0.0, *sighting.position_covariance_m2[::4]))
+    return f"{math.hypot(*sighting.position_flu_m):.2f} m away to {std_m:.2f} m, {max(age_s, 0.0):.1f} s ago"

@@ -1,0 +1,70 @@
+"""Rollouts obey what is known in closed form, and their machine code is their Python."""
+
+import numpy as np
+import pytest
+
+from companion.core.data import GRAVITY_M_S2
+from companion.forecast import rollout
+from companion.forecast.rollout import ALONG, CONTACT, DT_S, ERROR, IN_S, SINK, SPEED, TILT, roll_out
+from tests.companion.forecast.descents import HEIGHT_M, NEVER_S, RULES, SINK_M_S, descent, samples
+
+
+def test_a_contact_over_a_vehicle_that_does_what_is_expected_is_the_planned_one() -> None:
+    (end,) = roll_out(samples(), descent(), 0.1)
+    lowest_m = RULES.foot_radius_m * 0.5 / GRAVITY_M_S2
+    assert end[CONTACT] == 1.0
+    assert end[IN_S] == pytest.approx((HEIGHT_M - lowest_m) / SINK_M_S, abs=DT_S)
+    assert end[[ERROR, SPEED, SINK, TILT]] == pytest.approx([0.0, 0.0, SINK_M_S, 0.0], abs=1e-9)
+
+
+def test_a_brake_that_is_told_after_the_contact_meets_a_drone_that_flies_on() -> None:
+    # from the newest datum on, 0.1 s ago: v = a t and s = a t^2 / 2, of which the drone knows nothing
+    brakes = samples(kind=ALONG, event=np.array([0.0, -3.0, 1e-6, NEVER_S]), delay_s=5.0)
+    (end,) = roll_out(brakes, descent(), 0.1)
+    lasts_s = 0.1 + end[IN_S]
+    assert end[CONTACT] == 1.0
+    assert end[SPEED] == pytest.approx(3.0 * lasts_s, rel=0.1)
+    assert end[ERROR] == pytest.approx(1.5 * lasts_s**2, rel=0.1)
+
+
+def test_the_later_a_brake_is_known_the_faster_is_the_contact() -> None:
+    speeds_m_s = [
+        roll_out(samples(kind=ALONG, event=np.array([0.1, -2.0, 0.1, NEVER_S]), delay_s=late_s), descent(), 0.1)[0]
+        for late_s in (0.05, 0.3, 0.6)
+    ]
+    first, second, third = (end[SPEED] for end in speeds_m_s)
+    assert first < second < third
+
+
+def test_a_brake_ends_at_rest() -> None:
+    stops = samples(kind=ALONG, event=np.array([0.0, -20.0, 1e-6, NEVER_S]), delay_s=9.0)
+    (end,) = roll_out(stops, descent(), 0.5)
+    assert end[SPEED] == pytest.approx(8.0, abs=0.2)  # a vehicle that went backwards would be met faster
+
+
+def test_an_error_of_the_estimate_stays_an_error() -> None:
+    errs = samples()
+    errs.vehicle[0, 0] = [0.12, -0.05]
+    (end,) = roll_out(errs, descent(), 0.1)
+    assert end[ERROR] == pytest.approx(0.13, abs=1e-6)
+
+
+def test_a_drone_that_sees_a_brake_above_where_it_commits_does_not_land() -> None:
+    brakes = samples(kind=ALONG, event=np.array([0.0, -4.0, 0.1, NEVER_S]), delay_s=0.1)
+    assert roll_out(brakes, descent(0.8), 0.3)[0, CONTACT] == 0.0
+    assert roll_out(brakes, descent(0.15), 0.3)[0, CONTACT] == 1.0  # too low to stop sinking
+
+
+def test_machine_code_is_its_python(monkeypatch: pytest.MonkeyPatch) -> None:
+    several = samples(5, kind=ALONG, event=np.array([0.15, -2.5, 0.2, 0.8]))
+    generator = np.random.default_rng(4)
+    several = several._replace(
+        vehicle=0.1 * generator.standard_normal(several.vehicle.shape),
+        deviation=0.1 * generator.standard_normal(several.deviation.shape),
+        pushes=generator.standard_normal(several.pushes.shape),
+    )
+    compiled = roll_out(several, descent(push_std_m_s2=0.5), 0.17)
+    for name in ("_drive", "_know", "_does_not_land", "_plan", "_follow", "_touch", "_fly"):
+        monkeypatch.setattr(rollout, name, getattr(rollout, name).py_func)
+    plain = roll_out.py_func(several, descent(push_std_m_s2=0.5), 0.17)
+    assert compiled == pytest.approx(plain, abs=1e-12)

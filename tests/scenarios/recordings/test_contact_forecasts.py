@@ -1,0 +1,85 @@
+"""What a run's row keeps of the forecasts: of the last descent, when it leaves the height of waiting and commits."""
+
+from typing import Any
+
+import pytest
+
+from companion.config.descent import DescentConfig
+from companion.situation.phases import Phase
+from link.messages import ContactForecast, LandingStatus
+from scenarios.recordings.contact_forecasts import forecast_columns
+
+START_NS = 1_767_225_600_000_000_000
+DESCENT = DescentConfig()
+LANDED = {
+    "contact_s": 21.4,
+    "on_pad": True,
+    "horizontal_error_m": 0.2,
+    "relative_speed_m_s": 0.3,
+    "sink_rate_m_s": 0.5,
+    "tilt_over_trim_rad": 0.02,
+}
+
+
+def _forecast(unsafe: float) -> ContactForecast:
+    return ContactForecast(
+        in_s=0.8,
+        s1=1.0 - unsafe,
+        s2=0.9 - unsafe,
+        unsafe=unsafe,
+        broken_off=0.0,
+        misses_position=unsafe,
+        misses_speed=0.0,
+        misses_sink=0.0,
+        misses_tilt=0.0,
+    )
+
+
+def _status(at_s: float, height_m: float, phase: Phase = Phase.DESCEND, unsafe: float = 0.01) -> LandingStatus:
+    return LandingStatus(
+        stamp_ns=START_NS + round(at_s * 1e9),
+        phase=phase.value,
+        reason="",
+        relative_position_enu_m=None,
+        relative_velocity_enu_m_s=None,
+        height_above_pad_m=height_m,
+        time_to_contact_s=None,
+        mavlink_bad_bytes=0,
+        zenoh_bad_payloads=0,
+        armed=True,
+        fix_age_s=0.1,
+        contact_forecast=_forecast(unsafe) if phase is Phase.DESCEND else None,
+    )
+
+
+FLIGHT = [
+    _status(10.0, 0.3, unsafe=0.7),  # of an approach that was broken off
+    _status(11.0, 2.0, Phase.ABORT),
+    _status(19.0, 1.2),
+    _status(20.0, 0.79, unsafe=0.02),
+    _status(20.9, 0.34, unsafe=0.03),
+    _status(21.3, 0.05, unsafe=0.001),
+    _status(21.5, 0.0, Phase.TOUCHDOWN),
+]
+
+
+@pytest.mark.parametrize(
+    ("result", "came"),
+    [
+        (LANDED, "s2"),
+        (LANDED | {"horizontal_error_m": 0.4}, "s1"),
+        (LANDED | {"horizontal_error_m": 0.6}, "unsafe"),
+        (LANDED | {"on_pad": False}, "unsafe"),
+        (LANDED | {"contact_s": 29.0}, "broken_off"),
+        ({"contact_s": None}, "broken_off"),
+    ],
+)
+def test_the_last_descent_counts_and_what_came_of_it(result: dict[str, Any], came: str) -> None:
+    columns = forecast_columns(FLIGHT, START_NS, result, DESCENT)
+    assert (columns["forecast_waiting_at_s"], columns["forecast_waiting_unsafe"]) == (20.0, 0.02)
+    assert (columns["forecast_commit_at_s"], columns["forecast_commit_unsafe"]) == (20.9, 0.03)
+    assert columns["forecast_commit_came"] == came
+
+
+def test_a_run_without_a_descent_has_no_forecast() -> None:
+    assert set(forecast_columns(FLIGHT[1:2], START_NS, LANDED, DESCENT).values()) == {None}
