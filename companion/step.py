@@ -12,12 +12,13 @@ from companion.landing.contact import may_force_motors_off, signs_of
 from companion.landing.contact_forecast import update_forecast
 from companion.landing.flying import fly
 from companion.landing.memory import ModelMemory, StepMemory, to_present_frame
-from companion.landing.outputs import has_jittery_place, landing_status, news, setpoint
+from companion.landing.outputs import has_jittery_place, landing_status, news, news_of_sortie, setpoint
+from companion.landing.sortie_decisions import is_quiet_for_long
 from companion.landing.step_data import StepInputs, StepOutputs, System
 from companion.landing.transitions import take_events
 from companion.landing.vehicle_update import predict_pad, update_vehicle
 from companion.landing.virtual_model import tracking_error_max_m, update_tracking
-from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
+from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, STATION_PHASES, Phase
 from companion.situation.situation import (
     Below,
     Following,
@@ -48,7 +49,7 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
     vehicle, pad = predict_pad(memory.progress.phase, vehicle, inputs, system)
     memory = replace(memory, model=model, vehicle=vehicle)
     memory, situation = _look(memory, _situation(memory, pad, inputs, system), pad, system.config)
-    before = memory.progress
+    before, warned = memory.progress, memory.sortie.warning
     memory, reply = take_events(memory, situation, inputs, system.config)
     phase = memory.progress.phase
     if phase in FOLLOWING_PHASES and before.phase not in FOLLOWING_PHASES:
@@ -60,7 +61,7 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
     outputs = StepOutputs(
         setpoint=setpoint(memory, inputs, situation, system.config, is_planned=plan is not None),
         commands=commands,
-        text=news(before, memory.progress),
+        text=news(before, memory.progress) or news_of_sortie(warned, memory.sortie.warning, phase),
         reply=reply,
         status=landing_status(memory, situation, system.config),
         plan=plan,
@@ -75,7 +76,8 @@ def _update_model(memory: StepMemory, inputs: StepInputs, system: System) -> Mod
     if own is None or model.reference is None:
         return model
     # What the link's jitter does to a drone is not how its autopilot follows: led by that, both would swing.
-    flies_place = memory.progress.phase in LANDING_PHASES and not has_jittery_place(memory, inputs, system.config)
+    places = memory.progress.phase in LANDING_PHASES | STATION_PHASES
+    flies_place = places and not has_jittery_place(memory, inputs, system.config)
     estimates = system.config.setpoints.corrects_lag and flies_place
     own_ns = inputs.monotonic_at(own.t_ns)
     return replace(model, tracking=update_tracking(model.tracking, own_ns, own, inputs.response, estimates=estimates))
@@ -170,6 +172,11 @@ def _desire(memory: StepMemory, situation: Situation, config: CompanionConfig) -
     match progress.phase:
         case Phase.TAKEOFF:
             return Desire(control=True, armed=True, takeoff_height_m=config.takeoff.waiting_height_m)
+        case Phase.ON_DECK:
+            is_quiet = is_quiet_for_long(memory.sortie, situation, config)
+            return Desire(control=True, armed=True if is_quiet else None)
+        case Phase.LIFT_OFF:
+            return Desire(takeoff_height_m=config.sortie.launch.clear_height_m, leaves_deck=True)
         case Phase.TOUCHDOWN:
             # Without accelerations in its setpoints an autopilot is not pressed down so hard that it would fall.
             held_up = holds(HELD_UP, progress.held, situation, config) and not config.setpoints.position_only

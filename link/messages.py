@@ -141,6 +141,31 @@ class Command(Enum):
     ABORT = "abort"
     HOLD = "hold"
     START_ANYWAY = "start_anyway"  # although nothing usable has come from the vehicle
+    LAUNCH = "launch"  # leave the vehicle that the drone stands on
+    FOLLOW = "follow"  # keep a station relative to the vehicle
+    RETURN = "return"  # come home to the vehicle, and land
+
+
+class StationFrame(Enum):
+    """Which way a station's offset looks ahead."""
+
+    VEHICLE = "vehicle"  # where the vehicle heads
+    COURSE = "course"  # where it drives
+    NORTH = "north"
+
+
+class Station(Struct, frozen=True, kw_only=True):
+    """A place relative to the pad's centre: ahead, left and up, as `frame` looks."""
+
+    offset_m: Vector3
+    frame: StationFrame = StationFrame.VEHICLE
+
+
+class Order(Struct, frozen=True, kw_only=True):
+    """A command with what belongs to it: a station to a follow, nothing to any other."""
+
+    command: Command
+    station: Station | None = None
 
 
 class CommandReply(Struct, frozen=True, kw_only=True):

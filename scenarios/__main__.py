@@ -23,6 +23,7 @@ from scenarios.commands import (
     report,
     retries,
     ros2,
+    sortie,
 )
 from scenarios.commands import view as view_command
 from scenarios.commands.examples import SCENARIOS
@@ -135,9 +136,19 @@ def world_command(
 @app.command("command")
 def command_command(
     command: Annotated[
-        str, typer.Argument(metavar="start|abort|hold|start_anyway", help="What the companion is asked for.")
+        str,
+        typer.Argument(
+            metavar="start|abort|hold|launch|follow|return|start_anyway", help="What the companion is asked for."
+        ),
     ],
     *,
+    offset: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(help="Of a follow: metres ahead, left and up of the pad's centre."),
+    ] = None,
+    frame: Annotated[
+        str | None, typer.Option(metavar="vehicle|course|north", help="Of a follow: which way is ahead.")
+    ] = None,
     as_json: JsonOption = False,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",
@@ -146,18 +157,11 @@ def command_command(
     """Send a command to the companion; exit code 1 when it is refused."""
     import json
 
-    from link.messages import Command
     from link.program.printable import printable
     from link.zenoh.keys import Keys
-    from scenarios.commands.operator import send_command
+    from scenarios.commands.operator import order_of, send_order
 
-    try:
-        wanted = Command(command)
-    except ValueError:
-        known = ", ".join(one.value for one in Command)
-        raise UserError(f"command '{command}' does not exist: give one of {known}") from None
-    options = endpoints.options()
-    reply = send_command(wanted, Keys(namespace, "vehicle", drone), options)
+    reply = send_order(order_of(command, offset, frame), Keys(namespace, "vehicle", drone), endpoints.options())
     told = "accepted" if reply.accepted else f"refused: {printable(reply.reason)}"
     sys.stdout.write((json.dumps({"accepted": reply.accepted, "reason": reply.reason}) if as_json else told) + "\n")
     return 0 if reply.accepted else 1
@@ -165,6 +169,7 @@ def command_command(
 
 for command in (
     campaign,
+    sortie,
     falsify,
     rare,
     bench,

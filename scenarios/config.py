@@ -206,6 +206,7 @@ class Scenario(StrictModel):
     system: SystemConfig = SystemConfig()
     firmware: FirmwareName = "px4"
     start: Literal["instant", "boot"] = "instant"  # of the autopilot in lockstep; over the wire it always boots
+    place: Literal["road", "deck"] = "road"  # where the drone stands at first; under one on its deck the vehicle drives
     datum: DatumConfig = DatumConfig()
     drone_start_enu_m: Vector3 = (0.0, 0.0, 0.0)  # of the point on the road that it stands on
     waiting_point_enu_m: Vector3 = (0.0, 0.0, 5.0)  # 5 m above the road; source report, section "Task"

@@ -37,7 +37,8 @@ def initial_memory(config: AutopilotConfig, start_ns: int) -> AutopilotMemory:
     parameters, mode = firmware.parameters, firmware.modes.boot
     values = default_values(parameters.table, {parameters.system_id: config.system_id, **config.parameters})
     tuning = tune(config, values)
-    plant = initial_plant(config.plant, start_ns, np.array(config.position_enu_m), config.yaw_rad)
+    place, velocity = np.array(config.position_enu_m), np.array(config.velocity_enu_m_s)
+    plant = initial_plant(config.plant, start_ns, place, config.yaw_rad, velocity)
     now = take_snapshot(plant.state, config.plant.airframe, 0)
     frame = LocalFrame(origin=config.datum, projection=firmware.origin.projection)
     streams = firmware.streams.messages.values()

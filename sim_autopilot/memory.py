@@ -46,6 +46,7 @@ class AutopilotConfig(Struct, frozen=True, kw_only=True):
         instant: ready at once, without the seconds that a boot takes.
         position_enu_m: where the drone stands at boot, its centre of mass.
         yaw_rad: its heading there.
+        velocity_enu_m_s: with which what it stands on carries it.
         parameters: values that differ from the firmware's defaults.
         endurance_s: of motors running on one battery.
         own_state: how well it knows where it is.
@@ -60,6 +61,7 @@ class AutopilotConfig(Struct, frozen=True, kw_only=True):
     instant: bool = False
     position_enu_m: Vector3 = (0.0, 0.0, 0.12)
     yaw_rad: float = pi / 2.0
+    velocity_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
     parameters: Values = field(default_factory=dict)
     endurance_s: float = 1200.0
     own_state: OwnStateModel = field(default_factory=OwnStateModel)

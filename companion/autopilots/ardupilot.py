@@ -102,7 +102,7 @@ class ArduPilotDriver:
 
     def act(self, memory: DriverMemory, view: AutopilotView, desire: Desire, monotonic_ns: int) -> Requested:
         """Return the commands that bring ArduCopter nearer to `desire`."""
-        climbs = desire.takeoff_height_m is not None and not _is_airborne(view)
+        climbs = desire.takeoff_height_m is not None and not _is_airborne(view, rises=desire.leaves_deck)
         memory = replace(memory, climbs_by_itself=climbs)
         if desire.armed is False and view.armed:
             return ask_to_disarm(memory, desire, monotonic_ns)
@@ -181,6 +181,6 @@ def _shaping_jerk_m_s3(parameters: Mapping[str, float]) -> float:
     return min(find_limit(parameters, _JERK), attitude_m_s3)
 
 
-def _is_airborne(view: AutopilotView) -> bool:
-    """Return whether it flies and its own take-off is over."""
-    return view.armed and view.landed is False and not view.taking_off
+def _is_airborne(view: AutopilotView, *, rises: bool) -> bool:
+    """Return whether it flies and its own take-off is over, or has begun where it only has to leave a deck."""
+    return view.armed and view.landed is False and (rises or not view.taking_off)

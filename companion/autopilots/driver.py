@@ -65,6 +65,7 @@ class Desire(Struct, frozen=True, kw_only=True):
         force_disarm: the evidence of a touchdown is complete, so a refused disarm may be forced.
         release: leave the companion's control into a hover of its own.
         takeoff_height_m: be in the air; how far above its home an autopilot climbs that does so by itself.
+        leaves_deck: follow setpoints as soon as it is in the air, for its own climb would stand still over ground.
     """
 
     control: bool | None = None
@@ -72,6 +73,7 @@ class Desire(Struct, frozen=True, kw_only=True):
     force_disarm: bool = False
     release: bool = False
     takeoff_height_m: float | None = None
+    leaves_deck: bool = False
 
 
 class AutopilotCommand(Struct, frozen=True, kw_only=True):

@@ -18,6 +18,7 @@ _NO_STABILISATION = 0b110000  # bits 4 and 5: positions, velocities are not held
 _GUIDED_LOSS_S = (0.5, 1.5)
 _DISARM_DELAY_MIN_S = 5.0
 _EKF_ACTIONS = (1, 3)
+_LEVEL_BELOW_M = 1.0  # so high above the deck its own take-off is level; setpoints take over before
 
 ARDUPILOT_SINK = (Spelling("WP_SPD_DN"), Spelling("WPNAV_SPEED_DN", _CENTI))
 """What limits the descent, for `rules.sink_rule`."""
@@ -128,3 +129,23 @@ ARDUPILOT_RULES = (
         reason="armed and idle it disarms after this; the take-off begins 4 s after arming",
     ),
 )
+
+ARDUPILOT_LAUNCH_RULES = (
+    ParameterRule(
+        spellings=(Spelling("INS_GYR_CAL"),),
+        unit="",
+        level=Level.WARN,
+        test=lambda value, _: value == 0.0,
+        advised=lambda _: 0.0,
+        reason="1 calibrates the gyros at each start, which a base that turns spoils: switch on while it stands, or 0",
+    ),
+    ParameterRule(
+        spellings=(Spelling("WP_NAVALT_MIN"),),
+        unit="m",
+        level=Level.WARN,
+        test=lambda value, _: value >= _LEVEL_BELOW_M,
+        advised=lambda _: _LEVEL_BELOW_M,
+        reason="below this height its take-off does not steer: at 0 it brakes against the deck's velocity at once",
+    ),
+)
+"""For a launch from the deck of a vehicle that drives. Source: ArduPilot's parameter descriptions."""

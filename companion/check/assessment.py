@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from companion.autopilots.choice import MULTIROTORS
-from companion.check.ardupilot_rules import ARDUPILOT_RULES, ARDUPILOT_SINK
+from companion.check.ardupilot_rules import ARDUPILOT_LAUNCH_RULES, ARDUPILOT_RULES, ARDUPILOT_SINK
 from companion.check.findings import Finding, Level, pass_line
 from companion.check.observation import AutopilotFacts, VehicleFacts
-from companion.check.px4_rules import PX4_RULES, PX4_SINK
+from companion.check.px4_rules import PX4_LAUNCH_RULES, PX4_RULES, PX4_SINK
 from companion.check.rules import ParameterRule, Spelling, judge, names_of, sink_rule
 from companion.config.autopilot import AutopilotKind
 from companion.config.companion import CompanionConfig
@@ -25,13 +25,15 @@ class Firmware:
         kind: what a configuration calls it.
         oldest: release that is known to work.
         rules: of its parameters, but for the one that limits the descent.
-        sink: names of that one.
+        launch: likewise, for a launch from the deck of a vehicle that drives.
+        sink: names of the descent's.
     """
 
     name: str
     kind: AutopilotKind
     oldest: tuple[int, int]
     rules: Sequence[ParameterRule]
+    launch: Sequence[ParameterRule]
     sink: tuple[Spelling, ...]
 
     def rules_for(self, sink_m_s: float) -> tuple[ParameterRule, ...]:
@@ -41,18 +43,19 @@ class Firmware:
     @property
     def parameters(self) -> tuple[str, ...]:
         """Every name that the rules look for."""
-        return (*names_of(self.rules), *(spelling.name for spelling in self.sink))
+        return (*names_of((*self.rules, *self.launch)), *(spelling.name for spelling in self.sink))
 
 
 FIRMWARES = {
     mavlink.MAV_AUTOPILOT_PX4: Firmware(
-        name="PX4", kind=AutopilotKind.PX4, oldest=(1, 14), rules=PX4_RULES, sink=PX4_SINK
+        name="PX4", kind=AutopilotKind.PX4, oldest=(1, 14), rules=PX4_RULES, launch=PX4_LAUNCH_RULES, sink=PX4_SINK
     ),
     mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA: Firmware(
         name="ArduPilot",
         kind=AutopilotKind.ARDUPILOT,
         oldest=(4, 5),
         rules=ARDUPILOT_RULES,
+        launch=ARDUPILOT_LAUNCH_RULES,
         sink=ARDUPILOT_SINK,
     ),
 }
@@ -70,7 +73,12 @@ _FIX_STD_GOOD_M = 0.3
 
 
 def assess(
-    autopilot: AutopilotFacts, vehicle: VehicleFacts | None, speed_m_s: float, config: CompanionConfig
+    autopilot: AutopilotFacts,
+    vehicle: VehicleFacts | None,
+    speed_m_s: float,
+    config: CompanionConfig,
+    *,
+    launches: bool = False,
 ) -> list[Finding]:
     """Return the lines of the check.
 
@@ -79,6 +87,7 @@ def assess(
         vehicle: as received, None when it was not to be looked at.
         speed_m_s: of the vehicle, for which the parameters are judged.
         config: the companion's, whose limits are to hold.
+        launches: the drone is to leave a vehicle that drives, too.
     """
     found = [_firmware(autopilot, config.autopilot.kind), _readiness(autopilot), _origin(autopilot)]
     found += [_heights(autopilot, config.autopilot.geoid_height_m), _clock(autopilot)]
@@ -86,8 +95,9 @@ def assess(
     found += [_latency(autopilot), _battery(autopilot, config.limits.battery_min_share)]
     found.append(_range_finder(autopilot))
     if autopilot.autopilot_id in FIRMWARES:
-        rules = FIRMWARES[autopilot.autopilot_id].rules_for(config.descent.sink.rate_max_m_s)
-        found += judge(rules, autopilot.parameters, speed_m_s)
+        firmware = FIRMWARES[autopilot.autopilot_id]
+        rules = firmware.rules_for(config.descent.sink.rate_max_m_s)
+        found += judge((*rules, *(firmware.launch if launches else ())), autopilot.parameters, speed_m_s)
     return found if vehicle is None else [*found, *_vehicle(vehicle, config)]
 
 

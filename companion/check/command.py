@@ -29,6 +29,9 @@ def check(
     speed_max: Annotated[
         float, typer.Option("--speed-max", metavar="M_S", min=0.0, max=50.0, help="Of the vehicle to be landed on.")
     ] = 5.0,
+    launch: Annotated[
+        bool, typer.Option("--launch", help="And for a launch from the vehicle while it drives.")
+    ] = False,
     duration: Annotated[float, typer.Option("--duration", min=1.0, help="Seconds that rates are counted for.")] = 4.0,
     timeout: Annotated[float, typer.Option("--timeout", min=0.0, help="Seconds without an autopilot.")] = 30.0,
     set_values: Annotated[bool, typer.Option("--write", help="Write the advised parameters, after asking.")] = False,
@@ -71,6 +74,7 @@ def check(
             duration_s=duration,
             speed_m_s=speed_max,
             config=settings,
+            launches=launch,
             open_links=open_links(options, mavlink.mavlink, signs=signing is not None),
         )
         findings = _look(session, ask)
@@ -89,6 +93,7 @@ class _Question:
     duration_s: float
     speed_m_s: float
     config: "CompanionConfig"
+    launches: bool
     open_links: tuple[str, ...]
 
 
@@ -98,7 +103,7 @@ def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
     from companion.check.links import assess_links
 
     vehicle, detector = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.integrity)
-    seen = assess(session.reader.facts(), vehicle, asked.speed_m_s, asked.config)
+    seen = assess(session.reader.facts(), vehicle, asked.speed_m_s, asked.config, launches=asked.launches)
     return [*seen, *judge_detector(detector, asked.speed_m_s, asked.config), *assess_links(asked.open_links)]
 
 

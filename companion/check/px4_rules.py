@@ -10,6 +10,7 @@ _CLIMB_M_S = 2.0
 _LOSS_S = (0.5, 3.0)
 _ACT_HOLD, _ACT_LAST_SAFE = 5, 5
 _OVERRIDE_IN_OFFBOARD = 2
+_LIFT_OFF_S = 5.0  # from arming: half a second of a quiet deck, a second to spool up, the ramp of MPC_TKO_RAMP_T
 _DLL_ACT_STOPS = 5  # flight termination; 6 disarms
 
 PX4_SINK = (Spelling("MPC_Z_VEL_MAX_DN"),)
@@ -92,3 +93,15 @@ PX4_RULES = (
         reason="bit 1 lets the pilot's sticks end OFFBOARD; without it only the mode switch does",
     ),
 )
+
+PX4_LAUNCH_RULES = (
+    ParameterRule(
+        spellings=(Spelling("COM_DISARM_PRFLT"),),
+        unit="s",
+        level=Level.FAIL,
+        test=lambda value, _: value <= 0.0 or value >= _LIFT_OFF_S,
+        advised=lambda _: 10.0,
+        reason="so long after arming PX4 disarms a drone that still stands; 0 or less never does",
+    ),
+)
+"""For a launch from the deck of a vehicle that drives."""

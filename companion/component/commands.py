@@ -1,6 +1,7 @@
 """Commands for the companion from ground stations and scripts, and their acknowledgements, without I/O.
 
-MAV_CMD_USER_1 starts a landing, USER_2 holds it, USER_3 aborts it. A start is acknowledged as in progress with its
+MAV_CMD_USER_1 starts a landing, USER_2 holds it, USER_3 aborts it; USER_4 launches from the vehicle, USER_5 calls home
+to it. A start is acknowledged as in progress with its
 percentage, once a second and with each phase, until it has ended. Each has to name the component: nothing that a ground
 station sends to all components does any of it.
 Source: MAVLink command protocol, https://mavlink.io/en/services/command.html.
@@ -19,6 +20,8 @@ COMMANDS = {
     int(mavlink.MAV_CMD_USER_1): Command.START,
     int(mavlink.MAV_CMD_USER_2): Command.HOLD,
     int(mavlink.MAV_CMD_USER_3): Command.ABORT,
+    int(mavlink.MAV_CMD_USER_4): Command.LAUNCH,
+    int(mavlink.MAV_CMD_USER_5): Command.RETURN,
 }
 _START = int(mavlink.MAV_CMD_USER_1)
 _PROGRESS_NS = 1_000_000_000  # MAVSDK waits for 3 s, QGroundControl for 3 s
@@ -29,6 +32,8 @@ _PERCENT = {
     Phase.TAKEOFF: 10,
     Phase.WAITING: 20,
     Phase.ABORT: 20,
+    Phase.RETURN: 30,
+    Phase.RALLY: 20,
     Phase.CHASE: 40,
     Phase.ALIGN: 60,
     Phase.DESCEND: 80,

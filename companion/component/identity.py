@@ -24,6 +24,11 @@ PHASE_NUMBERS = {
     Phase.ABORT: 8,
     Phase.HOLD: 9,
     Phase.PILOT: 10,
+    Phase.ON_DECK: 11,
+    Phase.LIFT_OFF: 12,
+    Phase.FOLLOW: 13,
+    Phase.RETURN: 14,
+    Phase.RALLY: 15,
 }
 """The custom mode of the heartbeat: these numbers stay."""
 

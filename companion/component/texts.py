@@ -9,7 +9,7 @@ _TEXT_SIZE = 50  # of a STATUSTEXT; longer ones are sent in pieces of one id
 _IDS = 0xFFFF
 _LASTS_NS = 1_000_000_000  # what holds a landing up for less is not told
 _APART_NS = 5_000_000_000
-_WARNED_OF = frozenset({Phase.ABORT, Phase.HOLD, Phase.PILOT})
+_WARNED_OF = frozenset({Phase.ABORT, Phase.HOLD, Phase.PILOT, Phase.RALLY})
 _TOLD_IN = frozenset({Phase.CHASE.value, Phase.ALIGN.value, Phase.DESCEND.value})
 _PLAIN = frozenset({Reason.OVER_PAD.name, Reason.ALIGNED.name})
 

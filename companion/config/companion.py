@@ -10,6 +10,7 @@ from companion.config.estimation import EstimatorConfig, EstimatorKind
 from companion.config.integrity import IntegrityConfig
 from companion.config.landing import AbortConfig, ChaseConfig, TakeoffConfig
 from companion.config.planning import GuidanceConfig
+from companion.config.sortie import SortieConfig
 from companion.config.touchdown import TouchdownConfig
 from companion.core.data import FlightLimits
 from link.messages import PadGeometry
@@ -84,6 +85,7 @@ class CompanionConfig(StrictModel):
     descent: DescentConfig = DescentConfig()
     touchdown: TouchdownConfig = TouchdownConfig()
     abort: AbortConfig = AbortConfig()
+    sortie: SortieConfig = SortieConfig()
     estimator: EstimatorConfig = EstimatorConfig()
     guidance: GuidanceConfig = GuidanceConfig()
     recording: RecordingConfig = RecordingConfig()

@@ -31,6 +31,19 @@ class Reason(Enum):
     HEARD_AGAIN = "heard again: the same approach goes on"
     RETRY = "retry {} of {}"
 
+    # A sortie goes on.
+    OPERATOR_LAUNCHES = "commanded: launch"
+    OPERATOR_FOLLOWS = "commanded: follow"
+    OPERATOR_RETURNS = "commanded: return"
+    DECK_QUIET = "deck is quiet"
+    CLEAR_OF_DECK = "{:.1f} m above the deck"
+    VEHICLE_NEAR = "{:.0f} m from the vehicle"
+    VEHICLE_FOUND = "vehicle is heard again"
+    HOME_SOON = "the way home has to begin in {:.0f} s: command return"
+    HOME_NOW = "comes home: the battery lasts {:.0f} s above its reserve, way and landing take {:.0f} s"
+    DECK_RESTLESS = "deck was not quiet within {:g} s"
+    LIFT_OFF_TOO_LONG = "lift-off took longer than {:g} s"
+
     # A descent stays above the pad for a while.
     SPEED_SURPRISED = "waits above the pad: the vehicle's speed has surprised"
     SPEED_UNEVEN = "waits above the pad: the vehicle's speed changes all the time"
@@ -138,7 +151,15 @@ class Reason(Enum):
     NO_OWN_POSITION = "the autopilot reports no local position yet"
     NO_OWN_ATTITUDE = "the autopilot's attitude is too old"
     IN_FAILSAFE = "the autopilot is in failsafe"
-    RIDES_ALONG = "the drone stands on the vehicle, which drives at {:.1f} m/s: stop it first"
+    RIDES_ALONG = "the drone stands on the vehicle, which drives at {:.1f} m/s: command launch, or stop it first"
+    NOT_ON_DECK = "the drone does not stand on the vehicle's pad: command start"
+    STATION_TOO_FAR = "station is {:.1f} m from the pad, sortie.offset_max_m is {:g}: raise it or give a nearer one"
+    STATION_IN_VEHICLE = (
+        "station is in the vehicle or too low: {:.1f} m or more beside the pad and {:.1f} m or more above it, or {:.1f}"
+        " m or more above it anywhere"
+    )
+    VEHICLE_OUT_OF_RANGE = "vehicle is {:.0f} m away, limits.range_max_m is {:g}: raise it or let the vehicle come back"
+    VEHICLE_DRIVES_OFF = "vehicle drives off at {:.1f} m/s, the drone can fly home at {:.1f}: drive slower"
     DRONE_UNKNOWN = "the drone's position is not known"
 
 

@@ -44,7 +44,8 @@ def _is_over_unseen_pad(s: Situation, c: CompanionConfig) -> bool:
     return must_be_seen(s, c) and s.approach.distance_m < c.chase.height_m
 
 
-def _is_token_lost(s: Situation, c: CompanionConfig) -> bool:
+def is_token_lost(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the vehicle's program has ended, or its network, and no fix is fresh."""
     age_s = s.vehicle.fix_age_s
     return s.vehicle.is_alive is False and (age_s is None or age_s > c.abort.alive_lost_fix_age_max_s)
 
@@ -139,7 +140,7 @@ ABORTS = (
         hold_s=lambda c: c.chase.unseen_hold_s,
         cause=lambda _, c: Cause(Reason.OFFSET_UNKNOWN if c.silent_vehicle is None else Reason.PAD_NOT_SEEN),
     ),
-    Condition(reason=Reason.VEHICLE_LINK_LOST, phases=LANDING_PHASES, is_true=_is_token_lost),
+    Condition(reason=Reason.VEHICLE_LINK_LOST, phases=LANDING_PHASES, is_true=is_token_lost),
     Condition(
         reason=Reason.VEHICLE_CLOCK_AHEAD,
         phases=LANDING_PHASES,

@@ -5,9 +5,11 @@ import math
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason, sentence
 from companion.integrity.heights import VEHICLE_M
+from companion.landing.sortie_decisions import has_not_left_deck
+from companion.landing.sortie_orders import SORTIE_EVENTS, is_above_vehicle, missing_for_sortie
 from companion.situation.phases import Event, Phase, next_phase
 from companion.situation.situation import Situation, vehicle_stands
-from link.messages import Command, CommandReply
+from link.messages import Command, CommandReply, Order
 
 _ON_ROOF_M = 1.0  # above or below it: the road is farther below
 _EVENTS = {
@@ -15,38 +17,56 @@ _EVENTS = {
     Command.START_ANYWAY: Event.START,  # the question that it skips is asked before the step
     Command.ABORT: Event.ABORT,
     Command.HOLD: Event.HOLD,
+    Command.LAUNCH: Event.LAUNCH,
+    Command.FOLLOW: Event.FOLLOW,
+    Command.RETURN: Event.RETURN,
 }
 
 
 def answer(
-    command: Command, phase: Phase, situation: Situation, config: CompanionConfig, obstacle: Cause | None = None
+    order: Order, phase: Phase, situation: Situation, config: CompanionConfig, obstacle: Cause | None = None
 ) -> tuple[Event | None, CommandReply]:
-    """Return the event that the command amounts to, None when it changes no phase, and the reply.
+    """Return the event that the order amounts to, None when it changes no phase, and the reply.
 
     Args:
-        command: the operator's.
+        order: the operator's.
         phase: now.
         situation: now.
         config: all numbers.
         obstacle: why no landing can be done, None when one can.
     """
-    event = _EVENTS[command]
-    is_start = event is Event.START
-    if phase is Phase.TAKEOFF and not is_start and not situation.autopilot.armed:
-        event = Event.CALLED_OFF  # on the ground there is nothing to hold
-    flies = situation.autopilot.in_control and situation.autopilot.armed
-    if phase is Phase.HOLD and is_start and not flies:
-        event = Event.START_AGAIN  # called off before the autopilot gave control: it has to be asked for again
-    if phase is Phase.ABORT and not is_start:
-        return None, CommandReply(accepted=True, reason="")  # the climb goes on, but to no retry
-    if next_phase(phase, event) is phase:
-        return None, _refuse(Cause(Reason.NOTHING_TO_DO, (command.value, phase.value)))
+    event = _event_of(order, phase, situation, config)
+    is_start = event in (Event.START, Event.START_AGAIN)
+    if phase is Phase.ABORT and event in (Event.ABORT, Event.HOLD):
+        return None, _ACCEPTED  # the climb goes on, but to no retry
+    stays = phase is Phase.FOLLOW and event is Event.FOLLOW  # at another station
+    if next_phase(phase, event) is phase and not stays:
+        return None, _refuse(Cause(Reason.NOTHING_TO_DO, (order.command.value, phase.value)))
     missing = None
+    if is_start or event is Event.LAUNCH:
+        missing = _missing_for_start(situation)
     if is_start:
-        missing = _missing_for_start(situation) or _rides_along(situation, config) or obstacle
-    if missing is not None:
-        return None, _refuse(missing)
-    return event, CommandReply(accepted=True, reason="")
+        missing = missing or _rides_along(situation, config) or obstacle
+    elif event in SORTIE_EVENTS:
+        missing = missing or missing_for_sortie(event, order.station, situation, config, obstacle)
+    return (None, _refuse(missing)) if missing is not None else (event, _ACCEPTED)
+
+
+def _event_of(order: Order, phase: Phase, s: Situation, config: CompanionConfig) -> Event:
+    event = _EVENTS[order.command]
+    is_start = event is Event.START
+    stands = not s.autopilot.armed or phase is Phase.ON_DECK or (phase is Phase.LIFT_OFF and has_not_left_deck(s))
+    if phase in (Phase.TAKEOFF, Phase.ON_DECK, Phase.LIFT_OFF) and event in (Event.ABORT, Event.HOLD) and stands:
+        return Event.CALLED_OFF  # on the ground there is nothing to hold
+    flies = s.autopilot.in_control and s.autopilot.armed
+    if phase is Phase.HOLD and is_start and not flies:
+        return Event.START_AGAIN  # called off before the autopilot gave control: it has to be asked for again
+    if phase is Phase.FOLLOW and is_start and not is_above_vehicle(s, config):
+        return Event.RETURN
+    return event
+
+
+_ACCEPTED = CommandReply(accepted=True, reason="")
 
 
 def _refuse(why: Cause) -> CommandReply:

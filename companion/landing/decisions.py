@@ -30,7 +30,7 @@ from companion.landing.entries import DRIVES, ENTRIES, Decision, vehicle_passes
 from companion.landing.feasibility import is_drone_taken, obstacle
 from companion.landing.memory import ControlMemory, Held, Progress
 from companion.landing.waiting import waited_s
-from companion.situation.phases import FLYING_PHASES, Event, Phase
+from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase
 from companion.situation.situation import Situation
 
 
@@ -52,7 +52,8 @@ def decide(progress: Progress, control: ControlMemory, s: Situation, config: Com
         return Event.CONTACT, cause_of(STOPPED_BY_PAD, s, config)
     # On the pad and committed, cutting the approach short is the more dangerous way, unless there is no pad.
     committed = progress.phase is Phase.DESCEND and _is_committed(s, config)
-    broken_off = _unsafe(MISSED if committed else ABORTS, s, progress.held, config)
+    is_landing = progress.phase in LANDING_PHASES  # in a sortie the same reasons lead elsewhere
+    broken_off = _unsafe(MISSED if committed else ABORTS, s, progress.held, config) if is_landing else None
     if broken_off is None and not committed:
         broken_off = _time_limit(progress, control, s, config)
     return _go_on(progress, s, config) if broken_off is None else broken_off
@@ -100,7 +101,7 @@ def _find_taken_control(phase: Phase, control: ControlMemory, s: Situation) -> D
     if not s.autopilot.in_control:
         restarted = s.autopilot.restarted
         return Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_RESTARTED if restarted else Reason.MODE_CHANGED)
-    if control.was_armed and not s.autopilot.armed:
+    if control.was_armed and not s.autopilot.armed and phase is not Phase.ON_DECK:  # there it times out by itself
         return Event.PILOT_TOOK_OVER, Cause(Reason.DISARMED)
     return None
 

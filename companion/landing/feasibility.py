@@ -25,6 +25,8 @@ _RECEIVER_TOLD_S = 3.0  # it says so once a second
 _ROUNDING = 1e-6
 _BEFORE_A_FLIGHT = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD, Phase.WAITING})
 _BEFORE_A_CHASE = _BEFORE_A_FLIGHT | {Phase.ABORT}
+_BEFORE_ANY_CHASE = _BEFORE_A_CHASE | {Phase.FOLLOW}
+"""A sortie comes home on a low battery as well: it has nowhere else to land."""
 
 
 def is_drone_taken(s: Situation, _: CompanionConfig) -> bool:
@@ -141,38 +143,38 @@ def _high(s: Situation, c: CompanionConfig) -> Cause:
 
 # An estimate that has just begun jumps: what is said of the vehicle must hold for a while.
 OBSTACLES = (
-    Condition(reason=Reason.DRONE_TAKEN, phases=_BEFORE_A_CHASE, is_true=is_drone_taken),
-    Condition(reason=Reason.VEHICLE_TAKEN, phases=_BEFORE_A_CHASE, is_true=_is_taken, cause=_taken),
+    Condition(reason=Reason.DRONE_TAKEN, phases=_BEFORE_ANY_CHASE, is_true=is_drone_taken),
+    Condition(reason=Reason.VEHICLE_TAKEN, phases=_BEFORE_ANY_CHASE, is_true=_is_taken, cause=_taken),
     Condition(
         reason=Reason.STAMPS_AHEAD,
-        phases=_BEFORE_A_CHASE,
+        phases=_BEFORE_ANY_CHASE,
         is_true=is_stamped_ahead,
         hold_s=lambda c: c.integrity.fix_ahead_hold_s,
         cause=_tell_stamped_ahead,
     ),
     Condition(
         reason=Reason.VEHICLE_TOO_FAST,
-        phases=_BEFORE_A_CHASE,
+        phases=_BEFORE_ANY_CHASE,
         is_true=_is_too_fast,
         hold_s=lambda c: c.chase.driving_hold_s,
         cause=_too_fast,
     ),
     Condition(
         reason=Reason.VEHICLE_TOO_FAR,
-        phases=_BEFORE_A_CHASE,
+        phases=_BEFORE_ANY_CHASE,
         is_true=_is_too_far,
         hold_s=lambda c: c.chase.driving_hold_s,
         cause=_too_far,
     ),
     Condition(
         reason=Reason.HEIGHTS_APART,
-        phases=_BEFORE_A_CHASE,
+        phases=_BEFORE_ANY_CHASE,
         is_true=_lacks_geoid,
         hold_s=lambda _: _RECEIVER_TOLD_S,
     ),
     Condition(reason=Reason.AUTOPILOT_WARNS, phases=_BEFORE_A_CHASE, is_true=_is_warned),
     Condition(
-        reason=Reason.MEASUREMENTS_REJECTED, phases=_BEFORE_A_CHASE, is_true=contradicts_itself, cause=_tell_rejected
+        reason=Reason.MEASUREMENTS_REJECTED, phases=_BEFORE_ANY_CHASE, is_true=contradicts_itself, cause=_tell_rejected
     ),
     Condition(
         reason=Reason.BATTERY_LOW,
@@ -181,10 +183,10 @@ OBSTACLES = (
         hold_s=lambda c: c.chase.driving_hold_s,
         cause=_empty,
     ),
-    Condition(reason=Reason.PAD_TOO_SMALL, phases=_BEFORE_A_CHASE, is_true=_is_too_narrow, cause=_too_narrow),
+    Condition(reason=Reason.PAD_TOO_SMALL, phases=_BEFORE_ANY_CHASE, is_true=_is_too_narrow, cause=_too_narrow),
     Condition(
         reason=Reason.ROAD_ELSEWHERE,
-        phases=_BEFORE_A_CHASE,
+        phases=_BEFORE_ANY_CHASE,
         is_true=_is_elsewhere,
         hold_s=lambda c: c.chase.driving_hold_s,
         cause=_elsewhere,

@@ -9,6 +9,8 @@ from companion.landing.flown_plan import extrapolate, flown_plan, state_at
 from companion.landing.following_height import waiting_rise_m
 from companion.landing.levelling import limit_tilt, limits_now
 from companion.landing.memory import ModelMemory, StepMemory
+from companion.landing.sortie_aims import sortie_aim
+from companion.landing.sortie_decisions import has_not_left_deck
 from companion.landing.step_data import StepInputs, System
 from companion.landing.sway import update_sway
 from companion.landing.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
@@ -16,12 +18,13 @@ from companion.landing.transitions import BRAKING_M_S2
 from companion.landing.virtual_model import Tracking, add_to_past, predict_deviation
 from companion.landing.waiting import waits_at_m
 from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState, Target
-from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
-from companion.situation.situation import Situation
+from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, STATION_PHASES, Phase
+from companion.situation.situation import Drone, Situation
 from companion.vehicle.pad import PadPath, over_pad_radius_m
 from link.frames.rotations import wrap_angle
 from link.records import replace
 
+_LIFT_M = 0.3  # so far above it a drone on the deck is asked to be, for PX4 takes off towards a setpoint above it
 _STEP_MAX_S = 0.1  # a longer pause does not let the virtual model jump
 
 
@@ -31,12 +34,15 @@ def _aim(memory: StepMemory, situation: Situation, limits: FlightLimits, config:
     anchor, waiting_point = memory.places.anchor_enu_m, memory.places.waiting_point_enu_m
     if reference is None or anchor is None or waiting_point is None:
         raise ValueError(f"phase {phase.value} flies without a reference")
+    aim = sortie_aim(memory, reference, anchor, situation, config)
+    if aim is not None:
+        return aim
     match phase:
-        case Phase.CHASE | Phase.ALIGN | Phase.DESCEND | Phase.TOUCHDOWN if pad is not None:
+        case Phase.CHASE | Phase.ALIGN | Phase.DESCEND | Phase.TOUCHDOWN | Phase.ABORT if pad is not None and (
+            phase is not Phase.ABORT or _is_fresh(situation, config)
+        ):
             lowest_m = waits_at_m(memory, situation, config)
             return pad_aim(phase, pad, reference, situation.feet_offset_m, config, limits=limits, lowest_m=lowest_m)
-        case Phase.ABORT if pad is not None and _is_fresh(situation, config):
-            return pad_aim(phase, pad, reference, situation.feet_offset_m, config, limits=limits)
         case Phase.ABORT:
             return hover_aim(anchor + np.array([0.0, 0.0, config.abort.height_m]))
         case Phase.TAKEOFF if not (situation.autopilot.armed and situation.autopilot.in_control):
@@ -87,10 +93,11 @@ def fly(
     limits = limits_now(memory, situation, inputs, system.config)
     lowest = lowest_enu_m(memory, situation, float(aim.floor_enu_m[0]), system.config)
     room_m = None if lowest is None else float(reference.position_enu_m[2]) - lowest
+    is_far = memory.progress.phase in (Phase.RETURN, Phase.RALLY)  # and so high that it may carry on above all it meets
     request = PlanRequest(
         state=reference,
         target=_for_the_drone(aim.target, memory, inputs),
-        limits=limit_rates(limits, situation, room_m, inputs.shaping, system.config),
+        limits=limits if is_far else limit_rates(limits, situation, room_m, inputs.shaping, system.config),
         floor_enu_m=aim.floor_enu_m,
         dt_s=period_s,
     )
@@ -123,7 +130,7 @@ def _model_at(model: ModelMemory, monotonic_ns: int, period_s: float) -> Referen
 def _for_the_drone(target: Target, memory: StepMemory, inputs: StepInputs) -> Target:
     """Return where the virtual model is wanted, so that the drone, which will be off it, is where the target is."""
     tracking, plan, response = memory.model.tracking, memory.model.plan, inputs.response
-    if memory.progress.phase not in LANDING_PHASES or response is None or tracking.compared_ns is None:
+    if memory.progress.phase not in LANDING_PHASES | STATION_PHASES or response is None or tracking.compared_ns is None:
         return target
     planned = np.zeros((len(target.offset_s), 2))
     if plan is not None:
@@ -147,6 +154,8 @@ def _at_drone(
     which is what an autopilot's land detector waits for.
     """
     drone, sinking = situation.drone, _is_left_by_pad(memory, situation, config)
+    if drone is not None and _stands_on_deck(memory, situation):
+        return _with_deck(drone, memory.progress.phase, situation, config)
     if drone is None or not (memory.control.driver.climbs_by_itself or sinking):
         return reference
     depth_m, sink_m_s = (
@@ -155,6 +164,25 @@ def _at_drone(
     return ReferenceState(
         position_enu_m=drone.position_enu_m - np.array([0.0, 0.0, depth_m]),
         velocity_enu_m_s=np.array([0.0, 0.0, -sink_m_s]),
+        acceleration_enu_m_s2=np.zeros(3),
+    )
+
+
+def _stands_on_deck(memory: StepMemory, situation: Situation) -> bool:
+    phase = memory.progress.phase
+    return phase is Phase.ON_DECK or (phase is Phase.LIFT_OFF and has_not_left_deck(situation))
+
+
+def _with_deck(drone: Drone, phase: Phase, situation: Situation, config: CompanionConfig) -> ReferenceState:
+    """Return the model of a drone that is carried by the deck: below it, or above it to lift off, at its velocity.
+
+    The setpoint has the deck's velocity from the first instant, so that no lift-off begins with a brake.
+    """
+    velocity = drone.velocity_enu_m_s if situation.pad is None else situation.pad.velocity_enu_m_s[0]
+    up_m = _LIFT_M if phase is Phase.LIFT_OFF else -config.descent.sink.press_depth_m
+    return ReferenceState(
+        position_enu_m=drone.position_enu_m + np.array([0.0, 0.0, up_m]),
+        velocity_enu_m_s=velocity,
         acceleration_enu_m_s2=np.zeros(3),
     )
 
@@ -207,7 +235,7 @@ def _update_anchor(memory: StepMemory, situation: Situation, config: CompanionCo
 def _slew_yaw_rad(memory: StepMemory, pad: PadPath | None, dt_s: float, config: CompanionConfig) -> float:
     """Turn towards the vehicle's heading while it is followed, at a bounded rate."""
     phase, yaw_rad = memory.progress.phase, memory.model.yaw_setpoint_rad
-    follows = phase in LANDING_PHASES or phase is Phase.TOUCHDOWN
+    follows = phase in LANDING_PHASES | STATION_PHASES or phase is Phase.TOUCHDOWN
     if not (follows and config.setpoints.follows_heading) or pad is None or pad.yaw_rad is None:
         return yaw_rad
     turn_max_rad = config.setpoints.yaw_rate_max_rad_s * dt_s

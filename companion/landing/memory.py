@@ -23,6 +23,7 @@ from companion.landing.sway import Sway
 from companion.landing.virtual_model import Tracking
 from companion.planning.guidance import GuidanceMemory, ReferenceState
 from companion.situation.phases import Phase
+from companion.sortie.memory import SortieMemory, move_sortie
 from companion.vehicle.estimator import EstimatorMemory
 from companion.vehicle.surprise import Surprise
 from link.messages import ContactForecast
@@ -172,6 +173,7 @@ class StepMemory(Struct, frozen=True, kw_only=True, eq=False):
     model: ModelMemory = field(default_factory=ModelMemory)
     control: ControlMemory = field(default_factory=ControlMemory)
     places: Places = field(default_factory=Places)
+    sortie: SortieMemory = field(default_factory=SortieMemory)
     forecast: ForecastMemory = field(default_factory=ForecastMemory)
 
 
@@ -199,7 +201,8 @@ def to_present_frame(memory: StepMemory, view: AutopilotView) -> StepMemory:
         anchor_enu_m=_move(places.anchor_enu_m, by_enu_m),
         ground_enu_m=_move(places.ground_enu_m, by_enu_m),
     )
-    return replace(memory, vehicle=vehicle, places=places, model=_move_model(memory.model, by_enu_m))
+    sortie = move_sortie(memory.sortie, by_enu_m)
+    return replace(memory, vehicle=vehicle, places=places, sortie=sortie, model=_move_model(memory.model, by_enu_m))
 
 
 def _move_model(model: ModelMemory, by_enu_m: Array) -> ModelMemory:

@@ -143,7 +143,7 @@ def _cause(memory: StepMemory, situation: Situation, config: CompanionConfig) ->
         return not_placed
     if progress.phase in _NOT_BEGUN and progress.obstacle is not None:
         return progress.obstacle
-    return why_held_up(memory, situation, config) or progress.cause
+    return memory.sortie.warning or why_held_up(memory, situation, config) or progress.cause
 
 
 def _time_to_contact_s(relative: Approach, limits: FlightLimits, descent: DescentConfig) -> float:
@@ -166,6 +166,11 @@ def news(before: Progress, now: Progress) -> str | None:
     told = now.obstacle
     is_new = told is not None and (before.obstacle is None or before.obstacle.reason is not told.reason)
     return f"{now.phase.value}: {sentence(told)}" if told is not None and is_new else None
+
+
+def news_of_sortie(before: Cause | None, now: Cause | None, phase: Phase) -> str | None:
+    """Return what the pilot is told of the way home, None when that is nothing new."""
+    return f"{phase.value}: {sentence(now)}" if now is not None and before is None else None
 
 
 _PLAN_POINTS = 2  # every so many points of the plan are published

@@ -10,7 +10,7 @@ from companion.core.data import FlightLimits, Measurement, OwnState, Rival, Setp
 from companion.planning.guidance import Guidance, PlanResult
 from companion.vehicle.estimator import Estimator
 from companion.vehicle.pad import PadPath
-from link.messages import Command, CommandReply, LandingStatus, PadGeometry
+from link.messages import Command, CommandReply, LandingStatus, PadGeometry, Station
 
 
 class System(Struct, frozen=True, kw_only=True, eq=False):
@@ -59,6 +59,7 @@ class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
         vehicle: what has come from it.
         rival: a companion that this one keeps out of the way of, None without one.
         command: an operator's wish.
+        station: of a command to follow, None with any other.
         leaving: the companion is about to end, so the autopilot is to hover by itself, or to finish its disarm.
         link_delay: from the companion to the autopilot.
         shaping: of the path by which the autopilot carries setpoints on; None of one that holds them as they came.
@@ -75,6 +76,7 @@ class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
     vehicle: VehicleInputs = VehicleInputs()
     rival: Rival | None = None
     command: Command | None = None
+    station: Station | None = None
     leaving: bool = False
     link_delay: LinkDelay = LinkDelay()
     shaping: Shaping | None = None

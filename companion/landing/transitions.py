@@ -10,6 +10,8 @@ from companion.landing.decisions import decide
 from companion.landing.entries import update_held
 from companion.landing.feasibility import OBSTACLES, obstacle
 from companion.landing.memory import NOTHING_HELD, ControlMemory, ModelMemory, Progress, StepMemory
+from companion.landing.sortie_decisions import SORTIE_CONDITIONS, decide_sortie, update_sortie
+from companion.landing.sortie_phases import begin_phase_of_sortie, clear_of_vehicle, take_order
 from companion.landing.step_data import StepInputs
 from companion.landing.targets import stopping_point
 from companion.landing.virtual_model import Tracking
@@ -17,19 +19,24 @@ from companion.landing.waiting import update_wait
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
 from companion.situation.situation import Situation
-from link.messages import Command, CommandReply
+from link.messages import Command, CommandReply, Order
 from link.records import replace
 
 BRAKING_M_S2 = 2.0
 """Deceleration that the place to stop at is taken from."""
 
+_BESIDE_LANDINGS = (*OBSTACLES, *SORTIE_CONDITIONS)
 _OUTAGES = frozenset(condition.reason for condition in ABORTS if condition.is_outage)
 _COMMANDED = {
     Command.START: Cause(Reason.OPERATOR_STARTS),
     Command.START_ANYWAY: Cause(Reason.OPERATOR_STARTS),
     Command.ABORT: Cause(Reason.OPERATOR_ABORTS),
     Command.HOLD: Cause(Reason.OPERATOR_HOLDS),
+    Command.LAUNCH: Cause(Reason.OPERATOR_LAUNCHES),
+    Command.FOLLOW: Cause(Reason.OPERATOR_FOLLOWS),
+    Command.RETURN: Cause(Reason.OPERATOR_RETURNS),
 }
+_BREAKS_OFF = (Command.ABORT, Command.HOLD)
 
 
 def take_events(
@@ -40,17 +47,22 @@ def take_events(
     if inputs.command is not None:
         progress = memory.progress
         known = obstacle(progress.held, situation, config)
-        event, reply = answer(inputs.command, progress.phase, situation, config, known)
+        order = Order(command=inputs.command, station=inputs.station)
+        event, reply = answer(order, progress.phase, situation, config, known)
         if event is not None:
             memory = _enter(memory, event, _COMMANDED[inputs.command], situation, config)
         if reply.accepted:
-            may_retry = inputs.command in (Command.START, Command.START_ANYWAY)
+            memory = replace(memory, sortie=take_order(memory.sortie, order))
+            may_retry = inputs.command not in _BREAKS_OFF
             memory = replace(memory, progress=replace(memory.progress, may_retry=may_retry))
     progress = update_wait(memory, situation, config)
-    held = update_held(progress.held, progress.phase, situation, config, others=OBSTACLES)
+    held = update_held(progress.held, progress.phase, situation, config, others=_BESIDE_LANDINGS)
     known = _same_or_new(progress.obstacle, obstacle(held, situation, config))
     memory = replace(memory, progress=replace(progress, held=held, obstacle=known))
+    memory = replace(memory, sortie=update_sortie(memory.sortie, progress.phase, situation, config))
     decision = decide(memory.progress, memory.control, situation, config)
+    if decision is None:
+        decision = decide_sortie(memory.sortie, memory.progress, memory.control, situation, config)
     if decision is not None:
         memory = _enter(memory, *decision, situation, config)
     return _update_control(memory, inputs), reply
@@ -77,16 +89,19 @@ def _enter(memory: StepMemory, event: Event, cause: Cause, situation: Situation,
     phase = next_phase(memory.progress.phase, event)
     if phase is memory.progress.phase:
         return memory
+    before = memory.progress.phase
     memory = replace(memory, progress=_progress_after(memory.progress, event, cause, situation.monotonic_ns, config))
+    memory = begin_phase_of_sortie(memory, before, situation, config)
     model, places = memory.model, memory.places
     if phase is Phase.WAITING and event is Event.START:  # it waits where it hovers
         return replace(memory, places=replace(places, waiting_point_enu_m=places.anchor_enu_m))
-    if phase is Phase.TAKEOFF:
+    if phase in (Phase.TAKEOFF, Phase.ON_DECK):
         return _begin_flight(memory, situation, config)
     if phase not in FLYING_PHASES:
         return replace(memory, model=replace(model, reference=None, tracking=Tracking()))
     if phase in (Phase.HOLD, Phase.ABORT) and model.reference is not None:
-        memory = replace(memory, places=replace(places, anchor_enu_m=stopping_point(model.reference, BRAKING_M_S2)))
+        anchor = clear_of_vehicle(stopping_point(model.reference, BRAKING_M_S2), memory, situation, config)
+        memory = replace(memory, places=replace(places, anchor_enu_m=anchor))
     return replace(memory, model=_escape(model, situation, config)) if phase is Phase.ABORT else memory
 
 

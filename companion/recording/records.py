@@ -15,7 +15,7 @@ class InputKind(IntEnum):
     SAMPLE = 1  # key and data: a Zenoh sample
     PAD = 2  # data: the vehicle's description of its pad, JSON
     ALIVE = 3  # data: 1 or 0
-    COMMAND = 4  # data: the command's name
+    COMMAND = 4  # data: the order as JSON
     POLL = 5  # no data
     LEAVE = 6  # no data
     DATAGRAM = 7  # data: whole frames of the link

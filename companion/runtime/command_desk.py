@@ -12,20 +12,30 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from companion.runtime.node import CompanionNode
-from link.messages import Command, CommandReply
+from link.messages import Command, CommandReply, Order
 from link.payloads import json_messages
 from link.payloads.checks import PayloadError
 
 Reply = Callable[[bytes], None]
-_FIRST_TO_LAST = (Command.ABORT, Command.HOLD, Command.START_ANYWAY, Command.START)
+_FIRST_TO_LAST = (
+    Command.ABORT,
+    Command.HOLD,
+    Command.RETURN,
+    Command.START_ANYWAY,
+    Command.START,
+    Command.LAUNCH,
+    Command.FOLLOW,
+)
 _WAITING_MAX = 64  # of each command; who comes when so many ask for the same hears nothing, and asks again
 _WAIT_MAX_S = 2.0  # less than an operator's query waits
 _LATE = CommandReply(accepted=False, reason="the companion made no step in time")
+_REPLACED = CommandReply(accepted=False, reason="another follow came at the same time: ask again")
 
 
 class _Asked(NamedTuple):
-    """A command's sender: when it came, and how to answer."""
+    """An order's sender: when it came, and how to answer."""
 
+    order: Order
     came_s: float
     reply: Reply
 
@@ -46,13 +56,13 @@ class CommandDesk:
     def take(self, payload: bytes, reply: Reply) -> None:
         """Take a query, which is answered by `reply`, at once or after a step; called from a thread of Zenoh's."""
         try:
-            command = json_messages.decode(Command, payload)
+            order = json_messages.decode(Order, payload)
         except PayloadError as error:
             reply(json_messages.encode(CommandReply(accepted=False, reason=str(error))))
             return
         with self._lock:
-            if len(self._waiting[command]) < _WAITING_MAX:
-                self._waiting[command].append(_Asked(self._now_s(), reply))
+            if len(self._waiting[order.command]) < _WAITING_MAX:
+                self._waiting[order.command].append(_Asked(order, self._now_s(), reply))
 
     def pass_on(self, node: CompanionNode, local_ns: int) -> None:
         """Give the most urgent command to the node, if it makes a step now."""
@@ -64,7 +74,7 @@ class CommandDesk:
             if refusal is not None:
                 self.answer([refusal])
             elif self._asked:
-                node.request(command)
+                node.request(command, self._asked[-1].order.station)
                 return
 
     def answer(self, replies: list[CommandReply]) -> None:
@@ -74,13 +84,15 @@ class CommandDesk:
             _answer(asked, reply)
 
     def _take_waiting(self, command: Command) -> list[_Asked]:
-        """Return who waits for a command; who has waited for too long is refused."""
+        """Return who waits for a command; who has waited for too long, or wants another station, is refused."""
         with self._lock:
             waiting = list(self._waiting[command])
             self._waiting[command].clear()
         since_s = self._now_s() - _WAIT_MAX_S
         _answer([one for one in waiting if one.came_s < since_s], _LATE)
-        return [one for one in waiting if one.came_s >= since_s]
+        in_time = [one for one in waiting if one.came_s >= since_s]
+        _answer([one for one in in_time if one.order != in_time[-1].order], _REPLACED)
+        return [one for one in in_time if one.order == in_time[-1].order]
 
 
 def _answer(asked: list[_Asked], reply: CommandReply) -> None:

@@ -22,7 +22,7 @@ from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.factory import make_estimator
 from companion.vehicle.imm_numbers import deck_of
 from link.mavlink.session import MavlinkSession
-from link.messages import Command, CommandReply, LandingStatus, PadGeometry
+from link.messages import Command, CommandReply, LandingStatus, PadGeometry, Station
 from link.records import replace
 from link.zenoh.keys import Keys, Publication
 
@@ -65,6 +65,7 @@ class CompanionNode:
         self.system = system
         self._rival: Rival | None = None
         self._command: Command | None = None
+        self._station: Station | None = None
         self._leaving = False
         self._replies: list[CommandReply] = []
         self._clock = StepClock(system.config.step_rate_hz)
@@ -141,9 +142,9 @@ class CompanionNode:
         """Take who else is there for this drone or on this vehicle, and was there first."""
         self._rival = rival
 
-    def request(self, command: Command) -> None:
-        """Take an operator's command; its reply follows the next step."""
-        self._command = command
+    def request(self, command: Command, station: Station | None = None) -> None:
+        """Take an operator's command, a follow with its station; its reply follows the next step."""
+        self._command, self._station = command, station
 
     def leave(self) -> None:
         """Ask the autopilot, from the next step on, to hover by itself; on the pad it switches its motors off first."""
@@ -206,11 +207,12 @@ class CompanionNode:
             vehicle=self.vehicle.take(),
             rival=self._rival,
             command=self._command or self._station_command(local_ns),
+            station=self._station,
             leaving=self._leaving,
             shaping=self.autopilot.shaping,
             link_delay=LinkDelay(mean_s=min(way.one_way_s, _LINK_DELAY_MAX_S), std_s=way.one_way_std_s),
         )
-        self._command = None
+        self._command = self._station = None
         self.inputs = inputs
         self.memory, self.outputs = companion_step(self.memory, inputs, self.system)
         self._send(inputs, self.outputs, local_ns)

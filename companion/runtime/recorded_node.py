@@ -5,7 +5,7 @@ from companion.landing.step_data import System
 from companion.recording.records import InputKind, InputRecord, LinkRecord, StepRecord, StepTimeRecord
 from companion.runtime.node import CompanionNode
 from link.mavlink.session import MavlinkSession
-from link.messages import Command, PadGeometry
+from link.messages import Command, Order, PadGeometry, Station
 from link.payloads import json_messages as json_payloads
 from link.recording.recorder import Recorder
 from link.zenoh.keys import Keys
@@ -104,10 +104,10 @@ class RecordingNode(CompanionNode):
             self._record(InputKind.RIVAL, b"" if rival is None else rival.drone.encode() + bytes([rival.is_this_drone]))
         super().receive_rival(rival)
 
-    def request(self, command: Command) -> None:
+    def request(self, command: Command, station: Station | None = None) -> None:
         """Take an operator's command."""
-        self._record(InputKind.COMMAND, command.value.encode())
-        super().request(command)
+        self._record(InputKind.COMMAND, json_payloads.encode(Order(command=command, station=station)))
+        super().request(command, station)
 
     def leave(self) -> None:
         """Ask the autopilot, from the next step on, to hover by itself."""

@@ -1,4 +1,4 @@
-"""The phases of a landing and the one table of transitions between them.
+"""The phases of a flight and the one table of transitions between them.
 
 An event that the table does not list for a phase leaves the phase as it is. `python -m companion.situation.phases`
 prints the table as a Mermaid state diagram.
@@ -8,7 +8,7 @@ from enum import Enum
 
 
 class Phase(Enum):
-    """Where in the landing the companion is."""
+    """Where in the flight the companion is."""
 
     __hash__ = object.__hash__  # by identity, as members compare: a name is hashed anew at every look-up
 
@@ -23,6 +23,11 @@ class Phase(Enum):
     ABORT = "abort"  # climbs away from the deck
     HOLD = "hold"  # hovers where it is until told what to do
     PILOT = "pilot in command"  # the pilot or a failsafe took over
+    ON_DECK = "on deck"  # stands on the vehicle, arms and waits for a quiet moment
+    LIFT_OFF = "lift-off"  # climbs clear of the deck, moving with it
+    FOLLOW = "follow"  # keeps its station relative to the vehicle
+    RETURN = "return"  # flies to above the vehicle, wherever that drives
+    RALLY = "rally"  # looks for a vehicle that fell silent where it was to pass, then waits at the rally point
 
 
 class Event(Enum):
@@ -32,6 +37,9 @@ class Event(Enum):
     START_AGAIN = "start again"  # likewise, while the autopilot's mode is not the companion's or its motors are off
     ABORT = "abort"  # an operator's command
     HOLD = "hold"  # an operator's command
+    LAUNCH = "launch"  # an operator's command
+    FOLLOW = "follow"  # an operator's command, or the vehicle of one who follows is heard again
+    RETURN = "return"  # an operator's command, or a start from too far away or too low
     AT_WAITING_POINT = "at waiting point"
     VEHICLE_PASSES = "vehicle passes"
     OVER_PAD = "over pad"  # close enough to align
@@ -47,6 +55,12 @@ class Event(Enum):
     CALLED_OFF = "called off"  # an operator's hold or abort before the motors were armed
     TIME_LIMIT = "time limit"
     PILOT_TOOK_OVER = "pilot took over"
+    DECK_QUIET = "deck quiet"  # with the motors armed
+    CLEAR_OF_DECK = "clear of the deck"
+    VEHICLE_NEAR = "vehicle near"  # so near that the chase begins
+    VEHICLE_LOST = "vehicle lost"  # nothing is heard of it, or nothing that can be believed
+    VEHICLE_FOUND = "vehicle found"
+    HOME_NOW = "home now"  # the energy that is left is needed for the way home
 
 
 FLYING_PHASES = frozenset(
@@ -59,6 +73,11 @@ FLYING_PHASES = frozenset(
         Phase.TOUCHDOWN,
         Phase.ABORT,
         Phase.HOLD,
+        Phase.ON_DECK,
+        Phase.LIFT_OFF,
+        Phase.FOLLOW,
+        Phase.RETURN,
+        Phase.RALLY,
     }
 )
 """Phases in which the companion streams setpoints."""
@@ -66,8 +85,14 @@ FLYING_PHASES = frozenset(
 LANDING_PHASES = frozenset({Phase.CHASE, Phase.ALIGN, Phase.DESCEND})
 """Phases that follow the vehicle and are watched by the abort tests."""
 
-FOLLOWING_PHASES = LANDING_PHASES | {Phase.TOUCHDOWN, Phase.ABORT}
+STATION_PHASES = frozenset({Phase.LIFT_OFF, Phase.FOLLOW, Phase.RETURN})
+"""Phases that keep a place relative to the vehicle without landing on it."""
+
+FOLLOWING_PHASES = LANDING_PHASES | STATION_PHASES | {Phase.TOUCHDOWN, Phase.ABORT, Phase.ON_DECK}
 """Phases that plan by where the pad will be; all others need to know only where it is."""
+
+OUT_PHASES = frozenset({Phase.FOLLOW, Phase.HOLD, Phase.RALLY})
+"""Phases of a sortie from which the way home may be long."""
 
 NEAR_PHASES = frozenset({Phase.ALIGN, Phase.DESCEND})
 """Phases so near to the vehicle that its place must be known; a chase stays above all that it may be."""
@@ -99,6 +124,28 @@ TRANSITIONS: dict[tuple[Phase, Event], Phase] = {
     **{(phase, Event.TIME_LIMIT): Phase.ABORT for phase in LANDING_PHASES},
     **{(phase, Event.ABORT): Phase.HOLD for phase in (Phase.TAKEOFF, Phase.WAITING)},
     **{(phase, Event.PILOT_TOOK_OVER): Phase.PILOT for phase in FLYING_PHASES},
+    **{(phase, Event.LAUNCH): Phase.ON_DECK for phase in (Phase.IDLE, Phase.SECURED, Phase.PILOT)},
+    (Phase.ON_DECK, Event.DECK_QUIET): Phase.LIFT_OFF,
+    (Phase.ON_DECK, Event.REFUSED): Phase.IDLE,
+    (Phase.ON_DECK, Event.CALLED_OFF): Phase.TOUCHDOWN,
+    (Phase.ON_DECK, Event.TIME_LIMIT): Phase.TOUCHDOWN,
+    (Phase.LIFT_OFF, Event.CLEAR_OF_DECK): Phase.FOLLOW,
+    **{(phase, Event.FOLLOW): Phase.FOLLOW for phase in (Phase.WAITING, Phase.HOLD, Phase.RETURN, Phase.RALLY)},
+    **{(phase, Event.RETURN): Phase.RETURN for phase in (Phase.WAITING, Phase.HOLD, Phase.FOLLOW, Phase.RALLY)},
+    **{(phase, Event.HOME_NOW): Phase.RETURN for phase in (Phase.HOLD, Phase.FOLLOW)},
+    (Phase.FOLLOW, Event.START): Phase.CHASE,
+    (Phase.RETURN, Event.VEHICLE_NEAR): Phase.CHASE,
+    (Phase.RALLY, Event.VEHICLE_FOUND): Phase.RETURN,
+    **{(phase, Event.VEHICLE_LOST): Phase.RALLY for phase in (Phase.FOLLOW, Phase.RETURN)},
+    (Phase.LIFT_OFF, Event.CALLED_OFF): Phase.TOUCHDOWN,
+    (Phase.LIFT_OFF, Event.TIME_LIMIT): Phase.ABORT,
+    **{
+        (phase, event): Phase.ABORT
+        for phase in (Phase.LIFT_OFF, Phase.FOLLOW)
+        for event in (Event.ABORT, Event.HOLD, Event.UNSAFE)
+    },
+    **{(Phase.RETURN, event): Phase.HOLD for event in (Event.ABORT, Event.HOLD, Event.UNSAFE)},
+    **{(Phase.RALLY, event): Phase.HOLD for event in (Event.ABORT, Event.HOLD)},
 }
 
 

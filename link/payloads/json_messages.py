@@ -1,12 +1,12 @@
-"""The messages that travel as JSON: pad geometry, commands with their replies, and the landing status.
+"""The messages that travel as JSON: pad geometry, orders with their replies, and the landing status.
 
 Reading is strict about types and finiteness. A command with a name too many is refused, for it might have been
 meant to change what the command does; reports may hold more than this version knows.
 """
 
-from typing import Annotated, TypeVar
+from typing import Annotated, Self, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from link.messages import (
     VEHICLE_HEIGHT_MAX_M,
@@ -15,7 +15,10 @@ from link.messages import (
     CommandReply,
     ContactForecast,
     LandingStatus,
+    Order,
     PadGeometry,
+    Station,
+    StationFrame,
 )
 from link.payloads.checks import PayloadError
 
@@ -23,7 +26,7 @@ __all__ = ["JSON_ENCODING", "LANDING_STATUS_SCHEMA", "PayloadError", "decode", "
 
 JSON_ENCODING = "application/json"
 
-Message = PadGeometry | Command | CommandReply | LandingStatus
+Message = PadGeometry | Order | CommandReply | LandingStatus
 M = TypeVar("M", bound=Message)
 
 Coordinates = tuple[float, float, float]
@@ -45,10 +48,20 @@ class _PadGeometry(_Report):
     is_afloat: bool = False
 
 
-class _Command(_Report):
+class _Order(_Report):
     model_config = ConfigDict(extra="forbid")
 
     command: Command
+    offset_m: Coordinates | None = None
+    frame: StationFrame | None = None
+
+    @model_validator(mode="after")
+    def _has_a_station_to_follow_only(self) -> Self:
+        if self.command is Command.FOLLOW and self.offset_m is None:
+            raise ValueError("follow needs offset_m, [ahead, left, up] in m")
+        if self.command is not Command.FOLLOW and (self.offset_m is not None or self.frame is not None):
+            raise ValueError(f"{self.command.value} takes no offset_m and no frame: give them to follow")
+        return self
 
 
 class _CommandReply(_Report):
@@ -118,7 +131,7 @@ LANDING_STATUS_SCHEMA = {
 
 _MODELS: dict[type[object], type[_Report]] = {
     PadGeometry: _PadGeometry,
-    Command: _Command,
+    Order: _Order,
     CommandReply: _CommandReply,
     LandingStatus: _LandingStatus,
 }
@@ -131,8 +144,10 @@ def encode(message: Message) -> bytes:
         PayloadError: If it holds what must not be sent, such as a number that is not finite.
     """
     model = _MODELS[type(message)]
-    fields = {name: message if isinstance(message, Command) else getattr(message, name) for name in model.model_fields}
     try:
+        if isinstance(message, Order):
+            return _Order.model_validate(_order_fields(message)).model_dump_json(exclude_none=True).encode()
+        fields = {name: getattr(message, name) for name in model.model_fields}
         return model.model_validate(fields).model_dump_json().encode()
     except ValidationError as error:
         raise _payload_error(error) from error
@@ -152,10 +167,23 @@ def decode(message_type: type[M], payload: bytes) -> M:
     forecast = fields.get("contact_forecast")
     if isinstance(forecast, _ContactForecast):
         fields["contact_forecast"] = ContactForecast(**forecast.model_dump())
-    message = fields["command"] if message_type is Command else message_type(**fields)
+    message = _order(model) if isinstance(model, _Order) else message_type(**fields)
     if not isinstance(message, message_type):
         raise TypeError(f"the model of {message_type.__name__} gave a {type(message).__name__}")
     return message
+
+
+def _order_fields(order: Order) -> dict[str, object]:
+    station = order.station
+    own = {} if station is None else {"offset_m": station.offset_m, "frame": station.frame}
+    return {"command": order.command, **own}
+
+
+def _order(model: _Order) -> Order:
+    if model.offset_m is None:
+        return Order(command=model.command)
+    frame = StationFrame.VEHICLE if model.frame is None else model.frame
+    return Order(command=model.command, station=Station(offset_m=model.offset_m, frame=frame))
 
 
 def is_possible(pad: PadGeometry) -> bool:

@@ -8,7 +8,7 @@ import threading
 import time
 from collections.abc import Callable
 
-from link.messages import Command, CommandReply, LandingStatus
+from link.messages import Command, CommandReply, LandingStatus, Order
 from link.payloads import json_messages
 from link.payloads.checks import PayloadError
 from link.ros2.land_types import (
@@ -93,7 +93,7 @@ class LandAction:
                     self._active = None
             answer(send_response(accepted=accepted, t_ns=t_ns))
 
-        self._take(json_messages.encode(Command.START), started)
+        self._take(json_messages.encode(Order(command=Command.START)), started)
 
     def _get_result(self, request: bytes, answer: Answer) -> None:
         try:
@@ -125,7 +125,7 @@ class LandAction:
                     self._set_status(active, _CANCELING, self._goals[active][1])
             answer(cancel_response(_ACCEPTED if accepted else _REJECTED, active if accepted else None))
 
-        self._take(json_messages.encode(Command.ABORT), aborted)
+        self._take(json_messages.encode(Order(command=Command.ABORT)), aborted)
 
     def _finish(self, goal_id: bytes, status: LandingStatus) -> None:
         """Keep and tell how a goal has ended; the lock is held."""

@@ -11,7 +11,7 @@ from collections.abc import Callable
 import zenoh
 import zenoh.ext
 
-from link.messages import Command, CommandReply, LandingStatus
+from link.messages import Command, CommandReply, LandingStatus, Order
 from link.payloads import json_messages
 from link.program.toml_config import load_config
 from link.ros2 import foreign
@@ -115,6 +115,8 @@ class Ros2Session(ZenohSession):
         super().serve_later(key, take)
         if key == self._keys.landing_command:
             for command in Command:
+                if command is Command.FOLLOW:
+                    continue  # a trigger holds no station
                 self._serve_trigger(trigger(f"/{self._keys.drone}/landing/{command.value}"), command, take)
             self._land = LandAction(self._node, f"/{self._keys.drone}/landing/land", take)
 
@@ -126,7 +128,7 @@ class Ros2Session(ZenohSession):
     def _serve_trigger(
         self, endpoint: Endpoint, command: Command, take: Callable[[bytes, Callable[[bytes], None]], None]
     ) -> None:
-        request = json_messages.encode(command)
+        request = json_messages.encode(Order(command=command))
         self._node.serve(endpoint, lambda _, answer: take(request, lambda reply: answer(_trigger_answer(reply))))
 
     def _ros_publisher(self, route: Route) -> RosPublisher:

@@ -19,7 +19,7 @@ from typing import Any
 
 from link.errors import UserError
 from link.program.toml_config import merge, read_toml, validate
-from scenarios.catalogue.placement import keep_clear_of_vehicle
+from scenarios.catalogue.placement import place_drone
 from scenarios.catalogue.receivers import tell_of_one_frame
 from scenarios.catalogue.silence import look_out_for_silent_vehicle
 from scenarios.catalogue.world_names import names_worlds, parse_world_name
@@ -35,7 +35,7 @@ _DEFAULT_PRESETS = {
     "system": "default",
     "camera": "none",
 }
-_PLAIN_OPTIONS = ("firmware", "start", "detector", "telemetry")
+_PLAIN_OPTIONS = ("firmware", "start", "place", "detector", "telemetry")
 _SUFFIX = ".toml"
 
 
@@ -88,7 +88,7 @@ def complete(scenario: Scenario) -> Scenario:
     Raises:
         UserError: the drone waits inside the vehicle.
     """
-    return keep_clear_of_vehicle(look_out_for_silent_vehicle(tell_of_one_frame(scenario)))
+    return place_drone(look_out_for_silent_vehicle(tell_of_one_frame(scenario)))
 
 
 def _option(option: str, whole: str) -> Table:

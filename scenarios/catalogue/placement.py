@@ -16,6 +16,18 @@ _AHEAD_M = 3.0  # of the vehicle's front, for a drone that the wind shifts while
 _PLACES = frozenset({"drone_start_enu_m", "waiting_point_enu_m"})
 
 
+def place_drone(scenario: Scenario) -> Scenario:
+    """Return `scenario` with a drone on the deck of a vehicle that drives, or on the road clear of one that stands.
+
+    Raises:
+        UserError: the file places the drone inside the vehicle.
+    """
+    if scenario.place == "road":
+        return keep_clear_of_vehicle(scenario)
+    departure = scenario.track.departure.model_copy(update={"wait_for_drone": False, "departs_s": 0.0})
+    return scenario.model_copy(update={"track": scenario.track.model_copy(update={"departure": departure})})
+
+
 def keep_clear_of_vehicle(scenario: Scenario) -> Scenario:
     """Return `scenario` with a drone that does not begin inside the vehicle.
 

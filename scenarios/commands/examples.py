@@ -21,7 +21,11 @@ SCENARIOS = {
         "scenarios run world:urban@123 --lockstep --firmware ardupilot",
     ),
     "world": ("scenarios world straight_5", "scenarios world circle_5+wind=nominal --speed 2"),
-    "command": ("scenarios command start", "scenarios command abort --drone drone2"),
+    "command": (
+        "scenarios command start",
+        "scenarios command abort --drone drone2",
+        "scenarios command follow --offset -6 2 4 --frame course",
+    ),
     "campaign": (
         "scenarios campaign straight_5 circle_5+wind=nominal --seeds 100 --out runs/first",
         "scenarios campaign world --seeds 200 --firmware both",
@@ -37,6 +41,7 @@ SCENARIOS = {
     "rare": ("scenarios rare brake_7+sensors=degraded+link=degraded --particles 100",),
     "bench": ("scenarios bench", "scenarios bench straight_5+sensors=nominal --against ../before"),
     "fuzz": ("scenarios fuzz --end autopilot --firmware ardupilot --link tcpin --frames 100000",),
+    "sortie": ("scenarios sortie straight_10 --seeds 2 --firmware both", "scenarios sortie urban --first-seed 30000"),
     "retries": ("scenarios retries --seeds 20", "scenarios retries circle_5 --height 0.5 --firmware ardupilot"),
     "faults": ("scenarios faults --workers 1 --firmware px4",),
     "fly": ("scenarios fly straight_5 --ship 5     # with ArduPilot's own simulation, started before",),

@@ -1,24 +1,53 @@
 """Sending an operator's command to the companion over Zenoh."""
 
 import time
+from enum import Enum
+from typing import TypeVar
 
 from link.errors import UserError
-from link.messages import Command, CommandReply
+from link.messages import Command, CommandReply, Order, Station, StationFrame, Vector3
 from link.payloads import json_messages
 from link.payloads.checks import PayloadError
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohOptions, open_session
+
+E = TypeVar("E", bound=Enum)
 
 _MEETING_S = 5.0  # until the companion is found
 _ANSWER_S = 3.0
 _TRY_AGAIN_S = 0.1
 
 
-def send_command(command: Command, keys: Keys, options: ZenohOptions) -> CommandReply:
+def order_of(command: str, offset_m: Vector3 | None, frame: str | None) -> Order:
+    """Return the order that an operator has written.
+
+    Raises:
+        UserError: there is no such command or frame, a follow has no offset, or another command has one.
+    """
+    wanted = _named(Command, "command", command)
+    if wanted is not Command.FOLLOW:
+        if offset_m is not None or frame is not None:
+            raise UserError(f"{command} takes no --offset and no --frame: give them to follow")
+        return Order(command=wanted)
+    if offset_m is None:
+        raise UserError("follow needs --offset AHEAD LEFT UP, in metres from the pad's centre")
+    looks = StationFrame.VEHICLE if frame is None else _named(StationFrame, "frame", frame)
+    return Order(command=wanted, station=Station(offset_m=offset_m, frame=looks))
+
+
+def _named(kind: type[E], what: str, name: str) -> E:
+    try:
+        return kind(name)
+    except ValueError:
+        known = ", ".join(one.value for one in kind)
+        raise UserError(f"{what} '{name}' does not exist: give one of {known}") from None
+
+
+def send_order(order: Order, keys: Keys, options: ZenohOptions) -> CommandReply:
     """Return the companion's answer.
 
     Args:
-        command: what it is asked for.
+        order: what it is asked for.
         keys: of the Zenoh contract.
         options: how it is met.
 
@@ -28,7 +57,7 @@ def send_command(command: Command, keys: Keys, options: ZenohOptions) -> Command
     with open_session(options) as zenoh:
         deadline_s = time.monotonic() + _MEETING_S
         while time.monotonic() < deadline_s:
-            answers = zenoh.query(keys.landing_command, json_messages.encode(command), _ANSWER_S)
+            answers = zenoh.query(keys.landing_command, json_messages.encode(order), _ANSWER_S)
             if answers:
                 return _only(answers, keys)
             time.sleep(_TRY_AGAIN_S)

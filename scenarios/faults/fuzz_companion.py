@@ -13,7 +13,7 @@ from itertools import islice
 
 from companion.situation.phases import Phase
 from link.mavlink.codec import MavlinkCodec
-from link.messages import Command, PadGeometry
+from link.messages import Order, PadGeometry
 from link.payloads import json_messages
 from link.payloads.checks import PayloadError
 from link.zenoh.keys import Keys
@@ -158,7 +158,7 @@ class _Flight(Lockstep):
         for key, payload in self._samples():
             node.receive_sample(key, payload)
             self.payloads += 1
-        for kind in (Command, PadGeometry):
+        for kind in (Order, PadGeometry):
             with suppress(PayloadError):
                 json_messages.decode(kind, forged_json(self._rng))
             self.payloads += 1

@@ -4,7 +4,7 @@ import random
 import struct
 from collections.abc import Iterator
 
-from link.messages import Command, Fix, FixVelocity, PadGeometry, PadSighting, VehicleImu
+from link.messages import Command, Fix, FixVelocity, Order, PadGeometry, PadSighting, Station, VehicleImu
 from link.payloads import cdr, json_messages
 from link.zenoh.keys import Keys
 
@@ -53,7 +53,10 @@ def forged_samples(
 def forged_json(rng: random.Random) -> bytes:
     """Return a command or a pad's description, spoiled."""
     pad = PadGeometry(size_m=(1.5, 1.5), height_m=1.5, antenna_to_pad_m=(0.5, 0.0, 0.1))
-    return spoiled(rng, json_messages.encode(rng.choice((pad, *Command))))
+    follow = Order(command=Command.FOLLOW, station=Station(offset_m=(-5.0, 2.0, 3.0)))
+    orders = [Order(command=command) for command in Command if command is not Command.FOLLOW]
+    messages: tuple[json_messages.Message, ...] = (pad, follow, *orders)
+    return spoiled(rng, json_messages.encode(rng.choice(messages)))
 
 
 def spoiled(rng: random.Random, payload: bytes) -> bytes:

@@ -10,6 +10,7 @@ from typing import Self
 
 from companion.situation.phases import Phase
 from link.errors import UserError
+from link.messages import Order
 from link.payloads import json_messages
 from link.program.toml_config import dump_toml
 from link.zenoh.keys import Keys
@@ -126,7 +127,7 @@ class WireFlight:
         before, command = COMMANDED.get(phase, (phase, None))
         self._wait_for(before)
         if command is not None:
-            self._zenoh.ask(Keys().landing_command, json_messages.encode(command), _ANSWER_S)
+            self._zenoh.ask(Keys().landing_command, json_messages.encode(Order(command=command)), _ANSWER_S)
             self._wait_for(phase)
 
     def inject(self, fault: Fault) -> float:

@@ -26,6 +26,11 @@ PLACES: Mapping[Phase, tuple[float, float]] = MappingProxyType(
         Phase.HOLD: (4.4, 0.0),
         Phase.ABORT: (8.8, 0.0),
         Phase.PILOT: (0.0, 0.0),
+        Phase.ON_DECK: (0.0, 4.6),
+        Phase.LIFT_OFF: (2.2, 4.6),
+        Phase.FOLLOW: (5.5, 4.6),
+        Phase.RETURN: (9.9, 4.6),
+        Phase.RALLY: (7.7, 6.2),
     }
 )
 """Where each phase is drawn."""
@@ -74,7 +79,7 @@ def phases_page(figure: str) -> str:
     phases = [(phase.value, comments[phase.name], "yes" if phase in FLYING_PHASES else "") for phase in Phase]
     rows = [(a.value, event.value, b.value, events[event.name]) for (a, event), b in TRANSITIONS.items()]
     return page(
-        "Phases of a landing",
+        "Phases of a flight",
         TEXT,
         f"![The phases and what leads from one to another]({figure})",
         f'From each flying phase "{FROM_ANYWHERE.value}" leads to "{Phase.PILOT.value}".',
@@ -87,9 +92,9 @@ def phases_page(figure: str) -> str:
 
 def phase_chart() -> str:
     """Return the drawing as SVG: the same bytes for the same table."""
-    figure = Figure(figsize=(13.0, 3.2))
+    figure = Figure(figsize=(13.0, 5.6))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    axes.set(xlim=(-1.0, 16.4), ylim=(-0.5, 3.6), aspect="equal")
+    axes.set(xlim=(-1.0, 16.4), ylim=(-0.5, 7.0), aspect="equal")
     axes.axis("off")
     for (a, b), events in arrows().items():
         _draw_arrow(axes, a, b, "\n".join(event.value for event in events))

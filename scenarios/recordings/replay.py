@@ -15,7 +15,7 @@ from companion.recording.sink import CompanionSink
 from companion.runtime.build import build_node
 from companion.runtime.node import CompanionNode
 from link.errors import UserError
-from link.messages import Command, PadGeometry
+from link.messages import Order, PadGeometry
 from link.payloads import json_messages
 from link.payloads.decklander_msgs import RosMessage, fields_of
 from link.program.toml_config import parse_toml, validate
@@ -166,7 +166,8 @@ def give(node: CompanionNode, record: InputRecord) -> None:
             name, is_own = record.data[:-1].decode(), bool(record.data[-1:] == b"\x01")
             node.receive_rival(Rival(drone=name, is_this_drone=is_own) if record.data else None)
         case InputKind.COMMAND:
-            node.request(Command(record.data.decode()))
+            order = json_messages.decode(Order, record.data)
+            node.request(order.command, order.station)
         case InputKind.LEAVE:
             node.leave()
         case InputKind.POLL:

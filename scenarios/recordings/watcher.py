@@ -2,7 +2,7 @@
 
 from typing import TypeVar
 
-from link.messages import BodyTruth, Command, LandingStatus, RotorTruth
+from link.messages import BodyTruth, Command, LandingStatus, Order, RotorTruth
 from link.payloads import cdr, json_messages
 from link.payloads.checks import PayloadError
 from link.zenoh.keys import Keys
@@ -50,7 +50,7 @@ class Watcher:
 
     def break_off(self) -> None:
         """Call the landing off, as an operator would; what becomes of it shows in the status."""
-        self._zenoh.query(self._command_key, json_messages.encode(Command.ABORT), _ANSWER_S)
+        self._zenoh.query(self._command_key, json_messages.encode(Order(command=Command.ABORT)), _ANSWER_S)
 
     def _add(self, kind: type[T], payload: bytes, *, is_drone: bool = True) -> None:
         try:

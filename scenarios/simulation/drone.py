@@ -6,6 +6,8 @@ from link.messages import Vector3
 from scenarios.config import Scenario, SensorsConfig
 from scenarios.simulation.disturbances import instant_s
 from scenarios.simulation.noise import Seed, named_rng
+from scenarios.simulation.vehicle import VehicleMemory, vehicle_at
+from scenarios.simulation.vehicle_node import plan_of
 from sim_autopilot.runtime.config import (
     RECEIVER_ACCURACY_MIN_M,
     OwnStateConfig,
@@ -34,12 +36,25 @@ def sim_autopilot_config(scenario: Scenario, seed: Seed, *, instant: bool) -> Si
         instant=instant,
         seed=seed if isinstance(seed, int) else 0,
         datum=scenario.datum,
-        start=StartConfig(position_enu_m=scenario.drone_start_enu_m),
+        start=_start(scenario, seed),
         drone=scenario.system.drone,
         wind=_wind(scenario, seed),
         own_state=_own_state(scenario, seed),
         vehicle=VehicleConfig(length_m=body.length_m, width_m=body.width_m, roof_height_m=body.roof_height_m),
         parameters=scenario.system.parameters.get(scenario.firmware, {}),
+    )
+
+
+def _start(scenario: Scenario, seed: Seed) -> StartConfig:
+    """Return where the drone stands at first: on the road, or on the deck and carried by it."""
+    if scenario.place == "road":
+        return StartConfig(position_enu_m=scenario.drone_start_enu_m)
+    vehicle = vehicle_at(VehicleMemory(departs_ns=0), 0, plan_of(scenario, seed))
+    east_m, north_m, up_m = vehicle.position_enu_m
+    return StartConfig(
+        position_enu_m=(east_m, north_m, up_m + scenario.vehicle.roof_height_m),
+        velocity_enu_m_s=vehicle.velocity_enu_m_s,
+        yaw_rad=vehicle.yaw_rad,
     )
 
 

@@ -1,6 +1,6 @@
 """A landing as it goes on, off Zenoh; it only listens, and passes an operator's commands on."""
 
-from link.messages import Command, CommandReply
+from link.messages import Command, CommandReply, Order
 from link.payloads import json_messages
 from link.payloads.checks import PayloadError
 from link.zenoh.inbox import Inbox
@@ -55,7 +55,7 @@ class LiveSource:
 
     def send(self, command: Command) -> CommandReply:
         """Ask the companion and return its answer; one that is silent refuses."""
-        answers = self._zenoh.query(self._keys.landing_command, json_messages.encode(command), _ANSWER_S)
+        answers = self._zenoh.query(self._keys.landing_command, json_messages.encode(Order(command=command)), _ANSWER_S)
         if len(answers) != 1:
             who = f"{len(answers)} programs answer, and one of them is false" if answers else "no companion answers"
             return CommandReply(accepted=False, reason=who)

@@ -15,6 +15,7 @@ from sim_autopilot.plant.kernel import BODY_END, FORCE_END, MEMORY_START, PLANT_
 from sim_autopilot.plant.own_state import NO_ERROR
 
 SURFACES = tuple(Surface)
+AT_REST: Array = np.zeros(3)
 NO_REFERENCE: Array = np.zeros(REFERENCE_SIZE)
 NO_DECK: Array = np.array([0.0] * 3 + [1.0] + [0.0] * (DECK_SIZE - 4))
 
@@ -42,21 +43,24 @@ def asked_tilt_rad(memory: PlantMemory, reference: Reference | None) -> float:
     return atan2(hypot(east, north), GRAVITY_M_S2)
 
 
-def initial_plant(config: PlantConfig, t_ns: int, position_enu_m: Array, yaw_rad: float) -> PlantMemory:
-    """Return a drone at rest, level, motors stopped.
+def initial_plant(
+    config: PlantConfig, t_ns: int, position_enu_m: Array, yaw_rad: float, velocity_enu_m_s: Array = AT_REST
+) -> PlantMemory:
+    """Return a level drone, motors stopped.
 
     Args:
         config: of the plant.
         t_ns: time of the state.
         position_enu_m: (3,) of the centre of mass; `GEAR_HEIGHT_M` above a surface it stands on it.
         yaw_rad: heading about z.
+        velocity_enu_m_s: (3,) of what it stands on.
     """
     del config
     state = PlantState(
         t_ns=t_ns,
         position_enu_m=np.array(position_enu_m, dtype=np.float64),
         orientation_wxyz=quaternion_from_yaw(yaw_rad),
-        velocity_enu_m_s=np.zeros(3),
+        velocity_enu_m_s=np.array(velocity_enu_m_s, dtype=np.float64),
         angular_velocity_flu_rad_s=np.zeros(3),
         rotor_speed_rad_s=np.zeros(4),
         specific_force_flu_m_s2=np.zeros(3),

@@ -48,6 +48,7 @@ class StartConfig(StrictModel):
 
     position_enu_m: Vector3 = (0.0, 0.0, 0.0)  # of the point under its feet
     yaw_rad: Annotated[float, Field(ge=-pi, le=pi)] = 0.0
+    velocity_enu_m_s: Vector3 = (0.0, 0.0, 0.0)  # on the deck of a vehicle that drives
 
 
 class DroneConfig(StrictModel):
@@ -160,6 +161,7 @@ def autopilot_config(config: SimAutopilotConfig) -> AutopilotConfig:
         instant=config.instant,
         position_enu_m=(x, y, z + GEAR_HEIGHT_M),
         yaw_rad=config.start.yaw_rad,
+        velocity_enu_m_s=config.start.velocity_enu_m_s,
         parameters=config.parameters,
         endurance_s=config.drone.endurance_s,
         links=tuple(ground_rates_hz if link.streams == "ground" else None for link in config.links) or (None,),

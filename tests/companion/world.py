@@ -26,7 +26,7 @@ from link.frames.geodesy import Datum
 from link.frames.local_frame import LocalFrame, Projection
 from link.frames.rotations import quaternion_from_yaw
 from link.mavlink.dialect import mavlink
-from link.messages import Command, PadGeometry, Vector3
+from link.messages import Command, PadGeometry, Station, Vector3
 from link.program.toml_config import merge, validate
 from link.records import replace
 
@@ -55,6 +55,7 @@ PAD = PadGeometry(size_m=(1.5, 1.5), height_m=PAD_HEIGHT_M, antenna_to_pad_m=(0.
 GEAR_M = CONFIG.touchdown.gear_height_m
 FLYING = sorted(FLYING_PHASES, key=lambda one: one.value)
 LANDING = sorted(LANDING_PHASES, key=lambda one: one.value)
+STATION = Station(offset_m=(-6.0, 2.0, 3.0))
 DISARM, SET_MODE = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, mavlink.MAV_CMD_DO_SET_MODE
 
 
@@ -141,6 +142,7 @@ class Flight:
     leaving: bool = False
     stamps_ahead_s: float = 0.0
     driver: Driver = field(default_factory=Px4Driver)
+    station: Station = STATION  # of a command to follow
 
     def __post_init__(self) -> None:
         self.memory = StepMemory()
@@ -205,6 +207,7 @@ class Flight:
             ),
             rival=self.rival,
             command=command,
+            station=self.station if command is Command.FOLLOW else None,
             leaving=self.leaving,
         )
 
@@ -274,6 +277,15 @@ class Flight:
         self.view = replace(self.view, landed=False)
 
 
+def on_deck() -> Flight:
+    """A drone that stands on a vehicle at rest."""
+    flight = Flight(vehicle=KnownVehicle((3.0, 0.4, PAD_HEIGHT_M), (0.0, 0.0, 0.0)))
+    flight.own = own_state(START_NS, (3.1, 0.3, PAD_HEIGHT_M + GEAR_M))
+    flight.refuses_plain_disarm = True
+    flight.run(0.1)
+    return flight
+
+
 def reached(phase: Phase) -> Flight:
     """A flight that has just come into `phase`; plain disarms are refused, as on a deck that moves."""
     return kept(phase).copy()
@@ -294,6 +306,29 @@ def kept(phase: Phase) -> Flight:
         case Phase.TAKEOFF:
             flight.start_and_reach(Phase.TAKEOFF)
             flight.run(1.0)  # the mode is granted and the motors turn
+        case Phase.ON_DECK:
+            flight = on_deck()
+            flight.refuses = frozenset({DISARM})  # nor does it arm: the mode is granted, and no more
+            flight.step(Command.LAUNCH)
+            flight.run(1.0)
+        case Phase.LIFT_OFF:
+            flight = on_deck()
+            flight.step(Command.LAUNCH)
+            flight.run_until(phase)
+        case Phase.FOLLOW:
+            flight.start_and_reach(Phase.WAITING)
+            flight.step(Command.FOLLOW)
+        case Phase.RETURN:
+            flight.start_and_reach(Phase.WAITING)
+            flight.step(Command.HOLD)
+            flight.run(15.0)  # the vehicle drives 60 m
+            flight.step(Command.RETURN)
+        case Phase.RALLY:
+            flight.start_and_reach(Phase.WAITING)
+            flight.step(Command.FOLLOW)
+            flight.run(1.0)
+            flight.sends_fixes = False
+            flight.run_until(phase)
         case _:
             flight.start_and_reach(phase)
     assert flight.phase is phase

@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from link.messages import Command, CommandReply
+from link.messages import Command, CommandReply, Order
 from link.payloads import json_messages
 from link.zenoh.inbox import Inbox
 from link.zenoh.keys import Keys
@@ -45,7 +45,7 @@ class Flood:
         return sum(bool(inbox.take()) for inbox in self._answers[:100])
 
     def _run(self) -> None:
-        start = json_messages.encode(Command.START)
+        start = json_messages.encode(Order(command=Command.START))
         while not self._ends.wait(1.0 / FLOOD_HZ):
             self._answers.append(self._zenoh.ask(KEYS.landing_command, start, 3.0))
 
@@ -57,7 +57,7 @@ class Flood:
 def asked(zenoh: ZenohSession, command: Command) -> tuple[CommandReply | None, float]:
     """Return the answer to a command, and after how many seconds it came."""
     began_s = time.monotonic()
-    answers = zenoh.query(KEYS.landing_command, json_messages.encode(command), 20.0)
+    answers = zenoh.query(KEYS.landing_command, json_messages.encode(Order(command=command)), 20.0)
     return json_messages.decode(CommandReply, answers[0]) if answers else None, time.monotonic() - began_s
 
 

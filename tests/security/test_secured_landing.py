@@ -7,7 +7,7 @@ import pytest
 
 from companion.runtime.claims import Claims
 from link.errors import UserError
-from link.messages import Command
+from link.messages import Command, Order
 from link.payloads import json_messages
 from link.zenoh.inbox import Inbox
 from link.zenoh.keys import Keys
@@ -44,7 +44,9 @@ class Stranger:
 
     def order(self) -> None:
         """Ask for the landing's end."""
-        self._asked.append(self._zenoh.ask(KEYS.landing_command, json_messages.encode(Command.HOLD), 2.0))
+        self._asked.append(
+            self._zenoh.ask(KEYS.landing_command, json_messages.encode(Order(command=Command.HOLD)), 2.0)
+        )
 
     @property
     def heard(self) -> int:

@@ -7,23 +7,28 @@ import pytest
 from companion.autopilots.driver import Receiver
 from companion.core.reasons import Reason
 from companion.landing.commands import answer
-from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
+from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, STATION_PHASES, Event, Phase, next_phase
 from companion.situation.situation import Situation
-from link.messages import Command, CommandReply
+from link.messages import Command, CommandReply, Order, Station
 from link.records import replace
 from tests.companion.facts import CONFIG, drone_at, pad_at, situation
 from tests.companion.world import PAD_HEIGHT_M, SET_MODE, Flight, KnownVehicle, own_state
 
 PAIRS = list(itertools.product(Command, Phase))
-STARTABLE = {Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD}
+STATION = Station(offset_m=(-6.0, 2.0, 3.0))
+STARTABLE = {Phase.FOLLOW, Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD}
+
+
+def order(command: Command) -> Order:
+    return Order(command=command, station=STATION if command is Command.FOLLOW else None)
 
 
 @pytest.mark.parametrize(("command", "phase"), PAIRS)
 def test_accepted_command_changes_the_phase_or_is_said_during_the_climb(command: Command, phase: Phase) -> None:
-    event, reply = answer(command, phase, situation(), CONFIG)
+    event, reply = answer(order(command), phase, situation(), CONFIG)
     if event is not None:
         assert reply.accepted
-        assert next_phase(phase, event) is not phase
+        assert next_phase(phase, event) is not phase or (phase, event) == (Phase.FOLLOW, Event.FOLLOW)
     elif reply.accepted:
         assert phase is Phase.ABORT
     else:
@@ -33,15 +38,17 @@ def test_accepted_command_changes_the_phase_or_is_said_during_the_climb(command:
 @pytest.mark.parametrize("phase", Phase)
 @pytest.mark.parametrize("command", [Command.START, Command.START_ANYWAY])
 def test_start_is_accepted_where_a_landing_can_begin_only(phase: Phase, command: Command) -> None:
-    _, reply = answer(command, phase, situation(), CONFIG)
+    _, reply = answer(order(command), phase, situation(), CONFIG)
     assert reply.accepted == (phase in STARTABLE)
 
 
 @pytest.mark.parametrize("phase", Phase)
 @pytest.mark.parametrize("command", [Command.ABORT, Command.HOLD])
 def test_landing_can_be_broken_off_until_contact(phase: Phase, command: Command) -> None:
-    _, reply = answer(command, phase, situation(), CONFIG)
-    breakable = LANDING_PHASES | {Phase.TAKEOFF, Phase.WAITING, Phase.ABORT}
+    _, reply = answer(order(command), phase, situation(), CONFIG)
+    breakable = (
+        LANDING_PHASES | STATION_PHASES | {Phase.TAKEOFF, Phase.WAITING, Phase.ABORT, Phase.ON_DECK, Phase.RALLY}
+    )
     assert reply.accepted == (phase in breakable)
     assert phase in FLYING_PHASES or not reply.accepted
 
@@ -50,8 +57,8 @@ def test_landing_can_be_broken_off_until_contact(phase: Phase, command: Command)
 def test_take_off_is_called_off_before_the_motors_turn_and_held_after(command: Command) -> None:
     facts = situation()
     on_the_ground = replace(facts, autopilot=replace(facts.autopilot, armed=False))
-    assert answer(command, Phase.TAKEOFF, on_the_ground, CONFIG)[0] is Event.CALLED_OFF
-    event, _ = answer(command, Phase.TAKEOFF, facts, CONFIG)
+    assert answer(order(command), Phase.TAKEOFF, on_the_ground, CONFIG)[0] is Event.CALLED_OFF
+    event, _ = answer(order(command), Phase.TAKEOFF, facts, CONFIG)
     assert event is not None
     assert next_phase(Phase.TAKEOFF, event) is Phase.HOLD
 
@@ -68,7 +75,7 @@ def test_start_says_what_is_missing() -> None:
         (replace(facts, drone=replace(drone, attitude_known=False)), "the autopilot's attitude is too old"),
         (replace(facts, autopilot=replace(view, failsafe=True)), "the autopilot is in failsafe"),
     ):
-        event, reply = answer(Command.START, Phase.IDLE, missing, CONFIG)
+        event, reply = answer(order(Command.START), Phase.IDLE, missing, CONFIG)
         assert event is None
         assert reply.reason == reason
 
@@ -83,9 +90,9 @@ def _on(beside_m: float, height_m: float, *, speed_m_s: float, armed: bool) -> S
 
 @pytest.mark.parametrize("phase", [Phase.SECURED, Phase.IDLE, Phase.PILOT])
 def test_start_on_the_roof_of_a_vehicle_that_drives_is_refused(phase: Phase) -> None:
-    event, reply = answer(Command.START, phase, _on(0.3, 0.0, speed_m_s=5.0, armed=False), CONFIG)
+    event, reply = answer(order(Command.START), phase, _on(0.3, 0.0, speed_m_s=5.0, armed=False), CONFIG)
     assert event is None
-    assert reply.reason == "the drone stands on the vehicle, which drives at 5.0 m/s: stop it first"
+    assert reply.reason == "the drone stands on the vehicle, which drives at 5.0 m/s: command launch, or stop it first"
 
 
 @pytest.mark.parametrize(
@@ -99,7 +106,7 @@ def test_start_on_the_roof_of_a_vehicle_that_drives_is_refused(phase: Phase) -> 
     ids=["standing vehicle", "beside it", "on the road", "in the air"],
 )
 def test_start_anywhere_else_is_not(facts: Situation) -> None:
-    assert answer(Command.START, Phase.IDLE, facts, CONFIG)[1].accepted
+    assert answer(order(Command.START), Phase.IDLE, facts, CONFIG)[1].accepted
 
 
 def test_control_that_was_never_given_is_asked_for_again_by_the_next_start() -> None:

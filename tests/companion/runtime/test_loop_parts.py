@@ -7,7 +7,7 @@ import pytest
 from companion.runtime.command_desk import CommandDesk
 from companion.runtime.node import CompanionNode
 from companion.runtime.options import Timings
-from link.messages import Command, CommandReply
+from link.messages import Command, CommandReply, Order
 from link.payloads import json_messages as json_payloads
 from tests.companion.peer import Setup
 
@@ -19,7 +19,10 @@ class Asker:
 
     def __init__(self, desk: CommandDesk, command: Command | bytes) -> None:
         self._replies: list[bytes] = []
-        desk.take(json_payloads.encode(command) if isinstance(command, Command) else command, self._replies.append)
+        desk.take(
+            json_payloads.encode(Order(command=command)) if isinstance(command, Command) else command,
+            self._replies.append,
+        )
 
     def reply(self) -> CommandReply | None:
         """The only answer, None while there is none."""
@@ -45,9 +48,21 @@ def node() -> CompanionNode:
 @pytest.fixture
 def asked(node: CompanionNode, monkeypatch: pytest.MonkeyPatch) -> list[Command]:
     commands: list[Command] = []
-    monkeypatch.setattr(node, "request", commands.append)
+    monkeypatch.setattr(node, "request", lambda command, _station: commands.append(command))
     monkeypatch.setattr(node, "is_due", lambda local_ns: local_ns >= 1)
     return commands
+
+
+def test_of_two_stations_at_once_the_later_is_followed(node: CompanionNode, asked: list[Command]) -> None:
+    desk = CommandDesk()
+    first, later = (Asker(desk, b'{"command": "follow", "offset_m": [-6, 2, %d]}' % height_m) for height_m in (3, 4))
+    desk.pass_on(node, 1)
+    desk.answer([ACCEPTED])
+    refused = first.reply()
+    assert refused is not None
+    assert not refused.accepted
+    assert later.reply() == ACCEPTED
+    assert asked == [Command.FOLLOW]
 
 
 def test_reply_goes_to_who_asked(node: CompanionNode, asked: list[Command]) -> None:

@@ -35,16 +35,18 @@ def test_every_landing_phase_can_be_broken_off(phase: Phase, event: Event) -> No
     assert next_phase(phase, event) is Phase.ABORT
 
 
-def test_only_a_start_leads_out_of_the_phases_that_fly_nothing() -> None:
+def test_only_a_start_or_a_launch_leads_out_of_the_phases_that_fly_nothing() -> None:
     for phase, event in PAIRS:
         if phase not in FLYING_PHASES and next_phase(phase, event) is not phase:
-            assert event is Event.START
+            assert event in (Event.START, Event.LAUNCH)
 
 
 def test_motors_are_never_taken_for_off_without_a_contact_first() -> None:
     sources = {phase for (phase, _), target in TRANSITIONS.items() if target is Phase.SECURED}
     assert sources == {Phase.TOUCHDOWN}
-    assert {phase for (phase, _), target in TRANSITIONS.items() if target is Phase.TOUCHDOWN} == {Phase.DESCEND}
+    before = {phase: event for (phase, event), target in TRANSITIONS.items() if target is Phase.TOUCHDOWN}
+    assert set(before) == {Phase.DESCEND, Phase.ON_DECK, Phase.LIFT_OFF}
+    assert before[Phase.LIFT_OFF] is Event.CALLED_OFF  # that only a drone which stands on the deck still is given
 
 
 def test_every_phase_can_be_reached_from_idle() -> None:

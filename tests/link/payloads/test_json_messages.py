@@ -8,7 +8,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from link.messages import Command, CommandReply, ContactForecast, LandingStatus, PadGeometry
+from link.messages import (
+    Command,
+    CommandReply,
+    ContactForecast,
+    LandingStatus,
+    Order,
+    PadGeometry,
+    Station,
+    StationFrame,
+)
 from link.payloads.json_messages import LANDING_STATUS_SCHEMA, Message, PayloadError, decode, encode
 from link.records import replace
 
@@ -54,15 +63,15 @@ DESCENDING = replace(
 )
 MESSAGES: list[Message] = [
     PAD,
-    Command.START,
-    Command.ABORT,
-    Command.HOLD,
+    Order(command=Command.START),
+    Order(command=Command.ABORT),
+    Order(command=Command.FOLLOW, station=Station(offset_m=(-6.5, 2.25, 3.0), frame=StationFrame.NORTH)),
     CommandReply(accepted=False, reason="der Pilot fliegt: «höher»"),
     STATUS,
     DESCENDING,
     UNKNOWING,
 ]
-TYPES: list[type[Message]] = [PadGeometry, Command, CommandReply, LandingStatus]
+TYPES: list[type[Message]] = [PadGeometry, Order, CommandReply, LandingStatus]
 
 
 @pytest.mark.parametrize("message", MESSAGES, ids=str)
@@ -79,8 +88,13 @@ def test_pad_has_the_names_of_the_contract() -> None:
     }
 
 
+def test_a_follow_without_a_frame_looks_where_the_vehicle_heads() -> None:
+    order = decode(Order, b'{"command": "follow", "offset_m": [-6, 2, 3.5]}')
+    assert order.station == Station(offset_m=(-6.0, 2.0, 3.5), frame=StationFrame.VEHICLE)
+
+
 def test_command_and_reply_have_the_names_of_the_contract() -> None:
-    assert json.loads(encode(Command.ABORT)) == {"command": "abort"}
+    assert json.loads(encode(Order(command=Command.ABORT))) == {"command": "abort"}
     assert json.loads(encode(CommandReply(accepted=True, reason=""))) == {"accepted": True, "reason": ""}
 
 
@@ -117,13 +131,18 @@ def test_a_whole_number_is_a_length() -> None:
         b'{"command": 1}',
         b'{"command": "start", "speed_m_s": 3}',
         b'\xff{"command": "start"}',
+        b'{"command": "start", "offset_m": [1, 2, 3]}',
+        b'{"command": "follow"}',
+        b'{"command": "follow", "offset_m": [1, 2]}',
+        b'{"command": "follow", "offset_m": [1, 2, 3], "frame": "east"}',
+        b'{"command": "follow", "offset_m": [1, 2, NaN]}',
         b"[" * 100_000,
     ],
     ids=lambda payload: payload[:20],
 )
 def test_what_is_no_command_is_refused(payload: bytes) -> None:
     with pytest.raises(PayloadError):
-        decode(Command, payload)
+        decode(Order, payload)
 
 
 @pytest.mark.parametrize(

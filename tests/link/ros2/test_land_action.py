@@ -8,7 +8,7 @@ import pytest
 import zenoh
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from link.messages import Command, CommandReply, LandingStatus
+from link.messages import Command, CommandReply, LandingStatus, Order
 from link.payloads import json_messages
 from link.records import replace
 from link.ros2.land_types import FEEDBACK, GOAL, RESULT, endpoints
@@ -120,7 +120,7 @@ class Client:
         until(self.ours, lambda: all(is_matched(part) for part in parts))
 
     def _take(self, payload: bytes, reply: object) -> None:
-        self.commands.append(json_messages.decode(Command, payload))
+        self.commands.append(json_messages.decode(Order, payload).command)
         assert callable(reply)
         reply(json_messages.encode(CommandReply(accepted=not self.refuses, reason="")))
 

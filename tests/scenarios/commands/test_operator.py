@@ -6,13 +6,13 @@ from typer.main import get_command
 
 from companion.__main__ import app as companion_app
 from link.errors import UserError
-from link.messages import Command, CommandReply
+from link.messages import Command, CommandReply, Order
 from link.payloads import json_messages
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohOptions, open_session
 from scenarios.__main__ import app as scenarios_app
 from scenarios.commands import operator as operator_command
-from scenarios.commands.operator import send_command
+from scenarios.commands.operator import send_order
 from scenarios.ground_vehicle import app as vehicle_app
 from scenarios.processes.programs import free_tcp_endpoint
 from sim_autopilot.__main__ import app as autopilot_app
@@ -59,15 +59,15 @@ def test_operator_who_listens_reaches_a_companion_that_connects() -> None:
 
     with open_session(ZenohOptions(connect=("tcp/127.0.0.1:1", endpoint))) as companion:
         companion.serve(KEYS.landing_command, answer)
-        reply = send_command(Command.HOLD, KEYS, ZenohOptions(listen=(endpoint,)))
+        reply = send_order(Order(command=Command.HOLD), KEYS, ZenohOptions(listen=(endpoint,)))
     assert reply == CommandReply(accepted=False, reason="too windy")
-    assert json_messages.decode(Command, asked[-1]) is Command.HOLD
+    assert json_messages.decode(Order, asked[-1]) == Order(command=Command.HOLD)
 
 
 def test_operator_whom_nobody_answers_is_told_where_was_looked(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(operator_command, "_MEETING_S", 0.1)
     with pytest.raises(UserError, match=r"no companion answers on .*landing/command at tcp/127\.0\.0\.1:1:"):
-        send_command(Command.START, KEYS, ZenohOptions(connect=("tcp/127.0.0.1:1",)))
+        send_order(Order(command=Command.START), KEYS, ZenohOptions(connect=("tcp/127.0.0.1:1",)))
 
 
 class Answering:
@@ -103,4 +103,4 @@ def test_answers_of_others_than_one_companion_are_not_taken_for_its(
 ) -> None:
     monkeypatch.setattr(operator_command, "open_session", lambda _: Answering(*answers))
     with pytest.raises(UserError, match=told):
-        send_command(Command.ABORT, KEYS, ZenohOptions())
+        send_order(Order(command=Command.ABORT), KEYS, ZenohOptions())

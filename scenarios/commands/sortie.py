@@ -1,0 +1,102 @@
+"""The command `sortie`."""
+
+import json
+import sys
+from collections.abc import Sequence
+from contextlib import closing
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from link.errors import UserError
+from link.program.extras import require
+
+if TYPE_CHECKING:
+    from scenarios.sortie.task import FlownSortie
+
+_WIDTHS = {
+    "firmware": 11,
+    "seed": 7,
+    "ended": 10,
+    "contacts": 10,
+    "error_straight_m": 18,
+    "error_bend_m": 14,
+    "error_max_m": 13,
+    "tier": 8,
+    "lift_off_s": 12,
+    "return_from_m": 15,
+    "return_s": 10,
+}
+
+
+def register(app: typer.Typer) -> None:
+    """Add `sortie` to `app`."""
+    app.command("sortie")(sortie_command)
+
+
+def sortie_command(
+    cell: Annotated[str, typer.Argument(metavar="CELL", help="A scenario whose vehicle drives, or urban.")],
+    *,
+    seeds: Annotated[int, typer.Option("--seeds", min=1, metavar="N", help="How many.")] = 1,
+    first_seed: Annotated[int, typer.Option("--first-seed", min=1, metavar="S", help="The first.")] = 1,
+    firmware: Annotated[
+        str, typer.Option("--firmware", metavar="px4|ardupilot|both", help="Which autopilot flies.")
+    ] = "px4",
+    workers: Annotated[
+        int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+) -> int:
+    """Fly whole sorties: launch from the driving deck, stations, out of sight, home; exit code 1 if one is unsafe."""
+    require("campaign", "scenarios sortie")
+    from scenarios.catalogue.firmware_option import BOTH
+    from scenarios.config import FIRMWARES
+    from scenarios.processes.local_workers import LocalWorkers, core_count
+    from scenarios.processes.pool import run_tasks
+    from scenarios.sortie.scenario import sortie_scenario
+    from scenarios.sortie.task import SortieTask, fly_sortie, lost_sortie
+
+    if firmware not in {*FIRMWARES, BOTH}:
+        raise UserError(f"--firmware is one of {', '.join((*FIRMWARES, BOTH))}, not '{firmware}'")
+    chosen = FIRMWARES if firmware == BOTH else (firmware,)
+    tasks = [
+        SortieTask(cell=cell, firmware=one, seed=seed)
+        for seed in range(first_seed, first_seed + seeds)
+        for one in chosen
+    ]
+    sortie_scenario(cell, first_seed, chosen[0])
+    with closing(run_tasks(LocalWorkers(fly_sortie, workers or core_count()), tasks, lost=lost_sortie)) as results:
+        found = {flown.task: flown for flown in results}
+    rows = [_row(found[task]) for task in tasks]
+    if as_json:
+        sys.stdout.write(json.dumps({"cell": cell, "sorties": rows, "total": _total(rows)}, indent=2) + "\n")
+    else:
+        sys.stdout.write(_line({name: name for name in (*_WIDTHS, "tier_reason")}))
+        sys.stdout.writelines(_line(row) for row in rows)
+        sys.stdout.write("".join(f"{name}: {value}\n" for name, value in _total(rows).items()))
+    return 0 if all(row["tier"] != "unsafe" and row["contacts"] == 0 for row in rows) else 1
+
+
+def _row(flown: "FlownSortie") -> dict[str, Any]:
+    return {"firmware": flown.task.firmware, "seed": flown.task.seed, **flown.score.to_json()}
+
+
+def _total(rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """Return what all sorties come to."""
+    landed = [row for row in rows if row["tier"] in {"S1", "S2", "S3"}]
+    return {
+        "sorties": len(rows),
+        "without a contact after lift-off": sum(row["contacts"] == 0 for row in rows),
+        "landed, S1 or better": len(landed),
+        "unsafe": sum(row["tier"] == "unsafe" for row in rows),
+        "largest station error RMS on straight roads, m": _largest(rows, "error_straight_m"),
+        "largest station error RMS in bends, m": _largest(rows, "error_bend_m"),
+    }
+
+
+def _largest(rows: Sequence[dict[str, Any]], name: str) -> float | None:
+    return max((row[name] for row in rows if row[name] is not None), default=None)
+
+
+def _line(row: dict[str, Any]) -> str:
+    return "".join(f"{row[name]!s:{width}}" for name, width in _WIDTHS.items()) + f"{row['tier_reason']}\n"

@@ -1,0 +1,71 @@
+"""The energy that is left and the way home: closed forms, and what BATTERY_STATUS can tell."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from companion.sortie.energy import RESOLUTION, BatteryWatch, left_s, update_battery, use_per_s
+from companion.sortie.intercept import closing_speed_m_s, intercept_s
+
+RESERVE = 0.2
+
+
+def watched(shares: list[tuple[float, float]]) -> BatteryWatch:
+    """A battery that was told these (seconds, share)."""
+    watch = BatteryWatch()
+    for time_s, share in shares:
+        watch = update_battery(watch, share, round(time_s * 1e9))
+    return watch
+
+
+def test_rate_of_use_is_that_between_two_changes() -> None:
+    # The first percent had begun before the flight: what it took says nothing.
+    watch = watched([(0.0, 1.0), (3.0, 0.99), (9.0, 0.99), (15.0, 0.98), (27.0, 0.97)])
+    assert use_per_s(watch) == pytest.approx(0.02 / 24.0)
+    assert left_s(watch, RESERVE) == pytest.approx((0.97 - RESOLUTION - RESERVE) * 1200.0)
+
+
+def test_without_a_rate_only_the_reserve_is_told() -> None:
+    assert left_s(BatteryWatch(), RESERVE) == math.inf
+    assert left_s(watched([(0.0, 0.6), (10.0, 0.59)]), RESERVE) == math.inf
+    assert left_s(watched([(0.0, 0.21), (10.0, 0.2)]), RESERVE) == 0.0
+
+
+def test_a_fuller_battery_is_another_one() -> None:
+    watch = watched([(0.0, 0.5), (10.0, 0.49), (20.0, 0.48), (30.0, 0.9)])
+    assert use_per_s(watch) is None
+    assert watch.share == 0.9
+
+
+def test_a_share_that_is_not_told_changes_nothing() -> None:
+    watch = watched([(0.0, 0.5), (10.0, 0.49)])
+    assert update_battery(watch, None, 20_000_000_000) is watch
+
+
+ways = st.tuples(st.floats(-900.0, 900.0), st.floats(-900.0, 900.0)).map(np.array)
+
+
+@given(way=ways, vehicle=st.tuples(st.floats(-9.0, 9.0), st.floats(-9.0, 9.0)).map(np.array))
+def test_a_drone_that_closes_in_flies_at_its_limit_and_meets_the_vehicle(way: np.ndarray, vehicle: np.ndarray) -> None:
+    limit_m_s = 14.0
+    closing_m_s = closing_speed_m_s(way, vehicle, limit_m_s)
+    distance_m = math.hypot(*way.tolist())
+    if distance_m < 1e-3:
+        return
+    flown = vehicle + closing_m_s * way / distance_m
+    assert math.hypot(*flown.tolist()) == pytest.approx(limit_m_s)
+    meets_s = distance_m / closing_m_s
+    assert flown * meets_s == pytest.approx(way + vehicle * meets_s, abs=1e-6)
+
+
+def test_a_vehicle_that_is_faster_is_not_met_from_behind() -> None:
+    assert intercept_s(np.array([40.0, 5.0]), np.array([16.0, 2.0]), 14.0, 1.5) is None
+    assert intercept_s(np.array([-40.0, -5.0]), np.array([16.0, 2.0]), 14.0, 1.5) is not None
+
+
+def test_an_intercept_takes_the_time_to_gain_and_lose_speed_too() -> None:
+    # 300 m behind a vehicle of 10 m/s at 14 m/s: 75 s at 4 m/s of difference, and 4 / 1.5 s to gain and lose that.
+    assert intercept_s(np.array([300.0, 0.0]), np.array([10.0, 0.0]), 14.0, 1.5) == pytest.approx(75.0 + 4.0 / 1.5)
