@@ -23,8 +23,8 @@ from companion.landing.sway import Sway
 from companion.landing.virtual_model import Tracking
 from companion.planning.guidance import GuidanceMemory, ReferenceState
 from companion.situation.phases import Phase
-from companion.vehicle.driving import Surprise
 from companion.vehicle.estimator import EstimatorMemory
+from companion.vehicle.surprise import Surprise
 from link.messages import ContactForecast
 from link.records import replace
 
