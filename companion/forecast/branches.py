@@ -12,7 +12,7 @@ from scipy.special import ndtr, ndtri
 from companion.core.data import Array
 from companion.forecast.draws import Draws
 from companion.forecast.drivers import DEPARTS, SLOWS, SPEEDS_UP, TURNS, Drivers, chances
-from companion.forecast.rollout import ALONG, ASIDE, STEADY, IndexArray
+from companion.forecast.samples import ALONG, ASIDE, STEADY, IndexArray
 
 NOTHING, SLOWER, FASTER, TURN = range(4)
 _KINDS = np.array([STEADY, ALONG, ALONG, ASIDE])
@@ -40,7 +40,7 @@ class Events(Struct, frozen=True, kw_only=True, eq=False):
     """Of n samples.
 
     Attributes:
-        kind: (n,) as `rollout.Samples` has it.
+        kind: (n,) as `samples.Samples` has it.
         event: (n, 4) likewise.
         weight: (n,) probabilities, which make one.
     """

@@ -4,7 +4,7 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.forecast.limits import S1, S2, ContactLimits
-from companion.forecast.rollout import CONTACT, ERROR, IN_S, SINK, SPEED, TILT
+from companion.forecast.samples import CONTACT, ERROR, IN_S, SINK, SPEED, TILT
 from link.messages import ContactForecast
 
 _MEASURES = (ERROR, SPEED, SINK, TILT)

@@ -11,7 +11,7 @@ from msgspec import Struct
 from scipy.special import ndtri
 
 from companion.core.data import Array
-from companion.forecast.rollout import IndexArray
+from companion.forecast.samples import IndexArray
 
 STEPS_MAX = 128
 _SEED = 1_912

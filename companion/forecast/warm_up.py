@@ -3,7 +3,8 @@
 import numpy as np
 
 from companion.forecast.draws import STEPS_MAX
-from companion.forecast.rollout import STEADY, Course, Descent, Follower, Rules, Samples, roll_out
+from companion.forecast.rollout import roll_out
+from companion.forecast.samples import STEADY, Course, Descent, Follower, Rules, Samples
 
 
 def compile_rollout() -> None:

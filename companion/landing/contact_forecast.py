@@ -8,7 +8,8 @@ from companion.forecast.chances import sum_up
 from companion.forecast.draws import draws
 from companion.forecast.drivers import update_drivers
 from companion.forecast.gusts import update_gusts
-from companion.forecast.rollout import Descent, Samples, roll_out
+from companion.forecast.rollout import roll_out
+from companion.forecast.samples import Descent, Samples
 from companion.landing.memory import StepMemory
 from companion.landing.rollout_inputs import (
     as_driven,

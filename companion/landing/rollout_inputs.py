@@ -9,7 +9,7 @@ from companion.autopilots.response import ATTITUDE_LAG_S, DRAG_PER_S, STATES, Re
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array, VehicleEstimate
 from companion.forecast.draws import STEPS_MAX
-from companion.forecast.rollout import DT_S, Course, Follower, Rules
+from companion.forecast.samples import DT_S, Course, Follower, Rules
 from companion.landing.levelling import level_end
 from companion.landing.memory import StepMemory
 from companion.landing.outputs import has_jittery_place
@@ -48,7 +48,7 @@ class WayDown(Struct, frozen=True, kw_only=True, eq=False):
 
 
 class Errors(Struct, frozen=True, kw_only=True, eq=False):
-    """What may be wrong in each of n samples: as `rollout.Samples` has it, and how late a setpoint is, in deviations.
+    """What may be wrong in each of n samples: as `samples.Samples` has it, and how late a setpoint is, in deviations.
 
     Attributes:
         vehicle: (n, 3, 2).

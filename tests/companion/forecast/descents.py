@@ -4,7 +4,7 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.forecast.draws import STEPS_MAX
-from companion.forecast.rollout import DT_S, STEADY, Course, Descent, Follower, Rules, Samples
+from companion.forecast.samples import DT_S, STEADY, Course, Descent, Follower, Rules, Samples
 
 SPEED_M_S, SINK_M_S, HEIGHT_M = 8.0, 0.45, 0.34
 NEVER_S = 1e6

@@ -5,7 +5,8 @@ import pytest
 
 from companion.core.data import GRAVITY_M_S2
 from companion.forecast import rollout
-from companion.forecast.rollout import ALONG, CONTACT, DT_S, ERROR, IN_S, SINK, SPEED, TILT, roll_out
+from companion.forecast.rollout import roll_out
+from companion.forecast.samples import ALONG, CONTACT, DT_S, ERROR, IN_S, SINK, SPEED, TILT
 from tests.companion.forecast.descents import HEIGHT_M, NEVER_S, RULES, SINK_M_S, descent, samples
 
 
@@ -64,7 +65,7 @@ def test_machine_code_is_its_python(monkeypatch: pytest.MonkeyPatch) -> None:
         pushes=generator.standard_normal(several.pushes.shape),
     )
     compiled = roll_out(several, descent(push_std_m_s2=0.5), 0.17)
-    for name in ("_drive", "_know", "_does_not_land", "_plan", "_follow", "_touch", "_fly"):
+    for name in ("drive", "_know", "_does_not_land", "_plan", "_follow", "_touch", "_fly"):
         monkeypatch.setattr(rollout, name, getattr(rollout, name).py_func)
     plain = roll_out.py_func(several, descent(push_std_m_s2=0.5), 0.17)
     assert compiled == pytest.approx(plain, abs=1e-12)
