@@ -4,12 +4,11 @@ import numpy as np
 
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits
-from companion.landing.carried_on import limit_rates
 from companion.landing.flown_plan import extrapolate, flown_plan, state_at
 from companion.landing.following_height import waiting_rise_m
 from companion.landing.levelling import limit_tilt, limits_now
 from companion.landing.memory import ModelMemory, StepMemory
-from companion.landing.sortie_aims import sortie_aim
+from companion.landing.sortie_aims import limit_phase_rates, sortie_aim
 from companion.landing.sortie_decisions import has_not_left_deck
 from companion.landing.step_data import StepInputs, System
 from companion.landing.sway import update_sway
@@ -91,14 +90,10 @@ def fly(
         tracking = add_to_past(model.tracking, reference_ns, reference)
         return replace(memory, model=replace(model, reference_ns=reference_ns, plan=None, tracking=tracking)), None
     limits = limits_now(memory, situation, inputs, system.config)
-    is_far = memory.progress.phase in (
-        Phase.RETURN,
-        Phase.RALLY,
-    )  # and high: what carries on is above all that it meets
     request = PlanRequest(
         state=reference,
         target=_for_the_drone(aim.target, memory, inputs),
-        limits=limits if is_far else limit_rates(limits, memory, situation, inputs.shaping, system.config),
+        limits=limit_phase_rates(limits, memory, situation, inputs.shaping, system.config),
         floor_enu_m=aim.floor_enu_m,
         dt_s=period_s,
     )
