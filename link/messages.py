@@ -123,7 +123,7 @@ class Plan(Struct, frozen=True, kw_only=True):
 
 
 class PadGeometry(Struct, frozen=True, kw_only=True):
-    """The landing pad on the vehicle.
+    """The landing pad on the vehicle; `height_m` is above its road, or above the water of one that `is_afloat`.
 
     `antenna_to_pad_m` leads from the GNSS antenna to the pad's centre in V. No part of it all is larger than a vehicle.
     """
@@ -131,6 +131,7 @@ class PadGeometry(Struct, frozen=True, kw_only=True):
     size_m: tuple[float, float]
     height_m: float
     antenna_to_pad_m: Vector3
+    is_afloat: bool = False
 
 
 class Command(Enum):

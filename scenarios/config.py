@@ -44,12 +44,14 @@ class VelocityConfig(DelayConfig):
 
 
 class ImuConfig(DelayConfig):
-    """Heading, yaw rate and acceleration; a plain compass errs slowly, hence the Gauss-Markov part."""
+    """Attitude, turn rates and acceleration; a plain compass errs slowly, hence the Gauss-Markov part."""
 
     heading_white_rad: NotNegative
     heading_bias_rad: NotNegative = 0.0
     heading_bias_tau_s: Positive = 60.0
-    yaw_rate_white_rad_s: NotNegative
+    yaw_rate_white_rad_s: NotNegative  # of the other two axes as well
+    tilt_white_rad: NotNegative | None = None  # of roll and pitch; None: it tells neither
+    tilt_bias_rad: NotNegative = 0.0  # standard deviation of what does not change in a run
     acceleration_white_m_s2: NotNegative | None = None  # on each axis; None: it tells no acceleration
     acceleration_bias_m_s2: NotNegative = 0.0  # standard deviation of what does not change in a run
 
@@ -163,13 +165,16 @@ class VehicleConfig(StrictModel):
     roof_height_m: NotNegative = 1.5  # MBZIRC 2017
     pad_size_m: tuple[Positive, Positive] = (1.5, 1.5)  # MBZIRC 2017
     antenna_flu_m: Vector3 = (-1.2, 0.5, 1.6)
+    is_afloat: bool = False
 
     @property
     def pad(self) -> PadGeometry:
         """The pad as the vehicle tells it."""
         x_m, y_m, z_m = self.antenna_flu_m
         lever_m = (-x_m, -y_m, self.roof_height_m - z_m)
-        return PadGeometry(size_m=self.pad_size_m, height_m=self.roof_height_m, antenna_to_pad_m=lever_m)
+        return PadGeometry(
+            size_m=self.pad_size_m, height_m=self.roof_height_m, antenna_to_pad_m=lever_m, is_afloat=self.is_afloat
+        )
 
 
 class SystemConfig(StrictModel):

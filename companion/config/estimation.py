@@ -72,6 +72,22 @@ class ImmModeConfig(StrictModel):
     dwell_s: Positive  # mean time until the vehicle leaves this mode
 
 
+class OscillatorConfig(StrictModel):
+    """A damped oscillator that noise drives to a standard deviation, in m or rad."""
+
+    std: Positive
+    frequency_hz: Positive
+    damping: Annotated[float, Field(gt=0.0, lt=1.0)]
+
+
+class SwingConfig(StrictModel):
+    """How a deck moves that nobody has watched yet; roll and pitch once the vehicle tells them."""
+
+    heave: OscillatorConfig
+    tilt: OscillatorConfig  # roll and pitch
+    lag_s: Positive  # over which the motion is compared with itself to learn it: a tenth of a period or so
+
+
 class HeadingConfig(StrictModel):
     """How the vehicle turns, and where it points."""
 
@@ -101,14 +117,6 @@ class RoadConfig(StrictModel):
     # last at 10 m/s. A sensor's own offset is less (Bosch BMI088: 0.2 m/s^2).
     gravity_leak_std_m_s2: Positive = 0.6
     gravity_leak_time_s: Positive = 5.0
-
-
-class HeaveConfig(StrictModel):
-    """The body on its springs."""
-
-    std_m: Positive = 0.04  # benchmark: `rough_road` heaves 0.1 m at 0.5 to 1 Hz, the others not at all
-    frequency_hz: Positive = 0.75
-    damping: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.3
 
 
 class ReceiversConfig(StrictModel):
@@ -143,7 +151,20 @@ class ImmConfig(StrictModel):
     initial_acceleration_std_m_s2: Positive = 3.0
     heading: HeadingConfig = HeadingConfig()
     road: RoadConfig = RoadConfig()
-    heave: HeaveConfig = HeaveConfig()
+    # Benchmark: `rough_road` heaves 0.1 m at 0.5 to 1 Hz, the others not at all; bodies pitch and roll on their wheels
+    # at some 1.5 Hz (Gillespie 1992, chapter 5).
+    on_road: SwingConfig = SwingConfig(
+        heave=OscillatorConfig(std=0.04, frequency_hz=0.75, damping=0.3),
+        tilt=OscillatorConfig(std=0.03, frequency_hz=1.0, damping=0.3),
+        lag_s=0.1,
+    )
+    # Sea state 5 in STANAG 4194: 3.25 m of significant height, four standard deviations, with 9.7 s; a ship tilts by
+    # the slope of such waves at most.
+    afloat: SwingConfig = SwingConfig(
+        heave=OscillatorConfig(std=0.8, frequency_hz=0.1, damping=0.2),
+        tilt=OscillatorConfig(std=0.03, frequency_hz=0.1, damping=0.2),
+        lag_s=0.5,
+    )
     receivers: ReceiversConfig = ReceiversConfig()
 
 

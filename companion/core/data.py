@@ -27,6 +27,7 @@ class Quantity(Enum):
     YAW_RATE = "yaw_rate"  # rad/s (1)
     PAD = "pad"  # the pad's centre in W as seen from the drone, m (3)
     ACCELERATION = "acceleration"  # along V, horizontal but for gravity by what is not known of the pitch, m/s^2 (1)
+    TILT = "tilt"  # roll and pitch of V, rad, and their rates, rad/s (4)
 
 
 class Measurement(Struct, frozen=True, kw_only=True, eq=False):
@@ -72,6 +73,7 @@ class Forecast(Struct, frozen=True, kw_only=True, eq=False):
         is_coarse: the vehicle's fixes alone are too coarse to land by, or it sends none.
         yaw_std_rad: standard deviation of the heading now, 0 where there is none.
         grade: (n,) of the road in the direction of the heading, m of height per m; None where it is not estimated.
+        tilt_rad: (n, 4) roll, its rate (rad/s), pitch and its rate of V against the road; None where it is not told.
         frame_offset_enu_m: (2,) of the drone's frame from the vehicle's fixes', None where it is not estimated.
         frame_offset_std_m: standard deviation of either, which sightings of the pad make small.
     """
@@ -86,6 +88,7 @@ class Forecast(Struct, frozen=True, kw_only=True, eq=False):
     is_coarse: bool = False
     yaw_std_rad: float = 0.0
     grade: Array | None = None
+    tilt_rad: Array | None = None
     frame_offset_enu_m: Array | None = None
     frame_offset_std_m: float = math.inf
 

@@ -24,8 +24,8 @@ from companion.landing.virtual_model import Tracking
 from companion.planning.guidance import GuidanceMemory, ReferenceState
 from companion.situation.phases import Phase
 from companion.sortie.memory import SortieMemory, move_sortie
-from companion.vehicle.driving import Surprise
 from companion.vehicle.estimator import EstimatorMemory
+from companion.vehicle.surprise import Surprise
 from link.messages import ContactForecast
 from link.records import replace
 

@@ -4,10 +4,8 @@ import math
 
 import numpy as np
 
-from companion.autopilots.shaping import Shaping
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array, FlightLimits
-from companion.landing.carried_on import limit_rates
 from companion.landing.conditions import is_fix_old
 from companion.landing.feasibility import SPEED_SHARE_MIN
 from companion.landing.memory import StepMemory
@@ -99,22 +97,25 @@ def station_speed_m_s(sortie: SortieMemory, s: Situation) -> float:
     return math.hypot(east_m_s - rate_rad_s * y, north_m_s + rate_rad_s * x)
 
 
-def limit_phase_rates(
-    limits: FlightLimits, memory: StepMemory, situation: Situation, shaping: Shaping | None, config: CompanionConfig
-) -> FlightLimits:
+def limit_phase_rates(limits: FlightLimits, carried: FlightLimits, memory: StepMemory, s: Situation) -> FlightLimits:
     """Return the limits of a plan, for an autopilot that carries setpoints on.
 
     On the way home and to a rally it is high, above all that being carried on could meet. A station may be faster than
     the vehicle, by whose speed all else is bounded.
+
+    Args:
+        limits: of the drone.
+        carried: and of what may be carried on beside the vehicle.
+        memory: with the phase and the station.
+        s: the facts.
     """
     phase = memory.progress.phase
     if phase in (Phase.RETURN, Phase.RALLY):
         return limits
-    limited = limit_rates(limits, memory, situation, shaping, config)
     if phase is not Phase.FOLLOW:
-        return limited
-    speed_m_s = SPEED_SHARE_MIN * station_speed_m_s(memory.sortie, situation)
-    return replace(limited, speed_max_m_s=min(limits.speed_max_m_s, max(limited.speed_max_m_s, speed_m_s)))
+        return carried
+    speed_m_s = SPEED_SHARE_MIN * station_speed_m_s(memory.sortie, s)
+    return replace(carried, speed_max_m_s=min(limits.speed_max_m_s, max(carried.speed_max_m_s, speed_m_s)))
 
 
 def return_aim(pad: PadPath, reference: ReferenceState, s: Situation, config: CompanionConfig) -> Aim:

@@ -15,8 +15,8 @@ from companion.landing.step_data import StepInputs, System
 from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.planning.requests import are_finite
 from companion.situation.phases import FOLLOWING_PHASES, Phase
-from companion.vehicle.driving import forget_beliefs, update_surprise
 from companion.vehicle.pad import PadPath, pad_path
+from companion.vehicle.surprise import forget_beliefs, update_surprise
 from link.records import replace
 
 _PRESENT_OFFSETS_S = HORIZON_OFFSETS_S[:2]  # a second point tells how the lever arm turns

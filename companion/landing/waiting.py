@@ -8,7 +8,8 @@ from companion.landing.sway import is_swaying
 from companion.landing.targets import changes_speed
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation, vehicle_stands
-from companion.vehicle.driving import drives_unevenly, may_depart, may_surprise, turns_hard, winds
+from companion.vehicle.driving import drives_unevenly, may_depart, turns_hard, winds
+from companion.vehicle.surprise import may_surprise
 from link.records import replace
 
 _HELD_UP_M = 0.1  # above the height of waiting, down to which a descent sinks whether it is to wait or not

@@ -20,6 +20,7 @@ from companion.situation.phases import FLYING_PHASES, Phase
 from companion.step import companion_step
 from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.factory import make_estimator
+from companion.vehicle.imm_numbers import deck_of
 from link.mavlink.session import MavlinkSession
 from link.messages import Command, CommandReply, LandingStatus, PadGeometry, Station
 from link.records import replace
@@ -114,7 +115,9 @@ class CompanionNode:
     def receive_pad(self, pad: PadGeometry) -> None:
         """Take the vehicle's description of its pad; the estimator needs the lever arm for sightings of the pad."""
         if self.vehicle.receive_pad(pad):
-            estimator = make_estimator(self.system.config.estimator, pad.antenna_to_pad_m)
+            estimator = make_estimator(self.system.config.estimator, deck_of(pad))
+            if pad.is_afloat:  # what has been learnt of it as of a car is wrong, and believed
+                self.memory = replace(self.memory, vehicle=replace(self.memory.vehicle, estimator=None))
             self.system = replace(self.system, estimator=estimator)
 
     def is_ready_to_start(self) -> bool:

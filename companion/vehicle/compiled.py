@@ -7,6 +7,7 @@ from link.compiled import file_digest, kept_kernel
 FILES = (
     "pad.py",
     "small_matrices.py",
+    "imm_swing.py",
     "imm_kernels.py",
     "imm_sensors.py",
     "imm_mixing.py",

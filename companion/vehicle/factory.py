@@ -9,38 +9,38 @@ from companion.config.estimation import EstimatorConfig, EstimatorKind
 from companion.core.data import Measurement, Quantity
 from companion.vehicle.estimator import BufferedEstimator, Estimator, EstimatorMemory
 from companion.vehicle.imm import ImmModel
-from link.messages import Vector3
+from companion.vehicle.imm_numbers import Deck
 
 
 def make_estimator(
     config: EstimatorConfig,
-    antenna_to_pad_m: Vector3 = (0.0, 0.0, 0.0),
+    deck: Deck | None = None,
     kind: EstimatorKind | None = None,
     *,
     is_silent: bool = False,
 ) -> Estimator:
     """Return an estimator; each has its own memory, which only it reads.
 
-    The lever arm is not part of the memory: when the vehicle tells it later, make the estimator again and go on with
+    The deck is not part of the memory: when the vehicle tells it later, make the estimator again and go on with
     the same memory. The first call for a kind compiles its kernels, once per machine (some 20 s), so that no later
     step waits for it.
 
     Args:
         config: all numbers.
-        antenna_to_pad_m: from the vehicle's antenna to its pad's centre in V, for sightings of the pad.
+        deck: where the pad is on the vehicle, None until it tells.
         kind: which one, instead of the one that the configuration names.
         is_silent: the vehicle tells nothing, and sightings of its pad place it; of the interacting models only.
     """
     kind = config.kind if kind is None else kind
     _warm_up(kind)
-    return _make(config, antenna_to_pad_m, kind, is_silent=is_silent)
+    return _make(config, Deck() if deck is None else deck, kind, is_silent=is_silent)
 
 
 @lru_cache
 def _warm_up(kind: EstimatorKind) -> None:
     """Do once all that an estimator can be asked."""
-    estimator = _make(EstimatorConfig(), (1.0, 0.0, 0.0), kind)
-    sizes = {Quantity.HEADING: 1, Quantity.YAW_RATE: 1, Quantity.ACCELERATION: 1}
+    estimator = _make(EstimatorConfig(), Deck(antenna_to_pad_m=(1.0, 0.0, 0.0)), kind)
+    sizes = {Quantity.HEADING: 1, Quantity.YAW_RATE: 1, Quantity.ACCELERATION: 1, Quantity.TILT: 4}
     memory: EstimatorMemory | None = None
     for i, quantity in enumerate((*Quantity, *Quantity)):
         n = sizes.get(quantity, 3)
@@ -51,9 +51,7 @@ def _warm_up(kind: EstimatorKind) -> None:
     estimator.forecast(memory, now_ns, np.array([0.0, 1.0]))
 
 
-def _make(
-    config: EstimatorConfig, antenna_to_pad_m: Vector3, kind: EstimatorKind, *, is_silent: bool = False
-) -> Estimator:
+def _make(config: EstimatorConfig, deck: Deck, kind: EstimatorKind, *, is_silent: bool = False) -> Estimator:
     match kind:
         case EstimatorKind.LKF_REPORT | EstimatorKind.LKF:
             return _linear(config, kind)
@@ -65,7 +63,7 @@ def _make(
             )
         case EstimatorKind.IMM:
             placed_by = Quantity.PAD if is_silent else Quantity.POSITION
-            imm = ImmModel(config=config.imm, antenna_to_pad_m=antenna_to_pad_m, placed_by=placed_by)
+            imm = ImmModel(config=config.imm, deck=deck, placed_by=placed_by)
             return _opaque(BufferedEstimator(model=imm, config=config.buffer))
         case _:
             assert_never(kind)

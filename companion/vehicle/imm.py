@@ -16,17 +16,18 @@ from typing import assert_never
 import numpy as np
 from msgspec import Struct
 
-from companion.config.estimation import ImmConfig
+from companion.config.estimation import ImmConfig, SwingConfig
 from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
 from companion.vehicle import imm_forecast as forecasts
 from companion.vehicle import imm_judgement as judgement
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_sensors as sensors
+from companion.vehicle.deck_motion import DeckMotion, first_motion, learn, passed
 from companion.vehicle.filter_step import Update, wrapped
-from companion.vehicle.imm_numbers import Numbers, noises_with, numbers_of
-from companion.vehicle.imm_opening import OFFSET, PLACE, open_place_and_offset, open_states
-from link.messages import Vector3
+from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, swing_of
+from companion.vehicle.imm_opening import DECK, OFFSET, PLACE, TILT, open_deck, open_place_and_offset, open_states
+from companion.vehicle.imm_swing import SIZE
 from link.records import replace
 
 KINDS = {
@@ -36,27 +37,40 @@ KINDS = {
     Quantity.YAW_RATE: sensors.YAW_RATE,
     Quantity.PAD: sensors.PAD,
     Quantity.ACCELERATION: sensors.ACCELERATION,
+    Quantity.TILT: sensors.TILT,
 }
+SWINGING = np.array([10, 11, *TILT])
 CURVATURE, HEADING = 6, 7
 TOLD_BY = {  # what is opened to data of a quantity that were rejected for too long
     Quantity.VELOCITY: np.array([2, 3, 4, 5, 9, 11, kernels.BEND]),
     Quantity.HEADING: np.array([HEADING]),
     Quantity.YAW_RATE: np.array([CURVATURE]),
     Quantity.ACCELERATION: np.array([kernels.LEAK]),
+    Quantity.TILT: TILT,
 }
 CLOCK = kernels.CLOCK
 TURNS = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
+_SETTLED_STD_M_S = 0.3  # of the speed; a receiver's velocity is as good, two fixes in a second are
 MOTIONS = frozenset({Quantity.POSITION, Quantity.VELOCITY})
 TURN_AGE_MAX_S = 1.0  # of a sensor that is at work: several periods of the slowest
 
 
 class ImmState(Struct, frozen=True, kw_only=True, eq=False):
-    """Both modes, the slow part of the fixes' variance, and how long ago turning, and place or velocity, were told."""
+    """The filter.
+
+    Attributes:
+        modes: both.
+        fix_bias_variance_m2: the slow part of the fixes' variance.
+        turn_age_s: how long ago a sensor told the heading or the yaw rate.
+        unmeasured_s: how long ago place or velocity was told.
+        deck: how the deck swings; None until the vehicle has told its tilt.
+    """
 
     modes: mixing.Modes
     fix_bias_variance_m2: float
     turn_age_s: float = math.inf
     unmeasured_s: float = 0.0
+    deck: DeckMotion | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -65,19 +79,19 @@ class ImmModel:
 
     Attributes:
         config: its numbers.
-        antenna_to_pad_m: lever arm in V; the vehicle turns about the pad's centre, and sightings are of it.
+        deck: what the vehicle tells of its pad; it turns about the pad's centre, and sightings are of it.
         placed_by: what it starts on: fixes, or sightings of a vehicle that tells nothing.
         numbers: the same as the kernels take them, derived.
     """
 
     config: ImmConfig
-    antenna_to_pad_m: Vector3 = (0.0, 0.0, 0.0)
+    deck: Deck = field(default_factory=Deck)
     placed_by: Quantity = Quantity.POSITION
     numbers: Numbers = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Derive the kernels' numbers."""
-        object.__setattr__(self, "numbers", numbers_of(self.config, self.antenna_to_pad_m))
+        object.__setattr__(self, "numbers", numbers_of(self.config, self.deck))
 
     def start(self, place: Measurement) -> ImmState:
         """Return the state after a first place: anything may be true of the rest.
@@ -87,9 +101,10 @@ class ImmModel:
         is_fix = place.quantity is Quantity.POSITION
         white, bias_variance = self._split(place.covariance) if is_fix else (place.covariance, 0.0)
         offset_variance = self.config.receivers.frame_offset_std_m**2 + bias_variance if is_fix else 0.0
-        mean = np.zeros(kernels.SIZE)
+        mean = np.zeros(SIZE)
         mean[PLACE] = place.value
         covariance = np.diag(self.numbers.prior_variances)
+        covariance[DECK, DECK] = 0.0
         covariance[np.ix_(PLACE, PLACE)] = white
         covariance[CLOCK, CLOCK] = self.config.receivers.clock_std_s**2 if bias_variance else 0.0
         covariances = open_place_and_offset(np.stack([covariance, covariance]), offset_variance * np.eye(3))
@@ -101,14 +116,24 @@ class ImmModel:
         """Return the state `dt_s` later."""
         numbers = self.numbers
         modes = mixing.predict_modes(
-            state.modes, dt_s, self._noises(state), numbers.dwell_s, numbers.motion, self._known_variance
+            state.modes, dt_s, self._noises(state), numbers.dwell_s, self._motion(state), self._known_variance
         )
-        return replace(state, modes=modes, turn_age_s=state.turn_age_s + dt_s, unmeasured_s=state.unmeasured_s + dt_s)
+        return replace(
+            state,
+            modes=modes,
+            turn_age_s=state.turn_age_s + dt_s,
+            unmeasured_s=state.unmeasured_s + dt_s,
+            deck=None if state.deck is None else passed(state.deck, dt_s),
+        )
 
     def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState] | None:
-        """Return the state after any quantity, None of an acceleration along a heading that is not known."""
+        """Return the state after any quantity, None of an acceleration or a tilt for which it is too early."""
         if measurement.quantity is Quantity.ACCELERATION and not self._is_heading_known(state):
             return None
+        if measurement.quantity is Quantity.TILT and state.deck is None:
+            if not self._has_settled(state):
+                return None
+            state = self._with_deck(state, measurement)
         R, bias_variance = measurement.covariance, state.fix_bias_variance_m2
         if measurement.quantity is Quantity.POSITION:
             R, bias_variance = self._split(R)
@@ -122,11 +147,15 @@ class ImmModel:
         modes, nis, gate_nis = judgement.take_reading(modes, reading, numbers.lever_m, numbers.course)
         tells_turn = measurement.quantity in TURNS and self.placed_by is Quantity.POSITION
         turn_age_s = 0.0 if tells_turn else state.turn_age_s  # what is only seen to turn is taken for a car
+        deck = state.deck
+        if deck is not None and measurement.quantity is Quantity.TILT:
+            deck = learn(deck, (modes[2] @ modes[0])[SWINGING].tolist(), self._swing.lag_s)
         updated = ImmState(
             modes=modes,
             fix_bias_variance_m2=bias_variance,
             turn_age_s=turn_age_s,
             unmeasured_s=0.0 if tells_motion else state.unmeasured_s,
+            deck=deck,
         )
         return Update(state=updated, nis=nis, gate_nis=gate_nis, dof=len(measurement.value))
 
@@ -148,7 +177,7 @@ class ImmModel:
                         modes=open_states(state.modes, OFFSET, np.full(3, self._step_size(state, measurement) ** 2)),
                     )
                 return self._restart(state, measurement)
-            case Quantity.VELOCITY | Quantity.HEADING | Quantity.YAW_RATE | Quantity.ACCELERATION:
+            case Quantity.VELOCITY | Quantity.HEADING | Quantity.YAW_RATE | Quantity.ACCELERATION | Quantity.TILT:
                 told = TOLD_BY[measurement.quantity]
                 return replace(state, modes=open_states(state.modes, told, self.numbers.prior_variances[told]))
             case _:
@@ -157,7 +186,7 @@ class ImmModel:
     def describe(self, state: ImmState, t_ns: int) -> VehicleEstimate:
         """Return the mixture of both modes."""
         x, P, position, velocity, acceleration, G, heading_variance = forecasts.describe_modes(
-            state.modes, self.numbers.motion, self._known_variance
+            state.modes, self._motion(state), self._known_variance
         )
         covariance = G @ P @ G.T
         known = heading_variance < self._known_variance
@@ -175,8 +204,8 @@ class ImmModel:
         """Return the future along the present curvature, with an acceleration that fades and stops at standstill."""
         if self.placed_by is Quantity.PAD:
             state = self._as_driven(state, t_ns)
-        position, velocity, acceleration, yaw, grade, std, heading_variance = forecasts.forecast_modes(
-            state.modes, _own(offset_s), self._noises(state), self.numbers.motion, self._known_variance
+        position, velocity, acceleration, yaw, grade, tilt, std, heading_variance = forecasts.forecast_modes(
+            state.modes, _own(offset_s), self._noises(state), self._motion(state), self._known_variance
         )
         means, covariances, weights = state.modes
         return Forecast(
@@ -189,6 +218,7 @@ class ImmModel:
             position_std_m=std,
             is_coarse=state.fix_bias_variance_m2 > 0.0 or self.placed_by is Quantity.PAD,
             grade=grade,
+            tilt_rad=None if state.deck is None else tilt,
             yaw_std_rad=math.sqrt(heading_variance),
             frame_offset_enu_m=(weights @ means)[OFFSET[:2]],
             frame_offset_std_m=math.sqrt(float((weights @ covariances[:, OFFSET, OFFSET]).max())),
@@ -209,7 +239,7 @@ class ImmModel:
         return bool(mixing.is_heading_known(state.modes, self._known_variance))
 
     def _noises(self, state: ImmState) -> Array:
-        """Both modes' noise, (2, 15), as `imm_kernels.process_noise` takes it."""
+        """Both modes' noise, (2, 16), as `imm_kernels.process_noise` takes it."""
         walk_m2_s = 2.0 * state.fix_bias_variance_m2 / self.config.receivers.fix_bias_time_s
         receiver_m2_s = self.config.receivers.frame_offset_walk_m2_s + walk_m2_s
         return noises_with(
@@ -218,6 +248,30 @@ class ImmModel:
             self.config.receivers.own_walk_share * walk_m2_s,
             turn_is_measured=state.turn_age_s < TURN_AGE_MAX_S,
         )
+
+    @property
+    def _swing(self) -> SwingConfig:
+        return swing_of(self.config, is_afloat=self.deck.is_afloat)
+
+    def _motion(self, state: ImmState) -> Array:
+        """Return the numbers (16,) of the motion, with what has been learnt of the deck's."""
+        if state.deck is None:
+            return self.numbers.motion
+        motion = self.numbers.motion.copy()
+        motion[1:4], motion[10:16] = state.deck.oscillators[:3], state.deck.oscillators[3:]
+        return motion
+
+    def _has_settled(self, state: ImmState) -> bool:
+        """Whether the first fixes are in: what a vehicle of any speed does would be learnt about its tilt, too."""
+        _, covariances, _ = state.modes
+        speed_variance = float((covariances[:, 2, 2] + covariances[:, 3, 3]).max())
+        return self._is_heading_known(state) and speed_variance < _SETTLED_STD_M_S**2
+
+    def _with_deck(self, state: ImmState, tilt: Measurement) -> ImmState:
+        """Return the state of a vehicle that begins to tell its tilt; what it states may err for ever, too."""
+        variances = np.append(self.numbers.prior_variances[TILT], tilt.covariance.diagonal()[:2])
+        modes = open_deck(state.modes, self.numbers.lever_m, variances)
+        return replace(state, modes=modes, deck=first_motion(self._swing))
 
     def _step_size(self, state: ImmState, measurement: Measurement) -> float:
         """How far, m, a measured place is from the expected one; at least the prior of the offset."""
@@ -260,7 +314,7 @@ class ImmModel:
         means, covariances, weights = self.start(place).modes
         means[:, PLACE] += x[OFFSET]
         means[:, OFFSET] = x[OFFSET]
-        for kept in (HEADING, CLOCK):
+        for kept in (HEADING, CLOCK, *DECK):
             means[:, kept], covariances[:, kept, kept] = x[kept], P[kept, kept]
         return replace(state, modes=(means, covariances, weights))
 

@@ -1,27 +1,32 @@
 """What the interacting turning models tell: the antenna's motion now and over the horizon, compiled.
 
-`motion` (9,) is as `imm_mixing` has it.
+`motion` (16,) is as `imm_mixing` has it.
 """
 
 import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
-from companion.vehicle.imm_kernels import BEND, SIZE
+from companion.vehicle.imm_kernels import BEND
 from companion.vehicle.imm_mixing import Modes, combine, glide, heading_variance, shifted, with_direction
 from companion.vehicle.imm_sensors import antenna_velocity, horizontal_acceleration
+from companion.vehicle.imm_swing import MOUNT, ROLL, SIZE, antenna_swing, pad_swing, pad_swing_acceleration
+from companion.vehicle.small_matrices import times
 
 
 @compiled_kernel
 def kinematics(states: Array, motion: Array) -> tuple[Array, Array, Array]:
-    """Return the antenna's position and velocity and the pad's acceleration in W, each (n, 3), of `states` (n, 18)."""
+    """Return the antenna's position and velocity and the pad's acceleration in W, each (n, 3), of `states` (n, 24)."""
     n = len(states)
     position, velocity, acceleration = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
     for i in range(n):
         x = states[i]
-        position[i, 0], position[i, 1], position[i, 2] = x[0], x[1], x[8] + x[10]
-        velocity[i], _ = antenna_velocity(x, motion[5:8])
+        swing, _ = antenna_swing(x, ROLL, motion[5:9])
+        position[i, 0], position[i, 1], position[i, 2] = x[0] + swing[0], x[1] + swing[1], x[8] + x[10] + swing[2]
+        velocity[i], _ = antenna_velocity(x, motion[5:9])
         acceleration[i, :2], _ = horizontal_acceleration(x)
+        shaken, _ = pad_swing_acceleration(x, motion)
+        acceleration[i, :2] += shaken
         hx, hy = np.cos(x[7]), np.sin(x[7])
         forward, pull = hx * x[2] + hy * x[3], hx * x[4] + hy * x[5]
         climbing = pull * x[9] + forward**2 * x[BEND]
@@ -31,11 +36,15 @@ def kinematics(states: Array, motion: Array) -> tuple[Array, Array, Array]:
 
 @compiled_kernel
 def kinematics_jacobian(x: Array, motion: Array) -> Array:
-    """Return the Jacobian `(9, 18)` of position, velocity and acceleration."""
+    """Return the Jacobian `(9, 24)` of position, velocity and acceleration."""
     G = np.zeros((9, SIZE))
     G[0, 0], G[1, 1], G[2, 8], G[2, 10] = 1.0, 1.0, 1.0, 1.0
-    _, G[3:6] = antenna_velocity(x, motion[5:8])
+    _, turn = antenna_swing(x, ROLL, motion[5:9])
+    G[0:3] += turn
+    _, G[3:6] = antenna_velocity(x, motion[5:9])
     _, G[6:8, 2:7] = horizontal_acceleration(x)
+    _, shaking = pad_swing_acceleration(x, motion)
+    G[6:8] += shaking
     hx, hy = np.cos(x[7]), np.sin(x[7])
     forward, pull = hx * x[2] + hy * x[3], hx * x[4] + hy * x[5]
     G[8, 2], G[8, 3] = 2.0 * forward * x[BEND] * hx, 2.0 * forward * x[BEND] * hy
@@ -47,7 +56,7 @@ def kinematics_jacobian(x: Array, motion: Array) -> Array:
 
 @compiled_kernel
 def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) -> tuple[Array, Array]:
-    """Return the means `(n, 18)` and the pad's position variances `(n, 3)` at `offset_s` (n,), not falling.
+    """Return the means `(n, 24)` and the pad's position variances `(n, 3)` at `offset_s` (n,), not falling.
 
     The pad's, because a heading that is not well known moves it about an antenna that is.
     """
@@ -63,33 +72,39 @@ def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) ->
         _, S = shifted(x, P, motion[5:8], 1.0)
         variances[i, 0], variances[i, 1] = S[0, 0], S[1, 1]
         variances[i, 2] = S[8, 8] + S[10, 10] + 2.0 * S[8, 10]
+        if motion[12] > 0.0:
+            _, H = pad_swing(x, ROLL, motion[8])
+            H[:, 7] = 0.0
+            H[0, 0], H[1, 1] = 1.0, 1.0
+            for axis in range(2):
+                variances[i, axis] = (times(H[axis : axis + 1], S) @ H[axis])[0]
     return means, variances
 
 
 @compiled_kernel
 def forecast_modes(
     modes: Modes, offset_s: Array, noises: Array, motion: Array, known_variance: float
-) -> tuple[Array, Array, Array, Array, Array, Array, float]:
+) -> tuple[Array, Array, Array, Array, Array, Array, Array, float]:
     """Return the mixture over the horizon.
 
     Args:
         modes: the filter.
         offset_s: (n,) not falling.
-        noises: (2, 15) of both modes.
+        noises: (2, 16) of both modes.
         motion: its numbers.
         known_variance: of a heading that is known, rad^2; without one the lever arm has no direction.
 
     Returns:
-        Position, velocity and acceleration, each (n, 3), heading and grade, each (n,), the pad's deviation (n, 3), and
-        the present variance of the heading, rad^2.
+        Position, velocity and acceleration, each (n, 3), heading and grade, each (n,), the tilt (n, 4) as
+        `imm_swing` has it, the pad's deviation (n, 3), and the present variance of the heading, rad^2.
     """
     directed = with_direction(motion, modes, known_variance)
     x, P = combine(modes[0], modes[1], modes[2])
     noise = modes[2][0] * noises[0] + modes[2][1] * noises[1]
     means, variances = horizon(x, P, offset_s, noise, directed)
     position, velocity, acceleration = kinematics(means, directed)
-    yaw, grade = means[:, 7].copy(), means[:, 9].copy()
-    return position, velocity, acceleration, yaw, grade, np.sqrt(variances), heading_variance(modes)
+    yaw, grade, tilt = means[:, 7].copy(), means[:, 9].copy(), means[:, ROLL:MOUNT].copy()
+    return position, velocity, acceleration, yaw, grade, tilt, np.sqrt(variances), heading_variance(modes)
 
 
 @compiled_kernel
@@ -104,7 +119,7 @@ def describe_modes(
         known_variance: as above.
 
     Returns:
-        Mean (18,) and covariance (18, 18), position, velocity and acceleration, each (1, 3), their Jacobian (9, 18),
+        Mean (24,) and covariance (24, 24), position, velocity and acceleration, each (1, 3), their Jacobian (9, 24),
         and the variance of the heading, rad^2.
     """
     directed = with_direction(motion, modes, known_variance)

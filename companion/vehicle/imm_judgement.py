@@ -40,14 +40,14 @@ def expect_manoeuvre(modes: Modes, unmeasured_s: float, dwell_s: Array, noise: A
         modes: the filter at the time of the reading.
         unmeasured_s: time since the last fix or velocity.
         dwell_s: (2,) mean dwell times of both modes.
-        noise: (15,) of the manoeuvre model.
+        noise: (16,) of the manoeuvre model.
     """
     means, covariances, weights = modes
     begun = switching(dwell_s, unmeasured_s)[0, 1]
     if weights[1] >= begun:
         return modes
     lasted_s = min(unmeasured_s, dwell_s[1])
-    fresh = covariances[0] + process_noise(means[0], lasted_s, noise, np.zeros((2, 2)))
+    fresh = covariances[0] + process_noise(means[0], lasted_s, noise, np.zeros((2, 2)), np.zeros((2, 2, 2)))
     share = weights[1] / begun
     shares = np.array([1.0 - share, share])
     mean, covariance = combine(means, np.stack((fresh, covariances[1])), shares)
@@ -96,7 +96,7 @@ def update_modes(
     Args:
         modes: the filter.
         reading: kind as `observe` takes it, value (m,), covariance (m, m).
-        lever: (3,) from the antenna to the pad in V, m.
+        lever: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll, m.
         sees_heading: whether the heading is known, so that the lever arm has a direction.
     """
     means, covariances, weights = modes
@@ -132,7 +132,7 @@ def align_modes(
     itself is vague, or when it goes sideways.
     """
     xs, Ps = means.copy(), covariances.copy()
-    lever, zero = np.zeros(3), np.zeros(1)
+    lever, zero = np.zeros(4), np.zeros(1)
     for j in range(2):
         x, P = means[j], covariances[j]
         speed = math.hypot(x[2], x[3])
@@ -159,7 +159,7 @@ def take_reading(
     Args:
         modes: the filter.
         reading: kind as `observe` takes it, value (m,), covariance (m, m).
-        lever: (3,) from the antenna to the pad in V, m.
+        lever: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll, m.
         course: (3,) `align_modes`' speed, m/s, and variances of course and known heading, rad^2.
     """
     kind, value, R = reading

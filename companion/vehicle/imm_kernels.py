@@ -1,6 +1,6 @@
 """Compiled arithmetic of the turning model: one step of motion, its noise, and the Kalman update.
 
-State `x` (18,) of the vehicle in W:
+State `x` (24,) of the vehicle in W:
   0:2  p   horizontal position, m: the antenna's, and the pad's while it moves (`imm_mixing.glide`)
   2:4  v   horizontal velocity of the pad's centre, m/s, where the vehicle's body follows the road
   4:6  b   what changes the velocity apart from turning, m/s^2; decays with time constant tau
@@ -14,6 +14,7 @@ State `x` (18,) of the vehicle in W:
   16  e    change of the grade per metre, 1/m
   17  f    what the vehicle's accelerometer reads too much along V, m/s^2: gravity by a pitch that it does not tell, and
            its own offset (Gauss-Markov)
+  18:24    roll and pitch of the body against the road, see `imm_swing`; zero until the vehicle tells them
 With `w = k |v|` and J the turn by +90 degrees: `dp = v, dv = w J v + b, db = w J b - b/tau, dpsi = w`. At constant
 `w` this has a closed form: in a frame that turns with the vehicle, `v` relaxes along `b` and nothing else happens.
 At rest `w` is zero, so a standing vehicle cannot turn. Braking ends at standstill. The curvature is driven by the
@@ -32,14 +33,14 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
+from companion.vehicle.imm_swing import MOUNT, PITCH, ROLL, SIZE
 from companion.vehicle.small_matrices import inverse_of, less_outer, times
 
-SIZE = 18
 MOTION = 8  # leading states that the non-linear motion touches
 FOLLOWS = (0, 0, 1, 1, 1, 1, 2, 1)  # each of them: 2 is the curvature, 1 its integral, 0 its second one
 CLOCK, BEND, LEAK = 15, 16, 17
 HEADING_NOISE, CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST = 4, 8, 9, 10  # their places in the noise
-BEND_STD, BEND_ACCELERATION_STD, BEND_LENGTH, ROAD_NOISE, LEAK_NOISE = 5, 11, 12, 13, 14
+BEND_STD, BEND_ACCELERATION_STD, BEND_LENGTH, ROAD_NOISE, LEAK_NOISE, AFLOAT = 5, 11, 12, 13, 14, 15
 
 
 @compiled_kernel
@@ -58,7 +59,7 @@ def climb(x: Array, y: Array, F: Array, by_v_s: float, by_b_s2: float) -> None:
     """Write height and grade into `y`, and their rows into `F`, after a drive from `x`.
 
     Args:
-        x: state (18,) before.
+        x: state (24,) before.
         y: the state afterwards, under way.
         F: its Jacobian, under way.
         by_v_s: what the velocity adds to the place, s.
@@ -78,14 +79,15 @@ def climb(x: Array, y: Array, F: Array, by_v_s: float, by_b_s2: float) -> None:
 
 
 @compiled_kernel
-def advance(x: Array, dt_s: float, tau_s: float, heave: Array) -> tuple[Array, Array]:
-    """Return the state `dt_s` later and its Jacobian `(18, 18)`.
+def advance(x: Array, dt_s: float, tau_s: float, heave: Array, tilt: Array) -> tuple[Array, Array]:
+    """Return the state `dt_s` later and its Jacobian `(24, 24)`.
 
     Args:
-        x: state (18,).
+        x: state (24,).
         dt_s: step, short against a turn (0.1 s).
         tau_s: time constant of `b`.
         heave: transition (2, 2) of the heave over `dt_s`.
+        tilt: transitions (2, 2, 2) of roll and pitch.
     """
     vx, vy, bx, by = x[2], x[3], x[4], x[5]
     speed = math.hypot(vx, vy)
@@ -109,6 +111,8 @@ def advance(x: Array, dt_s: float, tau_s: float, heave: Array) -> tuple[Array, A
     y[7] = x[7] + turn
     y[10] = heave[0, 0] * x[10] + heave[0, 1] * x[11]
     y[11] = heave[1, 0] * x[10] + heave[1, 1] * x[11]
+    y[ROLL:PITCH] = tilt[0, :, 0] * x[ROLL] + tilt[0, :, 1] * x[ROLL + 1]
+    y[PITCH:MOUNT] = tilt[1, :, 0] * x[PITCH] + tilt[1, :, 1] * x[PITCH + 1]
 
     F = np.eye(SIZE)
     F[0, 2], F[0, 3], F[1, 2], F[1, 3] = ch * dt_s, -sh * dt_s, sh * dt_s, ch * dt_s
@@ -124,6 +128,7 @@ def advance(x: Array, dt_s: float, tau_s: float, heave: Array) -> tuple[Array, A
         F[i, 6] = d_turn[i] * speed_mid * dt_s
     F[7, 2], F[7, 3], F[7, 6] = by_speed * ux, by_speed * uy, speed_mid * dt_s
     F[10:12, 10:12] = heave
+    F[ROLL:PITCH, ROLL:PITCH], F[PITCH:MOUNT, PITCH:MOUNT] = tilt[0], tilt[1]
 
     stop_s = standstill_s(x[2:4], x[4:6], tau_s, dt_s)
     if stop_s >= 0.0:
@@ -182,18 +187,20 @@ def heave_step(dt_s: float, frequency_rad_s: float, damping: float, std_m: float
 
 
 @compiled_kernel
-def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array) -> Array:
-    """Return Q `(18, 18)` over `dt_s`.
+def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array, tilt_noise: Array) -> Array:
+    """Return Q `(24, 24)` over `dt_s`.
 
     Args:
-        x: state (18,), whose velocity says what is along and what is across.
+        x: state (24,), whose velocity says what is along and what is across.
         dt_s: step.
-        noise: (15,) jerk along and across the track, m^2/s^5; lateral acceleration, m^2/s^5; lowest speed for the
+        noise: (16,) jerk along and across the track, m^2/s^5; lateral acceleration, m^2/s^5; lowest speed for the
             curvature, m/s; heading, rad^2/s; standard deviation of the grade's change, 1/m; the receiver's and the
             drone's own wandering, m^2/s; clock, s^2/s; standard deviation of the curvature in the long run, rad/m;
             heading at rest, rad^2/s; standard deviation of a vertical curve's acceleration, m/s^2; its length, m;
-            height of the road, m^2/m; what the accelerometer reads too much, m^2/s^5.
+            height of the road, m^2/m; what the accelerometer reads too much, m^2/s^5; 1 for a vehicle that heaves at
+            rest, too, else 0.
         heave_noise: (2, 2) of the heave over `dt_s`.
+        tilt_noise: (2, 2, 2) of roll and pitch.
     """
     Q = np.zeros((SIZE, SIZE))
     speed = math.hypot(x[2], x[3])
@@ -225,7 +232,8 @@ def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array) -> Ar
     Q[8, 9] = Q[9, 8] = bends * s**3 / 8
     Q[8, BEND] = Q[BEND, 8] = bends * s**2 / 6
     Q[9, BEND] = Q[BEND, 9] = bends * s / 2
-    Q[10:12, 10:12] = heave_noise * share  # it is the road that shakes a vehicle
+    Q[10:12, 10:12] = heave_noise * max(share, noise[AFLOAT])  # it is the road that shakes a vehicle
+    Q[ROLL:PITCH, ROLL:PITCH], Q[PITCH:MOUNT, PITCH:MOUNT] = tilt_noise[0], tilt_noise[1]
     for place, offset in ((0, 12), (1, 13), (8, 14)):  # where the drone errs about itself, both move
         Q[place, place] += noise[7] * d
         Q[place, offset] = Q[offset, place] = noise[7] * d

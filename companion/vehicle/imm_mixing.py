@@ -1,10 +1,11 @@
 """Compiled steps of two interacting turning models that differ in their noise only (Blom and Bar-Shalom 1988).
 
-`Modes` are means (2, 18), covariances (2, 18, 18) and probabilities (2,). Between measurements the vehicle may change
-from one mode to the other as a continuous Markov chain with the given mean dwell times. `motion` (9,) is the time
+`Modes` are means (2, 24), covariances (2, 24, 24) and probabilities (2,). Between measurements the vehicle may change
+from one mode to the other as a continuous Markov chain with the given mean dwell times. `motion` (16,) is the time
 constant of the acceleration, s, the heave's angular frequency, rad/s, damping and standard deviation, m, the time
-constant of the clock's difference, s, the lever arm (3,) from the antenna to the pad in V, m, and the time constant of
-what the accelerometer reads too much, s.
+constant of the clock's difference, s, the lever arm (3,) from the antenna to the pad in V and the pad's height above
+the axis of roll, m, the time constant of what the accelerometer reads too much, s, and the same three numbers of roll
+and of pitch as of heave, rad.
 """
 
 import math
@@ -17,7 +18,6 @@ from companion.vehicle.imm_kernels import (
     BEND,
     CLOCK,
     LEAK,
-    SIZE,
     advance,
     bend_step,
     curvature_left,
@@ -25,6 +25,7 @@ from companion.vehicle.imm_kernels import (
     process_noise,
 )
 from companion.vehicle.imm_sensors import turned
+from companion.vehicle.imm_swing import SIZE
 from companion.vehicle.small_matrices import carried_through
 
 Modes = tuple[Array, Array, Array]
@@ -63,7 +64,7 @@ def mix(modes: Modes, changes: Array) -> Modes:
 
 @compiled_kernel
 def shifted(x: Array, P: Array, lever: Array, sign: float) -> tuple[Array, Array]:
-    """Return mean and covariance with the position moved by `sign` times `lever` (3,) of V.
+    """Return mean and covariance with the position moved by `sign` times `lever` of V.
 
     The heading turns it, and the grade raises what is in front. Its upright part is left out, for it is the same at all
     times; that it leans with the grade, too, is a tenth of it at most.
@@ -91,22 +92,25 @@ def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple
     It is the pad's centre that moves as `advance` says, and the antenna swings about it.
 
     Args:
-        x: mean (18,).
-        P: covariance (18, 18).
+        x: mean (24,).
+        P: covariance (24, 24).
         dt_s: time to pass.
-        noise: (15,) as `process_noise` takes it.
-        motion: (9,), see the module; a lever arm of zero where it has no known direction.
+        noise: (16,) as `process_noise` takes it.
+        motion: (16,), see the module; a lever arm of zero where it has no known direction.
     """
     steps = max(math.ceil(dt_s / STEP_MAX_S - 1e-9), 1)
     step_s = dt_s / steps
     heave, heave_noise = heave_step(step_s, motion[1], motion[2], motion[3])
-    clock_left, leak_left = math.exp(-step_s / motion[4]), math.exp(-step_s / motion[8])
+    tilt, tilt_noise = np.empty((2, 2, 2)), np.empty((2, 2, 2))
+    for i in range(2):
+        tilt[i], tilt_noise[i] = heave_step(step_s, motion[10 + 3 * i], motion[11 + 3 * i], motion[12 + 3 * i])
+    clock_left, leak_left = math.exp(-step_s / motion[4]), math.exp(-step_s / motion[9])
     x, P = shifted(x, P, motion[5:8], 1.0)
     for _ in range(steps):
-        Q = process_noise(x, step_s, noise, heave_noise)
+        Q = process_noise(x, step_s, noise, heave_noise, tilt_noise)
         turn_left = curvature_left(math.hypot(x[2], x[3]), step_s, noise)
         bend_left, _ = bend_step(x, step_s, noise)
-        x, F = advance(x, step_s, motion[0], heave)
+        x, F = advance(x, step_s, motion[0], heave, tilt)
         x[6] *= turn_left
         F[6, 6] = turn_left
         x[BEND] *= bend_left
@@ -138,7 +142,7 @@ def with_direction(motion: Array, modes: Modes, known_variance: float) -> Array:
     """Return `motion` without its lever arm where the heading is not known better than `known_variance`, rad^2."""
     directed = motion.copy()
     if not is_heading_known(modes, known_variance):
-        directed[5:8] = 0.0
+        directed[5:9] = 0.0
     return directed
 
 
@@ -146,7 +150,7 @@ def with_direction(motion: Array, modes: Modes, known_variance: float) -> Array:
 def predict_modes(
     modes: Modes, dt_s: float, noises: Array, dwell_s: Array, motion: Array, known_variance: float
 ) -> Modes:
-    """Return the filter `dt_s` later; `noises` (2, 15), `dwell_s` (2,), the others as `with_direction` has them."""
+    """Return the filter `dt_s` later; `noises` (2, 16), `dwell_s` (2,), the others as `with_direction` has them."""
     directed = with_direction(motion, modes, known_variance)
     means, covariances, weights = mix(modes, switching(dwell_s, dt_s))
     for j in range(2):

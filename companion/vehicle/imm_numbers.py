@@ -6,13 +6,33 @@ from functools import lru_cache
 
 import numpy as np
 
-from companion.config.estimation import ImmConfig, ImmModeConfig
+from companion.config.estimation import ImmConfig, ImmModeConfig, SwingConfig
 from companion.core.data import Array
 from companion.vehicle.imm_kernels import CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST, HEADING_NOISE
-from link.messages import Vector3
+from link.messages import PadGeometry, Vector3
 
 UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
 ON_THE_SPOT_RAD_M = 10.0  # 1 rad/s while the middle moves at 0.1 m/s
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Deck:
+    """Where the pad is on the vehicle, as it tells it.
+
+    Attributes:
+        antenna_to_pad_m: lever arm in V.
+        pad_height_m: above the road or the water, about which the body is taken to tilt.
+        is_afloat: it floats.
+    """
+
+    antenna_to_pad_m: Vector3 = (0.0, 0.0, 0.0)
+    pad_height_m: float = 0.0
+    is_afloat: bool = False
+
+
+def deck_of(pad: PadGeometry) -> Deck:
+    """Return the deck that `pad` is on."""
+    return Deck(antenna_to_pad_m=pad.antenna_to_pad_m, pad_height_m=pad.height_m, is_afloat=pad.is_afloat)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -20,11 +40,11 @@ class Numbers:
     """A configuration as the kernels take it.
 
     Attributes:
-        motion: (9,) as `imm_mixing` has it.
+        motion: (16,) as `imm_mixing` has it.
         dwell_s: (2,) of both modes.
-        noises: (2, 15) as `imm_kernels.process_noise` takes them, but for what depends on the state (`noises_with`).
-        lever_m: (3,) from the antenna to the pad in V.
-        prior_variances: (18,) of every state but position, offset and clock, when nothing else is known.
+        noises: (2, 16) as `imm_kernels.process_noise` takes them, but for what depends on the state (`noises_with`).
+        lever_m: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll.
+        prior_variances: (24,) of every state but position, offset and clock, when nothing else is known.
         course: (3,) as `imm_judgement.take_reading` takes it.
     """
 
@@ -36,9 +56,17 @@ class Numbers:
     course: Array
 
 
-def numbers_of(config: ImmConfig, antenna_to_pad_m: Vector3) -> Numbers:
-    """Return the numbers of `config` with the lever arm (3,) in V from the antenna to the pad, m."""
-    heave = (2.0 * math.pi * config.heave.frequency_hz, config.heave.damping, config.heave.std_m)
+def swing_of(config: ImmConfig, *, is_afloat: bool) -> SwingConfig:
+    """Return how a deck swings that has not been watched, on the water or on a road."""
+    return config.afloat if is_afloat else config.on_road
+
+
+def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
+    """Return the numbers of `config` for a pad on `deck`."""
+    swing = swing_of(config, is_afloat=deck.is_afloat)
+    heave = (2.0 * math.pi * swing.heave.frequency_hz, swing.heave.damping, swing.heave.std)
+    level = (2.0 * math.pi * swing.tilt.frequency_hz, swing.tilt.damping, 0.0)  # until it is told
+    lever_m = (*deck.antenna_to_pad_m, deck.pad_height_m)
     modes, heading = (config.steady, config.manoeuvre), config.heading
     return Numbers(
         motion=np.array(
@@ -46,21 +74,23 @@ def numbers_of(config: ImmConfig, antenna_to_pad_m: Vector3) -> Numbers:
                 config.acceleration_decay_s,
                 *heave,
                 config.receivers.clock_time_s,
-                *antenna_to_pad_m,
+                *lever_m,
                 config.road.gravity_leak_time_s,
+                *level,
+                *level,
             ]
         ),
         dwell_s=np.array([mode.dwell_s for mode in modes]),
-        noises=np.array([_noise(config, mode) for mode in modes]),
-        lever_m=np.array(antenna_to_pad_m),
-        prior_variances=_prior_variances(config),
+        noises=np.array([_noise(config, mode, is_afloat=deck.is_afloat) for mode in modes]),
+        lever_m=np.array(lever_m),
+        prior_variances=_prior_variances(config, is_afloat=deck.is_afloat),
         course=np.array([heading.course_speed_min_m_s, heading.course_std_rad**2, heading.known_std_rad**2]),
     )
 
 
 @lru_cache(maxsize=4)  # it changes with a fix's stated error only
 def noises_with(numbers: Numbers, receiver_m2_s: float, own_m2_s: float, *, turn_is_measured: bool) -> Array:
-    """Return both modes' noise (2, 15) with the wandering of the vehicle's receiver and of the drone's own place.
+    """Return both modes' noise (2, 16) with the wandering of the vehicle's receiver and of the drone's own place.
 
     Where the drone's own place does not wander, fixes have corrections, and are dated without an error.
     A vehicle whose turning is measured may be one that turns on the spot. Any other is taken for a car: it turns no
@@ -76,25 +106,30 @@ def noises_with(numbers: Numbers, receiver_m2_s: float, own_m2_s: float, *, turn
     return noises
 
 
-def _prior_variances(config: ImmConfig) -> Array:
+def _prior_variances(config: ImmConfig, *, is_afloat: bool) -> Array:
+    swing = swing_of(config, is_afloat=is_afloat)
     speed, acceleration = config.initial_speed_std_m_s**2, config.initial_acceleration_std_m_s2**2
-    heave = config.heave.std_m**2
-    heave_rate = heave * (2.0 * math.pi * config.heave.frequency_hz) ** 2
+    heave = swing.heave.std**2
+    heave_rate = heave * (2.0 * math.pi * swing.heave.frequency_hz) ** 2
     curvature = config.heading.curvature_std_rad_m**2
     moving = [speed, speed, acceleration, acceleration, curvature, UNKNOWN_HEADING_VARIANCE]
-    vertical = [0.0, config.road.grade_std**2, heave, heave_rate]
-    driven = [config.road.bend_std_per_m**2, config.road.gravity_leak_std_m_s2**2]
+    grade, bend = (0.0, 0.0) if is_afloat else (config.road.grade_std**2, config.road.bend_std_per_m**2)
+    vertical = [0.0, grade, heave, heave_rate]
+    tilt = swing.tilt.std**2
+    tilting = [tilt, tilt * (2.0 * math.pi * swing.tilt.frequency_hz) ** 2]
+    driven = [bend, config.road.gravity_leak_std_m_s2**2, *tilting, *tilting, 0.0, 0.0]
     return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0, *driven])
 
 
-def _noise(config: ImmConfig, mode: ImmModeConfig) -> tuple[float, ...]:
+def _noise(config: ImmConfig, mode: ImmModeConfig, *, is_afloat: bool) -> tuple[float, ...]:
+    """Return one mode's noise; water has no grades."""
     return (
         mode.jerk_psd_m2_s5,
         config.side_jerk_psd_m2_s5,
         mode.lateral_acceleration_psd_m2_s5,
         config.heading.curvature_speed_min_m_s,
         config.heading.psd_rad2_s,
-        config.road.bend_std_per_m,
+        0.0 if is_afloat else config.road.bend_std_per_m,
         0.0,
         0.0,
         2.0 * config.receivers.clock_std_s**2 / config.receivers.clock_time_s,
@@ -102,6 +137,7 @@ def _noise(config: ImmConfig, mode: ImmModeConfig) -> tuple[float, ...]:
         0.0,
         config.road.bend_acceleration_std_m_s2,
         config.road.bend_length_m,
-        config.road.height_psd_m2_m,
+        0.0 if is_afloat else config.road.height_psd_m2_m,
         2.0 * config.road.gravity_leak_std_m_s2**2 / config.road.gravity_leak_time_s,
+        float(is_afloat),
     )

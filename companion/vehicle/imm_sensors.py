@@ -10,9 +10,19 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
-from companion.vehicle.imm_kernels import BEND, CLOCK, LEAK, SIZE
+from companion.vehicle.imm_kernels import BEND, CLOCK, LEAK
+from companion.vehicle.imm_swing import (
+    MOUNT,
+    PITCH,
+    PITCH_RATE,
+    ROLL,
+    ROLL_RATE,
+    SIZE,
+    antenna_swing,
+    pad_swing,
+)
 
-POSITION, VELOCITY, HEADING, YAW_RATE, PAD, COURSE, ACCELERATION = range(7)
+POSITION, VELOCITY, HEADING, YAW_RATE, PAD, COURSE, ACCELERATION, TILT = range(8)
 
 
 @compiled_kernel
@@ -35,21 +45,22 @@ def horizontal_acceleration(x: Array) -> tuple[Array, Array]:
 
 @compiled_kernel
 def turned(lever: Array, yaw_rad: float) -> tuple[float, float]:
-    """Return the horizontal part of `lever` (3,) in V, turned by the heading into W, m."""
+    """Return the horizontal part of `lever` in V, turned by the heading into W, m."""
     c, s = math.cos(yaw_rad), math.sin(yaw_rad)
     return c * lever[0] - s * lever[1], s * lever[0] + c * lever[1]
 
 
 @compiled_kernel
 def antenna_velocity(x: Array, lever: Array) -> tuple[Array, Array]:
-    """Return the antenna's velocity (3,), m/s, and its Jacobian (3, 18).
+    """Return the antenna's velocity (3,), m/s, and its Jacobian (3, 24).
 
     The pad's centre goes where the road goes; behind it by `lever` the antenna swings out as the vehicle turns, and
-    is still lower where the road begins to climb.
+    is still lower where the road begins to climb; it swings as the body tilts.
 
     Args:
-        x: state (18,).
-        lever: (3,) from the antenna to the pad in V, m, zero where it has no known direction.
+        x: state (24,).
+        lever: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll, m; zero where they
+            have no known direction.
     """
     speed, ux, uy = course(x)
     arm_x, arm_y = turned(lever, x[7])
@@ -63,29 +74,33 @@ def antenna_velocity(x: Array, lever: Array) -> tuple[Array, Array]:
     H[2, 9], H[2, 11], H[2, BEND] = forward, 1.0, -forward * lever[0]
     H[0, 6], H[1, 6] = speed * arm_y, -speed * arm_x
     H[0, 7], H[1, 7] = w * arm_x, w * arm_y
-    return z, H
+    swing, change = antenna_swing(x, ROLL_RATE, lever)
+    return z + swing, H + change
 
 
 @compiled_kernel
-def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Array, Array]:
-    """Return what a sensor reads at `x`, `(m,)`, and its Jacobian `(m, 18)`.
+def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Array, Array]:  # noqa: C901 (one case each)
+    """Return what a sensor reads at `x`, `(m,)`, and its Jacobian `(m, 24)`.
 
     Args:
-        kind: POSITION, VELOCITY, HEADING, YAW_RATE, PAD, ACCELERATION, or COURSE (the course minus the heading).
-        x: state (18,).
-        lever: (3,) from the antenna to the pad in V, m.
+        kind: POSITION, VELOCITY, HEADING, YAW_RATE, PAD, ACCELERATION, TILT (roll, pitch and their rates), or COURSE
+            (the course minus the heading).
+        x: state (24,).
+        lever: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll, m.
         sees_heading: whether the heading is known, so that the lever arm has a direction.
     """
     speed, ux, uy = course(x)
-    m = 3 if kind in (POSITION, VELOCITY, PAD) else 1
+    m = 3 if kind in (POSITION, VELOCITY, PAD) else 4 if kind == TILT else 1
+    known = lever if sees_heading else np.zeros(4)
     z, H = np.zeros(m), np.zeros((m, SIZE))
     if kind in (POSITION, PAD):
         z[0], z[1], z[2] = x[0], x[1], x[8] + x[10]
         H[0, 0], H[1, 1], H[2, 8], H[2, 10] = 1.0, 1.0, 1.0, 1.0
     if kind == POSITION:
-        late, change = antenna_velocity(x, lever if sees_heading else np.zeros(3))
-        z -= x[12:15] + x[CLOCK] * late
-        H -= x[CLOCK] * change
+        late, change = antenna_velocity(x, known)
+        swing, turn = antenna_swing(x, ROLL, known)
+        z += swing - x[12:15] - x[CLOCK] * late
+        H += turn - x[CLOCK] * change
         H[:, CLOCK] = -late
         H[0, 12], H[1, 13], H[2, 14] = -1.0, -1.0, -1.0
     elif kind == PAD:
@@ -96,8 +111,11 @@ def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Arra
         H[2, 9] = lever[0]
         if sees_heading:
             H[0, 7], H[1, 7] = -arm_y, arm_x
+        swing, turn = pad_swing(x, ROLL, known[3])
+        z += swing
+        H += turn
     elif kind == VELOCITY:
-        z, H = antenna_velocity(x, lever if sees_heading else np.zeros(3))
+        z, H = antenna_velocity(x, known)
         late, change = horizontal_acceleration(x)
         z[:2] -= x[CLOCK] * late
         H[:2, CLOCK] = -late
@@ -113,6 +131,11 @@ def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Arra
         hx, hy = math.cos(x[7]), math.sin(x[7])
         z[0] = hx * x[4] + hy * x[5] + x[LEAK]
         H[0, 4], H[0, 5], H[0, 7], H[0, LEAK] = hx, hy, hx * x[5] - hy * x[4], 1.0
+    elif kind == TILT:
+        # A road that climbs is nose up, which is negative; how fast that changes is slower than any swing.
+        z[0], z[1], z[2], z[3] = x[ROLL] + x[MOUNT], x[PITCH] - x[9] + x[MOUNT + 1], x[ROLL_RATE], x[PITCH_RATE]
+        H[0, ROLL], H[1, PITCH], H[1, 9], H[2, ROLL_RATE], H[3, PITCH_RATE] = 1.0, 1.0, -1.0, 1.0, 1.0
+        H[0, MOUNT], H[1, MOUNT + 1] = 1.0, 1.0
     elif kind == COURSE:
         z[0], H[0, 7] = math.atan2(x[3], x[2]) - x[7], -1.0
         H[0, 2], H[0, 3] = -x[3] / speed**2, x[2] / speed**2

@@ -7,7 +7,7 @@ import numpy as np
 from companion.autopilots.state import AutopilotState
 from companion.core.data import Array, Measurement, OwnState, Quantity
 from link.frames.local_frame import LocalFrame, local_from_geodetic, scale_of
-from link.frames.rotations import rotate, yaw_of
+from link.frames.rotations import roll_pitch_yaw_of, rotate, yaw_of
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, Quaternion, Vector3, VehicleImu
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
@@ -23,6 +23,8 @@ _YAW_RATE_STD_RAD_S = 0.02
 # At least: data sheets state the noise at rest (0.02 m/s^2), not how a body shakes and pitches on its wheels.
 # ISO 2631-1 calls less than 0.315 m/s^2 not uncomfortable.
 _ACCELERATION_STD_M_S2 = 0.3
+_TILT_KNOWN_STD_RAD = 0.1  # of roll and pitch; a unit that tells the heading only states more, as of no angle known
+_UNKNOWN_RATE_VARIANCE_RAD2_S2 = 1e4
 
 # No sensor is better than this; a smaller stated variance (0 for one axis is not rare) is a singular one to a filter.
 _STD_MIN = {
@@ -32,6 +34,7 @@ _STD_MIN = {
     Quantity.YAW_RATE: 0.001,
     Quantity.PAD: 0.002,
     Quantity.ACCELERATION: _ACCELERATION_STD_M_S2,
+    Quantity.TILT: 0.001,
 }
 _ATTITUDE_AGE_MAX_S = 0.15  # of a drone that turns at 0.5 rad/s: what it sees 5 m away is then 0.4 m off
 _STD_MAX = 1e4  # says nothing at all
@@ -43,6 +46,7 @@ _VALUE_MAX = {
     Quantity.YAW_RATE: 10.0,
     Quantity.PAD: 1e5,
     Quantity.ACCELERATION: 100.0,
+    Quantity.TILT: 10.0,
 }
 
 
@@ -142,7 +146,7 @@ def velocity_measurements(message: FixVelocity, frame: LocalFrame) -> tuple[Meas
 
 
 def imu_measurements(message: VehicleImu) -> tuple[Measurement, ...]:
-    """Return the heading, the yaw rate and the acceleration along the vehicle, as far as the message has them."""
+    """Return heading, yaw rate, acceleration along the vehicle and tilt, as far as the message has them."""
     found: list[Measurement] = []
     if message.orientation_wxyz is not None:
         covariance = message.orientation_covariance_rad2
@@ -158,7 +162,27 @@ def imu_measurements(message: VehicleImu) -> tuple[Measurement, ...]:
         force_variance = _ACCELERATION_STD_M_S2**2 if force_covariance is None else force_covariance[0]
         forward_m_s2 = _forward_force_m_s2(force_m_s2, message.orientation_wxyz)
         found.append(_scalar(message.t_ns, Quantity.ACCELERATION, forward_m_s2, force_variance))
-    return tuple(found)
+    tilt = _tilt(message)
+    return tuple(found) if tilt is None else (*found, tilt)
+
+
+def _tilt(message: VehicleImu) -> Measurement | None:
+    """Return roll, pitch and how fast they change, None of a unit that does not say that it knows them."""
+    q_WV, covariance = message.orientation_wxyz, message.orientation_covariance_rad2
+    if q_WV is None or covariance is None or max(covariance[0], covariance[4]) > _TILT_KNOWN_STD_RAD**2:
+        return None
+    roll_rad, pitch_rad, _ = roll_pitch_yaw_of(q_WV)
+    rates, rate_covariance = message.angular_velocity_flu_rad_s, message.angular_velocity_covariance_rad2_s2
+    p_rad_s, q_rad_s, _ = (0.0, 0.0, 0.0) if rates is None else rates
+    variances = [covariance[0], covariance[4], _UNKNOWN_RATE_VARIANCE_RAD2_S2, _UNKNOWN_RATE_VARIANCE_RAD2_S2]
+    if rates is not None:
+        variances[2:] = [_YAW_RATE_STD_RAD_S**2] * 2 if rate_covariance is None else rate_covariance[0:5:4]
+    return Measurement(
+        t_ns=message.t_ns,
+        quantity=Quantity.TILT,
+        value=np.array([roll_rad, pitch_rad, p_rad_s, q_rad_s]),
+        covariance=np.diag(variances),
+    )
 
 
 def _forward_force_m_s2(force_m_s2: Vector3, q_WV: Quaternion | None) -> float:

@@ -37,7 +37,9 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
             pad places it.
         has_one_frame: the vehicle's fixes are in the drone's frame; if not, only what the drone sees tells the offset.
         half_width_m: from its centre to the nearest edge; infinite until it is described.
-        height_m: of its surface above the vehicle's road.
+        height_m: of its surface above the vehicle's road, or the water.
+        is_afloat: it is on the water.
+        tilt_rad: (n, 2) roll and pitch of the vehicle against the road; None where it is not told.
         needs_heading: it is beside the antenna.
         unplaced: why the pad's place is not known; None when it is. Until then it is not landed on.
         frame_offset_m: horizontally, of the drone's frame from the vehicle's fixes', as sightings tell; None without.
@@ -54,6 +56,8 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
     has_one_frame: bool = True
     half_width_m: float = math.inf
     height_m: float = 0.0
+    is_afloat: bool = False
+    tilt_rad: Array | None = None
     needs_heading: bool = False
     unplaced: Cause | None = None
     frame_offset_m: float | None = None
@@ -83,6 +87,11 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None, *, has_one_frame: bool
         arm, swing = turned_lever(forecast.yaw_rad, grade, forecast.offset_s, lever_x_m, lever_y_m)
         position += arm
         velocity = velocity + swing
+    if forecast.yaw_rad is not None and forecast.tilt_rad is not None:
+        tilted = np.column_stack([forecast.yaw_rad, forecast.tilt_rad])
+        lever_m = np.array([lever_x_m, lever_y_m, lever_z_m])
+        position = position + tilted_lever(tilted[:, [0, 1, 3]], lever_m)
+        velocity = velocity + tilted_lever(tilted[:, [0, 2, 4]], lever_m)
     return PadPath(
         offset_s=forecast.offset_s,
         position_enu_m=position,
@@ -94,6 +103,8 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None, *, has_one_frame: bool
         has_one_frame=has_one_frame,
         half_width_m=math.inf if pad is None else 0.5 * min(pad.size_m),
         height_m=0.0 if pad is None else pad.height_m,
+        is_afloat=pad is not None and pad.is_afloat,
+        tilt_rad=None if forecast.tilt_rad is None else forecast.tilt_rad[:, ::2],
         needs_heading=is_beside,
         unplaced=NOT_DESCRIBED if pad is None else HEADING_UNKNOWN if _is_about(forecast, pad) else None,
         frame_offset_m=None if frame_offset is None else math.hypot(*frame_offset.tolist()),
@@ -139,6 +150,20 @@ def turned_lever(
         swing[i, 0], swing[i, 1] = -rate * arm[i, 1], rate * arm[i, 0]
         arm[i, 2], swing[i, 2] = lever_x_m * grade[i], lever_x_m * slope_at(i, grade, step_s)
     return arm, swing
+
+
+def tilted_lever(tilt: Array, lever_m: Array) -> Array:
+    """Return by how much (n, 3) a tilt moves the end of a lever arm in W, to the first order; for its rate, how fast.
+
+    Args:
+        tilt: (n, 3) heading of V, rad, roll and pitch, rad, or their rates, rad/s.
+        lever_m: (3,) in V.
+    """
+    x_m, y_m, z_m = lever_m
+    cosine, sine, (_, roll, pitch) = np.cos(tilt[:, 0]), np.sin(tilt[:, 0]), tilt.T
+    forward, left = pitch * z_m, -roll * z_m
+    up = roll * y_m - pitch * x_m
+    return np.column_stack([cosine * forward - sine * left, sine * forward + cosine * left, up])
 
 
 @compiled_kernel

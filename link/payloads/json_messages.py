@@ -45,6 +45,7 @@ class _PadGeometry(_Report):
     size_m: tuple[Size, Size]
     height_m: Height
     antenna_to_pad_m: tuple[Lever, Lever, Rise]
+    is_afloat: bool = False
 
 
 class _Order(_Report):

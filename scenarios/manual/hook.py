@@ -1,5 +1,6 @@
 """What mkdocs calls while it builds the manual: adds the pages that are made, and links what the written ones name."""
 
+import logging
 from pathlib import Path
 from typing import Any
 
@@ -8,8 +9,9 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
-from scenarios.manual.pages import PAGES, with_links
+from scenarios.manual.pages import PAGES, fetched_from_elsewhere, with_links
 
+LOG = logging.getLogger("mkdocs.plugins.manual")  # below mkdocs' own, so that its strict builds count warnings
 LETTERS = "STIXTwoMath-Regular.ttf"
 """With brackets, roots and dots that fit what they belong to (SIL Open Font License)."""
 
@@ -26,3 +28,10 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 def on_page_markdown(markdown: str, page: Page, **_: Any) -> str:
     """Return a page's text with links to the pages that it names."""
     return with_links(markdown, page.file.src_uri)
+
+
+def on_post_page(output: str, page: Page, **_: Any) -> str:
+    """Warn of what a page would fetch: the manual needs no network."""
+    if found := fetched_from_elsewhere(output):
+        LOG.warning("%s fetches what is elsewhere: %s", page.file.src_uri, found)
+    return output

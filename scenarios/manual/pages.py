@@ -52,6 +52,15 @@ PAGES: Mapping[str, Callable[[], str]] = MappingProxyType(
 
 _MENTION = re.compile(r"(?<![\w/`(\[])docs/(\w+)\.md")
 _FENCE = re.compile(r"(^```.*?^```$|`[^`\n]+`)", re.DOTALL | re.MULTILINE)
+_FETCHED = re.compile(
+    r'<(?:script|img|iframe)[^>]+src="?(?:https?:)?//|<link[^>]+rel="?(?:stylesheet|preconnect)"?[^>]+https?://'
+)
+
+
+def fetched_from_elsewhere(html: str) -> str | None:
+    """Return the first tag of a page by which a browser fetches what is not in the manual, None without one."""
+    found = _FETCHED.search(html)
+    return None if found is None else found[0]
 
 
 def with_links(markdown: str, path: str) -> str:

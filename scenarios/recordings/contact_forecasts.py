@@ -2,6 +2,7 @@
 
 An instant counts when the drone first, in its last approach, is below a height: where a descent that goes on leaves the
 height of waiting, and where it commits. Of earlier approaches it is known that no contact came; they would count twice.
+The truth knows the first contact only: an instant after that, of a drone that had touched the road before, has none.
 """
 
 from collections.abc import Mapping, Sequence
@@ -45,14 +46,16 @@ def forecast_columns(
 
 def _columns(name: str, status: LandingStatus | None, start_ns: int, result: Mapping[str, Any]) -> Columns:
     forecast = None if status is None else status.contact_forecast
-    names = ("at_s", *PROBABILITIES, "came")
+    columns = [f"forecast_{name}_{one}" for one in ("at_s", *PROBABILITIES, "came")]
     if status is None or forecast is None:
-        return {f"forecast_{name}_{one}": None for one in names}
-    at_s = (status.stamp_ns - start_ns) / NS_PER_S
+        return dict.fromkeys(columns)
+    at_s, contact_s = (status.stamp_ns - start_ns) / NS_PER_S, result.get("contact_s")
+    if contact_s is not None and contact_s < at_s:
+        return dict.fromkeys(columns)
     values = [at_s, *(getattr(forecast, one) for one in PROBABILITIES)]
     shown: list[float | str] = [round(value, _DIGITS) for value in values]
     shown.append(_came(at_s, forecast, result))
-    return {f"forecast_{name}_{one}": value for one, value in zip(names, shown, strict=True)}
+    return dict(zip(columns, shown, strict=True))
 
 
 def _last_approach(statuses: Sequence[LandingStatus]) -> Sequence[LandingStatus]:
@@ -79,7 +82,7 @@ def _first_below(statuses: Sequence[LandingStatus], height_m: float) -> LandingS
 
 def _came(at_s: float, forecast: ContactForecast, result: Mapping[str, Any]) -> str:
     contact_s = result.get("contact_s")
-    if contact_s is None or not 0.0 <= contact_s - at_s <= (forecast.in_s or 0.0) + _LATER_MAX_S:
+    if contact_s is None or contact_s - at_s > (forecast.in_s or 0.0) + _LATER_MAX_S:
         return "broken_off"
     for name, limits in (("s2", S2_LIMITS), ("s1", S1_LIMITS)):
         within = all(result[measure] <= getattr(limits, measure) for measure in limits.__slots__)

@@ -1,22 +1,24 @@
-"""The inertial unit on the vehicle: heading, yaw rate and, if it tells it, the specific force.
+"""The inertial unit on the vehicle: heading, yaw rate and, if it tells them, roll, pitch and the specific force.
 
-Model: white noise on each reading; the heading errs slowly as well (Gauss-Markov), the force by what stays in a run,
-such as the sensor's offset and the angle at which it is mounted. Frames: W is ENU, V the vehicle's body in FLU.
+Model: white noise on each reading; the heading errs slowly as well (Gauss-Markov), the others by what stays in a run,
+such as a sensor's offset and the angle at which it is mounted. Frames: W is ENU, V the vehicle's body in FLU.
 """
 
 import math
 
-from link.frames.rotations import conjugate, quaternion_from_yaw, rotate
-from link.messages import Vector3, VehicleImu
+from link.frames.rotations import conjugate, quaternion_from_roll_pitch_yaw, roll_pitch_yaw_of, rotate
+from link.messages import Matrix3, Vector3, VehicleImu
 from scenarios.config import ImuConfig
 from scenarios.simulation.noise import GaussMarkov, Seed, SensorSchedule, named_rng, normal3
 from scenarios.simulation.vectors import diagonal, total
 from scenarios.simulation.vehicle import VehicleState
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
 
+_UNTOLD_RAD2 = math.pi**2 / 3.0  # variance of an angle that may be anything
+
 
 class InertialUnit:
-    """Heading and yaw rate; roll and pitch are reported as level, with the same doubt as the heading.
+    """Heading and yaw rate; a unit that does not tell roll and pitch reports them as level and wholly unknown.
 
     The specific force has gravity in it by roll and pitch of the road and of the body on its wheels. The unit is where
     the body's origin is, in the middle of the vehicle.
@@ -29,8 +31,10 @@ class InertialUnit:
             named_rng(seed, "imu bias"), std=config.heading_bias_rad, tau_s=config.heading_bias_tau_s
         )
         self._config = config
-        self._heading_covariance = diagonal(math.hypot(config.heading_white_rad, config.heading_bias_rad) ** 2)
+        self._attitude_covariance = _attitude_covariance(config)
         self._rate_covariance = diagonal(config.yaw_rate_white_rad_s**2)
+        self._tilt_rng = named_rng(seed, "imu tilt")
+        self._tilt_bias_rad = normal3(self._tilt_rng, config.tilt_bias_rad)
         self._force_rng = named_rng(seed, "imu acceleration")
         self._force_bias_m_s2 = normal3(self._force_rng, config.acceleration_bias_m_s2)
 
@@ -40,15 +44,31 @@ class InertialUnit:
         bias_rad = self._bias.step(elapsed_s)[2]
         yaw_rad = vehicle.yaw_rad + bias_rad + self._config.heading_white_rad * heading_white
         yaw_rate_rad_s = vehicle.angular_velocity_flu_rad_s[2] + self._config.yaw_rate_white_rad_s * rate_white
+        (roll_rad, pitch_rad), (roll_rate_rad_s, pitch_rate_rad_s) = self._tilt(vehicle)
         return VehicleImu(
             t_ns=stamp_ns,
-            orientation_wxyz=quaternion_from_yaw(yaw_rad),
-            orientation_covariance_rad2=self._heading_covariance,
-            angular_velocity_flu_rad_s=(0.0, 0.0, yaw_rate_rad_s),
+            orientation_wxyz=quaternion_from_roll_pitch_yaw(roll_rad, pitch_rad, yaw_rad),
+            orientation_covariance_rad2=self._attitude_covariance,
+            angular_velocity_flu_rad_s=(roll_rate_rad_s, pitch_rate_rad_s, yaw_rate_rad_s),
             angular_velocity_covariance_rad2_s2=self._rate_covariance,
             specific_force_flu_m_s2=self._force_m_s2(vehicle),
             specific_force_covariance_m2_s4=diagonal((self._config.acceleration_white_m_s2 or 0.0) ** 2),
         )
+
+    def _tilt(self, vehicle: VehicleState) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Return roll and pitch, and what it turns at about the body's axes."""
+        white_rad = self._config.tilt_white_rad
+        if white_rad is None:
+            return (0.0, 0.0), (0.0, 0.0)
+        roll_rad, pitch_rad, _ = roll_pitch_yaw_of(vehicle.orientation_wxyz)
+        errors = self._tilt_rng.standard_normal(4).tolist()
+        rate_rad_s = self._config.yaw_rate_white_rad_s
+        p_rad_s, q_rad_s, _ = vehicle.angular_velocity_flu_rad_s
+        tilt = (
+            roll_rad + self._tilt_bias_rad[0] + white_rad * errors[0],
+            pitch_rad + self._tilt_bias_rad[1] + white_rad * errors[1],
+        )
+        return tilt, (p_rad_s + rate_rad_s * errors[2], q_rad_s + rate_rad_s * errors[3])
 
     def _force_m_s2(self, vehicle: VehicleState) -> Vector3 | None:
         white_m_s2 = self._config.acceleration_white_m_s2
@@ -57,3 +77,11 @@ class InertialUnit:
         force_enu_m_s2 = total(vehicle.acceleration_enu_m_s2, (0.0, 0.0, GRAVITY_M_S2))
         force_flu_m_s2 = rotate(conjugate(vehicle.orientation_wxyz), force_enu_m_s2)
         return total(force_flu_m_s2, self._force_bias_m_s2, normal3(self._force_rng, white_m_s2))
+
+
+def _attitude_covariance(config: ImuConfig) -> Matrix3:
+    heading_rad2 = math.hypot(config.heading_white_rad, config.heading_bias_rad) ** 2
+    tilt_rad2 = _UNTOLD_RAD2
+    if config.tilt_white_rad is not None:
+        tilt_rad2 = math.hypot(config.tilt_white_rad, config.tilt_bias_rad) ** 2
+    return (tilt_rad2, 0.0, 0.0, 0.0, tilt_rad2, 0.0, 0.0, 0.0, heading_rad2)

@@ -2,7 +2,7 @@
 
 Model: the middle of the body follows the road exactly, the body points along the road, and sways on its wheels.
 State `VehicleMemory`: the instants at which something happened, in UTC nanoseconds; everything else is a closed form of
-the time since departure, but for the swaying, which is computed before it.
+the time since departure, or in a seaway since the start, but for the swaying on wheels, which is computed before it.
 Frames: W is ENU about the datum, V the body's FLU with its origin on the road under the middle of the body.
 Angular velocity from ZYX Euler rates by the usual kinematic matrix.
 """
@@ -112,6 +112,8 @@ def vehicle_at(memory: VehicleMemory, t_ns: int, plan: VehiclePlan) -> VehicleSt
     swaying = _STILL
     if course.sway is not None and memory.departs_ns is not None:
         swaying = course.sway.at((t_ns - memory.departs_ns) * 1e-9)
+    elif course.seaway is not None:
+        swaying = course.seaway.at(0.0 if memory.started_ns is None else (t_ns - memory.started_ns) * 1e-9, motion)
     return state_on_road(t_ns, motion, course.road.at(motion.s_m), course.roughness, swaying)
 
 
@@ -150,7 +152,7 @@ def state_on_road(
         motion: along the road.
         at: the road there.
         roughness: that shakes the body along the road, None for none.
-        swaying: heave (m), pitch and roll (rad) of the body on its wheels, each with its rate and acceleration.
+        swaying: heave (m), pitch and roll (rad) of the body on its wheels or in waves, each with rate and acceleration.
     """
     v, a = motion.speed_m_s, motion.acceleration_m_s2
     heave = roll = shake = _NO_WAVE

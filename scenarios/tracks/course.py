@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from scenarios.tracks.profiles import Profile
 from scenarios.tracks.roads import Road
+from scenarios.tracks.seaway import Seaway
 from scenarios.tracks.suspension import Sway
 
 
@@ -43,10 +44,11 @@ class BrakeEvent:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Course:
-    """What a vehicle drives; `brake`, `roughness` and `sway` are None where the track has none."""
+    """What a vehicle drives; `brake`, `roughness`, `sway` and `seaway` are None where the track has none."""
 
     road: Road
     profile: Profile
     roughness: Roughness | None = None
     brake: BrakeEvent | None = None
     sway: Sway | None = None
+    seaway: Seaway | None = None

@@ -26,6 +26,7 @@ from scenarios.tracks.config import (
     StopAndGoTrack,
     StraightTrack,
     TrackConfig,
+    VesselTrack,
     WaypointsTrack,
 )
 from scenarios.tracks.course import BrakeEvent, Course, Roughness, Wave
@@ -33,6 +34,7 @@ from scenarios.tracks.drive import drive_course
 from scenarios.tracks.heights import Slope
 from scenarios.tracks.profiles import Profile, cruise_steps, profile_of, waypoint_steps
 from scenarios.tracks.roads import Piece, Point, advance, curve_through, polyline, road_of
+from scenarios.tracks.seaway import seaway_of
 
 Steps = list[tuple[float, float]]
 _CURVE_STEP_M = 0.1  # pieces of a lane change: the heading is then within 0.1 mrad of the smooth curve
@@ -41,7 +43,7 @@ _SPEED_BAND = 0.5  # a random vehicle keeps within this share of its mean speed
 _TURN_RADIUS_MIN_M = 6.0  # of a car
 
 
-def course_of(track: TrackConfig, rng: np.random.Generator) -> Course:  # noqa: C901, PLR0911 (one case for each kind of track)
+def course_of(track: TrackConfig, rng: np.random.Generator) -> Course:  # noqa: C901, PLR0911, PLR0912 (one case for each kind of track)
     """Return the course of `track`; `rng` decides what is random in it."""
     match track:
         case StaticTrack():
@@ -66,6 +68,8 @@ def course_of(track: TrackConfig, rng: np.random.Generator) -> Course:  # noqa: 
             return _open_course(track, _lane_change(track))
         case RandomTrack():
             return _random_course(track, rng)
+        case VesselTrack():
+            return _vessel_course(track, rng)
         case DriveTrack():
             return drive_course(track)
         case _:
@@ -196,6 +200,17 @@ def _rough_course(track: RoughRoadTrack, rng: np.random.Generator) -> Course:
         pitch=wave(track.pitch_rad, track.pitch_hz),
     )
     return replace(course, roughness=roughness)
+
+
+def _vessel_course(track: VesselTrack, rng: np.random.Generator) -> Course:
+    """Return a straight course at a drawn speed through waves from a drawn direction about the bow."""
+    speed_m_s = float(rng.uniform(*track.speed_range_m_s))
+    beta_rad = math.pi + float(rng.uniform(-track.off_bow_max_rad, track.off_bow_max_rad))
+    way = StraightTrack(
+        kind="straight", speed_m_s=speed_m_s, acceleration_m_s2=track.acceleration_m_s2, road_s=track.run_s
+    )
+    course = _open_course(way, [(road_m(way), 0.0)])
+    return replace(course, seaway=seaway_of(track, speed_m_s, beta_rad, rng))
 
 
 def _random_course(track: RandomTrack, rng: np.random.Generator) -> Course:

@@ -32,6 +32,10 @@ _UNKNOWN_U16 = 65535
 _NORTH_CDEG = 36000  # of a yaw, where 0 says that there is none
 _OWN_SYSTEM_ID = 1
 
+# The message has none. An autopilot levels itself by an accelerometer that is off by 0.2 m/s^2 (Bosch BMI088), a
+# fiftieth of gravity, and turns itself by a compass that is off by 6 degrees.
+_ATTITUDE_COVARIANCE_RAD2 = (4e-4, 0.0, 0.0, 0.0, 4e-4, 0.0, 0.0, 0.0, 1e-2)
+
 
 class MavlinkReceiver:
     """An autopilot's receiver, heard over MAVLink.
@@ -156,5 +160,10 @@ def attitude_reading(message: Message, t_ns: int) -> list[Reading]:
         return []
     rates = flu_from_frd((message.rollspeed, message.pitchspeed, message.yawspeed))
     return [
-        VehicleImu(t_ns=t_ns, orientation_wxyz=quaternion_enu_flu_from_ned_frd(q), angular_velocity_flu_rad_s=rates)
+        VehicleImu(
+            t_ns=t_ns,
+            orientation_wxyz=quaternion_enu_flu_from_ned_frd(q),
+            orientation_covariance_rad2=_ATTITUDE_COVARIANCE_RAD2,
+            angular_velocity_flu_rad_s=rates,
+        )
     ]

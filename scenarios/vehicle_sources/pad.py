@@ -17,6 +17,7 @@ class PadConfig(StrictModel):
     size_m: tuple[Size, Size] | None = None  # along and across the vehicle
     height_m: Height | None = None  # of the pad above the road
     antenna_to_pad_m: tuple[Lever, Lever, Rise] | None = None  # to the pad's middle: forward, left, up
+    is_afloat: bool = False  # heights are above the water then
 
 
 def pad_geometry(file: Path | None, **options: Any) -> PadGeometry:

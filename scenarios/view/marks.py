@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from link.messages import BodyTruth
+from link.messages import BodyTruth, Vector3
 from scenarios.view.state import ViewState
 
 _INK = (45, 55, 72)
@@ -21,6 +21,7 @@ class Marks:
 
     def __init__(self, scene: Any) -> None:
         self._compass = scene.add_frame("/compass", show_axes=False)
+        self._place: Vector3 | None = None
         lines = [
             ((0.0, 0.0), (0.0, _NORTH_M)),
             ((0.0, _NORTH_M), (-0.5 * _HEAD_M, _NORTH_M - _HEAD_M)),
@@ -35,14 +36,14 @@ class Marks:
         self._drone = scene.add_label("/world/drone/label", "", position=_DRONE_LABEL_M, anchor="bottom-center")
         self._vehicle = scene.add_label("/world/vehicle/label", "", position=_VEHICLE_LABEL_M, anchor="top-center")
 
-    def show(self, state: ViewState, *, ground_m: float) -> None:
-        """Move and write everything as it is now.
+    def put_on_ground(self, ground_m: float) -> None:
+        """Put compass and scale on the ground, whose height in the scene is `ground_m`."""
+        place = (*_PLACE_M, ground_m + _RISE_M)
+        if place != self._place:
+            self._place = self._compass.position = place
 
-        Args:
-            state: what is known.
-            ground_m: height of the ground in the scene.
-        """
-        self._compass.position = (*_PLACE_M, ground_m + _RISE_M)
+    def write(self, state: ViewState) -> None:
+        """Write the labels as it is now; a browser lays a changed text out anew, so twice a second will do."""
         status = state.status
         height_m = None if status is None else status.height_above_pad_m
         _write(self._drone, "drone" if height_m is None else f"drone {round(height_m, 1) + 0.0:.1f} m above the pad")

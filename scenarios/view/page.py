@@ -117,6 +117,7 @@ class Page:
                 self._was_playing = source.playing
                 self._panel.follow(source)
         if tick % _PLOTS_EVERY == 0:
+            self._scene.write_labels(state)
             self._plot()
 
     def _plot(self) -> None:

@@ -111,7 +111,11 @@ class Scene:
         followed = {"vehicle": shown or drone, "drone": drone}.get(self.followed)
         if followed is not None:
             self._world.position = _negative(followed[0])
-        self._marks.show(state, ground_m=float(self._world.position[2]))
+        self._marks.put_on_ground(float(self._world.position[2]))
+
+    def write_labels(self, state: ViewState) -> None:
+        """Write beside drone and vehicle what is to be read there; a few times a second does."""
+        self._marks.write(state)
 
     def show_lines(self, state: ViewState, drone: Array, pad: Array) -> None:
         """Draw trails, forecast and plan; fewer times a second do."""

@@ -9,7 +9,8 @@ from companion.landing.transitions import take_events
 from companion.landing.waiting import waits_at_m, why_held_up
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
-from companion.vehicle.driving import Driving, Surprise
+from companion.vehicle.driving import Driving
+from companion.vehicle.surprise import Surprise
 from link.messages import Vector3
 from link.records import replace
 from tests.companion.facts import (

@@ -7,7 +7,7 @@ import numpy as np
 from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.core.data import VehicleEstimate
-from companion.vehicle.driving import Surprise, update_surprise
+from companion.vehicle.surprise import Surprise, update_surprise
 from link.records import replace
 from tests.companion.vehicle.drives import (
     DEGRADED,

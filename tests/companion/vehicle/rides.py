@@ -8,13 +8,16 @@ from companion.config.estimation import EstimatorConfig, EstimatorKind
 from companion.core.data import Array, Measurement, VehicleEstimate
 from companion.vehicle.estimator import Estimator, EstimatorMemory
 from companion.vehicle.factory import make_estimator
+from companion.vehicle.imm_numbers import Deck
 from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, EPOCH_NS, Drive, Sensors, sense
 
 KINDS = tuple(EstimatorKind)
 
 
 def estimator(kind: EstimatorKind, config: EstimatorConfig | None = None) -> Estimator:
-    return make_estimator(EstimatorConfig() if config is None else config, ANTENNA_TO_PAD_M, kind)
+    return make_estimator(
+        EstimatorConfig() if config is None else config, Deck(antenna_to_pad_m=ANTENNA_TO_PAD_M), kind
+    )
 
 
 def now_ns(t_s: float) -> int:

@@ -20,6 +20,7 @@ from companion.vehicle.filter_step import Gaussian
 from companion.vehicle.imm import ImmModel, ImmState
 from companion.vehicle.imm_kernels import heave_step
 from companion.vehicle.imm_mixing import combine
+from companion.vehicle.imm_swing import SIZE
 from companion.vehicle.lkf import LkfModel, WhiteJerkNoise, transition
 from tests.companion.vehicle.rides import now_ns
 
@@ -77,8 +78,9 @@ def drawn(covariance: Array, rng: np.random.Generator) -> Array:
 def wander(x: Array, rng: np.random.Generator) -> Array:
     """The turning model's own motion with its own noise, one step."""
     config = IMM.config
-    frequency = 2.0 * np.pi * config.heave.frequency_hz
-    heave, heave_noise = heave_step(DT_S, frequency, config.heave.damping, config.heave.std_m)
+    sways = config.on_road.heave
+    heave, heave_noise = heave_step(DT_S, 2.0 * np.pi * sways.frequency_hz, sways.damping, sways.std)
+    level, calm = np.zeros((2, 2, 2)), np.zeros((2, 2, 2))
     noise = np.array(
         [
             MODE.jerk_psd_m2_s5,
@@ -96,10 +98,11 @@ def wander(x: Array, rng: np.random.Generator) -> Array:
             config.road.bend_length_m,
             config.road.height_psd_m2_m,
             0.0,
+            0.0,
         ]
     )
-    Q = kernels.process_noise(x, DT_S, noise, heave_noise)
-    after, _ = kernels.advance(x, DT_S, config.acceleration_decay_s, heave)
+    Q = kernels.process_noise(x, DT_S, noise, heave_noise, calm)
+    after, _ = kernels.advance(x, DT_S, config.acceleration_decay_s, heave, level)
     after[6] *= kernels.curvature_left(float(np.hypot(x[2], x[3])), DT_S, noise)
     after[kernels.BEND] *= kernels.bend_step(x, DT_S, noise)[0]
     return np.asarray(after + drawn(Q, rng))
@@ -107,7 +110,7 @@ def wander(x: Array, rng: np.random.Generator) -> Array:
 
 def imm_run(curvature: float, seed: int) -> tuple[float, float, int]:
     rng = np.random.default_rng(seed)
-    x = np.zeros(kernels.SIZE)
+    x = np.zeros(SIZE)
     x[2], x[6] = 8.0, curvature
     buffer: DelayBuffer[ImmState] | None = None
     at_settled = (0.0, 0)

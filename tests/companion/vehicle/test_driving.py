@@ -17,19 +17,9 @@ from companion.core.data import VehicleEstimate
 from companion.landing.memory import StepMemory
 from companion.landing.waiting import waits_at_m
 from companion.situation.phases import Phase
-from companion.vehicle.driving import (
-    Driving,
-    Surprise,
-    drives_unevenly,
-    forget_beliefs,
-    may_depart,
-    may_surprise,
-    turns_hard,
-    update_surprise,
-    winds,
-    with_velocity,
-)
+from companion.vehicle.driving import Driving, drives_unevenly, may_depart, turns_hard, winds, with_velocity
 from companion.vehicle.estimator import EstimatorMemory
+from companion.vehicle.surprise import Surprise, forget_beliefs, may_surprise, update_surprise
 from link.messages import Vector3
 from link.records import replace
 from tests.companion.facts import NOW_NS, changed, drone_at, pad_at, situation

@@ -8,11 +8,12 @@ from scipy import stats
 
 from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig, ReceiversConfig
 from companion.vehicle import imm_kernels as kernels
+from companion.vehicle.imm_swing import SIZE
 from companion.vehicle.pad import pad_path
 from link.messages import PadGeometry
 from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, NOMINAL, climb
 from tests.companion.vehicle.rides import estimator, ride
-from tests.companion.vehicle.test_imm_kernels import HEAVE, NOISE, TAU_S
+from tests.companion.vehicle.test_imm_kernels import HEAVE, NOISE, TAU_S, TILT, TILT_NOISE
 
 SAME_FRAME = EstimatorConfig(
     imm=ImmConfig(receivers=ReceiversConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
@@ -23,29 +24,29 @@ GRADES_AND_SPEEDS = [(0.03, 3.0), (0.12, 3.0), (0.08, 8.0), (-0.08, 8.0), (0.03,
 
 
 def test_height_is_that_of_a_vertical_curve() -> None:
-    x = np.zeros(kernels.SIZE)
+    x = np.zeros(SIZE)
     x[2:4], x[7] = 8.0 * np.array([math.cos(0.4), math.sin(0.4)]), 0.4
     x[8], x[9], x[kernels.BEND] = 2.0, 0.03, 0.004
-    after, _ = kernels.advance(x, 0.1, TAU_S, HEAVE)
+    after, _ = kernels.advance(x, 0.1, TAU_S, HEAVE, TILT)
     assert after[8] == pytest.approx(2.0 + 0.03 * 0.8 + 0.5 * 0.004 * 0.8**2)
     assert after[9] == pytest.approx(0.03 + 0.004 * 0.8)
 
 
 def test_vehicle_that_reverses_goes_down_what_it_has_climbed() -> None:
-    x = np.zeros(kernels.SIZE)
+    x = np.zeros(SIZE)
     x[2], x[9] = -2.0, 0.1
-    assert kernels.advance(x, 0.1, TAU_S, HEAVE)[0][8] == pytest.approx(-0.02)
+    assert kernels.advance(x, 0.1, TAU_S, HEAVE, TILT)[0][8] == pytest.approx(-0.02)
 
 
 def test_standing_vehicle_neither_climbs_nor_heaves() -> None:
-    Q = kernels.process_noise(np.zeros(kernels.SIZE), 0.1, NOISE, 1e-4 * np.eye(2))
+    Q = kernels.process_noise(np.zeros(SIZE), 0.1, NOISE, 1e-4 * np.eye(2), TILT_NOISE)
     assert np.abs(Q[[9, 10, 11, kernels.BEND]]).max() == 0.0
     assert Q[8, 8] == pytest.approx(NOISE[7] * 0.1)  # how far the drone errs about itself
 
 
 @pytest.mark.parametrize("speed_m_s", [1.0, 8.0, 25.0])
 def test_change_of_the_grade_stays_within_what_roads_are_built_with(speed_m_s: float) -> None:
-    x = np.zeros(kernels.SIZE)
+    x = np.zeros(SIZE)
     x[2] = speed_m_s
     left, fed = kernels.bend_step(x, 0.1, NOISE)
     std = math.sqrt(fed / (1.0 - left**2))
@@ -54,12 +55,12 @@ def test_change_of_the_grade_stays_within_what_roads_are_built_with(speed_m_s: f
 
 
 def test_noise_of_the_grade_is_that_of_many_small_steps() -> None:
-    x = np.zeros(kernels.SIZE)
+    x = np.zeros(SIZE)
     x[2] = 8.0
     rows = np.array([8, 9, kernels.BEND])
-    whole = kernels.process_noise(x, 0.02, NOISE, np.zeros((2, 2)))[np.ix_(rows, rows)]
-    _, F = kernels.advance(x, 0.0004, TAU_S, HEAVE)
-    once = kernels.process_noise(x, 0.0004, NOISE, np.zeros((2, 2)))
+    whole = kernels.process_noise(x, 0.02, NOISE, np.zeros((2, 2)), TILT_NOISE)[np.ix_(rows, rows)]
+    _, F = kernels.advance(x, 0.0004, TAU_S, HEAVE, TILT)
+    once = kernels.process_noise(x, 0.0004, NOISE, np.zeros((2, 2)), TILT_NOISE)
     parts = np.zeros_like(once)
     for _ in range(50):
         parts = F @ parts @ F.T + once

@@ -9,9 +9,9 @@ from scipy.stats import norm
 from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig, ReceiversConfig
 from companion.core.data import Quantity
 from companion.vehicle import imm_judgement as judgement
-from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_sensors as sensors
+from companion.vehicle.imm_swing import SIZE
 from link.records import replace
 from tests.companion.vehicle.drives import NOMINAL, arrival, drive, sense
 from tests.companion.vehicle.rides import estimator, now_ns
@@ -25,7 +25,7 @@ SAME_FRAME = EstimatorConfig(
 
 def two_modes(weight: float) -> mixing.Modes:
     means = np.stack([a_state(2), a_state(2)])
-    covariances = np.stack([0.03 * np.eye(kernels.SIZE), 0.7 * np.eye(kernels.SIZE)])
+    covariances = np.stack([0.03 * np.eye(SIZE), 0.7 * np.eye(SIZE)])
     return means, covariances, np.array([1.0 - weight, weight])
 
 

@@ -11,11 +11,23 @@ from companion.vehicle import imm_forecast as forecasts
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_sensors as sensors
+from companion.vehicle.imm_swing import SIZE
 from tests.companion.vehicle.drives import NOMINAL, drive
 from tests.companion.vehicle.rides import estimator, ride
-from tests.companion.vehicle.test_imm_kernels import HEAVE, LEVER, MOTION, NOISE, TAU_S, a_covariance, a_state
+from tests.companion.vehicle.test_imm_kernels import (
+    HEAVE,
+    LEVER,
+    MOTION,
+    NOISE,
+    TAU_S,
+    TILT,
+    TILT_NOISE,
+    a_covariance,
+    a_state,
+)
 
 PLACE = np.array([0, 1, 8])
+TILTED = np.arange(18, 24)
 QUIET = np.where(np.isin(np.arange(len(NOISE)), (3, kernels.CURVATURE_STD, kernels.BEND_LENGTH)), NOISE, 0.0)
 CURVE_S, SPEED_M_S, RADIUS_M = 8.0, 8.0, 20.0
 
@@ -30,19 +42,19 @@ def test_pad_moves_as_if_there_were_no_lever_arm(seed: int) -> None:
     x, P = a_state(seed), a_covariance(seed)
     pad = x.copy()
     pad[PLACE] = pad_place(x)
-    bare = np.where(np.isin(np.arange(len(MOTION)), (5, 6, 7)), 0.0, MOTION)
+    bare = np.where(np.isin(np.arange(len(MOTION)), (5, 6, 7, 8)), 0.0, MOTION)
     turned, straight = mixing.glide(x, P, 0.33, QUIET, MOTION)[0], mixing.glide(pad, P, 0.33, QUIET, bare)[0]
     assert pad_place(turned) == pytest.approx(straight[PLACE], abs=1e-12)
-    rest = np.delete(np.arange(kernels.SIZE), PLACE)
+    rest = np.delete(np.arange(SIZE), PLACE)
     assert turned[rest] == pytest.approx(straight[rest], abs=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_shift_to_the_pad_is_linear_in_what_it_does_to_the_covariance(seed: int) -> None:
     x, P = a_state(seed), a_covariance(seed)
-    numeric = np.eye(kernels.SIZE)
-    for i in range(kernels.SIZE):
-        step = 1e-6 * np.eye(kernels.SIZE)[i]
+    numeric = np.eye(SIZE)
+    for i in range(SIZE):
+        step = 1e-6 * np.eye(SIZE)[i]
         numeric[PLACE, i] = (pad_place(x + step) - pad_place(x - step)) / 2e-6
     y, S = mixing.shifted(x, P, LEVER, 1.0)
     assert pytest.approx(numeric @ P @ numeric.T, abs=1e-6) == S
@@ -54,20 +66,21 @@ def test_shift_to_the_pad_is_linear_in_what_it_does_to_the_covariance(seed: int)
 @pytest.mark.parametrize("seed", range(3))
 def test_antenna_s_velocity_is_how_fast_its_place_changes(seed: int) -> None:
     x, P = a_state(seed), a_covariance(seed)
+    x[TILTED] = 0.0  # that a swung antenna turns with the vehicle as well is left out
     at = np.array([x, mixing.glide(x, P, 1e-4, QUIET, MOTION)[0]])
     position, velocity, _ = forecasts.kinematics(at, MOTION)
     assert (position[1] - position[0]) / 1e-4 == pytest.approx(velocity[0], abs=2e-3)
-    assert sensors.antenna_velocity(x, np.zeros(3))[0][:2] == pytest.approx(x[2:4])
+    assert sensors.antenna_velocity(x, np.zeros(4))[0][:2] == pytest.approx(x[2:4])
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_what_the_curvature_does_within_a_step_is_that_of_many_small_ones(seed: int) -> None:
     x, noise = a_state(seed), np.where(np.arange(len(NOISE)) == 2, NOISE, QUIET)
-    whole = kernels.process_noise(x, 0.02, noise, np.zeros((2, 2)))
+    whole = kernels.process_noise(x, 0.02, noise, np.zeros((2, 2)), TILT_NOISE)
     kick = whole[6, 6] / 50
-    _, F = kernels.advance(x, 0.0004, TAU_S, HEAVE)
-    _, through = kernels.advance(x, 0.0002, TAU_S, HEAVE)
-    parts = np.zeros((kernels.SIZE, kernels.SIZE))
+    _, F = kernels.advance(x, 0.0004, TAU_S, HEAVE, TILT)
+    _, through = kernels.advance(x, 0.0002, TAU_S, HEAVE, TILT)
+    parts = np.zeros((SIZE, SIZE))
     for _ in range(50):
         parts += kick * np.outer(through[:, 6], through[:, 6])
         through = F @ through

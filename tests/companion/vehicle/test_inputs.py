@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from companion.autopilots.driver import NO_AUTOPILOT
 from companion.autopilots.state import AutopilotState
-from companion.core.data import Quantity
+from companion.core.data import Measurement, Quantity
 from companion.vehicle.inputs import (
     fix_measurement,
     imu_measurements,
@@ -159,6 +159,33 @@ def test_imu_variances_are_those_about_the_vertical() -> None:
     assert heading.covariance.tolist() == [[0.3]]
     assert rate.covariance.tolist() == [[0.3]]
     assert rate.value.tolist() == [0.7]
+
+
+def told_tilt(*, tilt_variance_rad2: float, rates: tuple[float, float, float] | None) -> list[Measurement]:
+    """What an attitude unit tells of a vehicle that rolls by 0.1 rad and pitches by -0.04 rad on a heading of 2 rad."""
+    known = VehicleImu(
+        t_ns=1,
+        orientation_wxyz=quaternion_from_roll_pitch_yaw(0.1, -0.04, 2.0),
+        orientation_covariance_rad2=(tilt_variance_rad2, 0.0, 0.0, 0.0, tilt_variance_rad2, 0.0, 0.0, 0.0, 3e-4),
+        angular_velocity_flu_rad_s=rates,
+        angular_velocity_covariance_rad2_s2=None if rates is None else (1e-4, 0.0, 0.0, 0.0, 2e-4, 0.0, 0.0, 0.0, 3e-4),
+    )
+    return [one for one in imu_measurements(known) if one.quantity is Quantity.TILT]
+
+
+def test_tilt_and_its_rates_are_measured_where_the_unit_knows_them() -> None:
+    (tilt,) = told_tilt(tilt_variance_rad2=2e-5, rates=(0.3, -0.2, 0.7))
+    assert tilt.value == pytest.approx([0.1, -0.04, 0.3, -0.2])
+    assert tilt.covariance.diagonal() == pytest.approx([2e-5, 2e-5, 1e-4, 2e-4])
+
+
+def test_tilt_without_rates_says_nothing_of_them() -> None:
+    (tilt,) = told_tilt(tilt_variance_rad2=2e-5, rates=None)
+    assert min(tilt.covariance.diagonal()[2:]) > 1e3
+
+
+def test_unit_that_knows_its_heading_only_measures_no_tilt() -> None:
+    assert told_tilt(tilt_variance_rad2=3.3, rates=(0.3, -0.2, 0.7)) == []
 
 
 def test_sighting_is_turned_into_the_world_with_its_covariance() -> None:

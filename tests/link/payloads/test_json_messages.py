@@ -80,7 +80,12 @@ def test_message_returns_from_its_bytes(message: Message) -> None:
 
 
 def test_pad_has_the_names_of_the_contract() -> None:
-    assert json.loads(encode(PAD)) == {"size_m": [1.5, 1.2], "height_m": 1.55, "antenna_to_pad_m": [-0.4, 0.25, 0.1]}
+    assert json.loads(encode(PAD)) == {
+        "size_m": [1.5, 1.2],
+        "height_m": 1.55,
+        "antenna_to_pad_m": [-0.4, 0.25, 0.1],
+        "is_afloat": False,
+    }
 
 
 def test_a_follow_without_a_frame_looks_where_the_vehicle_heads() -> None:

@@ -21,7 +21,8 @@ BENCHMARK = [
     *(f"{track}_{speed}" for track in ("lane_change", "random") for speed in (5, 7)),
     "brake_7",
     "brake_10",
-    "rough_road_5",
+    *(f"rough_road_{speed}" for speed in (5, 8)),
+    *(f"ship_ss{state}" for state in (4, 5, 6, 7)),
 ]
 
 
@@ -33,7 +34,7 @@ def test_catalogue_holds_the_benchmark() -> None:
 def test_scenario_loads_under_its_name(name: str) -> None:
     scenario = load_scenario(name)
     assert scenario.name == name
-    assert scenario.waiting_point_enu_m[2] == 5.0
+    assert scenario.waiting_point_enu_m[2] == (12.0 if name.startswith("ship") else 5.0)
     if isinstance(scenario.track, MovingTrack):
         assert name.endswith(f"_{int(scenario.track.speed_m_s)}")
 

@@ -45,8 +45,7 @@ def test_without_eyes_on_the_drone_nobody_would_find_it() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("firmware", ["px4", "ardupilot"])
-def test_it_is_landed_on(firmware: str) -> None:
-    scenario = load_scenario(f"{NAME}+firmware={firmware}")
+def test_it_is_landed_on() -> None:
+    scenario = load_scenario(f"{NAME}+firmware=ardupilot")
     run = Lockstep(scenario, 5)
     assert result_table(scenario, 5, run.recording, run.run())["tier"] in ("S2", "S3")

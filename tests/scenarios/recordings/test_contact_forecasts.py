@@ -83,3 +83,8 @@ def test_the_last_descent_counts_and_what_came_of_it(result: dict[str, Any], cam
 
 def test_a_run_without_a_descent_has_no_forecast() -> None:
     assert set(forecast_columns(FLIGHT[1:2], START_NS, LANDED, DESCENT).values()) == {None}
+
+
+def test_of_a_drone_that_had_touched_something_before_nothing_is_known() -> None:
+    columns = forecast_columns(FLIGHT, START_NS, LANDED | {"contact_s": 12.0}, DESCENT)
+    assert set(columns.values()) == {None}

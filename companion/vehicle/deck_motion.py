@@ -1,0 +1,140 @@
+"""Learns how a deck swings: frequency, damping and size of its heave, roll and pitch; pure.
+
+Each is taken for a damped oscillator driven by noise, whose value and rate `z` the filter follows. Over pairs that lie
+a lag apart the sums S0 of `z z'` and S1 of `z(later) z'` fade with `MEMORY_S`. The transition that fits best in the
+least squares is A = S1 / S0, the first-order vector autoregression; its eigenvalues are
+exp((-d +- i sqrt(1 - d^2)) w t). The sums begin as those of an ordinary deck that has been watched for
+`PRIOR_PERIODS`. The value is taken against its mean, for a list, or a height that is not known apart, is no swinging.
+Source: Lütkepohl, New Introduction to Multiple Time Series Analysis (2005), 3.2.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from msgspec import Struct
+
+from companion.config.estimation import OscillatorConfig, SwingConfig
+from companion.core.data import Array
+from companion.vehicle.imm_kernels import heave_step
+from link.records import replace
+
+MEMORY_S = 60.0  # some six waves; a road of one kind lasts longer
+PRIOR_PERIODS = 2.0
+_FREQUENCY_RANGE_RAD_S = (2.0 * math.pi * 0.03, 2.0 * math.pi * 5.0)  # from swell of 33 s to a stiff suspension
+# A narrower band would tell the middle of a swing from a part of it: seas have bands of some 0.4 of their frequency
+# (Longuet-Higgins 1975), bodies on wheels a damping of 0.2 and more.
+_DAMPING_RANGE = (0.1, 0.95)
+_STD_MIN = (0.005, 0.001, 0.001)  # m, rad, rad: no receiver and no inertial unit tells less
+
+
+class Axis(Struct, frozen=True, kw_only=True):
+    """What has been seen of one of them: the mean, and S0 as (xx, xv, vv), S1 as (xx, xv, vx, vv), later one first."""
+
+    last: tuple[float, float]
+    weight: float
+    lag_s: float
+    mean: float
+    at_once: tuple[float, float, float]
+    later: tuple[float, float, float, float]
+
+
+class DeckMotion(Struct, frozen=True, kw_only=True, eq=False):
+    """What is known of a deck's swinging.
+
+    Attributes:
+        axes: of heave, roll and pitch.
+        passed_s: since the newest pair.
+        oscillators: (9,) angular frequency, rad/s, damping and standard deviation, m or rad, of each.
+    """
+
+    axes: tuple[Axis, ...]
+    passed_s: float
+    oscillators: Array
+
+
+def first_motion(swing: SwingConfig) -> DeckMotion:
+    """Return what is taken for granted of a deck that has not been watched."""
+    heave, tilt = _first_axis(swing.heave, swing.lag_s), _first_axis(swing.tilt, swing.lag_s)
+    axes = (heave, tilt, tilt)
+    return DeckMotion(axes=axes, passed_s=0.0, oscillators=_oscillators(axes))
+
+
+def _first_axis(oscillator: OscillatorConfig, lag_s: float) -> Axis:
+    frequency_rad_s, std = 2.0 * math.pi * oscillator.frequency_hz, oscillator.std
+    A, _ = heave_step(lag_s, frequency_rad_s, oscillator.damping, std)
+    weight = PRIOR_PERIODS / (oscillator.frequency_hz * lag_s)
+    place, rate = weight * std**2, weight * (std * frequency_rad_s) ** 2
+    return Axis(
+        last=(0.0, 0.0),
+        weight=weight,
+        lag_s=lag_s,
+        mean=0.0,
+        at_once=(place, 0.0, rate),
+        later=(float(A[0, 0]) * place, float(A[0, 1]) * rate, float(A[1, 0]) * place, float(A[1, 1]) * rate),
+    )
+
+
+def passed(motion: DeckMotion, dt_s: float) -> DeckMotion:
+    """Return the motion `dt_s` later."""
+    return replace(motion, passed_s=motion.passed_s + dt_s)
+
+
+def learn(motion: DeckMotion, mean: Sequence[float], lag_s: float) -> DeckMotion:
+    """Return the motion with another pair, once a lag has passed.
+
+    Args:
+        motion: so far.
+        mean: value and rate of heave, roll and pitch, as the filter has them.
+        lag_s: least time between the two of a pair.
+    """
+    if motion.passed_s < lag_s:
+        return motion
+    # After a silence there is no pair, only a new beginning.
+    is_pair = motion.passed_s < 2.0 * lag_s
+    states = [(mean[0], mean[1]), (mean[2], mean[3]), (mean[4], mean[5])]
+    axes = tuple(
+        _with_pair(axis, state, motion.passed_s) if is_pair else replace(axis, last=state)
+        for axis, state in zip(motion.axes, states, strict=True)
+    )
+    return DeckMotion(axes=axes, passed_s=0.0, oscillators=_oscillators(axes) if is_pair else motion.oscillators)
+
+
+def _with_pair(axis: Axis, state: tuple[float, float], lag_s: float) -> Axis:
+    keep = math.exp(-lag_s / MEMORY_S)
+    (before, v), (after, later_v) = axis.last, state
+    xx, xv, vv = axis.at_once
+    a, b, c, d = axis.later
+    weight = keep * axis.weight + 1.0
+    mean = axis.mean + (after - axis.mean) / weight
+    x, later_x = before - mean, after - mean
+    return Axis(
+        last=state,
+        weight=weight,
+        lag_s=axis.lag_s + (lag_s - axis.lag_s) / weight,
+        mean=mean,
+        at_once=(keep * xx + x * x, keep * xv + x * v, keep * vv + v * v),
+        later=(keep * a + later_x * x, keep * b + later_x * v, keep * c + later_v * x, keep * d + later_v * v),
+    )
+
+
+def _oscillators(axes: Sequence[Axis]) -> Array:
+    found = [_oscillator(axis, least) for axis, least in zip(axes, _STD_MIN, strict=True)]
+    return np.array(found).ravel()
+
+
+def _oscillator(axis: Axis, std_min: float) -> tuple[float, float, float]:
+    """Return angular frequency, damping and standard deviation of the oscillator that swings as was seen."""
+    xx, xv, vv = axis.at_once
+    a, b, c, d = axis.later
+    determinant = xx * vv - xv * xv
+    p, q = (a * vv - b * xv) / determinant, (b * xx - a * xv) / determinant
+    r, s = (c * vv - d * xv) / determinant, (d * xx - c * xv) / determinant
+    left2 = min(max(p * s - q * r, 1e-6), 1.0)
+    fade = -0.5 * math.log(left2) / axis.lag_s
+    cosine = 0.5 * (p + s) / math.sqrt(left2)
+    turning = math.acos(min(max(cosine, -1.0), 1.0)) / axis.lag_s
+    least, most = _FREQUENCY_RANGE_RAD_S
+    frequency = min(max(math.hypot(fade, turning), least), most)
+    lowest, highest = _DAMPING_RANGE
+    return frequency, min(max(fade / frequency, lowest), highest), max(math.sqrt(xx / axis.weight), std_min)

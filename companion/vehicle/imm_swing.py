@@ -1,0 +1,73 @@
+"""How a deck's tilt moves what is on it, compiled: the last six states of the turning model of `imm_kernels`.
+
+State: 18 phi, 19 its rate, 20 theta, 21 its rate: roll (port up positive) and pitch (bow down positive) of V against
+the road, rad and rad/s, each a damped oscillator; 22 and 23 what the vehicle's unit tells of roll and of pitch too
+much, rad, as it is not mounted along the deck. The body tilts about an axis below the pad, on the road or the water.
+Heave is that of the pad, so that what pitching lifts there is part of it.
+To the first order in the tilt an arm `a` in V moves by (theta a_z, -phi a_z, phi a_y - theta a_x).
+"""
+
+import math
+
+import numpy as np
+
+from companion.core.data import Array
+from companion.vehicle.compiled import compiled_kernel
+
+ROLL, ROLL_RATE, PITCH, PITCH_RATE, MOUNT = 18, 19, 20, 21, 22
+SIZE = 24
+
+
+@compiled_kernel
+def antenna_swing(x: Array, first: int, lever: Array) -> tuple[Array, Array]:
+    """Return how far (3,) the tilt moves the antenna in W, or how fast, and its Jacobian (3, 24).
+
+    Args:
+        x: state (24,).
+        first: `ROLL` for places, `ROLL_RATE` for velocities.
+        lever: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll, m.
+    """
+    out, H = pad_swing(x, first, lever[3] - lever[2])
+    roll, pitch = x[first], x[first + 2]
+    out[2] = pitch * lever[0] - roll * lever[1]
+    H[2, first], H[2, first + 2] = -lever[1], lever[0]
+    return out, H
+
+
+@compiled_kernel
+def pad_swing(x: Array, first: int, above_m: float) -> tuple[Array, Array]:
+    """Return how far (3,) the tilt moves what is `above_m` over the axis in W, and its Jacobian (3, 24).
+
+    Args:
+        x: state (24,).
+        first: `ROLL` for places, `ROLL_RATE` for velocities.
+        above_m: height.
+    """
+    c, s = math.cos(x[7]), math.sin(x[7])
+    roll, pitch = x[first], x[first + 2]
+    out, H = np.zeros(3), np.zeros((3, SIZE))
+    out[0], out[1] = above_m * (c * pitch + s * roll), above_m * (s * pitch - c * roll)
+    H[0, first], H[0, first + 2] = above_m * s, above_m * c
+    H[1, first], H[1, first + 2] = -above_m * c, above_m * s
+    H[0, 7], H[1, 7] = -out[1], out[0]
+    return out, H
+
+
+@compiled_kernel
+def pad_swing_acceleration(x: Array, motion: Array) -> tuple[Array, Array]:
+    """Return the horizontal acceleration (2,) of the pad by its swing, m/s^2, and its Jacobian (2, 24).
+
+    Args:
+        x: state (24,).
+        motion: (16,) as `imm_mixing` has it.
+    """
+    y, H = x.copy(), np.zeros((2, SIZE))
+    for first, k in ((ROLL, 10), (PITCH, 13)):
+        stiffness, damping = motion[k] ** 2, 2.0 * motion[k + 1] * motion[k]
+        y[first] = -stiffness * x[first] - damping * x[first + 1]
+    out, change = pad_swing(y, ROLL, motion[8])
+    for first, k in ((ROLL, 10), (PITCH, 13)):
+        H[:, first] = -(motion[k] ** 2) * change[:2, first]
+        H[:, first + 1] = -2.0 * motion[k + 1] * motion[k] * change[:2, first]
+    H[:, 7] = change[:2, 7]
+    return out[:2], H
