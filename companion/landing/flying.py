@@ -9,7 +9,7 @@ from companion.landing.flown_plan import extrapolate, flown_plan, state_at
 from companion.landing.following_height import waiting_rise_m
 from companion.landing.levelling import limit_tilt, limits_now
 from companion.landing.memory import ModelMemory, StepMemory
-from companion.landing.sortie_aims import sortie_aim
+from companion.landing.sortie_aims import limit_phase_rates, sortie_aim
 from companion.landing.sortie_decisions import has_not_left_deck
 from companion.landing.step_data import StepInputs, System
 from companion.landing.sway import update_sway
@@ -93,11 +93,11 @@ def fly(
     limits = limits_now(memory, situation, inputs, system.config)
     lowest = lowest_enu_m(memory, situation, float(aim.floor_enu_m[0]), system.config)
     room_m = None if lowest is None else float(reference.position_enu_m[2]) - lowest
-    is_far = memory.progress.phase in (Phase.RETURN, Phase.RALLY)  # and so high that it may carry on above all it meets
+    carried = limit_rates(limits, situation, room_m, inputs.shaping, system.config)
     request = PlanRequest(
         state=reference,
         target=_for_the_drone(aim.target, memory, inputs),
-        limits=limits if is_far else limit_rates(limits, situation, room_m, inputs.shaping, system.config),
+        limits=limit_phase_rates(limits, carried, memory, situation),
         floor_enu_m=aim.floor_enu_m,
         dt_s=period_s,
     )

@@ -7,6 +7,7 @@ import numpy as np
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array, FlightLimits
 from companion.landing.conditions import is_fix_old
+from companion.landing.feasibility import SPEED_SHARE_MIN
 from companion.landing.memory import StepMemory
 from companion.landing.targets import NO_FLOOR_M, Aim, hover_aim
 from companion.planning.guidance import ReferenceState, Target
@@ -18,6 +19,7 @@ from companion.sortie.station import KeepOut, ahead_rad, turn_rates_rad_s, turne
 from companion.vehicle.pad import PadPath
 from link.frames.local_frame import local_from_geodetic
 from link.messages import StationFrame
+from link.records import replace
 
 WAY_SHARE = 0.3
 """Of the drone's acceleration, for ways against the vehicle; the rest is for following the vehicle."""
@@ -82,6 +84,38 @@ def station_aim(
     way = way_to(here, wanted, keep_out, pad.offset_s, rates)
     target = _over_vehicle(way, frame, ahead, pad, s.feet_offset_m)
     return Aim(target=target, floor_enu_m=_floor(pad, keep_out, s))
+
+
+def station_speed_m_s(sortie: SortieMemory, s: Situation) -> float:
+    """Return how fast over ground the station itself moves: outside in a bend it is faster than the vehicle."""
+    if sortie.station is None or s.pad is None:
+        return 0.0
+    frame = sortie.station.frame
+    x, y, _ = turned(np.array(sortie.station.offset_m), ahead_rad(frame, s.pad, sortie.ahead_rad)).tolist()
+    east_m_s, north_m_s = s.pad.velocity_enu_m_s[0, :2].tolist()
+    rate_rad_s = float(turn_rates_rad_s(frame, s.pad)[0])
+    return math.hypot(east_m_s - rate_rad_s * y, north_m_s + rate_rad_s * x)
+
+
+def limit_phase_rates(limits: FlightLimits, carried: FlightLimits, memory: StepMemory, s: Situation) -> FlightLimits:
+    """Return the limits of a plan, for an autopilot that carries setpoints on.
+
+    On the way home and to a rally it is high, above all that being carried on could meet. A station may be faster than
+    the vehicle, by whose speed all else is bounded.
+
+    Args:
+        limits: of the drone.
+        carried: and of what may be carried on beside the vehicle.
+        memory: with the phase and the station.
+        s: the facts.
+    """
+    phase = memory.progress.phase
+    if phase in (Phase.RETURN, Phase.RALLY):
+        return limits
+    if phase is not Phase.FOLLOW:
+        return carried
+    speed_m_s = SPEED_SHARE_MIN * station_speed_m_s(memory.sortie, s)
+    return replace(carried, speed_max_m_s=min(limits.speed_max_m_s, max(carried.speed_max_m_s, speed_m_s)))
 
 
 def return_aim(pad: PadPath, reference: ReferenceState, s: Situation, config: CompanionConfig) -> Aim:

@@ -1,0 +1,32 @@
+"""What a sortie is flown in: the drone rides on the deck, and the vehicle drives for long enough."""
+
+import math
+
+import pytest
+
+from link.errors import UserError
+from scenarios.simulation.drone import sim_autopilot_config
+from scenarios.simulation.vehicle import VehicleMemory, vehicle_at
+from scenarios.simulation.vehicle_node import plan_of
+from scenarios.sortie.scenario import sortie_scenario
+
+
+def test_drone_begins_on_the_deck_with_the_decks_velocity() -> None:
+    scenario = sortie_scenario("circle_5", 3, "ardupilot")
+    start = sim_autopilot_config(scenario, 3, instant=True).start
+    vehicle = vehicle_at(VehicleMemory(departs_ns=0), 0, plan_of(scenario, 3))
+    assert start.velocity_enu_m_s == vehicle.velocity_enu_m_s
+    over_m = start.position_enu_m[2] - vehicle.position_enu_m[2]
+    assert over_m == pytest.approx(scenario.vehicle.roof_height_m)
+    assert math.dist(start.position_enu_m[:2], vehicle.position_enu_m[:2]) == 0.0
+
+
+def test_vehicle_drives_through_all_of_the_sortie() -> None:
+    scenario = sortie_scenario("straight_10", 1, "px4")
+    driven = vehicle_at(VehicleMemory(departs_ns=0), 250_000_000_000, plan_of(scenario, 1))
+    assert math.hypot(*driven.velocity_enu_m_s[:2]) == pytest.approx(10.0)
+
+
+def test_a_vehicle_that_stands_is_refused() -> None:
+    with pytest.raises(UserError, match="its vehicle stands"):
+        sortie_scenario("static", 1, "px4")
