@@ -144,7 +144,7 @@ def command_command(
     *,
     offset: Annotated[
         tuple[float, float, float] | None,
-        typer.Option(help="Of a follow: metres ahead, left and up of the pad's centre."),
+        typer.Option(metavar="X Y Z", help="Of a follow: metres ahead, left and up of the pad's centre."),
     ] = None,
     frame: Annotated[
         str | None, typer.Option(metavar="vehicle|course|north", help="Of a follow: which way is ahead.")

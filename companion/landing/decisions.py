@@ -110,6 +110,7 @@ _LASTING = (Reason.OFFSET_UNKNOWN, Reason.SEEN_ELSEWHERE, Reason.SIGHTINGS_DISAG
 """What the drone looked with the first time is all that it has to look with."""
 
 TOO_LONG = {
+    Phase.LIFT_OFF: Reason.LIFT_OFF_TOO_LONG,
     Phase.TAKEOFF: Reason.TAKEOFF_TOO_LONG,
     Phase.CHASE: Reason.CHASE_TOO_LONG,
     Phase.ALIGN: Reason.ALIGN_TOO_LONG,

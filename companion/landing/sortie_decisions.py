@@ -14,6 +14,7 @@ from companion.landing.conditions import (
     is_drone_unknown,
     is_fix_old,
 )
+from companion.landing.decisions import TOO_LONG
 from companion.landing.entries import Decision
 from companion.landing.following_height import chase_floor_m
 from companion.landing.memory import ControlMemory, Held, Progress
@@ -153,7 +154,7 @@ def _rise(progress: Progress, s: Situation, config: CompanionConfig) -> Decision
     if unsafe is not None:
         return (Event.CALLED_OFF if has_not_left_deck(s) else Event.UNSAFE), unsafe
     if (s.monotonic_ns - progress.since_ns) * 1e-9 > launch.lift_off_time_limit_s:
-        too_long = Cause(Reason.LIFT_OFF_TOO_LONG, (launch.lift_off_time_limit_s,))
+        too_long = Cause(TOO_LONG[Phase.LIFT_OFF], (launch.lift_off_time_limit_s,))
         return (Event.CALLED_OFF if has_not_left_deck(s) else Event.TIME_LIMIT), too_long
     if s.approach is not None and s.approach.height_m > _RISEN_SHARE * launch.clear_height_m:
         return Event.CLEAR_OF_DECK, Cause(Reason.CLEAR_OF_DECK, (s.approach.height_m,))
