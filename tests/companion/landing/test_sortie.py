@@ -30,6 +30,7 @@ def at_station(station: Station) -> Flight:
     return flight
 
 
+@pytest.mark.slow
 def test_launch_leads_over_a_quiet_deck_to_a_station_above_the_pad() -> None:
     flight = on_deck()
     reply = flight.step(Command.LAUNCH).reply
@@ -76,6 +77,7 @@ def test_station_looks_ahead_as_its_frame_does(frame: StationFrame) -> None:
     assert offset_m(flight) == pytest.approx([-6.0 * c - 2.0 * s, -6.0 * s + 2.0 * c, 3.0], abs=0.05)
 
 
+@pytest.mark.slow
 def test_a_change_of_station_flies_round_the_vehicle() -> None:
     flight = at_station(Station(offset_m=(-5.0, 4.0, 1.0), frame=StationFrame.COURSE))
     flight.station = LOW
@@ -146,6 +148,7 @@ def test_silent_vehicle_is_looked_for_ahead_and_followed_again() -> None:
     flight.run_until(Phase.FOLLOW, limit_s=3.0)
 
 
+@pytest.mark.slow
 def test_drone_comes_home_by_itself_before_the_reserve_is_needed() -> None:
     flight = at_station(STATION)
     texts: list[str] = []
