@@ -83,7 +83,7 @@ def count_lost(*recorders: DirectRecorder | TruthFile | None) -> dict[str, int]:
 
 def write_outcome(folder: Path, result: dict[str, Any], timing: dict[str, Any]) -> RunOutcome:
     """Write what came of a run into its folder, the result with its units and the versions behind it, and return it."""
-    about = {"units": units_of(result), "versions": versions()}
-    write_json(folder / "result.json", result | {"about": about})
+    result = result | {"about": {"units": units_of(result), "versions": versions()}}
+    write_json(folder / "result.json", result)
     write_json(folder / "timing.json", timing)
     return RunOutcome(result=result, timing=timing)

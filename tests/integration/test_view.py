@@ -79,7 +79,8 @@ def press(page: Page, buttons: tuple[str, ...], command: str, phase: str) -> Non
     end_s = time.monotonic() + DEADLINE_S
     while True:
         for name in buttons:
-            page.get_by_role("button", name=name, exact=True).dispatch_event("click")
+            # The last of them: a question that was answered may still be fading out.
+            page.get_by_role("button", name=name, exact=True).last.dispatch_event("click")
         page.wait_for_selector(f"#reply:has-text('{command}:')", timeout=DEADLINE_MS)
         try:
             page.wait_for_function("phase => window.phases.includes(phase)", arg=phase, timeout=3000.0)
