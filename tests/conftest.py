@@ -1,7 +1,8 @@
-"""Options of the whole test run, examples that are the same in each run, and a disk that is soon full."""
+"""Options of the whole test run, examples that are the same in each run, Ctrl-C, and a disk that is soon full."""
 
 import os
 import shutil
+import signal
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,6 +16,11 @@ settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.register_profile("quick", derandomize=True, deadline=None, max_examples=20)  # make check
 settings.register_profile("anew", deadline=None)  # make fuzz
 settings.load_profile("repeatable")
+
+
+def pytest_configure() -> None:
+    """Heed Ctrl-C: a shell has what it starts in the background ignore it, and so would all that the tests start."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_collection_finish() -> None:
