@@ -36,7 +36,7 @@ def answer(
         obstacle: why no landing can be done, None when one can.
     """
     event = _event_of(order, phase, situation, config)
-    is_start = event in (Event.START, Event.START_AGAIN)
+    is_start = order.command in (Command.START, Command.START_ANYWAY)
     if phase is Phase.ABORT and event in (Event.ABORT, Event.HOLD):
         return None, _ACCEPTED  # the climb goes on, but to no retry
     stays = phase is Phase.FOLLOW and event is Event.FOLLOW  # at another station
@@ -47,7 +47,7 @@ def answer(
         missing = _missing_for_start(situation)
     if is_start:
         missing = missing or _rides_along(situation, config) or obstacle
-    elif event in SORTIE_EVENTS:
+    if event in SORTIE_EVENTS:
         missing = missing or missing_for_sortie(event, order.station, situation, config, obstacle)
     return (None, _refuse(missing)) if missing is not None else (event, _ACCEPTED)
 

@@ -47,8 +47,8 @@ def _aim(memory: StepMemory, situation: Situation, limits: FlightLimits, config:
             return hover_aim(anchor + np.array([0.0, 0.0, config.abort.height_m]))
         case Phase.TAKEOFF if not (situation.autopilot.armed and situation.autopilot.in_control):
             return hover_aim(anchor)
-        case Phase.HOLD:
-            return hover_aim(anchor)
+        case Phase.HOLD | Phase.TOUCHDOWN:  # what touches a pad that nobody knows any more stays where it is
+            return hover_aim(anchor if phase is Phase.HOLD else reference.position_enu_m)
         case _:
             rise_m = _waiting_rise_m(phase, float(waiting_point[2]), situation, config)
             return hover_aim(waiting_point + np.array([0.0, 0.0, rise_m]))
@@ -154,7 +154,8 @@ def _at_drone(
     which is what an autopilot's land detector waits for.
     """
     drone, sinking = situation.drone, _is_left_by_pad(memory, situation, config)
-    if drone is not None and _stands_on_deck(memory, situation):
+    lifts_by_itself = memory.progress.phase is Phase.LIFT_OFF and memory.control.driver.climbs_by_itself
+    if drone is not None and (lifts_by_itself or _stands_on_deck(memory, situation)):
         return _with_deck(drone, memory.progress.phase, situation, config)
     if drone is None or not (memory.control.driver.climbs_by_itself or sinking):
         return reference

@@ -27,6 +27,7 @@ SPEED_SHARE = 0.95
 """Of the drone's speed, for the way home; the rest makes up for gusts."""
 _BELOW_M = 0.5  # so far below the lowest station the planner's floor is: it is the last thing to be met
 _CLIMB_FIRST_M = 1.0  # a drone that is lower than this under its place climbs before it flies there
+_AT_RALLY_M = 3.0  # horizontally, as near as a receiver may err: there the drone comes down to the rally point
 
 
 def keep_out_of(pad: PadPath, config: CompanionConfig) -> KeepOut:
@@ -140,7 +141,9 @@ def climb_aim(pad: PadPath, reference: ReferenceState, s: Situation, config: Com
 
 
 def rally_aim(sortie: SortieMemory, anchor_enu_m: Array, reference: ReferenceState, rally_enu_m: Array | None) -> Aim:
-    """Return the aim at where the vehicle is to pass, or at the rally point; it climbs before it flies there.
+    """Return the aim at where the vehicle is to pass, which it climbs to before it flies there, or at the rally point.
+
+    On the way to the rally point it is no lower than before, and comes down there.
 
     Args:
         sortie: with the place where the vehicle is to pass.
@@ -148,12 +151,13 @@ def rally_aim(sortie: SortieMemory, anchor_enu_m: Array, reference: ReferenceSta
         reference: the virtual model now.
         rally_enu_m: (3,) where the drone is to wait by now; None while it looks for the vehicle.
     """
-    place = sortie.place_enu_m
-    if place is None:
-        return hover_aim(anchor_enu_m)
-    if float(reference.position_enu_m[2]) < float(place[2]) - _CLIMB_FIRST_M:
+    here, place = reference.position_enu_m, anchor_enu_m if sortie.place_enu_m is None else sortie.place_enu_m
+    if rally_enu_m is not None:
+        is_there = math.hypot(*(rally_enu_m - here)[:2].tolist()) < _AT_RALLY_M
+        return hover_aim(rally_enu_m if is_there else np.array([*rally_enu_m[:2], max(rally_enu_m[2], place[2])]))
+    if float(here[2]) < float(place[2]) - _CLIMB_FIRST_M:
         return hover_aim(np.array([*anchor_enu_m[:2], place[2]]))
-    return hover_aim(place if rally_enu_m is None else rally_enu_m)
+    return hover_aim(place)
 
 
 def rally_point_enu_m(in_phase_s: float, s: Situation, config: CompanionConfig) -> Array | None:

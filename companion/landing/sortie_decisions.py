@@ -87,7 +87,8 @@ def _warning(sortie: SortieMemory, phase: Phase, s: Situation, config: Companion
     """Return what the pilot is told of the way home, with the numbers that it was first told with."""
     if phase not in OUT_PHASES:
         return None
-    spare_s = left_s(sortie.battery, config.limits.battery_min_share) - home_s(s, config)
+    lasts_s = left_s(sortie.battery, config.limits.battery_min_share)
+    spare_s = lasts_s - home_s(s, config) if math.isfinite(lasts_s) else math.inf  # the way may be endless, too
     if spare_s > config.sortie.warn_before_s:
         return None
     return sortie.warning or Cause(Reason.HOME_SOON, (max(spare_s, 0.0),))
@@ -118,10 +119,16 @@ def decide_sortie(
             return _stay_together(sortie, progress, s, config)
         case Phase.RALLY:
             return _find(sortie, s, config)
-        case Phase.HOLD if sortie.is_out:
-            return _turn_home(sortie, s, config)
+        case Phase.HOLD if sortie.is_out and (sortie.follows or progress.may_retry):
+            return _turn_home(sortie, s, config)  # but not where an operator has broken the way home off
         case _:
             return None
+
+
+def stay_out(sortie: SortieMemory, progress: Progress, decision: Decision) -> Decision:
+    """Return the decision, but no retry of a landing that was never begun: the abort broke off a station."""
+    is_retry = decision[0] is Event.CLEAR and sortie.station is not None
+    return (Event.CLEAR_TO_HOLD, progress.cause) if is_retry else decision
 
 
 def _leave_deck(
@@ -162,7 +169,9 @@ def _rise(progress: Progress, s: Situation, config: CompanionConfig) -> Decision
 
 
 def has_not_left_deck(s: Situation) -> bool:
-    """Return whether the drone stands on the deck still, by its autopilot's word and its own place."""
+    """Return whether the drone stands on the deck still, by its autopilot's word and, where it is known, its place."""
+    if s.approach is None:
+        return s.autopilot.landed is True
     return s.autopilot.landed is not False and stands_on_deck(s, ON_DECK_M, _DECK_HEIGHT_M)
 
 

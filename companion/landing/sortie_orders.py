@@ -40,7 +40,7 @@ def missing_for_sortie(
         case Event.LAUNCH:
             return _missing_for_launch(s) or _unless_ground_is_deck(obstacle)
         case Event.FOLLOW if station is not None:
-            return why_no_station(station, s, config)
+            return why_no_station(station, s, config) or _out_of_reach(s, config)
         case _:
             return _out_of_reach(s, config)
 

@@ -19,6 +19,9 @@ from link.records import replace
 _BRAKING_M_S2 = 2.0  # of a drone that stops before it climbs and flies to where the vehicle is to pass
 _LOOK_AHEAD_S = float(HORIZON_OFFSETS_S[-1])  # so far ahead the vehicle is forecast
 
+_OUTWARD = frozenset({Phase.LIFT_OFF, Phase.FOLLOW})
+_HOMEWARD = frozenset({Phase.RETURN, Phase.CHASE})
+
 
 def take_order(sortie: SortieMemory, order: Order) -> SortieMemory:
     """Return the sortie after an accepted order."""
@@ -35,15 +38,18 @@ def begin_phase_of_sortie(
     memory: StepMemory, before: Phase, situation: Situation, config: CompanionConfig
 ) -> StepMemory:
     """Return the memory with what a sortie's phase needs at its beginning; `before` led to the present one."""
-    sortie, phase = memory.sortie, memory.progress.phase
+    phase = memory.progress.phase
+    if phase in _OUTWARD | _HOMEWARD:
+        memory = replace(memory, sortie=replace(memory.sortie, follows=phase in _OUTWARD))
+    sortie = memory.sortie
     match phase:
         case Phase.ON_DECK:
             return _without_ground(memory)
         case Phase.LIFT_OFF | Phase.FOLLOW if before in (Phase.ON_DECK, Phase.LIFT_OFF):
             return replace(memory, sortie=_over_deck(sortie, phase, situation, config))
         case Phase.RALLY:
-            return _to_rally(memory, before, situation, config)
-        case Phase.CHASE if before in STATION_PHASES:
+            return _to_rally(memory, situation, config)
+        case Phase.CHASE if before in STATION_PHASES or sortie.station is not None:
             return _to_land(memory, situation)
         case _ if phase is Phase.TAKEOFF or phase not in FLYING_PHASES:
             return replace(memory, sortie=SortieMemory(battery=sortie.battery))
@@ -86,7 +92,7 @@ def _over_deck(sortie: SortieMemory, phase: Phase, s: Situation, config: Compani
     return replace(sortie, station=station, ahead_rad=ahead)
 
 
-def _to_rally(memory: StepMemory, before: Phase, s: Situation, config: CompanionConfig) -> StepMemory:
+def _to_rally(memory: StepMemory, s: Situation, config: CompanionConfig) -> StepMemory:
     """Return the memory with where the vehicle was last forecast to pass when the drone can be there."""
     reference, pad = memory.model.reference, s.pad
     if reference is None:
@@ -98,5 +104,5 @@ def _to_rally(memory: StepMemory, before: Phase, s: Situation, config: Companion
         place = pad.position_enu_m[0] + pad.velocity_enu_m_s[0] * ahead_s
         clear_m = float(pad.position_enu_m[0, 2]) + s.feet_offset_m + config.chase.height_m
         place = np.array([*place[:2], max(float(reference.position_enu_m[2]), clear_m)])
-    sortie = replace(memory.sortie, follows=before is Phase.FOLLOW, place_enu_m=place, found_since_ns=None)
+    sortie = replace(memory.sortie, place_enu_m=place, found_since_ns=None)
     return replace(memory, sortie=sortie, places=replace(memory.places, anchor_enu_m=anchor))

@@ -10,7 +10,7 @@ from companion.landing.decisions import decide
 from companion.landing.entries import update_held
 from companion.landing.feasibility import OBSTACLES, obstacle
 from companion.landing.memory import NOTHING_HELD, ControlMemory, ModelMemory, Progress, StepMemory
-from companion.landing.sortie_decisions import SORTIE_CONDITIONS, decide_sortie, update_sortie
+from companion.landing.sortie_decisions import SORTIE_CONDITIONS, decide_sortie, stay_out, update_sortie
 from companion.landing.sortie_phases import begin_phase_of_sortie, clear_of_vehicle, take_order
 from companion.landing.step_data import StepInputs
 from companion.landing.targets import stopping_point
@@ -37,6 +37,8 @@ _COMMANDED = {
     Command.RETURN: Cause(Reason.OPERATOR_RETURNS),
 }
 _BREAKS_OFF = (Command.ABORT, Command.HOLD)
+_BEGINNINGS = frozenset({Event.START, Event.START_AGAIN, Event.LAUNCH, Event.FOLLOW, Event.RETURN})
+"""From here on approaches are counted."""
 
 
 def take_events(
@@ -64,6 +66,7 @@ def take_events(
     if decision is None:
         decision = decide_sortie(memory.sortie, memory.progress, memory.control, situation, config)
     if decision is not None:
+        decision = stay_out(memory.sortie, memory.progress, decision)
         memory = _enter(memory, *decision, situation, config)
     return _update_control(memory, inputs), reply
 
@@ -127,10 +130,10 @@ def _progress_after(
         phase=phase,
         since_ns=monotonic_ns if resumed_ns is None else resumed_ns,
         cause=cause,
-        retries=0 if event in (Event.START, Event.START_AGAIN) else retries,
+        retries=0 if event in _BEGINNINGS else retries,
         interrupted_ns=before.since_ns if is_outage else None,
         begun_anew=begun_anew if goes_on else {},
-        may_retry=before.may_retry,
+        may_retry=before.may_retry or event is Event.HOME_NOW,
         stopped_by_pad=event is Event.CONTACT and Reason.HARD_CONTACT in before.held,
         held=before.held if goes_on else NOTHING_HELD,
         obstacle=before.obstacle,

@@ -17,7 +17,7 @@ class SortieMemory(Struct, frozen=True, kw_only=True, eq=False):
         is_out: one is under way.
         station: that is kept, or was last.
         ahead_rad: where ahead was when it could be told, from East counter-clockwise.
-        follows: the vehicle is to be followed again once it is heard again; otherwise the drone comes home to it.
+        follows: the drone is to stay out beside the vehicle; otherwise it is on its way home, or lands.
         place_enu_m: (3,) where a silent vehicle is looked for; None while it is heard.
         found_since_ns: since when a vehicle that was silent is heard again, monotonic; None while it is not.
         quiet_since_ns: since when the deck is quiet, monotonic; None while it is not.
