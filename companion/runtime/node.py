@@ -114,9 +114,10 @@ class CompanionNode:
 
     def receive_pad(self, pad: PadGeometry) -> None:
         """Take the vehicle's description of its pad; the estimator needs the lever arm for sightings of the pad."""
+        was_afloat = self.vehicle.pad is not None and self.vehicle.pad.is_afloat
         if self.vehicle.receive_pad(pad):
             estimator = make_estimator(self.system.config.estimator, deck_of(pad))
-            if pad.is_afloat:  # what has been learnt of it as of a car is wrong, and believed
+            if pad.is_afloat is not was_afloat:  # what has been learnt of a ship as of a car is wrong, and believed
                 self.memory = replace(self.memory, vehicle=replace(self.memory.vehicle, estimator=None))
             self.system = replace(self.system, estimator=estimator)
 
