@@ -126,7 +126,7 @@ def _firmware(seen: AutopilotFacts, wanted: AutopilotKind) -> Finding:
     name, oldest = firmware.name, firmware.oldest
     if wanted not in {AutopilotKind.AUTO, firmware.kind}:
         text = f"{name}, and the configuration says {wanted.value}"
-        return _finding("firmware", text, Level.FAIL, 'connect the other, or set autopilot = "auto"')
+        return _finding("firmware", text, Level.FAIL, 'connect the other, or set autopilot.kind = "auto"')
     if seen.version is None:
         return _finding("firmware", f"{name}, version not told", Level.WARN, "check that it is a current release")
     text = f"{name} {'.'.join(map(str, seen.version))}"
