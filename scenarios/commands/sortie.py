@@ -38,7 +38,7 @@ def sortie_command(
     cell: Annotated[str, typer.Argument(metavar="CELL", help="A scenario whose vehicle drives, or urban.")],
     *,
     seeds: Annotated[int, typer.Option("--seeds", min=1, metavar="N", help="How many.")] = 1,
-    first_seed: Annotated[int, typer.Option("--first-seed", min=1, metavar="S", help="The first.")] = 1,
+    first_seed: Annotated[int, typer.Option("--first-seed", min=1, metavar="N", help="The others follow.")] = 1,
     firmware: Annotated[
         str, typer.Option("--firmware", metavar="px4|ardupilot|both", help="Which autopilot flies.")
     ] = "px4",

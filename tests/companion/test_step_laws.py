@@ -97,7 +97,8 @@ def test_disarm_is_forced_only_on_the_pad_and_after_a_refusal(  # noqa: PLR0917 
         autopilot=replace(flown.view, in_control=in_control),
     )
     driver = replace(flown.memory.control.driver, asked_ns=None, disarm_asked=asked, disarm_refusals=refusals)
-    memory = changed(flown.memory, phase=phase, since_ns=inputs.monotonic_ns, driver=driver, held={})
+    memory = replace(flown.memory, sortie=kept(Phase.FOLLOW).memory.sortie)  # a station, for the phases that keep one
+    memory = changed(memory, phase=phase, since_ns=inputs.monotonic_ns, driver=driver, held={})
     after, outputs = companion_step(memory, inputs, flown.system)
     forced = [one for one in outputs.commands if one.command == DISARM and one.parameters[1] != 0.0]
     refused = refusals > 0 or (asked and any(one == DISARM and result for one, result in acknowledged))

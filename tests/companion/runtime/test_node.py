@@ -276,7 +276,7 @@ def test_autopilot_that_tells_no_height_above_the_ellipsoid_is_not_started_and_s
     setup.run(0.1, setup.fix)
     (reply,) = setup.node.take_replies()
     assert not reply.accepted
-    assert "set geoid_height_m" in reply.reason
+    assert "set autopilot.geoid_height_m" in reply.reason
     assert setup.node.outputs is not None
     assert setup.node.outputs.status.reason == reply.reason
     assert not setup.node.is_ready_to_start()

@@ -18,8 +18,8 @@ def test_page_and_figures_of_a_campaign_show_every_landing(tmp_path: Path) -> No
     assert "2 of 2 landings reached S3" in page
     assert "S3 (2)" in page
     assert "straight_5, px4" in page
-    assert len(re.findall("<svg", page)) == 2
+    assert len(re.findall("<svg", page)) == 3
     assert not re.findall(r'(?:src|href)="http', page)
     assert scenarios("figures", folder) == 0
     names = {file.name for file in (folder / "figures").iterdir()}
-    assert names == {f"{name}.{kind}" for name in ("touchdowns", "errors") for kind in ("png", "svg")}
+    assert names == {f"{name}.{kind}" for name in ("touchdowns", "errors", "reliability") for kind in ("png", "svg")}
