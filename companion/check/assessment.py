@@ -1,65 +1,15 @@
 """From what was seen of an autopilot and a vehicle to the lines of the check; pure."""
 
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from companion.autopilots.choice import MULTIROTORS
-from companion.check.ardupilot_rules import ARDUPILOT_LAUNCH_RULES, ARDUPILOT_RULES, ARDUPILOT_SINK
-from companion.check.findings import Finding, Level, pass_line
+from companion.check.findings import Finding, Level, make_finding, pass_line, pass_or
+from companion.check.firmwares import FIRMWARES
 from companion.check.observation import AutopilotFacts, VehicleFacts
-from companion.check.px4_rules import PX4_LAUNCH_RULES, PX4_RULES, PX4_SINK
-from companion.check.rules import ParameterRule, Spelling, judge, names_of, sink_rule
+from companion.check.rules import judge
+from companion.check.vehicle_assessment import assess_vehicle
 from companion.config.autopilot import AutopilotKind
 from companion.config.companion import CompanionConfig
-from companion.config.integrity import IntegrityConfig
-from link.mavlink.dialect import mavlink
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Firmware:
-    """A firmware that can be flown.
-
-    Attributes:
-        name: for messages.
-        kind: what a configuration calls it.
-        oldest: release that is known to work.
-        rules: of its parameters, but for the one that limits the descent.
-        launch: likewise, for a launch from the deck of a vehicle that drives.
-        sink: names of the descent's.
-    """
-
-    name: str
-    kind: AutopilotKind
-    oldest: tuple[int, int]
-    rules: Sequence[ParameterRule]
-    launch: Sequence[ParameterRule]
-    sink: tuple[Spelling, ...]
-
-    def rules_for(self, sink_m_s: float) -> tuple[ParameterRule, ...]:
-        """Return all rules, for a companion that sinks by `sink_m_s` at most."""
-        return (*self.rules, sink_rule(self.sink, sink_m_s))
-
-    @property
-    def parameters(self) -> tuple[str, ...]:
-        """Every name that the rules look for."""
-        return (*names_of((*self.rules, *self.launch)), *(spelling.name for spelling in self.sink))
-
-
-FIRMWARES = {
-    mavlink.MAV_AUTOPILOT_PX4: Firmware(
-        name="PX4", kind=AutopilotKind.PX4, oldest=(1, 14), rules=PX4_RULES, launch=PX4_LAUNCH_RULES, sink=PX4_SINK
-    ),
-    mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA: Firmware(
-        name="ArduPilot",
-        kind=AutopilotKind.ARDUPILOT,
-        oldest=(4, 5),
-        rules=ARDUPILOT_RULES,
-        launch=ARDUPILOT_LAUNCH_RULES,
-        sink=ARDUPILOT_SINK,
-    ),
-}
-"""By MAV_AUTOPILOT."""
 
 MOTION = ("LOCAL_POSITION_NED", "ATTITUDE_QUATERNION")
 _MOTION_RATE_MIN_HZ = 40.0
@@ -67,9 +17,6 @@ _LATENCY_MAX_S = 0.1
 _CLOCK_STD_MAX_S = 0.02
 _BATTERY_SPARE = 0.1  # beyond what no landing is begun below
 _BATTERY_GOOD = 0.3  # likewise
-_FIX_RATE_MIN_HZ = 4.0
-_FIX_AGE_SHARE = 0.5  # of what aborts a landing
-_FIX_STD_GOOD_M = 0.3
 
 
 def assess(
@@ -98,7 +45,7 @@ def assess(
         firmware = FIRMWARES[autopilot.autopilot_id]
         rules = firmware.rules_for(config.descent.sink.rate_max_m_s)
         found += judge((*rules, *(firmware.launch if launches else ())), autopilot.parameters, speed_m_s)
-    return found if vehicle is None else [*found, *_vehicle(vehicle, config)]
+    return found if vehicle is None else [*found, *assess_vehicle(vehicle, config)]
 
 
 def is_ready(findings: Sequence[Finding]) -> bool:
@@ -106,40 +53,32 @@ def is_ready(findings: Sequence[Finding]) -> bool:
     return all(finding.level is not Level.FAIL for finding in findings)
 
 
-def _finding(name: str, found: str, level: Level, advice: str, reason: str = "") -> Finding:
-    if level is Level.PASS:
-        return pass_line(name, found)
-    return Finding(name=name, level=level, found=found, advice=advice, reason=reason)
-
-
-def _level(is_true: bool, otherwise: Level) -> Level:
-    return Level.PASS if is_true else otherwise
-
-
 def _firmware(seen: AutopilotFacts, wanted: AutopilotKind) -> Finding:
     if seen.vehicle_type not in MULTIROTORS:
         text = f"MAV_TYPE {seen.vehicle_type}, which is no multirotor"
-        return _finding("firmware", text, Level.FAIL, "connect to a multirotor, or set the autopilot's airframe to one")
+        return make_finding(
+            "firmware", text, Level.FAIL, "connect to a multirotor, or set the autopilot's airframe to one"
+        )
     if seen.autopilot_id not in FIRMWARES:
-        return _finding("firmware", f"MAV_AUTOPILOT {seen.autopilot_id}", Level.FAIL, "connect PX4 or ArduPilot")
+        return make_finding("firmware", f"MAV_AUTOPILOT {seen.autopilot_id}", Level.FAIL, "connect PX4 or ArduPilot")
     firmware = FIRMWARES[seen.autopilot_id]
     name, oldest = firmware.name, firmware.oldest
     if wanted not in {AutopilotKind.AUTO, firmware.kind}:
         text = f"{name}, and the configuration says {wanted.value}"
-        return _finding("firmware", text, Level.FAIL, 'connect the other, or set autopilot = "auto"')
+        return make_finding("firmware", text, Level.FAIL, 'connect the other, or set autopilot.kind = "auto"')
     if seen.version is None:
-        return _finding("firmware", f"{name}, version not told", Level.WARN, "check that it is a current release")
+        return make_finding("firmware", f"{name}, version not told", Level.WARN, "check that it is a current release")
     text = f"{name} {'.'.join(map(str, seen.version))}"
-    level = _level(seen.version[:2] >= oldest, Level.WARN)
-    return _finding("firmware", text, level, f"update it: {name} from {oldest[0]}.{oldest[1]} on is known to work")
+    level = pass_or(seen.version[:2] >= oldest, Level.WARN)
+    return make_finding("firmware", text, level, f"update it: {name} from {oldest[0]}.{oldest[1]} on is known to work")
 
 
 def _readiness(seen: AutopilotFacts) -> Finding:
     if seen.can_arm is None:
-        return _finding("arming checks", "not told", Level.WARN, "look at them in a ground station")
+        return make_finding("arming checks", "not told", Level.WARN, "look at them in a ground station")
     text = "ready to arm" if seen.can_arm else "not ready to arm"
-    return _finding(
-        "arming checks", text, _level(seen.can_arm, Level.WARN), "wait, or see a ground station for the cause"
+    return make_finding(
+        "arming checks", text, pass_or(seen.can_arm, Level.WARN), "wait, or see a ground station for the cause"
     )
 
 
@@ -148,7 +87,7 @@ def _origin(seen: AutopilotFacts) -> Finding:
         text for text, there in (("origin", seen.has_origin), ("local position", seen.has_position)) if not there
     ]
     text = "origin and local position known" if not missing else f"no {' and no '.join(missing)}"
-    return _finding("estimator", text, _level(not missing, Level.FAIL), "wait for a GNSS fix under an open sky")
+    return make_finding("estimator", text, pass_or(not missing, Level.FAIL), "wait for a GNSS fix under an open sky")
 
 
 def _heights(seen: AutopilotFacts, configured_m: float | None) -> Finding:
@@ -156,101 +95,57 @@ def _heights(seen: AutopilotFacts, configured_m: float | None) -> Finding:
     if height_m is None:
         advice = "let its receiver tell alt_ellipsoid, or set autopilot.geoid_height_m in the companion's configuration"
         reason = "the vehicle's heights are above the ellipsoid, the autopilot's above the sea; without it no start"
-        return _finding("heights", "geoid not told", Level.FAIL, advice, reason)
+        return make_finding("heights", "geoid not told", Level.FAIL, advice, reason)
     source = "by the configuration" if seen.geoid_height_m is None else "by its receiver"
     return pass_line("heights", f"the sea is {height_m:.1f} m above the ellipsoid, {source}")
 
 
 def _clock(seen: AutopilotFacts) -> Finding:
     if not seen.round_trips:
-        return _finding("clock", "TIMESYNC not answered", Level.FAIL, "let the autopilot answer TIMESYNC on this link")
+        return make_finding(
+            "clock", "TIMESYNC not answered", Level.FAIL, "let the autopilot answer TIMESYNC on this link"
+        )
     std_s = seen.clock_std_s
     text = f"{seen.round_trips} round trips" + ("" if std_s is None else f", offset known to {1e3 * std_s:.1f} ms")
     if not seen.utc_known:
-        return _finding("clock", f"{text}, no time of day", Level.FAIL, "wait for its GNSS to tell SYSTEM_TIME")
-    level = _level(std_s is None or std_s <= _CLOCK_STD_MAX_S, Level.WARN)
-    return _finding("clock", text, level, "use a faster link: the vehicle's place is off by speed times clock error")
+        return make_finding("clock", f"{text}, no time of day", Level.FAIL, "wait for its GNSS to tell SYSTEM_TIME")
+    level = pass_or(std_s is None or std_s <= _CLOCK_STD_MAX_S, Level.WARN)
+    return make_finding(
+        "clock", text, level, "use a faster link: the vehicle's place is off by speed times clock error"
+    )
 
 
 def _rate(seen: AutopilotFacts, name: str) -> Finding:
     rate_hz = seen.rates_hz.get(name, 0.0)
-    level = Level.FAIL if rate_hz <= 0.0 else _level(rate_hz >= _MOTION_RATE_MIN_HZ, Level.WARN)
+    level = Level.FAIL if rate_hz <= 0.0 else pass_or(rate_hz >= _MOTION_RATE_MIN_HZ, Level.WARN)
     advice = "raise the link's baud rate; 50 Hz are asked for"
     if rate_hz <= 0.0 and any(other_hz > 0.0 for other_hz in seen.rates_hz.values()):
         advice = "wait for a GNSS fix: it is not sent before the estimator has a position"
-    return _finding(name, f"{rate_hz:.0f} Hz", level, advice)
+    return make_finding(name, f"{rate_hz:.0f} Hz", level, advice)
 
 
 def _latency(seen: AutopilotFacts) -> Finding:
     if seen.latency_s is None:
-        return _finding("latency", "unknown", Level.WARN, "needs clock and position")
+        return make_finding("latency", "unknown", Level.WARN, "needs clock and position")
     unsure_s = _CLOCK_STD_MAX_S if seen.clock_std_s is None else 2.0 * seen.clock_std_s
     if seen.latency_s < -unsure_s:
         text = f"{1e3 * seen.latency_s:.0f} ms: positions come before they are taken"
-        return _finding("latency", text, Level.WARN, "let it settle and check again, or use a link without a queue")
-    level = _level(seen.latency_s <= _LATENCY_MAX_S, Level.WARN)
-    return _finding("latency", f"{1e3 * max(seen.latency_s, 0.0):.0f} ms", level, "use a wire instead of a radio")
+        return make_finding("latency", text, Level.WARN, "let it settle and check again, or use a link without a queue")
+    level = pass_or(seen.latency_s <= _LATENCY_MAX_S, Level.WARN)
+    return make_finding("latency", f"{1e3 * max(seen.latency_s, 0.0):.0f} ms", level, "use a wire instead of a radio")
 
 
 def _battery(seen: AutopilotFacts, share_min: float) -> Finding:
     share = seen.battery_share
     if share is None:
-        return _finding("battery", "not told", Level.WARN, "set up the autopilot's battery monitor")
+        return make_finding("battery", "not told", Level.WARN, "set up the autopilot's battery monitor")
     needed, good = round(share_min + _BATTERY_SPARE, 6), min(round(share_min + _BATTERY_GOOD, 6), 1.0)
-    level = Level.FAIL if share < needed else _level(share >= good, Level.WARN)
-    return _finding("battery", f"{100.0 * share:.0f} %", level, "charge it: aborts and retries take minutes")
+    level = Level.FAIL if share < needed else pass_or(share >= good, Level.WARN)
+    return make_finding("battery", f"{100.0 * share:.0f} %", level, "charge it: aborts and retries take minutes")
 
 
 def _range_finder(seen: AutopilotFacts) -> Finding:
     text = "tells what is below" if seen.has_range_finder else "no DISTANCE_SENSOR that looks down"
     advice = "fit one, or compare drone and pad at rest before each day's first landing (docs/vehicle.md)"
     reason = "a vehicle's height that is wrong by less than 2 m is told by nothing else"
-    return _finding("range finder", text, _level(seen.has_range_finder, Level.WARN), advice, reason)
-
-
-def _vehicle(seen: VehicleFacts, config: CompanionConfig) -> list[Finding]:
-    if config.silent_vehicle is not None:
-        return [pass_line("vehicle", "tells nothing, as the configuration says")]
-    if seen.rate_hz <= 0.0 and seen.fix_refused_why is not None:
-        advice = f"see what the vehicle publishes on {seen.key}, and whether its receiver has a fix"
-        return [_finding("vehicle", f"refused: {seen.fix_refused_why}", Level.FAIL, advice)]
-    if seen.rate_hz <= 0.0:
-        advice = "start the ground vehicle, or check --ns, --vehicle and -e"
-        return [_finding("vehicle", f"nothing on {seen.key}", Level.WARN, advice)]
-    refused = "not described" if seen.pad_refused_why is None else f"refused: {seen.pad_refused_why}"
-    pad = _finding(
-        "vehicle pad",
-        "described" if seen.describes_pad else refused,
-        _level(seen.describes_pad, Level.FAIL),
-        "let the vehicle answer for its pad" if seen.pad_refused_why is None else "mend the vehicle's description",
-    )
-    level = _level(seen.rate_hz >= _FIX_RATE_MIN_HZ, Level.WARN)
-    rate = _finding("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, "set its receiver to 5 Hz or more")
-    known = [_vehicle_age(seen, config), _vehicle_accuracy(seen, config.abort.position_std_max_m)]
-    return [rate, *known, *_vehicle_heading(seen, config.integrity), pad]
-
-
-def _vehicle_heading(seen: VehicleFacts, config: IntegrityConfig) -> list[Finding]:
-    """Return the line on a heading that was compared with the course: of a vehicle that drove meanwhile."""
-    if seen.heading_off_rad is None:
-        return []
-    level = _level(abs(seen.heading_off_rad) <= config.heading_off_max_rad, Level.FAIL)
-    text = f"{abs(math.degrees(seen.heading_off_rad)):.0f} degrees off its course"
-    advice = "see its compass, the IMU's mounting and axes; reversing is 180 degrees, so drive forwards"
-    return [_finding("vehicle heading", text, level, advice, "the pad is not placed by it")]
-
-
-def _vehicle_age(seen: VehicleFacts, config: CompanionConfig) -> Finding:
-    if seen.age_s is None:
-        return _finding("vehicle age", "unknown", Level.WARN, "needs the autopilot's time of day")
-    is_fit = -config.integrity.fix_ahead_max_s <= seen.age_s <= _FIX_AGE_SHARE * config.abort.fix_age_max_s
-    advice = "set its clock by GNSS or NTP, or use a faster link"
-    return _finding("vehicle age", f"{1e3 * seen.age_s:.0f} ms", _level(is_fit, Level.FAIL), advice)
-
-
-def _vehicle_accuracy(seen: VehicleFacts, std_max_m: float) -> Finding:
-    if seen.std_m is None:
-        return _finding("vehicle accuracy", "not stated", Level.WARN, "let it publish a covariance")
-    level = Level.FAIL if seen.std_m > std_max_m else _level(seen.std_m <= _FIX_STD_GOOD_M, Level.WARN)
-    text = f"{seen.std_m:.2f} m" + ("" if seen.has_velocity else ", no velocity")
-    return _finding("vehicle accuracy", text, level, "use RTK, or a landing-pattern detector")
+    return make_finding("range finder", text, pass_or(seen.has_range_finder, Level.WARN), advice, reason)

@@ -44,6 +44,18 @@ def pass_line(name: str, found: str) -> Finding:
     return Finding(name=name, level=Level.PASS, found=found)
 
 
+def pass_or(is_true: bool, otherwise: Level) -> Level:
+    """Return a pass where something holds, `otherwise` where it does not."""
+    return Level.PASS if is_true else otherwise
+
+
+def make_finding(name: str, found: str, level: Level, advice: str, reason: str = "") -> Finding:
+    """Return a line that asks for something only if it is no pass."""
+    if level is Level.PASS:
+        return pass_line(name, found)
+    return Finding(name=name, level=level, found=found, advice=advice, reason=reason)
+
+
 def advised_values(findings: Sequence[Finding]) -> dict[str, float]:
     """Return the parameters that have an advised value, by name."""
     return {one.name: one.set_to for one in findings if one.set_to is not None}

@@ -5,7 +5,8 @@ from collections import Counter, deque
 
 from companion.autopilots.local_origin import geoid_height_m
 from companion.autopilots.sensor_messages import battery_share, is_of_first_battery, looks_down
-from companion.check.assessment import FIRMWARES, MOTION
+from companion.check.assessment import MOTION
+from companion.check.firmwares import FIRMWARES
 from companion.check.observation import AutopilotFacts
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import (

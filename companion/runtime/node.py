@@ -8,12 +8,12 @@ from companion.component.component import MavlinkComponent
 from companion.component.identity import ComputerLoad
 from companion.config.companion import CompanionConfig
 from companion.core.data import Rival, VehicleEstimate
-from companion.core.reasons import Cause, Reason, sentence
 from companion.landing.guiding import guiding_message
 from companion.landing.memory import StepMemory
 from companion.landing.step_data import LinkDelay, StepInputs, StepOutputs, System
-from companion.runtime.publishing import StatusPublisher
+from companion.runtime.publishing import StatusPublisher, with_links
 from companion.runtime.response_models import response_to
+from companion.runtime.start_conditions import is_ready_to_start, refuse_unheard
 from companion.runtime.step_clock import StepClock
 from companion.runtime.vehicle_link import VehicleLink
 from companion.situation.phases import FLYING_PHASES, Phase
@@ -22,7 +22,7 @@ from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.factory import make_estimator
 from companion.vehicle.imm_numbers import deck_of
 from link.mavlink.session import MavlinkSession
-from link.messages import Command, CommandReply, LandingStatus, PadGeometry, Station
+from link.messages import Command, CommandReply, PadGeometry, Station
 from link.records import replace
 from link.zenoh.keys import Keys, Publication
 
@@ -114,25 +114,22 @@ class CompanionNode:
 
     def receive_pad(self, pad: PadGeometry) -> None:
         """Take the vehicle's description of its pad; the estimator needs the lever arm for sightings of the pad."""
+        was_afloat = self.vehicle.pad is not None and self.vehicle.pad.is_afloat
         if self.vehicle.receive_pad(pad):
             estimator = make_estimator(self.system.config.estimator, deck_of(pad))
-            if pad.is_afloat:  # what has been learnt of it as of a car is wrong, and believed
+            if pad.is_afloat is not was_afloat:  # what has been learnt of a ship as of a car is wrong, and believed
                 self.memory = replace(self.memory, vehicle=replace(self.memory.vehicle, estimator=None))
             self.system = replace(self.system, estimator=estimator)
 
     def is_ready_to_start(self) -> bool:
         """Return whether a start would be accepted now."""
-        state = self.autopilot.state
-        placed = state.view.frame is not None and state.view.receiver.knows_geoid
-        return state.view.link_up and placed and state.own is not None
+        return is_ready_to_start(self.autopilot.state)
 
     def start_refusal(self) -> CommandReply | None:
         """Return the answer to a start for a vehicle that was never heard; None where a step is to judge it."""
         if self.vehicle_heard or not self.is_ready_to_start():
             return None
-        refused = self.vehicle.refused_lately()
-        why = Cause(Reason.VEHICLE_UNHEARD, (f" ({refused})" if refused else "",))
-        return CommandReply(accepted=False, reason=sentence(why))
+        return refuse_unheard(self.vehicle)
 
     def receive_liveliness(self, *, alive: bool) -> None:
         """Take the state of the vehicle's liveliness token."""
@@ -246,14 +243,5 @@ class CompanionNode:
         self._component.tell(outputs, self.phase, self.autopilot.state, self.system.config, local_ns)
         if self.publisher.is_due(outputs, self._clock.monotonic_ns):
             yaw_rad = self.memory.model.yaw_setpoint_rad
-            self.publisher.publish(self._status(outputs), outputs.plan, self._clock, yaw_rad)
-
-    def _status(self, outputs: StepOutputs) -> LandingStatus:
-        """Return the status of a step, with what is known of the links."""
-        return replace(
-            outputs.status,
-            mavlink_bad_bytes=self.autopilot.session.statistics.codec.bad_bytes,
-            zenoh_bad_payloads=self.bad_payloads,
-            refused=self.vehicle.refused_lately(),
-            open_to_strangers=self.open_to_strangers,
-        )
+            status = with_links(outputs.status, self.autopilot.session, self.vehicle, self.open_to_strangers)
+            self.publisher.publish(status, outputs.plan, self._clock, yaw_rad)

@@ -7,8 +7,11 @@ from companion.landing.outputs import plan_publication, status_publication
 from companion.landing.step_data import StepOutputs
 from companion.planning.guidance import PlanResult
 from companion.runtime.step_clock import StepClock
+from companion.runtime.vehicle_link import VehicleLink
+from link.mavlink.session import MavlinkSession
 from link.messages import LandingStatus
 from link.payloads.checks import PayloadError
+from link.records import replace
 from link.zenoh.keys import Keys, Publication
 
 _PLAN_EVERY = 2  # statuses
@@ -60,3 +63,23 @@ class StatusPublisher:
                 self._publications.append(plan_publication(self._keys, plan, clock.t_ns, yaw_rad))
         except PayloadError:  # a flight goes on without being seen
             self.unpublished += 1
+
+
+def with_links(
+    status: LandingStatus, session: MavlinkSession, vehicle: VehicleLink, open_to_strangers: tuple[str, ...]
+) -> LandingStatus:
+    """Return the status of a step with what is known of the links.
+
+    Args:
+        status: as the step made it.
+        session: to the autopilot.
+        vehicle: the link to it.
+        open_to_strangers: which links are.
+    """
+    return replace(
+        status,
+        mavlink_bad_bytes=session.statistics.codec.bad_bytes,
+        zenoh_bad_payloads=vehicle.refusals.total,
+        refused=vehicle.refused_lately(),
+        open_to_strangers=open_to_strangers,
+    )

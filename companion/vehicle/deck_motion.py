@@ -25,6 +25,7 @@ _FREQUENCY_RANGE_RAD_S = (2.0 * math.pi * 0.03, 2.0 * math.pi * 5.0)  # from swe
 # A narrower band would tell the middle of a swing from a part of it: seas have bands of some 0.4 of their frequency
 # (Longuet-Higgins 1975), bodies on wheels a damping of 0.2 and more.
 _DAMPING_RANGE = (0.1, 0.95)
+_SINGULAR = 1e-12  # of two variances: what is left by rounding where value and rate go together, or are all zero
 _STD_MIN = (0.005, 0.001, 0.001)  # m, rad, rad: no receiver and no inertial unit tells less
 
 
@@ -56,8 +57,9 @@ class DeckMotion(Struct, frozen=True, kw_only=True, eq=False):
 def first_motion(swing: SwingConfig) -> DeckMotion:
     """Return what is taken for granted of a deck that has not been watched."""
     heave, tilt = _first_axis(swing.heave, swing.lag_s), _first_axis(swing.tilt, swing.lag_s)
-    axes = (heave, tilt, tilt)
-    return DeckMotion(axes=axes, passed_s=0.0, oscillators=_oscillators(axes))
+    configured = [(2.0 * math.pi * one.frequency_hz, one.damping, one.std) for one in (swing.heave, swing.tilt)]
+    oscillators = _oscillators((heave, tilt, tilt), np.array([*configured, configured[1]]).ravel())
+    return DeckMotion(axes=(heave, tilt, tilt), passed_s=0.0, oscillators=oscillators)
 
 
 def _first_axis(oscillator: OscillatorConfig, lag_s: float) -> Axis:
@@ -97,7 +99,8 @@ def learn(motion: DeckMotion, mean: Sequence[float], lag_s: float) -> DeckMotion
         _with_pair(axis, state, motion.passed_s) if is_pair else replace(axis, last=state)
         for axis, state in zip(motion.axes, states, strict=True)
     )
-    return DeckMotion(axes=axes, passed_s=0.0, oscillators=_oscillators(axes) if is_pair else motion.oscillators)
+    oscillators = _oscillators(axes, motion.oscillators) if is_pair else motion.oscillators
+    return DeckMotion(axes=axes, passed_s=0.0, oscillators=oscillators)
 
 
 def _with_pair(axis: Axis, state: tuple[float, float], lag_s: float) -> Axis:
@@ -118,16 +121,23 @@ def _with_pair(axis: Axis, state: tuple[float, float], lag_s: float) -> Axis:
     )
 
 
-def _oscillators(axes: Sequence[Axis]) -> Array:
+def _oscillators(axes: Sequence[Axis], before: Array) -> Array:
+    """Return the oscillators (9,) that swing as was seen, as they were `before` where nothing was."""
+    kept = before.reshape(3, 3)
     found = [_oscillator(axis, least) for axis, least in zip(axes, _STD_MIN, strict=True)]
-    return np.array(found).ravel()
+    return np.array([kept[i] if one is None else one for i, one in enumerate(found)]).ravel()
 
 
-def _oscillator(axis: Axis, std_min: float) -> tuple[float, float, float]:
-    """Return angular frequency, damping and standard deviation of the oscillator that swings as was seen."""
+def _oscillator(axis: Axis, std_min: float) -> tuple[float, float, float] | None:
+    """Return angular frequency, damping and standard deviation of the oscillator that swings as was seen.
+
+    None of a deck that lies so still, for hours, that nothing is left to compare.
+    """
     xx, xv, vv = axis.at_once
     a, b, c, d = axis.later
     determinant = xx * vv - xv * xv
+    if determinant <= _SINGULAR * xx * vv:
+        return None
     p, q = (a * vv - b * xv) / determinant, (b * xx - a * xv) / determinant
     r, s = (c * vv - d * xv) / determinant, (d * xx - c * xv) / determinant
     left2 = min(max(p * s - q * r, 1e-6), 1.0)

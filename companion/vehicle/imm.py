@@ -11,66 +11,27 @@ as well, and from one sighting to the next nothing tells how far.
 
 import math
 from dataclasses import dataclass, field
-from typing import assert_never
 
 import numpy as np
-from msgspec import Struct
 
 from companion.config.estimation import ImmConfig, SwingConfig
 from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
 from companion.vehicle import imm_forecast as forecasts
 from companion.vehicle import imm_judgement as judgement
-from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
-from companion.vehicle import imm_sensors as sensors
-from companion.vehicle.deck_motion import DeckMotion, first_motion, learn, passed
+from companion.vehicle.deck_motion import first_motion, learn, passed
 from companion.vehicle.filter_step import Update, wrapped
 from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, swing_of
-from companion.vehicle.imm_opening import DECK, OFFSET, PLACE, TILT, open_deck, open_place_and_offset, open_states
-from companion.vehicle.imm_swing import SIZE
+from companion.vehicle.imm_opening import OFFSET, TILT, open_deck
+from companion.vehicle.imm_recovery import recover
+from companion.vehicle.imm_state import KINDS, ImmState, has_settled, is_heading_known, split_fix, start_state
 from link.records import replace
 
-KINDS = {
-    Quantity.POSITION: sensors.POSITION,
-    Quantity.VELOCITY: sensors.VELOCITY,
-    Quantity.HEADING: sensors.HEADING,
-    Quantity.YAW_RATE: sensors.YAW_RATE,
-    Quantity.PAD: sensors.PAD,
-    Quantity.ACCELERATION: sensors.ACCELERATION,
-    Quantity.TILT: sensors.TILT,
-}
-SWINGING = np.array([10, 11, *TILT])
 CURVATURE, HEADING = 6, 7
-TOLD_BY = {  # what is opened to data of a quantity that were rejected for too long
-    Quantity.VELOCITY: np.array([2, 3, 4, 5, 9, 11, kernels.BEND]),
-    Quantity.HEADING: np.array([HEADING]),
-    Quantity.YAW_RATE: np.array([CURVATURE]),
-    Quantity.ACCELERATION: np.array([kernels.LEAK]),
-    Quantity.TILT: TILT,
-}
-CLOCK = kernels.CLOCK
+SWINGING = np.array([10, 11, *TILT])
 TURNS = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
-_SETTLED_STD_M_S = 0.3  # of the speed; a receiver's velocity is as good, two fixes in a second are
 MOTIONS = frozenset({Quantity.POSITION, Quantity.VELOCITY})
 TURN_AGE_MAX_S = 1.0  # of a sensor that is at work: several periods of the slowest
-
-
-class ImmState(Struct, frozen=True, kw_only=True, eq=False):
-    """The filter.
-
-    Attributes:
-        modes: both.
-        fix_bias_variance_m2: the slow part of the fixes' variance.
-        turn_age_s: how long ago a sensor told the heading or the yaw rate.
-        unmeasured_s: how long ago place or velocity was told.
-        deck: how the deck swings; None until the vehicle has told its tilt.
-    """
-
-    modes: mixing.Modes
-    fix_bias_variance_m2: float
-    turn_age_s: float = math.inf
-    unmeasured_s: float = 0.0
-    deck: DeckMotion | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -94,23 +55,8 @@ class ImmModel:
         object.__setattr__(self, "numbers", numbers_of(self.config, self.deck))
 
     def start(self, place: Measurement) -> ImmState:
-        """Return the state after a first place: anything may be true of the rest.
-
-        A sighting is in the drone's own frame and dated by its clock, so that it leaves nothing between the two.
-        """
-        is_fix = place.quantity is Quantity.POSITION
-        white, bias_variance = self._split(place.covariance) if is_fix else (place.covariance, 0.0)
-        offset_variance = self.config.receivers.frame_offset_std_m**2 + bias_variance if is_fix else 0.0
-        mean = np.zeros(SIZE)
-        mean[PLACE] = place.value
-        covariance = np.diag(self.numbers.prior_variances)
-        covariance[DECK, DECK] = 0.0
-        covariance[np.ix_(PLACE, PLACE)] = white
-        covariance[CLOCK, CLOCK] = self.config.receivers.clock_std_s**2 if bias_variance else 0.0
-        covariances = open_place_and_offset(np.stack([covariance, covariance]), offset_variance * np.eye(3))
-        dwell_s = self.numbers.dwell_s
-        modes = (np.stack([mean, mean]), covariances, dwell_s / dwell_s.sum())
-        return ImmState(modes=modes, fix_bias_variance_m2=bias_variance)
+        """Return the state after a first place."""
+        return start_state(place, self.config, self.numbers)
 
     def predict(self, state: ImmState, dt_s: float) -> ImmState:
         """Return the state `dt_s` later."""
@@ -128,15 +74,15 @@ class ImmModel:
 
     def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState] | None:
         """Return the state after any quantity, None of an acceleration or a tilt for which it is too early."""
-        if measurement.quantity is Quantity.ACCELERATION and not self._is_heading_known(state):
+        if measurement.quantity is Quantity.ACCELERATION and not is_heading_known(state, self.config):
             return None
         if measurement.quantity is Quantity.TILT and state.deck is None:
-            if not self._has_settled(state):
+            if not has_settled(state, self.config):
                 return None
             state = self._with_deck(state, measurement)
         R, bias_variance = measurement.covariance, state.fix_bias_variance_m2
         if measurement.quantity is Quantity.POSITION:
-            R, bias_variance = self._split(R)
+            R, bias_variance = split_fix(R, self.config.receivers)
         reading = (KINDS[measurement.quantity], _own(measurement.value), _own(R))
         numbers = self.numbers
         tells_motion = measurement.quantity in MOTIONS
@@ -160,28 +106,8 @@ class ImmModel:
         return Update(state=updated, nis=nis, gate_nis=gate_nis, dof=len(measurement.value))
 
     def recover(self, state: ImmState, measurement: Measurement) -> ImmState:
-        """Open what `measurement` contradicts.
-
-        A sighting that contradicts everything means that the drone's frame has stepped: place and offset move
-        together. A fix that does is the receiver's step if the place is known from sightings, else a new start, as is
-        a sighting where nothing else places the vehicle.
-        """
-        match measurement.quantity:
-            case Quantity.PAD:
-                is_start = self.placed_by is Quantity.PAD
-                return self._restart(state, measurement) if is_start else self._move_frame(state, measurement)
-            case Quantity.POSITION:
-                if self._is_placed_by_sightings(state):
-                    return replace(
-                        state,
-                        modes=open_states(state.modes, OFFSET, np.full(3, self._step_size(state, measurement) ** 2)),
-                    )
-                return self._restart(state, measurement)
-            case Quantity.VELOCITY | Quantity.HEADING | Quantity.YAW_RATE | Quantity.ACCELERATION | Quantity.TILT:
-                told = TOLD_BY[measurement.quantity]
-                return replace(state, modes=open_states(state.modes, told, self.numbers.prior_variances[told]))
-            case _:
-                assert_never(measurement.quantity)
+        """Return the state open to `measurement`."""
+        return recover(state, measurement, self.config, self.numbers, self.placed_by)
 
     def describe(self, state: ImmState, t_ns: int) -> VehicleEstimate:
         """Return the mixture of both modes."""
@@ -224,19 +150,10 @@ class ImmModel:
             frame_offset_std_m=math.sqrt(float((weights @ covariances[:, OFFSET, OFFSET]).max())),
         )
 
-    def _split(self, fix_covariance: Array) -> tuple[Array, float]:
-        """A fix's covariance as its white part (3, 3) and the variance of the slow rest, m^2."""
-        stated = float(fix_covariance.diagonal().max())
-        white = min(stated, self.config.receivers.fix_white_std_max_m**2)
-        return fix_covariance * (white / stated), stated - white
-
     @property
     def _known_variance(self) -> float:
         """Of a heading that is known, rad^2; while it is not, the kernels leave the lever arm out."""
         return self.config.heading.known_std_rad**2
-
-    def _is_heading_known(self, state: ImmState) -> bool:
-        return bool(mixing.is_heading_known(state.modes, self._known_variance))
 
     def _noises(self, state: ImmState) -> Array:
         """Both modes' noise, (2, 16), as `imm_kernels.process_noise` takes it."""
@@ -261,29 +178,11 @@ class ImmModel:
         motion[1:4], motion[10:16] = state.deck.oscillators[:3], state.deck.oscillators[3:]
         return motion
 
-    def _has_settled(self, state: ImmState) -> bool:
-        """Whether the first fixes are in: what a vehicle of any speed does would be learnt about its tilt, too."""
-        _, covariances, _ = state.modes
-        speed_variance = float((covariances[:, 2, 2] + covariances[:, 3, 3]).max())
-        return self._is_heading_known(state) and speed_variance < _SETTLED_STD_M_S**2
-
     def _with_deck(self, state: ImmState, tilt: Measurement) -> ImmState:
         """Return the state of a vehicle that begins to tell its tilt; what it states may err for ever, too."""
         variances = np.append(self.numbers.prior_variances[TILT], tilt.covariance.diagonal()[:2])
         modes = open_deck(state.modes, self.numbers.lever_m, variances)
         return replace(state, modes=modes, deck=first_motion(self._swing))
-
-    def _step_size(self, state: ImmState, measurement: Measurement) -> float:
-        """How far, m, a measured place is from the expected one; at least the prior of the offset."""
-        means, _, weights = state.modes
-        expected, _ = sensors.observe(KINDS[measurement.quantity], weights @ means, self.numbers.lever_m, False)
-        return max(float(np.linalg.norm(measurement.value - expected)), self.config.receivers.frame_offset_std_m)
-
-    def _is_placed_by_sightings(self, state: ImmState) -> bool:
-        """Whether the place is known better than the fixes alone could tell it in the drone's frame."""
-        _, covariances, weights = state.modes
-        variance = float(weights @ covariances[:, 0, 0])
-        return variance < 0.25 * (self.config.receivers.frame_offset_std_m**2 + state.fix_bias_variance_m2)
 
     def _as_driven(self, state: ImmState, t_ns: int) -> ImmState:
         """Return the state with what is known of drivers: how hard they turn.
@@ -301,22 +200,6 @@ class ImmModel:
         )
         update = self.update(state, straight)
         return state if update is None else update.state
-
-    def _move_frame(self, state: ImmState, sighting: Measurement) -> ImmState:
-        """Open place and offset as one unknown."""
-        step = self._step_size(state, sighting) ** 2 * np.eye(3)
-        means, covariances, weights = state.modes
-        return replace(state, modes=(means, open_place_and_offset(covariances, step), weights))
-
-    def _restart(self, state: ImmState, place: Measurement) -> ImmState:
-        """A new start at `place` that keeps offset, heading and clock."""
-        x, P = mixing.combine(*state.modes)
-        means, covariances, weights = self.start(place).modes
-        means[:, PLACE] += x[OFFSET]
-        means[:, OFFSET] = x[OFFSET]
-        for kept in (HEADING, CLOCK, *DECK):
-            means[:, kept], covariances[:, kept, kept] = x[kept], P[kept, kept]
-        return replace(state, modes=(means, covariances, weights))
 
 
 def _own(array: Array) -> Array:

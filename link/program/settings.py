@@ -2,10 +2,11 @@
 
 A key is dotted, as in `descent.cone.slope`; a value is written as in TOML, a word may go without quotes. The variable
 of that key is `DECKLANDER_COMPANION__DESCENT__CONE__SLOPE`: the prefix names what is configured. The environment stands
-above a file, the command line above both.
+above a file, the command line above both. What the environment says is told at each start: nobody sees it otherwise.
 """
 
 import os
+import sys
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -33,6 +34,8 @@ def load_settings(
 ) -> Model:
     """Return the configuration in a file, with the environment over it, and the command line over both.
 
+    Which variables there are is written to standard error.
+
     Args:
         path: of the file, None for none.
         model: what it must fit.
@@ -43,7 +46,16 @@ def load_settings(
     Raises:
         UserError: something cannot be read, or does not fit.
     """
-    return load_config(path, model, settings_of_options(given, above), settings_of_environment(prefix, model))
+    settings = load_config(path, model, settings_of_options(given, above), settings_of_environment(prefix, model))
+    names = variables_of(prefix, os.environ)
+    if names:
+        sys.stderr.write(f"configuration: set by the environment: {', '.join(names)}\n")
+    return settings
+
+
+def variables_of(prefix: str, environment: Mapping[str, str]) -> list[str]:
+    """Return the names of the variables that set something of what `prefix` names, sorted."""
+    return sorted(name for name in environment if name.startswith(prefix + _BELOW))
 
 
 def settings_of_options(given: Sequence[str] | None, above: Mapping[str, Any] | None = None) -> dict[str, Any]:
@@ -77,10 +89,9 @@ def settings_of_environment(
         environment: the variables.
     """
     tables: dict[str, Any] = {}
-    for name in sorted(environment):
-        start, below, key = name.partition(_BELOW)
-        if start == prefix and below:
-            tables = merge(tables, _nested(_keys(key.split(_BELOW), model), _value(environment[name])))
+    for name in variables_of(prefix, environment):
+        parts = name.removeprefix(prefix + _BELOW).split(_BELOW)
+        tables = merge(tables, _nested(_keys(parts, model), _value(environment[name])))
     return tables
 
 

@@ -16,8 +16,8 @@ from link.frames.rotations import conjugate, quaternion_from_roll_pitch_yaw, rot
 from link.messages import BodyTruth, Quaternion, Vector3
 from link.records import replace
 from scenarios.config import VehicleConfig
-from scenarios.tracks.config import Departure
 from scenarios.tracks.course import Course, Roughness
+from scenarios.tracks.departure import Departure
 from scenarios.tracks.profiles import Motion
 from scenarios.tracks.roads import RoadPoint
 from sim_autopilot.core.data import Deck

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from scenarios.tracks.clothoids import clothoid_road
-from scenarios.tracks.config import DriveTrack
 from scenarios.tracks.course import Course
+from scenarios.tracks.drive_config import DriveTrack
 from scenarios.tracks.heights import FLAT, grade_line
 from scenarios.tracks.profiles import Profile, profile_of
 from scenarios.tracks.roads import Road

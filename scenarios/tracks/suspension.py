@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from scenarios.tracks.config import SuspensionConfig
+from scenarios.tracks.drive_config import SuspensionConfig
 
 Array = NDArray[np.float64]
 STEP_S = 0.01

@@ -3,8 +3,8 @@
 import numpy as np
 
 from scenarios.config import Scenario
-from scenarios.tracks.config import DriveTrack
 from scenarios.tracks.drive import drive_course, driven
+from scenarios.tracks.drive_config import DriveTrack
 from scenarios.worlds.distributions import Value
 from scenarios.worlds.driver import DrivePlan
 from scenarios.worlds.road import RoadPlan

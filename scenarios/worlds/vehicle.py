@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from scenarios.config import VehicleConfig
-from scenarios.tracks.config import SuspensionConfig
+from scenarios.tracks.drive_config import SuspensionConfig
 from scenarios.worlds.draws import Draws
 
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from scenarios.config import Scenario, SensorsConfig
 from scenarios.simulation.noise import Seed
-from scenarios.tracks.config import Departure, DriveTrack
+from scenarios.tracks.departure import Departure
+from scenarios.tracks.drive_config import DriveTrack
 from scenarios.worlds.distributions import Value
 from scenarios.worlds.draws import Draws
 from scenarios.worlds.driver import DRIVE_S, DrivePlan, plan_drive

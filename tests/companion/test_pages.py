@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from companion.check.assessment import FIRMWARES
+from companion.check.firmwares import FIRMWARES
 from companion.check.rules import ParameterRule
 from companion.config.companion import CompanionConfig
 from companion.core.reason_help import reason_helps

@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.check.assessment import FIRMWARES
 from companion.check.findings import Finding, Level
+from companion.check.firmwares import FIRMWARES
 from companion.check.rules import SPEED_SHARE_ADVISED, ParameterRule, Spelling, judge, names_of
 from companion.landing.feasibility import SPEED_SHARE_MIN
 from link.mavlink.dialect import mavlink

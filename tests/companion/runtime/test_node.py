@@ -246,6 +246,19 @@ def test_pad_that_no_vehicle_has_is_counted_and_not_taken() -> None:
     assert setup.node.bad_payloads == 2
 
 
+def test_second_description_of_the_same_ship_costs_no_estimate() -> None:
+    setup = _ready()
+    ship = PadGeometry(size_m=(8.0, 8.0), height_m=6.0, antenna_to_pad_m=(0.0, 0.0, 0.0), is_afloat=True)
+    setup.node.receive_pad(ship)
+    setup.fix()
+    setup.run(0.1)
+    assert setup.node.memory.vehicle.estimator is not None
+    setup.node.receive_pad(replace(ship))
+    assert setup.node.memory.vehicle.estimator is not None
+    setup.node.receive_pad(replace(ship, is_afloat=False))
+    assert setup.node.memory.vehicle.estimator is None
+
+
 @pytest.mark.slow
 def test_geoid_lifts_the_origin_to_the_ellipsoid() -> None:
     setup = Setup(autopilot=FakePx4(geoid_height_m=47.3))

@@ -17,9 +17,10 @@ from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle.estimator import DelayBuffer, fuse
 from companion.vehicle.filter_step import Gaussian
-from companion.vehicle.imm import ImmModel, ImmState
+from companion.vehicle.imm import ImmModel
 from companion.vehicle.imm_kernels import heave_step
 from companion.vehicle.imm_mixing import combine
+from companion.vehicle.imm_state import ImmState
 from companion.vehicle.imm_swing import SIZE
 from companion.vehicle.lkf import LkfModel, WhiteJerkNoise, transition
 from tests.companion.vehicle.rides import now_ns

@@ -48,3 +48,12 @@ def test_silence_makes_no_pair() -> None:
     after = learn(passed(motion, 30.0), (-1.0, 0.0, 0.0, 0.0, 0.0, 0.0), 0.5)
     assert after.oscillators == pytest.approx(motion.oscillators)
     assert after.axes[0].last == (-1.0, 0.0)
+
+
+def test_deck_that_lies_still_for_hours_keeps_what_was_learnt_last() -> None:
+    swing = ON_ROAD.model_copy(update={"lag_s": 10.0})
+    motion = first_motion(swing)
+    for _ in range(3_000):  # the sums fade to nothing within six hours
+        motion = learn(passed(motion, 10.0), (0.0, 0.0, 0.02, 0.0, 0.0, 0.0), 10.0)
+    assert motion.axes[0].at_once[0] * motion.axes[0].at_once[2] == 0.0
+    assert np.isfinite(motion.oscillators).all()

@@ -38,6 +38,14 @@ def test_environment_stands_above_the_file_and_the_command_line_above_both(
     assert (changed.slope, changed.radius_at_pad_m) == (0.3, 0.2)
 
 
+def test_what_the_environment_sets_is_told(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    load()
+    assert not capsys.readouterr().err
+    monkeypatch.setenv(VARIABLE, "0.2")
+    load()
+    assert capsys.readouterr().err == f"configuration: set by the environment: {VARIABLE}\n"
+
+
 def test_option_of_its_own_stands_above_set() -> None:
     assert load("autopilot.kind=px4", above={"autopilot": {"kind": "ardupilot"}}).autopilot.kind.value == "ardupilot"
 

@@ -8,8 +8,8 @@ from scipy.special import fresnel
 from link.errors import UserError
 from link.program.toml_config import validate
 from scenarios.tracks.clothoids import clothoid_road
-from scenarios.tracks.config import DriveTrack, SuspensionConfig
 from scenarios.tracks.drive import drive_course, driven, shifted
+from scenarios.tracks.drive_config import DriveTrack, SuspensionConfig
 from scenarios.tracks.heights import grade_line
 from scenarios.tracks.profiles import profile_of
 from scenarios.tracks.suspension import STEP_S, Array, Driven, Surface, sway_of

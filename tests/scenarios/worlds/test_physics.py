@@ -13,7 +13,7 @@ from link.program.toml_config import dump_toml
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.simulation.vehicle import VehicleMemory, VehicleState, vehicle_at
 from scenarios.simulation.vehicle_node import plan_of
-from scenarios.tracks.config import DriveTrack
+from scenarios.tracks.drive_config import DriveTrack
 from scenarios.tracks.roads import Piece, Road
 from scenarios.worlds.driver import DRIVE_S
 from scenarios.worlds.road import STEERING_MAX_PER_M_S, TURN_RADIUS_MIN_M

@@ -1,0 +1,69 @@
+"""A road and a drive along it in numbers, and the body that goes over it on wheels."""
+
+from itertools import pairwise
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from link.program.toml_config import NotNegative, Positive, StrictModel
+from scenarios.tracks.departure import Departure, Waypoint
+
+_SPEED_ROUNDING_M_S = 1e-9
+
+
+class SuspensionConfig(StrictModel):
+    """How a body moves on its wheels: heave, pitch and roll, each a damped oscillator.
+
+    Driven by the road under four wheels, and by braking and turning: so far the body dives and leans in the long run.
+    """
+
+    heave_hz: Positive = 1.3  # natural frequencies, undamped; a car's, Gillespie 1992, chapter 5
+    pitch_hz: Positive = 1.5
+    roll_hz: Positive = 1.5
+    damping: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.3  # share of the critical
+    dive_rad_s2_m: Annotated[float, Field(ge=0.0, le=0.03)] = 0.0025  # for each m/s^2 of braking
+    lean_rad_s2_m: Annotated[float, Field(ge=0.0, le=0.03)] = 0.008  # for each m/s^2 to the inside of the turn
+    wheelbase_m: Positive = 2.6
+    track_m: Positive = 1.5
+
+
+class DriveTrack(StrictModel):
+    """A road and a drive along it in numbers; places are arc lengths from the road's beginning.
+
+    Lists of lists, so that a file can be read and cut down by hand.
+    """
+
+    kind: Literal["drive"]
+    departure: Departure = Departure()
+    begins_m: Waypoint  # of the road, in W
+    heading_rad: float = 0.0  # there
+    # Of each stretch its length (m), and its curvature (1/m, positive to the left) at its beginning and at its end.
+    stretches: Annotated[tuple[tuple[Positive, float, float], ...], Field(min_length=1)]
+    # Lane changes and swerves: place (m), length (m), and how far to the left (m).
+    shifts: tuple[tuple[NotNegative, Positive, float], ...] = ()
+    grades: tuple[tuple[NotNegative, float], ...] = ()  # place (m) and grade; between two places it changes evenly
+    humps: tuple[tuple[NotNegative, Positive, NotNegative], ...] = ()  # place of the middle (m), length (m), height (m)
+    # Roughness as plane waves: amplitude (m), wavelength along the road (m), its ratio to that across, phase (rad).
+    waves: tuple[tuple[NotNegative, Positive, float, float], ...] = ()
+    # The drive from standstill: duration (s) and acceleration (m/s^2) of each leg; then the speed stays.
+    legs: tuple[tuple[NotNegative, float], ...]
+    suspension: SuspensionConfig = SuspensionConfig()
+
+    @model_validator(mode="after")
+    def _road_is_smooth(self) -> Self:
+        for place, ((_, _, end_per_m), (_, begin_per_m, _)) in enumerate(pairwise(self.stretches)):
+            if end_per_m != begin_per_m:
+                raise ValueError(f"the curvature jumps between stretches[{place}] and [{place + 1}]")
+        for place, ((before_m, _), (after_m, _)) in enumerate(pairwise(self.grades)):
+            if after_m <= before_m:
+                raise ValueError(f"grades[{place + 1}] must be behind grades[{place}]")
+        return self
+
+    @model_validator(mode="after")
+    def _drives_forwards(self) -> Self:
+        speed_m_s = 0.0
+        for place, (duration_s, acceleration_m_s2) in enumerate(self.legs):
+            speed_m_s += duration_s * acceleration_m_s2
+            if speed_m_s < -_SPEED_ROUNDING_M_S:
+                raise ValueError(f"legs[{place}] ends in reverse, at {speed_m_s:.3g} m/s")
+        return self
