@@ -21,11 +21,23 @@ import numpy as np
 from msgspec import Struct
 
 from companion.autopilots.shaping import Shaping
+from companion.config.companion import CompanionConfig
+from companion.core.data import FlightLimits
+from companion.landing.feasibility import SPEED_SHARE_MIN
+from companion.landing.memory import StepMemory
 from companion.planning.guidance import ReferenceState
+from companion.situation.phases import Phase
+from companion.situation.situation import Situation
+from link.records import replace
 
 FARTHEST_M = 25.0
 """Accepted: so far a drone whose companion has died flies on, or as far as a vehicle needs that is faster."""
+LOWEST_M = 0.8
+"""Accepted: so far above the pad it then ends, unless it was nearer or was about to touch."""
+
 _SWING = 1.08  # of what its path is carried by a real ArduCopter flew: 25.8 to 27.0 m of 25
+# Of the vehicle's speed, up to which setpoints accelerate: of ArduCopter's default parameters 25 m leave that at 5 m/s.
+_ACCELERATED_SHARE = 1.07
 _HALVINGS = 12  # of a share: to 0.02 %
 
 Plane = tuple[float, float]
@@ -37,7 +49,7 @@ class Carried(Struct, frozen=True, kw_only=True):
     Attributes:
         speed_m_s: horizontally no farther than from a steady flight at this.
         climb_m_s: to no more than this upwards.
-        lowest_enu_m: height in W of the drone above which it is to end; None where it may touch.
+        lowest_enu_m: height in W of the drone above which it is to end; None where the plan sees to that.
     """
 
     speed_m_s: float
@@ -61,6 +73,49 @@ def speed_carried_m_s(shaping: Shaping) -> float:
     """Return the speed of a steady flight from which a drone is carried on as far as is accepted."""
     a, late_s = shaping.acceleration_m_s2, shaping.carried_s + 0.5 * shaping.acceleration_m_s2 / shaping.jerk_m_s3
     return a * (math.hypot(late_s, math.sqrt(2.0 * FARTHEST_M / _SWING / a)) - late_s)
+
+
+def limit_rates(
+    limits: FlightLimits, memory: StepMemory, situation: Situation, shaping: Shaping | None, config: CompanionConfig
+) -> FlightLimits:
+    """Return the limits of a plan, and for an autopilot that carries setpoints on the rates at which it may.
+
+    It has to be somewhat faster than the vehicle, or it never catches up. A descent sinks as fast as it touches down,
+    or faster as long as it can stop in time.
+    """
+    if shaping is None:
+        return limits
+    speed_m_s = max(speed_carried_m_s(shaping), SPEED_SHARE_MIN * _vehicle_m_s(situation))
+    limits = replace(limits, speed_max_m_s=min(limits.speed_max_m_s, speed_m_s))
+    pad, drone, lowest_m = situation.pad, memory.model.reference, _lowest_enu_m(memory, situation, config)
+    if lowest_m is None or pad is None or drone is None:
+        return limits
+    room_m = max(float(drone.position_enu_m[2]) - lowest_m, 0.0)
+    sink_m_s = max(_rate_of(room_m, shaping), config.descent.sink.contact_rate_m_s)
+    sink_m_s += max(-float(pad.velocity_enu_m_s[0, 2]), 0.0)
+    return replace(limits, descent_max_m_s=min(limits.descent_max_m_s, sink_m_s))
+
+
+def bound_carried(
+    reference: ReferenceState,
+    memory: StepMemory,
+    situation: Situation,
+    shaping: Shaping | None,
+    config: CompanionConfig,
+) -> ReferenceState:
+    """Return what to ask for, so that it may be carried on, of an autopilot that is to follow `reference`.
+
+    A drone that is committed is on the pad before a setpoint could carry it anywhere.
+    """
+    if shaping is None or _is_committed(memory, situation, config):
+        return reference
+    limits = config.limits.flight_limits() if situation.limits is None else situation.limits
+    carried = Carried(
+        speed_m_s=max(speed_carried_m_s(shaping), _ACCELERATED_SHARE * _vehicle_m_s(situation)),
+        climb_m_s=limits.climb_max_m_s,
+        lowest_enu_m=_lowest_enu_m(memory, situation, config),
+    )
+    return bound_reference(reference, carried, shaping)
 
 
 def bound_reference(reference: ReferenceState, carried: Carried, shaping: Shaping) -> ReferenceState:
@@ -122,8 +177,6 @@ def bound_sink(
 ) -> tuple[float, float, float]:
     """Return how much lower, and with which rate and acceleration upwards, a path sinks alike and is carried less low.
 
-    One that cannot sink alike and stop in the room sinks as fast as it does, or as it could stop from.
-
     Args:
         climb_m_s: of the path, upwards.
         acceleration_m_s2: likewise.
@@ -141,20 +194,10 @@ def bound_sink(
         rate_m_s = share * wanted_m_s
         return _error_of(wanted_m_s - rate_m_s, shaping) + rate_m_s * (t + 0.5 * rate_m_s / most)
 
-    share = _highest_share(wanted_m_s, shaping)
-    if ends_m(share) > room_m:
-        wanted_m_s = min(wanted_m_s, max(-climb_m_s, rate_of(max(room_m, 0.0), shaping)))
-        share = _highest_share(wanted_m_s, shaping)
+    share = max(2.0 * wanted_m_s - t * most, 0.0) / (3.0 * wanted_m_s)  # it ends highest
     if ends_m(share) <= room_m:
         share = _largest_share(lambda share: ends_m(share) <= room_m, share)
     return _error_of((1.0 - share) * wanted_m_s, shaping), -share * wanted_m_s, 0.0
-
-
-def _highest_share(wanted_m_s: float, shaping: Shaping) -> float:
-    """Return which share of a rate is best asked for as such, so that the path ends highest."""
-    if wanted_m_s <= 0.0:
-        return 0.0
-    return max(2.0 * wanted_m_s - shaping.carried_s * shaping.vertical_acceleration_m_s2, 0.0) / (3.0 * wanted_m_s)
 
 
 def _largest_share(fits: Callable[[float], bool], least: float = 0.0) -> float:
@@ -177,8 +220,25 @@ def _error_of(rate_m_s: float, shaping: Shaping) -> float:
     return rate_m_s / slope if rate_m_s <= limit / slope else 0.5 * rate_m_s**2 / limit + 0.5 * limit / slope**2
 
 
-def rate_of(error_m: float, shaping: Shaping) -> float:
-    """Return the rate at which a path makes up for a vertical error of its position: it stops in as much room."""
+def _rate_of(error_m: float, shaping: Shaping) -> float:
     slope, limit = _vertical_law(shaping)
     linear_m = limit / slope**2
     return slope * error_m if error_m <= linear_m else math.sqrt(2.0 * limit * (error_m - 0.5 * linear_m))
+
+
+def _vehicle_m_s(situation: Situation) -> float:
+    return 0.0 if situation.pad is None else math.hypot(*situation.pad.velocity_enu_m_s[0, :2].tolist())
+
+
+def _is_committed(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
+    relative, phase = situation.approach, memory.progress.phase
+    is_low = relative is not None and relative.height_m < config.descent.commit_height_m
+    return phase is Phase.TOUCHDOWN or (phase is Phase.DESCEND and is_low)
+
+
+def _lowest_enu_m(memory: StepMemory, situation: Situation, config: CompanionConfig) -> float | None:
+    """Return where a descent that is not committed yet has to end; other phases have a floor in their plan."""
+    pad = situation.pad
+    if memory.progress.phase is not Phase.DESCEND or pad is None or _is_committed(memory, situation, config):
+        return None
+    return float(pad.position_enu_m[0, 2]) + situation.feet_offset_m + LOWEST_M

@@ -5,27 +5,32 @@ model goes on along its plan for as long as that was. Steps of a fixed period in
 less than was planned (0.65 of it on such a link), and a plan of limited jerk would then swing about what it follows.
 """
 
+import math
+
 import numpy as np
 from msgspec import Struct
 
+from companion.autopilots.shaping import Shaping
 from companion.core.data import Array
 from companion.planning.guidance import PlanResult, ReferenceState, Trajectory
 from link.records import replace
 
 
 class FlownPlan(Struct, frozen=True, kw_only=True, eq=False):
-    """A plan, and how low what is asked for by it may end.
+    """A plan, and how it is kept up for an autopilot that carries setpoints on.
 
     Attributes:
         trajectory: of the virtual model, from where it was when the plan was made.
-        lowest_enu_m: height in W above which a setpoint that is carried on has to end; None where none has to.
+        lowest_enu_m: height above which a setpoint that is carried on has to end.
+        shaping: of the autopilot; None of one that holds setpoints as they came.
     """
 
     trajectory: Trajectory
-    lowest_enu_m: float | None
+    lowest_enu_m: float
+    shaping: Shaping | None
 
 
-def flown_plan(plan: PlanResult, period_s: float, lowest_enu_m: float | None) -> FlownPlan:
+def flown_plan(plan: PlanResult, period_s: float, lowest_enu_m: float, shaping: Shaping | None) -> FlownPlan:
     """Return the plan as it is flown: its next state, `period_s` after it was made, is one of its instants."""
     path, following = plan.trajectory, plan.next_state
     later = int(path.offset_s.searchsorted(period_s, side="right"))
@@ -35,14 +40,27 @@ def flown_plan(plan: PlanResult, period_s: float, lowest_enu_m: float | None) ->
         velocity_enu_m_s=_through(path.velocity_enu_m_s, following.velocity_enu_m_s, later),
         acceleration_enu_m_s2=_through(path.acceleration_enu_m_s2, following.acceleration_enu_m_s2, later),
     )
-    return FlownPlan(trajectory=trajectory, lowest_enu_m=lowest_enu_m)
+    return FlownPlan(trajectory=trajectory, lowest_enu_m=lowest_enu_m, shaping=shaping)
+
+
+def state_at(flown: FlownPlan, offset_s: float) -> ReferenceState:
+    """Return the model `offset_s` after its plan was made."""
+    planned = state_in_plan(flown.trajectory, offset_s)
+    if flown.shaping is None:
+        return planned
+    before = ReferenceState(
+        position_enu_m=flown.trajectory.position_enu_m[0],
+        velocity_enu_m_s=flown.trajectory.velocity_enu_m_s[0],
+        acceleration_enu_m_s2=flown.trajectory.acceleration_enu_m_s2[0],
+    )
+    return keep_up(planned, before, flown.lowest_enu_m, flown.shaping, offset_s)
 
 
 def _through(path: Array, following: Array, later: int) -> Array:
     return np.concatenate((path[:1], following[np.newaxis], path[later:]))
 
 
-def state_at(trajectory: Trajectory, offset_s: float) -> ReferenceState:
+def state_in_plan(trajectory: Trajectory, offset_s: float) -> ReferenceState:
     """Return the model `offset_s` after its plan was made; between two instants of a plan the jerk is constant."""
     last = len(trajectory.offset_s) - 2
     node = min(max(int(trajectory.offset_s.searchsorted(offset_s, side="right")) - 1, 0), last)
@@ -58,6 +76,56 @@ def state_at(trajectory: Trajectory, offset_s: float) -> ReferenceState:
         velocity_enu_m_s=np.array([v + (a + j * t_s / 2.0) * t_s for _, v, a, j in motion]),
         acceleration_enu_m_s2=np.array([a + j * t_s for _, _, a, j in motion]),
     )
+
+
+def keep_up(
+    planned: ReferenceState, before: ReferenceState, lowest_enu_m: float, shaping: Shaping, elapsed_s: float
+) -> ReferenceState:
+    """Return the planned next state, kept up by `limit_sink`, so that it may be carried on.
+
+    The model itself is kept up, for the drone follows what is sent, and the next plan begins there.
+
+    Args:
+        planned: the model `elapsed_s` after `before`.
+        before: the model when the plan was made.
+        lowest_enu_m: where it is to end above.
+        shaping: of the autopilot.
+        elapsed_s: since then.
+    """
+    limited = limit_sink(planned, lowest_enu_m, shaping)
+    if limited is planned:
+        return planned
+    up = extrapolate(replace(before, acceleration_enu_m_s2=limited.acceleration_enu_m_s2), elapsed_s)
+    kept_up = ReferenceState(
+        position_enu_m=np.array([*planned.position_enu_m[:2], up.position_enu_m[2]]),
+        velocity_enu_m_s=np.array([*planned.velocity_enu_m_s[:2], up.velocity_enu_m_s[2]]),
+        acceleration_enu_m_s2=limited.acceleration_enu_m_s2,
+    )
+    return limit_sink(kept_up, lowest_enu_m, shaping)
+
+
+def limit_sink(reference: ReferenceState, lowest_enu_m: float, shaping: Shaping) -> ReferenceState:
+    """Return the model for an autopilot that carries a setpoint on, should no other follow.
+
+    Its acceleration upwards is at least such that the drone, which then brakes, ends above `lowest_enu_m`: ArduCopter
+    was flown into the road at 1.6 m/s from a chase whose companion had died. The rate w at the end of the time T obeys
+    `h + (v + w) T / 2 - w^2 / 2A + w A / 2J >= 0` with the height h, the rate v, the braking A and its jerk J.
+    """
+    duration_s, braking_m_s2 = shaping.carried_s, shaping.vertical_acceleration_m_s2
+    turning_s = braking_m_s2 / shaping.vertical_jerk_m_s3
+    above_m = float(reference.position_enu_m[2]) - lowest_enu_m
+    ax, ay, az = reference.acceleration_enu_m_s2.tolist()
+    climb_m_s, room_m = float(reference.velocity_enu_m_s[2]), 2.0 * above_m
+    room_m += climb_m_s * duration_s
+    if room_m >= 0.0:
+        brakes_m_s = braking_m_s2 * (duration_s + turning_s)
+        end_m_s = 0.5 * (brakes_m_s - math.sqrt(brakes_m_s**2 + 4.0 * braking_m_s2 * room_m))
+    else:
+        end_m_s = -room_m / duration_s
+    least_m_s2 = (end_m_s - climb_m_s) / duration_s
+    if az >= least_m_s2:
+        return reference
+    return replace(reference, acceleration_enu_m_s2=np.array([ax, ay, least_m_s2]))
 
 
 def extrapolate(reference: ReferenceState, duration_s: float) -> ReferenceState:

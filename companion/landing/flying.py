@@ -4,7 +4,7 @@ import numpy as np
 
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits
-from companion.landing.carried_phases import limit_rates, lowest_enu_m
+from companion.landing.carried_on import limit_rates
 from companion.landing.flown_plan import extrapolate, flown_plan, state_at
 from companion.landing.following_height import waiting_rise_m
 from companion.landing.levelling import limit_tilt, limits_now
@@ -91,9 +91,7 @@ def fly(
         tracking = add_to_past(model.tracking, reference_ns, reference)
         return replace(memory, model=replace(model, reference_ns=reference_ns, plan=None, tracking=tracking)), None
     limits = limits_now(memory, situation, inputs, system.config)
-    lowest = lowest_enu_m(memory, situation, float(aim.floor_enu_m[0]), system.config)
-    room_m = None if lowest is None else float(reference.position_enu_m[2]) - lowest
-    carried = limit_rates(limits, situation, room_m, inputs.shaping, system.config)
+    carried = limit_rates(limits, memory, situation, inputs.shaping, system.config)
     request = PlanRequest(
         state=reference,
         target=_for_the_drone(aim.target, memory, inputs),
@@ -103,8 +101,8 @@ def fly(
     )
     request = replace(request, limits=limit_tilt(request, model.tracking.air_enu_m_s2))
     guidance, plan = system.guidance.plan(model.guidance, request)
-    flown = flown_plan(plan, period_s, lowest)
-    plan = replace(plan, next_state=state_at(flown.trajectory, period_s))
+    flown = flown_plan(plan, period_s, float(aim.floor_enu_m[0]), inputs.shaping)
+    plan = replace(plan, next_state=state_at(flown, period_s))
     model = ModelMemory(
         reference=plan.next_state,
         reference_ns=reference_ns,
@@ -122,9 +120,7 @@ def _model_at(model: ModelMemory, monotonic_ns: int, period_s: float) -> Referen
     if model.reference is None:
         raise ValueError("nothing is flown")
     off_s = max(min((monotonic_ns - model.reference_ns) * 1e-9, _STEP_MAX_S), -period_s)
-    return (
-        extrapolate(model.reference, off_s) if model.plan is None else state_at(model.plan.trajectory, period_s + off_s)
-    )
+    return extrapolate(model.reference, off_s) if model.plan is None else state_at(model.plan, period_s + off_s)
 
 
 def _for_the_drone(target: Target, memory: StepMemory, inputs: StepInputs) -> Target:

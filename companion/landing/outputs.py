@@ -11,7 +11,7 @@ from companion.config.descent import DescentConfig
 from companion.core.data import Array, FlightLimits, Setpoint
 from companion.core.reasons import Cause, Reason, sentence
 from companion.landing.aborts import why_unplaced
-from companion.landing.carried_phases import bound_carried
+from companion.landing.carried_on import bound_carried
 from companion.landing.flown_plan import extrapolate, state_at
 from companion.landing.memory import Progress, StepMemory
 from companion.landing.step_data import StepInputs
@@ -49,7 +49,7 @@ def setpoint(
         lead_s = 0.0 if inputs.response is None else inputs.response.cascade.lead_s
     ahead_s = inputs.link_delay.mean_s + lead_s
     if is_planned and model.plan is not None:
-        reference = state_at(model.plan.trajectory, ahead_s)
+        reference = state_at(model.plan, ahead_s)
     else:
         reference = extrapolate(model.reference, (inputs.monotonic_ns - model.reference_ns) * 1e-9 + ahead_s)
     press_m_s2 = _press_m_s2(memory, config)

@@ -1,10 +1,13 @@
-"""A plan as it is flown: where the virtual model is between two steps."""
+"""A plan as it is flown: where the virtual model is between two steps, and how it is kept up."""
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from companion.autopilots.shaping import Shaping
 from companion.core.data import Array
-from companion.landing.flown_plan import extrapolate, flown_plan, state_at
+from companion.landing.flown_plan import extrapolate, flown_plan, keep_up, limit_sink, state_at, state_in_plan
 from companion.landing.step_data import StepOutputs
 from companion.planning.guidance import PlanResult, PlanStatus, ReferenceState, Trajectory
 from companion.situation.phases import Phase
@@ -24,12 +27,78 @@ def test_carried_is_the_closed_form_of_constant_acceleration() -> None:
     np.testing.assert_allclose(extrapolate(later, -0.05).position_enu_m, reference.position_enu_m, atol=1e-12)
 
 
+heights, rates, ups = st.floats(-3.0, 20.0), st.floats(-4.0, 4.0), st.floats(-10.0, 10.0)
+durations = st.floats(0.1, 5.0)
+BRAKES_M_S2 = 1.0  # ArduPilot's WPNAV_ACCEL_Z
+
+
+def _carried(duration_s: float) -> Shaping:
+    return Shaping(
+        carried_s=duration_s,
+        acceleration_m_s2=2.5,
+        jerk_m_s3=5.0,
+        vertical_acceleration_m_s2=BRAKES_M_S2,
+        vertical_jerk_m_s3=5.0,
+    )
+
+
 def _moving(height_m: float, rate_m_s: float, up_m_s2: float) -> ReferenceState:
     return ReferenceState(
         position_enu_m=np.array([1.0, 2.0, height_m]),
         velocity_enu_m_s=np.array([4.0, 0.0, rate_m_s]),
         acceleration_enu_m_s2=np.array([2.0, 1.0, up_m_s2]),
     )
+
+
+@given(heights, rates, ups, durations)
+def test_model_that_is_carried_on_and_then_brakes_ends_above_the_lowest_height(
+    height_m: float, rate_m_s: float, up_m_s2: float, duration_s: float
+) -> None:
+    carried = extrapolate(limit_sink(_moving(height_m, rate_m_s, up_m_s2), 0.6, _carried(duration_s)), duration_s)
+    sinks_m_s = max(-float(carried.velocity_enu_m_s[2]), 0.0)
+    assert carried.position_enu_m[2] - sinks_m_s**2 / (2.0 * BRAKES_M_S2) >= 0.6 - 1e-6
+
+
+@given(heights, rates, ups, durations)
+def test_model_that_ends_above_the_lowest_height_is_left_alone(
+    height_m: float, rate_m_s: float, up_m_s2: float, duration_s: float
+) -> None:
+    reference = _moving(height_m, rate_m_s, up_m_s2)
+    carried = extrapolate(reference, duration_s)
+    sinks_m_s = max(-float(carried.velocity_enu_m_s[2]), 0.0)
+    lowest_m = float(carried.position_enu_m[2]) - sinks_m_s * (sinks_m_s / BRAKES_M_S2 + BRAKES_M_S2 / 5.0) / 2.0 - 1e-6
+    assert limit_sink(reference, lowest_m, _carried(duration_s)) is reference
+
+
+@given(heights, rates, ups, durations)
+def test_nothing_but_the_acceleration_upwards_is_limited(
+    height_m: float, rate_m_s: float, up_m_s2: float, duration_s: float
+) -> None:
+    reference = _moving(height_m, rate_m_s, up_m_s2)
+    limited = limit_sink(reference, 0.6, _carried(duration_s))
+    np.testing.assert_array_equal(limited.position_enu_m, reference.position_enu_m)
+    np.testing.assert_array_equal(limited.velocity_enu_m_s, reference.velocity_enu_m_s)
+    np.testing.assert_array_equal(limited.acceleration_enu_m_s2[:2], reference.acceleration_enu_m_s2[:2])
+    assert limited.acceleration_enu_m_s2[2] >= up_m_s2
+
+
+motions = st.tuples(rates, ups)
+
+
+@given(heights, motions, motions, durations)
+def test_next_state_that_is_kept_up_may_be_carried_on(
+    height_m: float, planned: tuple[float, float], before: tuple[float, float], duration_s: float
+) -> None:
+    kept_up = keep_up(_moving(height_m, *planned), _moving(height_m + 0.01, *before), 0.6, _carried(duration_s), 0.02)
+    carried = extrapolate(kept_up, duration_s)
+    sinks_m_s = max(-float(carried.velocity_enu_m_s[2]), 0.0)
+    assert carried.position_enu_m[2] - sinks_m_s**2 / (2.0 * BRAKES_M_S2) >= 0.6 - 1e-6
+
+
+def test_plan_of_an_autopilot_that_carries_nothing_on_is_flown_as_planned() -> None:
+    sinking = _moving(0.1, -2.0, -3.0)
+    following = state_at(flown_plan(_plan(sinking), PERIOD_S, 0.6, None), PERIOD_S)
+    np.testing.assert_array_equal(following.acceleration_enu_m_s2, sinking.acceleration_enu_m_s2)
 
 
 def _cubic(t_s: Array) -> Trajectory:
@@ -46,7 +115,7 @@ def _cubic(t_s: Array) -> Trajectory:
 
 @pytest.mark.parametrize("offset_s", [0.0, 0.013, 0.11, 0.3, 0.37])
 def test_model_between_two_instants_of_its_plan_is_the_motion_of_their_jerk(offset_s: float) -> None:
-    model, truth = state_at(_cubic(np.array([0.0, 0.02, 0.13, 0.3])), offset_s), _cubic(np.array([offset_s]))
+    model, truth = state_in_plan(_cubic(np.array([0.0, 0.02, 0.13, 0.3])), offset_s), _cubic(np.array([offset_s]))
     np.testing.assert_allclose(model.position_enu_m, truth.position_enu_m[0])
     np.testing.assert_allclose(model.velocity_enu_m_s, truth.velocity_enu_m_s[0])
     np.testing.assert_allclose(model.acceleration_enu_m_s2, truth.acceleration_enu_m_s2[0])
@@ -67,8 +136,8 @@ def _plan(following: ReferenceState) -> PlanResult:
 
 @pytest.mark.parametrize("offset_s", [0.0, 0.013, PERIOD_S, 0.033, 0.13])
 def test_model_between_two_steps_is_where_its_plan_leads(offset_s: float) -> None:
-    following = state_at(_cubic(np.array([0.0, PERIOD_S, 0.1])), PERIOD_S)
-    model = state_at(flown_plan(_plan(following), PERIOD_S, None).trajectory, offset_s)
+    following = state_in_plan(_cubic(np.array([0.0, PERIOD_S, 0.1])), PERIOD_S)
+    model = state_at(flown_plan(_plan(following), PERIOD_S, 0.0, None), offset_s)
     truth = _cubic(np.array([offset_s]))
     np.testing.assert_allclose(model.position_enu_m, truth.position_enu_m[0])
     np.testing.assert_allclose(model.velocity_enu_m_s, truth.velocity_enu_m_s[0])
@@ -77,7 +146,7 @@ def test_model_between_two_steps_is_where_its_plan_leads(offset_s: float) -> Non
 
 def test_model_after_one_period_is_the_next_state_of_a_law_that_plans_no_instant_there() -> None:
     following = _moving(3.0, -1.0, 0.5)
-    model = state_at(flown_plan(_plan(following), PERIOD_S, None).trajectory, PERIOD_S)
+    model = state_at(flown_plan(_plan(following), PERIOD_S, 0.0, None), PERIOD_S)
     np.testing.assert_array_equal(model.position_enu_m, following.position_enu_m)
     np.testing.assert_array_equal(model.acceleration_enu_m_s2, following.acceleration_enu_m_s2)
 
