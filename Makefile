@@ -23,6 +23,7 @@ setup: .venv/.kernels
 
 # On a drone all is compiled to byte code now, for programs that may write none there; else what is loaded is, when it is.
 .venv/.complete: $(LOCK) pyproject.toml
+	@echo 'installing into .venv what $(LOCK) names: some minutes, without further output'
 	rm -rf .venv
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --no-deps --require-hashes $(if $(EXTRA),,--no-compile) -r $(LOCK)

@@ -201,13 +201,27 @@ class ContactForecast(Struct, frozen=True, kw_only=True):
     misses_tilt: float
 
 
-class LandingStatus(Struct, frozen=True, kw_only=True):
+class LinkStatus(Struct, frozen=True, kw_only=True):
+    """What the companion tells the world about its links.
+
+    `refused` says what of the vehicle's data was refused most in the last 5 s, and why. `open_to_strangers` are the
+    links by which somebody without a key could take part.
+    """
+
+    mavlink_bad_bytes: int
+    zenoh_bad_payloads: int
+    refused: str = ""
+    open_to_strangers: tuple[str, ...] = ()
+
+
+class LandingStatus(LinkStatus, frozen=True, kw_only=True):
     """What the companion tells the world about the landing; None where it does not know.
 
     `relative_position_enu_m` is of the drone's feet from the pad's centre: east and north are those of the drone, up is
-    `height_above_pad_m`. `reason_code` names the reason without its numbers, for programs. `refused` says what of the
-    vehicle's data was refused most in the last 5 s, and why. `flown_by` is "companion" while the autopilot follows its
-    setpoints, "failsafe" while one flies, else "other"; empty without an autopilot. `battery_share` is left, 0 to 1.
+    `height_above_pad_m`. `reason_code` names the reason without its numbers, for programs. `flown_by` is "companion"
+    while the autopilot follows its setpoints, "failsafe" while one flies, else "other"; empty without an autopilot.
+    `battery_share` is left, 0 to 1. `unverified` is what is believed of the pad's place since nothing that the drone
+    has can verify it.
     """
 
     stamp_ns: int
@@ -218,12 +232,9 @@ class LandingStatus(Struct, frozen=True, kw_only=True):
     relative_velocity_enu_m_s: Vector3 | None
     height_above_pad_m: float | None
     time_to_contact_s: float | None
-    mavlink_bad_bytes: int
-    zenoh_bad_payloads: int
-    refused: str = ""
     armed: bool
     fix_age_s: float | None
-    open_to_strangers: tuple[str, ...] = ()
     flown_by: str = ""
     battery_share: float | None = None
     contact_forecast: ContactForecast | None = None
+    unverified: tuple[str, ...] = ()

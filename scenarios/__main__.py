@@ -10,6 +10,7 @@ from link.errors import UserError
 from link.program.cli import SetOption, make_app, run_app
 from link.zenoh.command_line import DroneOption, NameArguments, NamespaceOption, ZenohArguments
 from scenarios.commands import (
+    attack,
     bench,
     camera,
     campaign,
@@ -18,6 +19,7 @@ from scenarios.commands import (
     faults,
     fly,
     fuzz,
+    identify,
     rare,
     replay,
     report,
@@ -41,15 +43,16 @@ NameArgument = Annotated[
 
 @app.command("list")
 def list_command(*, as_json: JsonOption = False) -> None:
-    """List the scenarios, and the presets that go behind their names."""
+    """List the scenarios, the presets that go behind their names, and the worlds."""
     import json
 
     from scenarios.catalogue.catalogue import list_presets, list_scenarios
+    from scenarios.worlds.odd import slices
 
     entries, presets = list_scenarios(), list_presets()
     if as_json:
         rows = [{"name": entry.name, "description": entry.description} for entry in entries]
-        sys.stdout.write(json.dumps({"scenarios": rows, "presets": presets}, indent=2) + "\n")
+        sys.stdout.write(json.dumps({"scenarios": rows, "presets": presets, "worlds": slices()}, indent=2) + "\n")
         return
     width = max(len(entry.name) for entry in entries)
     for entry in entries:
@@ -57,7 +60,7 @@ def list_command(*, as_json: JsonOption = False) -> None:
     sys.stdout.write("\nPresets, the first of each line unless told; such as circle_5+wind=gust+link=nominal:\n")
     for section, names in presets.items():
         sys.stdout.write(f"  {section:{width - 2}}  {', '.join(names)}\n")
-    sys.stdout.write(f"  {'firmware':{width - 2}}  px4, ardupilot\n")
+    sys.stdout.write(f"\nWorlds, drawn by their seed; such as {slices()[-1]}@1:\n  {', '.join(slices())}\n")
 
 
 @app.command("run")
@@ -72,9 +75,9 @@ def run_command(
     ] = None,
     changes: SetOption = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the run's folder is made.")] = Path("runs"),
-    record: Annotated[
-        bool, typer.Option(" /--no-record", help="Record neither the companion nor the truth; else both are, as MCAP.")
-    ] = True,
+    no_record: Annotated[
+        bool, typer.Option("--no-record", help="Record neither the companion nor the truth; else both are, as MCAP.")
+    ] = False,
     view: Annotated[bool, typer.Option("--view", help="Show the landing in the browser.")] = False,
     as_json: JsonOption = False,
 ) -> int:
@@ -91,7 +94,9 @@ def run_command(
     scenario = load_changed_scenario(name if firmware is None else with_firmware(name, firmware), changes)
     view_port = view_command.port_of_run(lockstep=lockstep, as_json=as_json) if view else None
     folder = run_folder(out, scenario.name)
-    options = RunOptions(seed=run_seed(name, seed), speed=speed, folder=folder, record=record, view_port=view_port)
+    options = RunOptions(
+        seed=run_seed(name, seed), speed=speed, folder=folder, record=not no_record, view_port=view_port
+    )
     with Reporter(scenario, folder, as_json=as_json) as reporter, Patience("scenarios") as patience:
 
         def progress(*told: Any) -> None:
@@ -174,6 +179,8 @@ for command in (
     rare,
     bench,
     fuzz,
+    identify,
+    attack,
     faults,
     retries,
     report,

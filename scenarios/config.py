@@ -83,6 +83,8 @@ class CameraConfig(DelayConfig):
     sun_elevation_range_rad: tuple[float, float] | None = None  # drawn for each seed; None: overcast, or after sunset
     is_glossy: bool = False  # the board mirrors the sun
     dirt_share: Annotated[float, Field(ge=0.0, le=0.5)] = 0.0  # of the board, covered by mud and droppings
+    readout_s: Annotated[float, Field(ge=0.0, le=0.1)] = 0.0  # from the first row to the last; 0: a global shutter
+    wet_share: Annotated[float, Field(ge=0.0, le=0.5)] = 0.0  # of the camera's window, covered by drops
 
     @property
     def sees(self) -> bool:
@@ -188,8 +190,21 @@ class SystemConfig(StrictModel):
     parameters: dict[FirmwareName, dict[str, float]] = Field(default_factory=dict)  # that differ from the defaults
 
 
-class Scenario(StrictModel):
-    """One experiment; a seed makes it a run."""
+class CourseConfig(StrictModel):
+    """Where and in what state a run begins, where it is bounded, and when something happens and it ends."""
+
+    start: Literal["instant", "boot"] = "instant"  # of the autopilot in lockstep; over the wire it always boots
+    place: Literal["road", "deck"] = "road"  # where the drone stands at first; under one on its deck the vehicle drives
+    datum: DatumConfig = DatumConfig()
+    drone_start_enu_m: Vector3 = (0.0, 0.0, 0.0)  # of the point on the road that it stands on
+    waiting_point_enu_m: Vector3 = (0.0, 0.0, 5.0)  # 5 m above the road; source report, section "Task"
+    fence_radius_m: Positive = 3000.0  # horizontal, about the datum
+    time_limit_s: Positive = 120.0
+    disturbed_between_s: tuple[NotNegative, NotNegative] = (12.0, 20.0)  # a gust, outage or origin step begins; drawn
+
+
+class Scenario(CourseConfig):
+    """One experiment; a seed makes it a run. Its file has the keys of its course beside its own."""
 
     name: str
     description: str
@@ -205,14 +220,6 @@ class Scenario(StrictModel):
     vehicle: VehicleConfig = VehicleConfig()
     system: SystemConfig = SystemConfig()
     firmware: FirmwareName = "px4"
-    start: Literal["instant", "boot"] = "instant"  # of the autopilot in lockstep; over the wire it always boots
-    place: Literal["road", "deck"] = "road"  # where the drone stands at first; under one on its deck the vehicle drives
-    datum: DatumConfig = DatumConfig()
-    drone_start_enu_m: Vector3 = (0.0, 0.0, 0.0)  # of the point on the road that it stands on
-    waiting_point_enu_m: Vector3 = (0.0, 0.0, 5.0)  # 5 m above the road; source report, section "Task"
-    fence_radius_m: Positive = 3000.0  # horizontal, about the datum
-    time_limit_s: Positive = 120.0
-    disturbed_between_s: tuple[NotNegative, NotNegative] = (12.0, 20.0)  # a gust, outage or origin step begins; drawn
 
     @property
     def has_camera(self) -> bool:

@@ -70,7 +70,8 @@ def sim_autopilot(
     """Simulate a quadrotor under an autopilot that speaks MAVLink."""
     from link.program.settings import SIM_AUTOPILOT, load_settings
     from link.program.toml_config import dump_toml
-    from sim_autopilot.runtime.config import SimAutopilotConfig, autopilot_config, with_default_links
+    from sim_autopilot.runtime.build import autopilot_config, with_default_links
+    from sim_autopilot.runtime.config import SimAutopilotConfig
 
     given = _given(firmware=firmware, instance=instance, instant=instant, core=core, seed=seed)
     if mavlink:

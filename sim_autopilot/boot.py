@@ -1,4 +1,4 @@
-"""How the autopilot starts, and starts anew."""
+"""How the autopilot starts, and restarts."""
 
 import numpy as np
 
@@ -79,14 +79,14 @@ def tune(config: AutopilotConfig, values: Values) -> Tuning:
 
 
 def restart_in_place(memory: AutopilotMemory, config: AutopilotConfig) -> AutopilotMemory:
-    """Return the autopilot booted anew where its drone is; nothing else is remembered."""
+    """Return the autopilot rebooted where its drone is; nothing else is remembered."""
     state = memory.plant.state
     now = take_snapshot(state, config.plant.airframe, 0)
     return replace(initial_memory(config, state.t_ns), plant=memory.plant, now=now)
 
 
 def reboot_if_due(memory: AutopilotMemory, config: AutopilotConfig) -> AutopilotMemory:
-    """Return the memory, booted anew if it is time for that.
+    """Return the memory, rebooted if it is time for that.
 
     Parameters (where they were not reset), the mission, the fence and what the services store are kept; streams,
     origin, home and time begin again.

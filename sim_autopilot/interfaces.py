@@ -70,6 +70,7 @@ class StreamRules:
         messages: every message that it can send, by id, with default rates.
         builders: of messages that only this firmware sends.
         groups: message ids by the MAV_DATA_STREAM that starts them.
+        group_parameters: ends of the names of the parameters that keep a group's rate, by MAV_DATA_STREAM.
         on_contact: message ids that begin only when somebody has spoken.
         rate_max_hz: that a SET_MESSAGE_INTERVAL gets at most.
         silent: ids whose rate can be set, with nothing to tell of.
@@ -79,6 +80,7 @@ class StreamRules:
     messages: Mapping[int, Stream]
     builders: "Mapping[int, Builder]" = field(default_factory=dict)
     groups: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
+    group_parameters: Mapping[int, str] = field(default_factory=dict)
     on_contact: frozenset[int] = frozenset()
     rate_max_hz: float
     silent: frozenset[int]
@@ -93,7 +95,7 @@ class CommandRules:
         handlers: by MAV_CMD; what is not here is a service's, or unsupported.
         results: of refusals.
         answers_other_components: whether it answers what is for another component of its system, and commands for all.
-        reboots: whether a command makes it boot anew.
+        reboots: whether a command makes it reboot.
     """
 
     handlers: "Mapping[int, Handler]"

@@ -41,7 +41,7 @@ HOMES = {
     "polars": {"scenarios/campaigns/landings_file.py"},
     "loky": {"scenarios/processes/local_workers.py"},
     "cma": {"scenarios/falsify/strategy.py"},
-    "viser": {f"scenarios/view/{name}.py" for name in ("client_page", "page", "panel", "plots", "scene")},
+    "viser": {f"scenarios/view/{name}.py" for name in ("page", "panel", "plots", "scene")},
     "distributed": {"scenarios/processes/dask_workers.py"},
     "fpdf": {"companion/eyes/pdf.py"},
     "ruamel": {"companion/eyes/calibration.py"},

@@ -10,8 +10,16 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
-from companion.autopilots.limits import INTEGRAL_FACTOR_MAX, Named, acceleration_of_tilt_m_s2, find_gain, find_limit
+from companion.autopilots.limits import (
+    INTEGRAL_FACTOR_MAX,
+    Named,
+    acceleration_of_tilt_m_s2,
+    attitude_lag_s,
+    find_gain,
+    find_limit,
+)
 from companion.autopilots.messages import (
+    ASK_AGAIN_S,
     Requested,
     arm,
     ask,
@@ -31,7 +39,7 @@ from link.records import replace
 
 _GUIDED = 4
 _BRAKE = 17  # stops and holds without sticks; LOITER would take a transmitter that is switched off for "descend"
-_TAKE_OFF_AGAIN_S = 5.0  # it lifts off 3.5 to 4 s after it was told to
+_TAKE_OFF_AGAIN_S = 5.0  # once it was accepted: it lifts off 3.5 to 4 s later
 _CENTI = 0.01
 _TILT_DEG = 30.0  # taken while the parameter is unknown: its default
 _TILT_MAX_DEG = 45.0  # nothing is planned beyond
@@ -69,6 +77,8 @@ _VERTICAL_ACCELERATION_DEFAULT_M_S2 = 1.0
 _POSITION_GAIN = ("PSC_POSXY_P", "PSC_NE_POS_P")
 _VELOCITY_GAIN = ("PSC_VELXY_P", "PSC_NE_VEL_P")
 _INTEGRAL_GAIN = ("PSC_VELXY_I", "PSC_NE_VEL_I")
+_DERIVATIVE_GAIN = ("PSC_VELXY_D", "PSC_NE_VEL_D")
+_ATTITUDE_TIME = ("ATC_INPUT_TC",)
 
 
 class ArduPilotDriver:
@@ -78,7 +88,7 @@ class ArduPilotDriver:
     autopilot_id: int = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
     projection = Projection.ARDUPILOT
     limit_names = tuple(tuple(named.name for named in names) for names in _LIMITS)
-    gain_names = (_POSITION_GAIN, _VELOCITY_GAIN, _INTEGRAL_GAIN)
+    gain_names = (_POSITION_GAIN, _VELOCITY_GAIN, _INTEGRAL_GAIN, _DERIVATIVE_GAIN, _ATTITUDE_TIME)
     hover_mode = "BRAKE"
     timeout_parameter = "GUID_TIMEOUT"
     timeout_default_s = 3.0
@@ -114,11 +124,13 @@ class ArduPilotDriver:
         if desire.armed and not view.armed:
             return ask(memory, arm(armed=True), monotonic_ns)
         if climbs and desire.takeoff_height_m is not None and view.armed and view.landed is not False:
-            return ask(memory, take_off(desire.takeoff_height_m), monotonic_ns, _TAKE_OFF_AGAIN_S)
+            return _ask_to_take_off(memory, desire.takeoff_height_m, monotonic_ns)
         return memory, ()
 
     def acknowledged(self, memory: DriverMemory, command: int, result: int) -> DriverMemory:
-        """Count refused disarms."""
+        """Count refused disarms, and remember whether it takes off."""
+        if command == mavlink.MAV_CMD_NAV_TAKEOFF:
+            return replace(memory, takeoff_accepted=result == mavlink.MAV_RESULT_ACCEPTED)
         return with_disarm_answer(memory, command, result)
 
     def setpoint_message(self, setpoint: Setpoint, boot_ms: int, target_system: int) -> Message:
@@ -151,11 +163,15 @@ class ArduPilotDriver:
 
         A setpoint is carried on by its own velocity and acceleration, so that it needs no lead.
         """
+        position_per_s = find_gain(parameters, _POSITION_GAIN, 1.0)
         return Cascade(
-            position_per_s=find_gain(parameters, _POSITION_GAIN, 1.0),
+            position_per_s=position_per_s,
             velocity_per_s=find_gain(parameters, _VELOCITY_GAIN, 2.0),
             integral_per_s2=find_gain(parameters, _INTEGRAL_GAIN, 1.0, INTEGRAL_FACTOR_MAX),
             lead_s=0.0,
+            derivative=find_gain(parameters, _DERIVATIVE_GAIN, 0.5),
+            derives_error=True,
+            attitude_lag_s=attitude_lag_s(find_gain(parameters, _ATTITUDE_TIME, 0.15), position_per_s),
         )
 
     def shaping(self, parameters: Mapping[str, float]) -> Shaping | None:
@@ -169,6 +185,13 @@ class ArduPilotDriver:
             ),
             vertical_jerk_m_s3=_known(find_limit(parameters, _VERTICAL_JERK), _JERK_DEFAULT_M_S3),
         )
+
+
+def _ask_to_take_off(memory: DriverMemory, height_m: float, monotonic_ns: int) -> Requested:
+    """Ask again soon while no answer has come: a link may lose the command, and motors that idle are switched off."""
+    again_s = _TAKE_OFF_AGAIN_S if memory.takeoff_accepted else ASK_AGAIN_S
+    memory, commands = ask(memory, take_off(height_m), monotonic_ns, again_s)
+    return (replace(memory, takeoff_accepted=False) if commands else memory), commands
 
 
 def _known(limit: float, default: float) -> float:

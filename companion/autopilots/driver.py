@@ -93,6 +93,7 @@ class DriverMemory(Struct, frozen=True, kw_only=True):
     asked_ns: Mapping[AutopilotCommand, int] | None = None
     disarm_asked: bool = False
     disarm_refusals: int = 0
+    takeoff_accepted: bool = False  # the last one that was asked for
     climbs_by_itself: bool = False
 
 

@@ -15,6 +15,7 @@ from companion.core.data import GRAVITY_M_S2
 _STATED_MIN = 0.1  # m/s or degrees; a limit below this cannot be flown with
 GAIN_FACTOR_MAX = 4.0  # about a default; the ranges that the firmwares state are narrower
 INTEGRAL_FACTOR_MAX = 40.0  # PX4 states 150 times its default as the end of the range
+RATE_LAG_S = 0.05  # of turn rates: motors of 0.05 s behind a controller that makes up for what it costs itself
 _TILT_SHARE = 0.85  # of the largest tilt's thrust; the rest is for gusts and for the autopilot's own corrections
 
 
@@ -47,6 +48,16 @@ def find_gain(
         if value > 0.0 and math.isfinite(value):
             return min(max(value, default / factor_max), default * factor_max)
     return default
+
+
+def attitude_lag_s(shaped_s: float, position_per_s: float) -> float:
+    """Return the lag from a wanted acceleration to the drone's.
+
+    Args:
+        shaped_s: time constant with which the attitude goes to what is asked of it; its turn rates lag besides.
+        position_per_s: with a longer lag than half of its inverse no drone flies steadily.
+    """
+    return min(shaped_s + RATE_LAG_S, 0.5 / position_per_s)
 
 
 def acceleration_of_tilt_m_s2(tilt_deg: float) -> float:

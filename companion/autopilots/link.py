@@ -1,10 +1,11 @@
-"""The companion's conversation with the autopilot: streams, origin and parameters asked for, messages read."""
+"""The companion's dialogue with the autopilot: requests streams, origin and parameters, and reads messages."""
 
 from collections.abc import Mapping
 from itertools import chain
 
 from companion.autopilots.choice import driver_for
 from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver, streams_hz
+from companion.autopilots.late_reports import LateReports
 from companion.autopilots.limits import LimitQuestions, parameter_names
 from companion.autopilots.response import Cascade
 from companion.autopilots.shaping import Shaping
@@ -66,6 +67,7 @@ class AutopilotLink:
         self._heard_ns: int | None = None
         self._polled_ns: int | None = None
         self._questions = LimitQuestions()
+        self._late = LateReports()
         self._times: tuple[int, int] | None = None
 
     def receive(self, data: bytes, local_ns: int, *, is_datagram: bool = False) -> None:
@@ -146,7 +148,7 @@ class AutopilotLink:
             match event:
                 case MessageReceived() if self.driver is not None:
                     self._heard_ns = local_ns
-                    self._hear(event.message, self.driver)
+                    self._hear(event.message, self.driver, local_ns)
                 case LinkFound():
                     self.driver = driver_for(event.autopilot, event.vehicle_type, self._config.kind)
                     self._ask_for_streams(self.driver, local_ns)
@@ -163,7 +165,9 @@ class AutopilotLink:
                 case ParameterMissing():
                     self._questions.unanswered(event.name, local_ns)
 
-    def _hear(self, message: Message, driver: Driver) -> None:
+    def _hear(self, message: Message, driver: Driver, local_ns: int) -> None:
+        if self._late.is_late(message, local_ns):
+            return
         if message.get_type() == "PARAM_VALUE":
             self._hear_parameter(message, driver)
         shift = self.state.view.frame_moves.shift_enu_m

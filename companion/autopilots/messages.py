@@ -1,4 +1,4 @@
-"""What every driver sends: a setpoint as SET_POSITION_TARGET_LOCAL_NED, and commands, each as often as is asked for."""
+"""What every driver sends: a setpoint as SET_POSITION_TARGET_LOCAL_NED, and commands with their retries."""
 
 from companion.autopilots.driver import AutopilotCommand, Desire, DriverMemory
 from companion.core.data import Setpoint

@@ -1,4 +1,4 @@
-"""The drone's own reports: the last second of them, what can be told from one to the next, and how far they err; pure.
+"""The drone's own reports of the last second: how they change, and how accurate they are; pure.
 
 An estimator's velocity can be wrong for seconds (PX4's, simulated, by 0.3 m/s on average and 0.9 at worst) while its
 receiver keeps the position right. The autopilot flies so that *its* velocity is the one asked for: the drone leaves

@@ -7,7 +7,14 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
-from companion.autopilots.limits import INTEGRAL_FACTOR_MAX, Named, acceleration_of_tilt_m_s2, find_gain, find_limit
+from companion.autopilots.limits import (
+    INTEGRAL_FACTOR_MAX,
+    Named,
+    acceleration_of_tilt_m_s2,
+    attitude_lag_s,
+    find_gain,
+    find_limit,
+)
 from companion.autopilots.messages import (
     Requested,
     arm,
@@ -40,7 +47,7 @@ class Px4Driver:
     autopilot_id: int = mavlink.MAV_AUTOPILOT_PX4
     projection = Projection.PX4
     limit_names = (("MPC_XY_VEL_MAX",), ("MPC_Z_VEL_MAX_UP",), ("MPC_Z_VEL_MAX_DN",), ("MPC_TILTMAX_AIR",))
-    gain_names = (("MPC_XY_P",), ("MPC_XY_VEL_P_ACC",), ("MPC_XY_VEL_I_ACC",))
+    gain_names = (("MPC_XY_P",), ("MPC_XY_VEL_P_ACC",), ("MPC_XY_VEL_I_ACC",), ("MPC_XY_VEL_D_ACC",), ("MC_ROLL_P",))
     hover_mode = "Hold"
     timeout_parameter = "COM_OF_LOSS_T"
     timeout_default_s = 1.0
@@ -115,16 +122,22 @@ class Px4Driver:
         )
 
     def cascade(self, parameters: Mapping[str, float]) -> Cascade:
-        """Return the horizontal gains, by default those of release 1.16.
+        """Return the horizontal gains, by default those of its version between 1.16 and 1.17.
 
-        A setpoint is held as it came: on average for half a period of 20 ms.
+        An acceleration that is asked for is added to the corrections as it comes (PositionControl::_velocityControl).
+        The derivative is of the velocity alone, behind a filter of 5 Hz that is left out. A setpoint is held as it
+        came: on average for half a period of 20 ms.
         """
-        position, velocity, integral = self.gain_names
+        position, velocity, integral, derivative, attitude = self.gain_names
+        position_per_s = find_gain(parameters, position, 0.95)
         return Cascade(
-            position_per_s=find_gain(parameters, position, 0.95),
+            position_per_s=position_per_s,
             velocity_per_s=find_gain(parameters, velocity, 1.8),
             integral_per_s2=find_gain(parameters, integral, 0.4, INTEGRAL_FACTOR_MAX),
             lead_s=0.01,
+            derivative=find_gain(parameters, derivative, 0.2),
+            is_led=True,
+            attitude_lag_s=attitude_lag_s(1.0 / find_gain(parameters, attitude, 4.0), position_per_s),
         )
 
     def shaping(self, parameters: Mapping[str, float]) -> Shaping | None:  # noqa: ARG002 (the others' signature)

@@ -4,12 +4,17 @@ Per axis the deviation e = p - p_path obeys the cascade of position, velocity an
 the lag of the drone's attitude:
 
     e'' = a + u - a_path
-    a' = (a_path - Kv e' - Kv Kp e - a) / tau
+    a' = (a_path - Kv e' - Kv Kp e - Kd s - a) / tau
     u' = -u / T - c a_path + w,        T = Kv / Ki
 
 a (m/s^2) is what the drone's lean accelerates it by. u (m/s^2) pushes it off its path and is not made up for yet by the
 integrator: wind, a heavier frame, and drag, which grows by c for each m/s that the path gains. w is white noise, such
-that u alone has a given standard deviation. A steady path makes no deviation.
+that u alone has a given standard deviation. A steady path makes no deviation. s is the slope whose gain is Kd: that of
+the velocity's error, a - a_path (ArduPilot), or of the velocity, a (PX4), which holds against the path's own
+acceleration, too. What u adds to it is left out.
+A led setpoint asks for (1 + Kd) a_path + tau a_path' in place of a_path, so that a drone without a deviation leans as
+its path accelerates, at once. Its a is what it leans beyond that: it obeys the equations with a_path left out of a'
+and of e''.
 State per axis (4,): e (m), e' (m/s), a, u, in W. Measured are e and e'.
 Source: the position controllers of PX4 (mc_pos_control) and ArduPilot (AC_PosControl); Kalman and Bucy 1961.
 """
@@ -28,7 +33,7 @@ simulations of PX4 and ArduCopter 0.3 and 0.38."""
 PUSH_STD_M_S2 = 0.75
 """Of what pushes a drone about: a gust of 3 m/s, moderate turbulence of MIL-F-8785C, at that drag."""
 ATTITUDE_LAG_S = 0.1
-"""From a wanted acceleration to the drone's; of 0.05 to 0.2 s it predicted the stand-ins' flights best."""
+"""From a wanted acceleration to the drone's, where no parameter tells it."""
 POSITION_STD_M = 0.04
 """Of a report's position beside the path: a receiver with corrections, and 4 ms of its date at 8 m/s."""
 VELOCITY_STD_M_S = 0.1
@@ -47,6 +52,11 @@ class Cascade(Struct, frozen=True, kw_only=True):
         position_per_s: velocity per position error.
         velocity_per_s: acceleration per velocity error.
         integral_per_s2: acceleration per integrated velocity error.
+        derivative: acceleration per slope of the velocity, or of its error.
+        derives_error: whether it is the error's.
+        attitude_lag_s: from a wanted acceleration to the drone's.
+        is_led: whether setpoints are led: where an autopilot adds the acceleration asked for to its corrections as it
+            comes. One that makes a path of its own of it would take that for another place.
         lead_s: by which a setpoint is to be ahead of the drone beside the link's delay: half of what it is held.
     """
 
@@ -54,6 +64,39 @@ class Cascade(Struct, frozen=True, kw_only=True):
     velocity_per_s: float
     integral_per_s2: float
     lead_s: float
+    derivative: float = 0.0
+    derives_error: bool = False
+    attitude_lag_s: float = ATTITUDE_LAG_S
+    is_led: bool = False
+
+    @property
+    def turns_hz(self) -> float:
+        """How fast the drone's lean goes to `path_share` of the path's acceleration, less what the errors take."""
+        return (1.0 + self.derivative) / self.attitude_lag_s
+
+    @property
+    def lean_lag_s(self) -> float:
+        """By how much the drone's lean is behind what the path asks for."""
+        return 0.0 if self.is_led else 1.0 / self.turns_hz
+
+    @property
+    def path_share(self) -> float:
+        """The part of the path's acceleration that the drone leans by, since the derivative may hold against it."""
+        return 1.0 if self.derives_error else 1.0 / (1.0 + self.derivative)
+
+    @property
+    def damping_per_s(self) -> float:
+        """Acceleration that is leaned for, by the velocity's error."""
+        return self.velocity_per_s / (1.0 + self.derivative)
+
+    @property
+    def stiffness_per_s2(self) -> float:
+        """Likewise by the position's."""
+        return self.damping_per_s * self.position_per_s
+
+    def lead(self, acceleration_m_s2: Array, jerk_m_s3: Array) -> Array:
+        """Return the acceleration (k,) to ask for, so that the drone leans for this one though its lean lags."""
+        return np.asarray((acceleration_m_s2 + jerk_m_s3 / self.turns_hz) / self.path_share)
 
 
 class ResponseModel:
@@ -70,19 +113,19 @@ class ResponseModel:
     """
 
     def __init__(self, cascade: Cascade, offset_s: Array) -> None:
-        stiffness = cascade.velocity_per_s * cascade.position_per_s
         forgets_hz = cascade.integral_per_s2 / cascade.velocity_per_s
-        turns_hz = 1.0 / ATTITUDE_LAG_S
+        turns_hz = cascade.turns_hz
         self.cascade = cascade
         self._motion = np.array(
             [
                 [0.0, 1.0, 0.0, 0.0],
                 [0.0, 0.0, 1.0, 1.0],
-                [-turns_hz * stiffness, -turns_hz * cascade.velocity_per_s, -turns_hz, 0.0],
+                [-turns_hz * cascade.stiffness_per_s2, -turns_hz * cascade.damping_per_s, -turns_hz, 0.0],
                 [0.0, 0.0, 0.0, -forgets_hz],
             ]
         )
-        self._asked = np.array([0.0, -1.0, turns_hz, -DRAG_PER_S])
+        leans = np.array([0.0, 0.0, 0.0, 0.0] if cascade.is_led else [0.0, -1.0, turns_hz * cascade.path_share, 0.0])
+        self._asked = leans - np.array([0.0, 0.0, 0.0, DRAG_PER_S])
         noise = np.zeros((STATES, STATES))
         noise[_PUSH, _PUSH] = 2.0 * forgets_hz * PUSH_STD_M_S2**2
         seen = _ONE[:2]

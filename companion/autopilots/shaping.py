@@ -1,4 +1,4 @@
-"""How an autopilot that shapes a path of its own is led by setpoints: the numbers of that shaping."""
+"""The numbers by which an autopilot shapes its own path from setpoints."""
 
 from msgspec import Struct
 

@@ -5,10 +5,20 @@ WPNAV_SPEED in cm/s WP_SPD in m/s). Effects as measured on its software-in-the-l
 """
 
 from companion.check.findings import Level
-from companion.check.rules import GRADE_MAX, SPEED_SHARE_ADVISED, ParameterRule, Spelling, at_least, tilt_needed_deg
+from companion.check.rules import (
+    ParameterRule,
+    Spelling,
+    at_least,
+    climb_rule,
+    equals,
+    setpoint_loss_rule,
+    sortie_speed_rule,
+    speed_rule,
+    tilt_needed_deg,
+    tilt_rule,
+)
 
 _CENTI = 100.0
-_CLIMB_M_S = 2.0
 _JERK_M_S3 = 10.0  # its own shaping allows 10.8 m/s^3 by default: 0.5 sqrt(WPNAV_ACCEL by g by ATC_ACCEL_P_MAX)
 _VERTICAL_M_S2 = 3.0  # limits.vertical_acceleration_max_m_s2
 _CORRECTED_PER_S = (
@@ -20,18 +30,12 @@ _DISARM_DELAY_MIN_S = 5.0
 _EKF_ACTIONS = (1, 3)
 _LEVEL_BELOW_M = 1.0  # so high above the deck its own take-off is level; setpoints take over before
 
+_SPEED = (Spelling("WP_SPD"), Spelling("WPNAV_SPEED", _CENTI))
 ARDUPILOT_SINK = (Spelling("WP_SPD_DN"), Spelling("WPNAV_SPEED_DN", _CENTI))
 """What limits the descent, for `rules.sink_rule`."""
 
 ARDUPILOT_RULES = (
-    at_least(
-        tilt_needed_deg,
-        step=5.0,
-        spellings=(Spelling("ATC_ANGLE_MAX"), Spelling("ANGLE_MAX", _CENTI)),
-        unit="deg",
-        level=Level.FAIL,
-        reason="the tilt that holds the speed against drag; 30 degrees end at 10.2 m/s, silently",
-    ),
+    tilt_rule((Spelling("ATC_ANGLE_MAX"), Spelling("ANGLE_MAX", _CENTI)), "; 30 degrees end at 10.2 m/s, silently"),
     ParameterRule(
         spellings=(Spelling("PSC_ANGLE_MAX"),),
         unit="deg",
@@ -40,13 +44,10 @@ ARDUPILOT_RULES = (
         advised=lambda _: 0.0,
         reason="a tilt limit of its own for flight by position, beside the general one; 0 leaves it to that",
     ),
-    at_least(
-        lambda v: SPEED_SHARE_ADVISED * v,
-        step=1.0,
-        spellings=(Spelling("WP_SPD"), Spelling("WPNAV_SPEED", _CENTI)),
-        unit="m/s",
-        level=Level.FAIL,
-        reason="limits the correction of the position beside the speed asked for",
+    speed_rule(
+        _SPEED,
+        Level.FAIL,
+        "limits the correction of the position beside the speed asked for",
     ),
     at_least(
         lambda _: _JERK_M_S3 / _CORRECTED_PER_S,
@@ -64,14 +65,7 @@ ARDUPILOT_RULES = (
         level=Level.WARN,
         reason="how quickly it leans otherwise; with 5 a vehicle that brakes or turns is caught up with late",
     ),
-    at_least(
-        lambda v: _CLIMB_M_S + GRADE_MAX * v,
-        step=0.5,
-        spellings=(Spelling("WP_SPD_UP"), Spelling("WPNAV_SPEED_UP", _CENTI)),
-        unit="m/s",
-        level=Level.WARN,
-        reason="the climb of an abort, away from a deck that drives uphill",
-    ),
+    climb_rule((Spelling("WP_SPD_UP"), Spelling("WPNAV_SPEED_UP", _CENTI))),
     at_least(
         lambda _: _VERTICAL_M_S2,
         step=0.5,
@@ -88,13 +82,11 @@ ARDUPILOT_RULES = (
         level=Level.WARN,
         reason="how quickly a climb turns into a descent; planned with the jerk that is set horizontally",
     ),
-    ParameterRule(
-        spellings=(Spelling("GUID_TIMEOUT"),),
-        unit="s",
-        level=Level.WARN,
-        test=lambda value, _: _GUIDED_LOSS_S[0] <= value <= _GUIDED_LOSS_S[1],
-        advised=lambda _: 1.0,
-        reason="so long it coasts on when setpoints stay away: 21 m from 5 m/s with 3 s",
+    setpoint_loss_rule(
+        (Spelling("GUID_TIMEOUT"),),
+        _GUIDED_LOSS_S,
+        Level.WARN,
+        "so long it coasts on when setpoints stay away: 21 m from 5 m/s with 3 s",
     ),
     ParameterRule(
         spellings=(Spelling("GUID_OPTIONS"),),
@@ -104,12 +96,10 @@ ARDUPILOT_RULES = (
         advised=lambda _: 0.0,
         reason="bits 4 and 5 switch off the holding of position and velocity",
     ),
-    ParameterRule(
+    equals(
+        0.0,
         spellings=(Spelling("FS_GCS_ENABLE"),),
-        unit="",
         level=Level.WARN,
-        test=lambda value, _: value == 0.0,
-        advised=lambda _: 0.0,
         reason="a lost ground station would end a landing by a return, or on the road",
     ),
     ParameterRule(
@@ -131,12 +121,11 @@ ARDUPILOT_RULES = (
 )
 
 ARDUPILOT_LAUNCH_RULES = (
-    ParameterRule(
+    sortie_speed_rule(_SPEED),
+    equals(
+        0.0,
         spellings=(Spelling("INS_GYR_CAL"),),
-        unit="",
         level=Level.WARN,
-        test=lambda value, _: value == 0.0,
-        advised=lambda _: 0.0,
         reason="1 calibrates the gyros at each start, which a base that turns spoils: switch on while it stands, or 0",
     ),
     ParameterRule(

@@ -1,5 +1,6 @@
-"""From what was seen of an autopilot and a vehicle to the lines of the check; pure."""
+"""Judges what was observed of an autopilot, a vehicle and both links; makes the check's lines; pure."""
 
+import math
 from collections.abc import Sequence
 
 from companion.autopilots.choice import MULTIROTORS
@@ -7,9 +8,9 @@ from companion.check.findings import Finding, Level, make_finding, pass_line, pa
 from companion.check.firmwares import FIRMWARES
 from companion.check.observation import AutopilotFacts, VehicleFacts
 from companion.check.rules import judge
-from companion.check.vehicle_assessment import assess_vehicle
 from companion.config.autopilot import AutopilotKind
 from companion.config.companion import CompanionConfig
+from companion.config.integrity import IntegrityConfig
 
 MOTION = ("LOCAL_POSITION_NED", "ATTITUDE_QUATERNION")
 _MOTION_RATE_MIN_HZ = 40.0
@@ -42,9 +43,8 @@ def assess(
     found += [_latency(autopilot), _battery(autopilot, config.limits.battery_min_share)]
     found.append(_range_finder(autopilot))
     if autopilot.autopilot_id in FIRMWARES:
-        firmware = FIRMWARES[autopilot.autopilot_id]
-        rules = firmware.rules_for(config.descent.sink.rate_max_m_s)
-        found += judge((*rules, *(firmware.launch if launches else ())), autopilot.parameters, speed_m_s)
+        rules = FIRMWARES[autopilot.autopilot_id].rules_for(config.descent.sink.rate_max_m_s, launches=launches)
+        found += judge(rules, autopilot.parameters, speed_m_s)
     return found if vehicle is None else [*found, *assess_vehicle(vehicle, config)]
 
 
@@ -149,3 +149,73 @@ def _range_finder(seen: AutopilotFacts) -> Finding:
     advice = "fit one, or compare drone and pad at rest before each day's first landing (docs/vehicle.md)"
     reason = "a vehicle's height that is wrong by less than 2 m is told by nothing else"
     return make_finding("range finder", text, pass_or(seen.has_range_finder, Level.WARN), advice, reason)
+
+
+_FIX_RATE_MIN_HZ = 4.0
+_FIX_AGE_SHARE = 0.5  # of what aborts a landing
+_FIX_STD_GOOD_M = 0.3
+
+
+def assess_vehicle(seen: VehicleFacts, config: CompanionConfig) -> list[Finding]:
+    """Return the lines on the vehicle.
+
+    Args:
+        seen: as received.
+        config: the companion's, whose limits are to hold.
+    """
+    if config.silent_vehicle is not None:
+        return [pass_line("vehicle", "tells nothing, as the configuration says")]
+    if seen.rate_hz <= 0.0 and seen.fix_refused_why is not None:
+        advice = f"see what the vehicle publishes on {seen.key}, and whether its receiver has a fix"
+        return [make_finding("vehicle", f"refused: {seen.fix_refused_why}", Level.FAIL, advice)]
+    if seen.rate_hz <= 0.0:
+        advice = "start the ground vehicle, or check --ns, --vehicle and -e"
+        return [make_finding("vehicle", f"nothing on {seen.key}", Level.WARN, advice)]
+    refused = "not described" if seen.pad_refused_why is None else f"refused: {seen.pad_refused_why}"
+    pad = make_finding(
+        "vehicle pad",
+        "described" if seen.describes_pad else refused,
+        pass_or(seen.describes_pad, Level.FAIL),
+        "let the vehicle answer for its pad" if seen.pad_refused_why is None else "mend the vehicle's description",
+    )
+    level = pass_or(seen.rate_hz >= _FIX_RATE_MIN_HZ, Level.WARN)
+    rate = make_finding("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, "set its receiver to 5 Hz or more")
+    known = [_age(seen, config), _accuracy(seen, config.abort.position_std_max_m)]
+    return [rate, *known, *_heading(seen, config.integrity), pad]
+
+
+def _heading(seen: VehicleFacts, config: IntegrityConfig) -> list[Finding]:
+    """Return the line on a heading that was compared with the course: of a vehicle that drove meanwhile."""
+    if seen.heading_off_rad is None:
+        return []
+    level = pass_or(abs(seen.heading_off_rad) <= config.heading_off_max_rad, Level.FAIL)
+    text = f"{abs(math.degrees(seen.heading_off_rad)):.0f} degrees off its course"
+    advice = "see its compass, the IMU's mounting and axes; reversing is 180 degrees, so drive forwards"
+    return [make_finding("vehicle heading", text, level, advice, "the pad is not placed by it")]
+
+
+def _age(seen: VehicleFacts, config: CompanionConfig) -> Finding:
+    if seen.age_s is None:
+        return make_finding("vehicle age", "unknown", Level.WARN, "needs the autopilot's time of day")
+    is_fit = -config.integrity.fix_ahead_max_s <= seen.age_s <= _FIX_AGE_SHARE * config.abort.fix_age_max_s
+    advice = "set its clock by GNSS or NTP, or use a faster link"
+    return make_finding("vehicle age", f"{1e3 * seen.age_s:.0f} ms", pass_or(is_fit, Level.FAIL), advice)
+
+
+def _accuracy(seen: VehicleFacts, std_max_m: float) -> Finding:
+    if seen.std_m is None:
+        return make_finding("vehicle accuracy", "not stated", Level.WARN, "let it publish a covariance")
+    level = Level.FAIL if seen.std_m > std_max_m else pass_or(seen.std_m <= _FIX_STD_GOOD_M, Level.WARN)
+    text = f"{seen.std_m:.2f} m" + ("" if seen.has_velocity else ", no velocity")
+    return make_finding("vehicle accuracy", text, level, "use RTK, or a landing-pattern detector")
+
+
+def assess_links(open_to_strangers: Sequence[str]) -> list[Finding]:
+    """Return a line for each link that is open to somebody without a key, or one that none is."""
+    if not open_to_strangers:
+        return [pass_line("links", "open to nobody without a key, or to this machine only")]
+    advice = "use keys (companion keys, --zenoh-config, --signing-key), or a network on which nobody else is"
+    reason = "whoever reaches it can end the landing, or fly the drone"
+    return [
+        Finding(name="links", level=Level.WARN, found=text, advice=advice, reason=reason) for text in open_to_strangers
+    ]

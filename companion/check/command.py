@@ -63,6 +63,7 @@ def check(
     options = endpoints.options()
     with open_transport(mavlink.mavlink) as transport, open_session(options) as zenoh:
         session = open_check(transport, mavlink.mavlink, system_id=mavlink.system_id, signing=signing)
+        typer.echo(f"looking for an autopilot on {mavlink.mavlink}, for {timeout:g} s at most", err=True)
         session.find(timeout)
         if back is not None:
             _write(session, back)
@@ -98,10 +99,10 @@ class _Question:
 
 
 def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
-    from companion.check.assessment import assess
+    from companion.check.assessment import assess, assess_links
     from companion.check.detector import judge_detector
-    from companion.check.links import assess_links
 
+    typer.echo(f"found it; listening to it and to the vehicle for {asked.duration_s:g} s", err=True)
     vehicle, detector = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.integrity)
     seen = assess(session.reader.facts(), vehicle, asked.speed_m_s, asked.config, launches=asked.launches)
     return [*seen, *judge_detector(detector, asked.speed_m_s, asked.config), *assess_links(asked.open_links)]

@@ -19,7 +19,7 @@ class Firmware:
         kind: what a configuration calls it.
         oldest: release that is known to work.
         rules: of its parameters, but for the one that limits the descent.
-        launch: likewise, for a launch from the deck of a vehicle that drives.
+        launch: likewise, for a launch from the deck of a vehicle that drives; of the same parameter they ask for more.
         sink: names of the descent's.
     """
 
@@ -30,14 +30,19 @@ class Firmware:
     launch: Sequence[ParameterRule]
     sink: tuple[Spelling, ...]
 
-    def rules_for(self, sink_m_s: float) -> tuple[ParameterRule, ...]:
-        """Return all rules, for a companion that sinks by `sink_m_s` at most."""
-        return (*self.rules, sink_rule(self.sink, sink_m_s))
+    def rules_for(self, sink_m_s: float, *, launches: bool = False) -> tuple[ParameterRule, ...]:
+        """Return all rules, for a companion that sinks by `sink_m_s` at most and may launch.
+
+        One for a launch comes after that for a landing: the value that it advises is the one that is written.
+        """
+        return (*self.rules, sink_rule(self.sink, sink_m_s), *(self.launch if launches else ()))
 
     @property
     def parameters(self) -> tuple[str, ...]:
         """Every name that the rules look for."""
-        return (*names_of((*self.rules, *self.launch)), *(spelling.name for spelling in self.sink))
+        return tuple(
+            dict.fromkeys((*names_of((*self.rules, *self.launch)), *(spelling.name for spelling in self.sink)))
+        )
 
 
 FIRMWARES = {

@@ -14,6 +14,9 @@ SPEED_SHARE_ADVISED = 1.2
 """Of the vehicle's speed: the drone has to catch up and to correct. More than what a landing is refused for, so that a
 vehicle a little faster than it was said to be does not stop one."""
 
+SORTIE_SPEED_SHARE = 2.0
+"""Of the vehicle's speed, for a drone that is left behind: it closes in as fast as the vehicle drives."""
+
 GRADE_MAX = 0.05
 """Of a road; on it the deck itself climbs or sinks."""
 
@@ -24,6 +27,7 @@ MANOEUVRE_M_S2 = 1.9
 """Kept at full speed for correction: with it the rule gives the 45 degrees that were flown at 12 m/s."""
 
 
+_CLIMB_M_S = 2.0
 _ROUNDING = 1e-6  # of the 32-bit floats that parameters are
 
 
@@ -83,15 +87,89 @@ def at_least(
     )
 
 
+def equals(
+    wanted: float,
+    *,
+    spellings: tuple[Spelling, ...],
+    level: Level,
+    reason: str,
+    is_fatal: Callable[[float], bool] | None = None,
+) -> ParameterRule:
+    """Return the rule of a choice, a parameter without unit, that has to be `wanted`."""
+    return ParameterRule(
+        spellings=spellings,
+        unit="",
+        level=level,
+        test=lambda value, _: value == wanted,
+        advised=lambda _: wanted,
+        reason=reason,
+        is_fatal=is_fatal,
+    )
+
+
+def setpoint_loss_rule(
+    spellings: tuple[Spelling, ...], range_s: tuple[float, float], level: Level, reason: str
+) -> ParameterRule:
+    """Return the rule of the parameter that says how long setpoints may stay away, of which 1 s is advised."""
+    return ParameterRule(
+        spellings=spellings,
+        unit="s",
+        level=level,
+        test=lambda value, _: range_s[0] <= value <= range_s[1],
+        advised=lambda _: 1.0,
+        reason=reason,
+    )
+
+
+def speed_rule(spellings: tuple[Spelling, ...], level: Level, reason: str) -> ParameterRule:
+    """Return the rule of a parameter that is a horizontal speed which the vehicle's must be less than."""
+    return _share_rule(SPEED_SHARE_ADVISED, spellings, level, reason)
+
+
+def sortie_speed_rule(spellings: tuple[Spelling, ...]) -> ParameterRule:
+    """Return the rule of the drone's speed for a sortie, from which it comes home to a vehicle that has driven on."""
+    reason = "on the way home it is what this leaves beside the vehicle's speed that the drone closes in by"
+    return _share_rule(SORTIE_SPEED_SHARE, spellings, Level.WARN, reason)
+
+
+def _share_rule(share: float, spellings: tuple[Spelling, ...], level: Level, reason: str) -> ParameterRule:
+    return at_least(
+        lambda speed_m_s: share * speed_m_s, step=1.0, spellings=spellings, unit="m/s", level=level, reason=reason
+    )
+
+
+def tilt_rule(spellings: tuple[Spelling, ...], reason: str) -> ParameterRule:
+    """Return the rule of the parameter that limits the tilt."""
+    return at_least(
+        tilt_needed_deg,
+        step=5.0,
+        spellings=spellings,
+        unit="deg",
+        level=Level.FAIL,
+        reason=f"the tilt that holds the speed against drag{reason}",
+    )
+
+
+def climb_rule(spellings: tuple[Spelling, ...]) -> ParameterRule:
+    """Return the rule of the parameter that limits the climb."""
+    return _vertical_rule(spellings, _CLIMB_M_S, "the climb of an abort, away from a deck that drives uphill")
+
+
 def sink_rule(spellings: tuple[Spelling, ...], sink_m_s: float) -> ParameterRule:
     """Return the rule of the parameter that limits the descent, for a companion that sinks by `sink_m_s` at most."""
+    reason = "the descent onto a deck that drives downhill, and the correction of its height"
+    return _vertical_rule(spellings, sink_m_s, reason)
+
+
+def _vertical_rule(spellings: tuple[Spelling, ...], own_m_s: float, reason: str) -> ParameterRule:
+    """Return the rule of a vertical speed: the drone's own, and that of a deck on a steep road."""
     return at_least(
-        lambda speed_m_s: sink_m_s + GRADE_MAX * speed_m_s,
+        lambda speed_m_s: own_m_s + GRADE_MAX * speed_m_s,
         step=0.5,
         spellings=spellings,
         unit="m/s",
         level=Level.WARN,
-        reason="the descent onto a deck that drives downhill, and the correction of its height",
+        reason=reason,
     )
 
 

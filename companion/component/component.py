@@ -1,4 +1,4 @@
-"""The component itself, without I/O: what it is asked, what it tells with each step, and what it says by itself."""
+"""The component without I/O: answers requests, reports each step, and sends its periodic messages."""
 
 from collections.abc import Iterable, Sequence
 

@@ -1,4 +1,4 @@
-"""Who the component is, how far it is, and what its computer does, as messages.
+"""The component's identity, phase and computer load as messages.
 
 Source: MAVLink component information protocol, https://mavlink.io/en/services/component_information.html; metadata
 files are not offered, since ground stations read those of autopilots and cameras only.

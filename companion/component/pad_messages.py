@@ -1,4 +1,4 @@
-"""The pad as others see it on their maps: a target to be followed, or a vehicle among the traffic.
+"""The pad on ground stations' maps: a target to follow, or a vehicle in the traffic.
 
 FOLLOW_TARGET reaches whoever reads it, and an autopilot in its follow mode. ADSB_VEHICLE is what ground stations draw;
 it has no heading and no velocity, since with these PX4 would take the pad for traffic and warn of it, or give way.

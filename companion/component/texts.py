@@ -1,4 +1,4 @@
-"""What is told to pilots by STATUSTEXT: whole, by its weight, and no oftener than it can be read."""
+"""STATUSTEXT for pilots: complete texts, with a severity, at a rate that can be read."""
 
 from companion.core.reasons import Reason
 from companion.situation.phases import Phase

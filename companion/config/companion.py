@@ -69,8 +69,20 @@ class RecordingConfig(StrictModel):
         return value
 
 
-class CompanionConfig(StrictModel):
-    """Everything that can be set about the companion."""
+class FlightConfig(StrictModel):
+    """What is flown from the take-off to the end, a table for each part."""
+
+    limits: LimitsConfig = LimitsConfig()
+    takeoff: TakeoffConfig = TakeoffConfig()
+    chase: ChaseConfig = ChaseConfig()
+    descent: DescentConfig = DescentConfig()
+    touchdown: TouchdownConfig = TouchdownConfig()
+    abort: AbortConfig = AbortConfig()
+    sortie: SortieConfig = SortieConfig()
+
+
+class CompanionConfig(FlightConfig):
+    """Everything that can be set about the companion; its file has the tables of the flight beside its own."""
 
     step_rate_hz: Annotated[float, Field(ge=10.0, le=200.0)] = 50.0
     # A vehicle without telemetry; none: the vehicle tells where it is, and how its pad lies on it.
@@ -79,13 +91,6 @@ class CompanionConfig(StrictModel):
     setpoints: SetpointConfig = SetpointConfig()
     ground_station: GroundStationConfig = GroundStationConfig()
     integrity: IntegrityConfig = IntegrityConfig()
-    limits: LimitsConfig = LimitsConfig()
-    takeoff: TakeoffConfig = TakeoffConfig()
-    chase: ChaseConfig = ChaseConfig()
-    descent: DescentConfig = DescentConfig()
-    touchdown: TouchdownConfig = TouchdownConfig()
-    abort: AbortConfig = AbortConfig()
-    sortie: SortieConfig = SortieConfig()
     estimator: EstimatorConfig = EstimatorConfig()
     guidance: GuidanceConfig = GuidanceConfig()
     recording: RecordingConfig = RecordingConfig()

@@ -74,6 +74,15 @@ class UnevenConfig(StrictModel):
     wait_max_s: NotNegative = 60.0  # for which it waits so without its time limit running: three surprises
 
 
+class QuietConfig(StrictModel):
+    """What is waited for above a deck whose motion the vehicle tells."""
+
+    # Accepted: with so much probability a contact begun now may be unsafe, by its forecast. Published landings on decks
+    # in waves are asked to be good in 95 % (docs/benchmark.md); what is riskier waits for a quieter moment, and is
+    # broken off by the descent's time limit.
+    unsafe_max: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
+
+
 class UnseenConfig(StrictModel):
     """A pad that the vehicle's fixes are too coarse to place: it has to be seen."""
 
@@ -110,3 +119,4 @@ class DescentConfig(StrictModel):
     uneven: UnevenConfig = UnevenConfig()
     unseen: UnseenConfig = UnseenConfig()
     sway: SwayConfig = SwayConfig()
+    quiet: QuietConfig = QuietConfig()

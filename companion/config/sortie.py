@@ -33,9 +33,13 @@ class SortieConfig(StrictModel):
     # sets its own.
     vehicle_radius_m: Positive = 3.0
     keep_out_margin_m: Positive = 1.0  # to that: rotors reach 0.35 m, and gusts move the drone by some decimetres
+    # By so many standard deviations of the pad's place this grows: over fixes of 1 m a vehicle may be that much nearer.
+    # As many as `chase.unseen_height_stds`, beyond the margin.
+    keep_out_stds: NotNegative = 2.0
     ground_clearance_m: Positive = 2.0  # of the feet above the vehicle's road: kerbs, people, what hangs over its side
     # Where the drone waits for a vehicle that stays silent: latitude and longitude in degrees, and metres above the
     # autopilot's origin; none: where the vehicle was last forecast to pass.
     rally_point_deg_m: tuple[Latitude, Longitude, float] | None = None
     expect_s: Positive = 20.0  # so long it waits there first; twice the outages of a link between houses
+    return_time_limit_s: Positive = 400.0  # then it holds; the largest range, 2 km, at 5 m/s faster than the vehicle
     warn_before_s: Positive = 60.0  # the point of no return is told so long before it is reached

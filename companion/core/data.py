@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 class Quantity(Enum):
     """What a measurement measures, each with the frame of its value."""
 
-    __hash__ = object.__hash__  # by identity, as members compare: a name is hashed anew at every look-up
+    __hash__ = object.__hash__  # by identity, as members compare: a name is hashed again at every look-up
 
     POSITION = "position"  # of the antenna in W, m (3)
     VELOCITY = "velocity"  # of the antenna in W, m/s (3)
@@ -76,6 +76,8 @@ class Forecast(Struct, frozen=True, kw_only=True, eq=False):
         tilt_rad: (n, 4) roll, its rate (rad/s), pitch and its rate of V against the road; None where it is not told.
         frame_offset_enu_m: (2,) of the drone's frame from the vehicle's fixes', None where it is not estimated.
         frame_offset_std_m: standard deviation of either, which sightings of the pad make small.
+        swing: (3, 2) angular frequency, rad/s, and damping of heave, roll and pitch; None as `tilt_rad`.
+        climb_std_m_s: (n,) standard deviation of the pad's velocity upwards; None where it is not estimated.
     """
 
     t_ns: int
@@ -91,6 +93,8 @@ class Forecast(Struct, frozen=True, kw_only=True, eq=False):
     tilt_rad: Array | None = None
     frame_offset_enu_m: Array | None = None
     frame_offset_std_m: float = math.inf
+    swing: Array | None = None
+    climb_std_m_s: Array | None = None
 
 
 class OwnState(Struct, frozen=True, kw_only=True):

@@ -1,4 +1,4 @@
-"""Why the landing is where it is: each reason once, with the sentence that it is told by.
+"""Every reason for a phase, a wait or an abort, once, with its sentence.
 
 What decides, counts or compares does so by the `Reason`; the sentence, with its numbers, is made where it is shown.
 """
@@ -11,7 +11,7 @@ from msgspec import Struct
 class Reason(Enum):
     """A reason; its value is the sentence, with a place for each of the values that go with it."""
 
-    __hash__ = object.__hash__  # by identity, as members compare: a name is hashed anew at every look-up
+    __hash__ = object.__hash__  # by identity, as members compare: a name is hashed again at every look-up
 
     # The landing goes on.
     WAITING_FOR_START = "waiting for a start"
@@ -43,6 +43,7 @@ class Reason(Enum):
     HOME_NOW = "comes home: the battery lasts {:.0f} s above its reserve, way and landing take {:.0f} s"
     DECK_RESTLESS = "deck was not quiet within {:g} s"
     LIFT_OFF_TOO_LONG = "lift-off took longer than {:g} s"
+    RETURN_TOO_LONG = "did not come home within {:g} s: it holds"
 
     # A descent stays above the pad for a while.
     SPEED_SURPRISED = "waits above the pad: the vehicle's speed has surprised"
@@ -52,6 +53,7 @@ class Reason(Enum):
     SPEED_CHANGES = "waits above the pad: the vehicle brakes or speeds up"
     NOT_OVER_PAD = "waits above the pad: the drone is not over the pad"
     OFF_CENTRE = "waits above the pad: farther than {:g} m from the pad's centre"
+    DECK_UNQUIET = "waits above the pad: a contact would be unsafe with more than {:.0%}"
     UNSETTLED = "waits above the pad: faster than {:g} m/s against the pad"
 
     # An approach is unsafe, or takes too long.
@@ -103,7 +105,7 @@ class Reason(Enum):
     # No other approach is made.
     BROKEN_OFF = "broken off by the operator"
     NO_VEHICLE_DATA = "no vehicle data"
-    HEARD_WITH_BREAKS = "vehicle or autopilot heard of with breaks only"
+    HEARD_WITH_BREAKS = "vehicle or autopilot heard only with gaps"
     NO_RETRY_LEFT = "no retry left"
 
     # Another one is in command.
@@ -160,6 +162,10 @@ class Reason(Enum):
     )
     VEHICLE_OUT_OF_RANGE = "vehicle is {:.0f} m away, limits.range_max_m is {:g}: raise it or let the vehicle come back"
     VEHICLE_DRIVES_OFF = "vehicle drives off at {:.1f} m/s, the drone can fly home at {:.1f}: drive slower"
+    NOT_FLOWN = "the companion does not fly the drone: start it first, then {}"
+    RALLY_TOO_FAR = (
+        "sortie.rally_point_deg_m is {:.0f} m away, limits.range_max_m is {:g}: set a nearer one, or raise the limit"
+    )
     DRONE_UNKNOWN = "the drone's position is not known"
 
 

@@ -65,8 +65,11 @@ def run_detector(
 
     keys = names.keys()
     camera = load_calibration(calibration)
-    system = SightSystem(camera=camera, mounting=load_mounting(mounting), board=load_board(board))
-    options = SourceOptions(size_px=size or camera.size_px, latency_s=latency, rate_hz=rate)
+    mounted = load_mounting(mounting)
+    system = SightSystem(camera=camera, mounting=mounted, board=load_board(board))
+    options = SourceOptions(
+        size_px=size or camera.size_px, latency_s=latency, rate_hz=rate, readout_s=mounted.readout_s
+    )
     with open_session(replace(endpoints.options(), message_max_bytes=PICTURE_MAX_BYTES)) as zenoh:
         frames = open_source(source, options, keys, zenoh)
         recorder = None if record is None else open_recorder(record, keys)
@@ -97,6 +100,8 @@ def print_board(
 
     if size is not None and board is not None:
         raise UserError("--side makes a board and --board names one: give one of them")
+    if first_id and size is None:
+        raise UserError("--first-id is for a board that --side makes: give --side, or leave it out")
     if size is not None and not 0.1 <= size <= 5.0:
         raise UserError(f"--side {size:g} is not from 0.1 to 5 m")
     config = load_board(board).config if size is None else nested_board(size, first_id)

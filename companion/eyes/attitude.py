@@ -1,4 +1,4 @@
-"""The drone's attitude at the time of a frame, from what the companion tells of its own state."""
+"""The drone's attitude at the time of a frame, from the companion's reports."""
 
 from bisect import bisect_left
 

@@ -1,16 +1,20 @@
 """Calibrations of cameras from files: ROS camera_info, as camera_calibration writes it, and kalibr's camchain."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import TypeVar
 
+import msgspec
 import numpy as np
+from msgspec import Struct
+from numpy.typing import NDArray
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from companion.eyes.camera import Camera, Model
 from link.errors import UserError
+from link.program.text_file import read_text
 
 _ROS_MODELS: dict[str, Model] = {
     "plumb_bob": "pinhole",
@@ -37,15 +41,15 @@ def load_calibration(path: Path) -> Camera:
         UserError: the file cannot be read, or is neither of the two formats.
     """
     try:
-        table = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read ({error.strerror})") from None
-    except (YAMLError, UnicodeDecodeError, ValueError) as error:
+        table = YAML(typ="safe", pure=True).load(read_text(path))
+    except (YAMLError, ValueError) as error:
         raise UserError(f"{path}: no YAML ({' '.join(str(error).split())[:120]})") from None
+    except RecursionError:
+        raise UserError(f"{path}: no YAML (nested too deep)") from None
     if isinstance(table, dict) and "camera_matrix" in table:
-        return _read(path, table, _from_ros)
+        return _read(path, table, _RosFile, _from_ros)
     if isinstance(table, dict) and isinstance(table.get("cam0"), dict):
-        return _read(path, table["cam0"], _from_kalibr)
+        return _read(path, table["cam0"], _KalibrCamera, _from_kalibr)
     raise UserError(f"{path}: no calibration: it needs camera_matrix, as ROS has it, or cam0, as kalibr has it")
 
 
@@ -57,37 +61,58 @@ def check_size(camera: Camera, size_px: tuple[int, int]) -> None:
     """
     if size_px != camera.size_px:
         raise UserError(
-            "the camera gives {} x {} pixels and the calibration is for {} x {}: set --size, or calibrate anew".format(
+            "the camera gives {} x {} pixels and the calibration is for {} x {}: set --size, or calibrate again".format(
                 *size_px, *camera.size_px
             )
         )
 
 
-def _read(path: Path, table: dict[str, Any], convert: Callable[[dict[str, Any]], Camera]) -> Camera:
+class _Matrix(Struct):
+    data: list[float]
+
+
+class _RosFile(Struct):
+    """What is read of ROS's camera_info file."""
+
+    image_width: int
+    image_height: int
+    camera_matrix: _Matrix
+    distortion_model: str
+    distortion_coefficients: _Matrix
+
+
+class _KalibrCamera(Struct):
+    """What is read of a camera of kalibr's camchain."""
+
+    camera_model: str
+    intrinsics: tuple[float, float, float, float]
+    resolution: tuple[int, int]
+    distortion_model: str
+    distortion_coeffs: list[float]
+
+
+_File = TypeVar("_File", _RosFile, _KalibrCamera)
+
+
+def _read(path: Path, table: object, kind: type[_File], camera_of: Callable[[_File], Camera]) -> Camera:
     try:
-        return convert(table)
-    except KeyError as error:
-        raise UserError(f"{path}: key {error} is missing") from None
-    except (TypeError, ValueError, AttributeError) as error:
+        return camera_of(msgspec.convert(table, kind, strict=False))
+    except ValueError as error:  # what msgspec finds is one, too
         raise UserError(f"{path}: {' '.join(str(error).split())}") from None
 
 
-def _from_ros(table: dict[str, Any]) -> Camera:
-    matrix = np.array(table["camera_matrix"]["data"], np.float64).reshape(3, 3)
-    model = _known(_ROS_MODELS, str(table["distortion_model"]))
-    size_px = (int(table["image_width"]), int(table["image_height"]))
-    return _camera(model, matrix, table["distortion_coefficients"]["data"], size_px)
+def _from_ros(file: _RosFile) -> Camera:
+    matrix = np.array(file.camera_matrix.data).reshape(3, 3)
+    model = _known(_ROS_MODELS, file.distortion_model)
+    return _camera(model, matrix, file.distortion_coefficients.data, (file.image_width, file.image_height))
 
 
-def _from_kalibr(table: dict[str, Any]) -> Camera:
-    if table["camera_model"] != "pinhole":
-        raise ValueError(f"camera_model {table['camera_model']!r} is not known; pinhole is")
-    fx, fy, cx, cy = (float(value) for value in table["intrinsics"])
+def _from_kalibr(camera: _KalibrCamera) -> Camera:
+    if camera.camera_model != "pinhole":
+        raise ValueError(f"camera_model {camera.camera_model!r} is not known; pinhole is")
+    fx, fy, cx, cy = camera.intrinsics
     matrix = np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
-    width, height = (int(value) for value in table["resolution"])
-    return _camera(
-        _known(_KALIBR_MODELS, str(table["distortion_model"])), matrix, table["distortion_coeffs"], (width, height)
-    )
+    return _camera(_known(_KALIBR_MODELS, camera.distortion_model), matrix, camera.distortion_coeffs, camera.resolution)
 
 
 def _known(models: dict[str, Model], name: str) -> Model:
@@ -96,8 +121,10 @@ def _known(models: dict[str, Model], name: str) -> Model:
     return models[name]
 
 
-def _camera(model: Model, matrix: np.ndarray[Any, Any], coefficients: Any, size_px: tuple[int, int]) -> Camera:
-    distortion = np.array(coefficients, np.float64).ravel()
+def _camera(
+    model: Model, matrix: NDArray[np.float64], coefficients: Sequence[float], size_px: tuple[int, int]
+) -> Camera:
+    distortion = np.array(coefficients, np.float64)
     if len(distortion) not in _COEFFICIENTS[model]:
         raise ValueError(f"{len(distortion)} distortion coefficients do not fit the model {model}")
     numbers = [*matrix.ravel().tolist(), *distortion.tolist()]

@@ -1,4 +1,4 @@
-"""A calibrated camera: from places in front of it to pixels and back.
+"""A calibrated camera: projects points to pixels and back.
 
 Frame C: x to the right of the picture, y downwards, z along the optical axis. A pixel's centre has whole coordinates.
 Models: `pinhole` with OpenCV's distortion of 4 to 14 coefficients (Brown and Conrady; ROS calls it plumb_bob or

@@ -38,6 +38,7 @@ class CaptureSource:
         self._device = _DEVICE.fullmatch(address)
         self._is_file = self._device is None and "://" not in address
         self.is_live = not self._is_file
+        self.refused_why: str | None = None  # OpenCV tells nothing of frames that it passes over
         self._clock = clock
         self._latency_ns = round(latency_s * NS_PER_S)
         self._size_px = size_px
@@ -107,7 +108,7 @@ class CaptureSource:
         return self._ended
 
     def restart(self) -> None:
-        """Open the camera anew; one that is not there yet is told by UserError."""
+        """Open the camera again; one that is not there yet is told by UserError."""
         self._stop()
         self._capture = self._open()
         self._stopping = threading.Event()

@@ -21,6 +21,7 @@ _DECK_TILT_STD_RAD = 0.1  # roads of up to 12 % (7 degrees), and a body's roll o
 _DRONE_TILT_STD_RAD = 0.25  # of a drone of unknown attitude
 TILT_STDS_MAX = 4.0
 _MISREAD_MAX = 1e-3  # probability that the other of the two poses was the right one
+_TAGS_SHARE_MAX = 0.5  # of the other's: chance reads no tag, blur takes one or another, but not half of them
 _APART_MAX_RAD = math.radians(20.0)  # between the normals: poses that are nearer are not taken for mirrored ones
 
 
@@ -41,8 +42,10 @@ def choose(candidates: list[Candidate]) -> tuple[Candidate, Candidate | None] | 
     """
     if not candidates:
         return None
+    tags_max = max(len(one.tags) for one in candidates)
+    candidates = [one for one in candidates if len(one.tags) > _TAGS_SHARE_MAX * tags_max]
     variance_px2 = min(one.refined.variance_px2 for one in candidates)
-    scores = [one.refined.squares_px2 / variance_px2 + one.tilt_stds**2 for one in candidates]
+    scores = [one.refined.squares_px2 / variance_px2 - one.refined.independent + one.tilt_stds**2 for one in candidates]
     best = int(np.argmin(scores))
     if candidates[best].tilt_stds > TILT_STDS_MAX:
         return None

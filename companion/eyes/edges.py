@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from companion.eyes.camera import Camera
+from companion.eyes.camera import Camera, matrix_of
 from companion.eyes.picture import Part
 
 Array = NDArray[np.float64]
@@ -31,20 +31,28 @@ class EdgePoints(NamedTuple):
 
     Attributes:
         places_m: (N, 3) in P.
+        alongs_m: (N, 3) unit vectors in P, along the edge.
         outwards_m: (N, 3) unit vectors in P, from the tag outwards.
         reach_m: (N,) how far across the edge may be looked for: no farther than the next change of colour.
         edges: (N,) of which edge each is, numbered.
     """
 
     places_m: Array
+    alongs_m: Array
     outwards_m: Array
     reach_m: Array
     edges: NDArray[np.int64]
 
+    def only(self, kept: Flags) -> "EdgePoints":
+        """Return those of which `kept` (N,) is true."""
+        return EdgePoints(
+            self.places_m[kept], self.alongs_m[kept], self.outwards_m[kept], self.reach_m[kept], self.edges[kept]
+        )
+
 
 def edge_points(corners_m: list[Array], sides_px: list[float], cells: int) -> EdgePoints:
     """Return the points of some tags: corners (4, 3) in P, and how many pixels their sides are long about."""
-    places, outwards, reaches = [], [], []
+    places, alongs, outwards, reaches = [], [], [], []
     edges: list[NDArray[np.int64]] = []
     for corners, side_px in zip(corners_m, sides_px, strict=True):
         count = int(np.clip(side_px / _POINT_SPACING_PX, 3, _POINTS_MAX))
@@ -52,11 +60,36 @@ def edge_points(corners_m: list[Array], sides_px: list[float], cells: int) -> Ed
         center, side_m = corners.mean(axis=0), float(np.linalg.norm(corners[1] - corners[0]))
         for begin, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
             places.append(begin + shares * (end - begin))
+            alongs.append(np.tile((end - begin) / np.linalg.norm(end - begin), (count, 1)))
             outward = 0.5 * (begin + end) - center
             outwards.append(np.tile(outward / np.linalg.norm(outward), (count, 1)))
             reaches.append(np.full(count, side_m / cells))
             edges.append(np.full(count, len(edges)))
-    return EdgePoints(np.concatenate(places), np.concatenate(outwards), np.concatenate(reaches), np.concatenate(edges))
+    return EdgePoints(
+        np.concatenate(places),
+        np.concatenate(alongs),
+        np.concatenate(outwards),
+        np.concatenate(reaches),
+        np.concatenate(edges),
+    )
+
+
+def _normals(points: EdgePoints, moves: Array) -> tuple[Array, Array]:
+    """Return the edges' normals in the picture (N, 2), outwards, and how far across they may be looked for (N,).
+
+    What is at a right angle on the board is not in a picture from aside: along its outward direction an edge that moves
+    along itself would seem to come nearer.
+
+    Args:
+        points: on the edges.
+        moves: (N, 2, 3) how pixels move with places in P.
+    """
+    tangents = np.einsum("nij,nj->ni", moves, points.alongs_m)
+    normals = np.column_stack([-tangents[:, 1], tangents[:, 0]])
+    normals /= np.maximum(np.hypot(normals[:, 0], normals[:, 1]), 1e-9)[:, None]
+    outwards = np.einsum("nij,nj->ni", moves, points.outwards_m * points.reach_m[:, None])
+    reach_px = np.sum(normals * outwards, axis=1)
+    return normals * np.sign(reach_px)[:, None], np.abs(reach_px)
 
 
 class Crossings(NamedTuple):
@@ -86,10 +119,7 @@ def find_crossings(
         reach_max_px: how far to look, where the points' own reach allows it.
     """
     pixels, slopes = camera.pixels(points.places_m, *pose)
-    beyond, _ = camera.pixels(points.places_m + points.outwards_m * points.reach_m[:, None], *pose)
-    across = beyond - pixels
-    reach_px = np.hypot(across[:, 0], across[:, 1])
-    normals = across / np.maximum(reach_px, 1e-9)[:, None]
+    normals, reach_px = _normals(points, slopes[:, :, 3:] @ matrix_of(pose[0]))
     step_px = np.minimum(0.9 * reach_px, reach_max_px) / _HALF_SAMPLES
     offsets = np.arange(-_HALF_SAMPLES, _HALF_SAMPLES + 1) * step_px[:, None]
     at = pixels[:, None, :] + offsets[:, :, None] * normals[:, None, :]

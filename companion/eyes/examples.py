@@ -4,6 +4,7 @@ EXAMPLES = {
     "": ("pad-detector run --source /dev/video0 --calibration camera.yaml --mounting mounting.toml",),
     "run": (
         "pad-detector run --source /dev/video0 --calibration camera.yaml --mounting mounting.toml",
+        "pad-detector run --source picamera --calibration camera.yaml --mounting mounting.toml",
         "pad-detector run --source zenoh --calibration camera.yaml --mounting mounting.toml --board b.toml",
     ),
     "print": ("pad-detector print --out pad.pdf", "pad-detector print --side 0.5 --first-id 63 --out small.pdf"),

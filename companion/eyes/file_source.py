@@ -37,17 +37,17 @@ class FolderSource:
         self._start_ns = start_ns
         self._period_ns = NS_PER_S / rate_hz
         self._next = 0
-        self.unreadable: list[str] = []
+        self.refused_why: str | None = None
 
     def take(self, timeout_s: float) -> Captured | None:  # noqa: ARG002 (a file is there at once)
-        """Return the next picture; one that cannot be read is passed over, and named in `unreadable`."""
+        """Return the next picture; one that cannot be read is passed over, and told by `refused_why`."""
         while self._next < len(self._files):
             path, index = self._files[self._next], self._next
             self._next += 1
             shades = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
             if shades is not None:
                 return Captured(t_ns=self._time_of(path, index), shades=np.asarray(shades, np.uint8))
-            self.unreadable.append(path.name)
+            self.refused_why = f"{path.name} cannot be read as one"
         return None
 
     def _time_of(self, path: Path, index: int) -> int:

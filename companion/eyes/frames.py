@@ -34,6 +34,8 @@ class Source(Protocol):
     name: str
     is_live: bool
     """Whether a frame that does not come is a failure, and one that does not change."""
+    refused_why: str | None
+    """Why what came last and was no picture was none."""
 
     def take(self, timeout_s: float) -> Captured | None:
         """Return the newest frame that was not taken yet, None where none comes in time."""
@@ -42,7 +44,7 @@ class Source(Protocol):
         """Return whether no frame will come any more: a file is at its end."""
 
     def restart(self) -> None:
-        """Open it anew, as well as that is possible."""
+        """Open it again, as well as that is possible."""
 
     def close(self) -> None:
         """Let it go."""

@@ -57,6 +57,7 @@ class EyesLoop:
         self._view_encoding = cdr.encoding_of(CompressedPicture)
         self._question = _PadQuestion()
         self._failed: Failure | None = None
+        self._refused_why: str | None = None
         self._restarted_ns = 0
         self._recorder = recorder
         self._recorded_ns = 0
@@ -68,7 +69,8 @@ class EyesLoop:
         """Run until a signal comes.
 
         Raises:
-            UserError: frames are not of the calibration's size, or the board is not that of the vehicle's pad.
+            UserError: frames are not of the calibration's size, the board is not that of the vehicle's pad, or none
+                of the files that were given is a picture.
         """
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._stop)
@@ -82,6 +84,8 @@ class EyesLoop:
         self._service.stopping()
         self._service.close()
         counts = self._node.counts
+        if not counts.frames and self._source.has_ended():
+            raise UserError(f"{self._source.name}: no picture in it can be read")
         self._log.info("stopped", frames=counts.frames, seen=counts.seen, tracked=counts.tracked)
 
     def _stop(self, *_: object) -> None:
@@ -100,10 +104,18 @@ class EyesLoop:
             for publication in self._node.look(captured, shows=shows):
                 self._zenoh.publish(publication.key, publication.payload, publication.encoding)
             self._record(captured, now_ns)
+        self._tell_refused()
         for line in self._node.take_news():
             self._log.info(line)
         self._ask_for_pad(now_ns)
         return self._look_after(watch, now_ns) if self._source.is_live else watch
+
+    def _tell_refused(self) -> None:
+        """Say of what came and was no picture why, once for each reason."""
+        why = self._source.refused_why
+        if why is not None and why != self._refused_why:
+            self._refused_why = why
+            self._log.warning("no picture", why=why)
 
     def _record(self, captured: Captured, now_ns: int) -> None:
         if self._recorder is not None and now_ns - self._recorded_ns >= PERIOD_NS:

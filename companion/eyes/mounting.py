@@ -13,7 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from link.frames.rotations import matrix_from_quaternion, quaternion_from_roll_pitch_yaw
+from link.frames.rotations import (
+    matrix_from_quaternion,
+    quaternion_from_matrix,
+    quaternion_from_roll_pitch_yaw,
+    roll_pitch_yaw_of,
+)
 from link.program.toml_config import StrictModel, load_config
 
 Array = NDArray[np.float64]
@@ -34,16 +39,23 @@ class MountingConfig(StrictModel):
     focal_std_share: Annotated[float, Field(ge=0.0, le=0.1)] = (
         0.002  # of the focal length; calibrations state 1 to 2 px
     )
+    # Of the board's middle: a print that is not quite true on a plate that is not quite flat.
+    board_std_m: Annotated[float, Field(ge=0.0, le=0.1)] = 0.001
+    # From reading the picture's first row to its last, 0 for a global shutter. A sighting's time is then that of the
+    # rows that show the pad: at 0.5 rad/s and 20 ms a pad 5 m away is seen up to 2.5 cm beside its place without this.
+    readout_s: Annotated[float, Field(ge=0.0, le=0.2)] = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mounting:
-    """The same as arrays: R_BC (3, 3) and where C's origin is in B (3,), with the doubts."""
+    """The same as arrays: R_BC (3, 3) and where C's origin is in B (3,), with the doubts and the shutter."""
 
     R_BC: Array
     position_flu_m: Array
     rotation_std_rad: float
     focal_std_share: float
+    board_std_m: float
+    readout_s: float = 0.0
 
 
 def mounting_of(config: MountingConfig) -> Mounting:
@@ -54,7 +66,14 @@ def mounting_of(config: MountingConfig) -> Mounting:
         position_flu_m=np.array(config.position_flu_m),
         rotation_std_rad=config.rotation_std_rad,
         focal_std_share=config.focal_std_share,
+        board_std_m=config.board_std_m,
+        readout_s=config.readout_s,
     )
+
+
+def angles_of(R_BC: Array) -> tuple[float, float, float]:
+    """Return roll, pitch and yaw of a camera's attitude (3, 3), as `MountingConfig` has them."""
+    return roll_pitch_yaw_of(quaternion_from_matrix(R_BC @ _R_BC_DOWN.T))
 
 
 def load_mounting(path: Path | None) -> Mounting:

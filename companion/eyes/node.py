@@ -1,14 +1,21 @@
 """The detector without I/O: frames and the companion's own state in, Zenoh payloads and news out."""
 
+import math
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from companion.eyes.alignment import is_told_wrong, no_alignment, turned_of, update_alignment
 from companion.eyes.annotation import Drawing, annotate, drawing_of, jpeg_of
 from companion.eyes.attitude import Attitude, attitude_at
 from companion.eyes.calibration import check_size
+from companion.eyes.camera import matrix_of
 from companion.eyes.frames import Captured
+from companion.eyes.mounting import angles_of
 from companion.eyes.picture import WholePicture
 from companion.eyes.sight import Frame, Sight, SightMemory, SightSystem, sight_step
 from link.errors import UserError
+from link.frames.rotations import matrix_from_quaternion
 from link.messages import BodyTruth, CompressedPicture, PadGeometry, PadSighting
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
@@ -32,6 +39,7 @@ class Counts:
 class _News:
     foreign_ids: set[int] = field(default_factory=set)
     is_seen: bool = False
+    is_turned: bool = False
     lines: list[str] = field(default_factory=list)
 
 
@@ -48,6 +56,7 @@ class EyesNode:
         self._system = system
         self._keys = keys
         self._memory = SightMemory()
+        self._alignment = no_alignment()
         self._attitudes: tuple[Attitude, ...] = ()
         self._sight = Sight()
         self._news = _News()
@@ -95,6 +104,7 @@ class EyesNode:
         )
         self._memory, sight = sight_step(self._memory, frame, self._system)
         self._count(sight)
+        self._align(frame, sight)
         self._sight = sight
         found: list[Publication] = []
         if sight.sighting is not None:
@@ -120,6 +130,32 @@ class EyesNode:
             news.lines.append(
                 f"tags {unknown} are seen that are not on the board: is this the --board that was printed?"
             )
+
+    def _align(self, frame: Frame, sight: Sight) -> None:
+        """Compare the pad's attitude with the drone's, and say once if the camera is turned otherwise than told."""
+        if sight.sighting is None or sight.pose is None or frame.orientation_wxyz is None or self._news.is_turned:
+            return
+        mounting = self._system.mounting
+        self._alignment = update_alignment(
+            self._alignment,
+            frame.t_ns,
+            float(np.linalg.norm(sight.pose[1])),
+            matrix_from_quaternion(sight.sighting.orientation_wxyz),
+            matrix_from_quaternion(frame.orientation_wxyz),
+        )
+        turned = turned_of(self._alignment)
+        if not is_told_wrong(turned, mounting.rotation_std_rad):
+            return
+        off = np.array([turned.about_x_rad, turned.about_y_rad, 0.0])
+        self._news.is_turned = True
+        self._news.lines.append(
+            "the camera is turned by {:.1f} degrees (to {:.1f}) against its mounting file, or the autopilot is not "
+            "level: roll_rad = {:.3f}, pitch_rad = {:.3f}, yaw_rad = {:.3f} would fit".format(
+                math.degrees(float(np.linalg.norm(off))),
+                math.degrees(turned.std_rad),
+                *angles_of(matrix_of(off) @ mounting.R_BC),
+            )
+        )
 
     def take_news(self) -> list[str]:
         """Return what has happened since it was asked last."""

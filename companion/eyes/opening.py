@@ -6,25 +6,28 @@ from pathlib import Path
 from companion.eyes.capture_source import CaptureSource
 from companion.eyes.file_source import FolderSource
 from companion.eyes.frames import Source
+from companion.eyes.picamera_source import PiCameraSource, open_picamera
 from companion.eyes.zenoh_source import ZenohSource
+from link.errors import UserError
 from link.program.clock import SystemClock
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohSession
 
-_ZENOH = "zenoh"
+_ZENOH, _PICAMERA = "zenoh", "picamera"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SourceOptions:
-    """How a source is opened: the size to ask a camera for, its latency, and the rate of pictures without times."""
+    """How a source is opened: the size and latency of a camera, its readout, and the rate of pictures without times."""
 
     size_px: tuple[int, int] | None
     latency_s: float
     rate_hz: float
+    readout_s: float = 0.0
 
 
 def open_source(address: str, options: SourceOptions, keys: Keys, zenoh: ZenohSession) -> Source:
-    """Return the source at `address`: `zenoh`, a folder, or what OpenCV captures.
+    """Return the source at `address`: `zenoh`, `picamera`, a folder, or what OpenCV captures.
 
     Raises:
         UserError: there is none, or it gives no pictures.
@@ -32,6 +35,11 @@ def open_source(address: str, options: SourceOptions, keys: Keys, zenoh: ZenohSe
     if address == _ZENOH:
         return ZenohSource(zenoh, keys)
     clock = SystemClock()
+    if address == _PICAMERA:
+        size_px = options.size_px
+        if size_px is None:
+            raise UserError("--source picamera needs --size WIDTH HEIGHT: it gives pictures of any size")
+        return PiCameraSource(lambda: open_picamera(size_px), clock, size_px=size_px, readout_s=options.readout_s)
     if Path(address).is_dir():
         return FolderSource(Path(address), start_ns=clock.now_ns(), rate_hz=options.rate_hz)
     return CaptureSource(address, clock, latency_s=options.latency_s, size_px=options.size_px)

@@ -13,7 +13,7 @@ SourceOption = Annotated[
     typer.Option(
         "--source",
         metavar="CAMERA",
-        help="/dev/videoN, rtsp://HOST/PATH, a video file, a folder of pictures, or zenoh.",
+        help="/dev/videoN, picamera, rtsp://HOST/PATH, a video file, a folder of pictures, or zenoh.",
     ),
 ]
 CalibrationOption = Annotated[

@@ -2,7 +2,7 @@
 
 Without a guess: IPPE (Collins and Bartoli 2014) gives both poses that explain the corners of a plane; seen from far
 away the two differ by a tilt to either side. With one: the distances of the edges from where they are expected are
-brought to zero by Gauss-Newton, damped as by Levenberg and Marquardt, each weighted as by Huber, and looked for anew
+brought to zero by Gauss-Newton, damped as by Levenberg and Marquardt, each weighted as by Huber, and looked for again
 each time. A pose is the rotation vector and the translation of P in C.
 """
 
@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from companion.eyes.board import Board
-from companion.eyes.camera import Camera
+from companion.eyes.camera import Camera, matrix_of
 from companion.eyes.edges import EdgePoints, edge_points, find_crossings
 from companion.eyes.family import CELLS
 from companion.eyes.picture import Part
+from companion.eyes.scatter import variance_px2
 
 Array = NDArray[np.float64]
 Pose = tuple[Array, Array]
@@ -41,11 +42,13 @@ class Refined:
 
     Attributes:
         pose: of P in C.
-        covariance: (6, 6) of rotation (rad, about P's origin) and translation (m), from the edges alone.
+        covariance: (6, 6) of rotation (rad, about P's origin) and translation (m), from the edges' own scatter.
         rms_px: of the distances.
         points: how many edges' points it rests on.
         squares_px2: sum of the squared distances, each of them by Huber's weight.
-        variance_px2: by which that sum is a number of standard deviations squared: points that err alike count once.
+        variance_px2: by which that sum is a number of standard deviations squared where poses are compared: points of
+            one edge may err alike, and none is better than a calibration and a print are.
+        independent: points, if those that err alike count once: about what that number should be.
     """
 
     pose: Pose
@@ -54,6 +57,7 @@ class Refined:
     points: int
     squares_px2: float
     variance_px2: float
+    independent: float
 
 
 def guesses(camera: Camera, board: Board, corners_px: dict[int, Array]) -> list[Pose]:
@@ -89,7 +93,8 @@ def _two_poses(camera: Camera, board: Board, corners_px: dict[int, Array], ids: 
     for rotation, translation in zip(rotations, translations, strict=True):
         vector = np.asarray(rotation, np.float64).ravel()
         shifted = np.asarray(translation, np.float64).ravel() - np.asarray(cv2.Rodrigues(vector)[0]) @ middle
-        if np.isfinite(vector).all() and np.isfinite(shifted).all() and shifted[2] > 0.0:
+        is_ahead = float(np.asarray(translation).ravel()[2]) > 0.0  # the tags; the board's middle may be behind
+        if np.isfinite(vector).all() and np.isfinite(shifted).all() and is_ahead:
             found.append((vector, shifted))
     return found
 
@@ -105,8 +110,7 @@ def refine(part: Part, camera: Camera, board: Board, pose: Pose, sides_px: dict[
         sides_px: of the tags to use, the lengths of their sides in the picture.
     """
     points = edge_points([board.corners_m[tag_id] for tag_id in sides_px], list(sides_px.values()), CELLS)
-    seen = camera.in_view(points.places_m, *pose)
-    points = EdgePoints(points.places_m[seen], points.outwards_m[seen], points.reach_m[seen], points.edges[seen])
+    points = points.only(camera.in_view(points.places_m, *pose))
     if len(points.places_m) < _POINTS_MIN:
         return None
     found: Refined | None = None
@@ -131,17 +135,18 @@ def _round(part: Part, camera: Camera, points: EdgePoints, pose: Pose, reach_px:
     if step is None:
         return None
     moved = (pose[0] + step.change[:3], pose[1] + step.change[3:])
-    if moved[1][2] <= 0.0:
-        return None
-    rms_px = float(np.sqrt(step.squares_px2 / max(step.weight - 6.0, 1.0)))
-    variance_px2 = _points_alike(points.edges[seen]) * max(rms_px, _EDGE_STD_PX) ** 2
+    if (points.places_m @ matrix_of(moved[0])[2] + moved[1][2] <= 0.0).any():
+        return None  # the board's middle may be behind the camera, no edge that is seen
+    rms_px = float(np.sqrt(step.squares_px2 / max(float(step.weights.sum()) - 6.0, 1.0)))
+    alike = _points_alike(points.edges[seen])
     return Refined(
         pose=moved,
-        covariance=variance_px2 * step.inverse,
+        covariance=variance_px2(step.left_px, step.weights, points.edges[seen]) * step.inverse,
         rms_px=rms_px,
         points=int(seen.sum()),
         squares_px2=step.squares_px2,
-        variance_px2=variance_px2,
+        variance_px2=alike * max(rms_px, _EDGE_STD_PX) ** 2,
+        independent=float(seen.sum()) / alike,
     )
 
 
@@ -163,12 +168,17 @@ def _points_alike(edges: NDArray[np.int64]) -> float:
 
 
 class _Step(NamedTuple):
-    """A weighted step: change (6,), inverse of the curvature (6, 6), what is left, and the weights' sum."""
+    """A weighted step: change (6,), inverse of the curvature (6, 6), what is left (N,), with which weights (N,)."""
 
     change: Array
     inverse: Array
-    squares_px2: float
-    weight: float
+    left_px: Array
+    weights: Array
+
+    @property
+    def squares_px2(self) -> float:
+        """The weighted sum of the squares of what is left."""
+        return float(np.sum(self.weights * self.left_px**2))
 
 
 def _least_squares(A: Array, distance_px: Array, std_min_px: float) -> _Step | None:
@@ -187,4 +197,4 @@ def _least_squares(A: Array, distance_px: Array, std_min_px: float) -> _Step | N
         weights = np.minimum(1.0, _HUBER * std_px / np.maximum(np.abs(left_px), 1e-9))
     if not np.isfinite(change).all():
         return None
-    return _Step(change, inverse, float(np.sum(weights * left_px**2)), float(np.sum(weights)))
+    return _Step(change, inverse, left_px, weights)

@@ -1,4 +1,4 @@
-"""Which tags of the board can be read where they are expected: none counts for a pose that does not show its cells.
+"""Which tags of the board can be read where they are expected; a tag counts only if its cells can be seen.
 
 Each cell is sampled in a grid, and its shade is the mean: with a smaller tag in it, that is still its own colour.
 """

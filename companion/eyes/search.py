@@ -7,6 +7,7 @@ also the cheapest, so the reduced ones come first, and the search ends with the 
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -18,13 +19,28 @@ from companion.eyes.picture import Gray, Part
 
 Array = NDArray[np.float64]
 
-_PASSES = ((8, False), (4, False), (2, False), (1, False), (4, True), (2, True))
-"""By how much the picture is reduced, and whether its speckles are then taken out: mud that breaks a tag's outline."""
+
+class _Pass(NamedTuple):
+    """By how much the picture is reduced, whether mud may bend an outline, and whether speckles are taken out."""
+
+    reduction: int
+    is_muddy: bool = False
+    is_cleaned: bool = False
+
+
+_PASSES = (
+    *(_Pass(8), _Pass(4), _Pass(2), _Pass(1)),
+    *(_Pass(4, is_muddy=True), _Pass(2, is_muddy=True)),
+    *(_Pass(4, is_muddy=True, is_cleaned=True), _Pass(2, is_muddy=True, is_cleaned=True)),
+)
 _SPECKLE_PX = 5
-_WINDOW_PX = 23  # of the adaptive threshold: larger than a cell of most tags, smaller than what light changes over
+_WINDOW_PX = 11  # of the adaptive threshold: larger than a cell of small tags; large ones are told by their outline
+_MUD_WINDOW_MAX_PX, _MUD_WINDOW_STEP_PX = 35, 12  # also: larger than the mud on an outline, which is as dark as print
+_MUD_BEND_SHARE = 0.08  # of an outline's length: a third of a side, by which mud may bend it; OpenCV takes 0.03
 _THRESHOLD_SHARE, _THRESHOLD_MIN, _THRESHOLD_MAX = 0.03, 2.0, 7.0  # of the picture's contrast; in shades
 _SHARPENING = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 20, 0.02)
-_SIDE_MIN_PX = 16.0  # two pixels a cell
+_SIDE_MIN_PX = 12.0  # 1.5 pixels a cell: below, neighbouring cells cannot be told apart
+_NEAR_SHARE = 0.02  # of a square's perimeter: one that is farther from another is no second finding of the same edges
 _WRONG_BITS_MAX = 2  # of 36; of the 5 that could be mended, so that chance and other families' tags are refused
 
 
@@ -35,10 +51,12 @@ class Found:
     Attributes:
         corners_px: of each id on the board the corners (4, 2) in the whole picture, in the order of `Board.corners_m`.
         foreign_ids: of tags of the family that are not on the board.
+        is_followed_by_mud: the passes after it expect mud: worth their time only where nothing has shown the board.
     """
 
     corners_px: dict[int, Array]
     foreign_ids: frozenset[int]
+    is_followed_by_mud: bool
 
 
 def search(part: Part, board: Board) -> Iterator[Found]:
@@ -47,15 +65,15 @@ def search(part: Part, board: Board) -> Iterator[Found]:
     An id that is seen twice is believed at neither place.
     """
     constant = _threshold_of(part.shades)
-    for reduction, is_cleaned in _PASSES:
-        tags = _detect(part.shades, reduction, is_cleaned, board.config.family, constant)
+    for one, following in zip(_PASSES, (*_PASSES[1:], None), strict=True):
+        tags = _detect(part.shades, one, board.config.family, constant)
         seen = [tag_id for tag_id, _ in tags]
         known = {
             tag_id: corners + np.array([part.box.left, part.box.top])
             for tag_id, corners in tags
             if tag_id in board.corners_m and seen.count(tag_id) == 1
         }
-        yield Found(known, frozenset(seen) - frozenset(board.corners_m))
+        yield Found(known, frozenset(seen) - frozenset(board.corners_m), following is not None and following.is_muddy)
 
 
 def _threshold_of(shades: Gray) -> int:
@@ -64,9 +82,10 @@ def _threshold_of(shades: Gray) -> int:
     return int(np.clip(_THRESHOLD_SHARE * (high - low), _THRESHOLD_MIN, _THRESHOLD_MAX))
 
 
-def _detect(shades: Gray, reduction: int, is_cleaned: bool, family: str, constant: int) -> list[tuple[int, Array]]:
+def _detect(shades: Gray, one: _Pass, family: str, constant: int) -> list[tuple[int, Array]]:
     """Return ids and corners (4, 2) of the tags that are seen in the picture once it is reduced."""
     rows, columns = shades.shape
+    reduction = one.reduction
     if min(rows, columns) < 2 * reduction * _SIDE_MIN_PX:
         return []
     small = shades
@@ -74,13 +93,15 @@ def _detect(shades: Gray, reduction: int, is_cleaned: bool, family: str, constan
         small = shades[: rows - rows % reduction, : columns - columns % reduction]
         size = (small.shape[1] // reduction, small.shape[0] // reduction)
         small = np.asarray(cv2.resize(small, size, interpolation=cv2.INTER_AREA), np.uint8)
-    if is_cleaned:
+    if one.is_cleaned:
         small = np.asarray(cv2.medianBlur(np.ascontiguousarray(small), _SPECKLE_PX), np.uint8)
-    corners, found, _ = _detector(family, max(small.shape), constant).detectMarkers(np.ascontiguousarray(small))
-    ids = [int(one) for one in np.ravel(found)] if len(corners) else []
+    corners, found, _ = _detector(family, max(small.shape), constant, is_muddy=one.is_muddy).detectMarkers(
+        np.ascontiguousarray(small)
+    )
+    ids = [int(tag_id) for tag_id in np.ravel(found)] if len(corners) else []
     shift = 0.5 * (reduction - 1)  # between the centres of the first pixels
     places = [
-        _sharpen(shades, np.asarray(one, np.float64).reshape(4, 2) * reduction + shift, reduction) for one in corners
+        _sharpen(shades, np.asarray(quad, np.float64).reshape(4, 2) * reduction + shift, reduction) for quad in corners
     ]
     return list(zip(ids, places, strict=True))
 
@@ -97,12 +118,17 @@ def _sharpen(shades: Gray, corners: Array, reduction: int) -> Array:
 
 
 @cache
-def _detector(family: str, side_px: int, constant: int) -> cv2.aruco.ArucoDetector:
+def _detector(family: str, side_px: int, constant: int, *, is_muddy: bool) -> cv2.aruco.ArucoDetector:
     parameters = cv2.aruco.DetectorParameters()
     parameters.adaptiveThreshWinSizeMin = parameters.adaptiveThreshWinSizeMax = _WINDOW_PX
     parameters.adaptiveThreshConstant = constant
+    if is_muddy:
+        parameters.adaptiveThreshWinSizeMax = _MUD_WINDOW_MAX_PX
+        parameters.adaptiveThreshWinSizeStep = _MUD_WINDOW_STEP_PX
+        parameters.polygonalApproxAccuracyRate = _MUD_BEND_SHARE
     parameters.minMarkerPerimeterRate = 4.0 * _SIDE_MIN_PX / side_px
     parameters.maxMarkerPerimeterRate = 8.0
+    parameters.minMarkerDistanceRate = _NEAR_SHARE  # by default a small tag's white surround takes the place of the tag
     table = dictionary_of(family)
     parameters.errorCorrectionRate = _WRONG_BITS_MAX / table.maxCorrectionBits
     return cv2.aruco.ArucoDetector(table, parameters)

@@ -29,7 +29,6 @@ from link.messages import PadSighting, Quaternion
 Array = NDArray[np.float64]
 
 _MARGIN_SHARE, _MARGIN_PX = 0.1, 12.0  # about the pad where it is looked for: of its size in the picture, and at least
-_BOARD_STD_M = 0.001  # of a print on a plate that is not quite flat
 _RMS_SHARE_MAX = 0.35  # of a cell of the largest tag: edges farther off are other edges
 _RMS_MIN_PX = 1.0
 _ROUNDS_MAX = 4
@@ -121,7 +120,7 @@ def _search(frame: Frame, system: SightSystem, R_WB: Array) -> Sight:
         chosen = choose(_candidates(part, system, R_WB, frame, guesses(system.camera, system.board, found.corners_px)))
         if chosen is not None and (best is None or chosen[0].refined.points > best[0].refined.points):
             best = chosen
-        if best is not None and best[0].is_complete:
+        if best is not None and (best[0].is_complete or found.is_followed_by_mud):
             break
     if best is None:
         return Sight(foreign_ids=foreign)
@@ -187,7 +186,7 @@ def _sight(
     mounting, refined = system.mounting, candidate.refined
     rotation, translation = refined.pose
     in_c = refined.covariance[3:, 3:] + mounting.focal_std_share**2 * np.outer(translation, translation)
-    in_c += _BOARD_STD_M**2 * np.eye(3)
+    in_c += mounting.board_std_m**2 * np.eye(3)
     if other is not None:
         apart = other.refined.pose[1] - translation
         in_c = in_c + 0.25 * np.outer(apart, apart)
@@ -198,7 +197,7 @@ def _sight(
     x, y, z = (arm + mounting.position_flu_m).tolist()
     a, b, c, d, e, f, g, h, i = in_b.ravel().tolist()
     sighting = PadSighting(
-        t_ns=frame.t_ns,
+        t_ns=frame.t_ns + round(_late_s(candidate, system) * 1e9),
         position_flu_m=(x, y, z),
         orientation_wxyz=quaternion_from_matrix(mounting.R_BC @ matrix_of(rotation)),
         position_covariance_m2=(a, b, c, d, e, f, g, h, i),
@@ -211,3 +210,12 @@ def _sight(
         tracked=tracked,
         foreign_ids=foreign_ids,
     )
+
+
+def _late_s(candidate: Candidate, system: SightSystem) -> float:
+    """Return how long after the picture's middle row the rows were read that show the tags."""
+    places = np.concatenate([system.board.corners_m[tag_id] for tag_id in candidate.tags])
+    pixels, _ = system.camera.pixels(places, *candidate.refined.pose)
+    height = system.camera.size_px[1]
+    row = float(np.clip(pixels[:, 1], 0.0, height - 1.0).mean())
+    return (row / (height - 1.0) - 0.5) * system.mounting.readout_s

@@ -1,4 +1,4 @@
-"""How hard the air pushes this drone about, learnt from what its autopilot has not made up for; pure.
+"""How strong the gusts are, learnt from the drone's deviation that its autopilot has not corrected; pure.
 
 The push u of `autopilots.response` is estimated from the drone's reports. Of its variance a share k = 1 - P / s^2 is
 seen, with the model's own s and the estimate's variance P. The mean square of what is seen, by k, takes the place of s

@@ -28,7 +28,6 @@ from companion.forecast.samples import (
     SINK,
     SPEED,
     TILT,
-    Course,
     Descent,
     Follower,
     Rules,
@@ -95,13 +94,18 @@ def _plan(model: Array, off: Array, known: Array, expected: Array, bounds: tuple
 
 
 @compiled_kernel
-def _follow(state: Array, acceleration: Array, pushes: Array, drone: Follower) -> None:
-    """Move the cascade's state (4, 2) by one step behind a model with that `acceleration` (2,), in gusts."""
+def _follow(state: Array, before: Array, acceleration: Array, pushes: Array, drone: Follower) -> None:
+    """Move the cascade's state (4, 2) by one step behind a model with that `acceleration` (2,), in gusts.
+
+    Led setpoints bring the lean along with what has changed of the model's acceleration since the step `before` (2,).
+    """
     push = drone.push_std_m_s2 * math.sqrt(2.0 * drone.forgets_hz * DT_S)
     turned = 1.0 - math.exp(-drone.turns_hz * DT_S)
     for i in range(2):
+        state[2, i] += drone.led_share * (acceleration[i] - before[i])
         rate = state[2, i] + state[3, i] - acceleration[i]
-        wanted = acceleration[i] - drone.damping_per_s * state[1, i] - drone.stiffness_per_s2 * state[0, i]
+        back = drone.damping_per_s * state[1, i] + drone.stiffness_per_s2 * state[0, i]
+        wanted = drone.path_share * acceleration[i] - back
         state[2, i] += (wanted - state[2, i]) * turned
         state[3, i] -= (drone.forgets_hz * state[3, i] + drone.drag_per_s * acceleration[i]) * DT_S
         state[3, i] += push * pushes[i]
@@ -110,11 +114,10 @@ def _follow(state: Array, acceleration: Array, pushes: Array, drone: Follower) -
 
 
 @compiled_kernel
-def _touch(off: Array, lean: Array, sink_m_s: float, course: Course, out: Array) -> None:
-    """Write into `out` (6,) what a contact is like: `off` (2, 2) its pad, with that thrust by mass to the side."""
-    air = course.air_enu_m_s2
+def _touch(off: Array, lean: Array, sink_m_s: float, air: Array, out: Array) -> None:
+    """Write into `out` (6,) a contact: `off` (2, 2) its pad, with that thrust by mass beside the deck's upright."""
     trim = math.atan(math.hypot(air[0], air[1]) / GRAVITY_M_S2)
-    tilt = math.hypot(lean[0] / GRAVITY_M_S2 + course.slope[0], lean[1] / GRAVITY_M_S2 + course.slope[1])
+    tilt = math.hypot(lean[0], lean[1]) / GRAVITY_M_S2
     out[CONTACT], out[SINK], out[TILT] = 1.0, sink_m_s, math.atan(tilt) - trim
     out[ERROR], out[SPEED] = math.hypot(off[0, 0], off[0, 1]), math.hypot(off[1, 0], off[1, 1])
 
@@ -127,6 +130,7 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
     before, late = len(path) - steps, samples.delay_s[sample] / DT_S
     model, state = course.model.copy(), samples.deviation[sample].copy()
     known, off, expected, lean = np.zeros((3, 2)), np.empty((2, 2)), np.empty(2), np.empty(2)
+    before_m_s2 = np.empty(2)
     for k in range(steps):
         seen = max(before + k - late, 0.0)
         _know(path[int(seen)], path[0], (before + k - seen) * DT_S, drone.believes_s, known)
@@ -144,12 +148,14 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
         lowest_m = rules.foot_radius_m * min(math.hypot(lean[0], lean[1]) / GRAVITY_M_S2, 1.0)
         if height_m - samples.vertical[sample, 0] - lowest_m <= 0.0:
             out[IN_S] = k * DT_S
-            off += known[:2] - path[before + k, :2]
-            _touch(off, lean, sink_m_s + samples.vertical[sample, 1], course, out)
+            off += known[:2] - path[before + k, :2] - course.shake_enu[:, k]
+            lean += GRAVITY_M_S2 * course.slope[k]
+            _touch(off, lean, sink_m_s + samples.vertical[sample, 1], course.air_enu_m_s2, out)
             return
         most_m_s2 = drone.level_m_s2 if height_m < drone.level_below_m else drone.acceleration_max_m_s2
+        before_m_s2[:] = model[2]
         _plan(model, off, known, expected, (drone.bandwidth_hz, drone.jerk_max_m_s3, most_m_s2))
-        _follow(state, model[2], samples.pushes[sample, k], drone)
+        _follow(state, before_m_s2, model[2], samples.pushes[sample, k], drone)
 
 
 @compiled_kernel

@@ -22,10 +22,15 @@ CONTACT, IN_S, ERROR, SPEED, SINK, TILT = range(6)
 
 
 class Follower(NamedTuple):
-    """How the drone follows: gains and lags of its cascade, of its planner, and the limits of both."""
+    """How the drone follows: gains and lags of its cascade, of its planner, and the limits of both.
+
+    `led_share` is of a change of the acceleration asked for what the lean follows at once: 1 where setpoints are led.
+    """
 
     stiffness_per_s2: float
     damping_per_s: float
+    path_share: float
+    led_share: float
     turns_hz: float
     forgets_hz: float
     drag_per_s: float
@@ -63,7 +68,8 @@ class Course(NamedTuple):
         along_m_s2: (m,) acceleration along it.
         left_m_s2: (m,) to its left.
         way_down: (3, m) height over the pad, rate and acceleration.
-        slope: (2,) of the deck, height per length in W.
+        slope: (m, 2) of the deck, height per length in W.
+        shake_enu: (2, m, 2) place and velocity of the pad beside the forecast, by a swing that is not followed.
         air_enu_m_s2: (2,) horizontal thrust by mass that holds against the air.
         model: (3, 2) place, velocity and acceleration of the virtual model beside the pad now.
     """
@@ -74,6 +80,7 @@ class Course(NamedTuple):
     left_m_s2: Array
     way_down: Array
     slope: Array
+    shake_enu: Array
     air_enu_m_s2: Array
     model: Array
 

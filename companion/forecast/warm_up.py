@@ -15,7 +15,8 @@ def compile_rollout() -> None:
         along_m_s2=np.zeros(1),
         left_m_s2=np.zeros(1),
         way_down=np.zeros((3, 1)),
-        slope=np.zeros(2),
+        slope=np.zeros((1, 2)),
+        shake_enu=np.zeros((2, 1, 2)),
         air_enu_m_s2=np.zeros(2),
         model=np.zeros((3, 2)),
     )

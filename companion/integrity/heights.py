@@ -14,7 +14,7 @@ from companion.config.companion import CompanionConfig
 from companion.core.data import Array
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.situation.situation import Situation, with_pad
-from companion.vehicle.pad import over_pad_radius_m
+from companion.vehicle.pad_reach import over_pad_radius_m
 from link.records import replace
 
 RAISED_MAX_M = 1.0  # what is farther off is not the pad: a roof is 1.5 m above the road

@@ -4,7 +4,8 @@ A sighting places the pad in the drone's frame, a fix in the vehicle's. Where bo
 farther from its told place than both promise means that one of them is wrong: a detector that sees another pattern, or
 whose board or mounting is another than it was told, somebody else who publishes sightings, or a receiver. Where nothing
 says that they have one frame, any offset may be true, and the sightings alone place the pad: only sightings that
-contradict each other can be told from right ones.
+contradict each other can be told from right ones. A camera that looks at a pad sees it many times a second, so that a
+few sightings which nothing follows place nothing.
 """
 
 import math
@@ -16,9 +17,13 @@ from companion.config.integrity import ReceiverFrames
 from companion.integrity.frames import FIXED_STD_MAX_M
 from companion.situation.situation import Situation
 from companion.vehicle.estimator import BufferHealth
-from companion.vehicle.pad import PadPath, cone_radius_at_pad_m
+from companion.vehicle.pad import PadPath
+from companion.vehicle.pad_reach import cone_radius_at_pad_m
+from link.records import replace
 
 _STDS = 3.0
+_CONFIRMING_MIN = 5  # of a camera that sees the pad at 5 Hz, the slowest that is worth following
+_CONFIRMING_S = 1.0  # over which drone and vehicle move against each other, and what is not the pad goes elsewhere
 
 
 class SightingWatch(Struct, frozen=True, kw_only=True):
@@ -27,18 +32,49 @@ class SightingWatch(Struct, frozen=True, kw_only=True):
     Attributes:
         counted: accepted and rejected ones, when they were last counted.
         are_mixed: of those since the count before so many were rejected that they contradict each other.
+        agreeing: accepted ones since the pad's place was not known, or they contradicted each other.
+        since_ns: monotonic, when the first of these was counted; None without one.
+        is_confirmed: they were enough, for long enough, since the place was not known.
+        was_confirmed: so they were once; what looks then is known for a detector, and only has to see the pad again.
     """
 
     counted: tuple[int, int] = (0, 0)
     are_mixed: bool = False
+    agreeing: int = 0
+    since_ns: int | None = None
+    is_confirmed: bool = False
+    was_confirmed: bool = False
 
 
-def update_sightings(before: SightingWatch, health: BufferHealth, config: CompanionConfig) -> SightingWatch:
-    """Return the watch with what the estimator has counted by now; one that was begun anew is counted anew."""
+def update_sightings(
+    before: SightingWatch, health: BufferHealth, monotonic_ns: int, config: CompanionConfig
+) -> SightingWatch:
+    """Return the watch with what the estimator has counted by now; one that was restarted is counted again."""
     accepted, rejected = (now - then for now, then in zip(health.sightings, before.counted, strict=True))
-    is_anew = accepted < 0 or rejected < 0
-    are_mixed = not is_anew and rejected > config.integrity.rejected_share_max * (accepted + rejected)
-    return SightingWatch(counted=health.sightings, are_mixed=are_mixed)
+    if accepted < 0 or rejected < 0:
+        return SightingWatch(counted=health.sightings)
+    if rejected > config.integrity.rejected_share_max * (accepted + rejected):
+        return replace(before, counted=health.sightings, are_mixed=True, agreeing=0, since_ns=None)
+    if accepted == 0:
+        return replace(before, counted=health.sightings, are_mixed=False)
+    since_ns = monotonic_ns if before.since_ns is None else before.since_ns
+    agreeing = before.agreeing + accepted
+    is_long = before.was_confirmed or (monotonic_ns - since_ns) * 1e-9 >= _CONFIRMING_S
+    is_confirmed = before.is_confirmed or (agreeing >= _CONFIRMING_MIN and is_long)
+    return SightingWatch(
+        counted=health.sightings,
+        agreeing=agreeing,
+        since_ns=since_ns,
+        is_confirmed=is_confirmed,
+        was_confirmed=before.was_confirmed or is_confirmed,
+    )
+
+
+def forget_agreement(watch: SightingWatch) -> SightingWatch:
+    """Return the watch of a pad whose place is not known any more, so that sightings have to confirm it again."""
+    if not (watch.agreeing or watch.is_confirmed):
+        return watch
+    return replace(watch, agreeing=0, since_ns=None, is_confirmed=False)
 
 
 def do_sightings_disagree(s: Situation, _: CompanionConfig) -> bool:
@@ -52,9 +88,10 @@ def is_seen_elsewhere(s: Situation, c: CompanionConfig) -> bool:
     A drone whose own place has jumped has left the frame that its receiver had.
     """
     pad = s.pad
-    if pad is None or not pad.has_one_frame or pad.frame_offset_m is None or any(s.autopilot.frame_moves.shift_enu_m):
+    off_m = None if pad is None else pad.frame_offset.distance_m
+    if pad is None or off_m is None or not pad.has_one_frame or any(s.autopilot.frame_moves.shift_enu_m):
         return False
-    return pad.frame_offset_m > _offset_max_m(pad, s.vehicle.fix_std_m, c)
+    return off_m > _offset_max_m(pad, s.vehicle.fix_std_m, c)
 
 
 def _offset_max_m(pad: PadPath, fix_std_m: float | None, c: CompanionConfig) -> float:
@@ -70,4 +107,4 @@ def _offset_max_m(pad: PadPath, fix_std_m: float | None, c: CompanionConfig) -> 
         else pad.half_width_m
     )
     receiver_m = max(fix_std_m or 0.0, FIXED_STD_MAX_M)
-    return max(harmless_m, _STDS * math.hypot(pad.frame_offset_std_m, receiver_m, receiver_m))
+    return max(harmless_m, _STDS * math.hypot(pad.frame_offset.std_m, receiver_m, receiver_m))

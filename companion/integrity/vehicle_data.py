@@ -48,7 +48,7 @@ class Contradictions(Struct, frozen=True, kw_only=True):
 
 
 def update_contradictions(before: Contradictions, health: BufferHealth, t_ns: int) -> Contradictions:
-    """Return the contradictions with what the estimator tells at `t_ns`; one that was begun anew is counted anew."""
+    """Return the contradictions with what the estimator tells at `t_ns`; one that was restarted is counted again."""
     now = (t_ns, health.fused, health.gated)
     if before.samples and before.samples[-1][1] > health.fused:
         return Contradictions(samples=(now,))

@@ -16,11 +16,13 @@ from companion.landing.conditions import (
     Condition,
     is_fix_old,
     is_in_contact,
+    is_vehicle_taken,
+    tell_taken,
 )
 from companion.landing.targets import changes_speed
 from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
 from companion.situation.situation import Approach, Situation
-from companion.vehicle.pad import cone_radius_m, is_unseen, is_vague, over_pad_radius_m
+from companion.vehicle.pad_reach import cone_radius_m, is_unseen, is_vague, over_pad_radius_m
 
 _DESCENT = frozenset({Phase.DESCEND})
 _MIXED_HOLD_S = 1.5  # three counts: a step of the drone's own frame has sightings of half a second rejected
@@ -66,7 +68,8 @@ def why_unplaced(s: Situation) -> Cause | None:
     return None if s.pad is None else s.pad.unplaced
 
 
-def _is_not_followed(s: Situation, _: CompanionConfig) -> bool:
+def is_not_followed(s: Situation, _: CompanionConfig) -> bool:
+    """Return whether the drone is farther from its setpoint than gusts and the link can bring it."""
     return s.following.error_m > s.following.error_max_m
 
 
@@ -127,6 +130,8 @@ def _outruns(s: Situation, c: CompanionConfig) -> bool:
 
 ABORTS = (
     VEHICLE_SILENT,
+    # One that was out of reach when both began: two networks that meet, or a router that is back.
+    Condition(reason=Reason.VEHICLE_TAKEN, phases=LANDING_PHASES, is_true=is_vehicle_taken, cause=tell_taken),
     Condition(
         reason=Reason.VEHICLE_UNCERTAIN,
         phases=NEAR_PHASES,
@@ -157,7 +162,7 @@ ABORTS = (
     Condition(
         reason=Reason.SETPOINT_NOT_FOLLOWED,
         phases=LANDING_PHASES,
-        is_true=_is_not_followed,
+        is_true=is_not_followed,
         hold_s=lambda c: c.abort.tracking_hold_s,
     ),
     Condition(

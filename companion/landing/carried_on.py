@@ -1,4 +1,4 @@
-"""What may be asked of an autopilot that carries its last setpoint on, should the companion die; pure numerics.
+"""Bounds on setpoints for an autopilot that continues the last one if the companion dies; pure numerics.
 
 ArduCopter moves the last setpoint on by its velocity v and acceleration a for `GUID_TIMEOUT`, T, and then stops it; its
 path brakes with A, which it reaches from a at the jerk J. With w = v + a T, and b the part of a along it, that takes it
@@ -25,6 +25,7 @@ from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits
 from companion.landing.feasibility import SPEED_SHARE_MIN
 from companion.landing.memory import StepMemory
+from companion.landing.station_aims import station_speed_m_s
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
@@ -85,7 +86,7 @@ def limit_rates(
     """
     if shaping is None:
         return limits
-    speed_m_s = max(speed_carried_m_s(shaping), SPEED_SHARE_MIN * _vehicle_m_s(situation))
+    speed_m_s = max(speed_carried_m_s(shaping), SPEED_SHARE_MIN * _followed_m_s(memory, situation))
     limits = replace(limits, speed_max_m_s=min(limits.speed_max_m_s, speed_m_s))
     pad, drone, lowest_m = situation.pad, memory.model.reference, _lowest_enu_m(memory, situation, config)
     if lowest_m is None or pad is None or drone is None:
@@ -111,7 +112,7 @@ def bound_carried(
         return reference
     limits = config.limits.flight_limits() if situation.limits is None else situation.limits
     carried = Carried(
-        speed_m_s=max(speed_carried_m_s(shaping), _ACCELERATED_SHARE * _vehicle_m_s(situation)),
+        speed_m_s=max(speed_carried_m_s(shaping), _ACCELERATED_SHARE * _followed_m_s(memory, situation)),
         climb_m_s=limits.climb_max_m_s,
         lowest_enu_m=_lowest_enu_m(memory, situation, config),
     )
@@ -226,8 +227,11 @@ def _rate_of(error_m: float, shaping: Shaping) -> float:
     return slope * error_m if error_m <= linear_m else math.sqrt(2.0 * limit * (error_m - 0.5 * linear_m))
 
 
-def _vehicle_m_s(situation: Situation) -> float:
-    return 0.0 if situation.pad is None else math.hypot(*situation.pad.velocity_enu_m_s[0, :2].tolist())
+def _followed_m_s(memory: StepMemory, situation: Situation) -> float:
+    """Return how fast the vehicle is, or the station that is kept beside it: outside in a bend that is faster."""
+    vehicle_m_s = 0.0 if situation.pad is None else math.hypot(*situation.pad.velocity_enu_m_s[0, :2].tolist())
+    follows = memory.progress.phase is Phase.FOLLOW
+    return max(vehicle_m_s, station_speed_m_s(memory.sortie, situation)) if follows else vehicle_m_s
 
 
 def _is_committed(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:

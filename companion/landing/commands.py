@@ -47,6 +47,8 @@ def answer(
         missing = _missing_for_start(situation)
     if is_start:
         missing = missing or _rides_along(situation, config) or obstacle
+    if event in (Event.FOLLOW, Event.RETURN) and not _flies(situation):
+        missing = Cause(Reason.NOT_FLOWN, (order.command.value,))
     if event in SORTIE_EVENTS:
         missing = missing or missing_for_sortie(event, order.station, situation, config, obstacle)
     return (None, _refuse(missing)) if missing is not None else (event, _ACCEPTED)
@@ -58,12 +60,16 @@ def _event_of(order: Order, phase: Phase, s: Situation, config: CompanionConfig)
     stands = not s.autopilot.armed or phase is Phase.ON_DECK or (phase is Phase.LIFT_OFF and has_not_left_deck(s))
     if phase in (Phase.TAKEOFF, Phase.ON_DECK, Phase.LIFT_OFF) and event in (Event.ABORT, Event.HOLD) and stands:
         return Event.CALLED_OFF  # on the ground there is nothing to hold
-    flies = s.autopilot.in_control and s.autopilot.armed
-    if phase is Phase.HOLD and is_start and not flies:
+    if phase is Phase.HOLD and is_start and not _flies(s):
         return Event.START_AGAIN  # called off before the autopilot gave control: it has to be asked for again
     if phase is Phase.FOLLOW and is_start and not is_above_vehicle(s, config):
         return Event.RETURN
     return event
+
+
+def _flies(s: Situation) -> bool:
+    """Return whether the drone has its motors on and follows the companion."""
+    return s.autopilot.in_control and s.autopilot.armed
 
 
 _ACCEPTED = CommandReply(accepted=True, reason="")

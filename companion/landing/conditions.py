@@ -45,6 +45,11 @@ def cause_of(condition: Condition, s: Situation, config: CompanionConfig) -> Cau
     return Cause(condition.reason) if condition.cause is None else condition.cause(s, config)
 
 
+def first_cause(conditions: tuple[Condition, ...], held: Held, s: Situation, config: CompanionConfig) -> Cause | None:
+    """Return what is told of the first condition that holds, None when none does."""
+    return next((cause_of(one, s, config) for one in conditions if holds(one, held, s, config)), None)
+
+
 def is_fix_old(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the vehicle has been silent for too long, or out of sight if it tells nothing."""
     age_s = s.vehicle.fix_age_s
@@ -54,6 +59,16 @@ def is_fix_old(s: Situation, c: CompanionConfig) -> bool:
 def _is_silent(s: Situation, c: CompanionConfig) -> bool:
     """Return whether a vehicle that tells of itself has fallen silent; any other has to be seen instead."""
     return c.silent_vehicle is None and is_fix_old(s, c)
+
+
+def is_vehicle_taken(s: Situation, _: CompanionConfig) -> bool:
+    """Return whether another drone lands on this vehicle, or stands on it, that was there first."""
+    return s.rival is not None and not s.rival.is_this_drone
+
+
+def tell_taken(s: Situation, _: CompanionConfig) -> Cause:
+    """Return which drone that is."""
+    return Cause(Reason.VEHICLE_TAKEN, ("nobody" if s.rival is None else s.rival.drone,))
 
 
 def is_drone_unknown(s: Situation, _: CompanionConfig) -> bool:

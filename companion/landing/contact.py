@@ -17,7 +17,7 @@ from msgspec import Struct
 from companion.config.companion import CompanionConfig
 from companion.config.touchdown import TouchdownConfig
 from companion.situation.situation import Approach, Situation
-from companion.vehicle.pad import over_pad_radius_m
+from companion.vehicle.pad_reach import over_pad_radius_m
 from link.records import replace
 
 _JOLT_S = 0.06  # three reports at 50 Hz
@@ -125,7 +125,8 @@ def may_force_motors_off(
     """Return whether the evidence is complete: the motors may be stopped though the autopilot refuses.
 
     Args:
-        signs: now, all of them anew; that there was a contact is not enough.
+        signs: now, all of them again but the place, which was the pad's when the contact was believed: a drone whose
+            motors still carry it slides, and one that stands beside the pad is to slide no farther.
         since_contact_s: for how long a contact has been believed.
         config: all numbers.
         stopped_and_held: the contact was a jolt from the pad, and the drone was pressed down for long enough since
@@ -137,7 +138,7 @@ def may_force_motors_off(
         return True
     # Without accelerations in its setpoints an autopilot is not pressed down so hard that it would fall.
     is_pressed = since_contact_s >= config.touchdown.stopped_hold_s and not config.setpoints.position_only
-    match verdict(signs, config, is_pressed=is_pressed):
+    match verdict(replace(signs, distance_m=0.0), config, is_pressed=is_pressed):
         case Verdict.CONTACT:
             return True
         case Verdict.DISPUTED:

@@ -21,6 +21,7 @@ from companion.landing.rollout_inputs import (
     way_to_contact,
 )
 from companion.landing.step_data import StepInputs, System
+from companion.landing.waiting import is_moment_quiet
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation, vehicle_stands
 from link.messages import ContactForecast
@@ -43,13 +44,14 @@ def update_forecast(memory: StepMemory, situation: Situation, inputs: StepInputs
     told_ns = now_ns if is_told else before.acceleration_ns
     known = replace(before, drivers=drivers, gusts=gusts, acceleration_ns=told_ns)
     if memory.progress.phase is not Phase.DESCEND:
-        return replace(memory, forecast=replace(known, contact=None, made_ns=None))
+        return replace(memory, forecast=replace(known, contact=None, made_ns=None, is_committed=False))
     period_ns = round(_PERIOD_S * 1e9)
     if known.made_ns is not None and now_ns - known.made_ns < period_ns:
         return replace(memory, forecast=known)
     memory = replace(memory, forecast=replace(known, made_ns=now_ns))
     contact = forecast_contact(memory, situation, inputs, system)
-    return replace(memory, forecast=replace(memory.forecast, contact=contact))
+    commits = known.is_committed or is_moment_quiet(contact, situation, system.config)
+    return replace(memory, forecast=replace(memory.forecast, contact=contact, is_committed=commits))
 
 
 def forecast_contact(

@@ -1,4 +1,4 @@
-"""Which event a step's facts amount to: who is in command, what is unsafe, what takes too long, what comes next."""
+"""Decides the event of a step: who is in command, what is unsafe, what takes too long, what comes next."""
 
 import math
 
@@ -111,6 +111,7 @@ _LASTING = (Reason.OFFSET_UNKNOWN, Reason.SEEN_ELSEWHERE, Reason.SIGHTINGS_DISAG
 
 TOO_LONG = {
     Phase.LIFT_OFF: Reason.LIFT_OFF_TOO_LONG,
+    Phase.RETURN: Reason.RETURN_TOO_LONG,
     Phase.TAKEOFF: Reason.TAKEOFF_TOO_LONG,
     Phase.CHASE: Reason.CHASE_TOO_LONG,
     Phase.ALIGN: Reason.ALIGN_TOO_LONG,

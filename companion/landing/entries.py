@@ -1,4 +1,4 @@
-"""What leads from one phase of an approach to another, and what is waited for; conditions of a step's facts, pure."""
+"""Conditions that lead from one phase of an approach to the next, and what each phase waits for; pure."""
 
 import math
 from functools import cache

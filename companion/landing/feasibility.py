@@ -11,12 +11,12 @@ from companion.core.reasons import Cause, Reason
 from companion.integrity.heights import road_above_ground_m, road_distance_m
 from companion.integrity.vehicle_data import contradicts_itself
 from companion.landing.aborts import is_stamped_ahead
-from companion.landing.conditions import Condition, cause_of, holds, is_fix_old
+from companion.landing.conditions import Condition, first_cause, is_fix_old, is_vehicle_taken, tell_taken
 from companion.landing.following_height import chase_floor_m, vague_height_m
 from companion.landing.memory import Held
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
-from companion.vehicle.pad import is_too_small
+from companion.vehicle.pad_reach import is_too_small
 
 SPEED_SHARE_MIN = 1.15
 """Of the vehicle's speed: with less there is nothing to catch up with, and no landing is begun."""
@@ -25,21 +25,13 @@ _RECEIVER_TOLD_S = 3.0  # it says so once a second
 _ROUNDING = 1e-6
 _BEFORE_A_FLIGHT = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD, Phase.WAITING})
 _BEFORE_A_CHASE = _BEFORE_A_FLIGHT | {Phase.ABORT}
-_BEFORE_ANY_CHASE = _BEFORE_A_CHASE | {Phase.FOLLOW}
+_BEFORE_ANY_CHASE = _BEFORE_A_CHASE | {Phase.FOLLOW, Phase.RETURN}
 """A sortie comes home on a low battery as well: it has nowhere else to land."""
 
 
 def is_drone_taken(s: Situation, _: CompanionConfig) -> bool:
     """Return whether another companion is to fly this drone."""
     return s.rival is not None and s.rival.is_this_drone
-
-
-def _is_taken(s: Situation, _: CompanionConfig) -> bool:
-    return s.rival is not None and not s.rival.is_this_drone
-
-
-def _taken(s: Situation, _: CompanionConfig) -> Cause:
-    return Cause(Reason.VEHICLE_TAKEN, ("nobody" if s.rival is None else s.rival.drone,))
 
 
 def _vehicle_speed_m_s(s: Situation) -> float:
@@ -84,6 +76,16 @@ def _is_empty(s: Situation, c: CompanionConfig) -> bool:
 def _empty(s: Situation, c: CompanionConfig) -> Cause:
     share = s.autopilot.battery_share or 0.0
     return Cause(Reason.BATTERY_LOW, (100.0 * share, 100.0 * c.limits.battery_min_share))
+
+
+EMPTY = Condition(
+    reason=Reason.BATTERY_LOW,
+    phases=_BEFORE_A_CHASE | {Phase.ON_DECK},
+    is_true=_is_empty,
+    hold_s=lambda c: c.chase.driving_hold_s,
+    cause=_empty,
+)
+"""A drone begins no flight and no approach on a battery at its reserve."""
 
 
 def _is_too_narrow(s: Situation, c: CompanionConfig) -> bool:
@@ -144,7 +146,7 @@ def _high(s: Situation, c: CompanionConfig) -> Cause:
 # An estimate that has just begun jumps: what is said of the vehicle must hold for a while.
 OBSTACLES = (
     Condition(reason=Reason.DRONE_TAKEN, phases=_BEFORE_ANY_CHASE, is_true=is_drone_taken),
-    Condition(reason=Reason.VEHICLE_TAKEN, phases=_BEFORE_ANY_CHASE, is_true=_is_taken, cause=_taken),
+    Condition(reason=Reason.VEHICLE_TAKEN, phases=_BEFORE_ANY_CHASE, is_true=is_vehicle_taken, cause=tell_taken),
     Condition(
         reason=Reason.STAMPS_AHEAD,
         phases=_BEFORE_ANY_CHASE,
@@ -176,13 +178,7 @@ OBSTACLES = (
     Condition(
         reason=Reason.MEASUREMENTS_REJECTED, phases=_BEFORE_ANY_CHASE, is_true=contradicts_itself, cause=_tell_rejected
     ),
-    Condition(
-        reason=Reason.BATTERY_LOW,
-        phases=_BEFORE_A_CHASE,
-        is_true=_is_empty,
-        hold_s=lambda c: c.chase.driving_hold_s,
-        cause=_empty,
-    ),
+    EMPTY,
     Condition(reason=Reason.PAD_TOO_SMALL, phases=_BEFORE_ANY_CHASE, is_true=_is_too_narrow, cause=_too_narrow),
     Condition(
         reason=Reason.ROAD_ELSEWHERE,
@@ -205,4 +201,4 @@ def obstacle(held: Held, s: Situation, config: CompanionConfig) -> Cause | None:
     """Return what makes a landing impossible now, with its numbers; None without one."""
     if config.autopilot.guide is Guide.PRECLAND:
         return Cause(Reason.GUIDES_ONLY)
-    return next((cause_of(one, s, config) for one in OBSTACLES if holds(one, held, s, config)), None)
+    return first_cause(OBSTACLES, held, s, config)

@@ -10,6 +10,8 @@ import math
 import numpy as np
 from msgspec import Struct
 
+from companion.autopilots.limits import RATE_LAG_S
+from companion.autopilots.response import Cascade
 from companion.autopilots.shaping import Shaping
 from companion.core.data import Array
 from companion.planning.guidance import PlanResult, ReferenceState, Trajectory
@@ -76,6 +78,16 @@ def state_in_plan(trajectory: Trajectory, offset_s: float) -> ReferenceState:
         velocity_enu_m_s=np.array([v + (a + j * t_s / 2.0) * t_s for _, v, a, j in motion]),
         acceleration_enu_m_s2=np.array([a + j * t_s for _, _, a, j in motion]),
     )
+
+
+def lead_acceleration(reference: ReferenceState, plan: FlownPlan, offset_s: float, cascade: Cascade) -> ReferenceState:
+    """Return what is asked for in place of `reference`, `offset_s` after its plan was made, by a drone whose lean lags.
+
+    The jerk is the mean of the time in which turn rates follow: of a shorter one the drone makes nothing.
+    """
+    now = reference.acceleration_enu_m_s2
+    jerk_m_s3 = (state_at(plan, offset_s + RATE_LAG_S).acceleration_enu_m_s2 - now) / RATE_LAG_S
+    return replace(reference, acceleration_enu_m_s2=np.append(cascade.lead(now[:2], jerk_m_s3[:2]), now[2]))
 
 
 def keep_up(

@@ -9,8 +9,9 @@ from companion.landing.flown_plan import extrapolate, flown_plan, state_at
 from companion.landing.following_height import waiting_rise_m
 from companion.landing.levelling import limit_tilt, limits_now
 from companion.landing.memory import ModelMemory, StepMemory
-from companion.landing.sortie_aims import limit_phase_rates, sortie_aim
+from companion.landing.sortie_aims import sortie_aim
 from companion.landing.sortie_decisions import has_not_left_deck
+from companion.landing.station_aims import advance_way
 from companion.landing.step_data import StepInputs, System
 from companion.landing.sway import update_sway
 from companion.landing.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
@@ -20,7 +21,8 @@ from companion.landing.waiting import waits_at_m
 from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState, Target
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, STATION_PHASES, Phase
 from companion.situation.situation import Drone, Situation
-from companion.vehicle.pad import PadPath, over_pad_radius_m
+from companion.vehicle.pad import PadPath
+from companion.vehicle.pad_reach import over_pad_radius_m
 from link.frames.rotations import wrap_angle
 from link.records import replace
 
@@ -28,13 +30,15 @@ _LIFT_M = 0.3  # so far above it a drone on the deck is asked to be, for PX4 tak
 _STEP_MAX_S = 0.1  # a longer pause does not let the virtual model jump
 
 
-def _aim(memory: StepMemory, situation: Situation, limits: FlightLimits, config: CompanionConfig) -> Aim:
-    """Return where the present phase wants the drone."""
+def _aim(
+    memory: StepMemory, situation: Situation, limits: FlightLimits, planned: FlightLimits, config: CompanionConfig
+) -> Aim:
+    """Return where the present phase wants the drone, which has `limits`; its plan keeps to those `planned` with."""
     phase, reference, pad = memory.progress.phase, memory.model.reference, situation.pad
     anchor, waiting_point = memory.places.anchor_enu_m, memory.places.waiting_point_enu_m
     if reference is None or anchor is None or waiting_point is None:
         raise ValueError(f"phase {phase.value} flies without a reference")
-    aim = sortie_aim(memory, reference, anchor, situation, config)
+    aim = sortie_aim(memory, situation, planned, config)
     if aim is not None:
         return aim
     match phase:
@@ -83,19 +87,18 @@ def fly(
         return memory, None
     period_s = 1.0 / system.config.step_rate_hz
     reference = _at_drone(memory, _model_at(model, inputs.monotonic_ns, period_s), situation, system.config)
-    model = replace(model, reference=reference)
-    memory = replace(memory, model=model)
+    memory = replace(memory, model=(model := replace(model, reference=reference)))
     reference_ns = inputs.monotonic_ns + round(period_s * 1e9)
-    aim = _aim(memory, situation, inputs.limits, system.config)
+    limits = _plan_limits(memory, situation, inputs, system.config)
+    memory = advance_way(memory, situation, limits, system.config)
+    aim = _aim(memory, situation, inputs.limits, limits, system.config)
     if is_at_rest(reference, aim):  # there is nothing to plan
         tracking = add_to_past(model.tracking, reference_ns, reference)
         return replace(memory, model=replace(model, reference_ns=reference_ns, plan=None, tracking=tracking)), None
-    limits = limits_now(memory, situation, inputs, system.config)
-    carried = limit_rates(limits, memory, situation, inputs.shaping, system.config)
     request = PlanRequest(
         state=reference,
         target=_for_the_drone(aim.target, memory, inputs),
-        limits=limit_phase_rates(limits, carried, memory, situation),
+        limits=limits,
         floor_enu_m=aim.floor_enu_m,
         dt_s=period_s,
     )
@@ -103,16 +106,24 @@ def fly(
     guidance, plan = system.guidance.plan(model.guidance, request)
     flown = flown_plan(plan, period_s, float(aim.floor_enu_m[0]), inputs.shaping)
     plan = replace(plan, next_state=state_at(flown, period_s))
-    model = ModelMemory(
+    model = replace(
+        model,
         reference=plan.next_state,
         reference_ns=reference_ns,
         plan=flown,
         guidance=guidance,
         tracking=add_to_past(model.tracking, reference_ns, plan.next_state),
-        sway=model.sway,
         yaw_setpoint_rad=_slew_yaw_rad(memory, situation.pad, period_s, system.config),
     )
     return _update_anchor(replace(memory, model=model), situation, system.config), plan
+
+
+def _plan_limits(memory: StepMemory, situation: Situation, inputs: StepInputs, config: CompanionConfig) -> FlightLimits:
+    """Return the limits of this step's plan, all but that of the tilt."""
+    limits = limits_now(memory, situation, inputs, config)
+    if memory.progress.phase in (Phase.RETURN, Phase.RALLY):  # high, above all that being carried on could meet
+        return limits
+    return limit_rates(limits, memory, situation, inputs.shaping, config)
 
 
 def _model_at(model: ModelMemory, monotonic_ns: int, period_s: float) -> ReferenceState:
@@ -193,13 +204,13 @@ def _is_left_by_pad(memory: StepMemory, situation: Situation, config: CompanionC
 
 
 def _to_lost_drone(memory: StepMemory, situation: Situation) -> StepMemory:
-    """Return the memory with the virtual model where the drone is, once the drone has lost it outside of a landing.
+    """Return the memory with the virtual model where the drone is, once the drone has lost it and nothing watches that.
 
     A drone that hovered through a silent link is not to be sent after a model that has flown on.
     """
     phase, drone, tracking = memory.progress.phase, situation.drone, memory.model.tracking
-    lands = phase in LANDING_PHASES or phase is Phase.TOUCHDOWN
-    if lands or drone is None or tracking.error_m < situation.following.error_max_m:
+    is_watched = phase in LANDING_PHASES or phase in (Phase.TOUCHDOWN, Phase.FOLLOW)
+    if is_watched or drone is None or tracking.error_m < situation.following.error_max_m:
         return memory
     reference = ReferenceState(
         position_enu_m=drone.position_enu_m, velocity_enu_m_s=drone.velocity_enu_m_s, acceleration_enu_m_s2=np.zeros(3)
@@ -221,9 +232,8 @@ def _to_lost_drone(memory: StepMemory, situation: Situation) -> StepMemory:
 def _update_anchor(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
     """Take the place to stop along while an abort follows the vehicle, for when the vehicle falls silent."""
     reference, anchor = memory.model.reference, memory.places.anchor_enu_m
-    if memory.progress.phase is not Phase.ABORT or reference is None or anchor is None:
-        return memory
-    if situation.pad is None or not _is_fresh(situation, config):
+    is_beside = situation.pad is not None and _is_fresh(situation, config)
+    if memory.progress.phase is not Phase.ABORT or reference is None or anchor is None or not is_beside:
         return memory
     x, y, _ = stopping_point(reference, BRAKING_M_S2)
     return replace(memory, places=replace(memory.places, anchor_enu_m=np.array([x, y, anchor[2]])))

@@ -6,7 +6,8 @@ import numpy as np
 
 from companion.config.companion import CompanionConfig
 from companion.planning.guidance import ReferenceState
-from companion.vehicle.pad import PadPath, is_unseen, is_vague
+from companion.vehicle.pad import PadPath
+from companion.vehicle.pad_reach import is_unseen, is_vague
 
 
 def unseen_height_m(height_m: float, pad: PadPath, config: CompanionConfig) -> float:

@@ -5,7 +5,7 @@ from companion.autopilots.own_reports import carry
 from companion.config.autopilot import Guide
 from companion.config.companion import CompanionConfig
 from companion.landing.step_data import StepInputs, StepOutputs
-from companion.vehicle.pad import is_unseen
+from companion.vehicle.pad_reach import is_unseen
 from link.mavlink.dialect import Message
 
 

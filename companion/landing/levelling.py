@@ -1,4 +1,4 @@
-"""How a drone that leans into a curve, or against a gust, comes to touch the pad level; pure.
+"""Levels a drone that leans into a curve or against a gust before it touches the pad; pure.
 
 In a curve the drone leans as the deck does not: 18 degrees on a circle of 20 m at 8 m/s. So in its last moments it
 turns less than the pad does, and takes the speed against it that it gains so.
@@ -13,7 +13,8 @@ from companion.landing.step_data import StepInputs
 from companion.planning.guidance import PlanRequest
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation
-from companion.vehicle.pad import PadPath, over_pad_radius_m
+from companion.vehicle.pad import PadPath
+from companion.vehicle.pad_reach import over_pad_radius_m
 from link.records import replace
 
 _LEFT_MIN_SHARE = 0.2  # of the tilt limit: with less no plan brakes, and a steady wind that needs more is not flown in
@@ -24,8 +25,8 @@ def limits_now(memory: StepMemory, situation: Situation, inputs: StepInputs, con
     """Return the limits of this step: just above the pad the drone turns less than the deck, to touch down level.
 
     A drone that leans touches with its lowest foot, so it begins that much higher. It begins earlier by the time that
-    turning takes at the largest jerk, and by as much as nearly every setpoint is late at most. One that breaks off
-    climbs before it leans.
+    turning takes at the largest jerk, by which its lean lags, and by which nearly every setpoint is late at most. One
+    that breaks off climbs before it leans.
     """
     limits, relative, drone = inputs.limits, situation.approach, situation.drone
     if memory.progress.phase not in (Phase.DESCEND, Phase.ABORT) or relative is None or drone is None:
@@ -45,6 +46,7 @@ def level_end(
     turns_m_s2 = 0.0 if pad is None else math.hypot(*pad.acceleration_enu_m_s2[0, :2].tolist())
     kept_m_s2 = min(_kept_m_s2(turns_m_s2, limits.jerk_max_m_s3, config), limits.acceleration_max_m_s2)
     takes_s = max(turns_m_s2 - kept_m_s2, 0.0) / limits.jerk_max_m_s3
+    takes_s += 0.0 if inputs.response is None else inputs.response.cascade.lean_lag_s
     early_m = max(-relative.climb_m_s, 0.0) * (takes_s + touchdown.level.late_stds * inputs.link_delay.std_s)
     return kept_m_s2, touchdown.level.height_m + early_m
 

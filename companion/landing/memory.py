@@ -1,4 +1,4 @@
-"""What a step remembers, in groups that live and are begun anew together, and what of it moves with the frame; pure.
+"""The step's memory, in groups that are reset together, and how it moves with the frame; pure.
 
 Spans of time are measured on the step's monotonic clock, which nobody sets; whatever is compared with a stamp of the
 vehicle's data is in UTC.
@@ -155,6 +155,7 @@ class ForecastMemory(Struct, frozen=True, kw_only=True, eq=False):
         made_ns: when it was made, monotonic; None in any other phase.
         drivers: how the vehicle's driver drives.
         gusts: how hard the air pushes the drone.
+        is_committed: this descent has decided on a quiet moment; it holds until the descent ends.
         acceleration_ns: when the vehicle last told its acceleration, monotonic; None if it never did.
     """
 
@@ -162,6 +163,7 @@ class ForecastMemory(Struct, frozen=True, kw_only=True, eq=False):
     made_ns: int | None = None
     drivers: Drivers = field(default_factory=Drivers)
     gusts: Gusts = field(default_factory=Gusts)
+    is_committed: bool = False
     acceleration_ns: int | None = None
 
 
@@ -180,7 +182,7 @@ class StepMemory(Struct, frozen=True, kw_only=True, eq=False):
 def to_present_frame(memory: StepMemory, view: AutopilotView) -> StepMemory:
     """Return the memory in the frame that the autopilot's positions are in now.
 
-    A moved origin or a jump of the drone's own position makes the vehicle's estimate start anew. With a jump, all
+    A moved origin or a jump of the drone's own position makes the vehicle's estimate restart. With a jump, all
     places that the companion flies to move along, so that the drone stays where it is.
 
     Args:

@@ -10,9 +10,10 @@ from companion.config.companion import CompanionConfig
 from companion.config.descent import DescentConfig
 from companion.core.data import Array, FlightLimits, Setpoint
 from companion.core.reasons import Cause, Reason, sentence
+from companion.integrity.unverified import unverified
 from companion.landing.aborts import why_unplaced
 from companion.landing.carried_on import bound_carried
-from companion.landing.flown_plan import extrapolate, state_at
+from companion.landing.flown_plan import extrapolate, lead_acceleration, state_at
 from companion.landing.memory import Progress, StepMemory
 from companion.landing.step_data import StepInputs
 from companion.landing.targets import way_down
@@ -52,6 +53,8 @@ def setpoint(
         reference = state_at(model.plan, ahead_s)
     else:
         reference = extrapolate(model.reference, (inputs.monotonic_ns - model.reference_ns) * 1e-9 + ahead_s)
+    if is_planned and model.plan is not None and inputs.response is not None and inputs.response.cascade.is_led:
+        reference = lead_acceleration(reference, model.plan, ahead_s, inputs.response.cascade)
     press_m_s2 = _press_m_s2(memory, config)
     if press_m_s2 is not None:
         reference = press_down(reference, press_m_s2, ahead_s)
@@ -96,7 +99,7 @@ def _press_m_s2(memory: StepMemory, config: CompanionConfig) -> float | None:
 
 
 _WAITING_FOR_PAD = frozenset({Phase.WAITING, Phase.CHASE, Phase.ALIGN})
-_NOT_BEGUN = frozenset({Phase.IDLE, Phase.WAITING})
+_NOT_BEGUN = frozenset({Phase.IDLE, Phase.WAITING, Phase.RETURN})
 _TIMED_PHASES = frozenset({Phase.ALIGN, Phase.DESCEND})
 _CONTACT_OFFSETS_S: Array = np.arange(0.0, 30.0, 0.1)  # from 8 m, the greatest height of a chase, it takes 8 s
 
@@ -126,6 +129,7 @@ def landing_status(memory: StepMemory, situation: Situation, config: CompanionCo
         flown_by=_flown_by(situation.autopilot),
         battery_share=situation.autopilot.battery_share,
         contact_forecast=memory.forecast.contact,
+        unverified=unverified(situation, config),
     )
 
 

@@ -17,7 +17,8 @@ from companion.landing.step_data import StepInputs
 from companion.landing.targets import way_down
 from companion.situation.situation import Approach, Situation
 from companion.vehicle.driving import Driving
-from companion.vehicle.pad import PadPath, cone_radius_at_pad_m, over_pad_radius_m
+from companion.vehicle.pad import PadPath
+from companion.vehicle.pad_reach import cone_radius_at_pad_m, over_pad_radius_m
 
 _OFFSETS_S = DT_S * np.arange(STEPS_MAX, dtype=np.float64)
 _BELOW_M = -0.4  # to where the way down is followed: heights are not off by more
@@ -29,6 +30,9 @@ _CHANGE_S = 0.1  # between two changes of speed that `Driving` keeps
 _PRIOR_DRIVEN_S = 2.0  # what the estimator believes of drivers counts as one such change, which is over 2 s
 _OWN_HEIGHT_STD_M = 0.05  # of the drone's height beside the vehicle's: receivers with corrections, or a range finder
 _OWN_CLIMB_STD_M_S = 0.1  # of its rate, gusts included
+# What a deck's velocity turns out to be sooner than this before the contact the drone makes up for: setpoints and data
+# are late by 0.15 s, and half of the vertical acceleration is there after another 0.15 s.
+_CLIMB_FOLLOWED_S = 0.5
 # Lag with which an acceleration is believed: velocities at 10 Hz show a brake in 0.3 s, an accelerometer at once.
 _BELIEVES_S, _BELIEVES_BY_SENSOR_S = 0.3, 0.1
 _BANDWIDTH_TIMES = 4.0  # rest to rest in a time is what a linear law of this over that time takes
@@ -80,15 +84,17 @@ def way_to_contact(memory: StepMemory, situation: Situation, config: CompanionCo
 
 
 def deviation_now(memory: StepMemory, inputs: StepInputs, pad: PadPath, config: CompanionConfig) -> Array:
-    """Return the cascade's state (4, 2) now, its lean without what the pad's own acceleration takes."""
+    """Return the cascade's state (4, 2) now, its lean that beyond what the pad's own acceleration takes."""
     tracking, reference = memory.model.tracking, memory.model.reference
     if reference is None or inputs.response is None:
         raise ValueError("no autopilot flies")
-    state = np.zeros((STATES, 2))
-    state[2] = reference.acceleration_enu_m_s2[:2]
+    state, leans_m_s2 = np.zeros((STATES, 2)), reference.acceleration_enu_m_s2[:2]
+    is_led = inputs.response.cascade.is_led
+    state[2] = 0.0 if is_led else leans_m_s2
     if tracking.compared_ns is not None and not has_jittery_place(memory, inputs, config):
         late_s = (inputs.monotonic_ns - tracking.compared_ns) * 1e-9
         state = inputs.response.carry(tracking.deviation, min(late_s, _REPORT_AGE_MAX_S))
+    state[2] += leans_m_s2 if is_led else 0.0
     state[2] -= pad.acceleration_enu_m_s2[0, :2]
     return state
 
@@ -116,15 +122,23 @@ def course_of(memory: StepMemory, relative: Approach, pad: PadPath, way: WayDown
         along_m_s2=direction[:, 0] * acceleration[:, 0] + direction[:, 1] * acceleration[:, 1],
         left_m_s2=direction[:, 0] * acceleration[:, 1] - direction[:, 1] * acceleration[:, 0],
         way_down=way.path,
-        slope=grade * direction[0],
+        slope=grade * direction + (0.0 if pad.swing is None else _at(way.offset_s, pad, pad.swing.slope)),
+        shake_enu=_shake_at(way.offset_s, pad),
         air_enu_m_s2=memory.model.tracking.air_enu_m_s2.copy(),
         model=model,
     )
 
 
 def _at(offset_s: Array, pad: PadPath, values: Array) -> Array:
-    """Return `values` (n, 3) of the pad's path at other offsets, (m, 3)."""
-    return np.column_stack([np.interp(offset_s, pad.offset_s, values[:, axis]) for axis in range(3)])
+    """Return `values` (n, k) of the pad's path at other offsets, (m, k)."""
+    return np.column_stack([np.interp(offset_s, pad.offset_s, column) for column in values.T])
+
+
+def _shake_at(offset_s: Array, pad: PadPath) -> Array:
+    """Return place and velocity of the pad's swing that is not followed, (2, m, 2)."""
+    if pad.swing is None:
+        return np.zeros((2, len(offset_s), 2))
+    return np.stack([_at(offset_s, pad, values) for values in pad.swing.shake_enu[:2]])
 
 
 def draw_errors(then: VehicleEstimate, pad: PadPath, response: ResponseModel, normals: Array) -> Errors:
@@ -138,12 +152,13 @@ def draw_errors(then: VehicleEstimate, pad: PadPath, response: ResponseModel, no
     """
     covariance = then.covariance.copy()
     # That frames which count as one are one is not for the forecast to doubt: that would be a wrong model, no bad luck.
-    apart_m2 = pad.frame_offset_std_m**2 if pad.has_one_frame and math.isfinite(pad.frame_offset_std_m) else 0.0
+    apart_m2 = pad.frame_offset.std_m**2 if pad.has_one_frame and math.isfinite(pad.frame_offset.std_m) else 0.0
     for axis in range(3):
         stated_m2 = max(covariance[axis, axis], float(pad.position_std_m[0, axis]) ** 2)
         covariance[axis, axis] = max(stated_m2 - apart_m2, _PLACE_STD_MIN_M**2)
     vehicle = normals[:, :9] @ _root(covariance).T
-    own = normals[:, 17:19] * np.array([_OWN_HEIGHT_STD_M, _OWN_CLIMB_STD_M_S])
+    heaves_m_s = 0.0 if pad.swing is None else np.interp(_CLIMB_FOLLOWED_S, pad.offset_s, pad.swing.climb_std_m_s)
+    own = normals[:, 17:19] * np.array([_OWN_HEIGHT_STD_M, math.hypot(_OWN_CLIMB_STD_M_S, heaves_m_s)])
     return Errors(
         vehicle=np.ascontiguousarray(vehicle.reshape(-1, 3, 3)[:, :, :2]),
         deviation=np.einsum("ij,njk->nik", _root(response.covariance), normals[:, 9:17].reshape(-1, STATES, 2)),
@@ -192,9 +207,11 @@ def follower_of(memory: StepMemory, situation: Situation, inputs: StepInputs, co
     told_ns = memory.forecast.acceleration_ns
     is_told = told_ns is not None and inputs.monotonic_ns - told_ns < _SENSOR_HOLD_NS
     return Follower(
-        stiffness_per_s2=cascade.velocity_per_s * cascade.position_per_s,
-        damping_per_s=cascade.velocity_per_s,
-        turns_hz=1.0 / ATTITUDE_LAG_S,
+        stiffness_per_s2=cascade.stiffness_per_s2,
+        damping_per_s=cascade.damping_per_s,
+        path_share=1.0 if cascade.is_led else cascade.path_share,
+        led_share=1.0 if cascade.is_led else 0.0,
+        turns_hz=cascade.turns_hz,
         forgets_hz=cascade.integral_per_s2 / cascade.velocity_per_s,
         drag_per_s=DRAG_PER_S,
         push_std_m_s2=memory.forecast.gusts.push_std_m_s2,

@@ -1,24 +1,25 @@
-"""Which event a step's facts amount to in the phases of a sortie, and what is kept up to date over it; pure."""
+"""Decides the event of a step in a sortie, and updates the sortie's memory; pure."""
 
 import math
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
+from companion.integrity.heights import VEHICLE_M
 from companion.integrity.vehicle_data import contradicts_itself
-from companion.landing.aborts import is_stamped_ahead, is_token_lost
+from companion.landing.aborts import is_not_followed, is_stamped_ahead, is_token_lost
 from companion.landing.conditions import (
     Condition,
-    cause_of,
-    holds,
+    first_cause,
     is_attitude_unknown,
     is_drone_unknown,
     is_fix_old,
 )
 from companion.landing.decisions import TOO_LONG
 from companion.landing.entries import Decision
+from companion.landing.feasibility import EMPTY
 from companion.landing.following_height import chase_floor_m
-from companion.landing.memory import ControlMemory, Held, Progress
-from companion.landing.sortie_aims import SPEED_SHARE, WAY_SHARE
+from companion.landing.memory import ControlMemory, Progress
+from companion.landing.over_vehicle import SPEED_SHARE, WAY_SHARE
 from companion.situation.phases import OUT_PHASES, Event, Phase
 from companion.situation.situation import Situation
 from companion.sortie.energy import left_s, update_battery
@@ -29,8 +30,6 @@ from companion.sortie.station import ahead_rad
 from link.messages import StationFrame
 from link.records import replace
 
-ON_DECK_M = 3.0
-"""So near the pad's centre a drone that stands is taken to stand on the vehicle, as `integrity.heights` does."""
 _DECK_HEIGHT_M = 1.0  # above or below the pad: the road is farther below
 _RISEN_SHARE = 0.8  # of the height that is clear of the deck
 _TOGETHER = frozenset({Phase.LIFT_OFF, Phase.FOLLOW, Phase.RETURN})
@@ -54,7 +53,15 @@ OWN_LOST = (
 )
 """Nobody knows where the drone is."""
 
-SORTIE_CONDITIONS = (*LOST, *OWN_LOST)
+NOT_FOLLOWED = Condition(
+    reason=Reason.SETPOINT_NOT_FOLLOWED,
+    phases=frozenset({Phase.FOLLOW}),
+    is_true=is_not_followed,
+    hold_s=lambda c: c.abort.tracking_hold_s,
+)
+"""Beside a vehicle; on the way home the model is set back to the drone."""
+
+SORTIE_CONDITIONS = (*LOST, *OWN_LOST, NOT_FOLLOWED)
 
 
 def update_sortie(sortie: SortieMemory, phase: Phase, s: Situation, config: CompanionConfig) -> SortieMemory:
@@ -134,7 +141,7 @@ def stay_out(sortie: SortieMemory, progress: Progress, decision: Decision) -> De
 def _leave_deck(
     sortie: SortieMemory, progress: Progress, control: ControlMemory, s: Situation, config: CompanionConfig
 ) -> Decision | None:
-    lost = _first(LOST, progress.held, s, config)
+    lost = first_cause((*LOST, EMPTY), progress.held, s, config)
     if lost is not None:
         return Event.CALLED_OFF, lost
     launch, view = config.sortie.launch, s.autopilot
@@ -156,10 +163,12 @@ def is_quiet_for_long(sortie: SortieMemory, s: Situation, config: CompanionConfi
 
 
 def _rise(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
-    unsafe = _first((*LOST, *OWN_LOST), progress.held, s, config)
-    launch = config.sortie.launch
-    if unsafe is not None:
-        return (Event.CALLED_OFF if has_not_left_deck(s) else Event.UNSAFE), unsafe
+    unknown = first_cause(OWN_LOST, progress.held, s, config)
+    if unknown is not None:  # that it was on the deck when it was heard last is no reason to stop its motors now
+        return Event.UNSAFE, unknown
+    lost, launch = first_cause(LOST, progress.held, s, config), config.sortie.launch
+    if lost is not None:
+        return (Event.CALLED_OFF if has_not_left_deck(s) else Event.UNSAFE), lost
     if (s.monotonic_ns - progress.since_ns) * 1e-9 > launch.lift_off_time_limit_s:
         too_long = Cause(TOO_LONG[Phase.LIFT_OFF], (launch.lift_off_time_limit_s,))
         return (Event.CALLED_OFF if has_not_left_deck(s) else Event.TIME_LIMIT), too_long
@@ -172,21 +181,24 @@ def has_not_left_deck(s: Situation) -> bool:
     """Return whether the drone stands on the deck still, by its autopilot's word and, where it is known, its place."""
     if s.approach is None:
         return s.autopilot.landed is True
-    return s.autopilot.landed is not False and stands_on_deck(s, ON_DECK_M, _DECK_HEIGHT_M)
+    return s.autopilot.landed is not False and stands_on_deck(s, VEHICLE_M, _DECK_HEIGHT_M)
 
 
 def _stay_together(sortie: SortieMemory, progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
-    unsafe = _first(OWN_LOST, progress.held, s, config)
+    unsafe = first_cause((*OWN_LOST, NOT_FOLLOWED), progress.held, s, config)
     if unsafe is not None:
         return Event.UNSAFE, unsafe
-    lost = _first(LOST, progress.held, s, config)
+    lost = first_cause(LOST, progress.held, s, config)
     if lost is not None:
         return Event.VEHICLE_LOST, lost
     if progress.phase is Phase.FOLLOW:
         return _turn_home(sortie, s, config)
-    a = s.approach
-    if a is None or a.distance_m > config.chase.passing_distance_m or a.height_m < chase_floor_m(config):
-        return None
+    limit_s = config.sortie.return_time_limit_s
+    if (s.monotonic_ns - progress.since_ns) * 1e-9 > limit_s:
+        return Event.TIME_LIMIT, progress.obstacle or Cause(TOO_LONG[Phase.RETURN], (limit_s,))
+    a, near_m = s.approach, config.chase.passing_distance_m
+    if a is None or a.distance_m > near_m or a.height_m < chase_floor_m(config) or progress.obstacle is not None:
+        return None  # it stays above a vehicle that cannot be landed on, and says why
     return Event.VEHICLE_NEAR, Cause(Reason.VEHICLE_NEAR, (a.distance_m,))
 
 
@@ -203,7 +215,3 @@ def _find(sortie: SortieMemory, s: Situation, config: CompanionConfig) -> Decisi
     if since_ns is None or (s.monotonic_ns - since_ns) * 1e-9 < config.abort.heard_hold_s:
         return None
     return (Event.FOLLOW if sortie.follows else Event.VEHICLE_FOUND), Cause(Reason.VEHICLE_FOUND)
-
-
-def _first(conditions: tuple[Condition, ...], held: Held, s: Situation, config: CompanionConfig) -> Cause | None:
-    return next((cause_of(one, s, config) for one in conditions if holds(one, held, s, config)), None)

@@ -1,15 +1,17 @@
-"""What is missing for a launch, a station or the way home that an operator asks for; pure."""
+"""What a launch, a station or the way home still lacks when an operator orders it; pure."""
 
 import math
 
 from companion.config.autopilot import Guide
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
+from companion.integrity.heights import VEHICLE_M
 from companion.landing.aborts import why_unplaced
 from companion.landing.conditions import is_fix_old
 from companion.landing.following_height import chase_floor_m
-from companion.landing.sortie_aims import SPEED_SHARE, keep_out_of
-from companion.landing.sortie_decisions import ON_DECK_M, home_s
+from companion.landing.over_vehicle import SPEED_SHARE, keep_out_of
+from companion.landing.sortie_aims import rally_point_enu_m
+from companion.landing.sortie_decisions import home_s
 from companion.situation.phases import Event
 from companion.situation.situation import Situation
 from companion.sortie.quiet_deck import stands_on_deck
@@ -38,9 +40,9 @@ def missing_for_sortie(
         return Cause(Reason.NO_VEHICLE_DATA)
     match event:
         case Event.LAUNCH:
-            return _missing_for_launch(s) or _unless_ground_is_deck(obstacle)
+            return _missing_for_launch(s) or _unless_ground_is_deck(obstacle) or _rally_out_of_range(s, config)
         case Event.FOLLOW if station is not None:
-            return why_no_station(station, s, config) or _out_of_reach(s, config)
+            return why_no_station(station, s, config) or _out_of_reach(s, config) or _rally_out_of_range(s, config)
         case _:
             return _out_of_reach(s, config)
 
@@ -70,12 +72,21 @@ def _missing_for_launch(s: Situation) -> Cause | None:
     unplaced = why_unplaced(s)
     if unplaced is not None:
         return unplaced
-    return None if stands_on_deck(s, ON_DECK_M, _DECK_HEIGHT_M) else Cause(Reason.NOT_ON_DECK)
+    return None if stands_on_deck(s, VEHICLE_M, _DECK_HEIGHT_M) else Cause(Reason.NOT_ON_DECK)
 
 
 def _unless_ground_is_deck(obstacle: Cause | None) -> Cause | None:
     """Return what stands in a landing's way; to a drone whose ground was the deck the road seems elsewhere."""
     return None if obstacle is not None and obstacle.reason is Reason.ROAD_ELSEWHERE else obstacle
+
+
+def _rally_out_of_range(s: Situation, config: CompanionConfig) -> Cause | None:
+    rally = rally_point_enu_m(s, config)
+    if rally is None or s.drone is None:
+        return None
+    distance_m = math.hypot(*(rally - s.drone.position_enu_m)[:2].tolist())
+    most_m = config.limits.range_max_m
+    return Cause(Reason.RALLY_TOO_FAR, (distance_m, most_m)) if distance_m > most_m else None
 
 
 def _out_of_reach(s: Situation, config: CompanionConfig) -> Cause | None:

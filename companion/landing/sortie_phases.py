@@ -1,4 +1,4 @@
-"""What the phases of a sortie begin with: stations, places, and when a sortie begins and ends; pure."""
+"""Initial values of a sortie's phases, and when a sortie begins and ends; pure."""
 
 import math
 
@@ -101,8 +101,10 @@ def _to_rally(memory: StepMemory, s: Situation, config: CompanionConfig) -> Step
     if pad is not None:
         ahead_s = home_s(s, config) - config.limits.landing_time_s
         ahead_s = max(ahead_s if math.isfinite(ahead_s) else 0.0, _LOOK_AHEAD_S)
-        place = pad.position_enu_m[0] + pad.velocity_enu_m_s[0] * ahead_s
+        way = (pad.position_enu_m[0] + pad.velocity_enu_m_s[0] * ahead_s - reference.position_enu_m)[:2]
+        within = min(config.limits.range_max_m / max(math.hypot(*way.tolist()), 1.0), 1.0)
+        place = reference.position_enu_m[:2] + within * way
         clear_m = float(pad.position_enu_m[0, 2]) + s.feet_offset_m + config.chase.height_m
-        place = np.array([*place[:2], max(float(reference.position_enu_m[2]), clear_m)])
+        place = np.array([*place, max(float(reference.position_enu_m[2]), clear_m)])
     sortie = replace(memory.sortie, place_enu_m=place, found_since_ns=None)
     return replace(memory, sortie=sortie, places=replace(memory.places, anchor_enu_m=anchor))

@@ -1,4 +1,4 @@
-"""How much harder the drone leans than a moment ago, judged just above the pad; pure.
+"""How much the drone's lean has grown in the last moment, judged just above the pad; pure.
 
 The horizontal part of the thrust, as an acceleration, is `g tan(tilt)`. Its mean over the last second is what steady
 flight with the vehicle needs: its acceleration in a curve, and what holds against the air. What the drone leans beyond

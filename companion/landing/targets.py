@@ -162,15 +162,21 @@ def way_down(
         lowest_m: where it waits; None for one that goes on, to below the pad.
     """
     lowest_m = -descent.sink.press_depth_m if lowest_m is None else lowest_m
+    most_m_s2 = _DESCENT_SHARE * limits.vertical_acceleration_max_m_s2
+    if not _brakes_in_time(state, most_m_s2, descent.sink.contact_rate_m_s):
+        most_m_s2 = limits.vertical_acceleration_max_m_s2
     return descent_path(
         state,
         (descent.sink.gain_hz, descent.sink.rate_max_m_s, descent.sink.contact_rate_m_s, lowest_m),
-        (
-            _DESCENT_SHARE * limits.vertical_acceleration_max_m_s2,
-            min(limits.vertical_jerk_max_m_s3, _DESCENT_JERK_MAX_M_S3),
-        ),
+        (most_m_s2, min(limits.vertical_jerk_max_m_s3, _DESCENT_JERK_MAX_M_S3)),
         offset_s,
     )
+
+
+def _brakes_in_time(state: tuple[float, float, float], most_m_s2: float, contact_m_s: float) -> bool:
+    """Return whether `most_m_s2` brakes the sink in time for the contact; a road that begins to climb takes more."""
+    height_m, rate_m_s, _ = state
+    return rate_m_s >= -contact_m_s or rate_m_s**2 - contact_m_s**2 <= 2.0 * most_m_s2 * max(height_m, 0.0)
 
 
 def _height_m(phase: Phase, pad: PadPath, reference: ReferenceState, config: CompanionConfig) -> float:

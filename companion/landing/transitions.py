@@ -1,4 +1,4 @@
-"""The operator's command and the event of a step, and what the phase that they lead to begins with; pure."""
+"""Applies the operator's command and the step's event, and initialises the phase that follows; pure."""
 
 import numpy as np
 
@@ -124,6 +124,7 @@ def _progress_after(
     begun_anew = before.begun_anew
     if event is Event.OUT_OF_ALIGNMENT:
         begun_anew = {**begun_anew, cause.reason: begun_anew.get(cause.reason, 0) + 1}
+    is_too_long = event is Event.TIME_LIMIT and before.phase is Phase.RETURN  # nor does it set out again by itself
     # What makes an approach unsafe goes on from one of its phases to the next, and so does the time it has held.
     goes_on = {before.phase, phase} <= LANDING_PHASES
     return Progress(
@@ -133,7 +134,7 @@ def _progress_after(
         retries=0 if event in _BEGINNINGS else retries,
         interrupted_ns=before.since_ns if is_outage else None,
         begun_anew=begun_anew if goes_on else {},
-        may_retry=before.may_retry or event is Event.HOME_NOW,
+        may_retry=(before.may_retry or event is Event.HOME_NOW) and not is_too_long,
         stopped_by_pad=event is Event.CONTACT and Reason.HARD_CONTACT in before.held,
         held=before.held if goes_on else NOTHING_HELD,
         obstacle=before.obstacle,

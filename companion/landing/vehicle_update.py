@@ -2,7 +2,7 @@
 
 from companion.core.data import Forecast
 from companion.integrity.frames import are_frames_one, update_fixed_phases
-from companion.integrity.sightings import SightingWatch, update_sightings
+from companion.integrity.sightings import SightingWatch, forget_agreement, update_sightings
 from companion.integrity.vehicle_data import (
     Contradictions,
     FixStamps,
@@ -16,6 +16,7 @@ from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.planning.requests import are_finite
 from companion.situation.phases import FOLLOWING_PHASES, Phase
 from companion.vehicle.pad import PadPath, pad_path
+from companion.vehicle.pad_reach import is_place_vague
 from companion.vehicle.surprise import forget_beliefs, update_surprise
 from link.records import replace
 
@@ -32,7 +33,7 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
     if contradictions.is_due(now_ns):
         health = system.estimator.health(estimator)
         contradictions = update_contradictions(contradictions, health, now_ns)
-        sightings = update_sightings(sightings, health, system.config)
+        sightings = update_sightings(sightings, health, now_ns, system.config)
     return replace(
         vehicle,
         estimator=estimator,
@@ -77,14 +78,17 @@ def _in_present_utc(vehicle: VehicleMemory, inputs: StepInputs) -> VehicleMemory
 def predict_pad(
     phase: Phase, vehicle: VehicleMemory, inputs: StepInputs, system: System
 ) -> tuple[VehicleMemory, PadPath | None]:
-    """Return the pad as far ahead as the phase looks; an estimate that is not finite is given up and starts anew."""
+    """Return the pad as far ahead as the phase looks; an estimate that is not finite is given up and restarts."""
     offset_s = HORIZON_OFFSETS_S if phase in FOLLOWING_PHASES else _PRESENT_OFFSETS_S
     forecast = system.estimator.forecast(vehicle.estimator, inputs.t_ns, offset_s)
     if forecast is None:
         return vehicle, None
     if _is_finite(forecast):
         has_one_frame = are_frames_one(vehicle.phases, system.config.integrity.receiver_frames, inputs.monotonic_ns)
-        pad = pad_path(forecast, inputs.vehicle.pad, has_one_frame=has_one_frame)
+        sightings = vehicle.sightings
+        pad = pad_path(forecast, inputs.vehicle.pad, has_one_frame=has_one_frame, is_confirmed=sightings.is_confirmed)
+        if (pad.is_coarse or not has_one_frame) and is_place_vague(pad, system.config):
+            vehicle = replace(vehicle, sightings=forget_agreement(sightings))
         return vehicle, without_contradicted_heading(pad, vehicle.course)
     return replace(vehicle, estimator=None), None
 

@@ -50,7 +50,7 @@ def add_to_past(tracking: Tracking, t_ns: int, reference: ReferenceState) -> Tra
     past = tracking.past
     while past and (t_ns - past[0][0]) * 1e-9 > _HISTORY_S:
         past = past[1:]
-    while past and past[-1][0] >= t_ns:  # a step that is made anew at the same time takes its place
+    while past and past[-1][0] >= t_ns:  # a step that is rebuilt at the same time takes its place
         past = past[:-1]
     return replace(tracking, past=(*past, (t_ns, reference.position_enu_m, reference.velocity_enu_m_s)))
 

@@ -1,4 +1,6 @@
-"""What a descent stays above the pad for, how low it may go meanwhile, and for how long it has; pure."""
+"""Why a descent waits above the pad, how low it may wait, and for how long; pure."""
+
+import math
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
@@ -10,6 +12,7 @@ from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation, vehicle_stands
 from companion.vehicle.driving import drives_unevenly, may_depart, turns_hard, winds
 from companion.vehicle.surprise import may_surprise
+from link.messages import ContactForecast
 from link.records import replace
 
 _HELD_UP_M = 0.1  # above the height of waiting, down to which a descent sinks whether it is to wait or not
@@ -98,7 +101,7 @@ def _find_awaited(memory: StepMemory, situation: Situation, config: CompanionCon
         return Cause(Reason.OFF_CENTRE, (config.descent.alignment.distance_m,))
     if _is_unsettled(memory, relative, config):
         return Cause(Reason.UNSETTLED, (config.descent.wait.speed_m_s,))
-    return None
+    return _find_risk(memory, situation, config)
 
 
 def _is_off_centre(situation: Situation, relative: Approach, config: CompanionConfig) -> bool:
@@ -115,6 +118,32 @@ def _is_unsettled(memory: StepMemory, relative: Approach, config: CompanionConfi
     """Return whether the drone has to become slower against the pad first, as far as that speed is known."""
     known_m_s = config.descent.wait.speed_stds * memory.vehicle.surprise.speed_std_m_s
     return relative.speed_m_s > max(config.descent.wait.speed_m_s, known_m_s)
+
+
+def _find_risk(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause | None:
+    """Return that a contact begun now is forecast to be too risky on a deck whose motion is told and slow.
+
+    What heaves back within the time that the contact takes has no quiet moment that can be seen from up here: waiting
+    for one above cars that shake made contacts later and no better.
+    """
+    contact, pad = memory.forecast.contact, situation.pad
+    if memory.forecast.is_committed or contact is None or pad is None or pad.swing is None:
+        return None
+    most = config.descent.quiet.unsafe_max
+    if contact.in_s is None or contact.in_s > math.pi / pad.swing.heave_rad_s:
+        return None
+    return Cause(Reason.DECK_UNQUIET, (most,)) if contact.unsafe > most else None
+
+
+def is_moment_quiet(contact: ContactForecast | None, situation: Situation, config: CompanionConfig) -> bool:
+    """Return whether a descent that has come to the height of waiting is to go on by its forecast: once for all.
+
+    One that judged again all the way down would turn back where a new wave is as near as the pad.
+    """
+    relative = situation.approach
+    if contact is None or relative is None or relative.height_m > _waiting_height_m(situation, config) + _HELD_UP_M:
+        return False
+    return contact.unsafe <= config.descent.quiet.unsafe_max
 
 
 def waits_for_calm(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:

@@ -1,4 +1,4 @@
-"""The fastest way from a relative position and velocity to rest, and the approach to a moving target made of it.
+"""The fastest way from a relative position and velocity to rest; from it follows the approach to a moving target.
 
 One axis has the state `[e, w]`, relative position m and velocity m/s; its acceleration is +a, then 0 at the speed
 limit, then -a. Source: the time-optimal control of the double integrator, Bryson and Ho 1975, section 3.9, with a

@@ -24,7 +24,7 @@ def with_finite_state(last: ReferenceState | None, request: PlanRequest) -> Plan
 
 
 def limits_of(request: PlanRequest) -> tuple[float, float, float, float, float, float, float]:
-    """Return the limits as the compiled calls take them: a whole number would have them compiled anew, in flight.
+    """Return the limits as the compiled calls take them: a whole number would have them recompiled, in flight.
 
     Raises:
         ValueError: if `dt_s` or a limit is not a positive number; without them there is not even a braking.

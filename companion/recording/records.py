@@ -1,4 +1,4 @@
-"""What a companion hands to its recorder: references to what it has anyway, turned into messages elsewhere."""
+"""What a companion hands to its recorder: references, which the recorder turns into messages."""
 
 from dataclasses import dataclass
 from enum import IntEnum

@@ -1,4 +1,4 @@
-"""What a step knew as a scene, for Foxglove and its like; run by the recorder, not by the loop."""
+"""What a step knew as a 3-D scene for Foxglove; run by the recorder, not by the loop."""
 
 import math
 from collections.abc import Iterator

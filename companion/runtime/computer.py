@@ -1,4 +1,4 @@
-"""What the computer does that the companion runs on."""
+"""Load, memory and temperature of the companion's computer."""
 
 import time
 from contextlib import suppress

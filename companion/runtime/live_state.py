@@ -1,4 +1,4 @@
-"""What a view is told of a companion's inside: some of its records, published from a thread of their own.
+"""Publishes some of the companion's records for views, from a thread of its own.
 
 The messages are those of the recording, by steps: at 50 steps a second, the default, `own` comes 25 times a second,
 `estimate` and `forecast` 10 times, `link` once.

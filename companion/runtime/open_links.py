@@ -1,4 +1,4 @@
-"""By what a stranger could take part in a landing."""
+"""Names the links by which a stranger could take part in a landing."""
 
 from link.mavlink.device import opening_of
 from link.zenoh.library_config import openings

@@ -23,14 +23,14 @@ class Asks(Protocol):
 
 
 class PadQuestion:
-    """Asks every second; one answer is enough, until it is asked anew.
+    """Asks every second; one answer is enough, until it is asked again.
 
     Args:
         zenoh: to ask by.
         key: of the pad.
 
     Attributes:
-        is_answered: whether a pad has come, since it was last asked anew.
+        is_answered: whether a pad has come, since it was last asked again.
         bad_answers: that were no description of a pad, or not to be believed.
         refused_why: what was wrong with the last one of them, None while there was none.
     """

@@ -1,4 +1,4 @@
-"""The program: everything is opened in the order in which a user's mistakes are told soonest, then the loop runs."""
+"""The program: opens everything, what a user may have mistaken first, then runs the loop."""
 
 import json
 import sys

@@ -1,4 +1,4 @@
-"""When status and plan are put on Zenoh, and as what."""
+"""Publishes status and plan on Zenoh."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""A companion that records all that goes into it and what its steps make of that."""
+"""A companion node that records its inputs and its steps' outputs."""
 
 from companion.core.data import Rival
 from companion.landing.step_data import System

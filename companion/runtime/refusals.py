@@ -1,4 +1,4 @@
-"""What the vehicle sent and was refused: counted by what it was and why, and said in words."""
+"""Counts refused data of the vehicle by kind and reason, and says so in words."""
 
 from dataclasses import dataclass
 

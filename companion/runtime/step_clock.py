@@ -1,4 +1,4 @@
-"""When a step is made, and the two clocks that it is told: UTC, and one that goes as UTC does and is never set."""
+"""When a step is made, and its two times: UTC, and a monotonic clock that runs at UTC's rate."""
 
 from companion.autopilots.link import CLOCK_SET_NS
 

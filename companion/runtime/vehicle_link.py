@@ -1,5 +1,7 @@
 """What the vehicle sends, as measurements for the next step; what cannot be used is counted by its reason."""
 
+from collections import Counter
+
 from companion.autopilots.state import AutopilotState
 from companion.config.companion import SilentVehicleConfig
 from companion.core.data import Measurement
@@ -10,10 +12,12 @@ from companion.vehicle.inputs import measurements_of
 from link.messages import PadGeometry
 from link.payloads.checks import PayloadError
 from link.payloads.json_messages import is_possible
+from link.units import NS_PER_S
 from link.zenoh.keys import Keys
 
 _UNINVITED = "comes for a vehicle of which the configuration says that it tells nothing (silent_vehicle)"
 _FUTURE_MAX_NS = 500_000_000  # a stamp farther ahead comes from a clock that is wrong
+_SAMPLES_MAX_PER_S = 400  # of a key: twice the fastest inertial unit's; each is fused again when a late one comes
 
 
 class VehicleLink:
@@ -39,6 +43,8 @@ class VehicleLink:
         self._clock = clock
         self._measurements: list[Measurement] = []
         self._fix_ahead_s: float | None = None
+        self._second_ns = 0  # in which samples are counted, when it began
+        self._heard: Counter[str] = Counter()
 
     def receive(self, key: str, payload: bytes, state: AutopilotState, *, is_utc_known: bool) -> None:
         """Take a sample; what cannot be decoded, is absurd or comes from the future is counted and dropped.
@@ -53,6 +59,9 @@ class VehicleLink:
         """
         if self.tells_nothing and key != self._keys.pad_pose:
             self.refuse(key.rsplit("/", 1)[-1], "uninvited", _UNINVITED)
+            return
+        if self._is_flooded(key):
+            self.refuse(key.rsplit("/", 1)[-1], "flood", f"come more than {_SAMPLES_MAX_PER_S} times in a second")
             return
         try:
             measurements = measurements_of(key, payload, self._keys, state)
@@ -93,6 +102,15 @@ class VehicleLink:
         taken, self._measurements = tuple(self._measurements), []
         ahead_s, self._fix_ahead_s = self._fix_ahead_s, None
         return VehicleInputs(measurements=taken, fix_ahead_s=ahead_s, is_alive=self.alive, pad=self.pad)
+
+    def _is_flooded(self, key: str) -> bool:
+        """Count a sample; return whether there were more of its key within a second than any sensor makes."""
+        now_ns = self._clock.monotonic_ns
+        if now_ns - self._second_ns >= NS_PER_S:
+            self._second_ns = now_ns
+            self._heard.clear()
+        self._heard[key] += 1
+        return self._heard[key] > _SAMPLES_MAX_PER_S
 
     def _refuse_ahead(self, key: str, t_ns: int) -> None:
         ahead_s = (t_ns - self._clock.t_ns) * 1e-9

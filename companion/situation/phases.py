@@ -10,7 +10,7 @@ from enum import Enum
 class Phase(Enum):
     """Where in the flight the companion is."""
 
-    __hash__ = object.__hash__  # by identity, as members compare: a name is hashed anew at every look-up
+    __hash__ = object.__hash__  # by identity, as members compare: a name is hashed again at every look-up
 
     IDLE = "idle"  # flies nothing; the autopilot or its pilot does
     TAKEOFF = "takeoff"  # enters offboard control, arms and climbs to the waiting point
@@ -144,7 +144,7 @@ TRANSITIONS: dict[tuple[Phase, Event], Phase] = {
         for phase in (Phase.LIFT_OFF, Phase.FOLLOW)
         for event in (Event.ABORT, Event.HOLD, Event.UNSAFE)
     },
-    **{(Phase.RETURN, event): Phase.HOLD for event in (Event.ABORT, Event.HOLD, Event.UNSAFE)},
+    **{(Phase.RETURN, event): Phase.HOLD for event in (Event.ABORT, Event.HOLD, Event.UNSAFE, Event.TIME_LIMIT)},
     **{(Phase.RALLY, event): Phase.HOLD for event in (Event.ABORT, Event.HOLD)},
 }
 

@@ -1,7 +1,7 @@
-"""How long the battery lasts, from what BATTERY_STATUS says is left and how fast that has become less; pure.
+"""How long the battery lasts, from BATTERY_STATUS and how fast it has fallen; pure.
 
-The share comes in whole percents. Between two changes of it the time tells the rate of use, over the last minutes of
-this flight. What is left is taken for a percent less than told.
+The share comes in whole percents. Between two changes of it the time tells the rate of use, over the last half
+minute or more of this flight. What is left is taken for a percent less than told.
 """
 
 import math
@@ -12,6 +12,9 @@ from link.records import replace
 
 RESOLUTION = 0.01
 """Of BATTERY_STATUS, battery_remaining: MAVLink, common.xml."""
+_SPAN_MIN_S = 30.0
+"""No rate is taken over less: a dash takes two to three times a hover's power for some seconds, and the voltage that
+sags under it has two percents told at once."""
 _CHANGES_MAX = 8  # one in 12 s at 20 minutes' endurance: the rate of the last minute and a half
 
 
@@ -37,11 +40,13 @@ def update_battery(watch: BatteryWatch, share: float | None, monotonic_ns: int) 
 
 
 def use_per_s(watch: BatteryWatch) -> float | None:
-    """Return the share that is used in a second, None until it has changed twice."""
+    """Return the share that is used in a second, None until it has changed at two times."""
     if len(watch.changes) < 2:
         return None
     (first_ns, first), (last_ns, last) = watch.changes[0], watch.changes[-1]
-    return (first - last) / ((last_ns - first_ns) * 1e-9)
+    if last_ns <= first_ns:
+        return None
+    return (first - last) / max((last_ns - first_ns) * 1e-9, _SPAN_MIN_S)
 
 
 def left_s(watch: BatteryWatch, reserve_share: float) -> float:

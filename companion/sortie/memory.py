@@ -1,4 +1,4 @@
-"""What is remembered of a sortie from its launch, or the first station, until the drone is home; pure."""
+"""The memory of a sortie, from its launch or first station until the drone is home; pure."""
 
 import numpy as np
 from msgspec import Struct, field
@@ -10,12 +10,27 @@ from link.messages import Station
 from link.records import replace
 
 
+class Way(Struct, frozen=True, kw_only=True, eq=False):
+    """The way to a station.
+
+    Attributes:
+        station: at its end.
+        place_m: (3,) on it, ahead, left and up of the pad's centre, where the drone is to be now.
+        at_ns: when that was so, monotonic.
+    """
+
+    station: Station
+    place_m: Array
+    at_ns: int
+
+
 class SortieMemory(Struct, frozen=True, kw_only=True, eq=False):
     """A sortie.
 
     Attributes:
         is_out: one is under way.
         station: that is kept, or was last.
+        way: to the station; None while none is kept.
         ahead_rad: where ahead was when it could be told, from East counter-clockwise.
         follows: the drone is to stay out beside the vehicle; otherwise it is on its way home, or lands.
         place_enu_m: (3,) where a silent vehicle is looked for; None while it is heard.
@@ -27,6 +42,7 @@ class SortieMemory(Struct, frozen=True, kw_only=True, eq=False):
 
     is_out: bool = False
     station: Station | None = None
+    way: Way | None = None
     ahead_rad: float = 0.0
     follows: bool = False
     place_enu_m: Array | None = None

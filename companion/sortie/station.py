@@ -43,6 +43,17 @@ def is_inside(offset_m: Vector3, keep_out: KeepOut) -> bool:
     return up_m < (keep_out.lowest_m if beside else keep_out.over_m)
 
 
+def keep_outside(offset_m: Array, keep_out: KeepOut) -> Array:
+    """Return the place (3,) nearest to an offset beside the vehicle, or above one over it, where a station may be."""
+    ahead_m, left_m, up_m = offset_m.tolist()
+    distance_m = math.hypot(ahead_m, left_m)
+    if distance_m < _OVER_SHARE * keep_out.radius_m or up_m >= keep_out.over_m:
+        beside = distance_m >= keep_out.radius_m
+        return np.array([ahead_m, left_m, max(up_m, keep_out.lowest_m if beside else keep_out.over_m)])
+    out = max(keep_out.radius_m / distance_m, 1.0)
+    return np.array([out * ahead_m, out * left_m, max(up_m, keep_out.lowest_m)])
+
+
 def course_rad(pad: PadPath, before_rad: float) -> float:
     """Return the vehicle's course from East counter-clockwise; of one that hardly moves the one before."""
     east_m_s, north_m_s = pad.velocity_enu_m_s[0, :2].tolist()
@@ -61,10 +72,16 @@ def ahead_rad(frame: StationFrame, pad: PadPath, before_rad: float) -> float:
 
 
 def turn_rates_rad_s(frame: StationFrame, pad: PadPath) -> Array:
-    """Return how fast ahead turns (n,) over the horizon: as the vehicle's course does, which a slow one hardly has."""
+    """Return how fast ahead turns (n,) over the horizon: as the vehicle's heading does, or its course.
+
+    A course's rate is made of an acceleration, which on an even straight errs by 1 m/s^2: of a slow vehicle, whose
+    course it turns fast, that says nothing. The heading's rate is what the curvature makes of the speed.
+    """
     velocity, acceleration = pad.velocity_enu_m_s, pad.acceleration_enu_m_s2
     if frame is StationFrame.NORTH:
         return np.zeros(len(pad.offset_s))
+    if pad.yaw_rate_rad_s is not None:
+        return pad.yaw_rate_rad_s
     across = velocity[:, 0] * acceleration[:, 1] - velocity[:, 1] * acceleration[:, 0]
     rates = across / np.maximum(np.sum(velocity[:, :2] ** 2, axis=1), _SLOW_M_S**2)
     return np.asarray(rates)
@@ -129,11 +146,16 @@ def _towards(here: Array, there: Array, dt_s: float, rates: tuple[float, float])
 
 
 def is_clear(start_m: Array, end_m: Array, keep_out: KeepOut) -> bool:
-    """Return whether the straight way between two offsets is clear of the vehicle."""
+    """Return whether the straight way between two offsets is clear of the vehicle.
+
+    So is the way out of its cylinder for a drone that was pushed too near its side: at no place nearer than now.
+    """
     if min(float(start_m[2]), float(end_m[2])) >= keep_out.over_m:
         return True
     way = end_m[:2] - start_m[:2]
     length2 = float(way @ way)
     share = 0.0 if length2 == 0.0 else min(max(-float(start_m[:2] @ way) / length2, 0.0), 1.0)
-    nearest_m = math.hypot(*(start_m[:2] + share * way).tolist())
-    return nearest_m >= keep_out.radius_m - _ROUNDING_M
+    nearest_m, radius_m = math.hypot(*(start_m[:2] + share * way).tolist()), math.hypot(*start_m[:2].tolist())
+    is_pushed = start_m[2] < keep_out.over_m and radius_m > _OVER_SHARE * keep_out.radius_m
+    least_m = min(keep_out.radius_m, radius_m) if is_pushed else keep_out.radius_m
+    return nearest_m >= least_m - _ROUNDING_M

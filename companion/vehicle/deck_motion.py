@@ -1,6 +1,7 @@
 """Learns how a deck swings: frequency, damping and size of its heave, roll and pitch; pure.
 
-Each is taken for a damped oscillator driven by noise, whose value and rate `z` the filter follows. Over pairs that lie
+Each is taken for a damped oscillator driven by noise, whose value and rate `z` the filter follows; of the heave these
+are its rate and its acceleration, for what its place swings about is not known. Over pairs that lie
 a lag apart the sums S0 of `z z'` and S1 of `z(later) z'` fade with `MEMORY_S`. The transition that fits best in the
 least squares is A = S1 / S0, the first-order vector autoregression; its eigenvalues are
 exp((-d +- i sqrt(1 - d^2)) w t). The sums begin as those of an ordinary deck that has been watched for
@@ -16,7 +17,7 @@ from msgspec import Struct
 
 from companion.config.estimation import OscillatorConfig, SwingConfig
 from companion.core.data import Array
-from companion.vehicle.imm_kernels import heave_step
+from companion.vehicle.oscillators import heave_step
 from link.records import replace
 
 MEMORY_S = 60.0  # some six waves; a road of one kind lasts longer
@@ -26,7 +27,7 @@ _FREQUENCY_RANGE_RAD_S = (2.0 * math.pi * 0.03, 2.0 * math.pi * 5.0)  # from swe
 # (Longuet-Higgins 1975), bodies on wheels a damping of 0.2 and more.
 _DAMPING_RANGE = (0.1, 0.95)
 _SINGULAR = 1e-12  # of two variances: what is left by rounding where value and rate go together, or are all zero
-_STD_MIN = (0.005, 0.001, 0.001)  # m, rad, rad: no receiver and no inertial unit tells less
+_STD_MIN = (0.01, 0.001, 0.001)  # m/s, rad, rad: no receiver and no inertial unit tells less
 
 
 class Axis(Struct, frozen=True, kw_only=True):
@@ -44,9 +45,9 @@ class DeckMotion(Struct, frozen=True, kw_only=True, eq=False):
     """What is known of a deck's swinging.
 
     Attributes:
-        axes: of heave, roll and pitch.
+        axes: of the heave's rate, roll and pitch.
         passed_s: since the newest pair.
-        oscillators: (9,) angular frequency, rad/s, damping and standard deviation, m or rad, of each.
+        oscillators: (9,) angular frequency, rad/s, damping and standard deviation, m/s or rad, of each.
     """
 
     axes: tuple[Axis, ...]
@@ -54,10 +55,16 @@ class DeckMotion(Struct, frozen=True, kw_only=True, eq=False):
     oscillators: Array
 
 
+def rate_std_m_s(heave: OscillatorConfig) -> float:
+    """Return the standard deviation of the rate of a heave that swings as configured."""
+    return 2.0 * math.pi * heave.frequency_hz * heave.std
+
+
 def first_motion(swing: SwingConfig) -> DeckMotion:
     """Return what is taken for granted of a deck that has not been watched."""
-    heave, tilt = _first_axis(swing.heave, swing.lag_s), _first_axis(swing.tilt, swing.lag_s)
-    configured = [(2.0 * math.pi * one.frequency_hz, one.damping, one.std) for one in (swing.heave, swing.tilt)]
+    heave_rate = swing.heave.model_copy(update={"std": rate_std_m_s(swing.heave)})
+    heave, tilt = _first_axis(heave_rate, swing.lag_s), _first_axis(swing.tilt, swing.lag_s)
+    configured = [(2.0 * math.pi * one.frequency_hz, one.damping, one.std) for one in (heave_rate, swing.tilt)]
     oscillators = _oscillators((heave, tilt, tilt), np.array([*configured, configured[1]]).ravel())
     return DeckMotion(axes=(heave, tilt, tilt), passed_s=0.0, oscillators=oscillators)
 
@@ -87,7 +94,7 @@ def learn(motion: DeckMotion, mean: Sequence[float], lag_s: float) -> DeckMotion
 
     Args:
         motion: so far.
-        mean: value and rate of heave, roll and pitch, as the filter has them.
+        mean: value and rate of the heave's rate, of roll and of pitch, as the filter has them.
         lag_s: least time between the two of a pair.
     """
     if motion.passed_s < lag_s:

@@ -115,7 +115,7 @@ def nis_threshold(gate_probability: float | None, dof: int) -> float:
 
 
 def is_forgotten(config: BufferConfig, snapshot: Snapshot[S], t_ns: int) -> bool:
-    """Return whether at `t_ns` the filter has heard nothing for so long that it begins anew: a stamp of 0, say."""
+    """Return whether at `t_ns` the filter has heard nothing for so long that it restarts: a stamp of 0, say."""
     return t_ns - snapshot.t_ns > config.forget_after_s * 1e9
 
 

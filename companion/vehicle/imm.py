@@ -1,6 +1,7 @@
 """The default estimator: two interacting turning models with the offset between the two receivers' frames.
 
-State, motion and units are in `imm_kernels`, what sensors read in `imm_sensors`, the interaction in `imm_mixing`.
+State, motion and units are in `imm_kernels`, noise in `imm_noise`, what sensors read in `imm_sensors`, and how both
+models interact in `imm_mixing`.
 The vehicle's fixes are in the frame of its own receiver and dated by its own clock; sightings of the pad are in the
 drone's. The difference of the frames is three states with a slow random walk, that of the clocks is one, so that the
 estimate is right for the drone, and stays right when the sightings end. A vehicle that tells nothing is placed by
@@ -141,10 +142,12 @@ class ImmModel:
             velocity_enu_m_s=velocity,
             acceleration_enu_m_s2=acceleration,
             yaw_rad=yaw if heading_variance < self._known_variance else None,
-            position_std_m=std,
+            position_std_m=std[:, :3],
+            climb_std_m_s=std[:, 3],
             is_coarse=state.fix_bias_variance_m2 > 0.0 or self.placed_by is Quantity.PAD,
             grade=grade,
             tilt_rad=None if state.deck is None else tilt,
+            swing=None if state.deck is None else state.deck.oscillators.reshape(3, 3)[:, :2],
             yaw_std_rad=math.sqrt(heading_variance),
             frame_offset_enu_m=(weights @ means)[OFFSET[:2]],
             frame_offset_std_m=math.sqrt(float((weights @ covariances[:, OFFSET, OFFSET]).max())),
@@ -156,7 +159,7 @@ class ImmModel:
         return self.config.heading.known_std_rad**2
 
     def _noises(self, state: ImmState) -> Array:
-        """Both modes' noise, (2, 16), as `imm_kernels.process_noise` takes it."""
+        """Both modes' noise, (2, 16), as `imm_noise.process_noise` takes it."""
         walk_m2_s = 2.0 * state.fix_bias_variance_m2 / self.config.receivers.fix_bias_time_s
         receiver_m2_s = self.config.receivers.frame_offset_walk_m2_s + walk_m2_s
         return noises_with(
@@ -203,5 +206,5 @@ class ImmModel:
 
 
 def _own(array: Array) -> Array:
-    """A plain copy: kernels are compiled anew for read-only or strided arrays, which takes seconds."""
+    """A plain copy: kernels are recompiled for read-only or strided arrays, which takes seconds."""
     return np.array(array, dtype=np.float64, order="C")

@@ -22,7 +22,7 @@ def kinematics(states: Array, motion: Array) -> tuple[Array, Array, Array]:
     for i in range(n):
         x = states[i]
         swing, _ = antenna_swing(x, ROLL, motion[5:9])
-        position[i, 0], position[i, 1], position[i, 2] = x[0] + swing[0], x[1] + swing[1], x[8] + x[10] + swing[2]
+        position[i, 0], position[i, 1], position[i, 2] = x[0] + swing[0], x[1] + swing[1], x[8] + swing[2]
         velocity[i], _ = antenna_velocity(x, motion[5:9])
         acceleration[i, :2], _ = horizontal_acceleration(x)
         shaken, _ = pad_swing_acceleration(x, motion)
@@ -30,7 +30,7 @@ def kinematics(states: Array, motion: Array) -> tuple[Array, Array, Array]:
         hx, hy = np.cos(x[7]), np.sin(x[7])
         forward, pull = hx * x[2] + hy * x[3], hx * x[4] + hy * x[5]
         climbing = pull * x[9] + forward**2 * x[BEND]
-        acceleration[i, 2] = climbing - (motion[1] ** 2) * x[10] - 2.0 * motion[2] * motion[1] * x[11]
+        acceleration[i, 2] = climbing + x[11]
     return position, velocity, acceleration
 
 
@@ -38,7 +38,7 @@ def kinematics(states: Array, motion: Array) -> tuple[Array, Array, Array]:
 def kinematics_jacobian(x: Array, motion: Array) -> Array:
     """Return the Jacobian `(9, 24)` of position, velocity and acceleration."""
     G = np.zeros((9, SIZE))
-    G[0, 0], G[1, 1], G[2, 8], G[2, 10] = 1.0, 1.0, 1.0, 1.0
+    G[0, 0], G[1, 1], G[2, 8], G[8, 11] = 1.0, 1.0, 1.0, 1.0
     _, turn = antenna_swing(x, ROLL, motion[5:9])
     G[0:3] += turn
     _, G[3:6] = antenna_velocity(x, motion[5:9])
@@ -50,18 +50,17 @@ def kinematics_jacobian(x: Array, motion: Array) -> Array:
     G[8, 2], G[8, 3] = 2.0 * forward * x[BEND] * hx, 2.0 * forward * x[BEND] * hy
     G[8, 4], G[8, 5], G[8, 9], G[8, BEND] = x[9] * hx, x[9] * hy, pull, forward**2
     G[8, 7] = x[9] * (hx * x[5] - hy * x[4]) + 2.0 * forward * x[BEND] * (hx * x[3] - hy * x[2])
-    G[8, 10], G[8, 11] = -(motion[1] ** 2), -2.0 * motion[2] * motion[1]
     return G
 
 
 @compiled_kernel
 def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) -> tuple[Array, Array]:
-    """Return the means `(n, 24)` and the pad's position variances `(n, 3)` at `offset_s` (n,), not falling.
+    """Return the means `(n, 24)` and the pad's variances `(n, 4)` at `offset_s` (n,), not falling: place, rate upwards.
 
     The pad's, because a heading that is not well known moves it about an antenna that is.
     """
     n = len(offset_s)
-    means, variances = np.empty((n, SIZE)), np.empty((n, 3))
+    means, variances = np.empty((n, SIZE)), np.empty((n, 4))
     passed_s = 0.0
     for i in range(n):
         ahead_s = offset_s[i] - passed_s
@@ -71,7 +70,8 @@ def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) ->
         means[i] = x
         _, S = shifted(x, P, motion[5:8], 1.0)
         variances[i, 0], variances[i, 1] = S[0, 0], S[1, 1]
-        variances[i, 2] = S[8, 8] + S[10, 10] + 2.0 * S[8, 10]
+        _, rising = antenna_velocity(x, np.zeros(4))
+        variances[i, 2], variances[i, 3] = S[8, 8], (times(rising[2:3], S) @ rising[2])[0]
         if motion[12] > 0.0:
             _, H = pad_swing(x, ROLL, motion[8])
             H[:, 7] = 0.0
@@ -96,7 +96,8 @@ def forecast_modes(
 
     Returns:
         Position, velocity and acceleration, each (n, 3), heading and grade, each (n,), the tilt (n, 4) as
-        `imm_swing` has it, the pad's deviation (n, 3), and the present variance of the heading, rad^2.
+        `imm_swing` has it, the pad's deviations (n, 4) as `horizon` has them, and the present variance of the heading,
+        rad^2.
     """
     directed = with_direction(motion, modes, known_variance)
     x, P = combine(modes[0], modes[1], modes[2])

@@ -2,10 +2,10 @@
 
 `Modes` are means (2, 24), covariances (2, 24, 24) and probabilities (2,). Between measurements the vehicle may change
 from one mode to the other as a continuous Markov chain with the given mean dwell times. `motion` (16,) is the time
-constant of the acceleration, s, the heave's angular frequency, rad/s, damping and standard deviation, m, the time
-constant of the clock's difference, s, the lever arm (3,) from the antenna to the pad in V and the pad's height above
-the axis of roll, m, the time constant of what the accelerometer reads too much, s, and the same three numbers of roll
-and of pitch as of heave, rad.
+constant of the acceleration, s, the heave's angular frequency, rad/s, damping and standard deviation of its rate, m/s,
+the time constant of the clock's difference, s, the lever arm (3,) from the antenna to the pad in V and the pad's height
+above the axis of roll, m, the time constant of what the accelerometer reads too much, s, and the same three numbers of
+roll and of pitch as of heave, rad.
 """
 
 import math
@@ -14,18 +14,11 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
-from companion.vehicle.imm_kernels import (
-    BEND,
-    CLOCK,
-    LEAK,
-    advance,
-    bend_step,
-    curvature_left,
-    heave_step,
-    process_noise,
-)
+from companion.vehicle.imm_kernels import BEND, CLOCK, LEAK, advance
+from companion.vehicle.imm_noise import bend_step, curvature_left, process_noise
 from companion.vehicle.imm_sensors import turned
 from companion.vehicle.imm_swing import SIZE
+from companion.vehicle.oscillators import heave_step, smooth_step
 from companion.vehicle.small_matrices import carried_through
 
 Modes = tuple[Array, Array, Array]
@@ -100,7 +93,7 @@ def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple
     """
     steps = max(math.ceil(dt_s / STEP_MAX_S - 1e-9), 1)
     step_s = dt_s / steps
-    heave, heave_noise = heave_step(step_s, motion[1], motion[2], motion[3])
+    heave, heave_noise = smooth_step(step_s, motion[1], motion[2], motion[3])
     tilt, tilt_noise = np.empty((2, 2, 2)), np.empty((2, 2, 2))
     for i in range(2):
         tilt[i], tilt_noise[i] = heave_step(step_s, motion[10 + 3 * i], motion[11 + 3 * i], motion[12 + 3 * i])

@@ -8,7 +8,8 @@ import numpy as np
 
 from companion.config.estimation import ImmConfig, ImmModeConfig, SwingConfig
 from companion.core.data import Array
-from companion.vehicle.imm_kernels import CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST, HEADING_NOISE
+from companion.vehicle.deck_motion import rate_std_m_s
+from companion.vehicle.imm_noise import CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST, HEADING_NOISE
 from link.messages import PadGeometry, Vector3
 
 UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
@@ -42,7 +43,7 @@ class Numbers:
     Attributes:
         motion: (16,) as `imm_mixing` has it.
         dwell_s: (2,) of both modes.
-        noises: (2, 16) as `imm_kernels.process_noise` takes them, but for what depends on the state (`noises_with`).
+        noises: (2, 16) as `imm_noise.process_noise` takes them, but for what depends on the state (`noises_with`).
         lever_m: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll.
         prior_variances: (24,) of every state but position, offset and clock, when nothing else is known.
         course: (3,) as `imm_judgement.take_reading` takes it.
@@ -64,7 +65,7 @@ def swing_of(config: ImmConfig, *, is_afloat: bool) -> SwingConfig:
 def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
     """Return the numbers of `config` for a pad on `deck`."""
     swing = swing_of(config, is_afloat=deck.is_afloat)
-    heave = (2.0 * math.pi * swing.heave.frequency_hz, swing.heave.damping, swing.heave.std)
+    heave = (2.0 * math.pi * swing.heave.frequency_hz, swing.heave.damping, rate_std_m_s(swing.heave))
     level = (2.0 * math.pi * swing.tilt.frequency_hz, swing.tilt.damping, 0.0)  # until it is told
     lever_m = (*deck.antenna_to_pad_m, deck.pad_height_m)
     modes, heading = (config.steady, config.manoeuvre), config.heading
@@ -109,12 +110,12 @@ def noises_with(numbers: Numbers, receiver_m2_s: float, own_m2_s: float, *, turn
 def _prior_variances(config: ImmConfig, *, is_afloat: bool) -> Array:
     swing = swing_of(config, is_afloat=is_afloat)
     speed, acceleration = config.initial_speed_std_m_s**2, config.initial_acceleration_std_m_s2**2
-    heave = swing.heave.std**2
-    heave_rate = heave * (2.0 * math.pi * swing.heave.frequency_hz) ** 2
+    heave_rate = rate_std_m_s(swing.heave) ** 2
+    heave_change = heave_rate * (2.0 * math.pi * swing.heave.frequency_hz) ** 2
     curvature = config.heading.curvature_std_rad_m**2
     moving = [speed, speed, acceleration, acceleration, curvature, UNKNOWN_HEADING_VARIANCE]
     grade, bend = (0.0, 0.0) if is_afloat else (config.road.grade_std**2, config.road.bend_std_per_m**2)
-    vertical = [0.0, grade, heave, heave_rate]
+    vertical = [0.0, grade, heave_rate, heave_change]
     tilt = swing.tilt.std**2
     tilting = [tilt, tilt * (2.0 * math.pi * swing.tilt.frequency_hz) ** 2]
     driven = [bend, config.road.gravity_leak_std_m_s2**2, *tilting, *tilting, 0.0, 0.0]

@@ -10,7 +10,7 @@ from companion.vehicle.imm_swing import MOUNT, ROLL, ROLL_RATE, SIZE, antenna_sw
 PLACE = np.array([0, 1, 8])  # indices of the position
 OFFSET = np.array([12, 13, 14])
 TILT, DECK = np.arange(ROLL, MOUNT), np.arange(ROLL, SIZE)
-_RATE = np.array([2, 3, 11])  # what the velocity of the antenna has beside its swing
+_RATE = np.array([2, 3, 10])  # what the velocity of the antenna has beside its swing
 
 IndexArray = NDArray[np.intp]
 

@@ -1,4 +1,4 @@
-"""What of the turning models is opened to data that were rejected for too long, and are believed now."""
+"""Widens states of the turning models for data that were rejected for too long and are now accepted."""
 
 from typing import assert_never
 
@@ -9,7 +9,7 @@ from companion.core.data import Measurement, Quantity
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle.imm_numbers import Numbers
-from companion.vehicle.imm_opening import DECK, OFFSET, PLACE, TILT, open_place_and_offset, open_states
+from companion.vehicle.imm_opening import DECK, OFFSET, PLACE, open_place_and_offset, open_states
 from companion.vehicle.imm_sensors import observe
 from companion.vehicle.imm_state import KINDS, ImmState, is_placed_by_sightings, start_state
 from link.records import replace
@@ -20,7 +20,7 @@ _TOLD_BY = {  # the states that a quantity tells
     Quantity.HEADING: np.array([_HEADING]),
     Quantity.YAW_RATE: np.array([_CURVATURE]),
     Quantity.ACCELERATION: np.array([kernels.LEAK]),
-    Quantity.TILT: TILT,
+    Quantity.TILT: DECK,  # a unit that was moved on its mount contradicts, too
 }
 
 
@@ -72,7 +72,7 @@ def _move_frame(state: ImmState, sighting: Measurement, receivers: ReceiversConf
 
 
 def _restart(state: ImmState, place: Measurement, config: ImmConfig, numbers: Numbers) -> ImmState:
-    """Start anew at `place`, but for offset, heading, clock and deck."""
+    """Restart at `place`, but for offset, heading, clock and deck."""
     x, P = mixing.combine(*state.modes)
     means, covariances, weights = start_state(place, config, numbers).modes
     means[:, PLACE] += x[OFFSET]

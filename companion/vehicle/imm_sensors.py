@@ -67,11 +67,11 @@ def antenna_velocity(x: Array, lever: Array) -> tuple[Array, Array]:
     w = x[6] * speed
     hx, hy = math.cos(x[7]), math.sin(x[7])
     forward, climb = hx * x[2] + hy * x[3], x[9] - lever[0] * x[BEND]
-    z, H = np.array([x[2] + w * arm_y, x[3] - w * arm_x, forward * climb + x[11]]), np.zeros((3, SIZE))
+    z, H = np.array([x[2] + w * arm_y, x[3] - w * arm_x, forward * climb + x[10]]), np.zeros((3, SIZE))
     H[0, 2], H[0, 3] = 1.0 + x[6] * ux * arm_y, x[6] * uy * arm_y
     H[1, 2], H[1, 3] = -x[6] * ux * arm_x, 1.0 - x[6] * uy * arm_x
     H[2, 2], H[2, 3], H[2, 7] = hx * climb, hy * climb, (hx * x[3] - hy * x[2]) * climb
-    H[2, 9], H[2, 11], H[2, BEND] = forward, 1.0, -forward * lever[0]
+    H[2, 9], H[2, 10], H[2, BEND] = forward, 1.0, -forward * lever[0]
     H[0, 6], H[1, 6] = speed * arm_y, -speed * arm_x
     H[0, 7], H[1, 7] = w * arm_x, w * arm_y
     swing, change = antenna_swing(x, ROLL_RATE, lever)
@@ -94,8 +94,8 @@ def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Arra
     known = lever if sees_heading else np.zeros(4)
     z, H = np.zeros(m), np.zeros((m, SIZE))
     if kind in (POSITION, PAD):
-        z[0], z[1], z[2] = x[0], x[1], x[8] + x[10]
-        H[0, 0], H[1, 1], H[2, 8], H[2, 10] = 1.0, 1.0, 1.0, 1.0
+        z[0], z[1], z[2] = x[0], x[1], x[8]
+        H[0, 0], H[1, 1], H[2, 8] = 1.0, 1.0, 1.0
     if kind == POSITION:
         late, change = antenna_velocity(x, known)
         swing, turn = antenna_swing(x, ROLL, known)

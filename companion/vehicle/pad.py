@@ -1,8 +1,6 @@
-"""The landing pad now and over the horizon, from the forecast of the vehicle's antenna, and how near is on it; pure.
+"""The landing pad now and over the horizon, from the forecast of the vehicle's antenna, compiled in part.
 
-How near the pad's centre the drone has to be for what it touches to be the pad, the pad's own size says. The
-benchmark's pad is 1.5 m wide. On a smaller one the same shares of its width hold; a larger one changes nothing, for
-the configured radius is what a drone in gusts is to keep to.
+It is the pad as it is to be followed, without what it shakes to the sides. How near is on it says `pad_reach`.
 """
 
 import math
@@ -10,17 +8,28 @@ import math
 import numpy as np
 from msgspec import Struct
 
-from companion.config.companion import CompanionConfig
 from companion.core.data import Array, Forecast
 from companion.core.reasons import Cause, Reason
 from companion.vehicle.compiled import compiled_kernel
+from companion.vehicle.shake import PadSwing, swing_of
 from link.messages import PadGeometry
 
+KNOWN_SHARE = 1.0 / 3.0  # of half of the pad's width, the standard deviation of one that has to be seen: 0.25 m
 HEADING_UNKNOWN, NOT_DESCRIBED = Cause(Reason.HEADING_UNKNOWN), Cause(Reason.PAD_NOT_DESCRIBED)
 
-_CONE_SHARE = 0.4  # of half of the pad's width: 0.3 m on a pad of 1.5 m
-_CONTACT_SHARE = 0.8  # 0.6 m
-_KNOWN_SHARE = 1.0 / 3.0  # standard deviation of a pad that has to be seen: 0.25 m
+
+class FrameOffset(Struct, frozen=True, kw_only=True):
+    """How far the drone's frame is from that of the vehicle's fixes, as sightings of the pad tell.
+
+    Attributes:
+        distance_m: horizontally; None where it is not estimated.
+        std_m: its standard deviation.
+        is_confirmed: as many sightings have agreed on it, for as long, as it takes to believe them.
+    """
+
+    distance_m: float | None = None
+    std_m: float = math.inf
+    is_confirmed: bool = True
 
 
 class PadPath(Struct, frozen=True, kw_only=True, eq=False):
@@ -32,6 +41,7 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
         velocity_enu_m_s: (n, 3).
         acceleration_enu_m_s2: (n, 3).
         yaw_rad: heading of the vehicle now, None when unknown.
+        yaw_rate_rad_s: (n,) how fast it turns, None when that is unknown.
         position_std_m: (n, 3).
         is_coarse: the vehicle's fixes alone are too coarse to land by, if it sends any: only what the drone sees of the
             pad places it.
@@ -39,11 +49,10 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
         half_width_m: from its centre to the nearest edge; infinite until it is described.
         height_m: of its surface above the vehicle's road, or the water.
         is_afloat: it is on the water.
-        tilt_rad: (n, 2) roll and pitch of the vehicle against the road; None where it is not told.
+        swing: how its deck tilts and shakes; None where the vehicle does not tell.
         needs_heading: it is beside the antenna.
         unplaced: why the pad's place is not known; None when it is. Until then it is not landed on.
-        frame_offset_m: horizontally, of the drone's frame from the vehicle's fixes', as sightings tell; None without.
-        frame_offset_std_m: its standard deviation.
+        frame_offset: of the drone's frame from the vehicle's fixes'.
     """
 
     offset_s: Array
@@ -54,17 +63,19 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
     position_std_m: Array
     is_coarse: bool = False
     has_one_frame: bool = True
+    yaw_rate_rad_s: Array | None = None
     half_width_m: float = math.inf
     height_m: float = 0.0
     is_afloat: bool = False
-    tilt_rad: Array | None = None
+    swing: PadSwing | None = None
     needs_heading: bool = False
     unplaced: Cause | None = None
-    frame_offset_m: float | None = None
-    frame_offset_std_m: float = math.inf
+    frame_offset: FrameOffset = FrameOffset()
 
 
-def pad_path(forecast: Forecast, pad: PadGeometry | None, *, has_one_frame: bool = True) -> PadPath:
+def pad_path(
+    forecast: Forecast, pad: PadGeometry | None, *, has_one_frame: bool = True, is_confirmed: bool = True
+) -> PadPath:
     """Return where the pad will be.
 
     The lever arm from the antenna turns with the vehicle's heading and pitches with the grade: on a climb of 8 % a pad
@@ -77,6 +88,7 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None, *, has_one_frame: bool
         forecast: of the antenna, its first offset 0.
         pad: the vehicle's own description, None until it has answered.
         has_one_frame: both receivers' positions are in one frame.
+        is_confirmed: the sightings of the pad have agreed for long enough.
     """
     lever_x_m, lever_y_m, lever_z_m = pad.antenna_to_pad_m if pad is not None else (0.0, 0.0, 0.0)
     position = forecast.position_enu_m + np.array([0.0, 0.0, lever_z_m])
@@ -92,24 +104,41 @@ def pad_path(forecast: Forecast, pad: PadGeometry | None, *, has_one_frame: bool
         lever_m = np.array([lever_x_m, lever_y_m, lever_z_m])
         position = position + tilted_lever(tilted[:, [0, 1, 3]], lever_m)
         velocity = velocity + tilted_lever(tilted[:, [0, 2, 4]], lever_m)
+    acceleration, deck = forecast.acceleration_enu_m_s2, swing_of(forecast, 0.0 if pad is None else pad.height_m)
+    if deck is not None and deck.shake_enu.any():
+        still = np.zeros((3, len(position), 1))
+        position, velocity, acceleration = (
+            value - np.concatenate((part, zero), axis=1)
+            for value, part, zero in zip((position, velocity, acceleration), deck.shake_enu, still, strict=True)
+        )
     return PadPath(
         offset_s=forecast.offset_s,
         position_enu_m=position,
         velocity_enu_m_s=velocity,
-        acceleration_enu_m_s2=forecast.acceleration_enu_m_s2,
+        acceleration_enu_m_s2=acceleration,
         yaw_rad=None if forecast.yaw_rad is None else float(forecast.yaw_rad[0]),
+        yaw_rate_rad_s=_yaw_rate_rad_s(forecast),
         position_std_m=forecast.position_std_m,
         is_coarse=forecast.is_coarse,
         has_one_frame=has_one_frame,
         half_width_m=math.inf if pad is None else 0.5 * min(pad.size_m),
         height_m=0.0 if pad is None else pad.height_m,
         is_afloat=pad is not None and pad.is_afloat,
-        tilt_rad=None if forecast.tilt_rad is None else forecast.tilt_rad[:, ::2],
+        swing=deck,
         needs_heading=is_beside,
         unplaced=NOT_DESCRIBED if pad is None else HEADING_UNKNOWN if _is_about(forecast, pad) else None,
-        frame_offset_m=None if frame_offset is None else math.hypot(*frame_offset.tolist()),
-        frame_offset_std_m=forecast.frame_offset_std_m,
+        frame_offset=FrameOffset(
+            distance_m=None if frame_offset is None else math.hypot(*frame_offset.tolist()),
+            std_m=forecast.frame_offset_std_m,
+            is_confirmed=is_confirmed,
+        ),
     )
+
+
+def _yaw_rate_rad_s(forecast: Forecast) -> Array | None:
+    if forecast.yaw_rad is None or len(forecast.offset_s) < 2:
+        return None
+    return np.asarray(np.gradient(np.unwrap(forecast.yaw_rad), forecast.offset_s))
 
 
 def _is_about(forecast: Forecast, pad: PadGeometry) -> bool:
@@ -117,7 +146,7 @@ def _is_about(forecast: Forecast, pad: PadGeometry) -> bool:
     lever_m = math.hypot(*pad.antenna_to_pad_m[:2])
     if forecast.yaw_rad is None:
         return lever_m > 0.0
-    known_m = 0.5 * _KNOWN_SHARE * min(pad.size_m)
+    known_m = 0.5 * KNOWN_SHARE * min(pad.size_m)
     east_std_m, north_std_m, _ = forecast.position_std_m[0].tolist()
     return lever_m * forecast.yaw_std_rad > known_m and not max(east_std_m, north_std_m) < known_m
 
@@ -181,45 +210,3 @@ def slope_at(i: int, values: Array, step_s: Array) -> float:
     before, after = step_s[i - 1], step_s[i]
     back, ahead = -after / (before * (before + after)), before / (after * (before + after))
     return float(back * values[i - 1] + (after - before) / (before * after) * values[i] + ahead * values[i + 1])
-
-
-def cone_radius_at_pad_m(half_width_m: float, config: CompanionConfig) -> float:
-    """Return the radius of the descent's cone at the height of a pad that is twice `half_width_m` wide."""
-    return min(config.descent.cone.radius_at_pad_m, _CONE_SHARE * half_width_m)
-
-
-def cone_radius_m(height_m: float, half_width_m: float, config: CompanionConfig) -> float:
-    """Return how far beside the centre of a pad the drone may be at `height_m` above it while it descends."""
-    return cone_radius_at_pad_m(half_width_m, config) + config.descent.cone.slope * max(height_m, 0.0)
-
-
-def over_pad_radius_m(half_width_m: float, config: CompanionConfig) -> float:
-    """Return how far from the pad's centre what is touched is still the pad."""
-    return min(2.0 * config.descent.cone.radius_at_pad_m, _CONTACT_SHARE * half_width_m)
-
-
-def unseen_std_max_m(half_width_m: float, config: CompanionConfig) -> float:
-    """Return up to which standard deviation a pad is landed on that only what is seen of it can place."""
-    return min(config.descent.unseen.std_max_m, _KNOWN_SHARE * half_width_m)
-
-
-def is_too_small(pad: PadPath, config: CompanionConfig) -> bool:
-    """Return whether the pad is narrower than what a drone can be brought onto."""
-    return 2.0 * pad.half_width_m < config.descent.pad_width_min_m
-
-
-def is_vague(pad: PadPath, config: CompanionConfig) -> bool:
-    """Return whether the pad is not known well enough to come near it."""
-    return float(max(pad.position_std_m[0, :2].tolist())) > config.abort.position_std_max_m
-
-
-def is_unseen(pad: PadPath, config: CompanionConfig) -> bool:
-    """Return whether the pad has to be seen (again) before it is landed on.
-
-    Fixes of some decimetres or better place it by themselves where both receivers have one frame. Where they may not,
-    a first sighting tells the offset; between coarser fixes and the drone's own place lie metres, and what a sighting
-    said of them holds for seconds only.
-    """
-    return (pad.is_coarse or not pad.has_one_frame) and float(np.max(pad.position_std_m[0, :2])) > unseen_std_max_m(
-        pad.half_width_m, config
-    )

@@ -1,4 +1,4 @@
-"""Compiled products and inverses of the filter's small matrices, which are mostly zeros.
+"""Compiled products and inverses of the filter's small matrices, which are mostly zeros, and the Kalman update by them.
 
 Of the 225 numbers of a transition fewer than 50 are not zero: leaving out the others takes a third of the time of the
 library's dense product, and needs no linear algebra library loaded.
@@ -70,3 +70,32 @@ def inverse_of(covariance: Array) -> tuple[Array, float]:
             for k in range(j, i):
                 back[i, j] -= factor[i, k] * back[k, j] * back[i, i]
     return times(back.T, back), log_determinant
+
+
+@compiled_kernel
+def correct(x: Array, P: Array, residual: Array, H: Array, R: Array) -> tuple[Array, Array, float, float]:
+    """Return mean, covariance, NIS and log-likelihood after a measurement.
+
+    The covariance is Joseph's form `(1 - KH) P (1 - KH)' + KRK'`, multiplied out in an order that has m rows only.
+
+    Args:
+        x: mean (n,).
+        P: covariance (n, n).
+        residual: measured minus expected (m,).
+        H: Jacobian (m, n).
+        R: covariance of the measurement (m, m).
+    """
+    HP = times(H, P)
+    inverse, log_determinant = inverse_of(times(H, HP.T) + R)
+    K = times(inverse, HP)  # transposed, (m, n)
+    nis = 0.0
+    for i in range(len(residual)):
+        for j in range(len(residual)):
+            nis += residual[i] * inverse[i, j] * residual[j]
+    kept = less_outer(P, K, HP)
+    joseph = less_outer(kept, times(H, kept.T) - times(R, K), K)
+    log_likelihood = -0.5 * (nis + log_determinant + len(residual) * math.log(2.0 * math.pi))
+    y = x.copy()
+    for i in range(len(residual)):
+        y += residual[i] * K[i]
+    return y, 0.5 * (joseph + joseph.T), nis, log_likelihood

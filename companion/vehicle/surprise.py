@@ -1,4 +1,4 @@
-"""Whether the vehicle has done what its data did not let expect, told in hindsight; pure.
+"""Whether the vehicle has done what its data had not led to expect, judged in hindsight; pure.
 
 What is known of a vehicle is as old as its data: 0.1 s over a good link, 0.6 s over a poor one. What it
 does meanwhile is a guess, which can be checked once the data of that moment are there. A guess that was off by nearly

@@ -1,6 +1,6 @@
 """What a frame holds, as one of pymavlink's messages, and a message's frame.
 
-pymavlink itself finds out anew for each frame how its kind of message is laid out, and makes a message's header twice,
+pymavlink itself finds out again for each frame how its kind of message is laid out, and makes a message's header twice,
 which takes half of its time; here a layout is found out once for each kind. Its classes and its checksum are used as
 they are.
 """

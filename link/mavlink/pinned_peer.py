@@ -1,6 +1,6 @@
 """Holding a session to the one peer in which its autopilot was found, however many speak to the same port.
 
-Whoever sends from another address or port is not listened to. The peer is looked for anew once the autopilot has been
+Whoever sends from another address or port is not listened to. The peer is looked for again once the autopilot has been
 silent for as long as the session takes for a loss. Somebody who sends under the peer's own address is only kept out by
 signing.
 """

@@ -186,7 +186,7 @@ class ParameterReader:
         return [ParameterMissing(t_ns=t_ns, name=name) for name, question in due if not self._ask_again(name, t_ns)]
 
     def start_over(self, t_ns: int) -> None:
-        """Asks for everything outstanding anew, as after a restart."""
+        """Asks for everything outstanding again, as after a restart."""
         for name in self._questions:
             self._questions[name] = _Question(attempts=1, due_ns=t_ns + _PARAMETER_RETRY_NS)
             self._send(name)

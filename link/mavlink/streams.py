@@ -96,7 +96,7 @@ class StreamRequests:
                 self._ask(message_id, stream.interval_us, t_ns)
 
     def start_over(self, t_ns: int) -> None:
-        """Asks for everything anew, as after a restart."""
+        """Asks for everything again, as after a restart."""
         for message_id, stream in self._streams.items():
             if stream.state is not _State.ASKED:
                 self._ask(message_id, stream.interval_us, t_ns)

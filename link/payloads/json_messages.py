@@ -88,7 +88,16 @@ class _ContactForecast(_Report):
     misses_tilt: Annotated[Probability, Field(description="unsafe, by its tilt")]
 
 
-class _LandingStatus(_Report):
+class _LinkStatus(_Report):
+    mavlink_bad_bytes: Annotated[Count, Field(description="bytes from the autopilot that were no message")]
+    zenoh_bad_payloads: Annotated[Count, Field(description="payloads that were refused")]
+    refused: Annotated[str, Field(description="what was refused most in the last 5 s, and why; empty if nothing")]
+    open_to_strangers: Annotated[
+        tuple[str, ...], Field(description="links by which somebody without a key could take part, in words")
+    ]
+
+
+class _LandingStatus(_LinkStatus):
     """How the landing of the drone on the vehicle goes."""
 
     model_config = ConfigDict(title="Landing status")
@@ -106,20 +115,17 @@ class _LandingStatus(_Report):
     ]
     height_above_pad_m: Annotated[float | None, Field(description="m, of the feet; null if unknown")]
     time_to_contact_s: Annotated[float | None, Field(description="s; null unless descending")]
-    mavlink_bad_bytes: Annotated[Count, Field(description="bytes from the autopilot that were no message")]
-    zenoh_bad_payloads: Annotated[Count, Field(description="payloads that were refused")]
-    refused: Annotated[str, Field(description="what was refused most in the last 5 s, and why; empty if nothing")]
     armed: Annotated[bool, Field(description="whether the autopilot reports its motors armed")]
     fix_age_s: Annotated[float | None, Field(description="s since the newest fix was taken; null before the first")]
-    open_to_strangers: Annotated[
-        tuple[str, ...], Field(description="links by which somebody without a key could take part, in words")
-    ]
     flown_by: Annotated[
         str, Field(description="companion while it follows the setpoints, failsafe, else other; empty if unknown")
     ]
     battery_share: Annotated[float | None, Field(description="left of the battery, 0 to 1; null if unknown")]
     contact_forecast: Annotated[
         _ContactForecast | None, Field(description="of the contact, while it descends; it decides nothing")
+    ]
+    unverified: Annotated[
+        tuple[str, ...], Field(description="what of the pad's place is believed since nothing can verify it, in words")
     ]
 
 

@@ -13,6 +13,7 @@ import typer
 from typer.main import get_command
 
 from link.errors import UserError
+from link.program.clock import collect_rarely
 from link.program.help import NO_EXAMPLES, App, Examples, explain
 from link.program.printable import printable
 
@@ -100,6 +101,7 @@ def run_app(name: str, app: App, args: Sequence[str] | None = None) -> int:
     Returns:
         0, the function's own code, 2 after a mistake of the user, 130 after Ctrl-C.
     """
+    collect_rarely()
     command = command_of(app)
     try:
         arguments = _with_defaults(sys.argv[1:] if args is None else args)

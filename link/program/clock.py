@@ -34,7 +34,7 @@ class ClockTick:
 class TickFilter:
     """Tells the simulator's ticks from strays: a tick far from the last one counts when others go on from there.
 
-    So a broken payload does not move the time, and a simulator that is started anew does.
+    So a broken payload does not move the time, and a simulator that is restarted does.
     """
 
     def __init__(self) -> None:
@@ -103,7 +103,7 @@ class SimulatedClock:
     """The simulator's time as its ticks tell it, run on between them at the rate measured over the last ticks.
 
     It never goes back: when it has run ahead of the simulator it stands until the simulator has caught up, and when
-    the simulator is started anew, at whatever time, it runs on from where it was; it is no UTC from then on.
+    the simulator is restarted, at whatever time, it runs on from where it was; it is no UTC from then on.
     Without ticks it stops `EXTRAPOLATION_MAX_S` of wall time after the last one. For use from one thread.
     """
 
@@ -165,12 +165,26 @@ class SimulatedClock:
         return duration_s / max(self.rate, _RATE_MIN)
 
 
+_USUALLY = gc.get_threshold()
+_COLLECTED_AFTER = (50_000, 20, 20)
+"""Objects and collections after which a program that starts looks for garbage; Python's own 700 cost a fifth of it."""
+
+
+def collect_rarely() -> None:
+    """Look for garbage rarely while a program starts: what its modules make stays, and each look goes through it anew.
+
+    Source: `gc.set_threshold` in the Python library reference.
+    """
+    gc.set_threshold(*_COLLECTED_AFTER)
+
+
 def spare_present_objects() -> None:
     """Take all objects that there are now out of every later collection of garbage.
 
     A full collection looks at everything that is alive: with numba's compiler loaded that is 140 to 200 ms, ten control
     periods, at an instant that nobody chooses. What starting a program made is hardly ever garbage; what is made from
-    now on is still looked after. Source: `gc.freeze` in the Python library reference.
+    now on is still looked after, and as often as is usual. Source: `gc.freeze` in the Python library reference.
     """
     gc.collect()
     gc.freeze()
+    gc.set_threshold(*_USUALLY)

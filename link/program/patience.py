@@ -16,11 +16,12 @@ class Patience:
 
     Args:
         program: its name.
+        doing: what it does.
         after_s: from the beginning of the block.
     """
 
-    def __init__(self, program: str, after_s: float = _AFTER_S) -> None:
-        self._timer = threading.Timer(after_s, lambda: sys.stderr.write(f"{program}: {PATIENCE}\n"))
+    def __init__(self, program: str, doing: str = PATIENCE, after_s: float = _AFTER_S) -> None:
+        self._timer = threading.Timer(after_s, lambda: sys.stderr.write(f"{program}: {doing}\n"))
         self._timer.daemon = True
 
     def __enter__(self) -> Self:

@@ -120,6 +120,6 @@ def _value(text: str) -> Any:
     """Return a value as TOML reads it; what is none, such as a bare word, is a text."""
     try:
         table = tomllib.loads(f"value = {text}")
-    except (tomllib.TOMLDecodeError, RecursionError):
+    except (ValueError, RecursionError):  # no TOML, or an integer of thousands of digits
         return text
     return table["value"] if table.keys() == {"value"} else text

@@ -13,13 +13,14 @@ def status_rows(status: LandingStatus | None) -> list[Row]:
     velocity = None if status is None else status.relative_velocity_enu_m_s
     return [
         ("height above the pad", number(None if position is None else position[2], "m")),
-        ("distance from its centre", number(None if position is None else math.hypot(*position[:2]), "m")),
+        ("horizontal distance", number(None if position is None else math.hypot(*position[:2]), "m")),
         ("east, north, up", _vector(position, "m")),
         ("relative velocity", _vector(velocity, "m/s")),
         ("time to touchdown", number(None if status is None else status.time_to_contact_s, "s")),
         ("contact, if it goes on", _forecast(None if status is None else status.contact_forecast)),
         ("age of the last fix", number(None if status is None else status.fix_age_s, "s")),
         ("refused data", "-" if status is None or not status.refused else status.refused),
+        ("not verified", "-" if status is None or not status.unverified else "; ".join(status.unverified)),
     ]
 
 
@@ -27,7 +28,7 @@ def link_rows(received: int, sent: int, lost: int, bad_bytes: int, bad_payloads:
     """Return how the companion's links did: MAVLink messages, bytes that were none, and payloads that were refused."""
     return [
         ("messages in, out, lost", f"{received}, {sent}, {lost}"),
-        ("bad bytes, bad payloads", f"{bad_bytes}, {bad_payloads}"),
+        ("bad bytes, payloads", f"{bad_bytes}, {bad_payloads}"),
     ]
 
 

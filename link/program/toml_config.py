@@ -12,13 +12,14 @@ from pydantic_core import ErrorDetails
 
 from link.errors import UserError
 from link.program.near_names import key_hint, models_in
+from link.program.text_file import read_text
 
 Location = tuple[int | str, ...]
 Fields = Mapping[str, FieldInfo]
 
 Positive = Annotated[float, Field(gt=0.0, le=1e4)]
 NotNegative = Annotated[float, Field(ge=0.0, le=1e4)]
-"""Lengths, times, speeds and their kin: what is beyond the bound was meant in another unit."""
+"""A length, time or speed beyond this was meant in another unit."""
 
 _LINE_MAX = 200  # characters of what is said about one mistake
 _MISTAKES_MAX = 3  # told of one file, the others are counted
@@ -109,13 +110,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     Raises:
         UserError: it cannot be read, or is no TOML.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read ({error.strerror})") from None
-    except UnicodeDecodeError:
-        raise UserError(f"{path}: not UTF-8 text") from None
-    return parse_toml(text, str(path))
+    return parse_toml(read_text(path), str(path))
 
 
 def parse_toml(text: str, source: str) -> dict[str, Any]:
@@ -128,6 +123,8 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise UserError(f"{source}: not valid TOML ({error})") from None
+    except ValueError as error:  # an integer of thousands of digits
+        raise UserError(f"{source}: not valid TOML ({str(error).partition(';')[0]})") from None
     except RecursionError:
         raise UserError(f"{source}: not valid TOML (nested too deep)") from None
 

@@ -11,21 +11,57 @@ from collections.abc import Callable
 import zenoh
 import zenoh.ext
 
-from link.messages import Command, CommandReply, LandingStatus, Order
+from link.messages import Command, CommandReply, LandingStatus, Order, PadGeometry
 from link.payloads import json_messages
+from link.payloads.checks import PayloadError
 from link.program.toml_config import load_config
 from link.ros2 import foreign
 from link.ros2.land_action import LandAction
 from link.ros2.names import Endpoint, EntityKind, Qos, check_name, publishers_key
 from link.ros2.options import Ros2Options
-from link.ros2.pad_source import PadSource
 from link.ros2.ros_node import LATCHED, RosNode, RosPublisher
 from link.ros2.routes import Route, changed, routes, topic, trigger, trigger_reply
 from link.ros2.topic_map import PadTopics, TopicMap
+from link.zenoh.inbox import Inbox
 from link.zenoh.keys import Keys
 from link.zenoh.library_config import open_library_session
 from link.zenoh.options import ZenohOptions
-from link.zenoh.session import INBOX_CAPACITY, Alive, Inbox, Sample, ZenohSession
+from link.zenoh.session import INBOX_CAPACITY, Alive, Sample, ZenohSession
+
+_FRAMES_MAX = 1000  # of a robot; what is told beyond them is no robot's
+
+
+class PadSource:
+    """Tells the pad once it is known.
+
+    Args:
+        pad: of the map.
+        transforms: into which static transforms come; None where the map says the place.
+    """
+
+    def __init__(self, pad: PadTopics, transforms: Inbox | None) -> None:
+        self._pad = pad
+        self._transforms = transforms
+        self._known: foreign.Transforms = {}
+
+    def geometry(self) -> PadGeometry | None:
+        """Return the pad, None while the transforms do not say where it is."""
+        pad, lever = self._pad, self._pad.antenna_to_pad_m
+        if self._transforms is not None:
+            for sample in self._transforms.take():
+                self._learn(sample.payload)
+            lever = foreign.lever(self._known, pad.vehicle_frame, pad.antenna_frame, pad.frame)
+        if lever is None:
+            return None
+        return PadGeometry(size_m=pad.size_m, height_m=pad.height_m, antenna_to_pad_m=lever)
+
+    def _learn(self, payload: bytes) -> None:
+        try:
+            told = foreign.transforms_of(payload)
+        except PayloadError:
+            return
+        if len(self._known | told) <= _FRAMES_MAX:
+            self._known |= told
 
 
 class Ros2Session(ZenohSession):

@@ -2,9 +2,12 @@
 
 from link.zenoh.inbox import WakeUp
 
+_TOKENS_MAX = 100
+"""On a key with wildcards; no network has so many drones at one vehicle, and each token costs time in every step."""
+
 
 class Alive:
-    """Whether anybody declares a liveliness token on a key."""
+    """Whether anybody declares a liveliness token on a key; tokens beyond a hundred are not taken note of."""
 
     def __init__(self, wake_up: WakeUp) -> None:
         self._wake_up = wake_up
@@ -22,5 +25,8 @@ class Alive:
 
     def update(self, key: str, *, is_alive: bool) -> None:
         """Take the news of a token; for the receiving thread."""
-        (self._keys.add if is_alive else self._keys.discard)(key)
+        if not is_alive:
+            self._keys.discard(key)
+        elif len(self._keys) < _TOKENS_MAX:
+            self._keys.add(key)
         self._wake_up.set()

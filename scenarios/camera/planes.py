@@ -16,6 +16,8 @@ from scenarios.camera.surfaces import Surface
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
 
+_EVERY = 4  # points of a picture, along and across: enough to find where a surface is
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class View:
@@ -69,23 +71,33 @@ def fills(surface: Surface, view: View, height_m: float, rays: Floats) -> bool:
 
 def paint(albedo: Floats, surface: Surface, onto_plane: Array, rays: Floats) -> None:
     """Lay a surface over what is there already."""
-    middle = rays[rays.shape[0] // 2, rays.shape[1] // 2]
-    texels = _texels_per_point(surface, onto_plane, rays, middle)
+    texels = _texels_per_point(surface, onto_plane, rays)
     level = min(max(math.floor(math.log2(max(texels, 1e-6))), 0), len(surface.levels) - 1)
     texture = surface.levels[level]
     at = on_plane(surface.from_plane(level) @ onto_plane, rays)
     if surface.repeats:
         albedo[:] = remapped(texture, at, cv2.BORDER_WRAP)
         return
-    shape = texture.shape
-    inside = (at[..., 0] > -0.5) & (at[..., 0] < shape[1] - 0.5) & (at[..., 1] > -0.5) & (at[..., 1] < shape[0] - 0.5)
+    inside = _is_inside(at, texture)
     if inside.any():
         np.copyto(albedo, remapped(texture, at, cv2.BORDER_REPLICATE), where=inside)
 
 
-def _texels_per_point(surface: Surface, onto_plane: Array, rays: Floats, middle: Floats) -> float:
-    """Return how many of the finest texels a point of the picture is wide, in its middle."""
+def _is_inside(at: Floats, texture: Floats) -> NDArray[np.bool_]:
+    rows, columns = texture.shape
+    x, y = at[..., 0], at[..., 1]
+    return np.asarray((x > -0.5) & (x < columns - 0.5) & (y > -0.5) & (y < rows - 0.5))
+
+
+def _texels_per_point(surface: Surface, onto_plane: Array, rays: Floats) -> float:
+    """Return how many of the finest texels a point of the picture is wide, in the middle of what the surface fills."""
+    middle = rays[rays.shape[0] // 2, rays.shape[1] // 2]
+    onto_texels = surface.from_plane(0) @ onto_plane
+    if not surface.repeats:  # elsewhere the plane may be much farther away, and its texels far too coarse
+        some = np.ascontiguousarray(rays[::_EVERY, ::_EVERY])
+        inside = _is_inside(on_plane(onto_texels, some), surface.levels[0])
+        middle = some[inside].mean(axis=0) if inside.any() else middle
     step = float(rays[0, 1, 0] - rays[0, 0, 0])
     three = (middle + np.array([[0.0, 0.0], [step, 0.0], [0.0, step]])).reshape(-1, 1, 2)
-    at = cv2.perspectiveTransform(three, surface.from_plane(0) @ onto_plane).reshape(3, 2)
+    at = cv2.perspectiveTransform(three, onto_texels).reshape(3, 2)
     return float(math.sqrt(abs(np.linalg.det(at[1:] - at[0]))))

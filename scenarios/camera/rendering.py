@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from companion.eyes.board import BoardConfig
 from companion.eyes.picture import Box, box_around
 from scenarios.camera.exposure import develop, exposure_for
-from scenarios.camera.lens import CAMERA, FOCAL_PX, Lens, defocus_std_px, smear
+from scenarios.camera.lens import CAMERA, FOCAL_PX, MARGIN_PX, Lens, defocus_std_px, smear
 from scenarios.camera.lighting import Light, glare, lamp_lit, lamp_lx
+from scenarios.camera.optics import Optics, draw_drops, rolled, seen_through
 from scenarios.camera.planes import View, fills, on_plane, paint, to_plane, where_on_plane
 from scenarios.camera.surfaces import board_surface, road_surface, roof_surface
 
@@ -50,10 +51,13 @@ class Renderer:
     Args:
         vehicle: that is seen.
         dirt_share: of the board that is covered.
-        rng: of the dirt and of the noise.
+        rng: of the dirt, of the drops and of the noise.
+        optics: shutter and drops.
     """
 
-    def __init__(self, vehicle: Vehicle, dirt_share: float, rng: np.random.Generator) -> None:
+    def __init__(
+        self, vehicle: Vehicle, dirt_share: float, rng: np.random.Generator, optics: Optics | None = None
+    ) -> None:
         self._roof_height_m = vehicle.roof_height_m
         self._road = road_surface()
         self._roof = roof_surface(vehicle.length_m, vehicle.width_m, vehicle.paint)
@@ -61,6 +65,8 @@ class Renderer:
         self._lens = Lens(CAMERA)
         self._noise = rng.standard_normal((_NOISE_SIZE, _NOISE_SIZE)).astype(np.float32)
         self._rng = rng
+        self._readout_s = 0.0 if optics is None else optics.readout_s
+        self._drops = None if optics is None or optics.wet_share == 0.0 else draw_drops(optics.wet_share, rng)
 
     def render(self, view: View, light: Light, box: Box) -> NDArray[np.uint8]:
         """Return the shades of a part of the picture; the noise is another one each time.
@@ -102,22 +108,39 @@ class Renderer:
         motion_px = _at_most(self._motion_px(view) * exposure.duration_s, _MOTION_MAX_PX)
         margin = math.ceil(3.0 * blur_px + 0.5 * float(np.hypot(*motion_px)) + 1.0)
         inner = self._lens.within(Box(box.left - margin, box.top - margin, box.right + margin, box.bottom + margin))
-        lit = self._lit(view, light, self._lens.rays(inner, is_fine=is_fine))
+        lit = self._lit(view, light, self._rays(view, inner, is_fine=is_fine))
         if is_fine:
             lit = np.asarray(cv2.resize(lit, (lit.shape[1] // 2, lit.shape[0] // 2), interpolation=cv2.INTER_AREA))
         lit = smear(np.asarray(cv2.GaussianBlur(lit * self._lens.vignetting(inner), (0, 0), blur_px)), motion_px)
+        if self._drops is not None:
+            rows, columns = (slice(a + MARGIN_PX, b + MARGIN_PX) for a, b in (inner[1::2], inner[::2]))
+            lit = seen_through(lit, self._drops[rows, columns])
         left, top = box.left - inner.left, box.top - inner.top
         part = lit[top : top + box.bottom - box.top, left : left + box.right - box.left]
         return develop(part * np.float32(exposure.shades_lx), exposure, self._draw_noise(part.shape))
 
+    def _rays(self, view: View, box: Box, *, is_fine: bool) -> Floats:
+        """Return where the pixels in a box look, each when its row is read."""
+        rays = self._lens.rays(box, is_fine=is_fine)
+        if self._readout_s == 0.0:
+            return rays
+        return rolled(rays, box, view, self._roof_height_m, self._readout_s)
+
     def _depth_m(self, view: View) -> float:
-        """Return how far the pad is along the camera's axis: what is focused on and exposed for."""
-        pad_c = view.R_VC.T @ (np.array([0.0, 0.0, self._roof_height_m]) - view.camera_m)
-        return max(float(pad_c[2]), 0.03)
+        """Return how far what is looked at is along the camera's axis: what is exposed for, and how blurred it is."""
+        return max(float(self._looked_at_c(view)[2]), 0.03)
+
+    def _looked_at_c(self, view: View) -> Array:
+        """Return the place (3,) in C on the pad nearest to the axis; from near by its middle may be out of sight."""
+        axis, above_m = view.R_VC[:, 2], float(view.camera_m[2]) - self._roof_height_m
+        met = view.camera_m[:2] + axis[:2] * max(above_m, 0.0) / max(-float(axis[2]), 0.1)
+        half = np.array([0.0, 0.0] if self._board is None else self._board.corner_m)
+        at = np.array([*np.clip(met, -half, half), self._roof_height_m])
+        return np.asarray(view.R_VC.T @ (at - view.camera_m))
 
     def _motion_px(self, view: View) -> Array:
         """Return how fast the pad moves in the picture, pixels a second."""
-        pad_c = view.R_VC.T @ (np.array([0.0, 0.0, self._roof_height_m]) - view.camera_m)
+        pad_c = self._looked_at_c(view)
         rate = -view.R_VC.T @ view.velocity_m_s - np.cross(view.turning_c_rad_s, pad_c)
         z = max(float(pad_c[2]), 0.03)
         return np.asarray(FOCAL_PX * (rate[:2] - pad_c[:2] / z * rate[2]) / z)

@@ -190,7 +190,7 @@ def _lines(path: Path, data: bytes) -> list[Flown]:
         for one in found:
             _task_of(one.row)
     except (ValueError, RecursionError, AttributeError, KeyError, TypeError) as error:
-        raise UserError(f"{path}: a line of it is no landing ({error!r}); begin anew in another folder") from None
+        raise UserError(f"{path}: a line of it is no landing ({error!r}); start again in another folder") from None
     return found
 
 

@@ -22,7 +22,7 @@ _MEASURES = (
 )
 _REASONS = {
     "aborts_by_reason": "Approaches broken off, by reason",
-    "begun_anew_by_reason": "Approaches aligned or chased anew, by reason",
+    "begun_anew_by_reason": "Approaches that began again, by reason",
     "not_landed_by_reason": "Ends of landings that were none, by reason",
 }
 _TIERS = (Tier.S3, Tier.S2, Tier.S1, Tier.S0, Tier.ABORT, Tier.UNSAFE)

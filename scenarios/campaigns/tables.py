@@ -6,7 +6,7 @@ from typing import Any, TextIO
 
 from scenarios.campaigns.intervals import banded
 from scenarios.campaigns.sheets import Sheet, open_console, print_sheets
-from scenarios.catalogue.firmware_option import firmware_text
+from scenarios.catalogue.firmware_option import firmware_text, without_firmware
 from scenarios.recordings.reason_counts import add_counts, counts_text
 from scenarios.scoring.score import Tier
 
@@ -89,10 +89,10 @@ _COMPUTING: tuple[Column, ...] = (
 
 _HEAD = ("cell", "firmware")
 _CONTACT_TITLE = "At contact (median, 95th percentile; tilt over trim), and the estimate's error in the descent"
-_WHY = "Why: approaches broken off, approaches aligned or chased anew, ends of landings that were none"
+_WHY = "Why approaches were broken off or began again, and why nothing landed"
 _REASONS = {
     "aborts_by_reason": "broken off by",
-    "begun_anew_by_reason": "begun anew for",
+    "begun_anew_by_reason": "began again for",
     "not_landed_by_reason": "not landed for",
 }
 
@@ -101,7 +101,9 @@ _SHARES = {"s1_or_better": "S1 or better", "s2_quality": "S2 quality", "unsafe":
 
 def _sheet(title: str, columns: Sequence[Column], cells: Sequence[Cell]) -> Sheet:
     """Return a row a cell."""
-    rows = tuple((cell["cell"], cell["firmware"], *(text(cell) for _, text in columns)) for cell in cells)
+    rows = tuple(
+        (without_firmware(cell["cell"]), cell["firmware"], *(text(cell) for _, text in columns)) for cell in cells
+    )
     return Sheet(title=title, head=(*_HEAD, *(heading for heading, _ in columns)), rows=rows, texts=len(_HEAD))
 
 
@@ -118,7 +120,7 @@ def _reasons_sheet(cells: Sequence[Cell]) -> list[Sheet]:
     head = (*_HEAD, "approaches", *_REASONS.values())
     rows = tuple(
         (
-            cell["cell"],
+            without_firmware(cell["cell"]),
             cell["firmware"],
             str(cell["approaches"]),
             *(counts_text(cell[name]) or "-" for name in _REASONS),

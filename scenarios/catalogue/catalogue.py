@@ -15,16 +15,32 @@ from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
+from companion.config.integrity import ReceiverFrames
 from link.errors import UserError
 from link.program.toml_config import merge, read_toml, validate
 from scenarios.catalogue.placement import place_drone
-from scenarios.catalogue.receivers import tell_of_one_frame
 from scenarios.catalogue.silence import look_out_for_silent_vehicle
 from scenarios.catalogue.world_names import names_worlds, parse_world_name
 from scenarios.catalogue.worlds import named_world
 from scenarios.config import Scenario
+from scenarios.worlds.odd import slices
+
+
+def tell_of_one_frame(scenario: Scenario) -> Scenario:
+    """Return `scenario` with a companion that knows of receivers with one source of corrections, if they have one.
+
+    What the file says of `receiver_frames` stays.
+    """
+    system = scenario.system
+    integrity = system.companion.integrity
+    if scenario.sensors.frame_offset_m > 0.0 or "receiver_frames" in integrity.model_fields_set:
+        return scenario
+    integrity = integrity.model_copy(update={"receiver_frames": ReceiverFrames.ONE})
+    companion = system.companion.model_copy(update={"integrity": integrity})
+    return scenario.model_copy(update={"system": system.model_copy(update={"companion": companion})})
+
 
 Table = dict[str, Any]
 _DEFAULT_PRESETS = {
@@ -53,10 +69,13 @@ def list_scenarios() -> list[Entry]:
 
 
 def list_presets() -> dict[str, tuple[str, ...]]:
-    """Return the names of the presets by their section, the default one first."""
+    """Return what may be written behind a name, presets and plain options, by section; the default one first."""
+    named = {section: (_presets(section), default) for section, default in _DEFAULT_PRESETS.items()}
+    fields = {option: Scenario.model_fields[option] for option in _PLAIN_OPTIONS}
+    plain = {option: (get_args(field.annotation), field.default) for option, field in fields.items()}
     return {
-        section: tuple(sorted(_presets(section), key=lambda name: (name != default, name)))
-        for section, default in _DEFAULT_PRESETS.items()
+        section: tuple(sorted(names, key=lambda name, first=default: (name != first, name)))
+        for section, (names, default) in (named | plain).items()
     }
 
 
@@ -116,7 +135,7 @@ def _find_table(name: str, place: str = "") -> Table:
     try:
         return _scenarios()[name]
     except KeyError:
-        raise _unknown("scenario", name, list(_scenarios()), "; `scenarios list` shows all", place) from None
+        raise _unknown("scenario", name, [*_scenarios(), *slices()], "; `scenarios list` shows all", place) from None
 
 
 def _unknown(what: str, name: str, known: list[str], hint: str = "", place: str = "") -> UserError:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from link.errors import UserError
 from scenarios.catalogue.firmware_option import OPTION, with_firmware
 from scenarios.config import FIRMWARES, FirmwareName
-from scenarios.worlds.world import SLICES
+from scenarios.worlds.odd import slices
 
 _WHOLE = re.compile(r"(?P<slice>[^@+]+)(?:@(?P<seed>\d+))?(?:\+(?P<option>.*))?")
 _STARTS = ("world:", "world@", "world+")
@@ -49,10 +49,10 @@ def parse_world_name(name: str) -> WorldName:
     """
     found = _WHOLE.fullmatch(name)
     if found is None:
-        raise UserError(f"'{name}' names no world: write SLICE@SEED, such as {SLICES[-1]}@1")
+        raise UserError(f"'{name}' names no world: write SLICE@SEED, such as {slices()[-1]}@1")
     slice_name, seed, option = found["slice"], found["seed"], found["option"]
-    if slice_name not in SLICES:
-        raise UserError(f"no slice of the worlds is called '{slice_name}': take one of {', '.join(SLICES)}")
+    if slice_name not in slices():
+        raise UserError(f"no slice of the worlds is called '{slice_name}': take one of {', '.join(slices())}")
     return WorldName(
         slice=slice_name,
         seed=None if seed is None else int(seed),

@@ -43,8 +43,16 @@ SCENARIOS = {
     "fuzz": ("scenarios fuzz --end autopilot --firmware ardupilot --link tcpin --frames 100000",),
     "sortie": ("scenarios sortie straight_10 --seeds 2 --firmware both", "scenarios sortie urban --first-seed 30000"),
     "retries": ("scenarios retries --seeds 20", "scenarios retries circle_5 --height 0.5 --firmware ardupilot"),
+    "attack": (
+        "scenarios attack",
+        "scenarios attack --mavlink udpout:127.0.0.1:14540 --stranger tcp/127.0.0.1:7447",
+    ),
     "faults": ("scenarios faults --workers 1 --firmware px4",),
     "fly": ("scenarios fly straight_5 --ship 5     # with ArduPilot's own simulation, started before",),
+    "identify": (
+        "scenarios identify --mavlink udpin:127.0.0.1:14540     # with PX4's or ArduPilot's own simulation",
+        "scenarios identify --firmware px4 --parameter MPC_XY_P=1.2 --json",
+    ),
     "camera": ("scenarios camera straight_5+camera=day",),
     "eyes": ("scenarios eyes --frames 800 --bare 400 --seed 100",),
     "ros2": ("scenarios ros2 topics",),

@@ -77,12 +77,13 @@ def _space_of(request: "Request") -> "Space":
     """
     from scenarios.falsify.search import Space
     from scenarios.falsify.space import MEDIAN, searched
+    from scenarios.worlds.odd import slices
     from scenarios.worlds.seeds import HELD_BACK_FROM
-    from scenarios.worlds.world import SLICES, draw_world, quantities
+    from scenarios.worlds.world import draw_world, quantities
 
-    if request.slice not in SLICES:
+    if request.slice not in slices():
         raise UserError(
-            f"'{request.slice}' is no slice of the domain: give one of {', '.join(SLICES)};"
+            f"'{request.slice}' is no slice of the domain: give one of {', '.join(slices())};"
             " a scenario of the catalogue draws nothing that could be searched"
         )
     if request.seed + request.landings > HELD_BACK_FROM:  # a start has one landing at least

@@ -48,10 +48,11 @@ def faults_command(
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> int:
-    """Let every fault happen in every phase of a landing; exit code 1 when a reaction is not as expected."""
+    """Let every fault happen in every phase of a landing or sortie; exit code 1 when a reaction is not as expected."""
     require("campaign", "scenarios faults")
     from scenarios.config import FIRMWARES
     from scenarios.faults.matrix import EXPECTED
+    from scenarios.faults.sortie_matrix import EXPECTED_IN_SORTIE
     from scenarios.faults.trial import fly_case, fly_case_over_wire, lost
     from scenarios.faults.wire_flight import WIRE_FAULTS
     from scenarios.processes.local_workers import LocalWorkers, core_count
@@ -61,7 +62,7 @@ def faults_command(
         raise UserError(f"--firmware is one of {', '.join(FIRMWARES)}, not '{firmware}'")
     cases = [
         case
-        for case in EXPECTED
+        for case in (*EXPECTED, *(() if wire else EXPECTED_IN_SORTIE))
         if firmware in {None, case.firmware}
         and (fault is None or fault in case.fault.value)
         and phase in {None, case.phase.value}

@@ -31,9 +31,9 @@ def fly_command(
     seed: Annotated[
         int | None, typer.Option("--seed", min=0, help="Of the vehicle's sensors [default: 1, or the world's own].")
     ] = None,
-    record: Annotated[
-        bool, typer.Option(" /--no-record", help="Record neither the companion nor the truth; else both are, as MCAP.")
-    ] = True,
+    no_record: Annotated[
+        bool, typer.Option("--no-record", help="Record neither the companion nor the truth; else both are, as MCAP.")
+    ] = False,
     changes: SetOption = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the run's folder is made.")] = Path("runs"),
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
@@ -56,7 +56,7 @@ def fly_command(
         ship_speed_m_s=ship,
         seed=run_seed(name, seed),
         folder=folder,
-        record=record,
+        record=not no_record,
     )
     with Reporter(scenario, folder, as_json=as_json) as reporter:
         outcome = fly(scenario, options, reporter.progress)

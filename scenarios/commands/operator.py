@@ -1,5 +1,6 @@
 """Sending an operator's command to the companion over Zenoh."""
 
+import difflib
 import time
 from enum import Enum
 from typing import TypeVar
@@ -39,8 +40,10 @@ def _named(kind: type[E], what: str, name: str) -> E:
     try:
         return kind(name)
     except ValueError:
-        known = ", ".join(one.value for one in kind)
-        raise UserError(f"{what} '{name}' does not exist: give one of {known}") from None
+        known = [one.value for one in kind]
+        near = difflib.get_close_matches(name, known, n=1)
+        meant = f"did you mean {near[0]}?" if near else f"give one of {', '.join(known)}"
+        raise UserError(f"{what} '{name}' does not exist: {meant}") from None
 
 
 def send_order(order: Order, keys: Keys, options: ZenohOptions) -> CommandReply:

@@ -1,7 +1,7 @@
 """The detector over drawn frames: whether it sees the pad, how far off, and whether it says so.
 
 A pose is flipped if its normal is off by more than 20 degrees. NEES is of the position, with 3 degrees of freedom;
-camera and mounting are exactly known here, so it is that of the edges alone.
+camera, mounting and print are exactly known here, so it is that of the edges alone.
 """
 
 import math
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from companion.eyes.board import Board, BoardConfig, nested_board
-from companion.eyes.mounting import Mounting, mounting_of
+from companion.eyes.mounting import mounting_of
 from companion.eyes.sight import SightMemory, SightSystem, sight_step
 from link.frames.rotations import matrix_from_quaternion
 from scenarios.camera.lens import CAMERA
@@ -61,8 +61,8 @@ def study(frames: int, seed: int, *, has_board: bool, tell: Callable[[int], None
         has_board: the board is there; else there is none in half of the frames, and another one in the rest.
         tell: called with the number of each frame that is done.
     """
-    told = mounting_of(MOUNTING)
-    mounting = Mounting(R_BC=told.R_BC, position_flu_m=told.position_flu_m, rotation_std_rad=0.0, focal_std_share=0.0)
+    known = {"rotation_std_rad": 0.0, "focal_std_share": 0.0, "board_std_m": 0.0}
+    mounting = mounting_of(MOUNTING.model_copy(update=known))
     system = SightSystem(camera=CAMERA, mounting=mounting, board=Board(nested_board(BOARD_M)))
     renderer: Renderer | None = None
     light_name = LIGHTS[0]

@@ -3,7 +3,9 @@
 from collections.abc import Mapping, Sequence
 from math import degrees, inf
 
+from companion.core.data import Rival
 from companion.runtime.build import build_node
+from companion.runtime.node import CompanionNode
 from companion.situation.phases import Phase
 from link.frames.geodesy import geodetic_from_enu
 from link.mavlink.codec import MavlinkCodec
@@ -19,6 +21,8 @@ from scenarios.simulation.simulation import STEP_NS
 _STEP_S = STEP_NS * 1e-9
 _REACHED_MAX_S = 60.0
 _FOREVER_NS = 2**62
+_SETPOINT = "SET_POSITION_TARGET_LOCAL_NED"
+_ORDERS = frozenset({mavlink.MAV_CMD_COMPONENT_ARM_DISARM, mavlink.MAV_CMD_DO_SET_MODE})
 COMMANDED: Mapping[Phase, tuple[Phase, Command]] = {
     Phase.ABORT: (Phase.CHASE, Command.ABORT),
     Phase.HOLD: (Phase.WAITING, Command.HOLD),
@@ -37,6 +41,8 @@ class FaultFlight(Lockstep):
     def __init__(self, scenario: Scenario, seed: int) -> None:
         super().__init__(scenario, seed)
         self.setpoints = 0
+        self.uninvited = 0
+        """Setpoints, arming and changes of mode by a second companion."""
         self.vehicle_is_silent = False
         self.vehicle_is_alive = True
         self.scenario = scenario
@@ -45,6 +51,7 @@ class FaultFlight(Lockstep):
         self._vehicle_held_until_s = 0.0
         self._vehicle_cut_until_s = 0.0
         self._vehicle_slew = 0.0
+        self._second: CompanionNode | None = None
         self._way = HeldWay(self._channels.zenoh)
         self._ways = {key: self._way if way is self._channels.zenoh else way for key, way in self._ways.items()}
         self._ground_station = MavlinkCodec(255, mavlink.MAV_COMP_ID_MISSIONPLANNER)
@@ -156,6 +163,16 @@ class FaultFlight(Lockstep):
         self.companion = build_node(self.scenario.system.companion, Keys())
         self.companion.receive_pad(self.simulation.vehicle.pad)
 
+    def add_companion(self) -> None:
+        """Start a second companion for the drone, on the same link, by an operator who does not know of the first."""
+        self._second = build_node(self.scenario.system.companion, Keys())
+        self._second.receive_pad(self.simulation.vehicle.pad)
+        self._second.receive_rival(Rival(drone=Keys().drone, is_this_drone=True))
+
+    def add_drone(self) -> None:
+        """Let another drone be found to land on the vehicle, that was there first, as where two networks meet."""
+        self.companion.receive_rival(Rival(drone="drone2", is_this_drone=False))
+
     def step(self) -> None:
         """Advance by one step of the simulation."""
         now_s = self.recording.elapsed_s
@@ -175,13 +192,37 @@ class FaultFlight(Lockstep):
         if self.vehicle_is_silent:
             self._channels.zenoh.take(_FOREVER_NS)
         super()._advance_companion(t_ns)
+        if self._second is not None:
+            self._advance_second(self._second, t_ns)
+
+    def _advance_second(self, node: CompanionNode, t_ns: int) -> None:
+        if node.is_ready_to_start():
+            node.request(Command.START)
+        node.poll(self.local_ns)
+        frames = node.take_frames()
+        self.uninvited += sum(_flies(one) for one in _messages(frames))
+        for frame in frames:
+            self._channels.up.put(frame, t_ns)
+
+    def _hear(self, data: bytes) -> None:
+        super()._hear(data)
+        if self._second is not None:
+            self._second.receive_mavlink(data, self.local_ns)
 
     def _send(self, frames: Sequence[bytes], t_ns: int) -> None:
-        reader = MavlinkCodec(1, 1)
-        sent = [message for frame in frames for message in reader.decode(frame)]
-        self.setpoints += sum(one.get_type() == "SET_POSITION_TARGET_LOCAL_NED" for one in sent)
+        self.setpoints += sum(one.get_type() == _SETPOINT for one in _messages(frames))
         super()._send([] if self._link_is_cut else frames, t_ns)
 
     @property
     def _link_is_cut(self) -> bool:
         return self.recording.elapsed_s < self._cut_until_s
+
+
+def _flies(message: Message) -> bool:
+    """Return whether a companion flies by it."""
+    return message.get_type() == _SETPOINT or getattr(message, "command", None) in _ORDERS
+
+
+def _messages(frames: Sequence[bytes]) -> list[Message]:
+    reader = MavlinkCodec(1, 1)
+    return [message for frame in frames for message in reader.decode(frame)]

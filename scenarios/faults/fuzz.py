@@ -20,7 +20,8 @@ from link.mavlink.transports import open_transport
 from scenarios.faults.fuzz_frames import fuzz_frames
 from scenarios.faults.not_finite import count_not_finite
 from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
-from sim_autopilot.runtime.config import SimAutopilotConfig, autopilot_config
+from sim_autopilot.runtime.build import autopilot_config
+from sim_autopilot.runtime.config import SimAutopilotConfig
 from sim_autopilot.runtime.node import AutopilotNode
 
 LINK_KINDS = ("udpin", "udpout", "tcpin", "serial")

@@ -6,6 +6,7 @@ from link.mavlink.dialect import Message, mavlink
 from scenarios.config import FirmwareName
 from scenarios.faults.flight import FaultFlight
 from scenarios.faults.matrix import Fault
+from scenarios.faults.sortie_flight import SortieFaultFlight
 
 _PILOTS_MODES: Mapping[FirmwareName, float] = {"px4": 3.0, "ardupilot": 17.0}  # POSCTL, BRAKE: neither needs sticks
 _SPEED_LIMITS: Mapping[FirmwareName, tuple[bytes, float]] = {  # less than the vehicle's 5 m/s
@@ -18,6 +19,18 @@ _HOUR_S = 3600.0
 _STAMPS_OFF_S = -0.06  # a receiver's stamps may be those of its output instead of its measurement
 _SLEW = -5e-4  # the most by which an NTP daemon changes a clock's rate: ntpd(8), adjtimex(2)
 _SPOILT_SHARE = 0.01
+
+
+_LOW_SHARE = 0.21  # a percent above the reserve by default, which BATTERY_STATUS rounds away
+_COARSE_WHITE_M, _COARSE_BIAS_M = 0.5, 1.2  # a receiver without corrections, as the benchmark's
+
+
+def inject_in_sortie(fault: Fault, flight: SortieFaultFlight) -> float:
+    """Let `fault` happen now in a sortie; as `inject`."""
+    if fault not in _INJECT_IN_SORTIE:
+        return inject(fault, flight)
+    _INJECT_IN_SORTIE[fault](flight)
+    return 0.0
 
 
 def inject(fault: Fault, flight: FaultFlight) -> float:
@@ -78,8 +91,17 @@ _INJECT: Mapping[Fault, Callable[[FaultFlight, float], None]] = {
     Fault.CLOCK_BACK: lambda flight, _: flight.simulation.vehicle.set_clock(-_HOUR_S),
     Fault.STAMPS: lambda flight, _: flight.set_vehicle_clock(_STAMPS_OFF_S, _SLEW),
     Fault.SPOILT: lambda flight, _: flight.spoil_links(_SPOILT_SHARE),
+    Fault.SECOND_COMPANION: lambda flight, _: flight.add_companion(),
+    Fault.SECOND_DRONE: lambda flight, _: flight.add_drone(),
     Fault.COMPANION: lambda flight, _: flight.restart_companion(),
     Fault.COMPANION_STOPPED_SHORTLY: FaultFlight.stop_companion,
     Fault.COMPANION_STOPPED: FaultFlight.stop_companion,
     Fault.COMPANION_STOPPED_LONG: FaultFlight.stop_companion,
+}
+
+_INJECT_IN_SORTIE: Mapping[Fault, Callable[[SortieFaultFlight], None]] = {
+    Fault.BATTERY: lambda flight: flight.empty_battery(_LOW_SHARE),
+    Fault.BRAKE: SortieFaultFlight.brake_vehicle,
+    Fault.COARSE: lambda flight: flight.lose_corrections(_COARSE_WHITE_M, _COARSE_BIAS_M),
+    Fault.RIVAL: SortieFaultFlight.add_rival,
 }

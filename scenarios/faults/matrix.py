@@ -40,10 +40,20 @@ class Fault(Enum):
     CLOCK_BACK = "vehicle's clock set an hour back"
     STAMPS = "vehicle's stamps 60 ms early, drifting"
     SPOILT = "1 % of frames corrupt, 1 % cut"
+    SECOND_COMPANION = "second companion for the drone"
+    SECOND_DRONE = "another drone was first on the vehicle"
     COMPANION = "companion killed and restarted"
     COMPANION_STOPPED_SHORTLY = "companion stopped for 0.5 s"
     COMPANION_STOPPED = "companion stopped for 2 s"
     COMPANION_STOPPED_LONG = "companion stopped for 10 s"
+    BATTERY = "battery low"
+    BRAKE = "vehicle brakes hard"
+    COARSE = "vehicle's fixes become coarse"
+    RIVAL = "another companion was first for the drone"
+
+
+IN_SORTIES_ONLY = frozenset({Fault.BATTERY, Fault.BRAKE, Fault.COARSE, Fault.RIVAL})
+"""In the phases of a landing they have tests of their own."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,18 +95,19 @@ def _is_end(end: End, tier: Tier, *, motors_off: bool) -> bool:
             return motors_off
 
 
-def _expect(phase: Phase, *ends: End) -> Expected:
+def expect(phase: Phase, *ends: End) -> Expected:
+    """Return that a flight may end in `phase`, and the drone so."""
     return Expected(phase=phase, ends=frozenset(ends))
 
 
-_LANDS = _expect(Phase.SECURED, End.LANDED)
-_HOLDS = _expect(Phase.HOLD, End.HOVERS)
-_WAITS = _expect(Phase.WAITING, End.HOVERS)
-_IS_OUT = _expect(Phase.PILOT, End.HOVERS)
-_IS_OUT_ON_PAD = _expect(Phase.PILOT, End.LANDED)
-_IS_IDLE = _expect(Phase.IDLE, End.HOVERS)
-_IS_IDLE_ON_PAD = _expect(Phase.IDLE, End.LANDED)
-_FALLS = _expect(Phase.PILOT, End.FALLEN)
+_LANDS = expect(Phase.SECURED, End.LANDED)
+_HOLDS = expect(Phase.HOLD, End.HOVERS)
+_WAITS = expect(Phase.WAITING, End.HOVERS)
+_IS_OUT = expect(Phase.PILOT, End.HOVERS)
+_IS_OUT_ON_PAD = expect(Phase.PILOT, End.LANDED)
+_IS_IDLE = expect(Phase.IDLE, End.HOVERS)
+_IS_IDLE_ON_PAD = expect(Phase.IDLE, End.LANDED)
+_FALLS = expect(Phase.PILOT, End.FALLEN)
 
 _BEFORE = (Phase.TAKEOFF, Phase.WAITING)
 _APPROACH = (Phase.CHASE, Phase.ALIGN, Phase.DESCEND)
@@ -139,6 +150,8 @@ def _matrix(firmware: FirmwareName, silent: tuple[tuple[tuple[Phase, ...], Expec
         **_rows(firmware, Fault.CLOCK_BACK, *breaks_off),
         **_rows(firmware, Fault.STAMPS, *goes_on),
         **_rows(firmware, Fault.SPOILT, *goes_on),
+        **_rows(firmware, Fault.SECOND_COMPANION, *goes_on),
+        **_rows(firmware, Fault.SECOND_DRONE, *breaks_off),
         **_rows(firmware, Fault.COMPANION, (_IN_THE_AIR, _IS_IDLE), (_ON_THE_PAD, _IS_IDLE_ON_PAD)),
     }
 

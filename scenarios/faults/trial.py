@@ -13,16 +13,17 @@ from companion.situation.phases import Phase
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import FirmwareName, Scenario
 from scenarios.faults.flight import FaultFlight
-from scenarios.faults.injection import inject
-from scenarios.faults.matrix import EXPECTED, Case
+from scenarios.faults.injection import inject, inject_in_sortie
+from scenarios.faults.matrix import EXPECTED, Case, Fault
+from scenarios.faults.sortie_flight import SortieFaultFlight
+from scenarios.faults.sortie_matrix import EXPECTED_IN_SORTIE, SORTIE_PHASES
 from scenarios.faults.wire_flight import WireFlight
 from scenarios.recordings.result import score_run
 from scenarios.scoring.score import Tier
 
 SCENARIO = "straight_5"
+_BRAKES = "brake_7"
 SEED = 1
-_PARAMETERS: Mapping[FirmwareName, Mapping[str, float]] = {"px4": {}, "ardupilot": {"GUID_TIMEOUT": 1.0}}
-"""Beside those of the scenario, as `companion check` advises them."""
 _AIRBORNE_M = 2.0  # of the drone above the road: a take-off that is under way, high enough to hover there
 _DELAY_S: Mapping[Phase, float] = {Phase.TAKEOFF: 0.0, Phase.TOUCHDOWN: 0.0}  # the latter: before the motors stop
 _SHORT_S = 0.3
@@ -34,7 +35,8 @@ _TO_REST_S = 15.0
 _MOTORS_OFF_RAD_S = 50.0
 _TAKEN_S = 0.2  # for the companion to hear that it is out
 _OUT = frozenset({Phase.PILOT, Phase.IDLE})
-_LASTING = _OUT | {Phase.SECURED, Phase.HOLD}
+_LASTING = _OUT | {Phase.SECURED, Phase.HOLD, Phase.FOLLOW, Phase.RALLY}
+_ALL_EXPECTED = {**EXPECTED, **EXPECTED_IN_SORTIE}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,7 +51,7 @@ class Ended:
         judged: why.
         motors_off: in the end, on ground truth.
         tilt_max_rad: largest tilt of the drone since the fault.
-        setpoints: that were sent although the companion was out.
+        setpoints: that were sent although the companion was out, or by one that should have stayed out.
         taken_back: the autopilot followed setpoints again although the companion was out.
     """
 
@@ -66,24 +68,30 @@ class Ended:
     @property
     def is_right(self) -> bool:
         """Whether it is what is expected, and nobody was fought with."""
-        expected = EXPECTED[self.case]
+        expected = _ALL_EXPECTED[self.case]
         ended_right = self.phase is expected.phase and expected.allows(self.tier, motors_off=self.motors_off)
         return ended_right and not (self.setpoints or self.taken_back)
 
 
-def scenario_of(firmware: FirmwareName) -> Scenario:
+def scenario_of(firmware: FirmwareName, name: str = SCENARIO) -> Scenario:
     """Return what is flown with `firmware`."""
-    scenario = load_scenario(SCENARIO)
-    parameters = {**scenario.system.parameters.get(firmware, {}), **_PARAMETERS[firmware]}
-    system = scenario.system.model_copy(update={"parameters": {**scenario.system.parameters, firmware: parameters}})
-    return scenario.model_copy(update={"firmware": firmware, "system": system})
+    return load_scenario(name).model_copy(update={"firmware": firmware})
 
 
 def fly_case(case: Case) -> Ended:
     """Fly until the case is over, in lockstep."""
+    if case.phase in SORTIE_PHASES:
+        return _fly_sortie(case)
     flight = FaultFlight(scenario_of(case.firmware), SEED)
     flight.fly_to(case.phase)
     return _fly_on(flight, case, lambda: inject(case.fault, flight))
+
+
+def _fly_sortie(case: Case) -> Ended:
+    name = _BRAKES if case.fault is Fault.BRAKE else SCENARIO
+    flight = SortieFaultFlight(scenario_of(case.firmware, name), SEED)
+    flight.fly_to(case.phase)
+    return _fly_on(flight, case, lambda: inject_in_sortie(case.fault, flight))
 
 
 def fly_case_over_wire(case: Case) -> Ended:
@@ -110,7 +118,7 @@ def _fly_on(flight: FaultFlight | WireFlight, case: Case, fail: Callable[[], flo
         judged=score.reason,
         motors_off=_are_motors_off(flight),
         tilt_max_rad=max(acos(_upright(one.orientation_wxyz)) for one in flight.recording.drone[began:]),
-        setpoints=setpoints,
+        setpoints=setpoints + flight.uninvited,
         taken_back=taken_back,
     )
 

@@ -84,6 +84,11 @@ class WireFlight:
         return Phase.IDLE if status is None else Phase(status.phase)
 
     @property
+    def uninvited(self) -> int:
+        """What a second companion flew by: there is none."""
+        return 0
+
+    @property
     def setpoints(self) -> int:
         """Of the companion, so far."""
         return self._relay.setpoints

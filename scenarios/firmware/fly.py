@@ -11,6 +11,7 @@ from link.errors import UserError
 from link.frames.geodesy import Datum
 from link.mavlink.transports import Transport, open_transport
 from link.payloads import json_messages
+from link.program.patience import Patience
 from link.program.toml_config import dump_toml
 from link.records import replace
 from link.zenoh.keys import Keys, Publication
@@ -68,7 +69,8 @@ def fly(scenario: Scenario, options: FlyOptions, progress: Progress) -> RunOutco
     endpoint, keys = free_tcp_endpoint(), Keys()
     with open_transport(options.watch) as transport, open_session(ZenohOptions(listen=(endpoint,))) as zenoh:
         watch = FirmwareWatch()
-        datum = _datum(watch, transport)
+        with Patience("scenarios", f"waiting up to {_READY_S:g} s for the simulation's truth on {options.watch}"):
+            datum = _datum(watch, transport)
         firmware = NAMES.get(watch.session.autopilot or 0, scenario.firmware)
         placed = _place(scenario, datum).model_copy(update={"firmware": firmware})
         write_text(options.folder / "scenario.toml", dump_toml(placed))
@@ -121,7 +123,7 @@ def _datum(watch: FirmwareWatch, transport: Transport) -> Datum:
     while watch.datum is None or watch.drone is None:
         _listen(watch, transport)
         if time.monotonic() > until_s:
-            raise UserError(f"no truth of the drone within {_READY_S:g} s: check --watch and that it is a simulation")
+            raise UserError(f"no truth of the drone within {_READY_S:g} s: check --watch, and that it is a simulation")
     return watch.datum
 
 

@@ -90,7 +90,7 @@ class Lockstep:
     def _advance_companion(self, t_ns: int) -> None:
         node, local_ns = self.companion, self.local_ns
         for data in self._channels.down.take(t_ns):
-            node.receive_mavlink(data, local_ns)
+            self._hear(data)
         for way in (self._channels.zenoh, self._channels.detector):
             for key, payload in way.take(t_ns):
                 node.receive_sample(key, payload)
@@ -100,6 +100,10 @@ class Lockstep:
             self._compare(node, t_ns)
         node.take_replies()
         self._send(node.take_frames(), t_ns)
+
+    def _hear(self, data: bytes) -> None:
+        """Give the companion what has come of the autopilot."""
+        self.companion.receive_mavlink(data, self.local_ns)
 
     def _command(self, node: CompanionNode) -> None:
         # As the companion's own start over the wire: again and again, until it is under way.

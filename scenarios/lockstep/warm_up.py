@@ -19,7 +19,9 @@ def warm_process() -> None:
         UserError: there is no place to keep what is compiled.
     """
     # Loaded here, so that what is wrong with the place for machine code is told as one line.
-    from link.program.clock import spare_present_objects  # noqa: PLC0415 (see above)
+    from link.program.clock import collect_rarely, spare_present_objects  # noqa: PLC0415 (see above)
+
+    collect_rarely()
     from scenarios.catalogue.catalogue import load_scenario  # noqa: PLC0415 (see above)
     from scenarios.lockstep.lockstep import Lockstep  # noqa: PLC0415 (see above)
 
@@ -29,7 +31,7 @@ def warm_process() -> None:
 
 def main() -> int:
     """Compile what a step needs into the cache and return the exit code."""
-    sys.stderr.write("compiling the numerical kernels, once\n")
+    sys.stderr.write("compiling the numerical kernels, once; this takes a minute or two\n")
     try:
         warm_process()
     except UserError as error:

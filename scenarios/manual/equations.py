@@ -14,6 +14,7 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
             "companion.vehicle.filter_step",
             "companion.vehicle.imm",
             "companion.vehicle.imm_kernels",
+            "companion.vehicle.imm_noise",
             "companion.vehicle.imm_mixing",
             "companion.vehicle.lkf",
             "companion.vehicle.ukf",

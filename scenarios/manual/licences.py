@@ -1,6 +1,6 @@
 """docs/licences.md, from what the installed packages of the drone's lock say of themselves.
 
-`python -m scenarios.manual.licences` writes it anew.
+`python -m scenarios.manual.licences` rewrites it.
 """
 
 import re

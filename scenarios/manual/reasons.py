@@ -1,4 +1,4 @@
-"""docs/reasons.md, from the companion's own table of reasons; `python -m scenarios.manual.reasons` writes it anew."""
+"""docs/reasons.md, from the companion's own table of reasons; `python -m scenarios.manual.reasons` rewrites it."""
 
 import re
 from itertools import groupby

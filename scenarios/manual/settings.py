@@ -2,9 +2,12 @@
 
 import inspect
 import json
+import tomllib
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
+from functools import cache
+from importlib.resources import files
 from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel
@@ -13,8 +16,29 @@ from pydantic.fields import FieldInfo
 from link.program.toml_config import StrictModel
 from scenarios.manual.field_comments import comments_of
 from scenarios.manual.markdown import code, page, table
-from scenarios.manual.meanings import meaning_of
 from scenarios.manual.types_in_words import type_in_words, unit_of
+
+_FILE = "meanings.toml"
+
+
+def meaning_of(owner: type, key: str) -> str:
+    """Return what a key of a table means, empty if nobody says so.
+
+    Args:
+        owner: the model of the table.
+        key: in it.
+    """
+    comment = comments_of(owner).get(key, "")
+    if comment:
+        return comment
+    told = _meanings()
+    classes = [told[one.__name__] for one in owner.__mro__ if one.__name__ in told]
+    return next((table[key] for table in (*classes, told["any"]) if key in table), "")
+
+
+@cache
+def _meanings() -> Mapping[str, Mapping[str, str]]:
+    return tomllib.loads(files(__package__).joinpath(_FILE).read_text(encoding="utf-8"))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

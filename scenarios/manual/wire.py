@@ -76,7 +76,7 @@ def _described_names() -> list[str]:
 
 def _message(name: str) -> str:
     owner = getattr(messages, name)
-    annotations = inspect.get_annotations(owner)
+    annotations = {name: one for base in reversed(owner.__mro__) for name, one in inspect.get_annotations(base).items()}
     rows = [
         (
             code(one.name),

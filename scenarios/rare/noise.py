@@ -72,7 +72,7 @@ class MovedNoise:
 
 
 class NoiseInFlight:
-    """The noise of one run that is flown now, of which what is drawn from an instant on may be drawn anew.
+    """The noise of one run that is flown now, of which what is drawn from an instant on may be redrawn.
 
     Args:
         noise: to fly with.
@@ -94,7 +94,7 @@ class NoiseInFlight:
         return str(self._noise)
 
     def stream(self, name: str) -> "MovedStream":
-        """Return a generator of what belongs to `name`; one that was asked for before is begun anew."""
+        """Return a generator of what belongs to `name`; one that was asked for before is restarted."""
         stream = self._noise.stream(name)
         if self._redraw_seed is not None:
             stream.redraw_once(lambda: self.now_s() >= self._from_s, _generator(self._redraw_seed, name))

@@ -2,7 +2,7 @@
 
 A population of landings is flown. Its better half is dropped, each place taken by a copy of one of the worse half,
 and each copy makes a chain of steps that stays worse than the level (`chain.py`): by turns its noise is moved as a
-whole, which reaches other worlds, and drawn anew from an instant on, which leaves what led to a bad situation and
+whole, which reaches other worlds, and redrawn from an instant on, which leaves what led to a bad situation and
 changes what comes of it. With S_l of N landings worse than
 level l, and M unsafe at the end, the probability is estimated as
 
@@ -40,7 +40,7 @@ class Settings:
     Attributes:
         particles: landings in the population, N.
         steps: of each copy's chain.
-        in_time: whether landings last, so that every other step may draw anew what comes later.
+        in_time: whether landings last, so that every other step may redraw what comes later.
         least: the probability that no level goes below.
         seed: of everything random.
     """
@@ -62,7 +62,7 @@ class Level:
         probability: of being below it.
         angle_rad: of the moves as a whole.
         taken: share of those.
-        taken_later: share of the steps that draw anew what comes later, None without such.
+        taken_later: share of the steps that redraw what comes later, None without such.
         moved: share of the copies that are no longer where they were copied from.
     """
 

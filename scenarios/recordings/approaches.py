@@ -18,7 +18,7 @@ from sim_autopilot.physics.contact import GEAR_HEIGHT_M
 
 _DIGITS = 3  # a millimetre, a millisecond
 _ORDER = {Phase.CHASE.value: 0, Phase.ALIGN.value: 1, Phase.DESCEND.value: 2, Phase.TOUCHDOWN.value: 3}
-"""The phases of an approach; one that follows a later one begins it anew."""
+"""The phases of an approach; one that follows a later one begins it again."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

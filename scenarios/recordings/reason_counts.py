@@ -16,7 +16,7 @@ def abort_reasons(approaches: Approaches) -> list[str]:
 
 
 def anew_reasons(approaches: Approaches) -> list[str]:
-    """Return the names of the reasons for which approaches went back to be aligned or chased anew, in their order."""
+    """Return the names of the reasons for which approaches went back to be aligned or chased again, in their order."""
     return [anew["reason_code"] for one in approaches for anew in one["begun_anew"]]
 
 

@@ -1,9 +1,14 @@
-"""The figures of a campaign: where its landings touched down, and how the errors add up, by cell."""
+"""The figures of a campaign: where its landings touched down, and how the errors add up, by cell.
+
+Beside them the reliability diagram, how often what was forecast came true beside the band of right forecasts, and of a
+population of worlds the rates of what failed, over what the worlds were drawn with.
+"""
 
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import cycle, islice
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -17,13 +22,14 @@ from scenarios.campaigns.landing_task import Row
 from scenarios.campaigns.plan import Plan
 from scenarios.campaigns.reliability import reliability
 from scenarios.campaigns.worlds_report import worlds_report
+from scenarios.campaigns.worlds_sheets import heading_of
 from scenarios.catalogue.firmware_option import without_firmware
 from scenarios.config import Scenario
+from scenarios.recordings.contact_forecasts import INSTANTS
 from scenarios.reports.figure_files import BLUE, GREEN, LIGHT, MIDDLE, ORANGE, PURPLE, STYLES, VERMILION
-from scenarios.reports.reliability_figures import draw_reliability
 from scenarios.reports.run_figures import draw_pad, show_around_pad
-from scenarios.reports.worlds_figures import draw_rates
 from scenarios.scoring.limits import S1_LIMITS, S2_LIMITS
+from scenarios.scoring.score import Tier
 
 _TITLE_WIDTH = 34  # characters over a panel
 _COLUMNS_MAX = 3
@@ -119,3 +125,68 @@ def _errors(plan: Plan, rows: Sequence[Row]) -> Figure:
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="lower right", fontsize=8)
     return figure
+
+
+def draw_reliability(found: Sequence[Mapping[str, Any]]) -> Figure:
+    """Return the figure of `scenarios.campaigns.reliability`: a row for each instant, a column for each outcome."""
+    outcomes = list(dict.fromkeys(one["outcome"] for one in found))
+    instants = [name for name in INSTANTS if any(one["instant"] == name for one in found)]
+    figure = Figure(figsize=(3.4 * len(outcomes), 0.4 + 3.2 * len(instants)), layout="constrained")
+    grid = figure.subplots(len(instants), len(outcomes), squeeze=False)
+    for one in found:
+        _draw_outcome(grid[instants.index(one["instant"])][outcomes.index(one["outcome"])], one)
+    return figure
+
+
+def _draw_outcome(axes: Axes, one: Mapping[str, Any]) -> None:
+    bins = one["bins"]
+    said, came = [each["said"] for each in bins], [each["came"] for each in bins]
+    most = max(0.05, *said, *came, *(each["high"] for each in bins)) * 1.05
+    axes.plot([0.0, most], [0.0, most], color=LIGHT, linewidth=0.8, zorder=0)
+    axes.vlines(said, [each["low"] for each in bins], [each["high"] for each in bins], color=LIGHT, linewidth=4.0)
+    axes.plot(said, came, color=BLUE, marker="o", markersize=4, linestyle="none")
+    axes.set(xlim=(0.0, most), ylim=(-0.02 * most, most), xlabel="forecast", ylabel="came true")
+    axes.set_title(f"{one['outcome']}, at {one['instant']}: {one['said']:.1f}, came {one['came']}", fontsize=8)
+
+
+_COLUMNS = 3
+_SHOWN = ((Tier.UNSAFE, VERMILION, "o", -0.02), (Tier.ABORT, BLUE, "s", 0.02))
+"""Tier, colour, marker, and how far aside of a bin's middle, as a share of the axis: bars do not cover each other."""
+
+
+def draw_rates(report: Mapping[str, Any]) -> Figure:
+    """Return the figure: a panel for each quantity, with a point and its 95 % interval for each bin."""
+    over: Mapping[str, Sequence[Mapping[str, Any]]] = report["over"]
+    lines = max(1, math.ceil(len(over) / _COLUMNS))
+    figure = Figure(figsize=(3.6 * _COLUMNS, 0.6 + 2.6 * lines), layout="constrained")
+    grid = figure.subplots(lines, _COLUMNS, squeeze=False)
+    for axes in grid.flat[len(over) :]:
+        axes.set_visible(False)
+    for axes, (name, bins) in zip(grid.flat, over.items(), strict=False):
+        _draw_quantity(axes, name, bins)
+    figure.suptitle(report["worlds"], fontsize=10)
+    return figure
+
+
+def _draw_quantity(axes: Axes, name: str, bins: Sequence[Mapping[str, Any]]) -> None:
+    span = bins[-1]["high"] - bins[0]["low"]
+    for tier, color, marker, aside in _SHOWN:
+        rates = [one["tiers"][tier.value] for one in bins]
+        axes.errorbar(
+            [0.5 * (one["low"] + one["high"]) + aside * span for one in bins],
+            [100.0 * rate["share"] for rate in rates],
+            yerr=[
+                [100.0 * (rate["share"] - rate["low"]) for rate in rates],
+                [100.0 * (rate["high"] - rate["share"]) for rate in rates],
+            ],
+            color=color,
+            marker=marker,
+            markersize=4,
+            capsize=2,
+            linestyle="none",
+            label=tier.value,
+        )
+    for edge in [one["low"] for one in bins] + [bins[-1]["high"]]:
+        axes.axvline(edge, color="0.9", linewidth=0.7, zorder=0)
+    axes.set(xlabel=heading_of(name), ylabel="% of the landings", ylim=(0.0, None))
+    axes.legend(fontsize=7)

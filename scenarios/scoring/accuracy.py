@@ -7,6 +7,7 @@ Source of both tests: Bar-Shalom, Li and Kirubarajan, Estimation with Applicatio
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from msgspec import Struct
@@ -18,7 +19,9 @@ from link.frames.rotations import rotate
 from link.messages import Vector3
 from scenarios.simulation.vehicle import VehicleState
 from sim_autopilot.core.places import local_from_world
-from sim_autopilot.memory import AutopilotMemory
+
+if TYPE_CHECKING:
+    from sim_autopilot.memory import AutopilotMemory  # of the flight, with its numerics: a score needs none
 
 NEES_DOF = 6
 PHASES = frozenset({Phase.CHASE, Phase.ALIGN, Phase.DESCEND})
@@ -50,7 +53,7 @@ class Nis(Struct, frozen=True, kw_only=True):
     dof: int
 
 
-def antenna_truth(vehicle: VehicleState, antenna_flu_m: Vector3, autopilot: AutopilotMemory) -> Truth:
+def antenna_truth(vehicle: VehicleState, antenna_flu_m: Vector3, autopilot: "AutopilotMemory") -> Truth:
     """Return where the vehicle's antenna is for a drone whose autopilot is `autopilot`."""
     lever_m = np.array(rotate(vehicle.orientation_wxyz, antenna_flu_m))
     rate_rad_s = rotate(vehicle.orientation_wxyz, vehicle.angular_velocity_flu_rad_s)

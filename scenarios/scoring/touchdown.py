@@ -15,7 +15,7 @@ from scenarios.scoring.flight_faults import motors_off_index
 from scenarios.scoring.touch import Box, Contact
 from scenarios.scoring.truth_log import Array, TruthLog
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
-from sim_autopilot.runtime.config import airframe_of
+from sim_autopilot.runtime.physics import airframe_of
 
 _MOTORS_OFF_MAX_S = 2.0
 _STAYS_S = 2.0

@@ -17,8 +17,10 @@ from companion.eyes.picture import Box, Part
 from companion.eyes.sight import SightSystem
 from link.frames.rotations import matrix_from_quaternion, quaternion_from_roll_pitch_yaw
 from link.messages import BodyTruth
+from link.records import replace
 from scenarios.camera.lens import CAMERA, SIZE_PX
 from scenarios.camera.lighting import Light
+from scenarios.camera.optics import Optics
 from scenarios.camera.planes import View
 from scenarios.camera.rendering import Renderer, Vehicle
 from scenarios.config import Scenario
@@ -81,10 +83,12 @@ class CameraScene:
             paint=float(rng.uniform(*_PAINT_RANGE)),
         )
         self._sun_enu = _draw_sun(scenario.camera.sun_elevation_range_rad, rng)
-        self._renderer = Renderer(vehicle, scenario.camera.dirt_share, rng)
+        optics = Optics(readout_s=scenario.camera.readout_s, wet_share=scenario.camera.wet_share)
+        self._renderer = Renderer(vehicle, scenario.camera.dirt_share, rng, optics)
         self._pad_v_m = np.array([0.0, 0.0, scenario.vehicle.roof_height_m])
-        self._mounting = _misaligned(mounting_of(MOUNTING), rng)
-        self.system = SightSystem(camera=_miscalibrated(rng), mounting=mounting_of(MOUNTING), board=Board(board))
+        told = mounting_of(mounting_told(scenario))
+        self._mounting = _misaligned(told, rng)
+        self.system = SightSystem(camera=_miscalibrated(rng), mounting=told, board=Board(board))
 
     def picture(self, vehicle: BodyTruth, drone: BodyTruth) -> RenderedPicture:
         """Return what the camera sees at the drone's time, to which the vehicle is carried by its velocity."""
@@ -109,6 +113,11 @@ class CameraScene:
         reach = self.system.camera.radius_max
         beside = [(sign * in_c[:, axis] > reach * depth).all() for axis in (0, 1) for sign in (1.0, -1.0)]
         return not any(beside)
+
+
+def mounting_told(scenario: Scenario) -> MountingConfig:
+    """Return what the detector is told of how the camera is mounted, and of its shutter."""
+    return MOUNTING.model_copy(update={"readout_s": scenario.camera.readout_s})
 
 
 def view_of(vehicle: BodyTruth, drone: BodyTruth, mounting: Mounting) -> View:
@@ -144,12 +153,7 @@ def _draw_sun(elevation_range_rad: tuple[float, float] | None, rng: np.random.Ge
 def _misaligned(told: Mounting, rng: np.random.Generator) -> Mounting:
     roll, pitch, yaw = (_MOUNTING_STD_RAD * rng.standard_normal(3)).tolist()
     turn = matrix_from_quaternion(quaternion_from_roll_pitch_yaw(roll, pitch, yaw))
-    return Mounting(
-        R_BC=turn @ told.R_BC,
-        position_flu_m=told.position_flu_m,
-        rotation_std_rad=told.rotation_std_rad,
-        focal_std_share=told.focal_std_share,
-    )
+    return replace(told, R_BC=turn @ told.R_BC)
 
 
 def _miscalibrated(rng: np.random.Generator) -> Camera:

@@ -17,8 +17,9 @@ from scenarios.simulation.noise import Seed, part_seed
 from scenarios.simulation.vehicle import vehicle_deck, vehicle_truth
 from scenarios.simulation.vehicle_node import VehicleNode
 from sim_autopilot.plant.snapshot import drone_truth, rotor_truth
-from sim_autopilot.runtime.config import autopilot_config, wind_model
+from sim_autopilot.runtime.build import autopilot_config
 from sim_autopilot.runtime.node import STEP_NS, AutopilotNode
+from sim_autopilot.runtime.physics import wind_model
 
 __all__ = ["STEP_NS", "Simulation", "SimulationOutputs"]
 

@@ -4,13 +4,14 @@ The `ground-vehicle` program, the one-process world and the lockstep campaigns a
 """
 
 import math
+from functools import partial
 
 from link.frames.geodesy import Datum
 from link.messages import BodyTruth, Fix, FixVelocity, PadGeometry, PadSighting, VehicleImu
 from link.payloads import cdr
 from link.program.extras import require
 from link.zenoh.keys import Keys, Publication
-from scenarios.config import Scenario
+from scenarios.config import Scenario, SensorsConfig
 from scenarios.simulation.noise import Seed, named_rng
 from scenarios.simulation.sensors import Detector, Mounting, SensorSuite
 from scenarios.simulation.vehicle import (
@@ -55,14 +56,11 @@ class VehicleNode:
         self.memory = VehicleMemory()
         self.state: VehicleState | None = None
         mounting = Mounting(antenna_flu_m=scenario.vehicle.antenna_flu_m, pad_height_m=scenario.vehicle.roof_height_m)
+        detector = _camera_of(scenario, seed) if has_eyes else None
+        datum = datum_of(scenario.datum)
+        self._suite = partial(SensorSuite, seed=seed, mounting=mounting, datum=datum, detector=detector)
         sensors = scenario.sensors.model_copy(update={"pattern": None}) if scenario.has_camera else scenario.sensors
-        self._sensors = SensorSuite(
-            sensors,
-            seed,
-            mounting=mounting,
-            datum=datum_of(scenario.datum),
-            detector=_camera_of(scenario, seed) if has_eyes else None,
-        )
+        self._sensors = self._suite(sensors)
         self._keys: dict[type[cdr.Message], str] = {
             Fix: keys.fix,
             FixVelocity: keys.fix_velocity,
@@ -74,6 +72,10 @@ class VehicleNode:
         self._publishes_truth = publishes_truth
         self.is_silent = scenario.is_silent
         self._truth_due_ns = 0
+
+    def set_sensors(self, sensors: SensorsConfig) -> None:
+        """Let the sensors err otherwise from now on; what of them is random restarts."""
+        self._sensors = self._suite(sensors)
 
     def set_clock(self, ahead_s: float) -> None:
         """Set the vehicle's clock ahead by `ahead_s`."""

@@ -6,7 +6,7 @@ from scenarios.catalogue.firmware_option import with_firmware
 from scenarios.catalogue.placement import place_drone
 from scenarios.config import Scenario
 from scenarios.tracks.config import MovingTrack
-from scenarios.worlds.world import SLICES
+from scenarios.worlds.odd import slices
 
 _ROAD_S = 300.0  # of driving: launch, three stations, a minute out of sight, the way home
 
@@ -17,7 +17,7 @@ def sortie_scenario(cell: str, seed: int, firmware: str) -> Scenario:
     Raises:
         UserError: there is no such cell, or its vehicle stands.
     """
-    is_world = cell == "world" or f"world:{cell}" in SLICES or cell in SLICES
+    is_world = cell == "world" or f"world:{cell}" in slices() or cell in slices()
     name = f"{cell if cell.startswith('world') else f'world:{cell}'}@{seed}" if is_world else cell
     scenario = load_scenario(with_firmware(name, firmware))
     track = scenario.track

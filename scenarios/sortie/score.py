@@ -36,7 +36,7 @@ class SortieScore:
         error_max_m: the largest, of both.
         tier: of the landing.
         tier_reason: why.
-        lift_off_s: from the launch's order to leaving the deck for good.
+        lift_off_s: from the launch's order until the drone last leaves the deck.
         return_s: from the order to come home to the contact.
         return_from_m: how far away the vehicle was then.
     """

@@ -14,7 +14,6 @@ from itertools import pairwise
 
 import numpy as np
 from msgspec import Struct
-from scipy.interpolate import CubicSpline
 
 from scenarios.tracks.heights import FLAT, GradeLine, Slope
 
@@ -184,6 +183,8 @@ def curve_through(waypoints_m: Sequence[Point]) -> tuple[Road, list[float]]:
     Raises:
         ValueError: fewer than two waypoints, or two equal neighbours.
     """
+    from scipy.interpolate import CubicSpline  # noqa: PLC0415 (0.2 s, and only a road through waypoints needs it)
+
     points = np.array(waypoints_m, dtype=np.float64)
     chords_m = np.linalg.norm(np.diff(points, axis=0), axis=1)
     if len(points) < 2 or (chords_m == 0.0).any():

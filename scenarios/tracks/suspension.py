@@ -19,7 +19,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 from scenarios.tracks.drive_config import SuspensionConfig
 
@@ -104,6 +103,8 @@ def _oscillate(
     frequency_hz: float, damping: float, base: Array, base_rate: Array, pushed: Array
 ) -> tuple[list[float], list[float]]:
     """Return values and rates on the grid of an oscillator on a moving `base` that is also `pushed` to a value."""
+    from scipy.signal import lfilter  # noqa: PLC0415 (0.5 s, and only a road that shakes needs it)
+
     w = 2.0 * math.pi * frequency_hz
     damped = w * math.sqrt(1.0 - damping**2)
     pole = complex(-damping * w, damped)

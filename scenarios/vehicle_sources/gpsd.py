@@ -66,7 +66,7 @@ class GpsdReceiver:
         }
 
     def connected(self) -> None:
-        """Begin anew: gpsd is to be asked again."""
+        """Restart: gpsd is to be asked again."""
         self._lines.clear()
         self._is_asked, self._device = False, self._asked_device
         self._told_ns = self._heading_ns = 0

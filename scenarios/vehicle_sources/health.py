@@ -5,7 +5,7 @@ from dataclasses import dataclass
 _PATIENCE_NS = 5_000_000_000
 _REMIND_NS = 30_000_000_000
 _SILENT_NS = 10_000_000_000
-_LOST_NS = 2_000_000_000  # a connection may be made anew in between without a word
+_LOST_NS = 2_000_000_000  # a connection may be rebuilt in between without a word
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

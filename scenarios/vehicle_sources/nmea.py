@@ -67,7 +67,7 @@ class NmeaReceiver:
         }
 
     def connected(self) -> None:
-        """Begin anew."""
+        """Restart."""
         self._lines.clear()
         self._epoch, self._time_ns = {}, None
 

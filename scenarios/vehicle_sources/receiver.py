@@ -34,7 +34,7 @@ class Receiver(Protocol):
         """What was received and what was wrong with it, by name."""
 
     def connected(self) -> None:
-        """Begin anew: what was half received will not be finished."""
+        """Restart: what was half received will not be finished."""
 
     def take(self, data: bytes, t_ns: int) -> list[Reading]:
         """Return what `data`, received at local time `t_ns`, tells; stamps are the receiver's UTC."""

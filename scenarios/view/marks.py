@@ -43,7 +43,7 @@ class Marks:
             self._place = self._compass.position = place
 
     def write(self, state: ViewState) -> None:
-        """Write the labels as it is now; a browser lays a changed text out anew, so twice a second will do."""
+        """Write the labels as it is now; a browser lays a changed text out again, so twice a second will do."""
         status = state.status
         height_m = None if status is None else status.height_above_pad_m
         _write(self._drone, "drone" if height_m is None else f"drone {round(height_m, 1) + 0.0:.1f} m above the pad")

@@ -6,12 +6,14 @@ from html import escape
 from link.frames.rotations import roll_pitch_yaw_of
 from link.messages import BodyTruth, LandingStatus
 from link.program.status_rows import link_rows, number, status_rows
+from link.records import replace
 from scenarios.view.models import BLUE, GREEN, GREY, ORANGE
 from scenarios.view.plots import css
 from scenarios.view.state import ViewState
 
 _LEGEND = ((BLUE, "flown"), (GREY, "pad's way"), (GREEN, "plan, cone"), (ORANGE, "estimate, forecast"))
 _FLOWN_BY = {"companion": "follows the companion", "failsafe": "flies a failsafe", "other": "in a mode of its own"}
+_FORECAST_AGE_MAX_NS = 250_000_000  # forecasts are recorded at 10 Hz, and only while the drone descends
 _VALUE = "text-align:right;white-space:nowrap"
 _PAINT = {
     "descend": "#169146", "touchdown": "#169146", "secured": "#0f6b33", "abort": "#c62828", "hold": "#b26a00",
@@ -44,7 +46,7 @@ def panel_text(state: ViewState, t_s: float, *, stale: bool) -> str:
 
 def _rows(state: ViewState, t_s: float) -> list[tuple[str, str]]:
     speed_m_s = None if state.drone is None else math.hypot(*state.drone.velocity_flu_m_s)
-    rows = [("time", f"{t_s:.1f} s"), *status_rows(state.status), ("drone's speed", number(speed_m_s, "m/s"))]
+    rows = [("time", f"{t_s:.1f} s"), *status_rows(_status_of(state)), ("drone's speed", number(speed_m_s, "m/s"))]
     vehicle_m_s = None
     if state.vehicle_truth is not None:
         vehicle_m_s = math.hypot(*state.vehicle_truth.velocity_flu_m_s)
@@ -60,12 +62,21 @@ def _rows(state: ViewState, t_s: float) -> list[tuple[str, str]]:
     return rows
 
 
+def _status_of(state: ViewState) -> LandingStatus | None:
+    """Return the status; a recorded one with the forecast of the contact that was recorded beside it."""
+    status, recorded = state.status, state.recorded_forecast
+    if status is None or recorded is None or abs(status.stamp_ns - recorded.t_ns) > _FORECAST_AGE_MAX_NS:
+        return status
+    return replace(status, contact_forecast=recorded.forecast)
+
+
 def _drone_rows(drone: BodyTruth | None, status: LandingStatus | None) -> list[tuple[str, str]]:
     """Return how the drone lies in the air, and what its autopilot says; angles in degrees, the heading by compass."""
     attitude, heading = "-", "-"
     if drone is not None:
         roll, pitch, yaw = (math.degrees(angle_rad) for angle_rad in roll_pitch_yaw_of(drone.orientation_wxyz))
-        attitude = f"{roll:+.0f} right, {-pitch:+.0f} nose up, degrees"
+        side, nose = "right" if roll > 0.0 else "left", "down" if pitch > 0.0 else "up"
+        attitude = f"{abs(roll):.0f} {side}, {abs(pitch):.0f} nose {nose}, degrees"
         heading = f"{(90.0 - yaw) % 360.0:03.0f} degrees from north"
     share = None if status is None else status.battery_share
     armed = "-" if status is None else "armed" if status.armed else "not armed"

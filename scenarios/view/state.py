@@ -10,7 +10,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from link.messages import BodyTruth, CompressedPicture, LandingStatus, PadGeometry, PadSighting, Plan, Vector3
+from link.messages import (
+    BodyTruth,
+    CompressedPicture,
+    ContactForecast,
+    LandingStatus,
+    PadGeometry,
+    PadSighting,
+    Plan,
+    Vector3,
+)
 from link.payloads import cdr, json_messages
 from link.payloads.decklander_msgs import PACKAGE, fields_of
 from link.records import replace
@@ -36,6 +45,14 @@ class ForecastPath:
 
     position_enu_m: Array
     std_m: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecordedForecast:
+    """How the descent was to end, forecast at `t_ns`; live, the status itself has it."""
+
+    t_ns: int
+    forecast: ContactForecast
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,6 +91,7 @@ class ViewState:
     link: LinkCounters | None = None
     sighting: PadSighting | None = None
     picture: CompressedPicture | None = None
+    recorded_forecast: RecordedForecast | None = None
 
     @property
     def drone(self) -> BodyTruth | None:
@@ -98,6 +116,7 @@ class StateReader:
             keys.record("link"): _link,
             keys.record("plan"): _read_plan,
             keys.record("step"): _step,
+            keys.record("contact_forecast"): _contact_forecast,
             keys.landing_plan: _plan,
             keys.landing_status: _status,
             keys.pad: lambda payload: {"pad": json_messages.decode(PadGeometry, payload)},
@@ -207,6 +226,13 @@ def _step(payload: bytes) -> dict[str, Any]:
         fix_age_s=_number(fields["fix_age_s"]),
     )
     return {"t_ns": t_ns, "status": status, **_plan_over(status)}
+
+
+def _contact_forecast(payload: bytes) -> dict[str, Any]:
+    fields = fields_of(payload, f"{PACKAGE}/ContactForecast")
+    values = {name: float(fields[name]) for name in ContactForecast.__struct_fields__ if name != "in_s"}
+    forecast = ContactForecast(in_s=_number(fields["in_s"]), **values)
+    return {"recorded_forecast": RecordedForecast(t_ns=_stamp_ns(fields), forecast=forecast)}
 
 
 def _stamp_ns(fields: dict[str, Any]) -> int:

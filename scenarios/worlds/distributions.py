@@ -10,7 +10,6 @@ import math
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
-from scipy import special
 
 from link.program.toml_config import Positive, StrictModel
 
@@ -89,6 +88,8 @@ class Beta(_Bounded):
 
     def quantile(self, u: float) -> float:
         """Return the value below which the share `u` of the values lies."""
+        from scipy import special  # noqa: PLC0415 (0.2 s, and only who draws a world needs it)
+
         return self.low + (self.high - self.low) * float(special.betaincinv(self.a, self.b, u))
 
 
@@ -174,5 +175,7 @@ Plain = Annotated[
 
 def _normal_between(u: float, low: float, high: float) -> float:
     """Return the quantile at `u` of a standard normal distribution between two bounds."""
+    from scipy import special  # noqa: PLC0415 (as above)
+
     below, above = special.ndtr(low), special.ndtr(high)
     return float(special.ndtri(below + u * (above - below)))

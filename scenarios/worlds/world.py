@@ -12,13 +12,12 @@ from scenarios.worlds.distributions import Value
 from scenarios.worlds.draws import Draws
 from scenarios.worlds.driver import DRIVE_S, DrivePlan, plan_drive
 from scenarios.worlds.flying import draw_drone, draw_firmware, draw_wind, speed_bound_m_s, system_of
-from scenarios.worlds.odd import domain, quantities_of, slices
+from scenarios.worlds.odd import domain, quantities_of
 from scenarios.worlds.road import RoadPlan, plan_road
 from scenarios.worlds.sensing import draw_link, draw_sensors
 from scenarios.worlds.summary import summary_of
 from scenarios.worlds.vehicle import draw_vehicle
 
-SLICES: tuple[str, ...] = slices()
 _WAITING_OVER_ROOF_M = 3.5  # 5 m above the road over the benchmark's roof of 1.5 m
 _WAITING_MIN_M = 5.0  # above the road; source report, section "Task"
 _APPROACH_MIN_M, _APPROACH_S = 40.0, 3.0  # of road before the waiting point, as the catalogue's tracks
@@ -48,7 +47,7 @@ def draw_world(slice: str, seed: Seed, *, chosen: Mapping[str, float] | None = N
     """Return the world of `seed` in a slice of the domain.
 
     Args:
-        slice: one of `SLICES`.
+        slice: one of `odd.slices()`.
         seed: of everything random in it.
         chosen: by the name of a drawn quantity, the uniform number in (0, 1) to be used in place of the drawn one.
 

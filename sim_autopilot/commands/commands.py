@@ -49,13 +49,17 @@ def obey(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> 
 
 
 def answer_command(answer: Answer, request: Request, config: AutopilotConfig) -> Result:
-    """Return the memory after a command that a handler has obeyed, and its acknowledgement with what else is sent."""
+    """Return the memory after a command that a handler has obeyed, and its acknowledgement with what else is sent.
+
+    What is said about it is for everybody: it waits for the end of the step, when texts go to all links.
+    """
     severity = config.firmware.texts.severity
-    telling = tell(answer.memory, answer.text, severity, config) if answer.text else None
     told = () if answer.result is None else (acknowledgement(request, answer.result),)
-    if telling is None:
+    if not answer.text:
         return answer.memory, (*told, *answer.messages)
-    return telling.memory, (*told, *answer.messages, *telling.messages)
+    telling = tell(answer.memory, answer.text, severity, config)
+    said = (Later(boot_ns=answer.memory.now.boot_ns, message=message) for message in telling.messages)
+    return with_later(telling.memory, *said), (*told, *answer.messages)
 
 
 def _arm_disarm(memory: AutopilotMemory, request: Request, config: AutopilotConfig) -> Answer:

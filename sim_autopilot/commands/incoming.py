@@ -20,7 +20,7 @@ from sim_autopilot.commands.mode_request import try_mode
 from sim_autopilot.commands.origin import move_origin
 from sim_autopilot.commands.requests import is_for_us, is_ours
 from sim_autopilot.commands.single_items import is_single_item, take_single_item
-from sim_autopilot.core.streams import with_interval
+from sim_autopilot.commands.stream_groups import request_data_stream
 from sim_autopilot.flight.manual import sticks_from_message
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed, with_link
 from sim_autopilot.missions.step import mission_current, set_current
@@ -99,19 +99,6 @@ def _set_mode(memory: AutopilotMemory, message: Message, config: AutopilotConfig
     return memory, (told,)
 
 
-def _data_stream(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
-    """Start or stop the messages of an old stream group, at one rate."""
-    group = config.firmware.streams.groups.get(message.req_stream_id)
-    if group is None or not is_ours(message, config):
-        return memory, ()
-    rate_hz = min(float(message.req_message_rate), config.firmware.streams.rate_max_hz)
-    interval_ns = round(1e9 / rate_hz) if message.start_stop and rate_hz > 0.0 else None
-    streams = memory.links.here.streams
-    for message_id in group:
-        streams = with_interval(streams, message_id, interval_ns, memory.now.boot_ns)
-    return with_link(memory, replace(memory.links.here, streams=streams)), ()
-
-
 def _set_origin(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
     """Move the local frame under the drone, as PX4 does even in flight."""
     fixed = config.firmware.origin.stays and has_passed(config, memory, config.firmware.condition.readiness.position_s)
@@ -151,7 +138,7 @@ _HANDLERS: Mapping[int, Handler] = MappingProxyType(
         mavlink.MAVLINK_MSG_ID_PARAM_SET: set_parameter,
         mavlink.MAVLINK_MSG_ID_SET_GPS_GLOBAL_ORIGIN: _set_origin,
         mavlink.MAVLINK_MSG_ID_SET_MODE: _set_mode,
-        mavlink.MAVLINK_MSG_ID_REQUEST_DATA_STREAM: _data_stream,
+        mavlink.MAVLINK_MSG_ID_REQUEST_DATA_STREAM: request_data_stream,
         mavlink.MAVLINK_MSG_ID_MISSION_SET_CURRENT: _set_current,
     }
 )

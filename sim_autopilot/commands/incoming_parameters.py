@@ -7,9 +7,10 @@ from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 from sim_autopilot.boot import tune
 from sim_autopilot.commands.requests import is_ours
+from sim_autopilot.core.links import Later
 from sim_autopilot.core.parameters import find_index, is_type_right, parameter_message, values_after_set
 from sim_autopilot.core.status_texts import status_text
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, with_link
+from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, with_later, with_link
 
 Result = tuple[AutopilotMemory, tuple[Message, ...]]
 
@@ -18,8 +19,12 @@ def list_parameters(memory: AutopilotMemory, message: Message, config: Autopilot
     """Begin to send all parameters on the link at hand."""
     if not is_ours(message, config):
         return memory, ()
-    banner = tuple(status_text(mavlink.MAV_SEVERITY_INFO, text) for text in config.firmware.parameters.banner)
-    return with_link(memory, replace(memory.links.here, listing=0)), banner
+    return with_link(memory, replace(memory.links.here, listing=0)), banner(config)
+
+
+def banner(config: AutopilotConfig) -> tuple[Message, ...]:
+    """Return the texts about the build, for whoever asked on his link."""
+    return tuple(status_text(mavlink.MAV_SEVERITY_INFO, text) for text in config.firmware.parameters.banner)
 
 
 def read_parameter(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
@@ -40,7 +45,7 @@ def with_value(memory: AutopilotMemory, name: str, value: float, config: Autopil
 
 
 def set_parameter(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
-    """Set a parameter, and tell its value."""
+    """Set a parameter, and tell its value on every link."""
     parameters, autopilot_id = config.firmware.parameters.table, config.firmware.identity.autopilot_id
     index = find_index(parameters, message.param_id)
     if index is None or not is_ours(message, config):
@@ -51,4 +56,5 @@ def set_parameter(memory: AutopilotMemory, message: Message, config: AutopilotCo
     values = values_after_set(parameters, index, memory.tuning.values, message, autopilot_id, lenient=lenient)
     memory = replace(memory, tuning=tune(config, values))
     tells_index = config.firmware.parameters.tells_indices
-    return memory, (parameter_message(parameters, index, values, autopilot_id, tells_index=tells_index),)
+    told = parameter_message(parameters, index, values, autopilot_id, tells_index=tells_index)
+    return with_later(memory, Later(boot_ns=memory.now.boot_ns, message=told)), ()

@@ -4,8 +4,9 @@ from link.compiled import kernel
 from sim_autopilot.control.attitude import fill_attitude_wrench
 from sim_autopilot.control.geometric import fill_geometric_wrench
 from sim_autopilot.control.lqr import GOAL, fill_feedforward_wrench, fill_report_wrench
-from sim_autopilot.control.outer_loop import bound_force, fill_acceleration, observe, steady, turn_heading
+from sim_autopilot.control.outer_loop import bound_force, fill_acceleration, mark_missed, observe, steady, turn_heading
 from sim_autopilot.control.parameters import HAS_RATES, HEADING, RUNNING, VELOCITY
+from sim_autopilot.control.velocity_pid import fill_pid_acceleration, integrate
 from sim_autopilot.core.data import Array
 from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotation import euler_angles
@@ -26,7 +27,8 @@ def start(y: Array, rotation: Array, control: Record, memory: Array) -> None:
         memory[GOAL] = memory[HEADING]
         offset = 0
     for i in range(3):
-        memory[VELOCITY + i] = y[offset + i]
+        is_error = control["derives_error"] == 1 and control["integral_gain"][i] >= 0.0
+        memory[VELOCITY + i] = 0.0 if is_error else y[offset + i]
 
 
 @kernel
@@ -34,13 +36,13 @@ def fill_control(
     y: Array, rotation: Array, speed: Array, memory: Array, reference: Array, touching: bool, control: Record,
     body: Record, scratch: Array, out: Array,
 ) -> None:  # fmt: skip
-    """Write the wanted [T, L, M, N] (4,) and bring `memory` (15,) on by one period.
+    """Write the wanted [T, L, M, N] (4,) and bring `memory` (17,) on by one period.
 
     Args:
         y: (13,) state.
         rotation: (9,) R_WB.
         speed: (4,) rotor speeds, rad/s.
-        memory: (15,) of the controller, changed.
+        memory: (17,) of the controller, changed.
         reference: (25,).
         touching: whether the drone touches anything.
         control: the controller's record.
@@ -58,11 +60,21 @@ def fill_control(
         fill_report_wrench(y, rotation, memory, reference, control, body, scratch[0:12], out)
         return
     force, wanted = scratch[0:3], scratch[3:12]
-    steady(memory, reference, control)
-    observe(y, rotation, speed, memory, touching, control, body)
     heading_rate = turn_heading(memory, reference, control)
-    fill_acceleration(y, memory, reference, control, wanted[0:3], force)
-    bound_force(force, touching, control, body)
+    if control["has_pid"] == 1:
+        observe(y, rotation, speed, memory, touching, control, body)
+        fill_pid_acceleration(y, memory, reference, control, wanted[0:3], force)
+        wanted[3:6] = force
+        bound_force(force, touching, control, body)
+        mark_missed(memory, wanted[3:6], force)
+        integrate(memory, reference, control, wanted, force, touching)
+    else:
+        steady(memory, reference, control)
+        observe(y, rotation, speed, memory, touching, control, body)
+        fill_acceleration(y, memory, reference, control, wanted[0:3], force)
+        wanted[3:6] = force
+        bound_force(force, touching, control, body)
+        mark_missed(memory, wanted[3:6], force)
     if control["kind"] == LQR_FEEDFORWARD:
         fill_feedforward_wrench(y, rotation, force, memory, heading_rate, control, body, out)
     else:

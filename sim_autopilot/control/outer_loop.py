@@ -20,6 +20,7 @@ from sim_autopilot.control.parameters import (
     HAS_VELOCITY,
     HAS_YAW,
     HEADING,
+    MISSED,
     PLACE,
     VELOCITY,
     YAW,
@@ -111,13 +112,18 @@ def turn_heading(memory: Array, reference: Array, control: Record) -> float:
 def observe(
     y: Array, rotation: Array, speed: Array, memory: Array, touching: bool, control: Record, body: Record
 ) -> None:
-    """Bring the observed velocity and disturbance in `memory` up to date; on a surface the disturbance is held."""
+    """Bring the observed velocity and disturbance in `memory` up to date; on a surface the disturbance is held.
+
+    Axes on which a firmware integrates are left alone.
+    """
     period = control["period_s"]
     pole = control["observer_rad_s"]
     thrust = 0.0
     for i in range(4):
         thrust += body["thrust_coefficient_n_s2"] * speed[i] * speed[i]
     for i in range(3):
+        if control["has_pid"] == 1 and control["integral_gain"][i] >= 0.0:
+            continue
         innovation = y[7 + i] - memory[VELOCITY + i]
         if touching:
             memory[VELOCITY + i] = y[7 + i]
@@ -198,3 +204,11 @@ def bound_force(acceleration: Array, touching: bool, control: Record, body: Reco
     if size > along:
         acceleration[0] *= along / size
         acceleration[1] *= along / size
+
+
+@kernel
+def mark_missed(memory: Array, asked: Array, force: Array) -> None:
+    """Write the level part of the acceleration (3,) that was asked for into `memory` if `force` (3,) has less of it."""
+    is_bound = asked[0] ** 2 + asked[1] ** 2 > (force[0] ** 2 + force[1] ** 2) * (1.0 + 1e-9)
+    memory[MISSED] = asked[0] if is_bound else 0.0
+    memory[MISSED + 1] = asked[1] if is_bound else 0.0

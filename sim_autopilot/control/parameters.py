@@ -1,13 +1,17 @@
 """What the controller kernels read and remember: one record of gains and limits, one vector of memory.
 
-Memory (15,): whether it is running; heading it commands, rad; velocity as the observer has it, m/s (3);
-disturbance, m/s2 (3); integrals of the position and heading errors (4); position that is followed, m (3). `lqr`
-keeps in the second to fifth its heading and position at the start, in the sixth the heading it goes to.
+Memory (17,): whether it is running; heading it commands, rad; velocity as the observer has it, m/s (3);
+disturbance, m/s2 (3); integrals of the position and heading errors (4); position that is followed, m (3);
+level acceleration that was asked for and could not be had, m/s2 (2), zero where it could. `lqr`
+keeps in the second to fifth its heading and position at the start, in the sixth the heading it goes to. A firmware's
+own velocity control keeps there its integral, negative, as the disturbance; the velocity, or the error, whose slope it
+takes, as the observed velocity; and that slope (3) in place of the integrals.
 Reference (25,): position, velocity, acceleration (3 each), heading, heading rate, then 1 or 0 for each of position,
 velocity, acceleration and heading given; whether an attitude is given, whether turn rates are, thrust over mass,
 quaternion (4), rates (3).
 """
 
+import math
 from dataclasses import dataclass
 from enum import Enum
 
@@ -15,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim_autopilot.core.data import Array, AttitudeTarget, Reference
-from sim_autopilot.core.limits import Envelope
+from sim_autopilot.core.limits import Envelope, PositionGains
 
 
 class ControllerKind(Enum):
@@ -31,7 +35,11 @@ HEADING = 1
 VELOCITY = 2
 DISTURBANCE = 5
 INTEGRAL = 8
+SLOPE = 8
 PLACE = 12
+MISSED = 15
+OBSERVED = -1.0
+"""In place of the gain of an integral that there is not."""
 
 YAW, YAW_RATE, HAS_POSITION, HAS_VELOCITY, HAS_ACCELERATION, HAS_YAW = 9, 10, 11, 12, 13, 14
 PARTLY = 0.5
@@ -51,6 +59,12 @@ CONTROL = np.dtype(
         ("rate_gain", "f8", (3,)),
         ("lqr_state", "f8", (4, 12)),
         ("lqr_integral", "f8", (4, 4)),
+        ("has_pid", "i8"),
+        ("integral_gain", "f8", (3,)),
+        ("derivative_gain", "f8", (3,)),
+        ("derives_error", "i8"),
+        ("error_share", "f8"),
+        ("slope_share", "f8"),
         ("observer_rad_s", "f8"),
         ("motor_lead", "f8"),
         ("speed_max_m_s", "f8"),
@@ -83,12 +97,16 @@ def control_record(
     lqr: tuple[Array, Array],
     envelope: Envelope,
     *,
+    pid: PositionGains | None,
     period_s: float,
     observer_rad_s: float,
     motor_lead: float,
     tilt_braking_rad_s2: float,
 ) -> NDArray[np.void]:
-    """Return the record (1,) of a controller; `lqr` holds K (4, 12) and Ki (4, 4) of the published one."""
+    """Return the record (1,) of a controller.
+
+    `lqr` holds K (4, 12) and Ki (4, 4) of the published one, `pid` what a firmware has in place of an observer.
+    """
     record = np.zeros(1, dtype=CONTROL)
     record["kind"] = KIND_CODES[kind]
     record["period_s"] = period_s
@@ -96,6 +114,8 @@ def control_record(
     record["velocity_gain"] = gains.velocity
     record["attitude_gain"] = gains.attitude
     record["rate_gain"] = gains.rate
+    if pid is not None:
+        fill_pid(record, pid, period_s)
     record["lqr_state"], record["lqr_integral"] = lqr
     record["observer_rad_s"] = observer_rad_s
     record["motor_lead"] = motor_lead
@@ -107,6 +127,22 @@ def control_record(
     record["tilt_braking_rad_s2"] = tilt_braking_rad_s2
     record["yaw_rate_max_rad_s"] = envelope.yaw_rate_max_rad_s
     return record
+
+
+def fill_pid(record: NDArray[np.void], pid: PositionGains, period_s: float) -> None:
+    """Write the part of a firmware's position control that is no gain of the cascade."""
+    axes = (pid.level, pid.level, pid.vertical)
+    record["has_pid"] = 1
+    record["integral_gain"] = tuple(OBSERVED if one.integral_per_s2 is None else one.integral_per_s2 for one in axes)
+    record["derivative_gain"] = tuple(one.derivative for one in axes)
+    record["derives_error"] = int(pid.derives_error)
+    record["error_share"] = _filter_share(pid.error_cutoff_hz, period_s)
+    record["slope_share"] = _filter_share(pid.slope_cutoff_hz, period_s)
+
+
+def _filter_share(cutoff_hz: float | None, period_s: float) -> float:
+    """Return by which part of the difference a first-order low-pass filter moves in a period."""
+    return 1.0 if cutoff_hz is None else 1.0 - math.exp(-2.0 * math.pi * cutoff_hz * period_s)
 
 
 def reference_vector(reference: Reference) -> Array:

@@ -79,7 +79,7 @@ class ModeRules:
         of_flags: the mode that a client without custom modes asks for by its MAV_MODE_FLAGs; None denies it.
         leaves_landing: whether it goes back, when the motors stop, to the last mode asked for that lets arm.
         tells_changes: whether a change of mode sends a heartbeat at once.
-        answered_twice: whether DO_SET_MODE is accepted at once, and answered for good a step later.
+        answered_twice: whether DO_SET_MODE is accepted at once, with the final answer a step later.
         set_mode_answered_as: the MAV_CMD that the COMMAND_ACK to a SET_MODE names; None answers nothing.
     """
 

@@ -29,14 +29,43 @@ DEFAULT_ENVELOPE = Envelope()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PositionGains:
-    """Velocity per position error, acceleration per velocity error and per its integral; then the vertical ones."""
+class AxisGains:
+    """Of position control along an axis.
+
+    Attributes:
+        position_per_s: velocity per position error.
+        velocity_per_s: acceleration per velocity error.
+        integral_per_s2: acceleration per its integral; None leaves what disturbs to an observer.
+        derivative: acceleration per slope of the velocity, or of its error.
+    """
 
     position_per_s: float
     velocity_per_s: float
-    integral_per_s2: float
-    vertical_position_per_s: float
-    vertical_velocity_per_s: float
+    integral_per_s2: float | None
+    derivative: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PositionGains:
+    """A firmware's position control.
+
+    Attributes:
+        level: horizontally.
+        vertical: likewise.
+        observer_rad_s: pole of the observer of what disturbs, on axes that have no integral.
+        derives_error: whether the slope is that of the velocity's error, else of the velocity alone.
+        error_cutoff_hz: of the low-pass filter on the velocity's error; None is none.
+        slope_cutoff_hz: of the one on the slope; None is none.
+        attitude_per_s: turn rate per angle that the attitude is off.
+    """
+
+    level: AxisGains
+    vertical: AxisGains
+    observer_rad_s: float
+    derives_error: bool
+    error_cutoff_hz: float | None
+    slope_cutoff_hz: float | None
+    attitude_per_s: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

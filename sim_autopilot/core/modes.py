@@ -11,7 +11,7 @@ from link.records import replace
 class Mode(Enum):
     """What the autopilot does with the drone."""
 
-    __hash__ = object.__hash__  # by identity, as members compare: a name is hashed anew at every look-up
+    __hash__ = object.__hash__  # by identity, as members compare: a name is hashed again at every look-up
 
     OFFBOARD = "offboard"  # follows a companion's setpoints
     HOLD = "hold"

@@ -1,8 +1,7 @@
 """A firmware's whole parameter list: what the flight obeys, among all the rest that is kept and answered only.
 
 Each firmware's folder has a table `parameters.csv` with name, MAV_PARAM_TYPE and default in the firmware's
-own order, read from its simulation. PX4's horizontal gains (MPC_XY_P, MPC_XY_VEL_P_ACC, MPC_XY_VEL_I_ACC) are those
-of the controller that flies in its place: they tell how it follows, and setting them changes nothing.
+own order, read from its simulation.
 """
 
 from importlib.resources import files

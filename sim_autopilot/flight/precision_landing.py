@@ -24,7 +24,7 @@ _LOST_S = 2.0
 _POSITION_GAIN, _VELOCITY_GAIN = 0.4, 0.1
 """Of a critically damped alpha-beta filter, roughly: beta = alpha^2 / (2 - alpha)."""
 _GAP_MAX_S = 0.5
-"""After a longer one the filter begins anew."""
+"""After a longer one the filter restarts."""
 _SOONEST_S = 0.005
 _SLOW_FROM_M, _SLOW_TO_M = 0.35, 2.0
 _SLOW_M_S = 0.1

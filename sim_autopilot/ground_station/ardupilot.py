@@ -12,7 +12,14 @@ from sim_autopilot.ground_station.files.parameter_file import PATH, pack_paramet
 from sim_autopilot.ground_station.files.store import Shown
 from sim_autopilot.ground_station.fixed_answers import ARDUCOPTER_ANSWERS
 from sim_autopilot.ground_station.logs.flight_log import LogRules, dataflash_head, dataflash_row
-from sim_autopilot.ground_station.maintenance import format_storage, reset_parameters, set_servo, spin_motor
+from sim_autopilot.ground_station.maintenance import (
+    format_storage,
+    reset_parameters,
+    send_banner,
+    send_version,
+    set_servo,
+    spin_motor,
+)
 from sim_autopilot.ground_station.missions.rules import ARDUCOPTER_MISSIONS
 from sim_autopilot.ground_station.station import GroundStation
 
@@ -49,6 +56,7 @@ ARDUPILOT_STATION = GroundStation(
     ftp=_FTP,
     logs=_LOGS,
     plans=ARDUCOPTER_MISSIONS,
+    messages=MappingProxyType({mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION_REQUEST: send_version}),
     commands=MappingProxyType(
         {
             mavlink.MAV_CMD_PREFLIGHT_CALIBRATION: accept_calibration,
@@ -56,6 +64,7 @@ ARDUPILOT_STATION = GroundStation(
             mavlink.MAV_CMD_DO_REPEAT_SERVO: set_servo,
             mavlink.MAV_CMD_DO_MOTOR_TEST: spin_motor,
             mavlink.MAV_CMD_PREFLIGHT_STORAGE: reset_parameters,
+            mavlink.MAV_CMD_DO_SEND_BANNER: send_banner,
             mavlink.MAV_CMD_STORAGE_FORMAT: format_storage,
         }
     ),

@@ -1,16 +1,19 @@
-"""Commands about the autopilot itself that ArduCopter obeys: motors, outputs, a reset of parameters, its storage.
+"""What ArduCopter is asked about itself: motors, outputs, a reset of parameters, its storage, version and banner.
 
 Source: ArduCopter's motor test, and ArduPilot's handling of MAV_CMD_PREFLIGHT_STORAGE and MAV_CMD_STORAGE_FORMAT.
 """
 
 from math import isfinite
 
-from link.mavlink.dialect import mavlink
+from link.mavlink.dialect import Message, mavlink
 from link.records import replace
-from sim_autopilot.commands.requests import ACCEPTED, DENIED, UNSUPPORTED, Answer, Request
+from sim_autopilot.commands.incoming_parameters import banner
+from sim_autopilot.commands.requests import ACCEPTED, DENIED, UNSUPPORTED, Answer, Request, is_ours
 from sim_autopilot.core.links import Later
 from sim_autopilot.core.status_texts import status_text
+from sim_autopilot.interfaces import Result
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.telemetry.versions import autopilot_version
 
 _FAILED = int(mavlink.MAV_RESULT_FAILED)
 _LONGEST_TEST_S = 600.0
@@ -61,6 +64,16 @@ def format_storage(memory: AutopilotMemory, request: Request, _config: Autopilot
     """Fail to format the card, as its simulation does."""
     asked = (request.number(1), request.number(2)) == (_YES, _YES)
     return Answer(memory=memory, result=_FAILED if asked else UNSUPPORTED)
+
+
+def send_banner(memory: AutopilotMemory, _request: Request, config: AutopilotConfig) -> Answer:
+    """Tell the build, the board and the frame on the link at hand, as before a list of parameters."""
+    return Answer(memory=memory, result=ACCEPTED, messages=banner(config))
+
+
+def send_version(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
+    """Answer the older message that asks for AUTOPILOT_VERSION; PX4 does not know it."""
+    return memory, (autopilot_version(memory, config),) if is_ours(message, config) else ()
 
 
 def _ends_test(later: Later) -> bool:

@@ -151,7 +151,7 @@ def _return_home(progress: Progress, flight: ModeFlight, around: Surroundings) -
 
 
 def resume(progress: Progress) -> Progress:
-    """Return the progress of a mission that is taken up again: its current item begins anew."""
+    """Return the progress of a mission that is taken up again: its current item restarts."""
     return progress if progress.stage is Stage.FINISHED else replace(progress, stage=Stage.NEW)
 
 

@@ -59,11 +59,25 @@ REPORT_AIRFRAME = Airframe()
 BENCHMARK_AIRFRAME = Airframe(motor_time_constant_s=0.05, thrust_to_weight=2.0, drag_n_s_m=0.25)
 """The report's body with the motors and the drag that its own simulation lacked."""
 
-_CEILING_M_S = 10.2
+_CEILING_M_S = 10.28
+_MOMENTUM_DRAG_PER_S = 0.248
+"""Of the rotors' air, linear in speed: mdrag_coef 0.2 times the root of the hover thrust (3 kg), 1.225 kg/m3 and
+disc_area 0.385 m2, over the mass; ArduPilot's SIM_Frame."""
 ARDUCOPTER_AIRFRAME = Airframe(
     motor_time_constant_s=0.05,
     thrust_to_weight=2.6,
-    drag_n_s2_m2=REPORT_AIRFRAME.weight_n * tan(radians(30.0)) / _CEILING_M_S**2,
+    drag_n_s_m=_MOMENTUM_DRAG_PER_S * REPORT_AIRFRAME.mass_kg,
+    drag_n_s2_m2=(GRAVITY_M_S2 * tan(radians(30.0)) - _MOMENTUM_DRAG_PER_S * _CEILING_M_S)
+    * REPORT_AIRFRAME.mass_kg
+    / _CEILING_M_S**2,
 )
 """The report's body as strong and as draggy as ArduCopter's own simulated quadrotor: it hovers at 0.387 of its thrust
-(the MOT_THST_HOVER that it learns), and leaning 30 degrees it flies 10.2 m/s, as measured."""
+(the MOT_THST_HOVER that it learns), and leaning 30 degrees it flies 10.28 m/s, as measured; the drag is in part the
+rotors', in part quadratic."""
+
+_SIH_DRAG_PER_S = 0.3
+PX4_AIRFRAME = Airframe(
+    motor_time_constant_s=0.05, thrust_to_weight=2.04, drag_n_s_m=_SIH_DRAG_PER_S * REPORT_AIRFRAME.mass_kg
+)
+"""The report's body as strong and as draggy for its mass as PX4's own simulated quadrotor: SIH_T_TAU 0.05 s, four
+rotors of SIH_T_MAX 5 N for SIH_MASS 1 kg, SIH_KDV 0.3 N s/m (a realistic one: its default of 1 allows 9 m/s)."""

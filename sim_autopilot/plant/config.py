@@ -7,7 +7,6 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from link.records import replace
 from sim_autopilot.control.geometric import MOTOR_POLE_RAD_S, geometric_gains
 from sim_autopilot.control.lqr import feedforward_gains, report_gains
 from sim_autopilot.control.parameters import CascadeGains, ControllerKind, control_record
@@ -19,7 +18,6 @@ from sim_autopilot.physics.parameters import body_record
 INTEGRATION_STEP_S = 0.001
 OBSERVER_POLE_RAD_S = 4.0
 """Of the disturbance observer, below the position loop's poles: wind and drag change slower than a manoeuvre."""
-_SLOWEST_RAD_S = 0.05
 TILT_BRAKING_PART = 0.4
 """Of the torque that there is: the rest is for the motors' lag and for errors."""
 
@@ -36,7 +34,7 @@ class PlantConfig:
         ground_effect: whether thrust grows near a surface.
         solid: whether a drone whose motors run can touch ground and vehicle.
         control_period_s: of the flight controller, a multiple of 1 ms.
-        gains: of position and velocity in place of the controller's own.
+        gains: of the firmware's position control, in place of the controller's own; `lqr_feedforward` keeps its own.
         records: the same for the kernels, derived: airframe and controller.
     """
 
@@ -58,11 +56,12 @@ class PlantConfig:
         gains = feedforward_gains(self.airframe) if linear else geometric_gains()
         control = control_record(
             self.controller,
-            gains if self.gains is None else _with_gains(gains, self.gains),
+            gains if self.gains is None or linear else _with_gains(gains, self.gains),
             _gains_of(self.airframe),
             self.envelope,
+            pid=None if linear else self.gains,
             period_s=self.control_period_s,
-            observer_rad_s=OBSERVER_POLE_RAD_S if self.gains is None else _observer_pole(self.gains),
+            observer_rad_s=OBSERVER_POLE_RAD_S if self.gains is None else self.gains.observer_rad_s,
             motor_lead=_motor_lead(self.airframe),
             tilt_braking_rad_s2=_tilt_braking_rad_s2(self.airframe),
         )
@@ -76,18 +75,16 @@ def _gains_of(airframe: Airframe) -> tuple[Array, Array]:
 
 
 def _with_gains(own: CascadeGains, given: PositionGains) -> CascadeGains:
-    level, vertical = given.velocity_per_s, given.vertical_velocity_per_s
-    along, up = given.position_per_s * level, given.vertical_position_per_s * vertical
-    return replace(own, position=(along, along, up), velocity=(level, level, vertical))
-
-
-def _observer_pole(gains: PositionGains) -> float:
-    """The pole with which the observer lags behind a growing disturbance as an integrator of the velocity would.
-
-    A ramp of slope r leaves `2 r / w_o` uncompensated by the observer, and needs a velocity error of `r / ki`, which
-    the velocity gain turns into `kv r / ki`.
-    """
-    return max(_SLOWEST_RAD_S, 2.0 * gains.integral_per_s2 / gains.velocity_per_s)
+    """Return the cascade with a firmware's gains; its turn rates are followed as well as this airframe can."""
+    level, vertical = given.level.velocity_per_s, given.vertical.velocity_per_s
+    along, up = given.level.position_per_s * level, given.vertical.position_per_s * vertical
+    x, y, z = own.rate
+    return CascadeGains(
+        position=(along, along, up),
+        velocity=(level, level, vertical),
+        attitude=(given.attitude_per_s * x, given.attitude_per_s * y, own.attitude[2]),
+        rate=(x, y, z),
+    )
 
 
 def _motor_lead(airframe: Airframe) -> float:

@@ -16,9 +16,9 @@ SPEED_END = 17
 FORCE_END = 20
 SURFACE = 20
 MEMORY_START = 21
-MEMORY_END = 36
-PLANT_SIZE = 60
-"""Plant vector: state 13, rotor speeds 4, specific force 3, surface 1, controller memory 15, friction anchors 8 x 3."""
+MEMORY_END = 38
+PLANT_SIZE = 62
+"""Plant vector: state 13, rotor speeds 4, specific force 3, surface 1, controller memory 17, friction anchors 8 x 3."""
 
 
 @kept_kernel(source_digest(Path(__file__).parents[1] / folder for folder in ("physics", "control")))
@@ -26,10 +26,10 @@ def advance(
     plant: Array, flying: bool, reference: Array, own_error: Array, deck: Array, wind: Array,
     control_record: Record, body_record: Record, periods: int, steps: int,
 ) -> None:  # fmt: skip
-    """Advance the plant vector (60,) in place.
+    """Advance the plant vector (62,) in place.
 
     Args:
-        plant: (60,) changed.
+        plant: (62,) changed.
         flying: whether the motors run; `reference` counts only then.
         reference: (25,) at the start of the call.
         own_error: (6,) of the position and velocity in W that the controller believes in.

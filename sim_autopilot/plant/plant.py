@@ -5,7 +5,7 @@ from math import atan2, hypot
 import numpy as np
 from msgspec import Struct
 
-from sim_autopilot.control.parameters import DISTURBANCE, REFERENCE_SIZE, reference_vector
+from sim_autopilot.control.parameters import DISTURBANCE, MISSED, REFERENCE_SIZE, reference_vector
 from sim_autopilot.core.data import Array, Deck, PlantState, Reference, Surface
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
 from sim_autopilot.physics.contact import DECK_SIZE
@@ -41,6 +41,12 @@ def asked_tilt_rad(memory: PlantMemory, reference: Reference | None) -> float:
         east -= float(reference.acceleration_enu_m_s2[0])
         north -= float(reference.acceleration_enu_m_s2[1])
     return atan2(hypot(east, north), GRAVITY_M_S2)
+
+
+def missed_acceleration(memory: PlantMemory) -> tuple[float, float] | None:
+    """Return the level acceleration in W that the drone was last asked for in vain, None if it could have it."""
+    east_m_s2, north_m_s2 = memory.internals[MISSED : MISSED + 2].tolist()
+    return None if east_m_s2 == north_m_s2 == 0.0 else (east_m_s2, north_m_s2)
 
 
 def initial_plant(

@@ -20,7 +20,7 @@ from sim_autopilot.runtime.node import AutopilotNode
 from sim_autopilot.runtime.vehicle_view import VehicleView
 
 _BEHIND_MAX_S = 0.5
-"""Of wall time: farther behind than this, the clock starts anew from here instead of running after it."""
+"""Of wall time: farther behind than this, the clock restarts from here instead of running after it."""
 _YIELD_S = 0.0001
 """Wall time for which a loop without a clock looks for bytes in each step, so that others can keep up."""
 

@@ -11,6 +11,7 @@ from link.mavlink.dialect import Message, mavlink
 from link.mavlink.signing import Signing, Streams
 from link.mavlink.statistics import CodecStatistics
 from link.messages import Vector3
+from link.records import replace
 from sim_autopilot.boot import initial_memory, restart_in_place
 from sim_autopilot.commands.origin import move_origin
 from sim_autopilot.core.data import Array, Deck, PlantState
@@ -75,7 +76,7 @@ class AutopilotNode:
         return tuple(codec.statistics for codec in self._codecs)
 
     def restart(self) -> None:
-        """Boot anew where the drone is: nothing is remembered, and the motors stand still until they are armed."""
+        """Reboot where the drone is: nothing is remembered, and the motors stand still until they are armed."""
         self._memory = restart_in_place(self._memory, self._config)
         self._received.clear()
         self._step_ns = self._next_step_ns()
@@ -86,6 +87,11 @@ class AutopilotNode:
         latitude_rad, longitude_rad, altitude_m = geodetic_from_enu(self._config.datum, (x, y, z))
         datum = Datum(latitude_rad=latitude_rad, longitude_rad=longitude_rad, altitude_m=altitude_m)
         self._memory, _ = move_origin(self._memory, datum, (x, y, z), self._config)
+
+    def set_charge(self, share: float) -> None:
+        """Let the battery have `share` left, as after a longer flight; the motors run."""
+        ran_ns = round((1.0 - share) * self._config.endurance_s * 1e9)
+        self._memory = replace(self._memory, armed_ns=self._memory.now.boot_ns - ran_ns)
 
     def receive(
         self, data: bytes, t_ns: int, link: int = 0, peer: int = 0, *, is_datagram: bool = False

@@ -13,9 +13,10 @@ from link.mavlink.transports import open_transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohOptions, open_session
 from sim_autopilot.memory import AutopilotConfig
-from sim_autopilot.runtime.config import SimAutopilotConfig, wind_model
+from sim_autopilot.runtime.config import SimAutopilotConfig
 from sim_autopilot.runtime.loop import Links, WireLoop
 from sim_autopilot.runtime.node import STEP_NS, AutopilotNode
+from sim_autopilot.runtime.physics import wind_model
 from sim_autopilot.runtime.vehicle_view import VehicleView
 
 

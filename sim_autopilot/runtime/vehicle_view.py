@@ -32,7 +32,7 @@ def deck_of(truth: BodyTruth, roof_size_m: tuple[float, float], roof_height_m: f
 
 
 class VehicleView:
-    """The newest deck; asks for the pad until it is told, and asks anew after the vehicle was away.
+    """The newest deck; asks for the pad until it is told, and asks again after the vehicle was away.
 
     Args:
         session: an open one.

@@ -2,7 +2,7 @@
 
 from link.records import replace
 from sim_autopilot.core.modes import Mode, rest
-from sim_autopilot.flight.flight import begin
+from sim_autopilot.flight.flight import Leg, begin, climb_to
 from sim_autopilot.flight.land_detector import Landing
 from sim_autopilot.flight.manual import MANUAL_MODES, sticks_in_effect
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
@@ -32,11 +32,14 @@ def _has_sticks(memory: AutopilotMemory) -> bool:
 
 
 def arm(memory: AutopilotMemory) -> AutopilotMemory:
-    """Return the memory with the motors on, and home here."""
+    """Return the memory with the motors on, and home here; a take-off asked for before keeps its height."""
     if memory.armed_ns is not None:
         return memory
     now = memory.now
     flight = begin(memory.modes.mode, now, now.position_enu_m, memory.tuning.settings)
+    asked = memory.course.flight
+    if memory.modes.mode is Mode.TAKEOFF and asked.leg is Leg.CLIMB and asked.anchor.position_enu_m is not None:
+        flight = climb_to(flight, float(asked.anchor.position_enu_m[2]), now)
     course = replace(memory.course, flight=flight, climb=None, landing=Landing())
     places = replace(memory.places, home_enu_m=now.position_enu_m)
     return replace(memory, armed_ns=now.boot_ns, course=course, places=places)

@@ -1,23 +1,22 @@
 """ArduCopter's GUIDED mode: a shaped path that setpoints lead, and the take-off that is a part of the mode."""
 
 from enum import Enum
-from math import acos, atan2, hypot
+from math import atan2, hypot
 
 import numpy as np
 from msgspec import Struct
 
-from link.frames.rotations import rotate
 from link.messages import Vector3
 from link.records import replace
 from sim_autopilot.core.data import Reference
 from sim_autopilot.core.limits import PathLimits
-from sim_autopilot.core.settings import FlightSettings
 from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.setpoints.guided_attitude import AttitudeWish, attitude_flown, level_out
 from sim_autopilot.setpoints.guided_setpoint import STOP, Task, Wish
 from sim_autopilot.setpoints.path import (
     Blocked,
     Motion,
+    Plane,
     carry_on,
     correction_speed,
     lead_to_acceleration,
@@ -32,7 +31,6 @@ _AHEAD_MIN_M_S = 1.0
 """Slower than this the nose does not turn along the way."""
 _AHEAD_MIN_M = 2.0
 """To a place nearer than this it does not turn."""
-_LIMIT_MARGIN_RAD = 0.02
 _PRESS_M = 1.0
 """How far the path runs ahead of a drone that cannot sink."""
 _COMPLETE_SHARE = 0.1
@@ -136,9 +134,9 @@ def on_the_ground(guided: Guided, now: Snapshot) -> Guided:
 
 
 def next_guided(
-    guided: Guided, now: Snapshot, settings: FlightSettings, limits: PathLimits, dt_s: float
+    guided: Guided, now: Snapshot, limits: PathLimits, dt_s: float, missed: Plane | None
 ) -> tuple[Guided, Reference]:
-    """Return the memory `dt_s` later, and what to follow until then."""
+    """Return the memory `dt_s` later, and what to follow until then; the path waits where acceleration is `missed`."""
     wish = guided.wish
     silent = (now.boot_ns - guided.updated_ns) * 1e-9 > limits.timeout_s
     if guided.attitude is not None:
@@ -156,7 +154,8 @@ def next_guided(
         yaw_rad=yaw_rad,
         yaw_rate_rad_s=wish.yaw_rate_rad_s,
     )
-    path = _not_below(carry_on(path, dt_s, _find_block(now, settings)), now)
+    blocked = Blocked(direction=missed, position=now.position_enu_m, velocity=now.velocity_enu_m_s) if missed else None
+    path = _not_below(carry_on(path, dt_s, blocked), now)
     guided = replace(
         guided,
         wish=_carry_on(wish, dt_s),
@@ -218,13 +217,6 @@ def _heading(guided: Guided, wish: Wish, now: Snapshot) -> float | None:
         return None
     east, north, _ = now.velocity_enu_m_s
     return atan2(north, east) if hypot(east, north) > _AHEAD_MIN_M_S else guided.yaw_rad
-
-
-def _find_block(now: Snapshot, settings: FlightSettings) -> Blocked | None:
-    x, y, z = rotate(now.orientation_wxyz, (0.0, 0.0, 1.0))
-    if acos(max(-1.0, min(1.0, z))) < settings.envelope.tilt_max_rad - _LIMIT_MARGIN_RAD:
-        return None
-    return Blocked(direction=(x, y), position=now.position_enu_m, velocity=now.velocity_enu_m_s)
 
 
 def _not_below(path: Motion, now: Snapshot) -> Motion:

@@ -40,7 +40,7 @@ class PathSpeed(Struct, frozen=True, kw_only=True):
 
 
 class Blocked(Struct, frozen=True, kw_only=True):
-    """Where the drone cannot follow: the direction in which it leans as far as it may, and its own place and speed."""
+    """Where the drone cannot follow: the acceleration that it asked for in vain, and its own place and speed."""
 
     direction: Plane
     position: Vector3

@@ -41,10 +41,10 @@ def tell(
     """
     code = config.firmware.events.get(text, code)
     if code is None:
-        said = status_texts(severity, text, memory.outbox.events + 1) if memory.links.here.ground_station else ()
+        said = status_texts(severity, text, memory.outbox.events + 1) if memory.links.texted else ()
         return Telling(memory=memory, messages=said)
     told = text if code.said is None else code.said
-    heard = memory.links.here.ground_station and told
+    heard = memory.links.texted and told
     said = status_texts(code.levels & _EXTERNAL, f"{told}\t", memory.outbox.events + 1) if heard else ()
     outbox = memory.outbox
     event = _event(code.name, code.levels, code.arguments, outbox.events, boot_ms(memory))

@@ -75,7 +75,7 @@ def test_disarm_is_forced_only_after_a_refusal() -> None:
     in_control=st.booleans(),
 )
 @pytest.mark.slow
-@settings(max_examples=400, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_disarm_is_forced_only_on_the_pad_and_after_a_refusal(  # noqa: PLR0917 (drawn by name)
     phase: Phase,
     height_m: float,
@@ -167,7 +167,7 @@ places = st.tuples(numbers, numbers, numbers)
     step_ns=st.sampled_from([1, STEP_NS, 10**9, 10**12]),
 )
 @pytest.mark.slow
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_setpoints_are_finite_whatever_the_drone_reports(
     phase: Phase, reports: list[tuple[tuple[float, float, float], tuple[float, float, float], int]], step_ns: int
 ) -> None:

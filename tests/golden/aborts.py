@@ -134,8 +134,6 @@ def _operator(command: Command) -> Fault:
     return lambda flight: flight.companion.request(command)
 
 
-_POOR_SENSORS = "straight_5+sensors=degraded"
-
 ABORTS: dict[str, Abort] = {
     "vehicle_silent": Abort(reason=Reason.VEHICLE_DATA_OLD, phase=Phase.ALIGN, fault=_vehicle_falls_silent),
     "vehicle_uncertain": Abort(
@@ -166,30 +164,15 @@ ABORTS: dict[str, Abort] = {
     "outside_cone": Abort(
         reason=Reason.OUTSIDE_CONE, fault=_when_low(_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0))
     ),
-    "strays": Abort(
-        reason=Reason.STRAYS,
-        companion={"descent": {"strays_max": 0, "stray_hold_s": 0.2}},
-        fault=_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0),
-    ),
     "contradicting": Abort(
         reason=Reason.VEHICLE_CONTRADICTS_ITSELF,
         companion={"descent": {**_LONG_ALIGNMENT, "strays_max": 20}},
         phase=Phase.ALIGN,
         fault=velocity_is_in_ned,
     ),
-    "too_far": Abort(
-        reason=Reason.TOO_FAR_FROM_START, companion={"limits": {"range_max_m": 6.0, "landing_time_s": 1.0}}
-    ),
     "outrun": Abort(reason=Reason.VEHICLE_OUTRUNS, phase=Phase.ALIGN, fault=_limit_is_lowered),
     "below_pad": Abort(reason=Reason.BELOW_PAD, fault=_pad_is_described(forward_m=0.0, up_m=_RAISED_M)),
     "nothing_touched": Abort(reason=Reason.NOTHING_TOUCHED, fault=_pad_is_described(forward_m=0.0, up_m=_LOWER_M)),
-    "not_seen": Abort(
-        reason=Reason.PAD_NOT_SEEN,
-        scenario=_POOR_SENSORS,
-        companion={
-            "descent": {"unseen": {"anew_max": 0, "std_max_m": 0.1, "hold_s": 0.5}, "alignment": {"hold_s": 20.0}}
-        },
-    ),
     "offset_unknown": Abort(
         reason=Reason.OFFSET_UNKNOWN,
         companion={"integrity": {"receiver_frames": "apart"}, "chase": {"unseen_hold_s": 2.0}},

@@ -113,12 +113,16 @@ def test_golden_abort_has_its_reason_and_ends_clear_of_the_vehicle(name: str) ->
 
 ALIKE = {
     Reason.OWN_ATTITUDE_OLD: Reason.OWN_POSITION_OLD,
-    Reason.ALIGNMENT_LOST: Reason.STRAYS,
-    Reason.PAD_TO_BE_SEEN: Reason.PAD_NOT_SEEN,
+    Reason.STRAYS: Reason.OUTSIDE_CONE,
+    Reason.ALIGNMENT_LOST: Reason.OUTSIDE_CONE,
+    Reason.PAD_NOT_SEEN: Reason.OFFSET_UNKNOWN,
+    Reason.PAD_TO_BE_SEEN: Reason.OFFSET_UNKNOWN,
+    Reason.TOO_FAR_FROM_START: Reason.VEHICLE_OUTRUNS,
     Reason.LIFT_OFF_TOO_LONG: Reason.DESCENT_TOO_LONG,
     Reason.CHASE_TOO_LONG: Reason.DESCENT_TOO_LONG,
     Reason.ALIGN_TOO_LONG: Reason.DESCENT_TOO_LONG,
     Reason.OPERATOR_HOLDS: Reason.OPERATOR_ABORTS,
+    Reason.VEHICLE_TAKEN: Reason.OPERATOR_ABORTS,
 }
 """Reasons of one kind: the second of them is flown."""
 

@@ -1,4 +1,4 @@
-"""The landing over real UDP and real Zenoh, by the README's two programs and by its four."""
+"""The landing over real UDP and real Zenoh, by the README's four programs."""
 
 import pytest
 
@@ -10,18 +10,6 @@ from tests.integration.programs import Programs
 pytestmark = [pytest.mark.wire, pytest.mark.alone]
 
 SPEED = "5"
-
-
-def test_two_programs_land_with_the_companion_started_first() -> None:
-    port, endpoint = free_udp_port(), free_tcp_endpoint()
-    listening = ("--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint)
-    speaking = ("--mavlink", f"udpout:127.0.0.1:{port}", "-l", endpoint)
-    with Programs() as programs:
-        companion = programs.start("companion", *listening, "--start", "--use-sim-time")
-        with observer(endpoint) as bystander:
-            programs.start("scenarios", "world", "straight_5", "--speed", SPEED, *speaking)
-            assert bystander.wait_for_end().tier in LANDED
-        assert companion.runs
 
 
 def test_four_programs_land_on_command_with_the_companion_started_last() -> None:

@@ -13,6 +13,7 @@ pytestmark = pytest.mark.wire
 # What a drone that sinks when the abort comes may still sink: it plans with at least half of MPC_ACC_UP_MAX, and its
 # attitude and rotors lag behind the plan.
 BRAKING_M_S2, REACTION_S, OWN_POSITION_M = 2.0, 0.5, 0.1
+SPEED = "2"
 
 
 def start_again(programs: Programs, bystander: Observer, endpoint: str) -> None:
@@ -45,7 +46,8 @@ def test_the_drone_climbs_away_when_the_vehicle_is_killed_in_the_chase() -> None
     port, endpoint = free_udp_port(), free_tcp_endpoint()
     with Programs() as programs, observer(endpoint) as bystander:
         vehicle = programs.start("ground-vehicle", "--scenario", "straight_5", "--use-sim-time", "-l", endpoint)
-        programs.start("sim-autopilot", "--mavlink", f"udpout:127.0.0.1:{port}", "-e", endpoint)
+        device = ("--mavlink", f"udpout:127.0.0.1:{port}", "--speed", SPEED)
+        programs.start("sim-autopilot", *device, "-e", endpoint)
         programs.start("companion", "--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint, "--use-sim-time", "--start")
         bystander.wait_for_phase(Phase.CHASE, Phase.ALIGN)
         vehicle.kill()

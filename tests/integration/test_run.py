@@ -37,41 +37,37 @@ def read(folder: Path, name: str) -> dict[str, Any]:
 
 
 @pytest.mark.alone
-def test_two_runs_at_once_both_land_and_leave_their_folders(tmp_path: Path) -> None:
-    seeds = (1, 2)
+def test_two_runs_at_once_leave_their_folders_of_a_landing_and_of_what_came_until_the_time_limit(
+    tmp_path: Path,
+) -> None:
+    short = tmp_path / "short.toml"
+    short.write_text('base = "straight_5"\ntime_limit_s = 9.0\n', encoding="utf-8")
     with Programs() as programs:
-        runs = [start_run(programs, tmp_path, "--speed", "3", "--seed", str(seed), "--json") for seed in seeds]
+        runs = [
+            start_run(programs, tmp_path, "--speed", "3", "--seed", str(seed), "--json", scenario=scenario)
+            for seed, scenario in ((1, "straight_5"), (2, str(short)))
+        ]
         codes = [run.wait() for run in runs]
         printed = [json.loads("\n".join(run.out.all)) for run in runs]
-    assert codes == [0, 0], [table["reason"] for table in printed]
-    assert [table["seed"] for table in printed] == list(seeds)
+    assert codes == [0, 1], [table["reason"] for table in printed]
+    assert [table["seed"] for table in printed] == [1, 2]
+    assert printed[1]["ended"] == "time limit"
     folders = [Path(table["folder"]) for table in printed]
     assert (tmp_path / "latest").resolve() in {folder.resolve() for folder in folders}
     for folder, table in zip(folders, printed, strict=True):
         result, timing = read(folder, "result.json"), read(folder, "timing.json")
         assert result.items() <= table.items()
         assert timing == table["timing"]
+        assert 0.0 < timing["real_time_factor"] < 3.2
+        step_ms = timing["step_ms"]["companion"]
+        assert 0.0 < step_ms["median"] <= step_ms["p99"] <= step_ms["max"]
         assert {path.name for path in folder.iterdir()} == {
             "companion_000.mcap",
             "truth_000.mcap",
             *("result.json", "timing.json", "scenario.toml", "flight.tlog"),
             *("companion.toml", "sim-autopilot.toml", *(f"{name}.log" for name in NAMES)),
         }
-        assert (folder / "flight.tlog").stat().st_size > 100_000
-
-
-def test_a_run_that_ends_by_its_time_limit_has_its_result_and_its_timing(tmp_path: Path) -> None:
-    short = tmp_path / "short.toml"
-    short.write_text('base = "straight_5"\ntime_limit_s = 9.0\n', encoding="utf-8")
-    with Programs() as programs:
-        run = start_run(programs, tmp_path, "--speed", "3", scenario=str(short))
-        assert run.wait() == 1
-    folder = (tmp_path / "latest").resolve()
-    assert read(folder, "result.json")["ended"] == "time limit"
-    timing = read(folder, "timing.json")
-    assert 0.0 < timing["real_time_factor"] < 3.2
-    step_ms = timing["step_ms"]["companion"]
-    assert 0.0 < step_ms["median"] <= step_ms["p99"] <= step_ms["max"]
+        assert (folder / "flight.tlog").stat().st_size > 30_000
 
 
 def test_a_killed_run_leaves_no_program(tmp_path: Path) -> None:

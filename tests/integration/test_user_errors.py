@@ -89,7 +89,8 @@ MISTAKES = [
     ("scenarios", "run", ["NAME|FILE"]),
     ("scenarios", "run straight_5 --speed 0", ["--speed", "0.1"]),
     ("scenarios", "run straight_5 --out key.toml", ["key.toml", "--out"]),
-    ("scenarios", "command strt", ["'strt'", "start, abort, hold"]),
+    ("scenarios", "command strt", ["'strt'", "did you mean start?"]),
+    ("scenarios", "command up", ["'up'", "start, abort, hold"]),
 ]
 
 

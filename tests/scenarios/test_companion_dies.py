@@ -12,6 +12,7 @@ from scenarios.faults.flight import FaultFlight
 pytestmark = pytest.mark.slow
 
 ROOF_M = load_scenario("straight_5").vehicle.roof_height_m
+DEFAULTS = {"GUID_TIMEOUT": 3.0, "WPNAV_ACCEL_Z": 100.0, "PSC_JERK_Z": 5.0}
 TRAILS_M = 1.0  # by which the drone is ahead of its setpoint at most, as tracking goes in a chase
 
 
@@ -22,10 +23,11 @@ def test_arducopter_with_its_default_time_out_stays_near_and_in_the_air_when_the
     phase: Phase, into_it_s: float
 ) -> None:
     scenario = load_scenario("straight_5").model_copy(update={"firmware": "ardupilot"})
+    scenario.system.parameters["ardupilot"].update(DEFAULTS)
     flight = FaultFlight(scenario, 1)
     flight.fly_to(phase)
     flight.fly(into_it_s)
-    assert not flight.companion.autopilot.state.parameters.get("GUID_TIMEOUT", 3.0) < 3.0
+    assert flight.companion.autopilot.state.parameters["GUID_TIMEOUT"] == 3.0
     flight.cut_link()
     left = flight.recording.drone[-1].position_enu_m
     places = []

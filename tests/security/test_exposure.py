@@ -5,8 +5,8 @@ from pathlib import Path
 import psutil  # type: ignore[import-untyped]  # it has no annotations
 import pytest
 
+from companion.check.assessment import assess_links
 from companion.check.findings import Level
-from companion.check.links import assess_links
 from companion.runtime.open_links import open_links
 from link.errors import UserError
 from link.zenoh.exposure import exposed

@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from mcap.opcode import Opcode
 from mcap.writer import CompressionType, Writer
 
+from companion.eyes.calibration import load_calibration
 from link.errors import UserError
-from link.program.toml_config import parse_toml
+from link.program.toml_config import parse_toml, read_toml
 from link.recording.mcap_reader import read_head, read_messages
 from scenarios.campaigns.folder import read_landings, read_plan
 from scenarios.recordings.replay import read_flights
@@ -142,3 +143,27 @@ def test_campaign_that_is_none_is_one_line(tmp_path: Path, text: str) -> None:
 def test_toml_that_is_nested_without_end_is_one_line() -> None:
     with pytest.raises(UserError, match="nested too deep"):
         parse_toml(f"a = {DEEP}", "scenario.toml")
+
+
+def test_file_without_an_end_is_one_line() -> None:
+    for read_it in (read_toml, load_calibration):
+        with pytest.raises(UserError, match=r"/dev/zero: larger than 4 MB"):
+            read_it(Path("/dev/zero"))
+
+
+def test_integer_of_thousands_of_digits_is_one_line() -> None:
+    with pytest.raises(UserError, match=r"scenario\.toml: not valid TOML \(Exceeds the limit"):
+        parse_toml(f"a = {'9' * 6000}", "scenario.toml")
+
+
+def test_calibration_that_is_nested_without_end_is_one_line(tmp_path: Path) -> None:
+    path = tmp_path / "camera.yaml"
+    path.write_text(DEEP[:20_000], encoding="utf-8")
+    with pytest.raises(UserError, match=r"camera\.yaml: no YAML \(nested too deep\)"):
+        load_calibration(path)
+
+
+def test_byte_order_mark_of_an_editor_is_left_out(tmp_path: Path) -> None:
+    path = tmp_path / "companion.toml"
+    path.write_bytes(b"\xef\xbb\xbf[descent]\n")
+    assert read_toml(path) == {"descent": {}}

@@ -3,7 +3,8 @@ import gc
 import pytest
 
 from link.mavlink.device import parse_device
-from sim_autopilot.runtime.config import LinkConfig, SimAutopilotConfig, autopilot_config, with_default_links
+from sim_autopilot.runtime.build import autopilot_config, with_default_links
+from sim_autopilot.runtime.config import LinkConfig, SimAutopilotConfig
 from tests.sim_autopilot.clients import Clients
 from tests.sim_autopilot.pilot import px4
 

@@ -48,7 +48,7 @@ def heard_frames(draw: st.DrawFn) -> bytes:
 @pytest.mark.slow
 @pytest.mark.parametrize("make", [px4, ardupilot])
 @given(packets=st.lists(heard_frames() | st.binary(max_size=80), max_size=25), armed=st.booleans())
-@settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_whatever_is_received_it_goes_on_and_sends_only_finite_numbers(
     make: Callable[[], AutopilotConfig], packets: list[bytes], *, armed: bool
 ) -> None:

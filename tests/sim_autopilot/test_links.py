@@ -6,7 +6,8 @@ import pytest
 
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.runtime.config import SimAutopilotConfig, autopilot_config, with_default_links
+from sim_autopilot.runtime.build import autopilot_config, with_default_links
+from sim_autopilot.runtime.config import SimAutopilotConfig
 from tests.sim_autopilot.clients import Clients, beat
 from tests.sim_autopilot.copter import ardupilot
 from tests.sim_autopilot.pilot import arm, command, px4

@@ -27,7 +27,13 @@ from sim_autopilot.firmware.ardupilot.mission_texts import mission_texts
 from sim_autopilot.firmware.ardupilot.modes import MODES
 from sim_autopilot.firmware.ardupilot.parameters import OBEYED, flight_settings
 from sim_autopilot.firmware.ardupilot.requested_messages import BUILDERS
-from sim_autopilot.firmware.ardupilot.streams import CONTACT_STREAMS, SILENT_MESSAGES, STREAM_GROUPS, STREAMS
+from sim_autopilot.firmware.ardupilot.streams import (
+    CONTACT_STREAMS,
+    GROUP_PARAMETERS,
+    SILENT_MESSAGES,
+    STREAM_GROUPS,
+    STREAMS,
+)
 from sim_autopilot.firmware.parameter_table import whole_list
 from sim_autopilot.interfaces import CommandRules, Firmware, MissionRules, StreamRules
 
@@ -100,6 +106,7 @@ ARDUPILOT = Firmware(
         messages=MappingProxyType({stream.message_id: stream for stream in STREAMS}),
         builders=BUILDERS,
         groups=STREAM_GROUPS,
+        group_parameters=GROUP_PARAMETERS,
         on_contact=CONTACT_STREAMS,
         rate_max_hz=100.0,  # the step's; the firmware's is 0.8 of its loop's 400 Hz
         silent=SILENT_MESSAGES,

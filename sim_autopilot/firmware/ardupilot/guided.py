@@ -4,6 +4,7 @@ from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.flight.land_detector import IN_AIR
 from sim_autopilot.memory import AutopilotMemory, Course, with_guided
+from sim_autopilot.plant.plant import missed_acceleration
 from sim_autopilot.setpoints.guided import has_run_up, lift, next_guided, on_the_ground, with_attitude, with_wish
 from sim_autopilot.setpoints.guided_attitude import attitude_wish
 from sim_autopilot.setpoints.guided_setpoint import STOP, wish_from_message
@@ -70,5 +71,6 @@ class GuidedFlight:
         if landing.landed:
             guided = on_the_ground(guided, now)
             return Course(flight=course.flight, guided=guided, climb=None, landing=landing, following=None)
-        guided, reference = next_guided(guided, now, settings, settings.path, elapsed_s)
+        missed = missed_acceleration(memory.plant)
+        guided, reference = next_guided(guided, now, settings.path, elapsed_s, missed)
         return Course(flight=course.flight, guided=guided, climb=None, landing=landing, following=reference)

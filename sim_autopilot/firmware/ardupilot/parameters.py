@@ -8,7 +8,7 @@ from math import cos, inf, radians, sin, sqrt
 
 from link.mavlink.dialect import mavlink
 from link.messages import Vector3
-from sim_autopilot.core.limits import Envelope, PathLimits, PositionGains
+from sim_autopilot.core.limits import AxisGains, Envelope, PathLimits, PositionGains
 from sim_autopilot.core.parameters import Parameter, Values
 from sim_autopilot.core.pilot_settings import StickFeel
 from sim_autopilot.core.settings import (
@@ -56,6 +56,7 @@ def _whole(name: str, default: int, kind: int, lowest: float, highest: float) ->
 _OWN = (
     _whole("ANGLE_MAX", 3000, _INT16, 1000, 8000),
     _whole("ARMING_CHECK", 1, _INT32, 0, 2**31 - 1),
+    _real("ATC_INPUT_TC", 0.15, 0.0, 1.0),
     _real("ATC_SLEW_YAW", 6000.0, 500.0, 18000.0),
     _whole("DISARM_DELAY", 10, _INT8, 0, 127),
     _whole("FRAME_CLASS", 1, _INT8, 0, 17),
@@ -81,6 +82,9 @@ _OWN = (
     _real("PSC_JERK_Z", 5.0, 5.0, 50.0),
     _real("PSC_POSXY_P", 1.0, 0.5, 2.0),
     _real("PSC_POSZ_P", 1.0, 1.0, 3.0),
+    _real("PSC_VELXY_D", 0.5, 0.0, 1.0),
+    _real("PSC_VELXY_FLTD", 5.0, 0.0, 100.0),
+    _real("PSC_VELXY_FLTE", 5.0, 0.0, 100.0),
     _real("PSC_VELXY_I", 1.0, 0.02, 1.0),
     _real("PSC_VELXY_P", 2.0, 0.1, 6.0),
     _real("PSC_VELZ_P", 5.0, 1.0, 10.0),
@@ -167,16 +171,33 @@ def flight_settings(values: Values) -> FlightSettings:
             timeout_s=max(0.1, values["GUID_TIMEOUT"]),
             throttle_slew_s=max(0.25, values["TKOFF_SLEW_TIME"]),
         ),
-        gains=PositionGains(
-            position_per_s=_gain(values, "PSC_POSXY_P"),
-            velocity_per_s=_gain(values, "PSC_VELXY_P"),
-            integral_per_s2=_gain(values, "PSC_VELXY_I"),
-            vertical_position_per_s=_gain(values, "PSC_POSZ_P"),
-            vertical_velocity_per_s=_gain(values, "PSC_VELZ_P"),
-        ),
+        gains=_gains(values),
         sticks=_sticks(values),
         failsafes=failsafe_settings(values),
         simulation=SimulationSettings(battery_v=battery_v(values), wind_enu_m_s=_wind(values)),
+    )
+
+
+def _gains(values: Values) -> PositionGains:
+    """Of AC_PosControl. Vertically AC_PosControl integrates an acceleration's error: an observer stands for it."""
+    level = AxisGains(
+        position_per_s=_gain(values, "PSC_POSXY_P"),
+        velocity_per_s=_gain(values, "PSC_VELXY_P"),
+        integral_per_s2=_gain(values, "PSC_VELXY_I"),
+        derivative=max(0.0, min(1.0, values["PSC_VELXY_D"])),
+    )
+    return PositionGains(
+        level=level,
+        vertical=AxisGains(
+            position_per_s=_gain(values, "PSC_POSZ_P"),
+            velocity_per_s=_gain(values, "PSC_VELZ_P"),
+            integral_per_s2=None,
+        ),
+        observer_rad_s=_OBSERVER_RAD_S,
+        derives_error=True,
+        error_cutoff_hz=max(0.1, values["PSC_VELXY_FLTE"]),
+        slope_cutoff_hz=max(0.1, values["PSC_VELXY_FLTD"]),
+        attitude_per_s=1.0 / max(0.05, values["ATC_INPUT_TC"]),
     )
 
 
@@ -220,6 +241,8 @@ def _tilt_rad(values: Values) -> float:
     return radians(min(80.0, max(10.0, values["ANGLE_MAX"] / 100.0)))
 
 
+_OBSERVER_RAD_S = 1.0
+"""Of what disturbs vertically: PSC_ACCZ_I 1 over PSC_ACCZ_P 0.5 and the thrust itself, by a hover throttle of 0.39."""
 _LANDED_AFTER_S = 1.4
 """From contact to ON_GROUND, as measured: a second of signs, after the filtered acceleration has died away."""
 

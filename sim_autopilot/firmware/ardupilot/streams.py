@@ -119,6 +119,20 @@ STREAM_GROUPS = MappingProxyType(
     | {int(number): group for number, group in _GROUPS.items()}
 )
 
+GROUP_PARAMETERS = MappingProxyType(
+    {
+        int(mavlink.MAV_DATA_STREAM_RAW_SENSORS): "RAW_SENS",
+        int(mavlink.MAV_DATA_STREAM_EXTENDED_STATUS): "EXT_STAT",
+        int(mavlink.MAV_DATA_STREAM_RC_CHANNELS): "RC_CHAN",
+        int(mavlink.MAV_DATA_STREAM_RAW_CONTROLLER): "RAW_CTRL",
+        int(mavlink.MAV_DATA_STREAM_POSITION): "POSITION",
+        int(mavlink.MAV_DATA_STREAM_EXTRA1): "EXTRA1",
+        int(mavlink.MAV_DATA_STREAM_EXTRA2): "EXTRA2",
+        int(mavlink.MAV_DATA_STREAM_EXTRA3): "EXTRA3",
+    }
+)
+"""After the link's SR0_, SR1_ and so on. ALL sets these and SRn_ADSB, which has no group of its own."""
+
 SILENT_MESSAGES = frozenset(
     {
         mavlink.MAVLINK_MSG_ID_PARAM_VALUE,

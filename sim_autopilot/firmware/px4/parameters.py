@@ -5,7 +5,7 @@ Source: PX4 parameter reference, with the defaults of its own simulation.
 
 from math import radians
 
-from sim_autopilot.core.limits import Envelope
+from sim_autopilot.core.limits import AxisGains, Envelope, PositionGains
 from sim_autopilot.core.modes import Event, Mode
 from sim_autopilot.core.parameters import Parameter, Values, within_ranges
 from sim_autopilot.core.pilot_settings import FollowSettings, StickFeel, TakeoverSettings
@@ -77,6 +77,30 @@ def _failsafes(values: Values) -> FailsafeSettings:
     )
 
 
+def _gains(values: Values) -> PositionGains:
+    """Of PositionControl. The derivative is of the velocity; MC_PITCH_P counts for as much as MC_ROLL_P."""
+    cutoff_hz = values["MPC_VELD_LP"]
+    return PositionGains(
+        level=AxisGains(
+            position_per_s=values["MPC_XY_P"],
+            velocity_per_s=values["MPC_XY_VEL_P_ACC"],
+            integral_per_s2=values["MPC_XY_VEL_I_ACC"],
+            derivative=values["MPC_XY_VEL_D_ACC"],
+        ),
+        vertical=AxisGains(
+            position_per_s=values["MPC_Z_P"],
+            velocity_per_s=values["MPC_Z_VEL_P_ACC"],
+            integral_per_s2=values["MPC_Z_VEL_I_ACC"],
+            derivative=values["MPC_Z_VEL_D_ACC"],
+        ),
+        observer_rad_s=0.0,  # integrals on all axes
+        derives_error=False,
+        error_cutoff_hz=None,  # MPC_VEL_LP is off by default
+        slope_cutoff_hz=cutoff_hz if cutoff_hz > 0.0 else None,
+        attitude_per_s=values["MC_ROLL_P"],
+    )
+
+
 def _follow(values: Values) -> FollowSettings:
     return FollowSettings(
         distance_m=values["FLW_TGT_DST"],
@@ -145,6 +169,7 @@ def flight_settings(values: Values) -> FlightSettings:
             overridden_modes=_modes_to_override(int(values["COM_RC_OVERRIDE"])),
             moved_per_s=values["COM_RC_STICK_OV"] / 100.0,
         ),
+        gains=_gains(values),
         follow=_follow(values),
         failsafes=_failsafes(values),
         simulation=SimulationSettings(takes_failures=values["SYS_FAILURE_EN"] > 0.0),
@@ -187,6 +212,7 @@ OBEYED = (
     _parameter("GF_MAX_VER_DIST", 0.0, 0.0, 10000.0),
     _parameter("LNDMC_XY_VEL_MAX", 1.5, 0.0, 30.0),
     _parameter("LNDMC_Z_VEL_MAX", 0.25, 0.0, 5.0),
+    _parameter("MC_ROLL_P", 4.0, 0.5, 12.0),
     _parameter("MIS_TAKEOFF_ALT", 2.5, 0.0, 1000.0),
     _parameter("MPC_ACC_HOR", 3.0, 2.0, 15.0),
     _parameter("MPC_HOLD_DZ", 0.1, 0.0, 1.0),
@@ -197,12 +223,21 @@ OBEYED = (
     _parameter("MPC_THR_HOVER", 0.5, 0.1, 0.8),
     _parameter("MPC_TKO_RAMP_T", 3.0, 0.0, 30.0),
     _parameter("MPC_TKO_SPEED", 1.5, 1.0, 5.0),
+    _parameter("MPC_VELD_LP", 5.0, 0.0, 50.0),
     _parameter("MPC_VEL_MANUAL", 10.0, 3.0, 20.0),
     _parameter("MPC_XY_CRUISE", 5.0, 3.0, 20.0),
+    _parameter("MPC_XY_P", 0.95, 0.1, 2.0),
+    _parameter("MPC_XY_VEL_D_ACC", 0.2, 0.0, 2.0),
+    _parameter("MPC_XY_VEL_I_ACC", 0.4, 0.0, 60.0),
     _parameter("MPC_XY_VEL_MAX", 12.0, 0.1, 40.0),
+    _parameter("MPC_XY_VEL_P_ACC", 1.8, 0.5, 5.0),
     _parameter("MPC_YAWRAUTO_MAX", 60.0, 5.0, 360.0),
+    _parameter("MPC_Z_P", 1.0, 0.1, 1.5),
+    _parameter("MPC_Z_VEL_D_ACC", 0.0, 0.0, 2.0),
+    _parameter("MPC_Z_VEL_I_ACC", 2.0, 0.0, 3.0),
     _parameter("MPC_Z_VEL_MAX_DN", 1.5, 0.5, 10.0),
     _parameter("MPC_Z_VEL_MAX_UP", 3.0, 0.5, 15.0),
+    _parameter("MPC_Z_VEL_P_ACC", 4.0, 2.0, 15.0),
     _parameter("NAV_ACC_RAD", 2.0, 0.05, 200.0),
     _parameter("NAV_DLL_ACT", 0, 0, 6),
     _parameter("NAV_MC_ALT_RAD", 0.8, 0.05, 200.0),

@@ -46,6 +46,7 @@ STREAMS = (
     Stream(message_id=mavlink.MAVLINK_MSG_ID_MISSION_CURRENT, rate_hz=1.0, fixed=True),
     Stream(message_id=mavlink.MAVLINK_MSG_ID_RC_CHANNELS, rate_hz=20.0),
     Stream(message_id=mavlink.MAVLINK_MSG_ID_CURRENT_MODE, rate_hz=0.5, from_s=1.9),
+    Stream(message_id=mavlink.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS, rate_hz=5.0),
 )
 SILENT_MESSAGES = frozenset(
     {
@@ -83,7 +84,6 @@ SILENT_MESSAGES = frozenset(
         mavlink.MAVLINK_MSG_ID_OBSTACLE_DISTANCE,
         mavlink.MAVLINK_MSG_ID_RAW_RPM,
         mavlink.MAVLINK_MSG_ID_DEBUG_FLOAT_ARRAY,
-        mavlink.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS,
         mavlink.MAVLINK_MSG_ID_AVAILABLE_MODES,
         mavlink.MAVLINK_MSG_ID_OPEN_DRONE_ID_BASIC_ID,
         mavlink.MAVLINK_MSG_ID_OPEN_DRONE_ID_LOCATION,
@@ -113,6 +113,7 @@ _GROUND_RATES_HZ = MappingProxyType(
         mavlink.MAVLINK_MSG_ID_HOME_POSITION: 0.5,
         mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED: 50.0,
         mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: 1.0,
+        mavlink.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS: 2.0,
         mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT: 1.0,
         mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED: 50.0,
         mavlink.MAVLINK_MSG_ID_RC_CHANNELS: 20.0,

@@ -45,7 +45,7 @@ class TransferRules:
         timeout_answered: whether the end by time-out is told, as cancelled.
         wrong_sequence: MAV_MISSION_RESULT of an item out of turn; None asks for the right one again.
         asks_whole: whether items are asked for by MISSION_REQUEST_INT, until a MISSION_ITEM comes.
-        takes_parts: whether a part of a plan can be written anew.
+        takes_parts: whether a part of a plan can be written again.
         stores_at_once: plans of which each item takes the old one's place as it comes, whatever follows.
         clears_all: whether MAV_MISSION_TYPE_ALL can be cleared.
         received_text: what is said when a mission has come; empty says nothing.

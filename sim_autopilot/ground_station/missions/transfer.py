@@ -75,7 +75,7 @@ def _count(library: Library, arrival: Arrival) -> Result:
 
 
 def _part(library: Library, arrival: Arrival) -> Result:
-    """Take some items of a plan anew; the others stay."""
+    """Take some items of a plan again; the others stay."""
     first, last, items = arrival.message.start_index, arrival.message.end_index, library.plans[arrival.kind]
     if not arrival.rules.takes_parts:
         return library, ()

@@ -15,6 +15,7 @@ from sim_autopilot.ground_station.missions.rules import PX4_MISSIONS
 from sim_autopilot.ground_station.px4.arming_report import report_arming
 from sim_autopilot.ground_station.px4.available_modes import request_modes
 from sim_autopilot.ground_station.px4.component_metadata import COMPONENT_METADATA, component_metadata, shown_files
+from sim_autopilot.ground_station.px4.maintenance import actuator_test, store_parameters
 from sim_autopilot.ground_station.shell import take_typed
 from sim_autopilot.ground_station.station import GroundStation
 
@@ -40,6 +41,8 @@ PX4_STATION = GroundStation(
             mavlink.MAV_CMD_LOGGING_STOP: stop_log_stream,
             mavlink.MAV_CMD_DO_GRIPPER: grip,
             mavlink.MAV_CMD_PREFLIGHT_CALIBRATION: calibrate,
+            mavlink.MAV_CMD_PREFLIGHT_STORAGE: store_parameters,
+            mavlink.MAV_CMD_ACTUATOR_TEST: actuator_test,
         }
     ),
     fixed_answers=PX4_ANSWERS,

@@ -75,6 +75,18 @@ def test_take_off_under_way_is_not_told_again() -> None:
     assert sent == []
 
 
+def test_take_off_that_is_not_answered_is_asked_for_each_second_and_one_that_is_has_its_time() -> None:
+    _, lost = _run(ARMED, FLY, 3.5)
+    assert [command.command for command in lost] == [TAKE_OFF] * 4
+    refused, _ = _run(ARMED, FLY, 0.1)
+    refused = DRIVER.acknowledged(refused, TAKE_OFF, mavlink.MAV_RESULT_FAILED)
+    assert len(_run(ARMED, FLY, 3.5, refused)[1]) == 3
+    accepted, _ = _run(ARMED, FLY, 0.1)
+    accepted = DRIVER.acknowledged(accepted, TAKE_OFF, mavlink.MAV_RESULT_ACCEPTED)
+    assert _run(ARMED, FLY, 4.9, accepted)[1] == []
+    assert len(_run(ARMED, FLY, 5.5, accepted)[1]) == 1
+
+
 def test_setpoints_flow_in_every_phase_after_the_take_off() -> None:
     memory, _ = _run(ARMED, FLY, 0.1)
     memory, _ = _run(AIRBORNE, Desire(), 0.1, memory)

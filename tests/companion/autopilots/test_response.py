@@ -18,6 +18,7 @@ from companion.autopilots.response import (
     ResponseModel,
 )
 from companion.core.data import Array
+from link.records import replace
 
 OFFSET_S: Array = np.arange(0.0, 4.01, 0.2)
 CASCADES = {
@@ -113,3 +114,50 @@ def test_estimate_that_the_reports_confirm_is_the_prediction(model: ResponseMode
     for earlier, later in pairwise(way):
         state = model.update(state, 0.5 * (earlier + later)[:2], accelerates, dt_s / 50)
     np.testing.assert_allclose(state, way[-1], atol=2e-3)
+
+
+LED = Cascade(
+    position_per_s=0.95,
+    velocity_per_s=1.8,
+    integral_per_s2=0.4,
+    lead_s=0.01,
+    derivative=0.2,
+    attitude_lag_s=0.3,
+    is_led=True,
+)
+
+
+def swaying(t_s: float) -> tuple[float, float]:
+    """A path's acceleration and jerk, as on a circle of 20 m at 8 m/s."""
+    return 3.2 * np.cos(0.4 * t_s), -0.4 * 3.2 * np.sin(0.4 * t_s)
+
+
+def led(cascade: Cascade, until_s: Array) -> Array:
+    """A drone of PX4's own equations, whose lean lags, behind led setpoints; solved by scipy for one axis: (n, 4)."""
+
+    def rate(t_s: float, x: Array) -> list[float]:
+        path_m_s2, jerk_m_s3 = swaying(t_s)
+        asked = cascade.lead(np.array([path_m_s2]), np.array([jerk_m_s3]))[0]
+        wanted = asked - cascade.velocity_per_s * (x[1] + cascade.position_per_s * x[0]) - cascade.derivative * x[2]
+        forgets = x[3] * cascade.integral_per_s2 / cascade.velocity_per_s
+        pushed = -forgets - DRAG_PER_S * path_m_s2
+        return [x[1], x[2] + x[3] - path_m_s2, (wanted - x[2]) / cascade.attitude_lag_s, pushed]
+
+    solved = solve_ivp(rate, (0.0, until_s[-1]), [0.0, 0.0, 3.2, 0.0], t_eval=until_s, rtol=1e-9, atol=1e-9)
+    return np.asarray(solved.y.T)
+
+
+def test_led_setpoints_leave_a_drone_only_the_deviation_that_drag_makes() -> None:
+    fine_s = np.arange(0.0, 4.0, 0.02)
+    path_m_s2 = np.array([[swaying(float(t_s))[0]] for t_s in fine_s])
+    predicted = ResponseModel(LED, fine_s).predict(np.zeros((STATES, 1)), path_m_s2)[:, :, 0]
+    flown = led(LED, fine_s)
+    np.testing.assert_allclose(predicted[:, :2], flown[:, :2], atol=0.01)
+    np.testing.assert_allclose(predicted[:, 2] + path_m_s2[:, 0], flown[:, 2], atol=0.02)
+
+
+def test_a_lag_that_is_not_led_adds_to_the_deviation() -> None:
+    steps = np.full((len(OFFSET_S), 1), 3.0)
+    as_it_comes = ResponseModel(replace(LED, is_led=False), OFFSET_S).predict(np.zeros((STATES, 1)), steps)
+    ahead = ResponseModel(LED, OFFSET_S).predict(np.zeros((STATES, 1)), steps)
+    assert (np.abs(ahead[1:4, 0, 0]) < 0.6 * np.abs(as_it_comes[1:4, 0, 0])).all()

@@ -239,7 +239,7 @@ messages = st.one_of(
 
 @pytest.mark.slow
 @given(told=st.lists(messages, max_size=12))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 def test_no_message_whatever_makes_the_state_absurd(told: list[Message]) -> None:
     state = _hear(LEVEL, *told)
     for own in state.history:

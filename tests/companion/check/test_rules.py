@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.check.findings import Finding, Level
+from companion.check.findings import Finding, Level, advised_values
 from companion.check.firmwares import FIRMWARES
 from companion.check.rules import SPEED_SHARE_ADVISED, ParameterRule, Spelling, judge, names_of
 from companion.landing.feasibility import SPEED_SHARE_MIN
@@ -127,3 +127,12 @@ def test_stopping_the_motors_for_a_lost_ground_station_is_a_failure(action: floa
 
 def test_a_vehicle_that_a_check_advises_for_is_not_refused_in_flight() -> None:
     assert SPEED_SHARE_ADVISED > SPEED_SHARE_MIN
+
+
+@pytest.mark.parametrize("autopilot_id", list(FIRMWARES))
+def test_a_launch_asks_for_twice_the_speed_of_the_vehicle_to_come_home_to_it(autopilot_id: int) -> None:
+    rules = FIRMWARES[autopilot_id].rules_for(SINK_M_S, launches=True)
+    name, unit = ("MPC_XY_VEL_MAX", 1.0) if autopilot_id == mavlink.MAV_AUTOPILOT_PX4 else ("WPNAV_SPEED", 100.0)
+    found = [one for one in judge(rules, {name: 8.5 * unit}, 7.0) if one.name == name]
+    assert [one.level for one in found] == [Level.PASS, Level.WARN]
+    assert advised_values(found) == {name: 14.0 * unit}

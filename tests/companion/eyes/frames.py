@@ -20,7 +20,9 @@ from scenarios.camera.rendering import Renderer, Vehicle
 Array = NDArray[np.float64]
 
 MOUNTING = mounting_of(
-    MountingConfig(position_flu_m=(0.05, 0.0, -0.03), yaw_rad=0.5 * pi, rotation_std_rad=0.0, focal_std_share=0.0)
+    MountingConfig(
+        position_flu_m=(0.05, 0.0, -0.03), yaw_rad=0.5 * pi, rotation_std_rad=0.0, focal_std_share=0.0, board_std_m=0.0
+    )
 )
 DAY = Light(daylight_lx=50_000.0, sun_v=np.array([0.3, 0.4, 0.866]))
 ROOF_M = 1.5

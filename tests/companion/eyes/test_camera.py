@@ -100,7 +100,7 @@ def test_a_written_calibration_is_read_back(tmp_path: Path, camera: Camera) -> N
         (ROS % ("plumb_bob", "[1, 2, 3]"), "3 distortion coefficients do not fit"),
         (ROS % ("spherical", "[0, 0, 0, 0]"), "'spherical' is not known"),
         (ROS % ("plumb_bob", "[.nan, 0, 0, 0]"), "all numbers finite"),
-        ("cam0: {camera_model: pinhole}", "'intrinsics' is missing"),
+        ("cam0: {camera_model: pinhole}", "missing required field `intrinsics`"),
     ],
 )
 def test_a_wrong_calibration_is_refused_with_its_file(tmp_path: Path, text: str, why: str) -> None:

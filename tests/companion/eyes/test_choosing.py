@@ -20,11 +20,17 @@ def tilted(roll_rad: float, pitch_rad: float) -> Pose:
     return vector_of(matrix_from_quaternion(quaternion_from_roll_pitch_yaw(roll_rad, pitch_rad, 0.7)) @ FACING), AWAY
 
 
-def candidate(pose: Pose, *, squares_px2: float, stds: float) -> Candidate:
+def candidate(pose: Pose, *, squares_px2: float, stds: float, tags: int = 1) -> Candidate:
     refined = Refined(
-        pose=pose, covariance=1e-4 * np.eye(6), rms_px=0.1, points=100, squares_px2=squares_px2, variance_px2=0.05
+        pose=pose,
+        covariance=1e-4 * np.eye(6),
+        rms_px=0.1,
+        points=100 * tags,
+        squares_px2=squares_px2,
+        variance_px2=0.05,
+        independent=80.0 * tags,
     )
-    return Candidate(refined=refined, tags=(0,), tilt_stds=stds, is_complete=True)
+    return Candidate(refined=refined, tags=tuple(range(tags)), tilt_stds=stds, is_complete=True)
 
 
 @given(roll_rad=st.floats(-0.9, 0.9), pitch_rad=st.floats(-0.9, 0.9))
@@ -54,6 +60,13 @@ def test_poses_that_nothing_tells_apart_are_refused_unless_they_are_nearly_one(r
     pose = tilted(roll_rad, 0.0)
     one, other = candidate(pose, squares_px2=4.0, stds=1.0), candidate(mirrored(pose), squares_px2=4.1, stds=1.0)
     assert choose([one, other]) == ((one, other) if is_seen else None)
+
+
+def test_a_pose_at_which_few_tags_are_read_is_not_better_for_having_fewer_edges_to_agree_with() -> None:
+    pose = tilted(0.4, 0.1)
+    many = candidate(pose, squares_px2=36.0, stds=1.0, tags=9)
+    few = candidate(mirrored(pose), squares_px2=4.0, stds=0.2, tags=1)
+    assert choose([few, many]) == (many, None)
 
 
 def test_a_board_that_would_stand_on_edge_is_no_deck() -> None:

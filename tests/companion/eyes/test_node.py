@@ -1,9 +1,14 @@
+import math
+import re
+
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from companion.eyes.attitude import GAP_MAX_NS, Attitude, attitude_at
 from companion.eyes.board import load_board, nested_board
+from companion.eyes.camera import matrix_of
 from companion.eyes.frames import Captured, gray_of_file
 from companion.eyes.node import EyesNode
 from companion.eyes.picture import WholePicture
@@ -11,8 +16,9 @@ from link.errors import UserError
 from link.frames.rotations import quaternion_from_yaw, yaw_of
 from link.messages import BodyTruth, CompressedPicture, PadGeometry, PadSighting
 from link.payloads import cdr
+from link.records import replace
 from link.zenoh.keys import Keys
-from tests.companion.eyes.frames import Case, case, system
+from tests.companion.eyes.frames import MOUNTING, Case, case, system
 
 KEYS = Keys()
 BOARD = load_board(None).config
@@ -115,3 +121,19 @@ def test_attitudes_are_those_between_the_two_that_are_told() -> None:
     assert after == turning[1].orientation_wxyz
     assert attitude_at(turning, 40_000_001 + GAP_MAX_NS) is None
     assert attitude_at((), 0) is None
+
+
+@pytest.mark.slow
+def test_a_drone_that_turns_over_the_pad_tells_that_its_camera_is_mounted_otherwise() -> None:
+    told = replace(MOUNTING, R_BC=matrix_of(np.array([0.09, 0.0, 0.0])) @ MOUNTING.R_BC)
+    node, right = EyesNode(replace(system(), mounting=told), KEYS), EyesNode(system(), KEYS)
+    for index in range(8):
+        one = case(1.2, board=BOARD, roll_pitch_yaw_rad=(0.02, -0.01, 0.4 * index), t_ns=10**9 * (index + 1))
+        for each in (node, right):
+            each.receive_own(own(one))
+            each.look(captured(one), shows=False)
+    (told_once,) = [line for line in node.take_news() if "turned" in line]
+    degrees = re.search(r"turned by ([0-9.]+) degrees", told_once)
+    assert degrees is not None
+    assert float(degrees[1]) == pytest.approx(math.degrees(0.09), abs=1.0)
+    assert not [line for line in right.take_news() if "turned" in line]

@@ -6,8 +6,9 @@ from companion.eyes.picture import WholePicture
 from companion.eyes.sight import Frame, Sight, SightMemory, sight_step
 from link.frames.rotations import matrix_from_quaternion
 from link.records import replace
+from scenarios.camera.lens import CAMERA
 from scenarios.camera.lighting import Light
-from tests.companion.eyes.frames import DAY, Case, case, system
+from tests.companion.eyes.frames import DAY, MOUNTING, Case, case, system
 
 BOARD = load_board(None).config
 DUSK = Light(daylight_lx=40.0)
@@ -28,6 +29,24 @@ def error_m(sight: Sight, one: Case) -> float:
 def test_the_pad_is_seen_within_a_centimetre_and_a_percent_of_the_range(range_m: float, light: Light) -> None:
     one = case(range_m, board=BOARD, aside_m=(0.05, -0.03), light=light)
     assert error_m(look(one), one) < 0.01 + 0.01 * range_m
+
+
+def test_a_pad_whose_middle_is_behind_the_camera_is_seen() -> None:
+    one = case(0.3, board=BOARD, roll_pitch_yaw_rad=(0.9, 0.1, 0.4), aside_m=(0.1, 0.5))
+    sight = look(one)
+    assert sight.pose is not None
+    assert sight.pose[1][2] < 0.0
+    assert error_m(sight, one) < 0.005
+
+
+def test_a_sighting_has_the_time_at_which_its_rows_were_read() -> None:
+    one = case(6.0, board=BOARD, roll_pitch_yaw_rad=(0.0, 0.0, 0.0), aside_m=(0.0, 2.0))
+    rolling = replace(system(), mounting=replace(MOUNTING, readout_s=0.02))
+    sighting = sight_step(EMPTY, one.frame, rolling)[1].sighting
+    assert sighting is not None
+    right_px = 2.0 / 6.0 * CAMERA.focal_px  # of the middle: the long side of the picture is along the drone
+    rows = CAMERA.size_px[1]
+    assert (sighting.t_ns - one.frame.t_ns) * 1e-9 == pytest.approx(right_px / rows * 0.02, abs=0.0015)
 
 
 @pytest.mark.parametrize("tilt_rad", [0.35, 0.7, 1.0])

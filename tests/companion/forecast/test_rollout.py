@@ -1,5 +1,7 @@
 """Rollouts obey what is known in closed form, and their machine code is their Python."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -54,6 +56,18 @@ def test_a_drone_that_sees_a_brake_above_where_it_commits_does_not_land() -> Non
     brakes = samples(kind=ALONG, event=np.array([0.0, -4.0, 0.1, NEVER_S]), delay_s=0.1)
     assert roll_out(brakes, descent(0.8), 0.3)[0, CONTACT] == 0.0
     assert roll_out(brakes, descent(0.15), 0.3)[0, CONTACT] == 1.0  # too low to stop sinking
+
+
+def test_a_drone_whose_setpoints_are_led_is_level_at_the_contact_where_another_still_leans() -> None:
+    leans = descent(turns_hz=4.0, level_m_s2=1.0, level_below_m=0.12)
+    leans.course.left_m_s2[:] = 3.0
+    as_it_comes, led = (
+        roll_out(samples(), leans._replace(drone=leans.drone._replace(led_share=share)), 0.1)[0, TILT]
+        for share in (0.0, 1.0)
+    )
+    level_rad = math.atan(1.5 / GRAVITY_M_S2) - math.atan(0.5 / GRAVITY_M_S2)  # air and 1 m/s^2, at the most
+    assert led < level_rad + 0.02
+    assert as_it_comes > led + 0.03
 
 
 def test_machine_code_is_its_python(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,11 +13,12 @@ from companion.config.integrity import IntegrityConfig, ReceiverFrames
 from companion.core.data import Measurement, Quantity
 from companion.core.reasons import Cause, Reason
 from companion.integrity.frames import FIXED_STD_MAX_M
-from companion.integrity.sightings import SightingWatch, is_seen_elsewhere, update_sightings
+from companion.integrity.sightings import SightingWatch, forget_agreement, is_seen_elsewhere, update_sightings
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
 from companion.vehicle.estimator import BufferHealth
-from companion.vehicle.pad import cone_radius_at_pad_m, pad_path
+from companion.vehicle.pad import FrameOffset, PadPath, pad_path
+from companion.vehicle.pad_reach import cone_radius_at_pad_m, is_unseen
 from link.messages import PadGeometry
 from link.records import replace
 from tests.companion.facts import CONFIG, LONG_HEARD, changed, decided, pad_at, progress, situation
@@ -32,7 +33,8 @@ RTK = replace(NOMINAL, pad_rate_hz=30.0, frame_offset_m=0.0)
 
 
 def seen(off_m: float, *, std_m: float = 0.01, fix_std_m: float = 0.02, has_one_frame: bool = True) -> Situation:
-    pad = replace(pad_at(), frame_offset_m=off_m, frame_offset_std_m=std_m, has_one_frame=has_one_frame)
+    offset = FrameOffset(distance_m=off_m, std_m=std_m)
+    pad = replace(pad_at(), frame_offset=offset, has_one_frame=has_one_frame)
     return changed(situation(pad=pad), fix_std_m=fix_std_m)
 
 
@@ -78,7 +80,7 @@ def beside(measurement: Measurement, off_m: float) -> Measurement:
 def test_estimate_shows_a_detector_that_is_off(off_m: float, *, is_elsewhere: bool) -> None:
     facts = after_ride(RTK, off_m)
     assert facts.pad is not None
-    assert facts.pad.frame_offset_m == pytest.approx(off_m, abs=0.1)
+    assert facts.pad.frame_offset.distance_m == pytest.approx(off_m, abs=0.1)
     assert is_seen_elsewhere(facts, ONE) is is_elsewhere
     assert is_seen_elsewhere(facts, AUTO) is is_elsewhere
 
@@ -114,12 +116,61 @@ def health(accepted: int, rejected: int) -> BufferHealth:
 def test_sightings_are_mixed_while_more_than_the_share_of_those_that_came_is_rejected(
     before: tuple[int, int], now: tuple[int, int]
 ) -> None:
-    watch = update_sightings(SightingWatch(counted=before), health(before[0] + now[0], before[1] + now[1]), CONFIG)
+    then = SightingWatch(counted=before)
+    watch = update_sightings(then, health(before[0] + now[0], before[1] + now[1]), 0, CONFIG)
     assert watch.are_mixed is (now[1] > SHARE * sum(now))
 
 
 def test_estimate_that_begins_anew_is_counted_anew() -> None:
-    assert not update_sightings(SightingWatch(counted=(90, 9)), health(3, 8), CONFIG).are_mixed
+    assert not update_sightings(SightingWatch(counted=(90, 9)), health(3, 8), 0, CONFIG).are_mixed
+
+
+def watched(*counts: tuple[int, int]) -> SightingWatch:
+    """The watch after so many were accepted and rejected in each half second."""
+    watch, total = SightingWatch(), (0, 0)
+    for number, (accepted, rejected) in enumerate(counts):
+        total = (total[0] + accepted, total[1] + rejected)
+        watch = update_sightings(watch, health(*total), number * 500_000_000, CONFIG)
+    return watch
+
+
+@pytest.mark.parametrize(
+    ("counts", "is_confirmed"),
+    [
+        ([(1, 0)], False),
+        ([(1, 0), *6 * [(0, 0)]], False),
+        ([(15, 0), (15, 0)], False),
+        ([(15, 0), (15, 0), (15, 0)], True),
+        ([(1, 0), (0, 9), (9, 0), (9, 0)], False),
+        ([(2, 0), (2, 0), (2, 0), (0, 9)], True),
+    ],
+    ids=["one", "one, and no more", "half a second", "a second", "one that others contradict", "contradicted later"],
+)
+def test_sightings_confirm_a_place_after_a_second_of_agreement(
+    counts: list[tuple[int, int]], *, is_confirmed: bool
+) -> None:
+    assert watched(*counts).is_confirmed is is_confirmed
+
+
+def test_place_that_was_lost_has_to_be_confirmed_anew() -> None:
+    watch = forget_agreement(watched(*4 * [(9, 0)]))
+    assert not watch.is_confirmed
+    assert watch == forget_agreement(watch)
+    for accepted, is_confirmed in ((37, False), (41, True)):
+        assert update_sightings(watch, health(accepted, 0), 0, CONFIG).is_confirmed is is_confirmed
+
+
+def moved(off_m: float, *, is_confirmed: bool, has_one_frame: bool) -> PadPath:
+    offset = FrameOffset(distance_m=off_m, std_m=0.01, is_confirmed=is_confirmed)
+    return replace(pad_at(), frame_offset=offset, has_one_frame=has_one_frame)
+
+
+@given(off_m=st.floats(0.0, HALF_M), has_one_frame=st.booleans())
+def test_unconfirmed_sightings_bring_no_drone_farther_off_than_its_cone(off_m: float, *, has_one_frame: bool) -> None:
+    if not is_unseen(moved(off_m, is_confirmed=False, has_one_frame=has_one_frame), CONFIG):
+        assert has_one_frame
+        assert off_m <= cone_radius_at_pad_m(HALF_M, CONFIG)
+    assert not is_unseen(moved(off_m, is_confirmed=True, has_one_frame=has_one_frame), CONFIG)
 
 
 def test_estimator_counts_what_it_rejects_of_two_detectors() -> None:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from companion.landing.contact import Verdict, may_force_motors_off, signs_of, signs_text, verdict
 from companion.situation.situation import Situation
-from companion.vehicle.pad import over_pad_radius_m
+from companion.vehicle.pad_reach import over_pad_radius_m
 from link.messages import Vector3
 from link.records import replace
 from tests.companion.facts import CONFIG, GEAR_M, changed, drone_at, pad_at, reference_at, situation
@@ -81,7 +81,7 @@ def on_pad() -> Situation:
 
 
 @pytest.mark.slow
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=200, deadline=None)
 @given(facts=airborne(), source=st.sampled_from(SOURCES), value=ABSURD)
 def test_no_single_faulty_source_makes_a_contact_in_the_air(facts: Situation, source: str, value: float) -> None:
     with np.errstate(all="ignore"):
@@ -91,7 +91,7 @@ def test_no_single_faulty_source_makes_a_contact_in_the_air(facts: Situation, so
 
 
 @pytest.mark.slow
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(facts=airborne(), source=st.sampled_from(SOURCES), data=st.data())
 def test_no_source_stuck_at_what_it_says_on_the_pad_makes_a_contact_in_the_air(
     facts: Situation, source: str, data: st.DataObject
@@ -114,6 +114,14 @@ def test_drone_that_stands_on_the_pad_is_in_contact_and_may_be_switched_off() ->
     signs = signs_of(on_pad())
     assert verdict(signs, CONFIG) is Verdict.CONTACT
     assert may_force_motors_off(signs, 0.0, CONFIG)
+
+
+def test_drone_that_slides_off_the_pad_while_it_is_pressed_down_is_switched_off() -> None:
+    facts = on_pad()
+    beside = changed(facts, drone=drone_at(0.0, 2.0 * over_pad_radius_m(pad_at().half_width_m, CONFIG), pad=pad_at()))
+    assert verdict(signs_of(beside), CONFIG) is Verdict.AIRBORNE
+    assert may_force_motors_off(signs_of(beside), 0.0, CONFIG)
+    assert not may_force_motors_off(signs_of(changed(beside, reference=reference_at(0.0))), 0.0, CONFIG)
 
 
 @pytest.mark.parametrize("landed", [None, False, True])

@@ -7,14 +7,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from companion.core.data import Rival
 from companion.core.reasons import Cause, Reason, sentence
 from companion.landing.aborts import ABORTS, must_wait
-from companion.landing.conditions import Condition
+from companion.landing.conditions import Condition, cause_of
 from companion.landing.entries import ENTRIES, update_held
 from companion.landing.memory import Held
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Following, Situation
-from companion.vehicle.pad import NOT_DESCRIBED, cone_radius_m
+from companion.vehicle.pad import NOT_DESCRIBED, FrameOffset
+from companion.vehicle.pad_reach import cone_radius_m
 from link.messages import Vector3
 from link.records import replace
 from tests.companion.facts import (
@@ -64,7 +66,8 @@ UNSAFE: dict[Reason, Situation] = {
     ),
     Reason.VEHICLE_OUTRUNS: replace(situation(), limits=replace(CONFIG.limits.flight_limits(), speed_max_m_s=4.1)),
     Reason.VEHICLE_CONTRADICTS_ITSELF: changed(situation(), rejected_share=CONFIG.integrity.rejected_share_max + 0.01),
-    Reason.SEEN_ELSEWHERE: situation(pad=replace(pad_at(), frame_offset_m=1.0, frame_offset_std_m=0.01)),
+    Reason.SEEN_ELSEWHERE: situation(pad=replace(pad_at(), frame_offset=FrameOffset(distance_m=1.0, std_m=0.01))),
+    Reason.VEHICLE_TAKEN: changed(situation(), rival=Rival(drone="drone2", is_this_drone=False)),
     Reason.SIGHTINGS_DISAGREE: changed(situation(), are_sightings_mixed=True),
     Reason.SEEN_TOO_NEAR: changed(situation(), range_height_m=0.5),
     Reason.BELOW_PAD: situation(-CONFIG.descent.sink.press_depth_m - CONFIG.touchdown.height_max_m - 0.01),
@@ -99,8 +102,9 @@ def test_every_abort_test_is_tried_here() -> None:
 @pytest.mark.parametrize(("test", "phase"), CASES)
 def test_abort_fires_exactly_after_its_hold_time(test: Condition, phase: Phase) -> None:
     hold_s = test.hold_s(CONFIG)
-    decision, ticks = first_decision(phase, _before_the_next_phase(UNSAFE[test.reason], phase), hold_s + 1.0)
-    assert decision == (Event.UNSAFE, Cause(test.reason))
+    facts = _before_the_next_phase(UNSAFE[test.reason], phase)
+    decision, ticks = first_decision(phase, facts, hold_s + 1.0)
+    assert decision == (Event.UNSAFE, cause_of(test, facts, CONFIG))
     assert ticks == math.ceil(hold_s * 1e9 / TICK_NS - 1e-9)
 
 

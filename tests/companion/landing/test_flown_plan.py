@@ -5,9 +5,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from companion.autopilots.response import Cascade
 from companion.autopilots.shaping import Shaping
 from companion.core.data import Array
-from companion.landing.flown_plan import extrapolate, flown_plan, keep_up, limit_sink, state_at, state_in_plan
+from companion.landing.flown_plan import (
+    extrapolate,
+    flown_plan,
+    keep_up,
+    lead_acceleration,
+    limit_sink,
+    state_at,
+    state_in_plan,
+)
 from companion.landing.step_data import StepOutputs
 from companion.planning.guidance import PlanResult, PlanStatus, ReferenceState, Trajectory
 from companion.situation.phases import Phase
@@ -149,6 +158,18 @@ def test_model_after_one_period_is_the_next_state_of_a_law_that_plans_no_instant
     model = state_at(flown_plan(_plan(following), PERIOD_S, 0.0, None), PERIOD_S)
     np.testing.assert_array_equal(model.position_enu_m, following.position_enu_m)
     np.testing.assert_array_equal(model.acceleration_enu_m_s2, following.acceleration_enu_m_s2)
+
+
+def test_led_acceleration_is_that_of_the_plan_and_its_jerk_over_the_lag() -> None:
+    following = state_in_plan(_cubic(np.array([0.0, PERIOD_S, 0.1])), PERIOD_S)
+    flown, offset_s = flown_plan(_plan(following), PERIOD_S, 0.0, None), 0.03
+    cascade = Cascade(position_per_s=0.95, velocity_per_s=1.8, integral_per_s2=0.4, lead_s=0.0, attitude_lag_s=0.3)
+    model = state_at(flown, offset_s)
+    asked = lead_acceleration(model, flown, offset_s, cascade)
+    ahead = _cubic(np.array([offset_s + 0.3])).acceleration_enu_m_s2[0]  # of a constant jerk
+    np.testing.assert_allclose(asked.acceleration_enu_m_s2[:2], ahead[:2])
+    assert asked.acceleration_enu_m_s2[2] == model.acceleration_enu_m_s2[2]
+    assert asked.position_enu_m is model.position_enu_m
 
 
 class LateFlight(Flight):

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from companion.autopilots.response import Cascade, ResponseModel
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array, FlightLimits, OwnState
 from companion.landing.levelling import limit_tilt, limits_now
@@ -98,6 +99,18 @@ def test_a_drone_is_levelled_earlier_by_what_its_setpoints_may_be_late(
     inputs = replace(INPUTS, link_delay=LinkDelay(std_s=late_s / CONFIG.touchdown.level.late_stds))
     limit_m_s2 = limits_now(DESCENDS, facts, inputs, CONFIG).acceleration_max_m_s2
     assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
+
+
+@pytest.mark.parametrize(
+    ("lag_s", "is_led", "levels"), [(0.05, False, False), (0.25, False, True), (0.25, True, False)]
+)
+def test_a_drone_whose_lean_lags_is_levelled_earlier_by_that(lag_s: float, *, is_led: bool, levels: bool) -> None:
+    facts = _sinking(CONFIG.touchdown.level.height_m + 0.05, 0.4)
+    cascade = Cascade(
+        position_per_s=1.0, velocity_per_s=2.0, integral_per_s2=1.0, lead_s=0.0, attitude_lag_s=lag_s, is_led=is_led
+    )
+    inputs = replace(INPUTS, response=ResponseModel(cascade, np.array([0.0, 0.1])))
+    assert (limits_now(DESCENDS, facts, inputs, CONFIG).acceleration_max_m_s2 == LEVEL_M_S2) is levels
 
 
 @pytest.mark.parametrize(

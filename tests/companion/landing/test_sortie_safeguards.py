@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from companion.autopilots.ardupilot import ArduPilotDriver
+from companion.core.reasons import Reason
 from companion.landing.sortie_aims import rally_aim
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
@@ -21,6 +22,26 @@ def drain(flight: Flight) -> None:
     for share in (0.25, 0.24, 0.23, 0.22):
         flight.view = replace(flight.view, battery_share=share)
         flight.run(1.0)
+
+
+def test_lift_off_whose_own_place_is_lost_is_not_called_off_by_an_old_word_of_standing() -> None:
+    flight = on_deck()
+    flight.step(Command.LAUNCH)
+    flight.run_until(Phase.LIFT_OFF)
+    flight.own_is_silent = True
+    flight.view = replace(flight.view, landed=True)
+    flight.run(3.0)
+    assert flight.phase in {Phase.ABORT, Phase.HOLD}
+    assert Phase.TOUCHDOWN not in flight.history
+
+
+def test_launch_is_called_off_when_the_battery_is_found_empty_on_the_deck() -> None:
+    flight = on_deck()
+    flight.step(Command.LAUNCH)
+    flight.view = replace(flight.view, battery_share=0.05)
+    flight.run(3.0)
+    assert flight.phase in {Phase.TOUCHDOWN, Phase.SECURED}
+    assert flight.memory.progress.cause.reason in {Reason.BATTERY_LOW, Reason.MOTORS_OFF}
 
 
 def test_drone_in_a_hold_comes_home_by_itself() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from companion.config.companion import CompanionConfig
-from companion.landing.targets import HORIZON_OFFSETS_S, hover_aim, pad_aim, stopping_point
+from companion.landing.targets import HORIZON_OFFSETS_S, hover_aim, pad_aim, stopping_point, way_down
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
 from companion.vehicle.pad import PadPath
@@ -139,6 +139,19 @@ def test_descent_that_goes_on_ends_below_the_pad() -> None:
     pad = _heaving_pad()
     aim = pad_aim(Phase.DESCEND, pad, _over_pad(1.5, 0.0, pad), FEET_M, CONFIG, limits=LIMITS).target
     assert aim.position_enu_m[-1, 2] < pad.position_enu_m[-1, 2] + FEET_M
+
+
+@pytest.mark.parametrize(("height_m", "rate_m_s", "braking_m_s2"), [(2.0, -1.2, 1.5), (1.3, -2.3, 3.0)])
+def test_sink_is_braked_with_all_there_is_where_half_would_come_too_late(
+    height_m: float, rate_m_s: float, braking_m_s2: float
+) -> None:
+    heights_m, rates_m_s, accelerations_m_s2 = way_down(
+        (height_m, rate_m_s, 0.0), np.arange(0.0, 4.0, 0.01), LIMITS, DESCENT
+    )
+    assert LIMITS.vertical_acceleration_max_m_s2 == 3.0
+    assert braking_m_s2 - 1.5 < accelerations_m_s2.max() <= braking_m_s2 + 1e-9
+    at_contact = int(np.argmax(heights_m <= 0.0))
+    assert -0.7 <= rates_m_s[at_contact] <= -DESCENT.sink.contact_rate_m_s + 0.05  # S2 allows 0.7
 
 
 def test_stopping_point_is_the_closed_form_of_even_braking() -> None:

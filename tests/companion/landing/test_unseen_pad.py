@@ -17,7 +17,8 @@ from companion.landing.memory import Held
 from companion.landing.targets import pad_aim
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
-from companion.vehicle.pad import PadPath, is_unseen, pad_path
+from companion.vehicle.pad import PadPath, pad_path
+from companion.vehicle.pad_reach import is_unseen
 from link.records import replace
 from scenarios.config import PatternConfig
 from tests.companion.facts import GEAR_M, LONG_HEARD, TICK_NS, decided, later, pad_at, progress, reference_at, situation

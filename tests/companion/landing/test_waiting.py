@@ -89,6 +89,15 @@ def _kept_surprised(flight: Flight, duration_s: float) -> None:
             return
 
 
+def _impatient() -> Flight:
+    """A flight in its descent, with less time for it and for waiting in it than by default."""
+    flight = reached(Phase.DESCEND)
+    uneven = DESCENT.uneven.model_copy(update={"wait_max_s": 8.0, "hold_s": 4.0})
+    descent = DESCENT.model_copy(update={"time_limit_s": 10.0, "uneven": uneven})
+    flight.config = flight.config.model_copy(update={"descent": descent})
+    return flight
+
+
 @pytest.mark.slow
 def test_descent_that_waits_comes_to_rest_at_its_height() -> None:
     flight = reached(Phase.DESCEND)
@@ -101,22 +110,23 @@ def test_descent_that_waits_comes_to_rest_at_its_height() -> None:
 
 @pytest.mark.slow
 def test_descent_outlasts_its_time_limit_above_a_vehicle_that_surprises_and_then_lands() -> None:
-    flight = reached(Phase.DESCEND)
-    _kept_surprised(flight, DESCENT.time_limit_s + 5.0)
+    flight = _impatient()
+    descent = flight.config.descent
+    _kept_surprised(flight, descent.time_limit_s + 0.25 * descent.uneven.wait_max_s)
     assert flight.phase is Phase.DESCEND
-    flight.run_until(Phase.SECURED, limit_s=DESCENT.uneven.hold_s + 10.0)
+    flight.run_until(Phase.SECURED, limit_s=descent.uneven.hold_s + 10.0)
     assert Phase.ABORT not in flight.history
     assert flight.memory.progress.waited_s == 0.0
 
 
 @pytest.mark.slow
 def test_descent_above_a_vehicle_that_surprises_for_ever_is_broken_off() -> None:
-    flight = reached(Phase.DESCEND)
-    limit_s = DESCENT.time_limit_s + DESCENT.uneven.wait_max_s
+    flight = _impatient()
+    limit_s = flight.config.descent.time_limit_s + flight.config.descent.uneven.wait_max_s
     _kept_surprised(flight, limit_s - 1.0)
     assert flight.phase is Phase.DESCEND
     _kept_surprised(flight, 2.0)
-    assert (flight.phase, flight.sentence) == (Phase.ABORT, "descend took longer than 30 s")
+    assert (flight.phase, flight.sentence) == (Phase.ABORT, "descend took longer than 10 s")
 
 
 def _after(memory: StepMemory, facts: Situation, limit_s: float) -> tuple[StepMemory, Situation]:

@@ -9,7 +9,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from companion.core.data import Array
-from companion.sortie.station import KeepOut, is_clear, is_inside, turned, way_to
+from companion.sortie.station import KeepOut, is_clear, is_inside, turn_rates_rad_s, turned, way_to
+from link.messages import StationFrame
+from link.records import replace
+from tests.companion.facts import pad_at
 
 VEHICLE = KeepOut(radius_m=4.0, over_m=1.5, lowest_m=0.5)
 RATES = (1.5, 8.0)
@@ -67,3 +70,14 @@ def test_a_turned_offset_keeps_its_length_and_height() -> None:
     offset = turned(np.array([3.0, -1.0, 2.0]), 0.7)
     assert np.linalg.norm(offset) == pytest.approx(math.sqrt(14.0))
     assert offset == pytest.approx([3.0 * math.cos(0.7) + math.sin(0.7), 3.0 * math.sin(0.7) - math.cos(0.7), 2.0])
+
+
+@pytest.mark.parametrize("frame", [StationFrame.VEHICLE, StationFrame.COURSE])
+def test_an_acceleration_across_the_course_of_a_vehicle_that_does_not_turn_turns_no_station(
+    frame: StationFrame,
+) -> None:
+    pad = pad_at((0.6, 0.0, 0.0))
+    across = replace(pad, acceleration_enu_m_s2=np.tile([-2.0, 0.8, 0.0], (len(pad.offset_s), 1)))
+    assert turn_rates_rad_s(frame, across).max() > 0.4
+    known = replace(across, yaw_rate_rad_s=np.zeros(len(pad.offset_s)))
+    assert not turn_rates_rad_s(frame, known).any()

@@ -23,15 +23,24 @@ def watched(shares: list[tuple[float, float]]) -> BatteryWatch:
 
 def test_rate_of_use_is_that_between_two_changes() -> None:
     # The first percent had begun before the flight: what it took says nothing.
-    watch = watched([(0.0, 1.0), (3.0, 0.99), (9.0, 0.99), (15.0, 0.98), (27.0, 0.97)])
-    assert use_per_s(watch) == pytest.approx(0.02 / 24.0)
-    assert left_s(watch, RESERVE) == pytest.approx((0.97 - RESOLUTION - RESERVE) * 1200.0)
+    watch = watched([(0.0, 1.0), (3.0, 0.99), (9.0, 0.99), (21.0, 0.98), (39.0, 0.97)])
+    assert use_per_s(watch) == pytest.approx(0.02 / 36.0)
+    assert left_s(watch, RESERVE) == pytest.approx((0.97 - RESOLUTION - RESERVE) * 1800.0)
 
 
 def test_without_a_rate_only_the_reserve_is_told() -> None:
     assert left_s(BatteryWatch(), RESERVE) == math.inf
     assert left_s(watched([(0.0, 0.6), (10.0, 0.59)]), RESERVE) == math.inf
     assert left_s(watched([(0.0, 0.21), (10.0, 0.2)]), RESERVE) == 0.0
+
+
+def test_two_quick_percents_of_a_voltage_that_sags_are_no_rate_of_use() -> None:
+    sags = watched([(0.0, 0.51), (10.0, 0.5), (11.0, 0.49)])
+    assert left_s(sags, RESERVE) > 600.0
+
+
+def test_two_changes_told_at_once_make_no_rate() -> None:
+    assert use_per_s(watched([(0.0, 0.6), (10.0, 0.59), (10.0, 0.58)])) is None
 
 
 def test_a_fuller_battery_is_another_one() -> None:

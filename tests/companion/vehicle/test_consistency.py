@@ -15,14 +15,16 @@ from companion.config.estimation import (
 )
 from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle import imm_kernels as kernels
+from companion.vehicle import imm_noise as noises
+from companion.vehicle.deck_motion import rate_std_m_s
 from companion.vehicle.estimator import DelayBuffer, fuse
 from companion.vehicle.filter_step import Gaussian
 from companion.vehicle.imm import ImmModel
-from companion.vehicle.imm_kernels import heave_step
 from companion.vehicle.imm_mixing import combine
 from companion.vehicle.imm_state import ImmState
 from companion.vehicle.imm_swing import SIZE
 from companion.vehicle.lkf import LkfModel, WhiteJerkNoise, transition
+from companion.vehicle.oscillators import smooth_step
 from tests.companion.vehicle.rides import now_ns
 
 DT_S, STEPS, RUNS, SETTLED = 0.1, 150, 36, 60
@@ -80,7 +82,7 @@ def wander(x: Array, rng: np.random.Generator) -> Array:
     """The turning model's own motion with its own noise, one step."""
     config = IMM.config
     sways = config.on_road.heave
-    heave, heave_noise = heave_step(DT_S, 2.0 * np.pi * sways.frequency_hz, sways.damping, sways.std)
+    heave, heave_noise = smooth_step(DT_S, 2.0 * np.pi * sways.frequency_hz, sways.damping, rate_std_m_s(sways))
     level, calm = np.zeros((2, 2, 2)), np.zeros((2, 2, 2))
     noise = np.array(
         [
@@ -102,10 +104,10 @@ def wander(x: Array, rng: np.random.Generator) -> Array:
             0.0,
         ]
     )
-    Q = kernels.process_noise(x, DT_S, noise, heave_noise, calm)
+    Q = noises.process_noise(x, DT_S, noise, heave_noise, calm)
     after, _ = kernels.advance(x, DT_S, config.acceleration_decay_s, heave, level)
-    after[6] *= kernels.curvature_left(float(np.hypot(x[2], x[3])), DT_S, noise)
-    after[kernels.BEND] *= kernels.bend_step(x, DT_S, noise)[0]
+    after[6] *= noises.curvature_left(float(np.hypot(x[2], x[3])), DT_S, noise)
+    after[kernels.BEND] *= noises.bend_step(x, DT_S, noise)[0]
     return np.asarray(after + drawn(Q, rng))
 
 
@@ -117,8 +119,8 @@ def imm_run(curvature: float, seed: int) -> tuple[float, float, int]:
     at_settled = (0.0, 0)
     for i in range(STEPS):
         position, velocity = (
-            x[[0, 1, 8]] + [0, 0, x[10]],
-            np.array([x[2], x[3], kernels.forward_speed(x) * x[9] + x[11]]),
+            x[[0, 1, 8]],
+            np.array([x[2], x[3], noises.forward_speed(x) * x[9] + x[10]]),
         )
         sensors = [
             *measured(i, position, velocity, rng),
@@ -141,7 +143,7 @@ def imm_run(curvature: float, seed: int) -> tuple[float, float, int]:
 @pytest.mark.slow
 @pytest.mark.parametrize("curvature", [0.0, 0.05], ids=["straight", "circle"])
 def test_turning_filter_is_consistent_on_its_own_model(curvature: float) -> None:
-    runs = [imm_run(curvature, seed) for seed in range(RUNS)]
+    runs = [imm_run(curvature, seed) for seed in range(4 * RUNS)]
     assert_consistent(runs, states=len(STATES))
 
 

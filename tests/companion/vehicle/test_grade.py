@@ -8,6 +8,7 @@ from scipy import stats
 
 from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig, ReceiversConfig
 from companion.vehicle import imm_kernels as kernels
+from companion.vehicle import imm_noise as noises
 from companion.vehicle.imm_swing import SIZE
 from companion.vehicle.pad import pad_path
 from link.messages import PadGeometry
@@ -39,7 +40,7 @@ def test_vehicle_that_reverses_goes_down_what_it_has_climbed() -> None:
 
 
 def test_standing_vehicle_neither_climbs_nor_heaves() -> None:
-    Q = kernels.process_noise(np.zeros(SIZE), 0.1, NOISE, 1e-4 * np.eye(2), TILT_NOISE)
+    Q = noises.process_noise(np.zeros(SIZE), 0.1, NOISE, 1e-4 * np.eye(3), TILT_NOISE)
     assert np.abs(Q[[9, 10, 11, kernels.BEND]]).max() == 0.0
     assert Q[8, 8] == pytest.approx(NOISE[7] * 0.1)  # how far the drone errs about itself
 
@@ -48,19 +49,19 @@ def test_standing_vehicle_neither_climbs_nor_heaves() -> None:
 def test_change_of_the_grade_stays_within_what_roads_are_built_with(speed_m_s: float) -> None:
     x = np.zeros(SIZE)
     x[2] = speed_m_s
-    left, fed = kernels.bend_step(x, 0.1, NOISE)
+    left, fed = noises.bend_step(x, 0.1, NOISE)
     std = math.sqrt(fed / (1.0 - left**2))
-    assert std <= NOISE[kernels.BEND_STD] * (1.0 + 1e-9)
-    assert std * speed_m_s**2 <= NOISE[kernels.BEND_ACCELERATION_STD] * (1.0 + 1e-9)
+    assert std <= NOISE[noises.BEND_STD] * (1.0 + 1e-9)
+    assert std * speed_m_s**2 <= NOISE[noises.BEND_ACCELERATION_STD] * (1.0 + 1e-9)
 
 
 def test_noise_of_the_grade_is_that_of_many_small_steps() -> None:
     x = np.zeros(SIZE)
     x[2] = 8.0
     rows = np.array([8, 9, kernels.BEND])
-    whole = kernels.process_noise(x, 0.02, NOISE, np.zeros((2, 2)), TILT_NOISE)[np.ix_(rows, rows)]
+    whole = noises.process_noise(x, 0.02, NOISE, np.zeros((3, 3)), TILT_NOISE)[np.ix_(rows, rows)]
     _, F = kernels.advance(x, 0.0004, TAU_S, HEAVE, TILT)
-    once = kernels.process_noise(x, 0.0004, NOISE, np.zeros((2, 2)), TILT_NOISE)
+    once = noises.process_noise(x, 0.0004, NOISE, np.zeros((3, 3)), TILT_NOISE)
     parts = np.zeros_like(once)
     for _ in range(50):
         parts = F @ parts @ F.T + once

@@ -132,9 +132,9 @@ def test_step_of_the_receiver_does_not_move_a_pad_that_is_seen() -> None:
 @pytest.mark.parametrize(
     ("truth", "sensors", "bound_m"),
     [
-        (circle(), NOMINAL, 0.12),
+        (circle(), NOMINAL, 0.14),
         (circle(), FIX_ONLY, 0.40),
-        (straight(25.0), NOMINAL, 0.15),
+        (straight(25.0), NOMINAL, 0.17),
         (figure_eight(), NOMINAL, 0.45),
         (stop_and_go(), NOMINAL, 0.5),
     ],

@@ -12,15 +12,18 @@ from companion.vehicle import imm_forecast as forecasts
 from companion.vehicle import imm_judgement as judgement
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
+from companion.vehicle import imm_noise as noises
 from companion.vehicle import imm_sensors as sensors
+from companion.vehicle import oscillators
 from companion.vehicle.imm_swing import SIZE
+from companion.vehicle.small_matrices import correct
 
 TAU_S = 3.0
 ROLL, PITCH = (2.0 * math.pi * 1.1, 0.25, 0.03), (2.0 * math.pi * 0.8, 0.15, 0.02)
 MOTION = np.array([TAU_S, 2.0 * math.pi * 0.75, 0.3, 0.04, 180.0, -0.7, 0.1, 0.3, 1.4, 5.0, *ROLL, *PITCH])
 NOISE = np.array([12.0, 0.005, 20.0, 3.0, 1e-4, 0.003, 1e-5, 2e-3, 1e-7, 0.1, 0.0, 0.5, 10.0, 1e-5, 0.15, 0.0])
 LEVER = MOTION[5:9]
-HEAVE = np.array([[0.91, 0.08], [-1.7, 0.69]])
+HEAVE = np.array([[1.0, 0.097, 0.004], [0.0, 0.91, 0.08], [0.0, -1.7, 0.69]])
 TILT = np.array([[[0.85, 0.07], [-3.1, 0.6]], [[0.93, 0.09], [-1.2, 0.8]]])
 TILT_NOISE = np.array([[[2e-6, 1e-6], [1e-6, 3e-4]], [[1e-6, 0.0], [0.0, 2e-4]]])
 
@@ -128,7 +131,7 @@ def test_update_equals_that_of_filterpy(seed: int) -> None:
     rng = np.random.default_rng(seed)
     x, P, R = rng.standard_normal(SIZE), a_covariance(seed), a_covariance(seed + 50, 3)
     H, z = rng.standard_normal((3, SIZE)), rng.standard_normal(3)
-    mean, covariance, nis, log_likelihood = kernels.correct(x, P, z - H @ x, H, R)
+    mean, covariance, nis, log_likelihood = correct(x, P, z - H @ x, H, R)
     other_mean, other_covariance, y, _, S, _ = filterpy_update(x, P, z, R, H, return_all=True)
     assert mean == pytest.approx(other_mean)
     assert covariance == pytest.approx(other_covariance)
@@ -139,10 +142,8 @@ def test_update_equals_that_of_filterpy(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_compiled_kernels_equal_their_python(seed: int) -> None:
     x, P = a_state(seed), a_covariance(seed)
-    noise = kernels.process_noise(x, 0.07, NOISE, 1e-4 * np.eye(2), TILT_NOISE)
-    assert noise == pytest.approx(
-        kernels.process_noise.py_func(x, 0.07, NOISE, 1e-4 * np.eye(2), TILT_NOISE), rel=1e-12
-    )
+    noise = noises.process_noise(x, 0.07, NOISE, 1e-4 * np.eye(3), TILT_NOISE)
+    assert noise == pytest.approx(noises.process_noise.py_func(x, 0.07, NOISE, 1e-4 * np.eye(3), TILT_NOISE), rel=1e-12)
     for mine, python in zip(
         kernels.advance(x, 0.07, TAU_S, HEAVE, TILT), kernels.advance.py_func(x, 0.07, TAU_S, HEAVE, TILT), strict=True
     ):
@@ -159,23 +160,23 @@ def test_compiled_kernels_equal_their_python(seed: int) -> None:
 
 @pytest.mark.parametrize("speed_m_s", [0.0, 2.0, 7.0])
 def test_curvature_stays_as_uncertain_as_a_vehicle_can_steer(speed_m_s: float) -> None:
-    std, dt_s, x = NOISE[kernels.CURVATURE_STD], 0.1, np.zeros(SIZE)
+    std, dt_s, x = NOISE[noises.CURVATURE_STD], 0.1, np.zeros(SIZE)
     x[2] = speed_m_s
-    left = kernels.curvature_left(speed_m_s, dt_s, NOISE)
-    fed = kernels.process_noise(x, dt_s, NOISE, np.zeros((2, 2)), TILT_NOISE)[6, 6]
+    left = noises.curvature_left(speed_m_s, dt_s, NOISE)
+    fed = noises.process_noise(x, dt_s, NOISE, np.zeros((3, 3)), TILT_NOISE)[6, 6]
     assert left**2 * std**2 + fed == pytest.approx(std**2)
     assert fed > 0.0
 
 
 def test_heading_of_a_vehicle_at_rest_is_fed_by_no_noise() -> None:
-    Q = kernels.process_noise(np.zeros(SIZE), 0.1, NOISE, np.zeros((2, 2)), TILT_NOISE)
+    Q = noises.process_noise(np.zeros(SIZE), 0.1, NOISE, np.zeros((3, 3)), TILT_NOISE)
     assert np.abs(Q[7]).max() == 0.0
 
 
 def test_process_noise_is_positive_and_lies_along_the_track() -> None:
     x = a_state(3)
-    assert np.linalg.eigvalsh(kernels.process_noise(x, 0.1, NOISE, 1e-6 * np.eye(2), TILT_NOISE)).min() > -1e-15
-    Q = kernels.process_noise(x, 0.1, np.where(np.arange(len(NOISE)) == 2, 0.0, NOISE), 1e-6 * np.eye(2), TILT_NOISE)
+    assert np.linalg.eigvalsh(noises.process_noise(x, 0.1, NOISE, 1e-6 * np.eye(3), TILT_NOISE)).min() > -1e-15
+    Q = noises.process_noise(x, 0.1, np.where(np.arange(len(NOISE)) == 2, 0.0, NOISE), 1e-6 * np.eye(3), TILT_NOISE)
     along = x[2:4] / np.hypot(*x[2:4])
     across = np.array([-along[1], along[0]])
     assert along @ Q[4:6, 4:6] @ along == pytest.approx(12.0 * 0.1)
@@ -185,12 +186,25 @@ def test_process_noise_is_positive_and_lies_along_the_track() -> None:
 def test_heave_is_a_damped_oscillator_of_the_given_steady_size() -> None:
     w, damping, std = MOTION[1:4]
     A = np.array([[0.0, 1.0], [-(w**2), -2.0 * damping * w]])
-    step, noise = kernels.heave_step(0.13, w, damping, std)
+    step, noise = oscillators.heave_step(0.13, w, damping, std)
     assert step == pytest.approx(expm(0.13 * A))
     push = np.diag([0.0, 4.0 * damping * w**3 * std**2])
     steady = solve_continuous_lyapunov(A, -push)
     assert steady == pytest.approx(np.diag([std**2, (std * w) ** 2]))
     assert step @ steady @ step.T + noise == pytest.approx(steady)
+
+
+@pytest.mark.parametrize("w", [0.6, 4.7, 20.0])
+def test_heave_moves_a_place_by_a_rate_that_is_such_an_oscillator(w: float) -> None:
+    damping, std_m_s, dt_s = 0.3, 0.2, 0.1
+    A = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, -(w**2), -2.0 * damping * w]])
+    push = np.diag([0.0, 0.0, 4.0 * damping * w**3 * std_m_s**2])
+    van_loan = expm(dt_s * np.block([[-A, push], [np.zeros((3, 3)), A.T]]))  # Van Loan 1978
+    step, noise = oscillators.smooth_step(dt_s, w, damping, std_m_s)
+    assert step == pytest.approx(van_loan[3:, 3:].T)
+    expected = van_loan[3:, 3:].T @ van_loan[:3, 3:]
+    scale = np.sqrt(np.diag(expected))
+    assert noise / np.outer(scale, scale) == pytest.approx(expected / np.outer(scale, scale), abs=0.025)
 
 
 def test_switching_is_a_markov_chain_in_continuous_time() -> None:

@@ -10,6 +10,7 @@ from companion.core.data import Array
 from companion.vehicle import imm_forecast as forecasts
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
+from companion.vehicle import imm_noise as noises
 from companion.vehicle import imm_sensors as sensors
 from companion.vehicle.imm_swing import SIZE
 from tests.companion.vehicle.drives import NOMINAL, drive
@@ -28,7 +29,7 @@ from tests.companion.vehicle.test_imm_kernels import (
 
 PLACE = np.array([0, 1, 8])
 TILTED = np.arange(18, 24)
-QUIET = np.where(np.isin(np.arange(len(NOISE)), (3, kernels.CURVATURE_STD, kernels.BEND_LENGTH)), NOISE, 0.0)
+QUIET = np.where(np.isin(np.arange(len(NOISE)), (3, noises.CURVATURE_STD, noises.BEND_LENGTH)), NOISE, 0.0)
 CURVE_S, SPEED_M_S, RADIUS_M = 8.0, 8.0, 20.0
 
 
@@ -76,7 +77,7 @@ def test_antenna_s_velocity_is_how_fast_its_place_changes(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_what_the_curvature_does_within_a_step_is_that_of_many_small_ones(seed: int) -> None:
     x, noise = a_state(seed), np.where(np.arange(len(NOISE)) == 2, NOISE, QUIET)
-    whole = kernels.process_noise(x, 0.02, noise, np.zeros((2, 2)), TILT_NOISE)
+    whole = noises.process_noise(x, 0.02, noise, np.zeros((3, 3)), TILT_NOISE)
     kick = whole[6, 6] / 50
     _, F = kernels.advance(x, 0.0004, TAU_S, HEAVE, TILT)
     _, through = kernels.advance(x, 0.0002, TAU_S, HEAVE, TILT)
@@ -84,8 +85,8 @@ def test_what_the_curvature_does_within_a_step_is_that_of_many_small_ones(seed: 
     for _ in range(50):
         parts += kick * np.outer(through[:, 6], through[:, 6])
         through = F @ through
-    scale = np.sqrt(np.diag(parts)[: kernels.MOTION])
-    error = (whole - parts)[: kernels.MOTION, : kernels.MOTION] / np.outer(scale, scale)
+    scale = np.sqrt(np.diag(parts)[: noises.MOTION])
+    error = (whole - parts)[: noises.MOTION, : noises.MOTION] / np.outer(scale, scale)
     assert np.abs(error).max() < 0.05
 
 

@@ -95,3 +95,11 @@ def test_vague_heading_does_not_place_a_pad_on_a_long_lever_arm_that_nobody_has_
     assert pad_path(unseen, _pad((2.0, 0.0, 0.7))).unplaced == HEADING_UNKNOWN
     assert pad_path(unseen, _pad((0.4, 0.0, 0.7))).unplaced is None
     assert pad_path(seen, _pad((2.0, 0.0, 0.7))).unplaced is None
+
+
+def test_yaw_rate_is_the_derivative_of_a_heading_that_wraps() -> None:
+    offset_s = _forecast(None).offset_s
+    heading = 3.1 + 0.3 * offset_s
+    pad = pad_path(_forecast((heading + math.pi) % (2.0 * math.pi) - math.pi), _pad((0.0, 0.0, 0.1)))
+    assert pad.yaw_rate_rad_s is not None
+    np.testing.assert_allclose(pad.yaw_rate_rad_s, 0.3, atol=1e-9)

@@ -8,7 +8,13 @@ from companion.landing.aborts import is_over_pad
 from companion.landing.contact import Verdict, signs_of, verdict
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
-from companion.vehicle.pad import cone_radius_at_pad_m, cone_radius_m, is_unseen, over_pad_radius_m, unseen_std_max_m
+from companion.vehicle.pad_reach import (
+    cone_radius_at_pad_m,
+    cone_radius_m,
+    is_unseen,
+    over_pad_radius_m,
+    unseen_std_max_m,
+)
 from link.messages import Command
 from link.records import replace
 from tests.companion.facts import CONFIG, pad_at, reference_at, situation

@@ -11,8 +11,8 @@ def test_a_slow_start_is_told_on_stderr_and_a_quick_one_is_not(capfd: pytest.Cap
     with Patience("tool", after_s=30.0):
         pass
     assert capfd.readouterr().err == ""
-    with Patience("tool", after_s=0.0):
+    with Patience("tool", "waiting for the drone", after_s=0.0):
         for thread in threading.enumerate():
             if isinstance(thread, threading.Timer):
                 thread.join(timeout=10.0)
-    assert capfd.readouterr().err.startswith("tool: loading the numerics")
+    assert capfd.readouterr().err.startswith("tool: waiting for the drone")

@@ -28,7 +28,7 @@ STATUS = LandingStatus(
 def test_rows_state_each_value_with_its_unit_and_a_dash_for_the_unknown() -> None:
     rows = dict(status_rows(STATUS))
     assert rows["height above the pad"] == "1.23 m"
-    assert rows["distance from its centre"] == "0.50 m"
+    assert rows["horizontal distance"] == "0.50 m"
     assert rows["relative velocity"] == "+0.00, +0.10, -0.50 m/s"
     assert rows["age of the last fix"] == "-"
     assert list(rows) == [name for name, _ in status_rows(None)]

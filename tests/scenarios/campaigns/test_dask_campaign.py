@@ -6,7 +6,7 @@ import socket
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import pytest
@@ -93,12 +93,19 @@ def local(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     return (folder / "out" / "landings.parquet").read_bytes()
 
 
-def test_dask_gives_the_bytes_of_one_local_process_though_a_worker_is_killed_and_refuses_other_sources(
-    local: bytes, tmp_path: Path
+def test_dask_gives_the_bytes_of_one_local_process_though_a_worker_is_killed_and_refuses_none_and_other_sources(
+    local: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     plan = plan_of(tmp_path)
     remote = create_folder(tmp_path / "remote", plan)
-    with scheduler() as address, worker(address, tmp_path) as victim, worker(address, tmp_path, threads=2):
+    with ExitStack() as programs:
+        address = programs.enter_context(scheduler())
+        with monkeypatch.context() as hurried:
+            hurried.setattr("scenarios.processes.dask_workers._FIRST_WORKER_S", 0.5)
+            with pytest.raises(UserError, match="has no workers"):
+                list(none_on(address))
+        victim = programs.enter_context(worker(address, tmp_path))
+        programs.enter_context(worker(address, tmp_path, threads=2))
 
         def kill(_flown: Flown | None, done: int, _total: int) -> None:
             if done == 1:
@@ -121,12 +128,6 @@ def test_scheduler_that_is_not_there_is_a_mistake_of_the_user(tmp_path: Path, mo
     address = f"tcp://127.0.0.1:{free_port()}"
     with pytest.raises(UserError, match=f"no Dask scheduler answers at {address}"):
         fly_campaign(folder, plan, Where(scheduler=address), quiet)
-
-
-def test_scheduler_without_workers_is_a_mistake_of_the_user(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scenarios.processes.dask_workers._FIRST_WORKER_S", 0.5)
-    with scheduler() as address, pytest.raises(UserError, match="has no workers"):
-        list(none_on(address))
 
 
 def test_missing_dask_is_a_mistake_of_the_user(monkeypatch: pytest.MonkeyPatch) -> None:

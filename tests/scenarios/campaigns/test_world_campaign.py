@@ -1,6 +1,7 @@
-"""Campaigns of worlds: flown by other processes, and replayed by their names in this one."""
+"""Campaigns of worlds: flown by another process, replayed by their names in this one, and shown."""
 
 import json
+import re
 from pathlib import Path
 
 import polars as pl
@@ -20,7 +21,7 @@ from tests.scenarios.campaigns.short import scenarios
 pytestmark = pytest.mark.slow
 
 CELL = "world"
-FIRST_SEED, SEEDS = 12, 2
+FIRST_SEED, SEEDS = 12, 1
 
 
 def quiet(_flown: Flown | None, _done: int, _total: int) -> None:
@@ -29,7 +30,7 @@ def quiet(_flown: Flown | None, _done: int, _total: int) -> None:
 
 @pytest.fixture(scope="module")
 def flown(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A campaign of some worlds by another process."""
+    """A campaign of a world by another process."""
     folder = tmp_path_factory.mktemp("worlds") / "out"
     plan = make_plan([CELL], first_seed=FIRST_SEED, seeds=SEEDS, config=None)
     rows = fly_campaign(create_folder(folder, plan), plan, Where(workers=1), quiet)
@@ -55,6 +56,19 @@ def test_world_replays_by_its_name(flown: Path) -> None:
     result = result_table(scenario, row["seed"], lockstep.recording, lockstep.run())
     for name in ("tier", "closest_m", "horizontal_error_m", "vehicle_speed_m_s", "instant_s", "margin"):
         assert result[name] == row[name]
+
+
+def test_page_and_figures_show_every_landing(flown: Path) -> None:
+    best = pl.read_parquet(flown / "landings.parquet")["tier"].to_list().count("S3")
+    assert scenarios("report", flown) == 0
+    page = (flown / "report.html").read_text(encoding="utf-8")
+    assert f"{best} of {SEEDS} landings reached S3" in page
+    assert f"S3 ({best})" in page
+    assert page.count("<svg") >= 3
+    assert not re.findall(r'(?:src|href)="http', page)
+    assert scenarios("figures", flown) == 0
+    names = {file.name for file in (flown / "figures").iterdir()}
+    assert names >= {f"{name}.{kind}" for name in ("touchdowns", "errors", "reliability") for kind in ("png", "svg")}
 
 
 def test_table_shows_the_report_as_text_json_and_markdown(flown: Path, capsys: pytest.CaptureFixture[str]) -> None:

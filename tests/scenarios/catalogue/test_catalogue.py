@@ -2,12 +2,35 @@ from pathlib import Path
 
 import pytest
 
+from companion.config.integrity import ReceiverFrames
 from link.errors import UserError
+from scenarios.catalogue import catalogue
 from scenarios.catalogue.catalogue import list_scenarios, load_scenario
 from scenarios.lockstep.lockstep import Lockstep
+from scenarios.simulation.drone import sim_autopilot_config
 from scenarios.simulation.simulation import STEP_NS
 from scenarios.tracks.config import MovingTrack
 from tests.scenarios.presets import list_presets
+
+ONE, AUTO, APART = ReceiverFrames.ONE, ReceiverFrames.AUTO, ReceiverFrames.APART
+
+
+@pytest.mark.parametrize(("sensors", "frames"), [("rtk", ONE), ("report", ONE), ("nominal", AUTO), ("degraded", AUTO)])
+def test_companion_is_told_of_receivers_in_one_frame_only(sensors: str, frames: ReceiverFrames) -> None:
+    assert load_scenario(f"straight_5+sensors={sensors}").system.companion.integrity.receiver_frames is frames
+
+
+def test_what_a_file_says_of_its_receivers_stays(tmp_path: Path) -> None:
+    path = tmp_path / "own.toml"
+    path.write_text('base = "straight_5"\n[system.companion.integrity]\nreceiver_frames = "apart"\n', encoding="utf-8")
+    assert load_scenario(str(path)).system.companion.integrity.receiver_frames is APART
+
+
+@pytest.mark.parametrize(("sensors", "accuracy_m"), [("rtk", 0.01), ("nominal", 0.02), ("degraded", 1.2)])
+def test_drones_receiver_states_how_well_the_drone_knows_its_place(sensors: str, accuracy_m: float) -> None:
+    config = sim_autopilot_config(load_scenario(f"straight_5+sensors={sensors}"), 1, instant=True)
+    assert config.own_state.receiver_accuracy_m == accuracy_m
+
 
 BENCHMARK = [
     "static",
@@ -56,6 +79,19 @@ def test_every_preset_fits_every_kind_of_track(section: str) -> None:
     for preset in list_presets(section):
         for name in ("static", "straight_5", "report_1"):
             assert load_scenario(f"{name}+{section}={preset}").name == f"{name}+{section}={preset}"
+
+
+def test_every_option_that_is_listed_fits_behind_a_name() -> None:
+    listed = [f"{section}={name}" for section, names in catalogue.list_presets().items() for name in names]
+    assert {"firmware=ardupilot", "place=deck", "telemetry=none", "detector=model", "start=boot"} <= set(listed)
+    for option in listed:
+        # A drone that nothing tells of its vehicle needs sensors that see it.
+        assert load_scenario(f"straight_5+sensors=nominal+{option}").name.endswith(option)
+
+
+def test_world_that_is_misspelt_is_told() -> None:
+    with pytest.raises(UserError, match="the nearest is 'world:urban'"):
+        load_scenario("worldurban")
 
 
 def test_presets_in_a_name_replace_their_sections() -> None:

@@ -9,11 +9,12 @@ from scenarios.catalogue.catalogue import load_scenario
 from scenarios.catalogue.world_names import WorldName, names_worlds, parse_world_name, run_seed
 from scenarios.catalogue.worlds import drawn_world
 from scenarios.config import FIRMWARES, FirmwareName
+from scenarios.worlds.odd import slices
 from scenarios.worlds.seeds import SEEDS_END
-from scenarios.worlds.world import SLICES, draw_world
+from scenarios.worlds.world import draw_world
 
 
-@pytest.mark.parametrize("slice_name", SLICES)
+@pytest.mark.parametrize("slice_name", slices())
 @pytest.mark.parametrize("seed", [None, 0, 4711])
 @pytest.mark.parametrize("firmware", [None, *FIRMWARES])
 def test_name_is_read_as_it_is_written(slice_name: str, seed: int | None, firmware: FirmwareName | None) -> None:

@@ -6,20 +6,18 @@ from companion.situation.phases import Phase
 from link.messages import Command
 from scenarios.config import FIRMWARES
 from scenarios.faults.flight import FaultFlight
-from scenarios.faults.matrix import EXPECTED, PHASES, Case, Fault
+from scenarios.faults.matrix import EXPECTED, IN_SORTIES_ONLY, PHASES, Case, Fault
 from scenarios.faults.trial import SEED, Ended, fly_case, scenario_of
 from scenarios.scoring.score import Tier
 
 # The full matrix takes half an hour: some, in the phase in which they once went or would go most wrong. A lowered speed
-# limit and a vehicle that falls silent are among the golden flights.
+# limit and a vehicle that falls silent are among the golden flights; ArduCopter's link is cut in `test_companion_dies`.
 SOME = (
     Case(fault=Fault.LOST, phase=Phase.CHASE),
-    Case(fault=Fault.LOST, phase=Phase.ALIGN, firmware="ardupilot"),
     Case(fault=Fault.PILOT, phase=Phase.DESCEND),
     Case(fault=Fault.RESTART, phase=Phase.ALIGN),
     Case(fault=Fault.ORIGIN, phase=Phase.ALIGN),
     Case(fault=Fault.ESTIMATE, phase=Phase.CHASE),
-    Case(fault=Fault.LOST, phase=Phase.DESCEND, firmware="ardupilot"),
     Case(fault=Fault.COMPANION_STOPPED_LONG, phase=Phase.DESCEND),
     Case(fault=Fault.VEHICLE_STOPPED, phase=Phase.CHASE, firmware="ardupilot"),
     Case(fault=Fault.SPOILT, phase=Phase.CHASE),
@@ -29,7 +27,7 @@ SOME = (
 def test_every_fault_has_an_expected_end_in_every_phase_with_each_firmware() -> None:
     everything = {
         Case(fault=fault, phase=phase, firmware=firmware)
-        for fault in Fault
+        for fault in set(Fault) - IN_SORTIES_ONLY
         for phase in PHASES
         for firmware in FIRMWARES
     }

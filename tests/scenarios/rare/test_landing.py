@@ -62,8 +62,6 @@ def test_landings_that_raise_are_told_and_give_no_probability(
     table = json.loads(capsys.readouterr().out)
     assert (table["converged"], table["verdict"], table["probability"]) == (False, "failed", None)
     assert len(table["errors"]) == 20
-    assert scenarios(cell, "--particles", 20, "--workers", 1) == 1
-    assert "not converged, so there is no probability: a landing raised an error" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from tests.scenarios.rare.limit_states import (
     waiting_probability,
 )
 
-REPETITIONS = 25
+REPETITIONS = 16
 LEVEL = 0.01
 
 

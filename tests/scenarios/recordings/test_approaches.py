@@ -8,7 +8,7 @@ import pytest
 from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from link.messages import BodyTruth, LandingStatus, RotorTruth
-from scenarios.commands.approach_lines import approach_lines
+from scenarios.commands.run_lines import approach_lines
 from scenarios.recordings.approaches import Approach, approaches_of
 from scenarios.recordings.reason_counts import abort_reasons, add_counts, counts_of, counts_text, reasons_in
 from scenarios.recordings.recording import TIME_LIMIT, Recording

@@ -7,7 +7,7 @@ from scenarios.catalogue.catalogue import load_scenario
 from scenarios.lockstep.channels import channels_of
 from scenarios.simulation.disturbances import instant_s, outages_ns
 from scenarios.simulation.drone import sim_autopilot_config
-from sim_autopilot.runtime.config import wind_model
+from sim_autopilot.runtime.physics import wind_model
 
 START_NS = 1_800_000_000_000_000_000
 DEGRADED = load_scenario("straight_5+link=degraded")

@@ -10,8 +10,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
-from scenarios.view.client_page import write_client_page
-from scenarios.view.page import open_server
+from scenarios.view.page import open_server, write_client_page
 
 WAIT_S = 20.0
 

@@ -11,6 +11,7 @@ from link.frames.rotations import quaternion_from_roll_pitch_yaw, rotate
 from link.messages import BodyTruth, LandingStatus, PadGeometry, Vector3
 from link.payloads import json_messages
 from link.payloads.checks import PayloadError
+from link.payloads.decklander_msgs import floats, ros_message
 from link.records import replace
 from link.zenoh.keys import Keys
 from scenarios.__main__ import app
@@ -181,5 +182,17 @@ def test_cursor_outside_of_what_is_known_is_at_its_edge(now_s: float) -> None:
 def test_panel_tells_attitude_in_degrees_and_the_heading_by_compass() -> None:
     turned = quaternion_from_roll_pitch_yaw(math.radians(10.0), math.radians(-5.0), math.radians(60.0))
     text = panel_text(ViewState(own=replace(drone_at(1), orientation_wxyz=turned)), 0.0, stale=False)
-    assert "+10 right, +5 nose up, degrees" in text
+    assert "10 right, 5 nose up, degrees" in text
     assert "030 degrees from north" in text
+
+
+def test_panel_of_a_recording_tells_the_forecast_of_the_contact_while_it_is_fresh() -> None:
+    status = replace(status_with(armed=True), stamp_ns=7_000_000_000)
+    chances = {"s1": 0.99, "s2": 0.9, "unsafe": 0.01, "broken_off": 0.0}
+    misses = {"misses_position": 0.01, "misses_speed": 0.0, "misses_sink": 0.0, "misses_tilt": 0.0}
+    name = KEYS.record("contact_forecast")
+    message = ros_message(name, "ContactForecast", status.stamp_ns, in_s=floats(1.5), **chances, **misses)
+    state = StateReader(KEYS).taken(ViewState(status=status), message.topic, message.payload)
+    assert "90 % S2, 1.0 % unsafe" in panel_text(state, 0.0, stale=False)
+    late = replace(status, stamp_ns=status.stamp_ns + 1_000_000_000)
+    assert "unsafe" not in panel_text(replace(state, status=late), 0.0, stale=False)

@@ -16,12 +16,13 @@ from scenarios.simulation.vehicle_node import plan_of
 from scenarios.tracks.drive_config import DriveTrack
 from scenarios.tracks.roads import Piece, Road
 from scenarios.worlds.driver import DRIVE_S
+from scenarios.worlds.odd import slices
 from scenarios.worlds.road import STEERING_MAX_PER_M_S, TURN_RADIUS_MIN_M
-from scenarios.worlds.world import SLICES, World, draw_world
+from scenarios.worlds.world import World, draw_world
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
 from tests.rotations import matrix_of
 
-FEW, MANY = range(20_000, 20_003), range(20_003, 20_020)
+SEEDS = range(20_000, 20_003)
 STEP_S = 0.05
 START_NS = 1_800_000_000_000_000_000
 
@@ -88,7 +89,7 @@ def lengths(road: Road) -> list[tuple[Piece, float]]:
 
 
 def body_neither_tips_nor_leaves_the_road_nor_sinks_into_the_ground(world: World, vehicle: Vehicle) -> None:
-    upright = np.array([matrix_of(q)[2, 2] for q in vehicle["orientation_wxyz"]])
+    upright = 1.0 - 2.0 * (vehicle["orientation_wxyz"][:, 1:3] ** 2).sum(axis=1)  # R_WV[2, 2]
     assert upright.min() > math.cos(0.3), world.scenario.name
     assert float(world.drawn["drive.heave_max_m"]) < 0.3, world.scenario.name
     assert vehicle["position_enu_m"][:, 2].min() > -0.15, world.scenario.name
@@ -119,18 +120,9 @@ LAWS = (
 
 @pytest.mark.slow
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.__name__)
-def test_law_holds_in_a_few_worlds(law: Callable[[World, Vehicle], None]) -> None:
-    for name, seed in product(SLICES, FEW):
+def test_law_holds_in_worlds_of_each_slice(law: Callable[[World, Vehicle], None]) -> None:
+    for name, seed in product(slices(), SEEDS):
         law(*driven(name, seed))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", SLICES)
-def test_all_laws_hold_in_many_worlds(name: str) -> None:
-    for seed in MANY:
-        world, vehicle = driven(name, seed)
-        for law in LAWS:
-            law(world, vehicle)
 
 
 def test_velocity_and_angular_velocity_are_the_derivatives_of_the_pose() -> None:
@@ -145,7 +137,7 @@ def test_velocity_and_angular_velocity_are_the_derivatives_of_the_pose() -> None
         np.testing.assert_allclose(rate, two.angular_velocity_flu_rad_s, atol=2e-4)
 
 
-@pytest.mark.parametrize("name", SLICES)
+@pytest.mark.parametrize("name", slices())
 def test_world_is_read_back_from_its_file_to_the_last_bit(name: str, tmp_path: Path) -> None:
     for seed in range(30_000, 30_003):
         scenario = draw_world(name, seed).scenario

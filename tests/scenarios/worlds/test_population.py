@@ -3,9 +3,6 @@
 Levels: one test of a thousand would fail by chance, over all of its quantities together; the seeds are fixed.
 """
 
-from functools import cache
-from typing import Any
-
 import numpy as np
 import pytest
 from scipy import stats
@@ -14,8 +11,8 @@ from link.errors import UserError
 from scenarios.worlds.distributions import Choice, Graded, Plain
 from scenarios.worlds.draws import Draws
 from scenarios.worlds.driver import EVENTS
-from scenarios.worlds.odd import Cases, quantities_of
-from scenarios.worlds.world import SLICES, draw_world, quantities
+from scenarios.worlds.odd import Cases, quantities_of, slices
+from scenarios.worlds.world import draw_world, quantities
 from tests.scenarios.worlds.references import reference_of
 
 LEVEL = 1e-3
@@ -38,28 +35,27 @@ def values_of(name: str, seeds: range) -> list[tuple[Plain, Draws, float | str |
     return out
 
 
-def level_of(quantity: Plain, draws: Draws, value: float) -> float:
-    """The probability of a value below this one, by scipy."""
-    if isinstance(quantity, Graded):
-        quality = draws.number(quantity.quality)
-        median = quantity.poor * (quantity.good / quantity.poor) ** quality
-        return float(stats.truncnorm(-2.0, 2.0).cdf(np.log(value / median) / quantity.spread))
-    return float(_reference(quantity).cdf([value])[0])
+def levels_of(drawn: list[tuple[Plain, Draws, float | str | bool]]) -> list[float]:
+    """The probability of a value below each one, by scipy."""
+    levels: list[float] = []
+    for quantity in dict.fromkeys(quantity for quantity, _, _ in drawn):
+        here = [(draws, float(value)) for one, draws, value in drawn if one == quantity]
+        if isinstance(quantity, Graded):
+            qualities = np.array([draws.number(quantity.quality) for draws, _ in here])
+            medians = quantity.poor * (quantity.good / quantity.poor) ** qualities
+            z = np.log([value for _, value in here] / medians) / quantity.spread
+            levels += stats.truncnorm(-2.0, 2.0).cdf(z).tolist()
+        else:
+            levels += np.asarray(reference_of(quantity).cdf([value for _, value in here])).tolist()
+    return levels
 
 
-@cache
-def _reference(quantity: Plain) -> Any:
-    return reference_of(quantity)
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("name", [one for one in NAMES if not isinstance(WHOLE[one], Choice)])
 def test_drawn_numbers_have_the_distribution_of_their_source(name: str) -> None:
     drawn = values_of(name, SEEDS[:150])
     if isinstance(drawn[0][0], Choice):
         pytest.skip("a choice in each case, which the test of choices covers")
-    levels = [level_of(quantity, draws, float(value)) for quantity, draws, value in drawn]
-    assert stats.kstest(levels, "uniform").pvalue > LEVEL / len(NAMES)
+    assert stats.kstest(levels_of(drawn), "uniform").pvalue > LEVEL / len(NAMES)
 
 
 @pytest.mark.parametrize("name", [one for one in NAMES if isinstance(WHOLE[one], Choice)])
@@ -128,7 +124,7 @@ def test_a_quantity_is_drawn_the_same_whatever_else_is_drawn() -> None:
     assert second.number("drone.mass_kg") == alone
 
 
-@pytest.mark.parametrize("name", SLICES)
+@pytest.mark.parametrize("name", slices())
 def test_every_world_draws_and_tells_the_same_names(name: str) -> None:
     assert quantities(name, 3) == quantities("world", 1)
     assert list(draw_world(name, 3).drawn) == list(draw_world("world", 1).drawn)

@@ -189,7 +189,8 @@ def test_an_interval_that_cannot_be_fails(parameters: tuple[float, float]) -> No
 def test_every_message_it_knows_can_be_requested() -> None:
     pilot = Pilot()
     pilot.take_off(1.0)
-    for message_id in PX4.streams.messages.keys() - {mavlink.MAVLINK_MSG_ID_RC_CHANNELS}:
+    told_later = {mavlink.MAVLINK_MSG_ID_RC_CHANNELS, mavlink.MAVLINK_MSG_ID_ORBIT_EXECUTION_STATUS}  # sticks, a circle
+    for message_id in PX4.streams.messages.keys() - told_later:
         pilot.received.clear()
         assert pilot.acknowledged(command(REQUEST, float(message_id))) == [ACCEPTED]
         assert message_id in {message.get_msgId() for _, message in pilot.received}

@@ -5,12 +5,13 @@ from pathlib import Path
 
 from link.mavlink.dialect import mavlink
 from sim_autopilot.interfaces import NO_SERVICES
-from sim_autopilot.runtime.config import SimAutopilotConfig, autopilot_config
+from sim_autopilot.runtime.build import autopilot_config
+from sim_autopilot.runtime.config import SimAutopilotConfig
 from tests.sim_autopilot.pilot import Pilot, command, px4
 
 PACKAGE = Path(__file__).parents[3] / "sim_autopilot"
 SERVICES = "sim_autopilot.ground_station"
-PLUGGED_IN_BY = {"runtime/config.py"}
+PLUGGED_IN_BY = {"runtime/build.py"}
 
 
 def imported(path: Path) -> set[str]:

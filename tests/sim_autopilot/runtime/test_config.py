@@ -9,14 +9,9 @@ from link.program.toml_config import dump_toml, load_config
 from sim_autopilot.control.parameters import ControllerKind
 from sim_autopilot.physics.airframe import BENCHMARK_AIRFRAME
 from sim_autopilot.plant.own_state import OwnStateError
-from sim_autopilot.runtime.config import (
-    DroneConfig,
-    SimAutopilotConfig,
-    WindConfig,
-    airframe_of,
-    autopilot_config,
-    wind_model,
-)
+from sim_autopilot.runtime.build import autopilot_config
+from sim_autopilot.runtime.config import DroneConfig, SimAutopilotConfig, WindConfig
+from sim_autopilot.runtime.physics import airframe_of, wind_model
 
 
 def loaded(tmp_path: Path, text: str) -> SimAutopilotConfig:

@@ -1,0 +1,97 @@
+"""Places relative to the vehicle as the planner takes them, and the cylinder about the vehicle; pure."""
+
+import math
+
+import numpy as np
+
+from companion.config.companion import CompanionConfig
+from companion.core.data import Array, FlightLimits
+from companion.planning.guidance import ReferenceState, Target
+from companion.situation.situation import Situation
+from companion.sortie.intercept import closing_speed_m_s
+from companion.sortie.station import KeepOut, turn_rates_rad_s
+from companion.vehicle.pad import PadPath
+from link.messages import StationFrame
+
+WAY_SHARE = 0.3
+"""Of the drone's acceleration, for ways against the vehicle; the rest is for following the vehicle."""
+SPEED_SHARE = 0.95
+"""Of the drone's speed, for the way home; the rest makes up for gusts."""
+_BELOW_M = 0.5  # so far below the lowest station the planner's floor is: it is the last thing to be met
+
+
+def keep_out_of(pad: PadPath, config: CompanionConfig, *, stds: float = 0.0) -> KeepOut:
+    """Return the cylinder about the vehicle that ways and stations stay out of.
+
+    Args:
+        pad: with its standard deviation.
+        config: radius, margins and heights.
+        stds: by so many standard deviations of the pad's place the vehicle may be nearer, higher or lower.
+    """
+    sortie = config.sortie
+    pad_m = math.sqrt(2.0) * pad.half_width_m if math.isfinite(pad.half_width_m) else 0.0
+    beside_m, upright_m = (stds * float(np.max(pad.position_std_m[0, axes])) for axes in (slice(0, 2), slice(2, 3)))
+    return KeepOut(
+        radius_m=max(sortie.vehicle_radius_m, pad_m) + sortie.keep_out_margin_m + beside_m,
+        over_m=config.descent.alignment.height_m + upright_m,
+        lowest_m=sortie.ground_clearance_m - pad.height_m + upright_m,
+    )
+
+
+def keep_out_now(pad: PadPath, config: CompanionConfig) -> KeepOut:
+    """Return the cylinder that the drone stays out of, as surely as the vehicle's place is known now."""
+    return keep_out_of(pad, config, stds=config.sortie.keep_out_stds)
+
+
+def over_vehicle(way: Array, frame: StationFrame, ahead: float, pad: PadPath, feet_offset_m: float) -> Target:
+    """Return the target of offsets (n, 3) that move and turn with the vehicle.
+
+    Args:
+        way: ahead, left and up of the pad's centre.
+        frame: that it turns with.
+        ahead: where ahead is now, rad.
+        pad: its path.
+        feet_offset_m: of the reported position above the feet.
+    """
+    offset_s = pad.offset_s
+    rates = turn_rates_rad_s(frame, pad)
+    steps = np.diff(offset_s)
+    angles = ahead + np.concatenate(([0.0], np.cumsum(0.5 * (rates[:-1] + rates[1:]) * steps)))
+    c, s = np.cos(angles), np.sin(angles)
+    arm = np.column_stack((c * way[:, 0] - s * way[:, 1], s * way[:, 0] + c * way[:, 1]))
+    across = np.column_stack((-arm[:, 1], arm[:, 0]))
+    moved = np.gradient(way, offset_s, axis=0)
+    turned_moved = np.column_stack((c * moved[:, 0] - s * moved[:, 1], s * moved[:, 0] + c * moved[:, 1]))
+    position, velocity = pad.position_enu_m.copy(), pad.velocity_enu_m_s.copy()
+    acceleration = pad.acceleration_enu_m_s2.copy()
+    position[:, :2] += arm
+    position[:, 2] += way[:, 2] + feet_offset_m
+    velocity[:, :2] += turned_moved + rates[:, None] * across
+    velocity[:, 2] += moved[:, 2]
+    acceleration[:, :2] -= (rates**2)[:, None] * arm
+    return Target(
+        offset_s=offset_s,
+        position_enu_m=position,
+        velocity_enu_m_s=velocity,
+        acceleration_enu_m_s2=acceleration,
+    )
+
+
+def offset_now(pad: PadPath, reference: ReferenceState, s: Situation) -> Array:
+    """Return (3,) of the virtual model's feet from the pad's centre, in W."""
+    offset = reference.position_enu_m - pad.position_enu_m[0]
+    return np.asarray(offset - np.array([0.0, 0.0, s.feet_offset_m]))
+
+
+def way_speed_m_s(way_m: Array, pad: PadPath, limits: FlightLimits) -> float:
+    """Return how fast the drone can follow a way (3,) against the vehicle: neither part of it outruns its limit."""
+    level_m, up_m = math.hypot(*way_m[:2].tolist()), float(way_m[2])
+    level_m_s = closing_speed_m_s(way_m[:2], pad.velocity_enu_m_s[0, :2], SPEED_SHARE * limits.speed_max_m_s)
+    upright_m_s = limits.climb_max_m_s if up_m > 0.0 else limits.descent_max_m_s
+    parts = [(m, m_s) for m, m_s in ((level_m, level_m_s), (abs(up_m), upright_m_s)) if m > 0.0]
+    return min((math.hypot(level_m, up_m) * m_s / m for m, m_s in parts), default=0.0)
+
+
+def floor_beside(pad: PadPath, keep_out: KeepOut, s: Situation) -> Array:
+    """Return the planner's floor (n,) in W beside the vehicle or over it, the lower of both."""
+    return np.asarray(pad.position_enu_m[:, 2] + s.feet_offset_m + min(keep_out.lowest_m, keep_out.over_m) - _BELOW_M)

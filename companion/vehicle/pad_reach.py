@@ -1,0 +1,63 @@
+"""How near a pad's centre the drone has to be, and how well the pad is to be known, before it is landed on; pure.
+
+How near the pad's centre the drone has to be for what it touches to be the pad, the pad's own size says. The
+benchmark's pad is 1.5 m wide. On a smaller one the same shares of its width hold; a larger one changes nothing, for
+the configured radius is what a drone in gusts is to keep to.
+"""
+
+import numpy as np
+
+from companion.config.companion import CompanionConfig
+from companion.vehicle.pad import KNOWN_SHARE, PadPath
+
+_CONE_SHARE = 0.4  # of half of the pad's width: 0.3 m on a pad of 1.5 m
+_CONTACT_SHARE = 0.8  # 0.6 m
+
+
+def cone_radius_at_pad_m(half_width_m: float, config: CompanionConfig) -> float:
+    """Return the radius of the descent's cone at the height of a pad that is twice `half_width_m` wide."""
+    return min(config.descent.cone.radius_at_pad_m, _CONE_SHARE * half_width_m)
+
+
+def cone_radius_m(height_m: float, half_width_m: float, config: CompanionConfig) -> float:
+    """Return how far beside the centre of a pad the drone may be at `height_m` above it while it descends."""
+    return cone_radius_at_pad_m(half_width_m, config) + config.descent.cone.slope * max(height_m, 0.0)
+
+
+def over_pad_radius_m(half_width_m: float, config: CompanionConfig) -> float:
+    """Return how far from the pad's centre what is touched is still the pad."""
+    return min(2.0 * config.descent.cone.radius_at_pad_m, _CONTACT_SHARE * half_width_m)
+
+
+def unseen_std_max_m(half_width_m: float, config: CompanionConfig) -> float:
+    """Return up to which standard deviation a pad is landed on that only what is seen of it can place."""
+    return min(config.descent.unseen.std_max_m, KNOWN_SHARE * half_width_m)
+
+
+def is_too_small(pad: PadPath, config: CompanionConfig) -> bool:
+    """Return whether the pad is narrower than what a drone can be brought onto."""
+    return 2.0 * pad.half_width_m < config.descent.pad_width_min_m
+
+
+def is_vague(pad: PadPath, config: CompanionConfig) -> bool:
+    """Return whether the pad is not known well enough to come near it."""
+    return float(max(pad.position_std_m[0, :2].tolist())) > config.abort.position_std_max_m
+
+
+def is_unseen(pad: PadPath, config: CompanionConfig) -> bool:
+    """Return whether the pad has to be seen (again) before it is landed on.
+
+    Fixes of some decimetres or better place it by themselves where both receivers have one frame. Where they may not,
+    sightings tell the offset; between coarser fixes and the drone's own place lie metres, and what a sighting said of
+    them holds for seconds only. A single sighting may be of anything, by anybody: what moves the pad is seen again.
+    """
+    if pad.is_coarse or not pad.has_one_frame:
+        return not pad.frame_offset.is_confirmed or is_place_vague(pad, config)
+    off_m = pad.frame_offset.distance_m
+    is_moved = off_m is not None and off_m > cone_radius_at_pad_m(pad.half_width_m, config)
+    return is_moved and not pad.frame_offset.is_confirmed
+
+
+def is_place_vague(pad: PadPath, config: CompanionConfig) -> bool:
+    """Return whether the pad is known too vaguely to be landed on where only what is seen of it places it."""
+    return float(np.max(pad.position_std_m[0, :2])) > unseen_std_max_m(pad.half_width_m, config)

@@ -1,0 +1,27 @@
+"""Reading a text file that a user names: whatever it is, it takes bounded memory, and one line says what is wrong."""
+
+from pathlib import Path
+
+from link.errors import UserError
+
+_BYTES_MAX = 4 << 20
+"""The longest of our own configurations has 20 kB; a device such as /dev/zero has no end."""
+
+
+def read_text(path: Path) -> str:
+    """Return a file's text; a byte order mark, as Windows' editors set one, is left out.
+
+    Raises:
+        UserError: it cannot be read, is too large or no UTF-8.
+    """
+    try:
+        with path.open("rb") as file:
+            data = file.read(_BYTES_MAX + 1)
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read ({error.strerror})") from None
+    if len(data) > _BYTES_MAX:
+        raise UserError(f"{path}: larger than {_BYTES_MAX >> 20} MB, which no such file is")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise UserError(f"{path}: not UTF-8 text") from None

@@ -1,0 +1,1 @@
+"""How an autopilot follows setpoints: manoeuvres flown, measured, and fitted by a model."""

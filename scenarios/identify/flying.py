@@ -1,0 +1,72 @@
+"""The manoeuvres with an autopilot at an endpoint, in real time, and with the stand-in, in lockstep."""
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from link.errors import UserError
+from link.mavlink.transports import open_transport
+from scenarios.identify.pilot import Flight, Pilot, Stage
+from sim_autopilot.runtime.build import autopilot_config
+from sim_autopilot.runtime.config import DroneConfig, SimAutopilotConfig
+from sim_autopilot.runtime.node import AutopilotNode
+
+_POLL_S = 0.002
+_LOCAL_NS = 1_700_000_000_000_000_000  # the clock of a flight in lockstep, which is no part of any result
+_AIR = np.zeros(3)
+AIRFRAMES = {"px4": "px4", "ardupilot": "arducopter"}
+"""The drone of each firmware's own simulation, so that the firmwares alone are compared."""
+
+
+def fly_endpoint(device: str, told: Callable[[Stage], None]) -> Flight:
+    """Return the flight of the autopilot that is met at `device`.
+
+    Args:
+        device: as every `--mavlink` takes it.
+        told: is called with each new stage.
+
+    Raises:
+        UserError: the device cannot be opened, or the flight came to no end.
+    """
+    pilot, stage = Pilot(device), None
+    with open_transport(device) as transport:
+        while not pilot.is_done:
+            data = transport.receive(_POLL_S)
+            now_ns = time.monotonic_ns()
+            if data:
+                pilot.receive(data, now_ns, is_datagram=transport.is_datagram)
+            for frame in pilot.poll(now_ns):
+                transport.send(frame)
+            if pilot.stage is not stage:
+                stage = pilot.stage
+                told(stage)
+    return pilot.flight()
+
+
+def fly_stand_in(firmware: str, parameters: dict[str, float]) -> Flight:
+    """Return the flight of the simulated autopilot, as heavy and as draggy as the firmware's own simulation.
+
+    Raises:
+        UserError: a parameter does not exist or is out of range.
+    """
+    if firmware not in AIRFRAMES:
+        raise UserError(f"there is no stand-in for '{firmware}': give one of {', '.join(AIRFRAMES)}")
+    config = SimAutopilotConfig.model_validate(
+        {
+            "firmware": firmware,
+            "instant": True,
+            "core": True,
+            "drone": DroneConfig.model_validate({"airframe": AIRFRAMES[firmware]}),
+            "parameters": parameters,
+        }
+    )
+    node, pilot = AutopilotNode(autopilot_config(config), _LOCAL_NS), Pilot(f"stand-in of {firmware}")
+    while not pilot.is_done:
+        (sent,) = node.step(None, _AIR)
+        now_ns = node.state.t_ns
+        pilot.receive(sent, now_ns)
+        for frame in pilot.poll(now_ns):
+            for answer in node.receive(frame, now_ns):
+                pilot.receive(answer, now_ns)
+    return pilot.flight()

@@ -1,0 +1,63 @@
+"""From the configuration to the physics: the airframe and the air."""
+
+from math import pi
+
+import numpy as np
+
+from link.records import replace
+from sim_autopilot.core.noise import NoiseSeed, named_seed
+from sim_autopilot.physics.airframe import (
+    ARDUCOPTER_AIRFRAME,
+    BENCHMARK_AIRFRAME,
+    PX4_AIRFRAME,
+    REPORT_AIRFRAME,
+    Airframe,
+)
+from sim_autopilot.physics.wind import Gust, Turbulence, WindModel
+from sim_autopilot.runtime.config import DroneConfig, SimAutopilotConfig, WindConfig
+
+_AIRFRAMES = {
+    "report": REPORT_AIRFRAME,
+    "benchmark": BENCHMARK_AIRFRAME,
+    "arducopter": ARDUCOPTER_AIRFRAME,
+    "px4": PX4_AIRFRAME,
+}
+
+
+def airframe_of(drone: DroneConfig) -> Airframe:
+    """Return the airframe of a drone: the named one with what differs from it."""
+    named = _AIRFRAMES[drone.airframe]
+    names = ("mass_kg", "thrust_to_weight", "drag_n_s_m", "motor_time_constant_s")
+    own = {name: value for name in names if (value := getattr(drone, name)) is not None}
+    if drone.mass_kg is not None:
+        x, y, z = (drone.mass_kg / named.mass_kg * one for one in named.inertia_kg_m2)
+        return replace(named, inertia_kg_m2=(x, y, z), **own)
+    return replace(named, **own)
+
+
+def wind_model(config: SimAutopilotConfig, seed: NoiseSeed | None = None) -> WindModel:
+    """Return the air, which blows towards where it does not come from.
+
+    Args:
+        config: of the mean wind, the turbulence and the gust.
+        seed: of the turbulence, or the generator that draws it; None for the configuration's.
+    """
+    wind = config.wind
+    from_rad = wind.from_rad
+    if from_rad is None:
+        from_rad = float(np.random.default_rng(named_seed(config.seed, "wind")).uniform(-pi, pi))
+    std_m_s = wind.turbulence_std_m_s
+    turbulence = Turbulence[wind.turbulence.upper()] if std_m_s is None else std_m_s
+    seed = named_seed(config.seed, "turbulence") if seed is None else seed
+    return WindModel(seed, wind.mean_m_s, from_rad + pi, turbulence, gust=_gust(wind))
+
+
+def _gust(wind: WindConfig) -> Gust | None:
+    if wind.gust_m_s == 0.0:
+        return None
+    return Gust(
+        peak_m_s=wind.gust_m_s,
+        direction_rad=wind.gust_from_rad + pi,
+        start_s=wind.gust_start_s,
+        duration_s=wind.gust_duration_s,
+    )

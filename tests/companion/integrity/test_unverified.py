@@ -1,0 +1,35 @@
+"""What the status says of a place that nothing verifies; nothing where sightings and receivers check each other."""
+
+import pytest
+
+from companion.config.companion import CompanionConfig
+from companion.config.integrity import IntegrityConfig, ReceiverFrames
+from companion.integrity.unverified import Unverified, unverified
+from companion.situation.situation import Situation
+from companion.vehicle.pad import FrameOffset
+from link.records import replace
+from tests.companion.facts import CONFIG, pad_at, situation
+
+ONE = CompanionConfig(integrity=IntegrityConfig(receiver_frames=ReceiverFrames.ONE))
+LATE_AT_5_M_S = Unverified.STAMPS.value.format(late_s=0.1, off_m=0.5)
+
+
+def facts(*, is_seen: bool, has_one_frame: bool = True, is_coarse: bool = False) -> Situation:
+    offset = FrameOffset(distance_m=0.0, std_m=0.01, is_confirmed=is_seen)
+    pad = replace(pad_at((3.0, -4.0, 0.0)), frame_offset=offset, has_one_frame=has_one_frame, is_coarse=is_coarse)
+    return situation(pad=pad)
+
+
+def test_vehicle_that_nothing_sees_is_where_its_stamps_say() -> None:
+    assert unverified(facts(is_seen=False), ONE) == (LATE_AT_5_M_S,)
+    assert unverified(facts(is_seen=False), CONFIG) == (LATE_AT_5_M_S, Unverified.FRAMES.value)
+
+
+@pytest.mark.parametrize(("has_one_frame", "is_coarse"), [(False, False), (True, True)])
+def test_pad_that_sightings_alone_place_is_where_they_say(*, has_one_frame: bool, is_coarse: bool) -> None:
+    seen = facts(is_seen=True, has_one_frame=has_one_frame, is_coarse=is_coarse)
+    assert unverified(seen, CONFIG) == (Unverified.PLACE.value,)
+
+
+def test_sightings_and_receivers_of_one_frame_verify_each_other() -> None:
+    assert unverified(facts(is_seen=True), CONFIG) == ()

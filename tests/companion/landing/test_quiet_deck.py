@@ -1,0 +1,74 @@
+"""Over a deck whose motion is told a descent waits for a moment at which a contact is quiet, and decides once."""
+
+import math
+
+import numpy as np
+import pytest
+
+from companion.core.reasons import Cause, Reason
+from companion.landing.memory import StepMemory
+from companion.landing.waiting import is_moment_quiet, waits_at_m, why_held_up
+from companion.situation.phases import Phase
+from companion.situation.situation import Situation
+from companion.vehicle.shake import PadSwing
+from companion.vehicle.surprise import Surprise
+from link.messages import ContactForecast
+from link.records import replace
+from tests.companion.facts import CONFIG, changed, pad_at, situation
+
+DESCENT = CONFIG.descent
+WAITING_M = DESCENT.wait.height_m
+SWINGING = PadSwing(slope=np.zeros((5, 2)), shake_enu=np.zeros((3, 5, 2)), climb_std_m_s=np.zeros(5), heave_rad_s=0.6)
+RISK = DESCENT.quiet.unsafe_max
+NO_CONTACT = ContactForecast(
+    in_s=2.0,
+    s1=0.0,
+    s2=0.0,
+    unsafe=0.0,
+    broken_off=1.0,
+    misses_position=0.0,
+    misses_speed=0.0,
+    misses_sink=0.0,
+    misses_tilt=0.0,
+)
+
+
+def _over_swinging_deck(unsafe: float | None, *, is_committed: bool = False) -> tuple[StepMemory, Situation]:
+    """At the height of waiting, with that forecast of a contact begun now."""
+    contact = None if unsafe is None else replace(NO_CONTACT, unsafe=unsafe)
+    memory = changed(
+        StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED), surprise=Surprise(speed_std_m_s=0.05)
+    )
+    memory = replace(memory, forecast=replace(memory.forecast, contact=contact, is_committed=is_committed))
+    return memory, situation(WAITING_M, pad=replace(pad_at(), swing=SWINGING))
+
+
+@pytest.mark.parametrize(
+    ("unsafe", "is_committed", "waits"),
+    [(1.01 * RISK, False, True), (0.99 * RISK, False, False), (1.0, True, False), (None, False, False)],
+    ids=["risky", "quiet", "decided", "not forecast"],
+)
+def test_swinging_deck_s_quiet_moment_is_waited_for(unsafe: float | None, is_committed: bool, waits: bool) -> None:
+    memory, here = _over_swinging_deck(unsafe, is_committed=is_committed)
+    assert why_held_up(memory, here, CONFIG) == (Cause(Reason.DECK_UNQUIET, (RISK,)) if waits else None)
+    assert waits_at_m(memory, here, CONFIG) == (WAITING_M if waits else None)
+
+
+def test_deck_that_heaves_back_before_the_contact_is_not_waited_for() -> None:
+    memory, here = _over_swinging_deck(1.0)
+    shaking = replace(SWINGING, heave_rad_s=2.0 * math.pi * 0.5)
+    assert why_held_up(memory, replace(here, pad=replace(pad_at(), swing=shaking)), CONFIG) is None
+
+
+def test_deck_whose_motion_nobody_tells_is_not_waited_for() -> None:
+    memory, here = _over_swinging_deck(1.0)
+    assert why_held_up(memory, replace(here, pad=pad_at()), CONFIG) is None
+
+
+@pytest.mark.parametrize(
+    ("height_m", "unsafe", "decides"),
+    [(WAITING_M, 0.5 * RISK, True), (WAITING_M, 1.5 * RISK, False), (2.0 * WAITING_M, 0.5 * RISK, False)],
+    ids=["quiet", "risky", "high"],
+)
+def test_descent_decides_where_it_would_wait(height_m: float, unsafe: float, decides: bool) -> None:
+    assert is_moment_quiet(replace(NO_CONTACT, unsafe=unsafe), situation(height_m), CONFIG) == decides
