@@ -137,7 +137,8 @@ def _lead(  # noqa: PLR0917 (the arguments of its caller)
         settings.envelope.braking_m_s2 if most is None else most for most in (feel.acceleration_m_s2, feel.lift_m_s2)
     )
     most = elapsed_s * np.array((level, level, lift))
-    velocity = velocity + np.clip(wanted - velocity, -most, most)
+    change = np.clip(wanted - velocity, -most, most)
+    velocity = velocity + change
     place = at if anchor.position_enu_m is None else anchor.position_enu_m + elapsed_s * velocity
     if mode not in _PLACED:
         place = np.array((*at[:2], place[2]))
@@ -145,6 +146,7 @@ def _lead(  # noqa: PLR0917 (the arguments of its caller)
         anchor,
         position_enu_m=at + np.clip(place - at, -_LEAD_M, _LEAD_M),
         velocity_enu_m_s=velocity,
+        acceleration_enu_m_s2=change / elapsed_s,
         yaw_rad=yaw_rad,
     )
 

@@ -1,6 +1,7 @@
 """The point that a mode moves ahead of the drone: at bounded speed and acceleration to a goal, and to a stop there.
 
 Horizontally and vertically by itself; the speed falls off linearly near the goal, by constant deceleration farther out.
+Its acceleration is fed forward, as by the firmwares' own ways: their velocity loops alone would overshoot the goal.
 """
 
 from dataclasses import dataclass
@@ -52,7 +53,11 @@ def move(anchor: Reference, goal: Goal, pace: Pace, elapsed_s: float) -> Referen
     if yaw_rad is None:
         yaw_rad = atan2(dy, dx) if distance_m > _TURNS_BEYOND_M else anchor.yaw_rad
     return replace(
-        anchor, position_enu_m=position + 0.5 * elapsed_s * (velocity + after), velocity_enu_m_s=after, yaw_rad=yaw_rad
+        anchor,
+        position_enu_m=position + 0.5 * elapsed_s * (velocity + after),
+        velocity_enu_m_s=after,
+        acceleration_enu_m_s2=(after - velocity) / elapsed_s,
+        yaw_rad=yaw_rad,
     )
 
 

@@ -34,7 +34,7 @@ class PlantConfig:
         ground_effect: whether thrust grows near a surface.
         solid: whether a drone whose motors run can touch ground and vehicle.
         control_period_s: of the flight controller, a multiple of 1 ms.
-        gains: of the firmware's position control, in place of the controller's own; `lqr_feedforward` keeps its own.
+        gains: of the firmware's position control and lean, in place of the controller's own.
         records: the same for the kernels, derived: airframe and controller.
     """
 
@@ -56,10 +56,10 @@ class PlantConfig:
         gains = feedforward_gains(self.airframe) if linear else geometric_gains()
         control = control_record(
             self.controller,
-            gains if self.gains is None or linear else _with_gains(gains, self.gains),
+            gains if self.gains is None else _with_gains(gains, self.gains),
             _gains_of(self.airframe),
             self.envelope,
-            pid=None if linear else self.gains,
+            pid=self.gains,
             period_s=self.control_period_s,
             observer_rad_s=OBSERVER_POLE_RAD_S if self.gains is None else self.gains.observer_rad_s,
             motor_lead=_motor_lead(self.airframe),
