@@ -69,9 +69,7 @@ class UnevenConfig(StrictModel):
     # 6 degrees by which it sways there S1's 15 over trim are left for a curve of this.
     turning_acceleration_m_s2: Positive = 2.4
     age_s: NotNegative = 0.3
-    # Accepted: with so much probability a vehicle that stands may depart in the time in which a descent does not turn
-    # back, from the commit height to the contact. Each further departure of its driver makes the wait longer.
-    departs_max: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
+    stop_s: NotNegative = 4.0  # likewise, a vehicle that has stopped; `stop_and_go` departs after 3 s
     hold_s: NotNegative = 20.0  # `stop_and_go` brakes again 15 s later
     wait_max_s: NotNegative = 60.0  # for which it waits so without its time limit running: three surprises
 

@@ -50,7 +50,6 @@ class Reason(Enum):
     SPEED_UNEVEN = "waits above the pad: the vehicle's speed changes all the time"
     ROAD_TURNS_HARD = "waits above the pad: the road turns hard"
     ROAD_WINDS = "waits above the pad: the road winds"
-    MAY_DEPART = "waits above the pad: the vehicle has not stood for long"
     SPEED_CHANGES = "waits above the pad: the vehicle brakes or speeds up"
     NOT_OVER_PAD = "waits above the pad: the drone is not over the pad"
     OFF_CENTRE = "waits above the pad: farther than {:g} m from the pad's centre"

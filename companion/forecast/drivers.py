@@ -108,11 +108,6 @@ def _count(drivers: Drivers, sizes_m_s2: tuple[float, ...]) -> Drivers:
     return replace(drivers, counts=tuple(counts), sizes_m_s2=tuple(sums), under_way=tuple(under_way))
 
 
-def may_depart(drivers: Drivers, within_s: float) -> float:
-    """Return how likely a vehicle that stands departs in a time."""
-    return 1.0 - math.exp(-drivers.rate_hz(DEPARTS) * within_s)
-
-
 def chances(drivers: Drivers, within_s: float, *, stands: bool) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     """Return how likely the vehicle does nothing new, slows, speeds up (or departs), and turns in, (4,), in a time."""
     if stands:

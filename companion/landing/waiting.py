@@ -4,14 +4,13 @@ import math
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
-from companion.forecast.drivers import may_depart
 from companion.landing.aborts import must_wait
 from companion.landing.memory import Progress, StepMemory
 from companion.landing.sway import is_swaying
 from companion.landing.targets import changes_speed
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation, vehicle_stands
-from companion.vehicle.driving import drives_unevenly, turns_hard, winds
+from companion.vehicle.driving import drives_unevenly, may_depart, turns_hard, winds
 from companion.vehicle.surprise import may_surprise
 from link.messages import ContactForecast
 from link.records import replace
@@ -61,10 +60,8 @@ def waited_s(progress: Progress, monotonic_ns: int) -> float:
 
 def _find_unpredictable(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause | None:
     """Return what a vehicle has lately done that nobody could expect, None of one that stands or drives evenly."""
-    if not _may_wait(memory, situation, config):
+    if not _may_wait(memory, situation, config) or _stays(memory, situation, config):
         return None
-    if vehicle_stands(situation, config.chase):
-        return Cause(Reason.MAY_DEPART) if _may_depart(memory, config) else None
     surprise = memory.vehicle.surprise
     late_s = surprise.lateness_s
     if may_surprise(surprise, situation.monotonic_ns, config.descent.uneven):
@@ -76,14 +73,11 @@ def _find_unpredictable(memory: StepMemory, situation: Situation, config: Compan
     return Cause(Reason.ROAD_WINDS) if winds(surprise.driving, late_s, config.descent.uneven) else None
 
 
-def _may_depart(memory: StepMemory, config: CompanionConfig) -> bool:
-    """Return whether a vehicle that stands may, too likely, be driving by the contact of a descent that commits now.
-
-    Its data are late besides: what they do not tell yet may have begun before.
-    """
-    descent = config.descent
-    exposed_s = descent.commit_height_m / descent.sink.contact_rate_m_s + (memory.vehicle.surprise.lateness_s or 0.0)
-    return may_depart(memory.forecast.drivers, exposed_s) > descent.uneven.departs_max
+def _stays(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
+    """Return whether the vehicle stands and will do so for a while."""
+    surprise = memory.vehicle.surprise
+    departs = may_depart(surprise.driving, surprise.lateness_s, config.descent.uneven)
+    return vehicle_stands(situation, config.chase) and not departs
 
 
 def _may_wait(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:

@@ -114,6 +114,19 @@ def turns_hard(driving: Driving, lateness_s: float | None, config: UnevenConfig)
     return is_hard and is_late(lateness_s, config)
 
 
+def may_depart(driving: Driving, lateness_s: float | None, config: UnevenConfig) -> bool:
+    """Return whether such a vehicle, which has just stopped, will have departed by when that is told, likewise."""
+    return is_late(lateness_s, config) and _stood_s(driving) < config.stop_s
+
+
+def _stood_s(driving: Driving) -> float:
+    """Return for how long the data show the vehicle standing, infinite where they show nothing else."""
+    if not driving.driven:
+        return math.inf
+    moved_ns = next((t_ns for t_ns, *v_m_s in reversed(driving.driven) if math.hypot(*v_m_s) > _CREEPS_M_S), None)
+    return math.inf if moved_ns is None else (driving.driven[-1][0] - moved_ns) * 1e-9
+
+
 def is_late(lateness_s: float | None, config: UnevenConfig) -> bool:
     """Return whether data whose fixes are `lateness_s` old tell too late what the vehicle does."""
     return lateness_s is not None and lateness_s > config.age_s

@@ -8,7 +8,7 @@ import pytest
 from companion.autopilots.response import PUSH_STD_M_S2, Cascade, ResponseModel
 from companion.forecast.branches import NOTHING, SLOWER, make_events
 from companion.forecast.draws import draws
-from companion.forecast.drivers import DEPARTS, PRIOR_GAPS_S, SLOWS, TURNS, Drivers, chances, may_depart, update_drivers
+from companion.forecast.drivers import DEPARTS, PRIOR_GAPS_S, SLOWS, TURNS, Drivers, chances, update_drivers
 from companion.forecast.gusts import Gusts, update_gusts
 from companion.vehicle.driving import Driven
 
@@ -51,19 +51,6 @@ def test_a_bend_counts_as_a_turn_and_a_departure_not_as_speeding_up() -> None:
     departed = seen([0.0] * 30 + [0.18 * step for step in range(20)])
     assert departed.counts == pytest.approx((0.0, 0.0, 0.0, 1.0), abs=0.1)
     assert departed.rate_hz(DEPARTS) > 0.15
-
-
-def test_the_longer_a_vehicle_has_stood_the_less_likely_it_departs() -> None:
-    likely = [may_depart(seen([0.0] * (10 + 10 * stood_s)), 0.8) for stood_s in (0, 5, 15, 60)]
-    assert likely == sorted(likely, reverse=True)
-    assert likely[0] == pytest.approx(1.0 - math.exp(-0.8 / 6.0), abs=0.02)
-    assert likely[-1] < 0.25 * likely[0]
-
-
-def test_a_driver_who_stops_and_goes_is_expected_to_go_again() -> None:
-    go = [0.18 * step for step in range(20)] + [3.6] * 20 + [3.6 - 0.18 * step for step in range(21)]
-    once, twice = seen([0.0] * 60 + go + [0.0] * 30), seen([0.0] * 30 + go + [0.0] * 30 + go + [0.0] * 30)
-    assert may_depart(twice, 0.8) > 1.2 * may_depart(once, 0.8) > 1.2 * may_depart(seen([0.0] * 90), 0.8)
 
 
 @pytest.mark.parametrize("stands", [True, False])

@@ -3,7 +3,6 @@
 import pytest
 
 from companion.core.reasons import Cause, Reason
-from companion.forecast.drivers import Drivers
 from companion.landing.memory import StepMemory
 from companion.landing.outputs import landing_status
 from companion.landing.transitions import take_events
@@ -78,21 +77,6 @@ def test_only_over_late_data_a_descent_waits_for_another_road_or_driver(surprise
         late = replace(surprise, lateness_s=lateness_s)
         memory = changed(StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED), surprise=late)
         assert why_held_up(memory, driving, CONFIG) == told
-
-
-@pytest.mark.parametrize(
-    ("drivers", "told"),
-    [(Drivers(stood_s=2.0), Reason.MAY_DEPART), (Drivers(stood_s=30.0), None),
-     (Drivers(stood_s=30.0, counts=(0.0, 0.0, 0.0, 2.0)), Reason.MAY_DEPART)],
-    ids=["has just stopped", "parks", "stops and goes"],
-)  # fmt: skip
-def test_above_a_vehicle_that_stands_a_descent_waits_for_whoever_may_drive_on(
-    drivers: Drivers, told: Reason | None
-) -> None:
-    facts = situation(WAITING_M, pad=pad_at((0.0, 0.0, 0.0)))
-    memory = changed(StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED), surprise=KNOWN, drivers=drivers)
-    held = why_held_up(memory, facts, CONFIG)
-    assert (held and held.reason) is told
 
 
 def _kept_surprised(flight: Flight, duration_s: float) -> None:
@@ -218,7 +202,7 @@ def test_descent_waits_above_an_uneven_driver_of_whom_is_told_late(
     age_s: float, velocity: Vector3, *, waits: bool
 ) -> None:
     surprise = Surprise(driving=Driving(unevenness_m_s2=0.7), lateness_s=age_s)
-    memory = changed(StepMemory(), phase=Phase.DESCEND, surprise=surprise, drivers=Drivers(stood_s=30.0))
+    memory = changed(StepMemory(), phase=Phase.DESCEND, surprise=surprise)
     here = situation(WAITING_M + 0.05, pad=pad_at(velocity))
     assert waits_at_m(memory, here, CONFIG) == (WAITING_M if waits else None)
     assert why_held_up(memory, here, CONFIG) == (Cause(Reason.SPEED_UNEVEN) if waits else None)

@@ -14,11 +14,10 @@ import pytest
 from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.core.data import VehicleEstimate
-from companion.forecast.drivers import Drivers
 from companion.landing.memory import StepMemory
 from companion.landing.waiting import waits_at_m
 from companion.situation.phases import Phase
-from companion.vehicle.driving import Driving, drives_unevenly, turns_hard, winds, with_velocity
+from companion.vehicle.driving import Driving, drives_unevenly, may_depart, turns_hard, winds, with_velocity
 from companion.vehicle.estimator import EstimatorMemory
 from companion.vehicle.surprise import Surprise, forget_beliefs, may_surprise, update_surprise
 from link.messages import Vector3
@@ -162,6 +161,28 @@ def test_speeds_before_and_after_an_outage_are_not_compared() -> None:
         t_ns, surprise = t_ns + 10_000_000_000, replace(surprise, beliefs=())
     assert len(surprise.driving.driven) == 42
     assert surprise.driving.unevenness_m_s2 == 0.0
+
+
+STOP_S = 10.0 + 10.0 / 6.0
+"""When `brake` stands."""
+
+
+@pytest.mark.parametrize(
+    ("until_s", "departs"),
+    [(9.0, True), (STOP_S + 1.5, True), (STOP_S + 3.5, True), (STOP_S + 6.0, False)],
+    ids=["drives", "has stopped", "stands for as long as a bus", "parks"],
+)
+def test_vehicle_that_has_just_stopped_may_depart_before_that_is_told(until_s: float, *, departs: bool) -> None:
+    stays = drive(20.0, lambda t_s: min(max(10.0 - 6.0 * (t_s - 10.0), 0.0), 10.0), lambda _: 0.0)
+    found = after(stays, LATE, 3, until_s)
+    assert may_depart(found.driving, LATE.delay_s, UNEVEN) is departs
+    assert not may_depart(found.driving, UNEVEN.age_s, UNEVEN)
+    assert not may_depart(found.driving, None, UNEVEN)
+
+
+def test_vehicle_that_has_not_driven_is_parked() -> None:
+    assert not may_depart(Driving(), LATE.delay_s, UNEVEN)
+    assert not may_depart(after(straight(0.0), LATE, 3, 8.0).driving, LATE.delay_s, UNEVEN)
 
 
 CONFIG = CompanionConfig()
@@ -315,6 +336,6 @@ def test_descent_waits_above_a_driving_vehicle_that_has_surprised(
     phase: Phase, height_m: float, velocity: Vector3, *, surprised: bool, waits: bool
 ) -> None:
     surprise = Surprise(surprised_ns=NOW_NS - 10 if surprised else None)
-    memory = changed(StepMemory(), phase=phase, surprise=surprise, drivers=Drivers(stood_s=30.0))
+    memory = changed(StepMemory(), phase=phase, surprise=surprise)
     waiting_m = waits_at_m(memory, situation(height_m, pad=pad_at(velocity)), CONFIG)
     assert waiting_m == (DESCENT.wait.height_m if waits else None)
