@@ -90,11 +90,13 @@ def deviation_now(memory: StepMemory, inputs: StepInputs, pad: PadPath, config: 
         raise ValueError("no autopilot flies")
     state, leans_m_s2 = np.zeros((STATES, 2)), reference.acceleration_enu_m_s2[:2]
     is_led = inputs.response.cascade.is_led
-    state[2] = 0.0 if is_led else leans_m_s2
     if tracking.compared_ns is not None and not has_jittery_place(memory, inputs, config):
         late_s = (inputs.monotonic_ns - tracking.compared_ns) * 1e-9
         state = inputs.response.carry(tracking.deviation, min(late_s, _REPORT_AGE_MAX_S))
-    state[2] += leans_m_s2 if is_led else 0.0
+    elif not is_led:
+        state[2] = leans_m_s2
+    if is_led:
+        state[2] += leans_m_s2
     state[2] -= pad.acceleration_enu_m_s2[0, :2]
     return state
 

@@ -60,21 +60,19 @@ def fill_control(
         fill_report_wrench(y, rotation, memory, reference, control, body, scratch[0:12], out)
         return
     force, wanted = scratch[0:3], scratch[3:12]
-    heading_rate = turn_heading(memory, reference, control)
-    if control["has_pid"] == 1:
-        observe(y, rotation, speed, memory, touching, control, body)
-        fill_pid_acceleration(y, memory, reference, control, wanted[0:3], force)
-        wanted[3:6] = force
-        bound_force(force, touching, control, body)
-        mark_missed(memory, wanted[3:6], force)
-        integrate(memory, reference, control, wanted, force, touching)
-    else:
+    heading_rate, has_pid = turn_heading(memory, reference, control), control["has_pid"] == 1
+    if not has_pid:
         steady(memory, reference, control)
-        observe(y, rotation, speed, memory, touching, control, body)
+    observe(y, rotation, speed, memory, touching, control, body)
+    if has_pid:
+        fill_pid_acceleration(y, memory, reference, control, wanted[0:3], force)
+    else:
         fill_acceleration(y, memory, reference, control, wanted[0:3], force)
-        wanted[3:6] = force
-        bound_force(force, touching, control, body)
-        mark_missed(memory, wanted[3:6], force)
+    wanted[3:6] = force
+    bound_force(force, touching, control, body)
+    mark_missed(memory, wanted[3:6], force)
+    if has_pid:
+        integrate(memory, reference, control, wanted, force, touching)
     if control["kind"] == LQR_FEEDFORWARD:
         fill_feedforward_wrench(y, rotation, force, memory, heading_rate, control, body, out)
     else:

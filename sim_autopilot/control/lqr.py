@@ -6,7 +6,8 @@ so the reference enters through the integrators alone (eqs. 9-11).
 
 `lqr_feedforward` takes the gains of the same problem without integrators, as a cascade:
 `M = -k_th (th - th_d) - k_q q` with `th_d = a / g` and `a` from the outer loop, whose disturbance observer is its
-integral action. Angles are Euler's, as in the linear model; tilt is compensated in the thrust.
+integral action; with a firmware's gains `a` is that firmware's. Angles are Euler's, as in the linear model; tilt is
+compensated in the thrust.
 """
 
 import math

@@ -136,8 +136,13 @@ def observe(
 
 
 @kernel
-def fill_velocity_command(y: Array, reference: Array, control: Record, out: Array) -> None:
-    """Write the velocity (3,) in W to fly: feed-forward and correction, inside the envelope."""
+def fill_velocity_command(
+    y: Array, reference: Array, control: Record, braking_m_s2: float, vertical_braking_m_s2: float, out: Array
+) -> None:
+    """Write the velocity (3,) in W to fly: feed-forward and correction, inside the envelope.
+
+    The place is approached no faster than can be braked with `braking_m_s2`, its height with `vertical_braking_m_s2`.
+    """
     out[:] = reference[3:6]
     if reference[HAS_POSITION] > 0.0:
         slope = control["position_gain"][0] / control["velocity_gain"][0]
@@ -146,11 +151,11 @@ def fill_velocity_command(y: Array, reference: Array, control: Record, out: Arra
         ez = reference[2] - y[2]
         distance = math.sqrt(ex * ex + ey * ey)
         if distance > 0.0:
-            speed = approach_speed(distance, slope, control["braking_m_s2"])
+            speed = approach_speed(distance, slope, braking_m_s2)
             out[0] += speed * ex / distance
             out[1] += speed * ey / distance
         slope = control["position_gain"][2] / control["velocity_gain"][2]
-        out[2] += math.copysign(approach_speed(abs(ez), slope, VERTICAL_BRAKING_M_S2), ez)
+        out[2] += math.copysign(approach_speed(abs(ez), slope, vertical_braking_m_s2), ez)
     size = math.sqrt(out[0] * out[0] + out[1] * out[1])
     if size > control["speed_max_m_s"]:
         out[0] *= control["speed_max_m_s"] / size
@@ -165,7 +170,7 @@ def fill_acceleration(y: Array, memory: Array, reference: Array, control: Record
         out[i] = (reference[6 + i] if reference[HAS_ACCELERATION] > 0.0 else 0.0) - memory[DISTURBANCE + i]
     if reference[HAS_POSITION] + reference[HAS_VELOCITY] == 0.0:
         return
-    fill_velocity_command(y, reference, control, velocity)
+    fill_velocity_command(y, reference, control, control["braking_m_s2"], VERTICAL_BRAKING_M_S2, velocity)
     cosine = math.cos(memory[HEADING])
     sine = math.sin(memory[HEADING])
     dx = velocity[0] - y[7]

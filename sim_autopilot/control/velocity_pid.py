@@ -14,7 +14,7 @@ Source: PX4 PositionControl::_positionControl, _velocityControl; ArduPilot AC_Po
 import math
 
 from link.compiled import kernel
-from sim_autopilot.control.outer_loop import approach_speed
+from sim_autopilot.control.outer_loop import VERTICAL_BRAKING_M_S2, fill_velocity_command
 from sim_autopilot.control.parameters import (
     DISTURBANCE,
     HAS_ACCELERATION,
@@ -28,40 +28,16 @@ from sim_autopilot.core.data import Array
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
 from sim_autopilot.physics.parameters import Record
 
-VERTICAL_BRAKING_M_S2 = 2.0
-"""Of a height that is asked for alone, well within what the rotors can."""
-
-
-@kernel
-def fill_wanted_velocity(y: Array, reference: Array, control: Record, out: Array) -> None:
-    """Write the velocity (3,) in W to fly: what is asked for and the correction of the place, inside the envelope."""
-    out[:] = reference[3:6]
-    if reference[HAS_POSITION] > 0.0:
-        is_bare = reference[HAS_VELOCITY] == 0.0
-        slope = control["position_gain"][0] / control["velocity_gain"][0]
-        ex, ey, ez = reference[0] - y[0], reference[1] - y[1], reference[2] - y[2]
-        distance = math.sqrt(ex * ex + ey * ey)
-        braking = control["braking_m_s2"] if is_bare else math.inf
-        if distance > 0.0:
-            speed = approach_speed(distance, slope, braking)
-            out[0] += speed * ex / distance
-            out[1] += speed * ey / distance
-        slope = control["position_gain"][2] / control["velocity_gain"][2]
-        braking = VERTICAL_BRAKING_M_S2 if is_bare else math.inf
-        out[2] += math.copysign(approach_speed(abs(ez), slope, braking), ez)
-    size = math.sqrt(out[0] * out[0] + out[1] * out[1])
-    if size > control["speed_max_m_s"]:
-        out[0] *= control["speed_max_m_s"] / size
-        out[1] *= control["speed_max_m_s"] / size
-    out[2] = min(control["climb_max_m_s"], max(-control["descent_max_m_s"], out[2]))
-
 
 @kernel
 def fill_pid_acceleration(y: Array, memory: Array, reference: Array, control: Record, error: Array, out: Array) -> None:
     """Write the acceleration (3,) in W that follows `reference`, and the velocity's error (3,) that it comes from."""
     period = control["period_s"]
     is_followed = reference[HAS_POSITION] + reference[HAS_VELOCITY] > 0.0
-    fill_wanted_velocity(y, reference, control, error)
+    is_bare = reference[HAS_VELOCITY] == 0.0
+    braking = control["braking_m_s2"] if is_bare else math.inf
+    vertical_braking = VERTICAL_BRAKING_M_S2 if is_bare else math.inf
+    fill_velocity_command(y, reference, control, braking, vertical_braking, error)
     for i in range(3):
         off = error[i] - y[7 + i]
         out[i] = reference[6 + i] if reference[HAS_ACCELERATION] > 0.0 else 0.0
