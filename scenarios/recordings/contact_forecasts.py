@@ -1,8 +1,8 @@
 """What the companion forecast of the contact at two instants of a run, and what came true, on truth.
 
-An instant counts when the drone first, in its last approach, is below a height: where a descent that goes on leaves the
-height of waiting, and where it commits. Of earlier approaches it is known that no contact came; they would count twice.
-The truth knows the first contact only: an instant after that, of a drone that had touched the road before, has none.
+An instant counts when the drone first, in one approach, is below a height: where a descent that goes on leaves the
+height of waiting, and where it commits. It is the approach of the first contact, the one that truth judges, or the last
+one where none came. A drone that touches, lifts off and lands again is judged by the touch that was forecast first.
 """
 
 from collections.abc import Mapping, Sequence
@@ -36,7 +36,9 @@ def forecast_columns(
         result: with the measures of its first contact.
         descent: heights of waiting and of commitment.
     """
-    approach = _last_approach(statuses)
+    contact_s = result.get("contact_s")
+    contact_ns = None if contact_s is None else start_ns + round(contact_s * NS_PER_S)
+    approach = _approach_to(statuses, contact_ns)
     heights_m = {WAITING: descent.wait.height_m - _LEFT_M, COMMIT: descent.commit_height_m}
     columns: Columns = {}
     for name, height_m in heights_m.items():
@@ -50,7 +52,7 @@ def _columns(name: str, status: LandingStatus | None, start_ns: int, result: Map
     if status is None or forecast is None:
         return dict.fromkeys(columns)
     at_s, contact_s = (status.stamp_ns - start_ns) / NS_PER_S, result.get("contact_s")
-    if contact_s is not None and contact_s < at_s:
+    if contact_s is not None and contact_s < at_s:  # it touched what is higher than the pad was taken to be
         return dict.fromkeys(columns)
     values = [at_s, *(getattr(forecast, one) for one in PROBABILITIES)]
     shown: list[float | str] = [round(value, _DIGITS) for value in values]
@@ -58,9 +60,10 @@ def _columns(name: str, status: LandingStatus | None, start_ns: int, result: Map
     return dict(zip(columns, shown, strict=True))
 
 
-def _last_approach(statuses: Sequence[LandingStatus]) -> Sequence[LandingStatus]:
-    """Return the statuses of the last descent, none where there was none."""
-    last = max((at for at, status in enumerate(statuses) if status.phase == Phase.DESCEND.value), default=-1)
+def _approach_to(statuses: Sequence[LandingStatus], contact_ns: int | None) -> Sequence[LandingStatus]:
+    """Return the statuses of the last descent before the contact, or of the last one of all without a contact."""
+    before = (one for one in enumerate(statuses) if contact_ns is None or one[1].stamp_ns <= contact_ns)
+    last = max((at for at, status in before if status.phase == Phase.DESCEND.value), default=-1)
     first = last
     while first > 0 and statuses[first - 1].phase == Phase.DESCEND.value:
         first -= 1

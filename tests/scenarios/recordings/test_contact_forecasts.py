@@ -1,4 +1,4 @@
-"""What a run's row keeps of the forecasts: of the last descent, when it leaves the height of waiting and commits."""
+"""What a run's row keeps of the forecasts: of one descent, when it leaves the height of waiting and commits."""
 
 from typing import Any
 
@@ -74,7 +74,7 @@ FLIGHT = [
         ({"contact_s": None}, "broken_off"),
     ],
 )
-def test_the_last_descent_counts_and_what_came_of_it(result: dict[str, Any], came: str) -> None:
+def test_the_descent_to_the_contact_counts_and_what_came_of_it(result: dict[str, Any], came: str) -> None:
     columns = forecast_columns(FLIGHT, START_NS, result, DESCENT)
     assert (columns["forecast_waiting_at_s"], columns["forecast_waiting_unsafe"]) == (20.0, 0.02)
     assert (columns["forecast_commit_at_s"], columns["forecast_commit_unsafe"]) == (20.9, 0.03)
@@ -85,6 +85,12 @@ def test_a_run_without_a_descent_has_no_forecast() -> None:
     assert set(forecast_columns(FLIGHT[1:2], START_NS, LANDED, DESCENT).values()) == {None}
 
 
-def test_of_a_drone_that_had_touched_something_before_nothing_is_known() -> None:
-    columns = forecast_columns(FLIGHT, START_NS, LANDED | {"contact_s": 12.0}, DESCENT)
+def test_a_drone_that_touched_and_lifted_off_again_is_judged_by_the_approach_of_that_touch() -> None:
+    columns = forecast_columns(FLIGHT, START_NS, LANDED | {"contact_s": 10.5, "horizontal_error_m": 0.6}, DESCENT)
+    assert (columns["forecast_commit_at_s"], columns["forecast_commit_unsafe"]) == (10.0, 0.7)
+    assert columns["forecast_commit_came"] == "unsafe"
+
+
+def test_of_a_drone_that_had_touched_something_before_its_first_descent_nothing_is_known() -> None:
+    columns = forecast_columns(FLIGHT, START_NS, LANDED | {"contact_s": 9.0}, DESCENT)
     assert set(columns.values()) == {None}
