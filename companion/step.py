@@ -117,9 +117,11 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             error_max_m=tracking_error_max_m(
                 memory.model.reference, inputs.response, inputs.link_delay.std_s, system.config.abort.tracking_stds_max
             ),
+            late_s=inputs.link_delay.mean_s + inputs.link_delay.std_s,
         ),
         waiting_point_enu_m=memory.places.waiting_point_enu_m,
         rival=inputs.rival,
+        contact=memory.forecast.contact,
         limits=inputs.limits,
         speed_limited_by=() if inputs.driver is None else inputs.driver.speed_parameters,
     )

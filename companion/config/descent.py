@@ -111,6 +111,9 @@ class DescentConfig(StrictModel):
     stray_hold_s: NotNegative = 3.0  # beside the cone or too fast, but high enough to be aligned again
     strays_max: Annotated[int, Field(ge=0, le=20)] = 3  # so often in one approach, as retries: a gust may last
     commit_height_m: Positive = 0.35  # below this it lands rather than aborts
+    # Accepted: an unsafe contact weighs as much as five more approaches. With more probability of one, by its forecast,
+    # a committed descent turns back as long as it can stop sinking above the pad.
+    turns_back_unsafe: Annotated[float, Field(gt=0.0, le=1.0)] = 0.2
     time_limit_s: Positive = 30.0
     alignment: AlignmentConfig = AlignmentConfig()
     sink: SinkConfig = SinkConfig()

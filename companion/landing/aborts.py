@@ -2,6 +2,7 @@
 
 import math
 
+from companion.autopilots.response import ATTITUDE_LAG_S
 from companion.config.companion import CompanionConfig
 from companion.config.planning import LandingStyle
 from companion.core.data import GRAVITY_M_S2
@@ -93,6 +94,26 @@ def strays(s: Situation, c: CompanionConfig) -> bool:
     return a is not None and (_is_beside_cone(a, c) or a.speed_m_s > c.abort.near_speed_max_m_s)
 
 
+def can_turn_back(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether a drone that breaks off now stops sinking above the pad: after its lag and with what it climbs."""
+    if s.approach is None or s.limits is None or s.approach.height_m < c.descent.sway.height_min_m:
+        return False
+    sinks_m_s = max(-s.approach.climb_m_s, 0.0)
+    lag_m = sinks_m_s * (ATTITUDE_LAG_S + s.following.late_s)
+    return s.approach.height_m > lag_m + 0.5 * sinks_m_s**2 / s.limits.vertical_acceleration_max_m_s2
+
+
+def _is_contact_risky(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether a descent that is committed had better turn back; one that is not waits."""
+    if s.contact is None or s.approach is None or s.approach.height_m > c.descent.commit_height_m:
+        return False
+    return s.contact.unsafe > c.descent.turns_back_unsafe and can_turn_back(s, c)
+
+
+def _tell_risk(s: Situation, _: CompanionConfig) -> Cause:
+    return Cause(Reason.CONTACT_RISKY, (0.0 if s.contact is None else s.contact.unsafe,))
+
+
 def _has_touched(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the drone stands on the pad, or slides to rest on it: to lift off would be the greater danger."""
     a = s.approach
@@ -127,6 +148,9 @@ def _outruns(s: Situation, c: CompanionConfig) -> bool:
         return False
     return math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist()) > s.limits.speed_max_m_s
 
+
+CONTACT_RISKY = Condition(reason=Reason.CONTACT_RISKY, phases=_DESCENT, is_true=_is_contact_risky, cause=_tell_risk)
+"""Ends a commitment to land as well, as long as the drone can turn back."""
 
 ABORTS = (
     VEHICLE_SILENT,
@@ -199,6 +223,7 @@ ABORTS = (
         is_true=_outruns,
         hold_s=lambda c: c.chase.driving_hold_s,
     ),
+    CONTACT_RISKY,
     Condition(reason=Reason.TOO_FAR_FROM_START, phases=LANDING_PHASES, is_true=is_out_of_range),
     *MISSED,
 )

@@ -7,6 +7,7 @@ from companion.config.planning import LandingStyle
 from companion.core.reasons import Cause, Reason
 from companion.landing.aborts import (
     ABORTS,
+    CONTACT_RISKY,
     is_out_of_range,
     is_over_pad,
     is_pad_unplaced,
@@ -33,6 +34,8 @@ from companion.landing.waiting import waited_s
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase
 from companion.situation.situation import Situation
 
+_COMMITTED = (*MISSED, CONTACT_RISKY)
+
 
 def decide(progress: Progress, control: ControlMemory, s: Situation, config: CompanionConfig) -> Decision | None:
     """Return the event of this step and its cause, or None.
@@ -50,10 +53,11 @@ def decide(progress: Progress, control: ControlMemory, s: Situation, config: Com
     # What the pad stops is fast against a pad that drives on: it would be taken for unsafe in the same step.
     if holds(STOPPED_BY_PAD, progress.held, s, config):
         return Event.CONTACT, cause_of(STOPPED_BY_PAD, s, config)
-    # On the pad and committed, cutting the approach short is the more dangerous way, unless there is no pad.
+    # On the pad and committed, cutting the approach short is the more dangerous way, unless there is no pad or it would
+    # be touched unsafely.
     committed = progress.phase is Phase.DESCEND and _is_committed(s, config)
     is_landing = progress.phase in LANDING_PHASES  # in a sortie the same reasons lead elsewhere
-    broken_off = _unsafe(MISSED if committed else ABORTS, s, progress.held, config) if is_landing else None
+    broken_off = _unsafe(_COMMITTED if committed else ABORTS, s, progress.held, config) if is_landing else None
     if broken_off is None and not committed:
         broken_off = _time_limit(progress, control, s, config)
     return _go_on(progress, s, config) if broken_off is None else broken_off

@@ -11,7 +11,7 @@ from companion.core.data import Array, FlightLimits, OwnState, RangeReading, Riv
 from companion.planning.guidance import ReferenceState
 from companion.vehicle.pad import PadPath
 from link.frames.rotations import rotate
-from link.messages import Vector3
+from link.messages import ContactForecast, Vector3
 from link.records import replace
 
 _RANGE_AGE_MAX_S = 0.3
@@ -99,10 +99,12 @@ class Following(Struct, frozen=True, kw_only=True):
     Attributes:
         error_m: its distance from where it was asked to be at that time.
         error_max_m: of one that follows them as its autopilot does in gusts over this link.
+        late_s: after which most setpoints have come: the link's mean delay and its standard deviation.
     """
 
     error_m: float
     error_max_m: float
+    late_s: float = 0.0
 
 
 class Situation(Struct, frozen=True, kw_only=True, eq=False):
@@ -123,6 +125,7 @@ class Situation(Struct, frozen=True, kw_only=True, eq=False):
         limits: of the flight, the autopilot's own included.
         speed_limited_by: the autopilot's parameters that may bound the speed.
         rival: another companion that was there first, None without one.
+        contact: the newest forecast of the contact that this descent leads to, None without one.
         approach: the drone against the pad, None unless both are known; follows from them.
     """
 
@@ -140,6 +143,7 @@ class Situation(Struct, frozen=True, kw_only=True, eq=False):
     limits: FlightLimits | None = None
     speed_limited_by: tuple[str, ...] = ()
     rival: Rival | None = None
+    contact: ContactForecast | None = None
     approach: Approach | None = None
 
     def __post_init__(self) -> None:
