@@ -111,8 +111,8 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             ground_enu_m=memory.places.ground_enu_m,
         ),
         feet_offset_m=touchdown.gear_height_m,
-        reference=memory.model.reference,
         following=Following(
+            reference=memory.model.reference,
             error_m=memory.model.tracking.error_m,
             error_max_m=tracking_error_max_m(
                 memory.model.reference, inputs.response, inputs.link_delay.std_s, system.config.abort.tracking_stds_max

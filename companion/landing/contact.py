@@ -62,7 +62,7 @@ class Verdict(Enum):
 def signs_of(s: Situation) -> Signs:
     """Return the signs in a step's facts."""
     relative = s.approach
-    drone, reference = s.drone, s.reference
+    drone, reference = s.drone, s.following.reference
     sunk = None if drone is None or reference is None else drone.position_enu_m[2] - reference.position_enu_m[2]
     return Signs(
         height_m=None if relative is None else relative.height_m,

@@ -99,11 +99,13 @@ class Following(Struct, frozen=True, kw_only=True):
     Attributes:
         error_m: its distance from where it was asked to be at that time.
         error_max_m: of one that follows them as its autopilot does in gusts over this link.
-        late_s: after which most setpoints have come: the link's mean delay and its standard deviation.
+        reference: the virtual model that they follow.
+        late_s: after which most have come: the link's mean delay and its standard deviation.
     """
 
     error_m: float
     error_max_m: float
+    reference: ReferenceState | None = None
     late_s: float = 0.0
 
 
@@ -119,8 +121,7 @@ class Situation(Struct, frozen=True, kw_only=True, eq=False):
         vehicle: how its data come.
         below: the drone.
         feet_offset_m: of the drone's reported position above its feet.
-        reference: the virtual model that the setpoints follow.
-        following: how the drone follows that.
+        following: how the drone follows its setpoints.
         waiting_point_enu_m: (3,) in W.
         limits: of the flight, the autopilot's own included.
         speed_limited_by: the autopilot's parameters that may bound the speed.
@@ -137,7 +138,6 @@ class Situation(Struct, frozen=True, kw_only=True, eq=False):
     vehicle: VehicleNews
     below: Below
     feet_offset_m: float
-    reference: ReferenceState | None
     following: Following
     waiting_point_enu_m: Array | None
     limits: FlightLimits | None = None

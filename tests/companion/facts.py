@@ -92,8 +92,7 @@ def situation(height_m: float = 1.5, beside_m: float = 0.0, pad: PadPath | None 
         vehicle=VehicleNews(fix_age_s=0.1, is_alive=True),
         below=Below(),
         feet_offset_m=GEAR_M,
-        reference=reference_at(height_m),
-        following=Following(error_m=0.05, error_max_m=1.0),
+        following=Following(error_m=0.05, error_max_m=1.0, reference=reference_at(height_m)),
         waiting_point_enu_m=np.array([0.0, 0.0, 5.0]),
     )
 

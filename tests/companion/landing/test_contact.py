@@ -55,7 +55,7 @@ def airborne(draw: st.DrawFn) -> Situation:
 
 def with_fault(facts: Situation, source: str, value: float) -> Situation:
     """The same with one source that says `value`."""
-    drone, pad, reference = facts.drone, facts.pad, facts.reference
+    drone, pad, reference = facts.drone, facts.pad, facts.following.reference
     assert drone is not None
     assert pad is not None
     assert reference is not None
@@ -174,7 +174,7 @@ def test_pressed_drone_whose_speeds_are_known_badly_is_switched_off_where_the_ra
                 drone_at(0.0, pad=pad_at()), acceleration_up_m_s2=-TOUCHDOWN.falling_acceleration_m_s2 - 0.01
             ),
         ),
-        replace(on_pad(), reference=reference_at(0.0)),
+        changed(on_pad(), reference=reference_at(0.0)),
         replace(on_pad(), drone=None),
         replace(on_pad(), pad=None),
         replace(on_pad(), pad=pad_at(placed=False)),

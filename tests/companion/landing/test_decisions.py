@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from companion.autopilots.response import ATTITUDE_LAG_S
 from companion.core.data import Rival
 from companion.core.reasons import Cause, Reason, sentence
 from companion.landing.aborts import ABORTS, must_wait
@@ -17,7 +18,7 @@ from companion.situation.phases import Event, Phase
 from companion.situation.situation import Following, Situation
 from companion.vehicle.pad import NOT_DESCRIBED, FrameOffset
 from companion.vehicle.pad_reach import cone_radius_m
-from link.messages import Vector3
+from link.messages import ContactForecast, Vector3
 from link.records import replace
 from tests.companion.facts import (
     CONFIG,
@@ -43,7 +44,27 @@ HIGH_M = CONFIG.descent.alignment.height_m
 NEAR_M = 0.9 * CONFIG.abort.near_height_m
 LOW_M = 0.5 * CONFIG.descent.commit_height_m
 
-# What makes each abort test true, everything else being in order; in the descent, above the commit height.
+LIMITS = CONFIG.limits.flight_limits()
+
+
+def _risky(height_m: float, sinks_m_s: float = 0.0, unsafe: float = 0.9) -> Situation:
+    """The same over the pad with a forecast that a contact would be unsafe."""
+    drone = drone_at(height_m, 0.0, (0.0, 0.0, -sinks_m_s), pad=pad_at())
+    contact = ContactForecast(
+        in_s=0.5,
+        s1=1.0 - unsafe,
+        s2=0.0,
+        unsafe=unsafe,
+        broken_off=0.0,
+        misses_position=unsafe,
+        misses_speed=0.0,
+        misses_sink=0.0,
+        misses_tilt=0.0,
+    )
+    return changed(situation(height_m), drone=drone, limits=LIMITS, contact=contact)
+
+
+# What makes each abort test true, everything else being in order; in the descent, above the commit height but for one.
 UNSAFE: dict[Reason, Situation] = {
     Reason.VEHICLE_DATA_OLD: changed(situation(), fix_age_s=CONFIG.abort.fix_age_max_s + 0.01),
     Reason.VEHICLE_UNCERTAIN: situation(pad=pad_at(std_m=CONFIG.abort.position_std_max_m + 0.01)),
@@ -61,6 +82,7 @@ UNSAFE: dict[Reason, Situation] = {
         situation(),
         drone=drone_at(NEAR_M, 0.0, (CONFIG.abort.near_speed_max_m_s + 0.01, 0.0, 0.0), pad=pad_at()),
     ),
+    Reason.CONTACT_RISKY: _risky(LOW_M),
     Reason.TOO_FAR_FROM_START: replace(
         situation(), waiting_point_enu_m=np.array([CONFIG.limits.range_max_m + 10.0, 0.0, 5.0])
     ),
@@ -77,6 +99,8 @@ UNSAFE: dict[Reason, Situation] = {
 BLIND = (Reason.OWN_POSITION_OLD, Reason.HEADING_UNKNOWN, Reason.BELOW_PAD, Reason.NOTHING_TOUCHED)
 # These cannot be true of a drone that is committed: it is over the pad and hardly moves against it.
 UNFIT = {Reason.OUTSIDE_CONE, Reason.TOO_FAST_NEAR_PAD}
+# This ends a commitment.
+TURNS_BACK = {Reason.CONTACT_RISKY}
 
 
 def _moving(speed_m_s: float) -> Situation:
@@ -126,14 +150,14 @@ def test_nothing_aborts_while_all_is_well(phase: Phase) -> None:
     assert decision is None or decision[0] not in {Event.UNSAFE, Event.TIME_LIMIT}
 
 
-@pytest.mark.parametrize("reason", [one for one in UNSAFE if one not in {*BLIND, *UNFIT}])
+@pytest.mark.parametrize("reason", [one for one in UNSAFE if one not in {*BLIND, *UNFIT, *TURNS_BACK}])
 def test_below_the_commit_height_it_lands_rather_than_aborts(reason: Reason) -> None:
     unsafe = UNSAFE[reason]
     assert unsafe.pad is not None
     speed: Vector3 = (0.9 * CONFIG.abort.near_speed_max_m_s, 0.0, -0.4)
     assert unsafe.drone is not None
     drone = replace(drone_at(LOW_M, 0.1, speed, pad=unsafe.pad), attitude_known=unsafe.drone.attitude_known)
-    low = replace(unsafe, drone=drone, reference=reference_at(LOW_M))
+    low = changed(unsafe, drone=drone, reference=reference_at(LOW_M))
     decision, _ = first_decision(Phase.DESCEND, low, 3.0)
     assert decision is None
 
@@ -146,6 +170,31 @@ def test_below_the_commit_height_it_does_not_land_where_nobody_knows_the_pad_to_
         blind = replace(blind, drone=drone_at(LOW_M, 0.1, (0.0, 0.0, -0.4), pad=blind.pad))
     decision, _ = first_decision(Phase.DESCEND, blind, 3.0)
     assert decision == (Event.UNSAFE, Cause(reason))
+
+
+LAG_M = 0.45 * ATTITUDE_LAG_S
+STOPPING_M = LAG_M + 0.5 * 0.45**2 / LIMITS.vertical_acceleration_max_m_s2
+MOST = CONFIG.descent.turns_back_unsafe
+
+
+@pytest.mark.parametrize(
+    ("facts", "turns_back"),
+    [
+        (_risky(LOW_M, 0.45), True),
+        (_risky(LOW_M, 0.45, unsafe=MOST - 0.01), False),
+        (_risky(LOW_M, 0.45, unsafe=MOST + 0.01), True),
+        (_risky(CONFIG.descent.commit_height_m + 0.01, 0.45), False),  # it may wait
+        (_risky(max(STOPPING_M, CONFIG.descent.sway.height_min_m) + 0.01, 0.45), True),
+        (_risky(CONFIG.descent.sway.height_min_m - 0.01), False),  # it may stand already
+        (_risky(0.2, 1.0), False),
+        (_risky(0.3, 1.0), True),
+        (changed(_risky(0.3, 1.0), late_s=0.1), False),  # the command would come too late
+    ],
+)
+def test_a_committed_descent_turns_back_from_a_risky_contact_while_it_can(facts: Situation, turns_back: bool) -> None:
+    decision, ticks = first_decision(Phase.DESCEND, facts, 0.1)
+    assert (decision is not None and decision[1].reason is Reason.CONTACT_RISKY) is turns_back
+    assert not turns_back or ticks == 0
 
 
 @pytest.mark.parametrize(
@@ -165,7 +214,7 @@ def test_descent_waits_for_what_passes(drifting: Situation, wanted: bool) -> Non
 
 def test_drone_beside_the_pad_below_the_commit_height_aborts_and_is_not_taken_for_landed() -> None:
     beside = situation(0.0, OVER_PAD_M + 0.05)
-    beside = replace(beside, autopilot=replace(beside.autopilot, landed=True), reference=reference_at(-0.4))
+    beside = changed(beside, autopilot=replace(beside.autopilot, landed=True), reference=reference_at(-0.4))
     decision, _ = first_decision(Phase.DESCEND, beside, 3.0)
     assert decision == (Event.UNSAFE, Cause(Reason.OUTSIDE_CONE))
 
@@ -177,7 +226,7 @@ def _jolted(facts: Situation) -> Situation:
 
 
 def test_drone_that_is_stopped_while_the_pad_drives_on_has_landed_and_does_not_climb_away() -> None:
-    stopped = replace(
+    stopped = changed(
         situation(0.0),
         drone=drone_at(0.0, 0.3, (-4.0, -1.0, 0.0), pad=pad_at((4.0, 1.0, 0.0))),
         reference=reference_at(-CONFIG.touchdown.blocked_depth_m - 0.01),
@@ -268,7 +317,7 @@ def test_drone_that_the_pad_stops_beside_the_cone_has_landed_though_the_stop_end
 def test_drone_that_stands_on_the_pad_does_not_lift_off_for_where_it_stands(
     beside_m: float, speed_m_s: float, *, stays: bool
 ) -> None:
-    standing = replace(
+    standing = changed(
         situation(0.0),
         drone=drone_at(0.0, beside_m, (0.0, speed_m_s, 0.0), pad=pad_at()),
         reference=reference_at(-CONFIG.touchdown.blocked_depth_m - 0.01),
@@ -280,7 +329,7 @@ def test_drone_that_stands_on_the_pad_does_not_lift_off_for_where_it_stands(
 
 def test_jolt_in_the_air_is_no_contact() -> None:
     sinking = replace(situation(LOW_M), drone=drone_at(LOW_M, 0.1, (0.0, 0.0, -0.4), pad=pad_at()))
-    decision, _ = first_decision(Phase.DESCEND, _jolted(replace(sinking, reference=reference_at(LOW_M))), 1.0)
+    decision, _ = first_decision(Phase.DESCEND, _jolted(changed(sinking, reference=reference_at(LOW_M))), 1.0)
     assert decision is None
 
 
@@ -299,7 +348,7 @@ def test_landing_goes_on_exactly_after_the_hold_time(event: Event, test: Conditi
         case Event.OUT_OF_ALIGNMENT:
             facts = situation(pad=replace(pad_at(std_m=CONFIG.descent.unseen.std_max_m + 0.01), is_coarse=True))
         case _:
-            facts = replace(situation(0.0), reference=reference_at(-CONFIG.touchdown.blocked_depth_m - 0.01))
+            facts = changed(situation(0.0), reference=reference_at(-CONFIG.touchdown.blocked_depth_m - 0.01))
     if test.reason is Reason.DISPUTED_CONTACT:
         facts = changed(facts, range_height_m=2.0)
     if test.reason is Reason.HARD_CONTACT:

@@ -17,7 +17,7 @@ from companion.vehicle.pad_reach import (
 )
 from link.messages import Command
 from link.records import replace
-from tests.companion.facts import CONFIG, pad_at, reference_at, situation
+from tests.companion.facts import CONFIG, changed, pad_at, reference_at, situation
 from tests.companion.world import PAD, Flight
 
 SMALL_M = 0.5
@@ -26,7 +26,7 @@ SMALL_M = 0.5
 def standing(beside_m: float, width_m: float) -> Situation:
     """A drone at rest on what is `beside_m` from the middle of a pad that is `width_m` wide."""
     facts = situation(0.0, beside_m, pad=replace(pad_at(), half_width_m=0.5 * width_m))
-    return replace(facts, reference=reference_at(-0.5 * CONFIG.descent.sink.press_depth_m))
+    return changed(facts, reference=reference_at(-0.5 * CONFIG.descent.sink.press_depth_m))
 
 
 @given(half_width_m=st.floats(0.75, 10.0))
