@@ -99,7 +99,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             fix_age_s=None if newest_ns is None else (inputs.t_ns - newest_ns) * 1e-9,
             fix_age_on_arrival_s=vehicle.fix_stamps.age_on_arrival_s,
             is_alive=inputs.vehicle.is_alive,
-            speed_std_m_s=vehicle.surprise.speed_std_m_s,
+            speed_std_m_s=vehicle.hindsight.speed_std_m_s,
             fix_std_m=vehicle.phases.vehicle_std_m,
             rejected_share=vehicle.contradictions.rejected_share,
             are_sightings_mixed=vehicle.sightings.are_mixed,
@@ -134,7 +134,7 @@ def _look(
     phase, vehicle = memory.progress.phase, memory.vehicle
     vehicle = replace(
         vehicle,
-        course=update_course(vehicle.course, pad, vehicle.surprise.speed_std_m_s, config),
+        course=update_course(vehicle.course, pad, vehicle.hindsight.speed_std_m_s, config),
         pad_raised_m=update_pad_raised_m(vehicle.pad_raised_m, phase, situation, config),
         is_road_elsewhere=is_road_elsewhere(vehicle.is_road_elsewhere, phase, situation, config),
     )

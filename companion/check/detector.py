@@ -12,6 +12,7 @@ from link.payloads import cdr
 from link.payloads.checks import PayloadError
 
 _RATE_MIN_HZ = 5.0  # with fewer, a sighting is older than what a descent allows for between two of them
+_AGE_MAX_S = 0.3  # in it a comfortable brake of 2.5 m/s^2 makes 0.75 of the 1.0 m/s that a contact may have
 
 
 class DetectorReader:
@@ -87,7 +88,7 @@ def _rate(seen: DetectorFacts) -> Finding:
 def _age(seen: DetectorFacts, config: CompanionConfig) -> list[Finding]:
     if seen.age_s is None:
         return [_line("detector age", "unknown", Level.WARN, "needs the autopilot's time of day")]
-    is_early, is_late = seen.age_s < -config.integrity.fix_ahead_max_s, seen.age_s > config.descent.uneven.age_s
+    is_early, is_late = seen.age_s < -config.integrity.fix_ahead_max_s, seen.age_s > _AGE_MAX_S
     advice = "set its clock by GNSS or NTP, see --latency" if is_early else "use smaller pictures or a faster computer"
     level = Level.FAIL if is_early else Level.WARN if is_late else Level.PASS
     return [_line("detector age", f"{1e3 * seen.age_s:.0f} ms", level, advice)]

@@ -37,7 +37,7 @@ class ConeConfig(StrictModel):
 class WaitConfig(StrictModel):
     """Where the drone waits above the pad, and what for.
 
-    It waits beside the cone, too, for a vehicle that drives unevenly, and for its own sway.
+    It waits beside the cone, too, for a risk that passes (`RiskConfig`), and for its own sway.
     """
 
     height_m: Positive = 0.85  # a heaving roof and a late stop leave the drone above `abort.near_height_m`
@@ -54,33 +54,17 @@ class WaitConfig(StrictModel):
     speed_stds: NotNegative = 1.5
 
 
-class UnevenConfig(StrictModel):
-    """How a vehicle drives that may surprise the drone, and how long that is waited for."""
+class RiskConfig(StrictModel):
+    """Which risk of an unsafe contact, by its forecast, is accepted, and how long a smaller one is waited for."""
 
-    # So far off, in hindsight, the vehicle's speed may have been believed; S1 asks for 1.0 m/s at contact. Beyond
-    # it the descent waits until the vehicle stands, or has driven as expected for as long as from one stop to the next.
-    surprise_speed_m_s: Positive = 0.7
-    hard_brake_m_s2: Positive = 1.6  # over 2 s: surprises the drone, however fresh the data; `random` 0.7
-    # A vehicle whose speed has changed like that in the last 15 s, and whose data are older than `age_s`, is waited
-    # above, too: what it does in the last second is known too late. An even driver shows 0.1 m/s^2, `random` 0.7.
-    acceleration_m_s2: Positive = 0.35
-    winding_acceleration_m_s2: Positive = 0.8  # to the side; `figure_eight` shows 0.6 at 5 m/s and 1.2 at 7
-    # A drone leans into a curve and levels in its last 0.3 s, which over such links comes 0.1 s early or late; with the
-    # 6 degrees by which it sways there S1's 15 over trim are left for a curve of this.
-    turning_acceleration_m_s2: Positive = 2.4
-    age_s: NotNegative = 0.3
-    stop_s: NotNegative = 4.0  # likewise, a vehicle that has stopped; `stop_and_go` departs after 3 s
-    hold_s: NotNegative = 20.0  # `stop_and_go` brakes again 15 s later
-    wait_max_s: NotNegative = 60.0  # for which it waits so without its time limit running: three surprises
-
-
-class QuietConfig(StrictModel):
-    """What is waited for above a deck whose motion the vehicle tells."""
-
-    # Accepted: with so much probability a contact begun now may be unsafe, by its forecast. Published landings on decks
-    # in waves are asked to be good in 95 % (docs/benchmark.md); what is riskier waits for a quieter moment, and is
-    # broken off by the descent's time limit.
-    unsafe_max: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
+    # A contact is begun with at most so much. Published landings on decks in waves are asked to be good in 95 %
+    # (docs/benchmark.md). What is riskier waits: for a quieter moment of a deck, for another one of a driver.
+    begins_max: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
+    # With more than so much the descent turns back as long as it can stop sinking above the pad: an unsafe contact
+    # weighs as much as five more approaches.
+    turns_back_min: Annotated[float, Field(gt=0.0, le=1.0)] = 0.2
+    # For which it waits without its time limit running: as long as what was seen of a driver is kept.
+    wait_max_s: NotNegative = 60.0
 
 
 class UnseenConfig(StrictModel):
@@ -111,15 +95,11 @@ class DescentConfig(StrictModel):
     stray_hold_s: NotNegative = 3.0  # beside the cone or too fast, but high enough to be aligned again
     strays_max: Annotated[int, Field(ge=0, le=20)] = 3  # so often in one approach, as retries: a gust may last
     commit_height_m: Positive = 0.35  # below this it lands rather than aborts
-    # Accepted: an unsafe contact weighs as much as five more approaches. With more probability of one, by its forecast,
-    # a committed descent turns back as long as it can stop sinking above the pad.
-    turns_back_unsafe: Annotated[float, Field(gt=0.0, le=1.0)] = 0.2
     time_limit_s: Positive = 30.0
     alignment: AlignmentConfig = AlignmentConfig()
     sink: SinkConfig = SinkConfig()
     cone: ConeConfig = ConeConfig()
     wait: WaitConfig = WaitConfig()
-    uneven: UnevenConfig = UnevenConfig()
+    risk: RiskConfig = RiskConfig()
     unseen: UnseenConfig = UnseenConfig()
     sway: SwayConfig = SwayConfig()
-    quiet: QuietConfig = QuietConfig()

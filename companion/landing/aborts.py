@@ -107,7 +107,7 @@ def _is_contact_risky(s: Situation, c: CompanionConfig) -> bool:
     """Return whether a descent that is committed had better turn back; one that is not waits."""
     if s.contact is None or s.approach is None or s.approach.height_m > c.descent.commit_height_m:
         return False
-    return s.contact.unsafe > c.descent.turns_back_unsafe and can_turn_back(s, c)
+    return s.contact.unsafe > c.descent.risk.turns_back_min and can_turn_back(s, c)
 
 
 def _tell_risk(s: Situation, _: CompanionConfig) -> Cause:

@@ -34,7 +34,7 @@ _AGE_MAX_S = 1.0  # of data, beyond which the landing is broken off anyway
 def update_forecast(memory: StepMemory, situation: Situation, inputs: StepInputs, system: System) -> StepMemory:
     """Return the memory with the forecast of this step, None in a phase that does not descend."""
     now_ns, before = situation.monotonic_ns, memory.forecast
-    drivers = update_drivers(before.drivers, memory.vehicle.surprise.driving.driven)
+    drivers = update_drivers(before.drivers, memory.vehicle.hindsight.driving.driven)
     gusts, tracking = before.gusts, memory.model.tracking
     # In a chase what looks like a push is what the model does not know of a hard flight.
     flies_evenly = memory.progress.phase in (Phase.ALIGN, Phase.DESCEND) and bool(tracking.deviation.any())
@@ -72,7 +72,7 @@ def forecast_contact(
     numbers = draws()
     stands = vehicle_stands(situation, config.chase)
     errors = draw_errors(then, pad, inputs.response, numbers.normals)
-    late_s = memory.vehicle.surprise.lateness_s or age_s
+    late_s = memory.vehicle.hindsight.lateness_s or age_s
     delay_s = late_s + 0.5 / config.step_rate_hz + inputs.link_delay.mean_s + inputs.link_delay.std_s * errors.late
     speed_m_s = float(course.speed_m_s[0])
     events = make_events(
@@ -84,7 +84,7 @@ def forecast_contact(
         stands=stands,
     )
     samples = Samples(
-        vehicle=as_driven(errors.vehicle, memory.vehicle.surprise.driving, course.direction[0], stands=stands),
+        vehicle=as_driven(errors.vehicle, memory.vehicle.hindsight.driving, course.direction[0], stands=stands),
         kind=events.kind,
         event=events.event,
         delay_s=np.maximum(delay_s, 0.0),

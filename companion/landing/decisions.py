@@ -131,7 +131,7 @@ def _time_limit(progress: Progress, control: ControlMemory, s: Situation, config
         if not s.autopilot.armed:
             return Event.REFUSED, Cause(Reason.ARMING_REFUSED, (s.autopilot.refusal or "it said no reason",))
     limit_s = _longest_s(progress.phase, config)
-    waits_s = min(waited_s(progress, s.monotonic_ns), config.descent.uneven.wait_max_s)
+    waits_s = min(waited_s(progress, s.monotonic_ns), config.descent.risk.wait_max_s)
     if limit_s is not None and in_phase_s - waits_s > limit_s:
         not_placed = why_unplaced(s) if progress.phase is Phase.ALIGN else None
         return Event.TIME_LIMIT, not_placed or Cause(TOO_LONG[progress.phase], (limit_s,))

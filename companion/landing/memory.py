@@ -25,7 +25,7 @@ from companion.planning.guidance import GuidanceMemory, ReferenceState
 from companion.situation.phases import Phase
 from companion.sortie.memory import SortieMemory, move_sortie
 from companion.vehicle.estimator import EstimatorMemory
-from companion.vehicle.surprise import Surprise
+from companion.vehicle.hindsight import Hindsight
 from link.messages import ContactForecast
 from link.records import replace
 
@@ -45,7 +45,7 @@ class Progress(Struct, frozen=True, kw_only=True, eq=False):
         retries: landings aborted since the start.
         interrupted_ns: when the chase began that an outage has broken off; None when an abort counts.
         begun_anew: how often this approach has been aligned or chased again, by the reason.
-        waits_since_ns: when it began to wait above a vehicle that has surprised; None while it does not.
+        waits_since_ns: when it began to wait for a smaller risk; None while it does not.
         waited_s: for how long it has done so before, in this phase.
         may_retry: no operator has broken the landing off since the start.
         stopped_by_pad: the contact was a jolt.
@@ -72,7 +72,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
 
     Attributes:
         estimator: the estimator's own memory.
-        surprise: how the vehicle drives against what was expected.
+        hindsight: how the vehicle has driven, and how late that is known.
         fix_stamps: whether its fixes come from the future.
         contradictions: of its data.
         sightings: whether they agree with each other.
@@ -84,7 +84,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
     """
 
     estimator: EstimatorMemory | None = None
-    surprise: Surprise = field(default_factory=Surprise)
+    hindsight: Hindsight = field(default_factory=Hindsight)
     fix_stamps: FixStamps = field(default_factory=FixStamps)
     contradictions: Contradictions = field(default_factory=Contradictions)
     sightings: SightingWatch = field(default_factory=SightingWatch)

@@ -15,9 +15,9 @@ from companion.landing.step_data import StepInputs, System
 from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.planning.requests import are_finite
 from companion.situation.phases import FOLLOWING_PHASES, Phase
+from companion.vehicle.hindsight import forget_instants, update_hindsight
 from companion.vehicle.pad import PadPath, pad_path
 from companion.vehicle.pad_reach import is_place_vague
-from companion.vehicle.surprise import forget_beliefs, update_surprise
 from link.records import replace
 
 _PRESENT_OFFSETS_S = HORIZON_OFFSETS_S[:2]  # a second point tells how the lever arm turns
@@ -37,14 +37,7 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
     return replace(
         vehicle,
         estimator=estimator,
-        surprise=update_surprise(
-            vehicle.surprise,
-            system.estimator,
-            estimator,
-            inputs.t_ns,
-            monotonic_ns=now_ns,
-            config=system.config.descent.uneven,
-        ),
+        hindsight=update_hindsight(vehicle.hindsight, system.estimator, estimator, inputs.t_ns, monotonic_ns=now_ns),
         fix_stamps=update_fix_stamps(
             vehicle.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns, inputs.vehicle.fix_ahead_s
         ),
@@ -59,8 +52,8 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
 def _in_present_utc(vehicle: VehicleMemory, inputs: StepInputs) -> VehicleMemory:
     """Forget what the vehicle's stamps have been compared with, once UTC was set.
 
-    The estimate keeps its times: they are the vehicle's, whose clock is another one, so that what was believed of it
-    cannot be checked any more.
+    The estimate keeps its times: they are the vehicle's, whose clock is another one, so that nothing that awaits its
+    data can be looked back at any more.
     """
     utc_ahead_ns = inputs.t_ns - inputs.monotonic_ns
     if utc_ahead_ns == vehicle.utc_ahead_ns:
@@ -68,7 +61,7 @@ def _in_present_utc(vehicle: VehicleMemory, inputs: StepInputs) -> VehicleMemory
     return replace(
         vehicle,
         utc_ahead_ns=utc_ahead_ns,
-        surprise=forget_beliefs(vehicle.surprise),
+        hindsight=forget_instants(vehicle.hindsight),
         fix_stamps=FixStamps(),
         contradictions=Contradictions(),
         sightings=SightingWatch(),

@@ -9,9 +9,7 @@ from companion.landing.memory import Progress, StepMemory
 from companion.landing.sway import is_swaying
 from companion.landing.targets import changes_speed
 from companion.situation.phases import Phase
-from companion.situation.situation import Approach, Situation, vehicle_stands
-from companion.vehicle.driving import drives_unevenly, may_depart, turns_hard, winds
-from companion.vehicle.surprise import may_surprise
+from companion.situation.situation import Approach, Situation
 from link.messages import ContactForecast
 from link.records import replace
 
@@ -43,9 +41,9 @@ def why_held_up(memory: StepMemory, situation: Situation, config: CompanionConfi
 
 
 def update_wait(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Progress:
-    """Return the progress with the time for which this descent has waited above a vehicle that drives unpredictably."""
+    """Return the progress with the time for which this descent has waited for a smaller risk."""
     progress, now_ns = memory.progress, situation.monotonic_ns
-    if _find_unpredictable(memory, situation, config) is not None:
+    if _find_risk(memory, situation, config) is not None:
         return progress if progress.waits_since_ns is not None else replace(progress, waits_since_ns=now_ns)
     if progress.waits_since_ns is None:
         return progress
@@ -53,31 +51,9 @@ def update_wait(memory: StepMemory, situation: Situation, config: CompanionConfi
 
 
 def waited_s(progress: Progress, monotonic_ns: int) -> float:
-    """Return for how long this descent has waited above a vehicle that has surprised."""
+    """Return for how long this descent has waited for a smaller risk."""
     since_ns = progress.waits_since_ns
     return progress.waited_s + (0.0 if since_ns is None else (monotonic_ns - since_ns) * 1e-9)
-
-
-def _find_unpredictable(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause | None:
-    """Return what a vehicle has lately done that nobody could expect, None of one that stands or drives evenly."""
-    if not _may_wait(memory, situation, config) or _stays(memory, situation, config):
-        return None
-    surprise = memory.vehicle.surprise
-    late_s = surprise.lateness_s
-    if may_surprise(surprise, situation.monotonic_ns, config.descent.uneven):
-        return Cause(Reason.SPEED_SURPRISED)
-    if drives_unevenly(surprise.driving, late_s, config.descent.uneven):
-        return Cause(Reason.SPEED_UNEVEN)
-    if turns_hard(surprise.driving, late_s, config.descent.uneven):
-        return Cause(Reason.ROAD_TURNS_HARD)
-    return Cause(Reason.ROAD_WINDS) if winds(surprise.driving, late_s, config.descent.uneven) else None
-
-
-def _stays(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
-    """Return whether the vehicle stands and will do so for a while."""
-    surprise = memory.vehicle.surprise
-    departs = may_depart(surprise.driving, surprise.lateness_s, config.descent.uneven)
-    return vehicle_stands(situation, config.chase) and not departs
 
 
 def _may_wait(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
@@ -91,9 +67,9 @@ def _find_awaited(memory: StepMemory, situation: Situation, config: CompanionCon
     relative = situation.approach
     if relative is None or not _may_wait(memory, situation, config):
         return None
-    unpredictable = _find_unpredictable(memory, situation, config)
-    if unpredictable is not None:
-        return unpredictable
+    risk = _find_risk(memory, situation, config)
+    if risk is not None:
+        return risk
     if must_wait(situation, config):
         brakes = situation.pad is not None and changes_speed(situation.pad, config.descent)
         return Cause(Reason.SPEED_CHANGES if brakes else Reason.NOT_OVER_PAD)
@@ -101,7 +77,7 @@ def _find_awaited(memory: StepMemory, situation: Situation, config: CompanionCon
         return Cause(Reason.OFF_CENTRE, (config.descent.alignment.distance_m,))
     if _is_unsettled(memory, relative, config):
         return Cause(Reason.UNSETTLED, (config.descent.wait.speed_m_s,))
-    return _find_risk(memory, situation, config)
+    return None
 
 
 def _is_off_centre(situation: Situation, relative: Approach, config: CompanionConfig) -> bool:
@@ -116,34 +92,36 @@ def _is_off_centre(situation: Situation, relative: Approach, config: CompanionCo
 
 def _is_unsettled(memory: StepMemory, relative: Approach, config: CompanionConfig) -> bool:
     """Return whether the drone has to become slower against the pad first, as far as that speed is known."""
-    known_m_s = config.descent.wait.speed_stds * memory.vehicle.surprise.speed_std_m_s
+    known_m_s = config.descent.wait.speed_stds * memory.vehicle.hindsight.speed_std_m_s
     return relative.speed_m_s > max(config.descent.wait.speed_m_s, known_m_s)
 
 
 def _find_risk(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause | None:
-    """Return that a contact begun now is forecast to be too risky on a deck whose motion is told and slow.
+    """Return that a contact begun now is forecast to be too risky.
 
-    What heaves back within the time that the contact takes has no quiet moment that can be seen from up here: waiting
-    for one above cars that shake made contacts later and no better.
+    A driver may do something else at any time, so a descent that has begun goes back up from what has become much
+    riskier. The deck of a ship is decided on once. What heaves back within the time that the contact takes has no quiet
+    moment that can be seen from up here: waiting for one above cars that shake made contacts later and no better.
     """
-    contact, pad = memory.forecast.contact, situation.pad
-    if memory.forecast.is_committed or contact is None or pad is None or pad.swing is None:
+    contact, pad, has_begun = memory.forecast.contact, situation.pad, memory.forecast.is_committed
+    if contact is None or pad is None or not _may_wait(memory, situation, config):
         return None
-    most = config.descent.quiet.unsafe_max
-    if contact.in_s is None or contact.in_s > math.pi / pad.swing.heave_rad_s:
+    if pad.swing is not None and (has_begun or contact.in_s is None or contact.in_s > math.pi / pad.swing.heave_rad_s):
         return None
-    return Cause(Reason.DECK_UNQUIET, (most,)) if contact.unsafe > most else None
+    most = config.descent.risk.turns_back_min if has_begun else config.descent.risk.begins_max
+    return Cause(Reason.MOMENT_RISKY, (most,)) if contact.unsafe > most else None
 
 
 def is_moment_quiet(contact: ContactForecast | None, situation: Situation, config: CompanionConfig) -> bool:
-    """Return whether a descent that has come to the height of waiting is to go on by its forecast: once for all.
+    """Return whether a descent that has come to the height of waiting is to go on by its forecast.
 
-    One that judged again all the way down would turn back where a new wave is as near as the pad.
+    A ship's deck is decided on once for all: one that judged again all the way down would turn back where a new wave is
+    as near as the pad.
     """
     relative = situation.approach
     if contact is None or relative is None or relative.height_m > _waiting_height_m(situation, config) + _HELD_UP_M:
         return False
-    return contact.unsafe <= config.descent.quiet.unsafe_max
+    return contact.unsafe <= config.descent.risk.begins_max
 
 
 def waits_for_calm(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:

@@ -8,7 +8,7 @@ from companion.vehicle.driving import Driving
 
 NORTH_EAST = np.array([0.6, 0.8])
 OFF = 0.4 * np.random.default_rng(5).standard_normal((4000, 3, 2))
-SEEN_10_S = ((0.0, 0.0),) * 100
+SEEN_10_S = (0.0,) * 100
 
 
 def test_a_vehicle_that_stands_is_off_its_place_only() -> None:

@@ -174,7 +174,7 @@ def test_below_the_commit_height_it_does_not_land_where_nobody_knows_the_pad_to_
 
 LAG_M = 0.45 * ATTITUDE_LAG_S
 STOPPING_M = LAG_M + 0.5 * 0.45**2 / LIMITS.vertical_acceleration_max_m_s2
-MOST = CONFIG.descent.turns_back_unsafe
+MOST = CONFIG.descent.risk.turns_back_min
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.core.data import VehicleEstimate
-from companion.vehicle.surprise import Surprise, update_surprise
+from companion.vehicle.hindsight import Hindsight, update_hindsight
 from link.records import replace
 from tests.companion.vehicle.drives import (
     DEGRADED,
@@ -17,25 +16,23 @@ from tests.companion.vehicle.drives import (
 )
 from tests.companion.vehicle.rides import estimator, now_ns
 
-DESCENT = CompanionConfig().descent
-UNEVEN = DESCENT.uneven
 LATE = replace(DEGRADED, delay_s=0.5)
 TICK_S = 0.02
 
 
-def after(truth: Drive, sensors: Sensors, seed: int, until_s: float) -> Surprise:
+def after(truth: Drive, sensors: Sensors, seed: int, until_s: float) -> Hindsight:
     """What has been noticed of a drive, asked at 50 Hz, when each measurement has come when it comes."""
     chosen, waiting = estimator(EstimatorKind.IMM), sense(truth, sensors, seed)[::-1]
     memory: Any = None
-    surprise = Surprise()
+    hindsight = Hindsight()
     for i in range(round(until_s / TICK_S)):
         batch = []
         while waiting and waiting[-1][0] <= now_ns(i * TICK_S):
             batch.append(waiting.pop()[1])
         memory = chosen.fuse(memory, batch)
         t_ns = now_ns(i * TICK_S)
-        surprise = update_surprise(surprise, chosen, memory, t_ns, monotonic_ns=t_ns, config=UNEVEN)
-    return surprise
+        hindsight = update_hindsight(hindsight, chosen, memory, t_ns, monotonic_ns=t_ns)
+    return hindsight
 
 
 class Told:

@@ -1,4 +1,4 @@
-"""Over a deck whose motion is told a descent waits for a moment at which a contact is quiet, and decides once."""
+"""A descent waits for a moment at which a contact is not risky, and goes back up from what becomes much riskier."""
 
 import math
 
@@ -10,8 +10,8 @@ from companion.landing.memory import StepMemory
 from companion.landing.waiting import is_moment_quiet, waits_at_m, why_held_up
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
+from companion.vehicle.hindsight import Hindsight
 from companion.vehicle.shake import PadSwing
-from companion.vehicle.surprise import Surprise
 from link.messages import ContactForecast
 from link.records import replace
 from tests.companion.facts import CONFIG, changed, pad_at, situation
@@ -19,7 +19,7 @@ from tests.companion.facts import CONFIG, changed, pad_at, situation
 DESCENT = CONFIG.descent
 WAITING_M = DESCENT.wait.height_m
 SWINGING = PadSwing(slope=np.zeros((5, 2)), shake_enu=np.zeros((3, 5, 2)), climb_std_m_s=np.zeros(5), heave_rad_s=0.6)
-RISK = DESCENT.quiet.unsafe_max
+RISK = DESCENT.risk.begins_max
 NO_CONTACT = ContactForecast(
     in_s=2.0,
     s1=0.0,
@@ -37,7 +37,7 @@ def _over_swinging_deck(unsafe: float | None, *, is_committed: bool = False) -> 
     """At the height of waiting, with that forecast of a contact begun now."""
     contact = None if unsafe is None else replace(NO_CONTACT, unsafe=unsafe)
     memory = changed(
-        StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED), surprise=Surprise(speed_std_m_s=0.05)
+        StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED), hindsight=Hindsight(speed_std_m_s=0.05)
     )
     memory = replace(memory, forecast=replace(memory.forecast, contact=contact, is_committed=is_committed))
     return memory, situation(WAITING_M, pad=replace(pad_at(), swing=SWINGING))
@@ -50,7 +50,7 @@ def _over_swinging_deck(unsafe: float | None, *, is_committed: bool = False) -> 
 )
 def test_swinging_deck_s_quiet_moment_is_waited_for(unsafe: float | None, is_committed: bool, waits: bool) -> None:
     memory, here = _over_swinging_deck(unsafe, is_committed=is_committed)
-    assert why_held_up(memory, here, CONFIG) == (Cause(Reason.DECK_UNQUIET, (RISK,)) if waits else None)
+    assert why_held_up(memory, here, CONFIG) == (Cause(Reason.MOMENT_RISKY, (RISK,)) if waits else None)
     assert waits_at_m(memory, here, CONFIG) == (WAITING_M if waits else None)
 
 
@@ -60,9 +60,30 @@ def test_deck_that_heaves_back_before_the_contact_is_not_waited_for() -> None:
     assert why_held_up(memory, replace(here, pad=replace(pad_at(), swing=shaking)), CONFIG) is None
 
 
-def test_deck_whose_motion_nobody_tells_is_not_waited_for() -> None:
-    memory, here = _over_swinging_deck(1.0)
-    assert why_held_up(memory, replace(here, pad=pad_at()), CONFIG) is None
+MUCH = DESCENT.risk.turns_back_min
+
+
+@pytest.mark.parametrize(
+    ("unsafe", "has_begun", "waits"),
+    [
+        (1.01 * RISK, False, RISK),
+        (0.99 * RISK, False, None),
+        (0.99 * MUCH, True, None),
+        (1.01 * MUCH, True, MUCH),
+        (None, False, None),
+    ],
+    ids=["risky", "quiet", "has begun", "has become much riskier", "not forecast"],
+)
+def test_smaller_risk_is_waited_for_above_a_car(unsafe: float | None, waits: float | None, *, has_begun: bool) -> None:
+    memory, here = _over_swinging_deck(unsafe, is_committed=has_begun)
+    here = replace(here, pad=pad_at())
+    assert why_held_up(memory, here, CONFIG) == (None if waits is None else Cause(Reason.MOMENT_RISKY, (waits,)))
+    assert waits_at_m(memory, here, CONFIG) == (None if waits is None else WAITING_M)
+
+
+def test_a_descent_that_is_committed_waits_for_no_smaller_risk() -> None:
+    memory, _ = _over_swinging_deck(1.0)
+    assert waits_at_m(memory, situation(0.9 * DESCENT.commit_height_m), CONFIG) is None
 
 
 @pytest.mark.parametrize(
