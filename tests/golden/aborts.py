@@ -27,6 +27,7 @@ _RAISED_M = 3.0
 _LOWER_M = 0.8
 _BESIDE_M = 0.4
 _LOW_M = 0.55  # of the drone above the roof: its feet are 0.43 m above
+_COMMITTED_M = 0.4  # likewise: 0.28 m
 _AHEAD_S = 0.3
 _LIMIT_M_S = 4.0  # less than the vehicle's 5 m/s
 _PATIENCE_S = 6.0  # from the fault to the abort
@@ -118,11 +119,11 @@ def _pad_is_described(forward_m: float, up_m: float) -> Fault:
     return describe
 
 
-def _when_low(fault: Fault) -> Fault:
+def _when_low(fault: Fault, low_m: float = _LOW_M) -> Fault:
     """Let the fault wait until the drone is too low to wait for better."""
 
     def descend(flight: FaultFlight) -> None:
-        above_m = flight.scenario.vehicle.roof_height_m + _LOW_M
+        above_m = flight.scenario.vehicle.roof_height_m + low_m
         while flight.height_m > above_m:
             flight.step()
         fault(flight)
@@ -163,6 +164,10 @@ ABORTS: dict[str, Abort] = {
     ),
     "outside_cone": Abort(
         reason=Reason.OUTSIDE_CONE, fault=_when_low(_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0))
+    ),
+    "contact_risky": Abort(
+        reason=Reason.CONTACT_RISKY,
+        fault=_when_low(_pad_is_described(forward_m=1.5 * _BESIDE_M, up_m=0.0), _COMMITTED_M),
     ),
     "contradicting": Abort(
         reason=Reason.VEHICLE_CONTRADICTS_ITSELF,
