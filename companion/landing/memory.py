@@ -155,7 +155,7 @@ class ForecastMemory(Struct, frozen=True, kw_only=True, eq=False):
         made_ns: when it was made, monotonic; None in any other phase.
         drivers: how the vehicle's driver drives.
         gusts: how hard the air pushes the drone.
-        is_committed: this descent has decided on a quiet moment; it holds until the descent ends.
+        has_begun: this descent has left the height of waiting at a quiet moment; it holds until the descent ends.
         acceleration_ns: when the vehicle last told its acceleration, monotonic; None if it never did.
     """
 
@@ -163,7 +163,7 @@ class ForecastMemory(Struct, frozen=True, kw_only=True, eq=False):
     made_ns: int | None = None
     drivers: Drivers = field(default_factory=Drivers)
     gusts: Gusts = field(default_factory=Gusts)
-    is_committed: bool = False
+    has_begun: bool = False
     acceleration_ns: int | None = None
 
 

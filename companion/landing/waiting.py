@@ -103,7 +103,7 @@ def _find_risk(memory: StepMemory, situation: Situation, config: CompanionConfig
     riskier. The deck of a ship is decided on once. What heaves back within the time that the contact takes has no quiet
     moment that can be seen from up here: waiting for one above cars that shake made contacts later and no better.
     """
-    contact, pad, has_begun = memory.forecast.contact, situation.pad, memory.forecast.is_committed
+    contact, pad, has_begun = memory.forecast.contact, situation.pad, memory.forecast.has_begun
     if contact is None or pad is None or not _may_wait(memory, situation, config):
         return None
     if pad.swing is not None and (has_begun or contact.in_s is None or contact.in_s > math.pi / pad.swing.heave_rad_s):

@@ -33,23 +33,23 @@ NO_CONTACT = ContactForecast(
 )
 
 
-def _over_swinging_deck(unsafe: float | None, *, is_committed: bool = False) -> tuple[StepMemory, Situation]:
+def _over_swinging_deck(unsafe: float | None, *, has_begun: bool = False) -> tuple[StepMemory, Situation]:
     """At the height of waiting, with that forecast of a contact begun now."""
     contact = None if unsafe is None else replace(NO_CONTACT, unsafe=unsafe)
     memory = changed(
         StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED), hindsight=Hindsight(speed_std_m_s=0.05)
     )
-    memory = replace(memory, forecast=replace(memory.forecast, contact=contact, is_committed=is_committed))
+    memory = replace(memory, forecast=replace(memory.forecast, contact=contact, has_begun=has_begun))
     return memory, situation(WAITING_M, pad=replace(pad_at(), swing=SWINGING))
 
 
 @pytest.mark.parametrize(
-    ("unsafe", "is_committed", "waits"),
+    ("unsafe", "has_begun", "waits"),
     [(1.01 * RISK, False, True), (0.99 * RISK, False, False), (1.0, True, False), (None, False, False)],
     ids=["risky", "quiet", "decided", "not forecast"],
 )
-def test_swinging_deck_s_quiet_moment_is_waited_for(unsafe: float | None, is_committed: bool, waits: bool) -> None:
-    memory, here = _over_swinging_deck(unsafe, is_committed=is_committed)
+def test_swinging_deck_s_quiet_moment_is_waited_for(unsafe: float | None, has_begun: bool, waits: bool) -> None:
+    memory, here = _over_swinging_deck(unsafe, has_begun=has_begun)
     assert why_held_up(memory, here, CONFIG) == (Cause(Reason.MOMENT_RISKY, (RISK,)) if waits else None)
     assert waits_at_m(memory, here, CONFIG) == (WAITING_M if waits else None)
 
@@ -75,13 +75,13 @@ MUCH = DESCENT.risk.turns_back_min
     ids=["risky", "quiet", "has begun", "has become much riskier", "not forecast"],
 )
 def test_smaller_risk_is_waited_for_above_a_car(unsafe: float | None, waits: float | None, *, has_begun: bool) -> None:
-    memory, here = _over_swinging_deck(unsafe, is_committed=has_begun)
+    memory, here = _over_swinging_deck(unsafe, has_begun=has_begun)
     here = replace(here, pad=pad_at())
     assert why_held_up(memory, here, CONFIG) == (None if waits is None else Cause(Reason.MOMENT_RISKY, (waits,)))
     assert waits_at_m(memory, here, CONFIG) == (None if waits is None else WAITING_M)
 
 
-def test_a_descent_that_is_committed_waits_for_no_smaller_risk() -> None:
+def test_a_descent_that_has_begun_waits_for_no_smaller_risk() -> None:
     memory, _ = _over_swinging_deck(1.0)
     assert waits_at_m(memory, situation(0.9 * DESCENT.commit_height_m), CONFIG) is None
 

@@ -74,7 +74,7 @@ def test_status_says_what_a_descent_waits_for(
 def _kept_risky(flight: Flight, duration_s: float) -> None:
     """Fly on above a vehicle over which every forecast says a great risk."""
     for _ in range(round(duration_s * 1e9 / TICK_NS)):
-        flight.memory = changed(flight.memory, contact=RISKY, made_ns=flight.monotonic_ns, is_committed=False)
+        flight.memory = changed(flight.memory, contact=RISKY, made_ns=flight.monotonic_ns, has_begun=False)
         flight.step()
         if flight.phase is not Phase.DESCEND:
             return
