@@ -17,7 +17,7 @@ from companion.situation.situation import Below, Drone, Following, Situation, Ve
 from companion.vehicle.pad import HEADING_UNKNOWN, PadPath
 from link.frames.geodesy import Datum
 from link.frames.local_frame import LocalFrame, Projection
-from link.messages import Vector3
+from link.messages import ContactForecast, Vector3
 from link.records import replace
 
 R = TypeVar("R", Situation, StepMemory)
@@ -94,6 +94,21 @@ def situation(height_m: float = 1.5, beside_m: float = 0.0, pad: PadPath | None 
         feet_offset_m=GEAR_M,
         following=Following(error_m=0.05, error_max_m=1.0, reference=reference_at(height_m)),
         waiting_point_enu_m=np.array([0.0, 0.0, 5.0]),
+    )
+
+
+def forecast_of(unsafe: float, in_s: float = 0.5) -> ContactForecast:
+    """The forecast of a contact that is beside the pad's middle with that probability, and else within S2."""
+    return ContactForecast(
+        in_s=in_s,
+        s1=1.0 - unsafe,
+        s2=1.0 - unsafe,
+        unsafe=unsafe,
+        broken_off=0.0,
+        misses_position=unsafe,
+        misses_speed=0.0,
+        misses_sink=0.0,
+        misses_tilt=0.0,
     )
 
 

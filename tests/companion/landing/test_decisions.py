@@ -18,7 +18,7 @@ from companion.situation.phases import Event, Phase
 from companion.situation.situation import Following, Situation
 from companion.vehicle.pad import NOT_DESCRIBED, FrameOffset
 from companion.vehicle.pad_reach import cone_radius_m
-from link.messages import ContactForecast, Vector3
+from link.messages import Vector3
 from link.records import replace
 from tests.companion.facts import (
     CONFIG,
@@ -30,6 +30,7 @@ from tests.companion.facts import (
     decided,
     drone_at,
     first_decision,
+    forecast_of,
     later,
     pad_at,
     progress,
@@ -50,18 +51,7 @@ LIMITS = CONFIG.limits.flight_limits()
 def _risky(height_m: float, sinks_m_s: float = 0.0, unsafe: float = 0.9) -> Situation:
     """The same over the pad with a forecast that a contact would be unsafe."""
     drone = drone_at(height_m, 0.0, (0.0, 0.0, -sinks_m_s), pad=pad_at())
-    contact = ContactForecast(
-        in_s=0.5,
-        s1=1.0 - unsafe,
-        s2=0.0,
-        unsafe=unsafe,
-        broken_off=0.0,
-        misses_position=unsafe,
-        misses_speed=0.0,
-        misses_sink=0.0,
-        misses_tilt=0.0,
-    )
-    return changed(situation(height_m), drone=drone, limits=LIMITS, contact=contact)
+    return changed(situation(height_m), drone=drone, limits=LIMITS, contact=forecast_of(unsafe))
 
 
 # What makes each abort test true, everything else being in order; in the descent, above the commit height but for one.

@@ -12,30 +12,19 @@ from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from companion.vehicle.hindsight import Hindsight
 from companion.vehicle.shake import PadSwing
-from link.messages import ContactForecast
 from link.records import replace
-from tests.companion.facts import CONFIG, changed, pad_at, situation
+from tests.companion.facts import CONFIG, changed, forecast_of, pad_at, situation
 
 DESCENT = CONFIG.descent
 WAITING_M = DESCENT.wait.height_m
 SWINGING = PadSwing(slope=np.zeros((5, 2)), shake_enu=np.zeros((3, 5, 2)), climb_std_m_s=np.zeros(5), heave_rad_s=0.6)
 RISK = DESCENT.risk.begins_max
-NO_CONTACT = ContactForecast(
-    in_s=2.0,
-    s1=0.0,
-    s2=0.0,
-    unsafe=0.0,
-    broken_off=1.0,
-    misses_position=0.0,
-    misses_speed=0.0,
-    misses_sink=0.0,
-    misses_tilt=0.0,
-)
+IN_S = 2.0
 
 
 def _over_swinging_deck(unsafe: float | None, *, has_begun: bool = False) -> tuple[StepMemory, Situation]:
     """At the height of waiting, with that forecast of a contact begun now."""
-    contact = None if unsafe is None else replace(NO_CONTACT, unsafe=unsafe)
+    contact = None if unsafe is None else forecast_of(unsafe, IN_S)
     memory = changed(
         StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED), hindsight=Hindsight(speed_std_m_s=0.05)
     )
@@ -92,4 +81,4 @@ def test_a_descent_that_has_begun_waits_for_no_smaller_risk() -> None:
     ids=["quiet", "risky", "high"],
 )
 def test_descent_decides_where_it_would_wait(height_m: float, unsafe: float, decides: bool) -> None:
-    assert is_moment_quiet(replace(NO_CONTACT, unsafe=unsafe), situation(height_m), CONFIG) == decides
+    assert is_moment_quiet(forecast_of(unsafe, IN_S), situation(height_m), CONFIG) == decides

@@ -22,6 +22,7 @@ from tests.companion.facts import (
     changed,
     decided,
     drone_at,
+    forecast_of,
     later,
     pad_at,
     progress,
@@ -32,17 +33,7 @@ from tests.companion.world import PAD_HEIGHT_M, Flight, reached
 DESCENT = CONFIG.descent
 WAITING_M = DESCENT.wait.height_m
 KNOWN = Hindsight(speed_std_m_s=0.05)
-RISKY = ContactForecast(
-    in_s=1.5,
-    s1=0.5,
-    s2=0.4,
-    unsafe=0.5,
-    broken_off=0.0,
-    misses_position=0.5,
-    misses_speed=0.0,
-    misses_sink=0.0,
-    misses_tilt=0.0,
-)
+RISKY = forecast_of(0.5, in_s=1.5)
 RISK = DESCENT.risk
 STRAYING = situation(DESCENT.alignment.height_m, 2.0)
 
