@@ -94,7 +94,7 @@ def strays(s: Situation, c: CompanionConfig) -> bool:
     return a is not None and (_is_beside_cone(a, c) or a.speed_m_s > c.abort.near_speed_max_m_s)
 
 
-def can_turn_back(s: Situation, c: CompanionConfig) -> bool:
+def _can_turn_back(s: Situation, c: CompanionConfig) -> bool:
     """Return whether a drone that breaks off now stops sinking above the pad: after its lag and with what it climbs."""
     if s.approach is None or s.limits is None or s.approach.height_m < c.descent.sway.height_min_m:
         return False
@@ -107,7 +107,7 @@ def _is_contact_risky(s: Situation, c: CompanionConfig) -> bool:
     """Return whether a descent that is committed had better turn back; one that is not waits."""
     if s.contact is None or s.approach is None or s.approach.height_m > c.descent.commit_height_m:
         return False
-    return s.contact.unsafe > c.descent.risk.turns_back_min and can_turn_back(s, c)
+    return s.contact.unsafe > c.descent.risk.turns_back_min and _can_turn_back(s, c)
 
 
 def _tell_risk(s: Situation, _: CompanionConfig) -> Cause:

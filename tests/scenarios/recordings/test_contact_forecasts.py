@@ -6,8 +6,9 @@ import pytest
 
 from companion.config.descent import DescentConfig
 from companion.situation.phases import Phase
-from link.messages import ContactForecast, LandingStatus
+from link.messages import LandingStatus
 from scenarios.recordings.contact_forecasts import forecast_columns
+from tests.companion.facts import forecast_of
 
 START_NS = 1_767_225_600_000_000_000
 DESCENT = DescentConfig()
@@ -19,20 +20,6 @@ LANDED = {
     "sink_rate_m_s": 0.5,
     "tilt_over_trim_rad": 0.02,
 }
-
-
-def _forecast(unsafe: float) -> ContactForecast:
-    return ContactForecast(
-        in_s=0.8,
-        s1=1.0 - unsafe,
-        s2=0.9 - unsafe,
-        unsafe=unsafe,
-        broken_off=0.0,
-        misses_position=unsafe,
-        misses_speed=0.0,
-        misses_sink=0.0,
-        misses_tilt=0.0,
-    )
 
 
 def _status(at_s: float, height_m: float, phase: Phase = Phase.DESCEND, unsafe: float = 0.01) -> LandingStatus:
@@ -48,7 +35,7 @@ def _status(at_s: float, height_m: float, phase: Phase = Phase.DESCEND, unsafe: 
         zenoh_bad_payloads=0,
         armed=True,
         fix_age_s=0.1,
-        contact_forecast=_forecast(unsafe) if phase is Phase.DESCEND else None,
+        contact_forecast=forecast_of(unsafe, in_s=0.8) if phase is Phase.DESCEND else None,
     )
 
 
