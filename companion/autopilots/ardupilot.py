@@ -92,6 +92,7 @@ class ArduPilotDriver:
     hover_mode = "BRAKE"
     timeout_parameter = "GUID_TIMEOUT"
     timeout_default_s = 3.0
+    waits_in_mode = True
     follows_in_failsafe = True  # a low battery, or a radio lost, with "continue" as its action
     takes_target_in_body_axes = True
     holds_height_alone = False  # a position that is masked in part is left out as a whole

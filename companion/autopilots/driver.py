@@ -146,6 +146,10 @@ class Driver(Protocol):
         """What that is taken for while it is unknown."""
 
     @property
+    def waits_in_mode(self) -> bool:
+        """Whether silence only stops it, and it stays in the mode that follows setpoints."""
+
+    @property
     def holds_height_alone(self) -> bool:
         """Whether it flies setpoints whose position is a height only, with the velocity on all axes."""
 

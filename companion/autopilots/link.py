@@ -25,6 +25,7 @@ from link.mavlink.events import (
     ParameterMissing,
 )
 from link.mavlink.parameters import parameter_value
+from link.mavlink.peer import LOST_AFTER_NS
 from link.mavlink.session import MavlinkSession
 from link.records import replace
 
@@ -206,10 +207,15 @@ class AutopilotLink:
         return self.state.parameters.get(self.driver.timeout_parameter, self.driver.timeout_default_s)
 
     def _is_out_of_touch(self, local_ns: int) -> bool:
-        """Return whether the autopilot may have given up on setpoints, since it is silent or since we stood still."""
+        """Return whether the autopilot may have given up on setpoints, since it is silent or since we stood still.
+
+        One that waits in the mode that follows them does not give up; it is out of touch when its link is lost.
+        """
         if self.driver is None or self._heard_ns is None or self._polled_ns is None:
             return False
         apart_s = (local_ns - min(self._heard_ns, self._polled_ns)) * 1e-9
+        if self.driver.waits_in_mode:
+            return apart_s > LOST_AFTER_NS * 1e-9
         return apart_s > max(_WAITED_SHARE * self.timeout_s, _WAITED_MIN_S)
 
     def _ask_for_streams(self, driver: Driver, local_ns: int) -> None:

@@ -51,6 +51,7 @@ class Px4Driver:
     hover_mode = "Hold"
     timeout_parameter = "COM_OF_LOSS_T"
     timeout_default_s = 1.0
+    waits_in_mode = False
     holds_height_alone = True
     takes_target_in_body_axes = False
     follows_in_failsafe = False  # what it only warns of is none

@@ -6,7 +6,7 @@ from link.mavlink.dialect import COMMAND_CANCEL_ID, Message, mavlink
 from link.mavlink.events import AutopilotRestarted, Event, LinkFound, LinkLost, LinkRegained
 
 _BROADCAST = 0
-_LOST_AFTER_NS = 3_000_000_000  # of silence: three of the autopilot's heartbeats
+LOST_AFTER_NS = 3_000_000_000  # of silence: three of the autopilot's heartbeats
 _JUMP_NS = 1_000_000_000  # boot time falling back by more is a restart, by less a late message; ahead, it was set
 _JUMP_CONFIRMATIONS = 3  # so many messages in a row have to say so
 
@@ -99,7 +99,7 @@ class Peer:
 
     def poll(self, t_ns: int) -> list[Event]:
         """Tells when the autopilot has been silent for too long."""
-        if not self.is_up or t_ns - self._last_heard_ns <= _LOST_AFTER_NS:
+        if not self.is_up or t_ns - self._last_heard_ns <= LOST_AFTER_NS:
             return []
         self.is_up = False
         return [LinkLost(t_ns=t_ns, last_heard_ns=self._last_heard_ns)]
