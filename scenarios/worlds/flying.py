@@ -11,7 +11,7 @@ from sim_autopilot.runtime.config import DroneConfig
 
 _LEAN_MAX_RAD = math.radians(25.0)  # against the air in steady flight: leaves 20 of 45 degrees to brake and turn
 _SPEED_SHARE_MAX = 0.8  # of the speed to which the firmware is set: the rest is to catch up
-_SPEED_SET_M_S = {"px4": 30.0, "ardupilot": 20.0}  # as the catalogue sets both, scenarios/catalogue/presets/system.toml
+_SPEED_SET_M_S = 30.0  # as the catalogue sets both firmwares, scenarios/catalogue/presets/system.toml
 _GUST_STDS = 2.0  # of the turbulence along the wind, which is less than twice the vertical at 5 m
 
 
@@ -52,14 +52,14 @@ def system_of(draws: Draws, drone: DroneConfig, waiting_height_m: float) -> Syst
     response = draws.number("drone.response")
     parameters: dict[FirmwareName, dict[str, float]] = {
         "px4": {
-            "MPC_XY_VEL_MAX": _SPEED_SET_M_S["px4"],
+            "MPC_XY_VEL_MAX": _SPEED_SET_M_S,
             "COM_OF_LOSS_T": 3.0,
             "COM_OBL_RC_ACT": 5.0,
             "MPC_THR_HOVER": hover_share,
         },
         "ardupilot": {
             "ANGLE_MAX": 4500.0,
-            "WPNAV_SPEED": 100.0 * _SPEED_SET_M_S["ardupilot"],
+            "WPNAV_SPEED": 100.0 * _SPEED_SET_M_S,
             "WPNAV_ACCEL": 500.0,
             "PSC_JERK_XY": 10.0,
             "WPNAV_SPEED_DN": 200.0,
@@ -75,10 +75,10 @@ def system_of(draws: Draws, drone: DroneConfig, waiting_height_m: float) -> Syst
     return SystemConfig(companion=companion, drone=drone, parameters=parameters)
 
 
-def speed_bound_m_s(drone: DroneConfig, wind: WindConfig, firmware: FirmwareName) -> float:
+def speed_bound_m_s(drone: DroneConfig, wind: WindConfig) -> float:
     """Return the fastest cruise that the drone can follow against the wind, with something left to catch up."""
     if drone.mass_kg is None or drone.drag_n_s_m is None:
         raise ValueError("a drawn drone has a mass and a drag")
     through_air_m_s = drone.mass_kg * GRAVITY_M_S2 * math.tan(_LEAN_MAX_RAD) / drone.drag_n_s_m
     gusts_m_s = 2.0 * _GUST_STDS * (wind.turbulence_std_m_s or 0.0)
-    return min(_SPEED_SHARE_MAX * _SPEED_SET_M_S[firmware], through_air_m_s - wind.mean_m_s - gusts_m_s)
+    return min(_SPEED_SHARE_MAX * _SPEED_SET_M_S, through_air_m_s - wind.mean_m_s - gusts_m_s)

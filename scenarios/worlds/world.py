@@ -75,7 +75,7 @@ def _world(name: str, seed: Seed, draws: Draws) -> World:
     wind, firmware, drone = draw_wind(draws), draw_firmware(draws), draw_drone(draws)
     vehicle, sensors = draw_vehicle(draws), draw_sensors(draws)
     wish_m_s = draws.number("driver.speed_m_s")
-    cruise_m_s = max(_CRUISE_MIN_M_S, min(wish_m_s, speed_bound_m_s(drone, wind, firmware)))
+    cruise_m_s = max(_CRUISE_MIN_M_S, min(wish_m_s, speed_bound_m_s(drone, wind)))
     run_up_m = _run_up_m(cruise_m_s, draws.number("driver.acceleration_m_s2"))
     length_m = run_up_m + 1.2 * DRIVE_S * cruise_m_s
     road = plan_road(draws, seed, cruise_m_s=cruise_m_s, run_up_m=run_up_m, length_m=length_m)

@@ -102,7 +102,7 @@ _OWN = (
     _real("TKOFF_SLEW_TIME", 2.0, 0.25, 5.0),
     _real("WPNAV_ACCEL", 250.0, 50.0, 500.0),
     _real("WPNAV_ACCEL_Z", 100.0, 50.0, 500.0),
-    _real("WPNAV_SPEED", 1000.0, 10.0, 2000.0),
+    _real("WPNAV_SPEED", 1000.0, 10.0, 100.0 * _UNLIMITED_M_S),  # documented to 2000, which the firmware does not check
     _real("WPNAV_SPEED_DN", 150.0, 10.0, 500.0),
     _real("WPNAV_SPEED_UP", 250.0, 10.0, 1000.0),
     _whole("WP_YAW_BEHAVIOR", 2, _INT8, 0, 3),
