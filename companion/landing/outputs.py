@@ -64,8 +64,8 @@ def setpoint(
         model.yaw_setpoint_rad,
         position_only=config.setpoints.position_only,
     )
-    if has_free_place(memory, inputs, config):
-        wanted = free_place(wanted, model.tracking.behind_enu_m, config.setpoints.place_gain_hz)
+    if inputs.response is not None and has_free_place(memory, inputs, config):
+        wanted = free_place(wanted, model.tracking.behind_enu_m, inputs.response.cascade.position_per_s)
     return wanted if inputs.own is None else as_seen_with(wanted, inputs.own.velocity_bias_enu_m_s)
 
 
@@ -75,6 +75,14 @@ def has_free_place(memory: StepMemory, inputs: StepInputs, config: CompanionConf
     if memory.progress.phase not in _FREE_PLACE_PHASES or config.setpoints.position_only:
         return False
     return driver is not None and driver.holds_height_alone and has_jittery_place(memory, inputs, config)
+
+
+def follows_steadily(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) -> bool:
+    """Return whether the drone deviates from what is asked for as its autopilot responds, and not by the link's jitter.
+
+    Led by what jitter does to it, drone and virtual model would both swing.
+    """
+    return has_free_place(memory, inputs, config) or not has_jittery_place(memory, inputs, config)
 
 
 def has_jittery_place(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) -> bool:

@@ -12,7 +12,7 @@ from companion.forecast.draws import STEPS_MAX
 from companion.forecast.samples import DT_S, Course, Follower, Rules
 from companion.landing.levelling import level_end
 from companion.landing.memory import StepMemory
-from companion.landing.outputs import has_jittery_place
+from companion.landing.outputs import follows_steadily
 from companion.landing.step_data import StepInputs
 from companion.landing.targets import way_down
 from companion.situation.situation import Approach, Situation
@@ -90,7 +90,7 @@ def deviation_now(memory: StepMemory, inputs: StepInputs, pad: PadPath, config: 
         raise ValueError("no autopilot flies")
     state, leans_m_s2 = np.zeros((STATES, 2)), reference.acceleration_enu_m_s2[:2]
     is_led = inputs.response.cascade.is_led
-    if tracking.compared_ns is not None and not has_jittery_place(memory, inputs, config):
+    if tracking.compared_ns is not None and follows_steadily(memory, inputs, config):
         late_s = (inputs.monotonic_ns - tracking.compared_ns) * 1e-9
         state = inputs.response.carry(tracking.deviation, min(late_s, _REPORT_AGE_MAX_S))
     elif not is_led:

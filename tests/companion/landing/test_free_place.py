@@ -7,10 +7,11 @@ from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.driver import Driver
 from companion.autopilots.px4 import Px4Driver
 from companion.landing.memory import StepMemory
-from companion.landing.outputs import has_free_place, setpoint
+from companion.landing.outputs import follows_steadily, has_free_place, setpoint
 from companion.landing.step_data import LinkDelay, StepInputs
 from companion.landing.virtual_model import Tracking
 from companion.planning.guidance import ReferenceState
+from companion.runtime.response_models import response_to
 from companion.situation.phases import Phase
 from link.records import replace
 from tests.companion.facts import CONFIG, NOW_NS, PAD_ENU_M, changed, situation
@@ -18,6 +19,7 @@ from tests.companion.world import configured
 
 LIMITS = CONFIG.limits.flight_limits()
 JITTER_S = 0.04
+RESPONSE = response_to(Px4Driver().cascade({"MPC_XY_P": 1.3}))
 SITUATION = situation()
 
 
@@ -39,7 +41,12 @@ def _memory(phase: Phase, speed_m_s: float = 8.0) -> StepMemory:
 def _inputs(std_s: float, driver: Driver | None = None) -> StepInputs:
     driver = Px4Driver() if driver is None else driver
     return StepInputs(
-        t_ns=NOW_NS, monotonic_ns=NOW_NS, limits=LIMITS, driver=driver, link_delay=LinkDelay(mean_s=0.1, std_s=std_s)
+        t_ns=NOW_NS,
+        monotonic_ns=NOW_NS,
+        limits=LIMITS,
+        response=RESPONSE,
+        driver=driver,
+        link_delay=LinkDelay(mean_s=0.1, std_s=std_s),
     )
 
 
@@ -76,5 +83,13 @@ def test_drone_behind_its_free_place_is_asked_to_fly_faster_and_one_with_a_held_
     assert held is not None
     assert (free.is_place_free, held.is_place_free) == (True, False)
     assert held.velocity_enu_m_s == pytest.approx((4.8, -6.4, 0.0))
-    assert free.velocity_enu_m_s == pytest.approx((4.8 + 0.3 * CONFIG.setpoints.place_gain_hz, -6.4, 0.0))
+    assert free.velocity_enu_m_s == pytest.approx((4.8 + 0.3 * 1.3, -6.4, 0.0))
     assert free.position_enu_m[2] == held.position_enu_m[2]
+
+
+def test_drone_shows_how_its_autopilot_follows_unless_jitter_moves_the_place_it_is_asked_for() -> None:
+    memory, of_copter = _memory(Phase.DESCEND), ArduPilotDriver()
+    assert follows_steadily(memory, _inputs(JITTER_S), CONFIG)
+    assert follows_steadily(memory, _inputs(0.0, of_copter), CONFIG)
+    assert not follows_steadily(memory, _inputs(JITTER_S, of_copter), CONFIG)
+    assert not follows_steadily(_memory(Phase.CHASE), _inputs(JITTER_S), CONFIG)
