@@ -12,7 +12,7 @@ from companion.landing.contact import may_force_motors_off, signs_of
 from companion.landing.contact_forecast import update_forecast
 from companion.landing.flying import fly
 from companion.landing.memory import ModelMemory, StepMemory, to_present_frame
-from companion.landing.outputs import follows_steadily, landing_status, news, news_of_sortie, setpoint
+from companion.landing.outputs import landing_status, news, news_of_sortie, setpoint
 from companion.landing.sortie_decisions import is_quiet_for_long
 from companion.landing.step_data import StepInputs, StepOutputs, System
 from companion.landing.transitions import take_events
@@ -75,8 +75,8 @@ def _update_model(memory: StepMemory, inputs: StepInputs, system: System) -> Mod
     model, own = memory.model, inputs.own
     if own is None or model.reference is None:
         return model
-    is_led = system.config.setpoints.corrects_lag and memory.progress.phase in LANDING_PHASES | STATION_PHASES
-    estimates = is_led and follows_steadily(memory, inputs, system.config)
+    follows = memory.progress.phase in LANDING_PHASES | STATION_PHASES
+    estimates = follows and system.config.setpoints.corrects_lag
     own_ns = inputs.monotonic_at(own.t_ns)
     return replace(model, tracking=update_tracking(model.tracking, own_ns, own, inputs.response, estimates=estimates))
 

@@ -67,7 +67,7 @@ def forecast_contact(
     way_down = way_to_contact(memory, situation, config)
     if then is None or way_down is None or age_s > _AGE_MAX_S:
         return None
-    deviation = deviation_now(memory, inputs, pad, config)
+    deviation = deviation_now(memory, inputs, pad)
     course = course_of(memory, relative, pad, way_down, deviation)
     numbers = draws()
     stands = vehicle_stands(situation, config.chase)

@@ -74,18 +74,10 @@ def has_free_place(memory: StepMemory, inputs: StepInputs, config: CompanionConf
     driver = inputs.driver
     if memory.progress.phase not in _FREE_PLACE_PHASES or config.setpoints.position_only:
         return False
-    return driver is not None and driver.holds_height_alone and has_jittery_place(memory, inputs, config)
+    return driver is not None and driver.holds_height_alone and _has_jittery_place(memory, inputs, config)
 
 
-def follows_steadily(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) -> bool:
-    """Return whether the drone deviates from what is asked for as its autopilot responds, and not by the link's jitter.
-
-    Led by what jitter does to it, drone and virtual model would both swing.
-    """
-    return has_free_place(memory, inputs, config) or not has_jittery_place(memory, inputs, config)
-
-
-def has_jittery_place(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) -> bool:
+def _has_jittery_place(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) -> bool:
     """Return whether the link's jitter moves the place that is asked for too far for a landing.
 
     A setpoint is held as it came, so one that comes late by so much asks for a place that the vehicle has left.

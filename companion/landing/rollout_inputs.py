@@ -12,7 +12,6 @@ from companion.forecast.draws import STEPS_MAX
 from companion.forecast.samples import DT_S, Course, Follower, Rules
 from companion.landing.levelling import level_end
 from companion.landing.memory import StepMemory
-from companion.landing.outputs import follows_steadily
 from companion.landing.step_data import StepInputs
 from companion.landing.targets import way_down
 from companion.situation.situation import Approach, Situation
@@ -83,14 +82,14 @@ def way_to_contact(memory: StepMemory, situation: Situation, config: CompanionCo
     return WayDown(offset_s=_OFFSETS_S[:count], path=path[:, :count].copy())
 
 
-def deviation_now(memory: StepMemory, inputs: StepInputs, pad: PadPath, config: CompanionConfig) -> Array:
+def deviation_now(memory: StepMemory, inputs: StepInputs, pad: PadPath) -> Array:
     """Return the cascade's state (4, 2) now, its lean that beyond what the pad's own acceleration takes."""
     tracking, reference = memory.model.tracking, memory.model.reference
     if reference is None or inputs.response is None:
         raise ValueError("no autopilot flies")
     state, leans_m_s2 = np.zeros((STATES, 2)), reference.acceleration_enu_m_s2[:2]
     is_led = inputs.response.cascade.is_led
-    if tracking.compared_ns is not None and follows_steadily(memory, inputs, config):
+    if tracking.compared_ns is not None:
         late_s = (inputs.monotonic_ns - tracking.compared_ns) * 1e-9
         state = inputs.response.carry(tracking.deviation, min(late_s, _REPORT_AGE_MAX_S))
     elif not is_led:

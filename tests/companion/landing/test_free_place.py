@@ -7,7 +7,7 @@ from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.driver import Driver
 from companion.autopilots.px4 import Px4Driver
 from companion.landing.memory import StepMemory
-from companion.landing.outputs import follows_steadily, has_free_place, setpoint
+from companion.landing.outputs import has_free_place, setpoint
 from companion.landing.step_data import LinkDelay, StepInputs
 from companion.landing.virtual_model import Tracking
 from companion.planning.guidance import ReferenceState
@@ -85,11 +85,3 @@ def test_drone_behind_its_free_place_is_asked_to_fly_faster_and_one_with_a_held_
     assert held.velocity_enu_m_s == pytest.approx((4.8, -6.4, 0.0))
     assert free.velocity_enu_m_s == pytest.approx((4.8 + 0.3 * 1.3, -6.4, 0.0))
     assert free.position_enu_m[2] == held.position_enu_m[2]
-
-
-def test_drone_shows_how_its_autopilot_follows_unless_jitter_moves_the_place_it_is_asked_for() -> None:
-    memory, of_copter = _memory(Phase.DESCEND), ArduPilotDriver()
-    assert follows_steadily(memory, _inputs(JITTER_S), CONFIG)
-    assert follows_steadily(memory, _inputs(0.0, of_copter), CONFIG)
-    assert not follows_steadily(memory, _inputs(JITTER_S, of_copter), CONFIG)
-    assert not follows_steadily(_memory(Phase.CHASE), _inputs(JITTER_S), CONFIG)
