@@ -9,7 +9,7 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
-from scenarios.manual.pages import PAGES, fetched_from_elsewhere, with_links
+from scenarios.manual.pages import PAGES, fetched_from_elsewhere, with_links, with_whole_options
 
 LOG = logging.getLogger("mkdocs.plugins.manual")  # below mkdocs' own, so that its strict builds count warnings
 LETTERS = "STIXTwoMath-Regular.ttf"
@@ -28,6 +28,11 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 def on_page_markdown(markdown: str, page: Page, **_: Any) -> str:
     """Return a page's text with links to the pages that it names."""
     return with_links(markdown, page.file.src_uri)
+
+
+def on_page_content(html: str, **_: Any) -> str:
+    """Return a page's text with options that no line breaks."""
+    return with_whole_options(html)
 
 
 def on_post_page(output: str, page: Page, **_: Any) -> str:

@@ -4,6 +4,7 @@
 """
 
 import re
+from collections import defaultdict
 from email.message import Message
 from importlib.metadata import metadata
 from pathlib import Path
@@ -39,8 +40,11 @@ def licence_of(package: str) -> str:
 
 def licences_page() -> str:
     """Return the page, as it stands in docs/licences.md."""
-    rows = [(name, licence_of(name)) for name in packages()]
-    return page("Licences", TEXT, table(("package", "licence"), rows))
+    licences: defaultdict[str, list[str]] = defaultdict(list)
+    for name in packages():
+        licences[licence_of(name)].append(name)
+    rows = ((licence, ", ".join(names)) for licence, names in sorted(licences.items()))
+    return page("Licences", TEXT, table(("licence", "packages"), rows))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The pages of the manual that are made from the program, and the one change that is made to the written ones."""
+"""The pages of the manual that are made from the program, and the changes that are made to the written ones."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -52,6 +52,8 @@ PAGES: Mapping[str, Callable[[], str]] = MappingProxyType(
 
 _MENTION = re.compile(r"(?<![\w/`(\[])docs/(\w+)\.md")
 _FENCE = re.compile(r"(^```.*?^```$|`[^`\n]+`)", re.DOTALL | re.MULTILINE)
+_CODE = re.compile(r"(?<!<pre>)<code>([^<]*)</code>")
+_HYPHENED = re.compile(r"\S*-\S*")
 _FETCHED = re.compile(
     r'<(?:script|img|iframe)[^>]+src="?(?:https?:)?//|<link[^>]+rel="?(?:stylesheet|preconnect)"?[^>]+https?://'
 )
@@ -61,6 +63,15 @@ def fetched_from_elsewhere(html: str) -> str | None:
     """Return the first tag of a page by which a browser fetches what is not in the manual, None without one."""
     found = _FETCHED.search(html)
     return None if found is None else found[0]
+
+
+def with_whole_options(html: str) -> str:
+    """Return a page on which no line ends within an option such as `--speed-max`; blocks of code stay as they are."""
+    return _CODE.sub(lambda found: f"<code>{_HYPHENED.sub(_whole, found[1])}</code>", html)
+
+
+def _whole(word: re.Match[str]) -> str:
+    return f'<span class="word">{word[0]}</span>'
 
 
 def with_links(markdown: str, path: str) -> str:

@@ -9,22 +9,23 @@ from companion.core.reason_help import ReasonHelp, reason_helps
 from scenarios.manual.markdown import code, page, table
 
 PATH = Path(__file__).parents[2] / "docs" / "reasons.md"
-TEXT = """The companion tells why it does what it does: in the panel, in the log, to the ground station and in
-`landing/status` (`reason` is the sentence, `reason_code` the name below). `companion reasons NAME` prints one of them
-at the terminal. Figures are those of the default configuration.
+TEXT = """The panel, the log, the ground station and `landing/status` (`reason_code`) tell these reasons.
+`companion reasons NAME` prints one at the terminal, and all of them without a name. Left out here are those that ask
+for nothing, and those whose message itself says what to do. Figures are those of the default configuration.
 
-**When a landing is waved off**: let the drone climb and try again by itself. If it hovers, read the last reasons in
-the log, change what they name, and command `start`. Two aborts of one kind end the day's flying.
-[Safety](safety.md) has the pilot's procedure."""
+**When a landing is waved off**, let the drone climb and try again by itself. If it hovers, read the last reasons in
+the log, change what they name, and command `start`. [Safety](safety.md) has the pilot's procedure."""
+_SENTENCE_MAX = 70  # longer ones end with what to do
 _PLACE = re.compile(r"\{[^}]*\}")
 
 
 def reasons_page() -> str:
     """Return the page, as it stands in docs/reasons.md."""
     parts = [TEXT]
-    for (group, note), helps in groupby(reason_helps(CompanionConfig()), lambda one: (one.group, one.note)):
+    wanting = (one for one in reason_helps(CompanionConfig()) if one.remedy and len(one.reason.value) <= _SENTENCE_MAX)
+    for (group, note), helps in groupby(wanting, lambda one: (one.group, one.note)):
         parts += [f"## {group}", *([note] if note else [])]
-        parts += [table(("told", "it means", "look at, or do"), map(_row, helps))]
+        parts += [table(("told", "why", "look at, or do"), map(_row, helps))]
     return page("Reasons, and what to do", *parts)
 
 

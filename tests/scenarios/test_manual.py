@@ -18,7 +18,7 @@ from scenarios.catalogue.world_names import names_worlds, parse_world_name
 from scenarios.config import Scenario
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.manual.commands import PROGRAMS, helps
-from scenarios.manual.pages import PAGES, fetched_from_elsewhere
+from scenarios.manual.pages import PAGES, fetched_from_elsewhere, with_whole_options
 from scenarios.manual.phase_chart import FROM_ANYWHERE, PLACES, arrows, phase_chart
 from scenarios.manual.settings import keys_of, meaning_of, tables_of
 from scenarios.recordings.result import score_run
@@ -155,3 +155,9 @@ def test_example_scenario_with_another_companion_or_sensor_lands(name: str, tmp_
 )
 def test_what_a_page_would_fetch_is_found(tag: str, fetches: bool) -> None:
     assert (fetched_from_elsewhere(f"<p>text</p><script {tag}></script>") is not None) is fetches
+
+
+def test_options_within_a_line_are_kept_whole_and_blocks_of_code_are_not_touched() -> None:
+    block = "<pre><code>check --speed-max 5</code></pre>"
+    found = with_whole_options(f"<p><code>check --speed-max 5</code></p>{block}")
+    assert found == f'<p><code>check <span class="word">--speed-max</span> 5</code></p>{block}'
