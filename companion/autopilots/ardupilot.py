@@ -95,7 +95,6 @@ class ArduPilotDriver:
     waits_in_mode = True
     follows_in_failsafe = True  # a low battery, or a radio lost, with "continue" as its action
     takes_target_in_body_axes = True
-    holds_height_alone = False  # a position that is masked in part is left out as a whole
     speed_parameters = tuple(named.name for names in (_TILT, _TILT_BY_POSITION, _SPEED) for named in names)
     mode_streams_hz: Mapping[int, float] = MappingProxyType({mavlink.MAVLINK_MSG_ID_HEARTBEAT: 10.0})
     unused_streams: tuple[int, ...] = ()  # it sends nothing unasked

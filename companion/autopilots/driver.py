@@ -150,10 +150,6 @@ class Driver(Protocol):
         """Whether silence only stops it, and it stays in the mode that follows setpoints."""
 
     @property
-    def holds_height_alone(self) -> bool:
-        """Whether it flies setpoints whose position is a height only, with the velocity on all axes."""
-
-    @property
     def takes_target_in_body_axes(self) -> bool:
         """Whether its precision landing takes the way to the pad in the drone's axes, no place in the local frame."""
 

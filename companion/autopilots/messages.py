@@ -10,7 +10,6 @@ ASK_AGAIN_S = 1.0  # the heartbeat that confirms a mode may be a second late
 _DISARM_AGAIN_S = 0.2
 _CUSTOM_MODE_FLAG = 1.0  # MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
 _FORCE_DISARM = 21196.0  # MAVLink common, MAV_CMD_COMPONENT_ARM_DISARM, parameter 2
-_IGNORE_PLACE = 0b0000_0000_0000_0011
 _IGNORE_VELOCITY = 0b0000_0000_0011_1000
 _IGNORE_ACCELERATION = 0b0000_0001_1100_0000
 _IGNORE_YAW_RATE = 0b0000_1000_0000_0000
@@ -34,7 +33,6 @@ def local_ned_setpoint(setpoint: Setpoint, boot_ms: int, target_system: int) -> 
     Source: MAVLink common, POSITION_TARGET_TYPEMASK.
     """
     mask = _IGNORE_YAW_RATE
-    mask |= _IGNORE_PLACE if setpoint.is_place_free else 0
     mask |= _IGNORE_VELOCITY if setpoint.velocity_enu_m_s is None else 0
     mask |= _IGNORE_ACCELERATION if setpoint.acceleration_enu_m_s2 is None else 0
     position = ned_from_enu(setpoint.position_enu_m)

@@ -52,7 +52,6 @@ class Px4Driver:
     timeout_parameter = "COM_OF_LOSS_T"
     timeout_default_s = 1.0
     waits_in_mode = False
-    holds_height_alone = True
     takes_target_in_body_axes = False
     follows_in_failsafe = False  # what it only warns of is none
     speed_parameters: tuple[str, ...] = ("MPC_XY_VEL_MAX",)

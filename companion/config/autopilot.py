@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from link.program.toml_config import NotNegative, Positive, StrictModel
+from link.program.toml_config import Positive, StrictModel
 
 
 class AutopilotKind(Enum):
@@ -55,9 +55,6 @@ class SetpointConfig(StrictModel):
 
     # By which they are ahead of the drone beside the link's delay; none: as the autopilot takes them.
     lead_s: Annotated[float, Field(ge=0.0, le=0.5)] | None = None
-    # So far a link's jitter may move the place that a landing drone is asked for: 0.1 m leans the benchmark's by 5
-    # degrees. Beyond that it is asked for velocities, which make up for what it is off its place.
-    place_jitter_max_m: NotNegative = 0.1
     yaw_rate_max_rad_s: Positive = 0.8  # ArduCopter slews at 60 degrees a second
     position_only: bool = False  # leave velocity and acceleration out, as the source report does
     corrects_lag: bool = True  # plan by how far the drone will be off its setpoints

@@ -128,17 +128,13 @@ class RangeReading(Struct, frozen=True, kw_only=True):
 
 
 class Setpoint(Struct, frozen=True, kw_only=True):
-    """What the autopilot is to follow from `t_ns` on; None leaves a group out.
-
-    Where the place is free, of the position only the height is to be held.
-    """
+    """What the autopilot is to follow from `t_ns` on; None leaves a group out."""
 
     t_ns: int
     position_enu_m: Vector3
     velocity_enu_m_s: Vector3 | None
     acceleration_enu_m_s2: Vector3 | None
     yaw_rad: float
-    is_place_free: bool = False
 
 
 class FlightLimits(Struct, frozen=True, kw_only=True):

@@ -1,7 +1,5 @@
 """What a step tells: the setpoint for the autopilot, the news for the pilot, status and plan for the world; pure."""
 
-import math
-
 import numpy as np
 
 from companion.autopilots.driver import AutopilotView
@@ -17,7 +15,7 @@ from companion.landing.flown_plan import extrapolate, lead_acceleration, state_a
 from companion.landing.memory import Progress, StepMemory
 from companion.landing.step_data import StepInputs
 from companion.landing.targets import way_down
-from companion.landing.virtual_model import free_place, press_down, setpoint_at
+from companion.landing.virtual_model import press_down, setpoint_at
 from companion.landing.waiting import why_held_up
 from companion.planning.guidance import PlanResult
 from companion.situation.phases import Phase
@@ -25,9 +23,6 @@ from companion.situation.situation import Approach, Situation
 from link.messages import LandingStatus, Plan, PlannedPose
 from link.payloads import cdr, json_messages
 from link.zenoh.keys import Keys, Publication
-
-# A chase keeps its place: through an outage the drone then stops where it was last sent.
-_FREE_PLACE_PHASES = (Phase.ALIGN, Phase.DESCEND, Phase.TOUCHDOWN)
 
 
 def setpoint(
@@ -64,29 +59,7 @@ def setpoint(
         model.yaw_setpoint_rad,
         position_only=config.setpoints.position_only,
     )
-    if inputs.response is not None and has_free_place(memory, inputs, config):
-        wanted = free_place(wanted, model.tracking.behind_enu_m, inputs.response.cascade.position_per_s)
     return wanted if inputs.own is None else as_seen_with(wanted, inputs.own.velocity_bias_enu_m_s)
-
-
-def has_free_place(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) -> bool:
-    """Return whether the place is left out of what is asked for, since the link's jitter moves it too far."""
-    driver = inputs.driver
-    if memory.progress.phase not in _FREE_PLACE_PHASES or config.setpoints.position_only:
-        return False
-    return driver is not None and driver.holds_height_alone and _has_jittery_place(memory, inputs, config)
-
-
-def _has_jittery_place(memory: StepMemory, inputs: StepInputs, config: CompanionConfig) -> bool:
-    """Return whether the link's jitter moves the place that is asked for too far for a landing.
-
-    A setpoint is held as it came, so one that comes late by so much asks for a place that the vehicle has left.
-    """
-    reference = memory.model.reference
-    if reference is None:
-        return False
-    speed_m_s = math.hypot(*reference.velocity_enu_m_s[:2].tolist())
-    return speed_m_s * inputs.link_delay.std_s > config.setpoints.place_jitter_max_m
 
 
 def _press_m_s2(memory: StepMemory, config: CompanionConfig) -> float | None:

@@ -18,7 +18,6 @@ from link.records import replace
 _HISTORY_S = 0.6  # longer than any telemetry is late
 _UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady
 _AIR_MEAN_S = 1.0  # longer than a gust's beginning, shorter than a change of speed
-_CAUGHT_UP_MAX_M = 1.0  # made up for by velocity at a time; more would be a chase
 _BREAK_S = 0.25  # between two reports, after which the deviation is what the next one shows
 _ACCELERATION_MAX_M_S2 = 10.0  # of the model between two steps: it is set back at times, and that is no motion
 
@@ -164,18 +163,3 @@ def setpoint_at(reference: ReferenceState, t_ns: int, yaw_rad: float, *, positio
         acceleration_enu_m_s2=None if position_only else (ax, ay, az),
         yaw_rad=yaw_rad,
     )
-
-
-def free_place(setpoint: Setpoint, behind_enu_m: Array, gain_hz: float) -> Setpoint:
-    """Return the setpoint with a free place: what the drone is off its place is made up for by the velocity asked for.
-
-    Args:
-        setpoint: with a velocity.
-        behind_enu_m: (3,) from the drone to where it was asked to be.
-        gain_hz: velocity per distance.
-    """
-    if setpoint.velocity_enu_m_s is None:
-        return setpoint
-    (vx, vy, vz), (x_m, y_m, _) = setpoint.velocity_enu_m_s, behind_enu_m.tolist()
-    gain_hz *= _CAUGHT_UP_MAX_M / max(math.hypot(x_m, y_m), _CAUGHT_UP_MAX_M)
-    return replace(setpoint, velocity_enu_m_s=(vx + gain_hz * x_m, vy + gain_hz * y_m, vz), is_place_free=True)

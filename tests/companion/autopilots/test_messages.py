@@ -35,15 +35,12 @@ def test_vectors_are_turned_to_ned_and_yaw_to_a_heading() -> None:
     ("setpoint", "ignored"),
     [
         (SETPOINT, {11}),
-        (replace(SETPOINT, is_place_free=True), {0, 1, 11}),
         (replace(SETPOINT, velocity_enu_m_s=None), {3, 4, 5, 11}),
         (replace(SETPOINT, acceleration_enu_m_s2=None), {6, 7, 8, 11}),
         (replace(SETPOINT, velocity_enu_m_s=None, acceleration_enu_m_s2=None), {3, 4, 5, 6, 7, 8, 11}),
     ],
 )
-def test_groups_are_left_out_whole_but_for_a_free_place_and_yaw_is_always_sent(
-    setpoint: Setpoint, ignored: set[int]
-) -> None:
+def test_groups_are_left_out_whole_and_yaw_is_always_sent(setpoint: Setpoint, ignored: set[int]) -> None:
     message = local_ned_setpoint(setpoint, 0, 1)
     assert {bit for bit in range(16) if message.type_mask >> bit & 1} == ignored
 

@@ -75,7 +75,21 @@ def _beside_pad_m(flight: Flight) -> float:
     return float(np.hypot(*(np.array(flight.own.position_enu_m) - flight.vehicle.at(flight.own.t_ns))[:2]))
 
 
-def _flown(late_s: float, push_enu_m_s2: tuple[float, float], gains: Cascade, *, corrects_lag: bool) -> list[float]:
+class JitteryFlight(CascadeFlight):
+    """Over a link whose delay differs by 50 ms from one setpoint to the next: 0.25 m at 5 m/s."""
+
+    def inputs(self, command: Command | None = None) -> StepInputs:
+        return replace(super().inputs(command), link_delay=LinkDelay(std_s=0.05))
+
+
+def _flown(
+    late_s: float,
+    push_enu_m_s2: tuple[float, float],
+    gains: Cascade,
+    *,
+    corrects_lag: bool,
+    kind: type[CascadeFlight] = CascadeFlight,
+) -> list[float]:
     """The distances from the pad's centre in the fourth second of the alignment."""
     waits = configured(
         {
@@ -83,7 +97,7 @@ def _flown(late_s: float, push_enu_m_s2: tuple[float, float], gains: Cascade, *,
             "descent": {"alignment": {"hold_s": 60.0, "time_limit_s": 90.0}},
         }
     )
-    flight = CascadeFlight(vehicle=_vehicle(), config=waits)
+    flight = kind(vehicle=_vehicle(), config=waits)
     flight.late_s, flight.push_enu_m_s2, flight.gains = late_s, np.array(push_enu_m_s2), gains
     flight.start_and_reach(Phase.ALIGN)
     flight.run(3.0)
@@ -103,8 +117,11 @@ OFF: dict[str, Any] = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(OFF))
-def test_drone_that_is_lastingly_off_its_setpoints_is_brought_over_the_pad(name: str) -> None:
-    led, left = (max(_flown(*OFF[name], corrects_lag=corrects_lag)) for corrects_lag in (True, False))
+@pytest.mark.parametrize("kind", [CascadeFlight, JitteryFlight])
+def test_drone_that_is_lastingly_off_its_setpoints_is_brought_over_the_pad(
+    kind: type[CascadeFlight], name: str
+) -> None:
+    led, left = (max(_flown(*OFF[name], corrects_lag=corrects_lag, kind=kind)) for corrects_lag in (True, False))
     assert left > 0.2
     assert led < 0.25 * left
 
@@ -112,24 +129,6 @@ def test_drone_that_is_lastingly_off_its_setpoints_is_brought_over_the_pad(name:
 @pytest.mark.slow
 def test_drone_that_follows_exactly_is_not_led_off_the_pad() -> None:
     assert max(_flown(0.0, (0.0, 0.0), Px4Driver().cascade({}), corrects_lag=True)) < 0.05
-
-
-class JitteryFlight(CascadeFlight):
-    """Over a link whose delay differs by 50 ms from one setpoint to the next: 0.25 m at 5 m/s."""
-
-    def inputs(self, command: Command | None = None) -> StepInputs:
-        return replace(super().inputs(command), link_delay=LinkDelay(mean_s=0.1, std_s=0.05))
-
-
-@pytest.mark.parametrize(("kind", "is_estimated"), [(CascadeFlight, True), (JitteryFlight, False)])
-def test_what_jitter_does_to_the_drone_is_not_taken_for_how_it_follows(
-    kind: type[CascadeFlight], *, is_estimated: bool
-) -> None:
-    flight = kind(vehicle=_vehicle(), driver=CarryingDriver())
-    flight.late_s = 0.06
-    flight.start_and_reach(Phase.ALIGN)
-    flight.run(1.0)
-    assert bool(np.any(flight.memory.model.tracking.deviation)) is is_estimated
 
 
 @pytest.mark.parametrize("speed_m_s", [4.0, 9.0])

@@ -10,7 +10,6 @@ from companion.core.data import GRAVITY_M_S2, OwnState
 from companion.landing.virtual_model import (
     Tracking,
     add_to_past,
-    free_place,
     press_down,
     setpoint_at,
     update_tracking,
@@ -128,20 +127,3 @@ def test_model_that_is_pressed_falls_as_if_nothing_held_it() -> None:
     np.testing.assert_allclose(level.position_enu_m - pressed.position_enu_m, [0.0, 0.0, 0.5 * 9.0 * 0.13**2])
     np.testing.assert_allclose(pressed.velocity_enu_m_s, [5.0, 0.0, -9.0 * 0.13])
     np.testing.assert_allclose(pressed.acceleration_enu_m_s2, [0.0, 0.0, -9.0])
-
-
-@pytest.mark.parametrize(
-    ("behind_m", "faster_m_s"),
-    [((0.3, -0.2, 0.5), (0.45, -0.3)), ((3.0, -4.0, 0.0), (0.9, -1.2))],
-    ids=["in proportion", "bounded"],
-)
-def test_free_place_is_made_up_for_by_the_horizontal_velocity(
-    behind_m: tuple[float, float, float], faster_m_s: tuple[float, float]
-) -> None:
-    wanted = setpoint_at(_state(2.0, 5.0), 0, 0.3, position_only=False)
-    free = free_place(wanted, np.array(behind_m), 1.5)
-    assert free.is_place_free
-    assert free.velocity_enu_m_s == pytest.approx((5.0 + faster_m_s[0], faster_m_s[1], 0.0))
-    assert free.position_enu_m == wanted.position_enu_m
-    held = setpoint_at(_state(2.0, 5.0), 0, 0.3, position_only=True)
-    assert free_place(held, np.array(behind_m), 1.5) is held
