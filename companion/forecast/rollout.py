@@ -9,8 +9,10 @@ bandwidth W (Butterworth's third-order polynomial) within jerk and acceleration,
 
     j = W^3 (p - e) + 2 W^2 (v - e') + 2 W (a - s'')
 
-and the drone follows the model by its autopilot's cascade (`autopilots.response`), whose deviation gusts move. The way
-down is the planned one. A drone that sees, above where it commits, what it waits for does not come to the contact; nor
+and the drone follows the model by its autopilot's cascade (`autopilots.response`), whose deviation gusts move. It leans
+for the pad's acceleration, by the cascade's a, and by what its integrator holds against the air: i' = -u / T, where
+a + i is what it is seen to lean against the air while it is pushed steadily, so that i = air + u at first. The way down
+is the planned one. A drone that sees, above where it commits, what it waits for does not come to the contact; nor
 does one that breaks off below while it still can stop sinking.
 """
 
@@ -130,7 +132,7 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
     before, late = len(path) - steps, samples.delay_s[sample] / DT_S
     model, state = course.model.copy(), samples.deviation[sample].copy()
     known, off, expected, lean = np.zeros((3, 2)), np.empty((2, 2)), np.empty(2), np.empty(2)
-    before_m_s2 = np.empty(2)
+    before_m_s2, held = np.empty(2), course.air_enu_m_s2 + state[3]
     for k in range(steps):
         seen = max(before + k - late, 0.0)
         _know(path[int(seen)], path[0], (before + k - seen) * DT_S, drone.believes_s, known)
@@ -141,7 +143,8 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
         for i in range(2):
             off[0, i] = model[0, i] + state[0, i] - known[0, i]
             off[1, i] = model[1, i] + state[1, i] - known[1, i]
-            lean[i] = expected[i] + state[2, i] + course.air_enu_m_s2[i]
+            lean[i] = expected[i] + state[2, i] + held[i]
+            held[i] -= drone.forgets_hz * state[3, i] * DT_S
         along_m_s2 = course.along_m_s2[k] + known[2, 0] * cx + known[2, 1] * cy
         if _does_not_land(off, along_m_s2, height_m, sink_m_s, rules):
             return

@@ -70,6 +70,20 @@ def test_a_drone_whose_setpoints_are_led_is_level_at_the_contact_where_another_s
     assert as_it_comes > led + 0.03
 
 
+@pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
+def test_what_holds_against_a_steady_wind_leans_the_drone_by_its_trim_whoever_holds_it(share: float) -> None:
+    # a place that is off by what the gains answer to the push is at rest; the integrator holds the rest of the wind
+    steady = descent()
+    drone, wind = steady.drone, -steady.course.air_enu_m_s2
+    pushed = samples()
+    pushed.deviation[0, 3], pushed.deviation[0, 2] = share * wind, -share * wind
+    pushed.deviation[0, 0] = share * wind / drone.stiffness_per_s2
+    steady = steady._replace(drone=drone._replace(bandwidth_hz=0.0))
+    steady.course.model[0] = -pushed.deviation[0, 0]
+    (end,) = roll_out(pushed, steady, 0.1)
+    assert end[TILT] == pytest.approx(0.0, abs=math.radians(0.5))
+
+
 def test_machine_code_is_its_python(monkeypatch: pytest.MonkeyPatch) -> None:
     several = samples(5, kind=ALONG, event=np.array([0.15, -2.5, 0.2, 0.8]))
     generator = np.random.default_rng(4)
