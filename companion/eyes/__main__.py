@@ -10,7 +10,7 @@ from companion.eyes import calibration_commands
 from companion.eyes.examples import EXAMPLES
 from companion.eyes.options import BoardOption, CalibrationOption, MountingOption, SizeOption, SourceOption
 from link.errors import UserError
-from link.program.cli import make_app, run_app
+from link.program.cli import JsonOption, make_app, run_app
 from link.program.extras import require
 from link.zenoh.command_line import NameArguments, ZenohArguments
 
@@ -115,9 +115,7 @@ def print_board(
 
 
 @app.command("bench")
-def bench_detector(
-    *, as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False
-) -> None:
+def bench_detector(*, as_json: JsonOption = False) -> None:
     """Measure how fast the detector is here, against OpenCV's bare one on the same pictures; takes some seconds."""
     import json
 
