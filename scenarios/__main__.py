@@ -120,7 +120,7 @@ def world_command(
     endpoints: ZenohArguments,
 ) -> None:
     """Run the simulated side of a scenario, the autopilot with the vehicle in it, in one process."""
-    from link.mavlink.transports import open_transport
+    from link.transports.opening import open_transport
     from link.zenoh.session import open_session
     from scenarios.catalogue.changed import load_changed_scenario
     from scenarios.catalogue.world_names import run_seed

@@ -160,7 +160,7 @@ class _Source(NamedTuple):
 
 def _source(gpsd: str | None, nmea: str | None, mavlink: str | None) -> _Source:
     """Return the receiver that the user named; only what it needs is imported."""
-    from link.mavlink.transports import open_transport
+    from link.transports.opening import open_transport
     from scenarios.vehicle_sources.channel import device_opener, gpsd_address, nmea_opener
 
     if gpsd is not None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from companion.check.session import CheckSession
     from companion.config.companion import CompanionConfig
     from link.mavlink.signing import Signing
-    from link.mavlink.transport import Transport
+    from link.transports.transport import Transport
     from link.zenoh.keys import Keys
     from link.zenoh.session import ZenohSession
 
@@ -62,8 +62,8 @@ def check(
     from companion.check.findings import read_kept
     from companion.config.companion import CompanionConfig
     from companion.runtime.open_links import open_links
-    from link.mavlink.transports import open_transport
     from link.program.settings import COMPANION, load_settings
+    from link.transports.opening import open_transport
     from link.zenoh.session import open_session
 
     settings = load_settings(config, CompanionConfig, COMPANION, changes)
