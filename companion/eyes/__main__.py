@@ -72,10 +72,10 @@ def run_detector(
     from companion.eyes.loop import EyesLoop
     from companion.eyes.mounting import load_mounting
     from companion.eyes.node import EyesNode
-    from companion.eyes.opening import SourceOptions, open_source
     from companion.eyes.recording import open_recorder
     from companion.eyes.sight import SightSystem
-    from companion.eyes.zenoh_source import PICTURE_MAX_BYTES
+    from companion.eyes.sources.opening import SourceOptions, open_source
+    from companion.eyes.sources.zenoh_source import PICTURE_MAX_BYTES
     from link.records import replace
     from link.zenoh.session import open_session
 

@@ -50,8 +50,8 @@ def calibrate_command(
     from companion.eyes.calibrating import calibrate
     from companion.eyes.calibration import dump_calibration
     from companion.eyes.collecting import collect_shots
-    from companion.eyes.opening import SourceOptions, open_source
-    from companion.eyes.zenoh_source import PICTURE_MAX_BYTES
+    from companion.eyes.sources.opening import SourceOptions, open_source
+    from companion.eyes.sources.zenoh_source import PICTURE_MAX_BYTES
     from link.records import replace
     from link.zenoh.keys import Keys
     from link.zenoh.session import open_session
@@ -128,9 +128,9 @@ def latency_command(
     from companion.eyes.collecting import collect_rotation
     from companion.eyes.latency import fit_latency
     from companion.eyes.mounting import load_mounting
-    from companion.eyes.opening import SourceOptions, open_source
     from companion.eyes.sight import SightSystem
-    from companion.eyes.zenoh_source import PICTURE_MAX_BYTES
+    from companion.eyes.sources.opening import SourceOptions, open_source
+    from companion.eyes.sources.zenoh_source import PICTURE_MAX_BYTES
     from link.records import replace
     from link.zenoh.keys import Keys
     from link.zenoh.session import open_session
