@@ -8,7 +8,6 @@ import typer
 from companion.check.command import check
 from companion.config.autopilot import Guide
 from companion.runtime.command_line import ConfigArguments, MavlinkArguments, RecordArguments, RunArguments
-from companion.runtime.examples import EXAMPLES
 from companion.runtime.keys import keys
 from companion.runtime.reasons import reasons
 from link.errors import UserError
@@ -16,7 +15,23 @@ from link.program.cli import make_app, run_app
 from link.ros2.command_line import Ros2Arguments
 from link.zenoh.command_line import NameArguments, ZenohArguments
 
-app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.", EXAMPLES)
+_EXAMPLES = {
+    "": (
+        "companion --mavlink /dev/ttyACM0,921600 --zenoh-config companion.json5 --vehicle car",
+        "companion --mavlink udpin:127.0.0.1:14540 --start     # beside `scenarios world straight_5`",
+        "companion --print-config > companion.toml",
+    ),
+    "check": (
+        "companion check --mavlink /dev/ttyACM0,921600 --speed-max 8",
+        "companion check --mavlink udpin:0.0.0.0:14540 --write",
+        "companion check --mavlink udpin:0.0.0.0:14540 --restore parameters_before.json",
+    ),
+    "keys": ("companion keys keys --host 192.168.4.1",),
+    "reasons": ("companion reasons OFFSET_UNKNOWN",),
+}
+"""What the help of `companion` shows as examples, by command."""
+
+app = make_app("Land a drone on a moving vehicle: estimate, plan, and fly any MAVLink autopilot.", _EXAMPLES)
 app.command("check")(check)
 app.command("keys")(keys)
 app.command("reasons")(reasons)

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from link.errors import UserError
-from link.program.cli import SetOption, make_app, run_app
+from link.program.cli import JsonOption, SetOption, make_app, run_app
 from link.zenoh.command_line import DroneOption, NameArguments, NamespaceOption, ZenohArguments
 from scenarios.commands import (
     attack,
@@ -29,13 +29,10 @@ from scenarios.commands import (
 )
 from scenarios.commands import view as view_command
 from scenarios.commands.examples import SCENARIOS
+from scenarios.commands.options import NoRecordOption, RunsOption, SeedOption
 
 app = make_app("Experiments: run landings, score them on ground truth, and report.", SCENARIOS)
 
-JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
-SeedOption = Annotated[
-    int | None, typer.Option("--seed", min=0, help="Of everything random [default: 1, or the world's own].")
-]
 NameArgument = Annotated[
     str, typer.Argument(metavar="NAME|FILE", help="Scenario; `scenarios list` shows them. Or a world: world:urban@1.")
 ]
@@ -74,10 +71,8 @@ def run_command(
         str | None, typer.Option("--firmware", metavar="px4|ardupilot", help="In place of the scenario's.")
     ] = None,
     changes: SetOption = None,
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the run's folder is made.")] = Path("runs"),
-    no_record: Annotated[
-        bool, typer.Option("--no-record", help="Record neither the companion nor the truth; else both are, as MCAP.")
-    ] = False,
+    out: RunsOption = Path("runs"),
+    no_record: NoRecordOption = False,
     view: Annotated[bool, typer.Option("--view", help="Show the landing in the browser.")] = False,
     as_json: JsonOption = False,
 ) -> int:
@@ -125,7 +120,7 @@ def world_command(
     endpoints: ZenohArguments,
 ) -> None:
     """Run the simulated side of a scenario, the autopilot with the vehicle in it, in one process."""
-    from link.mavlink.transports import open_transport
+    from link.transports.opening import open_transport
     from link.zenoh.session import open_session
     from scenarios.catalogue.changed import load_changed_scenario
     from scenarios.catalogue.world_names import run_seed

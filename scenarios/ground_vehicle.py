@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
@@ -12,6 +13,7 @@ from link.program.cli import SetOption, make_app, run_app
 from link.ros2.command_line import Ros2Arguments
 from link.zenoh.command_line import NameArguments, ZenohArguments
 from scenarios.commands.examples import GROUND_VEHICLE
+from scenarios.commands.options import SeedOption
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -79,9 +81,6 @@ _AntennaToPadOption = Annotated[
         rich_help_panel=_PAD,
     ),
 ]
-_SeedOption = Annotated[
-    int | None, typer.Option("--seed", min=0, help="Of everything random [default: 1, or the world's own].")
-]
 _UseSimTimeOption = Annotated[bool, typer.Option("--use-sim-time", help="Follow the simulation's clock on Zenoh.")]
 _DepartAtOnceOption = Annotated[
     bool, typer.Option("--depart-at-once", help="Do not wait until the simulated drone hovers.")
@@ -102,7 +101,7 @@ def ground_vehicle(
     pad_size: _PadSizeOption = None,
     pad_height: _PadHeightOption = None,
     antenna_to_pad: _AntennaToPadOption = None,
-    seed: _SeedOption = None,
+    seed: SeedOption = None,
     changes: SetOption = None,
     use_sim_time: _UseSimTimeOption = False,
     depart_at_once: _DepartAtOnceOption = False,
@@ -112,19 +111,10 @@ def ground_vehicle(
     ros2: Ros2Arguments,
 ) -> None:
     """Publish a ground vehicle over Zenoh: its position, velocity, heading and pad."""
-    from link.ros2.options import open_layout
-
     if sum(one is not None for one in (scenario, gpsd, nmea, mavlink)) > 1:
         raise UserError("--scenario, --gpsd, --nmea and --mavlink are one vehicle each: give one of them")
     keys = names.keys()
-    layout = ros2.options()
-    # a ROS 2 graph has its router at the default endpoint; else the vehicle waits there for the others
-    options = endpoints.options(listens=layout is None)
-    node = (f"/{keys.vehicle}", "ground_vehicle")
-
-    def open_zenoh() -> "ZenohSession":
-        return open_layout(options, layout, keys, node)
-
+    open_zenoh = _zenoh_opener(keys, endpoints, ros2)
     if scenario is not None:
         if any(one is not None for one in (pad, pad_size, pad_height, antenna_to_pad)):
             raise UserError(
@@ -141,6 +131,16 @@ def ground_vehicle(
 
     geometry = pad_geometry(pad, size_m=pad_size, height_m=pad_height, antenna_to_pad_m=antenna_to_pad)
     _listen(source, geometry, keys, open_zenoh)
+
+
+def _zenoh_opener(keys: "Keys", endpoints: ZenohArguments, ros2: Ros2Arguments) -> "OpenZenoh":
+    """Return what opens the session that the options describe."""
+    from link.ros2.options import open_layout
+
+    layout = ros2.options()
+    # a ROS 2 graph has its router at the default endpoint; else the vehicle waits there for the others
+    options = endpoints.options(listens=layout is None)
+    return partial(open_layout, options, layout, keys, (f"/{keys.vehicle}", "ground_vehicle"))
 
 
 class _Simulation(NamedTuple):
@@ -160,7 +160,7 @@ class _Source(NamedTuple):
 
 def _source(gpsd: str | None, nmea: str | None, mavlink: str | None) -> _Source:
     """Return the receiver that the user named; only what it needs is imported."""
-    from link.mavlink.transports import open_transport
+    from link.transports.opening import open_transport
     from scenarios.vehicle_sources.channel import device_opener, gpsd_address, nmea_opener
 
     if gpsd is not None:

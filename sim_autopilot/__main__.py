@@ -10,9 +10,17 @@ import typer
 
 from link.program.cli import EXIT_INTERRUPTED, EXIT_OK, SetOption, make_app, run_app
 from link.zenoh.command_line import NameArguments, ZenohArguments
-from sim_autopilot.runtime.examples import EXAMPLES
 
-app = make_app("Simulate a quadrotor under an autopilot that speaks MAVLink.", EXAMPLES)
+_EXAMPLES = {
+    "": (
+        "sim-autopilot",
+        "sim-autopilot --firmware ardupilot --instance 1 --wind 5 --turbulence moderate",
+        "sim-autopilot --mavlink udpout:127.0.0.1:14540 --mavlink tcpin:127.0.0.1:5760",
+    ),
+}
+"""What the help of `sim-autopilot` shows as examples."""
+
+app = make_app("Simulate a quadrotor under an autopilot that speaks MAVLink.", _EXAMPLES)
 
 _MavlinkOption = Annotated[
     list[str] | None,

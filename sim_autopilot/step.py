@@ -59,10 +59,7 @@ def autopilot_step(
     """
     memory = reboot_if_due(memory, config)
     start = memory
-    replies: list[_Sent] = []
-    for message, link in zip(inputs.messages, inputs.links or repeat(0), strict=False):
-        memory, answers = take(at_link(memory, link), message, config)
-        replies += [(answer, link) for answer in answers]
+    memory, replies = _obey(memory, inputs, config)
     # What concerns nobody in particular is told as on the first link that wants texts.
     texted = memory.links.texted
     memory = at_link(memory, texted[0] if texted else 0)
@@ -84,16 +81,24 @@ def autopilot_step(
     messages += told
     memory, late = _late_answers(memory)
     messages += late
-    reports: list[_Sent] = []
-    for link in range(len(memory.links.each)):
-        memory, own = _reports(at_link(memory, link), config)
-        reports += [(report, link) for report in own]
+    memory, reports = _report_on_each_link(memory, config)
     sent = [*replies, *_to_all(messages, texted), *reports]
     return memory, AutopilotOutputs(
         messages=tuple(message for message, _ in sent),
         links=tuple(link for _, link in sent),
         state=memory.plant.state,
     )
+
+
+def _obey(
+    memory: AutopilotMemory, inputs: AutopilotInputs, config: AutopilotConfig
+) -> tuple[AutopilotMemory, list[_Sent]]:
+    """Take what was received, and return the answers, each for the link that it came by."""
+    replies: list[_Sent] = []
+    for message, link in zip(inputs.messages, inputs.links or repeat(0), strict=False):
+        memory, answers = take(at_link(memory, link), message, config)
+        replies += [(answer, link) for answer in answers]
+    return memory, replies
 
 
 def _to_all(messages: list[Message], texted: tuple[int, ...]) -> list[_Sent]:
@@ -197,6 +202,14 @@ def _late_answers(memory: AutopilotMemory) -> tuple[AutopilotMemory, list[Messag
     messages = [later.message for later in memory.outbox.later if later.boot_ns <= boot_ns]
     later = tuple(later for later in memory.outbox.later if later.boot_ns > boot_ns)
     return replace(memory, outbox=replace(memory.outbox, later=later)), messages
+
+
+def _report_on_each_link(memory: AutopilotMemory, config: AutopilotConfig) -> tuple[AutopilotMemory, list[_Sent]]:
+    reports: list[_Sent] = []
+    for link in range(len(memory.links.each)):
+        memory, own = _reports(at_link(memory, link), config)
+        reports += [(report, link) for report in own]
+    return memory, reports
 
 
 def _reports(memory: AutopilotMemory, config: AutopilotConfig) -> tuple[AutopilotMemory, list[Message]]:

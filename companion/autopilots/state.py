@@ -54,6 +54,13 @@ class AutopilotState(Struct, frozen=True, kw_only=True):
         """The newest state of the drone."""
         return self.history[-1] if self.history else None
 
+    @property
+    def places_drone(self) -> bool:
+        """Whether the autopilot is heard and tells all that places the drone."""
+        return (
+            self.view.link_up and self.view.frame is not None and self.view.receiver.knows_geoid and bool(self.history)
+        )
+
     def own_at(self, t_ns: int) -> OwnState | None:
         """The state at `t_ns`: the nearest report carried there by its own rates; None beyond what they span."""
         if not self.history or t_ns < self.history[0].t_ns or t_ns > self.history[-1].t_ns + _AHEAD_NS:

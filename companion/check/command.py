@@ -10,39 +10,49 @@ import typer
 
 from companion.runtime.command_line import ConfigOption, MavlinkArguments
 from link.errors import UserError
-from link.program.cli import SetOption
+from link.program.cli import JsonOption, SetOption
 from link.zenoh.command_line import NameArguments, ZenohArguments
 
 if TYPE_CHECKING:
     from companion.check.findings import Finding
     from companion.check.session import CheckSession
     from companion.config.companion import CompanionConfig
+    from link.mavlink.signing import Signing
+    from link.transports.transport import Transport
     from link.zenoh.keys import Keys
     from link.zenoh.session import ZenohSession
 
 _FAILED = 1
 
 
+_SpeedMaxOption = Annotated[
+    float, typer.Option("--speed-max", metavar="M_S", min=0.0, max=50.0, help="Of the vehicle to be landed on.")
+]
+_LaunchOption = Annotated[bool, typer.Option("--launch", help="And for a launch from the vehicle while it drives.")]
+_DurationOption = Annotated[float, typer.Option("--duration", min=1.0, help="Seconds that rates are counted for.")]
+_TimeoutOption = Annotated[float, typer.Option("--timeout", min=0.0, help="Seconds without an autopilot.")]
+_WriteOption = Annotated[bool, typer.Option("--write", help="Write the advised parameters, after asking.")]
+_YesOption = Annotated[bool, typer.Option("--yes", help="Write without asking.")]
+_KeepOption = Annotated[
+    Path, typer.Option("--keep", metavar="FILE", help="Where --write keeps the parameters before it.")
+]
+_RestoreOption = Annotated[
+    Path | None, typer.Option("--restore", metavar="FILE", help="Write back what --write kept there, and end.")
+]
+
+
 def check(
     *,
     mavlink: MavlinkArguments,
-    speed_max: Annotated[
-        float, typer.Option("--speed-max", metavar="M_S", min=0.0, max=50.0, help="Of the vehicle to be landed on.")
-    ] = 5.0,
-    launch: Annotated[
-        bool, typer.Option("--launch", help="And for a launch from the vehicle while it drives.")
-    ] = False,
-    duration: Annotated[float, typer.Option("--duration", min=1.0, help="Seconds that rates are counted for.")] = 4.0,
-    timeout: Annotated[float, typer.Option("--timeout", min=0.0, help="Seconds without an autopilot.")] = 30.0,
-    set_values: Annotated[bool, typer.Option("--write", help="Write the advised parameters, after asking.")] = False,
-    yes: Annotated[bool, typer.Option("--yes", help="Write without asking.")] = False,
-    keep_file: Annotated[
-        Path, typer.Option("--keep", metavar="FILE", help="Where --write keeps the parameters before it.")
-    ] = Path("parameters_before.json"),
-    restore: Annotated[
-        Path | None, typer.Option("--restore", metavar="FILE", help="Write back what --write kept there, and end.")
-    ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    speed_max: _SpeedMaxOption = 5.0,
+    launch: _LaunchOption = False,
+    duration: _DurationOption = 4.0,
+    timeout: _TimeoutOption = 30.0,
+    set_values: _WriteOption = False,
+    yes: _YesOption = False,
+    keep_file: _KeepOption = Path("parameters_before.json"),
+    restore: _RestoreOption = None,
+    as_json: JsonOption = False,
     config: ConfigOption = None,
     changes: SetOption = None,
     names: NameArguments,
@@ -50,11 +60,10 @@ def check(
 ) -> int:
     """Read the autopilot and the vehicle, and say what to change before a landing; exit code 1 when something fails."""
     from companion.check.findings import read_kept
-    from companion.check.session import open_check
     from companion.config.companion import CompanionConfig
     from companion.runtime.open_links import open_links
-    from link.mavlink.transports import open_transport
     from link.program.settings import COMPANION, load_settings
+    from link.transports.opening import open_transport
     from link.zenoh.session import open_session
 
     settings = load_settings(config, CompanionConfig, COMPANION, changes)
@@ -62,16 +71,13 @@ def check(
     back = None if restore is None else read_kept(restore)
     options = endpoints.options()
     with open_transport(mavlink.mavlink) as transport, open_session(options) as zenoh:
-        session = open_check(transport, mavlink.mavlink, system_id=mavlink.system_id, signing=signing)
-        typer.echo(f"looking for an autopilot on {mavlink.mavlink}, for {timeout:g} s at most", err=True)
-        session.find(timeout)
+        session = _find(transport, mavlink, signing, timeout)
         if back is not None:
             _write(session, back)
             return 0
-        keys = names.keys()
         ask = _Question(
             zenoh=zenoh,
-            keys=keys,
+            keys=names.keys(),
             duration_s=duration,
             speed_m_s=speed_max,
             config=settings,
@@ -96,6 +102,18 @@ class _Question:
     config: "CompanionConfig"
     launches: bool
     open_links: tuple[str, ...]
+
+
+def _find(
+    transport: "Transport", mavlink: MavlinkArguments, signing: "Signing | None", timeout_s: float
+) -> "CheckSession":
+    """Return the session with the autopilot that a link leads to."""
+    from companion.check.session import open_check
+
+    session = open_check(transport, mavlink.mavlink, system_id=mavlink.system_id, signing=signing)
+    typer.echo(f"looking for an autopilot on {mavlink.mavlink}, for {timeout_s:g} s at most", err=True)
+    session.find(timeout_s)
+    return session
 
 
 def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":

@@ -14,7 +14,7 @@ from link.mavlink.parameters import parameter_set_message
 from link.mavlink.pinned_peer import PinnedPeer
 from link.mavlink.session import MavlinkSession
 from link.mavlink.signing import Signing
-from link.mavlink.transport import Transport
+from link.transports.transport import Transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import Inbox, ZenohSession
 

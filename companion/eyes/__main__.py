@@ -7,14 +7,30 @@ from typing import Annotated
 import typer
 
 from companion.eyes import calibration_commands
-from companion.eyes.examples import EXAMPLES
 from companion.eyes.options import BoardOption, CalibrationOption, MountingOption, SizeOption, SourceOption
 from link.errors import UserError
-from link.program.cli import make_app, run_app
+from link.program.cli import JsonOption, make_app, run_app
 from link.program.extras import require
 from link.zenoh.command_line import NameArguments, ZenohArguments
 
-app = make_app("See the landing pad by a camera on the drone, and publish where it is.", EXAMPLES)
+_EXAMPLES = {
+    "": ("pad-detector run --source /dev/video0 --calibration camera.yaml --mounting mounting.toml",),
+    "run": (
+        "pad-detector run --source /dev/video0 --calibration camera.yaml --mounting mounting.toml",
+        "pad-detector run --source picamera --calibration camera.yaml --mounting mounting.toml",
+        "pad-detector run --source zenoh --calibration camera.yaml --mounting mounting.toml --board b.toml",
+    ),
+    "print": ("pad-detector print --out pad.pdf", "pad-detector print --side 0.5 --first-id 63 --out small.pdf"),
+    "calibrate": (
+        "pad-detector calibrate --source /dev/video0 --out camera.yaml",
+        "pad-detector calibrate --source pictures/ --pictures 60 --out camera.yaml",
+    ),
+    "latency": ("pad-detector latency --source /dev/video0 --calibration camera.yaml",),
+    "bench": ("pad-detector bench",),
+}
+"""What the help of `pad-detector` shows as examples, by command."""
+
+app = make_app("See the landing pad by a camera on the drone, and publish where it is.", _EXAMPLES)
 
 
 @app.callback()
@@ -56,10 +72,10 @@ def run_detector(
     from companion.eyes.loop import EyesLoop
     from companion.eyes.mounting import load_mounting
     from companion.eyes.node import EyesNode
-    from companion.eyes.opening import SourceOptions, open_source
     from companion.eyes.recording import open_recorder
     from companion.eyes.sight import SightSystem
-    from companion.eyes.zenoh_source import PICTURE_MAX_BYTES
+    from companion.eyes.sources.opening import SourceOptions, open_source
+    from companion.eyes.sources.zenoh_source import PICTURE_MAX_BYTES
     from link.records import replace
     from link.zenoh.session import open_session
 
@@ -115,9 +131,7 @@ def print_board(
 
 
 @app.command("bench")
-def bench_detector(
-    *, as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False
-) -> None:
+def bench_detector(*, as_json: JsonOption = False) -> None:
     """Measure how fast the detector is here, against OpenCV's bare one on the same pictures; takes some seconds."""
     import json
 

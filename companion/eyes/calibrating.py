@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from companion.eyes.board import Board
 from companion.eyes.camera import Camera, Model, matrix_of
+from companion.eyes.finding.search import search
 from companion.eyes.picture import Gray, Part, whole
-from companion.eyes.search import search
 from link.errors import UserError
 
 Array = NDArray[np.float64]

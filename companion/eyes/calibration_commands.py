@@ -12,16 +12,15 @@ from msgspec import structs
 
 from companion.eyes.options import BoardOption, CalibrationOption, MountingOption, SizeOption, SourceOption
 from link.errors import UserError
+from link.program.cli import JsonOption
 from link.zenoh.command_line import DroneOption, NamespaceOption, ZenohArguments
 
 if TYPE_CHECKING:
     from companion.eyes.calibrating import Quality
+    from companion.eyes.latency import Latency
 
 _RMS_GOOD_PX, _HALVES_GOOD_PX, _FOCAL_GOOD, _COVERED_GOOD, _TILT_GOOD_RAD = 0.5, 1.0, 0.002, 0.7, math.radians(30.0)
 _STD_GOOD_S = 0.002  # a drone that turns at 0.5 rad/s sees a pad 5 m away 5 mm beside its place
-
-
-_JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 
 
 def register(app: typer.Typer) -> None:
@@ -38,7 +37,7 @@ def calibrate_command(
     fisheye: Annotated[bool, typer.Option("--fisheye", help="For lenses of more than 120 degrees.")] = False,
     pictures: Annotated[int, typer.Option("--pictures", min=8, max=500, help="That show the board elsewhere.")] = 40,
     size: SizeOption = None,
-    as_json: _JsonOption = False,
+    as_json: JsonOption = False,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",
     endpoints: ZenohArguments,
@@ -51,8 +50,8 @@ def calibrate_command(
     from companion.eyes.calibrating import calibrate
     from companion.eyes.calibration import dump_calibration
     from companion.eyes.collecting import collect_shots
-    from companion.eyes.opening import SourceOptions, open_source
-    from companion.eyes.zenoh_source import PICTURE_MAX_BYTES
+    from companion.eyes.sources.opening import SourceOptions, open_source
+    from companion.eyes.sources.zenoh_source import PICTURE_MAX_BYTES
     from link.records import replace
     from link.zenoh.keys import Keys
     from link.zenoh.session import open_session
@@ -115,7 +114,7 @@ def latency_command(
     mounting: MountingOption = None,
     size: SizeOption = None,
     seconds: Annotated[float, typer.Option("--duration", min=3.0, max=600.0, help="For which it is turned.")] = 15.0,
-    as_json: _JsonOption = False,
+    as_json: JsonOption = False,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",
     endpoints: ZenohArguments,
@@ -129,9 +128,9 @@ def latency_command(
     from companion.eyes.collecting import collect_rotation
     from companion.eyes.latency import fit_latency
     from companion.eyes.mounting import load_mounting
-    from companion.eyes.opening import SourceOptions, open_source
     from companion.eyes.sight import SightSystem
-    from companion.eyes.zenoh_source import PICTURE_MAX_BYTES
+    from companion.eyes.sources.opening import SourceOptions, open_source
+    from companion.eyes.sources.zenoh_source import PICTURE_MAX_BYTES
     from link.records import replace
     from link.zenoh.keys import Keys
     from link.zenoh.session import open_session
@@ -146,7 +145,10 @@ def latency_command(
             found = collect_rotation(frames, own, system, seconds, lambda line: typer.echo(line, err=True))
         finally:
             frames.close()
-    latency = fit_latency(*found)
+    _show_latency(fit_latency(*found), as_json=as_json)
+
+
+def _show_latency(latency: "Latency", *, as_json: bool) -> None:
     if as_json:
         sys.stdout.write(json.dumps(asdict(latency), indent=2) + "\n")
         return

@@ -7,9 +7,9 @@ from companion.eyes.attitude import Attitude
 from companion.eyes.board import Board
 from companion.eyes.calibrating import Shot, covered_share, is_new, is_still, shot_of
 from companion.eyes.calibration import check_size
-from companion.eyes.frames import Source
 from companion.eyes.picture import WholePicture
 from companion.eyes.sight import Frame, SightMemory, SightSystem, sight_step
+from companion.eyes.sources.frames import Source
 from link.errors import UserError
 from link.messages import BodyTruth, PadSighting
 from link.payloads import cdr

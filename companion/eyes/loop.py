@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import structlog
 
-from companion.eyes.frames import Captured, Source
 from companion.eyes.node import EyesNode
 from companion.eyes.recording import PERIOD_NS, PictureRecord
+from companion.eyes.sources.frames import Captured, Source
 from companion.eyes.watch import CameraWatch, Failure, failure_of, note_frame
 from link.errors import UserError
 from link.messages import CompressedPicture, PadGeometry

@@ -10,10 +10,10 @@ from companion.eyes.annotation import Drawing, annotate, drawing_of, jpeg_of
 from companion.eyes.attitude import Attitude, attitude_at
 from companion.eyes.calibration import check_size
 from companion.eyes.camera import matrix_of
-from companion.eyes.frames import Captured
 from companion.eyes.mounting import angles_of
 from companion.eyes.picture import WholePicture
 from companion.eyes.sight import Frame, Sight, SightMemory, SightSystem, sight_step
+from companion.eyes.sources.frames import Captured
 from link.errors import UserError
 from link.frames.rotations import matrix_from_quaternion
 from link.messages import BodyTruth, CompressedPicture, PadGeometry, PadSighting

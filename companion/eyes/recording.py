@@ -5,7 +5,7 @@ from pathlib import Path
 from msgspec import Struct
 
 from companion.eyes.annotation import Drawing, drawing_message, jpeg_of
-from companion.eyes.frames import Captured
+from companion.eyes.sources.frames import Captured
 from link.messages import CompressedPicture
 from link.payloads import cdr
 from link.payloads.decklander_msgs import RosMessage

@@ -15,14 +15,14 @@ from numpy.typing import NDArray
 
 from companion.eyes.board import Board
 from companion.eyes.camera import Camera, matrix_of
-from companion.eyes.choosing import TILT_STDS_MAX, Candidate, choose, mirrored, tilt_stds
 from companion.eyes.family import CELLS
+from companion.eyes.finding.choosing import TILT_STDS_MAX, Candidate, choose, mirrored, tilt_stds
+from companion.eyes.finding.pose import Pose, guesses, refine
+from companion.eyes.finding.reading import TAGS_MAX, expected_tags, read_tags
+from companion.eyes.finding.search import search
+from companion.eyes.finding.track import Track, expected_pose, update_track
 from companion.eyes.mounting import Mounting
 from companion.eyes.picture import Part, Picture, box_around, whole
-from companion.eyes.pose import Pose, guesses, refine
-from companion.eyes.reading import TAGS_MAX, expected_tags, read_tags
-from companion.eyes.search import search
-from companion.eyes.track import Track, expected_pose, update_track
 from link.frames.rotations import matrix_from_quaternion, quaternion_from_matrix
 from link.messages import PadSighting, Quaternion
 

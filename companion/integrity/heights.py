@@ -114,7 +114,7 @@ def is_road_elsewhere(was: bool, phase: Phase, s: Situation, c: CompanionConfig)
 
 def _is_off_the_ground(s: Situation, c: CompanionConfig) -> bool:
     above_m, distance_m = road_above_ground_m(s), road_distance_m(s)
-    if s.pad is None or s.pad.is_afloat or above_m is None or distance_m > c.integrity.ground_within_m:
+    if s.pad is None or s.pad.mounting.is_afloat or above_m is None or distance_m > c.integrity.ground_within_m:
         return False
     unsure_m = _STDS * float(s.pad.position_std_m[0, 2]) if s.pad.is_coarse else 0.0
     return abs(above_m) > max(c.integrity.ground_step_max_m, unsure_m) + c.integrity.ground_slope_max * distance_m

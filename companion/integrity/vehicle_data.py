@@ -167,6 +167,6 @@ def _judge(watch: CourseWatch, off_max_rad: float) -> CourseWatch:
 
 def without_contradicted_heading(pad: PadPath, watch: CourseWatch) -> PadPath:
     """Return the pad, not placed where that takes a heading that the course contradicts."""
-    if watch.off_rad is None or not pad.needs_heading or pad.unplaced is not None:
+    if watch.off_rad is None or not pad.mounting.needs_heading or pad.unplaced is not None:
         return pad
     return replace(pad, unplaced=Cause(Reason.HEADING_OFF_COURSE, (math.degrees(watch.off_rad),)))

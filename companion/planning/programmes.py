@@ -126,6 +126,8 @@ def pose(
     floor = resampled_line(target[3], sampling[0], sampling[1])
     for node in range(len(floor)):
         floor[node] -= path[0, 0, 2]
+    frame, major, minor, upright = posed
+    put_frame(frame, x, path, direction)
     rates = (most.speed_m_s, most.climb_m_s, most.descent_m_s, most.acceleration_m_s2, most.vertical_acceleration_m_s2)
     split, push, reference = approach(
         x[:2], grid.nodes_s, turned, floor, rates, numbers.intercept_fraction, numbers.intercept_time_min_s
@@ -134,11 +136,6 @@ def pose(
     norms = (most.speed_m_s, most.acceleration_m_s2, most.jerk_m_s3)
     way = (split, push[1], numbers.lateral_speed_fraction)
     vertical = (most.descent_m_s, most.climb_m_s, most.vertical_acceleration_m_s2, most.vertical_jerk_m_s3)
-    frame, major, minor, upright = posed
-    for axis in range(3):
-        frame[0, axis], frame[1, axis], frame[2, axis] = x[0, axis], x[1, axis], x[2, axis]
-        frame[3, axis] = path[0, 0, axis]
-    frame[4, 0], frame[4, 1], frame[4, 2] = direction[0], direction[1], 0.0
     slopes = slopes_of(statics[3], x, reference, jerk)
     put_linear(major[0], slopes[0], numbers.slack_weight)
     put_linear(minor[0], slopes[1], numbers.slack_weight)
@@ -146,6 +143,15 @@ def pose(
     major_bounds(x, turned[1, 1], ends[1], way, norms, node_s, end_s, major[1:])
     vertical_bounds(x[:, 2], floor[1:], vertical, node_s, end_s, upright[1:])
     return math.isfinite(total_of(state, target) + sampling[1][0, 0, 0])
+
+
+@compiled_kernel
+def put_frame(frame: Array, x: Array, path: Array, direction: tuple[float, float]) -> None:
+    """Write the frame as `Posed` has it: `x` (3, 3) in turned axes, where `path` begins, and the major axis in W."""
+    for axis in range(3):
+        frame[0, axis], frame[1, axis], frame[2, axis] = x[0, axis], x[1, axis], x[2, axis]
+        frame[3, axis] = path[0, 0, axis]
+    frame[4, 0], frame[4, 1], frame[4, 2] = direction[0], direction[1], 0.0
 
 
 @compiled_kernel

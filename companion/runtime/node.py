@@ -13,7 +13,6 @@ from companion.landing.memory import StepMemory
 from companion.landing.step_data import LinkDelay, StepInputs, StepOutputs, System
 from companion.runtime.publishing import StatusPublisher, with_links
 from companion.runtime.response_models import response_to
-from companion.runtime.start_conditions import is_ready_to_start, refuse_unheard
 from companion.runtime.step_clock import StepClock
 from companion.runtime.vehicle_link import VehicleLink
 from companion.situation.phases import FLYING_PHASES, Phase
@@ -123,13 +122,13 @@ class CompanionNode:
 
     def is_ready_to_start(self) -> bool:
         """Return whether a start would be accepted now."""
-        return is_ready_to_start(self.autopilot.state)
+        return self.autopilot.state.places_drone
 
     def start_refusal(self) -> CommandReply | None:
         """Return the answer to a start for a vehicle that was never heard; None where a step is to judge it."""
         if self.vehicle_heard or not self.is_ready_to_start():
             return None
-        return refuse_unheard(self.vehicle)
+        return self.vehicle.refuse_start()
 
     def receive_liveliness(self, *, alive: bool) -> None:
         """Take the state of the vehicle's liveliness token."""

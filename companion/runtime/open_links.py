@@ -1,6 +1,6 @@
 """Names the links by which a stranger could take part in a landing."""
 
-from link.mavlink.device import opening_of
+from link.transports.device import opening_of
 from link.zenoh.library_config import openings
 from link.zenoh.options import ZenohOptions
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import psutil  # type: ignore[import-untyped]  # it has no annotations
 
 from link.mavlink.signing_memory import SigningMemory
-from link.mavlink.transports import Transport
+from link.transports.opening import Transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohSession
 

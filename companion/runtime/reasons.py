@@ -11,6 +11,7 @@ import typer
 from companion.config.companion import CompanionConfig
 from companion.core.reason_help import ReasonHelp, reason_helps
 from link.errors import UserError
+from link.program.cli import JsonOption
 
 _WIDTH = 78
 
@@ -22,7 +23,7 @@ _NamesArgument = Annotated[
 def reasons(
     names: _NamesArgument = None,
     *,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Explain the reasons that the panel, the log and `landing/status` tell.
 

@@ -5,11 +5,12 @@ from collections import Counter
 from companion.autopilots.state import AutopilotState
 from companion.config.companion import SilentVehicleConfig
 from companion.core.data import Measurement
+from companion.core.reasons import Cause, Reason, sentence
 from companion.landing.step_data import VehicleInputs
 from companion.runtime.refusals import Refusals
 from companion.runtime.step_clock import StepClock
 from companion.vehicle.inputs import measurements_of
-from link.messages import PadGeometry
+from link.messages import CommandReply, PadGeometry
 from link.payloads.checks import PayloadError
 from link.payloads.json_messages import is_possible
 from link.units import NS_PER_S
@@ -96,6 +97,12 @@ class VehicleLink:
     def refused_lately(self) -> str:
         """Return what was refused most in the last seconds, and why; empty if nothing was."""
         return self.refusals.recent(self._clock.monotonic_ns)
+
+    def refuse_start(self) -> CommandReply:
+        """Return the answer to a start for a vehicle that was never heard, with what was refused of it."""
+        refused = self.refused_lately()
+        why = Cause(Reason.VEHICLE_UNHEARD, (f" ({refused})" if refused else "",))
+        return CommandReply(accepted=False, reason=sentence(why))
 
     def take(self) -> VehicleInputs:
         """Return what has come; the measurements, and by which a fix was ahead of its stamp, once."""

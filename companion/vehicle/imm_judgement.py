@@ -9,9 +9,10 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
+from companion.vehicle.imm_kernels import course
 from companion.vehicle.imm_mixing import Modes, combine, is_heading_known, switching
 from companion.vehicle.imm_noise import process_noise
-from companion.vehicle.imm_sensors import COURSE, HEADING, PAD, POSITION, VELOCITY, course, observe
+from companion.vehicle.imm_sensors import COURSE, HEADING, PAD, POSITION, VELOCITY, observe
 from companion.vehicle.small_matrices import carried_through, correct, inverse_of
 
 WEIGHT_MIN = 1e-12  # a mode that rounding has ruled out could never come back

@@ -31,6 +31,7 @@ vertical curves of roads: AASHTO, A Policy on Geometric Design of Highways and S
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -39,6 +40,57 @@ from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_swing import MOUNT, PITCH, ROLL, SIZE
 
 CLOCK, BEND, LEAK = 15, 16, 17
+
+
+class Turn(NamedTuple):
+    """How the vehicle turns and relaxes within a step.
+
+    Attributes:
+        ux: east of its course at first, as a unit vector; 0 at rest.
+        uy: north of it.
+        speed_m_s: in the middle of the step.
+        angle_rad: by which it turns.
+        c: cosine of that angle.
+        s: its sine.
+        mean_c: the cosine's mean over the step.
+        mean_s: the sine's.
+        left: share of `b` that is left.
+        by_b_s: what `b` adds to the velocity.
+        by_b_s2: what it adds to the place.
+    """
+
+    ux: float
+    uy: float
+    speed_m_s: float
+    angle_rad: float
+    c: float
+    s: float
+    mean_c: float
+    mean_s: float
+    left: float
+    by_b_s: float
+    by_b_s2: float
+
+
+@compiled_kernel
+def course(x: Array) -> tuple[float, float, float]:
+    """Return the horizontal speed, m/s, and its direction as a unit vector, (0, 0) at rest."""
+    speed = math.hypot(x[2], x[3])
+    return (speed, x[2] / speed, x[3] / speed) if speed > 1e-6 else (speed, 0.0, 0.0)
+
+
+@compiled_kernel
+def turn_over(x: Array, dt_s: float, tau_s: float) -> Turn:
+    """Return how the vehicle turns and relaxes within `dt_s`."""
+    speed, ux, uy = course(x)
+    left = math.exp(-dt_s / tau_s)
+    by_b_s = tau_s * (1.0 - left)
+    by_b_s2 = tau_s * (dt_s - by_b_s)
+    speed_m_s = max(speed + 0.5 * dt_s * (ux * x[4] + uy * x[5]), 0.0)
+    turn = x[6] * speed_m_s * dt_s
+    half = math.sin(0.5 * turn) / (0.5 * turn) if abs(turn) > 1e-6 else 1.0
+    mean_c, mean_s = half * math.cos(0.5 * turn), half * math.sin(0.5 * turn)
+    return Turn(ux, uy, speed_m_s, turn, math.cos(turn), math.sin(turn), mean_c, mean_s, left, by_b_s, by_b_s2)
 
 
 @compiled_kernel
@@ -87,56 +139,74 @@ def advance(x: Array, dt_s: float, tau_s: float, heave: Array, tilt: Array) -> t
         heave: transition (3, 3) of height, rate and acceleration of the heave over `dt_s`.
         tilt: transitions (2, 2, 2) of roll and pitch.
     """
+    t = turn_over(x, dt_s, tau_s)
     vx, vy, bx, by = x[2], x[3], x[4], x[5]
-    speed = math.hypot(vx, vy)
-    ux, uy = (vx / speed, vy / speed) if speed > 1e-6 else (0.0, 0.0)
-    decay = math.exp(-dt_s / tau_s)
-    t1 = tau_s * (1.0 - decay)
-    t2 = tau_s * (dt_s - t1)
-    speed_mid = max(speed + 0.5 * dt_s * (ux * bx + uy * by), 0.0)
-    turn = x[6] * speed_mid * dt_s
-    c, s = math.cos(turn), math.sin(turn)
-    half = math.sin(0.5 * turn) / (0.5 * turn) if abs(turn) > 1e-6 else 1.0
-    ch, sh = half * math.cos(0.5 * turn), half * math.sin(0.5 * turn)
-
     y = x.copy()
-    wx, wy = vx + bx * t1, vy + by * t1
-    mx, my = vx * dt_s + bx * t2, vy * dt_s + by * t2
-    y[0] = x[0] + ch * mx - sh * my
-    y[1] = x[1] + sh * mx + ch * my
-    y[2], y[3] = c * wx - s * wy, s * wx + c * wy
-    y[4], y[5] = decay * (c * bx - s * by), decay * (s * bx + c * by)
-    y[7] = x[7] + turn
+    wx, wy = vx + bx * t.by_b_s, vy + by * t.by_b_s
+    mx, my = vx * dt_s + bx * t.by_b_s2, vy * dt_s + by * t.by_b_s2
+    y[0] = x[0] + t.mean_c * mx - t.mean_s * my
+    y[1] = x[1] + t.mean_s * mx + t.mean_c * my
+    y[2], y[3] = t.c * wx - t.s * wy, t.s * wx + t.c * wy
+    y[4], y[5] = t.left * (t.c * bx - t.s * by), t.left * (t.s * bx + t.c * by)
+    y[7] = x[7] + t.angle_rad
     y[10] = heave[1, 1] * x[10] + heave[1, 2] * x[11]
     y[11] = heave[2, 1] * x[10] + heave[2, 2] * x[11]
     y[ROLL:PITCH] = tilt[0, :, 0] * x[ROLL] + tilt[0, :, 1] * x[ROLL + 1]
     y[PITCH:MOUNT] = tilt[1, :, 0] * x[PITCH] + tilt[1, :, 1] * x[PITCH + 1]
-
     F = np.eye(SIZE)
+    put_turn(F, x, y, dt_s, t)
+    F[8, 10:12], F[10:12, 10:12] = heave[0, 1:], heave[1:, 1:]
+    F[ROLL:PITCH, ROLL:PITCH], F[PITCH:MOUNT, PITCH:MOUNT] = tilt[0], tilt[1]
+    stop_s = standstill_s(x[2:4], x[4:6], tau_s, dt_s)
+    if stop_s >= 0.0:
+        halt(x, y, F, tau_s, stop_s)
+    else:
+        climb(x, y, F, dt_s, t.by_b_s2)
+    y[8] += heave[0, 1] * x[10] + heave[0, 2] * x[11]
+    return y, F
+
+
+@compiled_kernel
+def put_turn(F: Array, x: Array, y: Array, dt_s: float, t: Turn) -> None:
+    """Write the rows of place, velocity, acceleration and heading into the Jacobian.
+
+    Args:
+        F: the Jacobian (24, 24), the identity in these rows.
+        x: state (24,) before.
+        y: the state afterwards, as if nothing stopped.
+        dt_s: step.
+        t: the turn within it.
+    """
+    c, s, ch, sh = t.c, t.s, t.mean_c, t.mean_s
     F[0, 2], F[0, 3], F[1, 2], F[1, 3] = ch * dt_s, -sh * dt_s, sh * dt_s, ch * dt_s
-    F[0, 4], F[0, 5], F[1, 4], F[1, 5] = ch * t2, -sh * t2, sh * t2, ch * t2
+    F[0, 4], F[0, 5], F[1, 4], F[1, 5] = ch * t.by_b_s2, -sh * t.by_b_s2, sh * t.by_b_s2, ch * t.by_b_s2
     F[2, 2], F[2, 3], F[3, 2], F[3, 3] = c, -s, s, c
-    F[2, 4], F[2, 5], F[3, 4], F[3, 5] = c * t1, -s * t1, s * t1, c * t1
-    F[4, 4], F[4, 5], F[5, 4], F[5, 5] = decay * c, -decay * s, decay * s, decay * c
+    F[2, 4], F[2, 5], F[3, 4], F[3, 5] = c * t.by_b_s, -s * t.by_b_s, s * t.by_b_s, c * t.by_b_s
+    F[4, 4], F[4, 5], F[5, 4], F[5, 5] = t.left * c, -t.left * s, t.left * s, t.left * c
     d_turn = np.array([-0.5 * (y[1] - x[1]), 0.5 * (y[0] - x[0]), -y[3], y[2], -y[5], y[4]])
     by_speed = x[6] * dt_s
     for i in range(6):
-        F[i, 2] += d_turn[i] * by_speed * ux
-        F[i, 3] += d_turn[i] * by_speed * uy
-        F[i, 6] = d_turn[i] * speed_mid * dt_s
-    F[7, 2], F[7, 3], F[7, 6] = by_speed * ux, by_speed * uy, speed_mid * dt_s
-    F[8, 10:12], F[10:12, 10:12] = heave[0, 1:], heave[1:, 1:]
-    F[ROLL:PITCH, ROLL:PITCH], F[PITCH:MOUNT, PITCH:MOUNT] = tilt[0], tilt[1]
+        F[i, 2] += d_turn[i] * by_speed * t.ux
+        F[i, 3] += d_turn[i] * by_speed * t.uy
+        F[i, 6] = d_turn[i] * t.speed_m_s * dt_s
+    F[7, 2], F[7, 3], F[7, 6] = by_speed * t.ux, by_speed * t.uy, t.speed_m_s * dt_s
 
-    stop_s = standstill_s(x[2:4], x[4:6], tau_s, dt_s)
-    if stop_s >= 0.0:
-        stop_t2 = tau_s * (stop_s - tau_s * (1.0 - math.exp(-stop_s / tau_s)))
-        rolls = speed * stop_s + (ux * bx + uy * by) * stop_t2
-        y[0], y[1] = x[0] + rolls * ux, x[1] + rolls * uy
-        y[2:6] = 0.0
-        y[7] = x[7] + x[6] * rolls
-        climb(x, y, F, stop_s, stop_t2)
-    else:
-        climb(x, y, F, dt_s, t2)
-    y[8] += heave[0, 1] * x[10] + heave[0, 2] * x[11]
-    return y, F
+
+@compiled_kernel
+def halt(x: Array, y: Array, F: Array, tau_s: float, stop_s: float) -> None:
+    """Write the state of a vehicle that stands after `stop_s` of braking into `y`, and its height's rows into `F`.
+
+    Args:
+        x: state (24,) before.
+        y: the state afterwards, as if nothing stopped.
+        F: its Jacobian.
+        tau_s: time constant of `b`.
+        stop_s: until it stands.
+    """
+    speed, ux, uy = course(x)
+    by_b_s2 = tau_s * (stop_s - tau_s * (1.0 - math.exp(-stop_s / tau_s)))
+    rolls = speed * stop_s + (ux * x[4] + uy * x[5]) * by_b_s2
+    y[0], y[1] = x[0] + rolls * ux, x[1] + rolls * uy
+    y[2:6] = 0.0
+    y[7] = x[7] + x[6] * rolls
+    climb(x, y, F, stop_s, by_b_s2)

@@ -9,13 +9,16 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
-from companion.vehicle.imm_kernels import BEND, CLOCK, LEAK
+from companion.vehicle.imm_kernels import BEND, CLOCK, LEAK, course
 from companion.vehicle.imm_swing import MOUNT, PITCH, ROLL, SIZE
 
 MOTION = 8  # leading states that the non-linear motion touches
 FOLLOWS = (0, 0, 1, 1, 1, 1, 2, 1)  # each of them: 2 is the curvature, 1 its integral, 0 its second one
 HEADING_NOISE, CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST = 4, 8, 9, 10  # their places in the noise
 BEND_STD, BEND_ACCELERATION_STD, BEND_LENGTH, ROAD_NOISE, LEAK_NOISE, AFLOAT = 5, 11, 12, 13, 14, 15
+
+
+WhiteJerk = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
 
 
 @compiled_kernel
@@ -60,43 +63,78 @@ def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array, tilt_
         tilt_noise: (2, 2, 2) of roll and pitch.
     """
     Q = np.zeros((SIZE, SIZE))
-    speed = math.hypot(x[2], x[3])
-    share = min(speed / noise[3], 1.0)  # a standing vehicle has no known "along"
-    ux, uy = (x[2] / speed, x[3] / speed) if speed > 1e-6 else (1.0, 0.0)
-    across = noise[1] * share + noise[0] * (1.0 - share)
-    qxx = noise[0] * ux * ux + across * uy * uy
-    qyy = noise[0] * uy * uy + across * ux * ux
-    qxy = (noise[0] - across) * ux * uy
-    d = dt_s
-    white_jerk = ((d**5 / 20, d**4 / 8, d**3 / 6), (d**4 / 8, d**3 / 3, d**2 / 2), (d**3 / 6, d**2 / 2, d))
-    for i in range(3):
-        for j in range(3):
-            g = white_jerk[i][j]
-            Q[2 * i, 2 * j], Q[2 * i + 1, 2 * j + 1] = g * qxx, g * qyy
-            Q[2 * i, 2 * j + 1], Q[2 * i + 1, 2 * j] = g * qxy, g * qxy
-    # What the curvature does within the step has turned velocity and heading by its end: left out, a curve that begins
-    # between two measurements leaves a velocity that nothing explains and that is held for certain.
-    left = curvature_left(speed, d, noise)
-    turning = noise[CURVATURE_STD] ** 2 * (1.0 - left * left) / d
-    rates = (-speed * x[3], speed * x[2], -speed * x[3], speed * x[2], -speed * x[5], speed * x[4], 1.0, speed)
-    for i in range(MOTION):
-        for j in range(MOTION):
-            Q[i, j] += turning * white_jerk[FOLLOWS[i]][FOLLOWS[j]] * rates[i] * rates[j]
-    Q[7, 7] += (noise[HEADING_NOISE] * share + noise[HEADING_AT_REST] * (1.0 - share)) * d
-    s = forward_speed(x) * d
-    _, bends = bend_step(x, d, noise)
-    Q[8, 8], Q[9, 9], Q[BEND, BEND] = bends * s**4 / 20 + noise[ROAD_NOISE] * abs(s), bends * s**2 / 3, bends
-    Q[8, 9] = Q[9, 8] = bends * s**3 / 8
-    Q[8, BEND] = Q[BEND, 8] = bends * s**2 / 6
-    Q[9, BEND] = Q[BEND, 9] = bends * s / 2
+    share = min(math.hypot(x[2], x[3]) / noise[3], 1.0)  # a standing vehicle has no known "along"
+    add_jerk(Q, x, dt_s, noise, share)
+    add_curvature(Q, x, dt_s, noise)
+    Q[7, 7] += (noise[HEADING_NOISE] * share + noise[HEADING_AT_REST] * (1.0 - share)) * dt_s
+    put_road(Q, x, dt_s, noise)
     shakes = max(share, noise[AFLOAT])  # it is the road that shakes a vehicle
     Q[8, 8] += heave_noise[0, 0] * shakes
     Q[8, 10:12], Q[10:12, 8] = heave_noise[0, 1:] * shakes, heave_noise[1:, 0] * shakes
     Q[10:12, 10:12] = heave_noise[1:, 1:] * shakes
     Q[ROLL:PITCH, ROLL:PITCH], Q[PITCH:MOUNT, PITCH:MOUNT] = tilt_noise[0], tilt_noise[1]
     for place, offset in ((0, 12), (1, 13), (8, 14)):  # where the drone errs about itself, both move
-        Q[place, place] += noise[7] * d
-        Q[place, offset] = Q[offset, place] = noise[7] * d
-        Q[offset, offset] = (noise[6] + noise[7]) * d
-    Q[CLOCK, CLOCK], Q[LEAK, LEAK] = noise[CLOCK_NOISE] * d, noise[LEAK_NOISE] * d
+        Q[place, place] += noise[7] * dt_s
+        Q[place, offset] = Q[offset, place] = noise[7] * dt_s
+        Q[offset, offset] = (noise[6] + noise[7]) * dt_s
+    Q[CLOCK, CLOCK], Q[LEAK, LEAK] = noise[CLOCK_NOISE] * dt_s, noise[LEAK_NOISE] * dt_s
     return Q
+
+
+@compiled_kernel
+def white_jerk(d: float) -> WhiteJerk:
+    """Return what white jerk of density 1 adds within `d` to the covariance of place, velocity and acceleration."""
+    return ((d**5 / 20, d**4 / 8, d**3 / 6), (d**4 / 8, d**3 / 3, d**2 / 2), (d**3 / 6, d**2 / 2, d))
+
+
+@compiled_kernel
+def add_jerk(Q: Array, x: Array, dt_s: float, noise: Array, share: float) -> None:
+    """Add the jerk along the track and across it.
+
+    Args:
+        Q: (24, 24) changed.
+        x: state (24,).
+        dt_s: step.
+        noise: as `process_noise` takes it.
+        share: by which the track is known, 0 to 1.
+    """
+    _, ux, uy = course(x)
+    if ux == 0.0 and uy == 0.0:
+        ux = 1.0
+    across = noise[1] * share + noise[0] * (1.0 - share)
+    qxx = noise[0] * ux * ux + across * uy * uy
+    qyy = noise[0] * uy * uy + across * ux * ux
+    qxy = (noise[0] - across) * ux * uy
+    white = white_jerk(dt_s)
+    for i in range(3):
+        for j in range(3):
+            g = white[i][j]
+            Q[2 * i, 2 * j], Q[2 * i + 1, 2 * j + 1] = g * qxx, g * qyy
+            Q[2 * i, 2 * j + 1], Q[2 * i + 1, 2 * j] = g * qxy, g * qxy
+
+
+@compiled_kernel
+def add_curvature(Q: Array, x: Array, dt_s: float, noise: Array) -> None:
+    """Add what the curvature's change within the step does to all that it has turned by its end.
+
+    Left out, a curve that begins between two measurements leaves a velocity that nothing explains and that is held for
+    certain.
+    """
+    speed, white = math.hypot(x[2], x[3]), white_jerk(dt_s)
+    left = curvature_left(speed, dt_s, noise)
+    turning = noise[CURVATURE_STD] ** 2 * (1.0 - left * left) / dt_s
+    rates = (-speed * x[3], speed * x[2], -speed * x[3], speed * x[2], -speed * x[5], speed * x[4], 1.0, speed)
+    for i in range(MOTION):
+        for j in range(MOTION):
+            Q[i, j] += turning * white[FOLLOWS[i]][FOLLOWS[j]] * rates[i] * rates[j]
+
+
+@compiled_kernel
+def put_road(Q: Array, x: Array, dt_s: float, noise: Array) -> None:
+    """Write what the road adds to height, grade and the grade's change, with the distance driven."""
+    s = forward_speed(x) * dt_s
+    _, bends = bend_step(x, dt_s, noise)
+    Q[8, 8], Q[9, 9], Q[BEND, BEND] = bends * s**4 / 20 + noise[ROAD_NOISE] * abs(s), bends * s**2 / 3, bends
+    Q[8, 9] = Q[9, 8] = bends * s**3 / 8
+    Q[8, BEND] = Q[BEND, 8] = bends * s**2 / 6
+    Q[9, BEND] = Q[BEND, 9] = bends * s / 2

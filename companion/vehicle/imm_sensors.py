@@ -10,7 +10,7 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
-from companion.vehicle.imm_kernels import BEND, CLOCK, LEAK
+from companion.vehicle.imm_kernels import BEND, CLOCK, LEAK, course
 from companion.vehicle.imm_swing import (
     MOUNT,
     PITCH,
@@ -23,13 +23,6 @@ from companion.vehicle.imm_swing import (
 )
 
 POSITION, VELOCITY, HEADING, YAW_RATE, PAD, COURSE, ACCELERATION, TILT = range(8)
-
-
-@compiled_kernel
-def course(x: Array) -> tuple[float, float, float]:
-    """Return the horizontal speed, m/s, and its direction as a unit vector, (0, 0) at rest."""
-    speed = math.hypot(x[2], x[3])
-    return (speed, x[2] / speed, x[3] / speed) if speed > 1e-6 else (speed, 0.0, 0.0)
 
 
 @compiled_kernel
@@ -79,7 +72,7 @@ def antenna_velocity(x: Array, lever: Array) -> tuple[Array, Array]:
 
 
 @compiled_kernel
-def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Array, Array]:  # noqa: C901 (one case each)
+def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Array, Array]:
     """Return what a sensor reads at `x`, `(m,)`, and its Jacobian `(m, 24)`.
 
     Args:
@@ -89,54 +82,132 @@ def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Arra
         lever: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll, m.
         sees_heading: whether the heading is known, so that the lever arm has a direction.
     """
-    speed, ux, uy = course(x)
-    m = 3 if kind in (POSITION, VELOCITY, PAD) else 4 if kind == TILT else 1
     known = lever if sees_heading else np.zeros(4)
-    z, H = np.zeros(m), np.zeros((m, SIZE))
-    if kind in (POSITION, PAD):
-        z[0], z[1], z[2] = x[0], x[1], x[8]
-        H[0, 0], H[1, 1], H[2, 8] = 1.0, 1.0, 1.0
     if kind == POSITION:
-        late, change = antenna_velocity(x, known)
-        swing, turn = antenna_swing(x, ROLL, known)
-        z += swing - x[12:15] - x[CLOCK] * late
-        H += turn - x[CLOCK] * change
-        H[:, CLOCK] = -late
-        H[0, 12], H[1, 13], H[2, 14] = -1.0, -1.0, -1.0
+        z, H = read_position(x, known)
     elif kind == PAD:
-        arm_x, arm_y = turned(lever, x[7])
-        z[0] += arm_x
-        z[1] += arm_y
-        z[2] += lever[2] + lever[0] * x[9]
-        H[2, 9] = lever[0]
-        if sees_heading:
-            H[0, 7], H[1, 7] = -arm_y, arm_x
-        swing, turn = pad_swing(x, ROLL, known[3])
-        z += swing
-        H += turn
+        z, H = read_pad(x, lever, known[3], sees_heading)
     elif kind == VELOCITY:
-        z, H = antenna_velocity(x, known)
-        late, change = horizontal_acceleration(x)
-        z[:2] -= x[CLOCK] * late
-        H[:2, CLOCK] = -late
-        H[:2, 2:7] -= x[CLOCK] * change
+        z, H = read_velocity(x, known)
     elif kind == HEADING:
-        z[0], H[0, 7] = x[7] - x[CLOCK] * x[6] * speed, 1.0
-        H[0, 6], H[0, CLOCK] = -x[CLOCK] * speed, -x[6] * speed
-        H[0, 2], H[0, 3] = -x[CLOCK] * x[6] * ux, -x[CLOCK] * x[6] * uy
+        z, H = read_heading(x)
     elif kind == YAW_RATE:
-        z[0], H[0, 6] = x[6] * speed, speed
-        H[0, 2], H[0, 3] = x[6] * ux, x[6] * uy
+        z, H = read_yaw_rate(x)
     elif kind == ACCELERATION:
-        hx, hy = math.cos(x[7]), math.sin(x[7])
-        z[0] = hx * x[4] + hy * x[5] + x[LEAK]
-        H[0, 4], H[0, 5], H[0, 7], H[0, LEAK] = hx, hy, hx * x[5] - hy * x[4], 1.0
+        z, H = read_acceleration(x)
     elif kind == TILT:
-        # A road that climbs is nose up, which is negative; how fast that changes is slower than any swing.
-        z[0], z[1], z[2], z[3] = x[ROLL] + x[MOUNT], x[PITCH] - x[9] + x[MOUNT + 1], x[ROLL_RATE], x[PITCH_RATE]
-        H[0, ROLL], H[1, PITCH], H[1, 9], H[2, ROLL_RATE], H[3, PITCH_RATE] = 1.0, 1.0, -1.0, 1.0, 1.0
-        H[0, MOUNT], H[1, MOUNT + 1] = 1.0, 1.0
-    elif kind == COURSE:
-        z[0], H[0, 7] = math.atan2(x[3], x[2]) - x[7], -1.0
-        H[0, 2], H[0, 3] = -x[3] / speed**2, x[2] / speed**2
+        z, H = read_tilt(x)
+    else:
+        z, H = read_course(x)
+    return z, H
+
+
+@compiled_kernel
+def pad_place(x: Array) -> tuple[Array, Array]:
+    """Return the place (3,) that the state holds, m, and its Jacobian (3, 24)."""
+    z, H = np.zeros(3), np.zeros((3, SIZE))
+    z[0], z[1], z[2] = x[0], x[1], x[8]
+    H[0, 0], H[1, 1], H[2, 8] = 1.0, 1.0, 1.0
+    return z, H
+
+
+@compiled_kernel
+def read_position(x: Array, known: Array) -> tuple[Array, Array]:
+    """Return what the vehicle's receiver reads of its antenna's place (3,), m, and the Jacobian (3, 24)."""
+    z, H = pad_place(x)
+    late, change = antenna_velocity(x, known)
+    swing, turn = antenna_swing(x, ROLL, known)
+    z += swing - x[12:15] - x[CLOCK] * late
+    H += turn - x[CLOCK] * change
+    H[:, CLOCK] = -late
+    H[0, 12], H[1, 13], H[2, 14] = -1.0, -1.0, -1.0
+    return z, H
+
+
+@compiled_kernel
+def read_pad(x: Array, lever: Array, above_m: float, sees_heading: bool) -> tuple[Array, Array]:
+    """Return where the drone sees the pad's centre (3,), m, and the Jacobian (3, 24).
+
+    Args:
+        x: state (24,).
+        lever: (4,) from the antenna to the pad in V.
+        above_m: the pad's height above the axis of roll; 0 while the lever arm has no direction.
+        sees_heading: whether it has one.
+    """
+    z, H = pad_place(x)
+    arm_x, arm_y = turned(lever, x[7])
+    z[0] += arm_x
+    z[1] += arm_y
+    z[2] += lever[2] + lever[0] * x[9]
+    H[2, 9] = lever[0]
+    if sees_heading:
+        H[0, 7], H[1, 7] = -arm_y, arm_x
+    swing, turn = pad_swing(x, ROLL, above_m)
+    z += swing
+    H += turn
+    return z, H
+
+
+@compiled_kernel
+def read_velocity(x: Array, known: Array) -> tuple[Array, Array]:
+    """Return what the vehicle's receiver reads of its antenna's velocity (3,), m/s, and the Jacobian (3, 24)."""
+    z, H = antenna_velocity(x, known)
+    late, change = horizontal_acceleration(x)
+    z[:2] -= x[CLOCK] * late
+    H[:2, CLOCK] = -late
+    H[:2, 2:7] -= x[CLOCK] * change
+    return z, H
+
+
+@compiled_kernel
+def read_heading(x: Array) -> tuple[Array, Array]:
+    """Return the heading (1,), rad, and its Jacobian (1, 24)."""
+    speed, ux, uy = course(x)
+    z, H = np.zeros(1), np.zeros((1, SIZE))
+    z[0], H[0, 7] = x[7] - x[CLOCK] * x[6] * speed, 1.0
+    H[0, 6], H[0, CLOCK] = -x[CLOCK] * speed, -x[6] * speed
+    H[0, 2], H[0, 3] = -x[CLOCK] * x[6] * ux, -x[CLOCK] * x[6] * uy
+    return z, H
+
+
+@compiled_kernel
+def read_yaw_rate(x: Array) -> tuple[Array, Array]:
+    """Return the yaw rate (1,), rad/s, and its Jacobian (1, 24)."""
+    speed, ux, uy = course(x)
+    z, H = np.zeros(1), np.zeros((1, SIZE))
+    z[0], H[0, 6] = x[6] * speed, speed
+    H[0, 2], H[0, 3] = x[6] * ux, x[6] * uy
+    return z, H
+
+
+@compiled_kernel
+def read_acceleration(x: Array) -> tuple[Array, Array]:
+    """Return what the accelerometer reads along V (1,), m/s^2, and its Jacobian (1, 24)."""
+    z, H = np.zeros(1), np.zeros((1, SIZE))
+    hx, hy = math.cos(x[7]), math.sin(x[7])
+    z[0] = hx * x[4] + hy * x[5] + x[LEAK]
+    H[0, 4], H[0, 5], H[0, 7], H[0, LEAK] = hx, hy, hx * x[5] - hy * x[4], 1.0
+    return z, H
+
+
+@compiled_kernel
+def read_tilt(x: Array) -> tuple[Array, Array]:
+    """Return roll, pitch, rad, and their rates, rad/s, (4,), as the vehicle's unit tells them; the Jacobian (4, 24).
+
+    A road that climbs is nose up, which is negative; how fast that changes is slower than any swing.
+    """
+    z, H = np.zeros(4), np.zeros((4, SIZE))
+    z[0], z[1], z[2], z[3] = x[ROLL] + x[MOUNT], x[PITCH] - x[9] + x[MOUNT + 1], x[ROLL_RATE], x[PITCH_RATE]
+    H[0, ROLL], H[1, PITCH], H[1, 9], H[2, ROLL_RATE], H[3, PITCH_RATE] = 1.0, 1.0, -1.0, 1.0, 1.0
+    H[0, MOUNT], H[1, MOUNT + 1] = 1.0, 1.0
+    return z, H
+
+
+@compiled_kernel
+def read_course(x: Array) -> tuple[Array, Array]:
+    """Return the course minus the heading (1,), rad, and its Jacobian (1, 24)."""
+    speed = math.hypot(x[2], x[3])
+    z, H = np.zeros(1), np.zeros((1, SIZE))
+    z[0], H[0, 7] = math.atan2(x[3], x[2]) - x[7], -1.0
+    H[0, 2], H[0, 3] = -x[3] / speed**2, x[2] / speed**2
     return z, H

@@ -12,7 +12,7 @@ from companion.core.data import Array, Forecast
 from companion.core.reasons import Cause, Reason
 from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.shake import PadSwing, swing_of
-from link.messages import PadGeometry
+from link.messages import PadGeometry, Vector3
 
 KNOWN_SHARE = 1.0 / 3.0  # of half of the pad's width, the standard deviation of one that has to be seen: 0.25 m
 HEADING_UNKNOWN, NOT_DESCRIBED = Cause(Reason.HEADING_UNKNOWN), Cause(Reason.PAD_NOT_DESCRIBED)
@@ -32,6 +32,18 @@ class FrameOffset(Struct, frozen=True, kw_only=True):
     is_confirmed: bool = True
 
 
+class PadMounting(Struct, frozen=True, kw_only=True):
+    """How the vehicle carries its pad.
+
+    Attributes:
+        is_afloat: on the water.
+        needs_heading: beside the antenna.
+    """
+
+    is_afloat: bool = False
+    needs_heading: bool = False
+
+
 class PadPath(Struct, frozen=True, kw_only=True, eq=False):
     """The pad's centre in W; row 0 is the present.
 
@@ -48,9 +60,8 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
         has_one_frame: the vehicle's fixes are in the drone's frame; if not, only what the drone sees tells the offset.
         half_width_m: from its centre to the nearest edge; infinite until it is described.
         height_m: of its surface above the vehicle's road, or the water.
-        is_afloat: it is on the water.
+        mounting: how the vehicle carries it.
         swing: how its deck tilts and shakes; None where the vehicle does not tell.
-        needs_heading: it is beside the antenna.
         unplaced: why the pad's place is not known; None when it is. Until then it is not landed on.
         frame_offset: of the drone's frame from the vehicle's fixes'.
     """
@@ -66,9 +77,8 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
     yaw_rate_rad_s: Array | None = None
     half_width_m: float = math.inf
     height_m: float = 0.0
-    is_afloat: bool = False
+    mounting: PadMounting = PadMounting()
     swing: PadSwing | None = None
-    needs_heading: bool = False
     unplaced: Cause | None = None
     frame_offset: FrameOffset = FrameOffset()
 
@@ -90,20 +100,8 @@ def pad_path(
         has_one_frame: both receivers' positions are in one frame.
         is_confirmed: the sightings of the pad have agreed for long enough.
     """
-    lever_x_m, lever_y_m, lever_z_m = pad.antenna_to_pad_m if pad is not None else (0.0, 0.0, 0.0)
-    position = forecast.position_enu_m + np.array([0.0, 0.0, lever_z_m])
-    velocity = forecast.velocity_enu_m_s
-    is_beside, frame_offset = bool(lever_x_m or lever_y_m), forecast.frame_offset_enu_m
-    if forecast.yaw_rad is not None and is_beside:
-        grade = np.zeros_like(forecast.yaw_rad) if forecast.grade is None else forecast.grade
-        arm, swing = turned_lever(forecast.yaw_rad, grade, forecast.offset_s, lever_x_m, lever_y_m)
-        position += arm
-        velocity = velocity + swing
-    if forecast.yaw_rad is not None and forecast.tilt_rad is not None:
-        tilted = np.column_stack([forecast.yaw_rad, forecast.tilt_rad])
-        lever_m = np.array([lever_x_m, lever_y_m, lever_z_m])
-        position = position + tilted_lever(tilted[:, [0, 1, 3]], lever_m)
-        velocity = velocity + tilted_lever(tilted[:, [0, 2, 4]], lever_m)
+    lever_m = pad.antenna_to_pad_m if pad is not None else (0.0, 0.0, 0.0)
+    position, velocity = _at_end_of(lever_m, forecast)
     acceleration, deck = forecast.acceleration_enu_m_s2, swing_of(forecast, 0.0 if pad is None else pad.height_m)
     if deck is not None and deck.shake_enu.any():
         still = np.zeros((3, len(position), 1))
@@ -123,16 +121,37 @@ def pad_path(
         has_one_frame=has_one_frame,
         half_width_m=math.inf if pad is None else 0.5 * min(pad.size_m),
         height_m=0.0 if pad is None else pad.height_m,
-        is_afloat=pad is not None and pad.is_afloat,
+        mounting=PadMounting(is_afloat=pad is not None and pad.is_afloat, needs_heading=bool(lever_m[0] or lever_m[1])),
         swing=deck,
-        needs_heading=is_beside,
         unplaced=NOT_DESCRIBED if pad is None else HEADING_UNKNOWN if _is_about(forecast, pad) else None,
-        frame_offset=FrameOffset(
-            distance_m=None if frame_offset is None else math.hypot(*frame_offset.tolist()),
-            std_m=forecast.frame_offset_std_m,
-            is_confirmed=is_confirmed,
-        ),
+        frame_offset=_frame_offset(forecast, is_confirmed=is_confirmed),
     )
+
+
+def _frame_offset(forecast: Forecast, *, is_confirmed: bool) -> FrameOffset:
+    offset = forecast.frame_offset_enu_m
+    distance_m = None if offset is None else math.hypot(*offset.tolist())
+    return FrameOffset(distance_m=distance_m, std_m=forecast.frame_offset_std_m, is_confirmed=is_confirmed)
+
+
+def _at_end_of(lever_m: Vector3, forecast: Forecast) -> tuple[Array, Array]:
+    """Return where the end of a lever arm from the antenna in V is in W and how fast, as far as it has a direction."""
+    lever_x_m, lever_y_m, lever_z_m = lever_m
+    position = forecast.position_enu_m + np.array([0.0, 0.0, lever_z_m])
+    velocity = forecast.velocity_enu_m_s
+    if forecast.yaw_rad is None:
+        return position, velocity
+    if lever_x_m or lever_y_m:
+        grade = np.zeros_like(forecast.yaw_rad) if forecast.grade is None else forecast.grade
+        arm, swing = turned_lever(forecast.yaw_rad, grade, forecast.offset_s, lever_x_m, lever_y_m)
+        position += arm
+        velocity = velocity + swing
+    if forecast.tilt_rad is not None:
+        tilted = np.column_stack([forecast.yaw_rad, forecast.tilt_rad])
+        lever = np.array(lever_m)
+        position = position + tilted_lever(tilted[:, [0, 1, 3]], lever)
+        velocity = velocity + tilted_lever(tilted[:, [0, 2, 4]], lever)
+    return position, velocity
 
 
 def _yaw_rate_rad_s(forecast: Forecast) -> Array | None:

@@ -1,1 +1,1 @@
-"""The MAVLink session as a machine without I/O, and the transports around it."""
+"""The MAVLink session as a machine without I/O."""

@@ -8,7 +8,7 @@ signing.
 from collections.abc import Iterable, Iterator
 
 from link.mavlink.session import MavlinkSession
-from link.mavlink.transport import PeerBytes, Transport
+from link.transports.transport import PeerBytes, Transport
 
 
 class PinnedPeer:

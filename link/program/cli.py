@@ -29,6 +29,7 @@ SetOption = Annotated[
         help="Change one setting, by its dotted key; over the file and the environment. May be repeated.",
     ),
 ]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 FoxgloveOption = Annotated[
     int | None,
     typer.Option(

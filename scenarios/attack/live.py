@@ -9,11 +9,11 @@ from contextlib import ExitStack, suppress
 
 from link.errors import UserError
 from link.mavlink.codec import MavlinkCodec
-from link.mavlink.transport import Transport
-from link.mavlink.transports import open_transport
 from link.messages import Command, LandingStatus, Order
 from link.payloads import json_messages
 from link.payloads.checks import PayloadError
+from link.transports.opening import open_transport
+from link.transports.transport import Transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohOptions, ZenohSession, open_session
 from scenarios.attack.attempt import Attempt

@@ -10,10 +10,10 @@ from pathlib import Path
 from link.errors import UserError
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
-from link.mavlink.transports import open_transport
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
 from link.program.clock import ClockTick
+from link.transports.opening import open_transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import Inbox, ZenohOptions, open_session
 from scenarios.processes.programs import MODULES, ProcessGroup, Program, free_tcp_endpoint, free_udp_port

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from link.program.cli import JsonOption
 from link.zenoh.command_line import NameArguments, ZenohArguments
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ def attack_command(
         str | None,
         typer.Option("--stranger", metavar="ENDPOINT", help="Where somebody without a certificate tries to get in."),
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    as_json: JsonOption = False,
     names: NameArguments,
     endpoints: ZenohArguments,
 ) -> int:

@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
+from link.program.cli import JsonOption
+from scenarios.commands.options import SeedOption
 
 
 def register(app: typer.Typer) -> None:
@@ -18,9 +19,7 @@ def register(app: typer.Typer) -> None:
 def bench_command(
     name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Scenario to measure on.")] = "straight_5",
     *,
-    seed: Annotated[
-        int | None, typer.Option("--seed", min=0, help="Of everything random [default: 1, or the world's own].")
-    ] = None,
+    seed: SeedOption = None,
     against: Annotated[
         Path | None,
         typer.Option("--against", metavar="FOLDER", help="Only fly in turn with another checkout: which is faster?"),

@@ -8,6 +8,7 @@ import typer
 from link.errors import UserError
 from link.program.extras import require
 from link.zenoh.command_line import NameArguments, ZenohArguments
+from scenarios.commands.options import SeedOption
 
 
 def register(app: typer.Typer) -> None:
@@ -18,9 +19,7 @@ def register(app: typer.Typer) -> None:
 def camera_command(
     name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="A scenario with a camera: straight_5+camera=day.")],
     *,
-    seed: Annotated[
-        int | None, typer.Option("--seed", min=0, help="Of everything random [default: 1, or the world's own].")
-    ] = None,
+    seed: SeedOption = None,
     files: Annotated[
         Path | None,
         typer.Option("--files", metavar="DIR", help="Only write camera.yaml, mounting.toml and board.toml here."),

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from link.errors import UserError
-from link.program.cli import SetOption
+from link.program.cli import JsonOption, SetOption
 from link.program.extras import require
+from scenarios.commands.options import WorkersOption
 
 if TYPE_CHECKING:
     from scenarios.campaigns.campaign import Where
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 _ERRORS_SHOWN = 5
 _SEEDS, _FIRST_SEED = 100, 1
 
-JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 FolderArgument = Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="Folder of a campaign.")]
 
 
@@ -30,51 +30,58 @@ def register(app: typer.Typer) -> None:
     app.command("compare")(compare_command)
 
 
+_CellsArgument = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="CELL...",
+        help="Scenarios, such as straight_5+sensors=nominal; world or world:urban is another one for each seed.",
+    ),
+]
+_SeedsOption = Annotated[
+    int | None, typer.Option("--seeds", min=1, metavar="N", help="Landings of each cell [default: 100].")
+]
+_FirstSeedOption = Annotated[
+    int | None, typer.Option("--first-seed", min=0, metavar="N", help="The others follow [default: 1].")
+]
+_SchedulerOption = Annotated[
+    str | None, typer.Option("--scheduler", metavar="tcp://HOST:8786", help="Of an existing Dask cluster.")
+]
+_OutOption = Annotated[
+    Path | None, typer.Option("--out", metavar="DIR", help="The campaign's folder [default: in runs].")
+]
+_ResumeOption = Annotated[
+    Path | None, typer.Option("--resume", metavar="DIR", help="Go on with what is missing or failed there.")
+]
+_ConfigOption = Annotated[
+    Path | None, typer.Option("--config", metavar="FILE", help="The companion's configuration for all cells.")
+]
+_FirmwareOption = Annotated[
+    str | None, typer.Option("--firmware", metavar="px4|ardupilot|both", help="In place of each cell's.")
+]
+_HeldBackOption = Annotated[
+    bool, typer.Option("--held-back", help="Fly worlds from seed 500000 on, for a published figure, once.")
+]
+
+
 def campaign_command(
-    cells: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="CELL...",
-            help="Scenarios, such as straight_5+sensors=nominal; world or world:urban is another one for each seed.",
-        ),
-    ] = None,
+    cells: _CellsArgument = None,
     *,
-    seeds: Annotated[
-        int | None, typer.Option("--seeds", min=1, metavar="N", help="Landings of each cell [default: 100].")
-    ] = None,
-    first_seed: Annotated[
-        int | None, typer.Option("--first-seed", min=0, metavar="N", help="The others follow [default: 1].")
-    ] = None,
-    workers: Annotated[
-        int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option("--scheduler", metavar="tcp://HOST:8786", help="Of an existing Dask cluster.")
-    ] = None,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="The campaign's folder [default: in runs].")
-    ] = None,
-    resume: Annotated[
-        Path | None, typer.Option("--resume", metavar="DIR", help="Go on with what is missing or failed there.")
-    ] = None,
-    config: Annotated[
-        Path | None, typer.Option("--config", metavar="FILE", help="The companion's configuration for all cells.")
-    ] = None,
+    seeds: _SeedsOption = None,
+    first_seed: _FirstSeedOption = None,
+    workers: WorkersOption = None,
+    scheduler: _SchedulerOption = None,
+    out: _OutOption = None,
+    resume: _ResumeOption = None,
+    config: _ConfigOption = None,
     changes: SetOption = None,
-    firmware: Annotated[
-        str | None, typer.Option("--firmware", metavar="px4|ardupilot|both", help="In place of each cell's.")
-    ] = None,
-    held_back: Annotated[
-        bool, typer.Option("--held-back", help="Fly worlds from seed 500000 on, for a published figure, once.")
-    ] = False,
+    firmware: _FirmwareOption = None,
+    held_back: _HeldBackOption = False,
     as_json: JsonOption = False,
 ) -> int:
     """Fly each cell with many seeds and print the summary; exit code 1 when a landing raised an error."""
     require("campaign", "scenarios campaign")
     from scenarios.campaigns.campaign import Where
-    from scenarios.campaigns.folder import create_folder, read_plan
-    from scenarios.campaigns.held_back import check_worlds, write_down_held_back
-    from scenarios.campaigns.plan import check_same_versions, make_plan
+    from scenarios.campaigns.plan import make_plan
 
     where = Where(workers=workers, scheduler=scheduler)
     if workers is not None and scheduler is not None:
@@ -85,9 +92,7 @@ def campaign_command(
                 f"{resume} says what is flown: with --resume leave out cells, --config, --set, --firmware, "
                 "--held-back, --out, --seeds and --first-seed"
             )
-        plan = read_plan(resume)
-        check_same_versions(plan)
-        return _fly(resume, plan, where, as_json=as_json)
+        return _resume(resume, where, as_json=as_json)
     if not cells:
         raise UserError("no cell is given; `scenarios list` shows the scenarios")
     plan = make_plan(
@@ -98,15 +103,7 @@ def campaign_command(
         given=changes,
         firmware=firmware,
     )
-    check_worlds(plan, held_back=held_back)
-    if scheduler is not None:
-        from scenarios.processes.dask_workers import check_scheduler
-
-        check_scheduler(scheduler)  # before there is a folder of a campaign that cannot begin
-    folder = create_folder(out, plan)
-    if held_back:
-        write_down_held_back(plan)
-    return _fly(folder, plan, where, as_json=as_json)
+    return _begin(plan, where, out, held_back=held_back, as_json=as_json)
 
 
 def table_command(folder: FolderArgument, *, as_json: JsonOption = False, markdown: bool = False) -> None:
@@ -153,6 +150,32 @@ def say_missing(folder: Path) -> None:
     text = missing_landings(folder)
     if text is not None:
         _note(text)
+
+
+def _begin(plan: "Plan", where: "Where", out: Path | None, *, held_back: bool, as_json: bool) -> int:
+    """Make a campaign's folder and fly it."""
+    from scenarios.campaigns.folder import create_folder
+    from scenarios.campaigns.held_back import check_worlds, write_down_held_back
+
+    check_worlds(plan, held_back=held_back)
+    if where.scheduler is not None:
+        from scenarios.processes.dask_workers import check_scheduler
+
+        check_scheduler(where.scheduler)  # before there is a folder of a campaign that cannot begin
+    folder = create_folder(out, plan)
+    if held_back:
+        write_down_held_back(plan)
+    return _fly(folder, plan, where, as_json=as_json)
+
+
+def _resume(folder: Path, where: "Where", *, as_json: bool) -> int:
+    """Fly what is missing or failed in a campaign."""
+    from scenarios.campaigns.folder import read_plan
+    from scenarios.campaigns.plan import check_same_versions
+
+    plan = read_plan(folder)
+    check_same_versions(plan)
+    return _fly(folder, plan, where, as_json=as_json)
 
 
 def _fly(folder: Path, plan: "Plan", where: "Where", *, as_json: bool) -> int:

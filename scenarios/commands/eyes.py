@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from link.program.cli import JsonOption
 from link.program.extras import require
 
 _TOLD_EVERY = 100
@@ -25,7 +26,7 @@ def eyes_command(
     pictures: Annotated[
         Path | None, typer.Option("--examples", metavar="DIR", help="Only draw what it sees from 8, 2 and 0.2 m there.")
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Let the detector of the pad look at frames drawn over range, angle and light, and compare it with the truth."""
     require("camera", "scenarios eyes")

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from link.errors import UserError
+from link.program.cli import JsonOption
 from link.program.extras import require
+from scenarios.commands.options import WorkersOption
 
 if TYPE_CHECKING:
     from scenarios.falsify.falsify import Request, Result
@@ -28,15 +30,13 @@ def falsify_command(
         int, typer.Option("--reduction", min=0, metavar="N", help="Landings to reduce what is found.")
     ] = 200,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of the first start; further ones follow.")] = 1,
-    workers: Annotated[
-        int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
-    ] = None,
+    workers: WorkersOption = None,
     only: Annotated[
         str, typer.Option("--only", metavar="PART,...", help="Of the quantities, such as driver,wind; others: medians.")
     ] = "",
     random: Annotated[bool, typer.Option("--random", help="Draw worlds at random, to compare with.")] = False,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="What is kept [default: in runs].")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    as_json: JsonOption = False,
 ) -> int:
     """Search a slice for an unsafe landing and reduce it to a small scenario file; exit code 1 when none is found."""
     require("campaign", "scenarios falsify")

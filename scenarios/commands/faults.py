@@ -3,15 +3,19 @@
 import json
 import math
 import sys
+from collections.abc import Sequence
 from contextlib import closing
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from link.errors import UserError
+from link.program.cli import JsonOption
 from link.program.extras import require
+from scenarios.commands.options import OneFirmwareOption, WorkersOption
 
 if TYPE_CHECKING:
+    from scenarios.faults.matrix import Case
     from scenarios.faults.trial import Ended
 
 _WIDTHS = {
@@ -33,12 +37,8 @@ def register(app: typer.Typer) -> None:
 
 def faults_command(
     *,
-    workers: Annotated[
-        int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
-    ] = None,
-    firmware: Annotated[
-        str | None, typer.Option("--firmware", metavar="px4|ardupilot", help="Only this one [default: both].")
-    ] = None,
+    workers: WorkersOption = None,
+    firmware: OneFirmwareOption = None,
     fault: Annotated[
         str | None, typer.Option("--fault", metavar="TEXT", help="Only those with this in their name.")
     ] = None,
@@ -46,17 +46,14 @@ def faults_command(
     wire: Annotated[
         bool, typer.Option("--wire", help="With real programs, at the speed of the clock: those that can be.")
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    as_json: JsonOption = False,
 ) -> int:
     """Let every fault happen in every phase of a landing or sortie; exit code 1 when a reaction is not as expected."""
     require("campaign", "scenarios faults")
     from scenarios.config import FIRMWARES
     from scenarios.faults.matrix import EXPECTED
     from scenarios.faults.sortie_matrix import EXPECTED_IN_SORTIE
-    from scenarios.faults.trial import fly_case, fly_case_over_wire, lost
     from scenarios.faults.wire_flight import WIRE_FAULTS
-    from scenarios.processes.local_workers import LocalWorkers, core_count
-    from scenarios.processes.pool import run_tasks
 
     if firmware is not None and firmware not in FIRMWARES:
         raise UserError(f"--firmware is one of {', '.join(FIRMWARES)}, not '{firmware}'")
@@ -70,10 +67,7 @@ def faults_command(
     ]
     if not cases:
         raise UserError(f"no fault has {fault!r} in its name, or no landing has a phase {phase!r}: leave one out")
-    fliers = LocalWorkers(fly_case_over_wire, workers or 1) if wire else LocalWorkers(fly_case, workers or core_count())
-    with closing(run_tasks(fliers, cases, lost=lost)) as results:
-        found = {ended.case: ended for ended in results}
-    rows = [_row(found[case]) for case in cases]
+    rows = [_row(ended) for ended in _fly(cases, workers, wire=wire)]
     if as_json:
         sys.stdout.write(json.dumps({"cases": rows}, indent=2) + "\n")
     else:
@@ -81,6 +75,18 @@ def faults_command(
         sys.stdout.writelines(_line(row | {"right": "yes" if row["right"] else "NO"}) for row in rows)
         sys.stdout.write(f"{sum(row['right'] for row in rows)} of {len(rows)} are right\n")
     return 0 if all(row["right"] for row in rows) else 1
+
+
+def _fly(cases: Sequence["Case"], workers: int | None, *, wire: bool) -> list["Ended"]:
+    """Let each fault happen in its phase and return how that ended, in the order of the cases."""
+    from scenarios.faults.trial import fly_case, fly_case_over_wire, lost
+    from scenarios.processes.local_workers import LocalWorkers, core_count
+    from scenarios.processes.pool import run_tasks
+
+    fliers = LocalWorkers(fly_case_over_wire, workers or 1) if wire else LocalWorkers(fly_case, workers or core_count())
+    with closing(run_tasks(fliers, cases, lost=lost)) as results:
+        found = {ended.case: ended for ended in results}
+    return [found[case] for case in cases]
 
 
 def _row(ended: "Ended") -> dict[str, Any]:

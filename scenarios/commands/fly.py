@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from link.program.cli import SetOption
+from link.program.cli import JsonOption, SetOption
+from scenarios.commands.options import NoRecordOption, RunsOption
 
 _NAME = "Scenario whose track, sensors and companion are used; `scenarios list` shows them."
 
@@ -31,12 +32,10 @@ def fly_command(
     seed: Annotated[
         int | None, typer.Option("--seed", min=0, help="Of the vehicle's sensors [default: 1, or the world's own].")
     ] = None,
-    no_record: Annotated[
-        bool, typer.Option("--no-record", help="Record neither the companion nor the truth; else both are, as MCAP.")
-    ] = False,
+    no_record: NoRecordOption = False,
     changes: SetOption = None,
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the run's folder is made.")] = Path("runs"),
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    out: RunsOption = Path("runs"),
+    as_json: JsonOption = False,
 ) -> int:
     """Land with PX4's or ArduPilot's own simulation, which runs already; exit code 1 when it does not land.
 

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from link.program.cli import JsonOption
+
 if TYPE_CHECKING:
     from scenarios.faults.fuzz import FuzzResult
     from scenarios.faults.fuzz_companion import CompanionFuzzResult
@@ -28,7 +30,7 @@ def fuzz_command(
     ] = _ALL,
     firmware: Annotated[str, typer.Option("--firmware", metavar="px4|ardupilot", help="Of the autopilot.")] = "px4",
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of the frames.")] = 1,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Offer broken and absurd frames to a simulated autopilot that hovers and to a companion that lands."""
     from dataclasses import asdict

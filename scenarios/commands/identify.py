@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from link.errors import UserError
+from link.program.cli import JsonOption
 
 if TYPE_CHECKING:
     from scenarios.identify.fit import Law
@@ -34,7 +35,7 @@ def identify_command(
     parameter: Annotated[
         list[str] | None, typer.Option("--parameter", metavar="NAME=VALUE", help="Of the stand-in; may be repeated.")
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Fly steps, ramps, reversals and a circle with an autopilot, and with the stand-in, and show both side by side.
 

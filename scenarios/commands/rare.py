@@ -6,7 +6,9 @@ from typing import Annotated
 
 import typer
 
+from link.program.cli import JsonOption
 from link.program.extras import require
+from scenarios.commands.options import WorkersOption
 
 _PARTICLES, _STEPS, _LEVEL = 200, 4, 1e-6
 
@@ -36,11 +38,9 @@ def rare_command(
         typer.Option("--steps", min=2, metavar="N", help="Landings that each copy tries in order to be another one."),
     ] = _STEPS,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of everything random.")] = 1,
-    workers: Annotated[
-        int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
-    ] = None,
+    workers: WorkersOption = None,
     firmware: Annotated[str | None, typer.Option("--firmware", metavar="px4|ardupilot", help="Of a cell.")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    as_json: JsonOption = False,
 ) -> int:
     """Estimate the probability of an unsafe outcome; exit code 1 when the splitting has not converged."""
     require("campaign", "scenarios rare")

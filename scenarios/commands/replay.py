@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
+from link.program.cli import JsonOption
 
 
 def register(app: typer.Typer) -> None:

@@ -7,8 +7,10 @@ from typing import Annotated
 
 import typer
 
+from link.program.cli import JsonOption
 from link.program.extras import require
-from scenarios.commands.campaign import JsonOption, say_missing, table_command
+from scenarios.commands.campaign import say_missing, table_command
+from scenarios.commands.options import WorkersOption
 
 _REPORT = "report"
 
@@ -26,9 +28,7 @@ def report_or_campaign_table(
     seeds: Annotated[
         int, typer.Option("--seeds", min=1, metavar="N", help="Flights of each case of the report.")
     ] = 100,
-    workers: Annotated[
-        int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
-    ] = None,
+    workers: WorkersOption = None,
     markdown: Annotated[
         bool, typer.Option("--markdown", help="Print tables as docs/report.md and docs/benchmark.md have them.")
     ] = False,

@@ -10,9 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from link.errors import UserError
+from link.program.cli import JsonOption
 from link.program.extras import require
+from scenarios.commands.options import FirstSeedOption, OneFirmwareOption, WorkersOption
 
 if TYPE_CHECKING:
+    from scenarios.config import FirmwareName
     from scenarios.faults.retry import Retried
 
 _SCENARIOS = (
@@ -52,46 +55,52 @@ def retries_command(
         typer.Option("--height", min=0.05, metavar="M", help="Over the pad, may be repeated [default: 1 and 0.3]."),
     ] = None,
     seeds: Annotated[int, typer.Option("--seeds", min=1, metavar="N", help="Of each scenario and height.")] = 10,
-    first_seed: Annotated[int, typer.Option("--first-seed", min=0, metavar="N", help="The others follow.")] = 1,
-    firmware: Annotated[
-        str | None, typer.Option("--firmware", metavar="px4|ardupilot", help="Only this one [default: both].")
-    ] = None,
-    workers: Annotated[
-        int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
-    ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    first_seed: FirstSeedOption = 1,
+    firmware: OneFirmwareOption = None,
+    workers: WorkersOption = None,
+    as_json: JsonOption = False,
 ) -> int:
     """Break descents off and see whether the next approach lands; exit code 1 when fewer than 95 % do."""
     require("campaign", "scenarios retries")
     from scenarios.catalogue.catalogue import load_scenario
     from scenarios.config import FIRMWARES
-    from scenarios.faults.retry import RetryCase, fly_retry, lost
-    from scenarios.processes.local_workers import LocalWorkers, core_count
-    from scenarios.processes.pool import run_tasks
 
     if firmware is not None and firmware not in FIRMWARES:
         raise UserError(f"--firmware is one of {', '.join(FIRMWARES)}, not '{firmware}'")
     for name in names or ():
         load_scenario(name)  # tells what is wrong with it before anything is flown
-    groups = [
-        [
-            RetryCase(scenario=name, firmware=one, height_m=height_m, seed=seed)
-            for seed in range(first_seed, first_seed + seeds)
-        ]
-        for name in names or _SCENARIOS
-        for one in FIRMWARES
-        if firmware in {None, one}
-        for height_m in height or _HEIGHTS_M
-    ]
-    fliers = LocalWorkers(fly_retry, workers or core_count())
-    with closing(run_tasks(fliers, [case for group in groups for case in group], lost=lost)) as results:
-        found = {retried.case: retried for retried in results}
-    rows = [_row([found[case] for case in group]) for group in groups]
+    firmwares = tuple(one for one in FIRMWARES if firmware in {None, one})
+    drawn = range(first_seed, first_seed + seeds)
+    rows = [_row(group) for group in _fly(names or _SCENARIOS, firmwares, height or _HEIGHTS_M, drawn, workers)]
     if as_json:
         sys.stdout.write(json.dumps({"groups": rows}, indent=2) + "\n")
     else:
         sys.stdout.writelines(_lines(rows))
     return 0 if all(row["right"] for row in rows) else 1
+
+
+def _fly(
+    names: Sequence[str],
+    firmwares: Sequence["FirmwareName"],
+    heights_m: Sequence[float],
+    seeds: Sequence[int],
+    workers: int | None,
+) -> list[list["Retried"]]:
+    """Break off each descent at each height, and return what came of it by scenario, firmware and height."""
+    from scenarios.faults.retry import RetryCase, fly_retry, lost
+    from scenarios.processes.local_workers import LocalWorkers, core_count
+    from scenarios.processes.pool import run_tasks
+
+    groups = [
+        [RetryCase(scenario=name, firmware=firmware, height_m=height_m, seed=seed) for seed in seeds]
+        for name in names
+        for firmware in firmwares
+        for height_m in heights_m
+    ]
+    fliers = LocalWorkers(fly_retry, workers or core_count())
+    with closing(run_tasks(fliers, [case for group in groups for case in group], lost=lost)) as results:
+        found = {retried.case: retried for retried in results}
+    return [[found[case] for case in group] for group in groups]
 
 
 def _row(group: "Sequence[Retried]") -> dict[str, Any]:

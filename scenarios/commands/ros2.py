@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from link.program.cli import make_app
+from link.program.cli import JsonOption, make_app
 from link.zenoh.command_line import ZenohArguments
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def topics_command(
     domain: Annotated[
         int | None, typer.Option("--domain", min=0, max=232, help="[default: ROS_DOMAIN_ID, else 0].")
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    as_json: JsonOption = False,
     endpoints: ZenohArguments,
 ) -> None:
     """List topics, services and actions with their types and nodes, as the liveliness tokens of the graph tell them."""

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from link.errors import UserError
+from link.program.cli import JsonOption
 from link.program.extras import require
+from scenarios.commands.options import WorkersOption
 
 if TYPE_CHECKING:
     from scenarios.sortie.task import FlownSortie
@@ -42,10 +44,8 @@ def sortie_command(
     firmware: Annotated[
         str, typer.Option("--firmware", metavar="px4|ardupilot|both", help="Which autopilot flies.")
     ] = "px4",
-    workers: Annotated[
-        int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
-    ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    workers: WorkersOption = None,
+    as_json: JsonOption = False,
 ) -> int:
     """Fly whole sorties: launch from the driving deck, stations, out of sight, home; exit code 1 if one is unsafe."""
     require("campaign", "scenarios sortie")

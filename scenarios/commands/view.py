@@ -67,28 +67,39 @@ def view_command(
     """
     keys = names.keys()
     if foxglove_layout is not None:
-        from scenarios.view.foxglove_layout import layout_json
-
-        foxglove_layout.write_text(layout_json(keys) + "\n", encoding="utf-8")
+        _write_layout(foxglove_layout, keys)
         return
     if foxglove is None:
         require("view", "scenarios view")
     else:
         require("foxglove", "scenarios view --foxglove")
-    from scenarios.view.recorded import RecordedSource, Road
-
     if recording is not None:
+        from scenarios.view.recorded import RecordedSource
+
         source = RecordedSource(recording)
         _show(source, source.road, port, keys, foxglove)
         return
     from link.zenoh.session import open_session
-    from scenarios.catalogue.catalogue import load_scenario
-    from scenarios.catalogue.world_names import run_seed
     from scenarios.view.live import LiveSource
 
-    drawn = None if road is None else Road(scenario=load_scenario(road), seed=run_seed(road, seed))
+    drawn = None if road is None else _road_of(road, seed)
     with open_session(endpoints.options()) as zenoh:
         _show(LiveSource(zenoh, keys), drawn, port, keys, foxglove)
+
+
+def _write_layout(path: Path, keys: "Keys") -> None:
+    from scenarios.view.foxglove_layout import layout_json
+
+    path.write_text(layout_json(keys) + "\n", encoding="utf-8")
+
+
+def _road_of(name: str, seed: int | None) -> "Road":
+    """Return the road of a scenario or a world."""
+    from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.world_names import run_seed
+    from scenarios.view.recorded import Road
+
+    return Road(scenario=load_scenario(name), seed=run_seed(name, seed))
 
 
 def _show(

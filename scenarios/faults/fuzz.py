@@ -15,8 +15,8 @@ import numpy as np
 from link.errors import UserError
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
-from link.mavlink.transport import Transport
-from link.mavlink.transports import open_transport
+from link.transports.opening import open_transport
+from link.transports.transport import Transport
 from scenarios.faults.fuzz_frames import fuzz_frames
 from scenarios.faults.not_finite import count_not_finite
 from scenarios.processes.programs import free_tcp_endpoint, free_udp_port

@@ -5,7 +5,7 @@ from typing import Self
 
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
-from link.mavlink.transports import open_transport
+from link.transports.opening import open_transport
 from scenarios.config import FirmwareName
 from scenarios.processes.programs import free_udp_port
 

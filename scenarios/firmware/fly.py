@@ -9,11 +9,11 @@ from pathlib import Path
 from companion.situation.phases import Phase
 from link.errors import UserError
 from link.frames.geodesy import Datum
-from link.mavlink.transports import Transport, open_transport
 from link.payloads import json_messages
 from link.program.patience import Patience
 from link.program.toml_config import dump_toml
 from link.records import replace
+from link.transports.opening import Transport, open_transport
 from link.zenoh.keys import Keys, Publication
 from link.zenoh.session import ZenohOptions, ZenohSession, open_session
 from scenarios.config import Scenario

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from link.errors import UserError
-from link.mavlink.transports import open_transport
+from link.transports.opening import open_transport
 from scenarios.identify.pilot import Flight, Pilot, Stage
 from sim_autopilot.runtime.build import autopilot_config
 from sim_autopilot.runtime.config import DroneConfig, SimAutopilotConfig

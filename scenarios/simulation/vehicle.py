@@ -155,13 +155,7 @@ def state_on_road(
         swaying: heave (m), pitch and roll (rad) of the body on its wheels or in waves, each with rate and acceleration.
     """
     v, a = motion.speed_m_s, motion.acceleration_m_s2
-    heave = roll = shake = _NO_WAVE
-    if roughness is not None:
-        heave, roll, shake = (
-            roughness.heave.at(motion.s_m),
-            roughness.roll.at(motion.s_m),
-            roughness.pitch.at(motion.s_m),
-        )
+    heave, roll, shake = _shaken_by(roughness, motion.s_m)
     rise, dive, lean = swaying
     cosine, sine = math.cos(at.heading_rad), math.sin(at.heading_rad)
     yaw_rate_rad_s = at.curvature_per_m * v
@@ -184,6 +178,13 @@ def state_on_road(
         yaw_rad=yaw_rad,
         yaw_rate_rad_s=yaw_rate_rad_s,
     )
+
+
+def _shaken_by(roughness: Roughness | None, s_m: float) -> tuple[Vector3, Vector3, Vector3]:
+    """Return heave (m), roll and pitch (rad) of the body by the road, each with two derivatives by the distance."""
+    if roughness is None:
+        return _STILL
+    return roughness.heave.at(s_m), roughness.roll.at(s_m), roughness.pitch.at(s_m)
 
 
 def _body_rates(

@@ -4,9 +4,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from link.errors import UserError
-from link.mavlink.device import NetworkDevice, parse_device
-from link.mavlink.transport import Transport
-from link.mavlink.transports import open_transport
+from link.transports.device import NetworkDevice, parse_device
+from link.transports.opening import open_transport
+from link.transports.transport import Transport
 
 GPSD_PORT = 2947  # registered
 _NMEA_BAUD = 9600  # receivers' most frequent setting; NMEA 0183's own is 4800

@@ -7,13 +7,13 @@ from contextlib import ExitStack
 import structlog
 
 from link.errors import UserError
-from link.mavlink.tcp_transport import TcpClientTransport
-from link.mavlink.transport import Transport
 from link.messages import Fix, FixVelocity, PadGeometry, VehicleImu
 from link.payloads import cdr, json_messages
 from link.payloads.cdr import encoding_of
 from link.payloads.checks import PayloadError
 from link.program.service import Service
+from link.transports.tcp_transport import TcpClientTransport
+from link.transports.transport import Transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohSession
 from scenarios.vehicle_sources.channel import FileTransport, OpenTransport

@@ -4,10 +4,10 @@ import signal
 import sys
 import time
 
-from link.mavlink.transports import Transport
 from link.messages import BodyTruth, RotorTruth
 from link.payloads import cdr, json_messages
 from link.program.clock import ClockTick, ScaledClock
+from link.transports.opening import Transport
 from link.units import NS_PER_S
 from link.zenoh.keys import Keys, Publication
 from link.zenoh.session import ZenohSession

@@ -30,6 +30,10 @@ _SAME_GRADE = 1e-6  # a millimetre in a kilometre: for less there is no crest or
 _SLANT_MAX_RAD = 1.0  # of a wave against the road: uneven across as well as along; a choice
 
 
+Hump = tuple[float, float, float]
+"""Where its middle is along the road, its length and its height, m."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limit:
     """A speed that is not exceeded between two places."""
@@ -45,7 +49,7 @@ class RoadPlan:
 
     stretches: list[Stretch]
     grades: list[tuple[float, float]]
-    humps: list[tuple[float, float, float]]
+    humps: list[Hump]
     waves: list[tuple[float, float, float, float]]
     limits: list[Limit]
 
@@ -63,7 +67,7 @@ def plan_road(draws: Draws, seed: Seed, *, cruise_m_s: float, run_up_m: float, l
     grip_m_s2 = draws.number("road.friction") * GRAVITY_M_S2
     lateral_m_s2 = min(draws.number("driver.lateral_acceleration_m_s2"), _GRIP_BEND_MAX * grip_m_s2)
     stretches: list[Stretch] = [(run_up_m, 0.0, 0.0)]
-    humps: list[tuple[float, float, float]] = []
+    humps: list[Hump] = []
     limits: list[Limit] = []
     slopes: list[tuple[float, float]] = []
     s_m = run_up_m
@@ -79,29 +83,41 @@ def plan_road(draws: Draws, seed: Seed, *, cruise_m_s: float, run_up_m: float, l
         s_m += straight_m
         if hump is not None:
             humps.append(hump)
-            half_m = 0.5 * hump[1] + 1.0
-            limits.append(Limit(from_m=hump[0] - half_m, to_m=hump[0] + half_m, speed_m_s=hump_m_s))
+            limits.append(_limit_over(hump, hump_m_s))
         for bend in bends:
-            begins_m = s_m
+            limit = _limit_in(bend, s_m, lateral_m_s2)
             stretches.extend(bend)
-            s_m += sum(one[0] for one in bend)
-            sharpest_per_m = max(abs(one[2]) for one in bend)
-            limits.append(Limit(from_m=begins_m, to_m=s_m, speed_m_s=math.sqrt(lateral_m_s2 / sharpest_per_m)))
+            limits.append(limit)
+            s_m = limit.to_m
     slopes = [one for one in slopes if one[0] < s_m]
     stretches.append((max(1.0, length_m - s_m), 0.0, 0.0))
-    radius_m = max(
-        draws.number("road.vertical_radius_m"), cruise_m_s**2 / draws.number("driver.vertical_acceleration_m_s2")
-    )
     return RoadPlan(
         stretches=stretches,
-        grades=_grades(slopes, s_m, radius_m),
+        grades=_grades(slopes, s_m, _crest_radius_m(draws, cruise_m_s)),
         humps=humps,
         waves=_waves(draws, seed),
         limits=limits,
     )
 
 
-def _hump(draws: Draws, slot: int, middle_m: float) -> tuple[float, float, float] | None:
+def _limit_over(hump: Hump, speed_m_s: float) -> Limit:
+    """Return the limit of a driver who goes over a hump at `speed_m_s`, from 1 m before it to 1 m behind."""
+    middle_m, length_m, _ = hump
+    half_m = 0.5 * length_m + 1.0
+    return Limit(from_m=middle_m - half_m, to_m=middle_m + half_m, speed_m_s=speed_m_s)
+
+
+def _limit_in(bend: list[Stretch], begins_m: float, lateral_m_s2: float) -> Limit:
+    """Return the limit of a driver who takes a bend with at most `lateral_m_s2`."""
+    sharpest_per_m = max(abs(one[2]) for one in bend)
+    return Limit(
+        from_m=begins_m,
+        to_m=begins_m + sum(one[0] for one in bend),
+        speed_m_s=math.sqrt(lateral_m_s2 / sharpest_per_m),
+    )
+
+
+def _hump(draws: Draws, slot: int, middle_m: float) -> Hump | None:
     present = draws.yes("road.hump", slot)
     length_m, height_m = draws.number("road.hump_length_m"), draws.number("road.hump_height_m")
     return (middle_m, length_m, height_m) if present else None
@@ -137,6 +153,12 @@ def _bends(draws: Draws, slot: int, cruise_m_s: float, lateral_m_s2: float) -> l
             away = bend(1.2 * island_m, _ENTRY_RAD, -1.0)
             return [away, bend(island_m, exit_rad + 2.0 * _ENTRY_RAD, 1.0), away]
     return []
+
+
+def _crest_radius_m(draws: Draws, cruise_m_s: float) -> float:
+    """Return the radius of crests and dips: as built, or wider for a driver who is fast."""
+    built_m = draws.number("road.vertical_radius_m")
+    return max(built_m, cruise_m_s**2 / draws.number("driver.vertical_acceleration_m_s2"))
 
 
 def _grades(slopes: list[tuple[float, float]], end_m: float, radius_m: float) -> list[tuple[float, float]]:

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from link.mavlink.transports import Transport
 from link.messages import BodyTruth, RotorTruth
 from link.payloads import cdr
 from link.program.clock import ClockTick, ScaledClock, spare_present_objects
+from link.transports.opening import Transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohSession
 from sim_autopilot.physics.wind import WindModel

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import structlog
 
-from link.mavlink.transports import open_transport
+from link.transports.opening import open_transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohOptions, open_session
 from sim_autopilot.memory import AutopilotConfig

@@ -5,7 +5,7 @@ import pytest
 from companion.situation.phases import Phase
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
-from link.mavlink.transports import open_transport
+from link.transports.opening import open_transport
 from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from tests.integration.observer import observer
 from tests.integration.programs import Programs, until

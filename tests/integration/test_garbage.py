@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from link.mavlink.transports import Transport, open_transport
+from link.transports.opening import Transport, open_transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohOptions, ZenohSession, open_session
 from scenarios.recordings.result import LANDED

@@ -4,7 +4,7 @@ import pytest
 
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
-from link.mavlink.transports import open_transport
+from link.transports.opening import open_transport
 from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from tests.integration.programs import Program, Programs, until
 

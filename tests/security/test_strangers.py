@@ -6,15 +6,15 @@ from collections.abc import Callable
 import pytest
 
 from link.mavlink.codec import MavlinkCodec
-from link.mavlink.device import NetworkDevice
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import AutopilotRestarted, Event, MessageReceived
 from link.mavlink.pinned_peer import PinnedPeer
 from link.mavlink.session import MavlinkSession
 from link.mavlink.signing import SIGNING_EPOCH_NS, Signing
-from link.mavlink.transport import Transport
-from link.mavlink.transports import open_transport
-from link.mavlink.udp_transport import UdpInTransport
+from link.transports.device import NetworkDevice
+from link.transports.opening import open_transport
+from link.transports.transport import Transport
+from link.transports.udp_transport import UdpInTransport
 from tests.link.mavlink.fake_autopilot import MS, START_NS, FakeAutopilot, Pair, S, of_kind
 
 DEADLINE_S = 20.0

@@ -2,7 +2,7 @@ import gc
 
 import pytest
 
-from link.mavlink.device import parse_device
+from link.transports.device import parse_device
 from sim_autopilot.runtime.build import autopilot_config, with_default_links
 from sim_autopilot.runtime.config import LinkConfig, SimAutopilotConfig
 from tests.sim_autopilot.clients import Clients

@@ -16,9 +16,9 @@ from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
 from link.mavlink.session import MavlinkSession
 from link.mavlink.signing import Signing
-from link.mavlink.transport import Transport
 from link.messages import Fix, PadGeometry
 from link.payloads import cdr, json_messages
+from link.transports.transport import Transport
 from link.zenoh.inbox import Inbox, Sample
 from link.zenoh.keys import Keys
 

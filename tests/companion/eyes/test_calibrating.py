@@ -15,7 +15,7 @@ from companion.eyes.calibrating import Shot, calibrate, covered_share, is_new, i
 from companion.eyes.calibration_commands import quality_lines
 from companion.eyes.camera import Camera, vector_of
 from companion.eyes.collecting import collect_shots
-from companion.eyes.file_source import FolderSource
+from companion.eyes.sources.file_source import FolderSource
 from link.errors import UserError
 from link.frames.rotations import matrix_from_quaternion, quaternion_from_roll_pitch_yaw
 from scenarios.camera.lens import CAMERA, SIZE_PX

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from companion.eyes.attitude import GAP_MAX_NS, Attitude, attitude_at
 from companion.eyes.board import load_board, nested_board
 from companion.eyes.camera import matrix_of
-from companion.eyes.frames import Captured, gray_of_file
 from companion.eyes.node import EyesNode
 from companion.eyes.picture import WholePicture
+from companion.eyes.sources.frames import Captured, gray_of_file
 from link.errors import UserError
 from link.frames.rotations import quaternion_from_yaw, yaw_of
 from link.messages import BodyTruth, CompressedPicture, PadGeometry, PadSighting

@@ -6,10 +6,10 @@ from typing import Any
 import pytest
 
 from companion.eyes.annotation import drawing_of
-from companion.eyes.frames import Captured, gray_of_file
 from companion.eyes.picture import WholePicture
 from companion.eyes.recording import PictureRecord, open_recorder
 from companion.eyes.sight import SightMemory, sight_step
+from companion.eyes.sources.frames import Captured, gray_of_file
 from link.messages import CompressedPicture
 from link.payloads import cdr
 from link.payloads.decklander_msgs import typestore

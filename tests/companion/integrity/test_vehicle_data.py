@@ -20,7 +20,7 @@ from companion.integrity.vehicle_data import (
 from companion.landing.feasibility import obstacle
 from companion.situation.phases import Phase
 from companion.vehicle.estimator import BufferHealth
-from companion.vehicle.pad import PadPath
+from companion.vehicle.pad import PadMounting, PadPath
 from link.messages import PadGeometry
 from link.records import replace
 from tests.companion.facts import CONFIG, NOW_NS, changed, pad_at, situation
@@ -85,7 +85,9 @@ def driving(off_rad: float, speed_m_s: float = 5.0, lateral_m_s2: float = 0.0) -
     along = np.array([math.cos(COURSE_RAD), math.sin(COURSE_RAD), 0.0])
     pad = pad_at(tuple((speed_m_s * along).tolist()))
     across = np.tile(lateral_m_s2 * np.array([-along[1], along[0], 0.0]), (len(pad.offset_s), 1))
-    return replace(pad, yaw_rad=COURSE_RAD + off_rad, acceleration_enu_m_s2=across, needs_heading=True)
+    return replace(
+        pad, yaw_rad=COURSE_RAD + off_rad, acceleration_enu_m_s2=across, mounting=PadMounting(needs_heading=True)
+    )
 
 
 def course_after(watch: CourseWatch, pad: PadPath, duration_s: float = 6.0, *, std_m_s: float = STD_M_S) -> CourseWatch:
@@ -157,7 +159,7 @@ def test_contradiction_outlasts_a_stop_and_ends_with_agreement() -> None:
 
 
 def test_pad_at_the_antenna_needs_no_heading() -> None:
-    pad = replace(driving(math.pi), needs_heading=False)
+    pad = replace(driving(math.pi), mounting=PadMounting())
     assert without_contradicted_heading(pad, course_after(CourseWatch(), pad)).unplaced is None
 
 

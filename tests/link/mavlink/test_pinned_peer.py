@@ -4,7 +4,7 @@ from typing import cast
 
 from link.mavlink.pinned_peer import PinnedPeer
 from link.mavlink.session import MavlinkSession
-from link.mavlink.transport import PeerBytes, Transport
+from link.transports.transport import PeerBytes, Transport
 
 AUTOPILOT, STRANGER = 1, 2
 

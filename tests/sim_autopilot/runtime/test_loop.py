@@ -13,10 +13,10 @@ import pytest
 
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
-from link.mavlink.transports import Transport, open_transport
 from link.messages import BodyTruth, PadGeometry, RotorTruth
 from link.payloads import cdr, json_messages
 from link.program.clock import ClockTick
+from link.transports.opening import Transport, open_transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import Inbox, ZenohOptions, ZenohSession, open_session
 from sim_autopilot.runtime.vehicle_view import VehicleView

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from companion.eyes.board import Board
 from companion.eyes.camera import Camera, matrix_of
-from companion.eyes.edges import EdgePoints, edge_points, find_crossings
 from companion.eyes.family import CELLS
+from companion.eyes.finding.edges import EdgePoints, edge_points, find_crossings
+from companion.eyes.finding.scatter import variance_px2
 from companion.eyes.picture import Part
-from companion.eyes.scatter import variance_px2
 
 Array = NDArray[np.float64]
 Pose = tuple[Array, Array]

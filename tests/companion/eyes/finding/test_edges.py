@@ -6,10 +6,10 @@ from numpy.typing import NDArray
 
 from companion.eyes.board import load_board
 from companion.eyes.camera import matrix_of, vector_of
-from companion.eyes.edges import EdgePoints, edge_points, find_crossings
 from companion.eyes.family import CELLS
+from companion.eyes.finding.edges import EdgePoints, edge_points, find_crossings
+from companion.eyes.finding.reading import expected_tags
 from companion.eyes.picture import whole
-from companion.eyes.reading import expected_tags
 from scenarios.camera.lens import CAMERA, SIZE_PX
 from tests.companion.eyes.frames import MOUNTING, Case, case
 

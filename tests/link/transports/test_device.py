@@ -1,7 +1,7 @@
 import pytest
 
 from link.errors import UserError
-from link.mavlink.device import NetworkDevice, SerialDevice, parse_device
+from link.transports.device import NetworkDevice, SerialDevice, parse_device
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from companion.eyes.camera import matrix_of, vector_of
-from companion.eyes.pose import Pose, Refined
+from companion.eyes.finding.pose import Pose, Refined
 
 Array = NDArray[np.float64]
 

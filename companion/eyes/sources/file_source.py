@@ -5,7 +5,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from companion.eyes.frames import Captured
+from companion.eyes.sources.frames import Captured
 from link.errors import UserError
 from link.units import NS_PER_S
 

@@ -13,7 +13,7 @@ from types import TracebackType
 from typing import NamedTuple, Self
 
 from link.errors import UserError
-from link.mavlink.device import NetworkDevice
+from link.transports.device import NetworkDevice
 
 CHUNK_BYTES = 65536  # the largest datagram there is
 DRAIN_BYTES_MAX = 1 << 16  # a flood must not keep the loop from its other work; 100 Mbit/s at 200 turns a second

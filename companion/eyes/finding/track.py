@@ -8,7 +8,7 @@ from msgspec import Struct
 from numpy.typing import NDArray
 
 from companion.eyes.camera import matrix_of, vector_of
-from companion.eyes.pose import Pose
+from companion.eyes.finding.pose import Pose
 from link.messages import Matrix3
 
 Array = NDArray[np.float64]

@@ -14,7 +14,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from companion.eyes.frames import Captured
+from companion.eyes.sources.frames import Captured
 from link.errors import UserError
 from link.program.clock import Clock, MonotonicNs
 from link.units import NS_PER_S

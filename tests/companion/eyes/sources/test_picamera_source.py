@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from companion.eyes.opening import SourceOptions, open_source
-from companion.eyes.picamera_source import PiCameraSource, PiRequest
+from companion.eyes.sources.opening import SourceOptions, open_source
+from companion.eyes.sources.picamera_source import PiCameraSource, PiRequest
 from link.errors import UserError
 from link.program.clock import SystemClock
 from link.zenoh.keys import Keys

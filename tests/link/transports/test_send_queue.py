@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from link.mavlink.device import NetworkDevice, SerialDevice
-from link.mavlink.send_queue import UNDER_WAY_MAX_S, WAITING_MAX_S, SendQueue
-from link.mavlink.serial_transport import SerialTransport
-from link.mavlink.tcp_connection import TcpConnection
-from link.mavlink.tcp_transport import TcpClientTransport
-from link.mavlink.transport import Transport
+from link.transports.device import NetworkDevice, SerialDevice
+from link.transports.send_queue import UNDER_WAY_MAX_S, WAITING_MAX_S, SendQueue
+from link.transports.serial_transport import SerialTransport
+from link.transports.tcp_connection import TcpConnection
+from link.transports.tcp_transport import TcpClientTransport
+from link.transports.transport import Transport
 
 SETPOINT = bytes(range(65))
 DEADLINE_S = 20.0
@@ -247,7 +247,7 @@ def test_a_serial_line_is_given_no_more_than_it_takes_in_time(
     ours, theirs = pty.openpty()
     tty.setraw(theirs)
     os.set_blocking(ours, False)
-    monkeypatch.setattr("link.mavlink.serial_transport.held_bytes", lambda _descriptor: held_bytes)
+    monkeypatch.setattr("link.transports.serial_transport.held_bytes", lambda _descriptor: held_bytes)
     with SerialTransport(SerialDevice(path=os.ttyname(theirs), baud=57600)) as transport:
         transport.send(SETPOINT)
         assert (len(select.select([ours], [], [], 0.0)[0]) == 1) == is_written

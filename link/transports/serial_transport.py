@@ -7,9 +7,9 @@ import time
 from typing import Any
 
 from link.errors import UserError
-from link.mavlink.device import SerialDevice
-from link.mavlink.send_queue import WAITING_MAX_S, SendQueue
-from link.mavlink.transport import Transport, held_bytes, wait_readable
+from link.transports.device import SerialDevice
+from link.transports.send_queue import WAITING_MAX_S, SendQueue
+from link.transports.transport import Transport, held_bytes, wait_readable
 
 _REOPEN_S = 1.0
 _BITS_PER_BYTE = 10  # with start and stop bit

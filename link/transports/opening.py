@@ -3,11 +3,11 @@
 Once open, a transport never raises for what the other end or the network does; it counts.
 """
 
-from link.mavlink.device import SerialDevice, parse_device
-from link.mavlink.serial_transport import SerialTransport
-from link.mavlink.tcp_transport import TcpClientTransport, TcpServerTransport
-from link.mavlink.transport import Transport
-from link.mavlink.udp_transport import UdpBoundTransport, UdpInTransport, UdpOutTransport
+from link.transports.device import SerialDevice, parse_device
+from link.transports.serial_transport import SerialTransport
+from link.transports.tcp_transport import TcpClientTransport, TcpServerTransport
+from link.transports.transport import Transport
+from link.transports.udp_transport import UdpBoundTransport, UdpInTransport, UdpOutTransport
 
 __all__ = ["Transport", "open_transport"]
 

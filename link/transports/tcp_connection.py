@@ -6,8 +6,8 @@ The system acknowledges for a program that does not read, as long as it has room
 import socket
 import struct
 
-from link.mavlink.send_queue import UNDER_WAY_MAX_S, SendQueue
-from link.mavlink.transport import CHUNK_BYTES, DRAIN_BYTES_MAX, held_bytes
+from link.transports.send_queue import UNDER_WAY_MAX_S, SendQueue
+from link.transports.transport import CHUNK_BYTES, DRAIN_BYTES_MAX, held_bytes
 
 _SEND_BUFFER_BYTES = 16384  # the system's own part in what is under way; Linux takes it twice
 _RESET_AT_ONCE = struct.pack("ii", 1, 0)  # socket(7), SO_LINGER: what is unsent is thrown away

@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from companion.eyes.capture_source import CaptureSource
-from companion.eyes.file_source import FolderSource
-from companion.eyes.frames import Source
-from companion.eyes.picamera_source import PiCameraSource, open_picamera
-from companion.eyes.zenoh_source import ZenohSource
+from companion.eyes.sources.capture_source import CaptureSource
+from companion.eyes.sources.file_source import FolderSource
+from companion.eyes.sources.frames import Source
+from companion.eyes.sources.picamera_source import PiCameraSource, open_picamera
+from companion.eyes.sources.zenoh_source import ZenohSource
 from link.errors import UserError
 from link.program.clock import SystemClock
 from link.zenoh.keys import Keys

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from companion.eyes.camera import matrix_of, vector_of
-from companion.eyes.choosing import Candidate, choose, mirrored, tilt_stds
-from companion.eyes.pose import Pose, Refined
+from companion.eyes.finding.choosing import Candidate, choose, mirrored, tilt_stds
+from companion.eyes.finding.pose import Pose, Refined
 from link.frames.rotations import matrix_from_quaternion, quaternion_from_roll_pitch_yaw
 
 FACING = np.diag([1.0, -1.0, -1.0])

@@ -2,7 +2,7 @@
 
 import time
 
-from companion.eyes.frames import Captured, gray_of_file, gray_of_image
+from companion.eyes.sources.frames import Captured, gray_of_file, gray_of_image
 from link.messages import CameraImage, CompressedPicture
 from link.payloads import cdr
 from link.payloads.checks import PayloadError

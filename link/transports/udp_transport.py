@@ -5,8 +5,8 @@ import time
 from typing import Any
 
 from link.errors import UserError
-from link.mavlink.device import NetworkDevice
-from link.mavlink.transport import CHUNK_BYTES, DRAIN_BYTES_MAX, PeerBytes, Transport, bind, resolve, wait_readable
+from link.transports.device import NetworkDevice
+from link.transports.transport import CHUNK_BYTES, DRAIN_BYTES_MAX, PeerBytes, Transport, bind, resolve, wait_readable
 
 _RECEIVE_BUFFER_BYTES = 1 << 20  # rides out a pause of the program; the system may grant less
 _PEERS_MAX = 16

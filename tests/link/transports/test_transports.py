@@ -11,10 +11,10 @@ from link.errors import UserError
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
 from link.mavlink.session import MavlinkSession
-from link.mavlink.tcp_transport import TcpClientTransport, TcpServerTransport
-from link.mavlink.transport import Transport
-from link.mavlink.transports import open_transport
-from link.mavlink.udp_transport import UdpInTransport, UdpPeers
+from link.transports.opening import open_transport
+from link.transports.tcp_transport import TcpClientTransport, TcpServerTransport
+from link.transports.transport import Transport
+from link.transports.udp_transport import UdpInTransport, UdpPeers
 
 DEADLINE_S = 10.0
 

@@ -4,9 +4,9 @@ import select
 import socket
 import time
 
-from link.mavlink.device import NetworkDevice
-from link.mavlink.tcp_connection import TcpConnection
-from link.mavlink.transport import PeerBytes, Transport, bind, resolve, wait_readable
+from link.transports.device import NetworkDevice
+from link.transports.tcp_connection import TcpConnection
+from link.transports.transport import PeerBytes, Transport, bind, resolve, wait_readable
 
 _RECONNECT_S = 0.5
 _CLIENTS_MAX = 16

@@ -1,0 +1,1 @@
+"""Where the pad is in a picture: its tags, their edges, and the pose that explains them."""

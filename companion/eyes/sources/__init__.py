@@ -1,0 +1,1 @@
+"""Where frames come from: a camera, a video, pictures in a folder, or Zenoh."""
