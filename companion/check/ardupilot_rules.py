@@ -21,6 +21,7 @@ from companion.check.rules import (
 _CENTI = 100.0
 _JERK_M_S3 = 10.0  # its own shaping allows 10.8 m/s^3 by default: 0.5 sqrt(WPNAV_ACCEL by g by ATC_ACCEL_P_MAX)
 _VERTICAL_M_S2 = 3.0  # limits.vertical_acceleration_max_m_s2
+_VERTICAL_JERK_M_S3 = 25.0  # limits.vertical_jerk_max_m_s3 by the share of it that is planned with, 0.8
 _CORRECTED_PER_S = (
     2.0  # jerk by acceleration, as by default; corrected faster, the jitter of setpoints takes all the jerk
 )
@@ -75,12 +76,12 @@ ARDUPILOT_RULES = (
         reason="what the height is corrected with; with 1 an abort climbs on for 2.5 s into the next approach",
     ),
     at_least(
-        lambda _: _JERK_M_S3,
+        lambda _: _VERTICAL_JERK_M_S3,
         step=1.0,
         spellings=(Spelling("PSC_JERK_D"), Spelling("PSC_JERK_Z")),
         unit="m/s^3",
         level=Level.WARN,
-        reason="how quickly a climb turns into a descent; planned with the jerk that is set horizontally",
+        reason="how quickly a sink turns into a climb; with 10 an abort low above a pad that brakes still touches it",
     ),
     setpoint_loss_rule(
         (Spelling("GUID_TIMEOUT"),),

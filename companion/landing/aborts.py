@@ -27,6 +27,7 @@ from companion.vehicle.pad_reach import cone_radius_m, is_unseen, is_vague, over
 
 _DESCENT = frozenset({Phase.DESCEND})
 _MIXED_HOLD_S = 1.5  # three counts: a step of the drone's own frame has sightings of half a second rejected
+_MOSTLY = 0.5  # of the ways in which a descent may go on
 _FRICTION_MIN = 0.5  # of rubber on painted metal when it is wet; dry 0.8
 
 
@@ -104,14 +105,18 @@ def _can_turn_back(s: Situation, c: CompanionConfig) -> bool:
 
 
 def _is_contact_risky(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether a descent that is committed had better turn back; one that is not waits."""
+    """Return whether a descent that is committed had better turn back; one that is not waits.
+
+    It turns back, too, where it most likely would a moment later, nearer to a pad that is leaving it.
+    """
     if s.contact is None or s.approach is None or s.approach.height_m > c.descent.commit_height_m:
         return False
-    return s.contact.unsafe > c.descent.risk.turns_back_min and _can_turn_back(s, c)
+    is_risky = s.contact.unsafe > c.descent.risk.turns_back_min or s.contact.broken_off > _MOSTLY
+    return is_risky and _can_turn_back(s, c)
 
 
 def _tell_risk(s: Situation, _: CompanionConfig) -> Cause:
-    return Cause(Reason.CONTACT_RISKY, (0.0 if s.contact is None else s.contact.unsafe,))
+    return Cause(Reason.CONTACT_RISKY, (0.0 if s.contact is None else s.contact.s1,))
 
 
 def _has_touched(s: Situation, c: CompanionConfig) -> bool:

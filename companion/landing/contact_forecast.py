@@ -1,4 +1,4 @@
-"""The forecast of the contact that a descent leads to if it goes on, made ten times a second; pure."""
+"""The forecast of the contact that a descent leads to if it goes on, made ten to twenty times a second; pure."""
 
 import numpy as np
 
@@ -27,7 +27,8 @@ from companion.situation.situation import Situation, vehicle_stands
 from link.messages import ContactForecast
 from link.records import replace
 
-_PERIOD_S = 0.1  # between two of them, in which a descent sinks by 0.05 m
+_PERIOD_S = 0.1  # between two of them: above the commit height nothing has to be decided sooner
+_COMMITTED_PERIOD_S = 0.05  # below, where a brake that is seen then leaves 0.4 s to stop sinking
 _AGE_MAX_S = 1.0  # of data, beyond which the landing is broken off anyway
 
 
@@ -45,7 +46,9 @@ def update_forecast(memory: StepMemory, situation: Situation, inputs: StepInputs
     known = replace(before, drivers=drivers, gusts=gusts, acceleration_ns=told_ns)
     if memory.progress.phase is not Phase.DESCEND:
         return replace(memory, forecast=replace(known, contact=None, made_ns=None, has_begun=False))
-    period_ns = round(_PERIOD_S * 1e9)
+    relative = situation.approach
+    is_low = relative is not None and relative.height_m < system.config.descent.commit_height_m
+    period_ns = round((_COMMITTED_PERIOD_S if is_low else _PERIOD_S) * 1e9)
     if known.made_ns is not None and now_ns - known.made_ns < period_ns:
         return replace(memory, forecast=known)
     memory = replace(memory, forecast=replace(known, made_ns=now_ns))

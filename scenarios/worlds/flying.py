@@ -64,7 +64,7 @@ def system_of(draws: Draws, drone: DroneConfig, waiting_height_m: float) -> Syst
             "PSC_JERK_XY": 10.0,
             "WPNAV_SPEED_DN": 200.0,
             "WPNAV_ACCEL_Z": 300.0,
-            "PSC_JERK_Z": 10.0,
+            "PSC_JERK_Z": 25.0,
             "GUID_TIMEOUT": 1.0,
             "MOT_THST_HOVER": hover_share,
             "PSC_POSXY_P": response,

@@ -97,14 +97,14 @@ def situation(height_m: float = 1.5, beside_m: float = 0.0, pad: PadPath | None 
     )
 
 
-def forecast_of(unsafe: float, in_s: float = 0.5) -> ContactForecast:
-    """The forecast of a contact that is beside the pad's middle with that probability, and else within S2."""
+def forecast_of(unsafe: float, in_s: float = 0.5, broken_off: float = 0.0) -> ContactForecast:
+    """The forecast of a contact that is beside the pad's middle or broken off with these probabilities, else in S2."""
     return ContactForecast(
         in_s=in_s,
-        s1=1.0 - unsafe,
-        s2=1.0 - unsafe,
+        s1=1.0 - unsafe - broken_off,
+        s2=1.0 - unsafe - broken_off,
         unsafe=unsafe,
-        broken_off=0.0,
+        broken_off=broken_off,
         misses_position=unsafe,
         misses_speed=0.0,
         misses_sink=0.0,

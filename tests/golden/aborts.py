@@ -26,8 +26,7 @@ _ANTENNA_OVER_PAD = {"antenna_flu_m": (0.0, 0.0, 1.6)}  # no heading is needed t
 _RAISED_M = 3.0
 _LOWER_M = 0.8
 _BESIDE_M = 0.4
-_LOW_M = 0.55  # of the drone above the roof: its feet are 0.43 m above
-_COMMITTED_M = 0.4  # likewise: 0.28 m
+_COMMITTED_M = 0.4  # of the drone above the roof: its feet are 0.28 m above
 _AHEAD_S = 0.3
 _LIMIT_M_S = 4.0  # less than the vehicle's 5 m/s
 _PATIENCE_S = 6.0  # from the fault to the abort
@@ -119,11 +118,11 @@ def _pad_is_described(forward_m: float, up_m: float) -> Fault:
     return describe
 
 
-def _when_low(fault: Fault, low_m: float = _LOW_M) -> Fault:
+def _when_committed(fault: Fault) -> Fault:
     """Let the fault wait until the drone is too low to wait for better."""
 
     def descend(flight: FaultFlight) -> None:
-        above_m = flight.scenario.vehicle.roof_height_m + low_m
+        above_m = flight.scenario.vehicle.roof_height_m + _COMMITTED_M
         while flight.height_m > above_m:
             flight.step()
         fault(flight)
@@ -162,12 +161,9 @@ ABORTS: dict[str, Abort] = {
         reason=Reason.SETPOINT_NOT_FOLLOWED,
         companion={"setpoints": {"lead_s": 0.5, "corrects_lag": False}, "abort": {"tracking_stds_max": 4.0}},
     ),
-    "outside_cone": Abort(
-        reason=Reason.OUTSIDE_CONE, fault=_when_low(_pad_is_described(forward_m=3.0 * _BESIDE_M, up_m=0.0))
-    ),
     "contact_risky": Abort(
         reason=Reason.CONTACT_RISKY,
-        fault=_when_low(_pad_is_described(forward_m=1.5 * _BESIDE_M, up_m=0.0), _COMMITTED_M),
+        fault=_when_committed(_pad_is_described(forward_m=1.5 * _BESIDE_M, up_m=0.0)),
     ),
     "contradicting": Abort(
         reason=Reason.VEHICLE_CONTRADICTS_ITSELF,

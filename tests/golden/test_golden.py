@@ -113,8 +113,9 @@ def test_golden_abort_has_its_reason_and_ends_clear_of_the_vehicle(name: str) ->
 
 ALIKE = {
     Reason.OWN_ATTITUDE_OLD: Reason.OWN_POSITION_OLD,
-    Reason.STRAYS: Reason.OUTSIDE_CONE,
-    Reason.ALIGNMENT_LOST: Reason.OUTSIDE_CONE,
+    Reason.STRAYS: Reason.CONTACT_RISKY,
+    Reason.ALIGNMENT_LOST: Reason.CONTACT_RISKY,
+    Reason.OUTSIDE_CONE: Reason.CONTACT_RISKY,
     Reason.PAD_NOT_SEEN: Reason.OFFSET_UNKNOWN,
     Reason.PAD_TO_BE_SEEN: Reason.OFFSET_UNKNOWN,
     Reason.TOO_FAR_FROM_START: Reason.VEHICLE_OUTRUNS,

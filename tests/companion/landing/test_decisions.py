@@ -48,10 +48,10 @@ LOW_M = 0.5 * CONFIG.descent.commit_height_m
 LIMITS = CONFIG.limits.flight_limits()
 
 
-def _risky(height_m: float, sinks_m_s: float = 0.0, unsafe: float = 0.9) -> Situation:
-    """The same over the pad with a forecast that a contact would be unsafe."""
+def _risky(height_m: float, sinks_m_s: float = 0.0, unsafe: float = 0.9, broken_off: float = 0.0) -> Situation:
+    """The same over the pad with a forecast that a contact would be unsafe, or is broken off."""
     drone = drone_at(height_m, 0.0, (0.0, 0.0, -sinks_m_s), pad=pad_at())
-    return changed(situation(height_m), drone=drone, limits=LIMITS, contact=forecast_of(unsafe))
+    return changed(situation(height_m), drone=drone, limits=LIMITS, contact=forecast_of(unsafe, broken_off=broken_off))
 
 
 # What makes each abort test true, everything else being in order; in the descent, above the commit height but for one.
@@ -173,6 +173,8 @@ MOST = CONFIG.descent.risk.turns_back_min
         (_risky(LOW_M, 0.45), True),
         (_risky(LOW_M, 0.45, unsafe=MOST - 0.01), False),
         (_risky(LOW_M, 0.45, unsafe=MOST + 0.01), True),
+        (_risky(LOW_M, 0.45, unsafe=0.0, broken_off=0.45), False),
+        (_risky(LOW_M, 0.45, unsafe=0.0, broken_off=0.55), True),
         (_risky(CONFIG.descent.commit_height_m + 0.01, 0.45), False),  # it may wait
         (_risky(max(STOPPING_M, CONFIG.descent.sway.height_min_m) + 0.01, 0.45), True),
         (_risky(CONFIG.descent.sway.height_min_m - 0.01), False),  # it may stand already
