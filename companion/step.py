@@ -119,7 +119,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
         ),
         waiting_point_enu_m=memory.places.waiting_point_enu_m,
         rival=inputs.rival,
-        contact=memory.forecast.contact,
+        contact=memory.forecast.contact if memory.forecast.is_committed else None,
         limits=inputs.limits,
         speed_limited_by=() if inputs.driver is None else inputs.driver.speed_parameters,
     )

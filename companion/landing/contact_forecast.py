@@ -45,13 +45,13 @@ def update_forecast(memory: StepMemory, situation: Situation, inputs: StepInputs
     told_ns = now_ns if is_told else before.acceleration_ns
     known = replace(before, drivers=drivers, gusts=gusts, acceleration_ns=told_ns)
     if memory.progress.phase is not Phase.DESCEND:
-        return replace(memory, forecast=replace(known, contact=None, made_ns=None, has_begun=False))
+        return replace(memory, forecast=replace(known, contact=None, made_ns=None, is_committed=False, has_begun=False))
     relative = situation.approach
     is_low = relative is not None and relative.height_m < system.config.descent.commit_height_m
     period_ns = round((_COMMITTED_PERIOD_S if is_low else _PERIOD_S) * 1e9)
     if known.made_ns is not None and now_ns - known.made_ns < period_ns:
         return replace(memory, forecast=known)
-    memory = replace(memory, forecast=replace(known, made_ns=now_ns))
+    memory = replace(memory, forecast=replace(known, made_ns=now_ns, is_committed=is_low))
     contact = forecast_contact(memory, situation, inputs, system)
     begins = known.has_begun or is_moment_quiet(contact, situation, system.config)
     return replace(memory, forecast=replace(memory.forecast, contact=contact, has_begun=begins))

@@ -153,6 +153,7 @@ class ForecastMemory(Struct, frozen=True, kw_only=True, eq=False):
     Attributes:
         contact: the newest forecast of this descent, None without one.
         made_ns: when it was made, monotonic; None in any other phase.
+        is_committed: it was made below the commit height, where nothing is waited for any more.
         drivers: how the vehicle's driver drives.
         gusts: how hard the air pushes the drone.
         has_begun: this descent has left the height of waiting at a quiet moment; it holds until the descent ends.
@@ -161,6 +162,7 @@ class ForecastMemory(Struct, frozen=True, kw_only=True, eq=False):
 
     contact: ContactForecast | None = None
     made_ns: int | None = None
+    is_committed: bool = False
     drivers: Drivers = field(default_factory=Drivers)
     gusts: Gusts = field(default_factory=Gusts)
     has_begun: bool = False

@@ -126,7 +126,7 @@ class Situation(Struct, frozen=True, kw_only=True, eq=False):
         limits: of the flight, the autopilot's own included.
         speed_limited_by: the autopilot's parameters that may bound the speed.
         rival: another companion that was there first, None without one.
-        contact: the newest forecast of the contact that this descent leads to, None without one.
+        contact: the newest forecast of the contact that a committed descent leads to, None without one.
         approach: the drone against the pad, None unless both are known; follows from them.
     """
 

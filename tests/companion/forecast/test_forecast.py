@@ -56,10 +56,12 @@ class TellingVehicle(KnownVehicle):
 def test_a_descent_is_forecast_ten_times_a_second_and_surely_lands_on_a_vehicle_that_is_known() -> None:
     flight = Flight(vehicle=TellingVehicle((-20.0, 0.4, PAD_HEIGHT_M), (4.0, 0.0, 0.0), std_m=0.02))
     flight.start_and_reach(Phase.DESCEND)
-    statuses = [flight.step().status]
+    statuses, committed_m = [flight.step().status], []
     while flight.phase is Phase.DESCEND:
         again = flight.copy()
         statuses.append(flight.step().status)
+        if flight.memory.forecast.is_committed:
+            committed_m.append(statuses[-1].height_above_pad_m or 0.0)
         assert again.step().status.contact_forecast == statuses[-1].contact_forecast  # the same step, made twice
     forecasts = [(status.height_above_pad_m or 0.0, status.contact_forecast) for status in statuses[:-1]]
     known = [(height_m, one) for height_m, one in forecasts if one is not None]
@@ -68,3 +70,5 @@ def test_a_descent_is_forecast_ten_times_a_second_and_surely_lands_on_a_vehicle_
         assert one.s1 + one.unsafe + one.broken_off == pytest.approx(1.0, abs=1e-6)
         assert one.s2 <= one.s1 + 1e-9
     assert next(one for height_m, one in known if height_m < 0.1).s1 > 0.98
+    # What it waits for above the commit height is no reason to turn back below.
+    assert 0.0 < max(committed_m) < flight.config.descent.commit_height_m
