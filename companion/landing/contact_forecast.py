@@ -10,7 +10,7 @@ from companion.forecast.drivers import update_drivers
 from companion.forecast.gusts import update_gusts
 from companion.forecast.rollout import roll_out
 from companion.forecast.samples import Descent, Samples
-from companion.landing.memory import StepMemory
+from companion.landing.memory import ForecastMemory, StepMemory
 from companion.landing.rollout_inputs import (
     as_driven,
     course_of,
@@ -34,16 +34,7 @@ _AGE_MAX_S = 1.0  # of data, beyond which the landing is broken off anyway
 
 def update_forecast(memory: StepMemory, situation: Situation, inputs: StepInputs, system: System) -> StepMemory:
     """Return the memory with the forecast of this step, None in a phase that does not descend."""
-    now_ns, before = situation.monotonic_ns, memory.forecast
-    drivers = update_drivers(before.drivers, memory.vehicle.hindsight.driving.driven)
-    gusts, tracking = before.gusts, memory.model.tracking
-    # In a chase what looks like a push is what the model does not know of a hard flight.
-    flies_evenly = memory.progress.phase in (Phase.ALIGN, Phase.DESCEND) and bool(tracking.deviation.any())
-    if flies_evenly and tracking.compared_ns is not None and inputs.response is not None:
-        gusts = update_gusts(gusts, tracking.compared_ns, tracking.deviation, inputs.response)
-    is_told = any(one.quantity is Quantity.ACCELERATION for one in inputs.vehicle.measurements)
-    told_ns = now_ns if is_told else before.acceleration_ns
-    known = replace(before, drivers=drivers, gusts=gusts, acceleration_ns=told_ns)
+    now_ns, known = situation.monotonic_ns, _update_known(memory, situation, inputs)
     if memory.progress.phase is not Phase.DESCEND:
         return replace(memory, forecast=replace(known, contact=None, made_ns=None, is_committed=False, has_begun=False))
     relative = situation.approach
@@ -55,6 +46,23 @@ def update_forecast(memory: StepMemory, situation: Situation, inputs: StepInputs
     contact = forecast_contact(memory, situation, inputs, system)
     begins = known.has_begun or is_moment_quiet(contact, situation, system.config)
     return replace(memory, forecast=replace(memory.forecast, contact=contact, has_begun=begins))
+
+
+def _update_known(memory: StepMemory, situation: Situation, inputs: StepInputs) -> ForecastMemory:
+    """Return what forecasts are made from, with what this step shows of driver, gusts and inertial unit."""
+    before, tracking = memory.forecast, memory.model.tracking
+    gusts = before.gusts
+    # In a chase what looks like a push is what the model does not know of a hard flight.
+    flies_evenly = memory.progress.phase in (Phase.ALIGN, Phase.DESCEND) and bool(tracking.deviation.any())
+    if flies_evenly and tracking.compared_ns is not None and inputs.response is not None:
+        gusts = update_gusts(gusts, tracking.compared_ns, tracking.deviation, inputs.response)
+    is_told = any(one.quantity is Quantity.ACCELERATION for one in inputs.vehicle.measurements)
+    return replace(
+        before,
+        drivers=update_drivers(before.drivers, memory.vehicle.hindsight.driving.driven),
+        gusts=gusts,
+        acceleration_ns=situation.monotonic_ns if is_told else before.acceleration_ns,
+    )
 
 
 def forecast_contact(
