@@ -77,7 +77,7 @@ def run_command(
     as_json: JsonOption = False,
 ) -> int:
     """Run a landing and score it on ground truth; exit code 1 when it does not land."""
-    from link.program.patience import Patience
+    from link.program.cli import Patience
     from scenarios.catalogue.changed import load_changed_scenario
     from scenarios.catalogue.firmware_option import with_firmware
     from scenarios.catalogue.world_names import run_seed
@@ -157,7 +157,7 @@ def command_command(
     """Send a command to the companion; exit code 1 when it is refused."""
     import json
 
-    from link.program.printable import printable
+    from link.program.text import printable
     from link.zenoh.keys import Keys
     from scenarios.commands.operator import order_of, send_order
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from link.frames.local_frame import LocalFrame
+from link.frames.geodesy import LocalFrame
 from link.records import replace
 from sim_autopilot.core.links import LinkMemory, Links, Outbox
 from sim_autopilot.core.modes import Modes

@@ -22,7 +22,7 @@ HOMES = {
     },
     "foxglove": {"link/recording/foxglove_server.py", "scenarios/view/foxglove_layout.py"},
     "xxhash": {"link/ros2/attachment.py"},
-    "pymavlink": {f"link/mavlink/{name}.py" for name in ("dialect", "draft_messages", "codec")},
+    "pymavlink": {f"link/mavlink/{name}.py" for name in ("dialect", "codec")},
     "rosbags": {
         "link/payloads/cdr.py",
         "link/payloads/ros_fields.py",

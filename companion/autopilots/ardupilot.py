@@ -33,7 +33,7 @@ from companion.autopilots.messages import (
 from companion.autopilots.response import Cascade
 from companion.autopilots.shaping import Shaping
 from companion.core.data import GRAVITY_M_S2, FlightLimits, Setpoint
-from link.frames.local_frame import Projection
+from link.frames.geodesy import Projection
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 

@@ -11,7 +11,7 @@ from msgspec import Struct
 from companion.autopilots.response import Cascade
 from companion.autopilots.shaping import Shaping
 from companion.core.data import FlightLimits, RangeReading, Setpoint
-from link.frames.local_frame import LocalFrame, Projection
+from link.frames.geodesy import LocalFrame, Projection
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
 

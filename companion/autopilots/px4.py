@@ -29,7 +29,7 @@ from companion.autopilots.px4_events import refusal_of
 from companion.autopilots.response import Cascade
 from companion.autopilots.shaping import Shaping
 from companion.core.data import FlightLimits, Setpoint
-from link.frames.local_frame import Projection
+from link.frames.geodesy import Projection
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 

@@ -6,8 +6,7 @@ field of the modes that it bars.
 Source: MAVLink events interface, https://mavlink.io/en/services/events.html.
 """
 
-from link.mavlink.dialect import Message
-from link.mavlink.event_ids import event_id
+from link.mavlink.dialect import Message, event_id
 
 _EXTERNAL_LEVEL = 0x0F
 _ERROR_LEVEL = 3  # as in syslog: this and below is emergency, alert, critical, error

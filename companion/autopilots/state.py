@@ -11,13 +11,12 @@ from companion.autopilots.local_origin import above_ellipsoid, geoid_height_m, i
 from companion.autopilots.own_reports import HISTORY_NS, carry, is_plausible, velocity_bias, with_report, without_bias
 from companion.autopilots.sensor_messages import with_sensor
 from companion.core.data import OwnState
-from link.frames.geodesy import Datum
-from link.frames.local_frame import LocalFrame, Projection
+from link.frames.geodesy import Datum, LocalFrame, Projection
 from link.frames.rotations import enu_from_ned, flu_from_frd, normalized, quaternion_enu_flu_from_ned_frd
 from link.mavlink.clock_map import ClockMap
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Quaternion, Vector3
-from link.program.printable import printable
+from link.program.text import printable
 from link.records import replace
 
 _AHEAD_NS = 100_000_000  # how far a report is carried beyond the newest one

@@ -9,7 +9,7 @@ import math
 
 from companion.autopilots.state import AutopilotState
 from companion.vehicle.pad import PadPath
-from link.frames.local_frame import geodetic_from_local
+from link.frames.geodesy import geodetic_from_local
 from link.frames.rotations import ned_from_enu
 from link.mavlink.dialect import Message, mavlink
 

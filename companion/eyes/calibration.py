@@ -14,7 +14,7 @@ from ruamel.yaml.error import YAMLError
 
 from companion.eyes.camera import Camera, Model
 from link.errors import UserError
-from link.program.text_file import read_text
+from link.program.text import read_text
 
 _ROS_MODELS: dict[str, Model] = {
     "plumb_bob": "pinhole",

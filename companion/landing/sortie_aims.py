@@ -26,7 +26,7 @@ from companion.situation.situation import Situation
 from companion.sortie.memory import SortieMemory
 from companion.sortie.station import keep_outside, way_to
 from companion.vehicle.pad import PadPath
-from link.frames.local_frame import local_from_geodetic
+from link.frames.geodesy import local_from_geodetic
 from link.messages import StationFrame
 
 _CLIMB_FIRST_M = 1.0  # a drone that is lower than this under its place climbs before it flies there

@@ -8,7 +8,7 @@ from companion.core.data import Forecast
 from companion.recording.messages import forecast_of
 from companion.recording.records import StepRecord
 from companion.vehicle.pad import pad_path
-from link.frames.local_frame import geodetic_from_local
+from link.frames.geodesy import geodetic_from_local
 from link.frames.rotations import quaternion_from_yaw
 from link.payloads.decklander_msgs import RosMessage
 from link.payloads.scene import (

@@ -10,7 +10,7 @@ from typing import Protocol
 
 from companion.core.data import Rival
 from companion.situation.phases import FLYING_PHASES, Phase
-from link.zenoh.alive import Alive
+from link.zenoh.inbox import Alive
 from link.zenoh.keys import Keys
 
 

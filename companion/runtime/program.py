@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from companion.config.companion import CompanionConfig
 from companion.runtime.command_line import MavlinkArguments, RecordArguments, RunArguments
 from link.mavlink.signing import Signing
-from link.program.patience import Patience
+from link.program.cli import Patience
 from link.recording.recorder import BackgroundRecorder
 from link.ros2.options import Ros2Options, open_layout
 from link.transports.opening import open_transport

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from link.program.printable import printable
+from link.program.text import printable
 
 _RECENT_NS = 5_000_000_000
 _AGAIN_NS = 10_000_000_000

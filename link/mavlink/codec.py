@@ -1,19 +1,61 @@
 """Messages to bytes and back: frames are checked here, their contents are pymavlink's business.
 
 Framing is not left to pymavlink: after a wrong checksum it throws away as many bytes as the broken frame claimed to
-have, good frames included. Here the search goes on at the next byte.
+have, good frames included. Here the search goes on at the next byte. Each sender's sequence numbers tell what was lost,
+came late and came twice.
 """
 
 import struct
 from collections import Counter
 
-from link.mavlink.contents import frame_of, message_of
+from link.mavlink.contents import as_version1, frame_of, message_of
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.framing import MARKER_V1, MARKER_V2, Stream, message_id_at
-from link.mavlink.sequence import SequenceTracker
 from link.mavlink.signing import Signing
 from link.mavlink.statistics import CodecStatistics
-from link.mavlink.version1 import as_version1
+
+_NUMBERS = 256
+_WINDOW = 128  # a step of less than half the circle is forward, the others are looks back
+_ALL_SEEN = (1 << _WINDOW) - 1
+
+
+class SequenceTracker:
+    """Follows one sender's sequence numbers; a message that comes late is taken back from the lost ones."""
+
+    __slots__ = ("_newest", "_seen", "doubled", "late", "lost")
+
+    def __init__(self) -> None:
+        self.lost = 0
+        self.late = 0
+        self.doubled = 0
+        self._newest: int | None = None
+        self._seen = _ALL_SEEN  # bit n: the message n before the newest has come
+
+    def see(self, number: int) -> None:
+        """Takes note of one message.
+
+        Args:
+            number: its sequence number, 0 to 255.
+        """
+        if self._newest is None:
+            self._newest = number
+            return
+        step = (number - self._newest) % _NUMBERS
+        if 0 < step < _WINDOW:
+            self._newest = number
+            self.lost += step - 1
+            self._seen = ((self._seen << step) | 1) & _ALL_SEEN
+        else:
+            self._look_back(-step % _NUMBERS)
+
+    def _look_back(self, steps: int) -> None:
+        if self._seen >> steps & 1 or steps >= _WINDOW:
+            self.doubled += 1
+            return
+        self._seen |= 1 << steps
+        self.lost -= 1
+        self.late += 1
+
 
 _UNKNOWN_IDS_MAX = 64  # counted apart; noise would make up thousands
 _PEERS_MAX = 64  # whose unfinished frames are kept; more than a transport has at a time

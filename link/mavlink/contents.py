@@ -1,19 +1,101 @@
-"""What a frame holds, as one of pymavlink's messages, and a message's frame.
+"""What a frame of either version holds: how a message's fields lie in its payload, and its checksum.
 
 pymavlink itself finds out again for each frame how its kind of message is laid out, and makes a message's header twice,
 which takes half of its time; here a layout is found out once for each kind. Its classes and its checksum are used as
-they are.
+they are. Version 1 is for clients that speak nothing newer: message ids up to 255, no extension fields, and trailing
+zeros are not left out.
+
+Source: https://mavlink.io/en/guide/serialization.html#checksum, https://mavlink.io/en/guide/mavlink_2.html.
 """
 
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from operator import attrgetter, itemgetter
 from typing import Any, NamedTuple
 
-from link.mavlink.checksum import checksum
+from fastcrc.crc16 import mcrf4xx
+
 from link.mavlink.dialect import Message, mavlink
-from link.mavlink.layout import fields_in_order
+
+_CHECKSUM = struct.Struct("<H")
+_SEED = 0xFFFF
+
+
+def checksum(data: bytes) -> int:
+    """CRC-16/MCRF4XX, by the library that pymavlink's own class calls."""
+    return mcrf4xx(data, _SEED)
+
+
+def with_checksum(head_and_payload: bytes | bytearray, message_id: int) -> bytes:
+    """The frame, from its marker on, with the checksum of a known message appended."""
+    crc = checksum(bytes(head_and_payload[1:]) + bytes((mavlink.mavlink_map[message_id].crc_extra,)))
+    return bytes(head_and_payload) + _CHECKSUM.pack(crc)
+
+
+def crc_extra(name: str, fields: Iterable[tuple[str, str, int]]) -> int:
+    """The byte that stands for a message's definition: its name, and each field's type, name and array length.
+
+    Args:
+        name: of the message.
+        fields: those that are no extensions, in the order in which they are sent; the length is 0 for no array.
+
+    Returns:
+        0 to 255.
+    """
+    crc = mavlink.x25crc(f"{name} ".encode())
+    for kind, field, length in fields:
+        crc.accumulate(f"{kind} {field} ".encode())
+        if length:
+            crc.accumulate(bytes((length,)))
+    return int((crc.crc & 0xFF) ^ (crc.crc >> 8))
+
+
+_FORMATS = {
+    "char": "<c",
+    "uint8_t": "<B",
+    "int8_t": "<b",
+    "uint16_t": "<H",
+    "int16_t": "<h",
+    "uint32_t": "<I",
+    "int32_t": "<i",
+    "uint64_t": "<Q",
+    "int64_t": "<q",
+    "float": "<f",
+    "double": "<d",
+}
+
+
+class Field(NamedTuple):
+    """A field of `kind`, an array when `length` is not 0."""
+
+    kind: str
+    name: str
+    length: int
+
+    @property
+    def size(self) -> int:
+        """In bytes."""
+        return struct.calcsize(_FORMATS[self.kind]) * (self.length or 1)
+
+
+def fields_in_order(message_id: int) -> list[Field]:
+    """Returns a message's fields in the order in which they are sent, extensions last."""
+    kind = mavlink.mavlink_map[message_id]
+    kinds = dict(zip(kind.fieldnames, kind.fieldtypes, strict=True))
+    return [
+        Field(kinds[name], name, length)
+        for name, length in zip(kind.ordered_fieldnames, kind.array_lengths, strict=True)
+    ]
+
+
+def field_offsets(message_id: int) -> dict[str, int]:
+    """Returns where in the payload each field begins."""
+    offsets, start = {}, 0
+    for field in fields_in_order(message_id):
+        offsets[field.name] = start
+        start += field.size
+    return offsets
 
 
 class _Layout(NamedTuple):
@@ -39,7 +121,6 @@ class _Layout(NamedTuple):
 
 
 _HEAD = struct.Struct("<BBBBBBBHB")
-_CHECKSUM = struct.Struct("<H")
 
 
 def message_of(frame: bytearray, message_id: int) -> Message | None:
@@ -138,3 +219,30 @@ def _chooser(places: list[int | slice]) -> Callable[[tuple[Any, ...]], tuple[Any
     """Return what gives the values at these places, as above."""
     choose = itemgetter(*places)
     return choose if len(places) > 1 else lambda values: (choose(values),)
+
+
+_ID_MAX = 255
+
+
+def as_version1(frame: bytes) -> bytes | None:
+    """Returns a MAVLink 2 frame of a known message as MAVLink 1, None when version 1 does not have the message."""
+    message_id = int.from_bytes(frame[7:10], "little")
+    if message_id > _ID_MAX:
+        return None
+    size = base_size(message_id)
+    payload = frame[mavlink.HEADER_LEN_V2 : mavlink.HEADER_LEN_V2 + frame[1]][:size].ljust(size, b"\0")
+    head = bytes((mavlink.PROTOCOL_MARKER_V1, size, frame[4], frame[5], frame[6], message_id))
+    return with_checksum(head + payload, message_id)
+
+
+@cache
+def base_size(message_id: int) -> int:
+    """Returns the payload size of a message without its extension fields.
+
+    The dialect does not say where these begin, but its CRC_EXTRA is made of the fields before them.
+    """
+    kind, fields = mavlink.mavlink_map[message_id], fields_in_order(message_id)
+    for count in range(len(fields), 0, -1):
+        if crc_extra(kind.msgname, [(one.kind, one.name, one.length) for one in fields[:count]]) == kind.crc_extra:
+            return sum(one.size for one in fields[:count])
+    raise ValueError(f"{kind.msgname} does not match its CRC_EXTRA")

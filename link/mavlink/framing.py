@@ -8,8 +8,8 @@ a version 1 frame from its definition without extensions to that with all of the
 import re
 from functools import cache
 
+from link.mavlink.contents import base_size
 from link.mavlink.dialect import mavlink
-from link.mavlink.version1 import base_size
 
 MARKER_V1 = mavlink.PROTOCOL_MARKER_V1
 MARKER_V2 = mavlink.PROTOCOL_MARKER_V2

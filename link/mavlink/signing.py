@@ -10,7 +10,7 @@ import hmac
 from pathlib import Path
 
 from link.errors import UserError
-from link.mavlink.checksum import with_checksum
+from link.mavlink.contents import with_checksum
 from link.mavlink.dialect import mavlink
 
 KEY_BYTES = 32

@@ -1,13 +1,15 @@
-"""What the programs share: an app with plain help, and errors as one line on stderr with exit code 2.
+"""What the programs share: an app with plain help, errors as one line on stderr, a word where a start takes long.
 
 Kept light, so that `--help` is quick: no numerics and no Zenoh are imported here.
 """
 
 import os
 import sys
+import threading
 from collections.abc import Sequence
 from importlib.metadata import version
-from typing import Annotated, Any
+from types import TracebackType
+from typing import Annotated, Any, Self
 
 import typer
 from typer.main import get_command
@@ -15,7 +17,7 @@ from typer.main import get_command
 from link.errors import UserError
 from link.program.clock import collect_rarely
 from link.program.help import NO_EXAMPLES, App, Examples, explain
-from link.program.printable import printable
+from link.program.text import printable
 
 EXIT_OK = 0
 EXIT_USER_ERROR = 2
@@ -135,3 +137,36 @@ def _fail(name: str, message: str, hint: str = "") -> int:
     line = printable(" ".join(f"{message} {hint}".split()))
     sys.stderr.write(f"{name}: {line}\n")
     return EXIT_USER_ERROR
+
+
+_AFTER_S = 3.0
+PATIENCE = (
+    "loading the numerics; after an installation or an update they are compiled first, which takes a minute or two"
+)
+
+
+class Patience:
+    """Says on stderr what a program does, when a block takes longer than some seconds.
+
+    Args:
+        program: its name.
+        doing: what it does.
+        after_s: from the beginning of the block.
+    """
+
+    def __init__(self, program: str, doing: str = PATIENCE, after_s: float = _AFTER_S) -> None:
+        self._timer = threading.Timer(after_s, lambda: sys.stderr.write(f"{program}: {doing}\n"))
+        self._timer.daemon = True
+
+    def __enter__(self) -> Self:
+        self._timer.start()
+        return self
+
+    def end(self) -> None:
+        """Say nothing from now on."""
+        self._timer.cancel()
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.end()

@@ -12,7 +12,7 @@ from pydantic_core import ErrorDetails
 
 from link.errors import UserError
 from link.program.near_names import key_hint, models_in
-from link.program.text_file import read_text
+from link.program.text import read_text
 
 Location = tuple[int | str, ...]
 Fields = Mapping[str, FieldInfo]

@@ -8,7 +8,7 @@ from typing import TextIO
 
 import structlog
 
-from link.program.printable import printable
+from link.program.text import printable
 from link.recording.recorder import BackgroundRecorder
 
 _CAPACITY = 1000  # lines

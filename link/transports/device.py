@@ -1,11 +1,20 @@
-"""Device strings, in pymavlink's forms, taken apart and checked."""
+"""Device strings, in pymavlink's forms, taken apart and checked; which hosts are this machine."""
 
 import difflib
+import ipaddress
 import re
 from dataclasses import dataclass
 
 from link.errors import UserError
-from link.hosts import is_this_machine
+
+
+def is_this_machine(host: str) -> bool:
+    """Return whether `host`, a name or an address without brackets, is loopback."""
+    try:
+        return ipaddress.ip_address(host.partition("%")[0]).is_loopback
+    except ValueError:
+        return host == "localhost"
+
 
 FORMS = "udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT, tcpin:HOST:PORT or /dev/ttyX,BAUD"
 _NETWORK = re.compile(

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 
 from link.errors import UserError
-from link.hosts import is_this_machine
+from link.transports.device import is_this_machine
 
 _ENCRYPTED = frozenset({"tls", "quic"})
 _OF_THIS_MACHINE = frozenset({"unixsock-stream", "unixpipe", "serial", "vsock"})

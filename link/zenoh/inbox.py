@@ -1,4 +1,4 @@
-"""Where samples wait between the thread that receives them and the loop that takes them."""
+"""What waits between the thread that receives it and the loop that takes it: samples, and who is alive."""
 
 import select
 import socket
@@ -111,3 +111,33 @@ class Inbox:
             self._samples.clear()
             self._bytes = 0
         return samples
+
+
+_TOKENS_MAX = 100
+"""On a key with wildcards; no network has so many drones at one vehicle, and each token costs time in every step."""
+
+
+class Alive:
+    """Whether anybody declares a liveliness token on a key; tokens beyond a hundred are not taken note of."""
+
+    def __init__(self, wake_up: WakeUp) -> None:
+        self._wake_up = wake_up
+        self._keys: set[str] = set()
+
+    @property
+    def alive(self) -> bool:
+        """Whether a token is there now."""
+        return bool(self._keys)
+
+    @property
+    def keys(self) -> frozenset[str]:
+        """The keys of all tokens that are there now."""
+        return frozenset(self._keys)
+
+    def update(self, key: str, *, is_alive: bool) -> None:
+        """Take the news of a token; for the receiving thread."""
+        if not is_alive:
+            self._keys.discard(key)
+        elif len(self._keys) < _TOKENS_MAX:
+            self._keys.add(key)
+        self._wake_up.set()

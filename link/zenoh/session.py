@@ -14,8 +14,7 @@ from typing import Self
 import zenoh
 
 from link.payloads.checks import PayloadError
-from link.zenoh.alive import Alive
-from link.zenoh.inbox import Inbox, Sample, WakeUp
+from link.zenoh.inbox import Alive, Inbox, Sample, WakeUp
 from link.zenoh.library_config import is_matched, open_library_session
 from link.zenoh.options import DEFAULT_ENDPOINT, ZenohOptions
 from link.zenoh.replies import Replies

@@ -6,9 +6,8 @@ None of them is a valid order to the autopilot under test: what could rightly mo
 import random
 from collections.abc import Iterator
 
-from link.mavlink.checksum import with_checksum
+from link.mavlink.contents import field_offsets, with_checksum
 from link.mavlink.dialect import mavlink
-from link.mavlink.layout import field_offsets
 
 _POOL = 4000
 _NOISE_BYTES_MAX = 300

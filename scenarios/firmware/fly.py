@@ -10,7 +10,7 @@ from companion.situation.phases import Phase
 from link.errors import UserError
 from link.frames.geodesy import Datum
 from link.payloads import json_messages
-from link.program.patience import Patience
+from link.program.cli import Patience
 from link.program.toml_config import dump_toml
 from link.records import replace
 from link.transports.opening import Transport, open_transport

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from link.frames.local_frame import LocalFrame, Projection
+from link.frames.geodesy import LocalFrame, Projection
 from link.messages import BodyTruth
 from link.units import NS_PER_S
 from scenarios.config import Scenario

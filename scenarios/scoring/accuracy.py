@@ -14,7 +14,7 @@ from msgspec import Struct
 
 from companion.core.data import Array, VehicleEstimate
 from companion.situation.phases import Phase
-from link.frames.local_frame import scale_of
+from link.frames.geodesy import scale_of
 from link.frames.rotations import rotate
 from link.messages import Vector3
 from scenarios.simulation.vehicle import VehicleState

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from link.frames.local_frame import Projection
+from link.frames.geodesy import Projection
 from link.mavlink.dialect import mavlink
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.core.parameters import Parameter, Values

@@ -10,8 +10,14 @@ from math import dist
 
 from msgspec import Struct
 
-from link.frames.geodesy import Datum, enu_from_geodetic, geodetic_from_enu
-from link.frames.local_frame import LocalFrame, geodetic_from_local, local_from_geodetic
+from link.frames.geodesy import (
+    Datum,
+    LocalFrame,
+    enu_from_geodetic,
+    geodetic_from_enu,
+    geodetic_from_local,
+    local_from_geodetic,
+)
 from link.frames.rotations import wrap_angle
 from link.messages import Vector3
 

@@ -9,8 +9,7 @@ from math import cos, hypot, isfinite, pi, radians, sin
 import numpy as np
 from msgspec import Struct
 
-from link.frames.geodesy import geodetic_from_enu
-from link.frames.local_frame import local_from_geodetic
+from link.frames.geodesy import geodetic_from_enu, local_from_geodetic
 from link.frames.rotations import enu_from_ned, ned_from_enu
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3

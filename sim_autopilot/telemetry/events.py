@@ -6,8 +6,7 @@ Source: MAVLink events interface; names, levels and arguments: PX4's source.
 import struct
 from dataclasses import dataclass
 
-from link.mavlink.dialect import Message, mavlink
-from link.mavlink.event_ids import event_id
+from link.mavlink.dialect import Message, event_id, mavlink
 from link.records import replace
 from sim_autopilot.core.status_texts import EventCode, FailsafeTexts, status_text, status_texts
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory

@@ -2,8 +2,7 @@
 
 from math import atan2, degrees, hypot, pi
 
-from link.frames.geodesy import geodetic_from_enu
-from link.frames.local_frame import local_from_geodetic
+from link.frames.geodesy import geodetic_from_enu, local_from_geodetic
 from link.frames.rotations import (
     frd_from_flu,
     ned_from_enu,

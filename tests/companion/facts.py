@@ -15,8 +15,7 @@ from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
 from companion.situation.situation import Below, Drone, Following, Situation, VehicleNews
 from companion.vehicle.pad import HEADING_UNKNOWN, PadPath
-from link.frames.geodesy import Datum
-from link.frames.local_frame import LocalFrame, Projection
+from link.frames.geodesy import Datum, LocalFrame, Projection
 from link.messages import ContactForecast, Vector3
 from link.records import replace
 

@@ -7,7 +7,7 @@ from functools import cache
 from companion.config.companion import CompanionConfig
 from companion.runtime.build import build_node
 from companion.runtime.node import CompanionNode
-from link.frames.local_frame import geodetic_from_local
+from link.frames.geodesy import geodetic_from_local
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Fix, Vector3
 from link.payloads import cdr

@@ -22,8 +22,7 @@ from companion.runtime.build import make_guidance
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.step import companion_step
 from companion.vehicle.estimator import BufferHealth, Estimator
-from link.frames.geodesy import Datum
-from link.frames.local_frame import LocalFrame, Projection
+from link.frames.geodesy import Datum, LocalFrame, Projection
 from link.frames.rotations import quaternion_from_yaw
 from link.mavlink.dialect import mavlink
 from link.messages import Command, PadGeometry, Station, Vector3

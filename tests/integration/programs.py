@@ -15,7 +15,7 @@ from typing import IO, Self
 
 import psutil  # type: ignore[import-untyped]  # it has no annotations
 
-from link.program.patience import PATIENCE
+from link.program.cli import PATIENCE
 from scenarios.processes.programs import MODULES
 
 DEADLINE_S = 90.0

@@ -2,8 +2,7 @@
 
 import pytest
 
-from link.frames.geodesy import geodetic_from_enu
-from link.frames.local_frame import local_from_geodetic
+from link.frames.geodesy import geodetic_from_enu, local_from_geodetic
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import Scenario
 from scenarios.lockstep.lockstep import Lockstep

@@ -9,7 +9,7 @@ from companion.runtime import publishing
 from link.errors import UserError
 from link.payloads.checks import PayloadError
 from link.program.cli import make_app, run_app
-from link.program.printable import printable
+from link.program.text import printable
 from link.recording.log import Log
 from link.recording.recorder import BackgroundRecorder
 from link.zenoh.options import ZenohOptions

@@ -7,10 +7,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from link.mavlink.checksum import with_checksum
 from link.mavlink.codec import MavlinkCodec
+from link.mavlink.contents import field_offsets, with_checksum
 from link.mavlink.dialect import Message, mavlink
-from link.mavlink.layout import field_offsets
 from sim_autopilot.commands.incoming import HANDLED
 from sim_autopilot.memory import AutopilotConfig
 from sim_autopilot.runtime.node import AutopilotNode

@@ -7,8 +7,7 @@ from math import nan
 
 import pytest
 
-from link.mavlink.dialect import mavlink
-from link.mavlink.event_ids import event_id
+from link.mavlink.dialect import event_id, mavlink
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.ground_station.files.ftp_handlers import checksum
 from sim_autopilot.ground_station.px4.health_bits import ARMING_SUMMARY, HEALTH_SUMMARY, MODE_STATES

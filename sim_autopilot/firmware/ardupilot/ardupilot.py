@@ -5,7 +5,7 @@ Mode numbers, stream groups, texts: ArduCopter's documentation and source. Times
 
 from types import MappingProxyType
 
-from link.frames.local_frame import Projection
+from link.frames.geodesy import Projection
 from link.mavlink.dialect import mavlink
 from sim_autopilot.core.firmware import (
     COMMON_CAPABILITIES,

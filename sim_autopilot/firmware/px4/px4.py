@@ -6,7 +6,7 @@ Rates, times and answers: measured on that simulation.
 
 from types import MappingProxyType
 
-from link.frames.local_frame import Projection
+from link.frames.geodesy import Projection
 from link.mavlink.dialect import mavlink
 from sim_autopilot.core.firmware import (
     COMMON_CAPABILITIES,

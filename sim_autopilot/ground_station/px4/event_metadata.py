@@ -7,7 +7,7 @@ sent here are described.
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from link.mavlink.event_ids import event_id
+from link.mavlink.dialect import event_id
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.firmware.px4.events import DISARM_REASONS, EVENTS
 from sim_autopilot.ground_station.px4.health_bits import ARMING_SUMMARY, COMPONENTS, HEALTH_SUMMARY, MODE_STATES

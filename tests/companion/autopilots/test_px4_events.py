@@ -3,9 +3,7 @@
 import pytest
 
 from companion.autopilots.px4_events import refusal_of
-from link.mavlink.dialect import Message
-from link.mavlink.draft_messages import DRAFT_MESSAGES
-from link.mavlink.event_ids import event_id
+from link.mavlink.dialect import DRAFT_MESSAGES, Message, event_id
 
 CRITICAL, INFORMATION = 0x62, 0x66  # internal level in the upper half
 OFFBOARD, POSITION = 1 << 14, 1 << 2

@@ -11,7 +11,7 @@ from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.driver import Driver
 from companion.autopilots.px4 import Px4Driver
 from companion.autopilots.state import AutopilotState, update_state
-from link.frames.local_frame import Projection
+from link.frames.geodesy import Projection
 from link.frames.rotations import quaternion_ned_frd_from_enu_flu
 from link.mavlink.clock_map import ClockMap, with_round_trip, with_system_time
 from link.mavlink.clock_map import RoundTrip as Trip

@@ -10,8 +10,7 @@ from companion.config.companion import CompanionConfig
 from companion.situation.phases import Phase
 from link.frames.geodesy import Datum
 from link.mavlink.codec import MavlinkCodec
-from link.mavlink.dialect import MAV_RESULT_CANCELLED, Message, mavlink
-from link.mavlink.draft_messages import DRAFT_MESSAGES
+from link.mavlink.dialect import DRAFT_MESSAGES, MAV_RESULT_CANCELLED, Message, mavlink
 from link.messages import PadGeometry
 from tests.companion.peer import Setup
 from tests.companion.world import FRAME

@@ -20,8 +20,7 @@ from companion.vehicle.inputs import (
     sighting_measurement,
     velocity_measurements,
 )
-from link.frames.geodesy import geodetic_from_enu
-from link.frames.local_frame import LocalFrame, Projection, geodetic_from_local
+from link.frames.geodesy import LocalFrame, Projection, geodetic_from_enu, geodetic_from_local
 from link.frames.rotations import conjugate, quaternion_from_roll_pitch_yaw, rotate
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, Vector3, VehicleImu
 from link.payloads import cdr

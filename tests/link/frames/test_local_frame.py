@@ -12,8 +12,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymap3d.vincenty import vdist
 
-from link.frames.geodesy import Datum, enu_from_geodetic, geodetic_from_enu
-from link.frames.local_frame import LocalFrame, Projection, geodetic_from_local, local_from_geodetic, scale_of
+from link.frames.geodesy import (
+    Datum,
+    LocalFrame,
+    Projection,
+    enu_from_geodetic,
+    geodetic_from_enu,
+    geodetic_from_local,
+    local_from_geodetic,
+    scale_of,
+)
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message
 from link.messages import Vector3

@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from link.mavlink.checksum import with_checksum
-from link.mavlink.contents import frame_of, message_of
+from link.mavlink.contents import frame_of, message_of, with_checksum
 from link.mavlink.dialect import Message, mavlink
 
 LISTENER = mavlink.MAVLink(None)

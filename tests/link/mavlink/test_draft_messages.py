@@ -3,7 +3,7 @@
 import pytest
 
 from link.mavlink.codec import MavlinkCodec
-from link.mavlink.draft_messages import DRAFT_MESSAGES
+from link.mavlink.dialect import DRAFT_MESSAGES
 
 
 # CRC_EXTRA and payload length as in the C headers that PX4 is built with.

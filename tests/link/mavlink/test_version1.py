@@ -4,8 +4,8 @@ import pytest
 from pymavlink.dialects.v10 import ardupilotmega as version1
 
 from link.mavlink.codec import MavlinkCodec
+from link.mavlink.contents import base_size
 from link.mavlink.dialect import Message, mavlink
-from link.mavlink.version1 import base_size
 
 BEAT = mavlink.MAVLink_heartbeat_message(2, 3, 81, 0, 3, 3)
 

@@ -4,7 +4,7 @@ import threading
 
 import pytest
 
-from link.program.patience import Patience
+from link.program.cli import Patience
 
 
 def test_a_slow_start_is_told_on_stderr_and_a_quick_one_is_not(capfd: pytest.CaptureFixture[str]) -> None:

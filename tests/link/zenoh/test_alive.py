@@ -2,8 +2,7 @@
 
 from contextlib import closing
 
-from link.zenoh.alive import Alive
-from link.zenoh.inbox import WakeUp
+from link.zenoh.inbox import Alive, WakeUp
 
 
 def test_tokens_of_a_flood_are_not_kept_beyond_a_hundred_and_a_lost_one_makes_room() -> None:

@@ -7,8 +7,7 @@ import pytest
 from scipy import stats
 
 from companion.core.data import VehicleEstimate
-from link.frames.geodesy import Datum, geodetic_from_enu
-from link.frames.local_frame import LocalFrame, Projection
+from link.frames.geodesy import Datum, LocalFrame, Projection, geodetic_from_enu
 from link.frames.rotations import quaternion_from_yaw
 from link.records import replace
 from scenarios.campaigns.intervals import mean_band

@@ -18,8 +18,7 @@ from typing import TypeVar
 import pytest
 
 from companion.vehicle.inputs import fix_measurement, imu_measurements, velocity_measurements
-from link.frames.geodesy import Datum
-from link.frames.local_frame import LocalFrame, Projection
+from link.frames.geodesy import Datum, LocalFrame, Projection
 from link.frames.rotations import yaw_of
 from link.messages import Fix, FixVelocity, PadGeometry, VehicleImu
 from link.payloads import cdr, json_messages

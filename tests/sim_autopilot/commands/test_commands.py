@@ -2,8 +2,7 @@ from math import nan
 
 import pytest
 
-from link.mavlink.dialect import mavlink
-from link.mavlink.event_ids import event_id
+from link.mavlink.dialect import event_id, mavlink
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.firmware.px4.px4 import PX4
 from tests.sim_autopilot.pilot import (

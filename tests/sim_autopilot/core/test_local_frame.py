@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from link.frames.geodesy import Datum, enu_from_geodetic, geodetic_from_enu
-from link.frames.local_frame import LocalFrame, Projection, local_from_geodetic
+from link.frames.geodesy import Datum, LocalFrame, Projection, enu_from_geodetic, geodetic_from_enu, local_from_geodetic
 from link.frames.rotations import enu_from_ned
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3

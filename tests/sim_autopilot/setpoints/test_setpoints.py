@@ -3,8 +3,7 @@ from math import inf, nan, pi
 import numpy as np
 import pytest
 
-from link.frames.geodesy import Datum, geodetic_from_enu
-from link.frames.local_frame import LocalFrame, Projection
+from link.frames.geodesy import Datum, LocalFrame, Projection, geodetic_from_enu
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 from sim_autopilot.boot import initial_memory

@@ -5,7 +5,7 @@ import pymap3d
 import pytest
 from scipy.spatial.transform import Rotation
 
-from link.frames.local_frame import LocalFrame, Projection, local_from_geodetic
+from link.frames.geodesy import LocalFrame, Projection, local_from_geodetic
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.modes import Mode

@@ -2,8 +2,7 @@
 
 import pytest
 
-from link.mavlink.dialect import Message, mavlink
-from link.mavlink.event_ids import event_id
+from link.mavlink.dialect import Message, event_id, mavlink
 from tests.sim_autopilot.pilot import Pilot, arm, px4, set_mode
 
 INFO = 6

@@ -1,8 +1,16 @@
-"""Reading a text file that a user names: whatever it is, it takes bounded memory, and one line says what is wrong."""
+"""Texts of others: a file that a user names is read in bounded memory, and what a terminal would obey is not shown."""
 
 from pathlib import Path
 
 from link.errors import UserError
+
+
+def printable(text: str) -> str:
+    """Return `text` with the code in place of each character that is neither visible nor a space."""
+    if text.isprintable():
+        return text
+    return "".join(one if one.isprintable() else ascii(one)[1:-1] for one in text)
+
 
 _BYTES_MAX = 4 << 20
 """The longest of our own configurations has 20 kB; a device such as /dev/zero has no end."""
