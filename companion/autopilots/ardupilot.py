@@ -30,8 +30,7 @@ from companion.autopilots.messages import (
     with_disarm_answer,
     without_disarm,
 )
-from companion.autopilots.response import Cascade
-from companion.autopilots.shaping import Shaping
+from companion.autopilots.response import Cascade, Shaping
 from companion.core.data import GRAVITY_M_S2, FlightLimits, Setpoint
 from link.frames.geodesy import Projection
 from link.mavlink.dialect import Message, mavlink

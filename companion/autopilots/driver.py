@@ -8,8 +8,7 @@ from typing import Protocol
 
 from msgspec import Struct
 
-from companion.autopilots.response import Cascade
-from companion.autopilots.shaping import Shaping
+from companion.autopilots.response import Cascade, Shaping
 from companion.core.data import FlightLimits, RangeReading, Setpoint
 from link.frames.geodesy import LocalFrame, Projection
 from link.mavlink.dialect import Message, mavlink

@@ -26,8 +26,7 @@ from companion.autopilots.messages import (
     without_disarm,
 )
 from companion.autopilots.px4_events import refusal_of
-from companion.autopilots.response import Cascade
-from companion.autopilots.shaping import Shaping
+from companion.autopilots.response import Cascade, Shaping
 from companion.core.data import FlightLimits, Setpoint
 from link.frames.geodesy import Projection
 from link.mavlink.dialect import Message, mavlink

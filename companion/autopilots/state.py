@@ -1,4 +1,8 @@
-"""The autopilot's messages folded into what the companion's step wants to know of it."""
+"""The autopilot's messages folded into what the companion's step wants to know of it.
+
+A link that jitters delivers datagrams out of order. A heartbeat from before a change of mode, taken after one from
+behind it, reads as a pilot who has changed the mode. Source: MAVLink guide, "Packet serialization".
+"""
 
 from collections.abc import Mapping
 from math import isfinite
@@ -7,9 +11,8 @@ from types import MappingProxyType
 from msgspec import Struct, field
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotView, Driver
-from companion.autopilots.local_origin import above_ellipsoid, geoid_height_m, is_same, origin_above_sea
 from companion.autopilots.own_reports import HISTORY_NS, carry, is_plausible, velocity_bias, with_report, without_bias
-from companion.autopilots.sensor_messages import with_sensor
+from companion.autopilots.sensor_messages import above_ellipsoid, geoid_height_m, is_same, origin_above_sea, with_sensor
 from companion.core.data import OwnState
 from link.frames.geodesy import Datum, LocalFrame, Projection
 from link.frames.rotations import enu_from_ned, flu_from_frd, normalized, quaternion_enu_flu_from_ned_frd
@@ -219,3 +222,28 @@ def _place_origin(state: AutopilotState, projection: Projection) -> AutopilotSta
         frame_moves=replace(moves, origin_count=moves.origin_count + 1),
     )
     return replace(state, view=view, history=state.history[-1:])
+
+
+_REPORTS = frozenset({"HEARTBEAT", "CURRENT_MODE", "EXTENDED_SYS_STATE"})
+_OVERTAKEN_MAX = 32  # packets: 0.1 s of some 300 a second; more is a sequence that restarted
+_OVERTAKEN_S = 0.5  # and the same once nothing was reported for so long
+
+
+class LateReports:
+    """Knows the newest report of the state."""
+
+    def __init__(self) -> None:
+        self._newest: tuple[int, int] | None = None
+
+    def is_late(self, message: Message, local_ns: int) -> bool:
+        """Take a message, and return whether it is a report that was sent before one that has come already."""
+        if message.get_type() not in _REPORTS:
+            return False
+        number = message.get_seq()
+        if self._newest is not None:
+            newest, heard_ns = self._newest
+            behind = (newest - number) % 256
+            if 0 < behind <= _OVERTAKEN_MAX and (local_ns - heard_ns) * 1e-9 < _OVERTAKEN_S:
+                return True
+        self._newest = number, local_ns
+        return False

@@ -2,12 +2,18 @@
 
 import json
 import sys
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
 
+from companion.check.assessment import is_ready
+from companion.check.findings import Finding, Level
 from companion.runtime.command_line import ConfigOption, MavlinkArguments
 from link.errors import UserError
 from link.program.cli import JsonOption, SetOption
@@ -21,6 +27,7 @@ if TYPE_CHECKING:
     from link.transports.transport import Transport
     from link.zenoh.keys import Keys
     from link.zenoh.session import ZenohSession
+
 
 _FAILED = 1
 
@@ -61,7 +68,7 @@ def check(
     """Read the autopilot and the vehicle, and say what to change before a landing; exit code 1 when something fails."""
     from companion.check.findings import read_kept
     from companion.config.companion import CompanionConfig
-    from companion.runtime.open_links import open_links
+    from companion.runtime.options import open_links
     from link.program.settings import COMPANION, load_settings
     from link.transports.opening import open_transport
     from link.zenoh.session import open_session
@@ -128,7 +135,7 @@ def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
 
 def _show(findings: "list[Finding]", speed_m_s: float, *, as_json: bool) -> int:
     from companion.check.assessment import is_ready
-    from companion.check.table import as_table, print_table
+    from companion.check.command import as_table, print_table
 
     if as_json:
         sys.stdout.write(json.dumps(as_table(findings, speed_m_s), indent=2) + "\n")
@@ -162,3 +169,28 @@ def _write(session: "CheckSession", values: dict[str, float]) -> None:
         if not session.set_parameter(name, value):
             raise UserError(f"{name} was not set to {value:g}: the autopilot refuses it; set it in a ground station")
         typer.echo(f"{name} = {value:g}", err=True)
+
+
+_STYLES = {Level.PASS: "green", Level.WARN: "yellow", Level.FAIL: "bold red"}
+
+
+def print_table(findings: Sequence[Finding], speed_m_s: float) -> None:
+    """Print one line for each finding, and the sum."""
+    table = Table(box=SIMPLE_HEAD, title=f"for a vehicle at {speed_m_s:g} m/s", title_justify="left")
+    table.add_column("")
+    table.add_column("what", no_wrap=True)
+    table.add_column("found")
+    table.add_column("what to do, and why")
+    for one in findings:
+        to_do = ": ".join(part for part in (one.advice, one.reason) if part)
+        table.add_row(one.level.value, one.name, one.found, to_do, style=_STYLES[one.level])
+    console = Console()
+    console.print(table)
+    counts = [f"{sum(one.level is level for one in findings)} {level.value}" for level in Level]
+    console.print(", ".join(counts))
+
+
+def as_table(findings: Sequence[Finding], speed_m_s: float) -> dict[str, Any]:
+    """Return the same content for JSON."""
+    rows = [{**asdict(one), "level": one.level.value} for one in findings]
+    return {"speed_m_s": speed_m_s, "ready": is_ready(findings), "findings": rows}

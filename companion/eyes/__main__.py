@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from companion.eyes import calibration_commands
-from companion.eyes.options import BoardOption, CalibrationOption, MountingOption, SizeOption, SourceOption
+from companion.eyes.calibration_commands import BoardOption, CalibrationOption, MountingOption, SizeOption, SourceOption
 from link.errors import UserError
 from link.program.cli import JsonOption, make_app, run_app
 from link.program.extras import require

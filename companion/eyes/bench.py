@@ -13,9 +13,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from companion.eyes.board import Board, nested_board
+from companion.eyes.board import Board, dictionary_of, nested_board
 from companion.eyes.camera import Camera
-from companion.eyes.family import dictionary_of
 from companion.eyes.mounting import MountingConfig, mounting_of
 from companion.eyes.picture import Gray, WholePicture
 from companion.eyes.plate import raster_of

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from msgspec import structs
 
-from companion.eyes.options import BoardOption, CalibrationOption, MountingOption, SizeOption, SourceOption
 from link.errors import UserError
 from link.program.cli import JsonOption
 from link.zenoh.command_line import DroneOption, NamespaceOption, ZenohArguments
@@ -18,6 +17,32 @@ from link.zenoh.command_line import DroneOption, NamespaceOption, ZenohArguments
 if TYPE_CHECKING:
     from companion.eyes.calibrating import Quality
     from companion.eyes.latency import Latency
+
+
+BoardOption = Annotated[
+    Path | None, typer.Option("--board", metavar="FILE", help="The board, in TOML [default: 1.5 m, ids 0 to 62].")
+]
+SourceOption = Annotated[
+    str,
+    typer.Option(
+        "--source",
+        metavar="CAMERA",
+        help="/dev/videoN, picamera, rtsp://HOST/PATH, a video file, a folder of pictures, or zenoh.",
+    ),
+]
+CalibrationOption = Annotated[
+    Path,
+    typer.Option("--calibration", metavar="FILE", help="Of the camera: ROS camera_info or kalibr's camchain, YAML."),
+]
+MountingOption = Annotated[
+    Path | None,
+    typer.Option("--mounting", metavar="FILE", help="Of the camera on the drone, TOML [default: straight down]."),
+]
+SizeOption = Annotated[
+    tuple[int, int] | None,
+    typer.Option("--size", metavar="WIDTH HEIGHT", help="Pixels to ask of the camera [default: the calibration's]."),
+]
+
 
 _RMS_GOOD_PX, _HALVES_GOOD_PX, _FOCAL_GOOD, _COVERED_GOOD, _TILT_GOOD_RAD = 0.5, 1.0, 0.002, 0.7, math.radians(30.0)
 _STD_GOOD_S = 0.002  # a drone that turns at 0.5 rad/s sees a pad 5 m away 5 mm beside its place

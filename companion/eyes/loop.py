@@ -3,13 +3,15 @@
 import signal
 import time
 from dataclasses import dataclass
+from enum import Enum
 
 import structlog
+from msgspec import Struct
 
 from companion.eyes.node import EyesNode
+from companion.eyes.picture import Gray
 from companion.eyes.recording import PERIOD_NS, PictureRecord
 from companion.eyes.sources.frames import Captured, Source
-from companion.eyes.watch import CameraWatch, Failure, failure_of, note_frame
 from link.errors import UserError
 from link.messages import CompressedPicture, PadGeometry
 from link.payloads import cdr, json_messages
@@ -20,6 +22,39 @@ from link.recording.recorder import Recorder
 from link.zenoh.inbox import Inbox
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohSession
+
+STOPPED_NS = 400_000_000  # with a turn of the loop half a second
+_STEP = 16  # every so many pixels are compared: the noise of a living sensor changes some of them each time
+
+
+class Failure(Enum):
+    """What is wrong with a camera."""
+
+    STOPPED = "no picture comes"
+    FROZEN = "the picture does not change"
+
+
+class CameraWatch(Struct, frozen=True, kw_only=True):
+    """When the last frame came and when the picture changed last, on a monotonic clock, and its samples."""
+
+    came_ns: int
+    changed_ns: int
+    samples: bytes = b""
+
+
+def note_frame(watch: CameraWatch, shades: Gray, now_ns: int) -> CameraWatch:
+    """Return the watch after a frame that came at `now_ns`."""
+    samples = shades[::_STEP, ::_STEP].tobytes()
+    changed_ns = watch.changed_ns if samples == watch.samples else now_ns
+    return CameraWatch(came_ns=now_ns, changed_ns=changed_ns, samples=samples)
+
+
+def failure_of(watch: CameraWatch, now_ns: int) -> Failure | None:
+    """Return what is wrong at `now_ns`, None for nothing."""
+    if now_ns - watch.came_ns >= STOPPED_NS:
+        return Failure.STOPPED
+    return Failure.FROZEN if now_ns - watch.changed_ns >= STOPPED_NS else None
+
 
 _WAIT_S = 0.05
 _RESTART_EVERY_NS = 1_000_000_000

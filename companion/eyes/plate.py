@@ -9,8 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from companion.eyes.board import BoardConfig, TagConfig
-from companion.eyes.family import CELLS, cells_of
+from companion.eyes.board import CELLS, BoardConfig, TagConfig, cells_of
 
 
 class Rectangle(NamedTuple):

@@ -13,9 +13,8 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from companion.eyes.board import Board
+from companion.eyes.board import CELLS, Board
 from companion.eyes.camera import Camera, matrix_of
-from companion.eyes.family import CELLS
 from companion.eyes.finding.choosing import TILT_STDS_MAX, Candidate, choose, mirrored, tilt_stds
 from companion.eyes.finding.pose import Pose, guesses, refine
 from companion.eyes.finding.reading import TAGS_MAX, expected_tags, read_tags

@@ -10,7 +10,7 @@ import math
 import numpy as np
 from msgspec import Struct
 
-from companion.vehicle.driving import Driven
+from companion.vehicle.hindsight import Driven
 from link.records import replace
 
 SLOWS, SPEEDS_UP, TURNS, DEPARTS = range(4)

@@ -11,10 +11,12 @@ that is believed of a vehicle whose heading has agreed with its course before, a
 """
 
 import math
+from enum import Enum
 
 from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
+from companion.config.integrity import ReceiverFrames
 from companion.core.reasons import Cause, Reason
 from companion.situation.situation import Situation
 from companion.vehicle.estimator import BufferHealth
@@ -170,3 +172,28 @@ def without_contradicted_heading(pad: PadPath, watch: CourseWatch) -> PadPath:
     if watch.off_rad is None or not pad.mounting.needs_heading or pad.unplaced is not None:
         return pad
     return replace(pad, unplaced=Cause(Reason.HEADING_OFF_COURSE, (math.degrees(watch.off_rad),)))
+
+
+_LATE_S = 0.1  # by which a receiver's output follows its measurement: Pixhawk, NMEA and ROS drivers stamp either
+
+
+class Unverified(Enum):
+    """What is believed, with a place for its number."""
+
+    PLACE = "the pad is where sightings alone say: nothing shows a detector that is always off by the same"
+    FRAMES = "both receivers are taken to have one frame, for their phases are fixed: nothing sees the pad"
+    STAMPS = "the vehicle's stamps: those that are {late_s:g} s late put the pad {off_m:.1f} m off, and nothing sees it"
+
+
+def unverified(s: Situation, c: CompanionConfig) -> tuple[str, ...]:
+    """Return what nobody can know in this step, in words."""
+    pad = s.pad
+    if pad is None:
+        return ()
+    if pad.is_coarse or not pad.has_one_frame:
+        return (Unverified.PLACE.value,) if pad.frame_offset.is_confirmed else ()
+    if pad.frame_offset.is_confirmed:
+        return ()
+    off_m = _LATE_S * math.hypot(*pad.velocity_enu_m_s[0, :2].tolist())
+    stamps = Unverified.STAMPS.value.format(late_s=_LATE_S, off_m=off_m)
+    return (stamps, *((Unverified.FRAMES.value,) if c.integrity.receiver_frames is ReceiverFrames.AUTO else ()))

@@ -20,12 +20,12 @@ from collections.abc import Callable
 import numpy as np
 from msgspec import Struct
 
-from companion.autopilots.shaping import Shaping
+from companion.autopilots.response import Shaping
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits
 from companion.landing.feasibility import SPEED_SHARE_MIN
 from companion.landing.memory import StepMemory
-from companion.landing.station_aims import station_speed_m_s
+from companion.landing.sortie_aims import station_speed_m_s
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation

@@ -11,8 +11,7 @@ import numpy as np
 from msgspec import Struct
 
 from companion.autopilots.limits import RATE_LAG_S
-from companion.autopilots.response import Cascade
-from companion.autopilots.shaping import Shaping
+from companion.autopilots.response import Cascade, Shaping
 from companion.core.data import Array
 from companion.planning.guidance import PlanResult, ReferenceState, Trajectory
 from link.records import replace

@@ -9,9 +9,8 @@ from companion.landing.flown_plan import extrapolate, flown_plan, state_at
 from companion.landing.following_height import waiting_rise_m
 from companion.landing.levelling import limit_tilt, limits_now
 from companion.landing.memory import ModelMemory, StepMemory
-from companion.landing.sortie_aims import sortie_aim
+from companion.landing.sortie_aims import advance_way, sortie_aim
 from companion.landing.sortie_decisions import has_not_left_deck
-from companion.landing.station_aims import advance_way
 from companion.landing.step_data import StepInputs, System
 from companion.landing.sway import update_sway
 from companion.landing.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point

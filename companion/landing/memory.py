@@ -15,8 +15,7 @@ from companion.core.data import Array
 from companion.core.reasons import Cause, Reason
 from companion.forecast.drivers import Drivers
 from companion.forecast.gusts import Gusts
-from companion.integrity.frames import FixedPhases
-from companion.integrity.sightings import SightingWatch
+from companion.integrity.sightings import FixedPhases, SightingWatch
 from companion.integrity.vehicle_data import Contradictions, CourseWatch, FixStamps
 from companion.landing.flown_plan import FlownPlan
 from companion.landing.sway import Sway

@@ -8,7 +8,7 @@ from companion.config.companion import CompanionConfig
 from companion.config.descent import DescentConfig
 from companion.core.data import Array, FlightLimits, Setpoint
 from companion.core.reasons import Cause, Reason, sentence
-from companion.integrity.unverified import unverified
+from companion.integrity.vehicle_data import unverified
 from companion.landing.aborts import why_unplaced
 from companion.landing.carried_on import bound_carried
 from companion.landing.flown_plan import extrapolate, lead_acceleration, state_at

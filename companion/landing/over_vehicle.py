@@ -5,11 +5,11 @@ import math
 import numpy as np
 
 from companion.config.companion import CompanionConfig
+from companion.config.sortie import LaunchConfig
 from companion.core.data import Array, FlightLimits
 from companion.planning.guidance import ReferenceState, Target
 from companion.situation.situation import Situation
-from companion.sortie.intercept import closing_speed_m_s
-from companion.sortie.station import KeepOut, turn_rates_rad_s
+from companion.sortie.station import KeepOut, closing_speed_m_s, turn_rates_rad_s
 from companion.vehicle.pad import PadPath
 from link.messages import StationFrame
 
@@ -95,3 +95,24 @@ def way_speed_m_s(way_m: Array, pad: PadPath, limits: FlightLimits) -> float:
 def floor_beside(pad: PadPath, keep_out: KeepOut, s: Situation) -> Array:
     """Return the planner's floor (n,) in W beside the vehicle or over it, the lower of both."""
     return np.asarray(pad.position_enu_m[:, 2] + s.feet_offset_m + min(keep_out.lowest_m, keep_out.over_m) - _BELOW_M)
+
+
+def is_deck_quiet(s: Situation, config: LaunchConfig) -> bool:
+    """Return whether the deck is level, neither rises nor sinks, and the vehicle drives evenly."""
+    if s.drone is None or s.pad is None:
+        return False
+    climb_m_s = abs(float(s.drone.velocity_enu_m_s[2] - _road_climb_m_s(s)))
+    changes_m_s2 = math.hypot(*s.pad.acceleration_enu_m_s2[0, :2].tolist())
+    is_level = s.drone.lean <= math.sin(config.quiet_tilt_max_rad)
+    return is_level and climb_m_s <= config.quiet_climb_max_m_s and changes_m_s2 <= config.quiet_acceleration_max_m_s2
+
+
+def _road_climb_m_s(s: Situation) -> float:
+    """Return how fast the road rises by its grade, which is no heave."""
+    return 0.0 if s.pad is None else float(s.pad.velocity_enu_m_s[0, 2])
+
+
+def stands_on_deck(s: Situation, distance_max_m: float, height_max_m: float) -> bool:
+    """Return whether the drone is on the vehicle, as far as both places are known."""
+    a = s.approach
+    return a is not None and a.distance_m < distance_max_m and abs(a.height_m) < height_max_m

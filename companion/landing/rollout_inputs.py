@@ -15,7 +15,7 @@ from companion.landing.memory import StepMemory
 from companion.landing.step_data import StepInputs
 from companion.landing.targets import way_down
 from companion.situation.situation import Approach, Situation
-from companion.vehicle.driving import Driving
+from companion.vehicle.hindsight import Driving
 from companion.vehicle.pad import PadPath
 from companion.vehicle.pad_reach import cone_radius_at_pad_m, over_pad_radius_m
 

@@ -19,14 +19,11 @@ from companion.landing.entries import Decision
 from companion.landing.feasibility import EMPTY
 from companion.landing.following_height import chase_floor_m
 from companion.landing.memory import ControlMemory, Progress
-from companion.landing.over_vehicle import SPEED_SHARE, WAY_SHARE
+from companion.landing.over_vehicle import SPEED_SHARE, WAY_SHARE, is_deck_quiet, stands_on_deck
 from companion.situation.phases import OUT_PHASES, Event, Phase
 from companion.situation.situation import Situation
-from companion.sortie.energy import left_s, update_battery
-from companion.sortie.intercept import intercept_s
-from companion.sortie.memory import SortieMemory
-from companion.sortie.quiet_deck import is_deck_quiet, stands_on_deck
-from companion.sortie.station import ahead_rad
+from companion.sortie.memory import SortieMemory, left_s, update_battery
+from companion.sortie.station import ahead_rad, intercept_s
 from link.messages import StationFrame
 from link.records import replace
 

@@ -3,8 +3,7 @@
 from msgspec import Struct
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, AutopilotView, Driver
-from companion.autopilots.response import ResponseModel
-from companion.autopilots.shaping import Shaping
+from companion.autopilots.response import ResponseModel, Shaping
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits, Measurement, OwnState, Rival, Setpoint
 from companion.planning.guidance import Guidance, PlanResult

@@ -1,8 +1,13 @@
 """What a step learns of the vehicle: its data are fused and watched, and its pad is predicted; pure."""
 
 from companion.core.data import Forecast
-from companion.integrity.frames import are_frames_one, update_fixed_phases
-from companion.integrity.sightings import SightingWatch, forget_agreement, update_sightings
+from companion.integrity.sightings import (
+    SightingWatch,
+    are_frames_one,
+    forget_agreement,
+    update_fixed_phases,
+    update_sightings,
+)
 from companion.integrity.vehicle_data import (
     Contradictions,
     FixStamps,
@@ -13,7 +18,7 @@ from companion.integrity.vehicle_data import (
 from companion.landing.memory import VehicleMemory
 from companion.landing.step_data import StepInputs, System
 from companion.landing.targets import HORIZON_OFFSETS_S
-from companion.planning.requests import are_finite
+from companion.planning.guidance import are_finite
 from companion.situation.phases import FOLLOWING_PHASES, Phase
 from companion.vehicle.hindsight import forget_instants, update_hindsight
 from companion.vehicle.pad import PadPath, pad_path

@@ -5,12 +5,14 @@ the virtual model at the same instant. The plan then leads the virtual model to 
 """
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from msgspec import Struct, field
 
-from companion.autopilots.response import STATES, ResponseModel
+from companion.autopilots.response import STATES, Cascade, ResponseModel
 from companion.core.data import GRAVITY_M_S2, Array, OwnState, Setpoint
+from companion.landing.targets import HORIZON_OFFSETS_S
 from companion.planning.guidance import ReferenceState
 from link.frames.rotations import rotate
 from link.records import replace
@@ -163,3 +165,9 @@ def setpoint_at(reference: ReferenceState, t_ns: int, yaw_rad: float, *, positio
         acceleration_enu_m_s2=None if position_only else (ax, ay, az),
         yaw_rad=yaw_rad,
     )
+
+
+@lru_cache(maxsize=16)  # the gains of some landings; nothing that a link tells fills the memory
+def response_to(cascade: Cascade) -> ResponseModel:
+    """Return the model of a cascade; 2 ms, and the gains of an autopilot come one by one in each of many landings."""
+    return ResponseModel(cascade, HORIZON_OFFSETS_S)

@@ -12,13 +12,20 @@ import numpy as np
 
 from companion.config.planning import MpcConfig
 from companion.core.data import Array
-from companion.planning.axis_qp import make_axis_problem
+from companion.planning.axis_qp import forced_response, free_response, make_axis_model, make_axis_problem
 from companion.planning.brake import brake
-from companion.planning.condensed import forced_response, free_response, make_axis_model
-from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Trajectory
+from companion.planning.guidance import (
+    PlanRequest,
+    PlanResult,
+    PlanStatus,
+    ReferenceState,
+    Trajectory,
+    is_finite_state,
+    limits_of,
+    with_finite_state,
+)
 from companion.planning.programmes import Numbers, PlainLimits, Posed, Statics, bound_minor, plan_of, pose
 from companion.planning.qp import Programme, make_solver
-from companion.planning.requests import is_finite_state, limits_of, with_finite_state
 from companion.planning.resample import make_resampler
 
 

@@ -16,9 +16,16 @@ import numpy as np
 from companion.config.planning import ReportMpcConfig, ReportReading, SolverKind
 from companion.core.data import Array
 from companion.planning.brake import brake
-from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Trajectory
+from companion.planning.guidance import (
+    PlanRequest,
+    PlanResult,
+    PlanStatus,
+    ReferenceState,
+    Trajectory,
+    has_finite_target,
+    with_finite_state,
+)
 from companion.planning.qp import Programme, QpSolution, make_solver
-from companion.planning.requests import has_finite_target, with_finite_state
 from companion.planning.resample import make_resampler
 
 STEP_S = 0.01

@@ -13,8 +13,15 @@ import numpy as np
 from companion.config.planning import PnConfig
 from companion.core.data import Array, FlightLimits
 from companion.planning.brake import brake
-from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Trajectory
-from companion.planning.requests import has_finite_target, with_finite_state
+from companion.planning.guidance import (
+    PlanRequest,
+    PlanResult,
+    PlanStatus,
+    ReferenceState,
+    Trajectory,
+    has_finite_target,
+    with_finite_state,
+)
 from companion.planning.resample import make_resampler
 
 STEP_S = 0.15

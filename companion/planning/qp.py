@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 from companion.config.planning import SolverKind
 from companion.core.data import Array
 from companion.planning.compiled import compiled_kernel
-from companion.planning.guidance import PlanStatus
-from companion.planning.requests import are_finite
+from companion.planning.guidance import PlanStatus, are_finite
 
 QpSolution = tuple[PlanStatus, Array | None, int]
 """A solver's answer: the status, the minimiser (n,), None unless the status is SOLVED, and the iterations."""

@@ -9,13 +9,12 @@ from companion.autopilots.choice import check_autopilot
 from companion.runtime.claims import Claims
 from companion.runtime.command_desk import CommandDesk
 from companion.runtime.computer import ComputerWatch
-from companion.runtime.handover import hand_over
 from companion.runtime.live_state import Onlooker, onlookers
 from companion.runtime.node import CompanionNode
 from companion.runtime.options import Links, LoopOptions, Timings
-from companion.runtime.own_start import OwnStart
 from companion.runtime.pad_question import PadQuestion
 from companion.runtime.recorded_node import RecordingNode
+from companion.runtime.start_and_handover import OwnStart, hand_over
 from companion.situation.phases import FLYING_PHASES, Phase
 from link.errors import UserError
 from link.mavlink.pinned_peer import PinnedPeer

@@ -11,8 +11,8 @@ from companion.core.data import Rival, VehicleEstimate
 from companion.landing.guiding import guiding_message
 from companion.landing.memory import StepMemory
 from companion.landing.step_data import LinkDelay, StepInputs, StepOutputs, System
+from companion.landing.virtual_model import response_to
 from companion.runtime.publishing import StatusPublisher, with_links
-from companion.runtime.response_models import response_to
 from companion.runtime.step_clock import StepClock
 from companion.runtime.vehicle_link import VehicleLink
 from companion.situation.phases import FLYING_PHASES, Phase

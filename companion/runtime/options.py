@@ -8,8 +8,11 @@ from pathlib import Path
 import psutil  # type: ignore[import-untyped]  # it has no annotations
 
 from link.mavlink.signing_memory import SigningMemory
+from link.transports.device import opening_of
 from link.transports.opening import Transport
 from link.zenoh.keys import Keys
+from link.zenoh.library_config import openings
+from link.zenoh.options import ZenohOptions
 from link.zenoh.session import ZenohSession
 
 _DURATIONS_MAX = 200_000  # steps whose durations are kept, over an hour's worth
@@ -76,3 +79,15 @@ class Links:
     transport: Transport
     zenoh: ZenohSession
     signing: SigningMemory | None = None
+
+
+def open_links(zenoh: ZenohOptions, device: str, *, signs: bool) -> tuple[str, ...]:
+    """Return which links are open to somebody without a key, in words.
+
+    Args:
+        zenoh: how the Zenoh session was opened.
+        device: of the MAVLink link.
+        signs: whether MAVLink is signed.
+    """
+    mavlink = opening_of(device, signs=signs)
+    return (*openings(zenoh), *(() if mavlink is None else (mavlink,)))

@@ -103,8 +103,7 @@ def _node(asked: Program, recorder: BackgroundRecorder | None, signing: Signing 
 
 
 def _loop_options(asked: Program, *, signs: bool) -> "LoopOptions":
-    from companion.runtime.open_links import open_links
-    from companion.runtime.options import LoopOptions
+    from companion.runtime.options import LoopOptions, open_links
 
     return LoopOptions(
         device=asked.mavlink.mavlink,

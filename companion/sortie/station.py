@@ -5,6 +5,12 @@ laid in the frame that moves and turns with the vehicle: straight where that is 
 it at one's own distance otherwise, over it only at a height that is clear of its roof. On a way of the length d the
 speed against the vehicle is at most sqrt(2 a d), and about the vehicle sqrt(a r): either takes no more than the
 acceleration a, so that the rest is left for what the vehicle does.
+
+How fast and how soon a drone comes to a vehicle that drives on evenly; pure numerics.
+
+With the way u to it, a unit vector, and the vehicle's velocity v, a drone that closes at s flies v + s u, which is as
+fast as its limit c allows: s = -v u + sqrt((v u)^2 + c^2 - v^2). The way against the vehicle then stays straight, so
+that it leads to where the vehicle will be.
 """
 
 import math
@@ -159,3 +165,35 @@ def is_clear(start_m: Array, end_m: Array, keep_out: KeepOut) -> bool:
     is_pushed = start_m[2] < keep_out.over_m and radius_m > _OVER_SHARE * keep_out.radius_m
     least_m = min(keep_out.radius_m, radius_m) if is_pushed else keep_out.radius_m
     return nearest_m >= least_m - _ROUNDING_M
+
+
+_CLOSING_MIN_M_S = 0.5  # slower than this it comes nowhere: a gust takes more
+
+
+def closing_speed_m_s(way_m: Array, velocity_enu_m_s: Array, speed_max_m_s: float) -> float:
+    """Return how fast the drone can close in along `way_m` (2,) on a vehicle with this velocity (2,); 0 for no way."""
+    distance_m = math.hypot(*way_m.tolist())
+    if distance_m == 0.0:
+        return 0.0
+    along_m_s = float(way_m @ velocity_enu_m_s) / distance_m
+    rest_m2_s2 = along_m_s**2 + speed_max_m_s**2 - float(velocity_enu_m_s @ velocity_enu_m_s)
+    return max(math.sqrt(rest_m2_s2) - along_m_s, 0.0) if rest_m2_s2 > 0.0 else 0.0
+
+
+def intercept_s(way_m: Array, velocity_enu_m_s: Array, speed_max_m_s: float, acceleration_m_s2: float) -> float | None:
+    """Return how long the way to the vehicle takes, gaining speed and losing it included; None if it outruns the drone.
+
+    Args:
+        way_m: (2,) from the drone to the vehicle.
+        velocity_enu_m_s: (2,) of the vehicle.
+        speed_max_m_s: of the drone over ground.
+        acceleration_m_s2: with which it gains and loses speed.
+    """
+    distance_m = math.hypot(*way_m.tolist())
+    fastest_m_s = closing_speed_m_s(way_m, velocity_enu_m_s, speed_max_m_s)
+    speed_m_s = min(fastest_m_s, math.sqrt(acceleration_m_s2 * distance_m))
+    if distance_m == 0.0:
+        return 0.0
+    if fastest_m_s < _CLOSING_MIN_M_S:
+        return None
+    return distance_m / speed_m_s + speed_m_s / acceleration_m_s2

@@ -8,7 +8,6 @@ FILES = (
     "pad.py",
     "small_matrices.py",
     "imm_swing.py",
-    "oscillators.py",
     "imm_kernels.py",
     "imm_noise.py",
     "imm_sensors.py",

@@ -17,7 +17,7 @@ from msgspec import Struct
 
 from companion.config.estimation import OscillatorConfig, SwingConfig
 from companion.core.data import Array
-from companion.vehicle.oscillators import heave_step
+from companion.vehicle.imm_swing import heave_step
 from link.records import replace
 
 MEMORY_S = 60.0  # some six waves; a road of one kind lasts longer

@@ -23,9 +23,18 @@ from companion.vehicle import imm_mixing as mixing
 from companion.vehicle.deck_motion import first_motion, learn, passed
 from companion.vehicle.filter_step import Update, wrapped
 from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, swing_of
-from companion.vehicle.imm_opening import OFFSET, TILT, open_deck
-from companion.vehicle.imm_recovery import recover
-from companion.vehicle.imm_state import KINDS, ImmState, has_settled, is_heading_known, split_fix, start_state
+from companion.vehicle.imm_state import (
+    KINDS,
+    OFFSET,
+    TILT,
+    ImmState,
+    has_settled,
+    is_heading_known,
+    open_deck,
+    recover,
+    split_fix,
+    start_state,
+)
 from link.records import replace
 
 CURVATURE, HEADING = 6, 7

@@ -17,8 +17,7 @@ from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_kernels import BEND, CLOCK, LEAK, advance
 from companion.vehicle.imm_noise import bend_step, curvature_left, process_noise
 from companion.vehicle.imm_sensors import turned
-from companion.vehicle.imm_swing import SIZE
-from companion.vehicle.oscillators import heave_step, smooth_step
+from companion.vehicle.imm_swing import SIZE, heave_step, smooth_step
 from companion.vehicle.small_matrices import carried_through
 
 Modes = tuple[Array, Array, Array]

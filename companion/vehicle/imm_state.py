@@ -1,22 +1,71 @@
-"""The turning models' state between two readings: how it begins, and what is known in it.
+"""The turning models' state between two readings: how it begins, what is known in it, and how it is opened to new data.
 
+It is opened to data that contradict what it holds for certain: those that were rejected for too long are accepted.
 Indices are those of `imm_kernels`.
 """
 
 import math
+from typing import assert_never
 
 import numpy as np
 from msgspec import Struct
+from numpy.typing import NDArray
 
 from companion.config.estimation import ImmConfig, ReceiversConfig
 from companion.core.data import Array, Measurement, Quantity
+from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_sensors as sensors
 from companion.vehicle.deck_motion import DeckMotion
 from companion.vehicle.imm_kernels import CLOCK
+from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Numbers
-from companion.vehicle.imm_opening import DECK, PLACE, open_place_and_offset
-from companion.vehicle.imm_swing import SIZE
+from companion.vehicle.imm_sensors import observe
+from companion.vehicle.imm_swing import MOUNT, ROLL, ROLL_RATE, SIZE, antenna_swing
+from link.records import replace
+
+PLACE = np.array([0, 1, 8])  # indices of the position
+OFFSET = np.array([12, 13, 14])
+TILT, DECK = np.arange(ROLL, MOUNT), np.arange(ROLL, SIZE)
+_RATE = np.array([2, 3, 10])  # what the velocity of the antenna has beside its swing
+
+IndexArray = NDArray[np.intp]
+
+
+def open_states(modes: Modes, indices: IndexArray, variances: Array) -> Modes:
+    """Return both modes with `variances` (n,) more of the states at `indices` (n,)."""
+    means, covariances, weights = modes
+    opened = covariances.copy()
+    opened[:, indices, indices] += variances
+    return means, opened, weights
+
+
+def open_place_and_offset(covariances: Array, step: Array) -> Array:
+    """Return `covariances` (2, 24, 24) with `step` (3, 3), m^2, more of place and offset as one unknown."""
+    moved = covariances.copy()
+    for rows in (PLACE, OFFSET):
+        for columns in (PLACE, OFFSET):
+            moved[:, rows[:, None], columns] += step
+    return moved
+
+
+def open_deck(modes: Modes, lever_m: Array, variances: Array) -> Modes:
+    """Return both modes with `variances` (6,) of the deck's states, which nothing was known of.
+
+    Where the antenna is and how fast stays as it was known: a part of it becomes that of the swing.
+
+    Args:
+        modes: the filter.
+        lever_m: (4,) as `imm_swing.antenna_swing` takes it.
+        variances: of `DECK`.
+    """
+    means, covariances, weights = modes
+    swung = np.zeros((SIZE, len(DECK)))
+    swung[DECK, np.arange(len(DECK))] = 1.0
+    for first, moved in ((ROLL, PLACE), (ROLL_RATE, _RATE)):
+        swung[moved] -= antenna_swing(weights @ means, first, lever_m)[1][:, DECK]
+    return means, covariances + swung @ (variances[:, None] * swung.T), weights
+
 
 KINDS = {
     Quantity.POSITION: sensors.POSITION,
@@ -98,3 +147,71 @@ def is_placed_by_sightings(state: ImmState, receivers: ReceiversConfig) -> bool:
     _, covariances, weights = state.modes
     variance = float(weights @ covariances[:, 0, 0])
     return variance < 0.25 * (receivers.frame_offset_std_m**2 + state.fix_bias_variance_m2)
+
+
+_CURVATURE, _HEADING = 6, 7
+_TOLD_BY = {  # the states that a quantity tells
+    Quantity.VELOCITY: np.array([2, 3, 4, 5, 9, 11, kernels.BEND]),
+    Quantity.HEADING: np.array([_HEADING]),
+    Quantity.YAW_RATE: np.array([_CURVATURE]),
+    Quantity.ACCELERATION: np.array([kernels.LEAK]),
+    Quantity.TILT: DECK,  # a unit that was moved on its mount contradicts, too
+}
+
+
+def recover(
+    state: ImmState, measurement: Measurement, config: ImmConfig, numbers: Numbers, placed_by: Quantity
+) -> ImmState:
+    """Return the state with that opened which `measurement` contradicts.
+
+    A sighting that contradicts everything means that the drone's frame has stepped: place and offset move
+    together. A fix that does is the receiver's step if the place is known from sightings, else a new start, as is
+    a sighting where nothing else places the vehicle.
+
+    Args:
+        state: that rejects it.
+        measurement: in W.
+        config: of the filter.
+        numbers: the same as the kernels take them.
+        placed_by: what the filter starts on.
+    """
+    match measurement.quantity:
+        case Quantity.PAD:
+            if placed_by is Quantity.PAD:
+                return _restart(state, measurement, config, numbers)
+            return _move_frame(state, measurement, config.receivers, numbers)
+        case Quantity.POSITION:
+            if is_placed_by_sightings(state, config.receivers):
+                step_m = _step_size_m(state, measurement, config.receivers, numbers)
+                return replace(state, modes=open_states(state.modes, OFFSET, np.full(3, step_m**2)))
+            return _restart(state, measurement, config, numbers)
+        case Quantity.VELOCITY | Quantity.HEADING | Quantity.YAW_RATE | Quantity.ACCELERATION | Quantity.TILT:
+            told = _TOLD_BY[measurement.quantity]
+            return replace(state, modes=open_states(state.modes, told, numbers.prior_variances[told]))
+        case _:
+            assert_never(measurement.quantity)
+
+
+def _step_size_m(state: ImmState, measurement: Measurement, receivers: ReceiversConfig, numbers: Numbers) -> float:
+    """Return how far a measured place is from the expected one; at least the prior of the offset."""
+    means, _, weights = state.modes
+    expected, _ = observe(KINDS[measurement.quantity], weights @ means, numbers.lever_m, False)
+    return max(float(np.linalg.norm(measurement.value - expected)), receivers.frame_offset_std_m)
+
+
+def _move_frame(state: ImmState, sighting: Measurement, receivers: ReceiversConfig, numbers: Numbers) -> ImmState:
+    """Open place and offset as one unknown."""
+    step = _step_size_m(state, sighting, receivers, numbers) ** 2 * np.eye(3)
+    means, covariances, weights = state.modes
+    return replace(state, modes=(means, open_place_and_offset(covariances, step), weights))
+
+
+def _restart(state: ImmState, place: Measurement, config: ImmConfig, numbers: Numbers) -> ImmState:
+    """Restart at `place`, but for offset, heading, clock and deck."""
+    x, P = mixing.combine(*state.modes)
+    means, covariances, weights = start_state(place, config, numbers).modes
+    means[:, PLACE] += x[OFFSET]
+    means[:, OFFSET] = x[OFFSET]
+    for kept in (_HEADING, kernels.CLOCK, *DECK):
+        means[:, kept], covariances[:, kept, kept] = x[kept], P[kept, kept]
+    return replace(state, modes=(means, covariances, weights))

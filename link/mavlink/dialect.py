@@ -1,8 +1,8 @@
 """The one home of pymavlink's message classes: MAVLink 2, every public dialect in one, and what these leave out.
 
 Left out are, as drafts, messages that PX4 sends or a component hears or tells. A frame of a message that the dialect
-does not hold cannot be checked, and its content is lost: PX4's reasons for not arming among them. Left out, too, are the
-ids of the autopilot's events: the 32-bit FNV-1a hash of a name, cut to 24 bits, and the component above it.
+does not hold cannot be checked, and its content is lost: PX4's reasons for not arming among them. Left out, too, are
+the ids of the autopilot's events: the 32-bit FNV-1a hash of a name, cut to 24 bits, and the component above it.
 
 Source: MAVLink common, messages 8, 80, 300, 380, 396, 397, 410, 411; wire order and checksum seed:
 https://mavlink.io/en/guide/serialization.html. Events: https://mavlink.io/en/services/events.html; hash: RFC 9923.

@@ -11,8 +11,7 @@ import numpy as np
 
 from companion.autopilots.driver import Desire, DriverMemory
 from companion.autopilots.link import AutopilotLink
-from companion.autopilots.response import Cascade
-from companion.autopilots.shaping import Shaping
+from companion.autopilots.response import Cascade, Shaping
 from companion.core.data import Array, OwnState, Setpoint
 from link.errors import UserError
 from link.mavlink.session import MavlinkSession

@@ -27,7 +27,7 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "A point mass is moved inside the limits, and the drone follows it. `guidance.kind` chooses the law.",
         (
             "companion.planning.mpc",
-            "companion.planning.condensed",
+            "companion.planning.axis_qp",
             "companion.planning.axis_qp",
             "companion.planning.horizon",
             "companion.planning.intercept",

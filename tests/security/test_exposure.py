@@ -7,7 +7,7 @@ import pytest
 
 from companion.check.assessment import assess_links
 from companion.check.findings import Level
-from companion.runtime.open_links import open_links
+from companion.runtime.options import open_links
 from link.errors import UserError
 from link.zenoh.exposure import exposed
 from link.zenoh.session import ZenohOptions, open_session

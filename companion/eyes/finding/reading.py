@@ -8,9 +8,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from companion.eyes.board import Board
+from companion.eyes.board import CELLS, Board, cells_of
 from companion.eyes.camera import Camera
-from companion.eyes.family import CELLS, cells_of
 from companion.eyes.picture import Part
 
 Array = NDArray[np.float64]

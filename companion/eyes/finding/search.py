@@ -13,8 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from companion.eyes.board import Board
-from companion.eyes.family import CELLS, dictionary_of
+from companion.eyes.board import CELLS, Board, dictionary_of
 from companion.eyes.picture import Gray, Part
 
 Array = NDArray[np.float64]

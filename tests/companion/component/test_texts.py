@@ -1,6 +1,6 @@
 """Texts to pilots: whole, and few."""
 
-from companion.component.texts import Texts
+from companion.component.component import Texts
 from companion.situation.phases import Phase
 from link.mavlink.dialect import mavlink
 from link.messages import LandingStatus

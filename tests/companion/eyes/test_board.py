@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from companion.eyes.board import BoardConfig, TagConfig, load_board, nested_board
-from companion.eyes.family import cells_of, ids_of
+from companion.eyes.board import BoardConfig, TagConfig, cells_of, ids_of, load_board, nested_board
 from companion.eyes.pdf import write_pdf
 from companion.eyes.plate import raster_of
 from link.errors import UserError

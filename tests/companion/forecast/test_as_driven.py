@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from companion.landing.rollout_inputs import as_driven
-from companion.vehicle.driving import Driving
+from companion.vehicle.hindsight import Driving
 
 NORTH_EAST = np.array([0.6, 0.8])
 OFF = 0.4 * np.random.default_rng(5).standard_normal((4000, 3, 2))

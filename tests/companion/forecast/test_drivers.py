@@ -10,7 +10,7 @@ from companion.forecast.branches import NOTHING, SLOWER, make_events
 from companion.forecast.draws import draws
 from companion.forecast.drivers import DEPARTS, PRIOR_GAPS_S, SLOWS, TURNS, Drivers, chances, update_drivers
 from companion.forecast.gusts import Gusts, update_gusts
-from companion.vehicle.driving import Driven
+from companion.vehicle.hindsight import Driven
 
 START_NS = 1_795_000_000_000_000_000
 PERIOD_NS = 100_000_000

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from companion.config.integrity import ReceiverFrames
 from companion.core.data import Measurement, Quantity
-from companion.integrity.frames import FIXED_STD_MAX_M, FixedPhases, are_frames_one, update_fixed_phases
+from companion.integrity.sightings import FIXED_STD_MAX_M, FixedPhases, are_frames_one, update_fixed_phases
 
 STEP_NS = 100_000_000
 HOLD_STEPS = 20

@@ -12,8 +12,13 @@ from companion.config.estimation import EstimatorKind
 from companion.config.integrity import IntegrityConfig, ReceiverFrames
 from companion.core.data import Measurement, Quantity
 from companion.core.reasons import Cause, Reason
-from companion.integrity.frames import FIXED_STD_MAX_M
-from companion.integrity.sightings import SightingWatch, forget_agreement, is_seen_elsewhere, update_sightings
+from companion.integrity.sightings import (
+    FIXED_STD_MAX_M,
+    SightingWatch,
+    forget_agreement,
+    is_seen_elsewhere,
+    update_sightings,
+)
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
 from companion.vehicle.estimator import BufferHealth

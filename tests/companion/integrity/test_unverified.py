@@ -4,7 +4,7 @@ import pytest
 
 from companion.config.companion import CompanionConfig
 from companion.config.integrity import IntegrityConfig, ReceiverFrames
-from companion.integrity.unverified import Unverified, unverified
+from companion.integrity.vehicle_data import Unverified, unverified
 from companion.situation.situation import Situation
 from companion.vehicle.pad import FrameOffset
 from link.records import replace

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.px4 import Px4Driver
-from companion.autopilots.shaping import Shaping
+from companion.autopilots.response import Shaping
 from companion.landing.carried_on import (
     FARTHEST_M,
     Carried,

@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.autopilots.response import Cascade
-from companion.autopilots.shaping import Shaping
+from companion.autopilots.response import Cascade, Shaping
 from companion.core.data import Array
 from companion.landing.flown_plan import (
     extrapolate,

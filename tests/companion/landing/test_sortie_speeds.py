@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 
 from companion.core.data import FlightLimits
 from companion.landing.over_vehicle import SPEED_SHARE
-from companion.landing.sortie_aims import return_aim
-from companion.landing.station_aims import station_aim
+from companion.landing.sortie_aims import return_aim, station_aim
 from companion.planning.guidance import ReferenceState
 from companion.sortie.memory import SortieMemory, Way
 from link.messages import Station

@@ -4,8 +4,7 @@ from scipy.integrate import trapezoid
 
 from companion.config.planning import MpcConfig
 from companion.core.data import Array
-from companion.planning.axis_qp import make_axis_problem, slopes_of, terminal_cost
-from companion.planning.condensed import AxisModel, make_axis_model
+from companion.planning.axis_qp import AxisModel, make_axis_model, make_axis_problem, slopes_of, terminal_cost
 
 MOVES_S: Array = np.array([0.02, 0.05, 0.13, 0.37, 0.61])
 

@@ -8,8 +8,7 @@ import pytest
 
 from companion.config.planning import MpcConfig
 from companion.core.data import Array
-from companion.planning.axis_qp import make_axis_problem, slopes_of
-from companion.planning.condensed import make_axis_model
+from companion.planning.axis_qp import make_axis_model, make_axis_problem, slopes_of
 from companion.planning.envelope import (
     MINOR_SHARE_MIN,
     bound_rows,

@@ -8,10 +8,9 @@ import pytest
 from companion.config.planning import MpcConfig
 from companion.core.data import Array, FlightLimits
 from companion.planning import horizon, qp, resample
-from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, Target
+from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, Target, limits_of
 from companion.planning.mpc import Mpc
 from companion.planning.programmes import bound_minor, plan_of, pose, total_of
-from companion.planning.requests import limits_of
 from companion.planning.resample import make_resampler
 from link.records import replace
 from tests.companion.planning.cases import LIMITS, circle, request_of, state_at, target_of

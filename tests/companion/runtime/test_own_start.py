@@ -2,7 +2,7 @@
 
 import pytest
 
-from companion.runtime.own_start import OwnStart
+from companion.runtime.start_and_handover import OwnStart
 from companion.situation.phases import Phase
 from link.errors import UserError
 from link.messages import Command, CommandReply

@@ -1,6 +1,6 @@
 """What is said of refused data."""
 
-from companion.runtime.refusals import Refusals
+from companion.runtime.vehicle_link import Refusals
 
 
 def test_what_a_stranger_sent_reaches_no_terminal_as_it_came() -> None:

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.sortie.energy import RESOLUTION, BatteryWatch, left_s, update_battery, use_per_s
-from companion.sortie.intercept import closing_speed_m_s, intercept_s
+from companion.sortie.memory import RESOLUTION, BatteryWatch, left_s, update_battery, use_per_s
+from companion.sortie.station import closing_speed_m_s, intercept_s
 
 RESERVE = 0.2
 

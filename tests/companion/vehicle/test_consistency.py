@@ -22,9 +22,8 @@ from companion.vehicle.filter_step import Gaussian
 from companion.vehicle.imm import ImmModel
 from companion.vehicle.imm_mixing import combine
 from companion.vehicle.imm_state import ImmState
-from companion.vehicle.imm_swing import SIZE
+from companion.vehicle.imm_swing import SIZE, smooth_step
 from companion.vehicle.lkf import LkfModel, WhiteJerkNoise, transition
-from companion.vehicle.oscillators import smooth_step
 from tests.companion.vehicle.rides import now_ns
 
 DT_S, STEPS, RUNS, SETTLED = 0.1, 150, 36, 60

@@ -6,7 +6,7 @@ import pytest
 from companion.config.estimation import ImmConfig, SwingConfig
 from companion.core.data import Array
 from companion.vehicle.deck_motion import first_motion, learn, passed
-from companion.vehicle.oscillators import heave_step
+from companion.vehicle.imm_swing import heave_step
 
 AFLOAT, ON_ROAD = ImmConfig().afloat, ImmConfig().on_road
 STEP_S = 0.02

@@ -10,9 +10,8 @@ import pytest
 
 from companion.config.estimation import EstimatorKind
 from companion.core.data import VehicleEstimate
-from companion.vehicle.driving import Driving, with_velocity
 from companion.vehicle.estimator import EstimatorMemory
-from companion.vehicle.hindsight import Hindsight, forget_instants, update_hindsight
+from companion.vehicle.hindsight import Driving, Hindsight, forget_instants, update_hindsight, with_velocity
 from link.records import replace
 from tests.companion.facts import NOW_NS
 from tests.companion.vehicle.drives import Drive, circle, random_drive, straight

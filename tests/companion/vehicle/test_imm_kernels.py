@@ -14,8 +14,7 @@ from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_noise as noises
 from companion.vehicle import imm_sensors as sensors
-from companion.vehicle import oscillators
-from companion.vehicle.imm_swing import SIZE
+from companion.vehicle.imm_swing import SIZE, heave_step, smooth_step
 from companion.vehicle.small_matrices import correct
 
 TAU_S = 3.0
@@ -186,7 +185,7 @@ def test_process_noise_is_positive_and_lies_along_the_track() -> None:
 def test_heave_is_a_damped_oscillator_of_the_given_steady_size() -> None:
     w, damping, std = MOTION[1:4]
     A = np.array([[0.0, 1.0], [-(w**2), -2.0 * damping * w]])
-    step, noise = oscillators.heave_step(0.13, w, damping, std)
+    step, noise = heave_step(0.13, w, damping, std)
     assert step == pytest.approx(expm(0.13 * A))
     push = np.diag([0.0, 4.0 * damping * w**3 * std**2])
     steady = solve_continuous_lyapunov(A, -push)
@@ -200,7 +199,7 @@ def test_heave_moves_a_place_by_a_rate_that_is_such_an_oscillator(w: float) -> N
     A = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, -(w**2), -2.0 * damping * w]])
     push = np.diag([0.0, 0.0, 4.0 * damping * w**3 * std_m_s**2])
     van_loan = expm(dt_s * np.block([[-A, push], [np.zeros((3, 3)), A.T]]))  # Van Loan 1978
-    step, noise = oscillators.smooth_step(dt_s, w, damping, std_m_s)
+    step, noise = smooth_step(dt_s, w, damping, std_m_s)
     assert step == pytest.approx(van_loan[3:, 3:].T)
     expected = van_loan[3:, 3:].T @ van_loan[:3, 3:]
     scale = np.sqrt(np.diag(expected))

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from companion.eyes.board import load_board
+from companion.eyes.board import CELLS, load_board
 from companion.eyes.camera import matrix_of, vector_of
-from companion.eyes.family import CELLS
 from companion.eyes.finding.edges import EdgePoints, edge_points, find_crossings
 from companion.eyes.finding.reading import expected_tags
 from companion.eyes.picture import whole

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from companion.eyes.finding.scatter import variance_px2
+from companion.eyes.finding.pose import variance_px2
 
 EDGES, POINTS = 400, 9
 NUMBERS = np.repeat(np.arange(EDGES), POINTS)

@@ -7,12 +7,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from companion.eyes.loop import STOPPED_NS, CameraWatch, Failure, failure_of, note_frame
 from companion.eyes.picture import WholePicture
 from companion.eyes.sight import Frame, SightMemory, sight_step
 from companion.eyes.sources.capture_source import CaptureSource
 from companion.eyes.sources.file_source import FolderSource
 from companion.eyes.sources.frames import gray_of_file, gray_of_image
-from companion.eyes.watch import STOPPED_NS, CameraWatch, Failure, failure_of, note_frame
 from link.errors import UserError
 from link.messages import CameraImage, CompressedPicture
 from link.payloads.checks import PayloadError

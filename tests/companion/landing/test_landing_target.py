@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from companion.autopilots.landing_target import landing_target
 from companion.core.data import OwnState
+from companion.landing.guiding import landing_target
 from link.frames.rotations import matrix_from_quaternion, quaternion_from_roll_pitch_yaw
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
