@@ -21,7 +21,6 @@ from scenarios.commands import (
     fuzz,
     identify,
     rare,
-    replay,
     report,
     retries,
     ros2,
@@ -78,7 +77,7 @@ def run_command(
 ) -> int:
     """Run a landing and score it on ground truth; exit code 1 when it does not land."""
     from link.program.cli import Patience
-    from scenarios.catalogue.changed import load_changed_scenario
+    from scenarios.catalogue.catalogue import load_changed_scenario
     from scenarios.catalogue.firmware_option import with_firmware
     from scenarios.catalogue.world_names import run_seed
     from scenarios.commands.run_lines import Reporter
@@ -122,7 +121,7 @@ def world_command(
     """Run the simulated side of a scenario, the autopilot with the vehicle in it, in one process."""
     from link.transports.opening import open_transport
     from link.zenoh.session import open_session
-    from scenarios.catalogue.changed import load_changed_scenario
+    from scenarios.catalogue.catalogue import load_changed_scenario
     from scenarios.catalogue.world_names import run_seed
     from scenarios.wire.world import WorldLoop
 
@@ -179,7 +178,6 @@ for command in (
     faults,
     retries,
     report,
-    replay,
     fly,
     view_command,
     ros2,

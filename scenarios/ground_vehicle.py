@@ -195,7 +195,7 @@ def _listen(source: _Source, pad: "PadGeometry", keys: "Keys", open_zenoh: "Open
 
 def _drive(simulation: _Simulation, keys: "Keys", open_zenoh: "OpenZenoh") -> None:
     """Publish a scenario's vehicle."""
-    from scenarios.catalogue.changed import load_changed_scenario
+    from scenarios.catalogue.catalogue import load_changed_scenario
     from scenarios.catalogue.world_names import run_seed
     from scenarios.simulation.vehicle_node import VehicleNode, departing_at_once
     from scenarios.wire.vehicle_loop import VehicleLoop

@@ -11,7 +11,7 @@ from typing import Any
 from scenarios.campaigns.landing_task import Row
 from scenarios.campaigns.summary import is_given_up, is_s1_or_better, is_unsafe, share_json
 from scenarios.recordings.reason_counts import counts_of
-from scenarios.scoring.limits import S1_LIMITS
+from scenarios.scoring.touchdown import S1_LIMITS
 
 NOTHING = "nothing of these"
 

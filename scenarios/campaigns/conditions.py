@@ -5,8 +5,8 @@ from typing import Any
 
 from scenarios.config import Scenario
 from scenarios.scoring.circumstances import BEFORE_S
-from scenarios.simulation.disturbances import outages_ns
 from scenarios.simulation.drone import sim_autopilot_config
+from scenarios.simulation.noise import outages_ns
 
 Columns = dict[str, Any]
 

@@ -11,7 +11,7 @@ import polars as pl
 
 from link.errors import UserError
 from scenarios.campaigns.landing_task import Row
-from scenarios.recordings.units import units_of
+from scenarios.recordings.result import units_of
 
 _FIRST = ("cell", "firmware", "seed", "error")
 _TYPES: dict[str, pl.DataType] = {

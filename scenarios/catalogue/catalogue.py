@@ -10,6 +10,7 @@ table of values, in which `preset` names what the values change. A world of `sce
 import difflib
 import math
 import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -19,9 +20,9 @@ from typing import Any, get_args
 
 from companion.config.integrity import ReceiverFrames
 from link.errors import UserError
+from link.program.settings import SCENARIO, settings_of_environment, settings_of_options
 from link.program.toml_config import merge, read_toml, validate
-from scenarios.catalogue.placement import place_drone
-from scenarios.catalogue.silence import look_out_for_silent_vehicle
+from scenarios.catalogue.completion import look_out_for_silent_vehicle, place_drone
 from scenarios.catalogue.world_names import names_worlds, parse_world_name
 from scenarios.catalogue.worlds import named_world
 from scenarios.config import Scenario
@@ -217,3 +218,22 @@ def _folder() -> Traversable:
 
 def _read(file: Traversable) -> Table:
     return tomllib.loads(file.read_text(encoding="utf-8"))
+
+
+def load_changed_scenario(name_or_path: str, given: Sequence[str] | None) -> Scenario:
+    """Return a scenario as `load_scenario` does, with what the environment and `--set` say laid over it.
+
+    Args:
+        name_or_path: of the scenario, a world's too.
+        given: by `--set`; keys of the scenario, such as `system.companion.descent.cone.slope=0.3`.
+
+    Raises:
+        UserError: no such scenario, or a setting that does not fit.
+    """
+    scenario = load_scenario(name_or_path)
+    environment, overrides = settings_of_environment(SCENARIO, Scenario), settings_of_options(given)
+    if not environment and not overrides:
+        return scenario
+    table = scenario.model_dump(mode="json", exclude_none=True)
+    changed = validate(Scenario, table, source=name_or_path, overrides=overrides, environment=environment)
+    return complete(changed)

@@ -32,7 +32,7 @@ def camera_command(
     from link.zenoh.session import open_session
     from scenarios.catalogue.catalogue import load_scenario
     from scenarios.catalogue.world_names import run_seed
-    from scenarios.simulation.camera_files import write_camera_files
+    from scenarios.simulation.camera_scene import write_camera_files
     from scenarios.wire.camera_loop import CameraLoop
 
     scenario = load_scenario(name)

@@ -41,7 +41,7 @@ def fly_command(
 
     The vehicle drives by the place where the simulated drone stands, its pad at the height of the ground.
     """
-    from scenarios.catalogue.changed import load_changed_scenario
+    from scenarios.catalogue.catalogue import load_changed_scenario
     from scenarios.catalogue.world_names import run_seed
     from scenarios.commands.run_lines import Reporter
     from scenarios.firmware.fly import FlyOptions, fly

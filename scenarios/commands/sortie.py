@@ -53,8 +53,7 @@ def sortie_command(
     from scenarios.config import FIRMWARES
     from scenarios.processes.local_workers import LocalWorkers, core_count
     from scenarios.processes.pool import run_tasks
-    from scenarios.sortie.scenario import sortie_scenario
-    from scenarios.sortie.task import SortieTask, fly_sortie, lost_sortie
+    from scenarios.sortie.task import SortieTask, fly_sortie, lost_sortie, sortie_scenario
 
     if firmware not in {*FIRMWARES, BOTH}:
         raise UserError(f"--firmware is one of {', '.join((*FIRMWARES, BOTH))}, not '{firmware}'")

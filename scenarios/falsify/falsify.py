@@ -6,6 +6,8 @@ Its folder has `landings.jsonl`, a line for each landing as it was flown, and fr
 
 import json
 import os
+import re
+import textwrap
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import asdict, dataclass
@@ -14,14 +16,45 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+import tomli_w
+
 from link.errors import UserError
-from scenarios.falsify.case_file import case_text
+from scenarios.config import Scenario
 from scenarios.falsify.flights import Flight, Flights
 from scenarios.falsify.reduction import Case, Reduction
 from scenarios.falsify.search import Found, Space, search
 from scenarios.falsify.strategy import EvolutionStrategy, RandomStrategy
 from scenarios.falsify.trial import Outcome
 from scenarios.recordings.result import write_text
+
+_SECTIONS = ("track", "sensors", "wind", "link", "vehicle", "system")
+"""All stand in the file, those of nothing but defaults too: without them the catalogue's presets would be taken."""
+_WIDTH = 120
+_ARRAY = re.compile(r"\[\n([^\[\]]*),\n *\]")
+"""Of plain values; tomli_w gives each a line of its own."""
+
+
+def case_text(scenario: Scenario, notes: Sequence[str]) -> str:
+    """Return the TOML of `scenario`: what differs from the defaults, under `notes` as comments.
+
+    Args:
+        scenario: whose name is the file's to give.
+        notes: a paragraph each.
+    """
+    table: dict[str, Any] = scenario.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
+    table.pop("name")
+    own = {key: value for key, value in table.items() if key not in _SECTIONS}
+    sections = {key: table.get(key, {}) for key in _SECTIONS}
+    sections["track"] = {"kind": scenario.track.kind} | sections["track"]
+    lines = [line for note in notes for line in textwrap.wrap(note, _WIDTH - 2, break_long_words=False)]
+    comment = "".join(f"# {line}\n" for line in lines)
+    return f"{comment}\n{_ARRAY.sub(_in_one_line, tomli_w.dumps(own | sections))}"
+
+
+def _in_one_line(array: re.Match[str]) -> str:
+    values = [line.strip().removesuffix(",") for line in array[1].splitlines()]
+    return f"[{', '.join(values)}]"
+
 
 LANDINGS, FOUND, CASE = "landings.jsonl", "found.toml", "case.toml"
 

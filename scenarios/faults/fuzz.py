@@ -17,8 +17,8 @@ from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.transports.opening import open_transport
 from link.transports.transport import Transport
+from scenarios.faults.fuzz_companion import count_not_finite
 from scenarios.faults.fuzz_frames import fuzz_frames
-from scenarios.faults.not_finite import count_not_finite
 from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from sim_autopilot.runtime.build import autopilot_config
 from sim_autopilot.runtime.config import SimAutopilotConfig

@@ -4,15 +4,17 @@ Strangers' frames must not disturb a landing. Forged ones, which say that they a
 end it, as unsigned links cannot tell them; but whatever comes, nothing raises and nothing that is no number is sent.
 """
 
+import math
 import random
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
 
 from companion.situation.phases import Phase
 from link.mavlink.codec import MavlinkCodec
+from link.mavlink.dialect import Message, mavlink
 from link.messages import Order, PadGeometry
 from link.payloads import json_messages
 from link.payloads.checks import PayloadError
@@ -21,9 +23,25 @@ from scenarios.catalogue.catalogue import load_scenario
 from scenarios.catalogue.firmware_option import with_firmware
 from scenarios.faults.fuzz_frames import fuzz_frames
 from scenarios.faults.fuzz_payloads import forged_json, forged_samples, noise_payload
-from scenarios.faults.not_finite import count_not_finite
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.simulation.vehicle_node import datum_of
+
+_NAN_IS_UNKNOWN = frozenset({"COMMAND_LONG", "COMMAND_INT"})  # there it stands for a parameter that is not given
+
+
+def count_not_finite(messages: Iterable[Message]) -> int:
+    """Count numbers that are none; in PX4's PARAM_VALUE the bits of an integer may look like one."""
+    count = 0
+    for message in messages:
+        if message.get_type() == "PARAM_VALUE" and message.param_type != mavlink.MAV_PARAM_TYPE_REAL32:
+            continue
+        if message.get_type() in _NAN_IS_UNKNOWN:
+            continue
+        for value in message.to_dict().values():
+            numbers = value if isinstance(value, list) else (value,)
+            count += sum(isinstance(one, float) and not math.isfinite(one) for one in numbers)
+    return count
+
 
 KINDS = ("datagram", "stream")
 

@@ -6,8 +6,7 @@ from typing import Protocol
 
 from link.memory_link import MemoryLink
 from scenarios.config import ChannelConfig, Scenario
-from scenarios.simulation.disturbances import Span, outages_ns
-from scenarios.simulation.noise import Seed, named_rng
+from scenarios.simulation.noise import Seed, Span, named_rng, outages_ns
 
 _SEPARATOR = b"\0"
 

@@ -63,14 +63,14 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         (
             "sim_autopilot.control.outer_loop",
             "sim_autopilot.control.geometric",
-            "sim_autopilot.control.attitude",
+            "sim_autopilot.control.command",
             "sim_autopilot.control.lqr",
         ),
     ),
     (
         "What the simulated sensors see",
         "Each sample has noise, delay, jitter and loss of the scenario, and the stamp of when it was taken.",
-        ("scenarios.simulation.noise", "scenarios.simulation.sensors", "scenarios.simulation.disturbances"),
+        ("scenarios.simulation.noise", "scenarios.simulation.sensors", "scenarios.simulation.noise"),
     ),
 )
 """Sections: title, what they have in common, and the modules."""

@@ -12,7 +12,7 @@ from companion.config.descent import DescentConfig
 from companion.situation.phases import Phase
 from link.messages import ContactForecast, LandingStatus
 from link.units import NS_PER_S
-from scenarios.scoring.limits import S1_LIMITS, S2_LIMITS
+from scenarios.scoring.touchdown import S1_LIMITS, S2_LIMITS
 
 WAITING, COMMIT = "waiting", "commit"
 INSTANTS = (WAITING, COMMIT)

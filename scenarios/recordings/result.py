@@ -1,7 +1,7 @@
 """From a recording to the run's result, as `result.json` has it: only what scenario and seed decide."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +13,9 @@ from scenarios.recordings.approaches import Approach, approaches_of
 from scenarios.recordings.recording import Recording
 from scenarios.scoring.accuracy import accuracy_table
 from scenarios.scoring.circumstances import closest_ns, vehicle_circumstances
-from scenarios.scoring.passing import passing_ns
 from scenarios.scoring.score import Score, Tier, score, score_log
 from scenarios.scoring.touchdown import ScoreRules, Touchdown, rules_of
-from scenarios.scoring.truth_log import TruthLog, truth_log
+from scenarios.scoring.truth_log import TruthLog, passing_ns, truth_log
 from scenarios.simulation.drone import mean_wind_enu_m_s
 from scenarios.simulation.noise import Seed
 
@@ -103,3 +102,27 @@ def write_text(path: Path, text: str) -> None:
         path.write_text(text, encoding="utf-8")
     except OSError as error:
         raise UserError(f"{path}: cannot be written ({error.strerror}); make room or choose another --out") from None
+
+
+UNITS = {
+    "_per_m": "1/m",
+    "_m_s2": "m/s^2",
+    "_m_s": "m/s",
+    "_rad": "rad",
+    "_hz": "Hz",
+    "_ms": "ms",
+    "_ns": "ns",
+    "_m": "m",
+    "_s": "s",
+}
+"""By the ending of a name, longer endings before those that they end in."""
+
+
+def ending_of(name: str) -> str:
+    """Return the ending of a name that tells its unit, empty if it has none."""
+    return next((ending for ending in UNITS if name.endswith(ending)), "")
+
+
+def units_of(names: Iterable[str]) -> dict[str, str]:
+    """Return the unit of each name that has one."""
+    return {name: UNITS[ending] for name in names if (ending := ending_of(name))}

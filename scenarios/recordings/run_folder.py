@@ -10,9 +10,8 @@ from typing import Any
 from link.errors import UserError
 from link.recording.recorder import DirectRecorder
 from scenarios.recordings.recording import Recording
-from scenarios.recordings.result import write_json
+from scenarios.recordings.result import units_of, write_json
 from scenarios.recordings.truth_file import TruthFile
-from scenarios.recordings.units import units_of
 from scenarios.recordings.versions import versions
 
 Progress = Callable[[Recording, float], None]

@@ -28,8 +28,8 @@ from scenarios.config import Scenario
 from scenarios.recordings.contact_forecasts import INSTANTS
 from scenarios.reports.figure_files import BLUE, GREEN, LIGHT, MIDDLE, ORANGE, PURPLE, STYLES, VERMILION
 from scenarios.reports.run_figures import draw_pad, show_around_pad
-from scenarios.scoring.limits import S1_LIMITS, S2_LIMITS
 from scenarios.scoring.score import Tier
+from scenarios.scoring.touchdown import S1_LIMITS, S2_LIMITS
 
 _TITLE_WIDTH = 34  # characters over a panel
 _COLUMNS_MAX = 3

@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from scenarios.campaigns.intervals import banded, mean_band
-from scenarios.recordings.units import UNITS, ending_of
+from scenarios.recordings.result import UNITS, ending_of
 from scenarios.scoring.accuracy import NEES_DOF
-from scenarios.scoring.limits import S1_LIMITS, S2_LIMITS, Limits
+from scenarios.scoring.touchdown import S1_LIMITS, S2_LIMITS, Limits
 
 _DEGREES = 180.0 / math.pi
 _MEANINGS = {

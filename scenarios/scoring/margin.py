@@ -35,9 +35,8 @@ import numpy as np
 
 from scenarios.scoring import flight_faults as limits
 from scenarios.scoring.flight_faults import Flight, tilts_rad
-from scenarios.scoring.limits import S1_LIMITS
 from scenarios.scoring.touch import Box, Touches
-from scenarios.scoring.touchdown import Landing, ScoreRules, trims_rad
+from scenarios.scoring.touchdown import S1_LIMITS, Landing, ScoreRules, trims_rad
 from scenarios.scoring.truth_log import Array, TruthLog
 
 LEAST = 1e-6

@@ -14,10 +14,9 @@ import numpy as np
 
 from link.messages import BodyTruth, RotorTruth
 from scenarios.scoring.flight_faults import Fault, flight_faults, flight_of
-from scenarios.scoring.limits import S1_LIMITS, S2_LIMITS, find_exceeded
 from scenarios.scoring.margin import margin_of, margin_terms
 from scenarios.scoring.touch import touches
-from scenarios.scoring.touchdown import Landing, ScoreRules, Touchdown, landing_of
+from scenarios.scoring.touchdown import S1_LIMITS, S2_LIMITS, Landing, ScoreRules, Touchdown, find_exceeded, landing_of
 from scenarios.scoring.truth_log import TruthLog, truth_log
 
 _S0_DISTANCE_M = 0.7

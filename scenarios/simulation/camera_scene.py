@@ -1,22 +1,27 @@
-"""What the camera on the simulated drone looks at, and what its detector is told of it.
+"""The camera on the simulated drone: what it looks at, and what its detector is told of it and makes of it.
 
 The camera is 5 cm in front of the drone's reference and 3 cm below it and looks down, with the long side of its picture
 along the drone. How it is mounted and calibrated is told to the detector with errors that are drawn for each seed.
+The detector is the real one, in step with the simulation: only frames that the pad may be in are looked at, and of
+these only the parts that it asks for are rendered.
 """
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from companion.eyes.board import Board, nested_board
+from companion.eyes.calibration import dump_calibration
 from companion.eyes.camera import Camera
 from companion.eyes.mounting import Mounting, MountingConfig, mounting_of
 from companion.eyes.picture import Box, Part
-from companion.eyes.sight import SightSystem
+from companion.eyes.sight import Frame, SightMemory, SightSystem, sight_step
 from link.frames.rotations import matrix_from_quaternion, quaternion_from_roll_pitch_yaw
-from link.messages import BodyTruth
+from link.messages import BodyTruth, PadSighting
+from link.program.toml_config import dump_toml
 from link.records import replace
 from scenarios.camera.lens import CAMERA, SIZE_PX
 from scenarios.camera.lighting import Light
@@ -24,7 +29,8 @@ from scenarios.camera.optics import Optics
 from scenarios.camera.planes import View
 from scenarios.camera.rendering import Renderer, Vehicle
 from scenarios.config import Scenario
-from scenarios.simulation.noise import Seed, named_rng
+from scenarios.simulation.noise import Seed, SensorSchedule, named_rng
+from scenarios.simulation.vehicle import VehicleState, vehicle_truth
 
 Array = NDArray[np.float64]
 
@@ -160,3 +166,51 @@ def _miscalibrated(rng: np.random.Generator) -> Camera:
     matrix = CAMERA.matrix.copy()
     matrix[[0, 1], [0, 1]] *= 1.0 + _FOCAL_STD_SHARE * float(rng.standard_normal())
     return Camera(model=CAMERA.model, matrix=matrix, distortion=CAMERA.distortion, size_px=CAMERA.size_px)
+
+
+CALIBRATION, MOUNTED, BOARD = "camera.yaml", "mounting.toml", "board.toml"
+
+
+def write_camera_files(scenario: Scenario, seed: Seed, folder: Path) -> None:
+    """Write calibration, mounting and board, with the errors of the seed, into a folder that exists."""
+    system = CameraScene(scenario, seed).system
+    (folder / CALIBRATION).write_text(dump_calibration(system.camera), encoding="utf-8")
+    (folder / MOUNTED).write_text(dump_toml(mounting_told(scenario)), encoding="utf-8")
+    (folder / BOARD).write_text(dump_toml(system.board.config), encoding="utf-8")
+
+
+def detector_arguments(folder: Path) -> list[str]:
+    """Return the options of `pad-detector run` by which it reads them."""
+    return [
+        *("--calibration", str(folder / CALIBRATION)),
+        *("--mounting", str(folder / MOUNTED)),
+        *("--board", str(folder / BOARD)),
+    ]
+
+
+_DRONE_AGE_MAX_NS = 100_000_000  # an older truth of the drone makes no frame
+
+
+class CameraSensor:
+    """A detector of `SensorSuite`.
+
+    Args:
+        scenario: whose camera.
+        seed: of what it sees, and of its samples' way.
+    """
+
+    def __init__(self, scenario: Scenario, seed: Seed) -> None:
+        self.schedule = SensorSchedule(scenario.camera, seed, "camera")
+        self._scene = CameraScene(scenario, seed)
+        self._memory = SightMemory()
+
+    def sample(self, vehicle: VehicleState, drone: BodyTruth, _elapsed_s: float) -> PadSighting | None:
+        """Return what the detector makes of a frame at the drone's own time, None where it sees no pad."""
+        if vehicle.t_ns - drone.t_ns > _DRONE_AGE_MAX_NS:
+            return None
+        picture = self._scene.picture(vehicle_truth(vehicle), drone)
+        if not picture.may_show_pad:
+            return None
+        frame = Frame(t_ns=drone.t_ns, picture=picture, orientation_wxyz=drone.orientation_wxyz)
+        self._memory, sight = sight_step(self._memory, frame, self._scene.system)
+        return sight.sighting

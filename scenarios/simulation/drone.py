@@ -4,8 +4,7 @@ import math
 
 from link.messages import Vector3
 from scenarios.config import Scenario, SensorsConfig
-from scenarios.simulation.disturbances import instant_s
-from scenarios.simulation.noise import Seed, named_rng
+from scenarios.simulation.noise import Seed, instant_s, named_rng
 from scenarios.simulation.vehicle import VehicleMemory, vehicle_at
 from scenarios.simulation.vehicle_node import plan_of
 from sim_autopilot.runtime.config import (

@@ -18,9 +18,8 @@ from link.frames.rotations import canonical, conjugate, multiply, rotate
 from link.messages import BodyTruth, Fix, FixVelocity, PadSighting, Vector3, VehicleImu
 from link.records import replace
 from scenarios.config import FixConfig, PatternConfig, SensorsConfig, VelocityConfig
-from scenarios.simulation.inertial_unit import InertialUnit
+from scenarios.simulation.inertial_unit import InertialUnit, cross, diagonal, scaled, small_turn, total
 from scenarios.simulation.noise import Dropouts, GaussMarkov, Seed, SensorSchedule, StampClock, named_rng, normal3
-from scenarios.simulation.vectors import cross, diagonal, scaled, small_turn, total
 from scenarios.simulation.vehicle import VehicleState
 
 Sample = Fix | FixVelocity | VehicleImu | PadSighting

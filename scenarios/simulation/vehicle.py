@@ -17,7 +17,7 @@ from link.messages import BodyTruth, Quaternion, Vector3
 from link.records import replace
 from scenarios.config import VehicleConfig
 from scenarios.tracks.course import Course, Roughness
-from scenarios.tracks.departure import Departure
+from scenarios.tracks.drive_config import Departure
 from scenarios.tracks.profiles import Motion
 from scenarios.tracks.roads import RoadPoint
 from sim_autopilot.core.data import Deck

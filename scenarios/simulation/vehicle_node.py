@@ -112,7 +112,7 @@ def _camera_of(scenario: Scenario, seed: Seed) -> Detector | None:
     if not scenario.has_camera:
         return None
     require("camera", "+camera")
-    from scenarios.simulation.camera_sensor import CameraSensor  # noqa: PLC0415 (OpenCV is an extra)
+    from scenarios.simulation.camera_scene import CameraSensor  # noqa: PLC0415 (OpenCV is an extra)
 
     return CameraSensor(scenario, seed)
 

@@ -9,9 +9,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from link.program.toml_config import NotNegative, Positive, StrictModel
-from scenarios.tracks.departure import Departure, Waypoint
-from scenarios.tracks.drive_config import DriveTrack
-from scenarios.tracks.vessel_config import VesselTrack
+from scenarios.tracks.drive_config import Departure, DriveTrack, VesselTrack, Waypoint
 
 
 class StaticTrack(StrictModel):

@@ -12,7 +12,7 @@ Source: Jensen, Mansour and Olsen 2004, Estimation of ship motions using closed-
 import math
 from dataclasses import dataclass
 
-from scenarios.tracks.vessel_config import HullConfig
+from scenarios.tracks.drive_config import HullConfig
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
 
 _WATER_KG_M3 = 1025.0

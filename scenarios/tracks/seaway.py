@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from scenarios.tracks.drive_config import VesselTrack
 from scenarios.tracks.hull import response
 from scenarios.tracks.profiles import Motion
 from scenarios.tracks.suspension import Motion as Swing
-from scenarios.tracks.vessel_config import VesselTrack
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
 
 COMPONENTS = 60

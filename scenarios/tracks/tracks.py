@@ -29,12 +29,11 @@ from scenarios.tracks.config import (
 )
 from scenarios.tracks.course import BrakeEvent, Course, Roughness, Wave
 from scenarios.tracks.drive import drive_course
-from scenarios.tracks.drive_config import DriveTrack
+from scenarios.tracks.drive_config import DriveTrack, VesselTrack
 from scenarios.tracks.heights import Slope
 from scenarios.tracks.profiles import Profile, cruise_steps, profile_of, waypoint_steps
 from scenarios.tracks.roads import Piece, Point, advance, curve_through, polyline, road_of
 from scenarios.tracks.seaway import seaway_of
-from scenarios.tracks.vessel_config import VesselTrack
 
 Steps = list[tuple[float, float]]
 _CURVE_STEP_M = 0.1  # pieces of a lane change: the heading is then within 0.1 mrad of the smooth curve

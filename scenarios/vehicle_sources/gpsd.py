@@ -14,9 +14,9 @@ from math import radians
 from typing import Any
 
 from link.messages import Fix, FixVelocity, Matrix3
-from scenarios.vehicle_sources.lines import Lines
 from scenarios.vehicle_sources.receiver import (
     ACCURACY_AGE_MAX_NS,
+    Lines,
     Reading,
     are_positive,
     course_velocity,

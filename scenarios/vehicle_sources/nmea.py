@@ -9,7 +9,6 @@ belong to the sentences before them.
 from math import pi, radians
 
 from link.messages import Fix, FixVelocity, Matrix3
-from scenarios.vehicle_sources.lines import Lines
 from scenarios.vehicle_sources.nmea_sentences import (
     NANOSECONDS_PER_DAY,
     Sentence,
@@ -20,6 +19,7 @@ from scenarios.vehicle_sources.nmea_sentences import (
 )
 from scenarios.vehicle_sources.receiver import (
     ACCURACY_AGE_MAX_NS,
+    Lines,
     Reading,
     course_velocity,
     heading_imu,

@@ -89,7 +89,7 @@ def _eyes(scenario: Scenario, options: RunOptions, endpoint: str) -> list[Progra
     if not scenario.has_camera:
         return []
     require("camera", "+camera")
-    from scenarios.simulation.camera_files import (  # noqa: PLC0415 (OpenCV is an extra)
+    from scenarios.simulation.camera_scene import (  # noqa: PLC0415 (OpenCV is an extra)
         detector_arguments,
         write_camera_files,
     )

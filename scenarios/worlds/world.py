@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 from scenarios.config import Scenario, SensorsConfig
 from scenarios.simulation.noise import Seed
-from scenarios.tracks.departure import Departure
-from scenarios.tracks.drive_config import DriveTrack
+from scenarios.tracks.drive_config import Departure, DriveTrack
 from scenarios.worlds.distributions import Value
 from scenarios.worlds.draws import Draws
 from scenarios.worlds.driver import DRIVE_S, DrivePlan, plan_drive

@@ -1,5 +1,8 @@
 """Messages about the autopilot's condition: mode, health, battery, clock, landed state."""
 
+from math import copysign, degrees
+
+from link.frames.geodesy import geodetic_from_enu
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
@@ -166,3 +169,23 @@ def current_mode(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     modes = config.firmware.modes.codes
     flown, asked = modes[memory.modes.mode].custom_mode, modes[memory.modes.intended].custom_mode
     return mavlink.MAVLink_current_mode_message(0, flown, asked)
+
+
+def orbit_execution_status(memory: AutopilotMemory, config: AutopilotConfig) -> Message | None:
+    """Return the centre, the radius (negative against the clock) and the present altitude of the orbit.
+
+    None while none is flown: disarmed, or in another mode.
+    """
+    orbit = memory.course.flight.orbit
+    if orbit is None or memory.modes.mode is not Mode.ORBIT or memory.armed_ns is None:
+        return None
+    east_m, north_m, _ = orbit.centre_enu_m
+    latitude, longitude, altitude_m = geodetic_from_enu(config.datum, (east_m, north_m, orbit.height_m))
+    return mavlink.MAVLink_orbit_execution_status_message(
+        memory.now.boot_ns // 1000,
+        copysign(orbit.radius_m, orbit.speed_m_s),
+        mavlink.MAV_FRAME_GLOBAL,
+        round(degrees(latitude) * 1e7),
+        round(degrees(longitude) * 1e7),
+        altitude_m,
+    )

@@ -43,7 +43,7 @@ from sim_autopilot.firmware.px4.offboard import Offboard
 from sim_autopilot.firmware.px4.parameters import OBEYED, flight_settings
 from sim_autopilot.firmware.px4.streams import LINKS, SILENT_MESSAGES, STREAMS
 from sim_autopilot.interfaces import CommandRules, Firmware, MissionRules, StreamRules
-from sim_autopilot.telemetry.orbit_status import orbit_execution_status
+from sim_autopilot.telemetry.status import orbit_execution_status
 
 _ARMING_S = 3.5
 """After boot, as measured: 2.7 to 4.8 s."""

@@ -8,7 +8,7 @@ import pytest
 from companion.core.data import VehicleEstimate
 from companion.forecast.chances import S1, S2, ContactLimits, sum_up
 from companion.situation.phases import Phase
-from scenarios.scoring.limits import S1_LIMITS, S2_LIMITS, Limits
+from scenarios.scoring.touchdown import S1_LIMITS, S2_LIMITS, Limits
 from tests.companion.world import PAD_HEIGHT_M, Flight, KnownVehicle
 
 

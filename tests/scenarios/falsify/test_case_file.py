@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from scenarios.catalogue.catalogue import load_scenario
-from scenarios.falsify.case_file import case_text
+from scenarios.falsify.falsify import case_text
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from scenarios.recordings.units import units_of
+from scenarios.recordings.result import units_of
 from scenarios.reports.result_rows import result_rows
 
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from link.messages import BodyTruth, RotorTruth
-from scenarios.scoring.passing import passing_ns
-from scenarios.scoring.truth_log import truth_log
+from scenarios.scoring.truth_log import passing_ns, truth_log
 
 PLACE = np.array([10.0, 2.0])
 

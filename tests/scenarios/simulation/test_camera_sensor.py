@@ -10,7 +10,7 @@ from link.zenoh.keys import Keys
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.recordings.result import result_table
-from scenarios.simulation.camera_sensor import CameraSensor
+from scenarios.simulation.camera_scene import CameraSensor
 from scenarios.simulation.vehicle import VehicleState
 from scenarios.simulation.vehicle_node import VehicleNode
 from tests.scenarios.presets import list_presets

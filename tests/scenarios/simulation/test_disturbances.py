@@ -5,8 +5,8 @@ import pytest
 
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.lockstep.channels import channels_of
-from scenarios.simulation.disturbances import instant_s, outages_ns
 from scenarios.simulation.drone import sim_autopilot_config
+from scenarios.simulation.noise import instant_s, outages_ns
 from sim_autopilot.runtime.physics import wind_model
 
 START_NS = 1_800_000_000_000_000_000

@@ -8,7 +8,7 @@ from link.errors import UserError
 from scenarios.simulation.drone import sim_autopilot_config
 from scenarios.simulation.vehicle import VehicleMemory, vehicle_at
 from scenarios.simulation.vehicle_node import plan_of
-from scenarios.sortie.scenario import sortie_scenario
+from scenarios.sortie.task import sortie_scenario
 
 
 def test_drone_begins_on_the_deck_with_the_decks_velocity() -> None:

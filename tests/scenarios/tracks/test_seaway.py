@@ -6,10 +6,10 @@ import pytest
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.simulation.vehicle import VehicleMemory, vehicle_at
 from scenarios.simulation.vehicle_node import plan_of
+from scenarios.tracks.drive_config import HullConfig, VesselTrack
 from scenarios.tracks.hull import response
 from scenarios.tracks.profiles import Motion
 from scenarios.tracks.seaway import draw_waves, seaway_of
-from scenarios.tracks.vessel_config import HullConfig, VesselTrack
 
 HEAD_RAD = math.pi * 0.87
 STEP_NS = 1_000_000

@@ -7,8 +7,8 @@ import pytest
 from link.errors import UserError
 from scenarios.vehicle_sources.channel import FileTransport, gpsd_address, nmea_opener
 from scenarios.vehicle_sources.health import Health, News
-from scenarios.vehicle_sources.lines import Lines
 from scenarios.vehicle_sources.pad import pad_geometry
+from scenarios.vehicle_sources.receiver import Lines
 
 S = 1_000_000_000
 

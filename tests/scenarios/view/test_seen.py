@@ -14,8 +14,8 @@ from link.recording.foxglove_server import FoxgloveServer
 from link.zenoh.keys import Keys
 from scenarios.view.foxglove import FoxgloveView
 from scenarios.view.live import LiveSource
+from scenarios.view.panel import pixels_of
 from scenarios.view.panel_text import seen_text
-from scenarios.view.picture import pixels_of
 from scenarios.view.state import StateReader, ViewState
 
 KEYS = Keys()
