@@ -208,20 +208,20 @@ class LinkStatus(Struct, frozen=True, kw_only=True):
     links by which somebody without a key could take part.
     """
 
-    mavlink_bad_bytes: int
-    zenoh_bad_payloads: int
+    mavlink_bad_bytes: int = 0
+    zenoh_bad_payloads: int = 0
     refused: str = ""
     open_to_strangers: tuple[str, ...] = ()
 
 
-class LandingStatus(LinkStatus, frozen=True, kw_only=True):
+class LandingStatus(Struct, frozen=True, kw_only=True):
     """What the companion tells the world about the landing; None where it does not know.
 
     `relative_position_enu_m` is of the drone's feet from the pad's centre: east and north are those of the drone, up is
     `height_above_pad_m`. `reason_code` names the reason without its numbers, for programs. `flown_by` is "companion"
     while the autopilot follows its setpoints, "failsafe" while one flies, else "other"; empty without an autopilot.
     `battery_share` is left, 0 to 1. `unverified` is what is believed of the pad's place since nothing that the drone
-    has can verify it.
+    has can verify it. On the wire the fields of `links` stand beside the others.
     """
 
     stamp_ns: int
@@ -238,3 +238,4 @@ class LandingStatus(LinkStatus, frozen=True, kw_only=True):
     battery_share: float | None = None
     contact_forecast: ContactForecast | None = None
     unverified: tuple[str, ...] = ()
+    links: LinkStatus = LinkStatus()

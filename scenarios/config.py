@@ -3,7 +3,7 @@
 Presets and tracks live as TOML in `scenarios/catalogue`; the numbers of the sensor presets are the benchmark's.
 """
 
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field
 
@@ -190,7 +190,7 @@ class SystemConfig(StrictModel):
     parameters: dict[FirmwareName, dict[str, float]] = Field(default_factory=dict)  # that differ from the defaults
 
 
-class CourseConfig(StrictModel):
+class RunConfig(StrictModel):
     """Where and in what state a run begins, where it is bounded, and when something happens and it ends."""
 
     start: Literal["instant", "boot"] = "instant"  # of the autopilot in lockstep; over the wire it always boots
@@ -203,8 +203,8 @@ class CourseConfig(StrictModel):
     disturbed_between_s: tuple[NotNegative, NotNegative] = (12.0, 20.0)  # a gust, outage or origin step begins; drawn
 
 
-class Scenario(CourseConfig):
-    """One experiment; a seed makes it a run. Its file has the keys of its course beside its own."""
+class Scenario(StrictModel):
+    """One experiment; a seed makes it a run."""
 
     name: str
     description: str
@@ -220,6 +220,11 @@ class Scenario(CourseConfig):
     vehicle: VehicleConfig = VehicleConfig()
     system: SystemConfig = SystemConfig()
     firmware: FirmwareName = "px4"
+    run: RunConfig = RunConfig()
+
+    def with_run(self, **changes: Any) -> "Scenario":
+        """Return the scenario with changes of its `run`."""
+        return self.model_copy(update={"run": self.run.model_copy(update=changes)})
 
     @property
     def has_camera(self) -> bool:

@@ -51,8 +51,9 @@ class GroundStationConfig(StrictModel):
 
 
 class SetpointConfig(StrictModel):
-    """What the setpoints say, and when they are for."""
+    """How often setpoints are sent, what they say, and when they are for."""
 
+    rate_hz: Annotated[float, Field(ge=10.0, le=200.0)] = 50.0
     # By which they are ahead of the drone beside the link's delay; none: as the autopilot takes them.
     lead_s: Annotated[float, Field(ge=0.0, le=0.5)] | None = None
     yaw_rate_max_rad_s: Positive = 0.8  # ArduCopter slews at 60 degrees a second

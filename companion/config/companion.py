@@ -84,7 +84,6 @@ class FlightConfig(StrictModel):
 class CompanionConfig(FlightConfig):
     """Everything that can be set about the companion; its file has the tables of the flight beside its own."""
 
-    step_rate_hz: Annotated[float, Field(ge=10.0, le=200.0)] = 50.0
     # A vehicle without telemetry; none: the vehicle tells where it is, and how its pad lies on it.
     silent_vehicle: SilentVehicleConfig | None = None
     autopilot: AutopilotConfig = AutopilotConfig()

@@ -41,7 +41,7 @@ def update_pad_raised_m(raised_m: float, phase: Phase, situation: Situation, con
     off_m = relative.height_m - seen_m
     if abs(off_m) > RAISED_MAX_M:
         return raised_m
-    step_m = _SLEW_M_S / config.step_rate_hz
+    step_m = _SLEW_M_S / config.setpoints.rate_hz
     return raised_m + min(max(off_m - raised_m, -step_m), step_m)
 
 

@@ -137,7 +137,7 @@ def update_course(
         return watch if watch.compared_s == 0.0 else replace(watch, compared_s=0.0)
     if speed_std_m_s > _COURSE_STD_MAX * speed_m_s:
         return watch
-    step_s = 1.0 / config.step_rate_hz
+    step_s = 1.0 / config.setpoints.rate_hz
     compared_s = watch.compared_s + step_s
     share = step_s / min(compared_s, _COURSE_OVER_S)
     off_rad = pad.yaw_rad - math.atan2(vy, vx)

@@ -84,7 +84,7 @@ def forecast_contact(
     stands = vehicle_stands(situation, config.chase)
     errors = draw_errors(then, pad, inputs.response, numbers.normals)
     late_s = memory.vehicle.hindsight.lateness_s or age_s
-    delay_s = late_s + 0.5 / config.step_rate_hz + inputs.link_delay.mean_s + inputs.link_delay.std_s * errors.late
+    delay_s = late_s + 0.5 / config.setpoints.rate_hz + inputs.link_delay.mean_s + inputs.link_delay.std_s * errors.late
     speed_m_s = float(course.speed_m_s[0])
     events = make_events(
         numbers,

@@ -84,7 +84,7 @@ def fly(
     model = memory.model
     if model.reference is None:
         return memory, None
-    period_s = 1.0 / system.config.step_rate_hz
+    period_s = 1.0 / system.config.setpoints.rate_hz
     reference = _at_drone(memory, _model_at(model, inputs.monotonic_ns, period_s), situation, system.config)
     memory = replace(memory, model=(model := replace(model, reference=reference)))
     reference_ns = inputs.monotonic_ns + round(period_s * 1e9)

@@ -95,8 +95,6 @@ def landing_status(memory: StepMemory, situation: Situation, config: CompanionCo
             if timed and relative is not None
             else None
         ),
-        mavlink_bad_bytes=0,
-        zenoh_bad_payloads=0,
         armed=situation.autopilot.armed,
         fix_age_s=situation.vehicle.fix_age_s,
         flown_by=_flown_by(situation.autopilot),

@@ -46,7 +46,7 @@ def warm_up(system: System) -> None:
             target=target,
             limits=system.config.limits.flight_limits(),
             floor_enu_m=np.zeros_like(offset_s),
-            dt_s=1.0 / system.config.step_rate_hz,
+            dt_s=1.0 / system.config.setpoints.rate_hz,
         )
         memory, _ = system.guidance.plan(memory, request)
     turned_lever(np.zeros_like(offset_s), np.zeros_like(offset_s), offset_s, 1.0, 0.0)

@@ -51,7 +51,7 @@ class CompanionNode:
         publishes: bool = True,
         is_component: bool = False,
     ) -> None:
-        motion_rate_hz = max(system.config.step_rate_hz, _MOTION_RATE_MIN_HZ)
+        motion_rate_hz = max(system.config.setpoints.rate_hz, _MOTION_RATE_MIN_HZ)
         self.autopilot = AutopilotLink(session, system.config.autopilot, motion_rate_hz)
         self._dry_run = dry_run
         self._component = MavlinkComponent(session, is_open=is_component)
@@ -67,7 +67,7 @@ class CompanionNode:
         self._station: Station | None = None
         self._leaving = False
         self._replies: list[CommandReply] = []
-        self._clock = StepClock(system.config.step_rate_hz)
+        self._clock = StepClock(system.config.setpoints.rate_hz)
         self.vehicle = VehicleLink(keys, self._clock, system.config.silent_vehicle)
 
     @property

@@ -9,7 +9,7 @@ from companion.planning.guidance import PlanResult
 from companion.runtime.step_clock import StepClock
 from companion.runtime.vehicle_link import VehicleLink
 from link.mavlink.session import MavlinkSession
-from link.messages import LandingStatus
+from link.messages import LandingStatus, LinkStatus
 from link.payloads.checks import PayloadError
 from link.records import replace
 from link.zenoh.keys import Keys, Publication
@@ -76,10 +76,10 @@ def with_links(
         vehicle: the link to it.
         open_to_strangers: which links are.
     """
-    return replace(
-        status,
+    links = LinkStatus(
         mavlink_bad_bytes=session.statistics.codec.bad_bytes,
         zenoh_bad_payloads=vehicle.refusals.total,
         refused=vehicle.refused_lately(),
         open_to_strangers=open_to_strangers,
     )
+    return replace(status, links=links)

@@ -5,7 +5,7 @@ from rich.console import Console
 from companion.recording.records import LinkRecord
 from companion.runtime.node import CompanionNode
 from companion.runtime.recorded_node import link_record
-from link.messages import LandingStatus
+from link.messages import LandingStatus, LinkStatus
 from link.program.screen import Screen
 from link.program.status_rows import link_rows, number
 from link.recording.recorder import BackgroundRecorder
@@ -37,7 +37,7 @@ class Terminal:
             model = node.memory.model
             error_m = None if model.reference is None else model.tracking.error_m
             record = link_record(node, node.inputs.t_ns, self._recorder.dropped)
-            status = replace(node.outputs.status, refused=node.vehicle.refused_lately())
+            status = replace(node.outputs.status, links=LinkStatus(refused=node.vehicle.refused_lately()))
             self._recorder.put((status, error_m, record))
 
     def close(self) -> None:

@@ -4,9 +4,10 @@ Reading is strict about types and finiteness. A command with a name too many is 
 meant to change what the command does; reports may hold more than this version knows.
 """
 
-from typing import Annotated, Self, TypeVar
+from typing import Annotated, Any, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic_core import to_json
 
 from link.messages import (
     VEHICLE_HEIGHT_MAX_M,
@@ -15,6 +16,7 @@ from link.messages import (
     CommandReply,
     ContactForecast,
     LandingStatus,
+    LinkStatus,
     Order,
     PadGeometry,
     Station,
@@ -97,7 +99,7 @@ class _LinkStatus(_Report):
     ]
 
 
-class _LandingStatus(_LinkStatus):
+class _LandingStatus(_Report):
     """How the landing of the drone on the vehicle goes."""
 
     model_config = ConfigDict(title="Landing status")
@@ -129,10 +131,15 @@ class _LandingStatus(_LinkStatus):
     ]
 
 
-LANDING_STATUS_SCHEMA = {
-    "$schema": "https://json-schema.org/draft/2020-12/schema",
-    **_LandingStatus.model_json_schema(),
-}
+def _status_schema() -> dict[str, Any]:
+    """Return the schema of a status, whose links stand beside its own fields."""
+    own, links = _LandingStatus.model_json_schema(), _LinkStatus.model_json_schema()
+    properties, required = links["properties"] | own["properties"], [*links["required"], *own["required"]]
+    begin = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
+    return begin | own | {"properties": properties, "required": required}
+
+
+LANDING_STATUS_SCHEMA = _status_schema()
 """The JSON schema of `{ns}/{drone}/landing/status`."""
 
 _MODELS: dict[type[object], type[_Report]] = {
@@ -153,8 +160,10 @@ def encode(message: Message) -> bytes:
     try:
         if isinstance(message, Order):
             return _Order.model_validate(_order_fields(message)).model_dump_json(exclude_none=True).encode()
-        fields = {name: getattr(message, name) for name in model.model_fields}
-        return model.model_validate(fields).model_dump_json().encode()
+        checked = _validated(model, message)
+        if isinstance(message, LandingStatus):
+            return to_json(_validated(_LinkStatus, message.links).model_dump() | checked.model_dump())
+        return checked.model_dump_json().encode()
     except ValidationError as error:
         raise _payload_error(error) from error
 
@@ -167,16 +176,23 @@ def decode(message_type: type[M], payload: bytes) -> M:
     """
     try:
         model = _MODELS[message_type].model_validate_json(payload)
+        links = _LinkStatus.model_validate_json(payload) if isinstance(model, _LandingStatus) else None
     except ValidationError as error:
         raise _payload_error(error) from error
     fields = {name: getattr(model, name) for name in type(model).model_fields}
     forecast = fields.get("contact_forecast")
     if isinstance(forecast, _ContactForecast):
         fields["contact_forecast"] = ContactForecast(**forecast.model_dump())
+    if links is not None:
+        fields["links"] = LinkStatus(**links.model_dump())
     message = _order(model) if isinstance(model, _Order) else message_type(**fields)
     if not isinstance(message, message_type):
         raise TypeError(f"the model of {message_type.__name__} gave a {type(message).__name__}")
     return message
+
+
+def _validated(model: type[_Report], message: object) -> _Report:
+    return model.model_validate({name: getattr(message, name) for name in model.model_fields})
 
 
 def _order_fields(order: Order) -> dict[str, object]:

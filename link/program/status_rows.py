@@ -19,7 +19,7 @@ def status_rows(status: LandingStatus | None) -> list[Row]:
         ("time to touchdown", number(None if status is None else status.time_to_contact_s, "s")),
         ("contact, if it goes on", _forecast(None if status is None else status.contact_forecast)),
         ("age of the last fix", number(None if status is None else status.fix_age_s, "s")),
-        ("refused data", "-" if status is None or not status.refused else status.refused),
+        ("refused data", "-" if status is None or not status.links.refused else status.links.refused),
         ("not verified", "-" if status is None or not status.unverified else "; ".join(status.unverified)),
     ]
 

@@ -25,7 +25,7 @@ from link.program.toml_config import merge, read_toml, validate
 from scenarios.catalogue.completion import look_out_for_silent_vehicle, place_drone
 from scenarios.catalogue.world_names import names_worlds, parse_world_name
 from scenarios.catalogue.worlds import named_world
-from scenarios.config import Scenario
+from scenarios.config import RunConfig, Scenario
 from scenarios.worlds.odd import slices
 
 
@@ -52,7 +52,8 @@ _DEFAULT_PRESETS = {
     "system": "default",
     "camera": "none",
 }
-_PLAIN_OPTIONS = ("firmware", "start", "place", "detector", "telemetry")
+_PLAIN_OPTIONS = ("firmware", "detector", "telemetry")
+_RUN_OPTIONS = ("start", "place")
 _SUFFIX = ".toml"
 
 
@@ -73,6 +74,7 @@ def list_presets() -> dict[str, tuple[str, ...]]:
     """Return what may be written behind a name, presets and plain options, by section; the default one first."""
     named = {section: (_presets(section), default) for section, default in _DEFAULT_PRESETS.items()}
     fields = {option: Scenario.model_fields[option] for option in _PLAIN_OPTIONS}
+    fields |= {option: RunConfig.model_fields[option] for option in _RUN_OPTIONS}
     plain = {option: (get_args(field.annotation), field.default) for option, field in fields.items()}
     return {
         section: tuple(sorted(names, key=lambda name, first=default: (name != first, name)))
@@ -98,7 +100,7 @@ def load_scenario(name_or_path: str) -> Scenario:
     else:
         table = _find_table(name) | {"name": name_or_path}
     for option in options:
-        table |= _option(option, name_or_path)
+        table = _with_option(table, option, name_or_path)
     return complete(validate(Scenario, _resolve(table, name_or_path), source=name_or_path))
 
 
@@ -111,14 +113,14 @@ def complete(scenario: Scenario) -> Scenario:
     return place_drone(look_out_for_silent_vehicle(tell_of_one_frame(scenario)))
 
 
-def _option(option: str, whole: str) -> Table:
+def _with_option(table: Table, option: str, whole: str) -> Table:
     section, equals, preset = option.partition("=")
-    sections = (*_DEFAULT_PRESETS, *_PLAIN_OPTIONS)
+    sections = (*_DEFAULT_PRESETS, *_PLAIN_OPTIONS, *_RUN_OPTIONS)
     if not equals or section not in sections:
         meant = _meant(section, preset)
         near = f"did you mean +{meant}?" if meant else f"write one of {', '.join(sections)} with =PRESET"
         raise UserError(f"{whole}: no preset is called '{option}'; {near} (`scenarios list` shows them)")
-    return {section: preset}
+    return merge(table, {"run": {section: preset}}) if section in _RUN_OPTIONS else table | {section: preset}
 
 
 def _meant(section: str, preset: str) -> str:

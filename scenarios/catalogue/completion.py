@@ -24,7 +24,7 @@ def place_drone(scenario: Scenario) -> Scenario:
     Raises:
         UserError: the file places the drone inside the vehicle.
     """
-    if scenario.place == "road":
+    if scenario.run.place == "road":
         return keep_clear_of_vehicle(scenario)
     departure = scenario.track.departure.model_copy(update={"wait_for_drone": False, "departs_s": 0.0})
     return scenario.model_copy(update={"track": scenario.track.model_copy(update={"departure": departure})})
@@ -40,22 +40,21 @@ def keep_clear_of_vehicle(scenario: Scenario) -> Scenario:
         UserError: the file places the drone inside the vehicle.
     """
     vehicle = vehicle_at(VehicleMemory(), 0, plan_of(scenario, seed=0))
-    if not _is_inside(scenario.drone_start_enu_m, vehicle, scenario):
+    if not _is_inside(scenario.run.drone_start_enu_m, vehicle, scenario):
         return scenario
-    if scenario.model_fields_set & _PLACES:
-        east_m, north_m, up_m = scenario.drone_start_enu_m
+    if scenario.run.model_fields_set & _PLACES:
+        east_m, north_m, up_m = scenario.run.drone_start_enu_m
         raise UserError(
             f"{scenario.name}: the drone would begin inside the vehicle, at ({east_m:g}, {north_m:g}, {up_m:g}) m;"
-            " change drone_start_enu_m and waiting_point_enu_m, or where the road begins"
+            " change run.drone_start_enu_m and run.waiting_point_enu_m, or where the road begins"
         )
     before_m = 0.5 * scenario.vehicle.length_m + _AHEAD_M
     east_m = vehicle.position_enu_m[0] + before_m * math.cos(vehicle.yaw_rad)
     north_m = vehicle.position_enu_m[1] + before_m * math.sin(vehicle.yaw_rad)
-    places = {
-        "drone_start_enu_m": (east_m, north_m, vehicle.position_enu_m[2]),
-        "waiting_point_enu_m": (east_m, north_m, scenario.waiting_point_enu_m[2]),
-    }
-    return scenario.model_copy(update=places)
+    return scenario.with_run(
+        drone_start_enu_m=(east_m, north_m, vehicle.position_enu_m[2]),
+        waiting_point_enu_m=(east_m, north_m, scenario.run.waiting_point_enu_m[2]),
+    )
 
 
 def _is_inside(drone_enu_m: Vector3, vehicle: VehicleState, scenario: Scenario) -> bool:
@@ -86,14 +85,13 @@ def look_out_for_silent_vehicle(scenario: Scenario) -> Scenario:
     if companion.silent_vehicle is None:
         known = SilentVehicleConfig(pad_size_m=body.pad_size_m, pad_height_m=body.roof_height_m)
         companion = companion.model_copy(update={"silent_vehicle": known})
-    places = {}
-    if "waiting_point_enu_m" not in scenario.model_fields_set and not companion.takeoff.model_fields_set:
+    if "waiting_point_enu_m" not in scenario.run.model_fields_set and not companion.takeoff.model_fields_set:
         waiting_m = body.roof_height_m + companion.chase.unseen_height_max_m
         companion = _waiting_at(companion, waiting_m)
-        east_m, north_m, _ = scenario.waiting_point_enu_m
-        places = {"waiting_point_enu_m": (east_m, north_m, waiting_m)}
+        east_m, north_m, _ = scenario.run.waiting_point_enu_m
+        scenario = scenario.with_run(waiting_point_enu_m=(east_m, north_m, waiting_m))
     system = scenario.system.model_copy(update={"companion": companion})
-    return scenario.model_copy(update={"system": system, **places})
+    return scenario.model_copy(update={"system": system})
 
 
 def _waiting_at(companion: CompanionConfig, height_m: float) -> CompanionConfig:

@@ -125,7 +125,7 @@ def _progress_line(recording: Recording, status: LandingStatus, factor: float) -
 def _run_rows(recording: Recording, status: LandingStatus, factor: float) -> list[Row]:
     return [
         ("time, pace", f"{recording.elapsed_s:.1f} s, {factor:.2f}x"),
-        ("bad bytes, bad payloads", f"{status.mavlink_bad_bytes}, {status.zenoh_bad_payloads}"),
+        ("bad bytes, bad payloads", f"{status.links.mavlink_bad_bytes}, {status.links.zenoh_bad_payloads}"),
     ]
 
 

@@ -135,7 +135,7 @@ class _Flight(Lockstep):
         self.latest_s = 0.0
         self._rng = rng
         self._keys = Keys()
-        self._datum = datum_of(scenario.datum)
+        self._datum = datum_of(scenario.run.datum)
         self._is_datagram = is_datagram
         self._forges = forges
         self._listener = MavlinkCodec(255, 190)

@@ -22,7 +22,7 @@ _TIME_LIMIT_S = 200.0  # longer than any case: no operator calls it off
 
 def sortie_of(scenario: Scenario) -> Scenario:
     """Return `scenario` with a vehicle that drives from the start, on a road that is long enough for a sortie."""
-    scenario = departing_at_once(scenario).model_copy(update={"time_limit_s": _TIME_LIMIT_S})
+    scenario = departing_at_once(scenario).with_run(time_limit_s=_TIME_LIMIT_S)
     track = scenario.track
     if isinstance(track, MovingTrack):
         track = track.model_copy(update={"road_s": max(track.road_s, _ROAD_S)})

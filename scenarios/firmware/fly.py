@@ -114,7 +114,7 @@ def _place(scenario: Scenario, datum: Datum) -> Scenario:
         longitude_deg=math.degrees(datum.longitude_rad),
         altitude_m=datum.altitude_m,
     )
-    return scenario.model_copy(update={"vehicle": vehicle, "system": system, "datum": place})
+    return scenario.model_copy(update={"vehicle": vehicle, "system": system}).with_run(datum=place)
 
 
 def _datum(watch: FirmwareWatch, transport: Transport) -> Datum:
@@ -150,7 +150,7 @@ class _Flight:
         self._zenoh = zenoh
         self._vehicle = VehicleNode(scenario, options.seed, keys)
         self._watcher = Watcher(zenoh, keys, self.recording)
-        self._datum = datum_of(scenario.datum)
+        self._datum = datum_of(scenario.run.datum)
         self._stepped_ns = 0
         self._ship_sails = False
         pad = json_messages.encode(self._vehicle.pad)
@@ -159,7 +159,7 @@ class _Flight:
 
     def run(self, transport: Transport, processes: ProcessGroup, progress: Progress) -> str:
         """Return why the flight ended."""
-        end, shown_s = EndWatch(self._scenario.time_limit_s), 0.0
+        end, shown_s = EndWatch(self._scenario.run.time_limit_s), 0.0
         while (reason := end.reason(self.recording)) is None:
             local_ns = _listen(self._watch, transport)
             processes.check()

@@ -48,7 +48,7 @@ class Lockstep:
     ) -> None:
         keys = Keys()
         self.recording = Recording()
-        instant = scenario.start == "instant"
+        instant = scenario.run.start == "instant"
         self.simulation = Simulation(scenario, seed, keys, START_NS, instant=instant, publishes_truth=False)
         flown = scenario.system.companion if config is None else config
         self.companion = build_node(flown, keys, recorder=recorder, publishes=publishes)
@@ -57,7 +57,7 @@ class Lockstep:
         self._channels: Channels = channels_of(scenario, seed, START_NS)
         from_vehicle = dict.fromkeys((keys.fix, keys.fix_velocity, keys.imu), self._channels.zenoh)
         self._ways: dict[str, Way] = {**from_vehicle, keys.pad_pose: self._channels.detector}
-        self._watch = EndWatch(scenario.time_limit_s)
+        self._watch = EndWatch(scenario.run.time_limit_s)
         self._started = False
         pad_flu_m = (0.0, 0.0, scenario.vehicle.roof_height_m)
         self._point_flu_m = pad_flu_m if scenario.is_silent else scenario.vehicle.antenna_flu_m

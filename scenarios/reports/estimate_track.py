@@ -86,6 +86,6 @@ def _at(times_s: Array, known_s: Array, values: Array) -> Array:
 
 def _in_local_frame(positions_enu_m: Array, scenario: Scenario) -> Array:
     """Return places in W (n, 3) as the scenario's firmware lays them out about the datum, its origin at boot."""
-    datum = datum_of(scenario.datum)
+    datum = datum_of(scenario.run.datum)
     origin = Origin(world=datum, frame=LocalFrame(origin=datum, projection=Projection(scenario.firmware)))
     return np.array([local_from_world(origin, (x, y, z)) for x, y, z in positions_enu_m.tolist()])

@@ -56,11 +56,11 @@ def rules_of(scenario: Scenario, *, wind_mean_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
             roof_height_m=vehicle.roof_height_m,
             pad_size_m=vehicle.pad_size_m,
         ),
-        waiting_point_enu_m=scenario.waiting_point_enu_m,
+        waiting_point_enu_m=scenario.run.waiting_point_enu_m,
         mass_kg=airframe.mass_kg,
         drag_n_s_m=airframe.drag_n_s_m,
         wind_mean_enu_m_s=wind_mean_enu_m_s,
-        fence_radius_m=scenario.fence_radius_m,
+        fence_radius_m=scenario.run.fence_radius_m,
         report_rule=vehicle.roof_height_m == 0.0,
     )
 

@@ -34,7 +34,7 @@ def sim_autopilot_config(scenario: Scenario, seed: Seed, *, instant: bool) -> Si
         firmware=scenario.firmware,
         instant=instant,
         seed=seed if isinstance(seed, int) else 0,
-        datum=scenario.datum,
+        datum=scenario.run.datum,
         start=_start(scenario, seed),
         drone=scenario.system.drone,
         wind=_wind(scenario, seed),
@@ -46,8 +46,8 @@ def sim_autopilot_config(scenario: Scenario, seed: Seed, *, instant: bool) -> Si
 
 def _start(scenario: Scenario, seed: Seed) -> StartConfig:
     """Return where the drone stands at first: on the road, or on the deck and carried by it."""
-    if scenario.place == "road":
-        return StartConfig(position_enu_m=scenario.drone_start_enu_m)
+    if scenario.run.place == "road":
+        return StartConfig(position_enu_m=scenario.run.drone_start_enu_m)
     vehicle = vehicle_at(VehicleMemory(departs_ns=0), 0, plan_of(scenario, seed))
     east_m, north_m, up_m = vehicle.position_enu_m
     return StartConfig(

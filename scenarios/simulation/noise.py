@@ -131,7 +131,9 @@ Span = tuple[int, int]
 def instant_s(scenario: Scenario, seed: Seed, name: str, at_s: float | None) -> float:
     """Return when the disturbance `name` begins, in seconds since the start of the simulation; `at_s` None draws it."""
     return (
-        at_s if at_s is not None else float(named_rng(seed, f"{name} instant").uniform(*scenario.disturbed_between_s))
+        at_s
+        if at_s is not None
+        else float(named_rng(seed, f"{name} instant").uniform(*scenario.run.disturbed_between_s))
     )
 
 

@@ -57,7 +57,7 @@ class VehicleNode:
         self.state: VehicleState | None = None
         mounting = Mounting(antenna_flu_m=scenario.vehicle.antenna_flu_m, pad_height_m=scenario.vehicle.roof_height_m)
         detector = _camera_of(scenario, seed) if has_eyes else None
-        datum = datum_of(scenario.datum)
+        datum = datum_of(scenario.run.datum)
         self._suite = partial(SensorSuite, seed=seed, mounting=mounting, datum=datum, detector=detector)
         sensors = scenario.sensors.model_copy(update={"pattern": None}) if scenario.has_camera else scenario.sensors
         self._sensors = self._suite(sensors)
@@ -122,7 +122,7 @@ def plan_of(scenario: Scenario, seed: Seed) -> VehiclePlan:
     return VehiclePlan(
         course=course_of(scenario.track, named_rng(seed, "track")),
         departure=scenario.track.departure,
-        waiting_point_enu_m=scenario.waiting_point_enu_m,
+        waiting_point_enu_m=scenario.run.waiting_point_enu_m,
         roof_height_m=scenario.vehicle.roof_height_m,
     )
 

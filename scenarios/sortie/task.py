@@ -30,7 +30,7 @@ def sortie_scenario(cell: str, seed: int, firmware: str) -> Scenario:
         raise UserError(f"{cell}: its vehicle stands; a sortie begins on one that drives: take straight_10 or urban")
     if isinstance(track, MovingTrack):
         track = track.model_copy(update={"road_s": max(track.road_s, _ROAD_S)})
-    return place_drone(scenario.model_copy(update={"place": "deck", "track": track}))
+    return place_drone(scenario.model_copy(update={"track": track}).with_run(place="deck"))
 
 
 class SortieTask(Struct, frozen=True, kw_only=True):

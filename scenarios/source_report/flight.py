@@ -84,7 +84,7 @@ def fly(task: ReportTask) -> ReportFlight:
     scenario = load_scenario(f"{task.scenario}+system={task.system}")
     if not isinstance(scenario.track, WaypointsTrack):
         raise UserError(f"{task.scenario} does not drive along waypoints, as the report's scenarios do")
-    lockstep, watch = Lockstep(scenario, task.seed), EndWatch(scenario.time_limit_s)
+    lockstep, watch = Lockstep(scenario, task.seed), EndWatch(scenario.run.time_limit_s)
     drive_s = _drive_s(lockstep.simulation.vehicle.plan.course)
     direct = scenario.system.companion.guidance.style is LandingStyle.DIRECT
     while watch.reason(lockstep.recording) is None:

@@ -125,17 +125,23 @@ class RandomTrack(MovingTrack):
     tau_s: Positive = 3.0
 
 
-class RoughRoadTrack(MovingTrack):
-    """A straight road that climbs behind the waiting point and shakes the vehicle."""
+class ShakeConfig(StrictModel):
+    """How a road shakes the vehicle: waves of heave, roll and pitch."""
 
-    kind: Literal["rough_road"]
-    grade: Annotated[float, Field(ge=0.0, le=0.3)] = 0.05
     heave_m: NotNegative = 0.1
     heave_hz: Positive = 0.5
     roll_rad: Annotated[float, Field(ge=0.0, le=0.5)] = 0.0524  # 3 degrees
     roll_hz: Positive = 1.0
     pitch_rad: Annotated[float, Field(ge=0.0, le=0.5)] = 0.0524  # 3 degrees
     pitch_hz: Positive = 0.7
+
+
+class RoughRoadTrack(MovingTrack):
+    """A straight road that climbs behind the waiting point and shakes the vehicle."""
+
+    kind: Literal["rough_road"]
+    grade: Annotated[float, Field(ge=0.0, le=0.3)] = 0.05
+    shake: ShakeConfig = ShakeConfig()
 
 
 TrackConfig = Annotated[

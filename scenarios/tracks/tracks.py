@@ -194,9 +194,9 @@ def _rough_course(track: RoughRoadTrack, rng: np.random.Generator) -> Course:
         return Wave(amplitude=amplitude, wavelength_m=track.speed_m_s / frequency_hz, phase_rad=phase_rad)
 
     roughness = Roughness(
-        heave=wave(track.heave_m, track.heave_hz),
-        roll=wave(track.roll_rad, track.roll_hz),
-        pitch=wave(track.pitch_rad, track.pitch_hz),
+        heave=wave(track.shake.heave_m, track.shake.heave_hz),
+        roll=wave(track.shake.roll_rad, track.shake.roll_hz),
+        pitch=wave(track.shake.pitch_rad, track.shake.pitch_hz),
     )
     return replace(course, roughness=roughness)
 

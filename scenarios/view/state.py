@@ -220,8 +220,6 @@ def _step(payload: bytes) -> dict[str, Any]:
         relative_velocity_enu_m_s=_vector(fields["relative_velocity_m_s"]),
         height_above_pad_m=_number(fields["height_above_pad_m"]),
         time_to_contact_s=_number(fields["time_to_contact_s"]),
-        mavlink_bad_bytes=0,
-        zenoh_bad_payloads=0,
         armed=bool(fields["armed"]),
         fix_age_s=_number(fields["fix_age_s"]),
     )

@@ -135,7 +135,7 @@ def _watch(
     watcher: Watcher, processes: ProcessGroup, scenario: Scenario, recording: Recording, progress: Progress
 ) -> tuple[str, float]:
     """Return why the run ended and its real-time factor."""
-    end, pace = EndWatch(scenario.time_limit_s), _Pace()
+    end, pace = EndWatch(scenario.run.time_limit_s), _Pace()
     began_s, shown_s = time.monotonic(), 0.0
     while (reason := end.reason(recording)) is None:
         time.sleep(_POLL_S)

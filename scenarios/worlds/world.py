@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from scenarios.config import Scenario, SensorsConfig
+from scenarios.config import RunConfig, Scenario, SensorsConfig
 from scenarios.simulation.noise import Seed
 from scenarios.tracks.drive_config import Departure, DriveTrack
 from scenarios.worlds.distributions import Value
@@ -104,7 +104,7 @@ def _world(name: str, seed: Seed, draws: Draws) -> World:
         vehicle=vehicle.body,
         system=system_of(draws, drone, waiting_m),
         firmware=firmware,
-        waiting_point_enu_m=(0.0, 0.0, waiting_m),
+        run=RunConfig(waiting_point_enu_m=(0.0, 0.0, waiting_m)),
     )
     return World(slice=name, seed=seed, scenario=scenario, drawn=_drawn(draws, scenario, road, drive, cruise_m_s))
 

@@ -86,7 +86,7 @@ class Observer:
 
     def wait_for_end(self, meanwhile: Callable[[], None] = lambda: None) -> Score:
         """Wait until the run is over, doing something again and again, and return its score on truth."""
-        end = EndWatch(SCENARIO.time_limit_s)
+        end = EndWatch(SCENARIO.run.time_limit_s)
 
         def is_over() -> bool:
             meanwhile()

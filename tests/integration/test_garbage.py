@@ -74,5 +74,5 @@ def test_garbage_on_the_port_and_on_every_key_is_counted_and_the_landing_succeed
     last = bystander.recording.statuses[-1]
     assert Tier(json.loads("\n".join(run.out.all))["tier"]) in LANDED
     assert thrower.datagrams > 100
-    assert last.zenoh_bad_payloads > 100
-    assert last.mavlink_bad_bytes < 1000  # since the autopilot was found nobody else is listened to
+    assert last.links.zenoh_bad_payloads > 100
+    assert last.links.mavlink_bad_bytes < 1000  # since the autopilot was found nobody else is listened to

@@ -83,7 +83,9 @@ def test_fixes_lie_on_the_vehicles_antenna() -> None:
     truths = [cdr.decode(BodyTruth, publication.payload) for publication in on_key(publications, KEYS.vehicle_truth)]
     position_at = {truth.t_ns: truth.position_enu_m for truth in truths}
     for fix in fixes:
-        x_m, y_m, z_m = enu_from_geodetic(datum_of(scenario.datum), fix.latitude_rad, fix.longitude_rad, fix.altitude_m)
+        x_m, y_m, z_m = enu_from_geodetic(
+            datum_of(scenario.run.datum), fix.latitude_rad, fix.longitude_rad, fix.altitude_m
+        )
         centre_m = position_at[fix.t_ns]
         errors_m = (x_m + 1.2 - centre_m[0], y_m - 0.5 - centre_m[1], z_m - 1.6 - centre_m[2])
         assert max(map(abs, errors_m)) < 0.1  # five standard deviations

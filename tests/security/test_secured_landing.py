@@ -113,7 +113,7 @@ def test_landing_by_the_shipped_files_is_told_to_no_stranger_and_ended_by_none(t
             crooked.forge(KEYS.fix, KEYS.fix_velocity, KEYS.imu)  # an operator is no vehicle
 
         assert bystander.wait_for_end(disturb).tier in LANDED
-        refused = {one.refused for one in bystander.recording.statuses}
-        assert bystander.recording.statuses[-1].zenoh_bad_payloads == 0, refused
+        refused = {one.links.refused for one in bystander.recording.statuses}
+        assert bystander.recording.statuses[-1].links.zenoh_bad_payloads == 0, refused
         assert [intruder.heard for intruder in intruders] == [0]
         assert companion.runs

@@ -16,8 +16,6 @@ STATUS = LandingStatus(
     relative_velocity_enu_m_s=None,
     height_above_pad_m=None,
     time_to_contact_s=None,
-    mavlink_bad_bytes=0,
-    zenoh_bad_payloads=0,
     armed=True,
     fix_age_s=0.1,
 )

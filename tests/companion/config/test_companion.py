@@ -28,7 +28,7 @@ def test_printed_configuration_reads_back_as_the_same(tmp_path: Path) -> None:
         ("[abort]\nfix_age_max_s = 0.0\n", "fix_age_max_s"),
         ("[limits]\nspeed_max_m_s = nan\n", "speed_max_m_s"),
         ("[limits]\nspeed_max_m_s = inf\n", "speed_max_m_s"),
-        ("step_rate_hz = 0.0\n", "step_rate_hz"),
+        ("[setpoints]\nrate_hz = 0.0\n", "rate_hz"),
         ("[descent]\ncommit_height_m = 'low'\n", "commit_height_m"),
         ("[landing]\nheight_m = 1.0\n", "landing"),
         ("[silent_vehicle]\n[estimator]\nkind = 'ukf'\n", "silent_vehicle"),

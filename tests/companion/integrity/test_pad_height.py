@@ -16,7 +16,7 @@ def _settled(facts: Situation, phase: Phase = Phase.DESCEND) -> float:
     raised_m = 0.0
     for _ in range(STEPS):
         before_m, raised_m = raised_m, update_pad_raised_m(raised_m, phase, facts, BELIEVING)
-        assert abs(raised_m - before_m) <= 0.5 / CONFIG.step_rate_hz + 1e-12
+        assert abs(raised_m - before_m) <= 0.5 / CONFIG.setpoints.rate_hz + 1e-12
     return raised_m
 
 

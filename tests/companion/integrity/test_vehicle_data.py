@@ -74,7 +74,7 @@ def test_it_keeps_a_landing_from_being_begun_and_is_told_with_the_share() -> Non
     )
 
 
-STEP_S = 1.0 / CONFIG.step_rate_hz
+STEP_S = 1.0 / CONFIG.setpoints.rate_hz
 STD_M_S = 0.05
 COURSE_RAD = 2.7
 BESIDE = PadGeometry(size_m=(1.5, 1.5), height_m=PAD_HEIGHT_M, antenna_to_pad_m=(1.2, -0.5, 0.0))

@@ -5,7 +5,7 @@ import io
 import pytest
 from rich.console import Console
 
-from link.messages import LandingStatus
+from link.messages import LandingStatus, LinkStatus
 from link.program.screen import Screen
 from link.program.status_rows import status_rows
 from link.records import replace
@@ -18,8 +18,6 @@ STATUS = LandingStatus(
     relative_velocity_enu_m_s=(0.0, 0.1, -0.5),
     height_above_pad_m=1.234,
     time_to_contact_s=2.5,
-    mavlink_bad_bytes=0,
-    zenoh_bad_payloads=0,
     armed=True,
     fix_age_s=None,
 )
@@ -55,7 +53,7 @@ def test_panel_has_the_same_height_and_fits_whatever_it_has_to_say(width: int) -
         drawn = io.StringIO()
         screen = Screen("companion on " + "x" * 90, Console(file=drawn, width=width))
         screen.start()
-        screen.show(replace(STATUS, reason=reason, refused=reason), [("pace", reason)])
+        screen.show(replace(STATUS, reason=reason, links=LinkStatus(refused=reason)), [("pace", reason)])
         screen.stop()
         lines = [line for line in drawn.getvalue().splitlines() if line.strip()]
         assert max(map(len, lines)) <= min(width, 80)

@@ -36,7 +36,7 @@ def test_lines_tell_how_many_flew_the_same() -> None:
 @pytest.mark.slow
 def test_checkout_flies_the_same_as_itself(tmp_path: Path) -> None:
     short = tmp_path / "short.toml"
-    short.write_text('base = "straight_5"\ntime_limit_s = 0.2\n', encoding="utf-8")
+    short.write_text('base = "straight_5"\nrun.time_limit_s = 0.2\n', encoding="utf-8")
     told: list[str] = []
     (pair,) = fly_pairs(HERE, str(short), [7], told.append)
     assert pair.is_same

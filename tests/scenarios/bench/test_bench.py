@@ -89,7 +89,7 @@ def test_a_figure_that_could_not_be_measured_misses_its_budget_and_is_shown_as_a
 
 @pytest.mark.slow
 def test_cost_of_recording_is_measured_on_a_whole_recording(tmp_path: Path) -> None:
-    scenario = load_scenario("straight_5").model_copy(update={"time_limit_s": 1.0})
+    scenario = load_scenario("straight_5").with_run(time_limit_s=1.0)
     cost = recording_cost(scenario, 1, tmp_path)
     assert cost["step_ratio"] > 0.5
     assert cost["writer_cpu_share"] > 0.0
@@ -106,7 +106,7 @@ def test_the_command_prints_every_figure_with_its_budget(
     monkeypatch.setattr("scenarios.bench.measures._HELP_REPEATS", 1)
     monkeypatch.setattr("scenarios.bench.codec._REPEATS", 3)
     short = tmp_path / "short.toml"
-    short.write_text('base = "straight_5"\ntime_limit_s = 3.0\n', encoding="utf-8")
+    short.write_text('base = "straight_5"\nrun.time_limit_s = 3.0\n', encoding="utf-8")
     assert run_app("scenarios", app, ["bench", str(short), "--json"]) == 0
     table = json.loads(capfd.readouterr().out)
     assert 0.0 < table["real_time_factor"] < 1.05  # never ahead of the clock

@@ -19,13 +19,13 @@ _SHORT = 'base = "straight_5"\nsensors = "nominal"\nwind = "moderate"\n'
 def short_cell(folder: Path, name: str = "short", *, time_limit_s: float = 1.5, text: str = "") -> str:
     """Write a cell that ends in the air and return its file's name."""
     file = folder / f"{name}.toml"
-    file.write_text(f"{_SHORT}time_limit_s = {time_limit_s}\n{text}", encoding="utf-8")
+    file.write_text(f"{_SHORT}run.time_limit_s = {time_limit_s}\n{text}", encoding="utf-8")
     return str(file)
 
 
 def failing_cell(folder: Path) -> str:
     """Write a cell whose drone is so far away that its telemetry cannot hold it, and return its file's name."""
-    return short_cell(folder, "failing", text="drone_start_enu_m = [1e12, 0.0, 0.0]\n")
+    return short_cell(folder, "failing", text="run.drone_start_enu_m = [1e12, 0.0, 0.0]\n")
 
 
 def scenarios(*args: object) -> int:

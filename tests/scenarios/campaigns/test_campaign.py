@@ -74,7 +74,7 @@ def test_seeds_make_a_difference(reference: Path) -> None:
 def test_plan_is_read_back_as_it_was_written(reference: Path, tmp_path: Path) -> None:
     table = json.loads((reference / "campaign.json").read_text(encoding="utf-8"))
     assert (table["cells"], table["first_seed"], table["seeds"]) == (["short", "longer"], 3, SEEDS)
-    assert table["scenarios"]["short"]["system"]["companion"]["step_rate_hz"] == 50.0
+    assert table["scenarios"]["short"]["system"]["companion"]["setpoints"]["rate_hz"] == 50.0
     assert read_plan(reference) == plan_of(tmp_path)
 
 

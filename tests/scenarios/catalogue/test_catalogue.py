@@ -57,7 +57,7 @@ def test_catalogue_holds_the_benchmark() -> None:
 def test_scenario_loads_under_its_name(name: str) -> None:
     scenario = load_scenario(name)
     assert scenario.name == name
-    assert scenario.waiting_point_enu_m[2] == (12.0 if name.startswith("ship") else 5.0)
+    assert scenario.run.waiting_point_enu_m[2] == (12.0 if name.startswith("ship") else 5.0)
     if isinstance(scenario.track, MovingTrack):
         assert name.endswith(f"_{int(scenario.track.speed_m_s)}")
 

@@ -28,12 +28,12 @@ def written(folder: Path, places: str = "") -> str:
 @pytest.mark.parametrize("name", [entry.name for entry in list_scenarios() if not entry.name.startswith("ship")])
 def test_roads_of_the_catalogue_leave_the_drone_at_the_datum(name: str) -> None:
     scenario = load_scenario(name)
-    assert (scenario.drone_start_enu_m, scenario.waiting_point_enu_m) == ((0.0, 0.0, 0.0), (0.0, 0.0, 5.0))
+    assert (scenario.run.drone_start_enu_m, scenario.run.waiting_point_enu_m) == ((0.0, 0.0, 0.0), (0.0, 0.0, 5.0))
 
 
 def test_drone_waits_ahead_of_a_vehicle_that_begins_at_the_datum(tmp_path: Path) -> None:
     scenario = load_scenario(written(tmp_path))
-    start, waiting = scenario.drone_start_enu_m, scenario.waiting_point_enu_m
+    start, waiting = scenario.run.drone_start_enu_m, scenario.run.waiting_point_enu_m
     assert math.hypot(*start[:2]) > 0.5 * scenario.vehicle.length_m + 1.0
     assert math.atan2(start[1], start[0]) == pytest.approx(math.atan2(4.0, 3.0))
     assert (waiting[:2], waiting[2]) == (start[:2], 5.0)
@@ -48,15 +48,16 @@ def test_drone_ahead_of_the_vehicle_takes_off_at_once(tmp_path: Path) -> None:
 
 
 def test_drone_placed_inside_the_vehicle_is_refused_with_what_to_change(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match=r"inside the vehicle, at \(1, 0.5, 0\) m; change drone_start_enu_m"):
-        load_scenario(written(tmp_path, "drone_start_enu_m = [1.0, 0.5, 0.0]"))
+    with pytest.raises(UserError, match=r"inside the vehicle, at \(1, 0.5, 0\) m; change run.drone_start_enu_m"):
+        load_scenario(written(tmp_path, "run.drone_start_enu_m = [1.0, 0.5, 0.0]"))
 
 
 def test_drone_may_begin_on_the_roof_or_beside_the_vehicle(tmp_path: Path) -> None:
     for place in ((0.0, 0.0, 1.5), (-4.0, 3.0, 0.0)):
-        assert load_scenario(written(tmp_path, f"drone_start_enu_m = {list(place)}")).drone_start_enu_m == place
+        scenario = load_scenario(written(tmp_path, f"run.drone_start_enu_m = {list(place)}"))
+        assert scenario.run.drone_start_enu_m == place
 
 
 def test_pad_on_the_road_is_no_vehicle_to_be_inside_of(tmp_path: Path) -> None:
     scenario = load_scenario(written(tmp_path, 'vehicle = "report"'))
-    assert scenario.drone_start_enu_m == (0.0, 0.0, 0.0)
+    assert scenario.run.drone_start_enu_m == (0.0, 0.0, 0.0)

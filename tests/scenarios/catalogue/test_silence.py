@@ -18,7 +18,7 @@ def test_companion_knows_the_pad_and_waits_as_high_as_its_detector_sees() -> Non
     companion = scenario.system.companion
     assert companion.silent_vehicle is not None
     assert companion.silent_vehicle.pad.height_m == scenario.vehicle.roof_height_m
-    assert companion.takeoff.waiting_height_m == scenario.waiting_point_enu_m[2] == 9.5
+    assert companion.takeoff.waiting_height_m == scenario.run.waiting_point_enu_m[2] == 9.5
 
 
 def test_it_publishes_nothing_but_what_the_drone_sees() -> None:

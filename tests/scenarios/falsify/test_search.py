@@ -20,7 +20,7 @@ def draw(_seed: int, chosen: Mapping[str, float]) -> Scenario:
     zenoh = PLAIN.link.zenoh.model_copy(update={"delay_s": chosen[NAMES[DELAY]]})
     others = sum(u for name, u in chosen.items() if name not in {NAMES[WIND], NAMES[DELAY]})
     link = PLAIN.link.model_copy(update={"zenoh": zenoh})
-    return PLAIN.model_copy(update={"wind": wind, "link": link, "time_limit_s": 100.0 + others})
+    return PLAIN.model_copy(update={"wind": wind, "link": link}).with_run(time_limit_s=100.0 + others)
 
 
 class Air:

@@ -60,8 +60,6 @@ def status(t_s: float, phase: Phase, reason: Reason) -> LandingStatus:
         relative_velocity_enu_m_s=None,
         height_above_pad_m=None,
         time_to_contact_s=None,
-        mavlink_bad_bytes=0,
-        zenoh_bad_payloads=0,
         armed=True,
         fix_age_s=None,
     )

@@ -31,8 +31,6 @@ def _status(at_s: float, height_m: float, phase: Phase = Phase.DESCEND, unsafe: 
         relative_velocity_enu_m_s=None,
         height_above_pad_m=height_m,
         time_to_contact_s=None,
-        mavlink_bad_bytes=0,
-        zenoh_bad_payloads=0,
         armed=True,
         fix_age_s=0.1,
         contact_forecast=forecast_of(unsafe, in_s=0.8) if phase is Phase.DESCEND else None,

@@ -118,7 +118,7 @@ def test_replay_with_another_gain_names_the_fields_largest_difference_first(flig
 
 
 def test_recording_is_the_same_for_the_same_seed(tmp_path: Path) -> None:
-    scenario = load_scenario(SCENARIO).model_copy(update={"time_limit_s": 4.0})
+    scenario = load_scenario(SCENARIO).with_run(time_limit_s=4.0)
     first, again = tmp_path / "first", tmp_path / "again"
     for folder in (first, again):
         folder.mkdir()
@@ -195,7 +195,7 @@ def test_full_disk_costs_records_and_changes_nothing_of_the_landing(run: Path, s
 
 
 def test_run_into_a_full_folder_ends_in_one_line_that_says_what_to_change(small_disk: Path) -> None:
-    scenario = load_scenario(SCENARIO).model_copy(update={"time_limit_s": 1.5})
+    scenario = load_scenario(SCENARIO).with_run(time_limit_s=1.5)
     options = RunOptions(seed=2, speed=1.0, folder=small_disk, record=True)
     with pytest.raises(UserError, match=r"result\.json: cannot be written \(.+\); make room") as told:
         run_in_lockstep(scenario, options, lambda *_: None)

@@ -15,7 +15,7 @@ SEEDS = range(400)
 
 
 def test_outages_have_the_lengths_of_the_benchmark_and_begin_in_the_manoeuvre() -> None:
-    first_s, last_s = DEGRADED.disturbed_between_s
+    first_s, last_s = DEGRADED.run.disturbed_between_s
     for name, channel, shortest_s, longest_s in (
         ("mavlink", DEGRADED.link.mavlink, 2.0, 2.0),
         ("zenoh", DEGRADED.link.zenoh, 1.0, 3.0),

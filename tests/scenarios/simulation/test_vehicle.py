@@ -19,6 +19,7 @@ from scenarios.simulation.vehicle import (
     vehicle_truth,
 )
 from scenarios.simulation.vehicle_node import plan_of
+from scenarios.tracks.config import ShakeConfig
 from tests.rotations import matrix_of
 
 START_NS = 1_800_000_000_000_000_000
@@ -167,7 +168,8 @@ def test_truth_has_the_velocity_along_the_body() -> None:
 
 def test_climbing_vehicle_is_nose_up_along_the_road() -> None:
     scenario = load_scenario("rough_road_5")
-    level = scenario.track.model_copy(update={"heave_m": 0.0, "roll_rad": 0.0, "pitch_rad": 0.0})
+    still = ShakeConfig(heave_m=0.0, roll_rad=0.0, pitch_rad=0.0)
+    level = scenario.track.model_copy(update={"shake": still})
     plan = plan_of(scenario.model_copy(update={"track": level}), seed=1)
     state = vehicle_at(VehicleMemory(departs_ns=START_NS), START_NS + 30_000_000_000, plan)
     nose = rotate(state.orientation_wxyz, (1.0, 0.0, 0.0))

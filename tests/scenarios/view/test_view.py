@@ -46,8 +46,6 @@ def status_with(*, armed: bool) -> LandingStatus:
         relative_velocity_enu_m_s=None,
         height_above_pad_m=1.0,
         time_to_contact_s=None,
-        mavlink_bad_bytes=0,
-        zenoh_bad_payloads=0,
         armed=armed,
         fix_age_s=None,
     )

@@ -13,7 +13,7 @@ from scenarios.worlds.world import draw_world
 pytestmark = pytest.mark.slow
 SEED = 2
 WORLD = draw_world("world", SEED)
-SHORT = WORLD.scenario.model_copy(update={"time_limit_s": 15.0})
+SHORT = WORLD.scenario.with_run(time_limit_s=15.0)
 
 
 @pytest.fixture(scope="module")
