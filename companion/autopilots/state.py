@@ -11,8 +11,19 @@ from types import MappingProxyType
 from msgspec import Struct, field
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotView, Driver
-from companion.autopilots.own_reports import HISTORY_NS, carry, is_plausible, velocity_bias, with_report, without_bias
-from companion.autopilots.sensor_messages import above_ellipsoid, geoid_height_m, is_same, origin_above_sea, with_sensor
+from companion.autopilots.own_reports import (
+    HISTORY_NS,
+    above_ellipsoid,
+    carry,
+    geoid_height_m,
+    is_plausible,
+    is_same,
+    origin_above_sea,
+    velocity_bias,
+    with_report,
+    with_sensor,
+    without_bias,
+)
 from companion.core.data import OwnState
 from link.frames.geodesy import Datum, LocalFrame, Projection
 from link.frames.rotations import enu_from_ned, flu_from_frd, normalized, quaternion_enu_flu_from_ned_frd
