@@ -28,7 +28,6 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         (
             "companion.planning.mpc",
             "companion.planning.axis_qp",
-            "companion.planning.axis_qp",
             "companion.planning.horizon",
             "companion.planning.intercept",
             "companion.planning.envelope",
@@ -70,7 +69,7 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     (
         "What the simulated sensors see",
         "Each sample has noise, delay, jitter and loss of the scenario, and the stamp of when it was taken.",
-        ("scenarios.simulation.noise", "scenarios.simulation.sensors", "scenarios.simulation.noise"),
+        ("scenarios.simulation.noise", "scenarios.simulation.sensors"),
     ),
 )
 """Sections: title, what they have in common, and the modules."""
