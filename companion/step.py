@@ -7,17 +7,17 @@ from companion.autopilots.driver import AutopilotCommand, Desire
 from companion.config.companion import CompanionConfig
 from companion.integrity.heights import is_road_elsewhere, update_ground, update_pad_raised_m, with_pad_raised
 from companion.integrity.vehicle_data import update_course
-from companion.landing.conditions import HELD_UP, holds
-from companion.landing.contact import may_force_motors_off, signs_of
-from companion.landing.contact_forecast import update_forecast
+from companion.landing.decisions.conditions import HELD_UP, holds
+from companion.landing.decisions.contact import may_force_motors_off, signs_of
 from companion.landing.flying import fly
-from companion.landing.memory import ModelMemory, StepMemory, to_present_frame
 from companion.landing.outputs import landing_status, news, news_of_sortie, setpoint
-from companion.landing.sortie_decisions import is_quiet_for_long
-from companion.landing.step_data import StepInputs, StepOutputs, System
+from companion.landing.sortie.events import is_quiet_for_long
+from companion.landing.state.memory import ModelMemory, StepMemory, to_present_frame
+from companion.landing.state.step_data import StepInputs, StepOutputs, System
+from companion.landing.state.vehicle_update import predict_pad, update_vehicle
+from companion.landing.steering.virtual_model import tracking_error_max_m, update_tracking
+from companion.landing.touchdown.contact_forecast import update_forecast
 from companion.landing.transitions import take_events
-from companion.landing.vehicle_update import predict_pad, update_vehicle
-from companion.landing.virtual_model import tracking_error_max_m, update_tracking
 from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, STATION_PHASES, Phase
 from companion.situation.situation import (
     Below,

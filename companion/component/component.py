@@ -10,7 +10,7 @@ from companion.component.parameters import answers
 from companion.config.autopilot import PadOnMap
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Reason
-from companion.landing.step_data import StepOutputs
+from companion.landing.state.step_data import StepOutputs
 from companion.situation.phases import FLYING_PHASES, Phase
 from link.mavlink.dialect import COMMAND_CANCEL_ID, COMPONENT_INFORMATION_BASIC_ID, Message, mavlink
 from link.mavlink.session import MavlinkSession

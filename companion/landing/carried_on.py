@@ -23,9 +23,9 @@ from msgspec import Struct
 from companion.autopilots.response import Shaping
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits
-from companion.landing.feasibility import SPEED_SHARE_MIN
-from companion.landing.memory import StepMemory
-from companion.landing.sortie_aims import station_speed_m_s
+from companion.landing.decisions.feasibility import SPEED_SHARE_MIN
+from companion.landing.sortie.aims import station_speed_m_s
+from companion.landing.state.memory import StepMemory
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation

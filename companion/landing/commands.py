@@ -6,12 +6,12 @@ from companion.config.autopilot import Guide
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason, sentence
 from companion.integrity.heights import VEHICLE_M
-from companion.landing.aborts import why_unplaced
-from companion.landing.conditions import is_fix_old
-from companion.landing.following_height import chase_floor_m
-from companion.landing.over_vehicle import SPEED_SHARE, keep_out_of, stands_on_deck
-from companion.landing.sortie_aims import rally_point_enu_m
-from companion.landing.sortie_decisions import has_not_left_deck, home_s
+from companion.landing.decisions.aborts import why_unplaced
+from companion.landing.decisions.conditions import is_fix_old
+from companion.landing.sortie.aims import rally_point_enu_m
+from companion.landing.sortie.events import has_not_left_deck, home_s
+from companion.landing.sortie.over_vehicle import SPEED_SHARE, keep_out_of, stands_on_deck
+from companion.landing.steering.following_height import chase_floor_m
 from companion.situation.phases import Event, Phase, next_phase
 from companion.situation.situation import Situation, vehicle_stands
 from companion.sortie.station import is_inside

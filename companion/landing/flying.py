@@ -5,18 +5,18 @@ import numpy as np
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits
 from companion.landing.carried_on import limit_rates
-from companion.landing.flown_plan import extrapolate, flown_plan, state_at
-from companion.landing.following_height import waiting_rise_m
-from companion.landing.levelling import limit_tilt, limits_now
-from companion.landing.memory import ModelMemory, StepMemory
-from companion.landing.sortie_aims import advance_way, sortie_aim
-from companion.landing.sortie_decisions import has_not_left_deck
-from companion.landing.step_data import StepInputs, System
-from companion.landing.sway import update_sway
-from companion.landing.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
+from companion.landing.decisions.waiting import waits_at_m
+from companion.landing.sortie.aims import advance_way, sortie_aim
+from companion.landing.sortie.events import has_not_left_deck
+from companion.landing.state.memory import ModelMemory, StepMemory
+from companion.landing.state.step_data import StepInputs, System
+from companion.landing.steering.flown_plan import extrapolate, flown_plan, state_at
+from companion.landing.steering.following_height import waiting_rise_m
+from companion.landing.steering.sway import update_sway
+from companion.landing.steering.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
+from companion.landing.steering.virtual_model import Tracking, add_to_past, predict_deviation
+from companion.landing.touchdown.levelling import limit_tilt, limits_now
 from companion.landing.transitions import BRAKING_M_S2
-from companion.landing.virtual_model import Tracking, add_to_past, predict_deviation
-from companion.landing.waiting import waits_at_m
 from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState, Target
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, STATION_PHASES, Phase
 from companion.situation.situation import Drone, Situation

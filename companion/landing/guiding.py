@@ -11,7 +11,7 @@ from companion.autopilots.own_reports import carry
 from companion.config.autopilot import Guide
 from companion.config.companion import CompanionConfig
 from companion.core.data import OwnState
-from companion.landing.step_data import StepInputs, StepOutputs
+from companion.landing.state.step_data import StepInputs, StepOutputs
 from companion.vehicle.pad_reach import is_unseen
 from link.frames.rotations import conjugate, frd_from_flu, multiply, ned_from_enu, quaternion_from_yaw, rotate
 from link.frames.rotations import quaternion_ned_frd_from_enu_flu as ned_frd

@@ -9,14 +9,14 @@ from companion.config.descent import DescentConfig
 from companion.core.data import Array, FlightLimits, Setpoint
 from companion.core.reasons import Cause, Reason, sentence
 from companion.integrity.vehicle_data import unverified
-from companion.landing.aborts import why_unplaced
 from companion.landing.carried_on import bound_carried
-from companion.landing.flown_plan import extrapolate, lead_acceleration, state_at
-from companion.landing.memory import Progress, StepMemory
-from companion.landing.step_data import StepInputs
-from companion.landing.targets import way_down
-from companion.landing.virtual_model import press_down, setpoint_at
-from companion.landing.waiting import why_held_up
+from companion.landing.decisions.aborts import why_unplaced
+from companion.landing.decisions.waiting import why_held_up
+from companion.landing.state.memory import Progress, StepMemory
+from companion.landing.state.step_data import StepInputs
+from companion.landing.steering.flown_plan import extrapolate, lead_acceleration, state_at
+from companion.landing.steering.targets import way_down
+from companion.landing.steering.virtual_model import press_down, setpoint_at
 from companion.planning.guidance import PlanResult
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation

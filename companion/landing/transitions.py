@@ -4,18 +4,18 @@ import numpy as np
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
-from companion.landing.aborts import ABORTS
 from companion.landing.commands import answer
-from companion.landing.decisions import decide
-from companion.landing.entries import update_held
-from companion.landing.feasibility import OBSTACLES, obstacle
-from companion.landing.memory import NOTHING_HELD, ControlMemory, ModelMemory, Progress, StepMemory
-from companion.landing.sortie_decisions import SORTIE_CONDITIONS, decide_sortie, stay_out, update_sortie
-from companion.landing.sortie_phases import begin_phase_of_sortie, clear_of_vehicle, take_order
-from companion.landing.step_data import StepInputs
-from companion.landing.targets import stopping_point
-from companion.landing.virtual_model import Tracking
-from companion.landing.waiting import update_wait
+from companion.landing.decisions.aborts import ABORTS
+from companion.landing.decisions.entries import update_held
+from companion.landing.decisions.events import decide
+from companion.landing.decisions.feasibility import OBSTACLES, obstacle
+from companion.landing.decisions.waiting import update_wait
+from companion.landing.sortie.events import SORTIE_CONDITIONS, decide_sortie, stay_out, update_sortie
+from companion.landing.sortie.phases import begin_phase_of_sortie, clear_of_vehicle, take_order
+from companion.landing.state.memory import NOTHING_HELD, ControlMemory, ModelMemory, Progress, StepMemory
+from companion.landing.state.step_data import StepInputs
+from companion.landing.steering.targets import stopping_point
+from companion.landing.steering.virtual_model import Tracking
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase, next_phase
 from companion.situation.situation import Situation

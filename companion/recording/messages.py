@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from companion.autopilots.own_reports import carry
 from companion.core.data import Array, Forecast, OwnState, Setpoint, VehicleEstimate
-from companion.landing.targets import HORIZON_OFFSETS_S
+from companion.landing.steering.targets import HORIZON_OFFSETS_S
 from companion.planning.guidance import PlanResult, Trajectory
 from companion.recording.records import InputRecord, LinkRecord, StepRecord, StepTimeRecord
 from link.frames.rotations import conjugate, rotate

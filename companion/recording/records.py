@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import IntEnum
 
-from companion.landing.step_data import StepInputs, StepOutputs
+from companion.landing.state.step_data import StepInputs, StepOutputs
 from companion.vehicle.estimator import Estimator, EstimatorMemory
 from link.mavlink.statistics import SessionStatistics
 

@@ -8,7 +8,7 @@ from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.config.planning import GuidanceConfig, GuidanceKind, SolverKind
 from companion.forecast.warm_up import compile_rollout
-from companion.landing.step_data import System
+from companion.landing.state.step_data import System
 from companion.planning.guidance import Guidance, GuidanceMemory, PlanRequest, ReferenceState, Target
 from companion.planning.mpc import Mpc
 from companion.planning.mpc_report import ReportMpc

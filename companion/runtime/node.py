@@ -9,9 +9,9 @@ from companion.component.identity import ComputerLoad
 from companion.config.companion import CompanionConfig
 from companion.core.data import Rival, VehicleEstimate
 from companion.landing.guiding import guiding_message
-from companion.landing.memory import StepMemory
-from companion.landing.step_data import LinkDelay, StepInputs, StepOutputs, System
-from companion.landing.virtual_model import response_to
+from companion.landing.state.memory import StepMemory
+from companion.landing.state.step_data import LinkDelay, StepInputs, StepOutputs, System
+from companion.landing.steering.virtual_model import response_to
 from companion.runtime.publishing import StatusPublisher, with_links
 from companion.runtime.step_clock import StepClock
 from companion.runtime.vehicle_link import VehicleLink

@@ -4,7 +4,7 @@ import math
 
 from companion.config.companion import CompanionConfig
 from companion.landing.outputs import plan_publication, status_publication
-from companion.landing.step_data import StepOutputs
+from companion.landing.state.step_data import StepOutputs
 from companion.planning.guidance import PlanResult
 from companion.runtime.step_clock import StepClock
 from companion.runtime.vehicle_link import VehicleLink

@@ -1,7 +1,7 @@
 """A companion node that records its inputs and its steps' outputs."""
 
 from companion.core.data import Rival
-from companion.landing.step_data import System
+from companion.landing.state.step_data import System
 from companion.recording.records import InputKind, InputRecord, LinkRecord, StepRecord, StepTimeRecord
 from companion.runtime.node import CompanionNode
 from link.mavlink.session import MavlinkSession

@@ -7,7 +7,7 @@ from companion.autopilots.state import AutopilotState
 from companion.config.companion import SilentVehicleConfig
 from companion.core.data import Measurement
 from companion.core.reasons import Cause, Reason, sentence
-from companion.landing.step_data import VehicleInputs
+from companion.landing.state.step_data import VehicleInputs
 from companion.runtime.step_clock import StepClock
 from companion.vehicle.inputs import measurements_of
 from link.messages import CommandReply, PadGeometry

@@ -34,14 +34,14 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
             "companion.planning.qp",
             "companion.planning.mpc_report",
             "companion.planning.pn",
-            "companion.landing.virtual_model",
-            "companion.landing.targets",
+            "companion.landing.steering.virtual_model",
+            "companion.landing.steering.targets",
         ),
     ),
     (
         "When it has landed",
         "The autopilot's own land detector is made for the ground.",
-        ("companion.landing.contact",),
+        ("companion.landing.decisions.contact",),
     ),
     (
         "How the simulated drone flies",

@@ -8,9 +8,9 @@ from msgspec import Struct, structs
 from companion.autopilots.driver import AutopilotView, Receiver
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Reason
-from companion.landing.decisions import decide
-from companion.landing.entries import Decision, update_held
-from companion.landing.memory import ControlMemory, Held, Progress, StepMemory
+from companion.landing.decisions.entries import Decision, update_held
+from companion.landing.decisions.events import decide
+from companion.landing.state.memory import ControlMemory, Held, Progress, StepMemory
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
 from companion.situation.situation import Below, Drone, Following, Situation, VehicleNews

@@ -10,7 +10,7 @@ from companion.check.rules import ParameterRule
 from companion.config.companion import CompanionConfig
 from companion.core.reason_help import reason_helps
 from companion.core.reasons import Reason
-from companion.landing.feasibility import OBSTACLES
+from companion.landing.decisions.feasibility import OBSTACLES
 from link.mavlink.dialect import mavlink
 from scenarios.manual.reasons import PATH, reasons_page
 from tests.golden.reasons import CONDITIONS

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from companion.autopilots.driver import AutopilotView, FrameMoves
 from companion.core.data import Array, Forecast
-from companion.landing.memory import StepMemory
+from companion.landing.state.memory import StepMemory
 from companion.situation.phases import Phase
 from companion.step import companion_step
 from link.messages import Command

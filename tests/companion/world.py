@@ -15,9 +15,9 @@ from companion.config.companion import CompanionConfig
 from companion.config.integrity import IntegrityConfig, ReceiverFrames
 from companion.core.data import Array, Forecast, Measurement, OwnState, Quantity, Rival, VehicleEstimate
 from companion.core.reasons import Reason, sentence
-from companion.landing.memory import StepMemory
-from companion.landing.step_data import StepInputs, StepOutputs, System, VehicleInputs
-from companion.landing.targets import HORIZON_OFFSETS_S
+from companion.landing.state.memory import StepMemory
+from companion.landing.state.step_data import StepInputs, StepOutputs, System, VehicleInputs
+from companion.landing.steering.targets import HORIZON_OFFSETS_S
 from companion.runtime.build import make_guidance
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
 from companion.step import companion_step

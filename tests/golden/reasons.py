@@ -1,9 +1,9 @@
 """The reasons for which a landing can be broken off, from the companion's own tables."""
 
 from companion.core.reasons import Reason
-from companion.landing.aborts import ABORTS
-from companion.landing.decisions import TOO_LONG
-from companion.landing.entries import ALIGNMENT_LOST, NOT_SEEN, STRAYS, TO_BE_SEEN
+from companion.landing.decisions.aborts import ABORTS
+from companion.landing.decisions.entries import ALIGNMENT_LOST, NOT_SEEN, STRAYS, TO_BE_SEEN
+from companion.landing.decisions.events import TOO_LONG
 from companion.situation.phases import TRANSITIONS, Event, Phase
 
 CONDITIONS = (*ABORTS, STRAYS, ALIGNMENT_LOST, TO_BE_SEEN, NOT_SEEN)

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from companion.autopilots.driver import FrameMoves
-from companion.landing.memory import Places, StepMemory
+from companion.landing.state.memory import Places, StepMemory
 from link.messages import BodyTruth
 from link.records import replace
 

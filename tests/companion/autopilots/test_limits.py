@@ -14,7 +14,7 @@ from companion.autopilots.limits import acceleration_of_tilt_m_s2
 from companion.autopilots.px4 import Px4Driver
 from companion.autopilots.response import ResponseModel
 from companion.core.data import GRAVITY_M_S2
-from companion.landing.targets import HORIZON_OFFSETS_S
+from companion.landing.steering.targets import HORIZON_OFFSETS_S
 
 DRIVERS = (Px4Driver(), ArduPilotDriver())
 

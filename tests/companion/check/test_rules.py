@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from companion.check.findings import Finding, Level, advised_values
 from companion.check.firmwares import FIRMWARES
 from companion.check.rules import SPEED_SHARE_ADVISED, ParameterRule, Spelling, judge, names_of
-from companion.landing.feasibility import SPEED_SHARE_MIN
+from companion.landing.decisions.feasibility import SPEED_SHARE_MIN
 from link.mavlink.dialect import mavlink
 
 SINK_M_S = 1.2

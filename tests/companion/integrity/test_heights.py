@@ -9,7 +9,7 @@ from companion.integrity.heights import (
     is_seen_too_near,
     update_ground,
 )  # _elsewhere, is_seen_too_near
-from companion.landing.feasibility import OBSTACLES, obstacle
+from companion.landing.decisions.feasibility import OBSTACLES, obstacle
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from companion.vehicle.pad import PadPath

@@ -17,7 +17,7 @@ from companion.integrity.vehicle_data import (
     update_course,
     without_contradicted_heading,
 )
-from companion.landing.feasibility import obstacle
+from companion.landing.decisions.feasibility import obstacle
 from companion.situation.phases import Phase
 from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.pad import PadMounting, PadPath

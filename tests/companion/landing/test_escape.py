@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from companion.config.companion import CompanionConfig
-from companion.landing.memory import StepMemory
-from companion.landing.step_data import StepInputs
+from companion.landing.state.memory import StepMemory
+from companion.landing.state.step_data import StepInputs
 from companion.landing.transitions import take_events
 from companion.situation.phases import Phase
 from link.messages import Command

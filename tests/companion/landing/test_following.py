@@ -9,9 +9,9 @@ from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.px4 import Px4Driver
 from companion.autopilots.response import Cascade
 from companion.core.data import Array
-from companion.landing.flown_plan import extrapolate
-from companion.landing.following_height import chase_floor_m
-from companion.landing.step_data import LinkDelay, StepInputs, StepOutputs
+from companion.landing.state.step_data import LinkDelay, StepInputs, StepOutputs
+from companion.landing.steering.flown_plan import extrapolate
+from companion.landing.steering.following_height import chase_floor_m
 from companion.situation.phases import Phase
 from link.messages import Command, Vector3
 from link.records import replace

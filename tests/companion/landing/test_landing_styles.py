@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from companion.config.companion import CompanionConfig
-from companion.landing.step_data import StepOutputs
+from companion.landing.state.step_data import StepOutputs
 from companion.situation.phases import Phase
 from link.frames.rotations import yaw_of
 from link.records import replace

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import pytest
 
 from companion.core.reasons import Reason
-from companion.landing.step_data import StepOutputs
+from companion.landing.state.step_data import StepOutputs
 from companion.situation.phases import Phase
 from link.records import replace
 from tests.companion.world import CONFIG, GEAR_M, Flight

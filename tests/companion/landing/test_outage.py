@@ -5,8 +5,8 @@ from collections.abc import Callable
 import pytest
 
 from companion.core.reasons import Cause, Reason
-from companion.landing.entries import update_held
-from companion.landing.memory import Held
+from companion.landing.decisions.entries import update_held
+from companion.landing.state.memory import Held
 from companion.situation.phases import Event, Phase
 from link.records import replace
 from tests.companion.facts import (

@@ -5,8 +5,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from companion.core.reasons import Cause, Reason
-from companion.landing.memory import StepMemory
 from companion.landing.outputs import landing_status
+from companion.landing.state.memory import StepMemory
 from companion.situation.phases import Phase
 from link.messages import LandingStatus
 from link.payloads import json_messages as json_payloads

@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 from companion.config.companion import CompanionConfig, SilentVehicleConfig
 from companion.core.reasons import Cause, Reason
-from companion.landing.decisions import decide
-from companion.landing.entries import Decision, update_held
-from companion.landing.following_height import chase_height_m
-from companion.landing.memory import ControlMemory, Held
+from companion.landing.decisions.entries import Decision, update_held
+from companion.landing.decisions.events import decide
+from companion.landing.state.memory import ControlMemory, Held
+from companion.landing.steering.following_height import chase_height_m
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import VehicleNews
 from link.records import replace

@@ -12,9 +12,9 @@ from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.core.data import Quantity
 from companion.core.reasons import Cause, Reason
-from companion.landing.entries import Decision, update_held
-from companion.landing.memory import Held
-from companion.landing.targets import pad_aim
+from companion.landing.decisions.entries import Decision, update_held
+from companion.landing.state.memory import Held
+from companion.landing.steering.targets import pad_aim
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
 from companion.vehicle.pad import PadPath, pad_path

@@ -1,0 +1,1 @@
+"""What each phase waits for, and what it breaks off on."""

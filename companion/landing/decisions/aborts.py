@@ -1,0 +1,235 @@
+"""What makes an approach unsafe: conditions of a step's facts, each with the time that it must hold; pure."""
+
+import math
+
+from companion.autopilots.response import ATTITUDE_LAG_S
+from companion.config.companion import CompanionConfig
+from companion.config.planning import LandingStyle
+from companion.core.data import GRAVITY_M_S2
+from companion.core.reasons import Cause, Reason
+from companion.integrity.heights import is_seen_too_near
+from companion.integrity.sightings import do_sightings_disagree, is_seen_elsewhere
+from companion.integrity.vehicle_data import contradicts_itself
+from companion.landing.decisions.conditions import (
+    AUTOPILOT_SILENT,
+    MISSED,
+    VEHICLE_SILENT,
+    Condition,
+    is_fix_old,
+    is_in_contact,
+    is_vehicle_taken,
+    tell_taken,
+)
+from companion.landing.steering.targets import changes_speed
+from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
+from companion.situation.situation import Approach, Situation
+from companion.vehicle.pad_reach import cone_radius_m, is_unseen, is_vague, over_pad_radius_m
+
+_DESCENT = frozenset({Phase.DESCEND})
+_MIXED_HOLD_S = 1.5  # three counts: a step of the drone's own frame has sightings of half a second rejected
+_MOSTLY = 0.5  # of the ways in which a descent may go on
+_FRICTION_MIN = 0.5  # of rubber on painted metal when it is wet; dry 0.8
+
+
+def is_uncertain(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the pad is not known well enough to come near it."""
+    return s.pad is not None and is_vague(s.pad, c)
+
+
+def must_be_seen(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the pad has to be seen (again) before it is landed on."""
+    return s.pad is not None and is_unseen(s.pad, c)
+
+
+def _is_over_unseen_pad(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the drone has to see the pad, and is where a camera would that sees 45 degrees to each side."""
+    if s.approach is None or c.guidance.style is LandingStyle.DIRECT:
+        return False
+    return must_be_seen(s, c) and s.approach.distance_m < c.chase.height_m
+
+
+def is_token_lost(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the vehicle's program has ended, or its network, and no fix is fresh."""
+    age_s = s.vehicle.fix_age_s
+    return s.vehicle.is_alive is False and (age_s is None or age_s > c.abort.alive_lost_fix_age_max_s)
+
+
+def is_stamped_ahead(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the newest fix came before it was taken: the vehicle's clock, or ours, is wrong."""
+    age_s = s.vehicle.fix_age_on_arrival_s
+    return age_s is not None and age_s < -c.integrity.fix_ahead_max_s
+
+
+def is_pad_unplaced(s: Situation, _: CompanionConfig) -> bool:
+    """Return whether nobody knows where on the vehicle the pad is: no heading is known, or no description."""
+    return s.pad is not None and s.pad.unplaced is not None
+
+
+def why_unplaced(s: Situation) -> Cause | None:
+    """Return why nobody knows it, None when the place is known or no vehicle is."""
+    return None if s.pad is None else s.pad.unplaced
+
+
+def is_not_followed(s: Situation, _: CompanionConfig) -> bool:
+    """Return whether the drone is farther from its setpoint than gusts and the link can bring it."""
+    return s.following.error_m > s.following.error_max_m
+
+
+def _is_beside_cone(a: Approach, c: CompanionConfig) -> bool:
+    return a.distance_m > cone_radius_m(a.height_m, a.pad_half_width_m, c)
+
+
+def must_wait(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether a descent is to stay above the pad for now: what a change of the vehicle's speed does, passes."""
+    return strays(s, c) or (s.pad is not None and changes_speed(s.pad, c.descent))
+
+
+def _is_outside_cone(s: Situation, c: CompanionConfig) -> bool:
+    a = s.approach
+    return a is not None and a.height_m < c.abort.near_height_m and _is_beside_cone(a, c) and not _has_touched(s, c)
+
+
+def strays(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the drone leaves the cone above the pad, or moves against the pad too fast to touch it."""
+    a = s.approach
+    return a is not None and (_is_beside_cone(a, c) or a.speed_m_s > c.abort.near_speed_max_m_s)
+
+
+def _can_turn_back(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether a drone that breaks off now stops sinking above the pad: after its lag and with what it climbs."""
+    if s.approach is None or s.limits is None or s.approach.height_m < c.descent.sway.height_min_m:
+        return False
+    sinks_m_s = max(-s.approach.climb_m_s, 0.0)
+    lag_m = sinks_m_s * (ATTITUDE_LAG_S + s.following.late_s)
+    return s.approach.height_m > lag_m + 0.5 * sinks_m_s**2 / s.limits.vertical_acceleration_max_m_s2
+
+
+def _is_contact_risky(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether a descent that is committed had better turn back; one that is not waits.
+
+    It turns back, too, where it most likely would a moment later, nearer to a pad that is leaving it.
+    """
+    if s.contact is None or s.approach is None or s.approach.height_m > c.descent.commit_height_m:
+        return False
+    is_risky = s.contact.unsafe > c.descent.risk.turns_back_min or s.contact.broken_off > _MOSTLY
+    return is_risky and _can_turn_back(s, c)
+
+
+def _tell_risk(s: Situation, _: CompanionConfig) -> Cause:
+    return Cause(Reason.CONTACT_RISKY, (0.0 if s.contact is None else s.contact.s1,))
+
+
+def _has_touched(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the drone stands on the pad, or slides to rest on it: to lift off would be the greater danger."""
+    a = s.approach
+    if a is None or not is_in_contact(s, c):
+        return False
+    room_m = a.pad_half_width_m - a.distance_m
+    return 0.5 * a.speed_m_s**2 < _FRICTION_MIN * GRAVITY_M_S2 * room_m
+
+
+def is_over_pad(a: Approach, c: CompanionConfig) -> bool:
+    """Return whether the drone is so near the pad's centre that what it touches is the pad."""
+    return a.distance_m < over_pad_radius_m(a.pad_half_width_m, c)
+
+
+def _is_too_fast_near_pad(s: Situation, c: CompanionConfig) -> bool:
+    a = s.approach
+    if a is None or a.height_m >= c.abort.near_height_m or _has_touched(s, c):
+        return False
+    return a.speed_m_s > c.abort.near_speed_max_m_s
+
+
+def is_out_of_range(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the drone is farther from the waiting point than it may go."""
+    if s.drone is None or s.waiting_point_enu_m is None:
+        return False
+    return math.hypot(*(s.drone.position_enu_m - s.waiting_point_enu_m)[:2].tolist()) > c.limits.range_max_m
+
+
+def _outruns(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the vehicle is faster than the drone may fly, since a limit was lowered or it drives faster."""
+    if s.limits is None or s.pad is None or is_fix_old(s, c):
+        return False
+    return math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist()) > s.limits.speed_max_m_s
+
+
+CONTACT_RISKY = Condition(reason=Reason.CONTACT_RISKY, phases=_DESCENT, is_true=_is_contact_risky, cause=_tell_risk)
+"""Ends a commitment to land as well, as long as the drone can turn back."""
+
+ABORTS = (
+    VEHICLE_SILENT,
+    # One that was out of reach when both began: two networks that meet, or a router that is back.
+    Condition(reason=Reason.VEHICLE_TAKEN, phases=LANDING_PHASES, is_true=is_vehicle_taken, cause=tell_taken),
+    Condition(
+        reason=Reason.VEHICLE_UNCERTAIN,
+        phases=NEAR_PHASES,
+        is_true=is_uncertain,
+        hold_s=lambda c: c.abort.cone_hold_s,
+    ),
+    Condition(
+        reason=Reason.OFFSET_UNKNOWN,
+        phases=frozenset({Phase.CHASE}),
+        is_true=_is_over_unseen_pad,
+        hold_s=lambda c: c.chase.unseen_hold_s,
+        cause=lambda _, c: Cause(Reason.OFFSET_UNKNOWN if c.silent_vehicle is None else Reason.PAD_NOT_SEEN),
+    ),
+    Condition(reason=Reason.VEHICLE_LINK_LOST, phases=LANDING_PHASES, is_true=is_token_lost),
+    Condition(
+        reason=Reason.VEHICLE_CLOCK_AHEAD,
+        phases=LANDING_PHASES,
+        is_true=is_stamped_ahead,
+        hold_s=lambda c: c.integrity.fix_ahead_hold_s,
+    ),
+    *AUTOPILOT_SILENT,
+    Condition(
+        reason=Reason.HEADING_UNKNOWN,
+        phases=_DESCENT,
+        is_true=is_pad_unplaced,
+        cause=lambda s, _: why_unplaced(s) or Cause(Reason.HEADING_UNKNOWN),
+    ),
+    Condition(
+        reason=Reason.SETPOINT_NOT_FOLLOWED,
+        phases=LANDING_PHASES,
+        is_true=is_not_followed,
+        hold_s=lambda c: c.abort.tracking_hold_s,
+    ),
+    Condition(
+        reason=Reason.OUTSIDE_CONE, phases=_DESCENT, is_true=_is_outside_cone, hold_s=lambda c: c.abort.cone_hold_s
+    ),
+    Condition(
+        reason=Reason.TOO_FAST_NEAR_PAD,
+        phases=_DESCENT,
+        is_true=_is_too_fast_near_pad,
+        hold_s=lambda c: c.abort.near_speed_hold_s,
+    ),
+    Condition(
+        reason=Reason.SEEN_TOO_NEAR,
+        phases=LANDING_PHASES,
+        is_true=is_seen_too_near,
+        hold_s=lambda c: c.touchdown.range_finder.off_hold_s,
+    ),
+    Condition(reason=Reason.VEHICLE_CONTRADICTS_ITSELF, phases=LANDING_PHASES, is_true=contradicts_itself),
+    Condition(
+        reason=Reason.SEEN_ELSEWHERE,
+        phases=LANDING_PHASES,
+        is_true=is_seen_elsewhere,
+        hold_s=lambda c: c.abort.cone_hold_s,
+    ),
+    Condition(
+        reason=Reason.SIGHTINGS_DISAGREE,
+        phases=LANDING_PHASES,
+        is_true=do_sightings_disagree,
+        hold_s=lambda _: _MIXED_HOLD_S,
+    ),
+    Condition(
+        reason=Reason.VEHICLE_OUTRUNS,
+        phases=LANDING_PHASES,
+        is_true=_outruns,
+        hold_s=lambda c: c.chase.driving_hold_s,
+    ),
+    CONTACT_RISKY,
+    Condition(reason=Reason.TOO_FAR_FROM_START, phases=LANDING_PHASES, is_true=is_out_of_range),
+    *MISSED,
+)
+"""What makes an approach unsafe, the first that holds first."""

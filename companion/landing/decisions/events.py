@@ -1,0 +1,233 @@
+"""Decides the event of a step: who is in command, what is unsafe, what takes too long, what comes next."""
+
+import math
+
+from companion.config.companion import CompanionConfig
+from companion.config.planning import LandingStyle
+from companion.core.reasons import Cause, Reason
+from companion.landing.decisions.aborts import (
+    ABORTS,
+    CONTACT_RISKY,
+    is_out_of_range,
+    is_over_pad,
+    is_pad_unplaced,
+    is_uncertain,
+    must_be_seen,
+    why_unplaced,
+)
+from companion.landing.decisions.conditions import (
+    HEARD,
+    LIFTED,
+    MISSED,
+    STOPPED_BY_PAD,
+    Condition,
+    cause_of,
+    holds,
+    is_attitude_unknown,
+    is_below_pad,
+    is_fix_old,
+)
+from companion.landing.decisions.entries import DRIVES, ENTRIES, Decision, vehicle_passes
+from companion.landing.decisions.feasibility import is_drone_taken, obstacle
+from companion.landing.decisions.waiting import waited_s
+from companion.landing.state.memory import ControlMemory, Held, Progress
+from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase
+from companion.situation.situation import Situation
+
+_COMMITTED = (*MISSED, CONTACT_RISKY)
+
+
+def decide(progress: Progress, control: ControlMemory, s: Situation, config: CompanionConfig) -> Decision | None:
+    """Return the event of this step and its cause, or None.
+
+    The pilot comes first, then safety, then the time limits, then the landing's own progress.
+    """
+    # By then the autopilot's own failsafe acts. PX4 would go back into OFFBOARD with the first setpoint that arrives.
+    if progress.phase in FLYING_PHASES and not s.autopilot.link_up:
+        return Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_LOST)
+    if progress.phase in FLYING_PHASES and is_drone_taken(s, config):
+        return Event.PILOT_TOOK_OVER, Cause(Reason.DRONE_TAKEN)
+    taken = _find_taken_control(progress.phase, control, s)
+    if taken is not None:
+        return taken
+    # What the pad stops is fast against a pad that drives on: it would be taken for unsafe in the same step.
+    if holds(STOPPED_BY_PAD, progress.held, s, config):
+        return Event.CONTACT, cause_of(STOPPED_BY_PAD, s, config)
+    # On the pad and committed, cutting the approach short is the more dangerous way, unless there is no pad or it would
+    # be touched unsafely.
+    committed = progress.phase is Phase.DESCEND and _is_committed(s, config)
+    is_landing = progress.phase in LANDING_PHASES  # in a sortie the same reasons lead elsewhere
+    broken_off = _unsafe(_COMMITTED if committed else ABORTS, s, progress.held, config) if is_landing else None
+    if broken_off is None and not committed:
+        broken_off = _time_limit(progress, control, s, config)
+    return _go_on(progress, s, config) if broken_off is None else broken_off
+
+
+def _unsafe(conditions: tuple[Condition, ...], s: Situation, held: Held, config: CompanionConfig) -> Decision | None:
+    for condition in conditions:
+        if holds(condition, held, s, config):
+            return Event.UNSAFE, cause_of(condition, s, config)
+    return None
+
+
+def _go_on(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
+    """Return the landing's own next event; a vehicle out of reach is waited beside, not chased."""
+    if progress.phase is Phase.WAITING and obstacle(progress.held, s, config) is not None:
+        return None
+    for event, condition in ENTRIES:
+        if holds(condition, progress.held, s, config):
+            at_most = None if condition.anew_max is None else condition.anew_max(config)
+            is_unsafe = at_most is not None and progress.begun_anew.get(condition.reason, 0) >= at_most
+            return Event.UNSAFE if is_unsafe else event, cause_of(condition, s, config)
+    if progress.phase is Phase.WAITING and not holds(DRIVES, progress.held, s, config):
+        return None
+    return _advance(progress, s, config)
+
+
+def _is_committed(s: Situation, config: CompanionConfig) -> bool:
+    relative = s.approach
+    return (
+        relative is not None
+        and not is_pad_unplaced(s, config)
+        and -config.descent.sink.press_depth_m < relative.height_m < config.descent.commit_height_m
+        and is_over_pad(relative, config)
+        and relative.speed_m_s < config.abort.near_speed_max_m_s
+    )
+
+
+def _find_taken_control(phase: Phase, control: ControlMemory, s: Situation) -> Decision | None:
+    if phase not in FLYING_PHASES or not control.was_in_control:
+        return None
+    if s.autopilot.failsafe or s.autopilot.overruled:
+        return Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_FAILSAFE)
+    if phase is Phase.TOUCHDOWN and not s.autopilot.armed:
+        return None  # as wanted; a mode that changes with it is not the pilot's
+    if not s.autopilot.in_control:
+        restarted = s.autopilot.restarted
+        return Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_RESTARTED if restarted else Reason.MODE_CHANGED)
+    if control.was_armed and not s.autopilot.armed and phase is not Phase.ON_DECK:  # there it times out by itself
+        return Event.PILOT_TOOK_OVER, Cause(Reason.DISARMED)
+    return None
+
+
+_LASTING = (Reason.OFFSET_UNKNOWN, Reason.SEEN_ELSEWHERE, Reason.SIGHTINGS_DISAGREE)
+"""What the drone looked with the first time is all that it has to look with."""
+
+TOO_LONG = {
+    Phase.LIFT_OFF: Reason.LIFT_OFF_TOO_LONG,
+    Phase.RETURN: Reason.RETURN_TOO_LONG,
+    Phase.TAKEOFF: Reason.TAKEOFF_TOO_LONG,
+    Phase.CHASE: Reason.CHASE_TOO_LONG,
+    Phase.ALIGN: Reason.ALIGN_TOO_LONG,
+    Phase.DESCEND: Reason.DESCENT_TOO_LONG,
+}
+
+
+def _time_limit(progress: Progress, control: ControlMemory, s: Situation, config: CompanionConfig) -> Decision | None:
+    in_phase_s = (s.monotonic_ns - progress.since_ns) * 1e-9
+    if progress.phase is Phase.TAKEOFF and in_phase_s > config.takeoff.refused_after_s:
+        if not control.was_in_control:
+            return Event.REFUSED, Cause(Reason.CONTROL_REFUSED)
+        if not s.autopilot.armed:
+            return Event.REFUSED, Cause(Reason.ARMING_REFUSED, (s.autopilot.refusal or "it said no reason",))
+    limit_s = _longest_s(progress.phase, config)
+    waits_s = min(waited_s(progress, s.monotonic_ns), config.descent.risk.wait_max_s)
+    if limit_s is not None and in_phase_s - waits_s > limit_s:
+        not_placed = why_unplaced(s) if progress.phase is Phase.ALIGN else None
+        return Event.TIME_LIMIT, not_placed or Cause(TOO_LONG[progress.phase], (limit_s,))
+    return None
+
+
+def _longest_s(phase: Phase, config: CompanionConfig) -> float | None:
+    """Return how long a phase may take, None for as long as it likes."""
+    match phase:
+        case Phase.TAKEOFF:
+            return config.takeoff.time_limit_s
+        case Phase.CHASE:
+            return config.chase.time_limit_s
+        case Phase.ALIGN:
+            return config.descent.alignment.time_limit_s
+        case Phase.DESCEND:
+            return config.descent.time_limit_s
+        case _:
+            return None
+
+
+def _advance(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
+    match progress.phase:
+        case Phase.TAKEOFF:
+            return _at_waiting_point(s, config)
+        case Phase.WAITING:
+            return vehicle_passes(s, config)
+        case Phase.CHASE:
+            return _over_pad(s, config)
+        case Phase.TOUCHDOWN:
+            return _on_the_pad(s, progress.held, config)
+        case Phase.ABORT:
+            return _end_climb(progress, s, config)
+        case _:
+            return None
+
+
+def _at_waiting_point(s: Situation, config: CompanionConfig) -> Decision | None:
+    if s.drone is None or s.waiting_point_enu_m is None or not (s.autopilot.armed and s.autopilot.in_control):
+        return None
+    distance_m = math.hypot(*(s.drone.position_enu_m - s.waiting_point_enu_m).tolist())
+    if distance_m > config.takeoff.reached_distance_m:
+        return None
+    return Event.AT_WAITING_POINT, Cause(Reason.AT_WAITING_POINT)
+
+
+def _over_pad(s: Situation, config: CompanionConfig) -> Decision | None:
+    if s.approach is None or config.guidance.style is LandingStyle.DIRECT:
+        return None
+    known = not is_uncertain(s, config) and not must_be_seen(s, config)
+    if s.approach.distance_m < config.descent.alignment.begin_distance_m and known:
+        return Event.OVER_PAD, Cause(Reason.OVER_PAD, (s.approach.distance_m,))
+    return None
+
+
+def _on_the_pad(s: Situation, held: Held, config: CompanionConfig) -> Decision | None:
+    if not s.autopilot.armed:
+        return Event.MOTORS_OFF, Cause(Reason.MOTORS_OFF)
+    relative = s.approach
+    is_lost = relative is not None and relative.height_m > config.touchdown.lost.height_m
+    if relative is not None and (is_lost or holds(LIFTED, held, s, config)):
+        return Event.CONTACT_LOST, Cause(Reason.ABOVE_AFTER_CONTACT, (relative.height_m,))
+    if is_below_pad(s, config):
+        return Event.CONTACT_LOST, Cause(Reason.BELOW_AFTER_CONTACT)
+    return None
+
+
+def _end_climb(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
+    in_phase_s = (s.monotonic_ns - progress.since_ns) * 1e-9
+    high = s.approach is not None and s.approach.height_m > 0.8 * config.abort.height_m
+    ready = high and holds(HEARD, progress.held, s, config)
+    if not ready and in_phase_s < config.abort.time_limit_s:
+        return None
+    why_not = _no_retry(progress, s, config)
+    if why_not is not None:
+        return Event.CLEAR_TO_HOLD, why_not
+    if progress.interrupted_ns is not None:
+        return Event.CLEAR, Cause(Reason.HEARD_AGAIN)
+    return Event.CLEAR, Cause(Reason.RETRY, (progress.retries + 1, config.abort.retries_max))
+
+
+def _no_retry(progress: Progress, s: Situation, config: CompanionConfig) -> Cause | None:
+    """Return why no other approach is made, the first of all causes; None when one is."""
+    known = {
+        Reason.BROKEN_OFF: not progress.may_retry,
+        Reason.NO_VEHICLE_DATA: is_fix_old(s, config),
+        Reason.OWN_POSITION_OLD: s.drone is None,
+        Reason.OWN_ATTITUDE_OLD: is_attitude_unknown(s, config),
+        Reason.HEARD_WITH_BREAKS: not holds(HEARD, progress.held, s, config),
+    }
+    first = next((Cause(reason) for reason, holds_now in known.items() if holds_now), None)
+    first = first or why_unplaced(s)
+    if first is None and progress.cause.reason in _LASTING:
+        first = progress.cause
+    if first is None and is_out_of_range(s, config):
+        first = Cause(Reason.TOO_FAR_FROM_START)
+    first = first or obstacle(progress.held, s, config)
+    is_last = progress.interrupted_ns is None and progress.retries >= config.abort.retries_max
+    return Cause(Reason.NO_RETRY_LEFT) if first is None and is_last else first

@@ -1,0 +1,210 @@
+"""Whether a landing on this vehicle can be done at all: the speed, the way and the battery against the limits; pure.
+
+What cannot be done is not begun. It is told with its numbers, once, and again only when it is another thing.
+"""
+
+import math
+
+from companion.config.autopilot import Guide
+from companion.config.companion import CompanionConfig
+from companion.core.reasons import Cause, Reason
+from companion.integrity.heights import road_above_ground_m, road_distance_m
+from companion.integrity.vehicle_data import contradicts_itself
+from companion.landing.decisions.aborts import is_stamped_ahead
+from companion.landing.decisions.conditions import (
+    Condition,
+    first_cause,
+    is_fix_old,
+    is_vehicle_taken,
+    tell_taken,
+)
+from companion.landing.state.memory import Held
+from companion.landing.steering.following_height import chase_floor_m, vague_height_m
+from companion.situation.phases import Phase
+from companion.situation.situation import Situation
+from companion.vehicle.pad_reach import is_too_small
+
+SPEED_SHARE_MIN = 1.15
+"""Of the vehicle's speed: with less there is nothing to catch up with, and no landing is begun."""
+
+_RECEIVER_TOLD_S = 3.0  # it says so once a second
+_ROUNDING = 1e-6
+_BEFORE_A_FLIGHT = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD, Phase.WAITING})
+_BEFORE_A_CHASE = _BEFORE_A_FLIGHT | {Phase.ABORT}
+_BEFORE_ANY_CHASE = _BEFORE_A_CHASE | {Phase.FOLLOW, Phase.RETURN}
+"""A sortie comes home on a low battery as well: it has nowhere else to land."""
+
+
+def is_drone_taken(s: Situation, _: CompanionConfig) -> bool:
+    """Return whether another companion is to fly this drone."""
+    return s.rival is not None and s.rival.is_this_drone
+
+
+def _vehicle_speed_m_s(s: Situation) -> float:
+    return 0.0 if s.pad is None else math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist())
+
+
+def _is_too_fast(s: Situation, c: CompanionConfig) -> bool:
+    if s.limits is None or is_fix_old(s, c):
+        return False
+    return SPEED_SHARE_MIN * _vehicle_speed_m_s(s) > s.limits.speed_max_m_s
+
+
+def _too_fast(s: Situation, c: CompanionConfig) -> Cause:
+    speed_m_s = _vehicle_speed_m_s(s)
+    allowed_m_s = c.limits.speed_max_m_s if s.limits is None else s.limits.speed_max_m_s
+    name = " or ".join(s.speed_limited_by) if allowed_m_s < c.limits.speed_max_m_s else "limits.speed_max_m_s"
+    return Cause(Reason.VEHICLE_TOO_FAST, (speed_m_s, SPEED_SHARE_MIN * speed_m_s, allowed_m_s, name))
+
+
+def _way_m(s: Situation, c: CompanionConfig) -> float:
+    return _vehicle_speed_m_s(s) * c.limits.landing_time_s
+
+
+def _is_too_far(s: Situation, c: CompanionConfig) -> bool:
+    return not is_fix_old(s, c) and _way_m(s, c) > c.limits.range_max_m
+
+
+def _too_far(s: Situation, c: CompanionConfig) -> Cause:
+    values = (_vehicle_speed_m_s(s), _way_m(s, c), c.limits.landing_time_s, c.limits.range_max_m)
+    return Cause(Reason.VEHICLE_TOO_FAR, values)
+
+
+def _tell_rejected(s: Situation, _: CompanionConfig) -> Cause:
+    return Cause(Reason.MEASUREMENTS_REJECTED, (100.0 * s.vehicle.rejected_share,))
+
+
+def _is_empty(s: Situation, c: CompanionConfig) -> bool:
+    share = s.autopilot.battery_share
+    return share is not None and share < c.limits.battery_min_share
+
+
+def _empty(s: Situation, c: CompanionConfig) -> Cause:
+    share = s.autopilot.battery_share or 0.0
+    return Cause(Reason.BATTERY_LOW, (100.0 * share, 100.0 * c.limits.battery_min_share))
+
+
+EMPTY = Condition(
+    reason=Reason.BATTERY_LOW,
+    phases=_BEFORE_A_CHASE | {Phase.ON_DECK},
+    is_true=_is_empty,
+    hold_s=lambda c: c.chase.driving_hold_s,
+    cause=_empty,
+)
+"""A drone begins no flight and no approach on a battery at its reserve."""
+
+
+def _is_too_narrow(s: Situation, c: CompanionConfig) -> bool:
+    return s.pad is not None and is_too_small(s.pad, c)
+
+
+def _too_narrow(s: Situation, c: CompanionConfig) -> Cause:
+    width_m = 0.0 if s.pad is None else 2.0 * s.pad.half_width_m
+    return Cause(Reason.PAD_TOO_SMALL, (width_m, c.descent.pad_width_min_m))
+
+
+def _lacks_geoid(s: Situation, _: CompanionConfig) -> bool:
+    return s.autopilot.frame is not None and not s.autopilot.receiver.knows_geoid
+
+
+def _tell_stamped_ahead(s: Situation, _: CompanionConfig) -> Cause:
+    return Cause(Reason.STAMPS_AHEAD, (-(s.vehicle.fix_age_on_arrival_s or 0.0),))
+
+
+def _is_warned(s: Situation, _: CompanionConfig) -> bool:
+    return s.autopilot.warns
+
+
+def _is_elsewhere(s: Situation, c: CompanionConfig) -> bool:
+    return not is_fix_old(s, c) and s.vehicle.is_road_elsewhere
+
+
+def _elsewhere(s: Situation, _: CompanionConfig) -> Cause:
+    above_m = road_above_ground_m(s)
+    if above_m is None:  # an outage has taken the ground's height
+        told = "was said to be far above or below the ground: land, mend its altitude, start again"
+    else:
+        where = f"{abs(above_m):.1f} m {'above' if above_m > 0.0 else 'below'} the ground {road_distance_m(s):.0f} m"
+        told = f"is said to be {where} from it: let drone and vehicle tell altitudes of one kind"
+    return Cause(Reason.ROAD_ELSEWHERE, (told,))
+
+
+def _hover_height_m(s: Situation, height_m: float, c: CompanionConfig) -> float:
+    """Return how high above the pad the drone hovers, or will after its take-off."""
+    stands = not s.autopilot.armed or s.autopilot.landed is not False
+    return height_m + (c.takeoff.waiting_height_m if stands else 0.0)
+
+
+def _is_high(s: Situation, c: CompanionConfig) -> bool:
+    if s.approach is None or is_fix_old(s, c) or s.approach.distance_m > c.integrity.ground_within_m:
+        return False
+    unsure_m = 0.0 if s.pad is None else vague_height_m(s.pad, c)
+    return _hover_height_m(s, s.approach.height_m, c) + unsure_m < chase_floor_m(c)
+
+
+def _high(s: Situation, c: CompanionConfig) -> Cause:
+    height_m = 0.0 if s.approach is None else _hover_height_m(s, s.approach.height_m, c)
+    more_m = math.ceil(10.0 * (chase_floor_m(c) - height_m) - _ROUNDING) / 10.0
+    told_m = math.ceil(10.0 * chase_floor_m(c) - _ROUNDING) / 10.0
+    return Cause(Reason.ROOF_TOO_HIGH, (told_m - more_m, told_m, more_m))
+
+
+# An estimate that has just begun jumps: what is said of the vehicle must hold for a while.
+OBSTACLES = (
+    Condition(reason=Reason.DRONE_TAKEN, phases=_BEFORE_ANY_CHASE, is_true=is_drone_taken),
+    Condition(reason=Reason.VEHICLE_TAKEN, phases=_BEFORE_ANY_CHASE, is_true=is_vehicle_taken, cause=tell_taken),
+    Condition(
+        reason=Reason.STAMPS_AHEAD,
+        phases=_BEFORE_ANY_CHASE,
+        is_true=is_stamped_ahead,
+        hold_s=lambda c: c.integrity.fix_ahead_hold_s,
+        cause=_tell_stamped_ahead,
+    ),
+    Condition(
+        reason=Reason.VEHICLE_TOO_FAST,
+        phases=_BEFORE_ANY_CHASE,
+        is_true=_is_too_fast,
+        hold_s=lambda c: c.chase.driving_hold_s,
+        cause=_too_fast,
+    ),
+    Condition(
+        reason=Reason.VEHICLE_TOO_FAR,
+        phases=_BEFORE_ANY_CHASE,
+        is_true=_is_too_far,
+        hold_s=lambda c: c.chase.driving_hold_s,
+        cause=_too_far,
+    ),
+    Condition(
+        reason=Reason.HEIGHTS_APART,
+        phases=_BEFORE_ANY_CHASE,
+        is_true=_lacks_geoid,
+        hold_s=lambda _: _RECEIVER_TOLD_S,
+    ),
+    Condition(reason=Reason.AUTOPILOT_WARNS, phases=_BEFORE_A_CHASE, is_true=_is_warned),
+    Condition(
+        reason=Reason.MEASUREMENTS_REJECTED, phases=_BEFORE_ANY_CHASE, is_true=contradicts_itself, cause=_tell_rejected
+    ),
+    EMPTY,
+    Condition(reason=Reason.PAD_TOO_SMALL, phases=_BEFORE_ANY_CHASE, is_true=_is_too_narrow, cause=_too_narrow),
+    Condition(
+        reason=Reason.ROAD_ELSEWHERE,
+        phases=_BEFORE_ANY_CHASE,
+        is_true=_is_elsewhere,
+        hold_s=lambda c: c.chase.driving_hold_s,
+        cause=_elsewhere,
+    ),
+    Condition(
+        reason=Reason.ROOF_TOO_HIGH,
+        phases=_BEFORE_A_FLIGHT,
+        is_true=_is_high,
+        hold_s=lambda c: c.chase.driving_hold_s,
+        cause=_high,
+    ),
+)
+
+
+def obstacle(held: Held, s: Situation, config: CompanionConfig) -> Cause | None:
+    """Return what makes a landing impossible now, with its numbers; None without one."""
+    if config.autopilot.guide is Guide.PRECLAND:
+        return Cause(Reason.GUIDES_ONLY)
+    return first_cause(OBSTACLES, held, s, config)

@@ -1,0 +1,1 @@
+"""What the phases of a sortie wait for and fly."""

@@ -1,0 +1,214 @@
+"""Decides the event of a step in a sortie, and updates the sortie's memory; pure."""
+
+import math
+
+from companion.config.companion import CompanionConfig
+from companion.core.reasons import Cause, Reason
+from companion.integrity.heights import VEHICLE_M
+from companion.integrity.vehicle_data import contradicts_itself
+from companion.landing.decisions.aborts import is_not_followed, is_stamped_ahead, is_token_lost
+from companion.landing.decisions.conditions import (
+    Condition,
+    first_cause,
+    is_attitude_unknown,
+    is_drone_unknown,
+    is_fix_old,
+)
+from companion.landing.decisions.entries import Decision
+from companion.landing.decisions.events import TOO_LONG
+from companion.landing.decisions.feasibility import EMPTY
+from companion.landing.sortie.over_vehicle import SPEED_SHARE, WAY_SHARE, is_deck_quiet, stands_on_deck
+from companion.landing.state.memory import ControlMemory, Progress
+from companion.landing.steering.following_height import chase_floor_m
+from companion.situation.phases import OUT_PHASES, Event, Phase
+from companion.situation.situation import Situation
+from companion.sortie.memory import SortieMemory, left_s, update_battery
+from companion.sortie.station import ahead_rad, intercept_s
+from link.messages import StationFrame
+from link.records import replace
+
+_DECK_HEIGHT_M = 1.0  # above or below the pad: the road is farther below
+_RISEN_SHARE = 0.8  # of the height that is clear of the deck
+_TOGETHER = frozenset({Phase.LIFT_OFF, Phase.FOLLOW, Phase.RETURN})
+
+LOST = (
+    Condition(reason=Reason.VEHICLE_DATA_OLD, phases=_TOGETHER | {Phase.ON_DECK}, is_true=is_fix_old),
+    Condition(reason=Reason.VEHICLE_LINK_LOST, phases=_TOGETHER, is_true=is_token_lost),
+    Condition(
+        reason=Reason.VEHICLE_CLOCK_AHEAD,
+        phases=_TOGETHER,
+        is_true=is_stamped_ahead,
+        hold_s=lambda c: c.integrity.fix_ahead_hold_s,
+    ),
+    Condition(reason=Reason.VEHICLE_CONTRADICTS_ITSELF, phases=_TOGETHER, is_true=contradicts_itself),
+)
+"""The vehicle is not heard, or cannot be believed."""
+
+OWN_LOST = (
+    Condition(reason=Reason.OWN_POSITION_OLD, phases=_TOGETHER, is_true=is_drone_unknown),
+    Condition(reason=Reason.OWN_ATTITUDE_OLD, phases=_TOGETHER, is_true=is_attitude_unknown),
+)
+"""Nobody knows where the drone is."""
+
+NOT_FOLLOWED = Condition(
+    reason=Reason.SETPOINT_NOT_FOLLOWED,
+    phases=frozenset({Phase.FOLLOW}),
+    is_true=is_not_followed,
+    hold_s=lambda c: c.abort.tracking_hold_s,
+)
+"""Beside a vehicle; on the way home the model is set back to the drone."""
+
+SORTIE_CONDITIONS = (*LOST, *OWN_LOST, NOT_FOLLOWED)
+
+
+def update_sortie(sortie: SortieMemory, phase: Phase, s: Situation, config: CompanionConfig) -> SortieMemory:
+    """Return the sortie with what this step tells of the vehicle's course, the deck and the battery."""
+    battery = update_battery(sortie.battery, s.autopilot.battery_share if s.autopilot.armed else None, s.monotonic_ns)
+    if not sortie.is_out:
+        return sortie if battery is sortie.battery else replace(sortie, battery=battery)
+    ahead = sortie.ahead_rad
+    if s.pad is not None:
+        ahead = ahead_rad(StationFrame.VEHICLE if sortie.station is None else sortie.station.frame, s.pad, ahead)
+    is_quiet = phase is Phase.ON_DECK and is_deck_quiet(s, config.sortie.launch)
+    is_found = phase is Phase.RALLY and not is_fix_old(s, config)
+    sortie = replace(
+        sortie,
+        ahead_rad=ahead,
+        battery=battery,
+        quiet_since_ns=_since(sortie.quiet_since_ns, s.monotonic_ns, holds_now=is_quiet),
+        found_since_ns=_since(sortie.found_since_ns, s.monotonic_ns, holds_now=is_found),
+    )
+    return replace(sortie, warning=_warning(sortie, phase, s, config))
+
+
+def _since(since_ns: int | None, now_ns: int, *, holds_now: bool) -> int | None:
+    if not holds_now:
+        return None
+    return now_ns if since_ns is None else since_ns
+
+
+def _warning(sortie: SortieMemory, phase: Phase, s: Situation, config: CompanionConfig) -> Cause | None:
+    """Return what the pilot is told of the way home, with the numbers that it was first told with."""
+    if phase not in OUT_PHASES:
+        return None
+    lasts_s = left_s(sortie.battery, config.limits.battery_min_share)
+    spare_s = lasts_s - home_s(s, config) if math.isfinite(lasts_s) else math.inf  # the way may be endless, too
+    if spare_s > config.sortie.warn_before_s:
+        return None
+    return sortie.warning or Cause(Reason.HOME_SOON, (max(spare_s, 0.0),))
+
+
+def home_s(s: Situation, config: CompanionConfig) -> float:
+    """Return how long the way home and the landing take; infinite for a vehicle that outruns the drone."""
+    if s.approach is None or s.pad is None or s.limits is None:
+        return config.limits.landing_time_s
+    way = s.pad.position_enu_m[0, :2] - s.drone.position_enu_m[:2] if s.drone is not None else None
+    if way is None or s.approach.distance_m < config.chase.passing_distance_m:
+        return config.limits.landing_time_s
+    limits, velocity = s.limits, s.pad.velocity_enu_m_s[0, :2]
+    flight_s = intercept_s(way, velocity, SPEED_SHARE * limits.speed_max_m_s, WAY_SHARE * limits.acceleration_max_m_s2)
+    return math.inf if flight_s is None else flight_s + config.limits.landing_time_s
+
+
+def decide_sortie(
+    sortie: SortieMemory, progress: Progress, control: ControlMemory, s: Situation, config: CompanionConfig
+) -> Decision | None:
+    """Return the event of this step in a phase of a sortie, None without one."""
+    match progress.phase:
+        case Phase.ON_DECK:
+            return _leave_deck(sortie, progress, control, s, config)
+        case Phase.LIFT_OFF:
+            return _rise(progress, s, config)
+        case Phase.FOLLOW | Phase.RETURN:
+            return _stay_together(sortie, progress, s, config)
+        case Phase.RALLY:
+            return _find(sortie, s, config)
+        case Phase.HOLD if sortie.is_out and (sortie.follows or progress.may_retry):
+            return _turn_home(sortie, s, config)  # but not where an operator has broken the way home off
+        case _:
+            return None
+
+
+def stay_out(sortie: SortieMemory, progress: Progress, decision: Decision) -> Decision:
+    """Return the decision, but no retry of a landing that was never begun: the abort broke off a station."""
+    is_retry = decision[0] is Event.CLEAR and sortie.station is not None
+    return (Event.CLEAR_TO_HOLD, progress.cause) if is_retry else decision
+
+
+def _leave_deck(
+    sortie: SortieMemory, progress: Progress, control: ControlMemory, s: Situation, config: CompanionConfig
+) -> Decision | None:
+    lost = first_cause((*LOST, EMPTY), progress.held, s, config)
+    if lost is not None:
+        return Event.CALLED_OFF, lost
+    launch, view = config.sortie.launch, s.autopilot
+    in_phase_s = (s.monotonic_ns - progress.since_ns) * 1e-9
+    if in_phase_s > config.takeoff.refused_after_s and not control.was_in_control:
+        return Event.REFUSED, Cause(Reason.CONTROL_REFUSED)
+    if in_phase_s > launch.time_limit_s:
+        if sortie.quiet_since_ns is not None and not view.armed:
+            return Event.REFUSED, Cause(Reason.ARMING_REFUSED, (view.refusal or "it said no reason",))
+        return Event.TIME_LIMIT, Cause(Reason.DECK_RESTLESS, (launch.time_limit_s,))
+    is_ready = view.armed and view.in_control and is_quiet_for_long(sortie, s, config)
+    return (Event.DECK_QUIET, Cause(Reason.DECK_QUIET)) if is_ready else None
+
+
+def is_quiet_for_long(sortie: SortieMemory, s: Situation, config: CompanionConfig) -> bool:
+    """Return whether the deck has been quiet for as long as a lift-off waits for."""
+    since_ns = sortie.quiet_since_ns
+    return since_ns is not None and (s.monotonic_ns - since_ns) * 1e-9 >= config.sortie.launch.quiet_hold_s
+
+
+def _rise(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
+    unknown = first_cause(OWN_LOST, progress.held, s, config)
+    if unknown is not None:  # that it was on the deck when it was heard last is no reason to stop its motors now
+        return Event.UNSAFE, unknown
+    lost, launch = first_cause(LOST, progress.held, s, config), config.sortie.launch
+    if lost is not None:
+        return (Event.CALLED_OFF if has_not_left_deck(s) else Event.UNSAFE), lost
+    if (s.monotonic_ns - progress.since_ns) * 1e-9 > launch.lift_off_time_limit_s:
+        too_long = Cause(TOO_LONG[Phase.LIFT_OFF], (launch.lift_off_time_limit_s,))
+        return (Event.CALLED_OFF if has_not_left_deck(s) else Event.TIME_LIMIT), too_long
+    if s.approach is not None and s.approach.height_m > _RISEN_SHARE * launch.clear_height_m:
+        return Event.CLEAR_OF_DECK, Cause(Reason.CLEAR_OF_DECK, (s.approach.height_m,))
+    return None
+
+
+def has_not_left_deck(s: Situation) -> bool:
+    """Return whether the drone stands on the deck still, by its autopilot's word and, where it is known, its place."""
+    if s.approach is None:
+        return s.autopilot.landed is True
+    return s.autopilot.landed is not False and stands_on_deck(s, VEHICLE_M, _DECK_HEIGHT_M)
+
+
+def _stay_together(sortie: SortieMemory, progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
+    unsafe = first_cause((*OWN_LOST, NOT_FOLLOWED), progress.held, s, config)
+    if unsafe is not None:
+        return Event.UNSAFE, unsafe
+    lost = first_cause(LOST, progress.held, s, config)
+    if lost is not None:
+        return Event.VEHICLE_LOST, lost
+    if progress.phase is Phase.FOLLOW:
+        return _turn_home(sortie, s, config)
+    limit_s = config.sortie.return_time_limit_s
+    if (s.monotonic_ns - progress.since_ns) * 1e-9 > limit_s:
+        return Event.TIME_LIMIT, progress.obstacle or Cause(TOO_LONG[Phase.RETURN], (limit_s,))
+    a, near_m = s.approach, config.chase.passing_distance_m
+    if a is None or a.distance_m > near_m or a.height_m < chase_floor_m(config) or progress.obstacle is not None:
+        return None  # it stays above a vehicle that cannot be landed on, and says why
+    return Event.VEHICLE_NEAR, Cause(Reason.VEHICLE_NEAR, (a.distance_m,))
+
+
+def _turn_home(sortie: SortieMemory, s: Situation, config: CompanionConfig) -> Decision | None:
+    """Return the way home before the point of no return is passed."""
+    if is_fix_old(s, config):
+        return None
+    lasts_s, needed_s = left_s(sortie.battery, config.limits.battery_min_share), home_s(s, config)
+    return (Event.HOME_NOW, Cause(Reason.HOME_NOW, (lasts_s, needed_s))) if lasts_s <= needed_s < math.inf else None
+
+
+def _find(sortie: SortieMemory, s: Situation, config: CompanionConfig) -> Decision | None:
+    since_ns = sortie.found_since_ns
+    if since_ns is None or (s.monotonic_ns - since_ns) * 1e-9 < config.abort.heard_hold_s:
+        return None
+    return (Event.FOLLOW if sortie.follows else Event.VEHICLE_FOUND), Cause(Reason.VEHICLE_FOUND)

@@ -1,0 +1,96 @@
+"""What a step learns of the vehicle: its data are fused and watched, and its pad is predicted; pure."""
+
+from companion.core.data import Forecast
+from companion.integrity.sightings import (
+    SightingWatch,
+    are_frames_one,
+    forget_agreement,
+    update_fixed_phases,
+    update_sightings,
+)
+from companion.integrity.vehicle_data import (
+    Contradictions,
+    FixStamps,
+    update_contradictions,
+    update_fix_stamps,
+    without_contradicted_heading,
+)
+from companion.landing.state.memory import VehicleMemory
+from companion.landing.state.step_data import StepInputs, System
+from companion.landing.steering.targets import HORIZON_OFFSETS_S
+from companion.planning.guidance import are_finite
+from companion.situation.phases import FOLLOWING_PHASES, Phase
+from companion.vehicle.hindsight import forget_instants, update_hindsight
+from companion.vehicle.pad import PadPath, pad_path
+from companion.vehicle.pad_reach import is_place_vague
+from link.records import replace
+
+_PRESENT_OFFSETS_S = HORIZON_OFFSETS_S[:2]  # a second point tells how the lever arm turns
+
+
+def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -> VehicleMemory:
+    """Fuse what the vehicle sent, and compare it with what was known before."""
+    vehicle = _in_present_utc(vehicle, inputs)
+    estimator, now_ns = vehicle.estimator, inputs.monotonic_ns
+    if inputs.vehicle.measurements:
+        estimator = system.estimator.fuse(estimator, inputs.vehicle.measurements)
+    contradictions, sightings = vehicle.contradictions, vehicle.sightings
+    if contradictions.is_due(now_ns):
+        health = system.estimator.health(estimator)
+        contradictions = update_contradictions(contradictions, health, now_ns)
+        sightings = update_sightings(sightings, health, now_ns, system.config)
+    return replace(
+        vehicle,
+        estimator=estimator,
+        hindsight=update_hindsight(vehicle.hindsight, system.estimator, estimator, inputs.t_ns, monotonic_ns=now_ns),
+        fix_stamps=update_fix_stamps(
+            vehicle.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns, inputs.vehicle.fix_ahead_s
+        ),
+        contradictions=contradictions,
+        sightings=sightings,
+        phases=update_fixed_phases(
+            vehicle.phases, inputs.vehicle.measurements, now_ns, drone_is_fixed=inputs.autopilot.receiver.is_fixed
+        ),
+    )
+
+
+def _in_present_utc(vehicle: VehicleMemory, inputs: StepInputs) -> VehicleMemory:
+    """Forget what the vehicle's stamps have been compared with, once UTC was set.
+
+    The estimate keeps its times: they are the vehicle's, whose clock is another one, so that nothing that awaits its
+    data can be looked back at any more.
+    """
+    utc_ahead_ns = inputs.t_ns - inputs.monotonic_ns
+    if utc_ahead_ns == vehicle.utc_ahead_ns:
+        return vehicle
+    return replace(
+        vehicle,
+        utc_ahead_ns=utc_ahead_ns,
+        hindsight=forget_instants(vehicle.hindsight),
+        fix_stamps=FixStamps(),
+        contradictions=Contradictions(),
+        sightings=SightingWatch(),
+    )
+
+
+def predict_pad(
+    phase: Phase, vehicle: VehicleMemory, inputs: StepInputs, system: System
+) -> tuple[VehicleMemory, PadPath | None]:
+    """Return the pad as far ahead as the phase looks; an estimate that is not finite is given up and restarts."""
+    offset_s = HORIZON_OFFSETS_S if phase in FOLLOWING_PHASES else _PRESENT_OFFSETS_S
+    forecast = system.estimator.forecast(vehicle.estimator, inputs.t_ns, offset_s)
+    if forecast is None:
+        return vehicle, None
+    if _is_finite(forecast):
+        has_one_frame = are_frames_one(vehicle.phases, system.config.integrity.receiver_frames, inputs.monotonic_ns)
+        sightings = vehicle.sightings
+        pad = pad_path(forecast, inputs.vehicle.pad, has_one_frame=has_one_frame, is_confirmed=sightings.is_confirmed)
+        if (pad.is_coarse or not has_one_frame) and is_place_vague(pad, system.config):
+            vehicle = replace(vehicle, sightings=forget_agreement(sightings))
+        return vehicle, without_contradicted_heading(pad, vehicle.course)
+    return replace(vehicle, estimator=None), None
+
+
+def _is_finite(forecast: Forecast) -> bool:
+    path = (forecast.position_enu_m, forecast.velocity_enu_m_s, forecast.acceleration_enu_m_s2)
+    return are_finite(*path, forecast.position_std_m, *(() if forecast.yaw_rad is None else (forecast.yaw_rad,)))

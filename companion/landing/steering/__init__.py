@@ -1,0 +1,1 @@
+"""Where the drone is to be, and the virtual model that leads it there."""

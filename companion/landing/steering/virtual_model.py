@@ -1,0 +1,173 @@
+"""The virtual model that the setpoints follow: its history, and how the drone deviates from it.
+
+The deviation is estimated by the model of the autopilot (`autopilots.response`) from the drone's reports, each beside
+the virtual model at the same instant. The plan then leads the virtual model to where the drone meets the pad.
+"""
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from msgspec import Struct, field
+
+from companion.autopilots.response import STATES, Cascade, ResponseModel
+from companion.core.data import GRAVITY_M_S2, Array, OwnState, Setpoint
+from companion.landing.steering.targets import HORIZON_OFFSETS_S
+from companion.planning.guidance import ReferenceState
+from link.frames.rotations import rotate
+from link.records import replace
+
+_HISTORY_S = 0.6  # longer than any telemetry is late
+_UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady
+_AIR_MEAN_S = 1.0  # longer than a gust's beginning, shorter than a change of speed
+_BREAK_S = 0.25  # between two reports, after which the deviation is what the next one shows
+_ACCELERATION_MAX_M_S2 = 10.0  # of the model between two steps: it is set back at times, and that is no motion
+
+
+class Tracking(Struct, frozen=True, kw_only=True, eq=False):
+    """The model's recent past and the drone beside it.
+
+    Attributes:
+        past: (monotonic ns, position (3,), velocity (3,) in W), oldest first.
+        behind_enu_m: (3,) from the drone to the model at the time of the drone's newest report.
+        error_m: length of that.
+        deviation: (4, 2) horizontal state of `ResponseModel` then: from the model to the drone, and what moves it.
+        air_enu_m_s2: (2,) horizontal thrust by mass that holds against the air, a mean of the last second.
+        velocity_enu_m_s: (2,) horizontal velocity of the drone then.
+        compared_ns: monotonic time of the newest report that was compared; None before the first.
+    """
+
+    past: tuple[tuple[int, Array, Array], ...] = ()
+    behind_enu_m: Array = field(default_factory=lambda: np.zeros(3))
+    error_m: float = 0.0
+    deviation: Array = field(default_factory=lambda: np.zeros((STATES, 2)))
+    air_enu_m_s2: Array = field(default_factory=lambda: np.zeros(2))
+    velocity_enu_m_s: Array = field(default_factory=lambda: np.zeros(2))
+    compared_ns: int | None = None
+
+
+def add_to_past(tracking: Tracking, t_ns: int, reference: ReferenceState) -> Tracking:
+    """Return the tracking with the model at the monotonic `t_ns` added."""
+    past = tracking.past
+    while past and (t_ns - past[0][0]) * 1e-9 > _HISTORY_S:
+        past = past[1:]
+    while past and past[-1][0] >= t_ns:  # a step that is rebuilt at the same time takes its place
+        past = past[:-1]
+    return replace(tracking, past=(*past, (t_ns, reference.position_enu_m, reference.velocity_enu_m_s)))
+
+
+def update_tracking(
+    tracking: Tracking, own_ns: int, own: OwnState, response: ResponseModel | None, *, estimates: bool
+) -> Tracking:
+    """Return the tracking after comparing the drone's report with the model at the same instant.
+
+    Args:
+        tracking: so far.
+        own_ns: monotonic time of the report.
+        own: the drone's newest report.
+        response: of the autopilot.
+        estimates: whether the drone flies freely after the model's place, so that its deviation is the autopilot's.
+    """
+    before_ns = tracking.compared_ns
+    if before_ns is not None and own_ns <= before_ns:
+        return tracking
+    if len(tracking.past) < 2 or own_ns < tracking.past[0][0]:
+        return tracking
+    position, velocity, acceleration = _model_at(tracking, own_ns)
+    behind = position - np.array(own.position_enu_m)
+    since_s = math.inf if before_ns is None else (own_ns - before_ns) * 1e-9
+    tracking = replace(
+        tracking,
+        behind_enu_m=behind,
+        error_m=math.hypot(*behind.tolist()),
+        compared_ns=own_ns,
+        air_enu_m_s2=_update_air(tracking, own, since_s),
+        velocity_enu_m_s=np.array(own.velocity_enu_m_s[:2]),
+    )
+    if not estimates or response is None:
+        return replace(tracking, deviation=np.zeros((STATES, 2)))
+    measured = np.array([-behind[:2], np.array(own.velocity_enu_m_s[:2]) - velocity[:2]])
+    if since_s > _BREAK_S:
+        return replace(tracking, deviation=np.vstack((measured, np.zeros((STATES - 2, 2)))))
+    return replace(tracking, deviation=response.update(tracking.deviation, measured, acceleration[:2], since_s))
+
+
+def tracking_error_max_m(
+    reference: ReferenceState | None, response: ResponseModel | None, delay_std_s: float, stds_max: float
+) -> float:
+    """Return how far from its setpoint a drone may be that follows it.
+
+    Args:
+        reference: the virtual model, None while nothing is flown.
+        response: of the autopilot, None while none is connected.
+        delay_std_s: standard deviation of the link's delay.
+        stds_max: so many standard deviations of what gusts and the link do.
+    """
+    if response is None:
+        return math.inf
+    speed_m_s = 0.0 if reference is None else math.hypot(*reference.velocity_enu_m_s.tolist())
+    return stds_max * math.hypot(math.sqrt(response.spread[0, 0]), speed_m_s * delay_std_s)
+
+
+def _update_air(tracking: Tracking, own: OwnState, since_s: float) -> Array:
+    """Return the mean of what the drone leans beyond what accelerates it, by the change of its own velocity."""
+    x, y, up = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
+    if up < _UPRIGHT_MIN or not 0.0 < since_s < _BREAK_S:
+        return tracking.air_enu_m_s2
+    changed = (np.array(own.velocity_enu_m_s[:2]) - tracking.velocity_enu_m_s) / since_s
+    leans = np.array([x, y]) * (GRAVITY_M_S2 / up) - changed
+    return np.asarray(tracking.air_enu_m_s2 - math.expm1(-since_s / _AIR_MEAN_S) * (leans - tracking.air_enu_m_s2))
+
+
+def _model_at(tracking: Tracking, t_ns: int) -> tuple[Array, Array, Array]:
+    """Return position, velocity and acceleration (3,) of the model at `t_ns`; after its newest place that one's."""
+    past = tracking.past
+    later = next((index for index in range(len(past) - 1, 0, -1) if past[index - 1][0] <= t_ns), 1)
+    (start_ns, start, start_velocity), (end_ns, end, end_velocity) = past[later - 1], past[later]
+    between_s = (end_ns - start_ns) * 1e-9
+    share = min(max((t_ns - start_ns) / (end_ns - start_ns), 0.0), 1.0)
+    acceleration = ((end_velocity - start_velocity) / between_s).clip(-_ACCELERATION_MAX_M_S2, _ACCELERATION_MAX_M_S2)
+    return start + share * (end - start), start_velocity + share * (end_velocity - start_velocity), acceleration
+
+
+def predict_deviation(tracking: Tracking, response: ResponseModel, late_s: float, planned: Array) -> Array:
+    """Return how far the drone will be off the model, (n, 2, 2): at the response's offsets, position and velocity.
+
+    Args:
+        tracking: with the deviation at the time of the newest report.
+        response: of the autopilot.
+        late_s: since that report.
+        planned: (n, 2) accelerations of the model at the offsets.
+    """
+    now = response.carry(tracking.deviation, min(late_s, _BREAK_S))
+    return response.predict(now, planned)[:, :2]
+
+
+def press_down(reference: ReferenceState, acceleration_m_s2: float, duration_s: float) -> ReferenceState:
+    """Return the model pressed down for `duration_s`, so that the thrust drops and the gear holds on to the pad."""
+    faster_m_s = acceleration_m_s2 * duration_s
+    return ReferenceState(
+        position_enu_m=reference.position_enu_m - np.array([0.0, 0.0, 0.5 * faster_m_s * duration_s]),
+        velocity_enu_m_s=reference.velocity_enu_m_s - np.array([0.0, 0.0, faster_m_s]),
+        acceleration_enu_m_s2=np.array([*reference.acceleration_enu_m_s2[:2], -acceleration_m_s2]),
+    )
+
+
+def setpoint_at(reference: ReferenceState, t_ns: int, yaw_rad: float, *, position_only: bool) -> Setpoint:
+    """Return the setpoint that asks for `reference` at `t_ns`."""
+    px, py, pz = reference.position_enu_m.tolist()
+    vx, vy, vz = reference.velocity_enu_m_s.tolist()
+    ax, ay, az = reference.acceleration_enu_m_s2.tolist()
+    return Setpoint(
+        t_ns=t_ns,
+        position_enu_m=(px, py, pz),
+        velocity_enu_m_s=None if position_only else (vx, vy, vz),
+        acceleration_enu_m_s2=None if position_only else (ax, ay, az),
+        yaw_rad=yaw_rad,
+    )
+
+
+@lru_cache(maxsize=16)  # the gains of some landings; nothing that a link tells fills the memory
+def response_to(cascade: Cascade) -> ResponseModel:
+    """Return the model of a cascade; 2 ms, and the gains of an autopilot come one by one in each of many landings."""
+    return ResponseModel(cascade, HORIZON_OFFSETS_S)

@@ -1,0 +1,1 @@
+"""How the contact will be if the descent goes on, and a drone that is level for it."""

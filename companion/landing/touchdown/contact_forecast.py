@@ -1,0 +1,110 @@
+"""The forecast of the contact that a descent leads to if it goes on, made ten to twenty times a second; pure."""
+
+import numpy as np
+
+from companion.core.data import Quantity
+from companion.forecast.branches import make_events
+from companion.forecast.chances import sum_up
+from companion.forecast.draws import draws
+from companion.forecast.drivers import update_drivers
+from companion.forecast.gusts import update_gusts
+from companion.forecast.rollout import roll_out
+from companion.forecast.samples import Descent, Samples
+from companion.landing.decisions.waiting import is_moment_quiet
+from companion.landing.state.memory import ForecastMemory, StepMemory
+from companion.landing.state.step_data import StepInputs, System
+from companion.landing.touchdown.rollout_inputs import (
+    as_driven,
+    course_of,
+    deviation_now,
+    draw_errors,
+    follower_of,
+    rules_of,
+    way_to_contact,
+)
+from companion.situation.phases import Phase
+from companion.situation.situation import Situation, vehicle_stands
+from link.messages import ContactForecast
+from link.records import replace
+
+_PERIOD_S = 0.1  # between two of them: above the commit height nothing has to be decided sooner
+_COMMITTED_PERIOD_S = 0.05  # below, where a brake that is seen then leaves 0.4 s to stop sinking
+_AGE_MAX_S = 1.0  # of data, beyond which the landing is broken off anyway
+
+
+def update_forecast(memory: StepMemory, situation: Situation, inputs: StepInputs, system: System) -> StepMemory:
+    """Return the memory with the forecast of this step, None in a phase that does not descend."""
+    now_ns, known = situation.monotonic_ns, _update_known(memory, situation, inputs)
+    if memory.progress.phase is not Phase.DESCEND:
+        return replace(memory, forecast=replace(known, contact=None, made_ns=None, is_committed=False, has_begun=False))
+    relative = situation.approach
+    is_low = relative is not None and relative.height_m < system.config.descent.commit_height_m
+    period_ns = round((_COMMITTED_PERIOD_S if is_low else _PERIOD_S) * 1e9)
+    if known.made_ns is not None and now_ns - known.made_ns < period_ns:
+        return replace(memory, forecast=known)
+    memory = replace(memory, forecast=replace(known, made_ns=now_ns, is_committed=is_low))
+    contact = forecast_contact(memory, situation, inputs, system)
+    begins = known.has_begun or is_moment_quiet(contact, situation, system.config)
+    return replace(memory, forecast=replace(memory.forecast, contact=contact, has_begun=begins))
+
+
+def _update_known(memory: StepMemory, situation: Situation, inputs: StepInputs) -> ForecastMemory:
+    """Return what forecasts are made from, with what this step shows of driver, gusts and inertial unit."""
+    before, tracking = memory.forecast, memory.model.tracking
+    gusts = before.gusts
+    # In a chase what looks like a push is what the model does not know of a hard flight.
+    flies_evenly = memory.progress.phase in (Phase.ALIGN, Phase.DESCEND) and bool(tracking.deviation.any())
+    if flies_evenly and tracking.compared_ns is not None and inputs.response is not None:
+        gusts = update_gusts(gusts, tracking.compared_ns, tracking.deviation, inputs.response)
+    is_told = any(one.quantity is Quantity.ACCELERATION for one in inputs.vehicle.measurements)
+    return replace(
+        before,
+        drivers=update_drivers(before.drivers, memory.vehicle.hindsight.driving.driven),
+        gusts=gusts,
+        acceleration_ns=situation.monotonic_ns if is_told else before.acceleration_ns,
+    )
+
+
+def forecast_contact(
+    memory: StepMemory, situation: Situation, inputs: StepInputs, system: System
+) -> ContactForecast | None:
+    """Return the forecast, None while too little is known for one or the pad is too far below."""
+    pad, relative, config = situation.pad, situation.approach, system.config
+    newest_ns = system.estimator.newest_fix_ns(memory.vehicle.estimator)
+    if pad is None or relative is None or inputs.response is None or newest_ns is None:
+        return None
+    age_s = max((inputs.t_ns - newest_ns) * 1e-9, 0.0)
+    then = system.estimator.estimate(memory.vehicle.estimator, newest_ns)
+    way_down = way_to_contact(memory, situation, config)
+    if then is None or way_down is None or age_s > _AGE_MAX_S:
+        return None
+    deviation = deviation_now(memory, inputs, pad)
+    course = course_of(memory, relative, pad, way_down, deviation)
+    numbers = draws()
+    stands = vehicle_stands(situation, config.chase)
+    errors = draw_errors(then, pad, inputs.response, numbers.normals)
+    late_s = memory.vehicle.hindsight.lateness_s or age_s
+    delay_s = late_s + 0.5 / config.setpoints.rate_hz + inputs.link_delay.mean_s + inputs.link_delay.std_s * errors.late
+    speed_m_s = float(course.speed_m_s[0])
+    events = make_events(
+        numbers,
+        memory.forecast.drivers,
+        within_s=age_s + way_down.lasts_s,
+        speed_m_s=speed_m_s,
+        left_m_s2=float(course.left_m_s2[0]),
+        stands=stands,
+    )
+    samples = Samples(
+        vehicle=as_driven(errors.vehicle, memory.vehicle.hindsight.driving, course.direction[0], stands=stands),
+        kind=events.kind,
+        event=events.event,
+        delay_s=np.maximum(delay_s, 0.0),
+        deviation=deviation + errors.deviation,
+        vertical=errors.vertical,
+        pushes=numbers.pushes,
+    )
+    descent = Descent(
+        course=course, drone=follower_of(memory, situation, inputs, config), rules=rules_of(relative, inputs, config)
+    )
+    ends = roll_out(samples, descent, age_s)
+    return sum_up(ends, events.weight, max(relative.pad_half_width_m - config.touchdown.foot_radius_m, 0.0))

@@ -1,0 +1,98 @@
+"""Levels a drone that leans into a curve or against a gust before it touches the pad; pure.
+
+In a curve the drone leans as the deck does not: 18 degrees on a circle of 20 m at 8 m/s. So in its last moments it
+turns less than the pad does, and takes the speed against it that it gains so.
+"""
+
+import math
+
+from companion.config.companion import CompanionConfig
+from companion.core.data import Array, FlightLimits
+from companion.landing.state.memory import StepMemory
+from companion.landing.state.step_data import StepInputs
+from companion.planning.guidance import PlanRequest
+from companion.situation.phases import Phase
+from companion.situation.situation import Approach, Situation
+from companion.vehicle.pad import PadPath
+from companion.vehicle.pad_reach import over_pad_radius_m
+from link.records import replace
+
+_LEFT_MIN_SHARE = 0.2  # of the tilt limit: with less no plan brakes, and a steady wind that needs more is not flown in
+_SEEN_OFF_MAX_M = 1.0  # what a range finder sees farther off is not the pad: a roof is 1.5 m above the road
+
+
+def limits_now(memory: StepMemory, situation: Situation, inputs: StepInputs, config: CompanionConfig) -> FlightLimits:
+    """Return the limits of this step: just above the pad the drone turns less than the deck, to touch down level.
+
+    A drone that leans touches with its lowest foot, so it begins that much higher. It begins earlier by the time that
+    turning takes at the largest jerk, by which its lean lags, and by which nearly every setpoint is late at most. One
+    that breaks off climbs before it leans.
+    """
+    limits, relative, drone = inputs.limits, situation.approach, situation.drone
+    if memory.progress.phase not in (Phase.DESCEND, Phase.ABORT) or relative is None or drone is None:
+        return limits
+    escape_m = 0.0 if memory.progress.phase is Phase.DESCEND else config.descent.commit_height_m
+    kept_m_s2, below_m = level_end(situation.pad, relative, inputs, config)
+    if lowest_foot_m(situation, relative, config) > below_m + escape_m:
+        return limits
+    return replace(limits, acceleration_max_m_s2=kept_m_s2)
+
+
+def level_end(
+    pad: PadPath | None, relative: Approach, inputs: StepInputs, config: CompanionConfig
+) -> tuple[float, float]:
+    """Return the acceleration that is left to a drone that levels, and the height of its lowest foot to begin at."""
+    limits, touchdown = inputs.limits, config.touchdown
+    turns_m_s2 = 0.0 if pad is None else math.hypot(*pad.acceleration_enu_m_s2[0, :2].tolist())
+    kept_m_s2 = min(_kept_m_s2(turns_m_s2, limits.jerk_max_m_s3, config), limits.acceleration_max_m_s2)
+    takes_s = max(turns_m_s2 - kept_m_s2, 0.0) / limits.jerk_max_m_s3
+    takes_s += 0.0 if inputs.response is None else inputs.response.cascade.lean_lag_s
+    early_m = max(-relative.climb_m_s, 0.0) * (takes_s + touchdown.level.late_stds * inputs.link_delay.std_s)
+    return kept_m_s2, touchdown.level.height_m + early_m
+
+
+def limit_tilt(request: PlanRequest, air_enu_m_s2: Array) -> FlightLimits:
+    """Return the limits with the acceleration that the largest tilt leaves in the direction in which it is needed.
+
+    Of the horizontal thrust by mass R some holds against the air, w. Along the unit vector d there is left
+    `-(d w) + sqrt(R^2 - w^2 + (d w)^2)`: less to go faster, more to brake.
+
+    Args:
+        request: of the plan; its target tells what is needed, in a second's time.
+        air_enu_m_s2: (2,) what holds against the air.
+    """
+    limits, state, target = request.limits, request.state, request.target
+    most_m_s2 = limits.tilt_acceleration_m_s2
+    if not math.isfinite(most_m_s2):
+        return limits
+    needed = target.acceleration_enu_m_s2[0] + target.velocity_enu_m_s[0] - state.velocity_enu_m_s
+    needed = (needed + target.position_enu_m[0] - state.position_enu_m)[:2]
+    size, (wx, wy) = math.hypot(*needed.tolist()), air_enu_m_s2.tolist()
+    along_m_s2 = float(needed @ air_enu_m_s2) / size if size > 0.0 else 0.0
+    left_m_s2 = math.sqrt(max(most_m_s2**2 - wx**2 - wy**2 + along_m_s2**2, 0.0)) - along_m_s2
+    left_m_s2 = max(left_m_s2, _LEFT_MIN_SHARE * most_m_s2)
+    return replace(limits, acceleration_max_m_s2=min(limits.acceleration_max_m_s2, left_m_s2))
+
+
+def lowest_foot_m(situation: Situation, relative: Approach, config: CompanionConfig) -> float:
+    """Return how high the lowest foot of a leaning drone is above the pad, by a range finder that has just seen it."""
+    lean = 0.0 if situation.drone is None else situation.drone.lean
+    seen_m, height_m = situation.below.range_carried_m, relative.height_m
+    is_over = relative.distance_m < over_pad_radius_m(relative.pad_half_width_m, config)
+    if situation.below.range_height_m is not None and seen_m is not None and is_over:
+        height_m = seen_m if abs(seen_m - height_m) < _SEEN_OFF_MAX_M else height_m
+    return height_m - config.touchdown.foot_radius_m * lean
+
+
+def _kept_m_s2(turns_m_s2: float, jerk_m_s3: float, config: CompanionConfig) -> float:
+    """Return what a level drone keeps of the pad's acceleration.
+
+    Turning less by x gains the drone x^2 / 2j against the pad while it changes, and x t in the time t that is left.
+    That bounds x.
+    """
+    touchdown = config.touchdown
+    left_s = touchdown.level.height_m / config.descent.sink.contact_rate_m_s
+    gained_m_s = touchdown.level.speed_max_m_s
+    less_m_s2 = math.sqrt((jerk_m_s3 * left_s) ** 2 + 2.0 * jerk_m_s3 * gained_m_s) - jerk_m_s3 * left_s
+    kept_m_s2 = max(touchdown.level.share * turns_m_s2, touchdown.level.acceleration_min_m_s2)
+    return max(min(kept_m_s2, touchdown.level.acceleration_max_m_s2), turns_m_s2 - less_m_s2)

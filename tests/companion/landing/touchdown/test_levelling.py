@@ -1,0 +1,218 @@
+"""What the tilt leaves of the acceleration, and a drone that is levelled so as not to touch down with one foot."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from companion.autopilots.response import Cascade, ResponseModel
+from companion.config.companion import CompanionConfig
+from companion.core.data import Array, FlightLimits, OwnState
+from companion.landing.state.memory import StepMemory
+from companion.landing.state.step_data import LinkDelay, StepInputs
+from companion.landing.touchdown.levelling import limit_tilt, limits_now
+from companion.planning.guidance import PlanRequest, ReferenceState, Target
+from companion.situation.phases import Phase
+from companion.situation.situation import Situation, drone_now
+from companion.vehicle.pad import PadPath
+from link.records import replace
+from tests.companion.facts import NOW_NS, changed, drone_at, pad_at, situation
+
+CONFIG = CompanionConfig()
+LIMITS = CONFIG.limits.flight_limits()
+INPUTS = StepInputs(t_ns=NOW_NS, monotonic_ns=NOW_NS, limits=LIMITS)
+LEVEL_M_S2 = CONFIG.touchdown.level.acceleration_min_m_s2
+DESCENDS = changed(StepMemory(), phase=Phase.DESCEND)
+
+
+def acceleration_max(height_m: float, lean: float, memory: StepMemory = DESCENDS) -> float:
+    here = situation(height_m)
+    assert here.drone is not None
+    leaning = replace(here, drone=replace(here.drone, lean=lean))
+    return limits_now(memory, leaning, INPUTS, CONFIG).acceleration_max_m_s2
+
+
+@pytest.mark.parametrize(
+    ("height_m", "lean", "levels"),
+    [(0.07, 0.0, True), (0.09, 0.0, False), (0.17, 0.5, True), (0.19, 0.5, False), (1.0, 0.9, False)],
+)
+def test_a_leaning_drone_is_levelled_as_much_higher_as_its_lowest_foot_hangs_down(
+    height_m: float, lean: float, *, levels: bool
+) -> None:
+    assert acceleration_max(height_m, lean) == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
+
+
+@pytest.mark.parametrize(
+    ("turns_m_s2", "level_m_s2"),
+    [
+        (0.0, CONFIG.touchdown.level.acceleration_min_m_s2),
+        (1.25, CONFIG.touchdown.level.share * 1.25),
+        (2.8, CONFIG.touchdown.level.acceleration_max_m_s2),
+    ],
+    ids=["straight on", "a circle of 20 m at 5 m/s", "harder than it may lean"],
+)
+def test_a_drone_above_a_turning_pad_is_levelled_by_a_share_of_that_turn(turns_m_s2: float, level_m_s2: float) -> None:
+    assert _levelled_m_s2(situation(0.05, pad=_turning(turns_m_s2))) == pytest.approx(level_m_s2)
+
+
+@given(turns_m_s2=st.floats(0.0, 9.0), jerk_m_s3=st.floats(2.0, 40.0))
+def test_a_drone_that_is_levelled_gains_no_more_speed_against_the_pad_than_it_may(
+    turns_m_s2: float, jerk_m_s3: float
+) -> None:
+    limits = replace(LIMITS, jerk_max_m_s3=jerk_m_s3, acceleration_max_m_s2=100.0)
+    less_m_s2 = max(turns_m_s2 - _levelled_m_s2(situation(0.05, pad=_turning(turns_m_s2)), limits), 0.0)
+    left_s = CONFIG.touchdown.level.height_m / CONFIG.descent.sink.contact_rate_m_s
+    changes_s = less_m_s2 / jerk_m_s3
+    assert less_m_s2 * (0.5 * changes_s + left_s) <= CONFIG.touchdown.level.speed_max_m_s + 1e-9
+
+
+@pytest.mark.parametrize(("jerk_m_s3", "levels"), [(2.0, True), (20.0, False)])
+def test_a_drone_that_turns_slower_is_levelled_earlier(jerk_m_s3: float, *, levels: bool) -> None:
+    height_m, pad = CONFIG.touchdown.level.height_m + 0.1, _turning(2.5)
+    facts = replace(situation(height_m, pad=pad), drone=drone_at(height_m, 0.0, (0.0, 0.0, -0.4), pad=pad))
+    limits = replace(LIMITS, jerk_max_m_s3=jerk_m_s3)
+    assert (_levelled_m_s2(facts, limits) < LIMITS.acceleration_max_m_s2) is levels
+
+
+def _turning(turns_m_s2: float) -> PadPath:
+    pad = pad_at()
+    turn = np.tile([0.6 * turns_m_s2, -0.8 * turns_m_s2, 0.0], (len(pad.offset_s), 1))
+    return replace(pad, acceleration_enu_m_s2=turn)
+
+
+def _levelled_m_s2(facts: Situation, limits: FlightLimits = LIMITS) -> float:
+    return limits_now(DESCENDS, facts, replace(INPUTS, limits=limits), CONFIG).acceleration_max_m_s2
+
+
+def _sinking(height_m: float, sink_m_s: float) -> Situation:
+    here = situation(height_m)
+    return replace(here, drone=drone_at(height_m, 0.0, (0.0, 0.0, -sink_m_s), pad=pad_at()))
+
+
+@pytest.mark.parametrize(("sink_m_s", "late_s", "levels"), [(0.4, 0.08, True), (0.4, 0.0, False), (0.2, 0.08, False)])
+def test_a_drone_is_levelled_earlier_by_what_its_setpoints_may_be_late(
+    sink_m_s: float, late_s: float, *, levels: bool
+) -> None:
+    facts = _sinking(CONFIG.touchdown.level.height_m + 0.025, sink_m_s)  # 0.4 m/s for 0.08 s are 32 mm
+    inputs = replace(INPUTS, link_delay=LinkDelay(std_s=late_s / CONFIG.touchdown.level.late_stds))
+    limit_m_s2 = limits_now(DESCENDS, facts, inputs, CONFIG).acceleration_max_m_s2
+    assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
+
+
+@pytest.mark.parametrize(
+    ("lag_s", "is_led", "levels"), [(0.05, False, False), (0.25, False, True), (0.25, True, False)]
+)
+def test_a_drone_whose_lean_lags_is_levelled_earlier_by_that(lag_s: float, *, is_led: bool, levels: bool) -> None:
+    facts = _sinking(CONFIG.touchdown.level.height_m + 0.05, 0.4)
+    cascade = Cascade(
+        position_per_s=1.0, velocity_per_s=2.0, integral_per_s2=1.0, lead_s=0.0, attitude_lag_s=lag_s, is_led=is_led
+    )
+    inputs = replace(INPUTS, response=ResponseModel(cascade, np.array([0.0, 0.1])))
+    assert (limits_now(DESCENDS, facts, inputs, CONFIG).acceleration_max_m_s2 == LEVEL_M_S2) is levels
+
+
+@pytest.mark.parametrize(
+    ("estimated_m", "seen_m", "beside_m", "levels"),
+    [
+        (0.3, 0.05, 0.0, True),
+        (0.05, 0.3, 0.0, False),
+        (0.05, None, 0.0, True),
+        (0.05, 1.6, 0.0, True),
+        (0.05, 0.3, 0.7, True),
+    ],
+    ids=["nearer than estimated", "farther", "nothing seen", "the road is seen", "not above the pad"],
+)
+def test_the_height_to_be_levelled_at_is_what_a_range_finder_has_just_seen_of_the_pad(
+    estimated_m: float, seen_m: float | None, beside_m: float, *, levels: bool
+) -> None:
+    facts = changed(situation(estimated_m, beside_m), range_height_m=seen_m, range_carried_m=seen_m)
+    limit_m_s2 = limits_now(DESCENDS, facts, INPUTS, CONFIG).acceleration_max_m_s2
+    assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
+
+
+def test_nothing_but_a_descent_and_its_abort_is_levelled() -> None:
+    assert acceleration_max(0.05, 0.0, changed(DESCENDS, phase=Phase.ALIGN)) == LIMITS.acceleration_max_m_s2
+
+
+@pytest.mark.parametrize(("height_m", "lean", "levels"), [(0.4, 0.0, True), (0.44, 0.0, False), (0.5, 0.5, True)])
+def test_a_drone_that_breaks_off_climbs_before_it_leans(height_m: float, lean: float, *, levels: bool) -> None:
+    limit_m_s2 = acceleration_max(height_m, lean, changed(DESCENDS, phase=Phase.ABORT))
+    assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
+
+
+@pytest.mark.parametrize(
+    ("orientation_wxyz", "lean"),
+    [((1.0, 0.0, 0.0, 0.0), 0.0), ((0.9659258, 0.2588190, 0.0, 0.0), 0.5), ((0.7071068, 0.0, 0.0, 0.7071068), 0.0)],
+    ids=["level", "rolled by 30 degrees", "turned"],
+)
+def test_lean_is_the_sine_of_the_tilt(orientation_wxyz: tuple[float, float, float, float], lean: float) -> None:
+    own = OwnState(
+        t_ns=NOW_NS,
+        position_enu_m=(0.0, 0.0, 5.0),
+        velocity_enu_m_s=(0.0, 0.0, 0.0),
+        orientation_wxyz=orientation_wxyz,
+        angular_velocity_flu_rad_s=(0.0, 0.0, 0.0),
+    )
+    drone = drone_now(own, NOW_NS, 0.0, 1.0)
+    assert drone is not None
+    assert drone.lean == pytest.approx(lean, abs=1e-6)
+
+
+sides = st.floats(-math.pi, math.pi)
+thrusts = st.floats(2.0, 9.0)
+shares = st.floats(0.0, 0.79)  # of the thrust to the side, which the air takes
+
+
+def _turned(length: float, angle_rad: float) -> Array:
+    return np.array([length * math.cos(angle_rad), length * math.sin(angle_rad)])
+
+
+def _left_m_s2(needed: Array, air_enu_m_s2: Array, tilt_m_s2: float) -> float:
+    """What is left of a drone's tilt that is wanted off where it is, by (2,)."""
+    offset_s = np.arange(0.0, 1.0, 0.2)
+    still = np.zeros((len(offset_s), 3))
+    request = PlanRequest(
+        state=ReferenceState(
+            position_enu_m=np.zeros(3), velocity_enu_m_s=np.zeros(3), acceleration_enu_m_s2=np.zeros(3)
+        ),
+        target=Target(
+            offset_s=offset_s,
+            position_enu_m=still + np.array([*needed, 0.7]),
+            velocity_enu_m_s=still,
+            acceleration_enu_m_s2=still,
+        ),
+        limits=replace(LIMITS, acceleration_max_m_s2=100.0, tilt_acceleration_m_s2=tilt_m_s2),
+        floor_enu_m=still[:, 2],
+        dt_s=0.02,
+    )
+    return limit_tilt(request, air_enu_m_s2).acceleration_max_m_s2
+
+
+@given(tilt_m_s2=thrusts, share=shares, to_rad=sides, air_rad=sides)
+def test_acceleration_and_what_holds_against_the_air_are_within_the_tilt_together(
+    tilt_m_s2: float, share: float, to_rad: float, air_rad: float
+) -> None:
+    air = _turned(share * tilt_m_s2, air_rad)
+    left_m_s2 = _left_m_s2(_turned(3.0, to_rad), air, tilt_m_s2)
+    assert math.hypot(*(_turned(left_m_s2, to_rad) + air).tolist()) == pytest.approx(tilt_m_s2)
+
+
+@given(tilt_m_s2=thrusts, to_rad=sides)
+def test_in_still_air_all_of_the_tilt_is_left(tilt_m_s2: float, to_rad: float) -> None:
+    assert _left_m_s2(_turned(3.0, to_rad), np.zeros(2), tilt_m_s2) == pytest.approx(tilt_m_s2)
+
+
+@given(tilt_m_s2=thrusts, share=st.floats(0.01, 1.0), air_rad=sides, off_rad=st.floats(-1.4, 1.4))
+def test_more_is_left_to_brake_than_to_go_faster(
+    tilt_m_s2: float, share: float, air_rad: float, off_rad: float
+) -> None:
+    air = _turned(share * tilt_m_s2, air_rad)
+    faster, slower = (_turned(3.0, air_rad + off_rad + turned_rad) for turned_rad in (0.0, math.pi))
+    assert _left_m_s2(slower, air, tilt_m_s2) > _left_m_s2(faster, air, tilt_m_s2) > 0.0
+
+
+def test_tilt_raises_no_limit_and_one_that_is_not_known_lowers_none() -> None:
+    for tilt_m_s2 in (101.0, math.inf):
+        assert _left_m_s2(np.array([2.0, 1.0]), np.array([-3.0, 4.0]), tilt_m_s2) == 100.0
