@@ -30,7 +30,7 @@ def test_pad_counts_by_its_shorter_side() -> None:
 @pytest.mark.parametrize(("at_s", "peak_m_s"), [(13.9, 0.0), (14.1, 6.5), (17.2, 6.5), (20.1, 0.0)])
 def test_gust_counts_while_it_blows_and_three_seconds_on(at_s: float, peak_m_s: float) -> None:
     wind = scenario().wind.model_copy(update={"gust_m_s": 6.5, "gust_duration_s": 3.0})
-    gusty = scenario(wind=wind, disturbed_between_s=(14.0, 14.0))
+    gusty = scenario(wind=wind).with_run(disturbed_between_s=(14.0, 14.0))
     assert disturbances_before(gusty, 1, at_s)["before_gust_m_s"] == peak_m_s
 
 
@@ -39,5 +39,5 @@ def test_gust_counts_while_it_blows_and_three_seconds_on(at_s: float, peak_m_s: 
 def test_silence_counts_as_far_as_it_is_within_the_three_seconds(channel: str, at_s: float, silent_s: float) -> None:
     out = scenario().link.zenoh.model_copy(update={"outage_range_s": (0.8, 0.8)})
     link = scenario().link.model_copy(update={channel: out})
-    silent = scenario(link=link, disturbed_between_s=(14.0, 14.0))
+    silent = scenario(link=link).with_run(disturbed_between_s=(14.0, 14.0))
     assert disturbances_before(silent, 1, at_s)["before_silence_s"] == pytest.approx(silent_s)
