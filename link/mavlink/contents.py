@@ -9,14 +9,14 @@ Source: https://mavlink.io/en/guide/serialization.html#checksum, https://mavlink
 """
 
 import struct
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import cache
 from operator import attrgetter, itemgetter
 from typing import Any, NamedTuple
 
 from fastcrc.crc16 import mcrf4xx
 
-from link.mavlink.dialect import Message, mavlink
+from link.mavlink.dialect import Message, crc_extra, mavlink
 
 _CHECKSUM = struct.Struct("<H")
 _SEED = 0xFFFF
@@ -31,24 +31,6 @@ def with_checksum(head_and_payload: bytes | bytearray, message_id: int) -> bytes
     """The frame, from its marker on, with the checksum of a known message appended."""
     crc = checksum(bytes(head_and_payload[1:]) + bytes((mavlink.mavlink_map[message_id].crc_extra,)))
     return bytes(head_and_payload) + _CHECKSUM.pack(crc)
-
-
-def crc_extra(name: str, fields: Iterable[tuple[str, str, int]]) -> int:
-    """The byte that stands for a message's definition: its name, and each field's type, name and array length.
-
-    Args:
-        name: of the message.
-        fields: those that are no extensions, in the order in which they are sent; the length is 0 for no array.
-
-    Returns:
-        0 to 255.
-    """
-    crc = mavlink.x25crc(f"{name} ".encode())
-    for kind, field, length in fields:
-        crc.accumulate(f"{kind} {field} ".encode())
-        if length:
-            crc.accumulate(bytes((length,)))
-    return int((crc.crc & 0xFF) ^ (crc.crc >> 8))
 
 
 _FORMATS = {

@@ -9,6 +9,7 @@ https://mavlink.io/en/guide/serialization.html. Events: https://mavlink.io/en/se
 """
 
 import struct
+from collections.abc import Iterable
 from typing import Any, NamedTuple, TypeAlias
 
 from pymavlink.dialects.v20 import all as mavlink
@@ -20,6 +21,7 @@ __all__ = [
     "DRAFT_MESSAGES",
     "MAV_RESULT_CANCELLED",
     "Message",
+    "crc_extra",
     "event_id",
     "mavlink",
 ]
@@ -117,14 +119,21 @@ _DRAFTS = (
 )
 
 
-def _crc_extra(name: str, ordered: list[_Field]) -> int:
-    """The seed by which both ends know that they mean the same fields."""
-    crc = x25crc()
-    crc.accumulate_str(f"{name} ")
-    for field in ordered:
-        crc.accumulate_str(f"{field.type} {field.name} ")
-        if field.length:
-            crc.accumulate([field.length])
+def crc_extra(name: str, fields: Iterable[tuple[str, str, int]]) -> int:
+    """The byte that stands for a message's definition: its name, and each field's type, name and array length.
+
+    Args:
+        name: of the message.
+        fields: those that are no extensions, in the order in which they are sent; the length is 0 for no array.
+
+    Returns:
+        0 to 255.
+    """
+    crc = x25crc(f"{name} ".encode())
+    for kind, field, length in fields:
+        crc.accumulate(f"{kind} {field} ".encode())
+        if length:
+            crc.accumulate(bytes((length,)))
     return int((crc.crc & 0xFF) ^ (crc.crc >> 8))
 
 
@@ -167,7 +176,7 @@ def _draft(message_id: int, name: str, fields: tuple[_Field, ...]) -> type[_Draf
             "orders": [ordered.index(field) for field in fields],
             "lengths": [1 if field.type == "char" else max(field.length, 1) for field in ordered],
             "array_lengths": [field.length for field in ordered],
-            "crc_extra": _crc_extra(name, ordered),
+            "crc_extra": crc_extra(name, ordered),
             "unpacker": struct.Struct(layout),
         },
     )
