@@ -5,9 +5,10 @@ from itertools import chain
 
 from companion.autopilots.choice import driver_for
 from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver, streams_hz
+from companion.autopilots.late_reports import LateReports
 from companion.autopilots.limits import LimitQuestions, parameter_names
 from companion.autopilots.response import Cascade, Shaping
-from companion.autopilots.state import AutopilotState, LateReports, shift_reports, update_state
+from companion.autopilots.state import AutopilotState, shift_reports, update_state
 from companion.config.autopilot import AutopilotConfig
 from companion.core.data import FlightLimits, Setpoint
 from link.mavlink.dialect import Message, mavlink

@@ -1,8 +1,4 @@
-"""The autopilot's messages folded into what the companion's step wants to know of it.
-
-A link that jitters delivers datagrams out of order. A heartbeat from before a change of mode, taken after one from
-behind it, reads as a pilot who has changed the mode. Source: MAVLink guide, "Packet serialization".
-"""
+"""The autopilot's messages folded into what the companion's step wants to know of it."""
 
 from collections.abc import Mapping
 from math import isfinite
@@ -233,28 +229,3 @@ def _place_origin(state: AutopilotState, projection: Projection) -> AutopilotSta
         frame_moves=replace(moves, origin_count=moves.origin_count + 1),
     )
     return replace(state, view=view, history=state.history[-1:])
-
-
-_REPORTS = frozenset({"HEARTBEAT", "CURRENT_MODE", "EXTENDED_SYS_STATE"})
-_OVERTAKEN_MAX = 32  # packets: 0.1 s of some 300 a second; more is a sequence that restarted
-_OVERTAKEN_S = 0.5  # and the same once nothing was reported for so long
-
-
-class LateReports:
-    """Knows the newest report of the state."""
-
-    def __init__(self) -> None:
-        self._newest: tuple[int, int] | None = None
-
-    def is_late(self, message: Message, local_ns: int) -> bool:
-        """Take a message, and return whether it is a report that was sent before one that has come already."""
-        if message.get_type() not in _REPORTS:
-            return False
-        number = message.get_seq()
-        if self._newest is not None:
-            newest, heard_ns = self._newest
-            behind = (newest - number) % 256
-            if 0 < behind <= _OVERTAKEN_MAX and (local_ns - heard_ns) * 1e-9 < _OVERTAKEN_S:
-                return True
-        self._newest = number, local_ns
-        return False

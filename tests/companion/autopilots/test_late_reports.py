@@ -2,7 +2,7 @@
 
 import pytest
 
-from companion.autopilots.state import LateReports
+from companion.autopilots.late_reports import LateReports
 from link.mavlink.dialect import Message, mavlink
 
 SECOND_NS = 1_000_000_000
