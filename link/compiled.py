@@ -9,6 +9,9 @@ from typing import ParamSpec, Protocol, TypeVar, cast
 from numba import njit
 
 from link.errors import UserError
+from link.kept_code import load_without_intermediate_code
+
+load_without_intermediate_code()
 
 _KEPT_NAME = re.compile(r"_(?P<digest>[0-9a-f]{12})-[0-9]+\.")
 """The end of a function's name and its line, in the name of a file that numba keeps."""

@@ -36,14 +36,14 @@ if "tidy" in sys.argv:
 """
 
 
-def said(folder: Path, factor: float, *words: str) -> list[float]:
+def said(folder: Path, factor: float, *words: str, program: str = "outer.py") -> list[float]:
     """What a program says whose inner function multiplies by `factor`, and how often it found its code on disk."""
     (folder / "inner.py").write_text(INNER.format(factor=factor))
     (folder / "outer.py").write_text(OUTER)
     root = str(Path(__file__).parents[2])
     path = {"PYTHONPATH": root, "PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run(
-        [sys.executable, "outer.py", *words],
+        [sys.executable, program, *words],
         cwd=folder,
         env=path,
         capture_output=True,
@@ -59,6 +59,31 @@ def test_kept_code_is_used_again_and_never_after_a_change_in_a_file_that_it_call
     assert said(tmp_path, 2.0) == [21.0, 0.0]
     assert said(tmp_path, 2.0) == [21.0, 1.0]
     assert said(tmp_path, 3.0) == [31.0, 0.0]
+
+
+CALLER = """
+from outer import outer
+from link.compiled import kernel
+
+
+@kernel
+def caller(x: float) -> float:
+    return outer(x) - 1.0
+
+
+def is_parsed() -> bool:
+    return next(iter(outer.overloads.values())).library._shared_module is not None
+
+
+print(int(is_parsed()), caller(10.0), int(is_parsed()), len(outer.stats.cache_hits))
+"""
+
+
+@pytest.mark.slow
+def test_intermediate_code_is_parsed_only_where_a_function_is_compiled_that_calls_it(tmp_path: Path) -> None:
+    (tmp_path / "caller.py").write_text(CALLER)
+    assert said(tmp_path, 2.0, program="caller.py")[-4:] == [1.0, 20.0, 1.0, 0.0]
+    assert said(tmp_path, 2.0, program="caller.py")[-4:] == [0.0, 20.0, 1.0, 1.0]
 
 
 @pytest.mark.slow
