@@ -161,8 +161,8 @@ def _advance(memory: AutopilotMemory, inputs: AutopilotInputs, config: Autopilot
     plant_config = memory.tuning.plant_config
     error = inputs.own_error
     wind_enu_m_s = inputs.wind_enu_m_s + np.array(memory.tuning.settings.simulation.wind_enu_m_s)
-    memory, following = over_target(memory, course.following, duration_s)
-    plant = fly(memory.plant, following, inputs.deck, wind_enu_m_s, plant_config, duration_s, error)
+    memory, course = over_target(memory, course, duration_s)
+    plant = fly(memory.plant, course.following, inputs.deck, wind_enu_m_s, plant_config, duration_s, error)
     east, north, up = wind_enu_m_s.tolist()
     plant = stop_failed(plant, memory.safety.failures)
     now = take_snapshot(plant.state, plant_config.airframe, plant.state.t_ns - memory.boot.start_ns, error)
@@ -170,7 +170,7 @@ def _advance(memory: AutopilotMemory, inputs: AutopilotInputs, config: Autopilot
         memory,
         plant=plant,
         now=now,
-        course=replace(course, following=following),
+        course=course,
         world=World(deck=inputs.deck, wind_enu_m_s=(east, north, up)),
         places=replace(memory.places, chart=near(memory.places.chart, now.position_enu_m)),
     )

@@ -33,18 +33,24 @@ def steer(memory: AutopilotMemory, config: AutopilotConfig, elapsed_s: float) ->
     )
 
 
-def over_target(
-    memory: AutopilotMemory, following: Reference | None, elapsed_s: float
-) -> tuple[AutopilotMemory, Reference | None]:
-    """Return the memory and what is followed for the next `elapsed_s`, LAND's over a target that is in sight."""
-    settings, target = memory.tuning.settings, memory.heard.target
+def over_target(memory: AutopilotMemory, course: Course, elapsed_s: float) -> tuple[AutopilotMemory, Course]:
+    """Return the memory and the course for the next `elapsed_s`, LAND's over a target that is in sight.
+
+    LAND sinks on from where it was held up: what the target kept the drone from is not made up for.
+    """
+    settings, target, following = memory.tuning.settings, memory.heard.target, course.following
     limits = settings.path
     if target is None or following is None or limits is None or memory.modes.mode is not Mode.LAND:
-        return memory, following
+        return memory, course
     if not is_acquired(target, memory.now.boot_ns):
-        return memory, following
+        return memory, course
     target, following = steer_to_target(target, following, memory.now, settings.land.precision, limits, elapsed_s)
-    return replace(memory, heard=replace(memory.heard, target=target)), following
+    flight = course.flight
+    if following.position_enu_m is not None:
+        flight = replace(flight, sinking_m=max(flight.sinking_m, float(following.position_enu_m[2])))
+    return replace(memory, heard=replace(memory.heard, target=target)), replace(
+        course, flight=flight, following=following
+    )
 
 
 def _wish(memory: AutopilotMemory, elapsed_s: float) -> tuple[ModeFlight, Reference | None]:

@@ -56,3 +56,12 @@ def test_a_target_far_to_the_side_is_reached_before_it_sinks() -> None:
 def test_a_target_in_another_frame_or_unasked_for_is_not_followed(parameters: dict[str, float], frame: int) -> None:
     pilot = landing(3.0, lambda pilot, _t: seen(pilot, (1.5, -1.0, 0.0), frame=frame), **parameters)
     assert hypot(*pilot.position[:2]) < 0.2
+
+
+def test_a_drone_that_was_held_up_over_its_target_sinks_on_no_faster_than_land_does() -> None:
+    pilot = landing(0.1, lambda pilot, _t: seen(pilot, (0.3, 0.0, 0.0)))
+    sinks_m_s = []
+    while pilot.position[2] > 0.2:
+        pilot.run(0.02, lambda _t: seen(pilot, (pilot.position[0] + 0.1, 0.0, 0.0)))
+        sinks_m_s.append(-pilot.node.state.velocity_enu_m_s[2])
+    assert max(sinks_m_s) < 0.6
