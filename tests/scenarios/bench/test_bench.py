@@ -89,7 +89,7 @@ def test_a_figure_that_could_not_be_measured_misses_its_budget_and_is_shown_as_a
 
 @pytest.mark.slow
 def test_cost_of_recording_is_measured_on_a_whole_recording(tmp_path: Path) -> None:
-    scenario = load_scenario("straight_5").with_run(time_limit_s=1.0)
+    scenario = load_scenario("straight_5").with_run(time_limit_s=0.5)
     cost = recording_cost(scenario, 1, tmp_path)
     assert cost["step_ratio"] > 0.5
     assert cost["writer_cpu_share"] > 0.0

@@ -31,7 +31,7 @@ def quiet(_flown: Flown | None, _done: int, _total: int) -> None:
 
 
 def plan_of(folder: Path, seeds: int = SEEDS) -> Plan:
-    cells = [short_cell(folder, "short"), short_cell(folder, "longer", time_limit_s=4.0)]
+    cells = [short_cell(folder, "short"), short_cell(folder, "longer", time_limit_s=1.5)]
     return make_plan(cells, first_seed=3, seeds=seeds, config=None)
 
 

@@ -79,7 +79,7 @@ def quiet(_flown: Flown | None, _done: int, _total: int) -> None:
 
 
 def plan_of(folder: Path) -> Plan:
-    cells = [short_cell(folder, "short"), short_cell(folder, "longer", time_limit_s=2.5), failing_cell(folder)]
+    cells = [short_cell(folder, "short"), short_cell(folder, "longer", time_limit_s=0.6), failing_cell(folder)]
     return make_plan(cells, first_seed=3, seeds=2, config=None)
 
 

@@ -11,7 +11,7 @@ from scenarios.falsify.falsify import CASE, FOUND, LANDINGS, Request, create_fol
 from scenarios.falsify.search import Space
 from scenarios.falsify.trial import Outcome
 
-PLAIN = load_scenario("straight_5").with_run(time_limit_s=1.5)
+PLAIN = load_scenario("straight_5").with_run(time_limit_s=0.5)
 """Called off before it takes off, which is unsafe."""
 
 
