@@ -15,9 +15,12 @@ MAKEFLAGS += --jobs=2
 unexport PYTHONDONTWRITEBYTECODE
 # The only files with tests of the two kinds, so that not all of the others are loaded for them.
 WIRE = $(shell grep -rlF pytest.mark.wire tests --include='test_*.py' | sort)
+# They take longest, so they begin first.
+LONG = $(addprefix tests/,conformance/test_mavsdk.py security/test_secured_landing.py integration/test_view.py \
+    scenarios/bench/test_bench.py integration/test_lost_partners.py)
 ALONE = $(shell grep -rlF pytest.mark.alone tests --include='test_*.py' | sort)
 
-.PHONY: setup demo test check fast docs lint style types lock fuzz clean
+.PHONY: setup demo test check fast simulated docs lint style types lock fuzz clean
 
 setup: .venv/.kernels
 
@@ -42,12 +45,15 @@ check: fast lint
 fast: .venv/.kernels
 	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder --hypothesis-profile=quick -m "not slow and not wire"
 
-# What keeps time with the clock runs after the rest: what mostly waits three at a time, what takes both cores by itself.
-# A module's tests share what they fly; in the order of the files the many short ones come last.
-test: .venv/.kernels lint docs
-	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "not wire"
-	$(BIN)/pytest -q -n 3 --dist loadscope -m "wire and not alone" $(WIRE)
+# What keeps time with the clock runs after the rest: what mostly waits three at a time, what measures time by itself.
+test: .venv/.kernels style docs types simulated
+	$(BIN)/pytest -q -n 3 --dist loadscope --no-loadscope-reorder -m "wire and not alone" $(LONG) $(filter-out $(LONG),$(WIRE))
 	$(BIN)/pytest -q -m alone $(ALONE)
+
+# A module's tests share what they fly; in the order of the files the many short ones come last. Begun while the types,
+# which take one core, are checked.
+simulated: .venv/.kernels
+	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "not wire"
 
 # Drawn anew each time; FRAMES=10000000 goes on for longer. What it finds becomes an example in tests/security.
 fuzz: .venv/.kernels

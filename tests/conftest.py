@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from link.program.clock import spare_present_objects
+from link.program.clock import collect_rarely, spare_present_objects
 
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.register_profile("quick", derandomize=True, deadline=None, max_examples=20)  # make check
@@ -21,6 +21,7 @@ settings.load_profile("repeatable")
 def pytest_configure() -> None:
     """Heed Ctrl-C: a shell has what it starts in the background ignore it, and so would all that the tests start."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    collect_rarely()  # until all tests are loaded
 
 
 def pytest_collection_finish() -> None:

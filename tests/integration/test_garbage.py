@@ -14,7 +14,7 @@ from scenarios.scoring.score import Tier
 from tests.integration.observer import Observer
 from tests.integration.programs import Program, Programs, until
 
-pytestmark = [pytest.mark.wire, pytest.mark.alone]
+pytestmark = pytest.mark.wire
 
 KEYS = Keys()
 HEARD = (KEYS.fix, KEYS.fix_velocity, KEYS.imu, KEYS.pad_pose, KEYS.clock)

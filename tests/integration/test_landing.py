@@ -7,7 +7,7 @@ from scenarios.recordings.result import LANDED
 from tests.integration.observer import observer
 from tests.integration.programs import Programs
 
-pytestmark = [pytest.mark.wire, pytest.mark.alone]
+pytestmark = pytest.mark.wire
 
 SPEED = "5"
 

@@ -16,7 +16,7 @@ from tests.integration.observer import Observer
 from tests.integration.programs import Programs
 from tests.integration.ros_vehicle import DOMAIN
 
-pytestmark = [pytest.mark.wire, pytest.mark.alone]
+pytestmark = pytest.mark.wire
 
 SPEED = "3"
 MAP = """

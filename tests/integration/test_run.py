@@ -36,7 +36,6 @@ def read(folder: Path, name: str) -> dict[str, Any]:
     return table
 
 
-@pytest.mark.alone
 def test_two_runs_at_once_leave_their_folders_of_a_landing_and_of_what_came_until_the_time_limit(
     tmp_path: Path,
 ) -> None:

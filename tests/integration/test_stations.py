@@ -13,7 +13,7 @@ from tests.conformance.mavproxy_client import mavproxy
 from tests.integration.observer import Observer, observer
 from tests.integration.programs import Programs
 
-pytestmark = [pytest.mark.wire, pytest.mark.alone]
+pytestmark = pytest.mark.wire
 
 SPEED = "3"
 

@@ -32,7 +32,6 @@ WATCH = """() => {
 
 pytestmark = [
     pytest.mark.wire,
-    pytest.mark.alone,
     pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium; apt-get install chromium"),
 ]
 

@@ -1,5 +1,6 @@
 """A landing by the shipped Zenoh files, while strangers of every kind try to take part."""
 
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -63,14 +64,18 @@ def refused(options: ZenohOptions) -> None:
 
 
 def strangers(stack: ExitStack, files: Secured, other: Path) -> list[Stranger]:
-    """Return those who do get a connection, having tried those who do not."""
+    """Return those who do get a connection, having tried those who do not, all at once: each waits for 5 s."""
     plain = files.endpoint.replace("tls/", "tcp/")
-    refused(ZenohOptions(mode="client", connect=(plain,)))
     without = files.folder / "without.json5"
     tls = f"root_ca_certificate: '{files.folder}/ca.pem'"
     without.write_text(f"{{transport: {{link: {{tls: {{{tls}}}}}}}}}", encoding="utf-8")
-    refused(ZenohOptions(mode="client", connect=(files.endpoint,), config_file=without))
-    refused(ZenohOptions(mode="client", config_file=files.file("companion", authority=other)))
+    outside = (
+        ZenohOptions(mode="client", connect=(plain,)),
+        ZenohOptions(mode="client", connect=(files.endpoint,), config_file=without),
+        ZenohOptions(mode="client", config_file=files.file("companion", authority=other)),
+    )
+    with ThreadPoolExecutor() as at_once:
+        assert len(list(at_once.map(refused, outside))) == len(outside)
     unknown = ZenohOptions(config_file=files.file("companion", certificate=STRANGER))
     return [Stranger(stack.enter_context(open_session(unknown)))]
 

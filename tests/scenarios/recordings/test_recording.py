@@ -117,14 +117,11 @@ def test_replay_with_another_gain_names_the_fields_largest_difference_first(flig
     assert sizes == sorted(sizes, reverse=True)
 
 
-def test_recording_is_the_same_for_the_same_seed(tmp_path: Path) -> None:
-    scenario = load_scenario(SCENARIO).with_run(time_limit_s=4.0)
-    first, again = tmp_path / "first", tmp_path / "again"
-    for folder in (first, again):
-        folder.mkdir()
-        run_in_lockstep(scenario, RunOptions(seed=2, speed=1.0, folder=folder, record=True), lambda *_: None)
+def test_recording_is_the_same_for_the_same_seed(run: Path, tmp_path: Path) -> None:
+    options = RunOptions(seed=2, speed=1.0, folder=tmp_path, record=True)
+    run_in_lockstep(load_scenario(SCENARIO), options, lambda *_: None)
     for name in ("companion_000.mcap", "truth_000.mcap", "result.json"):
-        assert first.joinpath(name).read_bytes() == again.joinpath(name).read_bytes()
+        assert run.joinpath(name).read_bytes() == tmp_path.joinpath(name).read_bytes()
 
 
 def test_approach_of_a_run_ends_with_the_touchdown(run: Path) -> None:
