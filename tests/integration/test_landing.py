@@ -9,7 +9,7 @@ from tests.integration.programs import Programs
 
 pytestmark = pytest.mark.wire
 
-SPEED = "5"
+SPEED = "3"
 
 
 def test_four_programs_land_on_command_with_the_companion_started_last() -> None:

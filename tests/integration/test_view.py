@@ -43,6 +43,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
         context = playwright.chromium.launch_persistent_context(
             profile, executable_path=CHROMIUM, headless=True, args=list(FLAGS), viewport={"width": 900, "height": 400}
         )
+        context.set_default_timeout(DEADLINE_MS)
         yield context.new_page()
         context.close()
 

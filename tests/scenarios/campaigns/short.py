@@ -17,7 +17,7 @@ _SHORT = 'base = "straight_5"\nsensors = "nominal"\nwind = "moderate"\n'
 
 
 def short_cell(folder: Path, name: str = "short", *, time_limit_s: float = 0.5, text: str = "") -> str:
-    """Write a cell and return its file's name: called off before it lifts off, it ends at once, in the air 10 s later."""
+    """Write a cell and return its file's name; called off on the ground, as by default, it ends at once."""
     file = folder / f"{name}.toml"
     file.write_text(f"{_SHORT}run.time_limit_s = {time_limit_s}\n{text}", encoding="utf-8")
     return str(file)
