@@ -102,3 +102,28 @@ def test_the_digest_knows_names_and_contents(tmp_path: Path) -> None:
     first.rename(second)
     digests.append(source_digest([tmp_path]))
     assert len(set(digests)) == 3
+
+
+CALLER = """
+from outer import outer
+from link.compiled import kernel
+
+
+@kernel
+def caller(x: float) -> float:
+    return outer(x) - 1.0
+
+
+def is_parsed() -> bool:
+    return next(iter(outer.overloads.values())).library._shared_module is not None
+
+
+print(int(is_parsed()), caller(10.0), int(is_parsed()), len(outer.stats.cache_hits))
+"""
+
+
+@pytest.mark.slow
+def test_intermediate_code_is_parsed_only_where_a_function_is_compiled_that_calls_it(tmp_path: Path) -> None:
+    (tmp_path / "caller.py").write_text(CALLER)
+    assert said(tmp_path, 2.0, program="caller.py")[-4:] == [1.0, 20.0, 1.0, 0.0]
+    assert said(tmp_path, 2.0, program="caller.py")[-4:] == [0.0, 20.0, 1.0, 1.0]

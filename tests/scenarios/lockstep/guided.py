@@ -13,7 +13,7 @@ from companion.config.autopilot import Guide
 from companion.runtime.node import CompanionNode
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
-from scenarios.catalogue.changed import load_changed_scenario
+from scenarios.catalogue.catalogue import load_changed_scenario
 from scenarios.config import Scenario
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.recordings.result import score_run
