@@ -15,7 +15,7 @@ class RangeFinderConfig(StrictModel):
     off_max_m: Positive = 0.4  # what it sees may be nearer than the pad by so much before a landing is broken off
     off_hold_s: NotNegative = 0.3  # so long readings and attitude belong together
     contact_height_max_m: Positive = 0.15  # seen under the feet at which it still agrees with a contact
-    disputed_hold_s: NotNegative = 1.0  # in place of `touchdown.hold_s`, when it does not agree
+    disputed_hold_s: NotNegative = 1.0  # for which all other signs have to agree, when it does not
 
 
 class LevelConfig(StrictModel):
@@ -50,12 +50,14 @@ class TouchdownConfig(StrictModel):
     height_max_m: Positive = 0.35  # estimated height over the pad at which a contact is believed
     blocked_depth_m: Positive = 0.06  # how far the setpoint has sunk below the drone
     blocked_speed_m_s: Positive = 0.2  # relative vertical speed that counts as standing
-    pressed_speed_m_s: Positive = 0.5  # likewise where it is pressed down and the range finder sees the pad at its feet
+    # Likewise where it is pressed down and the range finder sees the pad at its feet; and the sink rate at which a
+    # drone that is pressed down in the air is seen to fall: signs have to agree until it would have it.
+    pressed_speed_m_s: Positive = 0.5
     falling_acceleration_m_s2: Positive = 3.5  # downwards faster than this nothing stands on a pad; half of the presses
-    hold_s: NotNegative = 0.1
     jolt_m_s2: Positive = 25.0  # horizontally: no flying changes the velocity so fast, and no hold is waited for
     stopped_hold_s: Positive = 0.3  # after a jolt, pressed down without falling: in the air it would sink at 2 m/s then
-    # Downwards, while the signs of a contact hold, and once they are believed: nearly the whole weight on the gear.
+    sink_max_m_s: Positive = 0.7  # that the gear takes (S2), of a drone that is pressed down and was still in the air
+    # Downwards, at most, while the signs of a contact hold, and once they are believed: nearly the whole weight.
     try_acceleration_m_s2: Annotated[float, Field(ge=0.0, le=9.0)] = 5.0
     press_acceleration_m_s2: Annotated[float, Field(ge=0.0, le=9.0)] = 9.0
     range_finder: RangeFinderConfig = RangeFinderConfig()

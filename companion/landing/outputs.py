@@ -11,6 +11,7 @@ from companion.core.reasons import Cause, Reason, sentence
 from companion.integrity.vehicle_data import unverified
 from companion.landing.carried_on import bound_carried
 from companion.landing.decisions.aborts import why_unplaced
+from companion.landing.decisions.conditions import trial_press
 from companion.landing.decisions.waiting import why_held_up
 from companion.landing.state.memory import Progress, StepMemory
 from companion.landing.state.step_data import StepInputs
@@ -50,7 +51,7 @@ def setpoint(
         reference = extrapolate(model.reference, (inputs.monotonic_ns - model.reference_ns) * 1e-9 + ahead_s)
     if is_planned and model.plan is not None and inputs.response is not None and inputs.response.cascade.is_led:
         reference = lead_acceleration(reference, model.plan, ahead_s, inputs.response.cascade)
-    press_m_s2 = _press_m_s2(memory, config)
+    press_m_s2 = _press_m_s2(memory, situation, config)
     if press_m_s2 is not None:
         reference = press_down(reference, press_m_s2, ahead_s)
     wanted = setpoint_at(
@@ -62,13 +63,13 @@ def setpoint(
     return wanted if inputs.own is None else as_seen_with(wanted, inputs.own.velocity_bias_enu_m_s)
 
 
-def _press_m_s2(memory: StepMemory, config: CompanionConfig) -> float | None:
+def _press_m_s2(memory: StepMemory, situation: Situation, config: CompanionConfig) -> float | None:
     """Return the downward acceleration with which a drone is pressed on what it touches, None for one that flies."""
     if memory.progress.phase is Phase.TOUCHDOWN:
         return config.touchdown.press_acceleration_m_s2
     held = memory.progress.held
     touches = Reason.CONTACT in held or Reason.DISPUTED_CONTACT in held
-    return config.touchdown.try_acceleration_m_s2 if touches else None
+    return trial_press(situation, config) if touches else None
 
 
 _WAITING_FOR_PAD = frozenset({Phase.WAITING, Phase.CHASE, Phase.ALIGN})

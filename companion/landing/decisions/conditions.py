@@ -11,6 +11,8 @@ from companion.landing.decisions.contact import (
     is_stopped_by_pad,
     signs_of,
     signs_text,
+    trial_press_m_s2,
+    trial_s,
     verdict,
 )
 from companion.landing.state.memory import Held
@@ -35,7 +37,7 @@ class Condition:
     reason: Reason
     phases: frozenset[Phase]
     is_true: Callable[[Situation, CompanionConfig], bool]
-    hold_s: Callable[[CompanionConfig], float] = lambda _: 0.0
+    hold_s: Callable[[Situation, CompanionConfig], float] = lambda _, __: 0.0
     cause: Callable[[Situation, CompanionConfig], Cause] | None = None
     is_outage: bool = False
     anew_max: Callable[[CompanionConfig], int] | None = None
@@ -44,7 +46,7 @@ class Condition:
 def holds(condition: Condition, held: Held, s: Situation, config: CompanionConfig) -> bool:
     """Return whether a condition has been true for its hold time."""
     since_ns = held.get(condition.reason)
-    return since_ns is not None and (s.monotonic_ns - since_ns) * 1e-9 >= condition.hold_s(config)
+    return since_ns is not None and (s.monotonic_ns - since_ns) * 1e-9 >= condition.hold_s(s, config)
 
 
 def cause_of(condition: Condition, s: Situation, config: CompanionConfig) -> Cause:
@@ -105,7 +107,7 @@ HEARD = Condition(
     reason=Reason.HEARD,
     phases=frozenset({Phase.ABORT}),
     is_true=_is_heard,
-    hold_s=lambda c: c.abort.heard_hold_s,
+    hold_s=lambda _, c: c.abort.heard_hold_s,
 )
 """The vehicle and the autopilot are, without a break."""
 
@@ -148,11 +150,25 @@ def _is_sunk(s: Situation, c: CompanionConfig) -> bool:
     return s.approach is not None and s.approach.height_m < -c.touchdown.lost.missed_depth_m
 
 
+def _late_s(s: Situation) -> float:
+    return s.following.late_s + (0.0 if s.drone is None else max(s.drone.age_s, 0.0))
+
+
+def trial_press(s: Situation, c: CompanionConfig) -> float:
+    """Return how hard the drone may be pressed down to see whether it stands, m/s^2."""
+    limits = c.limits.flight_limits() if s.limits is None else s.limits
+    return trial_press_m_s2(signs_of(s), _late_s(s), limits.vertical_acceleration_max_m_s2, c)
+
+
+def _trial_s(s: Situation, c: CompanionConfig) -> float:
+    return trial_s(trial_press(s, c), _late_s(s), c.touchdown)
+
+
 TOUCHED = Condition(
     reason=Reason.CONTACT,
     phases=_DESCENT,
     is_true=is_in_contact,
-    hold_s=lambda c: c.touchdown.hold_s,
+    hold_s=_trial_s,
     cause=lambda s, _: Cause(Reason.CONTACT, (signs_text(signs_of(s)),)),
 )
 """Every sign of a contact agrees."""
@@ -161,7 +177,7 @@ TOUCHED_BY_DISPUTE = Condition(
     reason=Reason.DISPUTED_CONTACT,
     phases=_DESCENT,
     is_true=_is_in_disputed_contact,
-    hold_s=lambda c: c.touchdown.range_finder.disputed_hold_s,
+    hold_s=lambda _, c: c.touchdown.range_finder.disputed_hold_s,
     cause=lambda s, _: Cause(Reason.DISPUTED_CONTACT, (signs_text(signs_of(s)),)),
 )
 """All but the range finder's."""
@@ -180,17 +196,17 @@ MISSED = (
         reason=Reason.NOTHING_TOUCHED,
         phases=_DESCENT,
         is_true=_is_sunk,
-        hold_s=lambda c: c.touchdown.lost.missed_hold_s,
+        hold_s=lambda _, c: c.touchdown.lost.missed_hold_s,
     ),
 )
 """What ends a commitment to land as well: the pad is not where it is said to be."""
 
 HELD_UP = Condition(
-    reason=Reason.HELD_UP, phases=_STANDING, is_true=_is_held_up, hold_s=lambda c: c.touchdown.stopped_hold_s
+    reason=Reason.HELD_UP, phases=_STANDING, is_true=_is_held_up, hold_s=lambda _, c: c.touchdown.stopped_hold_s
 )
 """Completes the evidence of a hard contact."""
 
 LIFTED = Condition(
-    reason=Reason.ABOVE_AFTER_CONTACT, phases=_STANDING, is_true=_is_lifted, hold_s=lambda c: c.touchdown.lost.hold_s
+    reason=Reason.ABOVE_AFTER_CONTACT, phases=_STANDING, is_true=_is_lifted, hold_s=lambda _, c: c.touchdown.lost.hold_s
 )
 """For so long no motors were switched off, and so high they are not by force."""

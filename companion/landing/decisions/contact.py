@@ -99,6 +99,41 @@ def verdict(signs: Signs, config: CompanionConfig, *, is_pressed: bool = False) 
     )
 
 
+def trial_press_m_s2(signs: Signs, late_s: float, climbs_m_s2: float, config: CompanionConfig) -> float:
+    """Return how hard a drone may be pressed down, m/s^2, while the signs of a contact agree for too short a time.
+
+    They may be wrong: an autopilot that has heard nothing for a moment hovers above its setpoint as if on a pad. Then
+    the drone falls, until that is seen. It either stops again above what its range finder sees, or touches that no
+    faster than the gear takes. Without a range finder only the signs themselves tell that it touches.
+
+    Args:
+        signs: now.
+        late_s: until a press has come to the drone, and what it does has been reported.
+        climbs_m_s2: with which it stops sinking.
+        config: all numbers.
+    """
+    touchdown, seen_m = config.touchdown, signs.range_height_m
+    press_m_s2 = touchdown.try_acceleration_m_s2
+    if seen_m is None or seen_m <= 0.0:
+        return press_m_s2
+    sinks_m_s = press_m_s2 * late_s
+    falls_m = 0.5 * sinks_m_s * late_s + sinks_m_s * late_s + 0.5 * sinks_m_s**2 / climbs_m_s2
+    if falls_m < seen_m:
+        return press_m_s2
+    now_m_s = 0.0 if signs.climb_m_s is None else signs.climb_m_s
+    return min(press_m_s2, max(touchdown.sink_max_m_s**2 - now_m_s**2, 0.0) / (2.0 * seen_m))
+
+
+def trial_s(press_m_s2: float, late_s: float, config: TouchdownConfig) -> float:
+    """Return for how long the signs of a contact have to agree under a press to be believed.
+
+    For so long that in the air the drone would be reported to sink by now: what is pressed for a shorter time than the
+    link and the reports are late has not been tried.
+    """
+    disputed_s = config.range_finder.disputed_hold_s
+    return min(config.pressed_speed_m_s / max(press_m_s2, 1e-3) + late_s, disputed_s)
+
+
 def is_stopped_by_pad(signs: Signs, config: CompanionConfig) -> bool:
     """Return whether a jolt came from the pad: it is where the drone is, and a range finder or all signs agree.
 

@@ -117,7 +117,7 @@ STRAYS = Condition(
     reason=Reason.STRAYS,
     phases=_DESCENT,
     is_true=_strays_above,
-    hold_s=lambda c: c.descent.stray_hold_s,
+    hold_s=lambda _, c: c.descent.stray_hold_s,
     anew_max=lambda c: c.descent.strays_max,
 )
 """Costs no approach at first, for nothing was near."""
@@ -141,7 +141,7 @@ NOT_SEEN = Condition(
     reason=Reason.PAD_NOT_SEEN,
     phases=_ALIGNMENT,
     is_true=must_be_seen,
-    hold_s=lambda c: c.descent.unseen.hold_s,
+    hold_s=lambda _, c: c.descent.unseen.hold_s,
     anew_max=lambda c: c.descent.unseen.anew_max,
 )
 
@@ -149,12 +149,12 @@ VEHICLE_STANDS = Condition(
     reason=Reason.VEHICLE_STANDS,
     phases=_WAITING,
     is_true=_stands_nearby,
-    hold_s=lambda c: c.chase.parked_wait_s,
+    hold_s=lambda _, c: c.chase.parked_wait_s,
 )
 """A vehicle that stands may be about to depart, so it is landed on only after it has stood for a while."""
 
 ALIGNED = Condition(
-    reason=Reason.ALIGNED, phases=_ALIGNMENT, is_true=_is_aligned, hold_s=lambda c: c.descent.alignment.hold_s
+    reason=Reason.ALIGNED, phases=_ALIGNMENT, is_true=_is_aligned, hold_s=lambda _, c: c.descent.alignment.hold_s
 )
 
 ENTRIES = (
@@ -171,7 +171,7 @@ ENTRIES = (
 """What leads to another phase of the approach."""
 
 DRIVES = Condition(
-    reason=Reason.VEHICLE_DRIVES, phases=_WAITING, is_true=_drives, hold_s=lambda c: c.chase.driving_hold_s
+    reason=Reason.VEHICLE_DRIVES, phases=_WAITING, is_true=_drives, hold_s=lambda _, c: c.chase.driving_hold_s
 )
 """Without this no vehicle is taken to pass."""
 

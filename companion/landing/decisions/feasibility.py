@@ -88,7 +88,7 @@ EMPTY = Condition(
     reason=Reason.BATTERY_LOW,
     phases=_BEFORE_A_CHASE | {Phase.ON_DECK},
     is_true=_is_empty,
-    hold_s=lambda c: c.chase.driving_hold_s,
+    hold_s=lambda _, c: c.chase.driving_hold_s,
     cause=_empty,
 )
 """A drone begins no flight and no approach on a battery at its reserve."""
@@ -157,28 +157,28 @@ OBSTACLES = (
         reason=Reason.STAMPS_AHEAD,
         phases=_BEFORE_ANY_CHASE,
         is_true=is_stamped_ahead,
-        hold_s=lambda c: c.integrity.fix_ahead_hold_s,
+        hold_s=lambda _, c: c.integrity.fix_ahead_hold_s,
         cause=_tell_stamped_ahead,
     ),
     Condition(
         reason=Reason.VEHICLE_TOO_FAST,
         phases=_BEFORE_ANY_CHASE,
         is_true=_is_too_fast,
-        hold_s=lambda c: c.chase.driving_hold_s,
+        hold_s=lambda _, c: c.chase.driving_hold_s,
         cause=_too_fast,
     ),
     Condition(
         reason=Reason.VEHICLE_TOO_FAR,
         phases=_BEFORE_ANY_CHASE,
         is_true=_is_too_far,
-        hold_s=lambda c: c.chase.driving_hold_s,
+        hold_s=lambda _, c: c.chase.driving_hold_s,
         cause=_too_far,
     ),
     Condition(
         reason=Reason.HEIGHTS_APART,
         phases=_BEFORE_ANY_CHASE,
         is_true=_lacks_geoid,
-        hold_s=lambda _: _RECEIVER_TOLD_S,
+        hold_s=lambda _, __: _RECEIVER_TOLD_S,
     ),
     Condition(reason=Reason.AUTOPILOT_WARNS, phases=_BEFORE_A_CHASE, is_true=_is_warned),
     Condition(
@@ -190,14 +190,14 @@ OBSTACLES = (
         reason=Reason.ROAD_ELSEWHERE,
         phases=_BEFORE_ANY_CHASE,
         is_true=_is_elsewhere,
-        hold_s=lambda c: c.chase.driving_hold_s,
+        hold_s=lambda _, c: c.chase.driving_hold_s,
         cause=_elsewhere,
     ),
     Condition(
         reason=Reason.ROOF_TOO_HIGH,
         phases=_BEFORE_A_FLIGHT,
         is_true=_is_high,
-        hold_s=lambda c: c.chase.driving_hold_s,
+        hold_s=lambda _, c: c.chase.driving_hold_s,
         cause=_high,
     ),
 )

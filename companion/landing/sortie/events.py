@@ -38,7 +38,7 @@ LOST = (
         reason=Reason.VEHICLE_CLOCK_AHEAD,
         phases=_TOGETHER,
         is_true=is_stamped_ahead,
-        hold_s=lambda c: c.integrity.fix_ahead_hold_s,
+        hold_s=lambda _, c: c.integrity.fix_ahead_hold_s,
     ),
     Condition(reason=Reason.VEHICLE_CONTRADICTS_ITSELF, phases=_TOGETHER, is_true=contradicts_itself),
 )
@@ -54,7 +54,7 @@ NOT_FOLLOWED = Condition(
     reason=Reason.SETPOINT_NOT_FOLLOWED,
     phases=frozenset({Phase.FOLLOW}),
     is_true=is_not_followed,
-    hold_s=lambda c: c.abort.tracking_hold_s,
+    hold_s=lambda _, c: c.abort.tracking_hold_s,
 )
 """Beside a vehicle; on the way home the model is set back to the drone."""
 

@@ -115,16 +115,18 @@ def test_every_abort_test_is_tried_here() -> None:
 
 @pytest.mark.parametrize(("test", "phase"), CASES)
 def test_abort_fires_exactly_after_its_hold_time(test: Condition, phase: Phase) -> None:
-    hold_s = test.hold_s(CONFIG)
     facts = _before_the_next_phase(UNSAFE[test.reason], phase)
+    hold_s = test.hold_s(facts, CONFIG)
     decision, ticks = first_decision(phase, facts, hold_s + 1.0)
     assert decision == (Event.UNSAFE, cause_of(test, facts, CONFIG))
     assert ticks == math.ceil(hold_s * 1e9 / TICK_NS - 1e-9)
 
 
-@pytest.mark.parametrize(("test", "phase"), [(test, phase) for test, phase in CASES if test.hold_s(CONFIG) > 0.0])
+@pytest.mark.parametrize(
+    ("test", "phase"), [(test, phase) for test, phase in CASES if test.hold_s(situation(), CONFIG) > 0.0]
+)
 def test_condition_that_breaks_off_for_one_step_begins_anew(test: Condition, phase: Phase) -> None:
-    hold_ticks = math.ceil(test.hold_s(CONFIG) * 1e9 / TICK_NS - 1e-9)
+    hold_ticks = math.ceil(test.hold_s(situation(), CONFIG) * 1e9 / TICK_NS - 1e-9)
     held: Held = {}
     for ticks in range(4 * hold_ticks):
         is_break = ticks % hold_ticks == hold_ticks - 1
@@ -345,7 +347,7 @@ def test_landing_goes_on_exactly_after_the_hold_time(event: Event, test: Conditi
         facts = changed(facts, range_height_m=2.0)
     if test.reason is Reason.HARD_CONTACT:
         facts = _jolted(facts)
-    hold_s = test.hold_s(CONFIG)
+    hold_s = test.hold_s(facts, CONFIG)
     decision, ticks = first_decision(phase, facts, hold_s + 1.0)
     assert decision is not None
     assert decision[0] is event
