@@ -116,11 +116,11 @@ def trial_press_m_s2(signs: Signs, late_s: float, climbs_m_s2: float, config: Co
     press_m_s2 = touchdown.try_acceleration_m_s2
     if seen_m is None or seen_m <= 0.0:
         return press_m_s2
-    sinks_m_s = press_m_s2 * late_s
-    falls_m = 0.5 * sinks_m_s * late_s + sinks_m_s * late_s + 0.5 * sinks_m_s**2 / climbs_m_s2
+    now_m_s = 0.0 if signs.climb_m_s is None else max(-signs.climb_m_s, 0.0)
+    sinks_m_s = now_m_s + press_m_s2 * late_s
+    falls_m = 0.5 * (now_m_s + sinks_m_s) * late_s + sinks_m_s * late_s + 0.5 * sinks_m_s**2 / climbs_m_s2
     if falls_m < seen_m:
         return press_m_s2
-    now_m_s = 0.0 if signs.climb_m_s is None else signs.climb_m_s
     return min(press_m_s2, max(touchdown.sink_max_m_s**2 - now_m_s**2, 0.0) / (2.0 * seen_m))
 
 

@@ -1,5 +1,6 @@
 """The signs of a contact: what agrees on the pad, and that nothing faulty alone cuts the motors in the air."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -7,7 +8,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from companion.landing.decisions.contact import Verdict, may_force_motors_off, signs_of, signs_text, verdict
+from companion.landing.decisions.contact import (
+    Verdict,
+    may_force_motors_off,
+    signs_of,
+    signs_text,
+    trial_press_m_s2,
+    trial_s,
+    verdict,
+)
 from companion.situation.situation import Situation
 from companion.vehicle.pad_reach import over_pad_radius_m
 from link.messages import Vector3
@@ -189,3 +198,40 @@ def test_decision_is_described_by_its_signs() -> None:
     text = signs_text(signs_of(on_pad()))
     assert "0.01 m by range finder" in text
     assert "autopilot not landed" in text
+
+
+CLIMBS_M_S2 = CONFIG.limits.flight_limits().vertical_acceleration_max_m_s2
+
+
+@given(st.floats(0.0, 3.0), st.floats(0.0, 0.4), st.floats(-TOUCHDOWN.sink_max_m_s, TOUCHDOWN.blocked_speed_m_s))
+def test_a_drone_pressed_down_in_the_air_stops_or_touches_no_faster_than_its_gear_takes(
+    seen_m: float, late_s: float, climb_m_s: float
+) -> None:
+    signs = replace(signs_of(on_pad()), range_height_m=seen_m, climb_m_s=climb_m_s)
+    press_m_s2 = trial_press_m_s2(signs, late_s, CLIMBS_M_S2, CONFIG)
+    assert 0.0 <= press_m_s2 <= TOUCHDOWN.try_acceleration_m_s2
+    now_m_s = max(-climb_m_s, 0.0)
+    touches_m_s = math.sqrt(now_m_s**2 + 2.0 * press_m_s2 * seen_m)
+    sinks_m_s = now_m_s + press_m_s2 * late_s  # when it is reported to fall; until it is heard again it sinks on
+    stops_m = (0.5 * (now_m_s + sinks_m_s) + sinks_m_s) * late_s + sinks_m_s**2 / (2.0 * CLIMBS_M_S2)
+    assert stops_m < seen_m or touches_m_s < TOUCHDOWN.sink_max_m_s + 1e-9 or seen_m == 0.0
+
+
+@given(st.floats(0.0, TOUCHDOWN.try_acceleration_m_s2), st.floats(0.0, 0.4))
+def test_a_trial_lasts_until_a_drone_in_the_air_would_be_reported_to_sink(press_m_s2: float, late_s: float) -> None:
+    """Or, where it may hardly be pressed, for as long as a range finder that disagrees has to be outvoted."""
+    sinks_m_s = press_m_s2 * (trial_s(press_m_s2, late_s, TOUCHDOWN) - late_s)
+    is_longest = trial_s(press_m_s2, late_s, TOUCHDOWN) == TOUCHDOWN.range_finder.disputed_hold_s
+    assert is_longest or sinks_m_s >= TOUCHDOWN.pressed_speed_m_s - 1e-9
+    assert trial_s(press_m_s2, late_s, TOUCHDOWN) <= TOUCHDOWN.range_finder.disputed_hold_s
+
+
+def test_over_a_prompt_link_a_drone_is_pressed_as_hard_as_it_may_be_from_a_hand_above_the_pad() -> None:
+    signs = replace(signs_of(on_pad()), range_height_m=0.1, climb_m_s=0.0)
+    assert trial_press_m_s2(signs, 0.05, CLIMBS_M_S2, CONFIG) == TOUCHDOWN.try_acceleration_m_s2
+    assert trial_press_m_s2(signs, 0.3, CLIMBS_M_S2, CONFIG) == pytest.approx(0.7**2 / 0.2)
+
+
+def test_without_a_range_finder_only_the_signs_tell_and_the_press_is_whole() -> None:
+    signs = replace(signs_of(on_pad()), range_height_m=None)
+    assert trial_press_m_s2(signs, 0.4, CLIMBS_M_S2, CONFIG) == TOUCHDOWN.try_acceleration_m_s2
