@@ -34,7 +34,8 @@ def scene_messages(record: StepRecord, descent: DescentConfig, keys: Keys, *, lo
         keys: of the Zenoh contract.
         long: as of `companion.recording.messages.step_messages`.
     """
-    transforms = transform_message(Scene(t_ns=record.inputs.t_ns, drone=_drone(record)))
+    own = record.inputs.own
+    transforms = None if own is None else transform_message(Scene(t_ns=own.t_ns, drone=_drone(record)))
     if transforms is not None:
         yield transforms
     text = record.outputs.text
@@ -54,7 +55,7 @@ def _long_messages(record: StepRecord, descent: DescentConfig, keys: Keys) -> It
     own, frame = record.inputs.own, record.inputs.autopilot.frame
     if own is not None and frame is not None:
         there = geodetic_from_local(frame, own.position_enu_m)
-        yield location_message(keys.record("location"), scene.t_ns, there)
+        yield location_message(keys.record("location"), own.t_ns, there)
 
 
 def scene_of(record: StepRecord, forecast: Forecast | None, descent: DescentConfig) -> Scene:
