@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from link.program.extras import require
 from link.program.toml_config import merge
 from scenarios.bench.codec import codec_ratios
+from scenarios.bench.foxglove import foxglove_cost
 from scenarios.bench.measures import first_heartbeats_s, full_speed_factor, help_times_s
-from scenarios.bench.recording import recording_cost
+from scenarios.bench.recording import FlownInputs, recording_cost
 from scenarios.bench.shares import sampled_parts, shares_of
 from scenarios.config import Scenario
 from scenarios.lockstep.lockstep import Lockstep
@@ -69,6 +71,11 @@ BUDGETS = (
     Budget(path=("full_speed_factor",), label="simulator, all it can", unit="x", limit=5.0, at_least=True),
     Budget(path=("lockstep", "real_time_factor"), label="lockstep, whole stack", unit="x", limit=20.0, at_least=True),
     Budget(path=("recording", "step_ratio"), label="step with recording, without is 1", unit="x", limit=1.03),
+    # A picture of a view at 20 Hz; and what leaves a core of a small computer to the flight.
+    Budget(
+        path=("foxglove", "latency_ms", "median"), label="--foxglove, step to client, median", unit="ms", limit=50.0
+    ),
+    Budget(path=("foxglove", "cpu_share"), label="--foxglove, share of a core", unit="", limit=0.2),
     Budget(path=("codec", "encode_ratio"), label="MAVLink encoding, pymavlink's is 1", unit="x", limit=1.5),
     Budget(path=("codec", "parse_ratio"), label="MAVLink parsing, pymavlink's is 1", unit="x", limit=1.5),
     *(Budget(path=("help_s", name), label=f"{name} --help", unit="s", limit=1.0) for name in _PROGRAMS),
@@ -83,7 +90,12 @@ def bench(scenario: Scenario, seed: int, announce: Announce) -> Table:
         scenario: the landing to be flown.
         seed: of everything random.
         announce: told before each measurement.
+
+    Raises:
+        UserError: an extra that is measured is not installed.
     """
+    for extra in ("foxglove", "view"):  # the server, and what its client speaks
+        require(extra, "scenarios bench")
     with tempfile.TemporaryDirectory(prefix="decklander-bench-") as name:
         folder = Path(name)
         announce("one landing over the wire in real time")
@@ -93,7 +105,10 @@ def bench(scenario: Scenario, seed: int, announce: Announce) -> Table:
         announce("first heartbeats")
         heartbeats_s = first_heartbeats_s(folder)
         announce("recording")
-        recording = recording_cost(scenario, seed, folder / "recording")
+        flown = FlownInputs(scenario, seed)
+        recording = recording_cost(scenario, flown, folder / "recording")
+    announce("Foxglove, in real time")
+    foxglove = foxglove_cost(scenario, flown)
     announce("one landing in lockstep")
     lockstep = _lockstep(scenario, seed)
     announce("help")
@@ -106,6 +121,7 @@ def bench(scenario: Scenario, seed: int, announce: Announce) -> Table:
         "full_speed_factor": round(full_speed, 3),
         "lockstep": lockstep,
         "recording": recording,
+        "foxglove": foxglove,
         "first_heartbeat_s": heartbeats_s,
         "codec": codec_ratios(),
         "help_s": help_times_s(),
@@ -142,6 +158,9 @@ def text_lines(table: Table) -> list[str]:
     lines += [f"  {part:42}{share:9.1%}" for part, share in table["lockstep"]["cpu_shares"].items()]
     share, dropped = table["recording"]["writer_cpu_share"], table["recording"]["dropped"]
     lines += ["", f"recording, its writer's share of a core in flight {share:.1%}, records dropped {dropped}"]
+    foxglove = table["foxglove"]
+    rate_hz, p99_ms = foxglove["messages_hz"], foxglove["latency_ms"]["p99"]
+    lines += ["", f"--foxglove, {rate_hz:.0f} messages a second, p99 of their latency {p99_ms:.1f} ms"]
     lines += ["", "start to first heartbeat, s"]
     lines += [f"  {name:42}{value:9.2f}" for name, value in table["first_heartbeat_s"].items()]
     return lines

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from companion.recording.folder import recording_sink
-from companion.recording.records import InputRecord
+from companion.recording.records import InputRecord, StepRecord
 from companion.runtime.build import build_node
 from companion.runtime.node import CompanionNode
 from link.recording.recorder import BackgroundRecorder
@@ -23,46 +23,56 @@ _LOOK_S = 0.001
 _BLOCK = 25  # steps, after which the recorder catches up: in flight it has most of the time for itself
 
 
-class _Inputs:
-    """Keeps what went into a companion."""
+class FlownInputs:
+    """What went into a companion in a landing, to be given to others.
+
+    Attributes:
+        records: in their order.
+        utc_from_local_ns: UTC less the companion's clock, as it knew it at last.
+        elapsed_s: how long the run was.
+    """
 
     dropped = 0
 
-    def __init__(self) -> None:
+    def __init__(self, scenario: Scenario, seed: int) -> None:
         self.records: list[InputRecord] = []
+        self.utc_from_local_ns = 0
+        flight = Lockstep(scenario, seed, recorder=self)
+        flight.run()
+        self.elapsed_s = flight.recording.elapsed_s
 
     def put(self, record: Any) -> None:
+        """Keep an input."""
         if isinstance(record, InputRecord):
             self.records.append(record)
+        elif isinstance(record, StepRecord):
+            self.utc_from_local_ns = record.inputs.t_ns - record.local_ns
 
     def close(self) -> None:
-        pass
+        """Keep all."""
 
 
-def recording_cost(scenario: Scenario, seed: int, folder: Path) -> dict[str, float]:
+def recording_cost(scenario: Scenario, flown: FlownInputs, folder: Path) -> dict[str, float]:
     """Measure a flight's recording.
 
     Args:
-        scenario: what is flown.
-        seed: of everything random.
+        scenario: what was flown.
+        flown: its inputs.
         folder: for the recording.
 
     Returns:
         `step_ratio`: a step's processor time with recording over that without, the median of all steps;
         `writer_cpu_share`: of a core, for the recorder's thread, over the flight's duration; `dropped` records.
     """
-    inputs = _Inputs()
-    flight = Lockstep(scenario, seed, recorder=inputs)
-    flight.run()
     recorder = BackgroundRecorder(recording_sink(folder, scenario.system.companion, Keys()))
     nodes = [build_node(scenario.system.companion, Keys(), recorder=one) for one in (None, recorder)]
     began_ns = time.process_time_ns() - time.thread_time_ns()
-    steps = _steps(inputs.records, nodes, recorder)
+    steps = _steps(flown.records, nodes, recorder)
     recorder.close()
     writer_s = (time.process_time_ns() - time.thread_time_ns() - began_ns) / NS_PER_S
     return {
         "step_ratio": round(statistics.median(recorded / plain for plain, recorded in steps), 4),
-        "writer_cpu_share": round(writer_s / flight.recording.elapsed_s, 4),
+        "writer_cpu_share": round(writer_s / flown.elapsed_s, 4),
         "dropped": recorder.dropped,
     }
 

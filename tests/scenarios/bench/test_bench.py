@@ -11,7 +11,7 @@ import sim_autopilot.runtime.node
 from link.program.cli import run_app
 from scenarios.__main__ import app
 from scenarios.bench.bench import Budget, text_lines
-from scenarios.bench.recording import recording_cost
+from scenarios.bench.recording import FlownInputs, recording_cost
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.lockstep.stopwatch import quantiles_ms, ratio_of, timed_steps
@@ -72,6 +72,7 @@ def test_a_budget_says_whether_it_is_met(value: float, *, at_least: bool, met: b
 def test_a_figure_that_could_not_be_measured_misses_its_budget_and_is_shown_as_a_dash() -> None:
     check = BUDGET.check({"c": 1.0})
     assert (check["value"], check["met"]) == (None, False)
+    foxglove = {"messages_hz": 400.0, "latency_ms": {"p99": 30.0}}
     lockstep = {"cpu_s": 1.0, "cpu_shares": {"companion": 1.0}}
     table = {
         "scenario": "s",
@@ -82,7 +83,7 @@ def test_a_figure_that_could_not_be_measured_misses_its_budget_and_is_shown_as_a
         "step_ms": {},
         "first_heartbeat_s": {},
     }
-    table |= {"lockstep": lockstep, "recording": {"writer_cpu_share": 0.02, "dropped": 0}}
+    table |= {"lockstep": lockstep, "foxglove": foxglove, "recording": {"writer_cpu_share": 0.02, "dropped": 0}}
     line = next(line for line in text_lines(table) if "a figure" in line)
     assert line.split()[-6:] == ["-", "ms", "at", "most", "5", "missed"]
 
@@ -90,7 +91,7 @@ def test_a_figure_that_could_not_be_measured_misses_its_budget_and_is_shown_as_a
 @pytest.mark.slow
 def test_cost_of_recording_is_measured_on_a_whole_recording(tmp_path: Path) -> None:
     scenario = load_scenario("straight_5").with_run(time_limit_s=0.5)
-    cost = recording_cost(scenario, 1, tmp_path)
+    cost = recording_cost(scenario, FlownInputs(scenario, 1), tmp_path)
     assert cost["step_ratio"] > 0.5
     assert cost["writer_cpu_share"] > 0.0
     assert cost["dropped"] == 0
@@ -116,6 +117,9 @@ def test_the_command_prints_every_figure_with_its_budget(
     assert 0.0 < table["companion"]["cpu_share"] < 2.0
     assert 50.0 < table["companion"]["own_memory_mb"] < table["companion"]["memory_mb"] < 1000.0
     assert table["full_speed_factor"] > table["real_time_factor"]
+    assert 0.0 < table["foxglove"]["latency_ms"]["median"] <= table["foxglove"]["latency_ms"]["p99"]
+    assert 0.0 < table["foxglove"]["cpu_share"] < 2.0
+    assert table["foxglove"]["messages_hz"] > 50.0  # a step's alone
     assert set(table["help_s"]) == set(MODULES)
     assert set(table["first_heartbeat_s"]) == {"companion", "sim-autopilot"}
     assert all(isinstance(check["met"], bool) and check["value"] is not None for check in table["budgets"])
