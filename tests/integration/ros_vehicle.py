@@ -3,10 +3,14 @@
 It takes the simulated car's truth for what its own localization knows, and says what Autoware's would: an odometry on
 `/localization/kinematic_state`, and once, latched, where its pad is. Keys, tokens and attachments are written out here.
 
-    python -m tests.integration.ros_vehicle ENDPOINT
+Its localization errs as its covariances say, by a draw of SEED.
+
+    python -m tests.integration.ros_vehicle ENDPOINT SEED
 """
 
 import json
+import math
+import random
 import struct
 import sys
 import threading
@@ -44,6 +48,20 @@ def diagonal(first: float, second: float) -> list[float]:
     return [(first if i < 3 else second) if i == j else 0.0 for i in range(6) for j in range(6)]
 
 
+def err(told: Odometry, draw: random.Random) -> None:
+    """Draw the errors of a localization that is as good as its covariances."""
+    place, velocity = told.pose.pose.position, told.twist.twist.linear
+    for vector, variance in ((place, POSITION_VARIANCE_M2), (velocity, VELOCITY_VARIANCE_M2_S2)):
+        vector.x += draw.gauss(0.0, math.sqrt(variance))
+        vector.y += draw.gauss(0.0, math.sqrt(variance))
+        vector.z += draw.gauss(0.0, math.sqrt(variance))
+    told.twist.twist.angular.z += draw.gauss(0.0, math.sqrt(RATE_VARIANCE_RAD2_S2))
+    turn, half_rad = told.pose.pose.orientation, 0.5 * draw.gauss(0.0, math.sqrt(ATTITUDE_VARIANCE_RAD2))
+    w, x, y, z = turn.w, turn.x, turn.y, turn.z  # times a turn about the vertical
+    turn.w, turn.z = w * math.cos(half_rad) - z * math.sin(half_rad), z * math.cos(half_rad) + w * math.sin(half_rad)
+    turn.x, turn.y = x * math.cos(half_rad) + y * math.sin(half_rad), y * math.cos(half_rad) - x * math.sin(half_rad)
+
+
 def attachment(sequence: int) -> bytes:
     return struct.pack("<qq", sequence, time.time_ns()) + b"\x10" + PUBLISHER_ID
 
@@ -76,7 +94,7 @@ def main() -> None:
         transforms.put(
             TFMessage([TransformStamped(header, "landing_pad", there)]).serialize(), attachment=attachment(1)
         )
-        heard = 0
+        heard, draw = 0, random.Random(int(sys.argv[2]))
 
         def relay(sample: zenoh.Sample) -> None:
             nonlocal heard
@@ -84,6 +102,7 @@ def main() -> None:
             if heard % PERIOD:
                 return
             told = Odometry.deserialize(sample.payload.to_bytes())
+            err(told, draw)
             told.pose.covariance = diagonal(POSITION_VARIANCE_M2, ATTITUDE_VARIANCE_RAD2)
             told.twist.covariance = diagonal(VELOCITY_VARIANCE_M2_S2, RATE_VARIANCE_RAD2_S2)
             state.put(told.serialize(), attachment=attachment(heard // PERIOD))
