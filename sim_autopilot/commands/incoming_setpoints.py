@@ -8,7 +8,7 @@ from link.records import replace
 from sim_autopilot.commands.requests import is_ours
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.flight.follow import with_word
-from sim_autopilot.flight.precision_landing import place_seen, with_sighting
+from sim_autopilot.flight.precision_landing import Target, place_seen, place_told, with_sighting
 from sim_autopilot.flight.repositioning import place_asked
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.telemetry.range_finder import height_over_surface_m
@@ -34,8 +34,15 @@ def take_attitude_setpoint(memory: AutopilotMemory, message: Message, config: Au
     return config.firmware.setpoints.take_attitude(memory, message) if ours else memory, ()
 
 
-def take_landing_target(memory: AutopilotMemory, message: Message, _config: AutopilotConfig) -> Result:
-    """Take a LANDING_TARGET: only a flying LAND mode keeps to it; another forgets the way there."""
+def take_landing_target(memory: AutopilotMemory, message: Message, config: AutopilotConfig) -> Result:
+    """Take a LANDING_TARGET: only a flying LAND mode keeps to it; another forgets the way there.
+
+    Where precision landing is a mode of its own, that takes the place as it is told.
+    """
+    if Mode.PRECISION_LAND in config.firmware.modes.codes:
+        place = place_told(message, memory.places.origin)
+        target = None if place is None else Target(seen_ns=memory.now.boot_ns, position_enu_m=place)
+        return (memory if target is None else replace(memory, heard=replace(memory.heard, target=target))), ()
     settings, now = memory.tuning.settings.land.precision, memory.now
     place = place_seen(message, now, height_over_surface_m(memory)) if settings.enabled else None
     if place is None:

@@ -34,6 +34,7 @@ class Mode(Enum):
     AVOID = "avoid"
     GUIDED_NOGPS = "guided_nogps"
     FOLLOW = "follow"  # keeps near somebody who tells where he is
+    PRECISION_LAND = "precision_land"  # lands on a target that it is told of; ArduCopter's is part of LAND
 
 
 class Event(Enum):
@@ -60,6 +61,7 @@ class Event(Enum):
     ASK_AVOID = "ask_avoid"
     ASK_GUIDED_NOGPS = "ask_guided_nogps"
     ASK_FOLLOW = "ask_follow"
+    ASK_PRECISION_LAND = "ask_precision_land"
     LOST_TO_POSITION = "lost_to_position"  # setpoints lost, and where the parameters send it then
     LOST_TO_HOLD = "lost_to_hold"
     LOST_TO_LAND = "lost_to_land"
@@ -102,9 +104,9 @@ _SAFER: Mapping[Event, frozenset[Mode]] = MappingProxyType(
     {
         Event.FAILSAFE_HOLD: frozenset({Mode.BRAKE, Mode.SMART_RTL, Mode.RTL, Mode.LAND}),
         Event.FAILSAFE_BRAKE: frozenset({Mode.SMART_RTL, Mode.RTL, Mode.LAND}),
-        Event.FAILSAFE_SMART_RTL: frozenset({Mode.RTL, Mode.LAND}),
-        Event.FAILSAFE_RTL: frozenset({Mode.LAND}),
-        Event.FAILSAFE_LAND: frozenset(),
+        Event.FAILSAFE_SMART_RTL: frozenset({Mode.RTL, Mode.LAND, Mode.PRECISION_LAND}),
+        Event.FAILSAFE_RTL: frozenset({Mode.LAND, Mode.PRECISION_LAND}),
+        Event.FAILSAFE_LAND: frozenset({Mode.PRECISION_LAND}),
     }
 )
 """The modes that a failsafe leaves alone, since they end the flight sooner than its own."""

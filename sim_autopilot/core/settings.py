@@ -126,6 +126,30 @@ NO_PRECISION = PrecisionSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class TargetSettings:
+    """What the PLD parameters amount to.
+
+    Attributes:
+        lost_s: after which a target is lost.
+        within_m: of the target, north and east, where it sinks.
+        final_m: above the target, below which it lands where that was lost.
+        search_m: above home, from where it looks for it.
+        search_s: how long.
+        searches_max: how often.
+    """
+
+    lost_s: float = 5.0
+    within_m: float = 0.2
+    final_m: float = 0.1
+    search_m: float = 10.0
+    search_s: float = 10.0
+    searches_max: int = 3
+
+
+PX4_TARGET = TargetSettings()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class LandSettings:
     """Of a landing.
 
@@ -208,6 +232,7 @@ class FlightSettings:
         sticks: what they ask for.
         takeover: by sticks, and without them.
         follow: of the mode that follows somebody.
+        target: of the precision landing that is a mode of its own.
         failsafes: of battery, ground station and fence.
         simulation: of battery, air and failures.
     """
@@ -225,5 +250,6 @@ class FlightSettings:
     sticks: StickFeel = PX4_STICKS
     takeover: TakeoverSettings = NO_TAKEOVER
     follow: FollowSettings = BEHIND
+    target: TargetSettings = PX4_TARGET
     failsafes: FailsafeSettings = NO_FAILSAFES
     simulation: SimulationSettings = AS_SIMULATED

@@ -13,6 +13,7 @@ from sim_autopilot.core.modes import Mode, Modes
 from sim_autopilot.core.settings import FlightSettings
 from sim_autopilot.flight.follow import Chase
 from sim_autopilot.flight.orbit import Orbit, carry_round
+from sim_autopilot.flight.target_stages import TargetLanding
 from sim_autopilot.flight.travel import Goal, Pace, move
 from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.setpoints.partial import with_own_motion
@@ -54,6 +55,7 @@ class ModeFlight:
         goal: where the anchor is on its way to.
         orbit: the circle that it flies.
         chase: what it remembers of whom it follows.
+        target_landing: the stages of a precision landing.
         speed_m_s: that was asked for, for every way of the mode; None is the parameters'.
         returns: whether a mission's mode flies home and lands.
     """
@@ -69,6 +71,7 @@ class ModeFlight:
     goal: Goal | None = None
     orbit: Orbit | None = None
     chase: Chase | None = None
+    target_landing: TargetLanding | None = None
     speed_m_s: float | None = None
     returns: bool = False
 
@@ -121,9 +124,7 @@ def next_reference(
     if flight.leg is Leg.BRAKE and (mode is Mode.LAND or (mode is Mode.POSITION and modes.failsafe)):
         flight = descend_here(flight, now)
     if flight.leg is Leg.DESCEND:
-        low = now.position_enu_m[2] - home_enu_m[2] < settings.land.slow_below_m
-        rate_m_s = settings.land.descent_m_s if low else settings.land.approach_m_s
-        return _descend(flight, now, rate_m_s, elapsed_s)
+        return descend(flight, now, home_enu_m, settings, elapsed_s)
     if flight.goal is not None:
         flight = replace(flight, anchor=move(flight.anchor, flight.goal, pace_of(settings), elapsed_s))
     return flight, flight.anchor
@@ -208,7 +209,12 @@ def _return_height_m(now: Snapshot, home_enu_m: Vector3, settings: FlightSetting
     return min(height_m, max(settings.returning.slope * _distance_m(now, home_enu_m), least_m))
 
 
-def _descend(flight: ModeFlight, now: Snapshot, rate_m_s: float, elapsed_s: float) -> tuple[ModeFlight, Reference]:
+def descend(
+    flight: ModeFlight, now: Snapshot, home_enu_m: Vector3, settings: FlightSettings, elapsed_s: float
+) -> tuple[ModeFlight, Reference]:
+    """Return the memory of a landing and what to follow for the next `elapsed_s`: sinking at its anchor."""
+    low = now.position_enu_m[2] - home_enu_m[2] < settings.land.slow_below_m
+    rate_m_s = settings.land.descent_m_s if low else settings.land.approach_m_s
     change_m_s = _SINKING_M_S2 * elapsed_s
     sink_m_s = flight.sink_m_s + max(-change_m_s, min(change_m_s, rate_m_s - flight.sink_m_s))
     sinking_m = max(flight.sinking_m - sink_m_s * elapsed_s, now.position_enu_m[2] - _PRESS_M)

@@ -10,12 +10,13 @@ from math import hypot, isfinite, tan
 
 import numpy as np
 
-from link.frames.rotations import flu_from_frd, quaternion_from_roll_pitch_yaw, rotate
+from link.frames.rotations import enu_from_ned, flu_from_frd, quaternion_from_roll_pitch_yaw, rotate
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Quaternion, Vector3
 from link.records import replace
 from sim_autopilot.core.data import Reference
 from sim_autopilot.core.limits import PathLimits
+from sim_autopilot.core.places import Origin, world_from_local
 from sim_autopilot.core.settings import PrecisionSettings
 from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.setpoints.path import Motion, Plane, carry_on, correction_speed, lead_to_position
@@ -32,6 +33,8 @@ _ACCEPTED_M = 0.15
 _LOOK_S = 0.3
 """How far ahead the height that is asked for lies, so that a held descent does not begin with a jump."""
 _FAR_M = 1e3
+_REACH_M = 1e5
+"""Of the local frame."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,6 +72,14 @@ def place_seen(message: Message, now: Snapshot, range_m: float) -> Vector3 | Non
     x, y, z = rotate(now.orientation_wxyz if turned else _heading(now), flu_from_frd(arm_frd))
     px, py, pz = now.position_enu_m
     return px + x, py + y, pz + z
+
+
+def place_told(message: Message, origin: Origin) -> Vector3 | None:
+    """Return the place in W of a LANDING_TARGET in the autopilot's local frame, as PX4 takes it; None of any other."""
+    place = message.x, message.y, message.z
+    if message.position_valid != 1 or message.frame != mavlink.MAV_FRAME_LOCAL_NED or not all(map(isfinite, place)):
+        return None
+    return world_from_local(origin, enu_from_ned(place)) if hypot(*place) < _REACH_M else None
 
 
 def with_sighting(target: Target | None, place: Vector3, now_ns: int, settings: PrecisionSettings) -> Target:

@@ -1,14 +1,18 @@
 """What an armed drone follows next: the mode's wish, by way of the spool-up and the lift-off."""
 
+import numpy as np
+
 from link.records import replace
 from sim_autopilot.core.data import Reference
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.flight.climb import Climb, asks_for_takeoff, has_lifted, is_idle, ramp
-from sim_autopilot.flight.flight import ModeFlight, next_reference
+from sim_autopilot.flight.flight import Leg, ModeFlight, descend, descend_here, go_to, next_reference, pace_of
 from sim_autopilot.flight.follow import chase_leader
 from sim_autopilot.flight.land_detector import IN_AIR
 from sim_autopilot.flight.manual import MANUAL_MODES, follow_sticks, sticks_in_effect
 from sim_autopilot.flight.precision_landing import is_acquired, steer_to_target
+from sim_autopilot.flight.target_stages import SINKING, begin_target_landing, next_stage
+from sim_autopilot.flight.travel import Goal, move
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, Course
 from sim_autopilot.setpoints.guided import on_the_ground
 
@@ -59,6 +63,8 @@ def _wish(memory: AutopilotMemory, elapsed_s: float) -> tuple[ModeFlight, Refere
     sticks = sticks_in_effect(memory.heard.sticks, now.boot_ns, memory.tuning.settings.sticks)
     if mode in MANUAL_MODES and sticks is not None and not (mode is Mode.POSITION and memory.modes.failsafe):
         return follow_sticks(memory.course.flight, mode, sticks, now, memory.tuning.settings, elapsed_s)
+    if mode is Mode.PRECISION_LAND:
+        return _land_on_target(memory, elapsed_s)
     leader = memory.heard.leader
     if mode is Mode.FOLLOW and leader is not None:
         follow = memory.tuning.settings.follow
@@ -75,6 +81,25 @@ def _wish(memory: AutopilotMemory, elapsed_s: float) -> tuple[ModeFlight, Refere
         settings=memory.tuning.settings,
         elapsed_s=elapsed_s,
     )
+
+
+def _land_on_target(memory: AutopilotMemory, elapsed_s: float) -> tuple[ModeFlight, Reference]:
+    """What PX4's precision landing asks for: a point on its way to a place, or one that sinks there."""
+    flight, now, settings, home = memory.course.flight, memory.now, memory.tuning.settings, memory.places.home_enu_m
+    landing = flight.target_landing
+    if landing is None:
+        stop = now.position_enu_m if flight.anchor.position_enu_m is None else flight.anchor.position_enu_m
+        landing = begin_target_landing((float(stop[0]), float(stop[1]), float(stop[2])), now.boot_ns)
+    landing = next_stage(landing, memory.heard.target, now, settings.target, home[2], settings.travel.reached_m)
+    flight = replace(flight, target_landing=landing)
+    if landing.stage in SINKING:
+        flight = flight if flight.leg is Leg.DESCEND else descend_here(flight, now)
+        flight = replace(flight, anchor=replace(flight.anchor, position_enu_m=np.array(landing.place_enu_m)))
+        return descend(flight, now, home, settings, elapsed_s)
+    goal = Goal(position_enu_m=landing.place_enu_m, speed_m_s=settings.travel.cruise_m_s)
+    flight = go_to(flight, goal, now)
+    flight = replace(flight, goal=goal, anchor=move(flight.anchor, goal, pace_of(settings), elapsed_s))
+    return flight, flight.anchor
 
 
 def _climb(memory: AutopilotMemory, flight: ModeFlight, climb: Climb, wanted: Reference) -> Course:

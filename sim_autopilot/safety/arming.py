@@ -8,7 +8,7 @@ from sim_autopilot.flight.manual import MANUAL_MODES, sticks_in_effect
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
 from sim_autopilot.missions.flight import Stage
 
-_LANDING_MODES = frozenset({Mode.LAND, Mode.RTL, Mode.SMART_RTL})
+_LANDING_MODES = frozenset({Mode.LAND, Mode.PRECISION_LAND, Mode.RTL, Mode.SMART_RTL})
 
 
 def arming_obstacle(memory: AutopilotMemory, config: AutopilotConfig) -> str | None:

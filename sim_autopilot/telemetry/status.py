@@ -5,6 +5,7 @@ from math import copysign, degrees
 from link.frames.geodesy import geodetic_from_enu
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.modes import Mode
+from sim_autopilot.flight.target_stages import SINKING
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
 from sim_autopilot.safety.failsafes_step import charge_of
 from sim_autopilot.setpoints.guided import is_rising
@@ -159,7 +160,8 @@ def _landed_state(memory: AutopilotMemory) -> int:
         return int(mavlink.MAV_LANDED_STATE_ON_GROUND)
     if memory.modes.mode is Mode.TAKEOFF or (memory.modes.mode is Mode.OFFBOARD and is_rising(memory.course.guided)):
         return int(mavlink.MAV_LANDED_STATE_TAKEOFF)
-    if memory.modes.mode is Mode.LAND:
+    target_landing = memory.course.flight.target_landing
+    if memory.modes.mode is Mode.LAND or (target_landing is not None and target_landing.stage in SINKING):
         return int(mavlink.MAV_LANDED_STATE_LANDING)
     return int(mavlink.MAV_LANDED_STATE_IN_AIR)
 

@@ -32,6 +32,7 @@ _MODES = MappingProxyType(
         Mode.POSITION: _code("position", _MANUAL_FLAGS, 3),
         Mode.ORBIT: _code("orbit", _AUTO_FLAGS, 3, 1),
         Mode.FOLLOW: _code("follow", _AUTO_FLAGS, 4, 8),
+        Mode.PRECISION_LAND: _code("precland", _AUTO_FLAGS, 4, 9),
         Mode.ALTITUDE: _code("altitude", _MANUAL_FLAGS, 2),
         Mode.STABILIZED: _code("stabilized", _MANUAL_FLAGS, 7),
         Mode.MANUAL: _code("manual", _MANUAL_FLAGS, 1),
@@ -54,7 +55,7 @@ def _mode_of_flags(base: int) -> Mode | None:
 MODES = ModeRules(
     codes=_MODES,
     boot=Mode.HOLD,
-    unarmable=frozenset({Mode.LAND, Mode.RTL, Mode.ORBIT, Mode.FOLLOW}),
+    unarmable=frozenset({Mode.LAND, Mode.PRECISION_LAND, Mode.RTL, Mode.ORBIT, Mode.FOLLOW}),
     loiter=Mode.HOLD,
     of_flags=_mode_of_flags,
     leaves_landing=True,

@@ -19,6 +19,7 @@ from sim_autopilot.core.settings import (
     SetpointSettings,
     SimulationSettings,
     TakeoffSettings,
+    TargetSettings,
     TravelSettings,
 )
 
@@ -53,7 +54,7 @@ _FENCE_ACTIONS = {
     5: Event.FAILSAFE_LAND,
 }
 """By GF_ACTION; 0 and 1 do nothing."""
-_AUTO_MODES = frozenset({Mode.HOLD, Mode.LAND, Mode.TAKEOFF, Mode.RTL, Mode.MISSION})
+_AUTO_MODES = frozenset({Mode.HOLD, Mode.LAND, Mode.PRECISION_LAND, Mode.TAKEOFF, Mode.RTL, Mode.MISSION})
 _WITH_TARGET = 2
 """FLW_TGT_ALT_M: the height above the target; the others are above home, since the ground is flat."""
 _OVERRIDDEN = ((1, _AUTO_MODES), (2, frozenset({Mode.OFFBOARD})))
@@ -171,6 +172,14 @@ def flight_settings(values: Values) -> FlightSettings:
         ),
         gains=_gains(values),
         follow=_follow(values),
+        target=TargetSettings(
+            lost_s=values["PLD_BTOUT"],
+            within_m=values["PLD_HACC_RAD"],
+            final_m=values["PLD_FAPPR_ALT"],
+            search_m=values["PLD_SRCH_ALT"],
+            search_s=values["PLD_SRCH_TOUT"],
+            searches_max=int(values["PLD_MAX_SRCH"]),
+        ),
         failsafes=_failsafes(values),
         simulation=SimulationSettings(takes_failures=values["SYS_FAILURE_EN"] > 0.0),
     )
@@ -242,6 +251,12 @@ OBEYED = (
     _parameter("NAV_DLL_ACT", 0, 0, 6),
     _parameter("NAV_MC_ALT_RAD", 0.8, 0.05, 200.0),
     _parameter("NAV_RCL_ACT", 2, 1, 6),
+    _parameter("PLD_BTOUT", 5.0, 0.0, 50.0),
+    _parameter("PLD_FAPPR_ALT", 0.1, 0.0, 10.0),
+    _parameter("PLD_HACC_RAD", 0.2, 0.0, 10.0),
+    _parameter("PLD_MAX_SRCH", 3, 0, 100),
+    _parameter("PLD_SRCH_ALT", 10.0, 0.0, 100.0),
+    _parameter("PLD_SRCH_TOUT", 10.0, 0.0, 100.0),
     _parameter("RTL_MIN_DIST", 10.0, 0.5, 100.0),
     _parameter("RTL_RETURN_ALT", 30.0, 0.0, 1000.0),
     _parameter("SYS_FAILURE_EN", 1, 0, 1),

@@ -22,6 +22,7 @@ _MODES: tuple[tuple[Mode, int, str], ...] = (
     (Mode.TAKEOFF, int(mavlink.MAV_STANDARD_MODE_TAKEOFF), ""),
     (Mode.LAND, int(mavlink.MAV_STANDARD_MODE_LAND), ""),
     (Mode.FOLLOW, _NO_STANDARD, "Follow Target"),
+    (Mode.PRECISION_LAND, _NO_STANDARD, "Precision Landing"),
     (Mode.ORBIT, int(mavlink.MAV_STANDARD_MODE_ORBIT), ""),
 )
 _SIMPLE = frozenset({Mode.ALTITUDE, Mode.POSITION})

@@ -20,6 +20,7 @@ MODE_STATES: Mapping[Mode, tuple[int, str]] = {
     Mode.TAKEOFF: (17, "takeoff"),
     Mode.LAND: (18, "land"),
     Mode.FOLLOW: (19, "follow_target"),
+    Mode.PRECISION_LAND: (20, "precland"),
     Mode.ORBIT: (21, "orbit"),
 }
 """Number and name."""

@@ -15,7 +15,8 @@ def expected(mode: Mode, event: Event) -> Mode:
     if event in LATCHED:
         ladder = [Mode.HOLD, Mode.BRAKE, Mode.SMART_RTL, Mode.RTL, Mode.LAND]
         lowest = ladder.index(LATCHED[event])
-        return mode if mode in ladder[lowest:] else ladder[lowest]
+        safer = ladder[lowest:] + [Mode.PRECISION_LAND] * (lowest >= ladder.index(Mode.SMART_RTL))
+        return mode if mode in safer else ladder[lowest]
     if event not in FAILSAFES:
         return mode  # FAILSAFE_TERMINATE stops the motors instead
     return FAILSAFES[event] if mode is Mode.OFFBOARD else mode
