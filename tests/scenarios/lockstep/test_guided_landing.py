@@ -27,7 +27,7 @@ def test_px4s_own_landing_secures_the_drone_on_a_pad_that_stands() -> None:
 
 
 @pytest.mark.slow
-def test_px4s_own_landing_never_touches_a_pad_that_drives() -> None:
+def test_px4s_own_landing_trails_a_pad_that_drives() -> None:
     scored, to_contact_s = guided(1.0, seed=1, firmware="px4")
     assert scored.touchdown is None
     assert to_contact_s is None
