@@ -1,7 +1,4 @@
-"""docs/licences.md, from what the installed packages of the drone's lock say of themselves.
-
-`python -m scenarios.manual.licences` rewrites it.
-"""
+"""The page of licences, from what the installed packages of the drone's lock say of themselves."""
 
 import re
 from collections import defaultdict
@@ -13,7 +10,6 @@ from typing import cast
 from scenarios.manual.markdown import page, table
 
 ROOT = Path(__file__).parents[2]
-PATH = ROOT / "docs" / "licences.md"
 LOCK = ROOT / "requirements-companion.lock"
 TEXT = """What `make setup EXTRA=companion` installs on a drone, and under which licence, as each package says it.
 Decklander itself is under Apache-2.0."""
@@ -39,13 +35,9 @@ def licence_of(package: str) -> str:
 
 
 def licences_page() -> str:
-    """Return the page, as it stands in docs/licences.md."""
+    """Return the page, a line a licence."""
     licences: defaultdict[str, list[str]] = defaultdict(list)
     for name in packages():
         licences[licence_of(name)].append(name)
     rows = ((licence, ", ".join(names)) for licence, names in sorted(licences.items()))
     return page("Licences", TEXT, table(("licence", "packages"), rows))
-
-
-if __name__ == "__main__":
-    PATH.write_text(licences_page(), encoding="utf-8")

@@ -1,14 +1,12 @@
-"""docs/reasons.md, from the companion's own table of reasons; `python -m scenarios.manual.reasons` rewrites it."""
+"""The page of reasons, from the companion's own table of them."""
 
 import re
 from itertools import groupby
-from pathlib import Path
 
 from companion.config.companion import CompanionConfig
 from companion.core.reason_help import ReasonHelp, reason_helps
 from scenarios.manual.markdown import code, page, table
 
-PATH = Path(__file__).parents[2] / "docs" / "reasons.md"
 TEXT = """The panel, the log, the ground station and `landing/status` (`reason_code`) tell these reasons.
 `companion reasons NAME` prints one at the terminal, and all of them without a name. Left out here are those that ask
 for nothing, and those whose message itself says what to do. Figures are those of the default configuration.
@@ -20,7 +18,7 @@ _PLACE = re.compile(r"\{[^}]*\}")
 
 
 def reasons_page() -> str:
-    """Return the page, as it stands in docs/reasons.md."""
+    """Return the page, a table a group of reasons."""
     parts = [TEXT]
     wanting = (one for one in reason_helps(CompanionConfig()) if one.remedy and len(one.reason.value) <= _SENTENCE_MAX)
     for (group, note), helps in groupby(wanting, lambda one: (one.group, one.note)):
@@ -31,7 +29,3 @@ def reasons_page() -> str:
 
 def _row(one: ReasonHelp) -> tuple[str, str, str]:
     return f"{_PLACE.sub('...', one.reason.value)} {code(one.reason.name)}", one.meaning, one.remedy
-
-
-if __name__ == "__main__":
-    PATH.write_text(reasons_page(), encoding="utf-8")

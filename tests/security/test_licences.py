@@ -3,14 +3,14 @@
 import re
 from itertools import pairwise
 
-from scenarios.manual.licences import PATH, licence_of, licences_page, packages
+from scenarios.manual.licences import licence_of, licences_page, packages
 
 TEST_TOOLS = {"mavproxy", "mavsdk", "pytest", "hypothesis", "mypy", "ruff", "playwright", "mkdocs-material"}
 
 
-def test_page_of_licences_is_the_one_that_is_made() -> None:
-    """`python -m scenarios.manual.licences` writes it anew."""
-    assert PATH.read_text(encoding="utf-8") == licences_page()
+def test_page_of_licences_names_each_package_once() -> None:
+    rows = re.findall(r"^\| .* \| (.*) \|$", licences_page(), re.MULTILINE)[2:]
+    assert sorted(name for row in rows for name in row.split(", ")) == packages()
 
 
 def test_drones_lock_has_no_tool_of_the_tests() -> None:
