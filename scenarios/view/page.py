@@ -81,7 +81,7 @@ class Page:
             self._panel.add_playback(source)
         else:
             self._panel.add_commands(source.send)
-        self._panel.add_camera_and_plots(with_cursor=isinstance(source, RecordedSource))
+        self._panel.add_known_camera_and_plots(with_cursor=isinstance(source, RecordedSource))
         self._stopping = self._was_playing = False
         self._stamp_ns: int | None = None
         self._stamp_seen_s = 0.0

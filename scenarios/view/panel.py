@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from link.messages import Command, CommandReply, CompressedPicture, Vector3
 from scenarios.view.history import History
-from scenarios.view.panel_text import panel_text
+from scenarios.view.panel_text import known_text, phase_text
 from scenarios.view.plots import Plots
 from scenarios.view.recorded import RecordedSource
 from scenarios.view.scene import CAMERAS, FOLLOWED, Scene
@@ -41,7 +41,8 @@ class Panel:
         self._gui = gui = server.gui
         gui.configure_theme(control_layout="fixed", control_width="medium", show_logo=False, show_share_button=False)
         gui.set_panel_label("Decklander")
-        self._text = gui.add_html("")
+        self._phase = gui.add_html("")
+        self._known: Any = None
         self._scene = scene
         self._reply: Any = None
         self._slider: Any = None
@@ -104,8 +105,9 @@ class Panel:
         slider.on_update(scrubbed)
         rate.on_update(lambda _: setattr(source, "rate", float(rate.value)))
 
-    def add_camera_and_plots(self, *, with_cursor: bool) -> None:
-        """Add what is below; the plots of a recording mark the instant that is shown."""
+    def add_known_camera_and_plots(self, *, with_cursor: bool) -> None:
+        """Add what is below the buttons; the plots of a recording mark the instant that is shown."""
+        self._known = self._gui.add_html("")
         views = self._gui.add_button_group("Camera", tuple(CAMERAS))
         views.on_click(lambda event: _place_camera(event.client, CAMERAS[views.value]))
         camera = self._gui.add_dropdown("Camera follows", FOLLOWED, initial_value=FOLLOWED[0])
@@ -114,7 +116,8 @@ class Panel:
 
     def show(self, state: ViewState, *, t_s: float, stale: bool) -> None:
         """Write what is known now."""
-        self._text.content = panel_text(state, t_s, stale=stale)
+        self._phase.content = phase_text(state, stale=stale)
+        self._known.content = known_text(state, t_s)
         self._show_picture(state.picture)
 
     def _show_picture(self, picture: CompressedPicture | None) -> None:

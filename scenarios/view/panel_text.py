@@ -14,34 +14,45 @@ from scenarios.view.state import ViewState
 _LEGEND = ((BLUE, "flown"), (GREY, "pad's way"), (GREEN, "plan, cone"), (ORANGE, "estimate, forecast"))
 _FLOWN_BY = {"companion": "follows the companion", "failsafe": "flies a failsafe", "other": "in a mode of its own"}
 _FORECAST_AGE_MAX_NS = 250_000_000  # forecasts are recorded at 10 Hz, and only while the drone descends
-_VALUE = "text-align:right;white-space:nowrap"
+_BOX = "padding:.2rem .8rem;font-size:.78rem;line-height:1.35"
+_VALUE_MAX = 28  # longer ones are sentences, and take more than one line
 _PAINT = {
     "descend": "#169146", "touchdown": "#169146", "secured": "#0f6b33", "abort": "#c62828", "hold": "#b26a00",
     "pilot in command": "#c62828",
 }  # fmt: skip
 
 
-def panel_text(state: ViewState, t_s: float, *, stale: bool) -> str:
-    """Return the panel's text: the phase, why, and what is known of drone, vehicle and links, as HTML."""
+def phase_text(state: ViewState, *, stale: bool) -> str:
+    """Return the phase and why, as HTML: what an operator reads before a button is pressed."""
     status = state.status
     phase = "no companion" if status is None or stale else status.phase
     reason = "waiting for its status" if status is None or stale else status.reason
     paint = _PAINT.get(phase, "#2563eb")
-    rows = "".join(
-        f'<tr><td style="color:#667">{escape(name)}</td><td style="{_VALUE}">{escape(value)}</td></tr>'
-        for name, value in _rows(state, t_s)
+    return (
+        f'<div style="{_BOX}">'
+        f'<div id="phase" style="font-size:1.35rem;font-weight:700;color:{paint}">{escape(phase)}</div>'
+        f'<div id="reason" style="min-height:2.7em;color:#334">{escape(reason)}</div></div>'
     )
+
+
+def known_text(state: ViewState, t_s: float) -> str:
+    """Return what is known of drone, vehicle and links, and what the colours mean, as HTML."""
+    rows = "".join(_row(name, value) for name, value in _rows(state, t_s))
     legend = " ".join(
         f'<span style="white-space:nowrap"><span style="color:{css(color)}">&#9632;</span> {name}</span>'
         for color, name in _LEGEND
     )
     return (
-        '<div style="padding:.2rem .8rem;font-size:.78rem;line-height:1.35">'
-        f'<div id="phase" style="font-size:1.35rem;font-weight:700;color:{paint}">{escape(phase)}</div>'
-        f'<div id="reason" style="min-height:2.7em;color:#334">{escape(reason)}</div>'
+        f'<div style="{_BOX}">'
         f'<table style="width:100%;font-variant-numeric:tabular-nums">{rows}</table>'
         f'<div style="margin-top:.3rem;font-size:.72rem">{legend}</div></div>'
     )
+
+
+def _row(name: str, value: str) -> str:
+    space = "nowrap" if len(value) <= _VALUE_MAX else "normal"
+    cell = f'<td style="text-align:right;vertical-align:top;white-space:{space}">{escape(value)}</td>'
+    return f'<tr><td style="color:#667;vertical-align:top">{escape(name)}</td>{cell}</tr>'
 
 
 def _rows(state: ViewState, t_s: float) -> list[tuple[str, str]]:

@@ -1,6 +1,8 @@
 """The view without a browser: its shapes, what it makes of messages, and what its command refuses."""
 
 import math
+import re
+from html import escape
 
 import numpy as np
 import pytest
@@ -17,7 +19,7 @@ from link.zenoh.keys import Keys
 from scenarios.__main__ import app
 from scenarios.tracks.roads import road_of
 from scenarios.view.history import NAMES, History
-from scenarios.view.panel_text import panel_text
+from scenarios.view.panel_text import known_text
 from scenarios.view.plots import with_cursor
 from scenarios.view.shapes import box_edges, centre_line, cone, ellipses, estimated_vehicle, polyline, ribbon
 from scenarios.view.state import Estimate, ForecastPath, StateReader, ViewState
@@ -179,7 +181,7 @@ def test_cursor_outside_of_what_is_known_is_at_its_edge(now_s: float) -> None:
 
 def test_panel_tells_attitude_in_degrees_and_the_heading_by_compass() -> None:
     turned = quaternion_from_roll_pitch_yaw(math.radians(10.0), math.radians(-5.0), math.radians(60.0))
-    text = panel_text(ViewState(own=replace(drone_at(1), orientation_wxyz=turned)), 0.0, stale=False)
+    text = known_text(ViewState(own=replace(drone_at(1), orientation_wxyz=turned)), 0.0)
     assert "10 right, 5 nose up, degrees" in text
     assert "030 degrees from north" in text
 
@@ -191,6 +193,14 @@ def test_panel_of_a_recording_tells_the_forecast_of_the_contact_while_it_is_fres
     name = KEYS.record("contact_forecast")
     message = ros_message(name, "ContactForecast", status.stamp_ns, in_s=floats(1.5), **chances, **misses)
     state = StateReader(KEYS).taken(ViewState(status=status), message.topic, message.payload)
-    assert "90 % S2, 1.0 % unsafe" in panel_text(state, 0.0, stale=False)
+    assert "90 % S2, 1.0 % unsafe" in known_text(state, 0.0)
     late = replace(status, stamp_ns=status.stamp_ns + 1_000_000_000)
-    assert "unsafe" not in panel_text(replace(state, status=late), 0.0, stale=False)
+    assert "unsafe" not in known_text(replace(state, status=late), 0.0)
+
+
+def test_panel_breaks_sentences_into_lines_and_no_number() -> None:
+    sentence = "the vehicle's stamps: those that are 0.1 s late shift the pad by 0.1 m for each m/s"
+    text = known_text(ViewState(status=replace(status_with(armed=True), unverified=(sentence,))), 0.0)
+    cells = {value: space for space, value in re.findall(r"white-space:(\w+)\">([^<]*)<", text)}
+    assert cells[escape(sentence)] == "normal"
+    assert cells["armed"] == "nowrap"
