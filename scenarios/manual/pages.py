@@ -9,7 +9,9 @@ from companion.config.companion import CompanionConfig
 from scenarios.config import Scenario
 from scenarios.manual.commands import commands_page
 from scenarios.manual.equations import equations_page
+from scenarios.manual.folders import folders_page
 from scenarios.manual.licences import licences_page
+from scenarios.manual.parameters import parameters_page
 from scenarios.manual.phase_chart import phase_chart, phases_page
 from scenarios.manual.reasons import reasons_page
 from scenarios.manual.settings import settings_page
@@ -47,6 +49,8 @@ PAGES: Mapping[str, Callable[[], str]] = MappingProxyType(
         "reference/wire.md": wire_page,
         "reasons.md": reasons_page,
         "licences.md": licences_page,
+        "reference/parameters.md": parameters_page,
+        "reference/folders.md": folders_page,
         "equations.md": equations_page,
         "phases.md": partial(phases_page, "figures/phases.svg"),
         "figures/phases.svg": phase_chart,

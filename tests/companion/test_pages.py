@@ -5,27 +5,17 @@ from pathlib import Path
 
 import pytest
 
-from companion.check.firmwares import FIRMWARES
-from companion.check.rules import ParameterRule
+from companion.check.firmwares import FIRMWARES, Firmware
 from companion.config.companion import CompanionConfig
 from companion.core.reason_help import reason_helps
 from companion.core.reasons import Reason
 from companion.landing.decisions.feasibility import OBSTACLES
-from link.mavlink.dialect import mavlink
+from scenarios.manual.parameters import SPEEDS_M_S, parameters_page
 from scenarios.manual.reasons import reasons_page
 from tests.golden.reasons import CONDITIONS
 
 SINK_M_S = CompanionConfig().descent.sink.rate_max_m_s
-ARDUPILOT_RULES = FIRMWARES[mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA].rules_for(SINK_M_S)
-PX4_RULES = FIRMWARES[mavlink.MAV_AUTOPILOT_PX4].rules_for(SINK_M_S)
 DOCS = Path(__file__).parents[2] / "docs"
-SPEEDS_M_S = (5.0, 8.0, 10.0)
-
-
-def rows(page: str) -> list[list[str]]:
-    """Return the cells of all tables of a page."""
-    lines = (DOCS / page).read_text(encoding="utf-8").splitlines()
-    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("|")]
 
 
 def test_each_reason_is_explained_and_what_ends_an_approach_or_forbids_it_has_a_remedy() -> None:
@@ -43,11 +33,24 @@ def test_the_page_of_reasons_says_what_ends_an_approach_or_forbids_it_and_what_t
             assert re.search(rf"`{one.reason.name}` \| .+ \| .+ \|$", page, re.MULTILINE), one.reason
 
 
-@pytest.mark.parametrize(("page", "rules"), [("px4.md", PX4_RULES), ("ardupilot.md", ARDUPILOT_RULES)])
-def test_advised_parameters_are_those_of_the_check(page: str, rules: tuple[ParameterRule, ...]) -> None:
-    expected = {
-        tuple(spelling.name for spelling in rule.spellings): [f"{rule.advised(speed):g}" for speed in SPEEDS_M_S]
-        for rule in rules
+@pytest.mark.parametrize("firmware", FIRMWARES.values(), ids=lambda one: one.name)
+def test_the_page_of_parameters_has_each_that_the_check_judges_and_what_it_advises(firmware: Firmware) -> None:
+    part = parameters_page().split(f"## {firmware.name}\n")[1].split("\n## ")[0]
+    for rule in firmware.rules_for(SINK_M_S, launches=True):
+        advised = " | ".join(f"{rule.advised(speed):g}" for speed in SPEEDS_M_S)
+        assert f"`{rule.spellings[0].name}`" in part
+        assert f"| {advised} | {rule.unit} | {rule.reason} |" in part
+
+
+@pytest.mark.parametrize("page", ["px4.md", "ardupilot.md"])
+def test_parameters_that_a_page_names_have_the_value_that_the_check_advises(page: str) -> None:
+    text = (DOCS / page).read_text(encoding="utf-8")
+    advised = {
+        spelling.name: {f"{rule.advised(speed):g}" for speed in SPEEDS_M_S}
+        for firmware in FIRMWARES.values()
+        for rule in firmware.rules_for(SINK_M_S)
+        for spelling in rule.spellings
     }
-    found = {tuple(re.findall(r"`(\w+)`", row[0])): row[1:4] for row in rows(page) if len(row) == 5 and "`" in row[0]}
-    assert found == expected
+    told = [(name, value) for name, value in re.findall(r"`([A-Z_]+)` (\d+)(?!\d)", text) if name in advised]
+    assert len(told) >= 4
+    assert [(name, value) for name, value in told if value not in advised[name]] == []

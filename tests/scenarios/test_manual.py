@@ -18,6 +18,7 @@ from scenarios.catalogue.world_names import names_worlds, parse_world_name
 from scenarios.config import Scenario
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.manual.commands import PROGRAMS, helps
+from scenarios.manual.folders import PACKAGES, folders_of
 from scenarios.manual.pages import PAGES, fetched_from_elsewhere, with_whole_options
 from scenarios.manual.phase_chart import FROM_ANYWHERE, PLACES, arrows, phase_chart
 from scenarios.manual.settings import keys_of, meaning_of, tables_of
@@ -56,6 +57,10 @@ def test_every_setting_has_a_meaning(model: type[StrictModel]) -> None:
     for table in tables_of(model, elsewhere={CompanionConfig} - {model}):
         missing = [key for key in keys_of(table.model) if not meaning_of(table.model, key)]
         assert missing == [], table.path
+
+
+def test_every_folder_says_what_is_in_it() -> None:
+    assert [folder for package in PACKAGES for folder, text in folders_of(package) if not text] == []
 
 
 def test_reference_has_every_command() -> None:
