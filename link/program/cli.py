@@ -115,10 +115,19 @@ def run_app(name: str, app: App, args: Sequence[str] | None = None) -> int:
         return _fail(name, str(error))
     except typer.TyperException as error:
         context = getattr(error, "ctx", None)
-        return _fail(name, error.format_message(), hint=f"(see {name if context is None else context.command_path} -h)")
+        return _fail(name, _whole(error), hint=f"(see {name if context is None else context.command_path} -h)")
     except (KeyboardInterrupt, typer.Abort):
         return EXIT_INTERRUPTED
     return result if isinstance(result, int) else EXIT_OK
+
+
+def _whole(error: typer.TyperException) -> str:
+    """Return the message of a mistake; of a command that there is not, with all that there are, if none is near."""
+    told = error.format_message()
+    commands = getattr(getattr(getattr(error, "ctx", None), "command", None), "commands", {})
+    if not told.startswith("No such command") or "Did you mean" in told or not commands:
+        return told
+    return f"{told} There are {', '.join(commands)}."
 
 
 def _with_defaults(args: Sequence[str]) -> list[str]:

@@ -7,6 +7,7 @@ from typing import Any, get_args
 from pydantic import BaseModel
 
 _ELSEWHERE = 0.8  # likeness from which a key of another table is worth a hint
+_NAMED_MAX = 3  # of the tables that have such a key
 
 
 def models_in(annotation: Any) -> Iterator[type[BaseModel]]:
@@ -34,7 +35,8 @@ def key_hint(path: str, beside: Sequence[str], model: type[BaseModel]) -> str:
         near = difflib.get_close_matches(name, others.values(), n=1, cutoff=_ELSEWHERE)
         meant = [other for other, key in others.items() if key in near]
     if meant:
-        return f", did you mean {' or '.join(meant)}?"
+        nearest = sorted(meant, key=lambda other: other.count("."))[:_NAMED_MAX]
+        return f", did you mean {' or '.join(nearest)}?"
     return f"; valid are {', '.join(beside)}" if beside else ""
 
 

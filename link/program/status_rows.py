@@ -34,7 +34,7 @@ def link_rows(received: int, sent: int, lost: int, bad_bytes: int, bad_payloads:
 
 def number(value: float | None, unit: str) -> str:
     """Return a value with its unit, a dash for an unknown one."""
-    return "-" if value is None else f"{value:.2f} {unit}"
+    return "-" if value is None else f"{round(value, 2) + 0.0:.2f} {unit}"
 
 
 def _forecast(forecast: ContactForecast | None) -> str:
@@ -44,4 +44,4 @@ def _forecast(forecast: ContactForecast | None) -> str:
 
 
 def _vector(vector: Vector3 | None, unit: str) -> str:
-    return "-" if vector is None else ", ".join(f"{part:+.2f}" for part in vector) + f" {unit}"
+    return "-" if vector is None else ", ".join(f"{round(part, 2) + 0.0:+.2f}" for part in vector) + f" {unit}"

@@ -142,8 +142,10 @@ def _find_table(name: str, place: str = "") -> Table:
 
 
 def _unknown(what: str, name: str, known: list[str], hint: str = "", place: str = "") -> UserError:
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
-    return UserError(f"{place}no {what} is called '{name}', the nearest is '{near[0]}'{hint}")
+    """Return the error that names the nearest, or what there is where none is near."""
+    near = difflib.get_close_matches(name, known, n=1)
+    meant = f", the nearest is '{near[0]}'{hint}" if near else hint or f"; there are {', '.join(known)}"
+    return UserError(f"{place}no {what} is called '{name}'{meant}")
 
 
 @cache

@@ -15,7 +15,7 @@ _LEGEND = ((BLUE, "flown"), (GREY, "pad's way"), (GREEN, "plan, cone"), (ORANGE,
 _FLOWN_BY = {"companion": "follows the companion", "failsafe": "flies a failsafe", "other": "in a mode of its own"}
 _FORECAST_AGE_MAX_NS = 250_000_000  # forecasts are recorded at 10 Hz, and only while the drone descends
 _BOX = "padding:.2rem .8rem;font-size:.78rem;line-height:1.35"
-_VALUE_MAX = 28  # longer ones are sentences, and take more than one line
+_VALUE_MAX = 28  # longer ones are sentences
 _PAINT = {
     "descend": "#169146", "touchdown": "#169146", "secured": "#0f6b33", "abort": "#c62828", "hold": "#b26a00",
     "pilot in command": "#c62828",
@@ -50,9 +50,11 @@ def known_text(state: ViewState, t_s: float) -> str:
 
 
 def _row(name: str, value: str) -> str:
-    space = "nowrap" if len(value) <= _VALUE_MAX else "normal"
-    cell = f'<td style="text-align:right;vertical-align:top;white-space:{space}">{escape(value)}</td>'
-    return f'<tr><td style="color:#667;vertical-align:top">{escape(name)}</td>{cell}</tr>'
+    """Return a row of the table; a sentence stands below its name, so that it leaves the others their width."""
+    named = f'<span style="color:#667">{escape(name)}</span>'
+    if len(value) > _VALUE_MAX:
+        return f'<tr><td colspan="2">{named}: {escape(value)}</td></tr>'
+    return f'<tr><td>{named}</td><td style="text-align:right;white-space:nowrap">{escape(value)}</td></tr>'
 
 
 def _rows(state: ViewState, t_s: float) -> list[tuple[str, str]]:

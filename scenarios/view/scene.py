@@ -101,9 +101,9 @@ class Scene:
         true, estimated = true_vehicle(state), estimated_vehicle(state)
         if state.pad is not None and state.pad != self._pad:
             self._rebuild(state.pad)
-        _place(self._vehicle, true)
-        _place(self._estimated, estimated)
         shown = true or estimated
+        _place(self._vehicle, shown)
+        _place(self._estimated, estimated)
         drone = None if state.drone is None else (state.drone.position_enu_m, state.drone.orientation_wxyz)
         _place(self._drone, drone)
         matters = shown is not None and _phase(state) in _CONE_PHASES

@@ -63,7 +63,7 @@ MISTAKES = [
     ("scenarios", "run strait_5", ["'strait_5'", "'straight_5'"]),
     ("scenarios", "run straight_5+wnd=calm", ["'wnd=calm'", "wind"]),
     ("scenarios", "run none.toml", ["none.toml", "cannot be read"]),
-    ("scenarios", "run scenario.toml", ["scenario.toml", "'time_limits_s'", "'time_limit_s'"]),
+    ("scenarios", "run scenario.toml", ["scenario.toml", "'time_limits_s'", "did you mean run.time_limit_s or "]),
     # configurations
     ("companion", "--config not.toml", ["not.toml", "line 1"]),
     ("companion", "--config key.toml", ["key.toml", "'descent.alignment.begin_distnce_m'", "'begin_distance_m'"]),
@@ -81,6 +81,7 @@ MISTAKES = [
     ("scenarios", "camera straight_5", ["straight_5", "+camera=day"]),
     # options and values
     ("companion", "--stat", ["--stat", "--start"]),
+    ("companion", "start", ["'start'", "There are check, keys, reasons"]),
     ("companion", "--timeout -1", ["--timeout", "0"]),
     ("companion", "--system-id 256", ["--system-id", "255"]),
     ("sim-autopilot", "--firmware px5", ["firmware", '"px5"', "px4"]),

@@ -94,6 +94,11 @@ def test_world_that_is_misspelt_is_told() -> None:
         load_scenario("worldurban")
 
 
+def test_preset_that_is_like_none_is_answered_by_all_that_there_are() -> None:
+    with pytest.raises(UserError, match=r"is called 'good'; there are .*rtk"):
+        load_scenario("straight_5+sensors=good")
+
+
 def test_presets_in_a_name_replace_their_sections() -> None:
     scenario = load_scenario("circle_5+sensors=degraded+wind=moderate+link=nominal+firmware=px4")
     assert scenario.sensors.frame_offset_m == 1.2
