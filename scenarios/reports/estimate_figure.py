@@ -38,7 +38,7 @@ def estimate(run: RunData, track: EstimateTrack) -> Figure:
     panels[0].legend(loc="upper right", ncols=4, fontsize=8)
     panels[_AXES].legend(loc="upper right", ncols=3, fontsize=8)
     panels[_AXES].set(xlabel="Time [s]", xlim=(from_s, to_s))
-    figure.suptitle(f"{title(run)}: error of the estimated position of the antenna")
+    figure.suptitle(f"{title(run)}\nerror of the estimated position of the antenna")
     return figure
 
 

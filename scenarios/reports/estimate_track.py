@@ -58,16 +58,16 @@ def estimate_track(
         antenna_enu_m: (n, 3) true position of the vehicle's antenna at the log's times, in W.
         scenario: that was flown.
     """
-    if not estimates or not own:
-        return None
     start_ns = int(log.t_ns[0])
+    own_s, own_enu_m = reported(own, start_ns, int(log.t_ns[-1]))
+    if not estimates or not len(own_s):
+        return None
     truth_s = (log.t_ns - start_ns) / NS_PER_S
     times_s = np.array([time_s(fields, start_ns) for fields in estimates])
     inside = (times_s >= 0.0) & (times_s <= truth_s[-1])
     times_s = times_s[inside]
-    own_s = np.array([(one.t_ns - start_ns) / NS_PER_S for one in own])
     drone = _at(times_s, truth_s, _in_local_frame(log.position_enu_m, scenario))
-    own_error = _at(times_s, own_s, np.array([one.position_enu_m for one in own])) - drone
+    own_error = _at(times_s, own_s, own_enu_m) - drone
     true = _at(times_s, truth_s, _in_local_frame(antenna_enu_m, scenario)) + own_error
     error = np.array([fields["position_m"] for fields in estimates])[inside] - true
     covariance = np.array([fields["covariance"].reshape(9, 9)[:3, :3] for fields in estimates])[inside]
@@ -77,6 +77,16 @@ def estimate_track(
         std_m=np.sqrt(np.diagonal(covariance, axis1=1, axis2=2)),
         nees=np.einsum("ni,ni->n", error, np.linalg.solve(covariance, error[:, :, None])[:, :, 0]),
     )
+
+
+def reported(own: Sequence[BodyTruth], start_ns: int, end_ns: int) -> tuple[Array, Array]:
+    """Return when, since `start_ns`, and where (n, 3) an autopilot reported the drone, from the first to the last time.
+
+    Before the autopilot's clock has settled a report may have any time; such a one would displace all others.
+    """
+    inside = sorted((one.t_ns, one.position_enu_m) for one in own if start_ns <= one.t_ns <= end_ns)
+    times_s = np.array([(t_ns - start_ns) / NS_PER_S for t_ns, _ in inside])
+    return times_s, np.array([position for _, position in inside])
 
 
 def _at(times_s: Array, known_s: Array, values: Array) -> Array:

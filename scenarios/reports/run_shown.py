@@ -1,5 +1,7 @@
 """What of a run its figures show, and the quantities that several of them draw."""
 
+import textwrap
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +15,7 @@ FLOWN = ("chase", "align", "descend", "touchdown", "abort")
 AXIS_MIN_M = 4.0
 """An axis in space is never shorter: a vehicle's length."""
 
+_TITLE_COLUMNS = 44
 _BEFORE_S = 3.0  # of the wait before the chase that is shown
 
 
@@ -34,8 +37,10 @@ def distances(run: RunData) -> Array:
 
 
 def title(run: RunData) -> str:
-    """Return what stands above a figure."""
-    return f"{run.result['scenario']}, {run.scenario.firmware}, seed {run.result['seed']}: {run.result['tier']}"
+    """Return what stands above a figure, in lines that fit the narrowest."""
+    told = f"{run.result['scenario']}, {run.scenario.firmware}, seed {run.result['seed']}: {run.result['tier']}"
+    lines = textwrap.wrap(told.replace("+", " +"), _TITLE_COLUMNS)
+    return "\n".join(line.replace(" +", "+") for line in lines)
 
 
 def shown_spans(run: RunData) -> list[PhaseSpan]:
