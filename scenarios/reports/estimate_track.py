@@ -64,7 +64,7 @@ def estimate_track(
         return None
     truth_s = (log.t_ns - start_ns) / NS_PER_S
     times_s = np.array([time_s(fields, start_ns) for fields in estimates])
-    inside = (times_s >= 0.0) & (times_s <= truth_s[-1])
+    inside = (times_s >= own_s[0]) & (times_s <= own_s[-1])  # beyond them the drone's own error is not known
     times_s = times_s[inside]
     drone = _at(times_s, truth_s, _in_local_frame(log.position_enu_m, scenario))
     own_error = _at(times_s, own_s, own_enu_m) - drone
