@@ -161,7 +161,7 @@ def trial_press(s: Situation, c: CompanionConfig) -> float:
 
 
 def _trial_s(s: Situation, c: CompanionConfig) -> float:
-    return trial_s(trial_press(s, c), _late_s(s), c.touchdown)
+    return trial_s(signs_of(s), trial_press(s, c), _late_s(s), c.touchdown)
 
 
 TOUCHED = Condition(

@@ -124,14 +124,17 @@ def trial_press_m_s2(signs: Signs, late_s: float, climbs_m_s2: float, config: Co
     return min(press_m_s2, max(touchdown.sink_max_m_s**2 - now_m_s**2, 0.0) / (2.0 * seen_m))
 
 
-def trial_s(press_m_s2: float, late_s: float, config: TouchdownConfig) -> float:
+def trial_s(signs: Signs, press_m_s2: float, late_s: float, config: TouchdownConfig) -> float:
     """Return for how long the signs of a contact have to agree under a press to be believed.
 
     For so long that in the air the drone would be reported to sink by now: what is pressed for a shorter time than the
-    link and the reports are late has not been tried.
+    link and the reports are late has not been tried. That is spared where the range finder sees the pad so near that
+    even the press of a contact that is believed cannot make the drone faster than its gear takes.
     """
-    disputed_s = config.range_finder.disputed_hold_s
-    return min(config.pressed_speed_m_s / max(press_m_s2, 1e-3) + late_s, disputed_s)
+    seen_m = math.inf if signs.range_height_m is None else max(signs.range_height_m, 0.0)
+    has_room = 2.0 * config.press_acceleration_m_s2 * seen_m > config.sink_max_m_s**2
+    pressed_s = config.pressed_speed_m_s / max(press_m_s2, 1e-3)
+    return min(pressed_s + (late_s if has_room else 0.0), config.range_finder.disputed_hold_s)
 
 
 def is_stopped_by_pad(signs: Signs, config: CompanionConfig) -> bool:

@@ -217,13 +217,17 @@ def test_a_drone_pressed_down_in_the_air_stops_or_touches_no_faster_than_its_gea
     assert stops_m < seen_m or touches_m_s < TOUCHDOWN.sink_max_m_s + 1e-9 or seen_m == 0.0
 
 
-@given(st.floats(0.0, TOUCHDOWN.try_acceleration_m_s2), st.floats(0.0, 0.4))
-def test_a_trial_lasts_until_a_drone_in_the_air_would_be_reported_to_sink(press_m_s2: float, late_s: float) -> None:
+@given(st.floats(0.0, TOUCHDOWN.try_acceleration_m_s2), st.floats(0.0, 0.4), st.none() | st.floats(-0.1, 3.0))
+def test_a_trial_lasts_until_a_drone_with_room_to_fall_would_be_reported_to_sink(
+    press_m_s2: float, late_s: float, seen_m: float | None
+) -> None:
     """Or, where it may hardly be pressed, for as long as a range finder that disagrees has to be outvoted."""
-    sinks_m_s = press_m_s2 * (trial_s(press_m_s2, late_s, TOUCHDOWN) - late_s)
-    is_longest = trial_s(press_m_s2, late_s, TOUCHDOWN) == TOUCHDOWN.range_finder.disputed_hold_s
-    assert is_longest or sinks_m_s >= TOUCHDOWN.pressed_speed_m_s - 1e-9
-    assert trial_s(press_m_s2, late_s, TOUCHDOWN) <= TOUCHDOWN.range_finder.disputed_hold_s
+    lasts_s = trial_s(replace(signs_of(on_pad()), range_height_m=seen_m), press_m_s2, late_s, TOUCHDOWN)
+    falls_to_m_s = math.sqrt(2.0 * TOUCHDOWN.press_acceleration_m_s2 * max(math.inf if seen_m is None else seen_m, 0.0))
+    reported_s = lasts_s - (late_s if falls_to_m_s > TOUCHDOWN.sink_max_m_s else 0.0)
+    is_longest = lasts_s == TOUCHDOWN.range_finder.disputed_hold_s
+    assert is_longest or press_m_s2 * reported_s >= TOUCHDOWN.pressed_speed_m_s - 1e-9
+    assert lasts_s <= TOUCHDOWN.range_finder.disputed_hold_s
 
 
 def test_over_a_prompt_link_a_drone_is_pressed_as_hard_as_it_may_be_from_a_hand_above_the_pad() -> None:
