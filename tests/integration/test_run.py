@@ -40,7 +40,7 @@ def test_two_runs_at_once_leave_their_folders_of_a_landing_and_of_what_came_unti
     tmp_path: Path,
 ) -> None:
     short = tmp_path / "short.toml"
-    short.write_text('base = "straight_5"\ntime_limit_s = 9.0\n', encoding="utf-8")
+    short.write_text('base = "straight_5"\n[run]\ntime_limit_s = 9.0\n', encoding="utf-8")
     with Programs() as programs:
         runs = [
             start_run(programs, tmp_path, "--speed", "3", "--seed", str(seed), "--json", scenario=scenario)
@@ -109,6 +109,6 @@ def test_page_of_a_run_is_served_until_it_is_interrupted_and_all_programs_have_e
         children = run.children()
         assert len(children) == len(NAMES) + 1
         run.send(signal.SIGINT)
-        assert run.wait() == 130
+        assert run.wait() == 130, run.err.all
         assert run.told == []
         assert all_end(children)
