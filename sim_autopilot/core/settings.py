@@ -158,12 +158,14 @@ class LandSettings:
         descent_m_s: near the ground.
         slow_below_m: above home, where near the ground begins.
         precision: by LANDING_TARGET.
+        target: likewise, of a mode of its own.
     """
 
     approach_m_s: float
     descent_m_s: float
     slow_below_m: float
     precision: PrecisionSettings = NO_PRECISION
+    target: TargetSettings = PX4_TARGET
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -232,7 +234,6 @@ class FlightSettings:
         sticks: what they ask for.
         takeover: by sticks, and without them.
         follow: of the mode that follows somebody.
-        target: of the precision landing that is a mode of its own.
         failsafes: of battery, ground station and fence.
         simulation: of battery, air and failures.
     """
@@ -250,6 +251,5 @@ class FlightSettings:
     sticks: StickFeel = PX4_STICKS
     takeover: TakeoverSettings = NO_TAKEOVER
     follow: FollowSettings = BEHIND
-    target: TargetSettings = PX4_TARGET
     failsafes: FailsafeSettings = NO_FAILSAFES
     simulation: SimulationSettings = AS_SIMULATED

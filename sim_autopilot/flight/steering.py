@@ -90,7 +90,7 @@ def _land_on_target(memory: AutopilotMemory, elapsed_s: float) -> tuple[ModeFlig
     if landing is None:
         stop = now.position_enu_m if flight.anchor.position_enu_m is None else flight.anchor.position_enu_m
         landing = begin_target_landing((float(stop[0]), float(stop[1]), float(stop[2])), now.boot_ns)
-    landing = next_stage(landing, memory.heard.target, now, settings.target, home[2], settings.travel.reached_m)
+    landing = next_stage(landing, memory.heard.target, now, settings.land.target, home[2], settings.travel.reached_m)
     flight = replace(flight, target_landing=landing)
     if landing.stage in SINKING:
         flight = flight if flight.leg is Leg.DESCEND else descend_here(flight, now)

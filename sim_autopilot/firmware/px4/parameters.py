@@ -146,6 +146,7 @@ def flight_settings(values: Values) -> FlightSettings:
             approach_m_s=values["MPC_Z_VEL_MAX_DN"],
             descent_m_s=values["MPC_LAND_SPEED"],
             slow_below_m=5.0,  # MPC_LAND_ALT2
+            target=_target(values),
         ),
         land_detector=LandDetectorSettings(
             after_s=1.5,  # measured from contact to ON_GROUND
@@ -172,16 +173,19 @@ def flight_settings(values: Values) -> FlightSettings:
         ),
         gains=_gains(values),
         follow=_follow(values),
-        target=TargetSettings(
-            lost_s=values["PLD_BTOUT"],
-            within_m=values["PLD_HACC_RAD"],
-            final_m=values["PLD_FAPPR_ALT"],
-            search_m=values["PLD_SRCH_ALT"],
-            search_s=values["PLD_SRCH_TOUT"],
-            searches_max=int(values["PLD_MAX_SRCH"]),
-        ),
         failsafes=_failsafes(values),
         simulation=SimulationSettings(takes_failures=values["SYS_FAILURE_EN"] > 0.0),
+    )
+
+
+def _target(values: Values) -> TargetSettings:
+    return TargetSettings(
+        lost_s=values["PLD_BTOUT"],
+        within_m=values["PLD_HACC_RAD"],
+        final_m=values["PLD_FAPPR_ALT"],
+        search_m=values["PLD_SRCH_ALT"],
+        search_s=values["PLD_SRCH_TOUT"],
+        searches_max=int(values["PLD_MAX_SRCH"]),
     )
 
 
