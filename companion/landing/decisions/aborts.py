@@ -20,6 +20,7 @@ from companion.landing.decisions.conditions import (
     is_vehicle_taken,
     tell_taken,
 )
+from companion.landing.decisions.contact import stopping_distance_m
 from companion.landing.steering.targets import changes_speed
 from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
 from companion.situation.situation import Approach, Situation
@@ -100,8 +101,8 @@ def _can_turn_back(s: Situation, c: CompanionConfig) -> bool:
     if s.approach is None or s.limits is None or s.approach.height_m < c.descent.sway.height_min_m:
         return False
     sinks_m_s = max(-s.approach.climb_m_s, 0.0)
-    lag_m = sinks_m_s * (ATTITUDE_LAG_S + s.following.late_s)
-    return s.approach.height_m > lag_m + 0.5 * sinks_m_s**2 / s.limits.vertical_acceleration_max_m_s2
+    lag_s = ATTITUDE_LAG_S + s.following.late_s
+    return s.approach.height_m > stopping_distance_m(sinks_m_s, lag_s, s.limits.vertical_acceleration_max_m_s2)
 
 
 def _is_contact_risky(s: Situation, c: CompanionConfig) -> bool:

@@ -99,6 +99,11 @@ def verdict(signs: Signs, config: CompanionConfig, *, is_pressed: bool = False) 
     )
 
 
+def stopping_distance_m(sinks_m_s: float, lag_s: float, climbs_m_s2: float) -> float:
+    """Return how far a drone sinks until it has stopped: on for its lag, then slower with what it climbs."""
+    return sinks_m_s * lag_s + 0.5 * sinks_m_s**2 / climbs_m_s2
+
+
 def trial_press_m_s2(signs: Signs, late_s: float, climbs_m_s2: float, config: CompanionConfig) -> float:
     """Return how hard a drone may be pressed down, m/s^2, while the signs of a contact agree for too short a time.
 
@@ -118,8 +123,7 @@ def trial_press_m_s2(signs: Signs, late_s: float, climbs_m_s2: float, config: Co
         return press_m_s2
     now_m_s = 0.0 if signs.climb_m_s is None else max(-signs.climb_m_s, 0.0)
     sinks_m_s = now_m_s + press_m_s2 * late_s
-    falls_m = 0.5 * (now_m_s + sinks_m_s) * late_s + sinks_m_s * late_s + 0.5 * sinks_m_s**2 / climbs_m_s2
-    if falls_m < seen_m:
+    if 0.5 * (now_m_s + sinks_m_s) * late_s + stopping_distance_m(sinks_m_s, late_s, climbs_m_s2) < seen_m:
         return press_m_s2
     return min(press_m_s2, max(touchdown.sink_max_m_s**2 - now_m_s**2, 0.0) / (2.0 * seen_m))
 
