@@ -42,6 +42,11 @@ class Parameter:
         return int(self.integer_type if self.is_integer else mavlink.MAV_PARAM_TYPE_REAL32)
 
 
+def make_parameter(name: str, default: float, lowest: float, highest: float) -> Parameter:
+    """Return one by the columns of a reference; whole where `default` is."""
+    return Parameter(name=name, default=default, lowest=lowest, highest=highest)
+
+
 def default_values(parameters: tuple[Parameter, ...], overrides: Values) -> Values:
     """Return every parameter's value: its default, or what `overrides` says.
 

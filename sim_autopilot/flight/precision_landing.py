@@ -15,9 +15,9 @@ from link.mavlink.dialect import Message, mavlink
 from link.messages import Quaternion, Vector3
 from link.records import replace
 from sim_autopilot.core.data import Reference
+from sim_autopilot.core.land_settings import PrecisionSettings
 from sim_autopilot.core.limits import PathLimits
 from sim_autopilot.core.places import Origin, world_from_local
-from sim_autopilot.core.settings import PrecisionSettings
 from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.setpoints.path import Motion, Plane, carry_on, correction_speed, lead_to_position
 

@@ -13,7 +13,7 @@ from math import hypot
 
 from link.messages import Vector3
 from link.records import replace
-from sim_autopilot.core.settings import TargetSettings
+from sim_autopilot.core.land_settings import TargetSettings
 from sim_autopilot.flight.precision_landing import Target
 from sim_autopilot.plant.snapshot import Snapshot
 

@@ -8,15 +8,12 @@ from math import cos, inf, radians, sin, sqrt
 
 from link.mavlink.dialect import mavlink
 from link.messages import Vector3
+from sim_autopilot.core.land_settings import DisarmSettings, LandDetectorSettings, LandSettings, PrecisionSettings
 from sim_autopilot.core.limits import AxisGains, Envelope, PathLimits, PositionGains
 from sim_autopilot.core.parameters import Parameter, Values
 from sim_autopilot.core.pilot_settings import StickFeel
 from sim_autopilot.core.settings import (
-    DisarmSettings,
     FlightSettings,
-    LandDetectorSettings,
-    LandSettings,
-    PrecisionSettings,
     ReturnSettings,
     SetpointSettings,
     SimulationSettings,

@@ -5,23 +5,20 @@ Source: PX4 parameter reference, with the defaults of its own simulation.
 
 from math import radians
 
+from sim_autopilot.core.land_settings import DisarmSettings, LandDetectorSettings, LandSettings, TargetSettings
 from sim_autopilot.core.limits import AxisGains, Envelope, PositionGains
 from sim_autopilot.core.modes import Event, Mode
-from sim_autopilot.core.parameters import Parameter, Values, within_ranges
+from sim_autopilot.core.parameters import Values, make_parameter, within_ranges
 from sim_autopilot.core.pilot_settings import FollowSettings, StickFeel, TakeoverSettings
 from sim_autopilot.core.settings import (
-    DisarmSettings,
-    FailsafeSettings,
     FlightSettings,
-    LandDetectorSettings,
-    LandSettings,
     ReturnSettings,
     SetpointSettings,
     SimulationSettings,
     TakeoffSettings,
-    TargetSettings,
     TravelSettings,
 )
+from sim_autopilot.firmware.px4.failsafes import ACTIONS, PARAMETERS, failsafe_settings
 
 _LOSS_EVENTS = {
     0: Event.LOST_TO_POSITION,
@@ -34,26 +31,6 @@ _LOSS_EVENTS = {
 """By COM_OBL_RC_ACT; the other values stop the motors."""
 
 
-_ACTIONS = {
-    1: Event.FAILSAFE_HOLD,
-    2: Event.FAILSAFE_RTL,
-    3: Event.FAILSAFE_LAND,
-    5: Event.FAILSAFE_TERMINATE,
-    6: Event.FAILSAFE_TERMINATE,  # disarms, which is the same here
-}
-"""By NAV_RCL_ACT and NAV_DLL_ACT."""
-_BATTERY_ACTIONS: dict[int, tuple[Event | None, Event | None, Event | None]] = {
-    2: (None, Event.FAILSAFE_LAND, Event.FAILSAFE_LAND),
-    3: (None, Event.FAILSAFE_RTL, Event.FAILSAFE_LAND),
-}
-"""By COM_LOW_BAT_ACT; the other values only warn."""
-_FENCE_ACTIONS = {
-    2: Event.FAILSAFE_HOLD,
-    3: Event.FAILSAFE_RTL,
-    4: Event.FAILSAFE_TERMINATE,
-    5: Event.FAILSAFE_LAND,
-}
-"""By GF_ACTION; 0 and 1 do nothing."""
 _AUTO_MODES = frozenset({Mode.HOLD, Mode.LAND, Mode.PRECISION_LAND, Mode.TAKEOFF, Mode.RTL, Mode.MISSION})
 _WITH_TARGET = 2
 """FLW_TGT_ALT_M: the height above the target; the others are above home, since the ground is flat."""
@@ -63,19 +40,6 @@ _OVERRIDDEN = ((1, _AUTO_MODES), (2, frozenset({Mode.OFFBOARD})))
 
 def _modes_to_override(bits: int) -> frozenset[Mode]:
     return frozenset(mode for bit, modes in _OVERRIDDEN if bits & bit for mode in modes)
-
-
-def _failsafes(values: Values) -> FailsafeSettings:
-    return FailsafeSettings(
-        battery_levels=(values["BAT_LOW_THR"], values["BAT_CRIT_THR"], values["BAT_EMERGEN_THR"]),
-        battery_events=_BATTERY_ACTIONS.get(int(values["COM_LOW_BAT_ACT"]), (None, None, None)),
-        station_lost_s=values["COM_DL_LOSS_T"],
-        station_event=_ACTIONS.get(int(values["NAV_DLL_ACT"])),
-        hold_s=values["COM_FAIL_ACT_T"],
-        fence_event=_FENCE_ACTIONS.get(int(values["GF_ACTION"])),
-        reach_m=values["GF_MAX_HOR_DIST"],
-        height_m=values["GF_MAX_VER_DIST"],
-    )
 
 
 def _gains(values: Values) -> PositionGains:
@@ -167,13 +131,13 @@ def flight_settings(values: Values) -> FlightSettings:
             lost_s=values["COM_RC_LOSS_T"],
         ),
         takeover=TakeoverSettings(
-            lost_event=_ACTIONS.get(int(values["NAV_RCL_ACT"])),
+            lost_event=ACTIONS.get(int(values["NAV_RCL_ACT"])),
             overridden_modes=_modes_to_override(int(values["COM_RC_OVERRIDE"])),
             moved_per_s=values["COM_RC_STICK_OV"] / 100.0,
         ),
         gains=_gains(values),
         follow=_follow(values),
-        failsafes=_failsafes(values),
+        failsafes=failsafe_settings(values),
         simulation=SimulationSettings(takes_failures=values["SYS_FAILURE_EN"] > 0.0),
     )
 
@@ -193,75 +157,62 @@ def _time_or_never(value_s: float) -> float | None:
     return value_s if value_s > 0.0 else None
 
 
-def _parameter(name: str, default: float, lowest: float, highest: float) -> Parameter:
-    return Parameter(name=name, default=default, lowest=lowest, highest=highest)
-
-
 # NAV_ACC_RAD and RTL_RETURN_ALT as PX4 sets them for every multirotor, COM_LOW_BAT_ACT and SYS_FAILURE_EN for its
 # own simulation.
-OBEYED = (
-    _parameter("BAT_CRIT_THR", 0.07, 0.05, 0.5),
-    _parameter("BAT_EMERGEN_THR", 0.05, 0.03, 0.5),
-    _parameter("BAT_LOW_THR", 0.15, 0.12, 0.5),
-    _parameter("COM_DISARM_LAND", 2.0, -1.0, 1e4),
-    _parameter("COM_DISARM_PRFLT", 10.0, -1.0, 1e4),
-    _parameter("COM_DL_LOSS_T", 10, 5, 300),
-    _parameter("COM_FAIL_ACT_T", 5.0, 0.0, 25.0),
-    _parameter("COM_LOW_BAT_ACT", 3, 0, 3),
-    _parameter("COM_OBL_RC_ACT", 0, 0, 7),
-    _parameter("COM_OF_LOSS_T", 1.0, 0.0, 60.0),
-    _parameter("COM_RC_LOSS_T", 0.5, 0.0, 35.0),
-    _parameter("COM_RC_OVERRIDE", 1, 0, 3),
-    _parameter("COM_RC_STICK_OV", 30.0, 5.0, 80.0),
-    _parameter("COM_SPOOLUP_TIME", 1.0, 0.0, 30.0),
-    _parameter("FLW_TGT_ALT_M", 0, 0, 2),
-    _parameter("FLW_TGT_DST", 8.0, 1.0, 1000.0),
-    _parameter("FLW_TGT_FA", 180.0, -180.0, 180.0),
-    _parameter("FLW_TGT_HT", 8.0, 8.0, 1000.0),
-    _parameter("FLW_TGT_MAX_VEL", 5.0, 0.0, 20.0),
-    _parameter("FLW_TGT_RS", 0.1, 0.0, 1.0),
-    _parameter("GF_ACTION", 2, 0, 5),
-    _parameter("GF_MAX_HOR_DIST", 0.0, 0.0, 10000.0),
-    _parameter("GF_MAX_VER_DIST", 0.0, 0.0, 10000.0),
-    _parameter("LNDMC_XY_VEL_MAX", 1.5, 0.0, 30.0),
-    _parameter("LNDMC_Z_VEL_MAX", 0.25, 0.0, 5.0),
-    _parameter("MC_ROLL_P", 4.0, 0.5, 12.0),
-    _parameter("MIS_TAKEOFF_ALT", 2.5, 0.0, 1000.0),
-    _parameter("MPC_ACC_HOR", 3.0, 2.0, 15.0),
-    _parameter("MPC_HOLD_DZ", 0.1, 0.0, 1.0),
-    _parameter("MPC_LAND_SPEED", 0.7, 0.6, 10.0),
-    _parameter("MPC_MAN_TILT_MAX", 35.0, 1.0, 70.0),
-    _parameter("MPC_MAN_Y_MAX", 150.0, 0.0, 400.0),
-    _parameter("MPC_TILTMAX_AIR", 45.0, 20.0, 89.0),
-    _parameter("MPC_THR_HOVER", 0.5, 0.1, 0.8),
-    _parameter("MPC_TKO_RAMP_T", 3.0, 0.0, 30.0),
-    _parameter("MPC_TKO_SPEED", 1.5, 1.0, 5.0),
-    _parameter("MPC_VELD_LP", 5.0, 0.0, 50.0),
-    _parameter("MPC_VEL_MANUAL", 10.0, 3.0, 20.0),
-    _parameter("MPC_XY_CRUISE", 5.0, 3.0, 20.0),
-    _parameter("MPC_XY_P", 0.95, 0.1, 2.0),
-    _parameter("MPC_XY_VEL_D_ACC", 0.2, 0.0, 2.0),
-    _parameter("MPC_XY_VEL_I_ACC", 0.4, 0.0, 60.0),
-    _parameter("MPC_XY_VEL_MAX", 12.0, 0.1, 40.0),
-    _parameter("MPC_XY_VEL_P_ACC", 1.8, 0.5, 5.0),
-    _parameter("MPC_YAWRAUTO_MAX", 60.0, 5.0, 360.0),
-    _parameter("MPC_Z_P", 1.0, 0.1, 1.5),
-    _parameter("MPC_Z_VEL_D_ACC", 0.0, 0.0, 2.0),
-    _parameter("MPC_Z_VEL_I_ACC", 2.0, 0.0, 3.0),
-    _parameter("MPC_Z_VEL_MAX_DN", 1.5, 0.5, 10.0),
-    _parameter("MPC_Z_VEL_MAX_UP", 3.0, 0.5, 15.0),
-    _parameter("MPC_Z_VEL_P_ACC", 4.0, 2.0, 15.0),
-    _parameter("NAV_ACC_RAD", 2.0, 0.05, 200.0),
-    _parameter("NAV_DLL_ACT", 0, 0, 6),
-    _parameter("NAV_MC_ALT_RAD", 0.8, 0.05, 200.0),
-    _parameter("NAV_RCL_ACT", 2, 1, 6),
-    _parameter("PLD_BTOUT", 5.0, 0.0, 50.0),
-    _parameter("PLD_FAPPR_ALT", 0.1, 0.0, 10.0),
-    _parameter("PLD_HACC_RAD", 0.2, 0.0, 10.0),
-    _parameter("PLD_MAX_SRCH", 3, 0, 100),
-    _parameter("PLD_SRCH_ALT", 10.0, 0.0, 100.0),
-    _parameter("PLD_SRCH_TOUT", 10.0, 0.0, 100.0),
-    _parameter("RTL_MIN_DIST", 10.0, 0.5, 100.0),
-    _parameter("RTL_RETURN_ALT", 30.0, 0.0, 1000.0),
-    _parameter("SYS_FAILURE_EN", 1, 0, 1),
+_OWN = (
+    make_parameter("COM_DISARM_LAND", 2.0, -1.0, 1e4),
+    make_parameter("COM_DISARM_PRFLT", 10.0, -1.0, 1e4),
+    make_parameter("COM_OBL_RC_ACT", 0, 0, 7),
+    make_parameter("COM_OF_LOSS_T", 1.0, 0.0, 60.0),
+    make_parameter("COM_RC_LOSS_T", 0.5, 0.0, 35.0),
+    make_parameter("COM_RC_OVERRIDE", 1, 0, 3),
+    make_parameter("COM_RC_STICK_OV", 30.0, 5.0, 80.0),
+    make_parameter("COM_SPOOLUP_TIME", 1.0, 0.0, 30.0),
+    make_parameter("FLW_TGT_ALT_M", 0, 0, 2),
+    make_parameter("FLW_TGT_DST", 8.0, 1.0, 1000.0),
+    make_parameter("FLW_TGT_FA", 180.0, -180.0, 180.0),
+    make_parameter("FLW_TGT_HT", 8.0, 8.0, 1000.0),
+    make_parameter("FLW_TGT_MAX_VEL", 5.0, 0.0, 20.0),
+    make_parameter("FLW_TGT_RS", 0.1, 0.0, 1.0),
+    make_parameter("LNDMC_XY_VEL_MAX", 1.5, 0.0, 30.0),
+    make_parameter("LNDMC_Z_VEL_MAX", 0.25, 0.0, 5.0),
+    make_parameter("MC_ROLL_P", 4.0, 0.5, 12.0),
+    make_parameter("MIS_TAKEOFF_ALT", 2.5, 0.0, 1000.0),
+    make_parameter("MPC_ACC_HOR", 3.0, 2.0, 15.0),
+    make_parameter("MPC_HOLD_DZ", 0.1, 0.0, 1.0),
+    make_parameter("MPC_LAND_SPEED", 0.7, 0.6, 10.0),
+    make_parameter("MPC_MAN_TILT_MAX", 35.0, 1.0, 70.0),
+    make_parameter("MPC_MAN_Y_MAX", 150.0, 0.0, 400.0),
+    make_parameter("MPC_TILTMAX_AIR", 45.0, 20.0, 89.0),
+    make_parameter("MPC_THR_HOVER", 0.5, 0.1, 0.8),
+    make_parameter("MPC_TKO_RAMP_T", 3.0, 0.0, 30.0),
+    make_parameter("MPC_TKO_SPEED", 1.5, 1.0, 5.0),
+    make_parameter("MPC_VELD_LP", 5.0, 0.0, 50.0),
+    make_parameter("MPC_VEL_MANUAL", 10.0, 3.0, 20.0),
+    make_parameter("MPC_XY_CRUISE", 5.0, 3.0, 20.0),
+    make_parameter("MPC_XY_P", 0.95, 0.1, 2.0),
+    make_parameter("MPC_XY_VEL_D_ACC", 0.2, 0.0, 2.0),
+    make_parameter("MPC_XY_VEL_I_ACC", 0.4, 0.0, 60.0),
+    make_parameter("MPC_XY_VEL_MAX", 12.0, 0.1, 40.0),
+    make_parameter("MPC_XY_VEL_P_ACC", 1.8, 0.5, 5.0),
+    make_parameter("MPC_YAWRAUTO_MAX", 60.0, 5.0, 360.0),
+    make_parameter("MPC_Z_P", 1.0, 0.1, 1.5),
+    make_parameter("MPC_Z_VEL_D_ACC", 0.0, 0.0, 2.0),
+    make_parameter("MPC_Z_VEL_I_ACC", 2.0, 0.0, 3.0),
+    make_parameter("MPC_Z_VEL_MAX_DN", 1.5, 0.5, 10.0),
+    make_parameter("MPC_Z_VEL_MAX_UP", 3.0, 0.5, 15.0),
+    make_parameter("MPC_Z_VEL_P_ACC", 4.0, 2.0, 15.0),
+    make_parameter("NAV_ACC_RAD", 2.0, 0.05, 200.0),
+    make_parameter("NAV_MC_ALT_RAD", 0.8, 0.05, 200.0),
+    make_parameter("NAV_RCL_ACT", 2, 1, 6),
+    make_parameter("PLD_BTOUT", 5.0, 0.0, 50.0),
+    make_parameter("PLD_FAPPR_ALT", 0.1, 0.0, 10.0),
+    make_parameter("PLD_HACC_RAD", 0.2, 0.0, 10.0),
+    make_parameter("PLD_MAX_SRCH", 3, 0, 100),
+    make_parameter("PLD_SRCH_ALT", 10.0, 0.0, 100.0),
+    make_parameter("PLD_SRCH_TOUT", 10.0, 0.0, 100.0),
+    make_parameter("RTL_MIN_DIST", 10.0, 0.5, 100.0),
+    make_parameter("RTL_RETURN_ALT", 30.0, 0.0, 1000.0),
+    make_parameter("SYS_FAILURE_EN", 1, 0, 1),
 )
+OBEYED = tuple(sorted((*_OWN, *PARAMETERS), key=lambda parameter: parameter.name))
