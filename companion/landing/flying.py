@@ -99,6 +99,7 @@ def fly(
         target=_for_the_drone(aim.target, memory, inputs),
         limits=limits,
         floor_enu_m=aim.floor_enu_m,
+        touched_enu_m=aim.touched_enu_m,
         dt_s=period_s,
     )
     request = replace(request, limits=limit_tilt(request, model.tracking.air_enu_m_s2))

@@ -141,10 +141,17 @@ def slopes_of(weights: Array, x: Array, reference: Array, jerk: Array) -> Array:
     return slopes
 
 
-def make_axis_problem(model: AxisModel, config: MpcConfig, *, has_floor: bool) -> AxisProblem:
-    """Return the constant matrices for `model` with the weights of `config`."""
-    moves, nodes = len(model.move_s), len(model.node_s)
-    slacks = 3 if has_floor else 2
+def make_axis_problem(model: AxisModel, config: MpcConfig, *, floor_lead_s: float | None) -> AxisProblem:
+    """Return the constant matrices for `model` with the weights of `config`.
+
+    Args:
+        model: the predictions.
+        config: the weights.
+        floor_lead_s: 0 with a floor for the position, more with one for the position that is carried on by its rate
+            for this long, None without one.
+    """
+    moves = len(model.move_s)
+    slacks = 2 if floor_lead_s is None else 3
     forced = np.concatenate((model.forced_p, model.forced_v, model.forced_a))
     free = np.concatenate((model.free_p, model.free_v, model.free_a))
     weight = _cost_of_states(model, config)
@@ -155,7 +162,7 @@ def make_axis_problem(model: AxisModel, config: MpcConfig, *, has_floor: bool) -
     return AxisProblem(
         model=model,
         H=0.5 * (H + H.T),
-        A=_constraints(model, moves, nodes, slacks),
+        A=_constraints(model, floor_lead_s, slacks),
         weights=np.vstack(((forced.T @ weight @ free).T, weight @ forced, move_weight)),
         slack_weight=config.slack_weight,
     )
@@ -182,8 +189,9 @@ def terminal_cost(config: MpcConfig) -> Array:
     return cost
 
 
-def _constraints(model: AxisModel, moves: int, nodes: int, slacks: int) -> Array:
+def _constraints(model: AxisModel, floor_lead_s: float | None, slacks: int) -> Array:
     """Return A: each soft bound is widened by its slack, velocity's the first, then acceleration's, then height's."""
+    moves = len(model.move_s)
 
     def widened(rows: Array, slack: int, sign: float) -> Array:
         columns = np.zeros((len(rows), slacks))
@@ -199,6 +207,6 @@ def _constraints(model: AxisModel, moves: int, nodes: int, slacks: int) -> Array
         widened(ends, 1, 1.0),
         widened(ends, 1, -1.0),
     ]
-    if slacks > 2:
-        blocks.append(widened(model.forced_p[:nodes], 2, 1.0))
+    if floor_lead_s is not None:
+        blocks.append(widened(model.forced_p + floor_lead_s * model.forced_v, 2, 1.0))
     return np.ascontiguousarray(np.vstack(blocks))

@@ -5,7 +5,8 @@ leaves of each norm. Bounds are widened just enough for a state that already bre
 
 The widened speed bound is the speed that is left when acceleration is turned around with nearly all of the jerk and
 then held at nearly all of the acceleration limit; the widened acceleration bound falls with the jerk; the lowered
-floor is the height reached by pulling up likewise, at no more than the climb limit. All functions are compiled.
+floor is the height reached by pulling up likewise, at no more than the climb limit. A floor with a lead bounds the
+height that the rate carries on: what sinks slows down towards it. All functions are compiled.
 """
 
 import math
@@ -17,8 +18,7 @@ from companion.planning.compiled import compiled_kernel
 
 Three = tuple[float, float, float]
 
-Bounds = tuple[Array, Array]
-"""The lower and the upper ones of a programme's rows, written in place."""
+Bounds = tuple[Array, Array]  # the lower and the upper ones of a programme's rows, written in place
 
 AUTHORITY = 0.98
 """Share of the limits that the way back uses, so that the solver has room to follow it."""
@@ -56,9 +56,9 @@ def acceleration_ceiling(bound_m_s2: Array, acceleration_m_s2: float, jerk_m_s3:
 
 @compiled_kernel
 def reachable_floor(
-    floor_m: Array, x: Array, pull_m_s2: float, climb_m_s: float, jerk_m_s3: float, t_s: Array
+    floor_m: Array, x: Array, pull_m_s2: float, climb_m_s: float, jerk_m_s3: float, lead_s: float, t_s: Array
 ) -> Array:
-    """Return the floor (n,) at `t_s`, at most `floor_m` (n,), that the state `x` (3,) can keep above."""
+    """Return the floor (n,) at `t_s`, at most `floor_m` (n,), that `x` (3,), led by `lead_s`, can keep above."""
     pull, jerk = AUTHORITY * pull_m_s2, AUTHORITY * jerk_m_s3
     climb = max(AUTHORITY * climb_m_s, x[1])
     height, before, then = x[0], x[1], 0.0
@@ -67,7 +67,7 @@ def reachable_floor(
         velocity = min(-velocity_left(-x[1], -x[2], pull, jerk, t_s[i]), climb)
         height += 0.5 * (velocity + before) * (t_s[i] - then)
         before, then = velocity, t_s[i]
-        floor[i] = min(floor_m[i], height)
+        floor[i] = min(floor_m[i], height + lead_s * velocity)
     return floor
 
 
@@ -147,7 +147,16 @@ def minor_share(
 
 @compiled_kernel
 def bound_rows(
-    x: Array, down: Array, up: Array, push: Array, jerk: Array, floor: Array, node_s: Array, end_s: Array, rows: Bounds
+    x: Array,
+    down: Array,
+    up: Array,
+    push: Array,
+    jerk: Array,
+    floor: Array,
+    lead_s: float,
+    node_s: Array,
+    end_s: Array,
+    rows: Bounds,
 ) -> None:
     """Write the bounds of moves, slacks, velocity, acceleration and the floor, widened.
 
@@ -158,6 +167,7 @@ def bound_rows(
         push: (m,) the largest acceleration.
         jerk: (m,) the largest jerk.
         floor: (n,) the lowest position, or empty.
+        lead_s: for how long the rate carries on what the floor bounds.
         node_s: (n,).
         end_s: (m,).
         rows: (c,) each, where they are written.
@@ -185,7 +195,7 @@ def bound_rows(
         upper[acceleration + moves + move] = most[move] - a
     for node in range(len(floor)):
         fallen = x[0] + (v + 0.5 * a * node_s[node]) * node_s[node]
-        lower[acceleration + 2 * moves + node] = floor[node] - fallen
+        lower[acceleration + 2 * moves + node] = floor[node] - fallen - lead_s * (v + a * node_s[node])
 
 
 @compiled_kernel
@@ -194,7 +204,7 @@ def major_bounds(
 ) -> None:
     """Write the bounds of the major axis; `state` (3, 3) has the axes in its columns, see `major_share`."""
     speed, push, jerk = major_share(state[:, 1], target_v, target_a, way, norms, node_s, end_s)
-    bound_rows(state[:, 0], speed, speed, push, jerk, np.empty(0), node_s, end_s, rows)
+    bound_rows(state[:, 0], speed, speed, push, jerk, np.empty(0), 0.0, node_s, end_s, rows)
 
 
 @compiled_kernel
@@ -210,24 +220,31 @@ def minor_bounds(
 ) -> None:
     """Write the bounds of the minor axis; `state` (3, 3) has the axes in its columns, see `minor_share`."""
     speed, push, jerk = minor_share(state[:, 0], major_jerk, forced_v, norms, node_s, move_s)
-    bound_rows(state[:, 1], speed, speed, push, jerk, np.empty(0), node_s, end_s, rows)
+    bound_rows(state[:, 1], speed, speed, push, jerk, np.empty(0), 0.0, node_s, end_s, rows)
 
 
 @compiled_kernel
 def vertical_bounds(
-    x: Array, floor_m: Array, limits: tuple[float, float, float, float], node_s: Array, end_s: Array, rows: Bounds
+    x: Array,
+    floor_m: Array,
+    lead_s: float,
+    limits: tuple[float, float, float, float],
+    node_s: Array,
+    end_s: Array,
+    rows: Bounds,
 ) -> None:
     """Write the bounds of the vertical axis in state `x` (3,).
 
     Args:
         x: (3,) position, velocity and acceleration.
         floor_m: (n,) the lowest position; it is lowered to what can be kept.
+        lead_s: likewise as `bound_rows` has it.
         limits: of descent, climb, acceleration and jerk.
         node_s: (n,).
         end_s: (m,).
         rows: (c,) each, where they are written.
     """
     descent, climb, pull, most = limits
-    floor = reachable_floor(floor_m, x, pull, climb, most, node_s)
+    floor = reachable_floor(floor_m, x, pull, climb, most, lead_s, node_s)
     down, up = np.full(len(node_s), descent), np.full(len(node_s), climb)
-    bound_rows(x, down, up, np.full(len(end_s), pull), np.full(len(end_s), most), floor, node_s, end_s, rows)
+    bound_rows(x, down, up, np.full(len(end_s), pull), np.full(len(end_s), most), floor, lead_s, node_s, end_s, rows)

@@ -52,6 +52,8 @@ class PlanRequest(Struct, frozen=True, kw_only=True, eq=False):
         target: where it is wanted.
         limits: what may be asked of the drone.
         floor_enu_m: (n,) lowest allowed height in W at the target's offsets.
+        touched_enu_m: (n,) in place of a floor, where a pad is to be touched: the lowest that the height in W, carried
+            on by its rate for `MpcConfig.touch_time_s`, may be. Laws without bounds on a plan pass it over.
         dt_s: control period, after which the next plan is made.
     """
 
@@ -60,6 +62,7 @@ class PlanRequest(Struct, frozen=True, kw_only=True, eq=False):
     limits: FlightLimits
     floor_enu_m: Array
     dt_s: float
+    touched_enu_m: Array | None = None
 
 
 class Trajectory(Struct, frozen=True, kw_only=True, eq=False):

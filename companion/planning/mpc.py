@@ -35,8 +35,10 @@ class Mpc:
     def __init__(self, config: MpcConfig) -> None:
         solver = make_solver(config.solver)
         model = make_axis_model(np.array(config.moves_s), config.node_spacing_max_s)
-        level, upright = (make_axis_problem(model, config, has_floor=floored) for floored in (False, True))
-        self._level, self._upright = (Programme(solver, problem.H, problem.A) for problem in (level, upright))
+        self._touch_time_s = float(config.touch_time_s)
+        leads_s = (None, 0.0, self._touch_time_s)
+        problems = [make_axis_problem(model, config, floor_lead_s=lead_s) for lead_s in leads_s]
+        self._level, self._above, self._onto = (Programme(solver, problem.H, problem.A) for problem in problems)
         self._nodes_s = np.append(0.0, model.node_s)
         self._responses = lru_cache(maxsize=64)(partial(_responses, self._nodes_s, np.array(config.moves_s)))
         self._forced_v, self._grid = model.forced_v, (self._nodes_s, model.move_s, model.end_s)
@@ -47,7 +49,7 @@ class Mpc:
             lateral_speed_fraction=config.lateral_speed_fraction,
             slack_weight=config.slack_weight,
         )
-        self._statics: Statics = (self._grid, model.end_node, (*numbers,), level.weights)
+        self._statics: Statics = (self._grid, model.end_node, (*numbers,), problems[0].weights)
 
     def plan(self, memory: ReferenceState | None, request: PlanRequest) -> tuple[ReferenceState, PlanResult]:
         """Return the next state as memory, and the plan."""
@@ -62,10 +64,14 @@ class Mpc:
     def _pose(self, request: PlanRequest, limits: PlainLimits) -> Posed | None:
         """Return the problem of a plan, all but its minor axis's bounds; None where the request is not finite."""
         state, resampler = request.state, make_resampler(request.target.offset_s, self._nodes_s)
-        posed = np.empty((5, 3)), self._level.blank(), self._level.blank(), self._upright.blank()
+        posed = np.empty((5, 3)), self._level.blank(), self._level.blank(), self._above.blank()
+        floor_enu_m, lead_s = request.floor_enu_m, 0.0
+        if request.touched_enu_m is not None:
+            floor_enu_m, lead_s = request.touched_enu_m, self._touch_time_s
         is_finite = pose(
             (state.position_enu_m, state.velocity_enu_m_s, state.acceleration_enu_m_s2),
-            (*resampler.taken(request.target), resampler.taken_line(request.floor_enu_m)),
+            (*resampler.taken(request.target), resampler.taken_line(floor_enu_m)),
+            lead_s,
             limits,
             (resampler.left, resampler.weights),
             self._statics,
@@ -83,7 +89,8 @@ class Mpc:
         status, y, more = self._level.solve(minor)
         if y is None:
             return brake(request, status, iterations + more)
-        status, z, most = self._upright.solve(vertical)
+        upright = self._above if request.touched_enu_m is None else self._onto
+        status, z, most = upright.solve(vertical)
         if z is None:
             return brake(request, status, iterations + more + most)
         return self._result(frame, (x, y, z), request.dt_s, iterations + more + most)

@@ -101,6 +101,7 @@ def total_of(state: Path3, target: tuple[Array, Array, Array, Array]) -> float:
 def pose(
     state: Path3,
     target: tuple[Array, Array, Array, Array],
+    lead_s: float,
     limits: PlainLimits,
     sampling: Sampling,
     statics: Statics,
@@ -111,6 +112,7 @@ def pose(
     Args:
         state: of the virtual model now.
         target: position, velocity and acceleration (n, 3) in W, and the lowest height (n,), at its own offsets.
+        lead_s: of the floor, see `envelope.vertical_bounds`; the way itself keeps to one without a lead only.
         limits: of the drone.
         sampling: from the target's offsets to the grid's `nodes_s`.
         statics: of the law.
@@ -129,8 +131,9 @@ def pose(
     frame, major, minor, upright = posed
     put_frame(frame, x, path, direction)
     rates = (most.speed_m_s, most.climb_m_s, most.descent_m_s, most.acceleration_m_s2, most.vertical_acceleration_m_s2)
+    lowest = floor if lead_s == 0.0 else np.full(len(floor), -math.inf)
     split, push, reference = approach(
-        x[:2], grid.nodes_s, turned, floor, rates, numbers.intercept_fraction, numbers.intercept_time_min_s
+        x[:2], grid.nodes_s, turned, lowest, rates, numbers.intercept_fraction, numbers.intercept_time_min_s
     )
     ends, jerk = at_ends(turned[2], statics[1], grid.move_s)
     norms = (most.speed_m_s, most.acceleration_m_s2, most.jerk_m_s3)
@@ -141,7 +144,7 @@ def pose(
     put_linear(minor[0], slopes[1], numbers.slack_weight)
     put_linear(upright[0], slopes[2], numbers.slack_weight)
     major_bounds(x, turned[1, 1], ends[1], way, norms, node_s, end_s, major[1:])
-    vertical_bounds(x[:, 2], floor[1:], vertical, node_s, end_s, upright[1:])
+    vertical_bounds(x[:, 2], floor[1:], lead_s, vertical, node_s, end_s, upright[1:])
     return math.isfinite(total_of(state, target) + sampling[1][0, 0, 0])
 
 

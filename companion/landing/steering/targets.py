@@ -32,10 +32,11 @@ _REST_MOTION = 0.01  # m/s and m/s^2
 
 
 class Aim(Struct, frozen=True, kw_only=True, eq=False):
-    """What the planner is given: the target and the lowest height (n,) at its offsets."""
+    """What the planner is given: the target and its floor (n,), as `PlanRequest` has them."""
 
     target: Target
     floor_enu_m: Array
+    touched_enu_m: Array | None = None
     is_hover: bool = False
 
 
@@ -123,7 +124,23 @@ def pad_aim(
         acceleration_enu_m_s2=accelerated,
     )
     floor = pad.position_enu_m[:, 2] + feet_offset_m + _clearance_m(phase, config)
-    return Aim(target=target, floor_enu_m=floor)
+    touched = _touched_enu_m(pad, height, target, feet_offset_m, config) if phase is Phase.DESCEND else None
+    return Aim(target=target, floor_enu_m=floor, touched_enu_m=touched)
+
+
+def _touched_enu_m(
+    pad: PadPath, height_m: Array, target: Target, feet_offset_m: float, config: CompanionConfig
+) -> Array:
+    """Return (n,) the bound of a descent, as `PlanRequest` has it, by which the plan sinks onto the pad gently.
+
+    It looks ahead to a deck that comes up faster than the drone can follow once it does. Where the way down goes on
+    below the pad, so that the contact is firm, it may.
+    """
+    time_s = config.guidance.mpc.touch_time_s
+    sinks_m_s = pad.velocity_enu_m_s[:, 2] - config.touchdown.sink_max_m_s
+    bound = pad.position_enu_m[:, 2] + feet_offset_m + time_s * sinks_m_s
+    presses = target.position_enu_m[:, 2] + time_s * target.velocity_enu_m_s[:, 2]
+    return np.where(height_m < 0.0, np.minimum(bound, presses), bound)
 
 
 def _short_enu_m(pad: PadPath, reference: ReferenceState, config: CompanionConfig) -> Array:

@@ -44,7 +44,7 @@ def test_the_nodes_hold_all_ends_of_blocks_and_no_wide_gap() -> None:
 def test_the_programme_costs_what_a_rollout_costs(axis: int) -> None:
     config = MpcConfig()
     model = make_axis_model(np.array(config.moves_s), config.node_spacing_max_s)
-    problem = make_axis_problem(model, config, has_floor=False)
+    problem = make_axis_problem(model, config, floor_lead_s=None)
     rng = np.random.default_rng(5)
     u = 5.0 * rng.normal(size=len(config.moves_s))
     states, references, jerks = (rng.normal(size=(3, 3, *rest)) for rest in ((), (len(model.node_s),), (len(u),)))

@@ -75,7 +75,7 @@ def test_the_compiled_envelopes_equal_their_python() -> None:
         for kernel, arguments in (
             (envelope.velocity_ceiling, (bound, v, a, push, jerk, times)),
             (envelope.acceleration_ceiling, (bound, a, jerk, times)),
-            (envelope.reachable_floor, (bound, x, push, 2.0, jerk, times)),
+            (envelope.reachable_floor, (bound, x, push, 2.0, jerk, 0.8, times)),
         ):
             np.testing.assert_allclose(kernel(*arguments), kernel.py_func(*arguments), atol=1e-12)
 

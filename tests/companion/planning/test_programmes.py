@@ -18,6 +18,7 @@ from tests.companion.planning.cases import LIMITS, circle, request_of, state_at,
 MPC = Mpc(MpcConfig())
 START = state_at((3.0, -8.0, 5.0), (1.0, 2.0, -0.5), (0.3, -0.2, 0.1))
 REQUEST = request_of(START, target_of(circle(16.5, 7.0)))
+TOUCHED_ENU_M = np.linspace(1.0, 2.0, len(REQUEST.floor_enu_m))
 
 
 def planned(request: PlanRequest) -> PlanResult:
@@ -36,7 +37,7 @@ def blank_like(posed: Any) -> Any:
     return tuple(blank_like(one) for one in posed) if isinstance(posed, tuple) else np.full_like(posed, np.nan)
 
 
-def arguments_of_pose(monkeypatch: pytest.MonkeyPatch) -> tuple[Any, ...]:
+def arguments_of_pose(request: PlanRequest, monkeypatch: pytest.MonkeyPatch) -> tuple[Any, ...]:
     """What a plan gives to `pose`."""
     seen: list[tuple[Any, ...]] = []
 
@@ -45,17 +46,18 @@ def arguments_of_pose(monkeypatch: pytest.MonkeyPatch) -> tuple[Any, ...]:
         return pose(*arguments)
 
     monkeypatch.setattr("companion.planning.mpc.pose", noted)
-    planned(REQUEST)
+    planned(request)
     return seen[0]
 
 
-def test_compiled_calls_of_a_plan_are_their_python(monkeypatch: pytest.MonkeyPatch) -> None:
-    arguments = arguments_of_pose(monkeypatch)
-    posed, plain = blank_like(arguments[5]), blank_like(arguments[5])
+@pytest.mark.parametrize("wanted", [REQUEST, replace(REQUEST, touched_enu_m=TOUCHED_ENU_M)], ids=["above", "onto"])
+def test_compiled_calls_of_a_plan_are_their_python(wanted: PlanRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    *given, statics, blank = arguments_of_pose(wanted, monkeypatch)
+    posed, plain = blank_like(blank), blank_like(blank)
     for kernel, written in ((pose, posed), (pose.py_func, plain)):
-        given = (*arguments[:5], written)
-        assert kernel(*given)
-    grid, limits, rng = arguments[4][0], limits_of(REQUEST), np.random.default_rng(3)
+        all_given = (*given, statics, written)
+        assert kernel(*all_given)
+    grid, limits, rng = statics[0], limits_of(REQUEST), np.random.default_rng(3)
     nodes, moves = len(grid[0]) - 1, len(grid[1])
     jerk, forced_v = rng.normal(size=moves + 2), rng.normal(size=(nodes, moves))
     bound_minor(posed[0], jerk, forced_v, limits, grid, posed[2])
@@ -114,6 +116,8 @@ def test_rows_that_are_not_one_for_each_offset_are_refused(field: str) -> None:
 def test_a_floor_that_is_not_one_for_each_offset_is_refused(rows: int) -> None:
     with pytest.raises(ValueError, match="offsets has samples of shape"):
         planned(replace(REQUEST, floor_enu_m=np.zeros(rows)))
+    with pytest.raises(ValueError, match="offsets has samples of shape"):
+        planned(replace(REQUEST, touched_enu_m=np.zeros(rows)))
 
 
 @pytest.mark.parametrize("limit", sorted(set(FlightLimits.__struct_fields__) - {"tilt_acceleration_m_s2"}))
@@ -127,6 +131,7 @@ def test_limits_that_are_whole_numbers_compile_nothing() -> None:
     planned(REQUEST)
     known = len(pose.signatures), len(bound_minor.signatures)
     planned(replace(REQUEST, limits=replace(LIMITS, speed_max_m_s=20, jerk_max_m_s3=20)))
+    planned(replace(REQUEST, touched_enu_m=TOUCHED_ENU_M))
     assert (len(pose.signatures), len(bound_minor.signatures)) == known
 
 
