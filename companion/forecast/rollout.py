@@ -12,8 +12,8 @@ bandwidth W (Butterworth's third-order polynomial) within jerk and acceleration,
 and the drone follows the model by its autopilot's cascade (`autopilots.response`), whose deviation gusts move. It leans
 for the pad's acceleration, by the cascade's a, and by what its integrator holds against the air: i' = -u / T, where
 a + i is what it is seen to lean against the air while it is pushed steadily, so that i = air + u at first. The way down
-is the planned one. A drone that sees, above where it commits, what it waits for does not come to the contact; nor
-does one that breaks off below while it still can stop sinking.
+is the planned one. A drone that sees, above where it commits, what it waits for stays at its height meanwhile, and
+does not come to the contact after a longer wait; nor does one that breaks off below while it still can stop sinking.
 """
 
 import math
@@ -59,14 +59,21 @@ def _know(seen: Array, first: Array, delay_s: float, believes_s: float, known: A
 
 
 @compiled_kernel
-def _does_not_land(off: Array, along_m_s2: float, height_m: float, sink_m_s: float, rules: Rules) -> bool:
-    """Return whether a drone that is seen `off` (2, 2) its pad by so much waits or breaks off here."""
-    beside_m, rate_m_s = math.hypot(off[0, 0], off[0, 1]), math.hypot(off[1, 0], off[1, 1])
-    if height_m > rules.waits_below_m:
+def _waits(off: Array, along_m_s2: float, height_m: float, rules: Rules) -> bool:
+    """Return whether a drone that is seen `off` (2, 2) its pad by so much waits here."""
+    if height_m > rules.waits_below_m or height_m <= rules.commits_below_m:
         return False
+    beside_m, rate_m_s = math.hypot(off[0, 0], off[0, 1]), math.hypot(off[1, 0], off[1, 1])
+    is_beside = beside_m > rules.cone_at_pad_m + rules.cone_slope * height_m
+    return is_beside or rate_m_s > rules.waiting_speed_m_s or abs(along_m_s2) > rules.waiting_brake_m_s2
+
+
+@compiled_kernel
+def _breaks_off(off: Array, height_m: float, sink_m_s: float, rules: Rules) -> bool:
+    """Return whether a drone that is seen `off` (2, 2) its pad by so much breaks off here, and still can."""
     if height_m > rules.commits_below_m:
-        is_beside = beside_m > rules.cone_at_pad_m + rules.cone_slope * height_m
-        return is_beside or rate_m_s > rules.waiting_speed_m_s or abs(along_m_s2) > rules.waiting_brake_m_s2
+        return False
+    beside_m, rate_m_s = math.hypot(off[0, 0], off[0, 1]), math.hypot(off[1, 0], off[1, 1])
     stops_m = sink_m_s * rules.stops_sinking_s + 0.5 * sink_m_s**2 / rules.climbs_m_s2
     return (rate_m_s > rules.near_speed_m_s or beside_m > rules.over_pad_m) and height_m > stops_m
 
@@ -132,11 +139,11 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
     before, late = len(path) - steps, samples.delay_s[sample] / DT_S
     model, state = course.model.copy(), samples.deviation[sample].copy()
     known, off, expected, lean = np.zeros((3, 2)), np.empty((2, 2)), np.empty(2), np.empty(2)
-    before_m_s2, held = np.empty(2), course.air_enu_m_s2 + state[3]
+    before_m_s2, held, waited = np.empty(2), course.air_enu_m_s2 + state[3], 0
     for k in range(steps):
         seen = max(before + k - late, 0.0)
         _know(path[int(seen)], path[0], (before + k - seen) * DT_S, drone.believes_s, known)
-        height_m, sink_m_s = course.way_down[0, k], -course.way_down[1, k]
+        height_m, sink_m_s = course.way_down[0, k - waited], -course.way_down[1, k - waited]
         cx, cy = course.direction[k, 0], course.direction[k, 1]
         expected[0] = course.along_m_s2[k] * cx - course.left_m_s2[k] * cy
         expected[1] = course.along_m_s2[k] * cy + course.left_m_s2[k] * cx
@@ -146,7 +153,9 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
             lean[i] = expected[i] + state[2, i] + held[i]
             held[i] -= drone.forgets_hz * state[3, i] * DT_S
         along_m_s2 = course.along_m_s2[k] + known[2, 0] * cx + known[2, 1] * cy
-        if _does_not_land(off, along_m_s2, height_m, sink_m_s, rules):
+        if _waits(off, along_m_s2, height_m, rules):
+            waited += 1
+        if waited * DT_S > rules.waits_max_s or _breaks_off(off, height_m, sink_m_s, rules):
             return
         lowest_m = rules.foot_radius_m * min(math.hypot(lean[0], lean[1]) / GRAVITY_M_S2, 1.0)
         if height_m - samples.vertical[sample, 0] - lowest_m <= 0.0:

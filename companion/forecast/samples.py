@@ -44,8 +44,12 @@ class Follower(NamedTuple):
 
 
 class Rules(NamedTuple):
-    """What keeps a descent from its contact, and the drone's feet."""
+    """What keeps a descent from its contact, and the drone's feet.
 
+    After a longer wait than `waits_max_s` in all, the contact is another descent's.
+    """
+
+    waits_max_s: float
     waits_below_m: float
     commits_below_m: float
     waiting_speed_m_s: float

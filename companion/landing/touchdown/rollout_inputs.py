@@ -22,6 +22,9 @@ from companion.vehicle.pad_reach import cone_radius_at_pad_m, over_pad_radius_m
 _OFFSETS_S = DT_S * np.arange(STEPS_MAX, dtype=np.float64)
 _BELOW_M = -0.4  # to where the way down is followed: heights are not off by more
 _REPORT_AGE_MAX_S = 0.25
+# Of a short wait: it stops and sinks anew meanwhile, which takes as long again. Then the contact comes a second later.
+_WAITS_MAX_S = 0.5
+_WAITS_STEPS = math.ceil(_WAITS_MAX_S / DT_S)
 _SLOW_M_S = 0.3  # slower than this a vehicle has no direction but its heading
 _SLOPE_FROM_M_S = 1.0  # from here on a vertical speed tells the grade
 _PLACE_STD_MIN_M = 0.02  # of a receiver with corrections
@@ -39,14 +42,14 @@ _SENSOR_HOLD_NS = 1_000_000_000
 
 
 class WayDown(Struct, frozen=True, kw_only=True, eq=False):
-    """The planned descent: (m,) times from now, and (3, m) height, rate and acceleration over the pad."""
+    """The planned descent, without a wait: (m,) times from now; (3, m) height, rate and acceleration over the pad."""
 
     offset_s: Array
     path: Array
 
     @property
     def lasts_s(self) -> float:
-        """How long it takes."""
+        """How long it takes at most, with the longest wait."""
         return float(self.offset_s[-1])
 
 
@@ -75,10 +78,10 @@ def way_to_contact(memory: StepMemory, situation: Situation, config: CompanionCo
     state = (relative.height_m, relative.climb_m_s, climbs_m_s2)
     limits = situation.limits or config.limits.flight_limits()
     path = way_down(state, _OFFSETS_S, limits, config.descent)
-    below = np.flatnonzero(path[0] < _BELOW_M)
+    below = np.flatnonzero(path[0, : STEPS_MAX - _WAITS_STEPS] < _BELOW_M)
     if not len(below):
         return None
-    count = int(below[0]) + 1
+    count = int(below[0]) + 1 + _WAITS_STEPS
     return WayDown(offset_s=_OFFSETS_S[:count], path=path[:, :count].copy())
 
 
@@ -229,6 +232,7 @@ def rules_of(relative: Approach, inputs: StepInputs, config: CompanionConfig) ->
     """Return what the drone waits for and breaks off on."""
     half_width_m, delay = relative.pad_half_width_m, inputs.link_delay
     return Rules(
+        waits_max_s=_WAITS_MAX_S,
         waits_below_m=config.descent.wait.height_m,
         commits_below_m=config.descent.commit_height_m,
         waiting_speed_m_s=config.descent.wait.speed_m_s,

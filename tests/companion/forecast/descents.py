@@ -25,6 +25,7 @@ DRONE = Follower(
     level_below_m=0.08,
 )
 RULES = Rules(
+    waits_max_s=0.5,
     waits_below_m=0.85,
     commits_below_m=0.35,
     waiting_speed_m_s=0.4,
@@ -41,7 +42,7 @@ RULES = Rules(
 
 def descent(height_m: float = HEIGHT_M, **drone: float) -> Descent:
     """Down at an even rate over a vehicle that drives north-east."""
-    steps = int((height_m + 0.4) / SINK_M_S / DT_S)
+    steps = int(((height_m + 0.4) / SINK_M_S + RULES.waits_max_s) / DT_S)
     way_down = np.zeros((3, steps))
     way_down[0] = height_m - SINK_M_S * DT_S * np.arange(steps)
     way_down[1] = -SINK_M_S

@@ -52,6 +52,18 @@ def test_an_error_of_the_estimate_stays_an_error() -> None:
     assert end[ERROR] == pytest.approx(0.13, abs=1e-6)
 
 
+@pytest.mark.parametrize("speed_m_s", [0.41, 0.45])
+def test_a_contact_after_a_short_wait_comes_as_much_later(speed_m_s: float) -> None:
+    plain, moves = descent(0.8), samples()
+    moves.deviation[0, 1] = [speed_m_s, 0.0]  # beside the model, which its gains take away
+    (end,), (before,) = roll_out(moves, plain, 0.1), roll_out(samples(), plain, 0.1)
+    waits_s = end[IN_S] - before[IN_S]
+    assert end[CONTACT] == 1.0
+    assert 0.0 < waits_s <= RULES.waits_max_s
+    impatient = plain._replace(rules=RULES._replace(waits_max_s=waits_s - 2.0 * DT_S))
+    assert roll_out(moves, impatient, 0.1)[0, CONTACT] == 0.0
+
+
 def test_a_drone_that_sees_a_brake_above_where_it_commits_does_not_land() -> None:
     brakes = samples(kind=ALONG, event=np.array([0.0, -4.0, 0.1, NEVER_S]), delay_s=0.1)
     assert roll_out(brakes, descent(0.8), 0.3)[0, CONTACT] == 0.0
@@ -93,7 +105,7 @@ def test_machine_code_is_its_python(monkeypatch: pytest.MonkeyPatch) -> None:
         pushes=generator.standard_normal(several.pushes.shape),
     )
     compiled = roll_out(several, descent(push_std_m_s2=0.5), 0.17)
-    for name in ("drive", "_know", "_does_not_land", "_plan", "_follow", "_touch", "_fly"):
+    for name in ("drive", "_know", "_waits", "_breaks_off", "_plan", "_follow", "_touch", "_fly"):
         monkeypatch.setattr(rollout, name, getattr(rollout, name).py_func)
     plain = roll_out.py_func(several, descent(push_std_m_s2=0.5), 0.17)
     assert compiled == pytest.approx(plain, abs=1e-12)
