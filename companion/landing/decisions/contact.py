@@ -104,28 +104,18 @@ def stopping_distance_m(sinks_m_s: float, lag_s: float, climbs_m_s2: float) -> f
     return sinks_m_s * lag_s + 0.5 * sinks_m_s**2 / climbs_m_s2
 
 
-def trial_press_m_s2(signs: Signs, late_s: float, climbs_m_s2: float, config: CompanionConfig) -> float:
+def trial_press_m_s2(signs: Signs, config: TouchdownConfig) -> float:
     """Return how hard a drone may be pressed down, m/s^2, while the signs of a contact agree for too short a time.
 
     They may be wrong: an autopilot that has heard nothing for a moment hovers above its setpoint as if on a pad. Then
-    the drone falls, until that is seen. It either stops again above what its range finder sees, or touches that no
-    faster than the gear takes. Without a range finder only the signs themselves tell that it touches.
-
-    Args:
-        signs: now.
-        late_s: until a press has come to the drone, and what it does has been reported.
-        climbs_m_s2: with which it stops sinking.
-        config: all numbers.
+    the drone falls, and over a late link to the pad; it touches that no faster than the gear takes, from where its
+    range finder sees it. Without a range finder only the signs themselves tell that it touches.
     """
-    touchdown, seen_m = config.touchdown, signs.range_height_m
-    press_m_s2 = touchdown.try_acceleration_m_s2
+    seen_m = signs.range_height_m
     if seen_m is None or seen_m <= 0.0:
-        return press_m_s2
+        return config.try_acceleration_m_s2
     now_m_s = 0.0 if signs.climb_m_s is None else max(-signs.climb_m_s, 0.0)
-    sinks_m_s = now_m_s + press_m_s2 * late_s
-    if 0.5 * (now_m_s + sinks_m_s) * late_s + stopping_distance_m(sinks_m_s, late_s, climbs_m_s2) < seen_m:
-        return press_m_s2
-    return min(press_m_s2, max(touchdown.sink_max_m_s**2 - now_m_s**2, 0.0) / (2.0 * seen_m))
+    return min(config.try_acceleration_m_s2, max(config.sink_max_m_s**2 - now_m_s**2, 0.0) / (2.0 * seen_m))
 
 
 def trial_s(signs: Signs, press_m_s2: float, late_s: float, config: TouchdownConfig) -> float:

@@ -200,21 +200,14 @@ def test_decision_is_described_by_its_signs() -> None:
     assert "autopilot not landed" in text
 
 
-CLIMBS_M_S2 = CONFIG.limits.flight_limits().vertical_acceleration_max_m_s2
-
-
-@given(st.floats(0.0, 3.0), st.floats(0.0, 0.4), st.floats(-TOUCHDOWN.sink_max_m_s, TOUCHDOWN.blocked_speed_m_s))
-def test_a_drone_pressed_down_in_the_air_stops_or_touches_no_faster_than_its_gear_takes(
-    seen_m: float, late_s: float, climb_m_s: float
-) -> None:
+@given(st.floats(0.0, 3.0), st.floats(-TOUCHDOWN.sink_max_m_s, TOUCHDOWN.blocked_speed_m_s))
+def test_a_drone_pressed_down_in_the_air_touches_no_faster_than_its_gear_takes(seen_m: float, climb_m_s: float) -> None:
+    """However late the link is: a drone 0.26 m above the pad fell by 1.3 m/s until its sink was reported and ended."""
     signs = replace(signs_of(on_pad()), range_height_m=seen_m, climb_m_s=climb_m_s)
-    press_m_s2 = trial_press_m_s2(signs, late_s, CLIMBS_M_S2, CONFIG)
+    press_m_s2 = trial_press_m_s2(signs, TOUCHDOWN)
     assert 0.0 <= press_m_s2 <= TOUCHDOWN.try_acceleration_m_s2
-    now_m_s = max(-climb_m_s, 0.0)
-    touches_m_s = math.sqrt(now_m_s**2 + 2.0 * press_m_s2 * seen_m)
-    sinks_m_s = now_m_s + press_m_s2 * late_s  # when it is reported to fall; until it is heard again it sinks on
-    stops_m = (0.5 * (now_m_s + sinks_m_s) + sinks_m_s) * late_s + sinks_m_s**2 / (2.0 * CLIMBS_M_S2)
-    assert stops_m < seen_m or touches_m_s < TOUCHDOWN.sink_max_m_s + 1e-9 or seen_m == 0.0
+    touches_m_s = math.sqrt(max(-climb_m_s, 0.0) ** 2 + 2.0 * press_m_s2 * seen_m)
+    assert touches_m_s < TOUCHDOWN.sink_max_m_s + 1e-9
 
 
 @given(st.floats(0.0, TOUCHDOWN.try_acceleration_m_s2), st.floats(0.0, 0.4), st.none() | st.floats(-0.1, 3.0))
@@ -230,12 +223,11 @@ def test_a_trial_lasts_until_a_drone_with_room_to_fall_would_be_reported_to_sink
     assert lasts_s <= TOUCHDOWN.range_finder.disputed_hold_s
 
 
-def test_over_a_prompt_link_a_drone_is_pressed_as_hard_as_it_may_be_from_a_hand_above_the_pad() -> None:
-    signs = replace(signs_of(on_pad()), range_height_m=0.1, climb_m_s=0.0)
-    assert trial_press_m_s2(signs, 0.05, CLIMBS_M_S2, CONFIG) == TOUCHDOWN.try_acceleration_m_s2
-    assert trial_press_m_s2(signs, 0.3, CLIMBS_M_S2, CONFIG) == pytest.approx(0.7**2 / 0.2)
+def test_a_drone_whose_range_finder_sees_the_pad_at_its_feet_is_pressed_with_all() -> None:
+    signs = replace(signs_of(on_pad()), range_height_m=0.04, climb_m_s=0.0)
+    assert trial_press_m_s2(signs, TOUCHDOWN) == TOUCHDOWN.try_acceleration_m_s2
 
 
 def test_without_a_range_finder_only_the_signs_tell_and_the_press_is_whole() -> None:
     signs = replace(signs_of(on_pad()), range_height_m=None)
-    assert trial_press_m_s2(signs, 0.4, CLIMBS_M_S2, CONFIG) == TOUCHDOWN.try_acceleration_m_s2
+    assert trial_press_m_s2(signs, TOUCHDOWN) == TOUCHDOWN.try_acceleration_m_s2
