@@ -20,7 +20,6 @@ from companion.landing.decisions.conditions import (
     is_vehicle_taken,
     tell_taken,
 )
-from companion.landing.decisions.contact import stopping_distance_m
 from companion.landing.steering.targets import changes_speed
 from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
 from companion.situation.situation import Approach, Situation
@@ -102,7 +101,8 @@ def _can_turn_back(s: Situation, c: CompanionConfig) -> bool:
         return False
     sinks_m_s = max(-s.approach.climb_m_s, 0.0)
     lag_s = ATTITUDE_LAG_S + s.following.late_s
-    return s.approach.height_m > stopping_distance_m(sinks_m_s, lag_s, s.limits.vertical_acceleration_max_m_s2)
+    stops_m = sinks_m_s * lag_s + 0.5 * sinks_m_s**2 / s.limits.vertical_acceleration_max_m_s2
+    return s.approach.height_m > stops_m
 
 
 def _is_contact_risky(s: Situation, c: CompanionConfig) -> bool:

@@ -99,11 +99,6 @@ def verdict(signs: Signs, config: CompanionConfig, *, is_pressed: bool = False) 
     )
 
 
-def stopping_distance_m(sinks_m_s: float, lag_s: float, climbs_m_s2: float) -> float:
-    """Return how far a drone sinks until it has stopped: on for its lag, then slower with what it climbs."""
-    return sinks_m_s * lag_s + 0.5 * sinks_m_s**2 / climbs_m_s2
-
-
 def trial_press_m_s2(signs: Signs, config: TouchdownConfig) -> float:
     """Return how hard a drone may be pressed down, m/s^2, while the signs of a contact agree for too short a time.
 
