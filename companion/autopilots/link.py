@@ -7,6 +7,7 @@ from companion.autopilots.choice import driver_for
 from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver, streams_hz
 from companion.autopilots.late_reports import LateReports
 from companion.autopilots.limits import LimitQuestions, parameter_names
+from companion.autopilots.pilot_switch import PilotSwitch
 from companion.autopilots.response import Cascade, Shaping
 from companion.autopilots.state import AutopilotState, shift_reports, update_state
 from companion.config.autopilot import AutopilotConfig
@@ -68,6 +69,7 @@ class AutopilotLink:
         self._polled_ns: int | None = None
         self._questions = LimitQuestions()
         self._late = LateReports()
+        self.pilot_switch = PilotSwitch(config.pilot_switch)
         self._times: tuple[int, int] | None = None
 
     def receive(self, data: bytes, local_ns: int, *, is_datagram: bool = False) -> None:
@@ -170,6 +172,8 @@ class AutopilotLink:
             return
         if message.get_type() == "PARAM_VALUE":
             self._hear_parameter(message, driver)
+        elif message.get_type() == "RC_CHANNELS":
+            self.pilot_switch.hear(message, local_ns)
         shift = self.state.view.frame_moves.shift_enu_m
         self.state = update_state(self.state, message, self.session.clock, driver)
         if self.state.view.frame_moves.shift_enu_m != shift:
@@ -190,6 +194,7 @@ class AutopilotLink:
         parameters, geoid_m = self.state.parameters, self._config.geoid_height_m
         self.state = AutopilotState(view=view, parameters=parameters, geoid_height_m=geoid_m)
         self._origin_asked_ns = None
+        self.pilot_switch.forget()
 
     def _take_answer(self, command: int, ticket: int | None) -> None:
         if self._unanswered.get(command) == ticket:
@@ -218,9 +223,8 @@ class AutopilotLink:
         return apart_s > max(_WAITED_SHARE * self.timeout_s, _WAITED_MIN_S)
 
     def _ask_for_streams(self, driver: Driver, local_ns: int) -> None:
-        for message_id, rate_hz in streams_hz(
-            driver, self._motion_rate_hz, stops_unused=self._config.stops_unused_streams
-        ).items():
+        wanted_hz = streams_hz(driver, self._motion_rate_hz, stops_unused=self._config.stops_unused_streams)
+        for message_id, rate_hz in (wanted_hz | self.pilot_switch.streams_hz).items():
             self.session.request_interval(message_id, rate_hz, local_ns)
         for name in chain(*parameter_names(driver)):
             self.session.read_parameter(name, local_ns)

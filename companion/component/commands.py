@@ -91,11 +91,6 @@ class StationCommands:
         self._asked = self._waiting.popleft()
         return Command.ABORT if self._asked.number is None else COMMANDS[self._asked.number]
 
-    @property
-    def is_asked(self) -> bool:
-        """Whether the reply of this step is for one of ours."""
-        return self._asked is not None
-
     def answer(self, reply: CommandReply, local_ns: int) -> list[Message]:
         """Take a step's reply to the command of `next`."""
         asked, self._asked = self._asked, None

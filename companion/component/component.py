@@ -122,14 +122,15 @@ class MavlinkComponent:
         """Return what the step that is made now is commanded; None when nobody waits for one."""
         return self._commands.next()
 
-    def answer(self, reply: CommandReply, local_ns: int) -> bool:
-        """Take the step's reply to a command; return whether it was to one of `next_command`."""
-        if not self._commands.is_asked:
-            return False
+    def answer(self, reply: CommandReply, local_ns: int) -> None:
+        """Take the step's reply to the command of `next_command`."""
         self._send(self._commands.answer(reply, local_ns))
         if not reply.accepted:
-            self._send(self._texts.pieces(f"refuses: {reply.reason}", mavlink.MAV_SEVERITY_WARNING))
-        return True
+            self.refuse(reply.reason)
+
+    def refuse(self, why: str) -> None:
+        """Tell people why a command was refused."""
+        self._send(self._texts.pieces(f"refuses: {why}", mavlink.MAV_SEVERITY_WARNING))
 
     def tell(
         self, outputs: StepOutputs, phase: Phase, state: AutopilotState, config: CompanionConfig, local_ns: int

@@ -1,9 +1,9 @@
 """What can be set about the autopilot, the setpoints that it gets, and what ground stations on its link may do."""
 
 from enum import Enum
-from typing import Annotated
+from typing import Annotated, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from link.program.toml_config import Positive, StrictModel
 
@@ -31,6 +31,24 @@ class PadOnMap(Enum):
     ADSB = "adsb"  # likewise, and as a vehicle among the traffic, which all ground stations draw
 
 
+Pulse = Annotated[int, Field(ge=800, le=2200)]
+
+
+class PilotSwitchConfig(StrictModel):
+    """The switch on the transmitter that starts, holds and breaks off a landing."""
+
+    channel: Annotated[int, Field(ge=5, le=18)] | None = None  # of RC_CHANNELS; none: there is no such switch
+    start_above_us: Pulse = 1800  # a longer pulse starts; both as ArduPilot has them for its own switches
+    abort_below_us: Pulse = 1200  # a shorter one breaks off; between them: hold
+    arms: bool = False  # a start may switch motors on, which a switch can be knocked into
+
+    @model_validator(mode="after")
+    def _has_a_middle(self) -> Self:
+        if self.abort_below_us >= self.start_above_us:
+            raise ValueError(f"abort_below_us must be below start_above_us, {self.start_above_us}")
+        return self
+
+
 class AutopilotConfig(StrictModel):
     """Which autopilot it is, and what the companion does on its link."""
 
@@ -38,6 +56,7 @@ class AutopilotConfig(StrictModel):
     guide: Guide = Guide.SETPOINTS  # the companion flies by setpoints, or tells the autopilot's own precision landing
     # Of mean sea level above the ellipsoid, where the autopilot's receiver does not tell it; none: then no start.
     geoid_height_m: Annotated[float, Field(ge=-120.0, le=120.0)] | None = None
+    pilot_switch: PilotSwitchConfig = PilotSwitchConfig()
     stops_unused_streams: bool = True  # on the companion's own link; false where others listen on it, too
 
 

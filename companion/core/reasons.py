@@ -159,6 +159,7 @@ class Reason(Enum):
     )
     VEHICLE_OUT_OF_RANGE = "vehicle is {:.0f} m away, limits.range_max_m is {:g}: raise it or let the vehicle come back"
     VEHICLE_DRIVES_OFF = "vehicle drives off at {:.1f} m/s, the drone can fly home at {:.1f}: drive slower"
+    MOTORS_OFF_AT_SWITCH = "the motors are off: arm, take off, then switch, or set autopilot.pilot_switch.arms"
     NOT_FLOWN = "the companion does not fly the drone: start it first, then {}"
     RALLY_TOO_FAR = (
         "sortie.rally_point_deg_m is {:.0f} m away, limits.range_max_m is {:g}: set a nearer one, or raise the limit"

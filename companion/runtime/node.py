@@ -14,6 +14,7 @@ from companion.landing.state.step_data import LinkDelay, StepInputs, StepOutputs
 from companion.landing.steering.virtual_model import response_to
 from companion.runtime.publishing import StatusPublisher, with_links
 from companion.runtime.step_clock import StepClock
+from companion.runtime.step_commands import StepCommands, refuse_motors_off
 from companion.runtime.vehicle_link import VehicleLink
 from companion.situation.phases import FLYING_PHASES, Phase
 from companion.step import companion_step
@@ -55,6 +56,7 @@ class CompanionNode:
         self.autopilot = AutopilotLink(session, system.config.autopilot, motion_rate_hz)
         self._dry_run = dry_run
         self._component = MavlinkComponent(session, is_open=is_component)
+        self._commands = StepCommands(self._component)
         self.publisher = StatusPublisher(keys, system.config, is_on=publishes)
         self._limits_wanted = system.config.limits.flight_limits()
         self.memory = StepMemory()
@@ -63,10 +65,7 @@ class CompanionNode:
         self.open_to_strangers: tuple[str, ...] = ()  # which links are, for the status
         self.system = system
         self._rival: Rival | None = None
-        self._command: Command | None = None
-        self._station: Station | None = None
         self._leaving = False
-        self._replies: list[CommandReply] = []
         self._clock = StepClock(system.config.setpoints.rate_hz)
         self.vehicle = VehicleLink(keys, self._clock, system.config.silent_vehicle)
 
@@ -140,7 +139,7 @@ class CompanionNode:
 
     def request(self, command: Command, station: Station | None = None) -> None:
         """Take an operator's command, a follow with its station; its reply follows the next step."""
-        self._command, self._station = command, station
+        self._commands.request(command, station)
 
     def leave(self) -> None:
         """Ask the autopilot, from the next step on, to hover by itself; on the pad it switches its motors off first."""
@@ -177,8 +176,7 @@ class CompanionNode:
 
     def take_replies(self) -> list[CommandReply]:
         """Return the replies to operators' commands, once, in their order."""
-        taken, self._replies = self._replies, []
-        return taken
+        return self._commands.take_replies()
 
     def is_due(self, local_ns: int) -> bool:
         """Return whether it is time for a step: one follows each new state of the drone, and waits no longer than that.
@@ -191,6 +189,8 @@ class CompanionNode:
     def _step(self, local_ns: int) -> None:
         state, way, cascade = self.autopilot.state, self.autopilot.session.clock, self.autopilot.cascade
         self._clock.advance(way.local_to_utc_ns(local_ns), local_ns, None if state.own is None else state.own.t_ns)
+        switched = self.autopilot.pilot_switch.take()
+        command, station = self._commands.next(switched, lambda: self._start_refusal(switched), local_ns)
         inputs = StepInputs(
             t_ns=self._clock.t_ns,
             monotonic_ns=self._clock.monotonic_ns,
@@ -202,25 +202,20 @@ class CompanionNode:
             acknowledgements=self.autopilot.take_acknowledgements(),
             vehicle=self.vehicle.take(),
             rival=self._rival,
-            command=self._command or self._station_command(local_ns),
-            station=self._station,
+            command=command,
+            station=station,
             leaving=self._leaving,
             shaping=self.autopilot.shaping,
             link_delay=LinkDelay(mean_s=min(way.one_way_s, _LINK_DELAY_MAX_S), std_s=way.one_way_std_s),
         )
-        self._command = self._station = None
         self.inputs = inputs
         self.memory, self.outputs = companion_step(self.memory, inputs, self.system)
         self._send(inputs, self.outputs, local_ns)
 
-    def _station_command(self, local_ns: int) -> Command | None:
-        """Return what a ground station commands, after the same question that an operator's start has to pass."""
-        command = self._component.next_command()
-        refusal = self.start_refusal() if command is Command.START else None
-        if refusal is None:
-            return command
-        self._component.answer(refusal, local_ns)
-        return None
+    def _start_refusal(self, switched: Command | None) -> CommandReply | None:
+        """Return the answer to a pilot's or a ground station's start; None where a step is to judge it."""
+        may_arm = switched is None or self.system.config.autopilot.pilot_switch.arms
+        return self.start_refusal() if may_arm or self.autopilot.state.view.armed else refuse_motors_off()
 
     def _apply(self, config: CompanionConfig) -> None:
         """Take a configuration that a ground station has changed, between two flights."""
@@ -229,9 +224,8 @@ class CompanionNode:
             self._limits_wanted = config.limits.flight_limits()
 
     def _send(self, inputs: StepInputs, outputs: StepOutputs, local_ns: int) -> None:
-        reply = outputs.reply
-        if reply is not None and not self._component.answer(reply, local_ns):
-            self._replies.append(reply)
+        if outputs.reply is not None:
+            self._commands.answer(outputs.reply, local_ns)
         if not self._dry_run:
             if outputs.setpoint is not None:
                 self.autopilot.send_setpoint(outputs.setpoint, local_ns)

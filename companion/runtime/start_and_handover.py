@@ -37,9 +37,9 @@ class OwnStart:
 
     def answered(self, replies: list[CommandReply]) -> list[CommandReply]:
         """Return the replies of a step; to the command that called the start off it has been a success."""
-        if not self._called_off or not replies:
+        called_off, self._called_off = self._called_off, False
+        if not called_off or not replies:  # who called it off by MAVLink has its answer from there
             return replies
-        self._called_off = False
         return [CommandReply(accepted=True, reason="the start that was to come is called off"), *replies[1:]]
 
     def check_vehicle(self, keys: Keys, timeout_s: float, *, fix_seen: bool, pad_known: bool) -> None:

@@ -19,14 +19,15 @@ SPEED = "3"
 
 
 @contextmanager
-def landing(firmware: str) -> Iterator[tuple[Programs, Observer, int]]:
+def landing(firmware: str, *options: str) -> Iterator[tuple[Programs, Observer, int]]:
     """A drone and a vehicle with a companion that waits for a start, and the port of the autopilot's other link."""
     port, station_port, endpoint = free_udp_port(), free_udp_port(), free_tcp_endpoint()
     links = ("--mavlink", f"udpout:127.0.0.1:{port}", "--mavlink", f"udpout:127.0.0.1:{station_port}")
     flags = ("--firmware", firmware, "--instant", "--speed", SPEED)
     with Programs() as programs, observer(endpoint) as bystander:
         programs.start("ground-vehicle", "--scenario", "straight_5", "--use-sim-time", "-l", endpoint)
-        programs.start("companion", "--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint, "--use-sim-time")
+        device = f"udpin:127.0.0.1:{port}"
+        programs.start("companion", "--mavlink", device, "-e", endpoint, "--use-sim-time", *options)
         programs.start("sim-autopilot", *links, *flags, "-e", endpoint)
         bystander.wait_for_relative_position()
         yield programs, bystander, station_port
@@ -54,3 +55,19 @@ def test_mavproxy_starts_and_aborts_a_landing(tmp_path: Path) -> None:
         station.ask("long USER_3", "USER_3: ACCEPTED")
         station.heard("command : 31010, result : 6")  # cancelled, which it has no name for
         bystander.wait_for_phase(Phase.HOLD)
+
+
+def test_mavproxy_starts_and_aborts_a_landing_by_a_channel_of_the_transmitter(tmp_path: Path) -> None:
+    switch = ("--set", "autopilot.pilot_switch.channel=7", "--set", "autopilot.pilot_switch.arms=true")
+    with (
+        landing("ardupilot", *switch) as (_, bystander, port),
+        mavproxy(f"udpin:127.0.0.1:{port}", tmp_path) as station,
+    ):
+        station.heard("online system 1")
+        for channels in ("all 1500", "7 2000"):
+            station.type(f"rc {channels}")
+        bystander.wait_for_phase(Phase.CHASE)
+        station.type("rc 7 1000")
+        bystander.wait_for_phase(Phase.HOLD)
+        assert bystander.recording.status is not None
+        assert bystander.recording.status.reason_code == "BROKEN_OFF"

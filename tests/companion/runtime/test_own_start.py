@@ -24,7 +24,8 @@ def _flown(command: Command | None, at_s: float = 1.0) -> tuple[Setup, list[Comm
             wish = commands.pop()
             if wish is not None:
                 setup.node.request(wish)
-            start.commanded(wish)
+        if setup.node.inputs is not None:
+            start.commanded(setup.node.inputs.command)
         replies.extend(start.answered(setup.node.take_replies()))
         start.follow(setup.node, fix_seen=since_s >= 2.0)
 
@@ -50,6 +51,13 @@ def test_abort_or_hold_before_it_calls_the_start_off_for_good(command: Command) 
 def test_abort_without_a_start_to_come_is_refused_as_ever() -> None:
     start, refused = OwnStart(wanted=False), CommandReply(accepted=False, reason="nothing to abort in phase idle")
     assert not start.commanded(Command.ABORT)
+    assert start.answered([refused]) == [refused]
+
+
+def test_answer_to_who_called_it_off_by_mavlink_is_not_given_to_the_next_operator() -> None:
+    start, refused = OwnStart(wanted=True), CommandReply(accepted=False, reason="nothing to hold in phase idle")
+    assert start.commanded(Command.ABORT)
+    assert start.answered([]) == []
     assert start.answered([refused]) == [refused]
 
 

@@ -1,0 +1,106 @@
+"""Who commands a step: the pilot's switch before all others, and what the pilot hears of a refusal."""
+
+from dataclasses import dataclass
+
+import pytest
+
+from companion.config.autopilot import AutopilotConfig, PilotSwitchConfig
+from companion.config.companion import CompanionConfig
+from companion.situation.phases import Phase
+from link.mavlink.dialect import Message, mavlink
+from link.messages import Command
+from tests.companion.autopilots.test_pilot_switch import CHANNEL, HIGH, LOW, MIDDLE, SETTLED_S, channels
+from tests.companion.peer import FakePx4, Setup
+
+RC_CHANNELS = mavlink.MAVLINK_MSG_ID_RC_CHANNELS
+
+
+@dataclass
+class SwitchedPx4(FakePx4):
+    """One that has a receiver."""
+
+    pulse_us: int = LOW
+
+    def message(self, message_id: int, t_ns: int) -> Message:
+        return channels(self.pulse_us) if message_id == RC_CHANNELS else super().message(message_id, t_ns)
+
+
+class Piloted:
+    """A companion that waits, and its pilot."""
+
+    def __init__(self, *, arms: bool, armed: bool = False) -> None:
+        switch = PilotSwitchConfig(channel=CHANNEL, arms=arms)
+        config = CompanionConfig(autopilot=AutopilotConfig(pilot_switch=switch))
+        self.autopilot = SwitchedPx4(armed=armed)
+        self.setup = Setup(autopilot=self.autopilot, is_component=True, config=config)
+        self.setup.run(3.0, self.setup.fix)
+
+    def switch(self, pulse_us: int) -> Phase:
+        """Switch; return the phase that follows."""
+        self.autopilot.pulse_us = pulse_us
+        self.setup.run(SETTLED_S, self.setup.fix)
+        return self.setup.node.phase
+
+    def texts(self) -> str:
+        """All that the pilot was told."""
+        return "".join(text.text for text in self.autopilot.of_type("STATUSTEXT"))
+
+
+@pytest.mark.slow
+def test_switch_starts_holds_and_starts_again() -> None:
+    pilot = Piloted(arms=True)
+    assert pilot.setup.node.phase is Phase.IDLE
+    assert pilot.switch(HIGH) is Phase.TAKEOFF
+    pilot.setup.run(2.0, pilot.setup.fix)
+    assert pilot.autopilot.armed
+    assert pilot.switch(MIDDLE) is Phase.HOLD
+    assert pilot.switch(LOW) is Phase.HOLD
+    assert pilot.switch(HIGH) is Phase.WAITING
+    assert "refuses" not in pilot.texts()
+
+
+def test_switch_starts_no_motors_unless_it_is_allowed_to() -> None:
+    pilot = Piloted(arms=False)
+    assert pilot.switch(HIGH) is Phase.IDLE
+    assert "refuses: the motors are off" in pilot.texts()
+    pilot.switch(LOW)
+    pilot.autopilot.armed = True
+    pilot.setup.run(1.5, pilot.setup.fix)
+    assert pilot.switch(HIGH) is Phase.TAKEOFF
+
+
+def test_switch_that_ends_nothing_is_not_told_so() -> None:
+    pilot = Piloted(arms=True)
+    assert pilot.switch(MIDDLE) is Phase.IDLE
+    assert pilot.switch(LOW) is Phase.IDLE
+    assert "refuses" not in pilot.texts()
+
+
+def test_pilot_goes_before_an_operator_who_never_hears_the_pilots_reply() -> None:
+    pilot = Piloted(arms=True)
+    node = pilot.setup.node
+    pilot.switch(HIGH)
+    pilot.autopilot.pulse_us = LOW
+    given: set[Command] = set()
+
+    def insist() -> None:
+        pilot.setup.fix()
+        node.request(Command.LAUNCH)
+        if node.inputs is not None and node.inputs.command is not None:
+            given.add(node.inputs.command)
+
+    pilot.setup.run(SETTLED_S, insist)
+    assert given == {Command.ABORT, Command.LAUNCH}
+    assert not any(reply.accepted for reply in node.take_replies())
+
+
+def test_vehicle_that_was_never_heard_is_not_started_for() -> None:
+    switch = PilotSwitchConfig(channel=CHANNEL, arms=True)
+    config = CompanionConfig(autopilot=AutopilotConfig(pilot_switch=switch))
+    autopilot = SwitchedPx4()
+    setup = Setup(autopilot=autopilot, is_component=True, config=config)
+    setup.run(3.0)
+    autopilot.pulse_us = HIGH
+    setup.run(SETTLED_S)
+    assert setup.node.phase is Phase.IDLE
+    assert "refuses: nothing usable has come" in "".join(text.text for text in autopilot.of_type("STATUSTEXT"))
