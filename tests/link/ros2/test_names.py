@@ -1,7 +1,9 @@
 """Keys and tokens of rmw_zenoh, byte for byte.
 
 Sources: DESIGN are the examples of docs/design.md of ros2/rmw_zenoh; CAPTURE is what an rmw_zenoh 0.10 (ROS 2 Lyrical,
-`ros2 topic pub /chatter`) was seen to send, as published in the tests of the Go package rmwzenoh of conductor.dev.
+`ros2 topic pub /chatter`) was seen to send, as published in the tests of the Go package rmwzenoh of conductor.dev;
+PYZEROS is what pyzeros 0.1.0 (2lian/pyzeros2 on GitHub) declares, which talks to Jazzy and Lyrical. Of its data keys
+those of pamoja-ros2 0.2.0 (Rust) are the same.
 """
 
 import pytest
@@ -89,6 +91,53 @@ DESIGN_TOKENS = [
         ),
     ),
 ]
+ODOMETRY_HASH = "RIHS01_3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0"
+TRIGGER_HASH = "RIHS01_eeff2cd6fa5ad9d27cdf4dec64818317839b62f212a91e6b5304b634b2062c5f"
+STATE = Endpoint(name="/localization/kinematic_state", type_name="nav_msgs/msg/Odometry", type_hash=ODOMETRY_HASH)
+START = Endpoint(name="/drone/landing/start", type_name="std_srvs/srv/Trigger", type_hash=TRIGGER_HASH)
+STATE_ROW = f"nav_msgs::msg::dds_::Odometry_/{ODOMETRY_HASH}"
+START_ROW = f"std_srvs::srv::dds_::Trigger_/{TRIGGER_HASH}"
+PYZEROS_KEYS = [
+    (7, STATE, f"7/localization/kinematic_state/{STATE_ROW}"),
+    (7, START, f"7/drone/landing/start/{START_ROW}"),
+]
+
+
+def pyzeros(entity: int, kind: EntityKind, node: str, there: Endpoint | None = None, depth: int = 10) -> Token:
+    namespace, _, name = node.rpartition("/")
+    return Token(
+        domain=7,
+        session_id="e48c71bd01fa52f27af91cad59ce8fdb",
+        node_id=0,
+        entity_id=entity,
+        kind=kind,
+        namespace=namespace,
+        node=name,
+        endpoint=there,
+        qos=Qos(is_reliable=kind is not EntityKind.SUBSCRIPTION, depth=depth),
+    )
+
+
+PYZEROS = "@ros2_lv/7/e48c71bd01fa52f27af91cad59ce8fdb/0"
+PYZEROS_TOKENS = [
+    (pyzeros(0, EntityKind.NODE, "/localization/ekf_localizer"), f"{PYZEROS}/0/NN/%/%localization/ekf_localizer"),
+    (
+        pyzeros(1, EntityKind.PUBLISHER, "/localization/ekf_localizer", STATE, 1),
+        f"{PYZEROS}/1/MP/%/%localization/ekf_localizer/%localization%kinematic_state/{STATE_ROW}/::,1:,:,:,,",
+    ),
+    (
+        pyzeros(2, EntityKind.SUBSCRIPTION, "/drone/companion", STATE, 5),
+        f"{PYZEROS}/2/MS/%/%drone/companion/%localization%kinematic_state/{STATE_ROW}/2::,5:,:,:,,",
+    ),
+    (
+        pyzeros(3, EntityKind.SERVICE, "/drone/companion", START),
+        f"{PYZEROS}/3/SS/%/%drone/companion/%drone%landing%start/{START_ROW}/::,10:,:,:,,",
+    ),
+    (
+        pyzeros(3, EntityKind.CLIENT, "/drone/companion", START),
+        f"{PYZEROS}/3/SC/%/%drone/companion/%drone%landing%start/{START_ROW}/::,10:,:,:,,",
+    ),
+]
 CAPTURE_QOS = [
     (Qos(depth=10), "::,10:,:,:,,"),
     (Qos(is_reliable=False, depth=5), "2::,5:,:,:,,"),
@@ -97,13 +146,13 @@ CAPTURE_QOS = [
 ]
 
 
-@pytest.mark.parametrize(("domain", "there", "key"), DESIGN_KEYS)
-def test_data_key_is_that_of_the_design_document(domain: int, there: Endpoint, key: str) -> None:
+@pytest.mark.parametrize(("domain", "there", "key"), DESIGN_KEYS + PYZEROS_KEYS)
+def test_data_key_is_that_of_the_design_document_and_of_others(domain: int, there: Endpoint, key: str) -> None:
     assert data_key(domain, there) == key
 
 
-@pytest.mark.parametrize(("entity", "key"), DESIGN_TOKENS, ids=lambda one: getattr(one, "node", ""))
-def test_token_is_that_of_the_design_document(entity: Token, key: str) -> None:
+@pytest.mark.parametrize(("entity", "key"), DESIGN_TOKENS + PYZEROS_TOKENS, ids=lambda one: getattr(one, "node", ""))
+def test_token_is_that_of_the_design_document_and_of_others(entity: Token, key: str) -> None:
     assert token_key(entity) == key
     read = parse_token(key)
     assert read is not None
