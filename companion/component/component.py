@@ -4,7 +4,9 @@ from collections.abc import Iterable, Sequence
 
 from companion.autopilots.state import AutopilotState
 from companion.component.commands import COMMANDS, StationCommands
+from companion.component.files import FileServer
 from companion.component.identity import ComputerLoad, component_information, computer_status, heartbeat_state
+from companion.component.metadata import component_metadata
 from companion.component.pad_messages import adsb_vehicle, follow_target
 from companion.component.parameters import answers
 from companion.config.autopilot import PadOnMap
@@ -12,7 +14,13 @@ from companion.config.companion import CompanionConfig
 from companion.core.reasons import Reason
 from companion.landing.state.step_data import StepOutputs
 from companion.situation.phases import FLYING_PHASES, Phase
-from link.mavlink.dialect import COMMAND_CANCEL_ID, COMPONENT_INFORMATION_BASIC_ID, Message, mavlink
+from link.mavlink.dialect import (
+    COMMAND_CANCEL_ID,
+    COMPONENT_INFORMATION_BASIC_ID,
+    COMPONENT_METADATA_ID,
+    Message,
+    mavlink,
+)
 from link.mavlink.session import MavlinkSession
 from link.mavlink.timer import Timer
 from link.messages import Command, CommandReply, LandingStatus
@@ -98,6 +106,7 @@ class MavlinkComponent:
         self._is_open = is_open
         self._session = session
         self._commands = StationCommands()
+        self._files = FileServer()
         self._texts = Texts()
         self._pad_timer = Timer(_PAD_NS)
         self._load: ComputerLoad | None = None
@@ -112,10 +121,13 @@ class MavlinkComponent:
                 self._take_command(message, config, local_ns)
             elif kind == COMMAND_CANCEL_ID:
                 self._send(self._commands.cancel(message))
+            elif kind == mavlink.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL:
+                self._send(self._files.answer(message, local_ns))
             else:
                 may_change = config.ground_station.takes_mavlink_commands and phase not in FLYING_PHASES
                 config, told = answers(message, config, may_change=may_change)
                 self._send(told)
+        self._send(self._files.continue_burst())
         return config
 
     def next_command(self) -> Command | None:
@@ -168,8 +180,11 @@ class MavlinkComponent:
     def _take_question(self, message: Message, local_ns: int) -> None:
         """Answer a MAV_CMD_REQUEST_MESSAGE."""
         answer: Message | None = None
+        boot_ms = (self._session.clock.local_to_boot_ns(local_ns) or 0) // 1_000_000
         if message.param1 == COMPONENT_INFORMATION_BASIC_ID:
-            answer = component_information((self._session.clock.local_to_boot_ns(local_ns) or 0) // 1_000_000)
+            answer = component_information(boot_ms)
+        elif message.param1 == COMPONENT_METADATA_ID:
+            answer = component_metadata(boot_ms)
         elif message.param1 == mavlink.MAVLINK_MSG_ID_ONBOARD_COMPUTER_STATUS and self._load is not None:
             answer = computer_status(self._load, self._session.clock.local_to_utc_ns(local_ns))
         is_known = answer is not None

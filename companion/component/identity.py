@@ -1,7 +1,6 @@
 """The component's identity, phase and computer load as messages.
 
-Source: MAVLink component information protocol, https://mavlink.io/en/services/component_information.html; metadata
-files are not offered, since ground stations read those of autopilots and cameras only.
+Source: MAVLink component information protocol, https://mavlink.io/en/services/component_information.html.
 """
 
 import platform
@@ -32,7 +31,11 @@ PHASE_NUMBERS = {
 }
 """The custom mode of the heartbeat: these numbers stay."""
 
-_CAPABILITIES = mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT | mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
+_CAPABILITIES = (
+    mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
+    | mavlink.MAV_PROTOCOL_CAPABILITY_FTP
+    | mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
+)
 _VERSION_SIZE, _MODEL_SIZE = 24, 32
 _NO_U8, _NO_I8, _NO_I16, _NO_U32 = 0xFF, 0x7F, 0x7FFF, 0xFFFF_FFFF
 """What says that a field is not known."""

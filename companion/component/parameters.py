@@ -15,29 +15,39 @@ from companion.config.companion import CompanionConfig
 from companion.config.integrity import ReceiverFrames
 from link.mavlink.dialect import Message, mavlink
 
-_FRAMES = (ReceiverFrames.AUTO, ReceiverFrames.ONE, ReceiverFrames.APART)
+CHOICES = (ReceiverFrames.AUTO, ReceiverFrames.ONE, ReceiverFrames.APART)
+"""Of DL_FRAMES, in the order of its values."""
+
 _SINGLE_DIGITS = 7  # that a single-precision number keeps
 
 
-class _Parameter(NamedTuple):
-    """Where in the configuration a parameter is, as `takeoff.waiting_height_m`."""
+class Parameter(NamedTuple):
+    """Where in the configuration a parameter is, as `takeoff.waiting_height_m`, and what it means."""
 
     name: str
     key: str
+    description: str
     is_whole: bool = False
+    is_choice: bool = False
 
 
 PARAMETERS = (
-    _Parameter("DL_WAIT_ALT", "takeoff.waiting_height_m"),
-    _Parameter("DL_CHASE_ALT", "chase.height_m"),
-    _Parameter("DL_CHASE_TIME", "chase.time_limit_s"),
-    _Parameter("DL_PAD_WAIT", "descent.wait.height_m"),
-    _Parameter("DL_RETRIES", "abort.retries_max", is_whole=True),
-    _Parameter("DL_SPEED_MAX", "limits.speed_max_m_s"),
-    _Parameter("DL_SINK_MAX", "limits.descent_max_m_s"),
-    _Parameter("DL_RANGE_MAX", "limits.range_max_m"),
-    _Parameter("DL_BATT_MIN", "limits.battery_min_share"),
-    _Parameter("DL_FRAMES", "integrity.receiver_frames", is_whole=True),
+    Parameter("DL_WAIT_ALT", "takeoff.waiting_height_m", "Waiting height above the place of take-off"),
+    Parameter("DL_CHASE_ALT", "chase.height_m", "Height above the pad in the chase"),
+    Parameter("DL_CHASE_TIME", "chase.time_limit_s", "Longest chase"),
+    Parameter("DL_PAD_WAIT", "descent.wait.height_m", "Height above the pad at which a descent waits"),
+    Parameter("DL_RETRIES", "abort.retries_max", "New approaches after an abort", is_whole=True),
+    Parameter("DL_SPEED_MAX", "limits.speed_max_m_s", "Largest horizontal speed"),
+    Parameter("DL_SINK_MAX", "limits.descent_max_m_s", "Largest sink rate"),
+    Parameter("DL_RANGE_MAX", "limits.range_max_m", "Farthest from the waiting point"),
+    Parameter("DL_BATT_MIN", "limits.battery_min_share", "Battery below which no landing begins"),
+    Parameter(
+        "DL_FRAMES",
+        "integrity.receiver_frames",
+        "Whether both receivers have one frame",
+        is_whole=True,
+        is_choice=True,
+    ),
 )
 """What can be set between flights, in SI units and shares; DL_FRAMES is 0 auto, 1 one, 2 apart."""
 
@@ -79,22 +89,22 @@ def _place(message: Message) -> int | None:
 def _told(place: int, config: CompanionConfig) -> Message:
     one = PARAMETERS[place]
     return mavlink.MAVLink_param_value_message(
-        one.name.encode("ascii"), _value(config, one), mavlink.MAV_PARAM_TYPE_REAL32, len(PARAMETERS), place
+        one.name.encode("ascii"), value_of(config, one), mavlink.MAV_PARAM_TYPE_REAL32, len(PARAMETERS), place
     )
 
 
-def _value(config: CompanionConfig, one: _Parameter) -> float:
+def value_of(config: CompanionConfig, one: Parameter) -> float:
+    """Return the value of a parameter."""
     value = attrgetter(one.key)(config)
-    return float(_FRAMES.index(value) if isinstance(value, ReceiverFrames) else value)
+    return float(CHOICES.index(value) if isinstance(value, ReceiverFrames) else value)
 
 
-def _with_value(config: CompanionConfig, one: _Parameter, value: float) -> CompanionConfig:
+def _with_value(config: CompanionConfig, one: Parameter, value: float) -> CompanionConfig:
     """Return the configuration with a value, unchanged where the configuration does not take it."""
     given = float(f"{value:.{_SINGLE_DIGITS}g}")  # as it was written before it became single precision
     if one.is_whole and not given.is_integer():
         return config
-    is_choice = isinstance(attrgetter(one.key)(config), ReceiverFrames)
-    if is_choice and given not in range(len(_FRAMES)):
+    if one.is_choice and given not in range(len(CHOICES)):
         return config
     whole = int(given) if one.is_whole else given
     *sections, key = one.key.split(".")
@@ -102,7 +112,7 @@ def _with_value(config: CompanionConfig, one: _Parameter, value: float) -> Compa
     inner = table
     for section in sections:
         inner = inner[section]
-    inner[key] = _FRAMES[int(given)] if is_choice else whole
+    inner[key] = CHOICES[int(given)] if one.is_choice else whole
     try:
         return CompanionConfig.model_validate(table)
     except ValidationError:

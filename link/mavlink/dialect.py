@@ -18,6 +18,7 @@ from pymavlink.generator.mavcrc import x25crc
 __all__ = [
     "COMMAND_CANCEL_ID",
     "COMPONENT_INFORMATION_BASIC_ID",
+    "COMPONENT_METADATA_ID",
     "DRAFT_MESSAGES",
     "MAV_RESULT_CANCELLED",
     "Message",
@@ -188,7 +189,7 @@ DRAFT_MESSAGES = {message_id: _draft(message_id, name, fields) for message_id, n
 
 mavlink.mavlink_map.update(DRAFT_MESSAGES)
 
-COMMAND_CANCEL_ID, COMPONENT_INFORMATION_BASIC_ID = 80, 396
+COMMAND_CANCEL_ID, COMPONENT_INFORMATION_BASIC_ID, COMPONENT_METADATA_ID = 80, 396, 397
 """Of drafts, which the dialect has no names for."""
 MAV_RESULT_CANCELLED = 6
 """Likewise."""

@@ -31,6 +31,7 @@ _TO_ONE = frozenset(
         mavlink.MAVLINK_MSG_ID_COMMAND_INT,
         COMMAND_CANCEL_ID,
         mavlink.MAVLINK_MSG_ID_PARAM_SET,
+        mavlink.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL,
     }
 )
 _REQUESTS_MAX = 100  # between two calls; a ground station asks for some at once

@@ -3,13 +3,12 @@
 from functools import partial
 from types import MappingProxyType
 
+from link.ftp.state import FtpRules
+from link.ftp.store import Shown
+from link.ftp.wire import DATA_MAX, Error
 from link.mavlink.dialect import mavlink
 from sim_autopilot.core.parameters import Parameter, Values
 from sim_autopilot.ground_station.calibration import accept_calibration
-from sim_autopilot.ground_station.files.ftp_state import FtpRules
-from sim_autopilot.ground_station.files.ftp_wire import DATA_MAX, Error
-from sim_autopilot.ground_station.files.parameter_file import PATH, pack_parameters
-from sim_autopilot.ground_station.files.store import Shown
 from sim_autopilot.ground_station.fixed_answers import ARDUCOPTER_ANSWERS
 from sim_autopilot.ground_station.logs.flight_log import LogRules, dataflash_head, dataflash_row
 from sim_autopilot.ground_station.maintenance import (
@@ -21,6 +20,7 @@ from sim_autopilot.ground_station.maintenance import (
     spin_motor,
 )
 from sim_autopilot.ground_station.missions.rules import ARDUCOPTER_MISSIONS
+from sim_autopilot.ground_station.parameter_file import PATH, pack_parameters
 from sim_autopilot.ground_station.station import GroundStation
 
 

@@ -3,14 +3,14 @@
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
+from link.ftp.server import answer, burst_on
+from link.ftp.state import FtpRules
+from link.ftp.store import Shown
+from link.ftp.wire import question_from_message
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 from link.units import NS_PER_S
 from sim_autopilot.core.status_texts import status_text
-from sim_autopilot.ground_station.files.ftp import answer, burst_on
-from sim_autopilot.ground_station.files.ftp_state import FtpRules
-from sim_autopilot.ground_station.files.ftp_wire import question_from_message
-from sim_autopilot.ground_station.files.store import Shown
 from sim_autopilot.ground_station.logs.flight_log import LogRules, Row
 from sim_autopilot.ground_station.logs.logs import Logs, add_row, begin_download, entries, is_due, pieces, shown_logs
 from sim_autopilot.ground_station.memory import station_of, with_station

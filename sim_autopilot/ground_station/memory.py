@@ -2,8 +2,8 @@
 
 from msgspec import Struct
 
+from link.ftp.state import NO_FTP, Ftp
 from link.records import replace
-from sim_autopilot.ground_station.files.ftp_state import NO_FTP, Ftp
 from sim_autopilot.ground_station.logs.log_stream import LogStream
 from sim_autopilot.ground_station.logs.logs import NO_LOGS, Logs
 from sim_autopilot.ground_station.missions.library import NO_LIBRARY, Library

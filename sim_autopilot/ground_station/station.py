@@ -4,13 +4,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
+from link.ftp.state import FtpRules
+from link.ftp.store import Shown
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.commands.commands import answer_command
 from sim_autopilot.commands.requests import Answer, Request, acknowledgement, is_for_us, is_ours, request_from_message
 from sim_autopilot.core.parameters import Parameter, Values
 from sim_autopilot.core.streams import Stream
-from sim_autopilot.ground_station.files.ftp_state import FtpRules
-from sim_autopilot.ground_station.files.store import Shown
 from sim_autopilot.ground_station.files_and_logs import (
     LOG_IDS,
     log_flight,

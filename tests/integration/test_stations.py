@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from companion.component.parameters import PARAMETERS
 from companion.situation.phases import Phase
 from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from tests.conformance.mavproxy_client import mavproxy
@@ -46,10 +47,20 @@ def test_mavsdk_lands_by_one_command() -> None:
         assert told["pads"] > 5
 
 
+def test_mavsdk_fetches_what_describes_the_parameters() -> None:
+    with landing("px4") as (programs, _, port):
+        client = programs.start("tests.integration.mavsdk_metadata", f"udpin://127.0.0.1:{port}")
+        assert client.wait() == 0
+        described = {one["name"]: one for one in json.loads(client.out.all[-1])["parameters"]}
+        assert set(described) == {one.name for one in PARAMETERS}
+        assert described["DL_WAIT_ALT"]["units"] == "m"
+
+
 def test_mavproxy_starts_and_aborts_a_landing(tmp_path: Path) -> None:
     with landing("ardupilot") as (_, bystander, port), mavproxy(f"udpin:127.0.0.1:{port}", tmp_path) as station:
         station.heard("online system 1")
         station.type("set target_component 191")
+        station.ask("ftp list", r"parameters\.json\.xz")
         station.ask("long USER_1", "USER_1: IN_PROGRESS")
         station.heard("Decklander chase")
         station.ask("long USER_3", "USER_3: ACCEPTED")

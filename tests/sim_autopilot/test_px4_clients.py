@@ -7,12 +7,12 @@ from math import nan
 
 import pytest
 
+from link.ftp.handlers import checksum
 from link.mavlink.dialect import event_id, mavlink
 from sim_autopilot.core.modes import Mode
-from sim_autopilot.ground_station.files.ftp_handlers import checksum
 from sim_autopilot.ground_station.px4.health_bits import ARMING_SUMMARY, HEALTH_SUMMARY, MODE_STATES
-from tests.sim_autopilot.file_client import FileClient
 from tests.sim_autopilot.pilot import HOLD, Pilot, arm, command, setpoint
+from tests.sim_autopilot.pilot_files import PilotFiles
 from tests.sim_autopilot.planner import item, upload
 
 pytestmark = pytest.mark.slow
@@ -47,7 +47,7 @@ def test_nothing_is_calibrated_while_armed() -> None:
 
 def test_every_event_that_is_sent_is_described_in_the_metadata() -> None:
     pilot = Pilot()
-    files = FileClient(pilot)
+    files = PilotFiles(pilot)
     general = json.loads(lzma.decompress(files.read(b"etc/extras/component_general.json.xz")))
     (listed,) = (entry for entry in general["metadataTypes"] if entry["type"] == 4)
     file = files.read(listed["uri"].removeprefix("mftp://").encode())
@@ -96,7 +96,7 @@ def test_the_report_on_arming_says_in_which_modes_it_arms_and_flies() -> None:
 
 def test_the_metadata_name_every_mode_of_the_report_by_its_number_in_the_heartbeat() -> None:
     pilot = Pilot()
-    described = json.loads(lzma.decompress(FileClient(pilot).read(b"etc/extras/all_events.json.xz")))
+    described = json.loads(lzma.decompress(PilotFiles(pilot).read(b"etc/extras/all_events.json.xz")))
     component = described["components"]["1"]
     assert component["supported_protocols"] == ["health_and_arming_check"]
     groups = component["navigation_mode_groups"]["groups"]

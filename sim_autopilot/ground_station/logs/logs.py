@@ -8,9 +8,9 @@ from functools import partial
 
 from msgspec import Struct
 
+from link.ftp.store import Shown
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
-from sim_autopilot.ground_station.files.store import Shown
 from sim_autopilot.ground_station.logs.flight_log import LogRules, Row
 
 _PIECE = 90

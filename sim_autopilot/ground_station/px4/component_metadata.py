@@ -9,13 +9,13 @@ import json
 import lzma
 from functools import cache, partial
 
-from link.mavlink.dialect import Message, mavlink
+from link.ftp.handlers import checksum
+from link.ftp.store import Shown
+from link.mavlink.dialect import COMPONENT_METADATA_ID, Message, mavlink
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.core.parameters import Parameter, Values
 from sim_autopilot.firmware.px4.modes import MODES
 from sim_autopilot.firmware.px4.parameters import OBEYED
-from sim_autopilot.ground_station.files.ftp_handlers import checksum
-from sim_autopilot.ground_station.files.store import Shown
 from sim_autopilot.ground_station.px4.event_metadata import EVENTS_PATH, events_description
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.telemetry.status import boot_ms
@@ -26,8 +26,6 @@ _FIRST_MOTOR, _LAST_MOTOR = 101, 112
 """The numbers of the functions that are motors; 0 is none."""
 GENERAL_PATH = "etc/extras/component_general.json.xz"
 PARAMETERS_PATH = "etc/extras/parameters.json.xz"
-COMPONENT_METADATA = 397
-"""A message that pymavlink names nowhere."""
 _PARAMETER_METADATA, _EVENTS_METADATA, _ACTUATORS_METADATA = 1, 4, 5
 """COMP_METADATA_TYPE."""
 _TYPES = {
@@ -57,7 +55,7 @@ def component_metadata(memory: AutopilotMemory, config: AutopilotConfig) -> Mess
     """Return COMPONENT_METADATA: where the list of the files is."""
     general = general_file(config.firmware.parameters.table, _OBEYED, _CUSTOM_MODES)
     uri = f"mftp://{GENERAL_PATH}".encode()
-    return mavlink.mavlink_map[COMPONENT_METADATA](boot_ms(memory), checksum(general), uri)
+    return mavlink.mavlink_map[COMPONENT_METADATA_ID](boot_ms(memory), checksum(general), uri)
 
 
 @cache

@@ -2,11 +2,11 @@
 
 from types import MappingProxyType
 
-from link.mavlink.dialect import mavlink
+from link.ftp.state import FtpRules
+from link.mavlink.dialect import COMPONENT_METADATA_ID, mavlink
 from sim_autopilot.core.streams import Stream
 from sim_autopilot.firmware.px4.flight_texts import LOG_PATH
 from sim_autopilot.ground_station.calibration import calibrate
-from sim_autopilot.ground_station.files.ftp_state import FtpRules
 from sim_autopilot.ground_station.fixed_answers import PX4_ANSWERS
 from sim_autopilot.ground_station.gripper import grip
 from sim_autopilot.ground_station.log_streaming import start_log_stream, stop_log_stream
@@ -14,7 +14,7 @@ from sim_autopilot.ground_station.logs.flight_log import LogRules, ulog_head, ul
 from sim_autopilot.ground_station.missions.rules import PX4_MISSIONS
 from sim_autopilot.ground_station.px4.arming_report import report_arming
 from sim_autopilot.ground_station.px4.available_modes import request_modes
-from sim_autopilot.ground_station.px4.component_metadata import COMPONENT_METADATA, component_metadata, shown_files
+from sim_autopilot.ground_station.px4.component_metadata import component_metadata, shown_files
 from sim_autopilot.ground_station.px4.maintenance import actuator_test, store_parameters
 from sim_autopilot.ground_station.shell import take_typed
 from sim_autopilot.ground_station.station import GroundStation
@@ -46,6 +46,6 @@ PX4_STATION = GroundStation(
         }
     ),
     fixed_answers=PX4_ANSWERS,
-    streams=MappingProxyType({COMPONENT_METADATA: Stream(message_id=COMPONENT_METADATA)}),
-    builders=MappingProxyType({COMPONENT_METADATA: component_metadata}),
+    streams=MappingProxyType({COMPONENT_METADATA_ID: Stream(message_id=COMPONENT_METADATA_ID)}),
+    builders=MappingProxyType({COMPONENT_METADATA_ID: component_metadata}),
 )

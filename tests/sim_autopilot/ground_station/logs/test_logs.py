@@ -8,8 +8,8 @@ from pymavlink.DFReader import DFReader_binary
 
 from link.mavlink.dialect import Message, mavlink
 from tests.sim_autopilot.copter import GUIDED, ardupilot, mode, take_off
-from tests.sim_autopilot.file_client import FileClient
 from tests.sim_autopilot.pilot import START_NS, Pilot, arm, px4
+from tests.sim_autopilot.pilot_files import PilotFiles
 
 pytestmark = pytest.mark.slow
 
@@ -95,7 +95,7 @@ def test_an_erased_log_is_gone() -> None:
 def test_a_log_is_a_file_too() -> None:
     pilot = flown(Pilot(px4()))
     (entry,) = entries(pilot)
-    files = FileClient(pilot)
+    files = PilotFiles(pilot)
     (day,) = files.names(b"/log")
     (name,) = files.names(b"/log/" + day[1:].encode())
     path = f"log/{day[1:]}/{name[1:].partition(chr(9))[0]}"

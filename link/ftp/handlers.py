@@ -4,10 +4,8 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from zlib import crc32
 
-from link.records import replace
-from sim_autopilot.ground_station.files.ftp_state import Burst, Case, Ftp, Opened, RefusedError
-from sim_autopilot.ground_station.files.ftp_wire import DATA_MAX, Error, Opcode
-from sim_autopilot.ground_station.files.store import (
+from link.ftp.state import Burst, Case, Ftp, Opened, RefusedError
+from link.ftp.store import (
     content,
     cut,
     entries,
@@ -18,6 +16,8 @@ from sim_autopilot.ground_station.files.store import (
     without_directory,
     write,
 )
+from link.ftp.wire import DATA_MAX, Error, Opcode
+from link.records import replace
 
 _ALL_BITS = 0xFFFFFFFF
 
@@ -160,3 +160,16 @@ HANDLERS: Mapping[int, Callable[[Ftp, Case], _Done]] = MappingProxyType(
         Opcode.BURST_READ_FILE: _begin_burst,
     }
 )
+WRITING = frozenset(
+    {
+        Opcode.CREATE_FILE,
+        Opcode.WRITE_FILE,
+        Opcode.REMOVE_FILE,
+        Opcode.CREATE_DIRECTORY,
+        Opcode.REMOVE_DIRECTORY,
+        Opcode.OPEN_FILE_WO,
+        Opcode.TRUNCATE_FILE,
+        Opcode.RENAME,
+    }
+)
+"""What changes files."""

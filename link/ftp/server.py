@@ -5,15 +5,13 @@ Source: https://mavlink.io/en/services/ftp.html; sessions, errors and ends as ea
 
 from errno import EEXIST, ENOENT
 
+from link.ftp.handlers import HANDLERS, WRITING
+from link.ftp.state import Case, Ftp, FtpRules, RefusedError
+from link.ftp.store import Shown
+from link.ftp.wire import DATA_MAX, Error, Opcode, Question, Reply, reply_message
 from link.mavlink.dialect import Message
 from link.records import replace
-from sim_autopilot.ground_station.files.ftp_handlers import HANDLERS
-from sim_autopilot.ground_station.files.ftp_state import Case, Ftp, FtpRules, RefusedError
-from sim_autopilot.ground_station.files.ftp_wire import DATA_MAX, Error, Opcode, Question, Reply, reply_message
-from sim_autopilot.ground_station.files.store import Shown
 
-_BURST_A_STEP = 12
-"""Answers of a burst sent in 10 ms, some 290 kB/s."""
 _SEQUENCES = 1 << 16
 
 
@@ -45,7 +43,7 @@ def answer(
 def burst_on(ftp: Ftp, rules: FtpRules) -> tuple[Ftp, tuple[Message, ...]]:
     """Return the server one step on, and the answers of a burst under way that go now."""
     messages: list[Message] = []
-    while ftp.burst is not None and len(messages) < _BURST_A_STEP:
+    while ftp.burst is not None and len(messages) < rules.burst_a_step:
         burst, opened = ftp.burst, ftp.opened
         data = b"" if opened is None or opened.data is None else opened.data
         part = data[burst.offset : burst.offset + burst.size]
@@ -83,6 +81,8 @@ def _handle(ftp: Ftp, case: Case) -> tuple[Ftp, Reply | None]:
     handler = HANDLERS.get(question.opcode)
     if handler is None or (question.opcode == Opcode.TRUNCATE_FILE and not rules.truncates):
         raise RefusedError(rules.unknown)
+    if rules.is_read_only and question.opcode in WRITING:
+        raise RefusedError(Error.FILE_PROTECTED)
     ftp, data = handler(ftp, case)
     if data is None:
         return ftp, None

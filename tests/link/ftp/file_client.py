@@ -1,19 +1,24 @@
 """A client of MAVLink FTP for tests, in bytes only."""
 
 import struct
+from collections.abc import Callable
 
+from link.ftp.wire import DATA_MAX, Opcode
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.ground_station.files.ftp_wire import DATA_MAX, Opcode
-from tests.sim_autopilot.pilot import Pilot
 
 _HEAD = struct.Struct("<HBBBBBxI")
 
 
 class FileClient:
-    """It asks one question after the other; `told` is an answer's opcode, session, offset and data."""
+    """It asks one question after the other; `told` is an answer's opcode, session, offset and data.
 
-    def __init__(self, pilot: Pilot) -> None:
-        self.pilot = pilot
+    Args:
+        exchange: sends a message to the server and returns what comes back at once.
+        target: the server's system and component.
+    """
+
+    def __init__(self, exchange: Callable[[Message], list[Message]], target: tuple[int, int] = (1, 1)) -> None:
+        self._exchange, self._target = exchange, target
         self.sequence = 0
         self.session = 0
 
@@ -22,7 +27,7 @@ class FileClient:
         head = _HEAD.pack(self.sequence, self.session, opcode, len(data) if size is None else size, 0, 0, offset)
         self.sequence += 2
         payload = list((head + data).ljust(_HEAD.size + DATA_MAX, b"\0"))
-        replies = self.pilot.step(mavlink.MAVLink_file_transfer_protocol_message(0, 1, 1, payload))
+        replies = self._exchange(mavlink.MAVLink_file_transfer_protocol_message(0, *self._target, payload))
         return [reply for reply in replies if reply.get_type() == "FILE_TRANSFER_PROTOCOL"]
 
     def ask(self, opcode: Opcode, data: bytes = b"", *, offset: int = 0, size: int | None = None) -> tuple[int, bytes]:

@@ -1,4 +1,4 @@
-"""The files behind MAVLink FTP: what the autopilot shows, which nobody can write, and what clients have put beside it.
+"""The files behind MAVLink FTP: what the server shows, which nobody can write, and what clients have put beside it.
 
 Paths are plain names joined by slashes, without one at either end; the root is the empty path.
 """
@@ -11,7 +11,7 @@ from types import MappingProxyType
 from link.records import replace
 
 Shown = Mapping[str, Callable[[], bytes]]
-"""The autopilot's own files by their paths, made when they are read."""
+"""The server's own files by their paths, made when they are read."""
 
 _WRITTEN_MAX = 4_000_000
 """Bytes that clients may leave, so that nobody fills the memory."""

@@ -7,25 +7,26 @@ from itertools import pairwise
 
 import pytest
 
+from link.ftp.handlers import checksum
+from link.ftp.wire import DATA_MAX, Error, Opcode
 from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.px4.px4 import PX4
-from sim_autopilot.ground_station.files.ftp_handlers import checksum
-from sim_autopilot.ground_station.files.ftp_wire import DATA_MAX, Error, Opcode
+from tests.link.ftp.file_client import told
 from tests.sim_autopilot.copter import ardupilot
-from tests.sim_autopilot.file_client import FileClient, told
 from tests.sim_autopilot.pilot import Pilot
+from tests.sim_autopilot.pilot_files import PilotFiles
 
 GENERAL = b"etc/extras/component_general.json.xz"
 
 
 @pytest.fixture
-def px4_files() -> FileClient:
-    return FileClient(Pilot())
+def px4_files() -> PilotFiles:
+    return PilotFiles(Pilot())
 
 
 @pytest.fixture
-def copter_files() -> FileClient:
-    return FileClient(Pilot(ardupilot()))
+def copter_files() -> PilotFiles:
+    return PilotFiles(Pilot(ardupilot()))
 
 
 def unpacked(data: bytes) -> dict[str, tuple[int, float]]:
@@ -44,7 +45,7 @@ def unpacked(data: bytes) -> dict[str, tuple[int, float]]:
     return values
 
 
-def test_arducopters_parameter_file_holds_every_parameter(copter_files: FileClient) -> None:
+def test_arducopters_parameter_file_holds_every_parameter(copter_files: PilotFiles) -> None:
     values = unpacked(copter_files.read(b"@PARAM/param.pck"))
     assert list(values) == [parameter.name for parameter in ARDUPILOT.parameters.table]
     assert values["WPNAV_SPEED"] == (4, 1000.0)
@@ -52,7 +53,7 @@ def test_arducopters_parameter_file_holds_every_parameter(copter_files: FileClie
 
 
 @pytest.mark.slow
-def test_px4_describes_its_parameters_in_a_file_whose_checksum_is_told(px4_files: FileClient) -> None:
+def test_px4_describes_its_parameters_in_a_file_whose_checksum_is_told(px4_files: PilotFiles) -> None:
     general = json.loads(lzma.decompress(px4_files.read(GENERAL)))
     (entry,) = (one for one in general["metadataTypes"] if one["type"] == 1)
     packed = px4_files.read(entry["uri"].removeprefix("mftp://").encode())
@@ -64,7 +65,7 @@ def test_px4_describes_its_parameters_in_a_file_whose_checksum_is_told(px4_files
 
 @pytest.mark.parametrize(("client", "path"), [("px4_files", GENERAL), ("copter_files", b"@PARAM/param.pck")])
 def test_a_burst_brings_a_whole_file_and_then_its_end(client: str, path: bytes, request: pytest.FixtureRequest) -> None:
-    files: FileClient = request.getfixturevalue(client)
+    files: PilotFiles = request.getfixturevalue(client)
     whole = files.read(path)
     files.ask(Opcode.OPEN_FILE_RO, path)
     answers = files.send(Opcode.BURST_READ_FILE, size=DATA_MAX)
@@ -80,7 +81,7 @@ def test_a_burst_brings_a_whole_file_and_then_its_end(client: str, path: bytes, 
 
 @pytest.mark.parametrize("client", ["px4_files", "copter_files"])
 def test_a_written_file_is_listed_read_renamed_and_removed(client: str, request: pytest.FixtureRequest) -> None:
-    files: FileClient = request.getfixturevalue(client)
+    files: PilotFiles = request.getfixturevalue(client)
     data = bytes(range(200)) * 3
     assert files.ask(Opcode.CREATE_DIRECTORY, b"/notes")[0] == Opcode.ACK
     assert files.ask(Opcode.CREATE_FILE, b"/notes/one.txt")[0] == Opcode.ACK
@@ -109,7 +110,7 @@ def test_a_checksum_is_the_one_that_both_servers_reckon() -> None:
 
 @pytest.mark.slow
 def test_a_second_file_is_refused_as_each_firmware_says_until_the_first_was_idle(
-    px4_files: FileClient, copter_files: FileClient
+    px4_files: PilotFiles, copter_files: PilotFiles
 ) -> None:
     for files, path, error, idle_s in (
         (px4_files, GENERAL, Error.NO_SESSIONS_AVAILABLE, 10.1),
@@ -121,19 +122,19 @@ def test_a_second_file_is_refused_as_each_firmware_says_until_the_first_was_idle
         assert files.ask(Opcode.OPEN_FILE_RO, path)[0] == Opcode.ACK
 
 
-def test_a_question_asked_again_is_answered_again_and_done_once(px4_files: FileClient) -> None:
+def test_a_question_asked_again_is_answered_again_and_done_once(px4_files: PilotFiles) -> None:
     px4_files.ask(Opcode.CREATE_DIRECTORY, b"/notes")
     px4_files.sequence -= 2
     assert px4_files.ask(Opcode.CREATE_DIRECTORY, b"/notes")[0] == Opcode.ACK
     assert px4_files.ask(Opcode.CREATE_DIRECTORY, b"/notes") == (Opcode.NAK, bytes([Error.FILE_EXISTS]))
 
 
-def test_the_autopilots_own_files_cannot_be_written(px4_files: FileClient) -> None:
+def test_the_autopilots_own_files_cannot_be_written(px4_files: PilotFiles) -> None:
     assert px4_files.ask(Opcode.REMOVE_FILE, GENERAL)[0] == Opcode.NAK
     assert px4_files.ask(Opcode.OPEN_FILE_WO, GENERAL)[0] == Opcode.NAK
     assert px4_files.ask(Opcode.OPEN_FILE_RO, GENERAL)[0] == Opcode.ACK
 
 
-def test_clients_cannot_fill_the_memory(px4_files: FileClient) -> None:
+def test_clients_cannot_fill_the_memory(px4_files: PilotFiles) -> None:
     px4_files.ask(Opcode.CREATE_FILE, b"/large")
     assert px4_files.ask(Opcode.WRITE_FILE, b"x", offset=2**32 - 10)[0] == Opcode.NAK

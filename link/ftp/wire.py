@@ -48,6 +48,7 @@ class Error(IntEnum):
     END_OF_FILE = 6
     UNKNOWN_COMMAND = 7
     FILE_EXISTS = 8
+    FILE_PROTECTED = 9
     FILE_NOT_FOUND = 10
 
 

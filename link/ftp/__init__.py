@@ -1,0 +1,1 @@
+"""MAVLink FTP, a server without I/O, and the files behind it."""

@@ -1,1 +1,0 @@
-"""MAVLink FTP and the files behind it."""
