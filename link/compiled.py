@@ -6,12 +6,16 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import ParamSpec, Protocol, TypeVar, cast
 
+import numba
 from numba import njit
 
 from link.errors import UserError
-from link.kept_code import load_without_intermediate_code
 
-load_without_intermediate_code()
+_TRIED_NUMBA = (0, 68)
+if numba.version_info.short == _TRIED_NUMBA:  # others load what they keep in their own way: more memory, the same code
+    from link.kept_code import load_without_intermediate_code
+
+    load_without_intermediate_code()
 
 _KEPT_NAME = re.compile(r"_(?P<digest>[0-9a-f]{12})-[0-9]+\.")
 """The end of a function's name and its line, in the name of a file that numba keeps."""

@@ -1,7 +1,8 @@
 """Machine code that numba keeps on disk, loaded without the intermediate code beside it.
 
 numba parses that for each function at once: of the companion 44 MB and 0.2 s, for what no flight needs. Here it waits
-until a function is compiled that calls the loaded one. numba has no other way in than its own private names.
+until a function is compiled that calls the loaded one. numba has no other way in than its own private names, so only
+the version with which this was tried gets it (`link.compiled`).
 """
 
 from typing import Any

@@ -127,3 +127,17 @@ def test_intermediate_code_is_parsed_only_where_a_function_is_compiled_that_call
     (tmp_path / "caller.py").write_text(CALLER)
     assert said(tmp_path, 2.0, program="caller.py")[-4:] == [1.0, 20.0, 1.0, 0.0]
     assert said(tmp_path, 2.0, program="caller.py")[-4:] == [0.0, 20.0, 1.0, 1.0]
+
+
+@pytest.mark.slow
+def test_another_numba_loads_kept_code_in_its_own_way(tmp_path: Path) -> None:
+    """With one that was not tried, and has none of the private names."""
+    (tmp_path / "another.py").write_text(
+        "import sys\n"
+        "import numba\n"
+        "numba.version_info = numba.version_info._replace(short=(0, 99))\n"
+        "sys.modules['link.kept_code'] = None\n"
+        "import outer\n"
+    )
+    assert said(tmp_path, 2.0) == [21.0, 0.0]
+    assert said(tmp_path, 2.0, program="another.py") == [21.0, 1.0]
