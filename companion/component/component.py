@@ -4,9 +4,8 @@ from collections.abc import Iterable, Sequence
 
 from companion.autopilots.state import AutopilotState
 from companion.component.commands import COMMANDS, StationCommands
-from companion.component.files import FileServer
 from companion.component.identity import ComputerLoad, component_information, computer_status, heartbeat_state
-from companion.component.metadata import component_metadata
+from companion.component.metadata import FileServer, component_metadata
 from companion.component.pad_messages import adsb_vehicle, follow_target
 from companion.component.parameters import answers
 from companion.config.autopilot import PadOnMap

@@ -20,7 +20,9 @@ from pydantic.fields import FieldInfo
 from companion.component.parameters import CHOICES, PARAMETERS, Parameter, value_of
 from companion.config.companion import CompanionConfig
 from link.ftp.handlers import checksum
-from link.ftp.store import Shown
+from link.ftp.server import answer, burst_on
+from link.ftp.state import NO_FTP, FtpRules
+from link.ftp.wire import question_from_message
 from link.mavlink.dialect import COMPONENT_METADATA_ID, Message, mavlink
 from link.program.toml_config import StrictModel
 
@@ -31,11 +33,6 @@ _PARAMETERS_TYPE = 1  # COMP_METADATA_TYPE_PARAMETER
 _UNITS = {"_m_s": "m/s", "_m": "m", "_s": "s", "_share": "norm"}
 _UNIT = re.compile("|".join(f"{ending}$" for ending in _UNITS))
 _FIRST_NUMBERS = re.compile(r"\d+\.\d+\.\d+")
-
-
-def shown_files() -> Shown:
-    """Return the files by their paths."""
-    return {GENERAL_PATH: general_file, PARAMETERS_PATH: parameters_file}
 
 
 def component_metadata(boot_ms: int) -> Message:
@@ -108,3 +105,24 @@ def _bounds(field: FieldInfo) -> dict[str, float]:
 
 def _compress(content: object) -> bytes:
     return lzma.compress(json.dumps(content, separators=(",", ":")).encode(), check=lzma.CHECK_CRC32)
+
+
+_FILES = {GENERAL_PATH: general_file, PARAMETERS_PATH: parameters_file}
+_RULES = FtpRules(is_read_only=True, burst_a_step=1)  # setpoints share the link
+
+
+class FileServer:
+    """The server of these files, which answers one client after the other."""
+
+    def __init__(self) -> None:
+        self._ftp = NO_FTP
+
+    def answer(self, message: Message, local_ns: int) -> tuple[Message, ...]:
+        """Take a FILE_TRANSFER_PROTOCOL; return its answer."""
+        self._ftp, answers = answer(self._ftp, question_from_message(message), _FILES, _RULES, local_ns)
+        return answers
+
+    def continue_burst(self) -> tuple[Message, ...]:
+        """Return what of a burst under way goes now."""
+        self._ftp, messages = burst_on(self._ftp, _RULES)
+        return messages
