@@ -101,6 +101,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             fix_std_m=vehicle.phases.vehicle_std_m,
             rejected_share=vehicle.contradictions.rejected_share,
             are_sightings_mixed=vehicle.sightings.are_mixed,
+            has_pad_stepped=vehicle.sightings.has_stepped,
             is_road_elsewhere=vehicle.is_road_elsewhere,
         ),
         below=Below(

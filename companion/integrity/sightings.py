@@ -16,7 +16,9 @@ farther from its told place than both promise means that one of them is wrong: a
 whose board or mounting is another than it was told, somebody else who publishes sightings, or a receiver. Where nothing
 says that they have one frame, any offset may be true, and the sightings alone place the pad: only sightings that
 contradict each other can be told from right ones. A camera that looks at a pad sees it many times a second, so that a
-few sightings which nothing follows place nothing.
+few sightings which nothing follows place nothing. A pad that they have confirmed stays where it is on the vehicle: if
+all of them show it elsewhere from some moment on, the detector has taken something else for it. A step of the drone's
+own frame would look the same, but that begins the estimate anew, and the count with it.
 """
 
 import math
@@ -96,6 +98,8 @@ class SightingWatch(Struct, frozen=True, kw_only=True):
 
     Attributes:
         counted: accepted and rejected ones, when they were last counted.
+        moves: of the pad to sightings, when they were last counted.
+        has_stepped: a confirmed pad was seen to step, although the drone's own frame had not.
         are_mixed: of those since the count before so many were rejected that they contradict each other.
         agreeing: accepted ones since the pad's place was not known, or they contradicted each other.
         since_ns: monotonic, when the first of these was counted; None without one.
@@ -104,6 +108,8 @@ class SightingWatch(Struct, frozen=True, kw_only=True):
     """
 
     counted: tuple[int, int] = (0, 0)
+    moves: int = 0
+    has_stepped: bool = False
     are_mixed: bool = False
     agreeing: int = 0
     since_ns: int | None = None
@@ -117,7 +123,9 @@ def update_sightings(
     """Return the watch with what the estimator has counted by now; one that was restarted is counted again."""
     accepted, rejected = (now - then for now, then in zip(health.sightings, before.counted, strict=True))
     if accepted < 0 or rejected < 0:
-        return SightingWatch(counted=health.sightings)
+        return SightingWatch(counted=health.sightings, moves=health.moves_to_sightings)
+    is_step = before.is_confirmed and health.moves_to_sightings > before.moves
+    before = replace(before, moves=health.moves_to_sightings, has_stepped=before.has_stepped or is_step)
     if rejected > config.integrity.rejected_share_max * (accepted + rejected):
         return replace(before, counted=health.sightings, are_mixed=True, agreeing=0, since_ns=None)
     if accepted == 0:
@@ -126,8 +134,10 @@ def update_sightings(
     agreeing = before.agreeing + accepted
     is_long = before.was_confirmed or (monotonic_ns - since_ns) * 1e-9 >= _CONFIRMING_S
     is_confirmed = before.is_confirmed or (agreeing >= _CONFIRMING_MIN and is_long)
-    return SightingWatch(
+    return replace(
+        before,
         counted=health.sightings,
+        are_mixed=False,
         agreeing=agreeing,
         since_ns=since_ns,
         is_confirmed=is_confirmed,
@@ -143,8 +153,8 @@ def forget_agreement(watch: SightingWatch) -> SightingWatch:
 
 
 def do_sightings_disagree(s: Situation, _: CompanionConfig) -> bool:
-    """Return whether the last sightings contradict each other."""
-    return s.vehicle.are_sightings_mixed
+    """Return whether the last sightings contradict each other, or those that confirmed the pad's place."""
+    return s.vehicle.are_sightings_mixed or s.vehicle.has_pad_stepped
 
 
 def is_seen_elsewhere(s: Situation, c: CompanionConfig) -> bool:

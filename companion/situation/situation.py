@@ -66,6 +66,7 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
         speed_std_m_s: of its horizontal velocity; infinite while that is not known.
         rejected_share: of its measurements of the last seconds, 0 to 1.
         are_sightings_mixed: what the drone sees of the pad contradicts itself.
+        has_pad_stepped: it is seen elsewhere on the vehicle than where it was confirmed.
         is_road_elsewhere: it is said to be higher or lower than any hill puts it.
     """
 
@@ -76,6 +77,7 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
     speed_std_m_s: float = math.inf
     rejected_share: float = 0.0
     are_sightings_mixed: bool = False
+    has_pad_stepped: bool = False
     is_road_elsewhere: bool = False
 
 

@@ -142,6 +142,7 @@ class BufferHealth(Struct, frozen=True, kw_only=True):
         nis_dof: degrees of freedom that it is the mean of.
         recent_nis_per_dof: the same over what the buffer holds, rejected data included.
         sightings: of the pad, accepted and rejected.
+        moves_to_sightings: times the pad was moved to where sightings had it that were rejected for too long.
     """
 
     fused: int
@@ -152,6 +153,7 @@ class BufferHealth(Struct, frozen=True, kw_only=True):
     nis_dof: int
     recent_nis_per_dof: float | None
     sightings: tuple[int, int] = (0, 0)
+    moves_to_sightings: int = 0
 
 
 class BufferedEstimator(Struct, Generic[S], frozen=True, kw_only=True):
@@ -195,6 +197,7 @@ class BufferedEstimator(Struct, Generic[S], frozen=True, kw_only=True):
             nis_dof=tally.nis_dof,
             recent_nis_per_dof=sum(recent) / len(recent) if recent else None,
             sightings=tally.sightings,
+            moves_to_sightings=tally.moves_to_sightings,
         )
 
     def _state_at(self, memory: DelayBuffer[S] | None, t_ns: int) -> S | None:

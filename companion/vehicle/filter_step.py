@@ -97,6 +97,7 @@ class Tally(Struct, frozen=True, kw_only=True):
     nis_sum: float = 0.0
     nis_dof: int = 0
     sightings: tuple[int, int] = (0, 0)  # of the pad, accepted and rejected
+    moves_to_sightings: int = 0  # recoveries on them
     accepted_ns: tuple[int | None, ...] = _NEVER
     rejected_since_ns: tuple[int | None, ...] = _NEVER
 
@@ -163,6 +164,7 @@ def _recover(model: FilterModel[S], snapshot: Snapshot[S], measurement: Measurem
         snapshot.tally,
         recoveries=snapshot.tally.recoveries + 1,
         sightings=_count_sighting(snapshot.tally, rank, is_rejected=True),
+        moves_to_sightings=snapshot.tally.moves_to_sightings + (measurement.quantity is Quantity.PAD),
         accepted_ns=_put(snapshot.tally.accepted_ns, rank, measurement.t_ns),
         rejected_since_ns=_NEVER,
     )
@@ -177,6 +179,7 @@ def _accept(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
         nis_sum=tally.nis_sum + update.nis,
         nis_dof=tally.nis_dof + update.dof,
         sightings=_count_sighting(tally, rank, is_rejected=False),
+        moves_to_sightings=tally.moves_to_sightings,
         accepted_ns=_put(tally.accepted_ns, rank, t_ns),
         rejected_since_ns=_put(tally.rejected_since_ns, rank, None),
     )

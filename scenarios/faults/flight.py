@@ -102,7 +102,7 @@ class FaultFlight(Lockstep):
         An operator's abort is followed by none. That this one is, is all that it differs by. Return whether a descent
         came so low before the run was over.
         """
-        while self.phase is not Phase.DESCEND or not self._is_below(height_m):
+        while self.phase is not Phase.DESCEND or not self.is_below(height_m):
             if self._watch.reason(self.recording) is not None:
                 return False
             self.step()
@@ -111,7 +111,8 @@ class FaultFlight(Lockstep):
         self.companion.memory = replace(memory, progress=replace(memory.progress, may_retry=True))
         return True
 
-    def _is_below(self, height_m: float) -> bool:
+    def is_below(self, height_m: float) -> bool:
+        """Return whether the companion tells that the feet are lower over the pad."""
         status = self.recording.status
         told_m = None if status is None else status.height_above_pad_m
         return told_m is not None and told_m < height_m

@@ -221,7 +221,7 @@ ABORTS = (
         reason=Reason.SIGHTINGS_DISAGREE,
         phases=LANDING_PHASES,
         is_true=do_sightings_disagree,
-        hold_s=lambda _, __: _MIXED_HOLD_S,
+        hold_s=lambda s, _: 0.0 if s.vehicle.has_pad_stepped else _MIXED_HOLD_S,
     ),
     Condition(
         reason=Reason.VEHICLE_OUTRUNS,

@@ -102,7 +102,7 @@ def after_ride(sensors: Sensors, off_m: float) -> Situation:
     return changed(situation(pad=pad_path(forecast, described)), fix_std_m=0.02)
 
 
-def health(accepted: int, rejected: int) -> BufferHealth:
+def health(accepted: int, rejected: int, moves: int = 0) -> BufferHealth:
     return BufferHealth(
         fused=0,
         gated=0,
@@ -112,6 +112,7 @@ def health(accepted: int, rejected: int) -> BufferHealth:
         nis_dof=0,
         recent_nis_per_dof=None,
         sightings=(accepted, rejected),
+        moves_to_sightings=moves,
     )
 
 
@@ -165,6 +166,24 @@ def test_place_that_was_lost_has_to_be_confirmed_anew() -> None:
         assert update_sightings(watch, health(accepted, 0), 0, CONFIG).is_confirmed is is_confirmed
 
 
+def test_confirmed_pad_that_is_seen_elsewhere_has_stepped_however_long_it_stays_there() -> None:
+    watch = update_sightings(watched(*4 * [(9, 0)]), health(40, 12, moves=1), 0, CONFIG)
+    for accepted in (60, 80, 100):
+        watch = update_sightings(watch, health(accepted, 12, moves=1), 0, CONFIG)
+        assert watch.has_stepped
+        assert not watch.are_mixed
+
+
+def test_place_that_was_not_confirmed_may_be_seen_elsewhere() -> None:
+    watch = update_sightings(watched((9, 0)), health(9, 12, moves=1), 0, CONFIG)
+    assert not update_sightings(watch, health(30, 12, moves=1), 0, CONFIG).has_stepped
+
+
+def test_new_frame_of_the_drone_has_nothing_step() -> None:
+    stepped = update_sightings(watched(*4 * [(9, 0)]), health(40, 12, moves=1), 0, CONFIG)
+    assert not update_sightings(stepped, health(3, 0), 0, CONFIG).has_stepped
+
+
 def moved(off_m: float, *, is_confirmed: bool, has_one_frame: bool) -> PadPath:
     offset = FrameOffset(distance_m=off_m, std_m=0.01, is_confirmed=is_confirmed)
     return replace(pad_at(), frame_offset=offset, has_one_frame=has_one_frame)
@@ -189,6 +208,15 @@ def test_estimator_counts_what_it_rejects_of_two_detectors() -> None:
     accepted, rejected = chosen.health(memory).sightings
     assert accepted + rejected == sightings
     assert rejected > SHARE * sightings
+
+
+def test_estimator_counts_that_all_sightings_have_left_the_pad_once() -> None:
+    chosen = estimator(EstimatorKind.IMM)
+    memory = chosen.fuse(None, [])
+    for measurement in arrivals(circle(), RTK, 5):
+        if measurement.t_ns < now_ns(4.0):
+            memory = chosen.fuse(memory, [beside(measurement, 2.0 * (measurement.t_ns > now_ns(2.0)))])
+    assert chosen.health(memory).moves_to_sightings == 1
 
 
 @pytest.mark.parametrize("reason", [Reason.SEEN_ELSEWHERE, Reason.SIGHTINGS_DISAGREE])

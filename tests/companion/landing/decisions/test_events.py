@@ -14,7 +14,7 @@ from companion.landing.decisions.aborts import ABORTS, must_wait
 from companion.landing.decisions.conditions import Condition, cause_of
 from companion.landing.decisions.entries import ENTRIES, update_held
 from companion.landing.state.memory import Held
-from companion.situation.phases import Event, Phase
+from companion.situation.phases import LANDING_PHASES, Event, Phase
 from companion.situation.situation import Following, Situation
 from companion.vehicle.pad import NOT_DESCRIBED, FrameOffset
 from companion.vehicle.pad_reach import cone_radius_m
@@ -120,6 +120,12 @@ def test_abort_fires_exactly_after_its_hold_time(test: Condition, phase: Phase) 
     decision, ticks = first_decision(phase, facts, hold_s + 1.0)
     assert decision == (Event.UNSAFE, cause_of(test, facts, CONFIG))
     assert ticks == math.ceil(hold_s * 1e9 / TICK_NS - 1e-9)
+
+
+@pytest.mark.parametrize("phase", LANDING_PHASES)
+def test_pad_that_has_stepped_ends_an_approach_at_once(phase: Phase) -> None:
+    facts = _before_the_next_phase(changed(situation(), has_pad_stepped=True), phase)
+    assert first_decision(phase, facts, 1.0) == ((Event.UNSAFE, Cause(Reason.SIGHTINGS_DISAGREE)), 0)
 
 
 @pytest.mark.parametrize(
