@@ -1,0 +1,49 @@
+"""Where frames begin and how long they are. Authority: the MAVLink guide's tables of both headers, and pymavlink."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from link.mavlink.codec import MavlinkCodec
+from link.mavlink.dialect import mavlink
+from link.mavlink.framing import MARKER_V1, MARKER_V2, WAIT_MAX_NS, Stream, message_id_at
+
+S = 10**9
+LONGEST = {mavlink.MAVLINK_MSG_ID_HEARTBEAT: (9, 9), mavlink.MAVLINK_MSG_ID_STATUSTEXT: (51, 54)}
+"""Bytes of the payload without extensions and with them, as common.xml adds them up."""
+
+HEARTBEAT = MavlinkCodec(1, 1).encode(mavlink.MAVLink_heartbeat_message(2, 12, 0, 7, 4, 3))
+
+
+def framed(message_id: int, length: int) -> bytes:
+    """A frame of version 1 with a payload of zeros, and two bytes for its checksum."""
+    return bytes((MARKER_V1, length, 0, 1, 1, message_id)) + bytes(length + 2)
+
+
+@given(message_id=st.integers(0, 2**24 - 1), before=st.binary(max_size=3))
+def test_message_id_of_version_2_has_three_bytes_the_lowest_first(message_id: int, before: bytes) -> None:
+    head = bytes((MARKER_V2, 0, 0, 0, 9, 1, 1)) + message_id.to_bytes(3, "little")
+    assert message_id_at(before + head, len(before)) == message_id
+
+
+@given(length=st.integers(0, 255))
+@pytest.mark.parametrize("message_id", LONGEST)
+def test_known_message_of_version_1_is_as_long_as_with_or_without_its_extensions(message_id: int, length: int) -> None:
+    stream, frame, (shortest, longest) = Stream(), framed(message_id, length), LONGEST[message_id]
+    stream.add(frame, None)
+    assert (stream.find(ends=True) == (0, len(frame))) is (shortest <= length <= longest)
+
+
+@pytest.mark.parametrize(("waits_ns", "is_taken"), [(WAIT_MAX_NS, True), (WAIT_MAX_NS + 1, False)])
+def test_rest_of_a_frame_is_waited_for_until_then_and_no_longer(waits_ns: int, *, is_taken: bool) -> None:
+    codec = MavlinkCodec(1, 191)
+    codec.decode(HEARTBEAT[:12], t_ns=S)
+    assert bool(codec.decode(HEARTBEAT[12:], t_ns=S + waits_ns)) is is_taken
+
+
+@given(times=st.lists(st.none() | st.integers(S, 3 * S), max_size=6), cuts=st.integers(1, len(HEARTBEAT) - 1))
+def test_bytes_with_and_without_a_time_raise_nothing(times: list[int | None], cuts: int) -> None:
+    codec = MavlinkCodec(1, 191)
+    for t_ns in times:
+        codec.decode(HEARTBEAT[:cuts], t_ns=t_ns)
+    assert codec.decode(HEARTBEAT, is_datagram=True)
