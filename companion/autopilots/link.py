@@ -174,9 +174,10 @@ class AutopilotLink:
             self._hear_parameter(message, driver)
         elif message.get_type() == "RC_CHANNELS":
             self.pilot_switch.hear(message, local_ns)
-        shift = self.state.view.frame_moves.shift_enu_m
-        self.state = update_state(self.state, message, self.session.clock, driver)
-        if self.state.view.frame_moves.shift_enu_m != shift:
+        before = self.state
+        self.state = update_state(before, message, self.session.clock, driver)
+        has_shifted = self.state.view.frame_moves.shift_enu_m != before.view.frame_moves.shift_enu_m
+        if has_shifted or self.state.origin_doubted_msl is not before.origin_doubted_msl:
             self._origin_asked_ns = None  # it has probably moved, too
 
     def _hear_parameter(self, message: Message, driver: Driver) -> None:
@@ -246,7 +247,8 @@ class AutopilotLink:
         """
         if self.driver is None or not self.session.link_up or _ASK in self._unanswered:
             return
-        period_ns = _ASK_ORIGIN_NS if self.state.view.frame is None else _ASK_KNOWN_ORIGIN_NS
+        is_known = self.state.view.frame is not None and self.state.origin_doubted_msl is None
+        period_ns = _ASK_KNOWN_ORIGIN_NS if is_known else _ASK_ORIGIN_NS
         if self._origin_asked_ns is None or local_ns - self._origin_asked_ns >= period_ns:
             self._origin_asked_ns = local_ns
             self._unanswered[_ASK] = self.session.request_message(mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN, local_ns)

@@ -43,6 +43,7 @@ class AutopilotState(Struct, frozen=True, kw_only=True):
         angular_velocity_flu_rad_s: with it.
         attitude_boot_ms: when that was, on the autopilot's clock.
         origin_msl: the origin with its altitude above mean sea level, as it is sent.
+        origin_doubted_msl: another one, told once; a single message may be anybody's.
         geoid_height_m: of mean sea level above the ellipsoid, None until the autopilot's receiver tells it.
         parameters: those read, by name.
         texts: what it said and nobody has taken yet.
@@ -54,6 +55,7 @@ class AutopilotState(Struct, frozen=True, kw_only=True):
     angular_velocity_flu_rad_s: Vector3 = (0.0, 0.0, 0.0)
     attitude_boot_ms: int = 0
     origin_msl: Datum | None = None
+    origin_doubted_msl: Datum | None = None
     geoid_height_m: float | None = None
     parameters: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     texts: tuple[str, ...] = ()
@@ -93,9 +95,7 @@ def update_state(state: AutopilotState, message: Message, clock: ClockMap, drive
             view = replace(state.view, landed=_is_landed(message.landed_state), taking_off=taking_off)
             state = replace(state, view=view)
         case "GPS_GLOBAL_ORIGIN":
-            state = _place_origin(
-                replace(state, origin_msl=origin_above_sea(message) or state.origin_msl), driver.projection
-            )
+            state = _place_origin(_hear_origin(state, origin_above_sea(message)), driver.projection)
         case "GPS_RAW_INT":
             height_m = geoid_height_m(state.geoid_height_m, message)
             is_fixed = message.fix_type == mavlink.GPS_FIX_TYPE_RTK_FIXED
@@ -210,6 +210,16 @@ def _is_landed(landed_state: int) -> bool | None:
     if landed_state == mavlink.MAV_LANDED_STATE_UNDEFINED:
         return None
     return bool(landed_state == mavlink.MAV_LANDED_STATE_ON_GROUND)
+
+
+def _hear_origin(state: AutopilotState, told: Datum | None) -> AutopilotState:
+    """Take the first origin, and another one once it is told again."""
+    known, doubted = state.origin_msl, state.origin_doubted_msl
+    if told is None:
+        return state
+    if known is None or is_same(told, known) or (doubted is not None and is_same(told, doubted)):
+        return replace(state, origin_msl=told, origin_doubted_msl=None)
+    return replace(state, origin_doubted_msl=told)
 
 
 def _place_origin(state: AutopilotState, projection: Projection) -> AutopilotState:

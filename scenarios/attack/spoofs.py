@@ -81,7 +81,7 @@ UNSIGNED: Mapping[str, frozenset[str]] = {
     "place, 3 s behind": frozenset(),
     "landed": frozenset({"landed"}),
     "UTC": frozenset({"clock"}),
-    "origin": frozenset({"frame"}),
+    "origin": frozenset(),
     "parameter": frozenset({"timeout_s"}),
     "acknowledgement": frozenset(),
     "range": frozenset({"range_down"}),

@@ -8,6 +8,7 @@ from companion.autopilots.driver import AutopilotCommand
 from companion.autopilots.link import AutopilotLink
 from companion.config.companion import CompanionConfig
 from companion.core.data import Setpoint
+from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
 from link.mavlink.session import MavlinkSession
 from link.records import replace
@@ -110,6 +111,17 @@ def test_restarted_autopilot_is_taken_for_disarmed_and_its_old_places_are_forgot
     assert talk.link.state.view.restarted
     assert talk.link.state.view.frame_moves.origin_count > count
     assert talk.link.state.own is not None
+
+
+def test_origin_that_somebody_tells_once_is_asked_for_and_not_believed() -> None:
+    talk = Talk(FakePx4())
+    talk.run(1.0)
+    frame, asked = talk.link.state.view.frame, len(talk.autopilot.commands(ASK))
+    forged = MavlinkCodec(1, 1).encode(mavlink.MAVLink_gps_global_origin_message(524_000_000, 134_000_000, 100_000))
+    talk.link.receive(forged, talk.t_ns, is_datagram=True)
+    talk.run(0.5)
+    assert len(talk.autopilot.commands(ASK)) > asked
+    assert talk.link.state.view.frame == frame
 
 
 def test_silent_autopilot_is_said_to_be_lost_and_found_again() -> None:

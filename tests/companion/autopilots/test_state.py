@@ -104,9 +104,18 @@ def test_hard_flying_over_a_gap_in_the_link_is_no_shift(gap_ms: int, braking: fl
 def test_moved_origin_is_counted_and_a_repeated_one_is_not() -> None:
     state = _hear(_origin(475_000_000, 80_000_000, 400_000), _origin(475_000_000, 80_000_000, 400_000))
     assert state.view.frame_moves.origin_count == 1
-    moved = _hear(_origin(475_000_020, 80_000_000, 400_000), state=state)
+    moved = _hear(*2 * [_origin(475_000_020, 80_000_000, 400_000)], state=state)
     assert moved.view.frame_moves.origin_count == 2
-    assert _hear(_origin(475_000_000, 80_000_000, 401_000), state=state).view.frame_moves.origin_count == 2
+    assert _hear(*2 * [_origin(475_000_000, 80_000_000, 401_000)], state=state).view.frame_moves.origin_count == 2
+
+
+@given(others=st.lists(st.integers(480_000_000, 490_000_000), unique=True, max_size=5))
+def test_other_origins_that_are_told_once_each_move_nothing(others: list[int]) -> None:
+    known = _origin(475_000_000, 80_000_000, 400_000)
+    doubted = [_origin(latitude_1e7, 80_000_000, 400_000) for latitude_1e7 in others]
+    before = _hear(known)
+    assert _hear(*doubted, state=before).view == before.view
+    assert _hear(*doubted, known, *doubted[-1:], state=before).view == before.view
 
 
 @pytest.mark.parametrize(
