@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from companion.autopilots.response import ATTITUDE_LAG_S
 from companion.core.data import Rival
 from companion.core.reasons import Cause, Reason, sentence
-from companion.landing.decisions.aborts import ABORTS, must_wait
+from companion.landing.decisions.aborts import ABORTS, is_out_of_range, must_wait
 from companion.landing.decisions.conditions import Condition, cause_of
 from companion.landing.decisions.entries import ENTRIES, update_held
 from companion.landing.state.memory import Held
@@ -120,6 +120,23 @@ def test_abort_fires_exactly_after_its_hold_time(test: Condition, phase: Phase) 
     decision, ticks = first_decision(phase, facts, hold_s + 1.0)
     assert decision == (Event.UNSAFE, cause_of(test, facts, CONFIG))
     assert ticks == math.ceil(hold_s * 1e9 / TICK_NS - 1e-9)
+
+
+@pytest.mark.parametrize("phase", LANDING_PHASES)
+def test_lost_token_ends_no_approach_while_fixes_are_fresh(phase: Phase) -> None:
+    facts = _before_the_next_phase(changed(situation(), is_alive=False, fix_age_s=0.0), phase)
+    assert first_decision(phase, facts, 1.0)[0] is None
+
+
+@given(north_m=st.floats(-2.0, 2.0), up_m=st.floats(-90.0, 90.0))
+def test_range_from_the_start_is_horizontal(north_m: float, up_m: float) -> None:
+    facts = situation()
+    assert facts.drone is not None
+    place = facts.drone.position_enu_m
+    for beyond_m in (-1.0, 1.0):
+        east_m = math.sqrt((CONFIG.limits.range_max_m + beyond_m) ** 2 - north_m**2)
+        away = replace(facts, waiting_point_enu_m=place + np.array([east_m, north_m, up_m]))
+        assert is_out_of_range(away, CONFIG) is (beyond_m > 0.0)
 
 
 @pytest.mark.parametrize("phase", LANDING_PHASES)
