@@ -9,7 +9,7 @@ from companion.autopilots.late_reports import LateReports
 from companion.autopilots.limits import LimitQuestions, parameter_names
 from companion.autopilots.pilot_switch import PilotSwitch
 from companion.autopilots.response import Cascade, Shaping
-from companion.autopilots.state import AutopilotState, shift_reports, update_state
+from companion.autopilots.state import AutopilotState, has_frame_moved, shift_reports, update_state
 from companion.config.autopilot import AutopilotConfig
 from companion.core.data import FlightLimits, Setpoint
 from link.mavlink.dialect import Message, mavlink
@@ -176,8 +176,7 @@ class AutopilotLink:
             self.pilot_switch.hear(message, local_ns)
         before = self.state
         self.state = update_state(before, message, self.session.clock, driver)
-        has_shifted = self.state.view.frame_moves.shift_enu_m != before.view.frame_moves.shift_enu_m
-        if has_shifted or self.state.origin_doubted_msl is not before.origin_doubted_msl:
+        if has_frame_moved(before, self.state):
             self._origin_asked_ns = None  # it has probably moved, too
 
     def _hear_parameter(self, message: Message, driver: Driver) -> None:
@@ -241,10 +240,7 @@ class AutopilotLink:
         self._times = local_ns, utc_ns
 
     def _ask_for_origin(self, local_ns: int) -> None:
-        """Ask until it is known, and from time to time after, since it can be moved.
-
-        While a question is unanswered there is no other: it runs out of time later than the next would be due.
-        """
+        """Ask until it is known, and from time to time after, since it can be moved; one question at a time."""
         if self.driver is None or not self.session.link_up or _ASK in self._unanswered:
             return
         is_known = self.state.view.frame is not None and self.state.origin_doubted_msl is None

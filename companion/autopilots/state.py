@@ -212,6 +212,12 @@ def _is_landed(landed_state: int) -> bool | None:
     return bool(landed_state == mavlink.MAV_LANDED_STATE_ON_GROUND)
 
 
+def has_frame_moved(before: AutopilotState, state: AutopilotState) -> bool:
+    """Return whether the local frame has stepped, or another origin was told."""
+    has_stepped = state.view.frame_moves.shift_enu_m != before.view.frame_moves.shift_enu_m
+    return has_stepped or state.origin_doubted_msl != before.origin_doubted_msl
+
+
 def _hear_origin(state: AutopilotState, told: Datum | None) -> AutopilotState:
     """Take the first origin, and another one once it is told again."""
     known, doubted = state.origin_msl, state.origin_doubted_msl
