@@ -24,6 +24,7 @@ COMMANDS = {
     int(mavlink.MAV_CMD_USER_5): Command.RETURN,
 }
 _START = int(mavlink.MAV_CMD_USER_1)
+_ENDS = (int(mavlink.MAV_CMD_USER_2), int(mavlink.MAV_CMD_USER_3), None)  # what a landing or a sortie ends by
 _PROGRESS_NS = 1_000_000_000  # MAVSDK waits for 3 s, QGroundControl for 3 s
 _REPEATED_NS = 5_000_000_000  # an acknowledgement that was lost is given again for so long
 _WAITING_MAX = 16
@@ -90,6 +91,12 @@ class StationCommands:
             return None
         self._asked = self._waiting.popleft()
         return Command.ABORT if self._asked.number is None else COMMANDS[self._asked.number]
+
+    def refuse_beginnings(self) -> list[Message]:
+        """Refuse what waits for a step and would begin something."""
+        refused = [asked for asked in self._waiting if asked.number not in _ENDS]
+        self._waiting = deque(asked for asked in self._waiting if asked.number in _ENDS)
+        return [asked.acknowledge(mavlink.MAV_RESULT_TEMPORARILY_REJECTED) for asked in refused]
 
     def answer(self, reply: CommandReply, local_ns: int) -> list[Message]:
         """Take a step's reply to the command of `next`."""

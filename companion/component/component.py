@@ -139,6 +139,10 @@ class MavlinkComponent:
         if not reply.accepted:
             self.refuse(reply.reason)
 
+    def refuse_beginnings(self) -> None:
+        """Refuse what ground stations have asked for and no step has begun."""
+        self._send(self._commands.refuse_beginnings())
+
     def refuse(self, why: str) -> None:
         """Tell people why a command was refused."""
         self._send(self._texts.pieces(f"refuses: {why}", mavlink.MAV_SEVERITY_WARNING))

@@ -159,6 +159,7 @@ class Reason(Enum):
     )
     VEHICLE_OUT_OF_RANGE = "vehicle is {:.0f} m away, limits.range_max_m is {:g}: raise it or let the vehicle come back"
     VEHICLE_DRIVES_OFF = "vehicle drives off at {:.1f} m/s, the drone can fly home at {:.1f}: drive slower"
+    PILOT_SWITCHES_OFF = "the pilot's switch has just ended what was under way: command it again"
     MOTORS_OFF_AT_SWITCH = "the motors are off: arm, take off, then switch, or set autopilot.pilot_switch.arms"
     NOT_FLOWN = "the companion does not fly the drone: start it first, then {}"
     RALLY_TOO_FAR = (

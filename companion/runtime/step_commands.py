@@ -7,6 +7,8 @@ from companion.component.component import MavlinkComponent
 from companion.core.reasons import Cause, Reason, sentence
 from link.messages import Command, CommandReply, Station
 
+_ENDS = (Command.HOLD, Command.ABORT)
+
 
 class _Sender(Enum):
     SWITCH = auto()
@@ -41,6 +43,8 @@ class StepCommands:
             start_refusal: the answer to a start that no step is to judge; an operator's has been asked before.
             local_ns: on the companion's own clock.
         """
+        if switched in _ENDS:
+            self._refuse_beginnings()
         if switched is None and self._requested is not None:
             (command, station), self._requested = self._requested, None
             self._sent = _Sender.OPERATOR, command
@@ -53,6 +57,14 @@ class StepCommands:
             return wanted, None
         self.answer(refusal, local_ns)
         return None, None
+
+    def _refuse_beginnings(self) -> None:
+        """Refuse what waits to begin something, which the next step would do against the pilot."""
+        self._component.refuse_beginnings()
+        if self._requested is not None and self._requested[0] not in _ENDS:
+            self._requested = None
+            refusal = sentence(Cause(Reason.PILOT_SWITCHES_OFF))
+            self._replies.append(CommandReply(accepted=False, reason=refusal))
 
     def answer(self, reply: CommandReply, local_ns: int) -> None:
         """Give the reply to who has sent the command; a pilot is told of a start that is refused, and of nothing else.

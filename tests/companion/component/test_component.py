@@ -5,13 +5,14 @@ from dataclasses import dataclass, field
 
 import pytest
 
+from companion.component.commands import StationCommands
 from companion.config.autopilot import GroundStationConfig, PadOnMap
 from companion.config.companion import CompanionConfig
 from companion.situation.phases import Phase
 from link.frames.geodesy import Datum
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import DRAFT_MESSAGES, MAV_RESULT_CANCELLED, Message, mavlink
-from link.messages import PadGeometry
+from link.messages import Command, PadGeometry
 from tests.companion.peer import Setup
 from tests.companion.world import FRAME
 
@@ -60,6 +61,17 @@ def test_start_for_a_vehicle_that_was_never_heard_is_refused() -> None:
     station.setup.run(0.5)
     assert station.answers(START) == [(REJECTED, 255)]
     assert station.setup.node.phase is Phase.IDLE
+
+
+def test_what_waits_to_begin_is_refused_and_what_ends_a_landing_still_waits() -> None:
+    commands, station = StationCommands(), MavlinkCodec(255, 190)
+    for number in (START, ABORT, HOLD, mavlink.MAV_CMD_USER_4):
+        sent = mavlink.MAVLink_command_long_message(*OWN, number, 0, 0, 0, 0, 0, 0, 0, 0)
+        (message,) = MavlinkCodec(*OWN).decode(station.encode(sent))
+        assert commands.take(message, 0) == []
+    refused = [(one.command, one.result) for one in commands.refuse_beginnings()]
+    assert refused == [(START, REJECTED), (mavlink.MAV_CMD_USER_4, REJECTED)]
+    assert [commands.next(), commands.next(), commands.next()] == [Command.ABORT, Command.HOLD, None]
 
 
 @pytest.mark.slow

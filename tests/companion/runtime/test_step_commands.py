@@ -8,7 +8,7 @@ from companion.config.autopilot import AutopilotConfig, PilotSwitchConfig
 from companion.config.companion import CompanionConfig
 from companion.situation.phases import Phase
 from link.mavlink.dialect import Message, mavlink
-from link.messages import Command
+from link.messages import Command, CommandReply
 from tests.companion.autopilots.test_pilot_switch import CHANNEL, HIGH, LOW, MIDDLE, SETTLED_S, channels
 from tests.companion.peer import FakePx4, Setup
 
@@ -76,22 +76,23 @@ def test_switch_that_ends_nothing_is_not_told_so() -> None:
     assert "refuses" not in pilot.texts()
 
 
-def test_pilot_goes_before_an_operator_who_never_hears_the_pilots_reply() -> None:
+@pytest.mark.parametrize(("command", "is_refused"), [(Command.LAUNCH, True), (Command.ABORT, False)])
+def test_pilot_who_ends_a_landing_has_nothing_begun_that_waits(command: Command, *, is_refused: bool) -> None:
     pilot = Piloted(arms=True)
     node = pilot.setup.node
     pilot.switch(HIGH)
     pilot.autopilot.pulse_us = LOW
-    given: set[Command] = set()
+    replies = list[CommandReply]()
 
     def insist() -> None:
         pilot.setup.fix()
-        node.request(Command.LAUNCH)
-        if node.inputs is not None and node.inputs.command is not None:
-            given.add(node.inputs.command)
+        if node.phase is Phase.TAKEOFF:
+            node.request(command)
+        replies.extend(node.take_replies())
 
     pilot.setup.run(SETTLED_S, insist)
-    assert given == {Command.ABORT, Command.LAUNCH}
-    assert not any(reply.accepted for reply in node.take_replies())
+    assert node.phase in (Phase.IDLE, Phase.HOLD)
+    assert any("the pilot's switch has just ended" in reply.reason for reply in replies) is is_refused
 
 
 def test_vehicle_that_was_never_heard_is_not_started_for() -> None:
