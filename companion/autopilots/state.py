@@ -213,17 +213,19 @@ def _is_landed(landed_state: int) -> bool | None:
 
 
 def has_frame_moved(before: AutopilotState, state: AutopilotState) -> bool:
-    """Return whether the local frame has stepped, or another origin was told."""
+    """Return whether the local frame has stepped, or what is known of its origin has changed."""
     has_stepped = state.view.frame_moves.shift_enu_m != before.view.frame_moves.shift_enu_m
     return has_stepped or state.origin_doubted_msl != before.origin_doubted_msl
 
 
 def _hear_origin(state: AutopilotState, told: Datum | None) -> AutopilotState:
-    """Take the first origin, and another one once it is told again."""
+    """Take the first origin, and another one once it is told again; what is the same moves nothing, however often."""
     known, doubted = state.origin_msl, state.origin_doubted_msl
     if told is None:
         return state
-    if known is None or is_same(told, known) or (doubted is not None and is_same(told, doubted)):
+    if known is not None and is_same(told, known):
+        return replace(state, origin_doubted_msl=None)
+    if known is None or (doubted is not None and is_same(told, doubted)):
         return replace(state, origin_msl=told, origin_doubted_msl=None)
     return replace(state, origin_doubted_msl=told)
 

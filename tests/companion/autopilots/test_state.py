@@ -127,6 +127,13 @@ def test_frame_is_laid_out_as_the_driver_says(driver: Driver, projection: Projec
     assert state.view.frame.projection is projection
 
 
+def test_origin_that_is_nearly_the_same_moves_nothing_so_that_none_creeps() -> None:
+    known = _hear(_origin(475_000_000, 80_000_000, 400_000))
+    state = _hear(*20 * [_origin(475_000_005, 80_000_000, 400_000)], state=known)  # 5.6 cm
+    assert state.view.frame == known.view.frame
+    assert _hear(_origin(475_000_010, 80_000_000, 400_000), state=state).view.frame == known.view.frame
+
+
 def test_the_same_origin_of_another_kind_of_autopilot_is_another_frame() -> None:
     state = _hear(_origin(475_000_000, 80_000_000, 400_000))
     other = update_state(state, _origin(475_000_000, 80_000_000, 400_000), CLOCK, ArduPilotDriver())
