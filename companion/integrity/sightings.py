@@ -99,7 +99,7 @@ class SightingWatch(Struct, frozen=True, kw_only=True):
     Attributes:
         counted: accepted and rejected ones, when they were last counted.
         moves: of the pad to sightings, when they were last counted.
-        has_stepped: a confirmed pad was seen to step, although the drone's own frame had not.
+        has_stepped: in this approach a confirmed pad was seen to step, although the drone's own frame had not.
         are_mixed: of those since the count before so many were rejected that they contradict each other.
         agreeing: accepted ones since the pad's place was not known, or they contradicted each other.
         since_ns: monotonic, when the first of these was counted; None without one.
@@ -150,6 +150,11 @@ def forget_agreement(watch: SightingWatch) -> SightingWatch:
     if not (watch.agreeing or watch.is_confirmed):
         return watch
     return replace(watch, agreeing=0, since_ns=None, is_confirmed=False)
+
+
+def forget_step(watch: SightingWatch) -> SightingWatch:
+    """Return the watch of a drone that does not approach: a pad that has stepped is to be confirmed where it is now."""
+    return SightingWatch(counted=watch.counted, moves=watch.moves) if watch.has_stepped else watch
 
 
 def do_sightings_disagree(s: Situation, _: CompanionConfig) -> bool:

@@ -5,6 +5,7 @@ from companion.integrity.sightings import (
     SightingWatch,
     are_frames_one,
     forget_agreement,
+    forget_step,
     update_fixed_phases,
     update_sightings,
 )
@@ -19,12 +20,13 @@ from companion.landing.state.memory import VehicleMemory
 from companion.landing.state.step_data import StepInputs, System
 from companion.landing.steering.targets import HORIZON_OFFSETS_S
 from companion.planning.guidance import are_finite
-from companion.situation.phases import FOLLOWING_PHASES, Phase
+from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
 from companion.vehicle.hindsight import forget_instants, update_hindsight
 from companion.vehicle.pad import PadPath, pad_path
 from companion.vehicle.pad_reach import is_place_vague
 from link.records import replace
 
+_APPROACHING = LANDING_PHASES | {Phase.ABORT, Phase.TOUCHDOWN}
 _PRESENT_OFFSETS_S = HORIZON_OFFSETS_S[:2]  # a second point tells how the lever arm turns
 
 
@@ -83,7 +85,8 @@ def predict_pad(
         return vehicle, None
     if _is_finite(forecast):
         has_one_frame = are_frames_one(vehicle.phases, system.config.integrity.receiver_frames, inputs.monotonic_ns)
-        sightings = vehicle.sightings
+        sightings = vehicle.sightings if phase in _APPROACHING else forget_step(vehicle.sightings)
+        vehicle = replace(vehicle, sightings=sightings) if sightings is not vehicle.sightings else vehicle
         pad = pad_path(forecast, inputs.vehicle.pad, has_one_frame=has_one_frame, is_confirmed=sightings.is_confirmed)
         if (pad.is_coarse or not has_one_frame) and is_place_vague(pad, system.config):
             vehicle = replace(vehicle, sightings=forget_agreement(sightings))

@@ -16,6 +16,7 @@ from companion.integrity.sightings import (
     FIXED_STD_MAX_M,
     SightingWatch,
     forget_agreement,
+    forget_step,
     is_seen_elsewhere,
     update_sightings,
 )
@@ -177,6 +178,17 @@ def test_confirmed_pad_that_is_seen_elsewhere_has_stepped_however_long_it_stays_
 def test_place_that_was_not_confirmed_may_be_seen_elsewhere() -> None:
     watch = update_sightings(watched((9, 0)), health(9, 12, moves=1), 0, CONFIG)
     assert not update_sightings(watch, health(30, 12, moves=1), 0, CONFIG).has_stepped
+
+
+def test_step_counts_for_an_approach_and_the_pad_has_to_be_confirmed_after_it() -> None:
+    stepped = update_sightings(watched(*4 * [(9, 0)]), health(40, 12, moves=1), 0, CONFIG)
+    forgotten = forget_step(stepped)
+    assert not forgotten.has_stepped
+    assert not forgotten.is_confirmed
+    again = update_sightings(forgotten, health(49, 12, moves=1), 0, CONFIG)
+    assert not again.has_stepped
+    assert not again.is_confirmed
+    assert forget_step(again) is again
 
 
 def test_new_frame_of_the_drone_has_nothing_step() -> None:
