@@ -133,7 +133,10 @@ def _touch(off: Array, lean: Array, sink_m_s: float, air: Array, out: Array) -> 
 
 @compiled_kernel
 def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Array) -> None:
-    """Write into `out` (6,) how the descent of one sample ends over a vehicle that drives `path`."""
+    """Write into `out` (6,) how the descent of one sample ends over a vehicle that drives `path`.
+
+    Its time is without the stop and the new start that a wait takes, as long again.
+    """
     course, drone, rules = descent.course, descent.drone, descent.rules
     steps = len(course.speed_m_s)
     before, late = len(path) - steps, samples.delay_s[sample] / DT_S

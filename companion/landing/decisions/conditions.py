@@ -156,7 +156,7 @@ def _late_s(s: Situation) -> float:
 
 def trial_press(s: Situation, c: CompanionConfig) -> float:
     """Return how hard the drone may be pressed down to see whether it stands, m/s^2."""
-    return trial_press_m_s2(signs_of(s), c.touchdown)
+    return trial_press_m_s2(signs_of(s), _late_s(s), c.touchdown)
 
 
 def _trial_s(s: Situation, c: CompanionConfig) -> float:

@@ -99,18 +99,25 @@ def verdict(signs: Signs, config: CompanionConfig, *, is_pressed: bool = False) 
     )
 
 
-def trial_press_m_s2(signs: Signs, config: TouchdownConfig) -> float:
+def trial_press_m_s2(signs: Signs, late_s: float, config: TouchdownConfig) -> float:
     """Return how hard a drone may be pressed down, m/s^2, while the signs of a contact agree for too short a time.
 
     They may be wrong: an autopilot that has heard nothing for a moment hovers above its setpoint as if on a pad. Then
-    the drone falls, and over a late link to the pad; it touches that no faster than the gear takes, from where its
-    range finder sees it. Without a range finder only the signs themselves tell that it touches.
+    the drone falls, no faster than the gear takes: either it touches so where its range finder sees the pad, or it has
+    no time to become faster. Without a range finder only the signs themselves tell that it touches.
+
+    Args:
+        signs: now.
+        late_s: until a press has come to the drone, and what it does has been reported.
+        config: of the touchdown.
     """
     seen_m = signs.range_height_m
     if seen_m is None or seen_m <= 0.0:
         return config.try_acceleration_m_s2
     now_m_s = 0.0 if signs.climb_m_s is None else max(-signs.climb_m_s, 0.0)
-    return min(config.try_acceleration_m_s2, max(config.sink_max_m_s**2 - now_m_s**2, 0.0) / (2.0 * seen_m))
+    by_place_m_s2 = max(config.sink_max_m_s**2 - now_m_s**2, 0.0) / (2.0 * seen_m)
+    by_time_m_s2 = max(config.sink_max_m_s - now_m_s, 0.0) / (config.range_finder.disputed_hold_s + late_s)
+    return min(config.try_acceleration_m_s2, max(by_place_m_s2, by_time_m_s2))
 
 
 def trial_s(signs: Signs, press_m_s2: float, late_s: float, config: TouchdownConfig) -> float:
