@@ -59,7 +59,7 @@ class MpcConfig(StrictModel):
     acceleration_weight: NotNegative = 0.005  # s^4/m^2
     jerk_weight: Positive = 0.0003  # s^6/m^2; bandwidth (position / jerk weight)^(1/6) = 3.9 rad/s
     slack_weight: Positive = 1e3  # exact penalty on the largest excess over a soft limit
-    # A pad is sunk onto at most at its distance by this, and what a touch takes: the inverse of `descent.sink.gain_hz`.
+    # Over a pad a plan sinks at most at its height by this and `touchdown.sink_max_m_s`: 1 / `descent.sink.gain_hz`.
     touch_time_s: Positive = 1.0
     intercept_fraction: Fraction = 0.92  # of the acceleration limit that intercepts are planned with
     intercept_time_min_s: Positive = 1.4  # shorter ways are slowed down to this: the law is linear near the target

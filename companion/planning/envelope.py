@@ -238,7 +238,7 @@ def vertical_bounds(
     Args:
         x: (3,) position, velocity and acceleration.
         floor_m: (n,) the lowest position; it is lowered to what can be kept.
-        lead_s: likewise as `bound_rows` has it.
+        lead_s: as `bound_rows` has it.
         limits: of descent, climb, acceleration and jerk.
         node_s: (n,).
         end_s: (m,).

@@ -134,7 +134,7 @@ def _touched_enu_m(
     """Return (n,) the bound of a descent, as `PlanRequest` has it, by which the plan sinks onto the pad gently.
 
     It looks ahead to a deck that comes up faster than the drone can follow once it does. Where the way down goes on
-    below the pad, so that the contact is firm, it may.
+    below the pad, so that the contact is firm, it may sink as that does.
     """
     time_s = config.guidance.mpc.touch_time_s
     sinks_m_s = pad.velocity_enu_m_s[:, 2] - config.touchdown.sink_max_m_s
