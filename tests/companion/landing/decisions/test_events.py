@@ -122,7 +122,7 @@ def test_abort_fires_exactly_after_its_hold_time(test: Condition, phase: Phase) 
     assert ticks == math.ceil(hold_s * 1e9 / TICK_NS - 1e-9)
 
 
-@pytest.mark.parametrize("phase", sorted(LANDING_PHASES, key=lambda phase: phase.value))
+@pytest.mark.parametrize("phase", sorted(LANDING_PHASES, key=str))
 def test_lost_token_ends_no_approach_while_fixes_are_fresh(phase: Phase) -> None:
     facts = _before_the_next_phase(changed(situation(), is_alive=False, fix_age_s=0.0), phase)
     assert first_decision(phase, facts, 1.0)[0] is None
@@ -139,7 +139,7 @@ def test_range_from_the_start_is_horizontal(north_m: float, up_m: float) -> None
         assert is_out_of_range(away, CONFIG) is (beyond_m > 0.0)
 
 
-@pytest.mark.parametrize("phase", sorted(LANDING_PHASES, key=lambda phase: phase.value))
+@pytest.mark.parametrize("phase", sorted(LANDING_PHASES, key=str))
 def test_pad_that_has_stepped_ends_an_approach_at_once(phase: Phase) -> None:
     facts = _before_the_next_phase(changed(situation(), has_pad_stepped=True), phase)
     assert first_decision(phase, facts, 1.0) == ((Event.UNSAFE, Cause(Reason.SIGHTINGS_DISAGREE)), 0)
