@@ -30,12 +30,12 @@ def port_of_run(*, lockstep: bool, as_json: bool) -> int:
     Raises:
         UserError: there is nothing to see, or nothing to show it with.
     """
-    from scenarios.processes.programs import free_tcp_port
+    from scenarios.processes.programs import reserve_tcp_port
 
     if lockstep:
         raise UserError("--lockstep is over at once: leave out --view, and give the run's folder to `scenarios view`")
     require("view", "--view")
-    port = free_tcp_port(DEFAULT_PORT)
+    port = reserve_tcp_port(DEFAULT_PORT)
     (sys.stderr if as_json else sys.stdout).write(f"view: http://127.0.0.1:{port} (it opens in some seconds)\n")
     return port
 

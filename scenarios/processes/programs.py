@@ -1,5 +1,6 @@
 """The programs of a run as processes: started together, watched, and none of them left behind."""
 
+import fcntl
 import os
 import signal
 import socket
@@ -8,6 +9,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import gettempdir
 from types import TracebackType
 from typing import Self
 
@@ -138,6 +140,24 @@ def free_tcp_port(wanted: int) -> int:
         except OSError:
             return _free_port(socket.SOCK_STREAM)
     return wanted
+
+
+_reserved: list[int] = []
+"""Descriptors of this process's locks, which end with it."""
+
+
+def reserve_tcp_port(wanted: int) -> int:
+    """Return `wanted` where it is free and no other process has reserved it, else any free port of loopback.
+
+    A run tells the address of its page seconds before anything listens there: two that started together told the same.
+    """
+    try:
+        lock = os.open(Path(gettempdir()) / f"decklander-port-{wanted}.lock", os.O_CREAT | os.O_RDWR, 0o666)
+        _reserved.append(lock)
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:  # somebody else's, or of another user
+        return _free_port(socket.SOCK_STREAM)
+    return free_tcp_port(wanted)
 
 
 def _free_port(kind: socket.SocketKind) -> int:
