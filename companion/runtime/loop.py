@@ -14,11 +14,12 @@ from companion.runtime.node import CompanionNode
 from companion.runtime.options import Links, LoopOptions, Timings
 from companion.runtime.pad_question import PadQuestion
 from companion.runtime.recorded_node import RecordingNode
+from companion.runtime.sent_frames import SentFrames
 from companion.runtime.start_and_handover import OwnStart, hand_over
 from companion.situation.phases import FLYING_PHASES, Phase
 from link.errors import UserError
 from link.mavlink.pinned_peer import PinnedPeer
-from link.mavlink.tlog import TlogFrames, TlogSink
+from link.mavlink.tlog import TlogSink
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
 from link.program.clock import Clock, ClockTick, SimulatedClock, SystemClock, spare_present_objects
@@ -64,7 +65,7 @@ class _Loop:
         self._peer = PinnedPeer(links.transport, node.autopilot.session)
         self._zenoh = zenoh = links.zenoh
         self._options = options
-        self._tlog = tlog
+        self._sent = SentFrames(links.transport, node.autopilot.session, tlog)
         self._onlookers = lookers
         self._log = log
         self._service = Service()
@@ -100,7 +101,7 @@ class _Loop:
             self._turn(clock)
         self._service.stopping()
         hand_over(self._node, lambda: self._turn(clock), self._log)
-        self._send_rest()
+        self._sent.send(self._node.take_frames(), clock.now_ns(), time.perf_counter())
         self._service.close()
         return self._timings
 
@@ -145,11 +146,11 @@ class _Loop:
         local_ns = clock.now_ns()
         for data in self._peer.heard(received):
             self._node.receive_mavlink(data, local_ns, is_datagram=self._transport.is_datagram)
-        self._record(self._node.autopilot.session.take_input(), local_ns)
+        self._sent.record(self._node.autopilot.session.take_input(), local_ns)
         self._take_samples()
         self._desk.pass_on(self._node, local_ns)
         stepped = self._node.poll(local_ns)
-        self._send_frames(local_ns)
+        self._sent.send(self._node.take_frames(), local_ns, received_s)
         if stepped:
             self._note_time(time.perf_counter() - received_s)
             for onlooker in self._onlookers:
@@ -171,17 +172,6 @@ class _Loop:
                 self._node.receive_sample(sample.key, sample.payload)
         self._node.receive_liveliness(alive=self._alive.alive)
         self._node.receive_rival(self._claims.rival)
-
-    def _send_frames(self, local_ns: int) -> None:
-        frames = self._node.take_frames()
-        for frame in frames:
-            self._transport.send(frame)
-        self._record(frames, local_ns)
-
-    def _record(self, frames: list[bytes], local_ns: int) -> None:
-        if self._tlog is not None and frames:
-            utc_ns = self._node.autopilot.session.clock.local_to_utc_ns(local_ns)
-            self._tlog.put(TlogFrames(frames, utc_ns))
 
     def _after_step(self) -> None:
         """Publish, reply, log; and see to what is still missing."""
@@ -243,7 +233,3 @@ class _Loop:
         timeout_s = self._options.timeout_s
         check_autopilot(self._node.autopilot.session, self._options.device, timeout_s)
         self._start.check_vehicle(self._keys, timeout_s, fix_seen=self._fix_seen, pad_known=self._node.pad_known)
-
-    def _send_rest(self) -> None:
-        for frame in self._node.take_frames():
-            self._transport.send(frame)
