@@ -1,8 +1,10 @@
 """A run over the wire: three programs as processes, real UDP and real Zenoh, watched and scored."""
 
 import json
+import signal
 import time
-from contextlib import closing, nullcontext
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +53,8 @@ def run_over_wire(scenario: Scenario, options: RunOptions, progress: Progress) -
                 truth.take(recording)
             progress(recording, factor)
 
-        ended, factor = _watch(watcher, processes, scenario, recording, keep)
+        with interrupted_between_polls() as check_interrupt:
+            ended, factor = _watch(watcher, processes, EndWatch(scenario.run.time_limit_s), keep, check_interrupt)
     result = result_table(scenario, options.seed, recording, ended)
     timing = {"real_time_factor": round(factor, 4), "speed": options.speed, **_companion_timing(options.folder)}
     return write_outcome(options.folder, result, timing | count_lost(truth))
@@ -131,14 +134,34 @@ class _Pace:
             self.factor = (elapsed_s - self._from[1]) / (now_s - self._from[0])
 
 
+@contextmanager
+def interrupted_between_polls() -> Iterator[Callable[[], None]]:
+    """Note Ctrl-C, and give what raises it, so that it breaks into nothing: CPython ends by a signal that met `exec`.
+
+    The decoders of messages are texts for it, made as the first messages come.
+    """
+    interrupts: list[int] = []
+
+    def check() -> None:
+        if interrupts:
+            raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGINT, lambda number, _: interrupts.append(number))
+    try:
+        yield check
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 def _watch(
-    watcher: Watcher, processes: ProcessGroup, scenario: Scenario, recording: Recording, progress: Progress
+    watcher: Watcher, processes: ProcessGroup, end: EndWatch, progress: Progress, check_interrupt: Callable[[], None]
 ) -> tuple[str, float]:
     """Return why the run ended and its real-time factor."""
-    end, pace = EndWatch(scenario.run.time_limit_s), _Pace()
+    recording, pace = watcher.recording, _Pace()
     began_s, shown_s = time.monotonic(), 0.0
     while (reason := end.reason(recording)) is None:
         time.sleep(_POLL_S)
+        check_interrupt()
         processes.check()
         watcher.take()
         if end.must_break_off(recording):

@@ -18,7 +18,7 @@ class Wire(Transport):
         self.sent = list[bytes]()
 
     def receive(self, timeout_s: float) -> bytes:
-        raise NotImplementedError
+        return b""
 
     def send(self, data: bytes) -> None:
         self.sent.append(data)
