@@ -79,13 +79,13 @@ def _describe(one: Parameter, default: CompanionConfig) -> dict[str, Any]:
         told["units"] = _UNITS[unit.group()]
     if one.is_choice:
         told["values"] = [{"value": place, "description": name.value} for place, name in enumerate(CHOICES)]
-    return told | _bounds(_field(one.key))
+    return told | _bounds(_field(default, one.key))
 
 
-def _field(key: str) -> FieldInfo:
+def _field(config: CompanionConfig, key: str) -> FieldInfo:
     """Return the field of the configuration that `key` names."""
     *tables, name = key.split(".")
-    model: type[StrictModel] = type(attrgetter(".".join(tables))(CompanionConfig()))
+    model: type[StrictModel] = type(attrgetter(".".join(tables))(config))
     return model.model_fields[name]
 
 
@@ -115,6 +115,7 @@ class FileServer:
     """The server of these files, which answers one client after the other."""
 
     def __init__(self) -> None:
+        general_file()  # both are made now: it takes as long as a step has
         self._ftp = NO_FTP
 
     def answer(self, message: Message, local_ns: int) -> tuple[Message, ...]:
