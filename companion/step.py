@@ -5,7 +5,7 @@ Pure: the same memory, inputs and system give the same result, in flight, in sim
 
 from companion.autopilots.driver import AutopilotCommand, Desire
 from companion.config.companion import CompanionConfig
-from companion.integrity.heights import is_road_elsewhere, update_ground, update_pad_raised_m, with_pad_raised
+from companion.integrity.heights import is_road_elsewhere, update_ground
 from companion.integrity.vehicle_data import update_course
 from companion.landing.decisions.conditions import HELD_UP, holds
 from companion.landing.decisions.contact import may_force_motors_off, signs_of
@@ -48,7 +48,8 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
     model, vehicle = _update_model(memory, inputs, system), update_vehicle(memory.vehicle, inputs, system)
     vehicle, pad = predict_pad(memory.progress.phase, vehicle, inputs, system)
     memory = replace(memory, model=model, vehicle=vehicle)
-    memory, situation = _look(memory, _situation(memory, pad, inputs, system), pad, system.config)
+    situation = _situation(memory, pad, inputs, system)
+    memory = _look(memory, situation, pad, system.config)
     before, warned = memory.progress, memory.sortie.warning
     memory, reply = take_events(memory, situation, inputs, system.config)
     phase = memory.progress.phase
@@ -126,20 +127,16 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
     )
 
 
-def _look(
-    memory: StepMemory, situation: Situation, pad: PadPath | None, config: CompanionConfig
-) -> tuple[StepMemory, Situation]:
-    """Take what this step shows of the vehicle's course, of the pad's height and of the ground; raise the pad so."""
+def _look(memory: StepMemory, situation: Situation, pad: PadPath | None, config: CompanionConfig) -> StepMemory:
+    """Take what this step shows of the vehicle's course and of the ground."""
     phase, vehicle = memory.progress.phase, memory.vehicle
     vehicle = replace(
         vehicle,
         course=update_course(vehicle.course, pad, vehicle.hindsight.speed_std_m_s, config),
-        pad_raised_m=update_pad_raised_m(vehicle.pad_raised_m, phase, situation, config),
         is_road_elsewhere=is_road_elsewhere(vehicle.is_road_elsewhere, phase, situation, config),
     )
     places = replace(memory.places, ground_enu_m=update_ground(memory.places.ground_enu_m, phase, situation))
-    memory = replace(memory, vehicle=vehicle, places=places)
-    return memory, with_pad_raised(situation, vehicle.pad_raised_m)
+    return replace(memory, vehicle=vehicle, places=places)
 
 
 def _drive(

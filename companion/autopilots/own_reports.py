@@ -8,7 +8,7 @@ Model: the bias is v - dp/dt through a low-pass of first order, in W, horizontal
 rounding of their stamps cancels.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import hypot, radians
 
 from companion.autopilots.driver import AutopilotView
@@ -162,14 +162,17 @@ def without_bias(velocity_enu_m_s: Vector3, bias_enu_m_s: Vector3) -> Vector3:
     return (vx - bias_x, vy - bias_y, vz - bias_z)
 
 
+OwnAt = Callable[[int], OwnState | None]
+"""The drone at a time in ns, None where its reports do not tell."""
+
 _CM = 0.01
 _INVALID = 1  # of a signal's quality in percent; 0 is unknown
 
 
-def with_sensor(view: AutopilotView, message: Message, clock: ClockMap, up_m: float | None) -> AutopilotView:
-    """Return the view after a DISTANCE_SENSOR, with the drone at `up_m`, or a BATTERY_STATUS, only the first of all."""
+def with_sensor(view: AutopilotView, message: Message, clock: ClockMap, own_at: OwnAt) -> AutopilotView:
+    """Return the view after a DISTANCE_SENSOR, with the drone as `own_at` has it, or the first battery's status."""
     if message.get_type() == "DISTANCE_SENSOR":
-        return replace(view, range_down=_range_reading(message, clock, up_m) or view.range_down)
+        return replace(view, range_down=_range_reading(message, clock, own_at) or view.range_down)
     return replace(view, battery_share=battery_share(message)) if is_of_first_battery(message) else view
 
 
@@ -189,13 +192,13 @@ def looks_down(message: Message) -> bool:
     return bool(message.orientation == mavlink.MAV_SENSOR_ROTATION_PITCH_270)
 
 
-def _range_reading(message: Message, clock: ClockMap, up_m: float | None) -> RangeReading | None:
+def _range_reading(message: Message, clock: ClockMap, own_at: OwnAt) -> RangeReading | None:
     """Return what a range finder that looks down sees; at or beyond its range's ends it sees nothing."""
     t_ns = clock.boot_to_utc_ns(message.time_boot_ms * 1_000_000)
     is_within = message.min_distance < message.current_distance < message.max_distance
     if t_ns is None or not (is_within and looks_down(message)) or message.signal_quality == _INVALID:
         return None
-    return RangeReading(t_ns=t_ns, distance_m=message.current_distance * _CM, up_m=up_m)
+    return RangeReading(t_ns=t_ns, distance_m=message.current_distance * _CM, own=own_at(t_ns))
 
 
 _MOVED_RAD = 1e-8  # 6 cm; the field's resolution is 1e-7 degrees, 1 cm

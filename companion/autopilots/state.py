@@ -102,8 +102,7 @@ def update_state(state: AutopilotState, message: Message, clock: ClockMap, drive
             view = replace(state.view, receiver=replace(state.view.receiver, is_fixed=is_fixed))
             state = _place_origin(replace(state, geoid_height_m=height_m, view=view), driver.projection)
         case "DISTANCE_SENSOR" | "BATTERY_STATUS":
-            up_m = None if state.own is None else state.own.position_enu_m[2]
-            state = replace(state, view=with_sensor(state.view, message, clock, up_m))
+            state = replace(state, view=with_sensor(state.view, message, clock, state.own_at))
         case "STATUSTEXT" | "EVENT":
             state = _said(state, message, driver)
         case _:
@@ -159,7 +158,7 @@ def _add_report(state: AutopilotState, own: OwnState) -> AutopilotState:
         return state
     moves, (dx, dy, dz), seen = state.view.frame_moves, jump, state.view.range_down
     x, y, z = moves.shift_enu_m
-    seen = None if seen is None else replace(seen, up_m=None)
+    seen = None if seen is None else replace(seen, own=None)
     moves = replace(moves, shift_enu_m=(x + dx, y + dy, z + dz))
     return replace(state, view=replace(state.view, frame_moves=moves, range_down=seen))
 

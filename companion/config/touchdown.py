@@ -11,7 +11,7 @@ class RangeFinderConfig(StrictModel):
     """What a range finder that looks down says of the pad."""
 
     height_m: NotNegative = 0.12  # of the range finder above the feet
-    corrects_height: bool = False  # for a drone whose own height wanders: the pad is where the range finder sees it
+    std_m: Positive = 0.03  # of a reading; data sheets of small laser range finders state 0.01 to 0.06 m
     off_max_m: Positive = 0.4  # what it sees may be nearer than the pad by so much before a landing is broken off
     off_hold_s: NotNegative = 0.3  # so long readings and attitude belong together
     contact_height_max_m: Positive = 0.15  # seen under the feet at which it still agrees with a contact

@@ -28,6 +28,7 @@ class Quantity(Enum):
     PAD = "pad"  # the pad's centre in W as seen from the drone, m (3)
     ACCELERATION = "acceleration"  # along V, horizontal but for gravity by what is not known of the pitch, m/s^2 (1)
     TILT = "tilt"  # roll and pitch of V, rad, and their rates, rad/s (4)
+    SURFACE = "surface"  # the place in W that a range finder sees below the drone, m (3)
 
 
 class Measurement(Struct, frozen=True, kw_only=True, eq=False):
@@ -119,12 +120,12 @@ class OwnState(Struct, frozen=True, kw_only=True):
 class RangeReading(Struct, frozen=True, kw_only=True):
     """What a range finder that looks down along the drone's body measured at `t_ns`.
 
-    `up_m` is the drone's own height in W then, None when it was not known or that frame has moved since.
+    `own` is the drone then, None when that was not known or its local frame W has moved since.
     """
 
     t_ns: int
     distance_m: float
-    up_m: float | None = None
+    own: OwnState | None = None
 
 
 class Setpoint(Struct, frozen=True, kw_only=True):

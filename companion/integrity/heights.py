@@ -2,8 +2,7 @@
 
 Heights of drone and vehicle come from two receivers. One that tells heights above mean sea level instead of the
 ellipsoid, or goes by another geoid, puts the pad up to 100 m too high or too low, and a drone that believes in a pad
-that is too low flies into the vehicle. What the drone knows by itself is where it stood, or what a range finder sees:
-by that the pad is raised, too, where the drone's own height wanders.
+that is too low flies into the vehicle. What the drone knows by itself is where it stood, or what a range finder sees.
 """
 
 import math
@@ -12,47 +11,8 @@ import numpy as np
 
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array
-from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
-from companion.situation.situation import Situation, with_pad
-from companion.vehicle.pad_reach import over_pad_radius_m
-from link.records import replace
-
-RAISED_MAX_M = 1.0  # what is farther off is not the pad: a roof is 1.5 m above the road
-_SLEW_M_S = 0.5
-_OVER_PHASES = LANDING_PHASES | {Phase.TOUCHDOWN}
-
-
-def update_pad_raised_m(raised_m: float, phase: Phase, situation: Situation, config: CompanionConfig) -> float:
-    """Return by how much the pad is to be raised in the drone's frame.
-
-    Args:
-        raised_m: so far.
-        phase: of the landing; only over the pad the range finder sees it.
-        situation: with the pad where the vehicle says that it is.
-        config: all numbers.
-    """
-    if phase not in _OVER_PHASES or not config.touchdown.range_finder.corrects_height:
-        return 0.0
-    relative, seen_m = situation.approach, situation.below.range_height_m
-    if relative is None or seen_m is None:
-        return raised_m
-    if relative.distance_m > over_pad_radius_m(relative.pad_half_width_m, config):
-        return raised_m
-    off_m = relative.height_m - seen_m
-    if abs(off_m) > RAISED_MAX_M:
-        return raised_m
-    step_m = _SLEW_M_S / config.setpoints.rate_hz
-    return raised_m + min(max(off_m - raised_m, -step_m), step_m)
-
-
-def with_pad_raised(situation: Situation, raised_m: float) -> Situation:
-    """Return the facts with the pad raised."""
-    if situation.pad is None or not raised_m:
-        return situation
-    position = situation.pad.position_enu_m.copy()
-    position[:, 2] += raised_m
-    return with_pad(situation, replace(situation.pad, position_enu_m=position))
-
+from companion.situation.phases import FLYING_PHASES, Phase
+from companion.situation.situation import Situation
 
 VEHICLE_M = 3.0  # so near the pad what the drone stands on may be the vehicle
 _STDS = 2.0
@@ -129,8 +89,6 @@ def is_seen_too_near(s: Situation, c: CompanionConfig) -> bool:
     if s.pad is None or a is None or s.drone is None or seen_m is None or s.drone.lean > _LEAN_MAX:
         return False
     about_m = c.touchdown.range_finder.off_max_m
-    if c.touchdown.range_finder.corrects_height:
-        about_m = max(about_m, RAISED_MAX_M)
     if s.pad.is_coarse:
         about_m = max(about_m, _COARSE_OFF_M, _STDS * float(s.pad.position_std_m[0, 2]))
     return a.height_m - seen_m > about_m + c.integrity.ground_slope_max * a.distance_m

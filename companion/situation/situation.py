@@ -224,9 +224,9 @@ def range_carried_m(drone: Drone | None, seen: RangeReading | None, sensor_heigh
         sensor_height_m: of the range finder above the feet.
         t_ns: now.
     """
-    if drone is None or seen is None or seen.up_m is None or abs(t_ns - seen.t_ns) * 1e-9 > _LAST_SEEN_AGE_MAX_S:
+    if drone is None or seen is None or seen.own is None or abs(t_ns - seen.t_ns) * 1e-9 > _LAST_SEEN_AGE_MAX_S:
         return None
-    return seen.distance_m - sensor_height_m + float(drone.position_enu_m[2]) - seen.up_m
+    return seen.distance_m - sensor_height_m + float(drone.position_enu_m[2]) - seen.own.position_enu_m[2]
 
 
 def vehicle_stands(situation: Situation, config: ChaseConfig) -> bool:

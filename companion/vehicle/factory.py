@@ -39,7 +39,7 @@ def make_estimator(
 @lru_cache
 def _warm_up(kind: EstimatorKind) -> None:
     """Do once all that an estimator can be asked."""
-    estimator = _make(EstimatorConfig(), Deck(antenna_to_pad_m=(1.0, 0.0, 0.0)), kind)
+    estimator = _make(EstimatorConfig(), Deck(antenna_to_pad_m=(1.0, 0.0, 0.0), half_width_m=10.0), kind)
     sizes = {Quantity.HEADING: 1, Quantity.YAW_RATE: 1, Quantity.ACCELERATION: 1, Quantity.TILT: 4}
     memory: EstimatorMemory | None = None
     for i, quantity in enumerate((*Quantity, *Quantity)):

@@ -138,7 +138,8 @@ def step(
     if update.gate_nis <= nis_threshold(config.gate_probability, update.dof):
         return Snapshot(t_ns=t_ns, state=update.state, tally=_accept(snapshot.tally, rank, t_ns, update)), nis_per_dof
     since_ns = snapshot.tally.rejected_since_ns[rank]
-    if since_ns is None or t_ns - since_ns < config.recover_after_s * 1e9:
+    is_new = since_ns is None or t_ns - since_ns < config.recover_after_s * 1e9
+    if is_new or measurement.quantity is Quantity.SURFACE:  # a range finder may see something else, or be stuck
         return Snapshot(t_ns=t_ns, state=state, tally=_reject(snapshot.tally, rank, t_ns)), nis_per_dof
     return _recover(model, Snapshot(t_ns=t_ns, state=state, tally=snapshot.tally), measurement), nis_per_dof
 

@@ -23,9 +23,11 @@ from companion.vehicle import imm_mixing as mixing
 from companion.vehicle.deck_motion import first_motion, learn, passed
 from companion.vehicle.filter_step import Update, wrapped
 from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, swing_of
+from companion.vehicle.imm_sensors import observe
 from companion.vehicle.imm_state import (
     KINDS,
     OFFSET,
+    PLACE,
     TILT,
     ImmState,
     has_settled,
@@ -35,6 +37,8 @@ from companion.vehicle.imm_state import (
     split_fix,
     start_state,
 )
+from companion.vehicle.imm_swing import PITCH, ROLL
+from companion.vehicle.surface import pad_height_seen
 from link.records import replace
 
 CURVATURE, HEADING = 6, 7
@@ -83,7 +87,12 @@ class ImmModel:
         )
 
     def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState] | None:
-        """Return the state after any quantity, None of an acceleration or a tilt for which it is too early."""
+        """Return the state after any quantity, None of what it is too early for and of a surface beside the pad."""
+        if measurement.quantity is Quantity.SURFACE:
+            seen = self._pad_height_seen(state, measurement)
+            if seen is None:
+                return None
+            measurement = seen
         if measurement.quantity is Quantity.ACCELERATION and not is_heading_known(state, self.config):
             return None
         if measurement.quantity is Quantity.TILT and state.deck is None:
@@ -161,6 +170,17 @@ class ImmModel:
             frame_offset_enu_m=(weights @ means)[OFFSET[:2]],
             frame_offset_std_m=math.sqrt(float((weights @ covariances[:, OFFSET, OFFSET]).max())),
         )
+
+    def _pad_height_seen(self, state: ImmState, surface: Measurement) -> Measurement | None:
+        """Return the pad's height that a surface below the drone tells, None if it may be beside the pad."""
+        means, covariances, weights = state.modes
+        x = weights @ means
+        pad, _ = observe(KINDS[Quantity.PAD], x, self.numbers.lever_m, is_heading_known(state, self.config))
+        forward, left = x[9] - x[PITCH], x[ROLL]
+        c, s = math.cos(x[HEADING]), math.sin(x[HEADING])
+        slope_enu = (c * forward - s * left, s * forward + c * left)
+        std_m = math.sqrt(float((weights @ covariances[:, PLACE[:2], PLACE[:2]]).max()))
+        return pad_height_seen(surface, pad, std_m, slope_enu, self.deck.half_width_m)
 
     @property
     def _known_variance(self) -> float:

@@ -23,17 +23,24 @@ class Deck:
     Attributes:
         antenna_to_pad_m: lever arm in V.
         pad_height_m: above the road or the water, about which the body is taken to tilt.
+        half_width_m: of the pad, from its centre to the nearest edge; 0 until it is told.
         is_afloat: it floats.
     """
 
     antenna_to_pad_m: Vector3 = (0.0, 0.0, 0.0)
     pad_height_m: float = 0.0
+    half_width_m: float = 0.0
     is_afloat: bool = False
 
 
 def deck_of(pad: PadGeometry) -> Deck:
     """Return the deck that `pad` is on."""
-    return Deck(antenna_to_pad_m=pad.antenna_to_pad_m, pad_height_m=pad.height_m, is_afloat=pad.is_afloat)
+    return Deck(
+        antenna_to_pad_m=pad.antenna_to_pad_m,
+        pad_height_m=pad.height_m,
+        half_width_m=0.5 * min(pad.size_m),
+        is_afloat=pad.is_afloat,
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -22,7 +22,7 @@ from companion.vehicle.imm_swing import (
     pad_swing,
 )
 
-POSITION, VELOCITY, HEADING, YAW_RATE, PAD, COURSE, ACCELERATION, TILT = range(8)
+POSITION, VELOCITY, HEADING, YAW_RATE, PAD, COURSE, ACCELERATION, TILT, SURFACE = range(9)
 
 
 @compiled_kernel
@@ -76,8 +76,8 @@ def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Arra
     """Return what a sensor reads at `x`, `(m,)`, and its Jacobian `(m, 24)`.
 
     Args:
-        kind: POSITION, VELOCITY, HEADING, YAW_RATE, PAD, ACCELERATION, TILT (roll, pitch and their rates), or COURSE
-            (the course minus the heading).
+        kind: POSITION, VELOCITY, HEADING, YAW_RATE, PAD, ACCELERATION, TILT (roll, pitch and their rates), SURFACE (the
+            pad's height) or COURSE (the course minus the heading).
         x: state (24,).
         lever: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll, m.
         sees_heading: whether the heading is known, so that the lever arm has a direction.
@@ -97,6 +97,9 @@ def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Arra
         z, H = read_acceleration(x)
     elif kind == TILT:
         z, H = read_tilt(x)
+    elif kind == SURFACE:
+        place, change = read_pad(x, lever, known[3], sees_heading)
+        z, H = place[2:].copy(), change[2:].copy()
     else:
         z, H = read_course(x)
     return z, H

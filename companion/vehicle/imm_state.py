@@ -75,6 +75,7 @@ KINDS = {
     Quantity.PAD: sensors.PAD,
     Quantity.ACCELERATION: sensors.ACCELERATION,
     Quantity.TILT: sensors.TILT,
+    Quantity.SURFACE: sensors.SURFACE,
 }
 """As the kernels count what is measured."""
 
@@ -164,9 +165,9 @@ def recover(
 ) -> ImmState:
     """Return the state with that opened which `measurement` contradicts.
 
-    A sighting that contradicts everything means that the drone's frame has stepped: place and offset move
-    together. A fix that does is the receiver's step if the place is known from sightings, else a new start, as is
-    a sighting where nothing else places the vehicle.
+    A sighting that contradicts everything means that the drone's frame has stepped: place and offset move together.
+    A fix that does is the receiver's step if the place is known from sightings, else a
+    new start, as is a sighting where nothing else places the vehicle.
 
     Args:
         state: that rejects it.
@@ -188,6 +189,8 @@ def recover(
         case Quantity.VELOCITY | Quantity.HEADING | Quantity.YAW_RATE | Quantity.ACCELERATION | Quantity.TILT:
             told = _TOLD_BY[measurement.quantity]
             return replace(state, modes=open_states(state.modes, told, numbers.prior_variances[told]))
+        case Quantity.SURFACE:
+            return state
         case _:
             assert_never(measurement.quantity)
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from companion.autopilots.state import AutopilotState
 from companion.core.data import Array, Measurement, OwnState, Quantity
+from companion.vehicle.surface import ATTITUDE_AGE_MAX_S
 from link.frames.geodesy import LocalFrame, local_from_geodetic, scale_of
 from link.frames.rotations import roll_pitch_yaw_of, rotate, yaw_of
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, Quaternion, Vector3, VehicleImu
@@ -35,8 +36,8 @@ _STD_MIN = {
     Quantity.PAD: 0.002,
     Quantity.ACCELERATION: _ACCELERATION_STD_M_S2,
     Quantity.TILT: 0.001,
+    Quantity.SURFACE: 0.01,
 }
-_ATTITUDE_AGE_MAX_S = 0.15  # of a drone that turns at 0.5 rad/s: what it sees 5 m away is then 0.4 m off
 _STD_MAX = 1e4  # says nothing at all
 # Beyond these a message is wrong, or of a vehicle that nobody lands on.
 _VALUE_MAX = {
@@ -47,6 +48,7 @@ _VALUE_MAX = {
     Quantity.PAD: 1e5,
     Quantity.ACCELERATION: 100.0,
     Quantity.TILT: 10.0,
+    Quantity.SURFACE: 1e5,
 }
 
 
@@ -79,7 +81,7 @@ def _decode(key: str, payload: bytes, keys: Keys, state: AutopilotState) -> tupl
     if key == keys.pad_pose:
         sighting = cdr.decode(PadSighting, payload)
         own_then = state.own_at(sighting.t_ns)
-        if own_then is None or own_then.attitude_age_s > _ATTITUDE_AGE_MAX_S:
+        if own_then is None or own_then.attitude_age_s > ATTITUDE_AGE_MAX_S:
             return ()
         return (sighting_measurement(sighting, own_then),)
     return ()

@@ -78,7 +78,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
         phases: whether its receiver and the drone's have fixed ones.
         course: how its heading compares with its course.
         utc_ahead_ns: of the monotonic clock, when its stamps were last compared with UTC.
-        pad_raised_m: by the range finder, in the drone's frame.
+        ranged_ns: when the newest range that was fused was measured.
         is_road_elsewhere: it is said to be far above or below the ground.
     """
 
@@ -90,7 +90,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
     phases: FixedPhases = field(default_factory=FixedPhases)
     course: CourseWatch = field(default_factory=CourseWatch)
     utc_ahead_ns: int = 0
-    pad_raised_m: float = 0.0
+    ranged_ns: int | None = None
     is_road_elsewhere: bool = False
 
 

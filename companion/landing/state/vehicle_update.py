@@ -24,6 +24,7 @@ from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
 from companion.vehicle.hindsight import forget_instants, update_hindsight
 from companion.vehicle.pad import PadPath, pad_path
 from companion.vehicle.pad_reach import is_place_vague
+from companion.vehicle.surface import surface_measurements
 from link.records import replace
 
 _APPROACHING = LANDING_PHASES | {Phase.ABORT, Phase.TOUCHDOWN}
@@ -34,8 +35,13 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
     """Fuse what the vehicle sent, and compare it with what was known before."""
     vehicle = _in_present_utc(vehicle, inputs)
     estimator, now_ns = vehicle.estimator, inputs.monotonic_ns
-    if inputs.vehicle.measurements:
-        estimator = system.estimator.fuse(estimator, inputs.vehicle.measurements)
+    measurements, ranged_ns = inputs.vehicle.measurements, vehicle.ranged_ns
+    seen = inputs.autopilot.range_down
+    if seen is not None and estimator is not None and ranged_ns != seen.t_ns <= inputs.t_ns:
+        ranged_ns = seen.t_ns
+        measurements += surface_measurements(seen, inputs.t_ns, system.config.touchdown)
+    if measurements:
+        estimator = system.estimator.fuse(estimator, measurements)
     contradictions, sightings = vehicle.contradictions, vehicle.sightings
     if contradictions.is_due(now_ns):
         health = system.estimator.health(estimator)
@@ -44,6 +50,7 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
     return replace(
         vehicle,
         estimator=estimator,
+        ranged_ns=ranged_ns,
         hindsight=update_hindsight(vehicle.hindsight, system.estimator, estimator, inputs.t_ns, monotonic_ns=now_ns),
         fix_stamps=update_fix_stamps(
             vehicle.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns, inputs.vehicle.fix_ahead_s

@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 
 from companion.autopilots.px4 import Px4Driver
 from companion.autopilots.state import AutopilotState, update_state
-from companion.core.data import RangeReading
 from companion.situation.situation import Drone, range_carried_m
 from link.mavlink.clock_map import ClockMap, RoundTrip, with_round_trip, with_system_time
 from link.mavlink.dialect import Message, mavlink
@@ -48,7 +47,9 @@ def _carried_m(state: AutopilotState, up_m: float, after_s: float, sensor_height
 def test_reading_beyond_the_range_or_told_invalid_leaves_what_was_seen_last(distance_cm: int, quality: int) -> None:
     state = _hear(LEVEL, _at(0, 1.2), _range(10, 7), _at(20, 1.0), _range(30, distance_cm, quality))
     assert state.view.range_down is not None
-    assert (state.view.range_down.distance_m, state.view.range_down.up_m) == pytest.approx((0.07, 1.2))
+    assert state.view.range_down.own is not None
+    assert state.view.range_down.distance_m == pytest.approx(0.07)
+    assert state.view.range_down.own.position_enu_m[2] == pytest.approx(1.2)
 
 
 @given(seen_cm=st.integers(1, 400), sunk_m=st.floats(-1.0, 2.0), sensor_m=st.floats(0.0, 0.3))
@@ -69,8 +70,9 @@ def test_what_was_seen_long_ago_or_in_another_frame_is_not_carried_on() -> None:
 
 
 def test_nothing_is_carried_on_without_a_drone_or_a_height_to_carry_from() -> None:
-    reading = RangeReading(t_ns=NOW_NS, distance_m=0.1, up_m=1.0)
+    reading = _hear(LEVEL, _at(0, 1.0), _range(0, 10)).view.range_down
+    assert reading is not None
     drone = Drone(position_enu_m=np.zeros(3), velocity_enu_m_s=np.zeros(3), yaw_rad=0.0, age_s=0.0)
     assert range_carried_m(None, reading, 0.0, NOW_NS) is None
     assert range_carried_m(drone, None, 0.0, NOW_NS) is None
-    assert range_carried_m(drone, replace(reading, up_m=None), 0.0, NOW_NS) is None
+    assert range_carried_m(drone, replace(reading, own=None), 0.0, NOW_NS) is None

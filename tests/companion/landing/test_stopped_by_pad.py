@@ -41,7 +41,7 @@ def _jolted(seen_m: float | None) -> Flight:
     flight = _just_above_the_pad()
     if seen_m is not None:
         distance_m = seen_m + CONFIG.touchdown.range_finder.height_m
-        range_down = RangeReading(t_ns=flight.t_ns, distance_m=distance_m, up_m=flight.own.position_enu_m[2])
+        range_down = RangeReading(t_ns=flight.t_ns, distance_m=distance_m, own=flight.own)
         flight.view = replace(flight.view, range_down=range_down)
     _held(flight, falls_m_s2=-3.0, jolt_m_s2=80.0)
     return flight

@@ -1,0 +1,63 @@
+"""What the drone's range finder says of the surface below it, as a measurement of the place that it sees; pure.
+
+Over the pad that is the deck, beside it the vehicle's roof or the road: which of them, only who knows the pad can tell
+(`pad_height_seen`). It is the one sensor that sees a deck rise or sink at once: the vehicle's own data come later, and
+ten times a second.
+"""
+
+import math
+
+import numpy as np
+
+from companion.config.touchdown import TouchdownConfig
+from companion.core.data import Array, Measurement, Quantity, RangeReading
+from link.frames.rotations import rotate
+from link.records import replace
+
+ATTITUDE_AGE_MAX_S = 0.15  # of a drone that turns at 0.5 rad/s: what is seen 5 m away is then 0.4 m off
+_AGE_MAX_NS = 500_000_000  # what is older says nothing new
+_UPRIGHT_MIN = 0.8  # 37 degrees; farther over, the beam's end is beside what the drone is above
+_ELSEWHERE_M = 1.0  # what is so far above or below the pad is not the pad: a roof is 1.5 m above the road
+_STDS = 2.0
+
+
+def surface_measurements(seen: RangeReading, t_ns: int, config: TouchdownConfig) -> tuple[Measurement, ...]:
+    """Return the place that a range finder sees, nothing where the drone's own place or attitude was not known.
+
+    A stamp from the future would make all that the vehicle tells too late for the filter.
+
+    Args:
+        seen: the reading.
+        t_ns: now.
+        config: where the range finder is, and how good.
+    """
+    own = seen.own
+    is_now = 0 <= t_ns - seen.t_ns <= _AGE_MAX_NS
+    if own is None or not is_now or own.attitude_age_s > ATTITUDE_AGE_MAX_S:
+        return ()
+    beam = rotate(own.orientation_wxyz, (0.0, 0.0, -1.0))
+    if -beam[2] < _UPRIGHT_MIN:
+        return ()
+    place = np.array(own.position_enu_m) + seen.distance_m * np.array(beam)
+    place[2] += config.range_finder.height_m - config.gear_height_m
+    variance = config.range_finder.std_m**2
+    return (Measurement(t_ns=seen.t_ns, quantity=Quantity.SURFACE, value=place, covariance=variance * np.eye(3)),)
+
+
+def pad_height_seen(
+    surface: Measurement, pad_enu_m: Array, pad_std_m: float, slope_enu: tuple[float, float], half_width_m: float
+) -> Measurement | None:
+    """Return the height (1,) in W, m, that a surface gives the pad's centre; None if it may be of something else.
+
+    Args:
+        surface: the place that was seen.
+        pad_enu_m: (3,) the pad's centre, as it is known.
+        pad_std_m: standard deviation of its horizontal place.
+        slope_enu: by which the deck rises towards east and north, m per m.
+        half_width_m: from the pad's centre to the nearest edge.
+    """
+    east_m, north_m, up_m = (surface.value - pad_enu_m).tolist()
+    if math.hypot(east_m, north_m) + _STDS * pad_std_m > half_width_m or abs(up_m) > _ELSEWHERE_M:
+        return None
+    height_m = float(surface.value[2]) - slope_enu[0] * east_m - slope_enu[1] * north_m
+    return replace(surface, value=np.array([height_m]), covariance=surface.covariance[2:, 2:])
