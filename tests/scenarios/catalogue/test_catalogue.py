@@ -34,7 +34,7 @@ def test_drones_receiver_states_how_well_the_drone_knows_its_place(sensors: str,
 
 BENCHMARK = [
     "static",
-    *(f"straight_{speed}" for speed in (2, 5, 7, 10, 15, 20, 25)),
+    *(f"straight_{speed}" for speed in (2, 5, 7, 10, 15, 20, 25, 30, 35)),
     *(f"report_{number}" for number in (1, 2, 3, 4)),
     "report_1_10",
     "report_3_10",
