@@ -1,36 +1,25 @@
 """The manual builds without a warning and without the network; what is made from the program is all there."""
 
 import re
-import shlex
-from importlib import import_module
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from companion.config.companion import CompanionConfig
 from companion.situation.phases import TRANSITIONS, Phase
 from link.payloads.cdr import ROS_TYPES
-from link.program.cli import command_of
 from link.program.toml_config import StrictModel
-from scenarios.catalogue.catalogue import list_presets, list_scenarios, load_scenario
-from scenarios.catalogue.world_names import names_worlds, parse_world_name
+from scenarios.catalogue.catalogue import list_presets
 from scenarios.config import Scenario
-from scenarios.lockstep.lockstep import Lockstep
 from scenarios.manual.commands import PROGRAMS, helps
 from scenarios.manual.folders import PACKAGES, folders_of
 from scenarios.manual.pages import PAGES, fetched_from_elsewhere, with_whole_options
 from scenarios.manual.phase_chart import FROM_ANYWHERE, PLACES, arrows, phase_chart
 from scenarios.manual.settings import keys_of, meaning_of, tables_of
-from scenarios.recordings.result import score_run
-from scenarios.scoring.score import Tier
-from scenarios.worlds.odd import slices
 from sim_autopilot.runtime.config import SimAutopilotConfig
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
-EXAMPLE = re.compile(r'^```toml title="(\w+\.toml)"\n(.*?)^```$', re.MULTILINE | re.DOTALL)
-EXAMPLES = dict(EXAMPLE.findall((DOCS / "own_scenario.md").read_text(encoding="utf-8")))
 PAGE_FILES = ["README.md", *(f"docs/{path.name}" for path in DOCS.glob("*.md"))]
 
 
@@ -69,27 +58,6 @@ def test_reference_has_every_command() -> None:
     assert all(text.startswith(f"Usage: {name} ") for name, text in helps())
 
 
-@pytest.mark.slow
-def test_each_help_ends_with_examples_that_its_command_takes() -> None:
-    for name, text in helps():
-        assert "Examples:" in text, name
-        for line in text.split("Examples:")[1].strip().splitlines():
-            program, *arguments = shlex.split(line.split(">")[0], comments=True)
-            command = command_of(import_module(PROGRAMS[program]).app)
-            with command.make_context(program, list(arguments)) as context:
-                _parse_below(command, context)
-
-
-def _parse_below(command: Any, context: Any) -> None:
-    """Parse the arguments of the command below a program, as running it would, without running it."""
-    words = [*getattr(context, "_protected_args", ()), *context.args]
-    if not words or not getattr(command, "commands", {}):
-        return
-    name, part, arguments = command.resolve_command(context, words)
-    with part.make_context(name, arguments, parent=context) as inner:
-        _parse_below(part, inner)
-
-
 def test_no_help_has_a_value_of_a_kind_that_only_typer_knows() -> None:
     for name, text in helps():
         assert " range>" not in text, name
@@ -126,33 +94,6 @@ def test_files_that_a_page_leads_to_are_there_without_the_manual_being_built(pag
     path = ROOT / page
     for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8")):
         assert (path.parent / target).exists(), target
-
-
-@pytest.mark.parametrize("page", PAGE_FILES)
-def test_scenarios_that_a_page_flies_exist(page: str) -> None:
-    text = (ROOT / page).read_text(encoding="utf-8")
-    known = {entry.name for entry in list_scenarios()}
-    for name in re.findall(r"scenarios (?:run|world) ([\w+=:@]+)(?![\w./])", text):
-        if names_worlds(name):
-            assert parse_world_name(name).slice in slices()
-        else:
-            assert name.split("+")[0] in {"NAME", *known}, name
-
-
-@pytest.mark.parametrize("name", sorted(EXAMPLES))
-def test_example_scenario_is_one(name: str, tmp_path: Path) -> None:
-    (tmp_path / name).write_text(EXAMPLES[name], encoding="utf-8")
-    load_scenario(str(tmp_path / name))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["careful.toml", "poor_fix.toml"])
-def test_example_scenario_with_another_companion_or_sensor_lands(name: str, tmp_path: Path) -> None:
-    (tmp_path / name).write_text(EXAMPLES[name], encoding="utf-8")
-    scenario = load_scenario(str(tmp_path / name))
-    run = Lockstep(scenario, 1)
-    run.run()
-    assert score_run(scenario, 1, run.recording).tier is Tier.S3
 
 
 @pytest.mark.parametrize(
