@@ -4,7 +4,7 @@ import hashlib
 import re
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import ParamSpec, Protocol, TypeVar, cast
+from typing import Any, ParamSpec, Protocol, TypeVar, cast
 
 import numba
 from numba import njit
@@ -75,7 +75,7 @@ def kept_kernel(sources: int) -> Callable[[Callable[P, R]], Kernel[P, R]]:
                 f"machine code cannot be kept: neither {Path(function.__code__.co_filename).parent} nor a cache of "
                 "this user's can be written; set NUMBA_CACHE_DIR to a folder that can"
             ) from error
-        _kept_digests.append((compiled.stats, digest))
+        _kept_kernels.append((compiled, digest))
         return compiled
 
     return kept
@@ -88,8 +88,8 @@ def remove_outdated() -> int:
     compiles it anew.
     """
     digests: dict[str, set[str]] = {}
-    for kept, digest in _kept_digests:
-        digests.setdefault(kept.cache_path, set()).add(digest)
+    for function, digest in _kept_kernels:
+        digests.setdefault(function.stats.cache_path, set()).add(digest)
     outdated = [
         path
         for folder, current in digests.items()
@@ -99,6 +99,11 @@ def remove_outdated() -> int:
     for path in outdated:
         path.unlink(missing_ok=True)
     return len(outdated)
+
+
+def count_compiled() -> tuple[int, int]:
+    """Return how many of the kept functions that are loaded have their machine code, and how many they are."""
+    return sum(bool(function.signatures) for function, _ in _kept_kernels), len(_kept_kernels)
 
 
 def source_digest(folders: Iterable[Path]) -> int:
@@ -117,4 +122,4 @@ def file_digest(files: Iterable[Path]) -> int:
 _FLAGS = file_digest([Path(__file__)])
 """Stands for the flags above, which numba's key does not know."""
 
-_kept_digests: list[tuple[Kept, str]] = []
+_kept_kernels: list[tuple[Any, str]] = []

@@ -119,6 +119,7 @@ def world_command(
     endpoints: ZenohArguments,
 ) -> None:
     """Run the simulated side of a scenario, the autopilot with the vehicle in it, in one process."""
+    from link.program.cli import Patience
     from link.transports.opening import open_transport
     from link.zenoh.session import open_session
     from scenarios.catalogue.catalogue import load_changed_scenario
@@ -129,7 +130,9 @@ def world_command(
     keys = names.keys()
     options = endpoints.options(listens=True)
     with open_transport(mavlink, is_patient=True) as transport, open_session(options) as zenoh:
-        WorldLoop(scenario, run_seed(name, seed), keys, transport, zenoh, speed=speed).run()
+        with Patience("scenarios"):
+            loop = WorldLoop(scenario, run_seed(name, seed), keys, transport, zenoh, speed=speed)
+        loop.run()
 
 
 @app.command("command")

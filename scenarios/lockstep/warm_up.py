@@ -1,14 +1,24 @@
 """Compiles the numerical kernels once after an installation: `python -m scenarios.lockstep.warm_up`.
 
 They are kept for the user who runs it: in the folder NUMBA_CACHE_DIR, else beside the sources, else in the user's
-cache. What was compiled for other sources goes.
+cache. What was compiled for other sources goes. A mark beside them says for which sources that was done.
 """
 
+import hashlib
+import os
+import subprocess
 import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
+from pathlib import Path
 
 from link.errors import UserError
 from link.program.cli import EXIT_OK, EXIT_USER_ERROR
+
+_ROOT = Path(__file__).parents[2]
+_TOLD_EVERY_S = 15.0
 
 
 @cache
@@ -29,17 +39,82 @@ def warm_process() -> None:
     spare_present_objects()
 
 
+def compile_once() -> None:
+    """Compile the kernels, unless they are compiled for the present sources; in a process of its own, which tells it.
+
+    Programs that start together would each do it, and miss the beginning of what they are started for.
+
+    Raises:
+        UserError: they cannot be compiled.
+    """
+    if any(mark.exists() for mark in _marks()):
+        return
+    if subprocess.run([sys.executable, "-m", "scenarios.lockstep.warm_up"], check=False).returncode:
+        raise UserError("the numerical kernels could not be compiled: see above")
+
+
+def _marks() -> list[Path]:
+    """Return the files of which one is there if the kernels are compiled, the best place first."""
+    state = [sys.version]
+    for package in ("companion", "link", "scenarios", "sim_autopilot"):
+        for path in sorted((_ROOT / package).rglob("*.py")):
+            about = path.stat()
+            state.append(f"{path} {about.st_size} {about.st_mtime_ns}")
+    name = f"compiled_{hashlib.sha256(chr(10).join(state).encode()).hexdigest()[:16]}"
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    folders = (
+        [Path(chosen)] if chosen else [Path(__file__).parent / "__pycache__", Path.home() / ".cache" / "decklander"]
+    )
+    return [folder / name for folder in folders]
+
+
+def leave_mark() -> None:
+    """Say that the kernels are compiled, where that can be written; else each run over the wire looks again."""
+    for mark in _marks():
+        try:
+            mark.parent.mkdir(parents=True, exist_ok=True)
+            for other in mark.parent.glob("compiled_*"):
+                other.unlink()
+            mark.touch()
+        except OSError:
+            continue
+        return
+
+
+@contextmanager
+def _told() -> Iterator[None]:
+    """Tell every 15 s how far the block is, once it has loaded what it compiles."""
+    ended = threading.Event()
+
+    def tell() -> None:
+        while not ended.wait(_TOLD_EVERY_S):
+            from link.compiled import count_compiled  # noqa: PLC0415 (it loads numba)
+
+            compiled, of = count_compiled()
+            sys.stderr.write(f"compiled {compiled} of {of} kernels\n")
+
+    teller = threading.Thread(target=tell, daemon=True)
+    teller.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        teller.join()
+
+
 def main() -> int:
     """Compile what a step needs into the cache and return the exit code."""
     sys.stderr.write("compiling the numerical kernels, once; this takes a minute or two\n")
     try:
-        warm_process()
+        with _told():
+            warm_process()
     except UserError as error:
         sys.stderr.write(f"scenarios.lockstep.warm_up: {error}\n")
         return EXIT_USER_ERROR
     from link.compiled import remove_outdated  # noqa: PLC0415 (it loads numba)
 
     remove_outdated()
+    leave_mark()
     return EXIT_OK
 
 

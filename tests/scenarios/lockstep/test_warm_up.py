@@ -1,0 +1,53 @@
+"""The kernels are compiled before a run over the wire, once for the sources that there are."""
+
+from pathlib import Path
+
+import pytest
+
+from link.errors import UserError
+from scenarios.lockstep import warm_up
+
+
+class Compiler:
+    """Stands in for the process that compiles; as that does, it leaves a mark when it succeeds."""
+
+    def __init__(self, returncode: int) -> None:
+        self.returncode = returncode
+        self.runs = 0
+
+    def __call__(self, *_: object, **__: object) -> "Compiler":
+        self.runs += 1
+        if not self.returncode:
+            warm_up.leave_mark()
+        return self
+
+
+@pytest.fixture
+def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kept"))
+    monkeypatch.setattr(warm_up, "_ROOT", tmp_path)
+    (tmp_path / "link").mkdir()
+    source = tmp_path / "link" / "source.py"
+    source.write_text("one = 1\n")
+    return source
+
+
+def test_kernels_are_compiled_once_and_again_after_a_change_of_the_sources(
+    sources: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compiler = Compiler(0)
+    monkeypatch.setattr("subprocess.run", compiler)
+    warm_up.compile_once()
+    warm_up.compile_once()
+    assert compiler.runs == 1
+    sources.write_text("one = 1.0\n")
+    warm_up.compile_once()
+    assert compiler.runs == 2
+    assert len(list((sources.parents[1] / "kept").iterdir())) == 1  # the mark of other sources went
+
+
+@pytest.mark.usefixtures("sources")
+def test_kernels_that_could_not_be_compiled_are_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("subprocess.run", Compiler(2))
+    with pytest.raises(UserError, match="compiled"):
+        warm_up.compile_once()
