@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from link.messages import BodyTruth, Vector3
+from link.messages import BodyTruth, LandingStatus, Vector3
 from scenarios.view.state import ViewState
 
 _INK = (45, 55, 72)
@@ -14,6 +14,8 @@ _NORTH_M, _HEAD_M = 2.0, 0.3
 _SCALE_M, _TICK_M = 5.0, 0.2
 _RISE_M = 0.03  # over the ground, so that the grid does not cut them
 _DRONE_LABEL_M, _VEHICLE_LABEL_M = (0.0, 0.0, 0.35), (-2.3, 0.0, 0.1)
+
+_OVER_PAD_M = 1.0  # from its middle
 
 
 class Marks:
@@ -44,11 +46,19 @@ class Marks:
 
     def write(self, state: ViewState) -> None:
         """Write the labels as it is now; a browser lays a changed text out again, so twice a second will do."""
-        status = state.status
-        height_m = None if status is None else status.height_above_pad_m
-        _write(self._drone, "drone" if height_m is None else f"drone {round(height_m, 1) + 0.0:.1f} m above the pad")
+        _write(self._drone, drone_label(state.status))
         speed = _speed_m_s(state.vehicle_truth)
         _write(self._vehicle, "vehicle" if speed is None else f"vehicle {speed:.1f} m/s")
+
+
+def drone_label(status: LandingStatus | None) -> str:
+    """Return how high the drone is above the pad, or above the pad's height and how far away."""
+    if status is None or status.height_above_pad_m is None:
+        return "drone"
+    height = f"{round(status.height_above_pad_m, 1) + 0.0:.1f} m"
+    position = status.relative_position_enu_m
+    away_m = 0.0 if position is None else math.hypot(*position[:2])
+    return f"drone {height} above the pad" if away_m < _OVER_PAD_M else f"drone {height} higher, {away_m:.0f} m away"
 
 
 def _write(label: Any, text: str) -> None:

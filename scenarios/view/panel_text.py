@@ -89,8 +89,8 @@ def _drone_rows(drone: BodyTruth | None, status: LandingStatus | None) -> list[t
     if drone is not None:
         roll, pitch, yaw = (math.degrees(angle_rad) for angle_rad in roll_pitch_yaw_of(drone.orientation_wxyz))
         side, nose = "right" if roll > 0.0 else "left", "down" if pitch > 0.0 else "up"
-        attitude = f"{abs(roll):.0f} {side}, {abs(pitch):.0f} nose {nose}, degrees"
-        heading = f"{(90.0 - yaw) % 360.0:03.0f} degrees from north"
+        attitude = f"{abs(roll):.0f}° {side}, {abs(pitch):.0f}° nose {nose}"
+        heading = f"{(90.0 - yaw) % 360.0:03.0f}° from north"
     share = None if status is None else status.battery_share
     armed = "-" if status is None else "armed" if status.armed else "not armed"
     flown_by = "" if status is None or not status.flown_by else f", {_FLOWN_BY.get(status.flown_by, status.flown_by)}"

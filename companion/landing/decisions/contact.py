@@ -195,7 +195,7 @@ def signs_text(signs: Signs) -> str:
 
 
 def _part(value: float | None, unit: str) -> str:
-    return "" if value is None else f"{value:.2f} {unit}"
+    return "" if value is None else f"{round(value, 2) + 0.0:.2f} {unit}"
 
 
 def _passed_m(relative: Approach, within_s: float) -> float:

@@ -18,6 +18,7 @@ from link.zenoh.keys import Keys
 from scenarios.__main__ import app
 from scenarios.tracks.roads import road_of
 from scenarios.view.history import NAMES, History
+from scenarios.view.marks import drone_label
 from scenarios.view.panel_text import known_text
 from scenarios.view.plots import with_cursor
 from scenarios.view.shapes import box_edges, centre_line, cone, ellipses, estimated_vehicle, polyline, ribbon
@@ -50,6 +51,12 @@ def status_with(*, armed: bool) -> LandingStatus:
         armed=armed,
         fix_age_s=None,
     )
+
+
+def test_label_of_a_drone_beside_the_pad_does_not_say_that_it_is_above_it() -> None:
+    beside = status_with(armed=True)
+    assert drone_label(beside) == "drone 1.0 m higher, 5 m away"
+    assert drone_label(replace(beside, relative_position_enu_m=(0.3, -0.4, 1.0))) == "drone 1.0 m above the pad"
 
 
 def test_estimated_vehicle_stands_where_its_antenna_says() -> None:
@@ -181,8 +188,8 @@ def test_cursor_outside_of_what_is_known_is_at_its_edge(now_s: float) -> None:
 def test_panel_tells_attitude_in_degrees_and_the_heading_by_compass() -> None:
     turned = quaternion_from_roll_pitch_yaw(math.radians(10.0), math.radians(-5.0), math.radians(60.0))
     text = known_text(ViewState(own=replace(drone_at(1), orientation_wxyz=turned)), 0.0)
-    assert "10 right, 5 nose up, degrees" in text
-    assert "030 degrees from north" in text
+    assert "10° right, 5° nose up" in text
+    assert "030° from north" in text
 
 
 def test_panel_of_a_recording_tells_the_forecast_of_the_contact_while_it_is_fresh() -> None:

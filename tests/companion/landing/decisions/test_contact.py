@@ -200,6 +200,12 @@ def test_decision_is_described_by_its_signs() -> None:
     assert "autopilot not landed" in text
 
 
+def test_description_has_no_minus_before_a_zero() -> None:
+    text = signs_text(replace(signs_of(on_pad()), range_height_m=-0.001, climb_m_s=-0.014))
+    assert "-0.01 m/s up, " in text
+    assert ", 0.00 m by range finder" in text
+
+
 @given(st.floats(0.0, 3.0), st.floats(0.0, 0.4), st.floats(-TOUCHDOWN.sink_max_m_s, TOUCHDOWN.blocked_speed_m_s))
 def test_a_drone_pressed_down_in_the_air_becomes_no_faster_than_its_gear_takes(
     seen_m: float, late_s: float, climb_m_s: float
