@@ -36,6 +36,10 @@ NameArgument = Annotated[
     str, typer.Argument(metavar="NAME|FILE", help="Scenario; `scenarios list` shows them. Or a world: world:urban@1.")
 ]
 
+FirmwareOption = Annotated[
+    str | None, typer.Option("--firmware", metavar="px4|ardupilot", help="In place of the scenario's.")
+]
+
 
 @app.command("list")
 def list_command(*, as_json: JsonOption = False) -> None:
@@ -66,9 +70,7 @@ def run_command(
     seed: SeedOption = None,
     speed: Annotated[float, typer.Option("--speed", min=0.1, max=50.0, help="Simulated seconds a second.")] = 1.0,
     lockstep: Annotated[bool, typer.Option("--lockstep", help="In one process on a simulated clock.")] = False,
-    firmware: Annotated[
-        str | None, typer.Option("--firmware", metavar="px4|ardupilot", help="In place of the scenario's.")
-    ] = None,
+    firmware: FirmwareOption = None,
     changes: SetOption = None,
     out: RunsOption = Path("runs"),
     no_record: NoRecordOption = False,
@@ -114,6 +116,7 @@ def world_command(
     mavlink: Annotated[
         str, typer.Option("--mavlink", metavar="DEVICE", help="Where the companion listens.")
     ] = "udpout:127.0.0.1:14540",
+    firmware: FirmwareOption = None,
     changes: SetOption = None,
     names: NameArguments,
     endpoints: ZenohArguments,
@@ -123,10 +126,11 @@ def world_command(
     from link.transports.opening import open_transport
     from link.zenoh.session import open_session
     from scenarios.catalogue.catalogue import load_changed_scenario
+    from scenarios.catalogue.firmware_option import with_firmware
     from scenarios.catalogue.world_names import run_seed
     from scenarios.wire.world import WorldLoop
 
-    scenario = load_changed_scenario(name, changes)
+    scenario = load_changed_scenario(name if firmware is None else with_firmware(name, firmware), changes)
     keys = names.keys()
     options = endpoints.options(listens=True)
     with open_transport(mavlink, is_patient=True) as transport, open_session(options) as zenoh:

@@ -106,6 +106,7 @@ def run_app(name: str, app: App, args: Sequence[str] | None = None) -> int:
     """
     collect_rarely()
     command = command_of(app)
+    arguments: list[str] = []
     try:
         arguments = _with_defaults(sys.argv[1:] if args is None else args)
         if not arguments and getattr(command, "commands", None) and not command.invoke_without_command:
@@ -115,10 +116,22 @@ def run_app(name: str, app: App, args: Sequence[str] | None = None) -> int:
         return _fail(name, str(error))
     except typer.TyperException as error:
         context = getattr(error, "ctx", None)
-        return _fail(name, _whole(error), hint=f"(see {name if context is None else context.command_path} -h)")
+        where = _path_of(command, name, arguments) if context is None else context.command_path
+        return _fail(name, _whole(error), hint=f"(see {where} -h)")
     except (KeyboardInterrupt, typer.Abort):
         return EXIT_INTERRUPTED
     return result if isinstance(result, int) else EXIT_OK
+
+
+def _path_of(command: Any, name: str, arguments: Sequence[str]) -> str:
+    """Return the words of the command that was meant: some mistakes do not tell."""
+    path = [name]
+    for word in arguments:
+        command = getattr(command, "commands", {}).get(word)
+        if command is None:
+            break
+        path.append(word)
+    return " ".join(path)
 
 
 def _whole(error: typer.TyperException) -> str:

@@ -5,6 +5,7 @@ of that key is `DECKLANDER_COMPANION__DESCENT__CONE__SLOPE`: the prefix names wh
 above a file, the command line above both. What the environment says is told at each start: nobody sees it otherwise.
 """
 
+import difflib
 import os
 import sys
 import tomllib
@@ -22,6 +23,7 @@ COMPANION, SIM_AUTOPILOT, SCENARIO = "DECKLANDER_COMPANION", "DECKLANDER_SIM_AUT
 """What the variables of each configuration begin with."""
 
 PREFIXES = (COMPANION, SIM_AUTOPILOT, SCENARIO)
+_OURS = "DECKLANDER_"
 _BELOW = "__"
 
 
@@ -46,11 +48,27 @@ def load_settings(
     Raises:
         UserError: something cannot be read, or does not fit.
     """
+    check_prefixes(os.environ)
     settings = load_config(path, model, settings_of_options(given, above), settings_of_environment(prefix, model))
     names = variables_of(prefix, os.environ)
     if names:
         sys.stderr.write(f"configuration: set by the environment: {', '.join(names)}\n")
     return settings
+
+
+def check_prefixes(environment: Mapping[str, str]) -> None:
+    """Refuse variables that look like ours and would set nothing.
+
+    Raises:
+        UserError: there is one; with the beginnings that there are.
+    """
+    known = tuple(prefix + _BELOW for prefix in PREFIXES)
+    for name in sorted(environment):
+        if name.startswith(_OURS) and not name.startswith(known):
+            meant = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
+            raise UserError(
+                f"environment: {name} sets nothing: it must begin with {meant[0]}, and have {_BELOW} for a dot"
+            )
 
 
 def variables_of(prefix: str, environment: Mapping[str, str]) -> list[str]:

@@ -192,4 +192,5 @@ def _opened(record: object) -> list[object]:
 
 
 def _damaged(path: Path, why: str) -> str:
-    return f"{path}: is damaged, or no recording ({why or 'it makes no sense'}); name another one"
+    plain = why.partition(", invalid magic")[0]  # whose bytes help nobody
+    return f"{path}: is damaged, or no recording ({plain or 'it makes no sense'}); name another one"

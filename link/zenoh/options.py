@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from link.errors import UserError
+from link.transports.device import is_this_machine
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 
@@ -56,9 +57,18 @@ def _check_endpoint(option: str, endpoint: str, *, port_min: int) -> None:
     if protocol in _OTHER_PROTOCOLS and address:
         return
     if not slash or protocol not in _INTERNET_PROTOCOLS:
-        raise UserError(f"{option} {endpoint!r} is no endpoint: write it as {DEFAULT_ENDPOINT}")
+        raise UserError(f"{option} {endpoint!r} is no endpoint: write it as {_meant(endpoint)}")
     match = _INTERNET_ADDRESS.fullmatch(address)
     if match is None or not port_min <= int(match["port"]) <= 65535:
         raise UserError(
-            f"{option} {endpoint!r} needs a host and a port from {port_min} to 65535: write it as {DEFAULT_ENDPOINT}"
+            f"{option} {endpoint!r} needs a host and a port from {port_min} to 65535: write it as {_meant(endpoint)}"
         )
+
+
+def _meant(endpoint: str) -> str:
+    """Return an endpoint with the host that was written, if that is one; beyond this machine it takes certificates."""
+    found = re.fullmatch(r"(?:[a-z]+[/:])?/*(?P<host>[\w.-]+)(?::(?P<port>[0-9]{1,5}))?", endpoint)
+    if found is None or is_this_machine(found["host"]):
+        return DEFAULT_ENDPOINT
+    port = found["port"] if found["port"] and int(found["port"]) <= 65535 else DEFAULT_ENDPOINT.rpartition(":")[2]
+    return f"tls/{found['host']}:{port}"

@@ -9,6 +9,7 @@ table of values, in which `preset` names what the values change. A world of `sce
 
 import difflib
 import math
+import os
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,7 +21,7 @@ from typing import Any, get_args
 
 from companion.config.integrity import ReceiverFrames
 from link.errors import UserError
-from link.program.settings import SCENARIO, settings_of_environment, settings_of_options
+from link.program.settings import SCENARIO, check_prefixes, settings_of_environment, settings_of_options
 from link.program.toml_config import merge, read_toml, validate
 from scenarios.catalogue.completion import look_out_for_silent_vehicle, place_drone
 from scenarios.catalogue.world_names import names_worlds, parse_world_name
@@ -235,6 +236,7 @@ def load_changed_scenario(name_or_path: str, given: Sequence[str] | None) -> Sce
         UserError: no such scenario, or a setting that does not fit.
     """
     scenario = load_scenario(name_or_path)
+    check_prefixes(os.environ)
     environment, overrides = settings_of_environment(SCENARIO, Scenario), settings_of_options(given)
     if not environment and not overrides:
         return scenario

@@ -26,6 +26,17 @@ def load(*given: str, path: Path | None = None, above: dict[str, Any] | None = N
     return load_settings(path, CompanionConfig, COMPANION, given, above)
 
 
+@pytest.mark.parametrize(
+    "name", ["DECKLANDER_COMPANON__LIMITS__SPEED_MAX_M_S", "DECKLANDER_COMPANION_LIMITS_SPEED_MAX_M_S"]
+)
+def test_variable_that_would_set_nothing_is_refused_with_what_it_should_begin_with(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(name, "5.0")
+    with pytest.raises(UserError, match=rf"{name} sets nothing: it must begin with DECKLANDER_COMPANION__,"):
+        load()
+
+
 def test_environment_stands_above_the_file_and_the_command_line_above_both(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

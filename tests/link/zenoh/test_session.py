@@ -267,6 +267,7 @@ def test_port_in_use_is_the_users_mistake(endpoint: str) -> None:
     ("options", "expected"),
     [
         ({"mode": "pear"}, "--mode 'pear' does not exist: choose peer, client, router"),
+        ({"connect": ("192.168.4.1",)}, "--connect '192.168.4.1' is no endpoint: write it as tls/192.168.4.1:7447"),
         ({"connect": ("127.0.0.1:7447",)}, "--connect '127.0.0.1:7447' is no endpoint: write it as tcp/127.0.0.1:7447"),
         ({"connect": ("tcp/127.0.0.1",)}, "needs a host and a port from 1 to 65535"),
         ({"listen": ("tcp/127.0.0.1:65536",)}, "--listen 'tcp/127.0.0.1:65536' needs a host and a port from 0"),
