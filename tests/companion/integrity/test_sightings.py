@@ -76,6 +76,11 @@ def test_what_no_sighting_has_shown_is_nowhere_else() -> None:
     assert not is_seen_elsewhere(seen(0.9, std_m=1.0), ONE)
 
 
+@pytest.mark.parametrize("off_m", [HALF_M - 0.01, HALF_M + 0.01])
+def test_receiver_that_states_nothing_is_taken_for_one_with_fixed_phases(off_m: float) -> None:
+    assert is_seen_elsewhere(changed(seen(off_m), fix_std_m=None), AUTO) is (off_m > HALF_M)
+
+
 def beside(measurement: Measurement, off_m: float) -> Measurement:
     if measurement.quantity is not Quantity.PAD:
         return measurement
@@ -157,6 +162,14 @@ def test_sightings_confirm_a_place_after_a_second_of_agreement(
     counts: list[tuple[int, int]], *, is_confirmed: bool
 ) -> None:
     assert watched(*counts).is_confirmed is is_confirmed
+
+
+def test_pad_that_is_seen_where_it_was_has_not_stepped_and_few_sightings_are_enough() -> None:
+    watch = watched(*6 * [(1, 0)])
+    assert watch.is_confirmed
+    assert watch.agreeing == 6
+    assert not watch.has_stepped
+    assert not watch.are_mixed
 
 
 def test_place_that_was_lost_has_to_be_confirmed_anew() -> None:

@@ -60,7 +60,7 @@ def jolted(jolt_m_s2: float | None, height_m: float = 0.1) -> Situation:
 def test_vehicle_that_has_told_nothing_for_too_long_is_silent(facts: Situation, *, expected: bool) -> None:
     assert is_fix_old(facts, CONFIG) is expected
     assert VEHICLE_SILENT.is_true(facts, CONFIG) is expected
-    assert HEARD.is_true(facts, CONFIG) is not expected
+    assert HEARD.is_true(facts, CONFIG) is (not expected)
     assert not VEHICLE_SILENT.is_true(facts, UNSEEN)  # one that never tells anything has to be seen instead
 
 
@@ -73,7 +73,7 @@ def test_autopilot_is_silent_of_the_place_or_of_the_attitude() -> None:
     ):
         assert [one.reason for one in AUTOPILOT_SILENT if one.is_true(facts, CONFIG)] == silent
         assert is_drone_unknown(facts, CONFIG) is (facts.drone is None)
-        assert HEARD.is_true(facts, CONFIG) is not bool(silent)
+        assert HEARD.is_true(facts, CONFIG) is (not silent)
 
 
 @pytest.mark.parametrize("silence", SILENCES, ids=lambda one: one.reason.name)
@@ -150,6 +150,14 @@ def test_drone_above_what_a_contact_is_believed_at_has_lifted(height_m: float, *
     assert LIFTED.is_true(facts, CONFIG) is expected
     assert LIFTED.hold_s(facts, CONFIG) == TOUCHDOWN.lost.hold_s
     assert LIFTED.phases == HELD_UP.phases == {Phase.TOUCHDOWN}
+
+
+@pytest.mark.parametrize(("more_m_s2", "expected"), [(-0.01, False), (0.01, True)])
+def test_drone_that_is_pressed_down_and_falls_is_not_held_up(more_m_s2: float, *, expected: bool) -> None:
+    up_m_s2 = more_m_s2 - TOUCHDOWN.falling_acceleration_m_s2
+    facts = replace(situation(), drone=replace(drone_at(0.0, pad=pad_at()), acceleration_up_m_s2=up_m_s2))
+    assert HELD_UP.is_true(facts, CONFIG) is expected
+    assert HELD_UP.hold_s(facts, CONFIG) == TOUCHDOWN.stopped_hold_s
 
 
 @pytest.mark.parametrize(("late_s", "age_s", "later_s"), [(0.0, 0.0, 0.0), (0.1, 0.05, 0.15), (0.1, -0.05, 0.1)])
