@@ -67,6 +67,13 @@ def test_bytes_that_are_no_frame_are_counted_each_once(before: bytes, after: byt
     assert codec.statistics.bad_bytes == len(before) + len(after)
 
 
+@pytest.mark.parametrize("count", [0, 1, 5])
+def test_frames_with_a_wrong_checksum_are_counted_each_once(count: int) -> None:
+    codec = MavlinkCodec(1, 191)
+    codec.decode(count * bad_checksum() + HEARTBEAT, is_datagram=True)
+    assert codec.statistics.bad_frames == count
+
+
 def test_a_signature_is_the_only_flag_that_is_known_and_makes_a_frame_13_bytes_longer() -> None:
     sizes = [frame_size(bytes((MARKER_V2, 9, flags)) + bytes(7), 0) for flags in range(256)]
     assert sizes == [9 + 12, 9 + 12 + 13] + [NOT_A_FRAME] * 254
