@@ -73,17 +73,19 @@ def test_pad_stopped_it_where_it_is_or_has_just_been(
 
 @given(
     x_m=st.floats(-2.0, 2.0),
+    y_m=st.floats(-2.0, 2.0),
     vx_m_s=st.floats(-9.0, 9.0) | st.just(0.0),
     vy_m_s=st.floats(-9.0, 9.0) | st.just(0.0),
     age_s=st.floats(-0.1, 0.3),
 )
 def test_drone_has_passed_the_pad_as_near_as_its_way_since_the_jolt_came(
-    x_m: float, vx_m_s: float, vy_m_s: float, age_s: float
+    x_m: float, y_m: float, vx_m_s: float, vy_m_s: float, age_s: float
 ) -> None:
-    drone = replace(drone_at(0.1, x_m, (vx_m_s, vy_m_s, 0.0), pad=pad_at()), age_s=age_s)
+    drone = drone_at(0.1, x_m, (vx_m_s, vy_m_s, 0.0), pad=pad_at())
+    drone = replace(drone, position_enu_m=drone.position_enu_m + np.array([0.0, y_m, 0.0]), age_s=age_s)
     passed_m = signs_of(replace(situation(), drone=drone)).passed_m
     ago_s = np.linspace(0.0, max(JOLT_S + age_s, 0.0), 2001)
-    way_m = np.hypot(x_m - vx_m_s * ago_s, vy_m_s * ago_s)
+    way_m = np.hypot(x_m - vx_m_s * ago_s, y_m - vy_m_s * ago_s)
     assert passed_m == pytest.approx(way_m.min(), abs=0.002)
 
 

@@ -58,6 +58,15 @@ def test_a_trial_lasts_until_a_drone_with_room_to_fall_would_be_reported_to_sink
     assert lasts_s <= TOUCHDOWN.range_finder.disputed_hold_s
 
 
+@pytest.mark.parametrize(("share", "later_s"), [(0.99, 0.0), (1.01, 0.3)])
+def test_a_trial_waits_for_the_reports_only_where_the_press_of_a_contact_could_make_the_drone_too_fast(
+    share: float, later_s: float
+) -> None:
+    """Pressed with 9 m/s^2 it has 0.7 m/s after 0.027 m."""
+    near = replace(STANDS, range_height_m=share * TOUCHDOWN.sink_max_m_s**2 / (2.0 * TOUCHDOWN.press_acceleration_m_s2))
+    assert trial_s(near, 5.0, 0.3, TOUCHDOWN) - trial_s(near, 5.0, 0.0, TOUCHDOWN) == pytest.approx(later_s)
+
+
 def test_a_drone_whose_range_finder_sees_the_pad_at_its_feet_is_pressed_with_all() -> None:
     signs = replace(STANDS, range_height_m=0.04, climb_m_s=0.0)
     assert trial_press_m_s2(signs, 0.2, TOUCHDOWN) == TOUCHDOWN.try_acceleration_m_s2
