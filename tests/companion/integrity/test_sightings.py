@@ -15,6 +15,7 @@ from companion.core.reasons import Cause, Reason
 from companion.integrity.sightings import (
     FIXED_STD_MAX_M,
     SightingWatch,
+    do_sightings_disagree,
     forget_agreement,
     forget_step,
     is_seen_elsewhere,
@@ -170,6 +171,19 @@ def test_pad_that_is_seen_where_it_was_has_not_stepped_and_few_sightings_are_eno
     assert watch.agreeing == 6
     assert not watch.has_stepped
     assert not watch.are_mixed
+
+
+@pytest.mark.parametrize(("lasts_ns", "is_confirmed"), [(999_999_999, False), (1_000_000_000, True)])
+def test_agreement_of_less_than_a_second_confirms_nothing(lasts_ns: int, *, is_confirmed: bool) -> None:
+    watch = update_sightings(SightingWatch(), health(9, 0), 0, CONFIG)
+    assert update_sightings(watch, health(18, 0), lasts_ns, CONFIG).is_confirmed is is_confirmed
+
+
+@pytest.mark.parametrize(
+    ("news", "expected"), [({}, False), ({"are_sightings_mixed": True}, True), ({"has_pad_stepped": True}, True)]
+)
+def test_sightings_disagree_with_each_other_or_with_those_before(news: dict[str, bool], *, expected: bool) -> None:
+    assert do_sightings_disagree(changed(situation(), **news), CONFIG) is expected
 
 
 def test_place_that_was_lost_has_to_be_confirmed_anew() -> None:
