@@ -145,7 +145,11 @@ class MavlinkComponent:
 
     def refuse(self, why: str) -> None:
         """Tell people why a command was refused."""
-        self._send(self._texts.pieces(f"refuses: {why}", mavlink.MAV_SEVERITY_WARNING))
+        self.warn(f"refuses: {why}")
+
+    def warn(self, of_what: str) -> None:
+        """Tell people what is not as it should be."""
+        self._send(self._texts.pieces(of_what, mavlink.MAV_SEVERITY_WARNING))
 
     def tell(
         self, outputs: StepOutputs, phase: Phase, state: AutopilotState, config: CompanionConfig, local_ns: int

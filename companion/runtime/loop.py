@@ -84,6 +84,7 @@ class _Loop:
         self._pad_question = PadQuestion(zenoh, keys.pad)
         self._link_was_up: bool | None = None
         self._strangers_told = False
+        self._losses_told = False
         self._computer = ComputerWatch()
 
     def run(self) -> Timings:
@@ -190,6 +191,7 @@ class _Loop:
             self._log.warning("data refused", what=refused)
         self._claims.update(self._node.phase, armed=self._node.autopilot.state.view.armed)
         self._say_link()
+        self._say_losses()
         self._ask_for_pad()
         self._start.follow(self._node, fix_seen=self._fix_seen)
         self._check_time_out()
@@ -206,6 +208,14 @@ class _Loop:
             self._strangers_told = True
             self._log.warning("somebody else sends to the autopilot's link, and is not listened to")
         self._link_was_up = is_up if is_up or self._link_was_up is not None else None
+
+    def _say_losses(self) -> None:
+        """Say once that what is recorded is not complete: nobody sees it in the recording."""
+        lost = self._sent.lost + (self._node.records_lost if isinstance(self._node, RecordingNode) else 0)
+        if lost and not self._losses_told:
+            self._losses_told = True
+            self._log.warning("records are lost: the disk is full or too slow", lost=lost)
+            self._node.warn("does not record: disk full or slow")
 
     def _ask_for_pad(self) -> None:
         """Ask the vehicle for its pad until it has answered, and again when it has come back: it may be another one."""

@@ -174,6 +174,10 @@ class CompanionNode:
         """Tell ground stations what the computer does."""
         self._component.tell_load(load, local_ns)
 
+    def warn(self, of_what: str) -> None:
+        """Tell ground stations what is not as it should be."""
+        self._component.warn(of_what)
+
     def take_replies(self) -> list[CommandReply]:
         """Return the replies to operators' commands, once, in their order."""
         return self._commands.take_replies()

@@ -20,7 +20,7 @@ from link.zenoh.options import ZenohOptions
 if TYPE_CHECKING:
     from companion.recording.sink import MessageStore
     from companion.runtime.node import CompanionNode
-    from companion.runtime.options import LoopOptions
+    from companion.runtime.options import LoopOptions, Timings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,7 +84,14 @@ def run_program(asked: Program) -> None:
         where = "Foxglove's server" if asked.folder is None else f"the disk of {asked.folder}"
         sys.stderr.write(f"recording: {recorder.dropped} records are lost, {where} is full or too slow\n")
     if asked.record.timing is not None:
-        asked.record.timing.write_text(json.dumps(timings.summary(), indent=2) + "\n", encoding="utf-8")
+        _write_timing(asked.record.timing, timings)
+
+
+def _write_timing(path: Path, timings: "Timings") -> None:
+    try:
+        path.write_text(json.dumps(timings.summary(), indent=2) + "\n", encoding="utf-8")
+    except OSError as error:
+        sys.stderr.write(f"timing: {path} is not written ({error.strerror})\n")
 
 
 def _node(asked: Program, recorder: BackgroundRecorder | None, signing: Signing | None) -> "CompanionNode":

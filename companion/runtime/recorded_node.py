@@ -70,6 +70,11 @@ class RecordingNode(CompanionNode):
         self._recorded_alive: bool | None = None
         self._recorded_rival: Rival | None = None
 
+    @property
+    def records_lost(self) -> int:
+        """How many could not be written."""
+        return self._recorder.dropped
+
     def receive_mavlink(self, data: bytes, local_ns: int, *, is_datagram: bool = False) -> None:
         """Take bytes of the autopilot's link.
 

@@ -25,6 +25,11 @@ class SentFrames:
         self._session = session
         self._tlog = tlog
 
+    @property
+    def lost(self) -> int:
+        """How many records of the log could not be written."""
+        return 0 if self._tlog is None else self._tlog.dropped
+
     def send(self, frames: Sequence[bytes], local_ns: int, began_s: float) -> None:
         """Send what a turn has made.
 

@@ -12,9 +12,11 @@ from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.session import MavlinkSession
 from link.mavlink.signing import Signing
+from link.messages import Command
 from scenarios.attack.attempt import Attempt
+from scenarios.catalogue.catalogue import load_changed_scenario
 from scenarios.faults.flight import FaultFlight
-from scenarios.faults.trial import SEED, scenario_of
+from scenarios.faults.trial import SCENARIO, SEED
 
 _ARMED, _DISARMED, _OFFBOARD, _POSITION = 217, 29, 6 << 16, 3 << 16
 _HOUR_US = 3_600_000_000
@@ -33,6 +35,11 @@ _FACTS = (
 )
 _DATED = frozenset({"own", "range_down"})  # what is stamped is mapped by the clock, too
 _KEY, _OTHER_KEY = bytes(range(32)), bytes(32)
+_SWITCH_CHANNEL = 7
+_PULSES_US = {Command.ABORT: 1000, Command.HOLD: 1500, Command.START: 2000}
+_FORGED_S = 1.0  # at each position of the switch
+_FORGED_STEP_MS = 10
+_TRUE_STEPS = 10  # between two reports of a transmitter that is heard: ten a second, as they are asked for
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,6 +63,12 @@ def _place(boot_ms: int) -> Message:
     return mavlink.MAVLink_local_position_ned_message(boot_ms, 0.3, -0.2, -0.4, 0.0, 0.0, 0.0)
 
 
+def _switched(to: Command, boot_ms: int) -> Message:
+    pulses_us = [1500] * 18
+    pulses_us[_SWITCH_CHANNEL - 1] = _PULSES_US[to]
+    return mavlink.MAVLink_rc_channels_message(boot_ms, 18, *pulses_us, 255)
+
+
 SPOOFS: Mapping[str, Callable[[Now], Message]] = {
     "mode": lambda _: heartbeat(mode=_POSITION),
     "disarmed": lambda _: heartbeat(base_mode=_DISARMED),
@@ -70,6 +83,7 @@ SPOOFS: Mapping[str, Callable[[Now], Message]] = {
     "acknowledgement": lambda _: mavlink.MAVLink_command_ack_message(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0),
     "range": lambda now: mavlink.MAVLink_distance_sensor_message(now.boot_ms, 10, 5000, 300, 0, 0, 25, 0),
     "battery": lambda _: mavlink.MAVLink_battery_status_message(0, 0, 0, 0, [3000] * 10, 0, 0, 0, 1),
+    "pilot's switch": lambda now: _switched(Command.START, now.boot_ms),
 }
 
 UNSIGNED: Mapping[str, frozenset[str]] = {
@@ -86,13 +100,15 @@ UNSIGNED: Mapping[str, frozenset[str]] = {
     "acknowledgement": frozenset(),
     "range": frozenset({"range_down"}),
     "battery": frozenset({"battery_share"}),
+    "pilot's switch": frozenset(),
 }
 """What each changes under the autopilot's own address: docs/safety.md, "Who may give orders"."""
 
 
 def armed_flight() -> FaultFlight:
-    """Return one whose drone has just been armed, by a companion that knows all of it."""
-    flight = FaultFlight(scenario_of("px4"), SEED)
+    """Return one whose drone has just been armed, by a companion that knows all of it and hears a pilot's switch."""
+    channel = f"system.companion.autopilot.pilot_switch.channel={_SWITCH_CHANNEL}"
+    flight = FaultFlight(load_changed_scenario(f"{SCENARIO}+firmware=px4", [channel]), SEED)
     flight.fly(_ARMED_S)
     return flight
 
@@ -106,6 +122,27 @@ def changed_by(name: str, flight: FaultFlight) -> frozenset[str]:
     now = _facts(link)
     changed = frozenset(fact for fact in before if now[fact] != before[fact])
     return changed - _DATED if "clock" in UNSIGNED[name] else changed
+
+
+def switched_by(command: Command, flight: FaultFlight, *, is_heard: bool) -> Command | None:
+    """Return what a forged switch commands that goes to `command` and stays there for a while, unsigned.
+
+    Args:
+        command: that its position gives.
+        flight: of the companion.
+        is_heard: whether a transmitter is, whose switch stays elsewhere.
+    """
+    link, codec = deepcopy(flight.companion.autopilot), MavlinkCodec(1, 1)
+    elsewhere = Command.ABORT if command is Command.START else Command.START
+    steps = round(_FORGED_S * 1000.0 / _FORGED_STEP_MS)
+    commanded = None
+    for step in range(1, 2 * steps + 1):
+        forged = [elsewhere if step <= steps else command]
+        for position in [elsewhere, *forged] if is_heard and step % _TRUE_STEPS == 0 else forged:
+            report = codec.encode(_switched(position, _now(flight).boot_ms + step * _FORGED_STEP_MS))
+            link.receive(report, flight.local_ns + step * _FORGED_STEP_MS * 1_000_000, is_datagram=True)
+        commanded = link.pilot_switch.take() or commanded
+    return commanded
 
 
 def heard_though_signed(name: str, flight: FaultFlight) -> int:
@@ -126,10 +163,24 @@ def attempts() -> Iterator[Attempt]:
     for name, expected in UNSIGNED.items():
         seen = changed_by(name, flight)
         yield Attempt(by="MAVLink, unsigned", what=f"forges {name}", expected=_words(expected), seen=_words(seen))
+    for command in _PULSES_US:
+        for is_heard in (True, False):
+            yield _by_switch(command, flight, is_heard=is_heard)
     for name in UNSIGNED:
         heard = heard_though_signed(name, flight)
         seen_words = f"is heard {heard} times" if heard else "is not heard"
         yield Attempt(by="MAVLink, signed", what=f"forges {name}", expected="is not heard", seen=seen_words)
+
+
+def _by_switch(command: Command, flight: FaultFlight, *, is_heard: bool) -> Attempt:
+    expected = "commands nothing" if is_heard else f"commands {command.value}"
+    given = switched_by(command, flight, is_heard=is_heard)
+    return Attempt(
+        by="MAVLink, unsigned",
+        what=f"forges a switch to {command.value}, {'beside a transmitter' if is_heard else 'no transmitter is heard'}",
+        expected=expected,
+        seen="commands nothing" if given is None else f"commands {given.value}",
+    )
 
 
 def _words(facts: frozenset[str]) -> str:

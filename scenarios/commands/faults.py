@@ -51,7 +51,7 @@ def faults_command(
     """Let every fault happen in every phase of a landing or sortie; exit code 1 when a reaction is not as expected."""
     require("campaign", "scenarios faults")
     from scenarios.config import FIRMWARES
-    from scenarios.faults.matrix import EXPECTED
+    from scenarios.faults.matrix import EXPECTED, EXPECTED_OVER_WIRE
     from scenarios.faults.sortie_matrix import EXPECTED_IN_SORTIE
     from scenarios.faults.wire_flight import WIRE_FAULTS
 
@@ -59,7 +59,7 @@ def faults_command(
         raise UserError(f"--firmware is one of {', '.join(FIRMWARES)}, not '{firmware}'")
     cases = [
         case
-        for case in (*EXPECTED, *(() if wire else EXPECTED_IN_SORTIE))
+        for case in (*EXPECTED, *(EXPECTED_OVER_WIRE if wire else EXPECTED_IN_SORTIE))
         if firmware in {None, case.firmware}
         and (fault is None or fault in case.fault.value)
         and phase in {None, case.phase.value}

@@ -15,6 +15,7 @@ from link.zenoh.session import ZenohOptions, open_session
 E = TypeVar("E", bound=Enum)
 
 _MEETING_S = 5.0  # until the companion is found
+_SEEING_S = 2.0  # until its token is; then the order goes out all the same, for an abort is worth a try
 _ANSWER_S = 3.0
 _TRY_AGAIN_S = 0.1
 
@@ -49,20 +50,29 @@ def _named(kind: type[E], what: str, name: str) -> E:
 def send_order(order: Order, keys: Keys, options: ZenohOptions) -> CommandReply:
     """Return the companion's answer.
 
+    Anybody can answer where Zenoh is open to strangers, so an answer counts while a companion shows by its liveliness
+    token that it runs. Who forges that, too, only certificates keep out.
+
     Args:
         order: what it is asked for.
         keys: of the Zenoh contract.
         options: how it is met.
 
     Raises:
-        UserError: no companion answers, or somebody else does, too.
+        UserError: no companion answers, or somebody else does.
     """
     with open_session(options) as zenoh:
-        deadline_s = time.monotonic() + _MEETING_S
-        while time.monotonic() < deadline_s:
-            answers = zenoh.query(keys.landing_command, json_messages.encode(order), _ANSWER_S)
-            if answers:
-                return _only(answers, keys)
+        companions = zenoh.watch_alive(keys.companion_alive("*"))
+        began_s = time.monotonic()
+        while (waited_s := time.monotonic() - began_s) < _MEETING_S:
+            if companions.alive or waited_s > _SEEING_S:
+                answers = zenoh.query(keys.landing_command, json_messages.encode(order), _ANSWER_S)
+                if answers and not companions.alive:
+                    raise UserError(
+                        f"no companion runs, but somebody answers on {keys.landing_command}: do not trust it"
+                    )
+                if answers:
+                    return _only(answers, keys)
             time.sleep(_TRY_AGAIN_S)
     where = ", ".join((*options.connect, *options.listen))
     at = f" at {where}" if where else ""

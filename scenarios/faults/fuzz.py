@@ -30,13 +30,14 @@ FIRMWARES = ("px4", "ardupilot")
 _START_NS = 1_795_000_000_000_000_000
 _STILL_AIR = np.zeros(3)
 _FRAMES_A_STEP = 100
-_CHUNK_BYTES = 1024  # what a pseudo-terminal surely takes at once
+_CHUNK_BYTES = 1024  # less than any link buffers
 _HEIGHT_M = 4.0
 _CLIMB_LIMIT_S = 30.0
 _GUIDED = 4.0
 _PATIENCE_S = 5.0
 
-Send = Callable[[bytes], None]
+Send = Callable[[bytes], int]
+"""Sends the beginning of some bytes and returns how many were taken."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,7 +87,7 @@ def fuzz(link: str, firmware: str, frames: int, seed: int) -> FuzzResult:
     drift_m, not_finite, offered_bytes = 0.0, 0, 0
     received_before = node.statistics[0].bytes_received
     began_s = time.perf_counter()
-    with _link(link) as (transport, send):
+    with open_link(link) as (transport, send):
         for batch in _batches(fuzz_frames(seed), frames):
             data = b"".join(batch)
             offered_bytes += len(data)
@@ -107,6 +108,32 @@ def fuzz(link: str, firmware: str, frames: int, seed: int) -> FuzzResult:
         not_finite=not_finite,
         frames_a_second=round(frames / (time.perf_counter() - began_s), 1),
     )
+
+
+@contextmanager
+def open_link(kind: str) -> Iterator[tuple[Transport, Send]]:
+    """Open the autopilot's end of a link; also give what sends from the other end.
+
+    Args:
+        kind: one of `LINK_KINDS`.
+    """
+    if kind == "serial":
+        with _pseudo_terminal() as both:
+            yield both
+        return
+    here, there = _devices(kind)
+    with open_transport(here, is_patient=True) as transport, open_transport(there) as client:
+
+        def send(data: bytes) -> int:
+            client.receive(0.0)  # what the autopilot sends must not fill the buffers
+            if data:
+                client.send(data)
+            return len(data)
+
+        transport.send(b"\0")
+        client.receive(0.1)  # by which a client of udpout knows whom to answer, and one of tcpin is connected
+        transport.receive(0.1)
+        yield transport, send
 
 
 def _fly_to_hover(firmware: str) -> AutopilotNode:
@@ -148,13 +175,11 @@ def _batches(frames: Iterator[bytes], count: int) -> Iterator[list[bytes]]:
 
 
 def _offer(data: bytes, send: Send, transport: Transport, node: AutopilotNode, total_bytes: int) -> None:
-    """Send in pieces and let the autopilot take each, until it has them all or patience ends."""
-    for start in range(0, len(data), _CHUNK_BYTES):
-        send(data[start : start + _CHUNK_BYTES])
-        _take(transport, node)
+    """Send what the link takes and let the autopilot take that, until it has all of it or patience ends."""
     end_s = time.monotonic() + _PATIENCE_S
     while node.statistics[0].bytes_received < total_bytes and time.monotonic() < end_s:
-        _take(transport, node, 0.01)
+        data = data[send(data[:_CHUNK_BYTES]) :]
+        _take(transport, node, 0.0 if data else 0.01)
 
 
 def _take(transport: Transport, node: AutopilotNode, timeout_s: float = 0.0) -> None:
@@ -162,26 +187,6 @@ def _take(transport: Transport, node: AutopilotNode, timeout_s: float = 0.0) -> 
         answer = node.receive(data, node.state.t_ns, peer=peer, is_datagram=transport.is_datagram)[0]
         if answer:
             transport.send(answer)
-
-
-@contextmanager
-def _link(kind: str) -> Iterator[tuple[Transport, Send]]:
-    """Open the autopilot's end of a link; also give what sends from the other end."""
-    if kind == "serial":
-        with _pseudo_terminal() as both:
-            yield both
-        return
-    here, there = _devices(kind)
-    with open_transport(here, is_patient=True) as transport, open_transport(there) as client:
-
-        def send(data: bytes) -> None:
-            client.receive(0.0)  # what the autopilot sends must not fill the buffers
-            client.send(data)
-
-        transport.send(b"\0")
-        client.receive(0.1)  # by which a client of udpout knows whom to answer, and one of tcpin is connected
-        transport.receive(0.1)
-        yield transport, send
 
 
 def _devices(kind: str) -> tuple[str, str]:
@@ -200,14 +205,12 @@ def _pseudo_terminal() -> Iterator[tuple[Transport, Send]]:
     tty.setraw(theirs)
     os.set_blocking(ours, False)
 
-    def send(data: bytes) -> None:
-        while data:
-            try:
-                data = data[os.write(ours, data) :]
-            except BlockingIOError:
-                return
-            finally:
-                _drain(ours)
+    def send(data: bytes) -> int:
+        _drain(ours)
+        try:
+            return os.write(ours, data)
+        except BlockingIOError:
+            return 0
 
     try:
         with open_transport(f"{os.ttyname(theirs)},921600") as transport:

@@ -50,10 +50,15 @@ class Fault(Enum):
     BRAKE = "vehicle brakes hard"
     COARSE = "vehicle's fixes become coarse"
     RIVAL = "another companion was first for the drone"
+    WORLD_STOPPED = "autopilot and vehicle stopped for 2 s"
+    DISK_FULL = "disk full"
 
 
 IN_SORTIES_ONLY = frozenset({Fault.BATTERY, Fault.BRAKE, Fault.COARSE, Fault.RIVAL})
 """In the phases of a landing they have tests of their own."""
+
+OVER_WIRE_ONLY = frozenset({Fault.WORLD_STOPPED, Fault.DISK_FULL})
+"""They take processes."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,9 +129,13 @@ def _rows(firmware: FirmwareName, fault: Fault, *parts: tuple[tuple[Phase, ...],
     }
 
 
-def _matrix(firmware: FirmwareName, silent: tuple[tuple[tuple[Phase, ...], Expected], ...]) -> _Rows:
+_Parts = tuple[tuple[tuple[Phase, ...], Expected], ...]
+
+_GOES_ON: _Parts = (((*_BEFORE, *_APPROACH, *_ON_THE_PAD), _LANDS), (_BROKEN_OFF, _HOLDS))
+
+
+def _matrix(firmware: FirmwareName, silent: _Parts) -> _Rows:
     """Return all rows of a firmware; only a short silence ends otherwise with the one than with the other."""
-    goes_on = (((*_BEFORE, *_APPROACH, *_ON_THE_PAD), _LANDS), (_BROKEN_OFF, _HOLDS))
     breaks_off = ((_BEFORE, _WAITS), (_APPROACH, _HOLDS), (_ON_THE_PAD, _LANDS), (_BROKEN_OFF, _HOLDS))
     lets_go = ((_IN_THE_AIR, _IS_OUT), (_ON_THE_PAD, _IS_OUT_ON_PAD))
     return {
@@ -135,22 +144,22 @@ def _matrix(firmware: FirmwareName, silent: tuple[tuple[tuple[Phase, ...], Expec
         **_rows(firmware, Fault.SILENT, *silent),
         **_rows(firmware, Fault.COMPANION_STOPPED, *silent),
         **_rows(firmware, Fault.LOST, *lets_go),
-        **_rows(firmware, Fault.ORIGIN, *goes_on),
-        **_rows(firmware, Fault.ESTIMATE, *goes_on),
+        **_rows(firmware, Fault.ORIGIN, *_GOES_ON),
+        **_rows(firmware, Fault.ESTIMATE, *_GOES_ON),
         **_rows(firmware, Fault.PARAMETER, *breaks_off),
-        **_rows(firmware, Fault.COMPANION_STOPPED_SHORTLY, *goes_on),
+        **_rows(firmware, Fault.COMPANION_STOPPED_SHORTLY, *_GOES_ON),
         **_rows(firmware, Fault.COMPANION_STOPPED_LONG, *lets_go),
         **_rows(firmware, Fault.VEHICLE, *breaks_off),
         **_rows(firmware, Fault.VEHICLE_KILLED, *breaks_off),
-        **_rows(firmware, Fault.VEHICLE_STOPPED_SHORTLY, *goes_on),
-        **_rows(firmware, Fault.VEHICLE_STOPPED, *goes_on),
+        **_rows(firmware, Fault.VEHICLE_STOPPED_SHORTLY, *_GOES_ON),
+        **_rows(firmware, Fault.VEHICLE_STOPPED, *_GOES_ON),
         **_rows(firmware, Fault.VEHICLE_STOPPED_LONG, (_BEFORE, _LANDS), *breaks_off[1:]),
-        **_rows(firmware, Fault.ROUTER, *goes_on),
+        **_rows(firmware, Fault.ROUTER, *_GOES_ON),
         **_rows(firmware, Fault.CLOCK_AHEAD, *breaks_off),
         **_rows(firmware, Fault.CLOCK_BACK, *breaks_off),
-        **_rows(firmware, Fault.STAMPS, *goes_on),
-        **_rows(firmware, Fault.SPOILT, *goes_on),
-        **_rows(firmware, Fault.SECOND_COMPANION, *goes_on),
+        **_rows(firmware, Fault.STAMPS, *_GOES_ON),
+        **_rows(firmware, Fault.SPOILT, *_GOES_ON),
+        **_rows(firmware, Fault.SECOND_COMPANION, *_GOES_ON),
         **_rows(firmware, Fault.SECOND_DRONE, *breaks_off),
         **_rows(firmware, Fault.COMPANION, (_IN_THE_AIR, _IS_IDLE), (_ON_THE_PAD, _IS_IDLE_ON_PAD)),
     }
@@ -158,8 +167,19 @@ def _matrix(firmware: FirmwareName, silent: tuple[tuple[tuple[Phase, ...], Expec
 
 # PX4 holds the last setpoint and is set to wait for 3 s. ArduCopter carries it on, so that it is to wait for 1 s only,
 # and 2 s of silence are as good as the end of the link.
+_SILENT: Mapping[FirmwareName, _Parts] = {
+    "px4": _GOES_ON,
+    "ardupilot": ((_IN_THE_AIR, _IS_OUT), (_ON_THE_PAD, _IS_OUT_ON_PAD)),
+}
 EXPECTED: Mapping[Case, Expected] = {
-    **_matrix("px4", (((*_BEFORE, *_APPROACH, *_ON_THE_PAD), _LANDS), (_BROKEN_OFF, _HOLDS))),
-    **_matrix("ardupilot", ((_IN_THE_AIR, _IS_OUT), (_ON_THE_PAD, _IS_OUT_ON_PAD))),
+    case: expected for firmware, silent in _SILENT.items() for case, expected in _matrix(firmware, silent).items()
 }
 """How each case should end."""
+
+EXPECTED_OVER_WIRE: Mapping[Case, Expected] = {
+    case: expected
+    for firmware in _SILENT
+    for fault in sorted(OVER_WIRE_ONLY, key=lambda one: one.name)
+    for case, expected in _rows(firmware, fault, *_GOES_ON).items()
+}
+"""How each case of `OVER_WIRE_ONLY` should end; an autopilot that stood still finds the setpoints of that time."""

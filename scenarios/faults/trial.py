@@ -14,7 +14,7 @@ from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import FirmwareName, Scenario
 from scenarios.faults.flight import FaultFlight
 from scenarios.faults.injection import inject, inject_in_sortie
-from scenarios.faults.matrix import EXPECTED, Case, Fault
+from scenarios.faults.matrix import EXPECTED, EXPECTED_OVER_WIRE, Case, Fault
 from scenarios.faults.sortie_flight import SortieFaultFlight
 from scenarios.faults.sortie_matrix import EXPECTED_IN_SORTIE, SORTIE_PHASES
 from scenarios.faults.wire_flight import WireFlight
@@ -36,7 +36,7 @@ _MOTORS_OFF_RAD_S = 50.0
 _TAKEN_S = 0.2  # for the companion to hear that it is out
 _OUT = frozenset({Phase.PILOT, Phase.IDLE})
 _LASTING = _OUT | {Phase.SECURED, Phase.HOLD, Phase.FOLLOW, Phase.RALLY}
-_ALL_EXPECTED = {**EXPECTED, **EXPECTED_IN_SORTIE}
+_ALL_EXPECTED = {**EXPECTED, **EXPECTED_IN_SORTIE, **EXPECTED_OVER_WIRE}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -17,7 +17,7 @@ from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohOptions, open_session
 from scenarios.config import Scenario
 from scenarios.faults.flight import COMMANDED
-from scenarios.faults.matrix import Fault
+from scenarios.faults.matrix import OVER_WIRE_ONLY, Fault
 from scenarios.faults.relay import Relay
 from scenarios.processes.programs import MODULES, ProcessGroup, Program, free_tcp_endpoint
 from scenarios.recordings.recording import Recording
@@ -32,7 +32,8 @@ _STOPS_S: Mapping[Fault, float] = {
     Fault.COMPANION_STOPPED: 2.0,
     Fault.COMPANION_STOPPED_LONG: 10.0,
 }
-WIRE_FAULTS = frozenset({*_STOPS_S, Fault.COMPANION, Fault.ROUTER})
+_WORLD_STOPS_S = 2.0
+WIRE_FAULTS = frozenset({*_STOPS_S, *OVER_WIRE_ONLY, Fault.COMPANION, Fault.ROUTER})
 
 
 class WireFlight:
@@ -53,7 +54,8 @@ class WireFlight:
         for name, config in (("scenario", scenario), (_COMPANION, scenario.system.companion)):
             (folder / f"{name}.toml").write_text(dump_toml(config), encoding="utf-8")
         world = ("world", str(folder / "scenario.toml"), "--seed", str(seed), "-l", self._direct)
-        self._words = ("--config", str(folder / "companion.toml"), "--mavlink", self._relay.companion_device)
+        files = ("--config", str(folder / "companion.toml"), "--record", str(folder / "flight"))
+        self._words = (*files, "--mavlink", self._relay.companion_device)
         programs = [
             Program(
                 name=_WORLD, module=MODULES["scenarios"], arguments=(*world, "--mavlink", self._relay.world_device)
@@ -138,15 +140,23 @@ class WireFlight:
     def inject(self, fault: Fault) -> float:
         """Let one of `WIRE_FAULTS` happen now, and return for how many seconds it lasts."""
         if fault in _STOPS_S:
-            self._programs.send(_COMPANION, signal.SIGSTOP)
-            self._after(_STOPS_S[fault], lambda: self._programs.send(_COMPANION, signal.SIGCONT))
-            return _STOPS_S[fault]
+            return self._stop(_COMPANION, _STOPS_S[fault])
+        if fault is Fault.WORLD_STOPPED:
+            return self._stop(_WORLD, _WORLD_STOPS_S)
+        if fault is Fault.DISK_FULL:
+            self._programs.limit_files(_COMPANION, 0)
+            return 0.0
         if fault is Fault.ROUTER:
             self._router.close()
             self._after(_ROUTER_GONE_S, self._open_router)
             return _ROUTER_GONE_S
         self._programs.restart(self._companion())
         return 0.0
+
+    def _stop(self, name: str, duration_s: float) -> float:
+        self._programs.send(name, signal.SIGSTOP)
+        self._after(duration_s, lambda: self._programs.send(name, signal.SIGCONT))
+        return duration_s
 
     def _companion(self, *more: str) -> Program:
         return Program(

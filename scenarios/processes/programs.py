@@ -2,6 +2,7 @@
 
 import fcntl
 import os
+import resource
 import signal
 import socket
 import subprocess
@@ -85,6 +86,10 @@ class ProcessGroup:
     def send(self, name: str, number: signal.Signals) -> None:
         """Send a signal to a program."""
         self._processes[name].send_signal(number)
+
+    def limit_files(self, name: str, size_bytes: int) -> None:
+        """Let a program write no file any further than that, as on a full disk; its log is one of them."""
+        resource.prlimit(self._processes[name].pid, resource.RLIMIT_FSIZE, (size_bytes, size_bytes))
 
     def restart(self, program: Program) -> None:
         """Kill the program of this name without a word, and start it as it is now."""

@@ -35,6 +35,7 @@ class LiveSource:
         self._reader = StateReader(keys)
         unpublished = {keys.pad, keys.record("plan"), keys.record("step"), keys.camera_compressed}
         self._inboxes: list[Inbox] = [zenoh.subscribe(topic) for topic in self._reader.topics - unpublished]
+        self._companions = zenoh.watch_alive(keys.companion_alive("*"))
         self._pads: Inbox | None = None
         self._asked_s = -_ASK_PAD_S
 
@@ -59,6 +60,8 @@ class LiveSource:
         if len(answers) != 1:
             who = f"{len(answers)} programs answer, and one of them is false" if answers else "no companion answers"
             return CommandReply(accepted=False, reason=who)
+        if not self._companions.alive:
+            return CommandReply(accepted=False, reason="no companion runs, but somebody answers")
         try:
             return json_messages.decode(CommandReply, answers[0])
         except PayloadError as error:

@@ -2,7 +2,8 @@
 
 import pytest
 
-from scenarios.attack.spoofs import SPOOFS, UNSIGNED, armed_flight, changed_by, heard_though_signed
+from link.messages import Command
+from scenarios.attack.spoofs import SPOOFS, UNSIGNED, armed_flight, changed_by, heard_though_signed, switched_by
 from scenarios.faults.flight import FaultFlight
 
 
@@ -19,6 +20,14 @@ def test_each_spoof_has_its_expected_effect() -> None:
 @pytest.mark.parametrize("name", SPOOFS)
 def test_unsigned_datagram_changes_what_it_says_and_nothing_else(name: str, flight: FaultFlight) -> None:
     assert changed_by(name, flight) == UNSIGNED[name]
+
+
+@pytest.mark.parametrize("command", [Command.START, Command.HOLD, Command.ABORT])
+def test_forged_switch_commands_where_no_transmitter_is_heard_and_nowhere_else(
+    command: Command, flight: FaultFlight
+) -> None:
+    assert switched_by(command, flight, is_heard=False) is command
+    assert switched_by(command, flight, is_heard=True) is None
 
 
 @pytest.mark.parametrize("name", SPOOFS)

@@ -56,3 +56,9 @@ def test_age_is_that_of_the_step_which_took_the_fix_in() -> None:
     second = update_fix_stamps(first, START_NS + 500_000_000, START_NS + 400_000_000)
     assert second.age_on_arrival_s == pytest.approx(-0.1)
     assert update_fix_stamps(second, None, START_NS) == FixStamps()
+
+
+def test_refused_fix_from_the_future_tells_by_how_much_it_came_early() -> None:
+    known = update_fix_stamps(FixStamps(), START_NS, START_NS + 200_000_000)
+    told = update_fix_stamps(known, START_NS, START_NS + 300_000_000, ahead_s=3.0)
+    assert told == FixStamps(newest_ns=START_NS, age_on_arrival_s=-3.0)

@@ -34,6 +34,11 @@ def test_frames_are_one_while_both_have_had_fixed_phases_for_the_hold_time(steps
     assert are_frames_one(after(steps), AUTO, (len(steps) - 1) * STEP_NS) is held
 
 
+@pytest.mark.parametrize(("steps", "is_one"), [(HOLD_STEPS, False), (HOLD_STEPS + 1, True)])
+def test_frames_are_one_from_the_hold_time_on(steps: int, *, is_one: bool) -> None:
+    assert are_frames_one(after([(0.01, True)] * steps), AUTO, (steps - 1) * STEP_NS) is is_one
+
+
 @pytest.mark.parametrize(("std_m", "is_one"), [(FIXED_STD_MAX_M - 1e-4, True), (FIXED_STD_MAX_M + 1e-4, False)])
 def test_phases_of_a_vehicle_that_states_more_than_a_quarter_of_a_wavelength_are_not_fixed(
     std_m: float, *, is_one: bool

@@ -4,18 +4,14 @@ import numpy as np
 import pytest
 
 from companion.core.reasons import sentence
-from companion.integrity.heights import (
-    is_road_elsewhere,
-    is_seen_too_near,
-    update_ground,
-)  # _elsewhere, is_seen_too_near
+from companion.integrity.heights import is_road_elsewhere, is_seen_too_near, update_ground
 from companion.landing.decisions.feasibility import OBSTACLES, obstacle
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
-from companion.vehicle.pad import PadPath
+from companion.vehicle.pad import PadMounting, PadPath
 from link.messages import Command
 from link.records import replace
-from tests.companion.facts import CONFIG, GEAR_M, PAD_ENU_M, changed, pad_at, situation
+from tests.companion.facts import CONFIG, GEAR_M, PAD_ENU_M, changed, drone_at, pad_at, situation
 from tests.companion.world import PAD, PAD_HEIGHT_M, Flight, KnownVehicle
 
 
@@ -44,6 +40,23 @@ def test_height_that_is_told_vaguely_may_be_farther_off() -> None:
     vague = replace(pad_at(std_m=3.0), is_coarse=True)
     assert not is_road_elsewhere(False, Phase.WAITING, near(6.0, 10.0, vague), CONFIG)
     assert is_road_elsewhere(False, Phase.WAITING, near(30.0, 10.0, vague), CONFIG)
+
+
+def coarse_pad(up_std_m: float) -> PadPath:
+    """A pad that poor receivers place, and less and less well in the future."""
+    stds_m = np.outer([1.0, 2.0, 3.0, 4.0, 5.0], [9.0, 9.0, up_std_m])
+    return replace(pad_at(), is_coarse=True, position_std_m=stds_m)
+
+
+def test_height_of_poor_receivers_may_be_off_the_ground_by_two_deviations_and_the_slope() -> None:
+    allowed_m = 2.0 * 3.0 + 10.0 * CONFIG.integrity.ground_slope_max
+    assert not is_road_elsewhere(False, Phase.WAITING, near(allowed_m - 0.01, 10.0, coarse_pad(3.0)), CONFIG)
+    assert is_road_elsewhere(False, Phase.WAITING, near(allowed_m + 0.01, 10.0, coarse_pad(3.0)), CONFIG)
+
+
+def test_deck_of_a_ship_may_be_far_below_the_ground_beside_it() -> None:
+    facts = near(30.0, 10.0, replace(pad_at(), mounting=PadMounting(is_afloat=True)))
+    assert not is_road_elsewhere(False, Phase.WAITING, facts, CONFIG)
 
 
 @pytest.mark.parametrize(("phase", "is_known"), [(Phase.ALIGN, False), (Phase.ABORT, False), (Phase.IDLE, True)])
@@ -75,6 +88,21 @@ def test_ground_is_where_the_drone_stands_and_stays_in_flight() -> None:
     assert update_ground(ground, Phase.WAITING, situation(4.0, 20.0)) is ground
 
 
+@pytest.mark.parametrize(("armed", "landed"), [(False, None), (False, False), (True, True)])
+def test_drone_stands_when_its_motors_are_off_or_its_autopilot_says_so(armed: bool, landed: bool | None) -> None:
+    facts = situation(-1.5, 8.0)
+    assert facts.drone is not None
+    ground = update_ground(
+        None, Phase.IDLE, replace(facts, autopilot=replace(facts.autopilot, armed=armed, landed=landed))
+    )
+    assert ground is not None
+    assert ground[2] == pytest.approx(facts.drone.position_enu_m[2] - GEAR_M)
+
+
+def test_ground_that_is_known_stays_while_the_range_finder_sees_nothing() -> None:
+    assert update_ground(PAD_ENU_M, Phase.PILOT, situation(3.5, 8.0)) is PAD_ENU_M
+
+
 def test_ground_of_a_drone_in_the_air_is_what_its_range_finder_sees() -> None:
     facts = changed(situation(3.5, 8.0), range_height_m=5.0)
     assert facts.drone is not None
@@ -97,6 +125,29 @@ def test_roof_that_the_drone_stands_on_is_no_ground() -> None:
 def test_what_is_seen_nearer_than_the_pad_is_no_room(seen_m: float, beside_m: float, expected: bool) -> None:
     facts = changed(situation(1.5, beside_m), range_height_m=seen_m)
     assert is_seen_too_near(facts, CONFIG) is expected
+
+
+@pytest.mark.parametrize(
+    ("up_std_m", "allowed_m"), [(0.1, 0.7), (0.6, 1.2)], ids=["what poor receivers differ by", "two deviations"]
+)
+def test_pad_of_poor_receivers_may_be_nearer_than_told(up_std_m: float, allowed_m: float) -> None:
+    for seen_m, expected in ((1.5 - allowed_m + 0.01, False), (1.5 - allowed_m - 0.01, True)):
+        facts = changed(situation(1.5, pad=coarse_pad(up_std_m)), range_height_m=seen_m)
+        assert is_seen_too_near(facts, CONFIG) is expected
+
+
+@pytest.mark.parametrize(("lean_degrees", "expected"), [(0.0, True), (23.0, True), (24.0, False)])
+def test_reading_of_a_drone_that_leans_far_says_nothing(lean_degrees: float, *, expected: bool) -> None:
+    lean = float(np.sin(np.radians(lean_degrees)))
+    facts = changed(situation(1.5), range_height_m=0.5)
+    facts = replace(facts, drone=replace(drone_at(1.5, pad=pad_at()), lean=lean))
+    assert is_seen_too_near(facts, CONFIG) is expected
+
+
+def test_nothing_is_too_near_where_place_or_reading_are_not_known() -> None:
+    facts = changed(situation(1.5), range_height_m=0.5)
+    for unknown in (changed(facts, range_height_m=None), replace(facts, drone=None), replace(facts, pad=None)):
+        assert is_seen_too_near(unknown, CONFIG) is False
 
 
 def _refused(flight: Flight) -> str:

@@ -15,6 +15,7 @@ from companion.core.reasons import Cause, Reason
 from companion.integrity.sightings import (
     FIXED_STD_MAX_M,
     SightingWatch,
+    do_sightings_disagree,
     forget_agreement,
     forget_step,
     is_seen_elsewhere,
@@ -74,6 +75,11 @@ def test_between_two_frames_and_after_a_jump_of_its_own_frame_any_offset_may_be_
 def test_what_no_sighting_has_shown_is_nowhere_else() -> None:
     assert not is_seen_elsewhere(situation(), ONE)
     assert not is_seen_elsewhere(seen(0.9, std_m=1.0), ONE)
+
+
+@pytest.mark.parametrize("off_m", [HALF_M - 0.01, HALF_M + 0.01])
+def test_receiver_that_states_nothing_is_taken_for_one_with_fixed_phases(off_m: float) -> None:
+    assert is_seen_elsewhere(changed(seen(off_m), fix_std_m=None), AUTO) is (off_m > HALF_M)
 
 
 def beside(measurement: Measurement, off_m: float) -> Measurement:
@@ -157,6 +163,27 @@ def test_sightings_confirm_a_place_after_a_second_of_agreement(
     counts: list[tuple[int, int]], *, is_confirmed: bool
 ) -> None:
     assert watched(*counts).is_confirmed is is_confirmed
+
+
+def test_pad_that_is_seen_where_it_was_has_not_stepped_and_few_sightings_are_enough() -> None:
+    watch = watched(*6 * [(1, 0)])
+    assert watch.is_confirmed
+    assert watch.agreeing == 6
+    assert not watch.has_stepped
+    assert not watch.are_mixed
+
+
+@pytest.mark.parametrize(("lasts_ns", "is_confirmed"), [(999_999_999, False), (1_000_000_000, True)])
+def test_agreement_of_less_than_a_second_confirms_nothing(lasts_ns: int, *, is_confirmed: bool) -> None:
+    watch = update_sightings(SightingWatch(), health(9, 0), 0, CONFIG)
+    assert update_sightings(watch, health(18, 0), lasts_ns, CONFIG).is_confirmed is is_confirmed
+
+
+@pytest.mark.parametrize(
+    ("news", "expected"), [({}, False), ({"are_sightings_mixed": True}, True), ({"has_pad_stepped": True}, True)]
+)
+def test_sightings_disagree_with_each_other_or_with_those_before(news: dict[str, bool], *, expected: bool) -> None:
+    assert do_sightings_disagree(changed(situation(), **news), CONFIG) is expected
 
 
 def test_place_that_was_lost_has_to_be_confirmed_anew() -> None:

@@ -33,3 +33,9 @@ def test_pad_that_sightings_alone_place_is_where_they_say(*, has_one_frame: bool
 
 def test_sightings_and_receivers_of_one_frame_verify_each_other() -> None:
     assert unverified(facts(is_seen=True), CONFIG) == ()
+
+
+def test_of_a_pad_that_nobody_knows_nothing_is_said() -> None:
+    assert unverified(replace(situation(), pad=None), CONFIG) == ()
+    assert unverified(facts(is_seen=False, has_one_frame=False), CONFIG) == ()
+    assert unverified(facts(is_seen=False, is_coarse=True), CONFIG) == ()

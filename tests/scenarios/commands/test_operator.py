@@ -59,6 +59,7 @@ def test_operator_who_listens_reaches_a_companion_that_connects() -> None:
 
     with open_session(ZenohOptions(connect=("tcp/127.0.0.1:1", endpoint))) as companion:
         companion.serve(KEYS.landing_command, answer)
+        companion.declare_alive(KEYS.companion_alive("1"))
         reply = send_order(Order(command=Command.HOLD), KEYS, ZenohOptions(listen=(endpoint,)))
     assert reply == CommandReply(accepted=False, reason="too windy")
     assert json_messages.decode(Order, asked[-1]) == Order(command=Command.HOLD)
@@ -71,7 +72,9 @@ def test_operator_whom_nobody_answers_is_told_where_was_looked(monkeypatch: pyte
 
 
 class Answering:
-    """A session on which everybody answers at once."""
+    """A session on which everybody answers at once, beside a companion's token."""
+
+    alive = True
 
     def __init__(self, *answers: bytes) -> None:
         self._answers = list(answers)
@@ -81,6 +84,9 @@ class Answering:
 
     def __exit__(self, *_: object) -> None:
         """Nothing is open."""
+
+    def watch_alive(self, _key: str) -> "Answering":
+        return self
 
     def query(self, _key: str, _payload: bytes, _timeout_s: float) -> list[bytes]:
         return self._answers

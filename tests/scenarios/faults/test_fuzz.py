@@ -4,7 +4,7 @@ import pytest
 
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
-from scenarios.faults.fuzz import LINK_KINDS, fuzz
+from scenarios.faults.fuzz import LINK_KINDS, fuzz, open_link
 from scenarios.faults.fuzz_companion import fuzz_companion
 from scenarios.faults.fuzz_frames import fuzz_frames
 
@@ -27,6 +27,18 @@ def test_a_good_part_of_the_frames_are_messages_and_none_is_an_order_to_the_auto
     assert orders
     assert all(getattr(one, "target_system", getattr(one, "target", 0)) > 1 for one in orders)
     assert codec.statistics.bad_frames > 300
+
+
+def test_what_a_full_serial_line_does_not_take_is_told_so_that_no_byte_of_a_stream_is_lost() -> None:
+    with open_link("serial") as (transport, send):
+        offered, taken = bytes(range(256)) * 2048, 0
+        while part := send(offered[taken : taken + 1000]):
+            taken += part
+        assert 0 < taken < len(offered)
+        received = b""
+        while data := transport.receive(0.5):
+            received += data
+    assert received == offered[:taken]
 
 
 @pytest.mark.slow

@@ -6,7 +6,7 @@ from companion.situation.phases import Phase
 from link.messages import Command
 from scenarios.config import FIRMWARES
 from scenarios.faults.flight import FaultFlight
-from scenarios.faults.matrix import EXPECTED, IN_SORTIES_ONLY, PHASES, Case, Fault
+from scenarios.faults.matrix import EXPECTED, EXPECTED_OVER_WIRE, IN_SORTIES_ONLY, OVER_WIRE_ONLY, PHASES, Case, Fault
 from scenarios.faults.trial import SEED, Ended, fly_case, scenario_of
 from scenarios.scoring.score import Tier
 
@@ -25,14 +25,15 @@ SOME = (
 
 
 def test_every_fault_has_an_expected_end_in_every_phase_with_each_firmware() -> None:
-    everything = {
-        Case(fault=fault, phase=phase, firmware=firmware)
-        for fault in set(Fault) - IN_SORTIES_ONLY
-        for phase in PHASES
-        for firmware in FIRMWARES
-    }
-    assert set(EXPECTED) == everything
-    assert all(expected.ends for expected in EXPECTED.values())
+    in_lockstep = set(Fault) - IN_SORTIES_ONLY - OVER_WIRE_ONLY
+    for rows, faults in ((EXPECTED, in_lockstep), (EXPECTED_OVER_WIRE, OVER_WIRE_ONLY)):
+        assert set(rows) == {
+            Case(fault=fault, phase=phase, firmware=firmware)
+            for fault in faults
+            for phase in PHASES
+            for firmware in FIRMWARES
+        }
+        assert all(expected.ends for expected in rows.values())
 
 
 @pytest.mark.parametrize("tier", list(Tier))

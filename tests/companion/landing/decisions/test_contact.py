@@ -1,6 +1,5 @@
 """The signs of a contact: what agrees on the pad, and that nothing faulty alone cuts the motors in the air."""
 
-import math
 from typing import Any
 
 import numpy as np
@@ -13,8 +12,6 @@ from companion.landing.decisions.contact import (
     may_force_motors_off,
     signs_of,
     signs_text,
-    trial_press_m_s2,
-    trial_s,
     verdict,
 )
 from companion.situation.situation import Situation
@@ -194,57 +191,44 @@ def test_contact_lacks_one_of_its_signs(facts: Situation) -> None:
     assert verdict(signs_of(facts), CONFIG) is Verdict.AIRBORNE
 
 
+def test_drone_as_deep_below_the_pad_as_no_press_brings_it_is_in_no_contact() -> None:
+    deepest_m = DESCENT.sink.press_depth_m + TOUCHDOWN.height_max_m
+    for depth_m, expected in ((deepest_m - 0.01, Verdict.CONTACT), (deepest_m + 0.01, Verdict.AIRBORNE)):
+        facts = changed(on_pad(), drone=drone_at(-depth_m, pad=pad_at()), reference=reference_at(-depth_m - 0.3))
+        assert verdict(signs_of(facts), CONFIG) is expected
+
+
+@pytest.mark.parametrize(
+    ("sunk_m", "landed", "expected"), [(0.05, False, False), (0.07, False, True), (0.05, True, True)]
+)
+def test_setpoint_far_enough_below_or_the_autopilots_word_supports_a_contact(
+    sunk_m: float, landed: bool, *, expected: bool
+) -> None:
+    facts = changed(on_pad(), reference=reference_at(-sunk_m))
+    facts = replace(facts, autopilot=replace(facts.autopilot, landed=landed))
+    assert (verdict(signs_of(facts), CONFIG) is Verdict.CONTACT) is expected
+
+
+def test_forced_disarm_after_a_stop_by_the_pad_asks_for_its_height_and_nothing_else() -> None:
+    moving = drone_at(DESCENT.commit_height_m - 0.01, 3.0, (0.0, 0.0, -2.0), pad=pad_at())
+    higher = replace(moving, position_enu_m=moving.position_enu_m + np.array([0.0, 0.0, 0.02]))
+    for drone, pad, expected in ((moving, pad_at(), True), (higher, pad_at(), False), (moving, None, False)):
+        signs = signs_of(replace(on_pad(), drone=drone, pad=pad))
+        assert may_force_motors_off(signs, 0.0, CONFIG, stopped_and_held=True) is expected
+
+
 def test_decision_is_described_by_its_signs() -> None:
-    text = signs_text(signs_of(on_pad()))
-    assert "0.01 m by range finder" in text
-    assert "autopilot not landed" in text
+    assert signs_text(signs_of(on_pad())) == (
+        "0.00 m over the pad, 0.25 m above the setpoint, 0.00 m/s up, 0.01 m by range finder, autopilot not landed"
+    )
+    drone = replace(drone_at(-0.02, 0.0, (0.0, 0.0, 0.11), pad=pad_at()), acceleration_up_m_s2=-0.25)
+    facts = replace(on_pad(), drone=drone, autopilot=replace(on_pad().autopilot, landed=True))
+    assert "0.11 m/s up, -0.25 m/s2 up, 0.01 m by range finder, autopilot landed" in signs_text(signs_of(facts))
+    unknown = replace(on_pad(), drone=None, autopilot=replace(on_pad().autopilot, landed=None))
+    assert signs_text(signs_of(unknown)) == "0.01 m by range finder"
 
 
 def test_description_has_no_minus_before_a_zero() -> None:
     text = signs_text(replace(signs_of(on_pad()), range_height_m=-0.001, climb_m_s=-0.014))
     assert "-0.01 m/s up, " in text
     assert ", 0.00 m by range finder" in text
-
-
-@given(st.floats(0.0, 3.0), st.floats(0.0, 0.4), st.floats(-TOUCHDOWN.sink_max_m_s, TOUCHDOWN.blocked_speed_m_s))
-def test_a_drone_pressed_down_in_the_air_becomes_no_faster_than_its_gear_takes(
-    seen_m: float, late_s: float, climb_m_s: float
-) -> None:
-    """One was pressed with 5 m/s^2 from 0.26 m, over a link 0.1 s late: it touched at 1.27 m/s."""
-    signs = replace(signs_of(on_pad()), range_height_m=seen_m, climb_m_s=climb_m_s)
-    press_m_s2, now_m_s = trial_press_m_s2(signs, late_s, TOUCHDOWN), max(-climb_m_s, 0.0)
-    assert 0.0 <= press_m_s2 <= TOUCHDOWN.try_acceleration_m_s2
-    touches_m_s = math.sqrt(now_m_s**2 + 2.0 * press_m_s2 * seen_m)
-    at_last_m_s = now_m_s + press_m_s2 * (TOUCHDOWN.range_finder.disputed_hold_s + late_s)
-    assert min(touches_m_s, at_last_m_s) < TOUCHDOWN.sink_max_m_s + 1e-9
-
-
-@given(st.floats(0.05, 3.0), st.floats(0.0, 0.4))
-def test_a_press_that_is_believed_would_have_shown_a_drone_in_the_air_to_sink(seen_m: float, late_s: float) -> None:
-    signs = replace(signs_of(on_pad()), range_height_m=seen_m, climb_m_s=0.0)
-    press_m_s2 = trial_press_m_s2(signs, late_s, TOUCHDOWN)
-    shown_s = trial_s(signs, press_m_s2, late_s, TOUCHDOWN) - late_s
-    assert press_m_s2 * shown_s > TOUCHDOWN.blocked_speed_m_s
-
-
-@given(st.floats(0.0, TOUCHDOWN.try_acceleration_m_s2), st.floats(0.0, 0.4), st.none() | st.floats(-0.1, 3.0))
-def test_a_trial_lasts_until_a_drone_with_room_to_fall_would_be_reported_to_sink(
-    press_m_s2: float, late_s: float, seen_m: float | None
-) -> None:
-    """Or, where it may hardly be pressed, for as long as a range finder that disagrees has to be outvoted."""
-    lasts_s = trial_s(replace(signs_of(on_pad()), range_height_m=seen_m), press_m_s2, late_s, TOUCHDOWN)
-    falls_to_m_s = math.sqrt(2.0 * TOUCHDOWN.press_acceleration_m_s2 * max(math.inf if seen_m is None else seen_m, 0.0))
-    reported_s = lasts_s - (late_s if falls_to_m_s > TOUCHDOWN.sink_max_m_s else 0.0)
-    is_longest = lasts_s == TOUCHDOWN.range_finder.disputed_hold_s
-    assert is_longest or press_m_s2 * reported_s >= TOUCHDOWN.pressed_speed_m_s - 1e-9
-    assert lasts_s <= TOUCHDOWN.range_finder.disputed_hold_s
-
-
-def test_a_drone_whose_range_finder_sees_the_pad_at_its_feet_is_pressed_with_all() -> None:
-    signs = replace(signs_of(on_pad()), range_height_m=0.04, climb_m_s=0.0)
-    assert trial_press_m_s2(signs, 0.2, TOUCHDOWN) == TOUCHDOWN.try_acceleration_m_s2
-
-
-def test_without_a_range_finder_only_the_signs_tell_and_the_press_is_whole() -> None:
-    signs = replace(signs_of(on_pad()), range_height_m=None)
-    assert trial_press_m_s2(signs, 0.2, TOUCHDOWN) == TOUCHDOWN.try_acceleration_m_s2

@@ -1,0 +1,207 @@
+"""A heading that the course contradicts places no pad; noise, slip and honest reversing contradict nothing."""
+
+import math
+
+import numpy as np
+import pytest
+
+from companion.core.data import VehicleEstimate
+from companion.core.reasons import sentence
+from companion.integrity.vehicle_data import CourseWatch, update_course, without_contradicted_heading
+from companion.situation.phases import Phase
+from companion.vehicle.pad import NOT_DESCRIBED, PadMounting, PadPath
+from link.messages import PadGeometry
+from link.records import replace
+from tests.companion.facts import CONFIG, pad_at
+from tests.companion.world import PAD_HEIGHT_M, Flight, KnownVehicle
+
+STEP_S = 1.0 / CONFIG.setpoints.rate_hz
+STD_M_S = 0.05
+COURSE_RAD = 2.7
+BESIDE = PadGeometry(size_m=(1.5, 1.5), height_m=PAD_HEIGHT_M, antenna_to_pad_m=(1.2, -0.5, 0.0))
+
+
+def driving(off_rad: float, speed_m_s: float = 5.0, lateral_m_s2: float = 0.0) -> PadPath:
+    """A pad on a vehicle whose heading is `off_rad` left of its course."""
+    along = np.array([math.cos(COURSE_RAD), math.sin(COURSE_RAD), 0.0])
+    pad = pad_at(tuple((speed_m_s * along).tolist()))
+    across = np.tile(lateral_m_s2 * np.array([-along[1], along[0], 0.0]), (len(pad.offset_s), 1))
+    return replace(
+        pad, yaw_rad=COURSE_RAD + off_rad, acceleration_enu_m_s2=across, mounting=PadMounting(needs_heading=True)
+    )
+
+
+def course_after(watch: CourseWatch, pad: PadPath, duration_s: float = 6.0, *, std_m_s: float = STD_M_S) -> CourseWatch:
+    for _ in range(round(duration_s / STEP_S)):
+        watch = update_course(watch, pad, std_m_s, CONFIG)
+    return watch
+
+
+@pytest.mark.parametrize("degrees", [20.0, -90.0, 180.0])
+def test_pad_beside_the_antenna_is_not_placed_by_a_heading_that_is_off(degrees: float) -> None:
+    pad = driving(math.radians(degrees))
+    watch = course_after(CourseWatch(), pad)
+    placed = without_contradicted_heading(pad, watch)
+    assert placed.unplaced is not None
+    assert sentence(placed.unplaced) == f"vehicle heading is {abs(degrees):.0f} degrees off its course"
+
+
+@pytest.mark.parametrize("degrees", [0.0, 5.0, -10.0])
+def test_slip_and_mounting_contradict_nothing(degrees: float) -> None:
+    watch = course_after(CourseWatch(), driving(math.radians(degrees)))
+    assert watch.off_rad is None
+    assert watch.has_agreed
+
+
+def test_white_noise_of_a_cheap_heading_contradicts_nothing() -> None:
+    rng = np.random.default_rng(5)
+    watch = CourseWatch()
+    for _ in range(round(60.0 / STEP_S)):
+        watch = update_course(watch, driving(float(rng.normal(0.0, math.radians(10.0)))), STD_M_S, CONFIG)
+        assert watch.off_rad is None
+
+
+def test_tight_curve_explains_more() -> None:
+    lateral_m_s2 = 4.0  # at 5 m/s a radius of 6 m
+    off_rad = math.radians(25.0)
+    assert course_after(CourseWatch(), driving(off_rad, lateral_m_s2=lateral_m_s2)).off_rad is None
+    assert course_after(CourseWatch(), driving(off_rad)).off_rad is not None
+
+
+def test_course_that_is_known_poorly_contradicts_less() -> None:
+    pad = driving(math.radians(20.0))
+    assert course_after(CourseWatch(), pad, std_m_s=0.4).off_rad is None
+    assert course_after(CourseWatch(), pad, std_m_s=0.1).off_rad is not None
+
+
+@pytest.mark.parametrize(
+    ("pad", "std_m_s"),
+    [
+        (driving(math.pi, speed_m_s=1.0), STD_M_S),
+        (driving(math.pi), 1.0),
+        (driving(math.pi), math.inf),
+        (replace(driving(math.pi), yaw_rad=None), STD_M_S),
+    ],
+)
+def test_nothing_is_judged_by_a_course_that_is_not_known(pad: PadPath, std_m_s: float) -> None:
+    assert course_after(CourseWatch(), pad, std_m_s=std_m_s).off_rad is None
+
+
+def test_vehicle_that_has_driven_forwards_may_reverse() -> None:
+    watch = course_after(CourseWatch(), driving(0.05))
+    watch = course_after(watch, driving(0.05, speed_m_s=0.0), 1.0)
+    assert course_after(watch, driving(math.pi - 0.05)).off_rad is None
+
+
+def test_contradiction_outlasts_a_stop_and_ends_with_agreement() -> None:
+    watch = course_after(CourseWatch(), driving(0.5))
+    assert course_after(watch, driving(0.5, speed_m_s=0.0)).off_rad == watch.off_rad
+    assert course_after(watch, driving(0.0)).off_rad is None
+
+
+def test_pad_at_the_antenna_needs_no_heading() -> None:
+    pad = replace(driving(math.pi), mounting=PadMounting())
+    assert without_contradicted_heading(pad, course_after(CourseWatch(), pad)).unplaced is None
+
+
+LIMIT_RAD = CONFIG.integrity.heading_off_max_rad + 3.0 * STD_M_S / 5.0  # at 5 m/s, by three deviations of the course
+
+
+def is_off(pad: PadPath, *, std_m_s: float = STD_M_S, duration_s: float = 6.0) -> bool:
+    return course_after(CourseWatch(), pad, duration_s, std_m_s=std_m_s).off_rad is not None
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_heading_is_off_beyond_what_is_set_and_three_deviations_of_the_course(sign: float) -> None:
+    assert not is_off(driving(sign * (LIMIT_RAD - 0.01)))
+    assert is_off(driving(sign * (LIMIT_RAD + 0.01)))
+
+
+@pytest.mark.parametrize("lateral_m_s2", [-2.0, 2.0])
+def test_curve_explains_the_slip_of_a_point_three_metres_off_the_axle(lateral_m_s2: float) -> None:
+    slip_rad = 3.0 * 2.0 / 5.0**2  # times the curvature
+    assert not is_off(driving(LIMIT_RAD + slip_rad - 0.01, lateral_m_s2=lateral_m_s2))
+    assert is_off(driving(LIMIT_RAD + slip_rad + 0.01, lateral_m_s2=lateral_m_s2))
+
+
+def test_course_is_that_of_now_and_not_of_what_is_ahead() -> None:
+    turns = driving(0.0)
+    ahead = np.outer(np.arange(5.0), [1.0, -3.0, 0.0])
+    turns = replace(
+        turns,
+        velocity_enu_m_s=turns.velocity_enu_m_s + ahead,
+        acceleration_enu_m_s2=turns.acceleration_enu_m_s2 + ahead,
+    )
+    assert not is_off(turns)
+    assert is_off(replace(turns, yaw_rad=COURSE_RAD + LIMIT_RAD + 0.01))
+
+
+@pytest.mark.parametrize(("duration_s", "expected"), [(1.9, False), (2.1, True)])
+def test_two_seconds_are_compared_anew_after_each_stop(duration_s: float, *, expected: bool) -> None:
+    pad = driving(0.5)
+    assert is_off(pad, duration_s=duration_s) is expected
+    stopped = course_after(course_after(CourseWatch(), pad, 1.9), driving(0.5, speed_m_s=1.9), 0.1)
+    assert (course_after(stopped, pad, duration_s).off_rad is not None) is expected
+
+
+@pytest.mark.parametrize(("share", "expected"), [(0.099, True), (0.101, False)])
+def test_course_that_is_uncertain_by_more_than_a_tenth_of_the_speed_judges_nothing(
+    share: float, *, expected: bool
+) -> None:
+    assert is_off(driving(math.pi), std_m_s=share * 5.0) is expected
+
+
+@pytest.mark.parametrize(("speed_m_s", "expected"), [(1.99, False), (2.01, True)])
+def test_vehicle_that_hardly_moves_has_no_course(speed_m_s: float, *, expected: bool) -> None:
+    assert is_off(driving(math.pi, speed_m_s=speed_m_s)) is expected
+
+
+@pytest.mark.parametrize(("turned_rad", "side"), [(0.0, 1.0), (math.pi, -1.0)], ids=["forwards", "backwards"])
+def test_heading_that_was_off_is_believed_again_well_within_the_limit(turned_rad: float, side: float) -> None:
+    agreed = course_after(CourseWatch(), driving(0.0))
+    off = course_after(agreed, driving(1.2))
+    assert off.off_rad is not None
+    for share, is_still_off in ((0.72, True), (0.68, False)):
+        watch = course_after(off, driving(turned_rad + side * share * LIMIT_RAD), 20.0)
+        assert (watch.off_rad is not None) is is_still_off
+
+
+def test_vehicle_that_was_never_seen_to_go_forwards_does_not_reverse_by_right() -> None:
+    assert is_off(driving(math.pi))
+
+
+def test_heading_is_told_as_far_off_as_when_it_was_found_to_be() -> None:
+    off = course_after(CourseWatch(), driving(1.0))
+    assert course_after(off, driving(2.0)).off_rad == off.off_rad == pytest.approx(1.0)
+
+
+def test_pad_that_is_not_placed_for_another_reason_keeps_that_one() -> None:
+    pad = replace(driving(math.pi), unplaced=NOT_DESCRIBED)
+    assert without_contradicted_heading(pad, course_after(CourseWatch(), pad)).unplaced is NOT_DESCRIBED
+
+
+class DrivingVehicle(KnownVehicle):
+    """One whose speed is known as well."""
+
+    def estimate(self, _memory: int | None, t_ns: int) -> VehicleEstimate | None:
+        return VehicleEstimate(
+            t_ns=t_ns,
+            position_enu_m=self.at(t_ns),
+            velocity_enu_m_s=np.array(self.velocity_enu_m_s),
+            acceleration_enu_m_s2=np.zeros(3),
+            covariance=np.eye(9) * STD_M_S**2,
+            yaw_rad=self.yaw_rad,
+            yaw_rate_rad_s=None,
+        )
+
+
+@pytest.mark.slow
+def test_vehicle_with_a_wrong_heading_is_followed_not_landed_on_and_the_status_says_why() -> None:
+    vehicle = DrivingVehicle((-20.0, 0.4, PAD_HEIGHT_M), (4.0, 0.0, 0.0), yaw_rad=math.pi)
+    flight = Flight(vehicle=vehicle, pad=BESIDE)
+    flight.start_and_reach(Phase.ALIGN)
+    outputs = flight.run(CONFIG.descent.alignment.time_limit_s - 1.0)
+    assert flight.phase is Phase.ALIGN
+    assert outputs[-1].status.reason == "vehicle heading is 180 degrees off its course"
+    flight.run_until(Phase.HOLD)
+    assert flight.sentence == "vehicle heading is 180 degrees off its course"

@@ -1,0 +1,35 @@
+"""Somebody who answers an operator in the companion's place, where no companion runs."""
+
+import pytest
+
+from link.errors import UserError
+from link.messages import Command, CommandReply, Order
+from link.payloads import json_messages
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohOptions, open_session
+from scenarios.commands import operator as operator_command
+from scenarios.commands.operator import send_order
+from scenarios.processes.programs import free_tcp_endpoint
+from scenarios.view.live import LiveSource
+
+KEYS = Keys()
+ACCEPTED = CommandReply(accepted=True, reason="")
+TOLD = "no companion runs, but somebody answers"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", [Command.ABORT, Command.START])
+def test_who_accepts_a_command_where_no_companion_runs_is_not_believed(
+    command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(operator_command, "_SEEING_S", 0.3)
+    endpoint = free_tcp_endpoint()
+    with open_session(ZenohOptions(listen=(endpoint,))) as liar:
+        liar.serve(KEYS.landing_command, lambda _: json_messages.encode(ACCEPTED))
+        with pytest.raises(UserError, match=TOLD):
+            send_order(Order(command=command), KEYS, ZenohOptions(connect=(endpoint,)))
+        view = LiveSource(liar, KEYS)
+        assert view.send(command) == CommandReply(accepted=False, reason=TOLD)
+        liar.declare_alive(KEYS.companion_alive("1"))
+        assert send_order(Order(command=command), KEYS, ZenohOptions(connect=(endpoint,))) == ACCEPTED
+        assert view.send(command) == ACCEPTED
