@@ -179,11 +179,7 @@ class ImmModel:
         forward, left = x[9] - x[PITCH], x[ROLL]
         c, s = math.cos(x[HEADING]), math.sin(x[HEADING])
         slope_enu = (c * forward - s * left, s * forward + c * left)
-        P = np.tensordot(weights, covariances, 1)
-        place, offset = PLACE[:2], OFFSET[:2]
-        drones_m2 = P[place, place].max()
-        vehicles_m2 = (P[place, place] + P[offset, offset] - 2.0 * P[place, offset]).max()  # where the frames are one
-        std_m = math.sqrt(max(float(min(drones_m2, vehicles_m2)), 0.0))
+        std_m = math.sqrt(float((weights @ covariances[:, PLACE[:2], PLACE[:2]]).max()))
         return pad_height_seen(surface, pad, std_m, slope_enu, self.deck.half_width_m)
 
     @property

@@ -37,9 +37,7 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
     estimator, now_ns = vehicle.estimator, inputs.monotonic_ns
     measurements, ranged_ns = inputs.vehicle.measurements, vehicle.ranged_ns
     seen = inputs.autopilot.range_down
-    frames = system.config.integrity.receiver_frames
-    is_placed = vehicle.sightings.is_confirmed or are_frames_one(vehicle.phases, frames, now_ns)
-    if seen is not None and is_placed and estimator is not None and ranged_ns != seen.t_ns <= inputs.t_ns:
+    if seen is not None and estimator is not None and ranged_ns != seen.t_ns <= inputs.t_ns:
         ranged_ns = seen.t_ns
         measurements += surface_measurements(seen, inputs.t_ns, system.config.touchdown)
     if measurements:

@@ -7,7 +7,7 @@ import pytest
 
 from companion.core.data import Measurement, Quantity, RangeReading
 from link.records import replace
-from tests.companion.world import PAD_HEIGHT_M, STEP_NS, Flight, KnownVehicle, configured
+from tests.companion.world import PAD_HEIGHT_M, STEP_NS, Flight, KnownVehicle
 
 _HOUR_NS = 3_600_000_000_000
 
@@ -25,7 +25,7 @@ class _Watched(KnownVehicle):
 
 def _flight() -> tuple[Flight, list[int]]:
     vehicle = _Watched((-20.0, 0.4, PAD_HEIGHT_M), (4.0, 0.0, 0.0))
-    return Flight(vehicle=vehicle, config=configured({"integrity": {"receiver_frames": "one"}})), vehicle.ranges_ns
+    return Flight(vehicle=vehicle), vehicle.ranges_ns
 
 
 def _sees(flight: Flight, t_ns: int) -> None:
@@ -59,15 +59,6 @@ def test_range_of_another_hour_is_not_fused(ahead_ns: int) -> None:
 def test_range_before_the_vehicle_is_known_is_not_fused() -> None:
     flight, ranges_ns = _flight()
     flight.sends_fixes = False
-    _sees(flight, flight.t_ns)
-    flight.run(0.1)
-    assert ranges_ns == []
-
-
-def test_range_over_a_pad_that_neither_sightings_nor_one_frame_place_is_not_fused() -> None:
-    flight, ranges_ns = _flight()
-    flight.config = configured({"integrity": {"receiver_frames": "apart"}})
-    flight.run(0.2)
     _sees(flight, flight.t_ns)
     flight.run(0.1)
     assert ranges_ns == []

@@ -160,11 +160,12 @@ def test_deck_that_comes_up_is_seen_to_where_the_vehicle_tells_it_late() -> None
     assert (np.array(behind_m_s[1]) < 0.8 * np.array(behind_m_s[0])).all()
 
 
-def test_surface_counts_for_nothing_where_the_pad_is_not_described() -> None:
+def test_surface_counts_for_nothing_where_the_pad_is_not_placed_or_not_described() -> None:
     truth, until_s = straight(5.0), 5.0
     ranged = _ranged(truth, until_s, np.array([0.0, 0.0, 0.3]))
-    chosen, known = _estimator(half_width_m=0.0), _known(truth, until_s)
-    assert _pad(chosen, known + ranged, until_s)[0] == pytest.approx(_pad(chosen, known, until_s)[0], abs=1e-3)
+    for known, half_width_m in ((_known(truth, until_s, sighted_s=0.0), HALF_WIDTH_M), (_known(truth, until_s), 0.0)):
+        chosen = _estimator(half_width_m=half_width_m)
+        assert _pad(chosen, known + ranged, until_s)[0] == pytest.approx(_pad(chosen, known, until_s)[0], abs=1e-3)
 
 
 def test_range_finder_that_is_stuck_does_not_move_the_pad() -> None:
