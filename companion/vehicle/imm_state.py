@@ -165,9 +165,9 @@ def recover(
 ) -> ImmState:
     """Return the state with that opened which `measurement` contradicts.
 
-    A sighting that contradicts everything means that the drone's frame has stepped: place and offset move together.
-    A fix that does is the receiver's step if the place is known from sightings, else a
-    new start, as is a sighting where nothing else places the vehicle.
+    A sighting that contradicts everything means that the drone's frame has stepped: place and offset move
+    together. A fix that does is the receiver's step if the place is known from sightings, else a new start, as is
+    a sighting where nothing else places the vehicle. A surface that does may be of anything, and opens nothing.
 
     Args:
         state: that rejects it.

@@ -36,7 +36,6 @@ _STD_MIN = {
     Quantity.PAD: 0.002,
     Quantity.ACCELERATION: _ACCELERATION_STD_M_S2,
     Quantity.TILT: 0.001,
-    Quantity.SURFACE: 0.01,
 }
 _STD_MAX = 1e4  # says nothing at all
 # Beyond these a message is wrong, or of a vehicle that nobody lands on.
@@ -48,7 +47,6 @@ _VALUE_MAX = {
     Quantity.PAD: 1e5,
     Quantity.ACCELERATION: 100.0,
     Quantity.TILT: 10.0,
-    Quantity.SURFACE: 1e5,
 }
 
 
