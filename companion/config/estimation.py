@@ -18,7 +18,7 @@ class EstimatorKind(Enum):
     LKF_REPORT = "lkf_report"  # the source report's linear filter with its own numbers
     LKF = "lkf"  # the same model with white jerk, velocity and the sensors' own covariances
     UKF = "ukf"  # car-like, after Baca et al. 2019
-    IMM = "imm"  # two interacting turning models, with the offset between the receivers' frames
+    IMM = "imm"  # interacting turning models, with the offset between the receivers' frames
 
 
 class BufferConfig(StrictModel):
@@ -69,7 +69,7 @@ class ImmModeConfig(StrictModel):
 
     jerk_psd_m2_s5: Positive
     lateral_acceleration_psd_m2_s5: Positive  # drives the curvature, by v^2
-    dwell_s: Positive  # mean time until the vehicle leaves this mode
+    begins_after_s: Positive  # mean time after which the vehicle, in any other mode, is in this one
 
 
 class OscillatorConfig(StrictModel):
@@ -136,15 +136,19 @@ class ReceiversConfig(StrictModel):
 
 
 class ImmConfig(StrictModel):
-    """Two turning models, one for steady driving and one for manoeuvres."""
+    """Turning models of steady driving and of what interrupts it: a pedal, a brake, the wheel."""
 
     # Steady: such as an even driver's (the benchmark's `random` is 0.43), since a vehicle that is known 0.6 s late is
-    # taken for a steady one all the while; measured in landings. It lasts so long that fixes of 0.1 m at 100 Hz leave
-    # little noise, while a brake seen through them is found 0.1 s later, one seen by RTK at once; measured.
-    # Manoeuvre: a brake of 6 m/s^2 that is there within one period of a 10 Hz receiver is a jerk of density
-    # 6^2 / 0.1 s, and each such change is soon over.
-    steady: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=0.3, lateral_acceleration_psd_m2_s5=0.7, dwell_s=40.0)
-    manoeuvre: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=300.0, lateral_acceleration_psd_m2_s5=20.0, dwell_s=0.4)
+    # taken for a steady one all the while; measured in landings. Each of the others is a change that is soon over.
+    # Easing: 1.5 m/s^2 that are there within a quarter of a second, as in traffic; a jerk of density 1.5^2 / 0.25 s.
+    # Braking: a brake of 6 m/s^2 that is there within one period of a 10 Hz receiver, 6^2 / 0.1 s.
+    # Turning: a swerve of 4 m/s^2 to the side that is there within 0.2 s, 4^2 / 0.2 s.
+    steady: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=0.3, lateral_acceleration_psd_m2_s5=0.7, begins_after_s=0.4)
+    easing: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=10.0, lateral_acceleration_psd_m2_s5=0.7, begins_after_s=10.0)
+    braking: ImmModeConfig = ImmModeConfig(
+        jerk_psd_m2_s5=300.0, lateral_acceleration_psd_m2_s5=0.7, begins_after_s=40.0
+    )
+    turning: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=0.3, lateral_acceleration_psd_m2_s5=80.0, begins_after_s=10.0)
     side_jerk_psd_m2_s5: Positive = 0.005  # across the track, apart from turning; measured
     acceleration_decay_s: Positive = 3.0  # measured
     initial_speed_std_m_s: Positive = 15.0

@@ -1,6 +1,6 @@
-"""The default estimator: two interacting turning models with the offset between the two receivers' frames.
+"""The default estimator: interacting turning models with the offset between the two receivers' frames.
 
-State, motion and units are in `imm_kernels`, noise in `imm_noise`, what sensors read in `imm_sensors`, and how both
+State, motion and units are in `imm_kernels`, noise in `imm_noise`, what sensors read in `imm_sensors`, and how the
 models interact in `imm_mixing`.
 The vehicle's fixes are in the frame of its own receiver and dated by its own clock; sightings of the pad are in the
 drone's. The difference of the frames is three states with a slow random walk, that of the clocks is one, so that the
@@ -76,7 +76,7 @@ class ImmModel:
         """Return the state `dt_s` later."""
         numbers = self.numbers
         modes = mixing.predict_modes(
-            state.modes, dt_s, self._noises(state), numbers.dwell_s, self._motion(state), self._known_variance
+            state.modes, dt_s, self._noises(state), numbers.begins_after_s, self._motion(state), self._known_variance
         )
         return replace(
             state,
@@ -107,8 +107,8 @@ class ImmModel:
         tells_motion = measurement.quantity in MOTIONS
         modes = state.modes
         if tells_motion and state.unmeasured_s > 0.0:
-            noise = self._noises(state)[1]
-            modes = judgement.expect_manoeuvre(modes, state.unmeasured_s, numbers.dwell_s, noise)
+            noises = self._noises(state)
+            modes = judgement.expect_manoeuvres(modes, state.unmeasured_s, numbers.begins_after_s, noises)
         modes, nis, gate_nis = judgement.take_reading(modes, reading, numbers.lever_m, numbers.course)
         tells_turn = measurement.quantity in TURNS and self.placed_by is Quantity.POSITION
         turn_age_s = 0.0 if tells_turn else state.turn_age_s  # what is only seen to turn is taken for a car
@@ -129,7 +129,7 @@ class ImmModel:
         return recover(state, measurement, self.config, self.numbers, self.placed_by)
 
     def describe(self, state: ImmState, t_ns: int) -> VehicleEstimate:
-        """Return the mixture of both modes."""
+        """Return the mixture of the modes."""
         x, P, position, velocity, acceleration, G, heading_variance = forecasts.describe_modes(
             state.modes, self._motion(state), self._known_variance
         )
@@ -188,7 +188,7 @@ class ImmModel:
         return self.config.heading.known_std_rad**2
 
     def _noises(self, state: ImmState) -> Array:
-        """Both modes' noise, (2, 16), as `imm_noise.process_noise` takes it."""
+        """The modes' noise, (n, 16), as `imm_noise.process_noise` takes it."""
         walk_m2_s = 2.0 * state.fix_bias_variance_m2 / self.config.receivers.fix_bias_time_s
         receiver_m2_s = self.config.receivers.frame_offset_walk_m2_s + walk_m2_s
         return noises_with(

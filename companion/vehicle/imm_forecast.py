@@ -90,7 +90,7 @@ def forecast_modes(
     Args:
         modes: the filter.
         offset_s: (n,) not falling.
-        noises: (2, 16) of both modes.
+        noises: (n, 16) of the modes.
         motion: its numbers.
         known_variance: of a heading that is known, rad^2; without one the lever arm has no direction.
 
@@ -101,7 +101,7 @@ def forecast_modes(
     """
     directed = with_direction(motion, modes, known_variance)
     x, P = combine(modes[0], modes[1], modes[2])
-    noise = modes[2][0] * noises[0] + modes[2][1] * noises[1]
+    noise = (modes[2].reshape(-1, 1) * noises).sum(axis=0)
     means, variances = horizon(x, P, offset_s, noise, directed)
     position, velocity, acceleration = kinematics(means, directed)
     yaw, grade, tilt = means[:, 7].copy(), means[:, 9].copy(), means[:, ROLL:MOUNT].copy()

@@ -1,6 +1,6 @@
-"""Compiled steps that change both modes by a reading, and judge by it which of them the vehicle is in.
+"""Compiled steps that change the modes by a reading, and judge by it which of them the vehicle is in.
 
-`Modes` are as `imm_mixing` has them: the steady model first, that of manoeuvres second.
+`Modes` are as `imm_mixing` has them: the steady model first, those of manoeuvres after it.
 """
 
 import math
@@ -9,7 +9,6 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
-from companion.vehicle.imm_kernels import course
 from companion.vehicle.imm_mixing import Modes, combine, is_heading_known, switching
 from companion.vehicle.imm_noise import process_noise
 from companion.vehicle.imm_sensors import COURSE, HEADING, PAD, POSITION, VELOCITY, observe
@@ -30,58 +29,33 @@ def residual_of(kind: int, value: Array, expected: Array) -> Array:
 
 
 @compiled_kernel
-def expect_manoeuvre(modes: Modes, unmeasured_s: float, dwell_s: Array, noise: Array) -> Modes:
-    """Return the filter with a manoeuvre that may have begun since the vehicle's motion was measured last.
+def expect_manoeuvres(modes: Modes, unmeasured_s: float, begins_after_s: Array, noises: Array) -> Modes:
+    """Return the filter with the manoeuvres that may have begun since the vehicle's motion was measured last.
 
-    Yaw rates come fifty times a second. Those of a straight road all but rule the manoeuvre model out, and leave it
+    Yaw rates come fifty times a second. Those of a straight road all but rule the manoeuvre models out, and leave them
     mixed with the steady one of the instant before; yet of a brake, in the tenths of a second from one velocity to the
     next, they say nothing. So each velocity is asked anew with the probability that the vehicle alone has.
 
     Args:
         modes: the filter at the time of the reading.
         unmeasured_s: time since the last fix or velocity.
-        dwell_s: (2,) mean dwell times of both modes.
-        noise: (16,) of the manoeuvre model.
+        begins_after_s: (n,) as `switching` takes it.
+        noises: (n, 16) of the modes.
     """
-    means, covariances, weights = modes
-    begun = switching(dwell_s, unmeasured_s)[0, 1]
-    if weights[1] >= begun:
-        return modes
-    lasted_s = min(unmeasured_s, dwell_s[1])
-    fresh = covariances[0] + process_noise(means[0], lasted_s, noise, np.zeros((2, 2)), np.zeros((2, 2, 2)))
-    share = weights[1] / begun
-    shares = np.array([1.0 - share, share])
-    mean, covariance = combine(means, np.stack((fresh, covariances[1])), shares)
-    return np.stack((means[0], mean)), np.stack((covariances[0], covariance)), np.array([1.0 - begun, begun])
-
-
-@compiled_kernel
-def log_likelihood_along(residual: Array, spread: Array, x: float, y: float) -> float:
-    """Return the log-likelihood of a residual's component along the unit vector (x, y), less a constant."""
-    along = x * residual[0] + y * residual[1]
-    variance = x * x * spread[0, 0] + y * y * spread[1, 1] + x * y * (spread[0, 1] + spread[1, 0])
-    return -0.5 * float(along * along / variance + math.log(variance))
-
-
-@compiled_kernel
-def manoeuvre_ratio(residuals: Array, spreads: Array, ux: float, uy: float) -> float:
-    """Return how much better the manoeuvre model expected a velocity than the steady one, as a ratio.
-
-    A manoeuvre is a brake or a turn: the mean of what the components along and across the track say for it. So neither
-    speaks against the other. Both models expect the same of the height.
-
-    Args:
-        residuals: (2, m) of both modes, m = 3.
-        spreads: (2, m, m), their covariances.
-        ux: the direction of the track in W, east.
-        uy: north.
-    """
-    ratio = 0.0
-    for x, y in ((ux, uy), (-uy, ux)):
-        steady = log_likelihood_along(residuals[0], spreads[0], x, y)
-        manoeuvre = log_likelihood_along(residuals[1], spreads[1], x, y)
-        ratio += 0.5 * math.exp(min(max(manoeuvre - steady, -FIT_MAX), FIT_MAX))
-    return ratio
+    means, covariances, weights = modes[0].copy(), modes[1].copy(), modes[2].copy()
+    begun = switching(begins_after_s, unmeasured_s)[0]
+    for j in range(1, len(weights)):
+        if weights[j] >= begun[j]:
+            continue
+        ends_after_s = 1.0 / ((1.0 / begins_after_s).sum() - 1.0 / begins_after_s[j])
+        lasted_s = min(unmeasured_s, ends_after_s)
+        grown = process_noise(means[0], lasted_s, noises[j], np.zeros((2, 2)), np.zeros((2, 2, 2)))
+        share = weights[j] / begun[j]
+        candidates = np.stack((means[0], means[j])), np.stack((covariances[0] + grown, covariances[j]))
+        means[j], covariances[j] = combine(candidates[0], candidates[1], np.array([1.0 - share, share]))
+        weights *= (1.0 - begun[j]) / (1.0 - weights[j])
+        weights[j] = begun[j]
+    return means, covariances, weights
 
 
 @compiled_kernel
@@ -91,8 +65,9 @@ def update_modes(
     """Return the filter after a measurement, the mixture's NIS, and the smaller of the modes' NIS.
 
     The mixture's NIS tells consistency; an outlier is what even the mode with the wider noise does not expect.
-    What a place says for either mode counts as that of one component: receivers state the errors of their axes as
+    What a place says for a mode counts as that of one component: receivers state the errors of their axes as
     independent, but where they are one and the same (a common delay, a reflection) it would count m times over.
+    Velocities are of Doppler, which has no such errors.
 
     Args:
         modes: the filter.
@@ -104,19 +79,18 @@ def update_modes(
     kind, value, R = reading
     m = len(value)
     xs, Ps = np.empty_like(means), np.empty_like(covariances)
-    fits, nis = np.empty(2), np.empty(2)
-    residuals, spreads = np.empty((2, m)), np.empty((2, m, m))
-    for j in range(2):
+    n = len(weights)
+    fits, nis = np.empty(n), np.empty(n)
+    residuals, spreads = np.empty((n, m)), np.empty((n, m, m))
+    for j in range(n):
         expected, H = observe(kind, means[j], lever, sees_heading)
         residuals[j] = residual_of(kind, value, expected)
         spreads[j] = carried_through(H, covariances[j]) + R
         xs[j], Ps[j], nis[j], fits[j] = correct(means[j], covariances[j], residuals[j], H, R)
-    ratio = math.exp(min(max((fits[1] - fits[0]) / m, -FIT_MAX), FIT_MAX))
-    if kind == VELOCITY:
-        speed, ux, uy = course(means[0])
-        ratio = manoeuvre_ratio(residuals, spreads, ux if speed > 1e-6 else 1.0, uy)
-    steady, manoeuvre = max(weights[0], WEIGHT_MIN), max(weights[1], WEIGHT_MIN) * ratio
-    after = np.array([steady, manoeuvre]) / (steady + manoeuvre)
+    components = 1 if kind == VELOCITY else m
+    ratios = np.exp(np.minimum(np.maximum((fits - fits[0]) / components, -FIT_MAX), FIT_MAX))
+    after = np.maximum(weights, WEIGHT_MIN) * ratios
+    after /= after.sum()
     residual, spread = combine(residuals, spreads, weights)
     inverse, _ = inverse_of(spread)
     mixture_nis = (residual * inverse * residual.reshape(m, 1)).sum()
@@ -134,7 +108,7 @@ def align_modes(
     """
     xs, Ps = means.copy(), covariances.copy()
     lever, zero = np.zeros(4), np.zeros(1)
-    for j in range(2):
+    for j in range(len(means)):
         x, P = means[j], covariances[j]
         speed = math.hypot(x[2], x[3])
         if speed < speed_min_m_s or P[2, 2] + P[3, 3] > (0.3 * speed) ** 2:

@@ -1,11 +1,11 @@
-"""Compiled steps of two interacting turning models that differ in their noise only (Blom and Bar-Shalom 1988).
+"""Compiled steps of interacting turning models that differ in their noise only (Blom and Bar-Shalom 1988).
 
-`Modes` are means (2, 24), covariances (2, 24, 24) and probabilities (2,). Between measurements the vehicle may change
-from one mode to the other as a continuous Markov chain with the given mean dwell times. `motion` (16,) is the time
-constant of the acceleration, s, the heave's angular frequency, rad/s, damping and standard deviation of its rate, m/s,
-the time constant of the clock's difference, s, the lever arm (3,) from the antenna to the pad in V and the pad's height
-above the axis of roll, m, the time constant of what the accelerometer reads too much, s, and the same three numbers of
-roll and of pitch as of heave, rad.
+`Modes` are means (n, 24), covariances (n, 24, 24) and probabilities (n,). Between measurements the vehicle may change
+from any mode to any other as a continuous Markov chain in which each begins at a rate of its own. `motion` (16,) is the
+time constant of the acceleration, s, the heave's angular frequency, rad/s, damping and standard deviation of its rate,
+m/s, the time constant of the clock's difference, s, the lever arm (3,) from the antenna to the pad in V and the pad's
+height above the axis of roll, m, the time constant of what the accelerometer reads too much, s, and the same three
+numbers of roll and of pitch as of heave, rad.
 """
 
 import math
@@ -26,29 +26,40 @@ STEP_MAX_S = 0.1  # 0.04 rad in the tightest of the benchmark's curves
 
 
 @compiled_kernel
-def switching(dwell_s: Array, dt_s: float) -> Array:
-    """Return the probabilities `(2, 2)` of having gone from row to column after `dt_s`."""
-    mixed = 1.0 - math.exp(-dt_s * (1.0 / dwell_s[0] + 1.0 / dwell_s[1]))
-    long_run = dwell_s / dwell_s.sum()
-    return mixed * np.stack((long_run, long_run)) + (1.0 - mixed) * np.eye(2)
+def switching(begins_after_s: Array, dt_s: float) -> Array:
+    """Return the probabilities `(n, n)` of having gone from row to column after `dt_s`.
+
+    Args:
+        begins_after_s: (n,) mean time after which each mode begins in any other.
+        dt_s: time that passes.
+    """
+    rates = 1.0 / begins_after_s
+    n, total = len(rates), rates.sum()
+    mixed = 1.0 - math.exp(-dt_s * total)
+    changes: Array = (1.0 - mixed) * np.eye(n) + mixed * np.ones((n, 1)) * (rates / total)
+    return changes
 
 
 @compiled_kernel
 def combine(means: Array, covariances: Array, weights: Array) -> tuple[Array, Array]:
     """Return mean and covariance of the mixture."""
-    mean = weights[0] * means[0] + weights[1] * means[1]
-    between = means[0] - means[1]
-    spread = weights[0] * weights[1] * np.outer(between, between)
-    return mean, weights[0] * covariances[0] + weights[1] * covariances[1] + spread
+    mean, covariance = np.zeros_like(means[0]), np.zeros_like(covariances[0])
+    for j in range(len(weights)):
+        mean += weights[j] * means[j]
+        covariance += weights[j] * covariances[j]
+        for i in range(j):
+            between = means[i] - means[j]
+            covariance += weights[i] * weights[j] * np.outer(between, between)
+    return mean, covariance
 
 
 @compiled_kernel
 def mix(modes: Modes, changes: Array) -> Modes:
-    """Return the filter after the modes may have changed with probabilities `changes` (2, 2)."""
+    """Return the filter after the modes may have changed with probabilities `changes` (n, n)."""
     means, covariances, weights = modes
-    after = weights[0] * changes[0] + weights[1] * changes[1]
+    after = (weights.reshape(-1, 1) * changes).sum(axis=0)
     mixed_means, mixed_covariances = np.empty_like(means), np.empty_like(covariances)
-    for j in range(2):
+    for j in range(len(weights)):
         share = weights * changes[:, j] / after[j]
         mixed_means[j], mixed_covariances[j] = combine(means, covariances, share)
     return mixed_means, mixed_covariances, after
@@ -118,9 +129,9 @@ def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple
 
 @compiled_kernel
 def heading_variance(modes: Modes) -> float:
-    """Return the mean of both modes' variances of the heading, rad^2."""
+    """Return the mean of the modes' variances of the heading, rad^2."""
     _, covariances, weights = modes
-    return float(weights[0] * covariances[0, 7, 7] + weights[1] * covariances[1, 7, 7])
+    return float((weights * covariances[:, 7, 7]).sum())
 
 
 @compiled_kernel
@@ -140,11 +151,11 @@ def with_direction(motion: Array, modes: Modes, known_variance: float) -> Array:
 
 @compiled_kernel
 def predict_modes(
-    modes: Modes, dt_s: float, noises: Array, dwell_s: Array, motion: Array, known_variance: float
+    modes: Modes, dt_s: float, noises: Array, begins_after_s: Array, motion: Array, known_variance: float
 ) -> Modes:
-    """Return the filter `dt_s` later; `noises` (2, 16), `dwell_s` (2,), the others as `with_direction` has them."""
+    """Return the filter `dt_s` later; `noises` (n, 16), the others as `switching` and `with_direction` have them."""
     directed = with_direction(motion, modes, known_variance)
-    means, covariances, weights = mix(modes, switching(dwell_s, dt_s))
-    for j in range(2):
+    means, covariances, weights = mix(modes, switching(begins_after_s, dt_s))
+    for j in range(len(weights)):
         means[j], covariances[j] = glide(means[j], covariances[j], dt_s, noises[j], directed)
     return means, covariances, weights

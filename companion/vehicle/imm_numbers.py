@@ -49,15 +49,15 @@ class Numbers:
 
     Attributes:
         motion: (16,) as `imm_mixing` has it.
-        dwell_s: (2,) of both modes.
-        noises: (2, 16) as `imm_noise.process_noise` takes them, but for what depends on the state (`noises_with`).
+        begins_after_s: (n,) of the modes, as `imm_mixing.switching` takes it.
+        noises: (n, 16) as `imm_noise.process_noise` takes them, but for what depends on the state (`noises_with`).
         lever_m: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll.
         prior_variances: (24,) of every state but position, offset and clock, when nothing else is known.
         course: (3,) as `imm_judgement.take_reading` takes it.
     """
 
     motion: Array
-    dwell_s: Array
+    begins_after_s: Array
     noises: Array
     lever_m: Array
     prior_variances: Array
@@ -75,7 +75,7 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
     heave = (2.0 * math.pi * swing.heave.frequency_hz, swing.heave.damping, rate_std_m_s(swing.heave))
     level = (2.0 * math.pi * swing.tilt.frequency_hz, swing.tilt.damping, 0.0)  # until it is told
     lever_m = (*deck.antenna_to_pad_m, deck.pad_height_m)
-    modes, heading = (config.steady, config.manoeuvre), config.heading
+    modes, heading = (config.steady, config.easing, config.braking, config.turning), config.heading
     return Numbers(
         motion=np.array(
             [
@@ -88,7 +88,7 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
                 *level,
             ]
         ),
-        dwell_s=np.array([mode.dwell_s for mode in modes]),
+        begins_after_s=np.array([mode.begins_after_s for mode in modes]),
         noises=np.array([_noise(config, mode, is_afloat=deck.is_afloat) for mode in modes]),
         lever_m=np.array(lever_m),
         prior_variances=_prior_variances(config, is_afloat=deck.is_afloat),
@@ -98,7 +98,7 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
 
 @lru_cache(maxsize=4)  # it changes with a fix's stated error only
 def noises_with(numbers: Numbers, receiver_m2_s: float, own_m2_s: float, *, turn_is_measured: bool) -> Array:
-    """Return both modes' noise (2, 16) with the wandering of the vehicle's receiver and of the drone's own place.
+    """Return the modes' noise (n, 16) with the wandering of the vehicle's receiver and of the drone's own place.
 
     Where the drone's own place does not wander, fixes have corrections, and are dated without an error.
     A vehicle whose turning is measured may be one that turns on the spot. Any other is taken for a car: it turns no

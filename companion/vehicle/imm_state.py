@@ -33,7 +33,7 @@ IndexArray = NDArray[np.intp]
 
 
 def open_states(modes: Modes, indices: IndexArray, variances: Array) -> Modes:
-    """Return both modes with `variances` (n,) more of the states at `indices` (n,)."""
+    """Return all modes with `variances` (n,) more of the states at `indices` (n,)."""
     means, covariances, weights = modes
     opened = covariances.copy()
     opened[:, indices, indices] += variances
@@ -41,7 +41,7 @@ def open_states(modes: Modes, indices: IndexArray, variances: Array) -> Modes:
 
 
 def open_place_and_offset(covariances: Array, step: Array) -> Array:
-    """Return `covariances` (2, 24, 24) with `step` (3, 3), m^2, more of place and offset as one unknown."""
+    """Return `covariances` (n, 24, 24) with `step` (3, 3), m^2, more of place and offset as one unknown."""
     moved = covariances.copy()
     for rows in (PLACE, OFFSET):
         for columns in (PLACE, OFFSET):
@@ -50,7 +50,7 @@ def open_place_and_offset(covariances: Array, step: Array) -> Array:
 
 
 def open_deck(modes: Modes, lever_m: Array, variances: Array) -> Modes:
-    """Return both modes with `variances` (6,) of the deck's states, which nothing was known of.
+    """Return all modes with `variances` (6,) of the deck's states, which nothing was known of.
 
     Where the antenna is and how fast stays as it was known: a part of it becomes that of the swing.
 
@@ -86,7 +86,7 @@ class ImmState(Struct, frozen=True, kw_only=True, eq=False):
     """The filter.
 
     Attributes:
-        modes: both.
+        modes: all, with their probabilities.
         fix_bias_variance_m2: the slow part of the fixes' variance.
         turn_age_s: how long ago a sensor told the heading or the yaw rate.
         unmeasured_s: how long ago place or velocity was told.
@@ -119,8 +119,10 @@ def start_state(place: Measurement, config: ImmConfig, numbers: Numbers) -> ImmS
     covariance[DECK, DECK] = 0.0
     covariance[np.ix_(PLACE, PLACE)] = white
     covariance[CLOCK, CLOCK] = config.receivers.clock_std_s**2 if bias_variance else 0.0
-    covariances = open_place_and_offset(np.stack([covariance, covariance]), offset_variance * np.eye(3))
-    modes = (np.stack([mean, mean]), covariances, numbers.dwell_s / numbers.dwell_s.sum())
+    rates = 1.0 / numbers.begins_after_s
+    n = len(rates)
+    covariances = open_place_and_offset(np.stack([covariance] * n), offset_variance * np.eye(3))
+    modes = (np.stack([mean] * n), covariances, rates / rates.sum())
     return ImmState(modes=modes, fix_bias_variance_m2=bias_variance)
 
 

@@ -29,11 +29,13 @@ from tests.companion.vehicle.rides import now_ns
 DT_S, STEPS, RUNS, SETTLED = 0.1, 150, 36, 60
 STATES = np.array([0, 1, 2, 3, 4, 5, 6, 8, 9, kernels.BEND])
 FIX_STD_M, VELOCITY_STD_M_S = 0.02, 0.05
-MODE = ImmModeConfig(jerk_psd_m2_s5=0.5, lateral_acceleration_psd_m2_s5=0.5, dwell_s=1.0)
+MODE = ImmModeConfig(jerk_psd_m2_s5=0.5, lateral_acceleration_psd_m2_s5=0.5, begins_after_s=1.0)
 IMM = ImmModel(
     config=ImmConfig(
         steady=MODE,
-        manoeuvre=MODE,
+        easing=MODE,
+        braking=MODE,
+        turning=MODE,
         receivers=ReceiversConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0, clock_std_s=0.0),
         heading=HeadingConfig(course_std_rad=1e3),
     )
@@ -174,4 +176,6 @@ def test_linear_filter_is_consistent_on_its_own_model() -> None:
 
 def test_default_configuration_keeps_the_modes_apart() -> None:
     config = EstimatorConfig().imm
-    assert config.manoeuvre.jerk_psd_m2_s5 > 10.0 * config.steady.jerk_psd_m2_s5
+    assert config.easing.jerk_psd_m2_s5 > 10.0 * config.steady.jerk_psd_m2_s5
+    assert config.braking.jerk_psd_m2_s5 > 10.0 * config.easing.jerk_psd_m2_s5
+    assert config.turning.lateral_acceleration_psd_m2_s5 > 10.0 * config.steady.lateral_acceleration_psd_m2_s5

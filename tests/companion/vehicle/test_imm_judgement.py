@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from scipy.stats import norm
+from scipy.stats import multivariate_normal, norm
 
 from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig, ReceiversConfig
 from companion.core.data import Quantity
@@ -17,7 +17,8 @@ from tests.companion.vehicle.drives import NOMINAL, arrival, drive, sense
 from tests.companion.vehicle.rides import estimator, now_ns
 from tests.companion.vehicle.test_imm_kernels import LEVER, NOISE, a_covariance, a_state
 
-DWELL_S = np.array([40.0, 0.4])
+BEGINS_AFTER_S = np.array([0.4, 10.0, 40.0])
+NOISES = np.stack([NOISE, 3.0 * NOISE, 30.0 * NOISE])
 SAME_FRAME = EstimatorConfig(
     imm=ImmConfig(receivers=ReceiversConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0))
 )
@@ -38,18 +39,14 @@ def test_scalar_tells_the_modes_apart_by_its_likelihood() -> None:
     assert after[1] / after[0] == pytest.approx(0.25 * ratio)
 
 
-def test_velocity_tells_the_modes_apart_by_the_mean_of_along_and_across() -> None:
+@pytest.mark.parametrize(("kind", "components"), [(sensors.VELOCITY, 1), (sensors.POSITION, 3)])
+def test_velocity_counts_in_full_and_a_place_as_one_component(kind: int, components: int) -> None:
     modes, R = two_modes(0.2), 0.01 * np.eye(3)
-    course = modes[0][0][2:4] / np.hypot(*modes[0][0][2:4])
-    along, across = np.append(course, 0.0), np.array([-course[1], course[0], 0.0])
-    expected, H = sensors.observe(sensors.VELOCITY, modes[0][0], LEVER, True)
-    value = expected + 0.9 * along + 0.3 * across + np.array([0.0, 0.0, 5.0])
-    (_, _, after), _, _ = judgement.update_modes(modes, (sensors.VELOCITY, value, R), LEVER, True)
-    ratios = []
-    for axis, error in ((along, 0.9), (across, 0.3)):
-        steady, manoeuvre = (math.sqrt(float(axis @ (H @ P @ H.T + R) @ axis)) for P in modes[1])
-        ratios.append(norm.pdf(error, scale=manoeuvre) / norm.pdf(error, scale=steady))
-    assert after[1] / after[0] == pytest.approx(0.25 * np.mean(ratios))
+    expected, H = sensors.observe(kind, modes[0][0], LEVER, True)
+    error = np.array([0.5, -0.2, 0.3])
+    (_, _, after), _, _ = judgement.update_modes(modes, (kind, expected + error, R), LEVER, True)
+    fits = [multivariate_normal.logpdf(error, cov=H @ P @ H.T + R) for P in modes[1]]
+    assert after[1] / after[0] == pytest.approx(0.25 * math.exp((fits[1] - fits[0]) / components))
 
 
 def test_error_that_nothing_expects_leaves_probabilities() -> None:
@@ -60,23 +57,29 @@ def test_error_that_nothing_expects_leaves_probabilities() -> None:
     assert after.sum() == pytest.approx(1.0)
 
 
-def test_manoeuvre_is_expected_with_the_probability_that_it_has_begun() -> None:
-    means, covariances = np.stack([a_state(3), a_state(4)]), np.stack([a_covariance(3), a_covariance(4)])
-    modes = (means, covariances, np.array([1.0, 0.0]))
-    after = judgement.expect_manoeuvre(modes, 0.2, DWELL_S, NOISE)
-    begun = 0.4 / 40.4 * (1.0 - math.exp(-0.2 * (1.0 / 40.0 + 1.0 / 0.4)))
-    assert after[2] == pytest.approx([1.0 - begun, begun])
-    assert after[0] == pytest.approx(np.stack([means[0], means[0]]))
+def test_each_manoeuvre_is_expected_with_the_probability_that_it_has_begun() -> None:
+    means = np.stack([a_state(3), a_state(4), a_state(5)])
+    covariances = np.stack([a_covariance(3), a_covariance(4), a_covariance(5)])
+    modes = (means, covariances, np.array([1.0, 0.0, 0.0]))
+    after = judgement.expect_manoeuvres(modes, 0.2, BEGINS_AFTER_S, NOISES)
+    total = (1.0 / BEGINS_AFTER_S).sum()
+    begun = (1.0 - math.exp(-0.2 * total)) / BEGINS_AFTER_S / total
+    assert after[2][1:] == pytest.approx(begun[1:], rel=0.01)  # the second takes its share from the first, too
+    assert after[2].sum() == pytest.approx(1.0)
+    assert after[0] == pytest.approx(np.stack([means[0]] * 3))
     assert after[1][0] == pytest.approx(covariances[0])
-    jerk = after[1][1] - covariances[0]
     ux, uy = means[0][2:4] / np.hypot(*means[0][2:4])
-    grown = np.array([ux, uy]) @ jerk[2:4, 2:4] @ np.array([ux, uy])
-    assert grown == pytest.approx(NOISE[0] * 0.2**3 / 3.0, rel=1e-6)
+    for j in (1, 2):
+        jerk = after[1][j] - covariances[0]
+        grown = np.array([ux, uy]) @ jerk[2:4, 2:4] @ np.array([ux, uy])
+        assert grown == pytest.approx(NOISES[j, 0] * 0.2**3 / 3.0, rel=1e-6)
 
 
 def test_manoeuvre_that_is_under_way_is_left_alone() -> None:
-    modes = (np.stack([a_state(3), a_state(4)]), np.stack([a_covariance(3), a_covariance(4)]), np.array([0.3, 0.7]))
-    for before, after in zip(modes, judgement.expect_manoeuvre(modes, 0.2, DWELL_S, NOISE), strict=True):
+    means = np.stack([a_state(3), a_state(4), a_state(5)])
+    covariances = np.stack([a_covariance(3), a_covariance(4), a_covariance(5)])
+    modes = (means, covariances, np.array([0.2, 0.7, 0.1]))
+    for before, after in zip(modes, judgement.expect_manoeuvres(modes, 0.2, BEGINS_AFTER_S, NOISES), strict=True):
         assert after == pytest.approx(before)
 
 
