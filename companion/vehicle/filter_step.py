@@ -43,6 +43,9 @@ S = TypeVar("S")
 
 QUANTITIES = tuple(Quantity)
 RANK = {quantity: rank for rank, quantity in enumerate(QUANTITIES)}
+OF_DRONE = frozenset({Quantity.SURFACE})
+"""What only the drone tells. It counts neither for nor against the vehicle's data, and no filter recovers on it: a
+range finder may see something else, or be stuck."""
 _NEVER: tuple[int | None, ...] = (None,) * len(QUANTITIES)
 
 
@@ -89,7 +92,7 @@ class FilterModel(Protocol[S]):
 
 
 class Tally(Struct, frozen=True, kw_only=True):
-    """What happened to the measurements up to a moment; tuples run over `QUANTITIES`."""
+    """What happened to the vehicle's measurements up to a moment; tuples run over `QUANTITIES`."""
 
     fused: int = 0
     gated: int = 0
@@ -139,7 +142,7 @@ def step(
         return Snapshot(t_ns=t_ns, state=update.state, tally=_accept(snapshot.tally, rank, t_ns, update)), nis_per_dof
     since_ns = snapshot.tally.rejected_since_ns[rank]
     is_new = since_ns is None or t_ns - since_ns < config.recover_after_s * 1e9
-    if is_new or measurement.quantity is Quantity.SURFACE:  # a range finder may see something else, or be stuck
+    if is_new or measurement.quantity in OF_DRONE:
         return Snapshot(t_ns=t_ns, state=state, tally=_reject(snapshot.tally, rank, t_ns)), nis_per_dof
     return _recover(model, Snapshot(t_ns=t_ns, state=state, tally=snapshot.tally), measurement), nis_per_dof
 
@@ -174,7 +177,7 @@ def _recover(model: FilterModel[S], snapshot: Snapshot[S], measurement: Measurem
 
 def _accept(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
     return Tally(
-        fused=tally.fused + 1,
+        fused=tally.fused + (QUANTITIES[rank] not in OF_DRONE),
         gated=tally.gated,
         recoveries=tally.recoveries,
         nis_sum=tally.nis_sum + update.nis,
@@ -190,7 +193,8 @@ def _reject(tally: Tally, rank: int, t_ns: int) -> Tally:
     since_ns = tally.rejected_since_ns[rank]
     since = _put(tally.rejected_since_ns, rank, t_ns if since_ns is None else since_ns)
     sightings = _count_sighting(tally, rank, is_rejected=True)
-    return replace(tally, gated=tally.gated + 1, sightings=sightings, rejected_since_ns=since)
+    gated = tally.gated + (QUANTITIES[rank] not in OF_DRONE)
+    return replace(tally, gated=gated, sightings=sightings, rejected_since_ns=since)
 
 
 def _count_sighting(tally: Tally, rank: int, *, is_rejected: bool) -> tuple[int, int]:

@@ -174,9 +174,18 @@ def test_range_finder_that_is_stuck_does_not_move_the_pad() -> None:
     stuck = [_surface(truth.pad_at(t) + np.array([0.0, 0.0, 0.6]), t) for t in np.arange(5.0, until_s, 0.05).tolist()]
     chosen = _estimator()
     assert _pad(chosen, known + stuck, until_s)[0][2] == pytest.approx(truth.pad_at(until_s)[2], abs=0.05)
-    health = chosen.health(chosen.fuse(None, known + stuck))
-    assert health.gated >= len(stuck)
-    assert health.recoveries == 0
+    assert chosen.health(chosen.fuse(None, known + stuck)).recoveries == 0
+
+
+@pytest.mark.parametrize("error_m", [0.0, 0.6])
+def test_ranges_count_neither_for_nor_against_what_the_vehicle_tells(error_m: float) -> None:
+    truth, until_s, chosen = straight(5.0), 8.0, _estimator()
+    known = _known(truth, until_s, sighted_s=until_s)
+    error = np.array([0.0, 0.0, error_m])
+    ranged = [_surface(truth.pad_at(t) + error, t) for t in np.arange(5.0, until_s, 0.05).tolist()]
+    without, health = (chosen.health(chosen.fuse(None, told)) for told in (known, known + ranged))
+    assert (health.fused, health.gated) == (without.fused, without.gated)
+    assert health.nis_dof > without.nis_dof if error_m == 0.0 else health.nis_dof == without.nis_dof
 
 
 @pytest.mark.parametrize("kind", [EstimatorKind.UKF, EstimatorKind.LKF, EstimatorKind.LKF_REPORT])
