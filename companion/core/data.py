@@ -40,6 +40,20 @@ class Measurement(Struct, frozen=True, kw_only=True, eq=False):
     covariance: Array
 
 
+class Mixture(Struct, frozen=True, kw_only=True, eq=False):
+    """What k models of one filter hold, of position, velocity and acceleration in W, in that order.
+
+    Attributes:
+        weight: (k,) probabilities, which make one.
+        off: (k, 9) their means, off the mean of all.
+        covariance: (k, 9, 9).
+    """
+
+    weight: Array
+    off: Array
+    covariance: Array
+
+
 class VehicleEstimate(Struct, frozen=True, kw_only=True, eq=False):
     """The vehicle's reference point (its antenna) at `t_ns`.
 
@@ -50,6 +64,7 @@ class VehicleEstimate(Struct, frozen=True, kw_only=True, eq=False):
         covariance: (9, 9) of position, velocity, acceleration, in that order.
         yaw_rad: heading of V about W's z, None while it cannot be told (at rest, never measured).
         yaw_rate_rad_s: None likewise.
+        mixture: of filters with several models, of which `covariance` is that of all; None of one model.
     """
 
     t_ns: int
@@ -59,6 +74,7 @@ class VehicleEstimate(Struct, frozen=True, kw_only=True, eq=False):
     covariance: Array
     yaw_rad: float | None
     yaw_rate_rad_s: float | None
+    mixture: Mixture | None = None
 
 
 class Forecast(Struct, frozen=True, kw_only=True, eq=False):

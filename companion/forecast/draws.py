@@ -14,9 +14,10 @@ from companion.core.data import Array
 from companion.forecast.samples import IndexArray
 
 STEPS_MAX = 134  # as far as the pad is forecast, 4 s: 3.5 s of sinking and the longest wait
+MODE = 7  # the column of the uniform numbers that chooses a sample's model of the estimator
 _SEED = 1_912
 _STEADY_COUNT, _EVENT_COUNT = 64, 32
-_NORMALS, _UNIFORMS = 20, 7
+_NORMALS, _UNIFORMS = 20, 8
 
 
 class Draws(Struct, frozen=True, kw_only=True, eq=False):
@@ -26,7 +27,7 @@ class Draws(Struct, frozen=True, kw_only=True, eq=False):
         branch: (n,) what the sample's vehicle does, as `branches` counts them.
         share: (n,) of a sample in its branch.
         normals: (n, 20) standard normal.
-        uniforms: (n, 7) from 0 to 1, exclusive.
+        uniforms: (n, 8) from 0 to 1, exclusive.
         pushes: (n, `STEPS_MAX`, 2) standard normal.
     """
 
@@ -53,6 +54,6 @@ def draws() -> Draws:
 
 
 def _hypercube(generator: np.random.Generator, count: int) -> Array:
-    """Return (count, 27) numbers from 0 to 1, exclusive."""
+    """Return (count, 28) numbers from 0 to 1, exclusive."""
     places = generator.permuted(np.tile(np.arange(count)[:, None], (1, _NORMALS + _UNIFORMS)), axis=0)
     return np.asarray((places + generator.uniform(0.05, 0.95, places.shape)) / count)

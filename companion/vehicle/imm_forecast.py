@@ -11,7 +11,7 @@ from companion.vehicle.imm_kernels import BEND
 from companion.vehicle.imm_mixing import Modes, combine, glide, heading_variance, shifted, with_direction
 from companion.vehicle.imm_sensors import antenna_velocity, horizontal_acceleration
 from companion.vehicle.imm_swing import MOUNT, ROLL, SIZE, antenna_swing, pad_swing, pad_swing_acceleration
-from companion.vehicle.small_matrices import times
+from companion.vehicle.small_matrices import carried_through, times
 
 
 @compiled_kernel
@@ -111,8 +111,8 @@ def forecast_modes(
 @compiled_kernel
 def describe_modes(
     modes: Modes, motion: Array, known_variance: float
-) -> tuple[Array, Array, Array, Array, Array, Array, float]:
-    """Return the mixture now.
+) -> tuple[Array, Array, Array, Array, Array, float]:
+    """Return the mixture now, and its parts.
 
     Args:
         modes: the filter.
@@ -120,10 +120,16 @@ def describe_modes(
         known_variance: as above.
 
     Returns:
-        Mean (24,) and covariance (24, 24), position, velocity and acceleration, each (1, 3), their Jacobian (9, 24),
-        and the variance of the heading, rad^2.
+        The mean (24,); position, velocity and acceleration (9,) and their covariance (9, 9); those of each mode, (n, 9)
+        and (n, 9, 9); and the variance of the heading, rad^2.
     """
     directed = with_direction(motion, modes, known_variance)
-    x, P = combine(modes[0], modes[1], modes[2])
-    position, velocity, acceleration = kinematics(x.reshape(1, SIZE), directed)
-    return x, P, position, velocity, acceleration, kinematics_jacobian(x, directed), heading_variance(modes)
+    means, covariances, weights = modes
+    x, P = combine(means, covariances, weights)
+    n = len(weights)
+    told, spread = np.empty((n + 1, 9)), np.empty((n + 1, 9, 9))
+    told[:, :3], told[:, 3:6], told[:, 6:] = kinematics(np.concatenate((x.reshape(1, SIZE), means)), directed)
+    spread[0] = carried_through(kinematics_jacobian(x, directed), P)
+    for j in range(n):
+        spread[j + 1] = carried_through(kinematics_jacobian(means[j], directed), covariances[j])
+    return x, told[0], spread[0], told[1:], spread[1:], heading_variance(modes)

@@ -82,7 +82,7 @@ def forecast_contact(
     course = course_of(memory, relative, pad, way_down, deviation)
     numbers = draws()
     stands = vehicle_stands(situation, config.chase)
-    errors = draw_errors(then, pad, inputs.response, numbers.normals)
+    errors = draw_errors(then, pad, inputs.response, numbers)
     late_s = memory.vehicle.hindsight.lateness_s or age_s
     delay_s = late_s + 0.5 / config.setpoints.rate_hz + inputs.link_delay.mean_s + inputs.link_delay.std_s * errors.late
     speed_m_s = float(course.speed_m_s[0])

@@ -7,8 +7,8 @@ from msgspec import Struct
 
 from companion.autopilots.response import ATTITUDE_LAG_S, DRAG_PER_S, STATES, ResponseModel
 from companion.config.companion import CompanionConfig
-from companion.core.data import Array, VehicleEstimate
-from companion.forecast.draws import STEPS_MAX
+from companion.core.data import Array, Mixture, VehicleEstimate
+from companion.forecast.draws import MODE, STEPS_MAX, Draws
 from companion.forecast.samples import DT_S, Course, Follower, Rules
 from companion.landing.state.memory import StepMemory
 from companion.landing.state.step_data import StepInputs
@@ -145,22 +145,17 @@ def _shake_at(offset_s: Array, pad: PadPath) -> Array:
     return np.stack([_at(offset_s, pad, values) for values in pad.swing.shake_enu[:2]])
 
 
-def draw_errors(then: VehicleEstimate, pad: PadPath, response: ResponseModel, normals: Array) -> Errors:
+def draw_errors(then: VehicleEstimate, pad: PadPath, response: ResponseModel, numbers: Draws) -> Errors:
     """Return what may be wrong.
 
     Args:
         then: the vehicle at its newest datum.
         pad: now; where its place is known less well than the antenna's, that is the heading's.
         response: of the autopilot.
-        normals: (n, 20) standard normal.
+        numbers: random ones.
     """
-    covariance = then.covariance.copy()
-    # That frames which count as one are one is not for the forecast to doubt: that would be a wrong model, no bad luck.
-    apart_m2 = pad.frame_offset.std_m**2 if pad.has_one_frame and math.isfinite(pad.frame_offset.std_m) else 0.0
-    for axis in range(3):
-        stated_m2 = max(covariance[axis, axis], float(pad.position_std_m[0, axis]) ** 2)
-        covariance[axis, axis] = max(stated_m2 - apart_m2, _PLACE_STD_MIN_M**2)
-    vehicle = normals[:, :9] @ _root(covariance).T
+    normals = numbers.normals
+    vehicle = _draw_vehicle(then, pad, normals[:, :9], numbers.uniforms[:, MODE])
     heaves_m_s = 0.0 if pad.swing is None else np.interp(_CLIMB_FOLLOWED_S, pad.offset_s, pad.swing.climb_std_m_s)
     own = normals[:, 17:19] * np.array([_OWN_HEIGHT_STD_M, math.hypot(_OWN_CLIMB_STD_M_S, heaves_m_s)])
     return Errors(
@@ -169,6 +164,28 @@ def draw_errors(then: VehicleEstimate, pad: PadPath, response: ResponseModel, no
         vertical=own - np.column_stack([vehicle[:, 2], -vehicle[:, 5]]),
         late=normals[:, 19],
     )
+
+
+def _draw_vehicle(then: VehicleEstimate, pad: PadPath, normals: Array, uniforms: Array) -> Array:
+    """Return how far place, velocity and acceleration (n, 9) are off, each sample drawn from one of the models.
+
+    A model that is hardly likely holds for few samples. As a part of one covariance it would widen them all.
+    """
+    mixture = then.mixture
+    if mixture is None:
+        mixture = Mixture(weight=np.ones(1), off=np.zeros((1, 9)), covariance=then.covariance[None])
+    # That frames which count as one are one is not for the forecast to doubt: that would be a wrong model, no bad luck.
+    apart_m2 = pad.frame_offset.std_m**2 if pad.has_one_frame and math.isfinite(pad.frame_offset.std_m) else 0.0
+    of_model = np.searchsorted(np.cumsum(mixture.weight)[:-1], uniforms)
+    vehicle = np.empty_like(normals)
+    for model, (off, stated) in enumerate(zip(mixture.off, mixture.covariance, strict=True)):
+        covariance = stated.copy()
+        for axis in range(3):
+            stated_m2 = max(covariance[axis, axis], float(pad.position_std_m[0, axis]) ** 2)
+            covariance[axis, axis] = max(stated_m2 - apart_m2, _PLACE_STD_MIN_M**2)
+        drawn = of_model == model
+        vehicle[drawn] = off + normals[drawn] @ _root(covariance).T
+    return vehicle
 
 
 def as_driven(vehicle: Array, driving: Driving, direction: Array, *, stands: bool) -> Array:

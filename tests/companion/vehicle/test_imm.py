@@ -57,6 +57,18 @@ def test_covariance_on_steady_roads_is_cautious_but_not_idle(truth: Drive) -> No
     assert 0.5 < np.mean(np.array(nis, dtype=float)) < 1.0
 
 
+def test_models_of_an_estimate_make_up_its_covariance() -> None:
+    estimate = ride(estimator(IMM, SAME_FRAME), circle(), NOMINAL, 1, from_s=8.0, until_s=8.1).estimates[0]
+    mixture = estimate.mixture
+    assert mixture is not None
+    assert mixture.weight.sum() == pytest.approx(1.0)
+    assert mixture.weight @ mixture.off == pytest.approx(np.zeros(9), abs=1e-3)
+    between = np.einsum("ki,kj->kij", mixture.off, mixture.off)
+    scale = np.sqrt(np.diag(estimate.covariance))
+    total = np.tensordot(mixture.weight, mixture.covariance + between, 1)
+    assert total / np.outer(scale, scale) == pytest.approx(estimate.covariance / np.outer(scale, scale), abs=0.02)
+
+
 def test_offset_between_the_receivers_is_learnt_from_sightings() -> None:
     truth = circle()
     without = ride(estimator(IMM), truth, replace(NOMINAL, frame_offset_m=0.5), 103)
