@@ -148,7 +148,7 @@ class ImmConfig(StrictModel):
     braking: ImmModeConfig = ImmModeConfig(
         jerk_psd_m2_s5=300.0, lateral_acceleration_psd_m2_s5=0.7, begins_after_s=40.0
     )
-    turning: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=0.3, lateral_acceleration_psd_m2_s5=80.0, begins_after_s=10.0)
+    turning: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=0.3, lateral_acceleration_psd_m2_s5=80.0, begins_after_s=40.0)
     side_jerk_psd_m2_s5: Positive = 0.005  # across the track, apart from turning; measured
     acceleration_decay_s: Positive = 3.0  # measured
     initial_speed_std_m_s: Positive = 15.0
