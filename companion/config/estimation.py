@@ -70,6 +70,11 @@ class ImmModeConfig(StrictModel):
     jerk_psd_m2_s5: Positive
     lateral_acceleration_psd_m2_s5: Positive  # drives the curvature, by v^2
     begins_after_s: Positive  # mean time after which the vehicle, in any other mode, is in this one
+    # The change of the grade in vertical curves of streets: the root mean square of 1 % in K for the least K of crests
+    # (2, 4, 7, 11 m) and sags (6, 9, 13, 18 m) for 30 to 60 km/h (AASHTO Green Book 2011, 3.4.6). Faster roads bend
+    # less: sags are made for the comfort of 0.3 m/s^2.
+    bend_std_per_m: Positive = 0.002
+    bend_acceleration_std_m_s2: Positive = 0.3
 
 
 class OscillatorConfig(StrictModel):
@@ -105,13 +110,8 @@ class HeadingConfig(StrictModel):
 class RoadConfig(StrictModel):
     """The road's grade, its bends and its roughness."""
 
-    # The change of the grade in vertical curves of streets: the root mean square of 1 % in K for the least K of crests
-    # (2, 4, 7, 11 m) and sags (6, 9, 13, 18 m) for 30 to 60 km/h (AASHTO Green Book 2011, 3.4.6). Faster roads bend
-    # less: sags are made for the comfort of 0.3 m/s^2. Curves are 10 m long and longer.
     grade_std: Positive = 0.06  # at the start; 12 % is steep for a street
-    bend_std_per_m: Positive = 0.002
-    bend_acceleration_std_m_s2: Positive = 0.3
-    bend_length_m: Positive = 10.0
+    bend_length_m: Positive = 10.0  # vertical curves are as long and longer
     height_psd_m2_m: NotNegative = 1e-5  # of the height, as ISO 8608 has it for a road of class B (waviness 2)
     # What gravity adds to an accelerometer along the vehicle: that of the grade above, for as long as 50 m of one grade
     # last at 10 m/s. A sensor's own offset is less (Bosch BMI088: 0.2 m/s^2).
@@ -136,17 +136,25 @@ class ReceiversConfig(StrictModel):
 
 
 class ImmConfig(StrictModel):
-    """Turning models of steady driving and of what interrupts it: a pedal, a brake, the wheel."""
+    """Turning models of steady driving and of what interrupts it: a pedal, a brake, the wheel, a ramp."""
 
     # Steady: such as an even driver's (the benchmark's `random` is 0.43), since a vehicle that is known 0.6 s late is
     # taken for a steady one all the while; measured in landings. Each of the others is a change that is soon over.
     # Easing: 1.5 m/s^2 that are there within a quarter of a second, as in traffic; a jerk of density 1.5^2 / 0.25 s.
     # Braking: a brake of 6 m/s^2 that is there within one period of a 10 Hz receiver, 6^2 / 0.1 s.
+    # Ramp: 12 % within 10 m, as where a drive meets a street, taken with at most 0.2 g.
     # Turning: a swerve of 4 m/s^2 to the side that is there within 0.2 s, 4^2 / 0.2 s.
     steady: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=0.3, lateral_acceleration_psd_m2_s5=0.7, begins_after_s=0.4)
     easing: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=10.0, lateral_acceleration_psd_m2_s5=0.7, begins_after_s=10.0)
     braking: ImmModeConfig = ImmModeConfig(
         jerk_psd_m2_s5=300.0, lateral_acceleration_psd_m2_s5=0.7, begins_after_s=40.0
+    )
+    ramp: ImmModeConfig = ImmModeConfig(
+        jerk_psd_m2_s5=0.3,
+        lateral_acceleration_psd_m2_s5=0.7,
+        begins_after_s=40.0,
+        bend_std_per_m=0.012,
+        bend_acceleration_std_m_s2=2.0,
     )
     turning: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=0.3, lateral_acceleration_psd_m2_s5=80.0, begins_after_s=40.0)
     side_jerk_psd_m2_s5: Positive = 0.005  # across the track, apart from turning; measured

@@ -75,7 +75,7 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
     heave = (2.0 * math.pi * swing.heave.frequency_hz, swing.heave.damping, rate_std_m_s(swing.heave))
     level = (2.0 * math.pi * swing.tilt.frequency_hz, swing.tilt.damping, 0.0)  # until it is told
     lever_m = (*deck.antenna_to_pad_m, deck.pad_height_m)
-    modes, heading = (config.steady, config.easing, config.braking, config.turning), config.heading
+    modes, heading = (config.steady, config.easing, config.braking, config.turning, config.ramp), config.heading
     return Numbers(
         motion=np.array(
             [
@@ -121,7 +121,7 @@ def _prior_variances(config: ImmConfig, *, is_afloat: bool) -> Array:
     heave_change = heave_rate * (2.0 * math.pi * swing.heave.frequency_hz) ** 2
     curvature = config.heading.curvature_std_rad_m**2
     moving = [speed, speed, acceleration, acceleration, curvature, UNKNOWN_HEADING_VARIANCE]
-    grade, bend = (0.0, 0.0) if is_afloat else (config.road.grade_std**2, config.road.bend_std_per_m**2)
+    grade, bend = (0.0, 0.0) if is_afloat else (config.road.grade_std**2, config.steady.bend_std_per_m**2)
     vertical = [0.0, grade, heave_rate, heave_change]
     tilt = swing.tilt.std**2
     tilting = [tilt, tilt * (2.0 * math.pi * swing.tilt.frequency_hz) ** 2]
@@ -137,13 +137,13 @@ def _noise(config: ImmConfig, mode: ImmModeConfig, *, is_afloat: bool) -> tuple[
         mode.lateral_acceleration_psd_m2_s5,
         config.heading.curvature_speed_min_m_s,
         config.heading.psd_rad2_s,
-        0.0 if is_afloat else config.road.bend_std_per_m,
+        0.0 if is_afloat else mode.bend_std_per_m,
         0.0,
         0.0,
         2.0 * config.receivers.clock_std_s**2 / config.receivers.clock_time_s,
         config.heading.curvature_std_rad_m,
         0.0,
-        config.road.bend_acceleration_std_m_s2,
+        mode.bend_acceleration_std_m_s2,
         config.road.bend_length_m,
         0.0 if is_afloat else config.road.height_psd_m2_m,
         2.0 * config.road.gravity_leak_std_m_s2**2 / config.road.gravity_leak_time_s,

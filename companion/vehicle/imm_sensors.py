@@ -197,10 +197,14 @@ def read_acceleration(x: Array) -> tuple[Array, Array]:
 def read_tilt(x: Array) -> tuple[Array, Array]:
     """Return roll, pitch, rad, and their rates, rad/s, (4,), as the vehicle's unit tells them; the Jacobian (4, 24).
 
-    A road that climbs is nose up, which is negative; how fast that changes is slower than any swing.
+    A road that climbs is nose up, which is negative, and the vehicle turns with it as the road bends.
     """
     z, H = np.zeros(4), np.zeros((4, SIZE))
-    z[0], z[1], z[2], z[3] = x[ROLL] + x[MOUNT], x[PITCH] - x[9] + x[MOUNT + 1], x[ROLL_RATE], x[PITCH_RATE]
+    hx, hy = math.cos(x[7]), math.sin(x[7])
+    forward = hx * x[2] + hy * x[3]
+    z[0], z[1], z[2] = x[ROLL] + x[MOUNT], x[PITCH] - x[9] + x[MOUNT + 1], x[ROLL_RATE]
+    z[3] = x[PITCH_RATE] - x[BEND] * forward
+    H[3, BEND], H[3, 2], H[3, 3], H[3, 7] = -forward, -x[BEND] * hx, -x[BEND] * hy, -x[BEND] * (hx * x[3] - hy * x[2])
     H[0, ROLL], H[1, PITCH], H[1, 9], H[2, ROLL_RATE], H[3, PITCH_RATE] = 1.0, 1.0, -1.0, 1.0, 1.0
     H[0, MOUNT], H[1, MOUNT + 1] = 1.0, 1.0
     return z, H

@@ -36,6 +36,7 @@ IMM = ImmModel(
         easing=MODE,
         braking=MODE,
         turning=MODE,
+        ramp=MODE,
         receivers=ReceiversConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0, clock_std_s=0.0),
         heading=HeadingConfig(course_std_rad=1e3),
     )
@@ -92,13 +93,13 @@ def wander(x: Array, rng: np.random.Generator) -> Array:
             MODE.lateral_acceleration_psd_m2_s5,
             config.heading.curvature_speed_min_m_s,
             config.heading.psd_rad2_s,
-            config.road.bend_std_per_m,
+            MODE.bend_std_per_m,
             0.0,
             0.0,
             0.0,
             config.heading.curvature_std_rad_m,
             0.0,
-            config.road.bend_acceleration_std_m_s2,
+            MODE.bend_acceleration_std_m_s2,
             config.road.bend_length_m,
             config.road.height_psd_m2_m,
             0.0,
@@ -178,4 +179,5 @@ def test_default_configuration_keeps_the_modes_apart() -> None:
     config = EstimatorConfig().imm
     assert config.easing.jerk_psd_m2_s5 > 10.0 * config.steady.jerk_psd_m2_s5
     assert config.braking.jerk_psd_m2_s5 > 10.0 * config.easing.jerk_psd_m2_s5
+    assert config.ramp.bend_std_per_m > 5.0 * config.steady.bend_std_per_m
     assert config.turning.lateral_acceleration_psd_m2_s5 > 10.0 * config.steady.lateral_acceleration_psd_m2_s5

@@ -7,13 +7,15 @@ import pytest
 from scipy import stats
 
 from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig, ReceiversConfig
+from companion.core.data import Measurement, Quantity
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_noise as noises
-from companion.vehicle.imm_swing import SIZE
+from companion.vehicle import imm_sensors as sensors
+from companion.vehicle.imm_swing import PITCH, SIZE
 from companion.vehicle.pad import pad_path
 from link.messages import PadGeometry
-from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, NOMINAL, climb
-from tests.companion.vehicle.rides import estimator, ride
+from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, NOMINAL, Drive, climb
+from tests.companion.vehicle.rides import arrivals, estimator, now_ns, ride
 from tests.companion.vehicle.test_imm_kernels import HEAVE, NOISE, TAU_S, TILT, TILT_NOISE
 
 SAME_FRAME = EstimatorConfig(
@@ -86,3 +88,45 @@ def test_height_on_a_climb_is_as_sure_as_is_stated(grade: float, speed_m_s: floa
         errors_m.append(pad_path(forecast, PAD).position_enu_m[0, 2] - truth.pad_at(float(done.t_s[-1]))[2])
     assert np.sum(nees) < stats.chi2.ppf(0.975, 2 * len(nees))
     assert np.abs(errors_m).max() < 0.06
+
+
+def _told_pitches(truth: Drive, until_s: float, seed: int) -> list[Measurement]:
+    """What an inertial unit tells fifty times a second of a body that follows its road."""
+    rng, variances = np.random.default_rng(seed), np.diag([0.0035**2, 0.0035**2, 0.009**2, 0.009**2])
+    times = np.arange(0.0, until_s, 0.02)
+    grade = np.array([truth.at(t)[1][2] / np.hypot(*truth.at(t)[1][:2]) for t in times.tolist()])
+    pitch = np.stack([np.zeros(len(times)), -grade, np.zeros(len(times)), -np.gradient(grade, times)], axis=1)
+    noise = rng.standard_normal(pitch.shape) * np.sqrt(np.diag(variances))
+    return [
+        Measurement(t_ns=now_ns(t), quantity=Quantity.TILT, value=value, covariance=variances)
+        for t, value in zip(times.tolist(), pitch + noise, strict=True)
+    ]
+
+
+@pytest.mark.parametrize(("grade", "speed_m_s"), [(0.12, 6.0), (0.12, 12.0), (-0.12, 12.0)])
+@pytest.mark.parametrize("after_s", [0.3, 0.6, 2.0])
+def test_ramp_that_the_vehicles_unit_tells_is_no_swing_of_its_body(
+    grade: float, speed_m_s: float, after_s: float
+) -> None:
+    truth = climb(grade, speed_m_s, from_s=8.0)
+    late_m_s = []
+    for seed in range(4):
+        told = [one for one in arrivals(truth, NOMINAL, 500 + seed) if one.t_ns < now_ns(8.0 + after_s - 0.06)]
+        chosen = estimator(EstimatorKind.IMM, SAME_FRAME)
+        memory = chosen.fuse(None, [*told, *_told_pitches(truth, 8.0 + after_s, seed)])
+        forecast = chosen.forecast(memory, now_ns(8.0 + after_s), np.array([0.0, 0.1]))
+        assert forecast is not None
+        late_m_s.append(truth.at(8.0 + after_s)[1][2] - forecast.velocity_enu_m_s[0, 2])
+    assert np.abs(np.mean(late_m_s)) < 0.2 * abs(grade) * speed_m_s
+
+
+def test_pitch_rate_that_is_told_is_the_bodys_on_a_road_that_bends() -> None:
+    x = np.zeros(SIZE)
+    x[2:4], x[7] = 8.0 * np.array([math.cos(0.4), math.sin(0.4)]), 0.4
+    x[9], x[kernels.BEND], x[PITCH], x[PITCH + 1] = 0.03, 0.004, 0.01, -0.2
+    told, H = sensors.read_tilt(x)
+    assert told == pytest.approx([0.0, 0.01 - 0.03, 0.0, -0.2 - 0.004 * 8.0])
+    for i in range(SIZE):
+        step = 1e-6 * np.eye(SIZE)[i]
+        slope = (sensors.read_tilt(x + step)[0] - sensors.read_tilt(x - step)[0]) / 2e-6
+        assert H[:, i] == pytest.approx(slope, abs=1e-6)
