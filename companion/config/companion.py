@@ -23,11 +23,11 @@ class LimitsConfig(StrictModel):
     The acceleration leaves half of a 45 degree tilt (9.8 m/s^2) to drag, wind and feedback.
     """
 
-    speed_max_m_s: Positive = 30.0  # of the benchmark's airframe
+    speed_max_m_s: Positive = 30.0  # drag, 0.17 1/s by mass, takes half of a 45 degree tilt then
     climb_max_m_s: Positive = 3.0  # PX4 MPC_Z_VEL_MAX_UP
     descent_max_m_s: Positive = 1.5  # PX4 MPC_Z_VEL_MAX_DN
     acceleration_max_m_s2: Positive = 5.0
-    vertical_acceleration_max_m_s2: Positive = 3.0
+    vertical_acceleration_max_m_s2: Positive = 3.0  # upwards and downwards; PX4 MPC_ACC_DOWN_MAX, of its own modes
     jerk_max_m_s3: Positive = 20.0
     vertical_jerk_max_m_s3: Positive = 20.0
     range_max_m: Positive = 2000.0  # from the waiting point, where an abort begins; it ends v^2 / 4 + 2 v farther

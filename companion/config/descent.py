@@ -13,7 +13,7 @@ class AlignmentConfig(StrictModel):
     height_m: Positive = 1.5  # above the pad
     begin_distance_m: Positive = 1.5  # horizontal, at which alignment begins
     distance_m: Positive = 0.25
-    speed_m_s: Positive = 0.5
+    speed_m_s: Positive = 0.5  # against the pad, at which it is aligned: S2's limit at contact
     hold_s: NotNegative = 0.2
     time_limit_s: Positive = 30.0
 
@@ -22,7 +22,8 @@ class SinkConfig(StrictModel):
     """How fast the drone sinks towards the pad, and how far."""
 
     rate_max_m_s: Positive = 1.2
-    gain_hz: Positive = 1.0  # sink rate per metre of height left
+    # Sink rate per metre of height left: as PX4's MPC_Z_P and ArduPilot's PSC_POSZ_P go to a height.
+    gain_hz: Positive = 1.0
     contact_rate_m_s: Positive = 0.45  # S2 asks for 0.7 at most
     press_depth_m: Positive = 0.5  # how far below the pad the setpoint goes on, so that contact is firm
 
@@ -30,7 +31,7 @@ class SinkConfig(StrictModel):
 class ConeConfig(StrictModel):
     """The cone above the pad that the drone descends in."""
 
-    radius_at_pad_m: Positive = 0.3  # 0.2 of the width of a pad narrower than 1.5 m
+    radius_at_pad_m: Positive = 0.3  # S2's limit; 0.2 of the width of a pad narrower than 1.5 m
     slope: NotNegative = 0.35  # metres of radius per metre of height
 
 
@@ -85,7 +86,8 @@ class SwayConfig(StrictModel):
     # the pad the drone then waits at the commit height for the gust or the correction to pass.
     acceleration_max_m_s2: Positive = 1.5
     calm_hold_s: NotNegative = 0.25
-    height_min_m: NotNegative = 0.1  # of the lowest foot, below which the contact comes before a stop
+    # Of the lowest foot, below which the contact comes before a stop: 0.45 m/s, 0.15 s late, then 3 m/s^2.
+    height_min_m: NotNegative = 0.1
 
 
 class DescentConfig(StrictModel):

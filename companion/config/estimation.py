@@ -38,8 +38,8 @@ class LkfConfig(StrictModel):
 
     jerk_psd_m2_s5: Positive = 6.0  # white jerk, per horizontal axis; measured
     vertical_jerk_psd_m2_s5: Positive = 1.0  # measured
-    initial_speed_std_m_s: Positive = 15.0  # a vehicle met at any speed of the benchmark
-    initial_acceleration_std_m_s2: Positive = 3.0
+    initial_speed_std_m_s: Positive = 15.0  # at the first fix; two of them are `limits.speed_max_m_s`
+    initial_acceleration_std_m_s2: Positive = 3.0  # at the first fix; two of them are a brake of 6 m/s^2
 
 
 class LkfReportConfig(StrictModel):
@@ -60,7 +60,7 @@ class UkfConfig(StrictModel):
     heading_psd_rad2_s: NotNegative = 1e-4  # side slip, scaled by speed; 0.6 degrees in 1 s
     vertical_acceleration_psd_m2_s3: Positive = 0.3  # measured
     acceleration_decay_s: Positive = 3.0  # of the mean in predictions; measured
-    heading_known_speed_m_s: Positive = 1.0  # from which the course is taken for the heading
+    heading_known_speed_m_s: Positive = 1.0  # from which the course is the heading, as in `imm.heading`
     curvature_std_rad_m: Positive = 0.1  # at the start; a car's tightest turn is some 0.2
 
 
@@ -99,6 +99,7 @@ class HeadingConfig(StrictModel):
     curvature_speed_min_m_s: Positive = 3.0  # below it the curvature's noise grows no further
     psd_rad2_s: Positive = 1e-4  # side slip; 0.6 degrees in 1 s
     course_std_rad: Positive = 0.3  # side slip of 3 degrees that lasts 5 s, as white noise at 10 Hz
+    # From which the course tells the heading: 0.1 m/s of error are 0.1 rad then, as of a low-cost attitude sensor.
     course_speed_min_m_s: Positive = 1.0
     known_std_rad: Positive = 0.5  # worse than this the heading is not told
     curvature_std_rad_m: Positive = 0.1  # at the start; a car's tightest turn is some 0.2
@@ -122,7 +123,8 @@ class RoadConfig(StrictModel):
 class ReceiversConfig(StrictModel):
     """The errors of the vehicle's and the drone's receivers, and of the clock that dates the vehicle's fixes."""
 
-    frame_offset_std_m: NotNegative = 1.0  # between the two receivers' frames; benchmark: 0.5 and 1.2 m
+    # Between the two receivers' frames: ETRS89 has moved 2.5 cm a year against WGS 84 since 1989, 0.9 m by 2026.
+    frame_offset_std_m: NotNegative = 1.0
     frame_offset_walk_m2_s: NotNegative = 1e-5
     fix_white_std_max_m: Positive = 0.3  # what a fix states beyond this is slow (Gauss-Markov) error; benchmark
     fix_bias_time_s: Positive = 60.0  # its time constant; benchmark
@@ -144,6 +146,7 @@ class ImmConfig(StrictModel):
     # Braking: a brake of 6 m/s^2 that is there within one period of a 10 Hz receiver, 6^2 / 0.1 s.
     # Ramp: 12 % within 10 m, as where a drive meets a street, taken with at most 0.2 g.
     # Turning: a swerve of 4 m/s^2 to the side that is there within 0.2 s, 4^2 / 0.2 s.
+    # A pedal begins as often as in `forecast/drivers.py`, every 9.0 s.
     steady: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=0.3, lateral_acceleration_psd_m2_s5=0.7, begins_after_s=0.4)
     easing: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=10.0, lateral_acceleration_psd_m2_s5=0.7, begins_after_s=10.0)
     braking: ImmModeConfig = ImmModeConfig(
@@ -159,8 +162,8 @@ class ImmConfig(StrictModel):
     turning: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=0.3, lateral_acceleration_psd_m2_s5=80.0, begins_after_s=40.0)
     side_jerk_psd_m2_s5: Positive = 0.005  # across the track, apart from turning; measured
     acceleration_decay_s: Positive = 3.0  # measured
-    initial_speed_std_m_s: Positive = 15.0
-    initial_acceleration_std_m_s2: Positive = 3.0
+    initial_speed_std_m_s: Positive = 15.0  # at the first fix; two of them are `limits.speed_max_m_s`
+    initial_acceleration_std_m_s2: Positive = 3.0  # at the first fix; two of them are a brake of 6 m/s^2
     heading: HeadingConfig = HeadingConfig()
     road: RoadConfig = RoadConfig()
     # Benchmark: `rough_road` heaves 0.1 m at 0.5 to 1 Hz, the others not at all; bodies pitch and roll on their wheels
