@@ -64,17 +64,41 @@ class UkfConfig(StrictModel):
     curvature_std_rad_m: Positive = 0.1  # at the start; a car's tightest turn is some 0.2
 
 
-class ImmModeConfig(StrictModel):
-    """The noise of one of the interacting models."""
+class SteadyConfig(StrictModel):
+    """How a vehicle drives that does nothing new: the first of the interacting models."""
 
-    jerk_psd_m2_s5: Positive
-    lateral_acceleration_psd_m2_s5: Positive  # drives the curvature, by v^2
-    begins_after_s: Positive  # mean time after which the vehicle, in any other mode, is in this one
+    # Such as an even driver's (the benchmark's `random` is 0.43), since a vehicle that is known 0.6 s late is taken for
+    # a steady one all the while; measured in landings.
+    jerk_psd_m2_s5: Positive = 0.3
+    lateral_acceleration_psd_m2_s5: Positive = 0.7  # drives the curvature, by v^2
     # The change of the grade in vertical curves of streets: the root mean square of 1 % in K for the least K of crests
     # (2, 4, 7, 11 m) and sags (6, 9, 13, 18 m) for 30 to 60 km/h (AASHTO Green Book 2011, 3.4.6). Faster roads bend
     # less: sags are made for the comfort of 0.3 m/s^2.
     bend_std_per_m: Positive = 0.002
     bend_acceleration_std_m_s2: Positive = 0.3
+    begins_after_s: Positive = 0.4  # mean time after which anything else is over: such changes are soon there
+
+
+class PedalConfig(StrictModel):
+    """A model that differs from the steady one by how the speed changes."""
+
+    jerk_psd_m2_s5: Positive
+    begins_after_s: Positive  # mean time after which it begins, in any other model
+
+
+class TurningConfig(StrictModel):
+    """A model that differs from the steady one by how the vehicle is steered."""
+
+    lateral_acceleration_psd_m2_s5: Positive = 80.0  # a swerve of 4 m/s^2 that is there within 0.2 s, 4^2 / 0.2 s
+    begins_after_s: Positive = 40.0  # as rare as a hard brake
+
+
+class RampConfig(StrictModel):
+    """A model that differs from the steady one by how the road bends upwards or down."""
+
+    bend_std_per_m: Positive = 0.012  # 12 % within 10 m, as where a drive meets a street
+    bend_acceleration_std_m_s2: Positive = 2.0  # 0.2 g, with which such are taken
+    begins_after_s: Positive = 40.0  # as rare as a hard brake
 
 
 class OscillatorConfig(StrictModel):
@@ -140,26 +164,15 @@ class ReceiversConfig(StrictModel):
 class ImmConfig(StrictModel):
     """Turning models of steady driving and of what interrupts it: a pedal, a brake, the wheel, a ramp."""
 
-    # Steady: such as an even driver's (the benchmark's `random` is 0.43), since a vehicle that is known 0.6 s late is
-    # taken for a steady one all the while; measured in landings. Each of the others is a change that is soon over.
-    # Easing: 1.5 m/s^2 that are there within a quarter of a second, as in traffic; a jerk of density 1.5^2 / 0.25 s.
-    # Braking: a brake of 6 m/s^2 that is there within one period of a 10 Hz receiver, 6^2 / 0.1 s.
-    # Ramp: 12 % within 10 m, as where a drive meets a street, taken with at most 0.2 g.
-    # Turning: a swerve of 4 m/s^2 to the side that is there within 0.2 s, 4^2 / 0.2 s.
-    # A pedal begins as often as in `forecast/drivers.py`, every 9.0 s.
-    steady: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=0.3, lateral_acceleration_psd_m2_s5=0.7, begins_after_s=0.4)
-    easing: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=10.0, lateral_acceleration_psd_m2_s5=0.7, begins_after_s=10.0)
-    braking: ImmModeConfig = ImmModeConfig(
-        jerk_psd_m2_s5=300.0, lateral_acceleration_psd_m2_s5=0.7, begins_after_s=40.0
-    )
-    ramp: ImmModeConfig = ImmModeConfig(
-        jerk_psd_m2_s5=0.3,
-        lateral_acceleration_psd_m2_s5=0.7,
-        begins_after_s=40.0,
-        bend_std_per_m=0.012,
-        bend_acceleration_std_m_s2=2.0,
-    )
-    turning: ImmModeConfig = ImmModeConfig(jerk_psd_m2_s5=0.3, lateral_acceleration_psd_m2_s5=80.0, begins_after_s=40.0)
+    steady: SteadyConfig = SteadyConfig()
+    # A pedal that is eased or touched, 1.5 m/s^2 within a quarter of a second: a jerk of density 1.5^2 / 0.25 s. In
+    # traffic that begins every 9 s (`forecast/drivers.py`).
+    easing: PedalConfig = PedalConfig(jerk_psd_m2_s5=10.0, begins_after_s=10.0)
+    # A brake of 6 m/s^2 that is there within one period of a 10 Hz receiver, 6^2 / 0.1 s. It is so rare that fixes of
+    # 0.1 m at 100 Hz leave little noise, while a brake seen through them is found 0.1 s later; measured.
+    braking: PedalConfig = PedalConfig(jerk_psd_m2_s5=300.0, begins_after_s=40.0)
+    turning: TurningConfig = TurningConfig()
+    ramp: RampConfig = RampConfig()
     side_jerk_psd_m2_s5: Positive = 0.005  # across the track, apart from turning; measured
     acceleration_decay_s: Positive = 3.0  # measured
     initial_speed_std_m_s: Positive = 15.0  # at the first fix; two of them are `limits.speed_max_m_s`

@@ -8,7 +8,7 @@ import numpy as np
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_kernels import BEND
-from companion.vehicle.imm_mixing import Modes, combine, glide, heading_variance, shifted, with_direction
+from companion.vehicle.imm_mixing import Modes, combine, glide, heading_variance, shifted, steps_of, with_direction
 from companion.vehicle.imm_sensors import antenna_velocity, horizontal_acceleration
 from companion.vehicle.imm_swing import MOUNT, ROLL, SIZE, antenna_swing, pad_swing, pad_swing_acceleration
 from companion.vehicle.small_matrices import carried_through, times
@@ -65,7 +65,7 @@ def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) ->
     for i in range(n):
         ahead_s = offset_s[i] - passed_s
         if ahead_s > 0.0:
-            x, P = glide(x, P, ahead_s, noise, motion)
+            x, P = glide(x, P, steps_of(ahead_s, motion), noise, motion)
             passed_s = offset_s[i]
         means[i] = x
         _, S = shifted(x, P, motion[5:8], 1.0)

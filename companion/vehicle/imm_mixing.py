@@ -21,6 +21,8 @@ from companion.vehicle.imm_swing import SIZE, heave_step, smooth_step
 from companion.vehicle.small_matrices import carried_through
 
 Modes = tuple[Array, Array, Array]
+Steps = tuple[int, float, Array, Array, Array, Array]
+"""Their number and length, s, and transition and noise of the heave, (3, 3), and of roll and pitch, (2, 2, 2)."""
 
 STEP_MAX_S = 0.1  # 0.04 rad at 10 m/s with 4 m/s^2 to the side
 
@@ -89,27 +91,39 @@ def shifted(x: Array, P: Array, lever: Array, sign: float) -> tuple[Array, Array
 
 
 @compiled_kernel
-def glide(x: Array, P: Array, dt_s: float, noise: Array, motion: Array) -> tuple[Array, Array]:
-    """Return mean and covariance of one mode `dt_s` later, in equal steps.
+def steps_of(dt_s: float, motion: Array) -> Steps:
+    """Return in how many equal steps `dt_s` passes, and how the deck swings in one of them.
+
+    Args:
+        dt_s: time to pass.
+        motion: (16,), see the module.
+    """
+    count = max(math.ceil(dt_s / STEP_MAX_S - 1e-9), 1)
+    step_s = dt_s / count
+    heave, heave_noise = smooth_step(step_s, motion[1], motion[2], motion[3])
+    tilt, tilt_noise = np.empty((2, 2, 2)), np.empty((2, 2, 2))
+    for i in range(2):
+        tilt[i], tilt_noise[i] = heave_step(step_s, motion[10 + 3 * i], motion[11 + 3 * i], motion[12 + 3 * i])
+    return count, step_s, heave, heave_noise, tilt, tilt_noise
+
+
+@compiled_kernel
+def glide(x: Array, P: Array, steps: Steps, noise: Array, motion: Array) -> tuple[Array, Array]:
+    """Return mean and covariance of one mode after `steps`.
 
     It is the pad's centre that moves as `advance` says, and the antenna swings about it.
 
     Args:
         x: mean (24,).
         P: covariance (24, 24).
-        dt_s: time to pass.
+        steps: as `steps_of` has them; the same for all modes.
         noise: (16,) as `process_noise` takes it.
         motion: (16,), see the module; a lever arm of zero where it has no known direction.
     """
-    steps = max(math.ceil(dt_s / STEP_MAX_S - 1e-9), 1)
-    step_s = dt_s / steps
-    heave, heave_noise = smooth_step(step_s, motion[1], motion[2], motion[3])
-    tilt, tilt_noise = np.empty((2, 2, 2)), np.empty((2, 2, 2))
-    for i in range(2):
-        tilt[i], tilt_noise[i] = heave_step(step_s, motion[10 + 3 * i], motion[11 + 3 * i], motion[12 + 3 * i])
+    count, step_s, heave, heave_noise, tilt, tilt_noise = steps
     clock_left, leak_left = math.exp(-step_s / motion[4]), math.exp(-step_s / motion[9])
     x, P = shifted(x, P, motion[5:8], 1.0)
-    for _ in range(steps):
+    for _ in range(count):
         Q = process_noise(x, step_s, noise, heave_noise, tilt_noise)
         turn_left = curvature_left(math.hypot(x[2], x[3]), step_s, noise)
         bend_left, _ = bend_step(x, step_s, noise)
@@ -156,6 +170,7 @@ def predict_modes(
     """Return the filter `dt_s` later; `noises` (n, 16), the others as `switching` and `with_direction` have them."""
     directed = with_direction(motion, modes, known_variance)
     means, covariances, weights = mix(modes, switching(begins_after_s, dt_s))
+    steps = steps_of(dt_s, directed)
     for j in range(len(weights)):
-        means[j], covariances[j] = glide(means[j], covariances[j], dt_s, noises[j], directed)
+        means[j], covariances[j] = glide(means[j], covariances[j], steps, noises[j], directed)
     return means, covariances, weights

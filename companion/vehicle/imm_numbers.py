@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from companion.config.estimation import ImmConfig, ImmModeConfig, SwingConfig
+from companion.config.estimation import ImmConfig, SteadyConfig, SwingConfig
 from companion.core.data import Array
 from companion.vehicle.deck_motion import rate_std_m_s
 from companion.vehicle.imm_noise import CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST, HEADING_NOISE
@@ -75,7 +75,7 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
     heave = (2.0 * math.pi * swing.heave.frequency_hz, swing.heave.damping, rate_std_m_s(swing.heave))
     level = (2.0 * math.pi * swing.tilt.frequency_hz, swing.tilt.damping, 0.0)  # until it is told
     lever_m = (*deck.antenna_to_pad_m, deck.pad_height_m)
-    modes, heading = (config.steady, config.easing, config.braking, config.turning, config.ramp), config.heading
+    modes, heading = _modes(config), config.heading
     return Numbers(
         motion=np.array(
             [
@@ -129,7 +129,13 @@ def _prior_variances(config: ImmConfig, *, is_afloat: bool) -> Array:
     return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0, *driven])
 
 
-def _noise(config: ImmConfig, mode: ImmModeConfig, *, is_afloat: bool) -> tuple[float, ...]:
+def _modes(config: ImmConfig) -> tuple[SteadyConfig, ...]:
+    """Return the steady model, and one for each thing that may happen, which is steady otherwise."""
+    happenings = (config.easing, config.braking, config.turning, config.ramp)
+    return (config.steady, *(config.steady.model_copy(update=dict(one)) for one in happenings))
+
+
+def _noise(config: ImmConfig, mode: SteadyConfig, *, is_afloat: bool) -> tuple[float, ...]:
     """Return one mode's noise; water has no grades."""
     return (
         mode.jerk_psd_m2_s5,

@@ -9,9 +9,12 @@ from companion.config.estimation import (
     EstimatorConfig,
     HeadingConfig,
     ImmConfig,
-    ImmModeConfig,
     LkfConfig,
+    PedalConfig,
+    RampConfig,
     ReceiversConfig,
+    SteadyConfig,
+    TurningConfig,
 )
 from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle import imm_kernels as kernels
@@ -29,14 +32,19 @@ from tests.companion.vehicle.rides import now_ns
 DT_S, STEPS, RUNS, SETTLED = 0.1, 150, 36, 60
 STATES = np.array([0, 1, 2, 3, 4, 5, 6, 8, 9, kernels.BEND])
 FIX_STD_M, VELOCITY_STD_M_S = 0.02, 0.05
-MODE = ImmModeConfig(jerk_psd_m2_s5=0.5, lateral_acceleration_psd_m2_s5=0.5, begins_after_s=1.0)
+MODE = SteadyConfig(jerk_psd_m2_s5=0.5, lateral_acceleration_psd_m2_s5=0.5, begins_after_s=1.0)
+PEDAL = PedalConfig(jerk_psd_m2_s5=MODE.jerk_psd_m2_s5, begins_after_s=1.0)
 IMM = ImmModel(
     config=ImmConfig(
         steady=MODE,
-        easing=MODE,
-        braking=MODE,
-        turning=MODE,
-        ramp=MODE,
+        easing=PEDAL,
+        braking=PEDAL,
+        turning=TurningConfig(lateral_acceleration_psd_m2_s5=MODE.lateral_acceleration_psd_m2_s5, begins_after_s=1.0),
+        ramp=RampConfig(
+            bend_std_per_m=MODE.bend_std_per_m,
+            bend_acceleration_std_m_s2=MODE.bend_acceleration_std_m_s2,
+            begins_after_s=1.0,
+        ),
         receivers=ReceiversConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0, clock_std_s=0.0),
         heading=HeadingConfig(course_std_rad=1e3),
     )

@@ -152,7 +152,8 @@ def test_compiled_kernels_equal_their_python(seed: int) -> None:
             sensors.observe(kind, x, LEVER, True), sensors.observe.py_func(kind, x, LEVER, True), strict=True
         ):
             assert mine == pytest.approx(python, rel=1e-12)
-    glided, python_glided = mixing.glide(x, P, 0.33, NOISE, MOTION), mixing.glide.py_func(x, P, 0.33, NOISE, MOTION)
+    steps = mixing.steps_of(0.33, MOTION)
+    glided, python_glided = mixing.glide(x, P, steps, NOISE, MOTION), mixing.glide.py_func(x, P, steps, NOISE, MOTION)
     for mine, python in zip(glided, python_glided, strict=True):
         assert mine == pytest.approx(python, rel=1e-9, abs=1e-12)
 

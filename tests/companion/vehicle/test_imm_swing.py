@@ -44,7 +44,8 @@ def test_pad_moves_as_if_there_were_no_lever_arm(seed: int) -> None:
     pad = x.copy()
     pad[PLACE] = pad_place(x)
     bare = np.where(np.isin(np.arange(len(MOTION)), (5, 6, 7, 8)), 0.0, MOTION)
-    turned, straight = mixing.glide(x, P, 0.33, QUIET, MOTION)[0], mixing.glide(pad, P, 0.33, QUIET, bare)[0]
+    steps = mixing.steps_of(0.33, MOTION)
+    turned, straight = mixing.glide(x, P, steps, QUIET, MOTION)[0], mixing.glide(pad, P, steps, QUIET, bare)[0]
     assert pad_place(turned) == pytest.approx(straight[PLACE], abs=1e-12)
     rest = np.delete(np.arange(SIZE), PLACE)
     assert turned[rest] == pytest.approx(straight[rest], abs=1e-12)
@@ -68,7 +69,7 @@ def test_shift_to_the_pad_is_linear_in_what_it_does_to_the_covariance(seed: int)
 def test_antenna_s_velocity_is_how_fast_its_place_changes(seed: int) -> None:
     x, P = a_state(seed), a_covariance(seed)
     x[TILTED] = 0.0  # that a swung antenna turns with the vehicle as well is left out
-    at = np.array([x, mixing.glide(x, P, 1e-4, QUIET, MOTION)[0]])
+    at = np.array([x, mixing.glide(x, P, mixing.steps_of(1e-4, MOTION), QUIET, MOTION)[0]])
     position, velocity, _ = forecasts.kinematics(at, MOTION)
     assert (position[1] - position[0]) / 1e-4 == pytest.approx(velocity[0], abs=2e-3)
     assert sensors.antenna_velocity(x, np.zeros(4))[0][:2] == pytest.approx(x[2:4])
