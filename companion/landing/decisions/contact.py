@@ -37,6 +37,7 @@ class Signs(Struct, frozen=True, kw_only=True):
         landed: the autopilot's own word.
         pad_half_width_m: from the pad's centre to its nearest edge.
         passed_m: least horizontal distance from the pad's centre within the time that a jolt is seen for.
+        sink_left_m_s: by how much its autopilot lets the drone sink faster than it does.
     """
 
     height_m: float | None
@@ -49,6 +50,7 @@ class Signs(Struct, frozen=True, kw_only=True):
     range_carried_m: float | None = None
     passed_m: float | None = None
     pad_half_width_m: float = math.inf
+    sink_left_m_s: float = math.inf
 
 
 class Verdict(Enum):
@@ -77,6 +79,9 @@ def signs_of(s: Situation) -> Signs:
         range_carried_m=s.below.range_carried_m,
         pad_half_width_m=math.inf if s.pad is None else s.pad.half_width_m,
         passed_m=None if relative is None or drone is None else _passed_m(relative, _JOLT_S + drone.age_s),
+        sink_left_m_s=math.inf
+        if drone is None or s.limits is None
+        else s.limits.descent_max_m_s + drone.velocity_enu_m_s[2],
     )
 
 
@@ -238,5 +243,12 @@ def _is_no_fall(acceleration_up_m_s2: float, config: TouchdownConfig) -> bool:
 
 
 def _is_supported(signs: Signs, config: TouchdownConfig) -> bool:
+    """Return whether something holds the drone up above its setpoint.
+
+    One that sinks as fast as it may does not follow a setpoint that sinks faster: over a deck that falls as fast it
+    seems to stand. Only the range finder tells then whether it does.
+    """
     sunk = signs.setpoint_below_m is not None and signs.setpoint_below_m > config.blocked_depth_m
-    return sunk or signs.landed is True
+    seen_m = signs.range_height_m
+    touches = seen_m is not None and seen_m <= config.range_finder.contact_height_max_m
+    return (sunk and (touches or signs.sink_left_m_s > config.blocked_speed_m_s)) or signs.landed is True

@@ -122,6 +122,26 @@ def test_drone_that_stands_on_the_pad_is_in_contact_and_may_be_switched_off() ->
     assert may_force_motors_off(signs, 0.0, CONFIG)
 
 
+@pytest.mark.parametrize(
+    ("range_height_m", "descent_max_m_s", "expected"),
+    [
+        (0.2, 1.5, Verdict.AIRBORNE),
+        (None, 1.5, Verdict.AIRBORNE),
+        (0.05, 1.5, Verdict.CONTACT),
+        (0.2, 3.0, Verdict.DISPUTED),
+        (None, 3.0, Verdict.CONTACT),
+    ],
+)
+def test_drone_that_sinks_as_fast_as_it_may_onto_a_deck_that_falls_as_fast_is_not_held_up(
+    range_height_m: float | None, descent_max_m_s: float, expected: Verdict
+) -> None:
+    pad = pad_at((4.0, 1.0, -1.45))
+    facts = replace(on_pad(), drone=drone_at(0.0, 0.1, pad=pad), pad=pad)
+    limits = replace(CONFIG.limits.flight_limits(), descent_max_m_s=descent_max_m_s)
+    signs = signs_of(changed(facts, limits=limits, range_height_m=range_height_m))
+    assert verdict(signs, CONFIG) is expected
+
+
 def test_drone_that_slides_off_the_pad_while_it_is_pressed_down_is_switched_off() -> None:
     facts = on_pad()
     beside = changed(facts, drone=drone_at(0.0, 2.0 * over_pad_radius_m(pad_at().half_width_m, CONFIG), pad=pad_at()))
