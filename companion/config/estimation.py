@@ -76,14 +76,23 @@ class SteadyConfig(StrictModel):
     # less: sags are made for the comfort of 0.3 m/s^2.
     bend_std_per_m: Positive = 0.002
     bend_acceleration_std_m_s2: Positive = 0.3
-    begins_after_s: Positive = 0.4  # mean time after which anything else is over: such changes are soon there
+    begins_after_s: Positive = 0.4  # mean time after which anything else is over; not how long this one lasts
 
 
-class PedalConfig(StrictModel):
-    """A model that differs from the steady one by how the speed changes."""
+class EasingConfig(StrictModel):
+    """A model that differs from the steady one by a pedal that is eased or touched."""
 
-    jerk_psd_m2_s5: Positive
-    begins_after_s: Positive  # mean time after which it begins, in any other model
+    jerk_psd_m2_s5: Positive = 10.0  # 1.5 m/s^2 within a quarter of a second, 1.5^2 / 0.25 s
+    begins_after_s: Positive = 10.0  # in traffic every 9 s (`forecast/drivers.py`)
+
+
+class BrakingConfig(StrictModel):
+    """A model that differs from the steady one by a brake."""
+
+    jerk_psd_m2_s5: Positive = 300.0  # 6 m/s^2 that are there within one period of a 10 Hz receiver, 6^2 / 0.1 s
+    # So rare that fixes of 0.1 m at 100 Hz leave little noise, while a brake seen through them is found 0.1 s later;
+    # measured.
+    begins_after_s: Positive = 40.0
 
 
 class TurningConfig(StrictModel):
@@ -165,12 +174,8 @@ class ImmConfig(StrictModel):
     """Turning models of steady driving and of what interrupts it: a pedal, a brake, the wheel, a ramp."""
 
     steady: SteadyConfig = SteadyConfig()
-    # A pedal that is eased or touched, 1.5 m/s^2 within a quarter of a second: a jerk of density 1.5^2 / 0.25 s. In
-    # traffic that begins every 9 s (`forecast/drivers.py`).
-    easing: PedalConfig = PedalConfig(jerk_psd_m2_s5=10.0, begins_after_s=10.0)
-    # A brake of 6 m/s^2 that is there within one period of a 10 Hz receiver, 6^2 / 0.1 s. It is so rare that fixes of
-    # 0.1 m at 100 Hz leave little noise, while a brake seen through them is found 0.1 s later; measured.
-    braking: PedalConfig = PedalConfig(jerk_psd_m2_s5=300.0, begins_after_s=40.0)
+    easing: EasingConfig = EasingConfig()
+    braking: BrakingConfig = BrakingConfig()
     turning: TurningConfig = TurningConfig()
     ramp: RampConfig = RampConfig()
     side_jerk_psd_m2_s5: Positive = 0.005  # across the track, apart from turning; measured

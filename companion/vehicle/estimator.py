@@ -134,8 +134,8 @@ class BufferHealth(Struct, frozen=True, kw_only=True):
     """What became of the measurements, and whether they agree with the filter.
 
     Attributes:
-        fused: accepted.
-        gated: rejected as outliers.
+        fused: accepted, of what vehicle and detector tell.
+        gated: rejected as outliers, likewise.
         late: dropped, older than the buffer.
         recoveries: times the filter was opened to data it had rejected for too long.
         nis_per_dof: mean over the whole run, 1 for a consistent filter; None before the second measurement.

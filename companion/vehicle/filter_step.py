@@ -44,8 +44,8 @@ S = TypeVar("S")
 QUANTITIES = tuple(Quantity)
 RANK = {quantity: rank for rank, quantity in enumerate(QUANTITIES)}
 OF_DRONE = frozenset({Quantity.SURFACE})
-"""What only the drone tells. It counts neither for nor against the vehicle's data, and no filter recovers on it: a
-range finder may see something else, or be stuck."""
+"""What only the drone tells. It is not counted as fused or gated, for that is of the vehicle's data, and no filter
+recovers on it: a range finder may see something else, or be stuck."""
 _NEVER: tuple[int | None, ...] = (None,) * len(QUANTITIES)
 
 

@@ -3,12 +3,15 @@
 `motion` (16,) is as `imm_mixing` has it.
 """
 
+import math
+
 import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_kernels import BEND
 from companion.vehicle.imm_mixing import Modes, combine, glide, heading_variance, shifted, steps_of, with_direction
+from companion.vehicle.imm_noise import BEND_ACCELERATION_STD, BEND_STD
 from companion.vehicle.imm_sensors import antenna_velocity, horizontal_acceleration
 from companion.vehicle.imm_swing import MOUNT, ROLL, SIZE, antenna_swing, pad_swing, pad_swing_acceleration
 from companion.vehicle.small_matrices import carried_through, times
@@ -102,6 +105,8 @@ def forecast_modes(
     directed = with_direction(motion, modes, known_variance)
     x, P = combine(modes[0], modes[1], modes[2])
     noise = (modes[2].reshape(-1, 1) * noises).sum(axis=0)
+    for std in (BEND_STD, BEND_ACCELERATION_STD):  # the others in which the modes differ are densities
+        noise[std] = math.sqrt((modes[2] * noises[:, std] ** 2).sum())
     means, variances = horizon(x, P, offset_s, noise, directed)
     position, velocity, acceleration = kinematics(means, directed)
     yaw, grade, tilt = means[:, 7].copy(), means[:, 9].copy(), means[:, ROLL:MOUNT].copy()

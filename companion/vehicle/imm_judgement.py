@@ -34,7 +34,7 @@ def expect_manoeuvres(modes: Modes, unmeasured_s: float, begins_after_s: Array, 
 
     Yaw rates come fifty times a second. Those of a straight road all but rule the manoeuvre models out, and leave them
     mixed with the steady one of the instant before; yet of a brake, in the tenths of a second from one velocity to the
-    next, they say nothing. So each velocity is asked anew with the probability that the vehicle alone has.
+    next, they say nothing. So each fix or velocity is asked anew with the probability that the vehicle alone has.
 
     Args:
         modes: the filter at the time of the reading.
@@ -44,17 +44,20 @@ def expect_manoeuvres(modes: Modes, unmeasured_s: float, begins_after_s: Array, 
     """
     means, covariances, weights = modes[0].copy(), modes[1].copy(), modes[2].copy()
     begun = switching(begins_after_s, unmeasured_s)[0]
+    begun[0] = 0.0
+    raised = weights < begun
+    mean, covariance = combine(modes[0], modes[1], modes[2])
     for j in range(1, len(weights)):
-        if weights[j] >= begun[j]:
+        if not raised[j]:
             continue
         ends_after_s = 1.0 / ((1.0 / begins_after_s).sum() - 1.0 / begins_after_s[j])
         lasted_s = min(unmeasured_s, ends_after_s)
-        grown = process_noise(means[0], lasted_s, noises[j], np.zeros((2, 2)), np.zeros((2, 2, 2)))
+        grown = process_noise(mean, lasted_s, noises[j], np.zeros((2, 2)), np.zeros((2, 2, 2)))
         share = weights[j] / begun[j]
-        candidates = np.stack((means[0], means[j])), np.stack((covariances[0] + grown, covariances[j]))
+        candidates = np.stack((mean, means[j])), np.stack((covariance + grown, covariances[j]))
         means[j], covariances[j] = combine(candidates[0], candidates[1], np.array([1.0 - share, share]))
-        weights *= (1.0 - begun[j]) / (1.0 - weights[j])
-        weights[j] = begun[j]
+    left = np.where(raised, 0.0, weights)
+    weights = np.where(raised, begun, left * (1.0 - begun[raised].sum()) / left.sum())
     return means, covariances, weights
 
 
@@ -62,10 +65,10 @@ def expect_manoeuvres(modes: Modes, unmeasured_s: float, begins_after_s: Array, 
 def update_modes(
     modes: Modes, reading: tuple[int, Array, Array], lever: Array, sees_heading: bool
 ) -> tuple[Modes, float, float]:
-    """Return the filter after a measurement, the mixture's NIS, and the smaller of the modes' NIS.
+    """Return the filter after a measurement, the mixture's NIS, and the smallest of the modes' NIS.
 
-    The mixture's NIS tells consistency; an outlier is what even the mode with the wider noise does not expect.
-    What a place says for a mode counts as that of one component: receivers state the errors of their axes as
+    The mixture's NIS tells consistency; an outlier is what even the mode with the widest noise does not expect.
+    Anything but a velocity counts as one component in favour of a mode: receivers state the errors of their axes as
     independent, but where they are one and the same (a common delay, a reflection) it would count m times over.
     Velocities are of Doppler, which has no such errors.
 
@@ -88,8 +91,8 @@ def update_modes(
         spreads[j] = carried_through(H, covariances[j]) + R
         xs[j], Ps[j], nis[j], fits[j] = correct(means[j], covariances[j], residuals[j], H, R)
     components = 1 if kind == VELOCITY else m
-    ratios = np.exp(np.minimum(np.maximum((fits - fits[0]) / components, -FIT_MAX), FIT_MAX))
-    after = np.maximum(weights, WEIGHT_MIN) * ratios
+    fits = (fits - fits.max()) / components
+    after = np.maximum(weights, WEIGHT_MIN) * np.exp(np.maximum(fits, -FIT_MAX))
     after /= after.sum()
     residual, spread = combine(residuals, spreads, weights)
     inverse, _ = inverse_of(spread)

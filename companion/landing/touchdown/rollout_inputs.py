@@ -176,12 +176,14 @@ def _draw_vehicle(then: VehicleEstimate, pad: PadPath, normals: Array, uniforms:
         mixture = Mixture(weight=np.ones(1), off=np.zeros((1, 9)), covariance=then.covariance[None])
     # That frames which count as one are one is not for the forecast to doubt: that would be a wrong model, no bad luck.
     apart_m2 = pad.frame_offset.std_m**2 if pad.has_one_frame and math.isfinite(pad.frame_offset.std_m) else 0.0
+    # By so much is the pad's place less well known than the antenna's.
+    turned_m2 = np.maximum(pad.position_std_m[0] ** 2 - then.covariance.diagonal()[:3], 0.0)
     of_model = np.searchsorted(np.cumsum(mixture.weight)[:-1], uniforms)
     vehicle = np.empty_like(normals)
     for model, (off, stated) in enumerate(zip(mixture.off, mixture.covariance, strict=True)):
         covariance = stated.copy()
         for axis in range(3):
-            stated_m2 = max(covariance[axis, axis], float(pad.position_std_m[0, axis]) ** 2)
+            stated_m2 = covariance[axis, axis] + turned_m2[axis]
             covariance[axis, axis] = max(stated_m2 - apart_m2, _PLACE_STD_MIN_M**2)
         drawn = of_model == model
         vehicle[drawn] = off + normals[drawn] @ _root(covariance).T

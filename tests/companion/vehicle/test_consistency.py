@@ -5,12 +5,13 @@ import pytest
 from scipy import stats
 
 from companion.config.estimation import (
+    BrakingConfig,
     BufferConfig,
+    EasingConfig,
     EstimatorConfig,
     HeadingConfig,
     ImmConfig,
     LkfConfig,
-    PedalConfig,
     RampConfig,
     ReceiversConfig,
     SteadyConfig,
@@ -33,12 +34,11 @@ DT_S, STEPS, RUNS, SETTLED = 0.1, 150, 36, 60
 STATES = np.array([0, 1, 2, 3, 4, 5, 6, 8, 9, kernels.BEND])
 FIX_STD_M, VELOCITY_STD_M_S = 0.02, 0.05
 MODE = SteadyConfig(jerk_psd_m2_s5=0.5, lateral_acceleration_psd_m2_s5=0.5, begins_after_s=1.0)
-PEDAL = PedalConfig(jerk_psd_m2_s5=MODE.jerk_psd_m2_s5, begins_after_s=1.0)
 IMM = ImmModel(
     config=ImmConfig(
         steady=MODE,
-        easing=PEDAL,
-        braking=PEDAL,
+        easing=EasingConfig(jerk_psd_m2_s5=MODE.jerk_psd_m2_s5, begins_after_s=1.0),
+        braking=BrakingConfig(jerk_psd_m2_s5=MODE.jerk_psd_m2_s5, begins_after_s=1.0),
         turning=TurningConfig(lateral_acceleration_psd_m2_s5=MODE.lateral_acceleration_psd_m2_s5, begins_after_s=1.0),
         ramp=RampConfig(
             bend_std_per_m=MODE.bend_std_per_m,

@@ -1,0 +1,37 @@
+"""The filter's models as its kernels take them: each differs from steady driving in its own numbers only."""
+
+import numpy as np
+import pytest
+
+from companion.config.estimation import ImmConfig
+from companion.vehicle.imm_forecast import forecast_modes
+from companion.vehicle.imm_noise import BEND_ACCELERATION_STD, BEND_STD
+from companion.vehicle.imm_numbers import Deck, numbers_of
+from companion.vehicle.imm_swing import SIZE
+from tests.companion.vehicle.test_imm_kernels import MOTION, NOISE, a_state
+
+JERK, LATERAL = 0, 2
+OWN = [{JERK}, {JERK}, {LATERAL}, {BEND_STD, BEND_ACCELERATION_STD}]
+
+
+def test_each_model_differs_from_steady_driving_in_what_it_is_for() -> None:
+    noises = numbers_of(ImmConfig(), Deck()).noises
+    differ = [set(np.flatnonzero(row != noises[0]).tolist()) for row in noises[1:]]
+    assert differ == OWN
+
+
+def test_water_has_no_ramps() -> None:
+    noises = numbers_of(ImmConfig(), Deck(is_afloat=True)).noises
+    assert np.all(noises[:, BEND_STD] == 0.0)
+
+
+def test_forecast_over_two_kinds_of_road_has_the_mean_of_their_variances() -> None:
+    x, P = a_state(1), 1e-9 * np.eye(SIZE)
+    ramp = np.where(np.isin(np.arange(len(NOISE)), (BEND_STD, BEND_ACCELERATION_STD)), 6.0 * NOISE, NOISE)
+    variances = []
+    for weights in ((1.0, 0.0), (0.0, 1.0), (0.5, 0.5)):
+        modes = (np.stack([x, x]), np.stack([P, P]), np.array(weights))
+        told = forecast_modes(modes, np.array([0.0, 0.3]), np.stack([NOISE, ramp]), MOTION, 1.0)
+        variances.append(told[6][1, 3] ** 2)
+    assert variances[1] > 1.5 * variances[0]
+    assert variances[2] == pytest.approx(0.5 * (variances[0] + variances[1]), rel=1e-6)
