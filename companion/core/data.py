@@ -44,7 +44,7 @@ class Mixture(Struct, frozen=True, kw_only=True, eq=False):
     """What k models of one filter hold, of position, velocity and acceleration in W, in that order.
 
     Attributes:
-        weight: (k,) probabilities, which make one.
+        weight: (k,) probabilities, which sum to 1.
         off: (k, 9) their means, off the mean of all.
         covariance: (k, 9, 9).
     """
@@ -64,7 +64,7 @@ class VehicleEstimate(Struct, frozen=True, kw_only=True, eq=False):
         covariance: (9, 9) of position, velocity, acceleration, in that order.
         yaw_rad: heading of V about W's z, None while it cannot be told (at rest, never measured).
         yaw_rate_rad_s: None likewise.
-        mixture: of filters with several models, of which `covariance` is that of all; None of one model.
+        mixture: what each of several models holds, of which `covariance` is that of all; None of a single one.
     """
 
     t_ns: int

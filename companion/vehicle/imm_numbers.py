@@ -130,9 +130,9 @@ def _prior_variances(config: ImmConfig, *, is_afloat: bool) -> Array:
 
 
 def _modes(config: ImmConfig) -> tuple[SteadyConfig, ...]:
-    """Return the steady model, and one for each thing that may happen, which is steady otherwise."""
-    happenings = (config.easing, config.braking, config.turning, config.ramp)
-    return (config.steady, *(config.steady.model_copy(update=dict(one)) for one in happenings))
+    """Return the steady model, and one for each manoeuvre, which is steady but for what its configuration names."""
+    manoeuvres = (config.easing, config.braking, config.turning, config.ramp)
+    return (config.steady, *(config.steady.model_copy(update=dict(one)) for one in manoeuvres))
 
 
 def _noise(config: ImmConfig, mode: SteadyConfig, *, is_afloat: bool) -> tuple[float, ...]:
