@@ -5,9 +5,12 @@ benchmark's pad is 1.5 m wide. On a smaller one the same shares of its width hol
 the configured radius is what a drone in gusts is to keep to.
 """
 
+import math
+
 import numpy as np
 
 from companion.config.companion import CompanionConfig
+from companion.core.data import Array
 from companion.vehicle.pad import KNOWN_SHARE, PadPath
 
 _CONE_SHARE = 0.4  # of half of the pad's width: 0.3 m on a pad of 1.5 m
@@ -32,6 +35,20 @@ def over_pad_radius_m(half_width_m: float, config: CompanionConfig) -> float:
 def unseen_std_max_m(half_width_m: float, config: CompanionConfig) -> float:
     """Return up to which standard deviation a pad is landed on that only what is seen of it can place."""
     return min(config.descent.unseen.std_max_m, KNOWN_SHARE * half_width_m)
+
+
+def frames_apart_m2(pad: PadPath) -> float:
+    """Return the part of the pad's variance that doubts frames which count as one; 0 where they do not.
+
+    If they are not one, that is a wrong model and no bad luck: nothing that weighs luck counts with it.
+    """
+    std_m = pad.frame_offset.std_m
+    return std_m**2 if pad.has_one_frame and math.isfinite(std_m) else 0.0
+
+
+def placed_std_m(pad: PadPath) -> Array:
+    """Return the standard deviation (3,) of the pad's place in W now, in the frame that both receivers count as one."""
+    return np.sqrt(np.maximum(pad.position_std_m[0] ** 2 - frames_apart_m2(pad), 0.0))
 
 
 def is_too_small(pad: PadPath, config: CompanionConfig) -> bool:

@@ -1,5 +1,6 @@
 """A vehicle that is known exactly, an autopilot that follows exactly, and a companion's step between them."""
 
+import math
 from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
@@ -66,6 +67,7 @@ class KnownVehicle:
     velocity_enu_m_s: Vector3
     yaw_rad: float | None = 0.3
     std_m: float = 0.05
+    apart_std_m: float = math.inf
 
     def fuse(self, memory: int | None, measurements: Sequence[Measurement]) -> int:
         return max(memory or 0, *(measurement.t_ns for measurement in measurements))
@@ -89,6 +91,7 @@ class KnownVehicle:
             acceleration_enu_m_s2=np.zeros((n, 3)),
             yaw_rad=None if self.yaw_rad is None else np.full(n, self.yaw_rad),
             position_std_m=np.full((n, 3), self.std_m),
+            frame_offset_std_m=self.apart_std_m,
         )
 
     def newest_fix_ns(self, memory: int | None) -> int | None:

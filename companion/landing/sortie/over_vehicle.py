@@ -11,6 +11,7 @@ from companion.planning.guidance import ReferenceState, Target
 from companion.situation.situation import Situation
 from companion.sortie.station import KeepOut, closing_speed_m_s, turn_rates_rad_s
 from companion.vehicle.pad import PadPath
+from companion.vehicle.pad_reach import placed_std_m
 from link.messages import StationFrame
 
 WAY_SHARE = 0.3
@@ -30,11 +31,11 @@ def keep_out_of(pad: PadPath, config: CompanionConfig, *, stds: float = 0.0) -> 
     """
     sortie = config.sortie
     pad_m = math.sqrt(2.0) * pad.half_width_m if math.isfinite(pad.half_width_m) else 0.0
-    beside_m, upright_m = (stds * float(np.max(pad.position_std_m[0, axes])) for axes in (slice(0, 2), slice(2, 3)))
+    east_m, north_m, up_m = (stds * placed_std_m(pad)).tolist()
     return KeepOut(
-        radius_m=max(sortie.vehicle_radius_m, pad_m) + sortie.keep_out_margin_m + beside_m,
-        over_m=config.descent.alignment.height_m + upright_m,
-        lowest_m=sortie.ground_clearance_m - pad.height_m + upright_m,
+        radius_m=max(sortie.vehicle_radius_m, pad_m) + sortie.keep_out_margin_m + max(east_m, north_m),
+        over_m=config.descent.alignment.height_m + up_m,
+        lowest_m=sortie.ground_clearance_m - pad.height_m + up_m,
     )
 
 

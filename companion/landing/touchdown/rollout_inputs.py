@@ -17,7 +17,7 @@ from companion.landing.touchdown.levelling import level_end
 from companion.situation.situation import Approach, Situation
 from companion.vehicle.hindsight import Driving
 from companion.vehicle.pad import PadPath
-from companion.vehicle.pad_reach import cone_radius_at_pad_m, over_pad_radius_m
+from companion.vehicle.pad_reach import cone_radius_at_pad_m, frames_apart_m2, over_pad_radius_m
 
 _OFFSETS_S = DT_S * np.arange(STEPS_MAX, dtype=np.float64)
 _BELOW_M = -0.4  # to where the way down is followed: heights are not off by more
@@ -174,8 +174,7 @@ def _draw_vehicle(then: VehicleEstimate, pad: PadPath, normals: Array, uniforms:
     mixture = then.mixture
     if mixture is None:
         mixture = Mixture(weight=np.ones(1), off=np.zeros((1, 9)), covariance=then.covariance[None])
-    # That frames which count as one are one is not for the forecast to doubt: that would be a wrong model, no bad luck.
-    apart_m2 = pad.frame_offset.std_m**2 if pad.has_one_frame and math.isfinite(pad.frame_offset.std_m) else 0.0
+    apart_m2 = frames_apart_m2(pad)
     # By so much is the pad's place less well known than the antenna's.
     turned_m2 = np.maximum(pad.position_std_m[0] ** 2 - then.covariance.diagonal()[:3], 0.0)
     of_model = np.searchsorted(np.cumsum(mixture.weight)[:-1], uniforms)

@@ -106,9 +106,10 @@ def test_no_rally_point_out_of_range_is_flown_to() -> None:
     assert flight.memory.model.reference.position_enu_m == pytest.approx(place, abs=0.3)
 
 
-def station_of(std_m: float) -> list[float]:
-    flight = reached(Phase.FOLLOW)
-    flight.vehicle = KnownVehicle(flight.vehicle.start_enu_m, flight.vehicle.velocity_enu_m_s, std_m=std_m)
+def station_of(std_m: float, apart_std_m: float, frames: str) -> list[float]:
+    flight = with_config(reached(Phase.FOLLOW), configured({"integrity": {"receiver_frames": frames}}))
+    start_enu_m, velocity_enu_m_s = flight.vehicle.start_enu_m, flight.vehicle.velocity_enu_m_s
+    flight.vehicle = KnownVehicle(start_enu_m, velocity_enu_m_s, std_m=std_m, apart_std_m=apart_std_m)
     flight.station = LOW
     flight.step(Command.FOLLOW)
     flight.run(10.0)
@@ -117,12 +118,17 @@ def station_of(std_m: float) -> list[float]:
     return [math.hypot(x, y), height_m]
 
 
-def test_station_is_kept_farther_out_and_higher_while_the_vehicles_place_is_vague() -> None:
-    sortie, std_m = CONFIG.sortie, 1.0
-    vague_m = sortie.keep_out_stds * std_m
-    least_m = sortie.vehicle_radius_m + sortie.keep_out_margin_m + vague_m
-    lowest_m = sortie.ground_clearance_m - PAD_HEIGHT_M + vague_m
-    assert station_of(std_m) == pytest.approx([least_m, lowest_m], abs=0.1)
+@pytest.mark.parametrize(
+    ("apart_std_m", "frames", "vague_m"), [(math.inf, "one", 1.0), (0.8, "one", 0.6), (0.8, "apart", 1.0)]
+)
+def test_station_is_kept_farther_out_and_higher_by_what_is_vague_of_the_vehicles_place_in_the_frame_that_counts(
+    apart_std_m: float, frames: str, vague_m: float
+) -> None:
+    sortie = CONFIG.sortie
+    least_m = sortie.vehicle_radius_m + sortie.keep_out_margin_m + sortie.keep_out_stds * vague_m
+    lowest_m = sortie.ground_clearance_m - PAD_HEIGHT_M + sortie.keep_out_stds * vague_m
+    kept = station_of(1.0, apart_std_m, frames)
+    assert kept == pytest.approx([max(least_m, math.hypot(*LOW.offset_m[:2])), max(lowest_m, LOW.offset_m[2])], abs=0.1)
 
 
 def test_drone_that_does_not_follow_its_setpoints_leaves_its_station() -> None:
