@@ -133,8 +133,9 @@ def _next_place(here: Array, wanted_m: Array, keep_out: KeepOut, dt_s: float, ra
             return _towards(here, np.array([*out, here[2]]), dt_s, rates)
         out = wanted_m[:2] * (keep_out.radius_m / max(aim_radius_m, keep_out.radius_m))
         return _towards(here, np.array([*out, max(float(wanted_m[2]), keep_out.over_m)]), dt_s, rates)
-    if aim_radius_m < keep_out.radius_m:  # a station over the roof: up beside the vehicle, then over it
-        return _towards(here, np.array([*here[:2], max(float(wanted_m[2]), keep_out.over_m)]), dt_s, rates)
+    if aim_radius_m < keep_out.radius_m:  # a station over the roof: up on the way to the vehicle's side, then over it
+        side = here[:2] * (keep_out.radius_m / radius_m)
+        return _towards(here, np.array([*side, max(float(wanted_m[2]), keep_out.over_m)]), dt_s, rates)
     speed_m_s = min(math.sqrt(acceleration_m_s2 * radius_m), speed_max_m_s)
     angle_rad = math.atan2(here[1], here[0])
     turn_rad = (math.atan2(wanted_m[1], wanted_m[0]) - angle_rad + math.pi) % (2.0 * math.pi) - math.pi

@@ -54,6 +54,19 @@ def test_no_step_of_a_way_is_faster_than_it_may_be(start: Array, wanted: Array) 
     assert np.linalg.norm(steps, axis=1).max() <= math.sqrt(3.0) * RATES[1] * STEP_S
 
 
+@pytest.mark.parametrize("far_m", [8.0, 40.0, 300.0])
+@pytest.mark.parametrize("height_m", [0.5, 1.4, 3.0])
+def test_a_way_home_comes_nearer_from_the_first_step_on_as_fast_as_it_can_stop(far_m: float, height_m: float) -> None:
+    home = np.array([0.0, 0.0, 3.5])
+    way = fly(np.array([far_m, 0.0, height_m]), home, 90.0)
+    rates_m_s = -np.diff(way[:, 0]) / STEP_S
+    beside = way[:-1, 0] > VEHICLE.radius_m + 2.0
+    stops_m_s = np.sqrt(2.0 * RATES[0] * (way[:-1, 0] - VEHICLE.radius_m).clip(min=0.0))
+    assert (rates_m_s[beside] >= 0.8 * np.minimum(stops_m_s, RATES[1])[beside]).all()
+    assert (rates_m_s <= np.minimum(np.sqrt(2.0 * RATES[0] * way[:-1, 0].clip(min=0.0)), RATES[1]) + 1e-9).all()
+    assert way[-1] == pytest.approx(home, abs=1e-9)
+
+
 @pytest.mark.parametrize(
     ("start", "leaves_by"),
     [((0.7, 0.4, 0.1), "up"), ((2.9, -1.7, 0.1), "side")],
