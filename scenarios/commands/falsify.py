@@ -75,11 +75,10 @@ def _space_of(request: "Request") -> "Space":
     Raises:
         UserError: there is no such slice or part of the quantities, or a seed is held back.
     """
-    from scenarios.falsify.search import Space
-    from scenarios.falsify.space import MEDIAN, searched
+    from scenarios.falsify.world_space import world_space
     from scenarios.worlds.odd import slices
     from scenarios.worlds.seeds import HELD_BACK_FROM
-    from scenarios.worlds.world import draw_world, quantities
+    from scenarios.worlds.world import quantities
 
     if request.slice not in slices():
         raise UserError(
@@ -91,16 +90,11 @@ def _space_of(request: "Request") -> "Space":
             f"seeds from {HELD_BACK_FROM} on are held back for published figures:"
             f" give --seed {HELD_BACK_FROM - request.landings} or less"
         )
-    every = quantities(request.slice, request.seed)
-    parts = sorted({name.partition(".")[0] for name in every})
+    parts = sorted({name.partition(".")[0] for name in quantities(request.slice, request.seed)})
     unknown = next((part for part in request.only if part not in parts), None)
     if unknown is not None:
         raise UserError(f"--only: no quantity begins with '{unknown}.': give some of {', '.join(parts)}")
-    ordinary = dict.fromkeys(every, MEDIAN) if request.only else {}
-    return Space(
-        names=searched(every, request.only),
-        draw=lambda seed, chosen: draw_world(request.slice, seed, chosen={**ordinary, **chosen}).scenario,
-    )
+    return world_space(request.slice, request.seed, request.only)
 
 
 def _print(result: "Result", request: "Request", folder: Path) -> None:

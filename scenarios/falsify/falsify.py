@@ -23,7 +23,6 @@ from scenarios.config import Scenario
 from scenarios.falsify.flights import Flight, Flights
 from scenarios.falsify.reduction import Case, Reduction
 from scenarios.falsify.search import Found, Space, search
-from scenarios.falsify.strategy import EvolutionStrategy, RandomStrategy
 from scenarios.falsify.trial import Outcome
 from scenarios.recordings.result import write_text
 
@@ -131,7 +130,7 @@ def falsify(request: Request, space: Space, folder: Path, progress: Progress) ->
             flown.fly,
             first_seed=request.seed,
             landings=request.landings,
-            make_strategy=RandomStrategy if request.random else EvolutionStrategy,
+            random=request.random,
         )
         case = None
         if found is not None:

@@ -51,3 +51,8 @@ def plausible(z: Array) -> Array:
 def uniforms(names: Sequence[str], z: Array) -> dict[str, float]:
     """Return the uniform number of each quantity by name."""
     return dict(zip(names, norm.cdf(z).tolist(), strict=True))
+
+
+def normal(u: float) -> float:
+    """Return the normal number of a uniform one."""
+    return float(norm.ppf(u))

@@ -31,12 +31,14 @@ class Outcome:
         margin: as `scenarios.scoring.margin` defines it, None without a result.
         tier: reached.
         reason: of the tier.
+        time_to_contact_s: from the vehicle's passing the waiting point to the first contact, None without one.
         error: in one line.
     """
 
     margin: float | None
     tier: str | None
     reason: str | None
+    time_to_contact_s: float | None = None
     error: str | None = None
 
     @property
@@ -53,7 +55,9 @@ def fly_trial(trial: Trial) -> Outcome:
         row = fly(Task(cell=scenario.name, seed=trial.seed), scenario)
     except Exception as error:  # noqa: BLE001 (one landing's fault must not end a search, and is reported)
         return lost(trial, error_line(error))
-    return Outcome(margin=row["margin"], tier=row["tier"], reason=row["reason"])
+    return Outcome(
+        margin=row["margin"], tier=row["tier"], reason=row["reason"], time_to_contact_s=row["time_to_contact_s"]
+    )
 
 
 def lost(_trial: Trial, why: str) -> Outcome:

@@ -143,6 +143,15 @@ class Choice(StrictModel):
                 return value
         return self.values[-1]
 
+    def shares(self, value: Value) -> tuple[float, float]:
+        """Return the shares between which `value` is the quantile.
+
+        Raises:
+            ValueError: it is none of the values.
+        """
+        place, total = self.values.index(value), math.fsum(self.weights)
+        return math.fsum(self.weights[:place]) / total, math.fsum(self.weights[: place + 1]) / total
+
 
 class Graded(StrictModel):
     """A value that goes from `poor` to `good` with a quality from 0 to 1, evenly in its logarithm, and scatters.
@@ -167,10 +176,26 @@ class Graded(StrictModel):
 
 
 _CUT = 2.0
+_LEAST = 2.0**-53  # as near to 1 as a number can be
 Plain = Annotated[
     Uniform | LogUniform | Normal | LogNormal | Beta | Exponential | Weibull | Choice | Graded,
     Field(discriminator="kind"),
 ]
+
+
+def share_below(distribution: Plain, value: float) -> float | None:
+    """Return the share of a distribution of numbers that lies below `value`, None for one beyond its bounds.
+
+    Raises:
+        TypeError: it is a choice, or goes by a quality.
+    """
+    from scipy import optimize  # noqa: PLC0415 (as above)
+
+    if isinstance(distribution, Choice | Graded):
+        raise TypeError(f"a distribution of kind '{distribution.kind}' has no share below a number")
+    if not distribution.quantile(_LEAST) <= value <= distribution.quantile(1.0 - _LEAST):
+        return None
+    return float(optimize.brentq(lambda u: distribution.quantile(u) - value, _LEAST, 1.0 - _LEAST))
 
 
 def _normal_between(u: float, low: float, high: float) -> float:

@@ -57,6 +57,11 @@ class Draws:
         if unknown:
             raise UserError(f"'{unknown[0]}' is chosen, but a world draws no such quantity")
 
+    def distribution(self, name: str) -> Plain:
+        """Return the distribution that a quantity has in this world, by its name without a slot."""
+        quantity = self._quantities[name]
+        return quantity.cases[self.word(quantity.by)] if isinstance(quantity, Cases) else quantity
+
     def _drawn(self, name: str, slot: int | None) -> Value:
         full = name if slot is None else f"{name}.{slot}"
         if full not in self.values:
@@ -74,9 +79,7 @@ class Draws:
         return u
 
     def _value(self, name: str, u: float) -> Value:
-        quantity = self._quantities[name]
-        if isinstance(quantity, Cases):
-            quantity = quantity.cases[self.word(quantity.by)]
-        if isinstance(quantity, Graded):
-            return quantity.quantile_at(self.number(quantity.quality), u)
-        return quantity.quantile(u)
+        distribution = self.distribution(name)
+        if isinstance(distribution, Graded):
+            return distribution.quantile_at(self.number(distribution.quality), u)
+        return distribution.quantile(u)

@@ -4,6 +4,7 @@ import pytest
 
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import Scenario
+from scenarios.falsify.aim import Aim
 from scenarios.falsify.flights import Flight
 from scenarios.falsify.reduction import Case, Reduction
 from scenarios.falsify.search import Found, Space, search
@@ -79,6 +80,69 @@ def test_each_start_is_about_another_seed() -> None:
 def test_search_goes_on_where_landings_have_no_result() -> None:
     lost = Outcome(margin=None, tier=None, reason=None, error="ValueError: no")
     assert search(SPACE, lambda flights, _: [lost] * len(flights), first_seed=1, landings=60) is None
+
+
+GAP, STRENGTH = NAMES[5], NAMES[9]
+LONGEST_S, TOUCHES_S = 20.0, 6.4
+
+
+def gust_at(_seed: int, _chosen: Mapping[str, float], begins_s: float) -> Mapping[str, float] | None:
+    return {GAP: begins_s / LONGEST_S} if 0.0 < begins_s < LONGEST_S else None
+
+
+def draw_gust(_seed: int, chosen: Mapping[str, float]) -> Scenario:
+    gust = {"gust_m_s": chosen[STRENGTH], "gust_at_s": LONGEST_S * chosen[GAP]}
+    return PLAIN.model_copy(update={"wind": PLAIN.wind.model_copy(update=gust)})
+
+
+AIMING = Space(names=NAMES, draw=draw_gust, aim=Aim(gap=GAP, strength=(STRENGTH,), at=gust_at))
+
+
+class GustyAir(Air):
+    """A strong gust is unsafe that begins 0.2 to 0.4 s before the contact."""
+
+    def __init__(self, touches_s: float | None = TOUCHES_S, reaches: float = 0.9) -> None:
+        super().__init__(limit=1.0)
+        self.touches_s = touches_s
+        self.reaches = reaches
+
+    def outcome(self, scenario: Scenario) -> Outcome:
+        lead_s = (self.touches_s or 0.0) - (scenario.wind.gust_at_s or 0.0)
+        margin = self.reaches - scenario.wind.gust_m_s if 0.2 < lead_s < 0.4 else self.reaches
+        tier = "unsafe" if margin < 0.0 else "S3"
+        return Outcome(margin=margin, tier=tier, reason="gust", time_to_contact_s=self.touches_s)
+
+
+def test_event_that_is_aimed_is_found_with_a_tenth_of_the_landings_that_chance_needs() -> None:
+    seeds = range(100, 600, 100)
+    aimed = [search(AIMING, GustyAir().fly, first_seed=seed, landings=500) for seed in seeds]
+    drawn = [search(AIMING, GustyAir().fly, first_seed=seed, landings=5000, random=True) for seed in seeds]
+    needed, chance = (sum(one.landing for one in found if one is not None) for found in (aimed, drawn))
+    assert None not in (*aimed, *drawn)
+    assert needed < 0.1 * chance
+
+
+def test_first_landing_of_a_start_meets_no_event() -> None:
+    air = GustyAir()
+    search(AIMING, air.fly, first_seed=7, landings=1)
+    [(scenario, seed)] = air.flown
+    assert (scenario.wind.gust_at_s or 0.0) > TOUCHES_S
+    assert seed == 7
+
+
+@pytest.mark.parametrize("touches_s", [None, 0.1, LONGEST_S + 5.0])
+def test_world_without_a_contact_to_aim_at_is_left_for_the_next(touches_s: float | None) -> None:
+    air = GustyAir(touches_s)
+    assert search(AIMING, air.fly, first_seed=7, landings=30) is None
+    assert [seed for _, seed in air.flown] == list(range(7, 37))
+
+
+def test_start_that_does_not_come_near_is_given_up_after_one_generation() -> None:
+    air = GustyAir(reaches=3.0)
+    search(AIMING, air.fly, first_seed=7, landings=100)
+    by_seed = [sum(seed == one for _, seed in air.flown) for one in range(7, 12)]
+    assert by_seed == [by_seed[0]] * 5
+    assert by_seed[0] < 10
 
 
 def reduced(air: Air, landings: int) -> Reduction:

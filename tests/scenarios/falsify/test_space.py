@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from scenarios.falsify.space import Z_MAX, plausible, radius_max, searched, uniforms
+from scenarios.falsify.space import Z_MAX, normal, plausible, radius_max, searched, uniforms
 
 
 def test_radius_is_that_which_99_of_100_drawn_worlds_keep_within() -> None:
@@ -33,6 +33,7 @@ def test_uniform_numbers_are_those_of_the_normal_table() -> None:
     assert chosen["a"] == 0.5
     assert chosen["b"] == pytest.approx(0.841344746)
     assert chosen["c"] == pytest.approx(0.050502583)
+    assert normal(0.841344746) == pytest.approx(1.0)
 
 
 def test_search_chooses_what_is_drawn_once_and_the_first_of_what_recurs() -> None:

@@ -6,7 +6,7 @@ from scipy import stats
 
 from link.errors import UserError
 from link.program.toml_config import validate
-from scenarios.worlds.distributions import Choice, Graded
+from scenarios.worlds.distributions import Choice, Graded, share_below
 from scenarios.worlds.odd import Domain
 from tests.scenarios.worlds.references import LEVELS, PLAIN, Bounded, reference_of
 
@@ -24,6 +24,25 @@ def test_quantile_keeps_to_the_bounds_at_the_ends(plain: Bounded) -> None:
     ends = [plain.quantile(u) for u in (1e-300, 2.0**-53, 1.0 - 2.0**-53)]
     assert all(low <= value <= high for value in ends)
     assert all(math.isfinite(value) for value in ends)
+
+
+@pytest.mark.parametrize("plain", PLAIN, ids=lambda one: one.kind)
+@pytest.mark.parametrize("share", [0.003, 0.31, 0.87])
+def test_share_below_a_quantile_is_its_own(plain: Bounded, share: float) -> None:
+    assert share_below(plain, plain.quantile(share)) == pytest.approx(share, abs=1e-9)
+
+
+@pytest.mark.parametrize("plain", PLAIN, ids=lambda one: one.kind)
+def test_value_beyond_the_bounds_has_no_share_below(plain: Bounded) -> None:
+    assert share_below(plain, plain.low - 0.1) is None
+    assert share_below(plain, plain.high + 0.1) is None
+
+
+def test_choice_has_its_value_between_the_shares_it_says_and_not_beside() -> None:
+    choice = Choice(kind="choice", values=("a", "b", "c"), weights=(1.0, 5.0, 2.0))
+    assert choice.shares("b") == (0.125, 0.75)
+    drawn = [choice.quantile(u) for u in (0.124, 0.126, 0.749, 0.751)]
+    assert drawn == ["a", "b", "b", "c"]
 
 
 def test_choice_takes_each_value_by_its_weight() -> None:
