@@ -43,9 +43,16 @@ class Aim:
     at: EventAt
 
 
-def plain_world(names: tuple[str, ...], seed: int, aim: Aim) -> Array:
-    """Return a drawn world (n,) whose first event begins as late as is plausible."""
-    z = named_rng(seed, "falsify plain").standard_normal(len(names))
+def plain_world(names: tuple[str, ...], seed: int | None, aim: Aim) -> Array:
+    """Return a world (n,) whose first event begins as late as is plausible.
+
+    Args:
+        names: of all quantities.
+        seed: that draws the others, None for their medians.
+        aim: whose event it is.
+    """
+    dimension = len(names)
+    z = np.zeros(dimension) if seed is None else named_rng(seed, "falsify plain").standard_normal(dimension)
     z[names.index(aim.gap)] = Z_MAX
     return plausible(z)
 

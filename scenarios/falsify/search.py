@@ -1,7 +1,9 @@
 """The search for a world that is unsafe, start after start, each about another seed.
 
 A start is aimed at the contact of a plain world where the space has an event to aim, else it is about the medians. The
-seed decides what no quantity does: the noise, the turbulence, the road's roughness. Only what is asked for, in its
+first plain world is at the medians, since what is unsafe there is the easiest to read; the others are drawn.
+
+The seed decides what no quantity does: the noise, the turbulence, the road's roughness. Only what is asked for, in its
 order, decides what comes out, not how many processes fly it.
 """
 
@@ -75,7 +77,7 @@ def _strategy(space: Space, seed: int, flown: "_Flown") -> Strategy | None:
     """Return how a seed's worlds are searched, None where its plain world has no contact that can be aimed at."""
     if space.aim is None:
         return EvolutionStrategy(wide_start(len(space.names)), seed)
-    plain = plain_world(space.names, seed, space.aim)
+    plain = plain_world(space.names, seed if flown.has_any else None, space.aim)
     (outcome,) = flown.fly(seed, [plain])
     if outcome.time_to_contact_s is None or outcome.margin is None:
         return None
@@ -98,6 +100,11 @@ class _Flown:
     def is_over(self) -> bool:
         """Whether nothing is to be flown any more."""
         return self.found is not None or self._count >= self._landings
+
+    @property
+    def has_any(self) -> bool:
+        """Whether a landing was flown."""
+        return self._count > 0
 
     def fly(self, seed: int, points: Sequence[Array]) -> list[Outcome]:
         """Return the outcomes of as many of the points as may be flown, up to the first that is unsafe."""

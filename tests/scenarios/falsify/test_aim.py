@@ -30,6 +30,10 @@ def test_plain_world_is_plausible_and_its_event_comes_late() -> None:
         assert Z_MAX >= z[NAMES.index("gap")] > 2.5
 
 
+def test_plain_world_of_no_seed_is_at_the_medians_but_for_its_event() -> None:
+    assert np.flatnonzero(plain_world(NAMES, None, AIM)).tolist() == [NAMES.index("gap")]
+
+
 def test_each_seed_has_another_plain_world() -> None:
     assert len({plain_world(NAMES, seed, AIM)[0] for seed in range(30)}) == 30
 
