@@ -43,7 +43,7 @@ def expect_manoeuvres(modes: Modes, unmeasured_s: float, begins_after_s: Array, 
         noises: (n, 16) of the modes.
     """
     means, covariances, weights = modes[0].copy(), modes[1].copy(), modes[2].copy()
-    begun = switching(begins_after_s, unmeasured_s)[0]
+    _, begun = switching(begins_after_s, unmeasured_s)
     begun[0] = 0.0
     raised = weights < begun
     mean, covariance = combine(modes[0], modes[1], modes[2])

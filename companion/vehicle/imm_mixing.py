@@ -28,42 +28,62 @@ STEP_MAX_S = 0.1  # 0.04 rad at 10 m/s with 4 m/s^2 to the side
 
 
 @compiled_kernel
-def switching(begins_after_s: Array, dt_s: float) -> Array:
-    """Return the probabilities `(n, n)` of having gone from row to column after `dt_s`.
+def switching(begins_after_s: Array, dt_s: float) -> tuple[float, Array]:
+    """Return the probability that no mode has begun in `dt_s`, and those `(n,)` that each is the one that began last.
+
+    From row to column the modes change with `unchanged * np.eye(n) + begun`.
 
     Args:
         begins_after_s: (n,) mean time after which each mode begins in any other.
         dt_s: time that passes.
     """
     rates = 1.0 / begins_after_s
-    n, total = len(rates), rates.sum()
-    mixed = 1.0 - math.exp(-dt_s * total)
-    changes: Array = (1.0 - mixed) * np.eye(n) + mixed * np.ones((n, 1)) * (rates / total)
-    return changes
+    total = rates.sum()
+    unchanged = math.exp(-dt_s * total)
+    return unchanged, (1.0 - unchanged) / total * rates
 
 
 @compiled_kernel
 def combine(means: Array, covariances: Array, weights: Array) -> tuple[Array, Array]:
-    """Return mean and covariance of the mixture."""
+    """Return mean and covariance of the mixture; the weights add up to one."""
     mean, covariance = np.zeros_like(means[0]), np.zeros_like(covariances[0])
+    n = len(mean)
     for j in range(len(weights)):
         mean += weights[j] * means[j]
-        covariance += weights[j] * covariances[j]
-        for i in range(j):
-            between = means[i] - means[j]
-            covariance += weights[i] * weights[j] * np.outer(between, between)
+    for j in range(len(weights)):
+        off = means[j] - mean
+        for i in range(n):
+            for k in range(n):
+                covariance[i, k] += weights[j] * (covariances[j, i, k] + off[i] * off[k])
     return mean, covariance
 
 
 @compiled_kernel
-def mix(modes: Modes, changes: Array) -> Modes:
-    """Return the filter after the modes may have changed with probabilities `changes` (n, n)."""
+def mix(modes: Modes, unchanged: float, begun: Array) -> Modes:
+    """Return the filter after the modes may have changed.
+
+    Whatever the vehicle did before, a mode that has begun is as likely, so each becomes a mixture of two: of itself,
+    and of all of them together.
+
+    Args:
+        modes: the filter before.
+        unchanged: probability, as `switching` has it.
+        begun: probabilities (n,), likewise.
+    """
     means, covariances, weights = modes
-    after = (weights.reshape(-1, 1) * changes).sum(axis=0)
+    n = len(weights)
+    after = unchanged * weights + begun * weights.sum()
+    mean, covariance = combine(means, covariances, weights)
     mixed_means, mixed_covariances = np.empty_like(means), np.empty_like(covariances)
-    for j in range(len(weights)):
-        share = weights * changes[:, j] / after[j]
-        mixed_means[j], mixed_covariances[j] = combine(means, covariances, share)
+    for j in range(n):
+        own = unchanged * weights[j] / after[j]
+        off = means[j] - mean
+        mixed_means[j] = mean + own * off
+        for i in range(SIZE):
+            for k in range(SIZE):
+                mixed_covariances[j, i, k] = own * covariances[j, i, k] + (1.0 - own) * (
+                    covariance[i, k] + own * (off[i] * off[k])
+                )
     return mixed_means, mixed_covariances, after
 
 
@@ -169,7 +189,7 @@ def predict_modes(
 ) -> Modes:
     """Return the filter `dt_s` later; `noises` (n, 16), the others as `switching` and `with_direction` have them."""
     directed = with_direction(motion, modes, known_variance)
-    means, covariances, weights = mix(modes, switching(begins_after_s, dt_s))
+    means, covariances, weights = mix(modes, *switching(begins_after_s, dt_s))
     steps = steps_of(dt_s, directed)
     for j in range(len(weights)):
         means[j], covariances[j] = glide(means[j], covariances[j], steps, noises[j], directed)

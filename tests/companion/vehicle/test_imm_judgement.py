@@ -92,7 +92,7 @@ def test_other_manoeuvre_begins_in_one_that_is_under_way_from_where_that_is() ->
     covariances = np.stack([a_covariance(3), a_covariance(4), a_covariance(5)])
     weights = np.array([0.0, 0.0, 1.0])
     after = judgement.expect_manoeuvres((means, covariances, weights), 0.2, BEGINS_AFTER_S, NOISES)
-    begun = mixing.switching(BEGINS_AFTER_S, 0.2)[0, 1]
+    begun = mixing.switching(BEGINS_AFTER_S, 0.2)[1][1]
     assert after[2] == pytest.approx([0.0, begun, 1.0 - begun])
     assert after[0][1] == pytest.approx(means[2])
 
