@@ -19,6 +19,7 @@ from typing import Any, Self
 import tomli_w
 
 from link.errors import UserError
+from link.program.toml_config import merge
 from scenarios.config import Scenario
 from scenarios.falsify.flights import Flight, Flights
 from scenarios.falsify.reduction import Case, Reduction
@@ -45,6 +46,8 @@ def case_text(scenario: Scenario, notes: Sequence[str]) -> str:
     own = {key: value for key, value in table.items() if key not in _SECTIONS}
     sections = {key: table.get(key, {}) for key in _SECTIONS}
     sections["track"] = {"kind": scenario.track.kind} | sections["track"]
+    frames = scenario.system.companion.integrity.receiver_frames.value  # not told, the catalogue would tell of it
+    sections["system"] = merge(sections["system"], {"companion": {"integrity": {"receiver_frames": frames}}})
     lines = [line for note in notes for line in textwrap.wrap(note, _WIDTH - 2, break_long_words=False)]
     comment = "".join(f"# {line}\n" for line in lines)
     return f"{comment}\n{_ARRAY.sub(_in_one_line, tomli_w.dumps(own | sections))}"

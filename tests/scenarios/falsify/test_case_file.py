@@ -4,6 +4,8 @@ import pytest
 
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.falsify.falsify import case_text
+from scenarios.falsify.simplify import details, without
+from scenarios.worlds.world import draw_world
 
 
 @pytest.mark.parametrize(
@@ -19,6 +21,17 @@ def test_file_of_a_case_is_the_same_scenario(name: str, tmp_path: Path) -> None:
     scenario = load_scenario(name)
     path = tmp_path / "case.toml"
     path.write_text(case_text(scenario, ["a note"]), encoding="utf-8")
+    assert load_scenario(str(path)) == scenario.model_copy(update={"name": "case"})
+
+
+def test_file_of_a_case_without_a_frame_offset_is_the_same_scenario(tmp_path: Path) -> None:
+    # A drawn world does not tell that its receivers have one frame, whatever offset they have.
+    drawn = draw_world("world", 3).scenario
+    scenario = without(drawn, details(drawn))
+    assert scenario is not None
+    assert scenario.sensors.frame_offset_m == 0.0
+    path = tmp_path / "case.toml"
+    path.write_text(case_text(scenario, []), encoding="utf-8")
     assert load_scenario(str(path)) == scenario.model_copy(update={"name": "case"})
 
 
