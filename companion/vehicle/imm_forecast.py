@@ -66,11 +66,12 @@ def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) ->
     """
     n = len(offset_s)
     means, variances = np.empty((n, SIZE)), np.empty((n, 4))
-    passed_s, glides_s, steps = 0.0, 0.0, steps_of(0.0, motion)
+    passed_s, glides_s = 0.0, offset_s[n - 1] - offset_s[max(n - 2, 0)]  # most horizons are even
+    steps = steps_of(glides_s, motion)
     for i in range(n):
         ahead_s = offset_s[i] - passed_s
         if ahead_s > 0.0:
-            if abs(ahead_s - glides_s) > SAME_S:  # most horizons are even
+            if abs(ahead_s - glides_s) > SAME_S:
                 glides_s, steps = ahead_s, steps_of(ahead_s, motion)
             x, P = glide(x, P, steps, noise, motion)
             passed_s = offset_s[i]

@@ -66,13 +66,13 @@ def mix(modes: Modes, unchanged: float, begun: Array) -> Modes:
     and of all of them together.
 
     Args:
-        modes: the filter before.
+        modes: the filter before; its weights add up to one.
         unchanged: probability, as `switching` has it.
         begun: probabilities (n,), likewise.
     """
     means, covariances, weights = modes
     n = len(weights)
-    after = unchanged * weights + begun * weights.sum()
+    after = unchanged * weights + begun
     mean, covariance = combine(means, covariances, weights)
     mixed_means, mixed_covariances = np.empty_like(means), np.empty_like(covariances)
     for j in range(n):

@@ -13,6 +13,7 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
+from companion.vehicle.small_matrices import carried_through, times
 
 ROLL, ROLL_RATE, PITCH, PITCH_RATE, MOUNT = 18, 19, 20, 21, 22
 SIZE = 24
@@ -112,21 +113,6 @@ def smooth_step(dt_s: float, frequency_rad_s: float, damping: float, std_m_s: fl
         for j in range(3):
             noise[i, j] = psd * white_jerk[i][j]
     for _ in range(_DOUBLINGS):
-        A, noise = twice(A, noise)
+        noise = carried_through(A, noise) + noise
+        A = times(A, A)
     return A, noise
-
-
-@compiled_kernel
-def twice(A: Array, noise: Array) -> tuple[Array, Array]:
-    """Return transition and noise, each (3, 3), of a step twice as long: `A A` and `A noise A' + noise`."""
-    both, half, carried = np.zeros((3, 3)), np.zeros((3, 3)), noise.copy()
-    for i in range(3):
-        for j in range(3):
-            for k in range(3):
-                both[i, j] += A[i, k] * A[k, j]
-                half[i, j] += A[i, k] * noise[k, j]
-    for i in range(3):
-        for j in range(3):
-            for k in range(3):
-                carried[i, j] += half[i, k] * A[j, k]
-    return both, carried
