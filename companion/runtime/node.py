@@ -97,8 +97,7 @@ class CompanionNode:
 
     def receive_sample(self, key: str, payload: bytes) -> None:
         """Take a Zenoh sample; see `VehicleLink.receive`."""
-        is_utc_known = self.autopilot.session.clock.is_utc_known
-        self.vehicle.receive(key, payload, self.autopilot.state, is_utc_known=is_utc_known)
+        self.vehicle.receive(key, payload, self.autopilot.state)
 
     @property
     def bad_payloads(self) -> int:
@@ -204,7 +203,7 @@ class CompanionNode:
             autopilot=state.view,
             driver=self.autopilot.driver,
             acknowledgements=self.autopilot.take_acknowledgements(),
-            vehicle=self.vehicle.take(),
+            vehicle=self.vehicle.take(is_utc_known=way.is_utc_known),
             rival=self._rival,
             command=command,
             station=station,

@@ -110,13 +110,12 @@ class VehicleLink:
         self.refusals = Refusals()
         self._keys = keys
         self._clock = clock
-        self._measurements: list[Measurement] = []
-        self._fix_ahead_s: float | None = None
+        self._received: list[tuple[str, list[Measurement]]] = []  # on which key, since the last step
         self._second_ns = 0  # in which samples are counted, when it began
         self._heard: Counter[str] = Counter()
 
-    def receive(self, key: str, payload: bytes, state: AutopilotState, *, is_utc_known: bool) -> None:
-        """Take a sample; what cannot be decoded, is absurd or comes from the future is counted and dropped.
+    def receive(self, key: str, payload: bytes, state: AutopilotState) -> None:
+        """Take a sample; what cannot be decoded or is absurd is counted and dropped.
 
         So is what somebody says of a vehicle that tells nothing.
 
@@ -124,7 +123,6 @@ class VehicleLink:
             key: that it was put on.
             payload: CDR.
             state: of the autopilot.
-            is_utc_known: before, a stamp ahead of the companion's own clock says nothing about who is wrong.
         """
         if self.tells_nothing and key != self._keys.pad_pose:
             self.refuse(key.rsplit("/", 1)[-1], "uninvited", _UNINVITED)
@@ -133,14 +131,9 @@ class VehicleLink:
             self.refuse(key.rsplit("/", 1)[-1], "flood", f"come more than {_SAMPLES_MAX_PER_S} times in a second")
             return
         try:
-            measurements = measurements_of(key, payload, self._keys, state)
+            self._received.append((key, measurements_of(key, payload, self._keys, state)))
         except PayloadError as error:
             self.refuse(key.rsplit("/", 1)[-1], "unreadable", str(error))
-            return
-        newest_ns = self._clock.t_ns + _FUTURE_MAX_NS
-        self._measurements += [measurement for measurement in measurements if measurement.t_ns <= newest_ns]
-        if is_utc_known and any(one.t_ns > newest_ns for one in measurements):
-            self._refuse_ahead(key, max(one.t_ns for one in measurements))
 
     def receive_pad(self, pad: PadGeometry) -> bool:
         """Take the description of the pad; return whether it is one that can be."""
@@ -172,11 +165,26 @@ class VehicleLink:
         why = Cause(Reason.VEHICLE_UNHEARD, (f" ({refused})" if refused else "",))
         return CommandReply(accepted=False, reason=sentence(why))
 
-    def take(self) -> VehicleInputs:
-        """Return what has come; the measurements, and by which a fix was ahead of its stamp, once."""
-        taken, self._measurements = tuple(self._measurements), []
-        ahead_s, self._fix_ahead_s = self._fix_ahead_s, None
-        return VehicleInputs(measurements=taken, fix_ahead_s=ahead_s, is_alive=self.alive, pad=self.pad)
+    def take(self, *, is_utc_known: bool) -> VehicleInputs:
+        """Return what has come; the measurements, and by which a fix was ahead of its stamp, once.
+
+        What comes from the future is counted and dropped, by the time of the step that takes it: what waited while the
+        computer was held up is newer than the step before.
+
+        Args:
+            is_utc_known: before, a stamp ahead of the companion's own clock says nothing about who is wrong.
+        """
+        received, self._received = self._received, []
+        taken: list[Measurement] = []
+        fix_ahead_s: float | None = None
+        for key, measurements in received:
+            ahead_ns = max((one.t_ns for one in measurements), default=0) - self._clock.t_ns
+            if ahead_ns <= _FUTURE_MAX_NS:
+                taken += measurements
+            elif is_utc_known:
+                self.refuse(key.rsplit("/", 1)[-1], "ahead", f"come {ahead_ns * 1e-9:.1f} s before their stamps")
+                fix_ahead_s = ahead_ns * 1e-9 if key == self._keys.fix else fix_ahead_s
+        return VehicleInputs(measurements=tuple(taken), fix_ahead_s=fix_ahead_s, is_alive=self.alive, pad=self.pad)
 
     def _is_flooded(self, key: str) -> bool:
         """Count a sample; return whether there were more of its key within a second than any sensor makes."""
@@ -186,9 +194,3 @@ class VehicleLink:
             self._heard.clear()
         self._heard[key] += 1
         return self._heard[key] > _SAMPLES_MAX_PER_S
-
-    def _refuse_ahead(self, key: str, t_ns: int) -> None:
-        ahead_s = (t_ns - self._clock.t_ns) * 1e-9
-        if key == self._keys.fix:
-            self._fix_ahead_s = ahead_s
-        self.refuse(key.rsplit("/", 1)[-1], "ahead", f"come {ahead_s:.1f} s before their stamps")

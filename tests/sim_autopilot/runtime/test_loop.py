@@ -1,5 +1,6 @@
 """The real process over real UDP and Zenoh on loopback."""
 
+import itertools
 import signal
 import socket
 import subprocess
@@ -16,9 +17,11 @@ from link.mavlink.dialect import Message, mavlink
 from link.messages import BodyTruth, PadGeometry, RotorTruth
 from link.payloads import cdr, json_messages
 from link.program.clock import ClockTick
+from link.records import replace
 from link.transports.opening import Transport, open_transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import Inbox, ZenohOptions, ZenohSession, open_session
+from sim_autopilot.core.data import Deck
 from sim_autopilot.runtime.vehicle_view import VehicleView
 from tests.sim_autopilot.pilot import arm, set_mode, setpoint
 
@@ -176,23 +179,26 @@ def test_the_deck_has_the_vehicles_motion_and_its_pads_height(companion: Compani
     companion.zenoh.serve(KEYS.pad, lambda _query: json_messages.encode(PAD))
     endpoint = companion.arguments[-1]
     with open_session(ZenohOptions(connect=(endpoint,))) as session:
-        view, t_ns = VehicleView(session, KEYS, (4.2, 1.8), 1.5), truth.t_ns
-        assert view.deck(t_ns) is None
+        view = VehicleView(session, KEYS, (4.2, 1.8), 1.5)
+        assert view.deck(truth.t_ns) is None
+        times_ns = itertools.count(truth.t_ns, 50_000_000)  # an answer that is lost is asked for again after a second
+        decks: list[Deck] = []
 
         def has_height() -> bool:
+            t_ns = next(times_ns)
             companion.zenoh.publish(KEYS.vehicle_truth, b"garbage", cdr.encoding_of(BodyTruth))
-            companion.zenoh.publish(KEYS.vehicle_truth, cdr.encode(truth), cdr.encoding_of(BodyTruth))
+            told = cdr.encode(replace(truth, t_ns=t_ns))
+            companion.zenoh.publish(KEYS.vehicle_truth, told, cdr.encoding_of(BodyTruth))
             session.wake_up.wait(0.05)
             deck = view.deck(t_ns)
-            return deck is not None and deck.roof_height_m == PAD.height_m
+            decks.extend(() if deck is None or deck.roof_height_m != PAD.height_m else (deck,))
+            return bool(decks)
 
         until(has_height)
-        deck = view.deck(t_ns)
-        assert deck is not None
-        assert np.allclose(deck.velocity_enu_m_s, (5.0 * 0.28, 5.0 * 0.96, 0.0))
-        assert np.allclose(deck.angular_velocity_enu_rad_s, (0.0, 0.0, 0.1))
+        assert np.allclose(decks[0].velocity_enu_m_s, (5.0 * 0.28, 5.0 * 0.96, 0.0))
+        assert np.allclose(decks[0].angular_velocity_enu_rad_s, (0.0, 0.0, 0.1))
         assert view.bad_payloads > 0
-        assert view.deck(t_ns + 2_000_000_000) is None
+        assert view.deck(next(times_ns) + 2_000_000_000) is None
 
 
 def test_help_loads_no_numerics() -> None:
