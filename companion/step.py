@@ -14,7 +14,7 @@ from companion.landing.outputs import landing_status, news, news_of_sortie, setp
 from companion.landing.sortie.events import is_quiet_for_long
 from companion.landing.state.memory import ModelMemory, StepMemory, to_present_frame
 from companion.landing.state.step_data import StepInputs, StepOutputs, System
-from companion.landing.state.vehicle_update import predict_pad, update_vehicle
+from companion.landing.state.vehicle_update import place_by_deck, predict_pad, update_vehicle
 from companion.landing.steering.virtual_model import tracking_error_max_m, update_tracking
 from companion.landing.touchdown.contact_forecast import update_forecast
 from companion.landing.transitions import take_events
@@ -53,6 +53,8 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
     before, warned = memory.progress, memory.sortie.warning
     memory, reply = take_events(memory, situation, inputs, system.config)
     phase = memory.progress.phase
+    if before.phase is Phase.ON_DECK and phase is Phase.LIFT_OFF:
+        memory = replace(memory, vehicle=place_by_deck(memory.vehicle, situation.pad, inputs, system))
     if phase in FOLLOWING_PHASES and before.phase not in FOLLOWING_PHASES:
         vehicle, pad = predict_pad(phase, memory.vehicle, inputs, system)
         memory, situation = replace(memory, vehicle=vehicle), with_pad(situation, pad)

@@ -30,8 +30,10 @@ from companion.vehicle.imm_state import (
     PLACE,
     TILT,
     ImmState,
+    fine_walk_m2_s,
     has_settled,
     is_heading_known,
+    largest,
     open_deck,
     recover,
     split_fix,
@@ -81,6 +83,7 @@ class ImmModel:
         return replace(
             state,
             modes=modes,
+            seen_age_s=state.seen_age_s + dt_s,
             turn_age_s=state.turn_age_s + dt_s,
             unmeasured_s=state.unmeasured_s + dt_s,
             deck=None if state.deck is None else passed(state.deck, dt_s),
@@ -99,9 +102,14 @@ class ImmModel:
             if not has_settled(state, self.config):
                 return None
             state = self._with_deck(state, measurement)
-        R, bias_variance = measurement.covariance, state.fix_bias_variance_m2
+        R, bias_variance, white_variance = (
+            measurement.covariance,
+            state.fix_bias_variance_m2,
+            state.fix_white_variance_m2,
+        )
         if measurement.quantity is Quantity.POSITION:
             R, bias_variance = split_fix(R, self.config.receivers)
+            white_variance = largest(R)
         reading = (KINDS[measurement.quantity], _own(measurement.value), _own(R))
         numbers = self.numbers
         tells_motion = measurement.quantity in MOTIONS
@@ -118,6 +126,8 @@ class ImmModel:
         updated = ImmState(
             modes=modes,
             fix_bias_variance_m2=bias_variance,
+            fix_white_variance_m2=white_variance,
+            seen_age_s=0.0 if measurement.quantity is Quantity.PAD else state.seen_age_s,
             turn_age_s=turn_age_s,
             unmeasured_s=0.0 if tells_motion else state.unmeasured_s,
             deck=deck,
@@ -189,12 +199,12 @@ class ImmModel:
 
     def _noises(self, state: ImmState) -> Array:
         """The modes' noise, (n, 16), as `imm_noise.process_noise` takes it."""
-        walk_m2_s = 2.0 * state.fix_bias_variance_m2 / self.config.receivers.fix_bias_time_s
-        receiver_m2_s = self.config.receivers.frame_offset_walk_m2_s + walk_m2_s
+        receivers = self.config.receivers
+        walk_m2_s = 2.0 * state.fix_bias_variance_m2 / receivers.fix_bias_time_s
         return noises_with(
             self.numbers,
-            receiver_m2_s,
-            self.config.receivers.own_walk_share * walk_m2_s,
+            receivers.frame_offset_walk_m2_s + walk_m2_s + fine_walk_m2_s(state, receivers),
+            receivers.own_walk_share * walk_m2_s,
             turn_is_measured=state.turn_age_s < TURN_AGE_MAX_S,
         )
 

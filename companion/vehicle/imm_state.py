@@ -88,6 +88,8 @@ class ImmState(Struct, frozen=True, kw_only=True, eq=False):
     Attributes:
         modes: all, with their probabilities.
         fix_bias_variance_m2: the slow part of the fixes' variance.
+        fix_white_variance_m2: the rest, on the worst axis.
+        seen_age_s: how long ago the pad was seen, or known to be under the drone; infinite before.
         turn_age_s: how long ago a sensor told the heading or the yaw rate.
         unmeasured_s: how long ago place or velocity was told.
         deck: how the deck swings; None until the vehicle has told its tilt.
@@ -95,6 +97,8 @@ class ImmState(Struct, frozen=True, kw_only=True, eq=False):
 
     modes: mixing.Modes
     fix_bias_variance_m2: float
+    fix_white_variance_m2: float = 0.0
+    seen_age_s: float = math.inf
     turn_age_s: float = math.inf
     unmeasured_s: float = 0.0
     deck: DeckMotion | None = None
@@ -123,14 +127,34 @@ def start_state(place: Measurement, config: ImmConfig, numbers: Numbers) -> ImmS
     n = len(rates)
     covariances = open_place_and_offset(np.stack([covariance] * n), offset_variance * np.eye(3))
     modes = (np.stack([mean] * n), covariances, rates / rates.sum())
-    return ImmState(modes=modes, fix_bias_variance_m2=bias_variance)
+    return ImmState(
+        modes=modes,
+        fix_bias_variance_m2=bias_variance,
+        fix_white_variance_m2=largest(white) if is_fix else 0.0,
+        seen_age_s=math.inf if is_fix else 0.0,
+    )
 
 
 def split_fix(covariance: Array, receivers: ReceiversConfig) -> tuple[Array, float]:
     """Return a fix's `covariance` (3, 3), m^2, as its white part (3, 3) and the variance of the slow rest, m^2."""
-    stated = float(covariance.diagonal().max())
+    stated = largest(covariance)
     white = min(stated, receivers.fix_white_std_max_m**2)
     return covariance * (white / stated), stated - white
+
+
+def fine_walk_m2_s(state: ImmState, receivers: ReceiversConfig) -> float:
+    """Return how fast the frames wander apart, m^2/s, by what two receivers state that is no slow error.
+
+    Most of it is slow, too: multipath and the atmosphere. Over a time T each of two Gauss-Markov errors of variance v
+    changes by 2 v (1 - exp(-T / tau)), so that what was known when the pad was last seen is never worse than both.
+    """
+    left = math.exp(-state.seen_age_s / receivers.fix_bias_time_s)
+    return 4.0 * state.fix_white_variance_m2 * left / receivers.fix_bias_time_s
+
+
+def largest(covariance: Array) -> float:
+    """Return the variance on the worst axis."""
+    return float(covariance.diagonal().max())
 
 
 def is_heading_known(state: ImmState, config: ImmConfig) -> bool:

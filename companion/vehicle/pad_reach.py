@@ -75,6 +75,16 @@ def is_unseen(pad: PadPath, config: CompanionConfig) -> bool:
     return is_moved and not pad.frame_offset.is_confirmed
 
 
+def is_agreement_old(pad: PadPath, config: CompanionConfig) -> bool:
+    """Return whether what sightings, or a launch, have told of the pad's place does not tell it any more.
+
+    Between fine fixes of two frames that is how far these are apart; a vehicle that was silent is where it says again.
+    """
+    if pad.is_coarse:
+        return is_place_vague(pad, config)
+    return not pad.has_one_frame and pad.frame_offset.std_m > unseen_std_max_m(pad.half_width_m, config)
+
+
 def is_place_vague(pad: PadPath, config: CompanionConfig) -> bool:
     """Return whether the pad is known too vaguely to be landed on where only what is seen of it places it."""
     return float(np.max(pad.position_std_m[0, :2])) > unseen_std_max_m(pad.half_width_m, config)

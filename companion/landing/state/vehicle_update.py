@@ -1,6 +1,8 @@
 """What a step learns of the vehicle: its data are fused and watched, and its pad is predicted; pure."""
 
-from companion.core.data import Forecast
+import numpy as np
+
+from companion.core.data import Forecast, Measurement, Quantity
 from companion.integrity.sightings import (
     SightingWatch,
     are_frames_one,
@@ -23,7 +25,7 @@ from companion.planning.guidance import are_finite
 from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
 from companion.vehicle.hindsight import forget_instants, update_hindsight
 from companion.vehicle.pad import PadPath, pad_path
-from companion.vehicle.pad_reach import is_place_vague
+from companion.vehicle.pad_reach import is_agreement_old
 from companion.vehicle.surface import surface_measurements
 from link.records import replace
 
@@ -95,10 +97,32 @@ def predict_pad(
         sightings = vehicle.sightings if phase in _APPROACHING else forget_step(vehicle.sightings)
         vehicle = replace(vehicle, sightings=sightings) if sightings is not vehicle.sightings else vehicle
         pad = pad_path(forecast, inputs.vehicle.pad, has_one_frame=has_one_frame, is_confirmed=sightings.is_confirmed)
-        if (pad.is_coarse or not has_one_frame) and is_place_vague(pad, system.config):
+        if is_agreement_old(pad, system.config):
             vehicle = replace(vehicle, sightings=forget_agreement(sightings))
         return vehicle, without_contradicted_heading(pad, vehicle.course)
     return replace(vehicle, estimator=None), None
+
+
+def place_by_deck(vehicle: VehicleMemory, pad: PadPath | None, inputs: StepInputs, system: System) -> VehicleMemory:
+    """Return what is known of the vehicle once a drone is about to lift off its pad: how far apart the frames are.
+
+    Where they are one, what is missing to the pad's middle is how the drone was put there.
+    """
+    own, config = inputs.own, system.config
+    if own is None or pad is None or pad.has_one_frame or vehicle.estimator is None:
+        return vehicle
+    feet_enu_m = own.position_enu_m - np.array([0.0, 0.0, config.touchdown.gear_height_m])
+    stands = Measurement(
+        t_ns=own.t_ns,
+        quantity=Quantity.PAD,
+        value=feet_enu_m,
+        covariance=config.sortie.launch.placed_std_m**2 * np.eye(3),
+    )
+    return replace(
+        vehicle,
+        estimator=system.estimator.fuse(vehicle.estimator, [stands]),
+        sightings=replace(vehicle.sightings, is_confirmed=True),
+    )
 
 
 def _is_finite(forecast: Forecast) -> bool:
