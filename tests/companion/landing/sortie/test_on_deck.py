@@ -1,0 +1,83 @@
+"""Whether the drone stands on the vehicle, and what its lift-off tells about the receivers' frames."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+
+from companion.config.integrity import ReceiverFrames
+from companion.core.data import Measurement, Quantity
+from companion.landing.sortie.over_vehicle import stands_on_deck
+from companion.situation.phases import Phase
+from companion.situation.situation import Situation
+from link.messages import Command, Vector3
+from link.records import replace
+from tests.companion.facts import TICK_NS, pad_at, situation
+from tests.companion.world import CONFIG, GEAR_M, KnownVehicle, on_deck
+
+NEAR_M, HEIGHT_M = 3.0, 0.5
+COARSE_M = 1.5
+
+
+def stands(
+    beside_m: float, pad_velocity_enu_m_s: Vector3, slower_m_s: float = 0.0, *, std_m: float = COARSE_M
+) -> Situation:
+    """A drone that its autopilot says stands, seen so far beside the pad and so much slower than it."""
+    pad = pad_at(pad_velocity_enu_m_s, std_m=std_m)
+    facts = situation(1.2, beside_m, pad)
+    assert facts.drone is not None
+    drone = replace(facts.drone, velocity_enu_m_s=pad.velocity_enu_m_s[0] - np.array([slower_m_s, 0.0, 0.0]))
+    return replace(facts, drone=drone, autopilot=replace(facts.autopilot, landed=True))
+
+
+@pytest.mark.parametrize(
+    ("facts", "is_on"),
+    [
+        (stands(4.0, (8.0, 0.0, 0.0)), True),
+        (stands(4.0, (8.0, 0.0, 0.0), slower_m_s=1.0), True),
+        (stands(4.0, (8.0, 0.0, 0.0), slower_m_s=8.0), False),  # stands on the road that the vehicle drives on
+        (stands(4.0, (2.0, 0.0, 0.0)), False),  # may be carried beside it
+        (stands(4.0, (0.0, 0.0, 0.0)), False),
+        (stands(4.0, (8.0, 0.0, 0.0), std_m=0.05), False),  # both places are known: it drives ahead of the vehicle
+        (stands(9.0, (8.0, 0.0, 0.0)), False),
+    ],
+)
+def test_drone_that_is_carried_along_stands_on_the_vehicle(facts: Situation, *, is_on: bool) -> None:
+    assert stands_on_deck(facts, NEAR_M, HEIGHT_M) is is_on
+
+
+def test_drone_that_flies_with_the_vehicle_does_not_stand_on_it() -> None:
+    facts = stands(4.0, (8.0, 0.0, 0.0))
+    assert not stands_on_deck(replace(facts, autopilot=replace(facts.autopilot, landed=False)), NEAR_M, HEIGHT_M)
+
+
+@dataclass(frozen=True)
+class Listening(KnownVehicle):
+    """An estimator that also writes down what it is told of the pad."""
+
+    told: list[Measurement] = field(default_factory=list)
+
+    def fuse(self, memory: int | None, measurements: Sequence[Measurement]) -> int:
+        self.told.extend(one for one in measurements if one.quantity is Quantity.PAD)
+        return super().fuse(memory, measurements)
+
+
+@pytest.mark.parametrize(("frames", "looks"), [(ReceiverFrames.APART, 1), (ReceiverFrames.ONE, 0)])
+def test_lift_off_tells_once_that_the_pad_is_under_the_drone_where_frames_are_apart(
+    frames: ReceiverFrames, looks: int
+) -> None:
+    flight = on_deck()
+    integrity = CONFIG.integrity.model_copy(update={"receiver_frames": frames})
+    flight.config = CONFIG.model_copy(update={"integrity": integrity})
+    known = flight.vehicle
+    flight.vehicle = listening = Listening(known.start_enu_m, known.velocity_enu_m_s, apart_std_m=0.1)
+    flight.step(Command.LAUNCH)
+    flight.run_until(Phase.LIFT_OFF)
+    stood_enu_m, stood_ns = flight.own.position_enu_m, flight.own.t_ns
+    flight.run_until(Phase.FOLLOW)
+    assert len(listening.told) == looks
+    for look in listening.told:
+        assert abs(look.t_ns - stood_ns) <= TICK_NS
+        assert look.value == pytest.approx(np.array(stood_enu_m) - np.array([0.0, 0.0, GEAR_M]), abs=0.05)
+    assert flight.memory.vehicle.sightings.is_confirmed is bool(looks)
