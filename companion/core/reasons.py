@@ -28,7 +28,7 @@ class Reason(Enum):
     HELD_UP = "held up"
     MOTORS_OFF = "motors are off on the pad"
     HEARD = "heard"
-    HEARD_AGAIN = "heard again: the same approach goes on"
+    HEARD_AGAIN = "heard again: what was broken off goes on"
     RETRY = "retry {} of {}"
 
     # A sortie goes on.

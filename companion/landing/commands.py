@@ -125,8 +125,8 @@ def answer(
     """
     event = _event_of(order, phase, situation, config)
     is_start = order.command in (Command.START, Command.START_ANYWAY)
-    if phase is Phase.ABORT and event in (Event.ABORT, Event.HOLD):
-        return None, _ACCEPTED  # the climb goes on, but to no retry
+    if phase in (Phase.ABORT, Phase.HOLD) and event in (Event.ABORT, Event.HOLD):
+        return None, _ACCEPTED  # the climb goes on, but to no retry, and a hold stays one whatever is heard again
     stays = phase is Phase.FOLLOW and event is Event.FOLLOW  # at another station
     if next_phase(phase, event) is phase and not stays:
         return None, _refuse(Cause(Reason.NOTHING_TO_DO, (order.command.value, phase.value)))

@@ -105,7 +105,7 @@ VEHICLE_SILENT, *AUTOPILOT_SILENT = SILENCES
 
 HEARD = Condition(
     reason=Reason.HEARD,
-    phases=frozenset({Phase.ABORT}),
+    phases=frozenset({Phase.ABORT, Phase.HOLD}),
     is_true=_is_heard,
     hold_s=lambda _, c: c.abort.heard_hold_s,
 )

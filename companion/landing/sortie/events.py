@@ -8,8 +8,10 @@ from companion.integrity.heights import VEHICLE_M
 from companion.integrity.vehicle_data import contradicts_itself
 from companion.landing.decisions.aborts import is_not_followed, is_stamped_ahead, is_token_lost
 from companion.landing.decisions.conditions import (
+    HEARD,
     Condition,
     first_cause,
+    holds,
     is_attitude_unknown,
     is_drone_unknown,
     is_fix_old,
@@ -49,6 +51,7 @@ OWN_LOST = (
     Condition(reason=Reason.OWN_ATTITUDE_OLD, phases=_TOGETHER, is_true=is_attitude_unknown),
 )
 """Nobody knows where the drone is."""
+_OWN_LOST_REASONS = frozenset(condition.reason for condition in OWN_LOST)
 
 NOT_FOLLOWED = Condition(
     reason=Reason.SETPOINT_NOT_FOLLOWED,
@@ -124,7 +127,8 @@ def decide_sortie(
         case Phase.RALLY:
             return _find(sortie, s, config)
         case Phase.HOLD if sortie.is_out and (sortie.follows or progress.may_retry):
-            return _turn_home(sortie, s, config)  # but not where an operator has broken the way home off
+            # but not where an operator has broken the way home off
+            return _turn_home(sortie, s, config) or _go_on(sortie, progress, s, config)
         case _:
             return None
 
@@ -205,6 +209,14 @@ def _turn_home(sortie: SortieMemory, s: Situation, config: CompanionConfig) -> D
         return None
     lasts_s, needed_s = left_s(sortie.battery, config.limits.battery_min_share), home_s(s, config)
     return (Event.HOME_NOW, Cause(Reason.HOME_NOW, (lasts_s, needed_s))) if lasts_s <= needed_s < math.inf else None
+
+
+def _go_on(sortie: SortieMemory, progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
+    """Return to what an outage of the autopilot's link has broken off, once drone and vehicle are heard again."""
+    is_outage = progress.may_retry and progress.cause.reason in _OWN_LOST_REASONS
+    if not (is_outage and s.autopilot.in_control and holds(HEARD, progress.held, s, config)):
+        return None
+    return (Event.FOLLOW if sortie.follows else Event.RETURN), Cause(Reason.HEARD_AGAIN)
 
 
 def _find(sortie: SortieMemory, s: Situation, config: CompanionConfig) -> Decision | None:

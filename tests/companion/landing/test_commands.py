@@ -24,13 +24,15 @@ def order(command: Command) -> Order:
 
 
 @pytest.mark.parametrize(("command", "phase"), PAIRS)
-def test_accepted_command_changes_the_phase_or_is_said_during_the_climb(command: Command, phase: Phase) -> None:
+def test_accepted_command_changes_the_phase_or_forbids_what_would_come_by_itself(
+    command: Command, phase: Phase
+) -> None:
     event, reply = answer(order(command), phase, situation(), CONFIG)
     if event is not None:
         assert reply.accepted
         assert next_phase(phase, event) is not phase or (phase, event) == (Phase.FOLLOW, Event.FOLLOW)
     elif reply.accepted:
-        assert phase is Phase.ABORT
+        assert phase in (Phase.ABORT, Phase.HOLD)
     else:
         assert reply.reason
 
@@ -47,7 +49,9 @@ def test_start_is_accepted_where_a_landing_can_begin_only(phase: Phase, command:
 def test_landing_can_be_broken_off_until_contact(phase: Phase, command: Command) -> None:
     _, reply = answer(order(command), phase, situation(), CONFIG)
     breakable = (
-        LANDING_PHASES | STATION_PHASES | {Phase.TAKEOFF, Phase.WAITING, Phase.ABORT, Phase.ON_DECK, Phase.RALLY}
+        LANDING_PHASES
+        | STATION_PHASES
+        | {Phase.TAKEOFF, Phase.WAITING, Phase.ABORT, Phase.HOLD, Phase.ON_DECK, Phase.RALLY}
     )
     assert reply.accepted == (phase in breakable)
     assert phase in FLYING_PHASES or not reply.accepted

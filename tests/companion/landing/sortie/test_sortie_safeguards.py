@@ -71,13 +71,37 @@ def test_landing_of_a_drone_that_held_before_may_be_retried() -> None:
     assert flight.memory.progress.may_retry
 
 
-def test_drone_that_lost_its_own_place_beside_the_vehicle_lands_only_when_told_to() -> None:
+def test_drone_that_lost_its_own_place_beside_the_vehicle_goes_back_there_and_does_not_land() -> None:
     flight = reached(Phase.FOLLOW)
     flight.run(2.0)
     flight.own_is_silent = True
     flight.run_until(Phase.ABORT, limit_s=3.0)
     flight.own_is_silent = False
-    flight.run_until(Phase.HOLD, Phase.CHASE, limit_s=30.0)
+    flight.run_until(Phase.FOLLOW, Phase.CHASE, limit_s=35.0)
+    assert flight.history[-3:] == [Phase.ABORT, Phase.HOLD, Phase.FOLLOW]
+    assert flight.memory.progress.cause.reason is Reason.HEARD_AGAIN
+
+
+def test_way_home_goes_on_after_an_outage_of_the_autopilots_link() -> None:
+    flight = reached(Phase.RETURN)
+    flight.own_is_silent = True
+    flight.run_until(Phase.HOLD, limit_s=3.0)
+    flight.run(2.0)
+    assert flight.phase is Phase.HOLD
+    flight.own_is_silent = False
+    flight.run(0.5 * CONFIG.abort.heard_hold_s)
+    assert flight.phase is Phase.HOLD
+    flight.run_until(Phase.RETURN, limit_s=2.0)
+
+
+@pytest.mark.parametrize("command", [Command.HOLD, Command.ABORT])
+def test_hold_that_was_ordered_after_an_outage_stays_one(command: Command) -> None:
+    flight = reached(Phase.RETURN)
+    flight.own_is_silent = True
+    flight.run_until(Phase.HOLD, limit_s=3.0)
+    flight.step(command)
+    flight.own_is_silent = False
+    flight.run(5.0)
     assert flight.phase is Phase.HOLD
 
 
