@@ -7,6 +7,7 @@ import numpy as np
 from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.config.planning import GuidanceConfig, GuidanceKind, SolverKind
+from companion.core.data import Array
 from companion.forecast.warm_up import compile_rollout
 from companion.landing.state.step_data import System
 from companion.planning.guidance import Guidance, GuidanceMemory, PlanRequest, ReferenceState, Target
@@ -16,7 +17,8 @@ from companion.planning.pn import ProportionalNavigation
 from companion.runtime.node import CompanionNode
 from companion.runtime.recorded_node import RecordingNode
 from companion.vehicle.factory import make_estimator
-from companion.vehicle.pad import turned_lever
+from companion.vehicle.lever import tilted_lever, turned_lever, yaw_rate
+from companion.vehicle.shake import tilted_deck
 from link.mavlink.session import MavlinkSession
 from link.mavlink.signing import Signing
 from link.program.extras import require
@@ -49,8 +51,16 @@ def warm_up(system: System) -> None:
             dt_s=1.0 / system.config.setpoints.rate_hz,
         )
         memory, _ = system.guidance.plan(memory, request)
-    turned_lever(np.zeros_like(offset_s), np.zeros_like(offset_s), offset_s, 1.0, 0.0)
+    _compile_pad_motion(offset_s)
     compile_rollout()
+
+
+def _compile_pad_motion(offset_s: Array) -> None:
+    still, level, tilt = np.zeros_like(offset_s), (1.0, 0.1, 1.0), np.zeros((len(offset_s), 4))
+    turned_lever(still, still, offset_s, 1.0, 0.0)
+    tilted_lever(still, tilt, 1.0, 0.0, 1.0)
+    yaw_rate(still, offset_s)
+    tilted_deck(still, tilt, level, level)
 
 
 def build_node(

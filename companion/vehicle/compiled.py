@@ -5,7 +5,8 @@ from pathlib import Path
 from link.compiled import file_digest, kept_kernel
 
 FILES = (
-    "pad.py",
+    "lever.py",
+    "shake.py",
     "small_matrices.py",
     "imm_swing.py",
     "imm_kernels.py",

@@ -7,7 +7,8 @@ trace; a measurement older than the buffer is dropped and counted.
 """
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from operator import itemgetter
 from typing import Generic, NewType, Protocol, TypeVar
 
 from msgspec import Struct
@@ -23,6 +24,8 @@ START_REACH_NS = 1_000_000_000
 
 Place = tuple[int, int, tuple[float, ...]]
 """Of a measurement in the order of fusion: by time, then by quantity, then by value."""
+
+_PLACE = itemgetter(0)
 
 
 class Entry(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
@@ -66,15 +69,15 @@ def fuse(
     """
     if not measurements:
         return buffer
-    ordered = sorted(measurements, key=_place)
     if buffer is None:
-        buffer = _empty(ordered[0].t_ns)
-    in_time = [measurement for measurement in ordered if measurement.t_ns >= buffer.base.t_ns]
-    late = len(ordered) - len(in_time)
-    if not in_time:
-        return _all_late(model, config, buffer, ordered)
-    first = bisect_left(buffer.entries, _place(in_time[0]), key=_entry_place)
-    again = sorted([*in_time, *(entry.measurement for entry in buffer.entries[first:])], key=_place)
+        buffer = _empty(min(measurement.t_ns for measurement in measurements))
+    placed = [(_place(one), one) for one in measurements if one.t_ns >= buffer.base.t_ns]
+    late = len(measurements) - len(placed)
+    if not placed:
+        return _all_late(model, config, buffer, measurements)
+    first = bisect_left(buffer.entries, min(placed, key=_PLACE)[0], key=_entry_place)
+    later = [(entry.place, entry.measurement) for entry in buffer.entries[first:]]
+    again = sorted([*placed, *later], key=_PLACE)
     kept = buffer.entries[:first]
     entries = kept + tuple(_run(model, config, kept[-1].after if kept else buffer.base, again))
     return _prune(
@@ -101,11 +104,11 @@ def _all_late(
 
 
 def _run(
-    model: FilterModel[S], config: BufferConfig, snapshot: Snapshot[S], measurements: Sequence[Measurement]
+    model: FilterModel[S], config: BufferConfig, snapshot: Snapshot[S], placed: Iterable[tuple[Place, Measurement]]
 ) -> Iterator[Entry[S]]:
-    for measurement in measurements:
+    for place, measurement in placed:
         snapshot, nis_per_dof = step(model, config, snapshot, measurement)
-        yield Entry(measurement=measurement, place=_place(measurement), after=snapshot, nis_per_dof=nis_per_dof)
+        yield Entry(measurement=measurement, place=place, after=snapshot, nis_per_dof=nis_per_dof)
 
 
 def _prune(buffer: DelayBuffer[S], keep_s: float) -> DelayBuffer[S]:

@@ -1,4 +1,4 @@
-"""The landing pad now and over the horizon, from the forecast of the vehicle's antenna, compiled in part.
+"""The landing pad now and over the horizon, from the forecast of the vehicle's antenna.
 
 It is the pad as it is to be followed, without what it shakes to the sides. How near is on it says `pad_reach`.
 """
@@ -10,7 +10,7 @@ from msgspec import Struct
 
 from companion.core.data import Array, Forecast
 from companion.core.reasons import Cause, Reason
-from companion.vehicle.compiled import compiled_kernel
+from companion.vehicle.lever import tilted_lever, turned_lever, yaw_rate
 from companion.vehicle.shake import PadSwing, swing_of
 from link.messages import PadGeometry, Vector3
 
@@ -104,10 +104,9 @@ def pad_path(
     position, velocity = _at_end_of(lever_m, forecast)
     acceleration, deck = forecast.acceleration_enu_m_s2, swing_of(forecast, 0.0 if pad is None else pad.height_m)
     if deck is not None and deck.shake_enu.any():
-        still = np.zeros((3, len(position), 1))
+        motion = (position, velocity, acceleration)
         position, velocity, acceleration = (
-            value - np.concatenate((part, zero), axis=1)
-            for value, part, zero in zip((position, velocity, acceleration), deck.shake_enu, still, strict=True)
+            _without_shake(value, shake) for value, shake in zip(motion, deck.shake_enu, strict=True)
         )
     return PadPath(
         offset_s=forecast.offset_s,
@@ -147,17 +146,22 @@ def _at_end_of(lever_m: Vector3, forecast: Forecast) -> tuple[Array, Array]:
         position += arm
         velocity = velocity + swing
     if forecast.tilt_rad is not None:
-        tilted = np.column_stack([forecast.yaw_rad, forecast.tilt_rad])
-        lever = np.array(lever_m)
-        position = position + tilted_lever(tilted[:, [0, 1, 3]], lever)
-        velocity = velocity + tilted_lever(tilted[:, [0, 2, 4]], lever)
+        moved, swing = tilted_lever(forecast.yaw_rad, forecast.tilt_rad, lever_x_m, lever_y_m, lever_z_m)
+        position, velocity = position + moved, velocity + swing
     return position, velocity
+
+
+def _without_shake(motion: Array, shake_enu: Array) -> Array:
+    """Return `motion` (n, 3) without the horizontal `shake_enu` (n, 2)."""
+    still = motion.copy()
+    still[:, :2] -= shake_enu
+    return still
 
 
 def _yaw_rate_rad_s(forecast: Forecast) -> Array | None:
     if forecast.yaw_rad is None or len(forecast.offset_s) < 2:
         return None
-    return np.asarray(np.gradient(np.unwrap(forecast.yaw_rad), forecast.offset_s))
+    return yaw_rate(forecast.yaw_rad, forecast.offset_s)
 
 
 def _is_about(forecast: Forecast, pad: PadGeometry) -> bool:
@@ -168,64 +172,3 @@ def _is_about(forecast: Forecast, pad: PadGeometry) -> bool:
     known_m = 0.5 * KNOWN_SHARE * min(pad.size_m)
     east_std_m, north_std_m, _ = forecast.position_std_m[0].tolist()
     return lever_m * forecast.yaw_std_rad > known_m and not max(east_std_m, north_std_m) < known_m
-
-
-@compiled_kernel
-def turned_lever(
-    yaw_rad: Array, grade: Array, offset_s: Array, lever_x_m: float, lever_y_m: float
-) -> tuple[Array, Array]:
-    """Return a horizontal lever arm of V in W over a horizon, and its rate of change, each (n, 3).
-
-    Args:
-        yaw_rad: (n,) of V, wrapped or not; n > 1.
-        grade: (n,) by which V pitches, m of height per m.
-        offset_s: (n,) rising.
-        lever_x_m: forward in V.
-        lever_y_m: left in V.
-    """
-    n = len(yaw_rad)
-    turn_rad, step_s = np.empty(n - 1), np.diff(offset_s)
-    for i in range(n - 1):
-        turn_rad[i] = (yaw_rad[i + 1] - yaw_rad[i] + math.pi) % (2.0 * math.pi) - math.pi
-    arm, swing = np.zeros((n, 3)), np.zeros((n, 3))
-    for i in range(n):
-        c, s = math.cos(yaw_rad[i]), math.sin(yaw_rad[i])
-        arm[i, 0], arm[i, 1] = c * lever_x_m - s * lever_y_m, s * lever_x_m + c * lever_y_m
-        before, after = max(i - 1, 0), min(i, n - 2)
-        # of second order within, where the slopes to both sides are weighed by each other's step
-        share = step_s[before] / (step_s[before] + step_s[after])
-        rate = (1.0 - share) * turn_rad[before] / step_s[before] + share * turn_rad[after] / step_s[after]
-        swing[i, 0], swing[i, 1] = -rate * arm[i, 1], rate * arm[i, 0]
-        arm[i, 2], swing[i, 2] = lever_x_m * grade[i], lever_x_m * slope_at(i, grade, step_s)
-    return arm, swing
-
-
-def tilted_lever(tilt: Array, lever_m: Array) -> Array:
-    """Return by how much (n, 3) a tilt moves the end of a lever arm in W, to the first order; for its rate, how fast.
-
-    Args:
-        tilt: (n, 3) heading of V, rad, roll and pitch, rad, or their rates, rad/s.
-        lever_m: (3,) in V.
-    """
-    x_m, y_m, z_m = lever_m
-    cosine, sine, (_, roll, pitch) = np.cos(tilt[:, 0]), np.sin(tilt[:, 0]), tilt.T
-    forward, left = pitch * z_m, -roll * z_m
-    up = roll * y_m - pitch * x_m
-    return np.column_stack([cosine * forward - sine * left, sine * forward + cosine * left, up])
-
-
-@compiled_kernel
-def slope_at(i: int, values: Array, step_s: Array) -> float:
-    """Return the derivative of `values` (n,) at the `i`-th of them, of second order within (numpy's `gradient`).
-
-    Args:
-        i: from 0.
-        values: at n instants.
-        step_s: (n - 1,) between these.
-    """
-    if i in (0, len(step_s)):
-        last = max(i - 1, 0)
-        return float((values[last + 1] - values[last]) / step_s[last])
-    before, after = step_s[i - 1], step_s[i]
-    back, ahead = -after / (before * (before + after)), before / (after * (before + after))
-    return float(back * values[i - 1] + (after - before) / (before * after) * values[i] + ahead * values[i + 1])

@@ -1,4 +1,4 @@
-"""How much of a pad's swing to the sides a drone that lands on it does not follow; pure.
+"""How much of a pad's swing to the sides a drone that lands on it does not follow; compiled in part.
 
 A pad h above the axis about which its deck rolls or pitches swings to the sides, x'' = -w^2 x. A drone that follows a
 share s of a swing of amplitude A leans against the deck by s A w^2 / g; what it does not follow is (1 - s) A w of speed
@@ -16,6 +16,7 @@ import numpy as np
 from msgspec import Struct
 
 from companion.core.data import GRAVITY_M_S2, Array, Forecast
+from companion.vehicle.compiled import compiled_kernel
 
 _TILT_RAD, _SPEED_M_S = math.radians(10.0), 0.5  # S2's limits (docs/benchmark.md)
 _EVEN_RAD_S = GRAVITY_M_S2 * _TILT_RAD / _SPEED_M_S
@@ -44,19 +45,47 @@ def swing_of(forecast: Forecast, above_m: float) -> PadSwing | None:
         forecast: of the vehicle.
         above_m: height of the pad over the axis about which the deck tilts.
     """
-    shake, slope = np.zeros((3, len(forecast.offset_s), 2)), np.zeros((len(forecast.offset_s), 2))
     if forecast.yaw_rad is None or forecast.tilt_rad is None or forecast.swing is None:
         return None
-    climb_std_m_s = np.zeros(len(slope)) if forecast.climb_std_m_s is None else forecast.climb_std_m_s
-    cosine, sine = np.cos(forecast.yaw_rad), np.sin(forecast.yaw_rad)
-    # To the first order a roll of phi, port up, moves the pad by phi to starboard, a pitch, bow down, forward.
-    for first, (w, damping), ahead in zip(
-        (0, 2), forecast.swing[1:].tolist(), ((sine, -cosine), (cosine, sine)), strict=True
-    ):
-        left_out = above_m * (1.0 - 1.0 / (1.0 + (w / _EVEN_RAD_S) ** 2))
-        tilt_rad, rate_rad_s = forecast.tilt_rad[:, first], forecast.tilt_rad[:, first + 1]
-        motion = (tilt_rad, rate_rad_s, -(w**2) * tilt_rad - 2.0 * damping * w * rate_rad_s)
-        for order, value in enumerate(motion):
-            shake[order] += left_out * value[:, None] * np.column_stack(ahead)
-        slope -= tilt_rad[:, None] * np.column_stack(ahead)
-    return PadSwing(slope=slope, shake_enu=shake, climb_std_m_s=climb_std_m_s, heave_rad_s=float(forecast.swing[0, 0]))
+    heave, *tilts = forecast.swing.tolist()
+    roll, pitch = ((w, damping, above_m * _left_out(w)) for w, damping in tilts)
+    slope, shake_enu = tilted_deck(forecast.yaw_rad, forecast.tilt_rad, roll, pitch)
+    return PadSwing(
+        slope=slope,
+        shake_enu=shake_enu,
+        climb_std_m_s=np.zeros(len(slope)) if forecast.climb_std_m_s is None else forecast.climb_std_m_s,
+        heave_rad_s=heave[0],
+    )
+
+
+def _left_out(w: float) -> float:
+    """Return the share of a swing of `w`, rad/s, that is not followed."""
+    return 1.0 - 1.0 / (1.0 + (w / _EVEN_RAD_S) ** 2)
+
+
+@compiled_kernel
+def tilted_deck(
+    yaw_rad: Array, tilt: Array, roll: tuple[float, float, float], pitch: tuple[float, float, float]
+) -> tuple[Array, Array]:
+    """Return the slope (n, 2) of a deck in W and the shake (3, n, 2) of its pad, as `PadSwing` has them.
+
+    To the first order a roll of phi, port up, moves the pad by phi to starboard, a pitch, bow down, forward.
+
+    Args:
+        yaw_rad: (n,) of V.
+        tilt: (n, 4) roll and its rate, pitch and its rate, rad and rad/s.
+        roll: angular frequency, rad/s, damping, and the length by which a tilt shakes the pad, m.
+        pitch: likewise.
+    """
+    n = len(yaw_rad)
+    slope, shake = np.zeros((n, 2)), np.zeros((3, n, 2))
+    for i in range(n):
+        c, s = math.cos(yaw_rad[i]), math.sin(yaw_rad[i])
+        for first, (w, damping, length_m), ahead in ((0, roll, (s, -c)), (2, pitch, (c, s))):
+            angle, rate = tilt[i, first], tilt[i, first + 1]
+            motion = (angle, rate, -(w**2) * angle - 2.0 * damping * w * rate)
+            for axis in range(2):
+                slope[i, axis] -= angle * ahead[axis]
+                for order in range(3):
+                    shake[order, i, axis] += length_m * motion[order] * ahead[axis]
+    return slope, shake

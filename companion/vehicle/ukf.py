@@ -144,7 +144,7 @@ class UkfModel:
             position_enu_m=middle[:, :3],
             velocity_enu_m_s=middle[:, 3:6],
             acceleration_enu_m_s2=middle[:, 6:],
-            yaw_rad=states[:, 0, 2],
+            yaw_rad=states[:, 0, 2].copy(),
             position_std_m=np.sqrt(variance),
             yaw_std_rad=math.sqrt(max(float(state.covariance[2, 2]), 0.0)),
         )

@@ -3,12 +3,15 @@
 import math
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from companion.core.data import Array, Forecast
-from companion.vehicle.pad import HEADING_UNKNOWN, NOT_DESCRIBED, pad_path, turned_lever
-from link.frames.rotations import quaternion_from_yaw, rotate
+from companion.vehicle.lever import tilted_lever, turned_lever, yaw_rate
+from companion.vehicle.pad import HEADING_UNKNOWN, NOT_DESCRIBED, pad_path
+from companion.vehicle.shake import tilted_deck
+from link.frames.rotations import quaternion_from_roll_pitch_yaw, quaternion_from_yaw, rotate
 from link.messages import PadGeometry, Vector3
 from link.records import replace
 from tests.companion.world import START_NS
@@ -62,6 +65,43 @@ def test_lever_arm_rises_with_the_grade_as_numpy_derives_it(grade: list[float]) 
     arm, swing = turned_lever(np.zeros(5), pitch, offset_s, 1.2, 0.3)
     np.testing.assert_array_equal(arm[:, 2], 1.2 * pitch)
     np.testing.assert_array_equal(swing[:, 2], 1.2 * np.gradient(pitch, offset_s))
+
+
+@given(yaw=st.lists(st.floats(-9.0, 9.0), min_size=5, max_size=5))
+def test_heading_turns_the_short_way_round_as_numpy_unwraps_and_derives_it(yaw: list[float]) -> None:
+    offset_s, yaw_rad = np.array([0.0, 0.1, 0.35, 0.4, 1.0]), np.array(yaw)
+    expected = np.gradient(np.unwrap(yaw_rad), offset_s)
+    half_turns = np.abs(np.abs(np.diff(yaw_rad)) % (2.0 * math.pi) - math.pi) < 1e-9  # both ways round are as short
+    assert half_turns.any() or yaw_rate(yaw_rad, offset_s) == pytest.approx(expected, abs=1e-9)
+
+
+def test_tilt_moves_a_lever_arm_to_the_first_order() -> None:
+    yaw_rad, lever, small = np.array([0.3, -2.1]), np.array([0.7, -0.4, 1.6]), 1e-6
+    tilt = small * np.array([[3.0, -1.0, 2.0, 5.0], [1.0, 4.0, -2.0, 0.5]])
+    moved, rate = tilted_lever(yaw_rad, tilt, *lever)
+    for i, yaw in enumerate(yaw_rad):
+        level = np.array(rotate(quaternion_from_yaw(yaw), tuple(lever)))
+        for order, found in ((0, moved), (1, rate)):
+            leaning = quaternion_from_roll_pitch_yaw(tilt[i, order], tilt[i, 2 + order], yaw)
+            assert found[i] == pytest.approx(np.array(rotate(leaning, tuple(lever))) - level, abs=1e-10)
+
+
+def test_compiled_kernels_equal_their_python() -> None:
+    rng = np.random.default_rng(4)
+    offset_s, yaw_rad, tilt = (
+        np.array([0.0, 0.2, 0.3, 0.7, 0.9]),
+        rng.uniform(-4.0, 4.0, 5),
+        rng.standard_normal((5, 4)),
+    )
+    roll, pitch = (6.0, 0.2, 0.4), (4.0, 0.1, 0.7)
+    for kernel, arguments in (
+        (turned_lever, (yaw_rad, tilt[:, 0].copy(), offset_s, 0.7, -0.4)),
+        (tilted_lever, (yaw_rad, tilt, 0.7, -0.4, 1.6)),
+        (yaw_rate, (yaw_rad, offset_s)),
+        (tilted_deck, (yaw_rad, tilt, roll, pitch)),
+    ):
+        for mine, python in zip(kernel(*arguments), kernel.py_func(*arguments), strict=True):
+            np.testing.assert_allclose(mine, python, rtol=1e-12, atol=1e-12)
 
 
 def test_unknown_heading_leaves_a_horizontal_lever_arm_out_and_says_so() -> None:
