@@ -327,6 +327,8 @@ def flies_by_sticks(drone: SimpleNamespace) -> None:
 
     def pushed() -> bool:
         sticks.set_manual_control_input(0.5, 0.0, 0.5, 0.0)
+        if drone.telemetry.flight_mode() != FlightMode.POSCTL:
+            sticks.start_position_control()  # 0.1 s without sticks here are 0.5 s there: PX4 takes them for lost
         return hypot(*_velocity(drone)) > 2.0
 
     wait(pushed)
