@@ -75,6 +75,11 @@ class Cascade(Struct, frozen=True, kw_only=True):
         return (1.0 + self.derivative) / self.attitude_lag_s
 
     @property
+    def forgets_hz(self) -> float:
+        """How fast the integrator makes up for what pushes the drone off its path."""
+        return self.integral_per_s2 / self.velocity_per_s
+
+    @property
     def lean_lag_s(self) -> float:
         """By how much the drone's lean is behind what the path asks for."""
         return 0.0 if self.is_led else 1.0 / self.turns_hz
@@ -113,8 +118,7 @@ class ResponseModel:
     """
 
     def __init__(self, cascade: Cascade, offset_s: Array) -> None:
-        forgets_hz = cascade.integral_per_s2 / cascade.velocity_per_s
-        turns_hz = cascade.turns_hz
+        forgets_hz, turns_hz = cascade.forgets_hz, cascade.turns_hz
         self.cascade = cascade
         self._motion = np.array(
             [

@@ -7,17 +7,16 @@ from companion.forecast.branches import make_events
 from companion.forecast.chances import sum_up
 from companion.forecast.draws import draws
 from companion.forecast.drivers import update_drivers
-from companion.forecast.gusts import update_gusts
+from companion.forecast.gusts import Gusts, update_gusts
 from companion.forecast.rollout import roll_out
 from companion.forecast.samples import Descent, Samples
 from companion.landing.decisions.waiting import is_moment_quiet
 from companion.landing.state.memory import ForecastMemory, StepMemory
 from companion.landing.state.step_data import StepInputs, System
+from companion.landing.touchdown.rollout_errors import as_driven, draw_errors
 from companion.landing.touchdown.rollout_inputs import (
-    as_driven,
     course_of,
     deviation_now,
-    draw_errors,
     follower_of,
     rules_of,
     way_to_contact,
@@ -50,19 +49,24 @@ def update_forecast(memory: StepMemory, situation: Situation, inputs: StepInputs
 
 def _update_known(memory: StepMemory, situation: Situation, inputs: StepInputs) -> ForecastMemory:
     """Return what forecasts are made from, with what this step shows of driver, gusts and inertial unit."""
-    before, tracking = memory.forecast, memory.model.tracking
-    gusts = before.gusts
-    # In a chase what looks like a push is what the model does not know of a hard flight.
-    flies_evenly = memory.progress.phase in (Phase.ALIGN, Phase.DESCEND) and bool(tracking.deviation.any())
-    if flies_evenly and tracking.compared_ns is not None and inputs.response is not None:
-        gusts = update_gusts(gusts, tracking.compared_ns, tracking.deviation, inputs.response)
+    before = memory.forecast
     is_told = any(one.quantity is Quantity.ACCELERATION for one in inputs.vehicle.measurements)
     return replace(
         before,
         drivers=update_drivers(before.drivers, memory.vehicle.hindsight.driving.driven),
-        gusts=gusts,
+        gusts=_gusts(memory, inputs),
         acceleration_ns=situation.monotonic_ns if is_told else before.acceleration_ns,
     )
+
+
+def _gusts(memory: StepMemory, inputs: StepInputs) -> Gusts:
+    """Return the gusts after this step; in a chase what looks like a push is what no model knows of a hard flight."""
+    gusts, tracking, reference = memory.forecast.gusts, memory.model.tracking, memory.model.reference
+    flies_evenly = memory.progress.phase in (Phase.ALIGN, Phase.DESCEND) and bool(tracking.deviation.any())
+    if not flies_evenly or tracking.compared_ns is None or inputs.response is None or reference is None:
+        return gusts
+    path_m_s2 = reference.acceleration_enu_m_s2[:2]
+    return update_gusts(gusts, tracking.compared_ns, tracking.deviation, path_m_s2, inputs.response)
 
 
 def forecast_contact(

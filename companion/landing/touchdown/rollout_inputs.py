@@ -1,23 +1,22 @@
-"""What the rollouts of a descent begin with, from a step's facts: course, drone, rules, and what may be wrong; pure."""
+"""What the rollouts of a descent begin with, from a step's facts: course, drone and rules; pure."""
 
 import math
 
 import numpy as np
 from msgspec import Struct
 
-from companion.autopilots.response import ATTITUDE_LAG_S, DRAG_PER_S, STATES, ResponseModel
+from companion.autopilots.response import ATTITUDE_LAG_S, DRAG_PER_S, STATES
 from companion.config.companion import CompanionConfig
-from companion.core.data import Array, Mixture, VehicleEstimate
-from companion.forecast.draws import MODE, STEPS_MAX, Draws
+from companion.core.data import Array
+from companion.forecast.draws import STEPS_MAX
 from companion.forecast.samples import DT_S, Course, Follower, Rules
 from companion.landing.state.memory import StepMemory
 from companion.landing.state.step_data import StepInputs
 from companion.landing.steering.targets import way_down
 from companion.landing.touchdown.levelling import level_end
 from companion.situation.situation import Approach, Situation
-from companion.vehicle.hindsight import Driving
 from companion.vehicle.pad import PadPath
-from companion.vehicle.pad_reach import cone_radius_at_pad_m, frames_apart_m2, over_pad_radius_m
+from companion.vehicle.pad_reach import cone_radius_at_pad_m, over_pad_radius_m
 
 _OFFSETS_S = DT_S * np.arange(STEPS_MAX, dtype=np.float64)
 _BELOW_M = -0.4  # to where the way down is followed: heights are not off by more
@@ -27,14 +26,6 @@ _WAITS_MAX_S = 0.5
 _WAITS_STEPS = math.ceil(_WAITS_MAX_S / DT_S)
 _SLOW_M_S = 0.3  # slower than this a vehicle has no direction but its heading
 _SLOPE_FROM_M_S = 1.0  # from here on a vertical speed tells the grade
-_PLACE_STD_MIN_M = 0.02  # of a receiver with corrections
-_CHANGE_S = 0.1  # between two changes of speed that `Driving` keeps
-_PRIOR_DRIVEN_S = 2.0  # what the estimator believes of drivers counts as one such change, which is over 2 s
-_OWN_HEIGHT_STD_M = 0.05  # of the drone's height beside the vehicle's: receivers with corrections, or a range finder
-_OWN_CLIMB_STD_M_S = 0.1  # of its rate, gusts included
-# What a deck's velocity turns out to be sooner than this before the contact the drone makes up for: setpoints and data
-# are late by 0.15 s, and half of the vertical acceleration is there after another 0.15 s.
-_CLIMB_FOLLOWED_S = 0.5
 # Lag with which an acceleration is believed: velocities at 10 Hz show a brake in 0.3 s, an accelerometer at once.
 _BELIEVES_S, _BELIEVES_BY_SENSOR_S = 0.3, 0.1
 _BANDWIDTH_TIMES = 4.0  # rest to rest in a time is what a linear law of this over that time takes
@@ -51,22 +42,6 @@ class WayDown(Struct, frozen=True, kw_only=True, eq=False):
     def lasts_s(self) -> float:
         """How long it takes at most, with the longest wait."""
         return float(self.offset_s[-1])
-
-
-class Errors(Struct, frozen=True, kw_only=True, eq=False):
-    """What may be wrong in each of n samples: as `samples.Samples` has it, and how late a setpoint is, in deviations.
-
-    Attributes:
-        vehicle: (n, 3, 2).
-        deviation: (n, 4, 2).
-        vertical: (n, 2).
-        late: (n,) standard normal.
-    """
-
-    vehicle: Array
-    deviation: Array
-    vertical: Array
-    late: Array
 
 
 def way_to_contact(memory: StepMemory, situation: Situation, config: CompanionConfig) -> WayDown | None:
@@ -145,81 +120,6 @@ def _shake_at(offset_s: Array, pad: PadPath) -> Array:
     return np.stack([_at(offset_s, pad, values) for values in pad.swing.shake_enu[:2]])
 
 
-def draw_errors(then: VehicleEstimate, pad: PadPath, response: ResponseModel, numbers: Draws) -> Errors:
-    """Return what may be wrong.
-
-    Args:
-        then: the vehicle at its newest datum.
-        pad: now; where its place is known less well than the antenna's, that is the heading's.
-        response: of the autopilot.
-        numbers: random ones.
-    """
-    normals = numbers.normals
-    vehicle = _draw_vehicle(then, pad, normals[:, :9], numbers.uniforms[:, MODE])
-    heaves_m_s = 0.0 if pad.swing is None else np.interp(_CLIMB_FOLLOWED_S, pad.offset_s, pad.swing.climb_std_m_s)
-    own = normals[:, 17:19] * np.array([_OWN_HEIGHT_STD_M, math.hypot(_OWN_CLIMB_STD_M_S, heaves_m_s)])
-    return Errors(
-        vehicle=np.ascontiguousarray(vehicle.reshape(-1, 3, 3)[:, :, :2]),
-        deviation=np.einsum("ij,njk->nik", _root(response.covariance), normals[:, 9:17].reshape(-1, STATES, 2)),
-        vertical=own - np.column_stack([vehicle[:, 2], -vehicle[:, 5]]),
-        late=normals[:, 19],
-    )
-
-
-def _draw_vehicle(then: VehicleEstimate, pad: PadPath, normals: Array, uniforms: Array) -> Array:
-    """Return how far place, velocity and acceleration (n, 9) are off, each sample drawn from one of the models.
-
-    A model that is hardly likely holds for few samples. As a part of one covariance it would widen them all.
-    """
-    mixture = then.mixture
-    if mixture is None:
-        mixture = Mixture(weight=np.ones(1), off=np.zeros((1, 9)), covariance=then.covariance[None])
-    apart_m2 = frames_apart_m2(pad)
-    # By so much is the pad's place less well known than the antenna's.
-    turned_m2 = np.maximum(pad.position_std_m[0] ** 2 - then.covariance.diagonal()[:3], 0.0)
-    of_model = np.searchsorted(np.cumsum(mixture.weight)[:-1], uniforms)
-    vehicle = np.empty_like(normals)
-    for model, (off, stated) in enumerate(zip(mixture.off, mixture.covariance, strict=True)):
-        covariance = stated.copy()
-        for axis in range(3):
-            stated_m2 = covariance[axis, axis] + turned_m2[axis]
-            covariance[axis, axis] = max(stated_m2 - apart_m2, _PLACE_STD_MIN_M**2)
-        drawn = of_model == model
-        vehicle[drawn] = off + normals[drawn] @ _root(covariance).T
-    return vehicle
-
-
-def as_driven(vehicle: Array, driving: Driving, direction: Array, *, stands: bool) -> Array:
-    """Return what the vehicle may be off its estimate with what is known of how it is driven.
-
-    One that stands has neither a velocity nor an acceleration until it departs. One that drives is as uneven along its
-    way as it has been, rather than as the estimator takes all drivers to be.
-
-    Args:
-        vehicle: (n, 3, 2) as `Errors` has it.
-        driving: the last 15 s.
-        direction: (2,) unit vector along its way.
-        stands: whether it does.
-    """
-    off = vehicle.copy()
-    if stands:
-        off[:, 1:] = 0.0
-        return off
-    along = off[:, 2] @ direction
-    believed_m2_s4, seen_s = float(np.mean(np.square(along))), _CHANGE_S * len(driving.changes)
-    squares = _PRIOR_DRIVEN_S * believed_m2_s4 + seen_s * driving.unevenness_m_s2**2
-    shown_m2_s4 = squares / (_PRIOR_DRIVEN_S + seen_s)
-    less = 1.0 - math.sqrt(min(shown_m2_s4 / max(believed_m2_s4, 1e-9), 1.0))
-    off[:, 2] -= less * along[:, None] * direction
-    return off
-
-
-def _root(covariance: Array) -> Array:
-    """Return a matrix whose product with its transpose is `covariance`, which rounding may have made indefinite."""
-    values, vectors = np.linalg.eigh(covariance)
-    return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
-
-
 def follower_of(memory: StepMemory, situation: Situation, inputs: StepInputs, config: CompanionConfig) -> Follower:
     """Return how the drone follows, by its autopilot's gains, the planner's weights and the limits of the flight."""
     if inputs.response is None or situation.approach is None:
@@ -234,7 +134,7 @@ def follower_of(memory: StepMemory, situation: Situation, inputs: StepInputs, co
         path_share=1.0 if cascade.is_led else cascade.path_share,
         led_share=1.0 if cascade.is_led else 0.0,
         turns_hz=cascade.turns_hz,
-        forgets_hz=cascade.integral_per_s2 / cascade.velocity_per_s,
+        forgets_hz=cascade.forgets_hz,
         drag_per_s=DRAG_PER_S,
         push_std_m_s2=memory.forecast.gusts.push_std_m_s2,
         bandwidth_hz=_BANDWIDTH_TIMES / config.guidance.mpc.intercept_time_min_s,

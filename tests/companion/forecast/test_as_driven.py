@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from companion.landing.touchdown.rollout_inputs import as_driven
+from companion.landing.touchdown.rollout_errors import as_driven
 from companion.vehicle.hindsight import Driving
 
 NORTH_EAST = np.array([0.6, 0.8])

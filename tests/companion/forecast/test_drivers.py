@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from companion.autopilots.response import PUSH_STD_M_S2, Cascade, ResponseModel
+from companion.autopilots.response import DRAG_PER_S, PUSH_STD_M_S2, Cascade, ResponseModel
+from companion.core.data import Array
 from companion.forecast.branches import NOTHING, SLOWER, make_events
 from companion.forecast.draws import draws
 from companion.forecast.drivers import DEPARTS, PRIOR_GAPS_S, SLOWS, TURNS, Drivers, chances, update_drivers
@@ -72,16 +73,42 @@ def test_brakes_have_the_domains_mean_and_its_heavy_tail() -> None:
     assert np.count_nonzero(sizes < -4.5) == pytest.approx(0.12 * slower.sum(), abs=1.0)
 
 
-def test_gusts_are_learnt_from_what_pushes() -> None:
-    response = ResponseModel(
-        Cascade(position_per_s=0.95, velocity_per_s=1.8, integral_per_s2=0.4, lead_s=0.02), np.arange(0.0, 4.01, 0.2)
-    )
-    calm, rough = Gusts(), Gusts()
-    pushed = np.zeros((4, 2))
-    pushed[3] = [1.3, -1.7]
-    for report in range(800):
-        calm = update_gusts(calm, report * 20_000_000, np.zeros((4, 2)), response)
-        rough = update_gusts(rough, report * 20_000_000, pushed, response)
+RESPONSE = ResponseModel(
+    Cascade(position_per_s=0.95, velocity_per_s=1.8, integral_per_s2=0.4, lead_s=0.02), np.arange(0.0, 4.01, 0.2)
+)
+REPORT_S = 0.02
+
+
+def learnt(pushes_m_s2: Array, path_m_s2: float = 0.0) -> Gusts:
+    """What a minute of reports teaches in which the estimated push (n, 2) is this."""
+    gusts = Gusts()
+    for report, push in enumerate(pushes_m_s2):
+        deviation = np.zeros((4, 2))
+        deviation[3] = push
+        gusts = update_gusts(gusts, round(report * REPORT_S * 1e9), deviation, np.full(2, path_m_s2), RESPONSE)
+    return gusts
+
+
+def test_gusts_are_learnt_from_how_the_push_changes() -> None:
+    std_m_s2, rng = 1.5, np.random.default_rng(2)
+    kept = math.exp(-REPORT_S * RESPONSE.cascade.forgets_hz)
+    seen = std_m_s2**2 - float(RESPONSE.covariance[3, 3]) * std_m_s2**2 / PUSH_STD_M_S2**2
+    pushes = np.zeros((3000, 2))
+    for report in range(1, len(pushes)):
+        new = math.sqrt((1.0 - kept**2) * seen) * rng.standard_normal(2)
+        pushes[report] = kept * pushes[report - 1] + new
     assert Gusts().push_std_m_s2 == PUSH_STD_M_S2
-    assert calm.push_std_m_s2 < 0.5 * PUSH_STD_M_S2
-    assert rough.push_std_m_s2 == pytest.approx(1.5, abs=0.2)
+    assert learnt(np.zeros((3000, 2))).push_std_m_s2 < 0.3 * PUSH_STD_M_S2
+    assert learnt(pushes).push_std_m_s2 == pytest.approx(std_m_s2, rel=0.1)
+
+
+def test_what_the_integrator_still_holds_after_a_hard_flight_is_no_gust() -> None:
+    times_s = REPORT_S * np.arange(1000)
+    left = np.exp(-times_s * RESPONSE.cascade.forgets_hz)
+    assert learnt(1.2 * np.column_stack([left, -left])).push_std_m_s2 < 0.3 * PUSH_STD_M_S2
+
+
+def test_what_drag_does_to_a_path_that_speeds_up_is_no_gust() -> None:
+    path_m_s2, forgets_hz = 2.0, RESPONSE.cascade.forgets_hz
+    held = -DRAG_PER_S * path_m_s2 / forgets_hz * (1.0 - np.exp(-REPORT_S * np.arange(500) * forgets_hz))
+    assert learnt(np.column_stack([held, held]), path_m_s2).push_std_m_s2 < 0.35 * PUSH_STD_M_S2

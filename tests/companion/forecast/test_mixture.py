@@ -6,7 +6,7 @@ import pytest
 from companion.autopilots.response import ResponseModel
 from companion.core.data import Array, Mixture, VehicleEstimate
 from companion.forecast.draws import draws
-from companion.landing.touchdown.rollout_inputs import draw_errors
+from companion.landing.touchdown.rollout_errors import draw_errors
 from tests.companion.autopilots.test_response import CASCADES, OFFSET_S
 from tests.companion.facts import pad_at
 

@@ -1,0 +1,113 @@
+"""What may be wrong in each rollout of a descent: of the vehicle, as it is driven, and of the drone; pure."""
+
+import math
+
+import numpy as np
+from msgspec import Struct
+
+from companion.autopilots.response import STATES, ResponseModel
+from companion.core.data import Array, Mixture, VehicleEstimate
+from companion.forecast.draws import MODE, Draws
+from companion.vehicle.hindsight import Driving
+from companion.vehicle.pad import PadPath
+from companion.vehicle.pad_reach import frames_apart_m2
+
+_PLACE_STD_MIN_M = 0.02  # of a receiver with corrections
+_CHANGE_S = 0.1  # between two changes of speed that `Driving` keeps
+_PRIOR_DRIVEN_S = 2.0  # what the estimator believes of drivers counts as one such change, which is over 2 s
+_OWN_HEIGHT_STD_M = 0.05  # of the drone's height beside the vehicle's: receivers with corrections, or a range finder
+_OWN_CLIMB_STD_M_S = 0.1  # of its rate, gusts included
+# What a deck's velocity turns out to be sooner than this before the contact the drone makes up for: setpoints and data
+# are late by 0.15 s, and half of the vertical acceleration is there after another 0.15 s.
+_CLIMB_FOLLOWED_S = 0.5
+
+
+class Errors(Struct, frozen=True, kw_only=True, eq=False):
+    """What may be wrong in each of n samples: as `samples.Samples` has it, and how late a setpoint is, in deviations.
+
+    Attributes:
+        vehicle: (n, 3, 2).
+        deviation: (n, 4, 2).
+        vertical: (n, 2).
+        late: (n,) standard normal.
+    """
+
+    vehicle: Array
+    deviation: Array
+    vertical: Array
+    late: Array
+
+
+def draw_errors(then: VehicleEstimate, pad: PadPath, response: ResponseModel, numbers: Draws) -> Errors:
+    """Return what may be wrong.
+
+    Args:
+        then: the vehicle at its newest datum.
+        pad: now; where its place is known less well than the antenna's, that is the heading's.
+        response: of the autopilot.
+        numbers: random ones.
+    """
+    normals = numbers.normals
+    vehicle = _draw_vehicle(then, pad, normals[:, :9], numbers.uniforms[:, MODE])
+    heaves_m_s = 0.0 if pad.swing is None else np.interp(_CLIMB_FOLLOWED_S, pad.offset_s, pad.swing.climb_std_m_s)
+    own = normals[:, 17:19] * np.array([_OWN_HEIGHT_STD_M, math.hypot(_OWN_CLIMB_STD_M_S, heaves_m_s)])
+    return Errors(
+        vehicle=np.ascontiguousarray(vehicle.reshape(-1, 3, 3)[:, :, :2]),
+        deviation=np.einsum("ij,njk->nik", _root(response.covariance), normals[:, 9:17].reshape(-1, STATES, 2)),
+        vertical=own - np.column_stack([vehicle[:, 2], -vehicle[:, 5]]),
+        late=normals[:, 19],
+    )
+
+
+def _draw_vehicle(then: VehicleEstimate, pad: PadPath, normals: Array, uniforms: Array) -> Array:
+    """Return how far place, velocity and acceleration (n, 9) are off, each sample drawn from one of the models.
+
+    A model that is hardly likely holds for few samples. As a part of one covariance it would widen them all.
+    """
+    mixture = then.mixture
+    if mixture is None:
+        mixture = Mixture(weight=np.ones(1), off=np.zeros((1, 9)), covariance=then.covariance[None])
+    apart_m2 = frames_apart_m2(pad)
+    # By so much is the pad's place less well known than the antenna's.
+    turned_m2 = np.maximum(pad.position_std_m[0] ** 2 - then.covariance.diagonal()[:3], 0.0)
+    of_model = np.searchsorted(np.cumsum(mixture.weight)[:-1], uniforms)
+    vehicle = np.empty_like(normals)
+    for model, (off, stated) in enumerate(zip(mixture.off, mixture.covariance, strict=True)):
+        covariance = stated.copy()
+        for axis in range(3):
+            stated_m2 = covariance[axis, axis] + turned_m2[axis]
+            covariance[axis, axis] = max(stated_m2 - apart_m2, _PLACE_STD_MIN_M**2)
+        drawn = of_model == model
+        vehicle[drawn] = off + normals[drawn] @ _root(covariance).T
+    return vehicle
+
+
+def as_driven(vehicle: Array, driving: Driving, direction: Array, *, stands: bool) -> Array:
+    """Return what the vehicle may be off its estimate with what is known of how it is driven.
+
+    One that stands has neither a velocity nor an acceleration until it departs. One that drives is as uneven along its
+    way as it has been, rather than as the estimator takes all drivers to be.
+
+    Args:
+        vehicle: (n, 3, 2) as `Errors` has it.
+        driving: the last 15 s.
+        direction: (2,) unit vector along its way.
+        stands: whether it does.
+    """
+    off = vehicle.copy()
+    if stands:
+        off[:, 1:] = 0.0
+        return off
+    along = off[:, 2] @ direction
+    believed_m2_s4, seen_s = float(np.mean(np.square(along))), _CHANGE_S * len(driving.changes)
+    squares = _PRIOR_DRIVEN_S * believed_m2_s4 + seen_s * driving.unevenness_m_s2**2
+    shown_m2_s4 = squares / (_PRIOR_DRIVEN_S + seen_s)
+    less = 1.0 - math.sqrt(min(shown_m2_s4 / max(believed_m2_s4, 1e-9), 1.0))
+    off[:, 2] -= less * along[:, None] * direction
+    return off
+
+
+def _root(covariance: Array) -> Array:
+    """Return a matrix whose product with its transpose is `covariance`, which rounding may have made indefinite."""
+    values, vectors = np.linalg.eigh(covariance)
+    return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
