@@ -91,9 +91,14 @@ def _is_off_centre(situation: Situation, relative: Approach, config: CompanionCo
 
 
 def _is_unsettled(memory: StepMemory, relative: Approach, config: CompanionConfig) -> bool:
-    """Return whether the drone has to become slower against the pad first, as far as that speed is known."""
+    """Return whether the drone has to become slower against the pad first."""
+    return relative.speed_m_s > settled_speed_m_s(memory, config)
+
+
+def settled_speed_m_s(memory: StepMemory, config: CompanionConfig) -> float:
+    """Return up to which speed against the pad a drone counts as settled, as far as that speed is known."""
     known_m_s = config.descent.wait.speed_stds * memory.vehicle.hindsight.speed_std_m_s
-    return relative.speed_m_s > max(config.descent.wait.speed_m_s, known_m_s)
+    return max(config.descent.wait.speed_m_s, known_m_s)
 
 
 def _find_risk(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause | None:

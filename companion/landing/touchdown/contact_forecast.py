@@ -108,7 +108,9 @@ def forecast_contact(
         pushes=numbers.pushes,
     )
     descent = Descent(
-        course=course, drone=follower_of(memory, situation, inputs, config), rules=rules_of(relative, inputs, config)
+        course=course,
+        drone=follower_of(memory, situation, inputs, config),
+        rules=rules_of(memory, relative, inputs, config),
     )
     ends = roll_out(samples, descent, age_s)
     return sum_up(ends, events.weight, max(relative.pad_half_width_m - config.touchdown.foot_radius_m, 0.0))

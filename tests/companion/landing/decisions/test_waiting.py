@@ -6,6 +6,8 @@ from companion.core.reasons import Cause, Reason
 from companion.landing.decisions.waiting import waits_at_m
 from companion.landing.outputs import landing_status
 from companion.landing.state.memory import StepMemory
+from companion.landing.state.step_data import StepInputs
+from companion.landing.touchdown.rollout_inputs import rules_of
 from companion.landing.transitions import take_events
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
@@ -32,6 +34,7 @@ from tests.companion.world import PAD_HEIGHT_M, Flight, reached
 
 DESCENT = CONFIG.descent
 WAITING_M = DESCENT.wait.height_m
+FLIGHT_LIMITS = CONFIG.limits.flight_limits()
 KNOWN = Hindsight(speed_std_m_s=0.05)
 RISKY = forecast_of(0.5, in_s=1.5)
 RISK = DESCENT.risk
@@ -60,6 +63,17 @@ def test_status_says_what_a_descent_waits_for(
 ) -> None:
     memory = changed(StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED), hindsight=KNOWN, contact=contact)
     assert landing_status(memory, facts, CONFIG).reason_code == reason.name
+
+
+@pytest.mark.parametrize("speed_std_m_s", [0.05, 0.4])
+def test_rollouts_of_a_descent_wait_for_the_speed_that_it_waits_for(speed_std_m_s: float) -> None:
+    known = Hindsight(speed_std_m_s=speed_std_m_s)
+    memory = changed(StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED), hindsight=known)
+    relative, inputs = situation().approach, StepInputs(t_ns=NOW_NS, monotonic_ns=NOW_NS, limits=FLIGHT_LIMITS)
+    assert relative is not None
+    settled_m_s = rules_of(memory, relative, inputs, CONFIG).waiting_speed_m_s
+    reasons = [landing_status(memory, _moving(WAITING_M, settled_m_s + by), CONFIG).reason_code for by in (-0.01, 0.01)]
+    assert reasons == [Reason.ALIGNED.name, Reason.UNSETTLED.name]
 
 
 def _kept_risky(flight: Flight, duration_s: float) -> None:
