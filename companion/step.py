@@ -12,6 +12,7 @@ from companion.landing.decisions.contact import may_force_motors_off, signs_of
 from companion.landing.flying import fly
 from companion.landing.outputs import landing_status, news, news_of_sortie, setpoint
 from companion.landing.sortie.events import is_quiet_for_long
+from companion.landing.sortie.phases import over_deck
 from companion.landing.state.memory import ModelMemory, StepMemory, to_present_frame
 from companion.landing.state.step_data import StepInputs, StepOutputs, System
 from companion.landing.state.vehicle_update import place_by_deck, predict_pad, update_vehicle
@@ -54,7 +55,7 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
     memory, reply = take_events(memory, situation, inputs, system.config)
     phase = memory.progress.phase
     if before.phase is Phase.ON_DECK and phase is Phase.LIFT_OFF:
-        memory = replace(memory, vehicle=place_by_deck(memory.vehicle, situation.pad, inputs, system))
+        memory, situation = _learn_from_deck(memory, situation, inputs, system)
     if phase in FOLLOWING_PHASES and before.phase not in FOLLOWING_PHASES:
         vehicle, pad = predict_pad(phase, memory.vehicle, inputs, system)
         memory, situation = replace(memory, vehicle=vehicle), with_pad(situation, pad)
@@ -71,6 +72,18 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
         pad=situation.pad,
     )
     return memory, outputs
+
+
+def _learn_from_deck(
+    memory: StepMemory, situation: Situation, inputs: StepInputs, system: System
+) -> tuple[StepMemory, Situation]:
+    """Return what is known once the drone stands on the pad for sure: where that is, and over what of it it rises."""
+    phase = memory.progress.phase
+    vehicle = place_by_deck(memory.vehicle, situation.pad, inputs, system)
+    vehicle, pad = predict_pad(phase, vehicle, inputs, system)
+    situation = with_pad(situation, pad)
+    sortie = over_deck(memory.sortie, phase, situation, system.config)
+    return replace(memory, vehicle=vehicle, sortie=sortie), situation
 
 
 def _update_model(memory: StepMemory, inputs: StepInputs, system: System) -> ModelMemory:

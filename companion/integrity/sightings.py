@@ -103,8 +103,8 @@ class SightingWatch(Struct, frozen=True, kw_only=True):
         are_mixed: of those since the count before so many were rejected that they contradict each other.
         agreeing: accepted ones since the pad's place was not known, or they contradicted each other.
         since_ns: monotonic, when the first of these was counted; None without one.
-        is_confirmed: they were enough, for long enough, since the place was not known.
-        was_confirmed: so they were once; what looks then is known for a detector, and only has to see the pad again.
+        is_confirmed: they were enough, for long enough, since the place was not known; or a launch has told it.
+        was_confirmed: sightings were so once; what looks then is known for a detector, and only has to look again.
     """
 
     counted: tuple[int, int] = (0, 0)
@@ -133,15 +133,15 @@ def update_sightings(
     since_ns = monotonic_ns if before.since_ns is None else before.since_ns
     agreeing = before.agreeing + accepted
     is_long = before.was_confirmed or (monotonic_ns - since_ns) * 1e-9 >= _CONFIRMING_S
-    is_confirmed = before.is_confirmed or (agreeing >= _CONFIRMING_MIN and is_long)
+    are_enough = agreeing >= _CONFIRMING_MIN and is_long
     return replace(
         before,
         counted=health.sightings,
         are_mixed=False,
         agreeing=agreeing,
         since_ns=since_ns,
-        is_confirmed=is_confirmed,
-        was_confirmed=before.was_confirmed or is_confirmed,
+        is_confirmed=before.is_confirmed or are_enough,
+        was_confirmed=before.was_confirmed or are_enough,
     )
 
 

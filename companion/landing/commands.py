@@ -172,7 +172,7 @@ def _rides_along(s: Situation, config: CompanionConfig) -> Cause | None:
     is_airborne = s.autopilot.armed and s.autopilot.landed is False
     if s.approach is None or s.pad is None or is_airborne or vehicle_stands(s, config.chase):
         return None
-    if s.approach.distance_m > VEHICLE_M or abs(s.approach.height_m) > _ON_ROOF_M:
+    if not stands_on_deck(s, VEHICLE_M, _ON_ROOF_M):
         return None
     return Cause(Reason.RIDES_ALONG, (math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist()),))
 

@@ -56,7 +56,9 @@ def take_events(
         if reply.accepted:
             memory = replace(memory, sortie=take_order(memory.sortie, order))
             may_retry = inputs.command not in _BREAKS_OFF
-            memory = replace(memory, progress=replace(memory.progress, may_retry=may_retry))
+            stays = memory.progress.phase is Phase.HOLD and not may_retry
+            cause = _COMMANDED[inputs.command] if stays else memory.progress.cause
+            memory = replace(memory, progress=replace(memory.progress, may_retry=may_retry, cause=cause))
     progress = update_wait(memory, situation, config)
     held = update_held(progress.held, progress.phase, situation, config, others=_BESIDE_LANDINGS)
     known = _same_or_new(progress.obstacle, obstacle(held, situation, config))
@@ -131,7 +133,7 @@ def _progress_after(
         phase=phase,
         since_ns=monotonic_ns if resumed_ns is None else resumed_ns,
         cause=cause,
-        retries=0 if event in _BEGINNINGS else retries,
+        retries=0 if event in _BEGINNINGS and cause.reason is not Reason.HEARD_AGAIN else retries,
         interrupted_ns=before.since_ns if is_outage else None,
         begun_anew=begun_anew if goes_on else {},
         may_retry=(before.may_retry or event is Event.HOME_NOW) and not is_too_long,

@@ -102,11 +102,8 @@ class ImmModel:
             if not has_settled(state, self.config):
                 return None
             state = self._with_deck(state, measurement)
-        R, bias_variance, white_variance = (
-            measurement.covariance,
-            state.fix_bias_variance_m2,
-            state.fix_white_variance_m2,
-        )
+        R = measurement.covariance
+        bias_variance, white_variance = state.fix_bias_variance_m2, state.fix_white_variance_m2
         if measurement.quantity is Quantity.POSITION:
             R, bias_variance = split_fix(R, self.config.receivers)
             white_variance = largest(R)

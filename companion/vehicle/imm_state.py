@@ -243,4 +243,5 @@ def _restart(state: ImmState, place: Measurement, config: ImmConfig, numbers: Nu
     means[:, OFFSET] = x[OFFSET]
     for kept in (_HEADING, kernels.CLOCK, *DECK):
         means[:, kept], covariances[:, kept, kept] = x[kept], P[kept, kept]
-    return replace(state, modes=(means, covariances, weights))
+    seen_age_s = 0.0 if place.quantity is Quantity.PAD else math.inf
+    return replace(state, modes=(means, covariances, weights), seen_age_s=seen_age_s)

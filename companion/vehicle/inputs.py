@@ -181,7 +181,7 @@ def _tilt(message: VehicleImu) -> Measurement | None:
         t_ns=message.t_ns,
         quantity=Quantity.TILT,
         value=np.array([roll_rad, pitch_rad, p_rad_s, q_rad_s]),
-        covariance=np.eye(4) * variances,
+        covariance=np.diag(variances),
     )
 
 

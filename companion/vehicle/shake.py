@@ -75,7 +75,7 @@ def tilted_deck(
         yaw_rad: (n,) of V.
         tilt: (n, 4) roll and its rate, pitch and its rate, rad and rad/s.
         roll: angular frequency, rad/s, damping, and the length by which a tilt shakes the pad, m.
-        pitch: likewise.
+        pitch: angular frequency, damping and length of the other axis.
     """
     n = len(yaw_rad)
     slope, shake = np.zeros((n, 2)), np.zeros((3, n, 2))

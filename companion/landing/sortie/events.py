@@ -134,9 +134,12 @@ def decide_sortie(
 
 
 def stay_out(sortie: SortieMemory, progress: Progress, decision: Decision) -> Decision:
-    """Return the decision, but no retry of a landing that was never begun: the abort broke off a station."""
-    is_retry = decision[0] is Event.CLEAR and sortie.station is not None
-    return (Event.CLEAR_TO_HOLD, progress.cause) if is_retry else decision
+    """Return the decision, but no retry of a landing that was never begun: the abort broke off a station.
+
+    Nor does it matter to a station why no landing could be begun again.
+    """
+    is_over = progress.phase is Phase.ABORT and decision[0] in (Event.CLEAR, Event.CLEAR_TO_HOLD)
+    return (Event.CLEAR_TO_HOLD, progress.cause) if is_over and sortie.station is not None else decision
 
 
 def _leave_deck(

@@ -20,7 +20,7 @@ SPEED_SHARE = 0.95
 """Of the drone's speed, for the way home; the rest makes up for gusts."""
 _STDS = 2.0
 _CARRIED_M_S = 3.0  # who carries a drone beside a vehicle walks
-_TOGETHER_SHARE = 0.3  # of its speed: receivers without corrections err by some decimetres a second
+_TOGETHER_M_S = 1.5  # against it: of receivers without corrections each errs by some decimetres a second
 _BELOW_M = 0.5  # so far below the lowest station the planner's floor is: it is the last thing to be met
 
 
@@ -130,4 +130,4 @@ def stands_on_deck(s: Situation, distance_max_m: float, height_max_m: float) -> 
     moves_m_s = math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist())
     east_m, north_m, up_m = (_STDS * s.pad.position_std_m[0]).tolist()
     may_be_there = a.distance_m < distance_max_m + max(east_m, north_m) and abs(a.height_m) < height_max_m + up_m
-    return stands and may_be_there and moves_m_s > _CARRIED_M_S and a.speed_m_s < _TOGETHER_SHARE * moves_m_s
+    return stands and may_be_there and moves_m_s > _CARRIED_M_S and a.speed_m_s < _TOGETHER_M_S

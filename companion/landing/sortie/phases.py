@@ -46,7 +46,7 @@ def begin_phase_of_sortie(
         case Phase.ON_DECK:
             return _without_ground(memory)
         case Phase.LIFT_OFF | Phase.FOLLOW if before in (Phase.ON_DECK, Phase.LIFT_OFF):
-            return replace(memory, sortie=_over_deck(sortie, phase, situation, config))
+            return replace(memory, sortie=over_deck(sortie, phase, situation, config))
         case Phase.RALLY:
             return _to_rally(memory, situation, config)
         case Phase.CHASE if before in STATION_PHASES or sortie.station is not None:
@@ -80,7 +80,7 @@ def _without_ground(memory: StepMemory) -> StepMemory:
     return replace(memory, vehicle=vehicle, places=replace(memory.places, ground_enu_m=None))
 
 
-def _over_deck(sortie: SortieMemory, phase: Phase, s: Situation, config: CompanionConfig) -> SortieMemory:
+def over_deck(sortie: SortieMemory, phase: Phase, s: Situation, config: CompanionConfig) -> SortieMemory:
     """Return the sortie with its first stations: over where on the deck it stood, then over the pad."""
     if phase is Phase.FOLLOW:
         return replace(sortie, station=Station(offset_m=(0.0, 0.0, config.chase.height_m)))

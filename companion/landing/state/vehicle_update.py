@@ -118,11 +118,10 @@ def place_by_deck(vehicle: VehicleMemory, pad: PadPath | None, inputs: StepInput
         value=feet_enu_m,
         covariance=config.sortie.launch.placed_std_m**2 * np.eye(3),
     )
-    return replace(
-        vehicle,
-        estimator=system.estimator.fuse(vehicle.estimator, [stands]),
-        sightings=replace(vehicle.sightings, is_confirmed=True),
-    )
+    estimator = system.estimator.fuse(vehicle.estimator, [stands])
+    counted = system.estimator.health(estimator).sightings  # it is none of a detector's
+    sightings = replace(vehicle.sightings, counted=counted, is_confirmed=True)
+    return replace(vehicle, estimator=estimator, sightings=sightings)
 
 
 def _is_finite(forecast: Forecast) -> bool:

@@ -5,7 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from companion.autopilots.response import DRAG_PER_S, PUSH_STD_M_S2, Cascade, ResponseModel
+from companion.autopilots.response import (
+    DRAG_PER_S,
+    POSITION_STD_M,
+    PUSH_STD_M_S2,
+    VELOCITY_STD_M_S,
+    Cascade,
+    ResponseModel,
+)
 from companion.core.data import Array
 from companion.forecast.branches import NOTHING, SLOWER, make_events
 from companion.forecast.draws import draws
@@ -80,7 +87,7 @@ REPORT_S = 0.02
 
 
 def learnt(pushes_m_s2: Array, path_m_s2: float = 0.0) -> Gusts:
-    """What a minute of reports teaches in which the estimated push (n, 2) is this."""
+    """What reports teach in which the estimated push (n, 2) is this."""
     gusts = Gusts()
     for report, push in enumerate(pushes_m_s2):
         deviation = np.zeros((4, 2))
@@ -89,17 +96,30 @@ def learnt(pushes_m_s2: Array, path_m_s2: float = 0.0) -> Gusts:
     return gusts
 
 
-def test_gusts_are_learnt_from_how_the_push_changes() -> None:
-    std_m_s2, rng = 1.5, np.random.default_rng(2)
-    kept = math.exp(-REPORT_S * RESPONSE.cascade.forgets_hz)
-    seen = std_m_s2**2 - float(RESPONSE.covariance[3, 3]) * std_m_s2**2 / PUSH_STD_M_S2**2
-    pushes = np.zeros((3000, 2))
-    for report in range(1, len(pushes)):
-        new = math.sqrt((1.0 - kept**2) * seen) * rng.standard_normal(2)
-        pushes[report] = kept * pushes[report - 1] + new
+def pushed(std_m_s2: float, noise: float, seed: int) -> Gusts:
+    """What is learnt over two minutes from the reports of a drone that is pushed so, with that share of their noise."""
+    rng, gusts, state = np.random.default_rng(seed), Gusts(), np.zeros((4, 2))
+    truth, forgets_hz = np.zeros((4, 2)), RESPONSE.cascade.forgets_hz
+    new_m_s2 = std_m_s2 * math.sqrt(1.0 - math.exp(-2.0 * REPORT_S * forgets_hz))
+    errs = noise * np.array([[POSITION_STD_M], [VELOCITY_STD_M_S]])
+    for report in range(6000):
+        truth = RESPONSE.carry(truth, REPORT_S)
+        truth[3] += new_m_s2 * rng.standard_normal(2)
+        state = RESPONSE.update(state, truth[:2] + errs * rng.standard_normal((2, 2)), np.zeros(2), REPORT_S)
+        gusts = update_gusts(gusts, round(report * REPORT_S * 1e9), state, np.zeros(2), RESPONSE)
+    return gusts
+
+
+@pytest.mark.parametrize("noise", [0.0, 1.0])
+@pytest.mark.parametrize("std_m_s2", [0.3, 0.75, 1.5])
+def test_gusts_are_learnt_from_what_pushes_whatever_the_reports_noise(std_m_s2: float, noise: float) -> None:
+    found = np.mean([pushed(std_m_s2, noise, seed).push_std_m_s2 ** 2 for seed in range(4)]) ** 0.5
+    assert found == pytest.approx(std_m_s2, rel=0.25, abs=0.12)
+
+
+def test_reports_without_noise_of_a_drone_that_nothing_pushes_show_no_gusts() -> None:
     assert Gusts().push_std_m_s2 == PUSH_STD_M_S2
-    assert learnt(np.zeros((3000, 2))).push_std_m_s2 < 0.3 * PUSH_STD_M_S2
-    assert learnt(pushes).push_std_m_s2 == pytest.approx(std_m_s2, rel=0.1)
+    assert pushed(0.0, 0.0, 1).push_std_m_s2 < 0.3 * PUSH_STD_M_S2
 
 
 def test_what_the_integrator_still_holds_after_a_hard_flight_is_no_gust() -> None:

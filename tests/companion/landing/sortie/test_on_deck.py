@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from companion.config.integrity import ReceiverFrames
-from companion.core.data import Measurement, Quantity
+from companion.core.data import Array, Measurement, Quantity
 from companion.landing.sortie.over_vehicle import stands_on_deck
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from link.messages import Command, Vector3
 from link.records import replace
 from tests.companion.facts import TICK_NS, pad_at, situation
-from tests.companion.world import CONFIG, GEAR_M, KnownVehicle, on_deck
+from tests.companion.world import CONFIG, GEAR_M, Flight, KnownVehicle, on_deck
 
 NEAR_M, HEIGHT_M = 3.0, 0.5
 COARSE_M = 1.5
@@ -53,31 +53,49 @@ def test_drone_that_flies_with_the_vehicle_does_not_stand_on_it() -> None:
 
 
 @dataclass(frozen=True)
-class Listening(KnownVehicle):
-    """An estimator that also writes down what it is told of the pad."""
+class Teachable(KnownVehicle):
+    """An estimator that has its vehicle `off_m` beside where it is until a sighting of its pad tells."""
 
+    off_m: float = 0.0
     told: list[Measurement] = field(default_factory=list)
 
     def fuse(self, memory: int | None, measurements: Sequence[Measurement]) -> int:
         self.told.extend(one for one in measurements if one.quantity is Quantity.PAD)
         return super().fuse(memory, measurements)
 
+    def at(self, t_ns: int) -> Array:
+        return np.asarray(super().at(t_ns) + np.array([0.0 if self.told else self.off_m, 0.0, 0.0]))
+
+
+def launched(frames: ReceiverFrames, off_m: float = 0.0) -> tuple[Flight, Teachable, Array, int]:
+    """A flight at the end of its lift-off, with its estimator; where the drone stood, and when that was so last."""
+    flight = on_deck()
+    integrity = CONFIG.integrity.model_copy(update={"receiver_frames": frames})
+    flight.config = CONFIG.model_copy(update={"integrity": integrity})
+    known = flight.vehicle
+    flight.vehicle = vehicle = Teachable(known.start_enu_m, known.velocity_enu_m_s, apart_std_m=0.1, off_m=off_m)
+    flight.step(Command.LAUNCH)
+    flight.run_until(Phase.LIFT_OFF)
+    stood_enu_m, stood_ns = np.array(flight.own.position_enu_m), flight.own.t_ns
+    flight.run_until(Phase.FOLLOW)
+    return flight, vehicle, stood_enu_m, stood_ns
+
 
 @pytest.mark.parametrize(("frames", "looks"), [(ReceiverFrames.APART, 1), (ReceiverFrames.ONE, 0)])
 def test_lift_off_tells_once_that_the_pad_is_under_the_drone_where_frames_are_apart(
     frames: ReceiverFrames, looks: int
 ) -> None:
-    flight = on_deck()
-    integrity = CONFIG.integrity.model_copy(update={"receiver_frames": frames})
-    flight.config = CONFIG.model_copy(update={"integrity": integrity})
-    known = flight.vehicle
-    flight.vehicle = listening = Listening(known.start_enu_m, known.velocity_enu_m_s, apart_std_m=0.1)
-    flight.step(Command.LAUNCH)
-    flight.run_until(Phase.LIFT_OFF)
-    stood_enu_m, stood_ns = flight.own.position_enu_m, flight.own.t_ns
-    flight.run_until(Phase.FOLLOW)
-    assert len(listening.told) == looks
-    for look in listening.told:
+    flight, vehicle, stood_enu_m, stood_ns = launched(frames)
+    assert len(vehicle.told) == looks
+    for look in vehicle.told:
         assert abs(look.t_ns - stood_ns) <= TICK_NS
-        assert look.value == pytest.approx(np.array(stood_enu_m) - np.array([0.0, 0.0, GEAR_M]), abs=0.05)
-    assert flight.memory.vehicle.sightings.is_confirmed is bool(looks)
+        assert look.value == pytest.approx(stood_enu_m - np.array([0.0, 0.0, GEAR_M]), abs=0.05)
+    sightings = flight.memory.vehicle.sightings
+    assert (sightings.is_confirmed, sightings.was_confirmed) == (bool(looks), False)
+
+
+def test_drone_rises_where_it_stood_however_far_off_the_pad_was_taken_to_be() -> None:
+    flight, _, stood_enu_m, _ = launched(ReceiverFrames.APART, off_m=1.5)
+    assert flight.own.position_enu_m[:2] == pytest.approx(stood_enu_m[:2], abs=0.05)
+    flight.run(6.0)
+    assert flight.own.position_enu_m[:2] == pytest.approx(flight.vehicle.at(flight.t_ns)[:2], abs=0.05)

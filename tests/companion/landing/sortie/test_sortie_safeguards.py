@@ -103,6 +103,18 @@ def test_hold_that_was_ordered_after_an_outage_stays_one(command: Command) -> No
     flight.own_is_silent = False
     flight.run(5.0)
     assert flight.phase is Phase.HOLD
+    assert flight.reason in (Reason.OPERATOR_HOLDS, Reason.OPERATOR_ABORTS)
+
+
+@pytest.mark.parametrize("silent_s", [1.0, CONFIG.abort.time_limit_s - 0.3, CONFIG.abort.time_limit_s + 2.0])
+def test_station_is_kept_again_however_long_the_outage_was(silent_s: float) -> None:
+    flight = reached(Phase.FOLLOW)
+    flight.own_is_silent = True
+    flight.run_until(Phase.ABORT, limit_s=3.0)
+    flight.run(silent_s)
+    flight.own_is_silent = False
+    flight.run_until(Phase.FOLLOW, Phase.CHASE, limit_s=60.0)
+    assert flight.phase is Phase.FOLLOW
 
 
 def test_start_from_a_hold_begins_a_landing_that_knows_no_station() -> None:
