@@ -78,11 +78,10 @@ def _learn_from_deck(
     memory: StepMemory, situation: Situation, inputs: StepInputs, system: System
 ) -> tuple[StepMemory, Situation]:
     """Return what is known once the drone stands on the pad for sure: where that is, and over what of it it rises."""
-    phase = memory.progress.phase
     vehicle = place_by_deck(memory.vehicle, situation.pad, inputs, system)
-    vehicle, pad = predict_pad(phase, vehicle, inputs, system)
+    vehicle, pad = predict_pad(memory.progress.phase, vehicle, inputs, system)
     situation = with_pad(situation, pad)
-    sortie = over_deck(memory.sortie, phase, situation, system.config)
+    sortie = over_deck(memory.sortie, situation, system.config)
     return replace(memory, vehicle=vehicle, sortie=sortie), situation
 
 

@@ -45,8 +45,9 @@ def begin_phase_of_sortie(
     match phase:
         case Phase.ON_DECK:
             return _without_ground(memory)
-        case Phase.LIFT_OFF | Phase.FOLLOW if before in (Phase.ON_DECK, Phase.LIFT_OFF):
-            return replace(memory, sortie=over_deck(sortie, phase, situation, config))
+        case Phase.FOLLOW if before is Phase.LIFT_OFF:
+            over_pad = Station(offset_m=(0.0, 0.0, config.chase.height_m))
+            return replace(memory, sortie=replace(sortie, station=over_pad))
         case Phase.RALLY:
             return _to_rally(memory, situation, config)
         case Phase.CHASE if before in STATION_PHASES or sortie.station is not None:
@@ -80,10 +81,8 @@ def _without_ground(memory: StepMemory) -> StepMemory:
     return replace(memory, vehicle=vehicle, places=replace(memory.places, ground_enu_m=None))
 
 
-def over_deck(sortie: SortieMemory, phase: Phase, s: Situation, config: CompanionConfig) -> SortieMemory:
-    """Return the sortie with its first stations: over where on the deck it stood, then over the pad."""
-    if phase is Phase.FOLLOW:
-        return replace(sortie, station=Station(offset_m=(0.0, 0.0, config.chase.height_m)))
+def over_deck(sortie: SortieMemory, s: Situation, config: CompanionConfig) -> SortieMemory:
+    """Return the sortie with its first station, that of the lift-off: over where on the deck the drone stands."""
     if s.approach is None or s.pad is None:
         return sortie
     ahead = ahead_rad(StationFrame.VEHICLE, s.pad, sortie.ahead_rad)
