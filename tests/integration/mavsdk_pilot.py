@@ -12,7 +12,7 @@ from mavsdk.plugins.mavlink_direct import MavlinkDirect, MavlinkMessage
 from mavsdk.plugins.telemetry import StatusText, Telemetry
 
 COMPANION = {"target_system": 1, "target_component": 191}
-START, IN_PROGRESS = 31010, 5
+START, TEMPORARILY_REJECTED, IN_PROGRESS = 31010, 1, 5
 
 
 class Heard:
@@ -23,6 +23,11 @@ class Heard:
         self._percents: set[int] = set()
         self._texts: list[str] = []
         self._pads = 0
+        self.beat = threading.Event()
+
+    def heartbeat(self, message: MavlinkMessage, _: object) -> None:
+        if message.component_id == COMPANION["target_component"]:
+            self.beat.set()
 
     def text(self, text: StatusText, _: object) -> None:
         with self._lock:
@@ -51,13 +56,17 @@ def main() -> None:
     telemetry.subscribe_status_text(heard.text)
     direct.subscribe_message("COMMAND_ACK", heard.acknowledgement)
     direct.subscribe_message("FOLLOW_TARGET", heard.pad)
+    direct.subscribe_message("HEARTBEAT", heard.heartbeat)
     fields = COMPANION | {"command": START, "confirmation": 0} | {f"param{number}": 0.0 for number in range(1, 8)}
-    done = direct.send_command(
-        MavlinkMessage(
-            message_name="COMMAND_LONG", target_system_id=1, target_component_id=191, fields_json=json.dumps(fields)
-        )
+    start = MavlinkMessage(
+        message_name="COMMAND_LONG", target_system_id=1, target_component_id=191, fields_json=json.dumps(fields)
     )
-    sys.stdout.write(json.dumps({"result": json.loads(done.fields_json)["result"]} | heard.told()) + "\n")
+    result = TEMPORARILY_REJECTED
+    while result == TEMPORARILY_REJECTED:  # so it answers until it knows drone and vehicle: asked once a heartbeat
+        heard.beat.wait()
+        heard.beat.clear()
+        result = json.loads(direct.send_command(start).fields_json)["result"]
+    sys.stdout.write(json.dumps({"result": result} | heard.told()) + "\n")
 
 
 if __name__ == "__main__":
