@@ -41,7 +41,9 @@ class Measurement(Struct, frozen=True, kw_only=True, eq=False):
 
 
 class Mixture(Struct, frozen=True, kw_only=True, eq=False):
-    """What k models of one filter hold, of position, velocity and acceleration in W, in that order.
+    """What k models of one filter hold, of the pad's position, velocity and acceleration in W, in that order.
+
+    An antenna far from the pad swings about it with the heading: that its velocity is vague says nothing of the pad's.
 
     Attributes:
         weight: (k,) probabilities, which sum to 1.
@@ -64,7 +66,7 @@ class VehicleEstimate(Struct, frozen=True, kw_only=True, eq=False):
         covariance: (9, 9) of position, velocity, acceleration, in that order.
         yaw_rad: heading of V about W's z, None while it cannot be told (at rest, never measured).
         yaw_rate_rad_s: None likewise.
-        mixture: what each of several models holds, of which `covariance` is that of all; None of a single one.
+        mixture: what each of several models holds of the pad; None of a single one.
     """
 
     t_ns: int

@@ -137,7 +137,7 @@ class ImmModel:
 
     def describe(self, state: ImmState, t_ns: int) -> VehicleEstimate:
         """Return the mixture of the modes."""
-        x, told, covariance, modes_told, modes_covariance, heading_variance = forecasts.describe_modes(
+        x, told, covariance, off, modes_covariance, heading_variance = forecasts.describe_modes(
             state.modes, self._motion(state), self._known_variance
         )
         known = heading_variance < self._known_variance
@@ -149,7 +149,7 @@ class ImmModel:
             covariance=0.5 * (covariance + covariance.T),
             yaw_rad=wrapped(float(x[HEADING])) if known else None,
             yaw_rate_rad_s=float(x[CURVATURE] * math.hypot(x[2], x[3])) if known else None,
-            mixture=Mixture(weight=state.modes[2], off=modes_told - told, covariance=modes_covariance),
+            mixture=Mixture(weight=state.modes[2], off=off, covariance=modes_covariance),
         )
 
     def forecast(self, state: ImmState, t_ns: int, offset_s: Array) -> Forecast:

@@ -4,7 +4,7 @@ State: 18 phi, 19 its rate, 20 theta, 21 its rate: roll (port up positive) and p
 the road, rad and rad/s, each a damped oscillator; 22 and 23 what the vehicle's unit tells of roll and of pitch too
 much, rad, as it is not mounted along the deck. The body tilts about an axis below the pad, on the road or the water.
 Heave is that of the pad, so that what pitching lifts there is part of it.
-To the first order in the tilt an arm `a` in V moves by (theta a_z, -phi a_z, phi a_y - theta a_x).
+The pad is followed to the first order in the tilt, the arm from it to the antenna to the second (`lever.tilted_arm`).
 """
 
 import math
@@ -13,6 +13,7 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
+from companion.vehicle.lever import tilted_arm
 from companion.vehicle.small_matrices import carried_through, times
 
 ROLL, ROLL_RATE, PITCH, PITCH_RATE, MOUNT = 18, 19, 20, 21, 22
@@ -28,11 +29,32 @@ def antenna_swing(x: Array, first: int, lever: Array) -> tuple[Array, Array]:
         first: `ROLL` for places, `ROLL_RATE` for velocities.
         lever: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll, m.
     """
-    out, H = pad_swing(x, first, lever[3] - lever[2])
-    roll, pitch = x[first], x[first + 2]
-    out[2] = pitch * lever[0] - roll * lever[1]
-    H[2, first], H[2, first + 2] = -lever[1], lever[0]
+    out, H = pad_swing(x, first, lever[3])
+    moved, by_tilt = tilted_arm(-lever[0], -lever[1], -lever[2], x[ROLL], x[PITCH])
+    if first == ROLL_RATE:
+        roll_rate, pitch_rate = x[ROLL_RATE], x[PITCH_RATE]
+        moved = by_tilt[:, 0] * roll_rate + by_tilt[:, 1] * pitch_rate
+        # what it changes by with the tilt itself: the arm's own length, to the second order
+        put_turned(H, x, ROLL, (-lever[1] * pitch_rate, lever[1] * roll_rate, lever[2] * roll_rate))
+        put_turned(H, x, PITCH, (lever[0] * pitch_rate - lever[1] * roll_rate, 0.0, lever[2] * pitch_rate))
+    for i in range(2):
+        put_turned(H, x, first + 2 * i, (by_tilt[0, i], by_tilt[1, i], by_tilt[2, i]))
+    put_turned(H, x, 7, (-moved[1], moved[0], 0.0))
+    c, s = math.cos(x[7]), math.sin(x[7])
+    out[0] += c * moved[0] - s * moved[1]
+    out[1] += s * moved[0] + c * moved[1]
+    out[2] += moved[2]
     return out, H
+
+
+@compiled_kernel
+def put_turned(H: Array, x: Array, column: int, change: tuple[float, float, float]) -> None:
+    """Add `change`, forward, left and up, to a column of a Jacobian (3, 24) in W."""
+    c, s = math.cos(x[7]), math.sin(x[7])
+    forward, left, up = change
+    H[0, column] += c * forward - s * left
+    H[1, column] += s * forward + c * left
+    H[2, column] += up
 
 
 @compiled_kernel

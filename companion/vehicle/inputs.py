@@ -173,16 +173,26 @@ def _tilt(message: VehicleImu) -> Measurement | None:
         return None
     roll_rad, pitch_rad, _ = roll_pitch_yaw_of(q_WV)
     rates, rate_covariance = message.angular_velocity_flu_rad_s, message.angular_velocity_covariance_rad2_s2
-    p_rad_s, q_rad_s, _ = (0.0, 0.0, 0.0) if rates is None else rates
+    turning_rad_s = _tilt_rates(roll_rad, pitch_rad, (0.0, 0.0, 0.0) if rates is None else rates)
     variances = [covariance[0], covariance[4], _UNKNOWN_RATE_VARIANCE_RAD2_S2, _UNKNOWN_RATE_VARIANCE_RAD2_S2]
     if rates is not None:
         variances[2:] = [_YAW_RATE_STD_RAD_S**2] * 2 if rate_covariance is None else rate_covariance[0:5:4]
     return Measurement(
         t_ns=message.t_ns,
         quantity=Quantity.TILT,
-        value=np.array([roll_rad, pitch_rad, p_rad_s, q_rad_s]),
+        value=np.array([roll_rad, pitch_rad, *turning_rad_s]),
         covariance=np.diag(variances),
     )
+
+
+def _tilt_rates(roll_rad: float, pitch_rad: float, rates_flu_rad_s: Vector3) -> tuple[float, float]:
+    """Return how fast roll and pitch (ZYX) change of what turns at these rates about its own axes, rad/s.
+
+    A car that leans by 4 degrees in a bend of 0.5 rad/s turns at 0.035 rad/s about its axis of pitch without pitching.
+    """
+    p_rad_s, q_rad_s, r_rad_s = rates_flu_rad_s
+    c, s = math.cos(roll_rad), math.sin(roll_rad)
+    return p_rad_s + math.tan(pitch_rad) * (s * q_rad_s + c * r_rad_s), c * q_rad_s - s * r_rad_s
 
 
 def _forward_force_m_s2(force_m_s2: Vector3, q_WV: Quaternion | None) -> float:

@@ -39,10 +39,27 @@ def turned_lever(
 
 
 @compiled_kernel
+def tilted_arm(x_m: float, y_m: float, z_m: float, roll_rad: float, pitch_rad: float) -> tuple[Array, Array]:
+    """Return by how much roll, then pitch move the end of an arm in V untilted (3,), m, and the Jacobian (3, 2).
+
+    To the second order: a ship's tilt of 3 degrees shortens an arm of 15 m by 2 cm, always in the same sense, which is
+    more than sightings leave unknown after seconds.
+    """
+    moved, by_tilt = np.empty(3), np.empty((3, 2))
+    moved[0] = pitch_rad * (z_m + roll_rad * y_m - 0.5 * pitch_rad * x_m)
+    moved[1] = -roll_rad * (z_m + 0.5 * roll_rad * y_m)
+    moved[2] = roll_rad * y_m - pitch_rad * x_m - 0.5 * (roll_rad**2 + pitch_rad**2) * z_m
+    by_tilt[0, 0], by_tilt[0, 1] = pitch_rad * y_m, z_m + roll_rad * y_m - pitch_rad * x_m
+    by_tilt[1, 0], by_tilt[1, 1] = -z_m - roll_rad * y_m, 0.0
+    by_tilt[2, 0], by_tilt[2, 1] = y_m - roll_rad * z_m, -x_m - pitch_rad * z_m
+    return moved, by_tilt
+
+
+@compiled_kernel
 def tilted_lever(
     yaw_rad: Array, tilt: Array, lever_x_m: float, lever_y_m: float, lever_z_m: float
 ) -> tuple[Array, Array]:
-    """Return by how much a tilt moves the end of a lever arm in W, to the first order, and how fast, each (n, 3).
+    """Return by how much a tilt moves the end of a lever arm in W, and how fast, each (n, 3).
 
     Args:
         yaw_rad: (n,) of V.
@@ -52,15 +69,14 @@ def tilted_lever(
         lever_z_m: upwards.
     """
     n = len(yaw_rad)
-    moved = np.empty((2, n, 3))
+    moved, rate = np.empty((n, 3)), np.empty((n, 3))
     for i in range(n):
         c, s = math.cos(yaw_rad[i]), math.sin(yaw_rad[i])
-        for order in range(2):
-            roll, pitch = tilt[i, order], tilt[i, 2 + order]
-            forward, left = pitch * lever_z_m, -roll * lever_z_m
-            moved[order, i, 0], moved[order, i, 1] = c * forward - s * left, s * forward + c * left
-            moved[order, i, 2] = roll * lever_y_m - pitch * lever_x_m
-    return moved[0], moved[1]
+        place, by_tilt = tilted_arm(lever_x_m, lever_y_m, lever_z_m, tilt[i, 0], tilt[i, 2])
+        change = by_tilt[:, 0] * tilt[i, 1] + by_tilt[:, 1] * tilt[i, 3]
+        for out, (forward, left, up) in ((moved, place), (rate, change)):
+            out[i, 0], out[i, 1], out[i, 2] = c * forward - s * left, s * forward + c * left, up
+    return moved, rate
 
 
 @compiled_kernel

@@ -18,6 +18,7 @@ from scenarios.lockstep.channels import Channels, Way, channels_of
 from scenarios.recordings.recording import EndWatch, Recording
 from scenarios.scoring.accuracy import PERIOD_NS, PHASES, Nis, antenna_truth, estimate_error
 from scenarios.simulation.noise import Seed
+from scenarios.simulation.sensors import Mounting
 from scenarios.simulation.simulation import Simulation, SimulationOutputs
 
 START_NS = 1_767_225_600_000_000_000
@@ -59,8 +60,9 @@ class Lockstep:
         self._ways: dict[str, Way] = {**from_vehicle, keys.pad_pose: self._channels.detector}
         self._watch = EndWatch(scenario.run.time_limit_s)
         self._started = False
-        pad_flu_m = (0.0, 0.0, scenario.vehicle.roof_height_m)
-        self._point_flu_m = pad_flu_m if scenario.is_silent else scenario.vehicle.antenna_flu_m
+        height_m = scenario.vehicle.roof_height_m
+        point_flu_m = (0.0, 0.0, height_m) if scenario.is_silent else scenario.vehicle.antenna_flu_m
+        self._mounting = Mounting(antenna_flu_m=point_flu_m, pad_height_m=height_m)
         self._compared_ns = START_NS
 
     def run(self) -> str:
@@ -122,7 +124,7 @@ class Lockstep:
         if vehicle is None or estimate is None:
             return
         self._compared_ns = t_ns
-        truth = antenna_truth(vehicle, self._point_flu_m, self.simulation.autopilot.memory)
+        truth = antenna_truth(vehicle, self._mounting, self.simulation.autopilot.memory)
         in_descent = node.phase is Phase.DESCEND
         self.recording.estimate_errors.append(estimate_error(estimate, truth, in_descent=in_descent))
         health = node.estimator_health()

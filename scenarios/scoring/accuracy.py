@@ -17,6 +17,7 @@ from companion.situation.phases import Phase
 from link.frames.geodesy import scale_of
 from link.frames.rotations import rotate
 from link.messages import Vector3
+from scenarios.simulation.sensors import Mounting
 from scenarios.simulation.vehicle import VehicleState
 from sim_autopilot.core.places import local_from_world
 
@@ -53,15 +54,21 @@ class Nis(Struct, frozen=True, kw_only=True):
     dof: int
 
 
-def antenna_truth(vehicle: VehicleState, antenna_flu_m: Vector3, autopilot: "AutopilotMemory") -> Truth:
-    """Return where the vehicle's antenna is for a drone whose autopilot is `autopilot`."""
-    lever_m = np.array(rotate(vehicle.orientation_wxyz, antenna_flu_m))
+def antenna_truth(vehicle: VehicleState, mounting: Mounting, autopilot: "AutopilotMemory") -> Truth:
+    """Return where the vehicle's antenna is for a drone whose autopilot is `autopilot`.
+
+    A metre in the frames of PX4 and ArduPilot is up to 0.7 % off a true one. The drone lands on the pad, so there both
+    have to agree, and the arm from the pad to the antenna is in true metres: 15 m of a ship make 5 cm otherwise.
+    """
+    pad_m = rotate(vehicle.orientation_wxyz, (0.0, 0.0, mounting.pad_height_m))
+    lever_m = np.array(rotate(vehicle.orientation_wxyz, mounting.antenna_flu_m))
     rate_rad_s = rotate(vehicle.orientation_wxyz, vehicle.angular_velocity_flu_rad_s)
     own_error_m = np.array(autopilot.now.position_enu_m) - autopilot.plant.state.position_enu_m
-    position_m = np.array(vehicle.position_enu_m) + lever_m + own_error_m
+    pad_enu_m = np.array(vehicle.position_enu_m) + pad_m + own_error_m
     velocity_m_s = np.array(vehicle.velocity_enu_m_s) + np.cross(rate_rad_s, lever_m)
+    position_m = np.array(local_from_world(autopilot.places.origin, _vector3(pad_enu_m))) + lever_m - pad_m
     return Truth(
-        position_enu_m=local_from_world(autopilot.places.origin, _vector3(position_m)),
+        position_enu_m=_vector3(position_m),
         velocity_enu_m_s=_vector3(velocity_m_s * scale_of(autopilot.places.origin.frame)),
     )
 

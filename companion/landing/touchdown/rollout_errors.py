@@ -43,7 +43,7 @@ def draw_errors(then: VehicleEstimate, pad: PadPath, response: ResponseModel, nu
 
     Args:
         then: the vehicle at its newest datum.
-        pad: now; where its place is known less well than the antenna's, that is the heading's.
+        pad: now.
         response: of the autopilot.
         numbers: random ones.
     """
@@ -64,22 +64,24 @@ def _draw_vehicle(then: VehicleEstimate, pad: PadPath, normals: Array, uniforms:
 
     A model that is hardly likely holds for few samples. As a part of one covariance it would widen them all.
     """
-    mixture = then.mixture
-    if mixture is None:
-        mixture = Mixture(weight=np.ones(1), off=np.zeros((1, 9)), covariance=then.covariance[None])
-    apart_m2 = frames_apart_m2(pad)
-    # By so much is the pad's place less well known than the antenna's.
-    turned_m2 = np.maximum(pad.position_std_m[0] ** 2 - then.covariance.diagonal()[:3], 0.0)
+    mixture, apart_m2 = then.mixture or _antenna_as_pad(then, pad), frames_apart_m2(pad)
     of_model = np.searchsorted(np.cumsum(mixture.weight)[:-1], uniforms)
     vehicle = np.empty_like(normals)
     for model, (off, stated) in enumerate(zip(mixture.off, mixture.covariance, strict=True)):
         covariance = stated.copy()
         for axis in range(3):
-            stated_m2 = covariance[axis, axis] + turned_m2[axis]
-            covariance[axis, axis] = max(stated_m2 - apart_m2, _PLACE_STD_MIN_M**2)
+            covariance[axis, axis] = max(stated[axis, axis] - apart_m2, _PLACE_STD_MIN_M**2)
         drawn = of_model == model
         vehicle[drawn] = off + normals[drawn] @ _root(covariance).T
     return vehicle
+
+
+def _antenna_as_pad(then: VehicleEstimate, pad: PadPath) -> Mixture:
+    """Return what a filter of one model holds: the antenna's, its place as vague as the heading makes the pad's."""
+    covariance = then.covariance.copy()
+    for axis in range(3):
+        covariance[axis, axis] = max(covariance[axis, axis], pad.position_std_m[0, axis] ** 2)
+    return Mixture(weight=np.ones(1), off=np.zeros((1, 9)), covariance=covariance[None])
 
 
 def as_driven(vehicle: Array, driving: Driving, direction: Array, *, stands: bool) -> Array:

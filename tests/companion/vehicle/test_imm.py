@@ -8,6 +8,7 @@ from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig, ReceiversConfig
 from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle.factory import make_estimator
+from companion.vehicle.imm_numbers import Deck
 from link.records import replace
 from tests.companion.vehicle.drives import (
     ANTENNA_TO_PAD_M,
@@ -58,7 +59,8 @@ def test_covariance_on_steady_roads_is_cautious_but_not_idle(truth: Drive) -> No
 
 
 def test_models_of_an_estimate_make_up_its_covariance() -> None:
-    estimate = ride(estimator(IMM, SAME_FRAME), circle(), NOMINAL, 1, from_s=8.0, until_s=8.1).estimates[0]
+    on_pad = make_estimator(SAME_FRAME, Deck(), IMM)
+    estimate = ride(on_pad, circle(), NOMINAL, 1, from_s=8.0, until_s=8.1).estimates[0]
     mixture = estimate.mixture
     assert mixture is not None
     assert mixture.weight.sum() == pytest.approx(1.0)
@@ -67,6 +69,18 @@ def test_models_of_an_estimate_make_up_its_covariance() -> None:
     scale = np.sqrt(np.diag(estimate.covariance))
     total = np.tensordot(mixture.weight, mixture.covariance + between, 1)
     assert total / np.outer(scale, scale) == pytest.approx(estimate.covariance / np.outer(scale, scale), abs=0.02)
+
+
+def test_pad_of_a_ship_is_as_fast_as_is_known_however_its_antenna_swings() -> None:
+    afar = make_estimator(SAME_FRAME, Deck(antenna_to_pad_m=(-13.0, 0.0, 0.0)), IMM)
+    estimate = ride(
+        afar, straight(5.0), replace(NOMINAL, yaw_rate_std_rad_s=0.02), 1, from_s=8.0, until_s=8.1
+    ).estimates[0]
+    mixture = estimate.mixture
+    assert mixture is not None
+    total = np.tensordot(mixture.weight, mixture.covariance + np.einsum("ki,kj->kij", mixture.off, mixture.off), 1)
+    antenna_m_s, pad_m_s = (math.sqrt(np.trace(one[3:5, 3:5])) for one in (estimate.covariance, total))
+    assert pad_m_s < 0.5 * antenna_m_s
 
 
 def test_offset_between_the_receivers_is_learnt_from_sightings() -> None:

@@ -12,7 +12,8 @@ from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_noise as noises
 from companion.vehicle import imm_sensors as sensors
-from companion.vehicle.imm_swing import SIZE
+from companion.vehicle.imm_swing import PITCH, ROLL, SIZE, antenna_swing
+from link.frames.rotations import quaternion_from_roll_pitch_yaw, quaternion_from_yaw, rotate
 from tests.companion.vehicle.drives import NOMINAL, drive
 from tests.companion.vehicle.rides import estimator, ride
 from tests.companion.vehicle.test_imm_kernels import (
@@ -104,3 +105,14 @@ def test_beginning_of_a_curve_is_followed_as_surely_as_is_stated() -> None:
             nees.append(error @ np.linalg.solve(estimate.covariance[3:5, 3:5], error))
     assert math.sqrt(float(np.mean(np.square(errors)))) < 0.1
     assert float(np.mean(nees)) < 4.0  # of 2 degrees of freedom, just after a manoeuvre
+
+
+def test_antenna_s_place_is_that_of_a_stiff_body_less_what_the_pad_rises() -> None:
+    x, lever = np.zeros(SIZE), np.array([-13.0, -3.0, -6.5, 6.5])
+    x[7], x[ROLL], x[PITCH] = 1.3, 0.05, -0.04
+    moved, _ = antenna_swing(x, ROLL, lever)
+    antenna, pad = (13.0, 3.0, 13.0), (0.0, 0.0, 6.5)
+    leaning, level = quaternion_from_roll_pitch_yaw(0.05, -0.04, 1.3), quaternion_from_yaw(1.3)
+    expected = np.array(rotate(leaning, antenna)) - rotate(level, antenna)
+    expected[2] -= rotate(leaning, pad)[2] - pad[2]
+    assert moved == pytest.approx(expected, abs=15.0 * 0.06**3)

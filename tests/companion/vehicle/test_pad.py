@@ -76,15 +76,19 @@ def test_heading_turns_the_short_way_round_as_numpy_unwraps_and_derives_it(yaw: 
     assert yaw_rate(yaw_rad, offset_s) == pytest.approx(expected, abs=1e-9)
 
 
-def test_tilt_moves_a_lever_arm_to_the_first_order() -> None:
-    yaw_rad, lever, small = np.array([0.3, -2.1]), np.array([0.7, -0.4, 1.6]), 1e-6
-    tilt = small * np.array([[3.0, -1.0, 2.0, 5.0], [1.0, 4.0, -2.0, 0.5]])
+def test_tilt_moves_a_lever_arm_to_the_second_order() -> None:
+    yaw_rad, lever = np.array([0.3, -2.1]), np.array([-13.0, -3.0, -6.5])
+    tilt = np.array([[0.05, -0.02, 0.04, 0.05], [-0.03, 0.06, 0.05, -0.02]])
     moved, rate = tilted_lever(yaw_rad, tilt, *lever)
     for i, yaw in enumerate(yaw_rad):
         level = np.array(rotate(quaternion_from_yaw(yaw), tuple(lever)))
-        for order, found in ((0, moved), (1, rate)):
-            leaning = quaternion_from_roll_pitch_yaw(tilt[i, order], tilt[i, 2 + order], yaw)
-            assert found[i] == pytest.approx(np.array(rotate(leaning, tuple(lever))) - level, abs=1e-10)
+        now, later = (
+            np.array(rotate(quaternion_from_roll_pitch_yaw(roll, pitch, yaw), tuple(lever)))
+            for roll, pitch in (tilt[i, 0::2], tilt[i, 0::2] + 1e-6 * tilt[i, 1::2])
+        )
+        third = 15.0 * 0.07**3  # what is left out, of the arm's length
+        assert moved[i] == pytest.approx(now - level, abs=third)
+        assert rate[i] == pytest.approx((later - now) / 1e-6, abs=third)
 
 
 def test_compiled_kernels_equal_their_python() -> None:

@@ -89,7 +89,7 @@ class GuidedLanding(Lockstep):
         own, pad = self.simulation.autopilot.state, self.simulation.vehicle.state
         if pad is None or self._stage is _Stage.LAND:
             return []
-        height_m = self._point_flu_m[2] + ABOVE_PAD_M
+        height_m = self._mounting.antenna_flu_m[2] + ABOVE_PAD_M
         if self._stage is _Stage.ON_GROUND:
             if own.position_enu_m[2] > height_m - 1.0:
                 self._stage = _Stage.TO_PAD

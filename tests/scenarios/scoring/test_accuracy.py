@@ -12,6 +12,7 @@ from link.frames.rotations import quaternion_from_yaw
 from link.records import replace
 from scenarios.campaigns.intervals import mean_band
 from scenarios.scoring.accuracy import EstimateError, Nis, Truth, accuracy_table, antenna_truth, estimate_error
+from scenarios.simulation.sensors import Mounting
 from scenarios.simulation.vehicle import VehicleState
 from sim_autopilot.boot import initial_memory
 from sim_autopilot.core.places import Origin
@@ -49,8 +50,9 @@ def test_antenna_is_seen_from_the_frame_and_with_the_error_that_the_drone_flies_
     moved = Datum(latitude_rad=latitude_rad, longitude_rad=longitude_rad, altitude_m=altitude_m)
     frame = LocalFrame(origin=moved, projection=Projection.TANGENT_PLANE)
     origin = Origin(world=DATUM, frame=frame, position_enu_m=(3.0, -4.0, 0.0), resets=1)
+    mounting = Mounting(antenna_flu_m=(-1.2, 0.5, 1.6), pad_height_m=1.5)
     truth = antenna_truth(
-        vehicle, (-1.2, 0.5, 1.6), replace(memory, now=believed, places=replace(memory.places, origin=origin))
+        vehicle, mounting, replace(memory, now=believed, places=replace(memory.places, origin=origin))
     )
     # lever (-0.5, -1.2, 1.6) in W, error (0.5, 0, 0), frame moved by (3, -4, 0); w x lever = 0.4 (1.2, -0.5)
     assert truth.position_enu_m == pytest.approx((100.0 - 0.5 + 0.5 - 3.0, 50.0 - 1.2 + 4.0, 1.6), abs=1e-3)
