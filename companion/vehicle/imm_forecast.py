@@ -121,7 +121,7 @@ def forecast_modes(
 @compiled_kernel
 def describe_modes(
     modes: Modes, motion: Array, known_variance: float
-) -> tuple[Array, Array, Array, Array, Array, float]:
+) -> tuple[Array, Array, Array, tuple[Array, float, Array, Array], float]:
     """Return the mixture now, and its parts.
 
     Args:
@@ -131,8 +131,8 @@ def describe_modes(
 
     Returns:
         The mean (24,); position, velocity and acceleration (9,) of the antenna, acceleration being the pad's, and their
-        covariance (9, 9); the pad's by each mode, off that of the mean, (n, 9) and (n, 9, 9); and the variance of the
-        heading, rad^2.
+        covariance (9, 9); of the pad its velocity (3,), the horizontal standard deviation of that, and all nine by each
+        mode, off those of the mean, (n, 9) and (n, 9, 9); and the variance of the heading, rad^2.
     """
     directed = with_direction(motion, modes, known_variance)
     means, covariances, weights = modes
@@ -142,7 +142,8 @@ def describe_modes(
     told, off, spread = np.empty((1, 9)), np.empty((n, 9)), np.empty((n, 9, 9))
     told[:, :3], told[:, 3:6], told[:, 6:] = kinematics(x.reshape(1, SIZE), directed)
     pads = np.empty((n + 1, SIZE))
-    pads[n], _ = shifted(x, P, lever, 1.0)
+    pads[n], S = shifted(x, P, lever, 1.0)
+    known = carried_through(kinematics_jacobian(pads[n], at_pad), S)
     for j in range(n):
         pads[j], S = shifted(means[j], covariances[j], lever, 1.0)
         spread[j] = carried_through(kinematics_jacobian(pads[j], at_pad), S)
@@ -150,4 +151,5 @@ def describe_modes(
     off[:, :3], off[:, 3:6] = position[:n] - position[n], velocity[:n] - velocity[n]
     off[:, 6:] = acceleration[:n] - acceleration[n]
     total = carried_through(kinematics_jacobian(x, directed), P)
-    return x, told[0], total, off, spread, heading_variance(modes)
+    pad = (velocity[n].copy(), math.sqrt(max(known[3, 3] + known[4, 4], 0.0)), off, spread)  # rounding
+    return x, told[0], total, pad, heading_variance(modes)

@@ -6,7 +6,7 @@ import numpy as np
 from msgspec import Struct
 
 from companion.autopilots.response import STATES, ResponseModel
-from companion.core.data import Array, Mixture, VehicleEstimate
+from companion.core.data import Array, VehicleEstimate
 from companion.forecast.draws import MODE, Draws
 from companion.vehicle.hindsight import Driving
 from companion.vehicle.pad import PadPath
@@ -64,10 +64,11 @@ def _draw_vehicle(then: VehicleEstimate, pad: PadPath, normals: Array, uniforms:
 
     A model that is hardly likely holds for few samples. As a part of one covariance it would widen them all.
     """
-    mixture, apart_m2 = then.mixture or _antenna_as_pad(then, pad), frames_apart_m2(pad)
-    of_model = np.searchsorted(np.cumsum(mixture.weight)[:-1], uniforms)
+    apart_m2 = frames_apart_m2(pad)
+    weights, offs, covariances = _models_of(then, pad)
+    of_model = np.searchsorted(np.cumsum(weights)[:-1], uniforms)
     vehicle = np.empty_like(normals)
-    for model, (off, stated) in enumerate(zip(mixture.off, mixture.covariance, strict=True)):
+    for model, (off, stated) in enumerate(zip(offs, covariances, strict=True)):
         covariance = stated.copy()
         for axis in range(3):
             covariance[axis, axis] = max(stated[axis, axis] - apart_m2, _PLACE_STD_MIN_M**2)
@@ -76,12 +77,17 @@ def _draw_vehicle(then: VehicleEstimate, pad: PadPath, normals: Array, uniforms:
     return vehicle
 
 
-def _antenna_as_pad(then: VehicleEstimate, pad: PadPath) -> Mixture:
-    """Return what a filter of one model holds: the antenna's, its place as vague as the heading makes the pad's."""
+def _models_of(then: VehicleEstimate, pad: PadPath) -> tuple[Array, Array, Array]:
+    """Return weights (k,), means (k, 9) off that of all, and covariances (k, 9, 9), as `PadModels` has them.
+
+    One that follows the antenna only is as good as that, and its place as vague as the heading makes the pad's.
+    """
+    if then.pad is not None:
+        return then.pad.weight, then.pad.off, then.pad.covariance
     covariance = then.covariance.copy()
     for axis in range(3):
         covariance[axis, axis] = max(covariance[axis, axis], pad.position_std_m[0, axis] ** 2)
-    return Mixture(weight=np.ones(1), off=np.zeros((1, 9)), covariance=covariance[None])
+    return np.ones(1), np.zeros((1, 9)), covariance[None]
 
 
 def as_driven(vehicle: Array, driving: Driving, direction: Array, *, stands: bool) -> Array:
