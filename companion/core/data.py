@@ -46,7 +46,7 @@ class PadModels(Struct, frozen=True, kw_only=True, eq=False):
     An antenna far from the pad swings about it with the heading: that its velocity is vague says nothing of the pad's.
 
     Attributes:
-        velocity_enu_m_s: (3,) of all models.
+        velocity_enu_m_s: (3,) their mean.
         velocity_std_m_s: of it horizontally, both directions together.
         weight: (k,) probabilities, which sum to 1.
         off: (k, 9) their means, off the mean of all.

@@ -1,4 +1,4 @@
-"""What the interacting turning models tell: the antenna's motion now and over the horizon, compiled.
+"""What the interacting turning models tell: how antenna and pad move, now and over the horizon; compiled.
 
 `motion` (16,) is as `imm_mixing` has it.
 """

@@ -176,7 +176,8 @@ def _tilt(message: VehicleImu) -> Measurement | None:
     turning_rad_s = _tilt_rates(roll_rad, pitch_rad, (0.0, 0.0, 0.0) if rates is None else rates)
     variances = [covariance[0], covariance[4], _UNKNOWN_RATE_VARIANCE_RAD2_S2, _UNKNOWN_RATE_VARIANCE_RAD2_S2]
     if rates is not None:
-        variances[2:] = [_YAW_RATE_STD_RAD_S**2] * 2 if rate_covariance is None else rate_covariance[0:5:4]
+        p, q, r = [_YAW_RATE_STD_RAD_S**2] * 3 if rate_covariance is None else rate_covariance[0:9:4]
+        variances[2:] = p + (math.tan(pitch_rad) * math.cos(roll_rad)) ** 2 * r, q + math.sin(roll_rad) ** 2 * r
     return Measurement(
         t_ns=message.t_ns,
         quantity=Quantity.TILT,

@@ -65,11 +65,11 @@ def antenna_truth(vehicle: VehicleState, mounting: Mounting, autopilot: "Autopil
     rate_rad_s = rotate(vehicle.orientation_wxyz, vehicle.angular_velocity_flu_rad_s)
     own_error_m = np.array(autopilot.now.position_enu_m) - autopilot.plant.state.position_enu_m
     pad_enu_m = np.array(vehicle.position_enu_m) + pad_m + own_error_m
-    velocity_m_s = np.array(vehicle.velocity_enu_m_s) + np.cross(rate_rad_s, lever_m)
+    velocity_m_s = np.array(vehicle.velocity_enu_m_s) * scale_of(autopilot.places.origin.frame)
     position_m = np.array(local_from_world(autopilot.places.origin, _vector3(pad_enu_m))) + lever_m - pad_m
     return Truth(
         position_enu_m=_vector3(position_m),
-        velocity_enu_m_s=_vector3(velocity_m_s * scale_of(autopilot.places.origin.frame)),
+        velocity_enu_m_s=_vector3(velocity_m_s + np.cross(rate_rad_s, lever_m)),
     )
 
 

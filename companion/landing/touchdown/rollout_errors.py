@@ -70,8 +70,10 @@ def _draw_vehicle(then: VehicleEstimate, pad: PadPath, normals: Array, uniforms:
     vehicle = np.empty_like(normals)
     for model, (off, stated) in enumerate(zip(offs, covariances, strict=True)):
         covariance = stated.copy()
+        # Samples drive on through the age of the data, but only horizontally: how high the pad is now is less sure.
+        covariance[2, 2] = max(stated[2, 2], pad.position_std_m[0, 2] ** 2)
         for axis in range(3):
-            covariance[axis, axis] = max(stated[axis, axis] - apart_m2, _PLACE_STD_MIN_M**2)
+            covariance[axis, axis] = max(covariance[axis, axis] - apart_m2, _PLACE_STD_MIN_M**2)
         drawn = of_model == model
         vehicle[drawn] = off + normals[drawn] @ _root(covariance).T
     return vehicle

@@ -58,16 +58,16 @@ def test_covariance_on_steady_roads_is_cautious_but_not_idle(truth: Drive) -> No
     assert 0.5 < np.mean(np.array(nis, dtype=float)) < 1.0
 
 
-def test_models_of_an_estimate_make_up_its_covariance() -> None:
+def test_models_of_an_antenna_on_the_pad_make_up_its_covariance() -> None:
     on_pad = make_estimator(SAME_FRAME, Deck(), IMM)
     estimate = ride(on_pad, circle(), NOMINAL, 1, from_s=8.0, until_s=8.1).estimates[0]
-    mixture = estimate.pad
-    assert mixture is not None
-    assert mixture.weight.sum() == pytest.approx(1.0)
-    assert mixture.weight @ mixture.off == pytest.approx(np.zeros(9), abs=1e-3)
-    between = np.einsum("ki,kj->kij", mixture.off, mixture.off)
+    pad = estimate.pad
+    assert pad is not None
+    assert pad.weight.sum() == pytest.approx(1.0)
+    assert pad.weight @ pad.off == pytest.approx(np.zeros(9), abs=1e-3)
+    between = np.einsum("ki,kj->kij", pad.off, pad.off)
     scale = np.sqrt(np.diag(estimate.covariance))
-    total = np.tensordot(mixture.weight, mixture.covariance + between, 1)
+    total = np.tensordot(pad.weight, pad.covariance + between, 1)
     assert total / np.outer(scale, scale) == pytest.approx(estimate.covariance / np.outer(scale, scale), abs=0.02)
 
 

@@ -176,7 +176,8 @@ def test_tilt_and_its_rates_are_measured_where_the_unit_knows_them() -> None:
     (tilt,) = told_tilt(tilt_variance_rad2=2e-5, rates=(0.3, -0.2, 0.0))
     assert tilt.value[:2] == pytest.approx([0.1, -0.04])
     assert tilt.value[2:] == pytest.approx([0.3, -0.2], abs=2e-3)
-    assert tilt.covariance.diagonal() == pytest.approx([2e-5, 2e-5, 1e-4, 2e-4])
+    yawing = (3e-4 * (math.tan(0.04) * math.cos(0.1)) ** 2, 3e-4 * math.sin(0.1) ** 2)  # what the yaw rate's error adds
+    assert tilt.covariance.diagonal() == pytest.approx([2e-5, 2e-5, 1e-4 + yawing[0], 2e-4 + yawing[1]])
 
 
 def test_rates_of_the_tilt_are_how_fast_roll_and_pitch_change() -> None:

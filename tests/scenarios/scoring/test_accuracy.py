@@ -9,6 +9,7 @@ from scipy import stats
 from companion.core.data import VehicleEstimate
 from link.frames.geodesy import Datum, LocalFrame, Projection, geodetic_from_enu
 from link.frames.rotations import quaternion_from_yaw
+from link.messages import Vector3
 from link.records import replace
 from scenarios.campaigns.intervals import mean_band
 from scenarios.scoring.accuracy import EstimateError, Nis, Truth, accuracy_table, antenna_truth, estimate_error
@@ -33,17 +34,23 @@ def estimate_of(position: np.ndarray, velocity: np.ndarray, covariance: np.ndarr
     )
 
 
-def test_antenna_is_seen_from_the_frame_and_with_the_error_that_the_drone_flies_by() -> None:
-    vehicle = VehicleState(
+def vehicle_of(
+    position_enu_m: Vector3, velocity_enu_m_s: Vector3, yaw_rad: float, yaw_rate_rad_s: float
+) -> VehicleState:
+    return VehicleState(
         t_ns=START_NS,
-        position_enu_m=(100.0, 50.0, 0.0),
-        velocity_enu_m_s=(0.0, 5.0, 0.0),
+        position_enu_m=position_enu_m,
+        velocity_enu_m_s=velocity_enu_m_s,
         acceleration_enu_m_s2=(0.0, 0.0, 0.0),
-        orientation_wxyz=quaternion_from_yaw(0.5 * math.pi),
-        angular_velocity_flu_rad_s=(0.0, 0.0, 0.4),
-        yaw_rad=0.5 * math.pi,
-        yaw_rate_rad_s=0.4,
+        orientation_wxyz=quaternion_from_yaw(yaw_rad),
+        angular_velocity_flu_rad_s=(0.0, 0.0, yaw_rate_rad_s),
+        yaw_rad=yaw_rad,
+        yaw_rate_rad_s=yaw_rate_rad_s,
     )
+
+
+def test_antenna_is_seen_from_the_frame_and_with_the_error_that_the_drone_flies_by() -> None:
+    vehicle = vehicle_of((100.0, 50.0, 0.0), (0.0, 5.0, 0.0), 0.5 * math.pi, 0.4)
     memory = initial_memory(px4(position_enu_m=(3.0, 4.0, 0.12)), START_NS)
     believed = replace(memory.now, position_enu_m=(3.5, 4.0, 0.12))
     latitude_rad, longitude_rad, altitude_m = geodetic_from_enu(DATUM, (3.0, -4.0, 0.0))
@@ -57,6 +64,19 @@ def test_antenna_is_seen_from_the_frame_and_with_the_error_that_the_drone_flies_
     # lever (-0.5, -1.2, 1.6) in W, error (0.5, 0, 0), frame moved by (3, -4, 0); w x lever = 0.4 (1.2, -0.5)
     assert truth.position_enu_m == pytest.approx((100.0 - 0.5 + 0.5 - 3.0, 50.0 - 1.2 + 4.0, 1.6), abs=1e-3)
     assert truth.velocity_enu_m_s == pytest.approx((0.48, 5.0 - 0.2, 0.0))
+
+
+def test_arm_from_the_pad_is_in_true_metres_whatever_those_of_the_frame_are() -> None:
+    vehicle = vehicle_of((200.0, 100.0, 0.0), (5.0, 0.0, 0.0), 0.0, 0.02)
+    memory = initial_memory(px4(position_enu_m=(0.0, 0.0, 0.12)), START_NS)
+    frame = LocalFrame(origin=DATUM, projection=Projection.PX4)
+    origin = Origin(world=DATUM, frame=frame, position_enu_m=(0.0, 0.0, 0.0), resets=1)
+    there = replace(memory, places=replace(memory.places, origin=origin))
+    antenna = antenna_truth(vehicle, Mounting(antenna_flu_m=(13.0, 3.0, 13.0), pad_height_m=6.5), there)
+    pad = antenna_truth(vehicle, Mounting(antenna_flu_m=(0.0, 0.0, 6.5), pad_height_m=6.5), there)
+    assert abs(pad.position_enu_m[0] - 200.0) > 0.5
+    assert np.subtract(antenna.position_enu_m, pad.position_enu_m) == pytest.approx((13.0, 3.0, 6.5), abs=1e-6)
+    assert np.subtract(antenna.velocity_enu_m_s, pad.velocity_enu_m_s) == pytest.approx((-0.06, 0.26, 0.0), abs=1e-9)
 
 
 def test_nees_of_errors_drawn_from_the_covariance_lies_in_its_band() -> None:

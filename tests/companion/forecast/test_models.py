@@ -6,7 +6,7 @@ import pytest
 from companion.autopilots.response import ResponseModel
 from companion.core.data import Array, PadModels, VehicleEstimate
 from companion.forecast.draws import draws
-from companion.landing.touchdown.rollout_errors import draw_errors
+from companion.landing.touchdown.rollout_errors import Errors, draw_errors
 from tests.companion.autopilots.test_response import CASCADES, OFFSET_S
 from tests.companion.facts import pad_at
 
@@ -18,8 +18,7 @@ def models(weight: Array, off: Array, covariance: Array) -> PadModels:
     return PadModels(velocity_enu_m_s=np.zeros(3), velocity_std_m_s=0.1, weight=weight, off=off, covariance=covariance)
 
 
-def _drawn(pad: PadModels | None, covariance: Array, pad_std_m: float = 0.01) -> Array:
-    """Places, velocities and accelerations of the samples, (n, 3, 2)."""
+def _drawn(pad: PadModels | None, covariance: Array, pad_std_m: float = 0.01) -> Errors:
     then = VehicleEstimate(
         t_ns=0,
         position_enu_m=np.zeros(3),
@@ -31,14 +30,14 @@ def _drawn(pad: PadModels | None, covariance: Array, pad_std_m: float = 0.01) ->
         pad=pad,
     )
     response = ResponseModel(next(iter(CASCADES.values())), OFFSET_S)
-    return draw_errors(then, pad_at(std_m=pad_std_m), response, draws()).vehicle
+    return draw_errors(then, pad_at(std_m=pad_std_m), response, draws())
 
 
 def test_model_that_is_hardly_likely_moves_few_samples_and_leaves_the_others_alone() -> None:
     weight = 0.1
     off = np.stack([np.zeros(9), OFF])
     pad = models(weight=np.array([1.0 - weight, weight]), off=off, covariance=np.stack([CALM, CALM]))
-    drawn = _drawn(pad, CALM + weight * (1.0 - weight) * np.outer(OFF, OFF))[:, 2]
+    drawn = _drawn(pad, CALM + weight * (1.0 - weight) * np.outer(OFF, OFF)).vehicle[:, 2]
     moved = np.abs(drawn[:, 0]) > 1.0
     assert moved.mean() == pytest.approx(weight, abs=0.02)
     assert drawn[moved].mean(axis=0) == pytest.approx(OFF[6:8], abs=0.05)
@@ -46,16 +45,27 @@ def test_model_that_is_hardly_likely_moves_few_samples_and_leaves_the_others_alo
 
 
 def test_one_model_is_drawn_from_its_covariance() -> None:
-    drawn = _drawn(None, WILD)[:, 2]
+    drawn = _drawn(None, WILD).vehicle[:, 2]
     assert drawn.std(axis=0) == pytest.approx([3.0, 3.0], rel=0.1)
     one = models(weight=np.ones(1), off=np.zeros((1, 9)), covariance=WILD[None])
-    assert _drawn(one, WILD)[:, 2] == pytest.approx(drawn)
+    assert _drawn(one, WILD).vehicle[:, 2] == pytest.approx(drawn)
 
 
 def test_models_that_differ_in_place_spread_it_once() -> None:
     off = np.stack([np.zeros(9), np.array([1.0] + [0.0] * 8)])
     off -= 0.5 * off[1]
     pad = models(weight=np.array([0.5, 0.5]), off=off, covariance=np.stack([CALM, CALM]))
-    total = CALM + np.mean([np.outer(one, one) for one in off], axis=0)
-    drawn = _drawn(pad, total, pad_std_m=float(np.sqrt(total[0, 0])))[:, 0]
-    assert drawn[:, 0].std() == pytest.approx(np.sqrt(total[0, 0]), rel=0.05)
+    total_m2 = CALM[0, 0] + np.mean(off[:, 0] ** 2)
+    drawn = _drawn(pad, CALM, pad_std_m=float(np.sqrt(total_m2))).vehicle[:, 0]
+    assert drawn[:, 0].std() == pytest.approx(np.sqrt(total_m2), rel=0.05)
+
+
+def test_antenna_of_one_model_is_as_vague_as_the_pad_whose_heading_is() -> None:
+    drawn = _drawn(None, CALM, pad_std_m=0.3).vehicle[:, 0]
+    assert drawn.std(axis=0) == pytest.approx([0.3, 0.3], rel=0.1)
+
+
+def test_pad_s_height_is_as_vague_as_it_is_now_however_old_its_data_are() -> None:
+    pad = models(weight=np.ones(1), off=np.zeros((1, 9)), covariance=CALM[None])
+    fresh, old = (_drawn(pad, CALM, pad_std_m=std_m).vertical[:, 0].std() for std_m in (0.01, 0.15))
+    assert old == pytest.approx(np.hypot(0.15, np.sqrt(fresh**2 - CALM[0, 0])), rel=0.1)
