@@ -40,21 +40,15 @@ class Measurement(Struct, frozen=True, kw_only=True, eq=False):
     covariance: Array
 
 
-class PadModels(Struct, frozen=True, kw_only=True, eq=False):
-    """What k models of one filter hold of the pad: its position, velocity and acceleration in W, in that order.
-
-    An antenna far from the pad swings about it with the heading: that its velocity is vague says nothing of the pad's.
+class Mixture(Struct, frozen=True, kw_only=True, eq=False):
+    """What k models of one filter hold, of position, velocity and acceleration in W, in that order.
 
     Attributes:
-        velocity_enu_m_s: (3,) their mean.
-        velocity_std_m_s: of it horizontally, both directions together.
         weight: (k,) probabilities, which sum to 1.
         off: (k, 9) their means, off the mean of all.
         covariance: (k, 9, 9).
     """
 
-    velocity_enu_m_s: Array
-    velocity_std_m_s: float
     weight: Array
     off: Array
     covariance: Array
@@ -70,7 +64,7 @@ class VehicleEstimate(Struct, frozen=True, kw_only=True, eq=False):
         covariance: (9, 9) of position, velocity, acceleration, in that order.
         yaw_rad: heading of V about W's z, None while it cannot be told (at rest, never measured).
         yaw_rate_rad_s: None likewise.
-        pad: what is held of the pad; None of a filter of one model, which follows the antenna.
+        mixture: what each of several models holds, of which `covariance` is that of all; None of a single one.
     """
 
     t_ns: int
@@ -80,7 +74,7 @@ class VehicleEstimate(Struct, frozen=True, kw_only=True, eq=False):
     covariance: Array
     yaw_rad: float | None
     yaw_rate_rad_s: float | None
-    pad: PadModels | None = None
+    mixture: Mixture | None = None
 
 
 class Forecast(Struct, frozen=True, kw_only=True, eq=False):

@@ -89,7 +89,7 @@ class Hindsight(Struct, frozen=True, kw_only=True):
 
     Attributes:
         awaited_ns: instants, UTC, that the vehicle's data have not reached yet, oldest first.
-        speed_std_m_s: of the pad's newest velocity; infinite while the speed is not known.
+        speed_std_m_s: of the newest of all; infinite while the speed is not known.
         lateness_s: age of the newest fix, a mean of the last second, for between two fixes of a receiver at 5 Hz it
             grows by 0.2 s; None before the first.
         aged_ns: when that was last so, monotonic.
@@ -123,15 +123,12 @@ def update_hindsight(
         then_ns, *later = hindsight.awaited_ns
         hindsight = replace(hindsight, awaited_ns=tuple(later))
         known = estimator.estimate(memory, then_ns)
-        if known is None:
-            continue
-        velocity_enu_m_s, std_m_s = _pad_velocity(known)
-        if std_m_s < _SURE_STD_MAX_M_S:
-            hindsight = replace(hindsight, driving=with_velocity(hindsight.driving, then_ns, velocity_enu_m_s))
+        if known is not None and _std_m_s(known) < _SURE_STD_MAX_M_S:
+            hindsight = replace(hindsight, driving=with_velocity(hindsight.driving, then_ns, known.velocity_enu_m_s))
     if hindsight.awaited_ns and t_ns - hindsight.awaited_ns[-1] < _PERIOD_NS:
         return hindsight
     now = estimator.estimate(memory, t_ns)
-    std_m_s = math.inf if now is None else _pad_velocity(now)[1]
+    std_m_s = math.inf if now is None else _std_m_s(now)
     if std_m_s >= _KNOWN_STD_MAX_M_S:
         return replace(hindsight, speed_std_m_s=math.inf)
     return replace(hindsight, awaited_ns=(*hindsight.awaited_ns, t_ns)[-_AWAITED:], speed_std_m_s=std_m_s)
@@ -150,9 +147,5 @@ def forget_instants(hindsight: Hindsight) -> Hindsight:
     return replace(hindsight, awaited_ns=(), driving=replace(hindsight.driving, driven=(), changes=()))
 
 
-def _pad_velocity(estimate: VehicleEstimate) -> tuple[Array, float]:
-    """Return the pad's velocity (3,) and its horizontal standard deviation, m/s; else what is held of the antenna."""
-    if estimate.pad is not None:
-        return estimate.pad.velocity_enu_m_s, estimate.pad.velocity_std_m_s
-    variance_m2_s2 = float(estimate.covariance[3, 3] + estimate.covariance[4, 4])
-    return estimate.velocity_enu_m_s, math.sqrt(max(variance_m2_s2, 0.0))  # rounding
+def _std_m_s(estimate: VehicleEstimate) -> float:
+    return math.sqrt(max(float(estimate.covariance[3, 3] + estimate.covariance[4, 4]), 0.0))  # rounding

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from companion.config.estimation import ImmConfig, SwingConfig
-from companion.core.data import Array, Forecast, Measurement, PadModels, Quantity, VehicleEstimate
+from companion.core.data import Array, Forecast, Measurement, Mixture, Quantity, VehicleEstimate
 from companion.vehicle import imm_forecast as forecasts
 from companion.vehicle import imm_judgement as judgement
 from companion.vehicle import imm_mixing as mixing
@@ -137,11 +137,10 @@ class ImmModel:
 
     def describe(self, state: ImmState, t_ns: int) -> VehicleEstimate:
         """Return the mixture of the modes."""
-        x, told, covariance, pad, heading_variance = forecasts.describe_modes(
+        x, told, covariance, modes_told, modes_covariance, heading_variance = forecasts.describe_modes(
             state.modes, self._motion(state), self._known_variance
         )
         known = heading_variance < self._known_variance
-        pad_velocity, pad_std_m_s, off, modes_covariance = pad
         return VehicleEstimate(
             t_ns=t_ns,
             position_enu_m=told[:3],
@@ -150,13 +149,7 @@ class ImmModel:
             covariance=0.5 * (covariance + covariance.T),
             yaw_rad=wrapped(float(x[HEADING])) if known else None,
             yaw_rate_rad_s=float(x[CURVATURE] * math.hypot(x[2], x[3])) if known else None,
-            pad=PadModels(
-                velocity_enu_m_s=pad_velocity,
-                velocity_std_m_s=pad_std_m_s,
-                weight=state.modes[2],
-                off=off,
-                covariance=modes_covariance,
-            ),
+            mixture=Mixture(weight=state.modes[2], off=modes_told - told, covariance=modes_covariance),
         )
 
     def forecast(self, state: ImmState, t_ns: int, offset_s: Array) -> Forecast:

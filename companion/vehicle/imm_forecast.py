@@ -1,4 +1,4 @@
-"""What the interacting turning models tell: how antenna and pad move, now and over the horizon; compiled.
+"""What the interacting turning models tell: the antenna's motion now and over the horizon, compiled.
 
 `motion` (16,) is as `imm_mixing` has it.
 """
@@ -121,7 +121,7 @@ def forecast_modes(
 @compiled_kernel
 def describe_modes(
     modes: Modes, motion: Array, known_variance: float
-) -> tuple[Array, Array, Array, tuple[Array, float, Array, Array], float]:
+) -> tuple[Array, Array, Array, Array, Array, float]:
     """Return the mixture now, and its parts.
 
     Args:
@@ -130,26 +130,16 @@ def describe_modes(
         known_variance: as above.
 
     Returns:
-        The mean (24,); position, velocity and acceleration (9,) of the antenna, acceleration being the pad's, and their
-        covariance (9, 9); of the pad its velocity (3,), the horizontal standard deviation of that, and all nine by each
-        mode, off those of the mean, (n, 9) and (n, 9, 9); and the variance of the heading, rad^2.
+        The mean (24,); position, velocity and acceleration (9,) and their covariance (9, 9); those of each mode, (n, 9)
+        and (n, 9, 9); and the variance of the heading, rad^2.
     """
     directed = with_direction(motion, modes, known_variance)
     means, covariances, weights = modes
     x, P = combine(means, covariances, weights)
-    n, lever, at_pad = len(weights), directed[5:8], directed.copy()
-    at_pad[5:8] = 0.0
-    told, off, spread = np.empty((1, 9)), np.empty((n, 9)), np.empty((n, 9, 9))
-    told[:, :3], told[:, 3:6], told[:, 6:] = kinematics(x.reshape(1, SIZE), directed)
-    pads = np.empty((n + 1, SIZE))
-    pads[n], S = shifted(x, P, lever, 1.0)
-    known = carried_through(kinematics_jacobian(pads[n], at_pad), S)
+    n = len(weights)
+    told, spread = np.empty((n + 1, 9)), np.empty((n + 1, 9, 9))
+    told[:, :3], told[:, 3:6], told[:, 6:] = kinematics(np.concatenate((x.reshape(1, SIZE), means)), directed)
+    spread[0] = carried_through(kinematics_jacobian(x, directed), P)
     for j in range(n):
-        pads[j], S = shifted(means[j], covariances[j], lever, 1.0)
-        spread[j] = carried_through(kinematics_jacobian(pads[j], at_pad), S)
-    position, velocity, acceleration = kinematics(pads, at_pad)
-    off[:, :3], off[:, 3:6] = position[:n] - position[n], velocity[:n] - velocity[n]
-    off[:, 6:] = acceleration[:n] - acceleration[n]
-    total = carried_through(kinematics_jacobian(x, directed), P)
-    pad = (velocity[n].copy(), math.sqrt(max(known[3, 3] + known[4, 4], 0.0)), off, spread)  # rounding
-    return x, told[0], total, pad, heading_variance(modes)
+        spread[j + 1] = carried_through(kinematics_jacobian(means[j], directed), covariances[j])
+    return x, told[0], spread[0], told[1:], spread[1:], heading_variance(modes)

@@ -6,7 +6,7 @@ import numpy as np
 from msgspec import Struct
 
 from companion.autopilots.response import STATES, ResponseModel
-from companion.core.data import Array, VehicleEstimate
+from companion.core.data import Array, Mixture, VehicleEstimate
 from companion.forecast.draws import MODE, Draws
 from companion.vehicle.hindsight import Driving
 from companion.vehicle.pad import PadPath
@@ -43,7 +43,7 @@ def draw_errors(then: VehicleEstimate, pad: PadPath, response: ResponseModel, nu
 
     Args:
         then: the vehicle at its newest datum.
-        pad: now.
+        pad: now; where its place is known less well than the antenna's, that is the heading's.
         response: of the autopilot.
         numbers: random ones.
     """
@@ -64,32 +64,22 @@ def _draw_vehicle(then: VehicleEstimate, pad: PadPath, normals: Array, uniforms:
 
     A model that is hardly likely holds for few samples. As a part of one covariance it would widen them all.
     """
+    mixture = then.mixture
+    if mixture is None:
+        mixture = Mixture(weight=np.ones(1), off=np.zeros((1, 9)), covariance=then.covariance[None])
     apart_m2 = frames_apart_m2(pad)
-    weights, offs, covariances = _models_of(then, pad)
-    of_model = np.searchsorted(np.cumsum(weights)[:-1], uniforms)
+    # By so much is the pad's place less well known than the antenna's.
+    turned_m2 = np.maximum(pad.position_std_m[0] ** 2 - then.covariance.diagonal()[:3], 0.0)
+    of_model = np.searchsorted(np.cumsum(mixture.weight)[:-1], uniforms)
     vehicle = np.empty_like(normals)
-    for model, (off, stated) in enumerate(zip(offs, covariances, strict=True)):
+    for model, (off, stated) in enumerate(zip(mixture.off, mixture.covariance, strict=True)):
         covariance = stated.copy()
-        # Samples drive on through the age of the data, but only horizontally: how high the pad is now is less sure.
-        covariance[2, 2] = max(stated[2, 2], pad.position_std_m[0, 2] ** 2)
         for axis in range(3):
-            covariance[axis, axis] = max(covariance[axis, axis] - apart_m2, _PLACE_STD_MIN_M**2)
+            stated_m2 = covariance[axis, axis] + turned_m2[axis]
+            covariance[axis, axis] = max(stated_m2 - apart_m2, _PLACE_STD_MIN_M**2)
         drawn = of_model == model
         vehicle[drawn] = off + normals[drawn] @ _root(covariance).T
     return vehicle
-
-
-def _models_of(then: VehicleEstimate, pad: PadPath) -> tuple[Array, Array, Array]:
-    """Return weights (k,), means (k, 9) off that of all, and covariances (k, 9, 9), as `PadModels` has them.
-
-    One that follows the antenna only is as good as that, and its place as vague as the heading makes the pad's.
-    """
-    if then.pad is not None:
-        return then.pad.weight, then.pad.off, then.pad.covariance
-    covariance = then.covariance.copy()
-    for axis in range(3):
-        covariance[axis, axis] = max(covariance[axis, axis], pad.position_std_m[0, axis] ** 2)
-    return np.ones(1), np.zeros((1, 9)), covariance[None]
 
 
 def as_driven(vehicle: Array, driving: Driving, direction: Array, *, stands: bool) -> Array:

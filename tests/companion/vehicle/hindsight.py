@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from companion.config.estimation import EstimatorKind
-from companion.core.data import PadModels, VehicleEstimate
+from companion.core.data import VehicleEstimate
 from companion.vehicle.hindsight import Hindsight, update_hindsight
 from link.records import replace
 from tests.companion.vehicle.drives import (
@@ -36,10 +36,10 @@ def after(truth: Drive, sensors: Sensors, seed: int, until_s: float) -> Hindsigh
 
 
 class Told:
-    """An estimator that tells one speed, and how well it knows it; the pad's apart if it is given."""
+    """An estimator that tells one speed, and how well it knows it."""
 
-    def __init__(self, speed_m_s: float, variance_m2_s2: float, pad: PadModels | None = None) -> None:
-        self.speed_m_s, self.variance_m2_s2, self.pad = speed_m_s, variance_m2_s2, pad
+    def __init__(self, speed_m_s: float, variance_m2_s2: float) -> None:
+        self.speed_m_s, self.variance_m2_s2 = speed_m_s, variance_m2_s2
 
     def newest_fix_ns(self, memory: int) -> int:
         return memory
@@ -55,5 +55,4 @@ class Told:
             covariance=covariance,
             yaw_rad=None,
             yaw_rate_rad_s=None,
-            pad=self.pad,
         )

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from companion.config.estimation import EstimatorKind
-from companion.core.data import PadModels, VehicleEstimate
+from companion.core.data import VehicleEstimate
 from companion.vehicle.estimator import EstimatorMemory
 from companion.vehicle.hindsight import Driving, Hindsight, forget_instants, update_hindsight, with_velocity
 from link.records import replace
@@ -110,22 +110,6 @@ def test_what_is_hardly_known_is_not_taken_for_driven(variance_m2_s2: float) -> 
     )
     assert len(found.driving.driven) == is_sure
     assert found.awaited_ns == (NOW_NS,)  # of now
-
-
-def test_pad_is_what_was_driven_where_an_antenna_swings_about_it() -> None:
-    pad = PadModels(
-        velocity_enu_m_s=np.array([3.0, 1.0, 0.0]),
-        velocity_std_m_s=0.1,
-        weight=np.ones(1),
-        off=np.zeros((1, 9)),
-        covariance=np.zeros((1, 9, 9)),
-    )
-    told: Any = Told(5.0, 0.5, pad)
-    found = update_hindsight(
-        Hindsight(awaited_ns=(NOW_NS,)), told, EstimatorMemory(NOW_NS), NOW_NS, monotonic_ns=NOW_NS
-    )
-    assert found.driving.driven == ((NOW_NS, 3.0, 1.0),)
-    assert found.speed_std_m_s == pytest.approx(0.1)
 
 
 def test_what_is_awaited_ends_with_the_estimate() -> None:

@@ -8,7 +8,6 @@ from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig, ReceiversConfig
 from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle.factory import make_estimator
-from companion.vehicle.imm_numbers import Deck
 from link.records import replace
 from tests.companion.vehicle.drives import (
     ANTENNA_TO_PAD_M,
@@ -58,28 +57,16 @@ def test_covariance_on_steady_roads_is_cautious_but_not_idle(truth: Drive) -> No
     assert 0.5 < np.mean(np.array(nis, dtype=float)) < 1.0
 
 
-def test_models_of_an_antenna_on_the_pad_make_up_its_covariance() -> None:
-    on_pad = make_estimator(SAME_FRAME, Deck(), IMM)
-    estimate = ride(on_pad, circle(), NOMINAL, 1, from_s=8.0, until_s=8.1).estimates[0]
-    pad = estimate.pad
-    assert pad is not None
-    assert pad.weight.sum() == pytest.approx(1.0)
-    assert pad.weight @ pad.off == pytest.approx(np.zeros(9), abs=1e-3)
-    between = np.einsum("ki,kj->kij", pad.off, pad.off)
+def test_models_of_an_estimate_make_up_its_covariance() -> None:
+    estimate = ride(estimator(IMM, SAME_FRAME), circle(), NOMINAL, 1, from_s=8.0, until_s=8.1).estimates[0]
+    mixture = estimate.mixture
+    assert mixture is not None
+    assert mixture.weight.sum() == pytest.approx(1.0)
+    assert mixture.weight @ mixture.off == pytest.approx(np.zeros(9), abs=1e-3)
+    between = np.einsum("ki,kj->kij", mixture.off, mixture.off)
     scale = np.sqrt(np.diag(estimate.covariance))
-    total = np.tensordot(pad.weight, pad.covariance + between, 1)
+    total = np.tensordot(mixture.weight, mixture.covariance + between, 1)
     assert total / np.outer(scale, scale) == pytest.approx(estimate.covariance / np.outer(scale, scale), abs=0.02)
-
-
-def test_pad_of_a_ship_is_as_fast_as_is_known_however_its_antenna_swings() -> None:
-    afar = make_estimator(SAME_FRAME, Deck(antenna_to_pad_m=(-13.0, 0.0, 0.0)), IMM)
-    sensors = replace(NOMINAL, yaw_rate_std_rad_s=0.02)
-    estimate = ride(afar, straight(5.0), sensors, 1, from_s=8.0, until_s=8.1).estimates[0]
-    pad = estimate.pad
-    assert pad is not None
-    total = np.tensordot(pad.weight, pad.covariance + np.einsum("ki,kj->kij", pad.off, pad.off), 1)
-    assert pad.velocity_std_m_s == pytest.approx(math.sqrt(total[3, 3] + total[4, 4]), rel=0.05)
-    assert pad.velocity_std_m_s < 0.5 * math.sqrt(estimate.covariance[3, 3] + estimate.covariance[4, 4])
 
 
 def test_offset_between_the_receivers_is_learnt_from_sightings() -> None:

@@ -110,23 +110,6 @@ def test_mixture_of_what_all_modes_hold_for_certain_is_certain() -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_models_of_the_pad_are_those_of_an_antenna_that_stands_there(seed: int) -> None:
-    means, covariances, weights = modes_of(seed)
-    at_pad = np.where(np.isin(np.arange(len(MOTION)), (5, 6, 7)), 0.0, MOTION)
-    moved = [imm_mixing.shifted(x, P, LEVER, 1.0) for x, P in zip(means, covariances, strict=True)]
-    there = np.stack([x for x, _ in moved]), np.stack([P for _, P in moved]), weights
-    _, _, _, (velocity, std_m_s, off, spread), _ = imm_forecast.describe_modes(
-        (means, covariances, weights), MOTION, KNOWN
-    )
-    _, told, total, (_, _, _, expected), _ = imm_forecast.describe_modes(there, at_pad, KNOWN)
-    np.testing.assert_allclose(velocity, told[3:6], rtol=1e-12, atol=1e-12)
-    assert std_m_s == pytest.approx(np.sqrt(total[3, 3] + total[4, 4]))
-    np.testing.assert_allclose(spread, expected, rtol=1e-12, atol=1e-12)
-    place = np.concatenate(imm_forecast.kinematics(there[0], at_pad), axis=1)
-    np.testing.assert_allclose(off - off[0], place - place[0], rtol=1e-12, atol=1e-12)
-
-
-@pytest.mark.parametrize("seed", range(3))
 def test_covariances_stay_symmetric(seed: int) -> None:
     modes = modes_of(seed)
     predicted = imm_mixing.predict_modes(modes, 0.23, NOISES, BEGINS_AFTER_S, MOTION, KNOWN)

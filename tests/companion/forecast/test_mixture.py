@@ -1,0 +1,57 @@
+"""What the vehicle of a sample may be off its estimate: drawn from the models of the estimator, each by its weight."""
+
+import numpy as np
+import pytest
+
+from companion.autopilots.response import ResponseModel
+from companion.core.data import Array, Mixture, VehicleEstimate
+from companion.forecast.draws import draws
+from companion.landing.touchdown.rollout_errors import draw_errors
+from tests.companion.autopilots.test_response import CASCADES, OFFSET_S
+from tests.companion.facts import pad_at
+
+CALM, WILD = np.diag([0.02**2] * 3 + [0.05**2] * 6), np.diag([0.02**2] * 3 + [0.05**2] * 3 + [9.0] * 3)
+OFF = np.array([0.0] * 6 + [-3.0, 1.0, 0.0])
+
+
+def _drawn(mixture: Mixture | None, covariance: Array, pad_std_m: float = 0.01) -> Array:
+    """Places, velocities and accelerations of the samples, (n, 3, 2)."""
+    then = VehicleEstimate(
+        t_ns=0,
+        position_enu_m=np.zeros(3),
+        velocity_enu_m_s=np.zeros(3),
+        acceleration_enu_m_s2=np.zeros(3),
+        covariance=covariance,
+        yaw_rad=0.0,
+        yaw_rate_rad_s=0.0,
+        mixture=mixture,
+    )
+    response = ResponseModel(next(iter(CASCADES.values())), OFFSET_S)
+    return draw_errors(then, pad_at(std_m=pad_std_m), response, draws()).vehicle
+
+
+def test_model_that_is_hardly_likely_moves_few_samples_and_leaves_the_others_alone() -> None:
+    weight = 0.1
+    off = np.stack([np.zeros(9), OFF])
+    mixture = Mixture(weight=np.array([1.0 - weight, weight]), off=off, covariance=np.stack([CALM, CALM]))
+    drawn = _drawn(mixture, CALM + weight * (1.0 - weight) * np.outer(OFF, OFF))[:, 2]
+    moved = np.abs(drawn[:, 0]) > 1.0
+    assert moved.mean() == pytest.approx(weight, abs=0.02)
+    assert drawn[moved].mean(axis=0) == pytest.approx(OFF[6:8], abs=0.05)
+    assert drawn[~moved].std() == pytest.approx(0.05, rel=0.1)
+
+
+def test_one_model_is_drawn_from_its_covariance() -> None:
+    drawn = _drawn(None, WILD)[:, 2]
+    assert drawn.std(axis=0) == pytest.approx([3.0, 3.0], rel=0.1)
+    one = Mixture(weight=np.ones(1), off=np.zeros((1, 9)), covariance=WILD[None])
+    assert _drawn(one, WILD)[:, 2] == pytest.approx(drawn)
+
+
+def test_models_that_differ_in_place_spread_it_once() -> None:
+    off = np.stack([np.zeros(9), np.array([1.0] + [0.0] * 8)])
+    off -= 0.5 * off[1]
+    mixture = Mixture(weight=np.array([0.5, 0.5]), off=off, covariance=np.stack([CALM, CALM]))
+    total = CALM + np.mean([np.outer(one, one) for one in off], axis=0)
+    drawn = _drawn(mixture, total, pad_std_m=float(np.sqrt(total[0, 0])))[:, 0]
+    assert drawn[:, 0].std() == pytest.approx(np.sqrt(total[0, 0]), rel=0.05)
