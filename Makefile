@@ -45,9 +45,9 @@ check: fast lint
 fast: .venv/.kernels
 	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder --hypothesis-profile=quick -m "not slow and not wire"
 
-# What keeps time with the clock runs after the rest: what mostly waits three at a time, what measures time by itself.
+# What keeps time with the clock runs after the rest: what mostly waits two at a time, what measures time by itself.
 test: .venv/.kernels style docs types simulated
-	$(BIN)/pytest -q -n 3 --dist loadscope --no-loadscope-reorder -m "wire and not alone" $(LONG) $(filter-out $(LONG),$(WIRE))
+	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "wire and not alone" $(LONG) $(filter-out $(LONG),$(WIRE))
 	$(BIN)/pytest -q -m alone $(ALONE)
 
 # A module's tests share what they fly; in the order of the files the many short ones come last. Begun while the types,

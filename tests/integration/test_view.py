@@ -99,10 +99,13 @@ def wait_for_phase(page: Page, phase: str) -> list[str]:
     return phases
 
 
-def open_world(page: Page, programs: Programs, *options: str, speed: str) -> Program:
-    """Let the world, the companion and the view run until the page shows the companion; return the companion."""
+def open_world(page: Page, programs: Programs, *options: str) -> Program:
+    """Let the world, the companion and the view run until the page shows the companion; return the companion.
+
+    At the speed of a real flight: beside a browser that draws, two cores have no time to spare.
+    """
     port, endpoint = free_udp_port(), free_tcp_endpoint()
-    speaking = ("--mavlink", f"udpout:127.0.0.1:{port}", "-l", endpoint, "--speed", speed)
+    speaking = ("--mavlink", f"udpout:127.0.0.1:{port}", "-l", endpoint)
     programs.start("scenarios", "world", "straight_5", *speaking)
     listening = ("--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint, "--use-sim-time")
     companion = programs.start("companion", *listening, *options)
@@ -116,7 +119,7 @@ def landing(page: Page, tmp_path_factory: pytest.TempPathFactory) -> tuple[list[
     """The phases that the page has shown of a landing, and the companion's recording of it."""
     folder = tmp_path_factory.mktemp("recorded")
     with Programs() as programs:
-        companion = open_world(page, programs, "--record", str(folder), speed="2")
+        companion = open_world(page, programs, "--record", str(folder))
         press(page, ("Start",), "start", "takeoff")
         phases = wait_for_phase(page, "secured")
         companion.send(signal.SIGINT)
@@ -148,7 +151,7 @@ def test_recording_waits_plays_pauses_and_shows_any_instant(
 
 
 def test_buttons_of_the_page_start_and_abort_a_flight(page: Page, programs: Programs) -> None:
-    open_world(page, programs, speed="2")
+    open_world(page, programs)
     press(page, ("Start",), "start", "takeoff")
     wait_for_phase(page, "waiting")
     press(page, ("Abort ...", "Abort now"), "abort", "hold")
