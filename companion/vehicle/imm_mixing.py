@@ -16,8 +16,8 @@ from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_kernels import BEND, CLOCK, LEAK, advance
 from companion.vehicle.imm_noise import bend_step, curvature_left, process_noise
-from companion.vehicle.imm_sensors import turned
 from companion.vehicle.imm_swing import SIZE, heave_step, smooth_step
+from companion.vehicle.lever import turned
 from companion.vehicle.small_matrices import carried_through
 
 Modes = tuple[Array, Array, Array]
@@ -94,7 +94,7 @@ def shifted(x: Array, P: Array, lever: Array, sign: float) -> tuple[Array, Array
     The heading turns it, and the grade raises what is in front. Its upright part is left out, for it is the same at all
     times; that it leans with the grade, too, is a tenth of it at most.
     """
-    arm_x, arm_y = turned(lever, x[7])
+    arm_x, arm_y = turned(lever[0], lever[1], x[7])
     y, S = x.copy(), P.copy()
     y[0] += sign * arm_x
     y[1] += sign * arm_y

@@ -21,6 +21,7 @@ from companion.vehicle.imm_swing import (
     antenna_swing,
     pad_swing,
 )
+from companion.vehicle.lever import turned
 
 POSITION, VELOCITY, HEADING, YAW_RATE, PAD, COURSE, ACCELERATION, TILT, SURFACE = range(9)
 
@@ -37,13 +38,6 @@ def horizontal_acceleration(x: Array) -> tuple[Array, Array]:
 
 
 @compiled_kernel
-def turned(lever: Array, yaw_rad: float) -> tuple[float, float]:
-    """Return the horizontal part of `lever` in V, turned by the heading into W, m."""
-    c, s = math.cos(yaw_rad), math.sin(yaw_rad)
-    return c * lever[0] - s * lever[1], s * lever[0] + c * lever[1]
-
-
-@compiled_kernel
 def antenna_velocity(x: Array, lever: Array) -> tuple[Array, Array]:
     """Return the antenna's velocity (3,), m/s, and its Jacobian (3, 24).
 
@@ -56,7 +50,7 @@ def antenna_velocity(x: Array, lever: Array) -> tuple[Array, Array]:
             have no known direction.
     """
     speed, ux, uy = course(x)
-    arm_x, arm_y = turned(lever, x[7])
+    arm_x, arm_y = turned(lever[0], lever[1], x[7])
     w = x[6] * speed
     hx, hy = math.cos(x[7]), math.sin(x[7])
     forward, climb = hx * x[2] + hy * x[3], x[9] - lever[0] * x[BEND]
@@ -138,7 +132,7 @@ def read_pad(x: Array, lever: Array, above_m: float, sees_heading: bool) -> tupl
         sees_heading: whether it has one.
     """
     z, H = pad_place(x)
-    arm_x, arm_y = turned(lever, x[7])
+    arm_x, arm_y = turned(lever[0], lever[1], x[7])
     z[0] += arm_x
     z[1] += arm_y
     z[2] += lever[2] + lever[0] * x[9]

@@ -13,7 +13,7 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
-from companion.vehicle.lever import tilted_arm
+from companion.vehicle.lever import tilted_arm, turned
 from companion.vehicle.small_matrices import carried_through, times
 
 ROLL, ROLL_RATE, PITCH, PITCH_RATE, MOUNT = 18, 19, 20, 21, 22
@@ -40,9 +40,9 @@ def antenna_swing(x: Array, first: int, lever: Array) -> tuple[Array, Array]:
     for i in range(2):
         put_turned(H, x, first + 2 * i, (by_tilt[0, i], by_tilt[1, i], by_tilt[2, i]))
     put_turned(H, x, 7, (-moved[1], moved[0], 0.0))
-    c, s = math.cos(x[7]), math.sin(x[7])
-    out[0] += c * moved[0] - s * moved[1]
-    out[1] += s * moved[0] + c * moved[1]
+    east, north = turned(moved[0], moved[1], x[7])
+    out[0] += east
+    out[1] += north
     out[2] += moved[2]
     return out, H
 
@@ -50,11 +50,10 @@ def antenna_swing(x: Array, first: int, lever: Array) -> tuple[Array, Array]:
 @compiled_kernel
 def put_turned(H: Array, x: Array, column: int, change: tuple[float, float, float]) -> None:
     """Add `change`, forward, left and up, to a column of a Jacobian (3, 24) in W."""
-    c, s = math.cos(x[7]), math.sin(x[7])
-    forward, left, up = change
-    H[0, column] += c * forward - s * left
-    H[1, column] += s * forward + c * left
-    H[2, column] += up
+    east, north = turned(change[0], change[1], x[7])
+    H[0, column] += east
+    H[1, column] += north
+    H[2, column] += change[2]
 
 
 @compiled_kernel

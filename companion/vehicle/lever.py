@@ -9,6 +9,13 @@ from companion.vehicle.compiled import compiled_kernel
 
 
 @compiled_kernel
+def turned(forward: float, left: float, yaw_rad: float) -> tuple[float, float]:
+    """Return what is horizontal in V, turned by the heading into W: east and north."""
+    c, s = math.cos(yaw_rad), math.sin(yaw_rad)
+    return c * forward - s * left, s * forward + c * left
+
+
+@compiled_kernel
 def turned_lever(
     yaw_rad: Array, grade: Array, offset_s: Array, lever_x_m: float, lever_y_m: float
 ) -> tuple[Array, Array]:
@@ -27,8 +34,7 @@ def turned_lever(
         turn_rad[i] = (yaw_rad[i + 1] - yaw_rad[i] + math.pi) % (2.0 * math.pi) - math.pi
     arm, swing = np.zeros((n, 3)), np.zeros((n, 3))
     for i in range(n):
-        c, s = math.cos(yaw_rad[i]), math.sin(yaw_rad[i])
-        arm[i, 0], arm[i, 1] = c * lever_x_m - s * lever_y_m, s * lever_x_m + c * lever_y_m
+        arm[i, 0], arm[i, 1] = turned(lever_x_m, lever_y_m, yaw_rad[i])
         before, after = max(i - 1, 0), min(i, n - 2)
         # of second order within, where the slopes to both sides are weighed by each other's step
         share = step_s[before] / (step_s[before] + step_s[after])
@@ -71,11 +77,11 @@ def tilted_lever(
     n = len(yaw_rad)
     moved, rate = np.empty((n, 3)), np.empty((n, 3))
     for i in range(n):
-        c, s = math.cos(yaw_rad[i]), math.sin(yaw_rad[i])
         place, by_tilt = tilted_arm(lever_x_m, lever_y_m, lever_z_m, tilt[i, 0], tilt[i, 2])
         change = by_tilt[:, 0] * tilt[i, 1] + by_tilt[:, 1] * tilt[i, 3]
         for out, (forward, left, up) in ((moved, place), (rate, change)):
-            out[i, 0], out[i, 1], out[i, 2] = c * forward - s * left, s * forward + c * left, up
+            out[i, 0], out[i, 1] = turned(forward, left, yaw_rad[i])
+            out[i, 2] = up
     return moved, rate
 
 
