@@ -118,7 +118,7 @@ def _view(options: RunOptions, endpoint: str) -> list[Program]:
     return [Program(name="view", module=MODULES["scenarios"], arguments=words)]
 
 
-class _Pace:
+class Pace:
     """Simulated seconds per wall second, once a simulator that starts late has caught up."""
 
     def __init__(self) -> None:
@@ -159,7 +159,7 @@ def _watch(
     watcher: Watcher, processes: ProcessGroup, end: EndWatch, progress: Progress, check_interrupt: Callable[[], None]
 ) -> tuple[str, float]:
     """Return why the run ended and its real-time factor."""
-    recording, pace = watcher.recording, _Pace()
+    recording, pace = watcher.recording, Pace()
     began_s, shown_s = time.monotonic(), 0.0
     while (reason := end.reason(recording)) is None:
         time.sleep(_POLL_S)

