@@ -3,7 +3,7 @@
 import json
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -67,26 +67,38 @@ def faults_command(
     ]
     if not cases:
         raise UserError(f"no fault has {fault!r} in its name, or no landing has a phase {phase!r}: leave one out")
-    rows = [_row(ended) for ended in _fly(cases, workers, wire=wire)]
+    flown = map(_row, _fly(cases, workers, wire=wire))
+    rows = list(flown) if as_json else list(_told(flown))
     if as_json:
         sys.stdout.write(json.dumps({"cases": rows}, indent=2) + "\n")
     else:
-        sys.stdout.write(_line({name: name for name in (*_WIDTHS, "reason")}))
-        sys.stdout.writelines(_line(row | {"right": "yes" if row["right"] else "NO"}) for row in rows)
         sys.stdout.write(f"{sum(row['right'] for row in rows)} of {len(rows)} are right\n")
     return 0 if all(row["right"] for row in rows) else 1
 
 
-def _fly(cases: Sequence["Case"], workers: int | None, *, wire: bool) -> list["Ended"]:
-    """Let each fault happen in its phase and return how that ended, in the order of the cases."""
+def _fly(cases: Sequence["Case"], workers: int | None, *, wire: bool) -> Iterator["Ended"]:
+    """Let each fault happen in its phase; yield how that ended, in the order of the cases, as soon as it is known."""
     from scenarios.faults.trial import fly_case, fly_case_over_wire, lost
     from scenarios.processes.local_workers import LocalWorkers, core_count
     from scenarios.processes.pool import run_tasks
 
     fliers = LocalWorkers(fly_case_over_wire, workers or 1) if wire else LocalWorkers(fly_case, workers or core_count())
+    found: dict[Case, Ended] = {}
     with closing(run_tasks(fliers, cases, lost=lost)) as results:
-        found = {ended.case: ended for ended in results}
-    return [found[case] for case in cases]
+        for case in cases:
+            while case not in found:
+                ended = next(results)
+                found[ended.case] = ended
+            yield found.pop(case)
+
+
+def _told(rows: Iterable[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    """Pass rows on, each written first: all of them take the better part of an hour."""
+    sys.stdout.write(_line({name: name for name in (*_WIDTHS, "reason")}))
+    for row in rows:
+        sys.stdout.write(_line(row | {"right": "yes" if row["right"] else "NO"}))
+        sys.stdout.flush()
+        yield row
 
 
 def _row(ended: "Ended") -> dict[str, Any]:
