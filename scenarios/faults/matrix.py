@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from companion.situation.phases import Phase
-from scenarios.config import FirmwareName
+from scenarios.config import FIRMWARES, FirmwareName
 from scenarios.scoring.score import Tier
 
 PHASES = (
@@ -129,20 +129,25 @@ def _rows(firmware: FirmwareName, fault: Fault, *parts: tuple[tuple[Phase, ...],
     }
 
 
-_Parts = tuple[tuple[tuple[Phase, ...], Expected], ...]
+_GOES_ON: tuple[tuple[tuple[Phase, ...], Expected], ...] = (
+    ((*_BEFORE, *_APPROACH, *_ON_THE_PAD), _LANDS),
+    (_BROKEN_OFF, _HOLDS),
+)
 
-_GOES_ON: _Parts = (((*_BEFORE, *_APPROACH, *_ON_THE_PAD), _LANDS), (_BROKEN_OFF, _HOLDS))
 
+def _matrix(firmware: FirmwareName) -> _Rows:
+    """Return all rows of a firmware.
 
-def _matrix(firmware: FirmwareName, silent: _Parts) -> _Rows:
-    """Return all rows of a firmware; only a short silence ends otherwise with the one than with the other."""
+    A silence of 2 s ends nothing with either: PX4 is set to wait for 3 s, and ArduCopter, which stops after 1 s, waits
+    in the mode that follows setpoints.
+    """
     breaks_off = ((_BEFORE, _WAITS), (_APPROACH, _HOLDS), (_ON_THE_PAD, _LANDS), (_BROKEN_OFF, _HOLDS))
     lets_go = ((_IN_THE_AIR, _IS_OUT), (_ON_THE_PAD, _IS_OUT_ON_PAD))
     return {
         **_rows(firmware, Fault.PILOT, *lets_go),
         **_rows(firmware, Fault.RESTART, (_IN_THE_AIR, _FALLS), (_ON_THE_PAD, _LANDS)),
-        **_rows(firmware, Fault.SILENT, *silent),
-        **_rows(firmware, Fault.COMPANION_STOPPED, *silent),
+        **_rows(firmware, Fault.SILENT, *_GOES_ON),
+        **_rows(firmware, Fault.COMPANION_STOPPED, *_GOES_ON),
         **_rows(firmware, Fault.LOST, *lets_go),
         **_rows(firmware, Fault.ORIGIN, *_GOES_ON),
         **_rows(firmware, Fault.ESTIMATE, *_GOES_ON),
@@ -165,20 +170,14 @@ def _matrix(firmware: FirmwareName, silent: _Parts) -> _Rows:
     }
 
 
-# PX4 holds the last setpoint and is set to wait for 3 s. ArduCopter carries it on, so that it is to wait for 1 s only,
-# and 2 s of silence are as good as the end of the link.
-_SILENT: Mapping[FirmwareName, _Parts] = {
-    "px4": _GOES_ON,
-    "ardupilot": ((_IN_THE_AIR, _IS_OUT), (_ON_THE_PAD, _IS_OUT_ON_PAD)),
-}
 EXPECTED: Mapping[Case, Expected] = {
-    case: expected for firmware, silent in _SILENT.items() for case, expected in _matrix(firmware, silent).items()
+    case: expected for firmware in FIRMWARES for case, expected in _matrix(firmware).items()
 }
 """How each case should end."""
 
 EXPECTED_OVER_WIRE: Mapping[Case, Expected] = {
     case: expected
-    for firmware in _SILENT
+    for firmware in FIRMWARES
     for fault in sorted(OVER_WIRE_ONLY, key=lambda one: one.name)
     for case, expected in _rows(firmware, fault, *_GOES_ON).items()
 }

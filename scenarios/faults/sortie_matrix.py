@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from companion.situation.phases import Phase
-from scenarios.config import FirmwareName
+from scenarios.config import FIRMWARES
 from scenarios.faults.matrix import Case, End, Expected, Fault, expect
 
 SORTIE_PHASES = (Phase.FOLLOW, Phase.RETURN)
@@ -36,6 +36,7 @@ _ALIKE: Mapping[Fault, Expected] = {
 """Beside the vehicle as on the way home."""
 
 _APART: Mapping[Fault, tuple[Expected, Expected]] = {
+    Fault.SILENT: (expect(Phase.FOLLOW, End.HOVERS), _LANDS),
     Fault.BRAKE: (expect(Phase.FOLLOW, End.HOVERS), _LANDS),
     # Nothing here sees the pad, which fixes of metres do not place: beside the vehicle the drone stays farther out.
     Fault.COARSE: (expect(Phase.FOLLOW, End.HOVERS), _HOLDS),
@@ -43,19 +44,14 @@ _APART: Mapping[Fault, tuple[Expected, Expected]] = {
 }
 """Beside the vehicle, and on the way home."""
 
-_SILENT: Mapping[FirmwareName, Expected] = {"px4": _HOLDS, "ardupilot": _IS_OUT}
-"""As in `matrix`: ArduCopter waits for 1 s only."""
 
-
-def _expected(fault: Fault, phase: Phase, firmware: FirmwareName) -> Expected:
-    if fault is Fault.SILENT:
-        return _SILENT[firmware]
+def _expected(fault: Fault, phase: Phase) -> Expected:
     return _ALIKE[fault] if fault in _ALIKE else _APART[fault][SORTIE_PHASES.index(phase)]
 
 
 EXPECTED_IN_SORTIE: Mapping[Case, Expected] = {
-    Case(fault=fault, phase=phase, firmware=firmware): _expected(fault, phase, firmware)
-    for firmware in _SILENT
+    Case(fault=fault, phase=phase, firmware=firmware): _expected(fault, phase)
+    for firmware in FIRMWARES
     for fault in SORTIE_FAULTS
     for phase in SORTIE_PHASES
 }
