@@ -67,10 +67,10 @@ class UkfConfig(StrictModel):
 class SteadyConfig(StrictModel):
     """How a vehicle drives that does nothing new: the first of the interacting models."""
 
-    # Such as an even driver's (the benchmark's `random` is 0.43), since a vehicle that is known 0.6 s late is taken for
-    # a steady one all the while; measured in landings.
-    jerk_psd_m2_s5: Positive = 0.3
-    lateral_acceleration_psd_m2_s5: Positive = 0.7  # drives the curvature, by v^2
+    # Of a driver who has not been watched (`vehicle/steady_driving.py`): both are likeliest for what the vehicles of 40
+    # drawn worlds did (docs/notebook.md).
+    jerk_psd_m2_s5: Positive = 0.1
+    lateral_acceleration_psd_m2_s5: Positive = 0.1  # drives the curvature, by v^2
     # The change of the grade in vertical curves of streets: the root mean square of 1 % in K for the least K of crests
     # (2, 4, 7, 11 m) and sags (6, 9, 13, 18 m) for 30 to 60 km/h (AASHTO Green Book 2011, 3.4.6). Faster roads bend
     # less: sags are made for the comfort of 0.3 m/s^2.

@@ -20,6 +20,7 @@ from companion.core.data import Array, Forecast, Measurement, Mixture, Quantity,
 from companion.vehicle import imm_forecast as forecasts
 from companion.vehicle import imm_judgement as judgement
 from companion.vehicle import imm_mixing as mixing
+from companion.vehicle import steady_driving
 from companion.vehicle.deck_motion import first_motion, learn, passed
 from companion.vehicle.filter_step import Update, wrapped
 from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, swing_of
@@ -86,6 +87,7 @@ class ImmModel:
             seen_age_s=state.seen_age_s + dt_s,
             turn_age_s=state.turn_age_s + dt_s,
             unmeasured_s=state.unmeasured_s + dt_s,
+            driving=steady_driving.passed(state.driving, dt_s),
             deck=None if state.deck is None else passed(state.deck, dt_s),
         )
 
@@ -122,6 +124,7 @@ class ImmModel:
             deck = learn(deck, (modes[2] @ modes[0])[SWINGING].tolist(), self._swing.lag_s)
         updated = ImmState(
             modes=modes,
+            driving=steady_driving.learn(state.driving, modes, self.config) if tells_motion else state.driving,
             fix_bias_variance_m2=bias_variance,
             fix_white_variance_m2=white_variance,
             seen_age_s=0.0 if measurement.quantity is Quantity.PAD else state.seen_age_s,
@@ -202,6 +205,7 @@ class ImmModel:
             self.numbers,
             receivers.frame_offset_walk_m2_s + walk_m2_s + fine_walk_m2_s(state, receivers),
             receivers.own_walk_share * walk_m2_s,
+            state.driving.psd_m2_s5,
             turn_is_measured=state.turn_age_s < TURN_AGE_MAX_S,
         )
 

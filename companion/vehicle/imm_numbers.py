@@ -6,7 +6,15 @@ from functools import lru_cache
 
 import numpy as np
 
-from companion.config.estimation import ImmConfig, SteadyConfig, SwingConfig
+from companion.config.estimation import (
+    BrakingConfig,
+    EasingConfig,
+    ImmConfig,
+    RampConfig,
+    SteadyConfig,
+    SwingConfig,
+    TurningConfig,
+)
 from companion.core.data import Array
 from companion.vehicle.deck_motion import rate_std_m_s
 from companion.vehicle.imm_noise import CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST, HEADING_NOISE
@@ -51,6 +59,7 @@ class Numbers:
         motion: (16,) as `imm_mixing` has it.
         begins_after_s: (n,) of the modes, as `imm_mixing.switching` takes it.
         noises: (n, 16) as `imm_noise.process_noise` takes them, but for what depends on the state (`noises_with`).
+        is_steady: (2, n) whether each mode is steady along the track, and across it.
         lever_m: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll.
         prior_variances: (24,) of every state but position, offset and clock, when nothing else is known.
         course: (3,) as `imm_judgement.take_reading` takes it.
@@ -59,6 +68,7 @@ class Numbers:
     motion: Array
     begins_after_s: Array
     noises: Array
+    is_steady: Array
     lever_m: Array
     prior_variances: Array
     course: Array
@@ -90,15 +100,25 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
         ),
         begins_after_s=np.array([mode.begins_after_s for mode in modes]),
         noises=np.array([_noise(config, mode, is_afloat=deck.is_afloat) for mode in modes]),
+        is_steady=np.array([_is_steady(config, name) for name in ("jerk_psd_m2_s5", "lateral_acceleration_psd_m2_s5")]),
         lever_m=np.array(lever_m),
         prior_variances=_prior_variances(config, is_afloat=deck.is_afloat),
         course=np.array([heading.course_speed_min_m_s, heading.course_std_rad**2, heading.known_std_rad**2]),
     )
 
 
-@lru_cache(maxsize=4)  # it changes with a fix's stated error only
-def noises_with(numbers: Numbers, receiver_m2_s: float, own_m2_s: float, *, turn_is_measured: bool) -> Array:
+@lru_cache(maxsize=4)  # it changes with a fix's stated error, and once a second
+def noises_with(
+    numbers: Numbers,
+    receiver_m2_s: float,
+    own_m2_s: float,
+    psd_m2_s5: tuple[float, float],
+    *,
+    turn_is_measured: bool,
+) -> Array:
     """Return the modes' noise (n, 16) with the wandering of the vehicle's receiver and of the drone's own place.
+
+    `psd_m2_s5` is how fast the accelerations along the track and across it walk while nothing new begins.
 
     Where the drone's own place does not wander, fixes have corrections, and are dated without an error.
     A vehicle whose turning is measured may be one that turns on the spot. Any other is taken for a car: it turns no
@@ -106,6 +126,7 @@ def noises_with(numbers: Numbers, receiver_m2_s: float, own_m2_s: float, *, turn
     """
     noises = numbers.noises.copy()
     noises[:, 6], noises[:, 7] = receiver_m2_s, own_m2_s
+    noises[numbers.is_steady[0], 0], noises[numbers.is_steady[1], 2] = psd_m2_s5
     if not own_m2_s:
         noises[:, CLOCK_NOISE] = 0.0
     if turn_is_measured:
@@ -131,8 +152,16 @@ def _prior_variances(config: ImmConfig, *, is_afloat: bool) -> Array:
 
 def _modes(config: ImmConfig) -> tuple[SteadyConfig, ...]:
     """Return the steady model, and one for each manoeuvre, which is steady but for what its configuration names."""
-    manoeuvres = (config.easing, config.braking, config.turning, config.ramp)
-    return (config.steady, *(config.steady.model_copy(update=dict(one)) for one in manoeuvres))
+    return (config.steady, *(config.steady.model_copy(update=dict(one)) for one in _manoeuvres(config)))
+
+
+def _manoeuvres(config: ImmConfig) -> tuple[EasingConfig | BrakingConfig | TurningConfig | RampConfig, ...]:
+    return config.easing, config.braking, config.turning, config.ramp
+
+
+def _is_steady(config: ImmConfig, name: str) -> list[bool]:
+    """Return which modes have the steady one's `name`."""
+    return [True, *(name not in type(one).model_fields for one in _manoeuvres(config))]
 
 
 def _noise(config: ImmConfig, mode: SteadyConfig, *, is_afloat: bool) -> tuple[float, ...]:

@@ -22,6 +22,7 @@ from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Numbers
 from companion.vehicle.imm_sensors import observe
 from companion.vehicle.imm_swing import MOUNT, ROLL, ROLL_RATE, SIZE, antenna_swing
+from companion.vehicle.steady_driving import SteadyDriving, first_driving
 from link.records import replace
 
 PLACE = np.array([0, 1, 8])  # indices of the position
@@ -87,6 +88,7 @@ class ImmState(Struct, frozen=True, kw_only=True, eq=False):
 
     Attributes:
         modes: all, with their probabilities.
+        driving: how steadily the vehicle is driven.
         fix_bias_variance_m2: the slow part of the fixes' variance.
         fix_white_variance_m2: the rest, on the worst axis.
         seen_age_s: how long ago the pad was seen, or known to be under the drone; infinite before.
@@ -96,6 +98,7 @@ class ImmState(Struct, frozen=True, kw_only=True, eq=False):
     """
 
     modes: mixing.Modes
+    driving: SteadyDriving
     fix_bias_variance_m2: float
     fix_white_variance_m2: float = 0.0
     seen_age_s: float = math.inf
@@ -129,6 +132,7 @@ def start_state(place: Measurement, config: ImmConfig, numbers: Numbers) -> ImmS
     modes = (np.stack([mean] * n), covariances, rates / rates.sum())
     return ImmState(
         modes=modes,
+        driving=first_driving(config),
         fix_bias_variance_m2=bias_variance,
         fix_white_variance_m2=largest(white) if is_fix else 0.0,
         seen_age_s=math.inf if is_fix else 0.0,
