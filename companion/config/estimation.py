@@ -178,6 +178,10 @@ class ImmConfig(StrictModel):
     braking: BrakingConfig = BrakingConfig()
     turning: TurningConfig = TurningConfig()
     ramp: RampConfig = RampConfig()
+    # Of a vessel's lateral acceleration while it is steered evenly, in place of `steady`'s. With 10 degrees of rudder a
+    # ship turns by 10 degrees within 2.5 lengths (IMO MSC.137(76), 5.3.2), faster and faster: one of 20 m at 6 m/s
+    # changes that acceleration by 0.03 m/s^2 in each of 8 s.
+    helm_psd_m2_s5: Positive = 0.007
     side_jerk_psd_m2_s5: Positive = 0.005  # across the track, apart from turning; measured
     acceleration_decay_s: Positive = 3.0  # measured
     initial_speed_std_m_s: Positive = 15.0  # at the first fix; two of them are `limits.speed_max_m_s`

@@ -60,6 +60,7 @@ class Numbers:
         begins_after_s: (n,) of the modes, as `imm_mixing.switching` takes it.
         noises: (n, 16) as `imm_noise.process_noise` takes them, but for what depends on the state (`noises_with`).
         is_steady: (2, n) whether each mode is steady along the track, and across it.
+        ordinary_m2_s5: how fast an ordinary driver's, or helm's, accelerations along the track and across it walk.
         lever_m: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll.
         prior_variances: (24,) of every state but position, offset and clock, when nothing else is known.
         course: (3,) as `imm_judgement.take_reading` takes it.
@@ -69,6 +70,7 @@ class Numbers:
     begins_after_s: Array
     noises: Array
     is_steady: Array
+    ordinary_m2_s5: tuple[float, float]
     lever_m: Array
     prior_variances: Array
     course: Array
@@ -101,6 +103,10 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
         begins_after_s=np.array([mode.begins_after_s for mode in modes]),
         noises=np.array([_noise(config, mode, is_afloat=deck.is_afloat) for mode in modes]),
         is_steady=np.array([_is_steady(config, name) for name in ("jerk_psd_m2_s5", "lateral_acceleration_psd_m2_s5")]),
+        ordinary_m2_s5=(
+            config.steady.jerk_psd_m2_s5,
+            config.helm_psd_m2_s5 if deck.is_afloat else config.steady.lateral_acceleration_psd_m2_s5,
+        ),
         lever_m=np.array(lever_m),
         prior_variances=_prior_variances(config, is_afloat=deck.is_afloat),
         course=np.array([heading.course_speed_min_m_s, heading.course_std_rad**2, heading.known_std_rad**2]),

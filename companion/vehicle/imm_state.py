@@ -22,7 +22,7 @@ from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Numbers
 from companion.vehicle.imm_sensors import observe
 from companion.vehicle.imm_swing import MOUNT, ROLL, ROLL_RATE, SIZE, antenna_swing
-from companion.vehicle.steady_driving import SteadyDriving, first_driving
+from companion.vehicle.steady_driving import SteadyDriving
 from link.records import replace
 
 PLACE = np.array([0, 1, 8])  # indices of the position
@@ -132,7 +132,7 @@ def start_state(place: Measurement, config: ImmConfig, numbers: Numbers) -> ImmS
     modes = (np.stack([mean] * n), covariances, rates / rates.sum())
     return ImmState(
         modes=modes,
-        driving=first_driving(config),
+        driving=SteadyDriving(),
         fix_bias_variance_m2=bias_variance,
         fix_white_variance_m2=largest(white) if is_fix else 0.0,
         seen_age_s=math.inf if is_fix else 0.0,

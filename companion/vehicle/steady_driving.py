@@ -31,26 +31,23 @@ class Axis(Struct, frozen=True, kw_only=True):
     """What has been seen along the track, or across it.
 
     Attributes:
-        ordinary_m2_s5: how fast an ordinary driver's acceleration walks.
-        squares_m2_s4: sum of the squared changes of this one's.
+        squares_m2_s4: sum of the squared changes.
         seen_s: over how much time.
         mean: acceleration along, m/s^2, or curvature, 1/m, when the present pair began.
         variance: of it; infinite before the first.
         disturbed: probability that a pedal, or the wheel, was moved anew since then.
     """
 
-    ordinary_m2_s5: float
     squares_m2_s4: float = 0.0
     seen_s: float = 0.0
     mean: float = 0.0
     variance: float = math.inf
     disturbed: float = 0.0
 
-    @property
-    def psd_m2_s5(self) -> float:
-        """How fast the acceleration walks."""
+    def psd_m2_s5(self, ordinary_m2_s5: float) -> float:
+        """Return how fast the acceleration walks, given how fast an ordinary driver's does."""
         # A few pairs of a vague filter whose doubt has shrunk may add up to less than nothing.
-        return (PRIOR_S * self.ordinary_m2_s5 + max(self.squares_m2_s4, 0.0)) / (PRIOR_S + self.seen_s)
+        return (PRIOR_S * ordinary_m2_s5 + max(self.squares_m2_s4, 0.0)) / (PRIOR_S + self.seen_s)
 
 
 class SteadyDriving(Struct, frozen=True, kw_only=True):
@@ -62,23 +59,14 @@ class SteadyDriving(Struct, frozen=True, kw_only=True):
         passed_s: since the present pair began.
     """
 
-    along: Axis
-    across: Axis
+    along: Axis = Axis()
+    across: Axis = Axis()
     passed_s: float = 0.0
 
-    @property
-    def psd_m2_s5(self) -> tuple[float, float]:
-        """How fast the accelerations along the track and across it walk."""
-        return self.along.psd_m2_s5, self.across.psd_m2_s5
-
-
-def first_driving(config: ImmConfig) -> SteadyDriving:
-    """Return what is taken for granted of a driver who has not been watched."""
-    steady = config.steady
-    return SteadyDriving(
-        along=Axis(ordinary_m2_s5=steady.jerk_psd_m2_s5),
-        across=Axis(ordinary_m2_s5=steady.lateral_acceleration_psd_m2_s5),
-    )
+    def psd_m2_s5(self, ordinary_m2_s5: tuple[float, float]) -> tuple[float, float]:
+        """Return how fast the accelerations along the track and across it walk, given an ordinary driver's."""
+        along_m2_s5, across_m2_s5 = ordinary_m2_s5
+        return self.along.psd_m2_s5(along_m2_s5), self.across.psd_m2_s5(across_m2_s5)
 
 
 def passed(driving: SteadyDriving, dt_s: float) -> SteadyDriving:
@@ -158,7 +146,6 @@ def _changed(axis: Axis, now: _Now, keep: float) -> Axis:
         squares_m2_s4 += counts * squared * now.unit_m_s2**2
         seen_s += counts * now.walked_s
     return Axis(
-        ordinary_m2_s5=axis.ordinary_m2_s5,
         squares_m2_s4=squares_m2_s4,
         seen_s=seen_s,
         mean=now.mean,

@@ -29,9 +29,12 @@ def test_what_is_learnt_of_steady_driving_holds_for_each_model_but_for_its_own_m
     assert (noises[:, kept] == noises_with(numbers, 0.0, 0.0, (1.0, 1.0), turn_is_measured=False)[:, kept]).all()
 
 
-def test_water_has_no_ramps() -> None:
-    noises = numbers_of(ImmConfig(), Deck(is_afloat=True)).noises
-    assert np.all(noises[:, BEND_STD] == 0.0)
+def test_water_has_no_ramps_and_a_vessel_is_steered_like_none_on_wheels() -> None:
+    config = ImmConfig()
+    afloat, on_road = (numbers_of(config, Deck(is_afloat=is_afloat)) for is_afloat in (True, False))
+    assert np.all(afloat.noises[:, BEND_STD] == 0.0)
+    assert afloat.ordinary_m2_s5 == (config.steady.jerk_psd_m2_s5, config.helm_psd_m2_s5)
+    assert on_road.ordinary_m2_s5 == (config.steady.jerk_psd_m2_s5, config.steady.lateral_acceleration_psd_m2_s5)
 
 
 def test_forecast_over_two_kinds_of_road_has_the_mean_of_their_variances() -> None:

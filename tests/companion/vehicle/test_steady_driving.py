@@ -8,7 +8,7 @@ import pytest
 from companion.config.estimation import EstimatorKind, ImmConfig
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_swing import SIZE
-from companion.vehicle.steady_driving import LAG_S, MEMORY_S, PRIOR_S, SteadyDriving, first_driving, learn, passed
+from companion.vehicle.steady_driving import LAG_S, MEMORY_S, PRIOR_S, SteadyDriving, learn, passed
 from link.records import replace
 from tests.companion.vehicle.drives import NOMINAL, Drive, drive, straight
 from tests.companion.vehicle.rides import estimator, ride
@@ -43,7 +43,7 @@ def watched(
     """What is learnt of accelerations that walk so fast, the one along fading as the filter's model has it."""
     rng = np.random.default_rng(seed)
     left = math.exp(-DT_S / CONFIG.acceleration_decay_s)
-    driving, along, curvature = first_driving(CONFIG), 0.0, 0.02
+    driving, along, curvature = SteadyDriving(), 0.0, 0.02
     for i in range(round(seconds / DT_S)):
         speed_m_s = SPEED_M_S + speed_change_m_s * math.sin(i * DT_S)
         along = left * along + math.sqrt(psd_m2_s5[0] * DT_S) * rng.standard_normal()
@@ -53,7 +53,7 @@ def watched(
 
 
 def test_driver_who_was_not_watched_is_taken_for_the_configured_one() -> None:
-    assert first_driving(CONFIG).psd_m2_s5 == pytest.approx(PRIOR)
+    assert SteadyDriving().psd_m2_s5(PRIOR) == pytest.approx(PRIOR)
 
 
 @pytest.mark.parametrize("psd_m2_s5", [(0.02, 2.0), (0.4, 0.4), (3.0, 0.03)])
@@ -63,18 +63,18 @@ def test_what_is_learnt_is_how_fast_the_accelerations_walk(psd_m2_s5: tuple[floa
         found = np.mean([axis.squares_m2_s4 / axis.seen_s for axis in axes])
         assert found == pytest.approx(psd_m2_s5[i], rel=0.15)
         weighted = (PRIOR_S * PRIOR[i] + axes[0].squares_m2_s4) / (PRIOR_S + axes[0].seen_s)
-        assert axes[0].psd_m2_s5 == pytest.approx(weighted)
+        assert axes[0].psd_m2_s5(PRIOR[i]) == pytest.approx(weighted)
 
 
 def test_speeding_up_in_an_even_curve_is_no_steering() -> None:
     steered = watched((0.1, 0.0), 120.0, speed_change_m_s=3.0)
-    assert steered.across.psd_m2_s5 < 0.4 * PRIOR[1]
+    assert steered.across.psd_m2_s5(PRIOR[1]) < 0.4 * PRIOR[1]
 
 
 def test_filter_that_is_not_sure_yet_teaches_nothing() -> None:
-    driving = learn(passed(first_driving(CONFIG), LAG_S), known(0.0, 0.0, std_m_s2=3.0), CONFIG)
+    driving = learn(passed(SteadyDriving(), LAG_S), known(0.0, 0.0, std_m_s2=3.0), CONFIG)
     driving = learn(passed(driving, LAG_S), known(4.0, -4.0), CONFIG)
-    assert driving.psd_m2_s5 == pytest.approx(PRIOR)
+    assert driving.psd_m2_s5(PRIOR) == pytest.approx(PRIOR)
 
 
 def test_doubt_that_shrinks_is_told_from_driving() -> None:
@@ -82,7 +82,7 @@ def test_doubt_that_shrinks_is_told_from_driving() -> None:
     rng, found = np.random.default_rng(5), []
     before_std, now_std = 0.5, 0.4
     for truth in rng.standard_normal(2000):
-        driving = learn(passed(first_driving(CONFIG), LAG_S), known(0.0, 0.0, std_m_s2=before_std), CONFIG)
+        driving = learn(passed(SteadyDriving(), LAG_S), known(0.0, 0.0, std_m_s2=before_std), CONFIG)
         gain = 1.0 - (now_std / before_std) ** 2
         told = before_std * truth + math.sqrt(before_std**2 / gain - before_std**2) * rng.standard_normal()
         driving = learn(passed(driving, LAG_S), known(0.0, gain * told, std_m_s2=now_std), CONFIG)
@@ -91,17 +91,17 @@ def test_doubt_that_shrinks_is_told_from_driving() -> None:
 
 
 def test_swerve_that_has_a_model_of_its_own_makes_no_unsteady_driver() -> None:
-    driving = first_driving(CONFIG)
+    driving = SteadyDriving()
     for across_m_s2, turning in ((0.0, 0.0), (4.0, 1.0), (4.0, 0.0), (4.0, 0.0)):
         driving = learn(passed(driving, LAG_S), known(0.0, across_m_s2, turning=turning), CONFIG)
-    assert driving.across.psd_m2_s5 < PRIOR[1]
+    assert driving.across.psd_m2_s5(PRIOR[1]) < PRIOR[1]
 
 
 @pytest.mark.parametrize("pause_s", [3.0, 600.0])
 def test_silence_makes_no_pair(pause_s: float) -> None:
-    driving = learn(passed(first_driving(CONFIG), LAG_S), known(0.0, 0.0), CONFIG)
+    driving = learn(passed(SteadyDriving(), LAG_S), known(0.0, 0.0), CONFIG)
     driving = learn(passed(driving, pause_s), known(5.0, 5.0), CONFIG)
-    assert driving.psd_m2_s5 == pytest.approx(PRIOR)
+    assert driving.psd_m2_s5(PRIOR) == pytest.approx(PRIOR)
 
 
 def test_standing_vehicle_teaches_nothing_and_its_departure_neither_and_what_was_learnt_fades() -> None:
@@ -120,7 +120,7 @@ def test_perfectly_even_driver_may_still_do_something() -> None:
     even = watched((0.0, 0.0), 600.0)
     for axis, prior in ((even.along, PRIOR[0]), (even.across, PRIOR[1])):
         assert 0.5 * MEMORY_S < axis.seen_s < 1.1 * MEMORY_S
-        assert axis.psd_m2_s5 == pytest.approx(PRIOR_S / (PRIOR_S + axis.seen_s) * prior, rel=0.1)
+        assert axis.psd_m2_s5(prior) == pytest.approx(PRIOR_S / (PRIOR_S + axis.seen_s) * prior, rel=0.1)
 
 
 def doubt_m_s(truth: Drive, at_s: float) -> float:
