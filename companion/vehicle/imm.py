@@ -112,6 +112,7 @@ class ImmModel:
         reading = (KINDS[measurement.quantity], _own(measurement.value), _own(R))
         numbers = self.numbers
         tells_motion = measurement.quantity in MOTIONS
+        tells_driving = tells_motion or measurement.quantity is self.placed_by
         modes = state.modes
         if tells_motion and state.unmeasured_s > 0.0:
             noises = self._noises(state)
@@ -124,7 +125,7 @@ class ImmModel:
             deck = learn(deck, (modes[2] @ modes[0])[SWINGING].tolist(), self._swing.lag_s)
         updated = ImmState(
             modes=modes,
-            driving=steady_driving.learn(state.driving, modes, self.config) if tells_motion else state.driving,
+            driving=steady_driving.learn(state.driving, modes, self.config) if tells_driving else state.driving,
             fix_bias_variance_m2=bias_variance,
             fix_white_variance_m2=white_variance,
             seen_age_s=0.0 if measurement.quantity is Quantity.PAD else state.seen_age_s,
@@ -136,7 +137,8 @@ class ImmModel:
 
     def recover(self, state: ImmState, measurement: Measurement) -> ImmState:
         """Return the state open to `measurement`."""
-        return recover(state, measurement, self.config, self.numbers, self.placed_by)
+        recovered = recover(state, measurement, self.config, self.numbers, self.placed_by)
+        return replace(recovered, driving=steady_driving.without_pair(recovered.driving))
 
     def describe(self, state: ImmState, t_ns: int) -> VehicleEstimate:
         """Return the mixture of the modes."""

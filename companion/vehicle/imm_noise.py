@@ -14,6 +14,7 @@ from companion.vehicle.imm_swing import MOUNT, PITCH, ROLL, SIZE
 
 MOTION = 8  # leading states that the non-linear motion touches
 FOLLOWS = (0, 0, 1, 1, 1, 1, 2, 1)  # each of them: 2 is the curvature, 1 its integral, 0 its second one
+ALONG_NOISE, ACROSS_NOISE, RECEIVER_NOISE, OWN_NOISE = 0, 2, 6, 7
 HEADING_NOISE, CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST = 4, 8, 9, 10  # their places in the noise
 BEND_STD, BEND_ACCELERATION_STD, BEND_LENGTH, ROAD_NOISE, LEAK_NOISE, AFLOAT = 5, 11, 12, 13, 14, 15
 

@@ -17,10 +17,21 @@ from companion.config.estimation import (
 )
 from companion.core.data import Array
 from companion.vehicle.deck_motion import rate_std_m_s
-from companion.vehicle.imm_noise import CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST, HEADING_NOISE
+from companion.vehicle.imm_noise import (
+    ACROSS_NOISE,
+    ALONG_NOISE,
+    CLOCK_NOISE,
+    CURVATURE_STD,
+    HEADING_AT_REST,
+    HEADING_NOISE,
+    OWN_NOISE,
+    RECEIVER_NOISE,
+)
 from link.messages import PadGeometry, Vector3
 
 UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
+STEADY, EASING, BRAKING, TURNING, RAMP = range(5)
+"""The models in their order."""
 ON_THE_SPOT_RAD_M = 10.0  # 1 rad/s while the middle moves at 0.1 m/s
 
 
@@ -113,7 +124,10 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
     )
 
 
-@lru_cache(maxsize=4)  # it changes with a fix's stated error, and once a second
+_STEADY_SHARE_MAX = 0.1  # of a manoeuvre's noise: a steady model as wide would be none, and the two not told apart
+
+
+@lru_cache(maxsize=4)  # without sightings it changes with a fix's stated error, and with every pair of `steady_driving`
 def noises_with(
     numbers: Numbers,
     receiver_m2_s: float,
@@ -124,15 +138,19 @@ def noises_with(
 ) -> Array:
     """Return the modes' noise (n, 16) with the wandering of the vehicle's receiver and of the drone's own place.
 
-    `psd_m2_s5` is how fast the accelerations along the track and across it walk while nothing new begins.
+    `psd_m2_s5` is how fast the accelerations along the track and across it walk while nothing new begins, as far as
+    they may.
 
     Where the drone's own place does not wander, fixes have corrections, and are dated without an error.
     A vehicle whose turning is measured may be one that turns on the spot. Any other is taken for a car: it turns no
     tighter than a car steers, and not at all while it stands.
     """
     noises = numbers.noises.copy()
-    noises[:, 6], noises[:, 7] = receiver_m2_s, own_m2_s
-    noises[numbers.is_steady[0], 0], noises[numbers.is_steady[1], 2] = psd_m2_s5
+    noises[:, RECEIVER_NOISE], noises[:, OWN_NOISE] = receiver_m2_s, own_m2_s
+    for place, is_steady, psd, manoeuvre in zip(
+        (ALONG_NOISE, ACROSS_NOISE), numbers.is_steady, psd_m2_s5, (EASING, TURNING), strict=True
+    ):
+        noises[is_steady, place] = min(psd, _STEADY_SHARE_MAX * float(numbers.noises[manoeuvre, place]))
     if not own_m2_s:
         noises[:, CLOCK_NOISE] = 0.0
     if turn_is_measured:

@@ -1,66 +1,76 @@
-"""Learns how steadily a vehicle is driven while nothing new begins: the noise of the filter's steady model; pure.
+"""Learns how unsteadily a vehicle is driven while nothing new begins: the noise of the filter's steady model; pure.
 
 The steady model takes the acceleration along the track, and the one across it that turns the vehicle, for random walks.
-How fast these walk differs by more than a hundred times from a ship or a motorway to a driver in town, and decides how
-far the vehicle may be from where data that are some tenths of a second old have it. Over pairs that lie a lag apart the
-sum of the squares by which each has changed fades with `MEMORY_S`; it is added to that of an ordinary driver who was
-watched for `PRIOR_S`, which stays. The filter's mean changes with what it learns as well, by as much as its variance
-falls: for a filter that is right the square of a change is q T + P(before) - P(now), as its changes are independent of
-all before.
-A pair counts with the probability that no manoeuvre, which has a model of its own, has begun in it.
-Source: Mehra 1972 (adaptive filtering by covariance matching).
+An ordinary driver's are those that are likeliest for drawn worlds; one whose accelerations change more is told from how
+they changed in the last minute. Over pairs of instants that lie a lag apart the squares of the changes are summed, and
+the sums fade. The filter's mean also changes with what it comes to know, in the mean of many by as much as its variance
+falls, so that this is taken off. A pair counts with the probability that no manoeuvre, which has a model of its own,
+has begun in it. Nobody is taken to be steadier than ordinary: who drives straight on may be about to weave.
 """
 
 import math
-from typing import NamedTuple
 
 from msgspec import Struct
 
 from companion.config.estimation import ImmConfig
 from companion.vehicle.imm_mixing import Modes
+from companion.vehicle.imm_numbers import BRAKING, EASING, STEADY, TURNING
 from link.records import replace
 
 MEMORY_S = 60.0  # longer than a landing; a driver in town is another one on the road out
-PRIOR_S = 10.0  # a curve or two
+PRIOR_S = 10.0  # for which an ordinary driver counts as watched: a curve or two
 LAG_S = 1.0  # twice what a filter needs that fixes of 0.1 m ten times a second tell the acceleration
+_LAG_MAX_S = 2.5 * LAG_S  # two periods of a receiver at 1 Hz; what a vehicle has done in a longer silence nobody knows
 _SETTLED = 2.0  # times its variance now: before, a filter knew too little yet for a change of its mean to tell anything
-_EASING, _BRAKING, _TURNING = 1, 2, 3  # among the modes
 
 
-class Axis(Struct, frozen=True, kw_only=True):
-    """What has been seen along the track, or across it.
-
-    Attributes:
-        squares_m2_s4: sum of the squared changes.
-        seen_s: over how much time.
-        mean: acceleration along, m/s^2, or curvature, 1/m, when the present pair began.
-        variance: of it; infinite before the first.
-        disturbed: probability that a pedal, or the wheel, was moved anew since then.
-    """
+class Watched(Struct, frozen=True, kw_only=True):
+    """How an acceleration has changed: sum of the squared changes, and over how much time."""
 
     squares_m2_s4: float = 0.0
     seen_s: float = 0.0
-    mean: float = 0.0
-    variance: float = math.inf
-    disturbed: float = 0.0
 
     def psd_m2_s5(self, ordinary_m2_s5: float) -> float:
         """Return how fast the acceleration walks, given how fast an ordinary driver's does."""
-        # A few pairs of a vague filter whose doubt has shrunk may add up to less than nothing.
-        return (PRIOR_S * ordinary_m2_s5 + max(self.squares_m2_s4, 0.0)) / (PRIOR_S + self.seen_s)
+        mean_m2_s5 = (PRIOR_S * ordinary_m2_s5 + self.squares_m2_s4) / (PRIOR_S + self.seen_s)
+        return max(mean_m2_s5, ordinary_m2_s5)
+
+
+class Begun(Struct, frozen=True, kw_only=True):
+    """What was known when a pair began.
+
+    Attributes:
+        along_m_s2: acceleration along the track.
+        along_variance_m2_s4: of it.
+        curvature_rad_m: of the track.
+        curvature_variance_rad2_m2: of it.
+        speed_m_s: horizontal.
+        pedals: probability that a pedal was moved anew then or since.
+        wheel: that the wheel was.
+    """
+
+    along_m_s2: float
+    along_variance_m2_s4: float
+    curvature_rad_m: float
+    curvature_variance_rad2_m2: float
+    speed_m_s: float
+    pedals: float
+    wheel: float
 
 
 class SteadyDriving(Struct, frozen=True, kw_only=True):
-    """What has been seen of a vehicle's driving.
+    """What has been seen of a vehicle's driving, and the present pair.
 
     Attributes:
         along: the track.
         across: it.
-        passed_s: since the present pair began.
+        begun: None while there is no pair.
+        passed_s: since the last one began.
     """
 
-    along: Axis = Axis()
-    across: Axis = Axis()
+    along: Watched = Watched()
+    across: Watched = Watched()
+    begun: Begun | None = None
     passed_s: float = 0.0
 
     def psd_m2_s5(self, ordinary_m2_s5: tuple[float, float]) -> tuple[float, float]:
@@ -74,81 +84,63 @@ def passed(driving: SteadyDriving, dt_s: float) -> SteadyDriving:
     return replace(driving, passed_s=driving.passed_s + dt_s)
 
 
+def without_pair(driving: SteadyDriving) -> SteadyDriving:
+    """Return the driving without the present pair, where the filter's mean has changed for another reason."""
+    return replace(driving, begun=None)
+
+
 def learn(driving: SteadyDriving, modes: Modes, config: ImmConfig) -> SteadyDriving:
-    """Return the driving after a fix or a velocity; only what the vehicle does while it drives tells anything.
+    """Return the driving after a reading of place or velocity; only a vehicle that drives tells anything.
 
     Args:
         driving: so far.
-        modes: of the filter, the steady one first.
+        modes: of the filter.
         config: of the filter.
     """
-    means, covariances, weights = modes
-    pedals, wheel = float(weights[_EASING] + weights[_BRAKING]), float(weights[_TURNING])
-    x, P = means[0], covariances[0]
-    speed_m_s, lag_s = math.hypot(x[2], x[3]), driving.passed_s
-    if speed_m_s < config.heading.curvature_speed_min_m_s:
-        return replace(driving, along=_without_pair(driving.along), across=_without_pair(driving.across))
-    along, across = _disturbed(driving.along, pedals), _disturbed(driving.across, wheel)
-    if lag_s < LAG_S:
-        return replace(driving, along=along, across=across)
-    if lag_s > 2.0 * LAG_S:  # what a vehicle has done in a silence nobody knows
-        along, across = _without_pair(along), _without_pair(across)
-    ux, uy = float(x[2]) / speed_m_s, float(x[3]) / speed_m_s
-    left = math.exp(-lag_s / config.acceleration_decay_s)
-    pulled = _Now(
-        mean=ux * float(x[4]) + uy * float(x[5]),
-        variance=ux * ux * float(P[4, 4]) + uy * uy * float(P[5, 5]) + 2.0 * ux * uy * float(P[4, 5]),
-        left=left,
-        walked_s=0.5 * config.acceleration_decay_s * (1.0 - left * left),  # what fades has walked less
-        unit_m_s2=1.0,
-        disturbed=pedals,
-    )
-    steered = _Now(float(x[6]), float(P[6, 6]), 1.0, lag_s, speed_m_s**2, wheel)
+    now = _known(modes)
+    if now.speed_m_s < config.heading.curvature_speed_min_m_s:
+        return without_pair(driving)
+    begun, lag_s = driving.begun, driving.passed_s
+    if begun is not None and lag_s < LAG_S:
+        disturbed = replace(begun, pedals=max(begun.pedals, now.pedals), wheel=max(begun.wheel, now.wheel))
+        return replace(driving, begun=disturbed)
     keep = math.exp(-lag_s / MEMORY_S)
-    return SteadyDriving(along=_changed(along, pulled, keep), across=_changed(across, steered, keep))
+    along, across = _faded(driving.along, keep), _faded(driving.across, keep)
+    if begun is not None and lag_s < _LAG_MAX_S:
+        if begun.along_variance_m2_s4 < _SETTLED * now.along_variance_m2_s4:
+            square = (now.along_m_s2 - begun.along_m_s2) ** 2 + now.along_variance_m2_s4 - begun.along_variance_m2_s4
+            along = _with_change(along, square, 1.0 - begun.pedals, lag_s)
+        if begun.curvature_variance_rad2_m2 < _SETTLED * now.curvature_variance_rad2_m2:
+            fallen = begun.curvature_variance_rad2_m2 - now.curvature_variance_rad2_m2
+            square = ((now.curvature_rad_m - begun.curvature_rad_m) ** 2 - fallen) * (
+                begun.speed_m_s * now.speed_m_s
+            ) ** 2
+            across = _with_change(across, square, 1.0 - begun.wheel, lag_s)
+    return SteadyDriving(along=along, across=across, begun=now)
 
 
-class _Now(NamedTuple):
-    """What is known at the end of a pair.
-
-    Attributes:
-        mean: acceleration along the track, m/s^2, or curvature of it, 1/m.
-        variance: of it.
-        left: what would be left of the one at the beginning if nothing had walked.
-        walked_s: for how long it has walked.
-        unit_m_s2: the acceleration that 1 is.
-        disturbed: probability that a pedal, or the wheel, is moved anew just now.
-    """
-
-    mean: float
-    variance: float
-    left: float
-    walked_s: float
-    unit_m_s2: float
-    disturbed: float
+def _known(modes: Modes) -> Begun:
+    """Return what the steady model knows; at rest nothing is along the track."""
+    means, covariances, weights = modes
+    x, P = means[STEADY], covariances[STEADY]
+    speed_m_s = math.hypot(x[2], x[3])
+    ux, uy = (float(x[2]) / speed_m_s, float(x[3]) / speed_m_s) if speed_m_s > 0.0 else (0.0, 0.0)
+    return Begun(
+        along_m_s2=ux * float(x[4]) + uy * float(x[5]),
+        along_variance_m2_s4=ux * ux * float(P[4, 4]) + uy * uy * float(P[5, 5]) + 2.0 * ux * uy * float(P[4, 5]),
+        curvature_rad_m=float(x[6]),
+        curvature_variance_rad2_m2=float(P[6, 6]),
+        speed_m_s=speed_m_s,
+        pedals=float(weights[EASING] + weights[BRAKING]),
+        wheel=float(weights[TURNING]),
+    )
 
 
-def _without_pair(axis: Axis) -> Axis:
-    return replace(axis, variance=math.inf)
+def _faded(watched: Watched, keep: float) -> Watched:
+    return Watched(squares_m2_s4=keep * watched.squares_m2_s4, seen_s=keep * watched.seen_s)
 
 
-def _disturbed(axis: Axis, probability: float) -> Axis:
-    return replace(axis, disturbed=max(axis.disturbed, probability))
-
-
-def _changed(axis: Axis, now: _Now, keep: float) -> Axis:
-    """Return what has been seen with the present pair, at whose end the next one begins; `keep` is left of the rest."""
-    before = now.left**2 * axis.variance
-    squares_m2_s4, seen_s = keep * axis.squares_m2_s4, keep * axis.seen_s
-    if before < _SETTLED * now.variance:
-        counts = 1.0 - axis.disturbed
-        squared = (now.mean - now.left * axis.mean) ** 2 + now.variance - before
-        squares_m2_s4 += counts * squared * now.unit_m_s2**2
-        seen_s += counts * now.walked_s
-    return Axis(
-        squares_m2_s4=squares_m2_s4,
-        seen_s=seen_s,
-        mean=now.mean,
-        variance=now.variance,
-        disturbed=now.disturbed,
+def _with_change(watched: Watched, square_m2_s4: float, counts: float, lag_s: float) -> Watched:
+    return Watched(
+        squares_m2_s4=max(watched.squares_m2_s4 + counts * square_m2_s4, 0.0), seen_s=watched.seen_s + counts * lag_s
     )
