@@ -67,8 +67,8 @@ class UkfConfig(StrictModel):
 class SteadyConfig(StrictModel):
     """How a vehicle drives that does nothing new: the first of the interacting models."""
 
-    # Of a driver who has not been watched (`vehicle/steady_driving.py`): both are likeliest for what the vehicles of 40
-    # drawn worlds did (docs/notebook.md).
+    # Of an ordinary driver: no other pair of numbers is likelier by more than 0.01 for what the vehicles of 40 drawn
+    # worlds did (docs/notebook.md). Who is less steady is told from how he drives (`vehicle/steady_driving.py`).
     jerk_psd_m2_s5: Positive = 0.1
     lateral_acceleration_psd_m2_s5: Positive = 0.1  # drives the curvature, by v^2
     # The change of the grade in vertical curves of streets: the root mean square of 1 % in K for the least K of crests

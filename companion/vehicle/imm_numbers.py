@@ -147,10 +147,16 @@ def noises_with(
     """
     noises = numbers.noises.copy()
     noises[:, RECEIVER_NOISE], noises[:, OWN_NOISE] = receiver_m2_s, own_m2_s
-    for place, is_steady, psd, manoeuvre in zip(
-        (ALONG_NOISE, ACROSS_NOISE), numbers.is_steady, psd_m2_s5, (EASING, TURNING), strict=True
+    for place, is_steady, psd, ordinary, manoeuvre in zip(
+        (ALONG_NOISE, ACROSS_NOISE),
+        numbers.is_steady,
+        psd_m2_s5,
+        numbers.ordinary_m2_s5,
+        (EASING, TURNING),
+        strict=True,
     ):
-        noises[is_steady, place] = min(psd, _STEADY_SHARE_MAX * float(numbers.noises[manoeuvre, place]))
+        most = _STEADY_SHARE_MAX * float(numbers.noises[manoeuvre, place])
+        noises[is_steady, place] = max(min(psd, most), ordinary)
     if not own_m2_s:
         noises[:, CLOCK_NOISE] = 0.0
     if turn_is_measured:

@@ -6,7 +6,7 @@ import pytest
 from companion.config.estimation import ImmConfig
 from companion.vehicle.imm_forecast import forecast_modes
 from companion.vehicle.imm_noise import BEND_ACCELERATION_STD, BEND_STD
-from companion.vehicle.imm_numbers import Deck, noises_with, numbers_of
+from companion.vehicle.imm_numbers import EASING, STEADY, TURNING, Deck, noises_with, numbers_of
 from companion.vehicle.imm_swing import SIZE
 from tests.companion.vehicle.test_imm_kernels import MOTION, NOISE, a_state
 
@@ -22,11 +22,19 @@ def test_each_model_differs_from_steady_driving_in_what_it_is_for() -> None:
 
 def test_what_is_learnt_of_steady_driving_holds_for_each_model_but_for_its_own_manoeuvre() -> None:
     numbers = numbers_of(ImmConfig(), Deck())
-    noises = noises_with(numbers, 0.0, 0.0, (0.017, 0.019), turn_is_measured=False)
-    assert [JERK not in own for own in [set[int](), *OWN]] == (noises[:, JERK] == 0.017).tolist()
-    assert [LATERAL not in own for own in [set[int](), *OWN]] == (noises[:, LATERAL] == 0.019).tolist()
+    noises = noises_with(numbers, 0.0, 0.0, (0.217, 0.219), turn_is_measured=False)
+    assert [JERK not in own for own in [set[int](), *OWN]] == (noises[:, JERK] == 0.217).tolist()
+    assert [LATERAL not in own for own in [set[int](), *OWN]] == (noises[:, LATERAL] == 0.219).tolist()
     kept = np.delete(np.arange(noises.shape[1]), [JERK, LATERAL])
     assert (noises[:, kept] == noises_with(numbers, 0.0, 0.0, (1.0, 1.0), turn_is_measured=False)[:, kept]).all()
+
+
+def test_no_steady_model_is_as_wide_as_a_manoeuvre_nor_narrower_than_an_ordinary_drivers() -> None:
+    numbers = numbers_of(ImmConfig(), Deck())
+    wild, tame = (noises_with(numbers, 0.0, 0.0, (psd, psd), turn_is_measured=False) for psd in (1e6, 0.0))
+    for place, manoeuvre in ((JERK, EASING), (LATERAL, TURNING)):
+        assert wild[STEADY, place] == pytest.approx(0.1 * wild[manoeuvre, place])
+        assert tame[STEADY, place] == numbers.noises[STEADY, place]
 
 
 def test_water_has_no_ramps_and_a_vessel_is_steered_like_none_on_wheels() -> None:

@@ -1,6 +1,7 @@
 """How steadily a vehicle is driven is learnt from how its accelerations change while no manoeuvre begins."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,9 +9,9 @@ import pytest
 from companion.config.estimation import EstimatorKind, ImmConfig
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_swing import SIZE
-from companion.vehicle.steady_driving import LAG_S, MEMORY_S, PRIOR_S, SteadyDriving, learn, passed
+from companion.vehicle.steady_driving import LAG_S, MEMORY_S, PRIOR_S, SteadyDriving, Watched, learn, passed
 from link.records import replace
-from tests.companion.vehicle.drives import NOMINAL, Drive, drive, straight
+from tests.companion.vehicle.drives import FIX_ONLY, NOMINAL, Drive, Sensors, drive, random_drive, straight
 from tests.companion.vehicle.rides import estimator, ride
 
 CONFIG = ImmConfig()
@@ -138,3 +139,25 @@ def test_vehicle_that_sways_is_more_in_doubt_than_one_that_drives_evenly() -> No
     even = straight(SPEED_M_S, 40.0)
     swaying = drive(40.0, lambda _: SPEED_M_S, lambda t_s: 0.03 * math.sin(2.0 * t_s))  # 1.9 m/s^2 to the side
     assert doubt_m_s(swaying, 35.0) > 1.5 * doubt_m_s(even, 35.0)
+
+
+@pytest.mark.parametrize("sensors", [NOMINAL, replace(FIX_ONLY, fix_std_m=0.1)], ids=["nominal", "fixes only"])
+def test_filter_tells_a_random_driver_from_an_even_one(sensors: Sensors) -> None:
+    """The random one's accelerations walk at 0.43 m^2/s^5: 2 (0.8 m/s^2)^2 / 3 s."""
+    random = [driving_of(random_drive(seed), sensors, seed) for seed in range(8)]
+    even = [driving_of(straight(7.0), sensors, seed) for seed in range(4)]
+    for axis in ("along", "across"):
+        found = mean_psd_m2_s5([getattr(one, axis) for one in random])
+        assert 0.5 < found / 0.43 < 2.0
+        assert mean_psd_m2_s5([getattr(one, axis) for one in even]) < found / 1.5
+
+
+def driving_of(truth: Drive, sensors: Sensors, seed: int) -> SteadyDriving:
+    memory: Any = ride(estimator(EstimatorKind.IMM), truth, sensors, seed, from_s=18.0).memory
+    driving = memory.newest.state.driving
+    assert isinstance(driving, SteadyDriving)
+    return driving
+
+
+def mean_psd_m2_s5(watched_ones: list[Watched]) -> float:
+    return sum(one.squares_m2_s4 for one in watched_ones) / sum(one.seen_s for one in watched_ones)
