@@ -9,6 +9,7 @@ has begun in it. Nobody is taken to be steadier than ordinary: who drives straig
 """
 
 import math
+from typing import NamedTuple
 
 from msgspec import Struct
 
@@ -36,23 +37,26 @@ class Watched(Struct, frozen=True, kw_only=True):
         return max(mean_m2_s5, ordinary_m2_s5)
 
 
+class Known(NamedTuple):
+    """What a filter knows of a number: acceleration, m/s^2, or curvature, rad/m."""
+
+    mean: float
+    variance: float
+
+
 class Begun(Struct, frozen=True, kw_only=True):
     """What was known when a pair began.
 
     Attributes:
-        along_m_s2: acceleration along the track.
-        along_variance_m2_s4: of it.
-        curvature_rad_m: of the track.
-        curvature_variance_rad2_m2: of it.
+        along: acceleration along the track.
+        curvature: of the track.
         speed_m_s: horizontal.
         pedals: probability that a pedal was moved anew then or since.
         wheel: that the wheel was.
     """
 
-    along_m_s2: float
-    along_variance_m2_s4: float
-    curvature_rad_m: float
-    curvature_variance_rad2_m2: float
+    along: Known
+    curvature: Known
     speed_m_s: float
     pedals: float
     wheel: float
@@ -101,21 +105,15 @@ def learn(driving: SteadyDriving, modes: Modes, config: ImmConfig) -> SteadyDriv
     if now.speed_m_s < config.heading.curvature_speed_min_m_s:
         return without_pair(driving)
     begun, lag_s = driving.begun, driving.passed_s
+    pedals, wheel = (0.0, 0.0) if begun is None else (max(begun.pedals, now.pedals), max(begun.wheel, now.wheel))
     if begun is not None and lag_s < LAG_S:
-        disturbed = replace(begun, pedals=max(begun.pedals, now.pedals), wheel=max(begun.wheel, now.wheel))
-        return replace(driving, begun=disturbed)
+        return replace(driving, begun=replace(begun, pedals=pedals, wheel=wheel))
     keep = math.exp(-lag_s / MEMORY_S)
     along, across = _faded(driving.along, keep), _faded(driving.across, keep)
     if begun is not None and lag_s < _LAG_MAX_S:
-        if begun.along_variance_m2_s4 < _SETTLED * now.along_variance_m2_s4:
-            square = (now.along_m_s2 - begun.along_m_s2) ** 2 + now.along_variance_m2_s4 - begun.along_variance_m2_s4
-            along = _with_change(along, square, 1.0 - begun.pedals, lag_s)
-        if begun.curvature_variance_rad2_m2 < _SETTLED * now.curvature_variance_rad2_m2:
-            fallen = begun.curvature_variance_rad2_m2 - now.curvature_variance_rad2_m2
-            square = ((now.curvature_rad_m - begun.curvature_rad_m) ** 2 - fallen) * (
-                begun.speed_m_s * now.speed_m_s
-            ) ** 2
-            across = _with_change(across, square, 1.0 - begun.wheel, lag_s)
+        along = _with_change(along, begun.along, now.along, (1.0 - pedals, lag_s, 1.0))
+        turned = (1.0 - wheel, lag_s, begun.speed_m_s * now.speed_m_s)
+        across = _with_change(across, begun.curvature, now.curvature, turned)
     return SteadyDriving(along=along, across=across, begun=now)
 
 
@@ -125,11 +123,10 @@ def _known(modes: Modes) -> Begun:
     x, P = means[STEADY], covariances[STEADY]
     speed_m_s = math.hypot(x[2], x[3])
     ux, uy = (float(x[2]) / speed_m_s, float(x[3]) / speed_m_s) if speed_m_s > 0.0 else (0.0, 0.0)
+    variance = ux * ux * float(P[4, 4]) + uy * uy * float(P[5, 5]) + 2.0 * ux * uy * float(P[4, 5])
     return Begun(
-        along_m_s2=ux * float(x[4]) + uy * float(x[5]),
-        along_variance_m2_s4=ux * ux * float(P[4, 4]) + uy * uy * float(P[5, 5]) + 2.0 * ux * uy * float(P[4, 5]),
-        curvature_rad_m=float(x[6]),
-        curvature_variance_rad2_m2=float(P[6, 6]),
+        along=Known(ux * float(x[4]) + uy * float(x[5]), variance),
+        curvature=Known(float(x[6]), float(P[6, 6])),
         speed_m_s=speed_m_s,
         pedals=float(weights[EASING] + weights[BRAKING]),
         wheel=float(weights[TURNING]),
@@ -140,7 +137,19 @@ def _faded(watched: Watched, keep: float) -> Watched:
     return Watched(squares_m2_s4=keep * watched.squares_m2_s4, seen_s=keep * watched.seen_s)
 
 
-def _with_change(watched: Watched, square_m2_s4: float, counts: float, lag_s: float) -> Watched:
+def _with_change(watched: Watched, before: Known, now: Known, pair: tuple[float, float, float]) -> Watched:
+    """Return what has been seen with another pair.
+
+    Args:
+        watched: so far.
+        before: at its beginning.
+        now: at its end.
+        pair: probability that it counts, its length, s, and the acceleration, m/s^2, that 1 of what is known makes.
+    """
+    if before.variance > _SETTLED * now.variance:
+        return watched
+    counts, lag_s, unit_m_s2 = pair
+    square = ((now.mean - before.mean) ** 2 + now.variance - before.variance) * unit_m_s2**2
     return Watched(
-        squares_m2_s4=max(watched.squares_m2_s4 + counts * square_m2_s4, 0.0), seen_s=watched.seen_s + counts * lag_s
+        squares_m2_s4=max(watched.squares_m2_s4 + counts * square, 0.0), seen_s=watched.seen_s + counts * lag_s
     )

@@ -97,6 +97,7 @@ def test_doubt_that_shrinks_is_told_from_driving() -> None:
 
 def test_swerve_that_has_a_model_of_its_own_makes_no_unsteady_driver() -> None:
     assert pair(known(0.0, 0.0), known(0.0, 4.0)).psd_m2_s5(PRIOR)[1] > PRIOR[1]
+    assert pair(known(0.0, 0.0), known(0.0, 4.0, turning=1.0)).psd_m2_s5(PRIOR) == PRIOR
     driving = SteadyDriving()
     for across_m_s2, turning in ((0.0, 0.0), (4.0, 1.0), (4.0, 0.0), (4.0, 0.0)):
         driving = learn(passed(driving, 0.5 * LAG_S), known(0.0, across_m_s2, turning=turning), CONFIG)
