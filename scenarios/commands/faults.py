@@ -77,7 +77,7 @@ def faults_command(
 
 
 def _fly(cases: Sequence["Case"], workers: int | None, *, wire: bool) -> Iterator["Ended"]:
-    """Let each fault happen in its phase; yield how that ended, in the order of the cases, as soon as it is known."""
+    """Let each fault happen in its phase; yield how that ended, in the order of the cases, while others still fly."""
     from scenarios.faults.trial import fly_case, fly_case_over_wire, lost
     from scenarios.processes.local_workers import LocalWorkers, core_count
     from scenarios.processes.pool import run_tasks
