@@ -11,13 +11,13 @@ import numpy as np
 from msgspec import Struct
 
 from companion.vehicle.hindsight import Driven
+from companion.vehicle.steady_driving import MEMORY_S
 from link.records import replace
 
 SLOWS, SPEEDS_UP, TURNS, DEPARTS = range(4)
 PRIOR_GAPS_S = (23.0, 39.0, 40.0, 6.4)
 """Mean times between two of them in 26,000 s of 300 of the domain's worlds, counted as here. Of turns those that change
 the acceleration to the side by 1 m/s^2 within a second; `update_drivers` misses two in five of them."""
-_FORGETS_S = 60.0  # longer than a landing; a driver in town is another one on the road out
 _COMPARED = 10  # velocities, of a second, over which a receiver's error of 0.1 m/s counts little
 _APART_MAX_S = 2.0  # farther apart there was an outage
 _BEGINS_M_S2 = 1.0  # the least of the drivers' decelerations (odd.toml, `driver.stop_m_s2`)
@@ -82,7 +82,7 @@ def update_drivers(drivers: Drivers, driven: tuple[Driven, ...]) -> Drivers:
 
 
 def _forget(drivers: Drivers, since_s: float, *, stands: bool) -> Drivers:
-    left = math.exp(-since_s / _FORGETS_S)
+    left = math.exp(-since_s / MEMORY_S)
     return replace(
         drivers,
         counts=tuple(left * count for count in drivers.counts),

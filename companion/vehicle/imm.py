@@ -207,7 +207,7 @@ class ImmModel:
             self.numbers,
             receivers.frame_offset_walk_m2_s + walk_m2_s + fine_walk_m2_s(state, receivers),
             receivers.own_walk_share * walk_m2_s,
-            state.driving.psd_m2_s5(self.numbers.ordinary_m2_s5),
+            state.driving.psd_m2_s5(self.numbers.steady_m2_s5),
             turn_is_measured=state.turn_age_s < TURN_AGE_MAX_S,
         )
 

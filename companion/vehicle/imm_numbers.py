@@ -32,6 +32,8 @@ from link.messages import PadGeometry, Vector3
 UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
 STEADY, EASING, BRAKING, TURNING, RAMP = range(5)
 """The models in their order."""
+Bounds = tuple[float, float]
+_STEADY_SHARE_MAX = 0.1  # of a manoeuvre's noise: a steady model as wide would be none, and the two not told apart
 ON_THE_SPOT_RAD_M = 10.0  # 1 rad/s while the middle moves at 0.1 m/s
 
 
@@ -71,7 +73,8 @@ class Numbers:
         begins_after_s: (n,) of the modes, as `imm_mixing.switching` takes it.
         noises: (n, 16) as `imm_noise.process_noise` takes them, but for what depends on the state (`noises_with`).
         is_steady: (2, n) whether each mode is steady along the track, and across it.
-        ordinary_m2_s5: how fast an ordinary driver's, or helm's, accelerations along the track and across it walk.
+        steady_m2_s5: how fast a steady driver's, or helm's, accelerations along the track and across it walk: the
+            ordinary one's, and at most.
         lever_m: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll.
         prior_variances: (24,) of every state but position, offset and clock, when nothing else is known.
         course: (3,) as `imm_judgement.take_reading` takes it.
@@ -81,7 +84,7 @@ class Numbers:
     begins_after_s: Array
     noises: Array
     is_steady: Array
-    ordinary_m2_s5: tuple[float, float]
+    steady_m2_s5: tuple[Bounds, Bounds]
     lever_m: Array
     prior_variances: Array
     course: Array
@@ -114,9 +117,12 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
         begins_after_s=np.array([mode.begins_after_s for mode in modes]),
         noises=np.array([_noise(config, mode, is_afloat=deck.is_afloat) for mode in modes]),
         is_steady=np.array([_is_steady(config, name) for name in ("jerk_psd_m2_s5", "lateral_acceleration_psd_m2_s5")]),
-        ordinary_m2_s5=(
-            config.steady.jerk_psd_m2_s5,
-            config.helm_psd_m2_s5 if deck.is_afloat else config.steady.lateral_acceleration_psd_m2_s5,
+        steady_m2_s5=(
+            _bounds(config.steady.jerk_psd_m2_s5, config.easing.jerk_psd_m2_s5),
+            _bounds(
+                config.helm_psd_m2_s5 if deck.is_afloat else config.steady.lateral_acceleration_psd_m2_s5,
+                config.turning.lateral_acceleration_psd_m2_s5,
+            ),
         ),
         lever_m=np.array(lever_m),
         prior_variances=_prior_variances(config, is_afloat=deck.is_afloat),
@@ -124,7 +130,8 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
     )
 
 
-_STEADY_SHARE_MAX = 0.1  # of a manoeuvre's noise: a steady model as wide would be none, and the two not told apart
+def _bounds(ordinary_m2_s5: float, manoeuvre_m2_s5: float) -> Bounds:
+    return ordinary_m2_s5, max(ordinary_m2_s5, _STEADY_SHARE_MAX * manoeuvre_m2_s5)
 
 
 @lru_cache(maxsize=4)  # without sightings it changes with a fix's stated error, and with every pair of `steady_driving`
@@ -138,8 +145,7 @@ def noises_with(
 ) -> Array:
     """Return the modes' noise (n, 16) with the wandering of the vehicle's receiver and of the drone's own place.
 
-    `psd_m2_s5` is how fast the accelerations along the track and across it walk while nothing new begins, as far as
-    they may.
+    `psd_m2_s5` is how fast the accelerations along the track and across it walk while nothing new begins.
 
     Where the drone's own place does not wander, fixes have corrections, and are dated without an error.
     A vehicle whose turning is measured may be one that turns on the spot. Any other is taken for a car: it turns no
@@ -147,16 +153,7 @@ def noises_with(
     """
     noises = numbers.noises.copy()
     noises[:, RECEIVER_NOISE], noises[:, OWN_NOISE] = receiver_m2_s, own_m2_s
-    for place, is_steady, psd, ordinary, manoeuvre in zip(
-        (ALONG_NOISE, ACROSS_NOISE),
-        numbers.is_steady,
-        psd_m2_s5,
-        numbers.ordinary_m2_s5,
-        (EASING, TURNING),
-        strict=True,
-    ):
-        most = _STEADY_SHARE_MAX * float(numbers.noises[manoeuvre, place])
-        noises[is_steady, place] = max(min(psd, most), ordinary)
+    noises[numbers.is_steady[0], ALONG_NOISE], noises[numbers.is_steady[1], ACROSS_NOISE] = psd_m2_s5
     if not own_m2_s:
         noises[:, CLOCK_NOISE] = 0.0
     if turn_is_measured:

@@ -15,7 +15,7 @@ from msgspec import Struct
 
 from companion.config.estimation import ImmConfig
 from companion.vehicle.imm_mixing import Modes
-from companion.vehicle.imm_numbers import BRAKING, EASING, STEADY, TURNING
+from companion.vehicle.imm_numbers import BRAKING, EASING, STEADY, TURNING, Bounds
 from link.records import replace
 
 MEMORY_S = 60.0  # longer than a landing; a driver in town is another one on the road out
@@ -31,10 +31,11 @@ class Watched(Struct, frozen=True, kw_only=True):
     squares_m2_s4: float = 0.0
     seen_s: float = 0.0
 
-    def psd_m2_s5(self, ordinary_m2_s5: float) -> float:
-        """Return how fast the acceleration walks, given how fast an ordinary driver's does."""
+    def psd_m2_s5(self, bounds: Bounds) -> float:
+        """Return how fast the acceleration walks, given how fast an ordinary driver's does and any steady one's may."""
+        ordinary_m2_s5, most_m2_s5 = bounds
         mean_m2_s5 = (PRIOR_S * ordinary_m2_s5 + self.squares_m2_s4) / (PRIOR_S + self.seen_s)
-        return max(mean_m2_s5, ordinary_m2_s5)
+        return min(max(mean_m2_s5, ordinary_m2_s5), most_m2_s5)
 
 
 class Known(NamedTuple):
@@ -77,10 +78,9 @@ class SteadyDriving(Struct, frozen=True, kw_only=True):
     begun: Begun | None = None
     passed_s: float = 0.0
 
-    def psd_m2_s5(self, ordinary_m2_s5: tuple[float, float]) -> tuple[float, float]:
-        """Return how fast the accelerations along the track and across it walk, given an ordinary driver's."""
-        along_m2_s5, across_m2_s5 = ordinary_m2_s5
-        return self.along.psd_m2_s5(along_m2_s5), self.across.psd_m2_s5(across_m2_s5)
+    def psd_m2_s5(self, bounds: tuple[Bounds, Bounds]) -> tuple[float, float]:
+        """Return how fast the accelerations along the track and across it walk, each within its bounds."""
+        return self.along.psd_m2_s5(bounds[0]), self.across.psd_m2_s5(bounds[1])
 
 
 def passed(driving: SteadyDriving, dt_s: float) -> SteadyDriving:

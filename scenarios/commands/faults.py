@@ -3,7 +3,7 @@
 import json
 import math
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Generator, Iterable, Iterator, Sequence
 from contextlib import closing
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -67,8 +67,8 @@ def faults_command(
     ]
     if not cases:
         raise UserError(f"no fault has {fault!r} in its name, or no landing has a phase {phase!r}: leave one out")
-    flown = map(_row, _fly(cases, workers, wire=wire))
-    rows = list(flown) if as_json else list(_told(flown))
+    with closing(_fly(cases, workers, wire=wire)) as flown:
+        rows = list(map(_row, flown) if as_json else _told(map(_row, flown)))
     if as_json:
         sys.stdout.write(json.dumps({"cases": rows}, indent=2) + "\n")
     else:
@@ -76,7 +76,7 @@ def faults_command(
     return 0 if all(row["right"] for row in rows) else 1
 
 
-def _fly(cases: Sequence["Case"], workers: int | None, *, wire: bool) -> Iterator["Ended"]:
+def _fly(cases: Sequence["Case"], workers: int | None, *, wire: bool) -> Generator["Ended", None, None]:
     """Let each fault happen in its phase; yield how that ended, in the order of the cases, while others still fly."""
     from scenarios.faults.trial import fly_case, fly_case_over_wire, lost
     from scenarios.processes.local_workers import LocalWorkers, core_count

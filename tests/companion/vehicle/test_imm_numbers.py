@@ -6,7 +6,7 @@ import pytest
 from companion.config.estimation import ImmConfig
 from companion.vehicle.imm_forecast import forecast_modes
 from companion.vehicle.imm_noise import BEND_ACCELERATION_STD, BEND_STD
-from companion.vehicle.imm_numbers import EASING, STEADY, TURNING, Deck, noises_with, numbers_of
+from companion.vehicle.imm_numbers import Deck, noises_with, numbers_of
 from companion.vehicle.imm_swing import SIZE
 from tests.companion.vehicle.test_imm_kernels import MOTION, NOISE, a_state
 
@@ -29,20 +29,21 @@ def test_what_is_learnt_of_steady_driving_holds_for_each_model_but_for_its_own_m
     assert (noises[:, kept] == noises_with(numbers, 0.0, 0.0, (1.0, 1.0), turn_is_measured=False)[:, kept]).all()
 
 
-def test_no_steady_model_is_as_wide_as_a_manoeuvre_nor_narrower_than_an_ordinary_drivers() -> None:
-    numbers = numbers_of(ImmConfig(), Deck())
-    wild, tame = (noises_with(numbers, 0.0, 0.0, (psd, psd), turn_is_measured=False) for psd in (1e6, 0.0))
-    for place, manoeuvre in ((JERK, EASING), (LATERAL, TURNING)):
-        assert wild[STEADY, place] == pytest.approx(0.1 * wild[manoeuvre, place])
-        assert tame[STEADY, place] == numbers.noises[STEADY, place]
+def test_steady_driver_who_is_configured_as_wild_as_a_manoeuvre_stays_so() -> None:
+    config = ImmConfig()
+    config = config.model_copy(update={"steady": config.steady.model_copy(update={"jerk_psd_m2_s5": 5.0})})
+    assert numbers_of(config, Deck()).steady_m2_s5[0] == (5.0, 5.0)
 
 
 def test_water_has_no_ramps_and_a_vessel_is_steered_like_none_on_wheels() -> None:
     config = ImmConfig()
     afloat, on_road = (numbers_of(config, Deck(is_afloat=is_afloat)) for is_afloat in (True, False))
     assert np.all(afloat.noises[:, BEND_STD] == 0.0)
-    assert afloat.ordinary_m2_s5 == (config.steady.jerk_psd_m2_s5, config.helm_psd_m2_s5)
-    assert on_road.ordinary_m2_s5 == (config.steady.jerk_psd_m2_s5, config.steady.lateral_acceleration_psd_m2_s5)
+    assert afloat.steady_m2_s5[0] == on_road.steady_m2_s5[0]
+    assert [one.steady_m2_s5[1][0] for one in (afloat, on_road)] == [
+        config.helm_psd_m2_s5,
+        config.steady.lateral_acceleration_psd_m2_s5,
+    ]
 
 
 def test_forecast_over_two_kinds_of_road_has_the_mean_of_their_variances() -> None:

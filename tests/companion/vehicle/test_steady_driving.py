@@ -8,6 +8,7 @@ import pytest
 
 from companion.config.estimation import EstimatorKind, ImmConfig
 from companion.vehicle.imm_mixing import Modes
+from companion.vehicle.imm_numbers import Deck, numbers_of
 from companion.vehicle.imm_swing import SIZE
 from companion.vehicle.steady_driving import LAG_S, MEMORY_S, PRIOR_S, SteadyDriving, Watched, learn, passed
 from link.records import replace
@@ -15,6 +16,7 @@ from tests.companion.vehicle.drives import FIX_ONLY, NOMINAL, Drive, Sensors, dr
 from tests.companion.vehicle.rides import estimator, ride
 
 CONFIG = ImmConfig()
+BOUNDS = numbers_of(CONFIG, Deck()).steady_m2_s5
 PRIOR = (CONFIG.steady.jerk_psd_m2_s5, CONFIG.steady.lateral_acceleration_psd_m2_s5)
 DT_S = 0.1
 SPEED_M_S = 8.0
@@ -55,7 +57,7 @@ def pair(before: Modes, now: Modes, lag_s: float = LAG_S) -> SteadyDriving:
 
 
 def test_driver_who_was_not_watched_is_taken_for_an_ordinary_one() -> None:
-    assert SteadyDriving().psd_m2_s5(PRIOR) == PRIOR
+    assert SteadyDriving().psd_m2_s5(BOUNDS) == PRIOR
 
 
 @pytest.mark.parametrize("psd_m2_s5", [(0.02, 2.0), (0.4, 0.4), (3.0, 0.03)])
@@ -65,11 +67,17 @@ def test_what_is_learnt_is_how_fast_the_accelerations_walk(psd_m2_s5: tuple[floa
         found = np.mean([axis.squares_m2_s4 / axis.seen_s for axis in axes])
         assert found == pytest.approx(psd_m2_s5[i], rel=0.15)
         weighted = (PRIOR_S * PRIOR[i] + axes[0].squares_m2_s4) / (PRIOR_S + axes[0].seen_s)
-        assert axes[0].psd_m2_s5(PRIOR[i]) == pytest.approx(max(weighted, PRIOR[i]))
+        assert axes[0].psd_m2_s5(BOUNDS[i]) == pytest.approx(np.clip(weighted, *BOUNDS[i]))
 
 
 def test_nobody_is_steadier_than_ordinary() -> None:
-    assert watched((0.0, 0.0), 600.0).psd_m2_s5(PRIOR) == PRIOR
+    assert watched((0.0, 0.0), 600.0).psd_m2_s5(BOUNDS) == PRIOR
+
+
+def test_no_steady_driver_is_as_wild_as_a_manoeuvre() -> None:
+    along_m2_s5, across_m2_s5 = watched((100.0, 1000.0), 120.0).psd_m2_s5(BOUNDS)
+    assert along_m2_s5 == pytest.approx(0.1 * CONFIG.easing.jerk_psd_m2_s5)
+    assert across_m2_s5 == pytest.approx(0.1 * CONFIG.turning.lateral_acceleration_psd_m2_s5)
 
 
 def test_speeding_up_in_an_even_curve_is_no_steering() -> None:
@@ -80,7 +88,7 @@ def test_speeding_up_in_an_even_curve_is_no_steering() -> None:
 
 
 def test_filter_that_is_not_sure_yet_teaches_nothing() -> None:
-    assert pair(known(0.0, 0.0, std_m_s2=3.0), known(4.0, -4.0)).psd_m2_s5(PRIOR) == PRIOR
+    assert pair(known(0.0, 0.0, std_m_s2=3.0), known(4.0, -4.0)).psd_m2_s5(BOUNDS) == PRIOR
 
 
 def test_doubt_that_shrinks_is_told_from_driving() -> None:
@@ -96,12 +104,12 @@ def test_doubt_that_shrinks_is_told_from_driving() -> None:
 
 
 def test_swerve_that_has_a_model_of_its_own_makes_no_unsteady_driver() -> None:
-    assert pair(known(0.0, 0.0), known(0.0, 4.0)).psd_m2_s5(PRIOR)[1] > PRIOR[1]
-    assert pair(known(0.0, 0.0), known(0.0, 4.0, turning=1.0)).psd_m2_s5(PRIOR) == PRIOR
+    assert pair(known(0.0, 0.0), known(0.0, 4.0)).psd_m2_s5(BOUNDS)[1] > PRIOR[1]
+    assert pair(known(0.0, 0.0), known(0.0, 4.0, turning=1.0)).psd_m2_s5(BOUNDS) == PRIOR
     driving = SteadyDriving()
     for across_m_s2, turning in ((0.0, 0.0), (4.0, 1.0), (4.0, 0.0), (4.0, 0.0)):
         driving = learn(passed(driving, 0.5 * LAG_S), known(0.0, across_m_s2, turning=turning), CONFIG)
-    assert driving.psd_m2_s5(PRIOR) == PRIOR
+    assert driving.psd_m2_s5(BOUNDS) == PRIOR
 
 
 @pytest.mark.parametrize("pause_s", [3.0, 600.0, 36_000.0])
