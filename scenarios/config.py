@@ -103,13 +103,22 @@ class OwnStateConfig(StrictModel):
     """How well the autopilot knows its own state; all zero is the truth."""
 
     position_std_m: NotNegative = 0.0  # on each axis, as are the velocity's
+    height_std_m: NotNegative | None = None  # of the height; None: as on the others
     velocity_std_m_s: NotNegative = 0.0
     origin_step_range_m: tuple[NotNegative, NotNegative] = (0.0, 0.0)  # one step of its origin in flight, drawn
     origin_step_at_s: NotNegative | None = None  # since the start; within `disturbed_between_s` where None
 
 
+class RangeConfig(StrictModel):
+    """The drone's range finder; by default one that is always right."""
+
+    white_m: NotNegative = 0.0  # of a reading
+    min_m: NotNegative = 0.0
+    max_m: Positive = 100.0
+
+
 class SensorsConfig(StrictModel):
-    """The sensors on the vehicle and for the vehicle; None where there is none."""
+    """The sensors on the vehicle and for the vehicle, and the drone's own; None where there is none."""
 
     fix: FixConfig
     velocity: VelocityConfig | None = None
@@ -120,6 +129,7 @@ class SensorsConfig(StrictModel):
     frame_offset_m: NotNegative = 0.0
     clock: ClockConfig = ClockConfig()
     own_state: OwnStateConfig = OwnStateConfig()
+    range_finder: RangeConfig = RangeConfig()
 
 
 class WindConfig(StrictModel):

@@ -14,6 +14,7 @@ from sim_autopilot.core.links import Later, LinkMemory, Links, Outbox, with_link
 from sim_autopilot.core.modes import Modes
 from sim_autopilot.core.parameters import Values
 from sim_autopilot.core.places import Places
+from sim_autopilot.core.range_finder import RangeFinderModel
 from sim_autopilot.core.settings import FlightSettings
 from sim_autopilot.flight.climb import Climb
 from sim_autopilot.flight.flight import ModeFlight
@@ -50,6 +51,7 @@ class AutopilotConfig(Struct, frozen=True, kw_only=True):
         parameters: values that differ from the firmware's defaults.
         endurance_s: of motors running on one battery.
         own_state: how well it knows where it is.
+        range_finder: that looks down.
         links: of each MAVLink link the rates at which it streams, in Hz by message id; None for the firmware's own.
         services: what answers beside the flight.
     """
@@ -65,6 +67,7 @@ class AutopilotConfig(Struct, frozen=True, kw_only=True):
     parameters: Values = field(default_factory=dict)
     endurance_s: float = 1200.0
     own_state: OwnStateModel = field(default_factory=OwnStateModel)
+    range_finder: RangeFinderModel = field(default_factory=RangeFinderModel)
     links: tuple[Mapping[int, float] | None, ...] = (None,)
     services: Services = NO_SERVICES
 
@@ -120,9 +123,10 @@ class Heard(Struct, frozen=True, kw_only=True, eq=False):
 
 
 class World(Struct, frozen=True, kw_only=True, eq=False):
-    """What is about the drone: the vehicle, for the range finder, and the air, for WIND_COV."""
+    """What is about the drone: the vehicle, for the range finder with its error, and the air, for WIND_COV."""
 
     deck: Deck | None = None
+    range_error_m: float = 0.0
     wind_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
 
 
@@ -189,6 +193,7 @@ class AutopilotInputs(Struct, frozen=True, kw_only=True, eq=False):
         deck: the vehicle at its own time, None without one.
         wind_enu_m_s: (3,).
         own_error: (6,) m and m/s in W, of the autopilot's estimate of its position and velocity.
+        range_error_m: of what its range finder would measure now.
     """
 
     t_ns: int
@@ -196,6 +201,7 @@ class AutopilotInputs(Struct, frozen=True, kw_only=True, eq=False):
     deck: Deck | None
     wind_enu_m_s: Array
     own_error: Array = field(default_factory=lambda: NO_ERROR)
+    range_error_m: float = 0.0
     links: tuple[int, ...] = ()
 
 

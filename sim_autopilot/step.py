@@ -171,7 +171,7 @@ def _advance(memory: AutopilotMemory, inputs: AutopilotInputs, config: Autopilot
         plant=plant,
         now=now,
         course=course,
-        world=World(deck=inputs.deck, wind_enu_m_s=(east, north, up)),
+        world=World(deck=inputs.deck, range_error_m=inputs.range_error_m, wind_enu_m_s=(east, north, up)),
         places=replace(memory.places, chart=near(memory.places.chart, now.position_enu_m)),
     )
 

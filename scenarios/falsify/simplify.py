@@ -10,7 +10,7 @@ from typing import Any
 
 from link.errors import UserError
 from link.program.toml_config import validate
-from scenarios.config import ChannelConfig, ClockConfig, OwnStateConfig, Scenario, WindConfig
+from scenarios.config import ChannelConfig, ClockConfig, OwnStateConfig, RangeConfig, Scenario, WindConfig
 from sim_autopilot.runtime.config import DroneConfig
 
 Table = dict[str, Any]
@@ -23,6 +23,7 @@ _IDEAL_SECTIONS: dict[tuple[str, ...], Table] = {
     ("link", "detector"): ChannelConfig().model_dump(mode="json"),
     ("sensors", "clock"): ClockConfig().model_dump(mode="json"),
     ("sensors", "own_state"): OwnStateConfig().model_dump(mode="json"),
+    ("sensors", "range_finder"): RangeConfig().model_dump(mode="json"),
     ("system", "drone"): DroneConfig().model_dump(mode="json"),
 }
 _IDEAL_SENSOR = {

@@ -3,13 +3,14 @@
 import math
 
 from link.messages import Vector3
-from scenarios.config import Scenario, SensorsConfig
+from scenarios.config import RangeConfig, Scenario, SensorsConfig
 from scenarios.simulation.noise import Seed, instant_s, named_rng
 from scenarios.simulation.vehicle import VehicleMemory, vehicle_at
 from scenarios.simulation.vehicle_node import plan_of
 from sim_autopilot.runtime.config import (
     RECEIVER_ACCURACY_MIN_M,
     OwnStateConfig,
+    RangeFinderConfig,
     SimAutopilotConfig,
     StartConfig,
     VehicleConfig,
@@ -39,6 +40,7 @@ def sim_autopilot_config(scenario: Scenario, seed: Seed, *, instant: bool) -> Si
         drone=scenario.system.drone,
         wind=_wind(scenario, seed),
         own_state=_own_state(scenario, seed),
+        range_finder=_range_finder(scenario.sensors.range_finder),
         vehicle=VehicleConfig(length_m=body.length_m, width_m=body.width_m, roof_height_m=body.roof_height_m),
         parameters=scenario.system.parameters.get(scenario.firmware, {}),
     )
@@ -77,11 +79,16 @@ def _own_state(scenario: Scenario, seed: Seed) -> OwnStateConfig:
     step_m, angle_rad = float(rng.uniform(*own.origin_step_range_m)), float(rng.uniform(-math.pi, math.pi))
     return OwnStateConfig(
         position_std_m=own.position_std_m,
+        height_std_m=own.height_std_m,
         velocity_std_m_s=own.velocity_std_m_s,
         receiver_accuracy_m=_receiver_accuracy_m(scenario.sensors),
         origin_step_enu_m=(step_m * math.cos(angle_rad), step_m * math.sin(angle_rad), 0.0) if step_m > 0.0 else None,
         origin_step_s=instant_s(scenario, seed, "origin step", own.origin_step_at_s),
     )
+
+
+def _range_finder(config: RangeConfig) -> RangeFinderConfig:
+    return RangeFinderConfig(white_std_m=config.white_m, min_m=config.min_m, max_m=config.max_m)
 
 
 def _receiver_accuracy_m(sensors: SensorsConfig) -> float:

@@ -70,7 +70,8 @@ class Simulation:
         settings = sim_autopilot_config(scenario, seed, instant=instant)
         config = autopilot_config(settings)
         own_state = replace(config.own_state, seed=part_seed(seed, "own state"))
-        self.autopilot = AutopilotNode(replace(config, own_state=own_state), start_ns)
+        range_finder = replace(config.range_finder, seed=part_seed(seed, "range finder"))
+        self.autopilot = AutopilotNode(replace(config, own_state=own_state, range_finder=range_finder), start_ns)
         self._body = scenario.vehicle
         self._wind = wind_model(settings, part_seed(seed, "turbulence"))
         self._wind_enu_m_s = np.zeros(3)

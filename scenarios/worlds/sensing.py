@@ -8,6 +8,7 @@ from scenarios.config import (
     LinkConfig,
     OwnStateConfig,
     PatternConfig,
+    RangeConfig,
     SensorsConfig,
     VelocityConfig,
 )
@@ -27,6 +28,11 @@ def draw_sensors(draws: Draws) -> SensorsConfig:
             offset_max_s=draws.number("sensors.clock_offset_s"), drift_max=draws.number("sensors.clock_drift")
         ),
         own_state=_own_state(draws),
+        range_finder=RangeConfig(
+            white_m=draws.number("sensors.range_white_m"),
+            min_m=draws.number("sensors.range_min_m"),
+            max_m=draws.number("sensors.range_max_m"),
+        ),
     )
 
 
@@ -86,6 +92,7 @@ def _own_state(draws: Draws) -> OwnStateConfig:
     at_s = draws.number("sensors.origin_step_at_s")
     return OwnStateConfig(
         position_std_m=draws.number("sensors.own_position_std_m"),
+        height_std_m=draws.number("sensors.own_height_std_m"),
         velocity_std_m_s=draws.number("sensors.own_velocity_std_m_s"),
         origin_step_range_m=(step_m, step_m),
         origin_step_at_s=at_s,

@@ -27,6 +27,7 @@ class OwnStateModel:
     Attributes:
         seed: of the errors, or the generator that draws them.
         position_std_m: zero is the truth.
+        height_std_m: of the height, None where it is as good as the rest of the position.
         velocity_std_m_s: likewise.
         receiver_accuracy_m: that its receiver states, None for what the firmware's own simulator says.
         position_time_s: T.
@@ -37,6 +38,7 @@ class OwnStateModel:
 
     seed: NoiseSeed = 0
     position_std_m: float = 0.0
+    height_std_m: float | None = None
     velocity_std_m_s: float = 0.0
     receiver_accuracy_m: float | None = None
     position_time_s: float = 10.0
@@ -56,7 +58,9 @@ class OwnStateError:
             dt_s: of each step.
         """
         # The second of the two states has a variance of 1/4.
-        self._gain = 2.0 * np.repeat([model.position_std_m, model.velocity_std_m_s], 3)
+        height_std_m = model.position_std_m if model.height_std_m is None else model.height_std_m
+        place_std_m = [model.position_std_m, model.position_std_m, height_std_m]
+        self._gain = 2.0 * np.array([*place_std_m, *[model.velocity_std_m_s] * 3])
         self._is_exact = not self._gain.any()
         self._generator = np.random.default_rng(model.seed)
         parts = [dt_s / time_s for time_s in (model.position_time_s, model.velocity_time_s) for _ in range(3)]

@@ -9,6 +9,7 @@ from link.frames.geodesy import Datum
 from sim_autopilot.control.parameters import ControllerKind
 from sim_autopilot.core.noise import named_seed
 from sim_autopilot.core.parameters import default_values
+from sim_autopilot.core.range_finder import RangeFinderModel
 from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.px4.px4 import PX4
 from sim_autopilot.ground_station.ardupilot import ARDUPILOT_STATION
@@ -68,6 +69,7 @@ def autopilot_config(config: SimAutopilotConfig) -> AutopilotConfig:
         endurance_s=config.drone.endurance_s,
         links=tuple(ground_rates_hz if link.streams == "ground" else None for link in config.links) or (None,),
         own_state=_own_state(config),
+        range_finder=RangeFinderModel(seed=named_seed(config.seed, "range finder"), **config.range_finder.model_dump()),
     )
 
 

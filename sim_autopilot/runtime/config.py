@@ -61,6 +61,7 @@ class OwnStateConfig(StrictModel):
     """How well the autopilot knows its own state; all zero is the truth."""
 
     position_std_m: NotNegative = 0.0  # on each axis
+    height_std_m: NotNegative | None = None  # of the height, a barometer's; None: as on the others
     velocity_std_m_s: NotNegative = 0.0  # likewise
     # What its receiver states, horizontally; None: as well as the drone knows its place, but for a centimetre.
     receiver_accuracy_m: Positive | None = None
@@ -68,6 +69,14 @@ class OwnStateConfig(StrictModel):
     velocity_time_s: Positive = 2.0
     origin_step_enu_m: Vector3 | None = None  # how far the local frame's origin moves in flight
     origin_step_s: NotNegative = 0.0  # since boot, when it does
+
+
+class RangeFinderConfig(StrictModel):
+    """What looks down along the drone's body."""
+
+    white_std_m: NotNegative = 0.0  # of a reading
+    min_m: NotNegative = 0.0  # of its range; what is nearer or farther is told as the range's end
+    max_m: Positive = 100.0
 
 
 class VehicleConfig(StrictModel):
@@ -98,6 +107,7 @@ class SimAutopilotConfig(StrictModel):
     drone: DroneConfig = DroneConfig()
     wind: WindConfig = WindConfig()
     own_state: OwnStateConfig = OwnStateConfig()
+    range_finder: RangeFinderConfig = RangeFinderConfig()
     vehicle: VehicleConfig = VehicleConfig()
     links: tuple[LinkConfig, ...] = ()  # empty: those of the firmware's own simulator, one link within `scenarios`
     parameters: dict[str, float] = Field(default_factory=dict)  # firmware parameters that differ from their defaults

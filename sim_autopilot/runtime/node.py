@@ -15,6 +15,7 @@ from link.records import replace
 from sim_autopilot.boot import initial_memory, restart_in_place
 from sim_autopilot.commands.origin import move_origin
 from sim_autopilot.core.data import Array, Deck, PlantState
+from sim_autopilot.core.range_finder import RangeErrors
 from sim_autopilot.core.streams import shortest_interval_ns
 from sim_autopilot.memory import AutopilotConfig, AutopilotInputs, AutopilotMemory
 from sim_autopilot.plant.own_state import NO_ERROR, OwnStateError
@@ -47,6 +48,7 @@ class AutopilotNode:
         self._memory = initial_memory(config, start_ns)
         self._own_error = OwnStateError(config.own_state, STEP_NS * 1e-9)
         self._error = NO_ERROR
+        self._range_errors = RangeErrors(config.range_finder)
         self._received: list[tuple[Message, int]] = []
         self._step_ns = self._next_step_ns()
 
@@ -136,6 +138,7 @@ class AutopilotNode:
             deck=deck,
             wind_enu_m_s=wind_enu_m_s,
             own_error=self._error,
+            range_error_m=self._range_errors.advance(),
         )
         self._setup_signing(inputs.messages)
         self._memory, outputs = autopilot_step(self._memory, inputs, self._config)

@@ -8,17 +8,16 @@ from link.messages import Vector3
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.telemetry.status import boot_ms
 
-_RANGE_MAX_CM = 10000
 
-
-def distance_sensor(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
+def distance_sensor(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return DISTANCE_SENSOR: how far off the ground or the roof is, downwards along the body's own axis."""
-    distance_cm = round(100.0 * min(max(0.0, _distance_down_m(memory)), 0.01 * _RANGE_MAX_CM))
+    model = config.range_finder
+    told_m = _distance_down_m(memory) + memory.world.range_error_m
     return mavlink.MAVLink_distance_sensor_message(
         boot_ms(memory),
-        0,
-        _RANGE_MAX_CM,
-        distance_cm,
+        round(100.0 * model.min_m),
+        round(100.0 * model.max_m),
+        round(100.0 * min(max(model.min_m, told_m), model.max_m)),
         mavlink.MAV_DISTANCE_SENSOR_LASER,
         0,
         mavlink.MAV_SENSOR_ROTATION_PITCH_270,

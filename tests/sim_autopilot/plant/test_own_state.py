@@ -33,6 +33,12 @@ def test_error_is_stationary_from_its_first_value() -> None:
     np.testing.assert_allclose(np.std(firsts, axis=0), [0.5] * 3 + [0.0] * 3, rtol=0.08)
 
 
+def test_height_may_be_known_worse_than_the_rest_of_the_place() -> None:
+    models = [OwnStateModel(seed=seed, position_std_m=0.1, height_std_m=0.6) for seed in range(300)]
+    firsts = [OwnStateError(model, STEP_S).advance() for model in models]
+    np.testing.assert_allclose(np.std(firsts, axis=0), [0.1, 0.1, 0.6, 0.0, 0.0, 0.0], rtol=0.15)
+
+
 def test_error_is_smooth() -> None:
     error = OwnStateError(OwnStateModel(seed=4, position_std_m=0.5, position_time_s=10.0), STEP_S)
     values = np.array([error.advance() for _ in range(2000)])

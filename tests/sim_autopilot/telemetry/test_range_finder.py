@@ -8,9 +8,11 @@ import pytest
 from link.messages import Quaternion
 from link.records import replace
 from sim_autopilot.core.data import Deck
+from sim_autopilot.core.range_finder import RangeErrors, RangeFinderModel
 from sim_autopilot.telemetry.range_finder import distance_sensor
 from tests.sim_autopilot.pilot import START_NS, Pilot, px4
 
+EXACT = RangeFinderModel()
 ROOF_M = 1.5
 HALF_LENGTH_M = 2.25
 
@@ -21,7 +23,15 @@ def rolled(angle_deg: float) -> Quaternion:
     return (cos(half), sin(half), 0.0, 0.0)
 
 
-def distance_m(height_m: float, lean_deg: float, deck: Deck | None, beside_m: float = 0.0) -> float:
+def distance_m(
+    height_m: float,
+    lean_deg: float,
+    deck: Deck | None,
+    beside_m: float = 0.0,
+    *,
+    error_m: float = 0.0,
+    model: RangeFinderModel = EXACT,
+) -> float:
     """What a range finder `height_m` above the road tells."""
     pilot = Pilot()
     memory = pilot.node.memory
@@ -31,8 +41,9 @@ def distance_m(height_m: float, lean_deg: float, deck: Deck | None, beside_m: fl
         position_enu_m=np.array([0.0, beside_m, height_m]),
         orientation_wxyz=np.array(rolled(lean_deg)),
     )
-    memory = replace(memory, plant=replace(memory.plant, state=state), world=replace(memory.world, deck=deck))
-    return float(distance_sensor(memory, px4()).current_distance) / 100.0
+    world = replace(memory.world, deck=deck, range_error_m=error_m)
+    memory = replace(memory, plant=replace(memory.plant, state=state), world=world)
+    return float(distance_sensor(memory, px4(range_finder=model)).current_distance) / 100.0
 
 
 def a_deck() -> Deck:
@@ -67,6 +78,21 @@ def test_a_drone_beside_the_roof_that_leans_away_from_it_sees_it() -> None:
     side_m = [1.4 * side for side in (1.0, -1.0)]
     seen = {round(distance_m(6.0, 20.0, a_deck(), beside_m), 1) for beside_m in side_m}
     assert seen == {round((6.0 - ROOF_M) / cos(radians(20.0)), 1), round(6.0 / cos(radians(20.0)), 1)}
+
+
+@pytest.mark.parametrize(("height_m", "told_m"), [(0.1, 0.2), (6.0, 6.05), (20.0, 12.0)])
+def test_reading_is_off_by_its_error_and_stays_within_its_range(height_m: float, told_m: float) -> None:
+    model = RangeFinderModel(min_m=0.2, max_m=12.0)
+    assert distance_m(height_m, 0.0, None, error_m=0.05, model=model) == pytest.approx(told_m)
+
+
+def test_errors_are_as_large_as_configured_and_the_seeds_own() -> None:
+    errors = RangeErrors(RangeFinderModel(seed=1, white_std_m=0.03))
+    many = [errors.advance() for _ in range(5000)]
+    assert np.std(many) == pytest.approx(0.03, rel=0.05)
+    assert many[0] == RangeErrors(RangeFinderModel(seed=1, white_std_m=0.03)).advance()
+    assert many[0] != RangeErrors(RangeFinderModel(seed=2, white_std_m=0.03)).advance()
+    assert RangeErrors(EXACT).advance() == 0.0
 
 
 def test_nothing_is_seen_upside_down() -> None:
