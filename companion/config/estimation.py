@@ -164,6 +164,10 @@ class ReceiversConfig(StrictModel):
     # A drone over a vehicle without corrections has none either: its own place wanders by so much of the same
     # variance in a second. Benchmark: 0.5 m, of which 0.36 m are new after 10 s.
     own_walk_share: NotNegative = 0.13
+    # Its height wanders over any vehicle, with a rate that lasts. With PX4 it moved by 0.09 m in 1 s, 0.32 m in 4 s and
+    # 0.55 m in 8 s (docs/real_autopilots.md), with corrections by next to nothing: root mean square of the two.
+    own_height_rate_std_m_s: NotNegative = 0.06
+    own_height_time_s: Positive = 10.0
     # Of the clock that dates such coarse fixes, against the drone's; benchmark: up to 0.1 s. Receivers with corrections
     # date their fixes themselves, to microseconds.
     clock_std_s: NotNegative = 0.03

@@ -28,7 +28,9 @@ class Quantity(Enum):
     PAD = "pad"  # the pad's centre in W as seen from the drone, m (3)
     ACCELERATION = "acceleration"  # along V, horizontal but for gravity by what is not known of the pitch, m/s^2 (1)
     TILT = "tilt"  # roll and pitch of V, rad, and their rates, rad/s (4)
-    SURFACE = "surface"  # the place in W that a range finder sees below the drone, m (3)
+    # The place in the fixes' frame that a range finder sees below the drone, and how far it rises above the lowest that
+    # was seen lately, m (4).
+    SURFACE = "surface"
 
 
 class Measurement(Struct, frozen=True, kw_only=True, eq=False):
@@ -92,7 +94,8 @@ class Forecast(Struct, frozen=True, kw_only=True, eq=False):
         grade: (n,) of the road in the direction of the heading, m of height per m; None where it is not estimated.
         tilt_rad: (n, 4) roll, its rate (rad/s), pitch and its rate of V against the road; None where it is not told.
         frame_offset_enu_m: (2,) of the drone's frame from the vehicle's fixes', None where it is not estimated.
-        frame_offset_std_m: standard deviation of either, which sightings of the pad make small.
+        frame_offset_std_m: standard deviation of either of these, which sightings of the pad make small.
+        is_height_told: lately a sighting or a range told how high it is for the drone, whose own height may be wrong.
         swing: (3, 2) angular frequency, rad/s, and damping of heave, roll and pitch; None as `tilt_rad`.
         climb_std_m_s: (n,) standard deviation of the pad's velocity upwards; None where it is not estimated.
     """
@@ -110,6 +113,7 @@ class Forecast(Struct, frozen=True, kw_only=True, eq=False):
     tilt_rad: Array | None = None
     frame_offset_enu_m: Array | None = None
     frame_offset_std_m: float = math.inf
+    is_height_told: bool = False
     swing: Array | None = None
     climb_std_m_s: Array | None = None
 

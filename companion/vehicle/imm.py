@@ -23,31 +23,30 @@ from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import steady_driving
 from companion.vehicle.deck_motion import first_motion, learn, passed
 from companion.vehicle.filter_step import Update, wrapped
+from companion.vehicle.imm_frames import own_rate_opened_m2_s2, ranged_pad, wandering
 from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, swing_of
-from companion.vehicle.imm_sensors import observe
 from companion.vehicle.imm_state import (
     KINDS,
     OFFSET,
-    PLACE,
     TILT,
     ImmState,
-    fine_walk_m2_s,
     has_settled,
     is_heading_known,
     largest,
     open_deck,
+    open_states,
     recover,
     split_fix,
     start_state,
 )
-from companion.vehicle.imm_swing import PITCH, ROLL
-from companion.vehicle.surface import pad_height_seen
+from companion.vehicle.imm_swing import OWN_RATE
 from link.records import replace
 
 CURVATURE, HEADING = 6, 7
 SWINGING = np.array([10, 11, *TILT])
 TURNS = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
 MOTIONS = frozenset({Quantity.POSITION, Quantity.VELOCITY})
+HEIGHTS = frozenset({Quantity.PAD, Quantity.SURFACE})
 TURN_AGE_MAX_S = 1.0  # of a sensor that is at work: several periods of the slowest
 
 
@@ -77,14 +76,13 @@ class ImmModel:
 
     def predict(self, state: ImmState, dt_s: float) -> ImmState:
         """Return the state `dt_s` later."""
-        numbers = self.numbers
-        modes = mixing.predict_modes(
-            state.modes, dt_s, self._noises(state), numbers.begins_after_s, self._motion(state), self._known_variance
-        )
+        noises, begins_after_s, motion = self._noises(state), self.numbers.begins_after_s, self._motion(state)
+        modes = mixing.predict_modes(state.modes, dt_s, noises, begins_after_s, motion, self._known_variance)
         return replace(
             state,
             modes=modes,
             seen_age_s=state.seen_age_s + dt_s,
+            height_age_s=state.height_age_s + dt_s,
             turn_age_s=state.turn_age_s + dt_s,
             unmeasured_s=state.unmeasured_s + dt_s,
             driving=steady_driving.passed(state.driving, dt_s),
@@ -94,7 +92,8 @@ class ImmModel:
     def update(self, state: ImmState, measurement: Measurement) -> Update[ImmState] | None:
         """Return the state after any quantity, None of what it is too early for and of a surface beside the pad."""
         if measurement.quantity is Quantity.SURFACE:
-            seen = self._pad_height_seen(state, measurement)
+            sees_heading = is_heading_known(state, self.config)
+            seen = ranged_pad(state, measurement, self.deck, self.numbers.lever_m, sees_heading=sees_heading)
             if seen is None:
                 return None
             measurement = seen
@@ -104,6 +103,9 @@ class ImmModel:
             if not has_settled(state, self.config):
                 return None
             state = self._with_deck(state, measurement)
+        if measurement.quantity in HEIGHTS and self.placed_by is Quantity.POSITION:
+            opened = np.array([own_rate_opened_m2_s2(state, self.config.receivers)])
+            state = replace(state, modes=open_states(state.modes, np.array([OWN_RATE]), opened))
         R = measurement.covariance
         bias_variance, white_variance = state.fix_bias_variance_m2, state.fix_white_variance_m2
         if measurement.quantity is Quantity.POSITION:
@@ -129,6 +131,7 @@ class ImmModel:
             fix_bias_variance_m2=bias_variance,
             fix_white_variance_m2=white_variance,
             seen_age_s=0.0 if measurement.quantity is Quantity.PAD else state.seen_age_s,
+            height_age_s=0.0 if measurement.quantity in HEIGHTS else state.height_age_s,
             turn_age_s=turn_age_s,
             unmeasured_s=0.0 if tells_motion else state.unmeasured_s,
             deck=deck,
@@ -180,19 +183,9 @@ class ImmModel:
             swing=None if state.deck is None else state.deck.oscillators.reshape(3, 3)[:, :2],
             yaw_std_rad=math.sqrt(heading_variance),
             frame_offset_enu_m=(weights @ means)[OFFSET[:2]],
-            frame_offset_std_m=math.sqrt(float((weights @ covariances[:, OFFSET, OFFSET]).max())),
+            frame_offset_std_m=math.sqrt(float((weights @ covariances[:, OFFSET[:2], OFFSET[:2]]).max())),
+            is_height_told=state.height_age_s < self.config.receivers.own_height_time_s,
         )
-
-    def _pad_height_seen(self, state: ImmState, surface: Measurement) -> Measurement | None:
-        """Return the pad's height that a surface below the drone tells, None if it may be beside the pad."""
-        means, covariances, weights = state.modes
-        x = weights @ means
-        pad, _ = observe(KINDS[Quantity.PAD], x, self.numbers.lever_m, is_heading_known(state, self.config))
-        forward, left = x[9] - x[PITCH], x[ROLL]
-        c, s = math.cos(x[HEADING]), math.sin(x[HEADING])
-        slope_enu = (c * forward - s * left, s * forward + c * left)
-        std_m = math.sqrt(float((weights @ covariances[:, PLACE[:2], PLACE[:2]]).max()))
-        return pad_height_seen(surface, pad, std_m, slope_enu, self.deck.half_width_m)
 
     @property
     def _known_variance(self) -> float:
@@ -200,13 +193,10 @@ class ImmModel:
         return self.config.heading.known_std_rad**2
 
     def _noises(self, state: ImmState) -> Array:
-        """The modes' noise, (n, 16), as `imm_noise.process_noise` takes it."""
-        receivers = self.config.receivers
-        walk_m2_s = 2.0 * state.fix_bias_variance_m2 / receivers.fix_bias_time_s
+        """The modes' noise, (n, 17), as `imm_noise.process_noise` takes it."""
         return noises_with(
             self.numbers,
-            receivers.frame_offset_walk_m2_s + walk_m2_s + fine_walk_m2_s(state, receivers),
-            receivers.own_walk_share * walk_m2_s,
+            wandering(state, self.config.receivers),
             state.driving.psd_m2_s5(self.numbers.steady_m2_s5),
             turn_is_measured=state.turn_age_s < TURN_AGE_MAX_S,
         )
@@ -216,7 +206,7 @@ class ImmModel:
         return swing_of(self.config, is_afloat=self.deck.is_afloat)
 
     def _motion(self, state: ImmState) -> Array:
-        """Return the numbers (16,) of the motion, with what has been learnt of the deck's."""
+        """Return the numbers (17,) of the motion, with what has been learnt of the deck's."""
         if state.deck is None:
             return self.numbers.motion
         motion = self.numbers.motion.copy()

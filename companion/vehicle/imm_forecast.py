@@ -1,6 +1,6 @@
 """What the interacting turning models tell: the antenna's motion now and over the horizon, compiled.
 
-`motion` (16,) is as `imm_mixing` has it.
+`motion` (17,) is as `imm_mixing` has it.
 """
 
 import math
@@ -13,7 +13,7 @@ from companion.vehicle.imm_kernels import BEND
 from companion.vehicle.imm_mixing import Modes, combine, glide, heading_variance, shifted, steps_of, with_direction
 from companion.vehicle.imm_noise import BEND_ACCELERATION_STD, BEND_STD
 from companion.vehicle.imm_sensors import antenna_velocity, horizontal_acceleration
-from companion.vehicle.imm_swing import MOUNT, ROLL, SIZE, antenna_swing, pad_swing, pad_swing_acceleration
+from companion.vehicle.imm_swing import MOUNT, OWN_RATE, ROLL, SIZE, antenna_swing, pad_swing, pad_swing_acceleration
 from companion.vehicle.small_matrices import carried_through, times
 
 SAME_S = 1e-9  # of two steps that differ by rounding only
@@ -21,7 +21,7 @@ SAME_S = 1e-9  # of two steps that differ by rounding only
 
 @compiled_kernel
 def kinematics(states: Array, motion: Array) -> tuple[Array, Array, Array]:
-    """Return the antenna's position and velocity and the pad's acceleration in W, each (n, 3), of `states` (n, 24)."""
+    """Return the antenna's position and velocity and the pad's acceleration in W, each (n, 3), of `states` (n, 25)."""
     n = len(states)
     position, velocity, acceleration = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
     for i in range(n):
@@ -41,7 +41,7 @@ def kinematics(states: Array, motion: Array) -> tuple[Array, Array, Array]:
 
 @compiled_kernel
 def kinematics_jacobian(x: Array, motion: Array) -> Array:
-    """Return the Jacobian `(9, 24)` of position, velocity and acceleration."""
+    """Return the Jacobian `(9, 25)` of position, velocity and acceleration."""
     G = np.zeros((9, SIZE))
     G[0, 0], G[1, 1], G[2, 8], G[8, 11] = 1.0, 1.0, 1.0, 1.0
     _, turn = antenna_swing(x, ROLL, motion[5:9])
@@ -60,7 +60,7 @@ def kinematics_jacobian(x: Array, motion: Array) -> Array:
 
 @compiled_kernel
 def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) -> tuple[Array, Array]:
-    """Return the means `(n, 24)` and the pad's variances `(n, 4)` at `offset_s` (n,), not falling: place, rate upwards.
+    """Return the means `(n, 25)` and the pad's variances `(n, 4)` at `offset_s` (n,), not falling: place, rate upwards.
 
     The pad's, because a heading that is not well known moves it about an antenna that is.
     """
@@ -98,7 +98,7 @@ def forecast_modes(
     Args:
         modes: the filter.
         offset_s: (n,) not falling.
-        noises: (n, 16) of the modes.
+        noises: (n, 17) of the modes.
         motion: its numbers.
         known_variance: of a heading that is known, rad^2; without one the lever arm has no direction.
 
@@ -109,6 +109,7 @@ def forecast_modes(
     """
     directed = with_direction(motion, modes, known_variance)
     x, P = combine(modes[0], modes[1], modes[2])
+    x[OWN_RATE] = 0.0  # the drone goes with its own height
     noise = (modes[2].reshape(-1, 1) * noises).sum(axis=0)
     for std in (BEND_STD, BEND_ACCELERATION_STD):  # the others in which the modes differ are densities
         noise[std] = math.sqrt((modes[2] * noises[:, std] ** 2).sum())
@@ -130,7 +131,7 @@ def describe_modes(
         known_variance: as above.
 
     Returns:
-        The mean (24,); position, velocity and acceleration (9,) and their covariance (9, 9); those of each mode, (n, 9)
+        The mean (25,); position, velocity and acceleration (9,) and their covariance (9, 9); those of each mode, (n, 9)
         and (n, 9, 9); and the variance of the heading, rad^2.
     """
     directed = with_direction(motion, modes, known_variance)

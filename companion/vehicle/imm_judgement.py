@@ -40,7 +40,7 @@ def expect_manoeuvres(modes: Modes, unmeasured_s: float, begins_after_s: Array, 
         modes: the filter at the time of the reading.
         unmeasured_s: time since the last fix or velocity.
         begins_after_s: (n,) as `switching` takes it.
-        noises: (n, 16) of the modes.
+        noises: (n, 17) of the modes.
     """
     means, covariances, weights = modes[0].copy(), modes[1].copy(), modes[2].copy()
     _, begun = switching(begins_after_s, unmeasured_s)

@@ -25,6 +25,7 @@ from companion.vehicle.imm_noise import (
     HEADING_AT_REST,
     HEADING_NOISE,
     OWN_NOISE,
+    OWN_RATE_NOISE,
     RECEIVER_NOISE,
 )
 from link.messages import PadGeometry, Vector3
@@ -69,14 +70,14 @@ class Numbers:
     """A configuration as the kernels take it.
 
     Attributes:
-        motion: (16,) as `imm_mixing` has it.
+        motion: (17,) as `imm_mixing` has it.
         begins_after_s: (n,) of the modes, as `imm_mixing.switching` takes it.
-        noises: (n, 16) as `imm_noise.process_noise` takes them, but for what depends on the state (`noises_with`).
+        noises: (n, 17) as `imm_noise.process_noise` takes them, but for what depends on the state (`noises_with`).
         is_steady: (2, n) whether each mode is steady along the track, and across it.
         steady_m2_s5: how fast a steady driver's, or helm's, accelerations along the track and across it walk: the
             ordinary one's, and at most.
         lever_m: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll.
-        prior_variances: (24,) of every state but position, offset and clock, when nothing else is known.
+        prior_variances: (25,) of every state but position, offset and clock, when nothing else is known.
         course: (3,) as `imm_judgement.take_reading` takes it.
     """
 
@@ -112,6 +113,7 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
                 config.road.gravity_leak_time_s,
                 *level,
                 *level,
+                config.receivers.own_height_time_s,
             ]
         ),
         begins_after_s=np.array([mode.begins_after_s for mode in modes]),
@@ -137,24 +139,24 @@ def _bounds(ordinary_m2_s5: float, manoeuvre_m2_s5: float) -> Bounds:
 @lru_cache(maxsize=4)  # without sightings it changes with a fix's stated error, and with every pair of `steady_driving`
 def noises_with(
     numbers: Numbers,
-    receiver_m2_s: float,
-    own_m2_s: float,
+    wandering: tuple[float, float, float],
     psd_m2_s5: tuple[float, float],
     *,
     turn_is_measured: bool,
 ) -> Array:
-    """Return the modes' noise (n, 16) with the wandering of the vehicle's receiver and of the drone's own place.
+    """Return the modes' noise (n, 17) with what depends on the state.
 
-    `psd_m2_s5` is how fast the accelerations along the track and across it walk while nothing new begins.
+    `wandering` is as `imm_frames.wandering` returns it. `psd_m2_s5` is how fast the accelerations along the track and
+    across it walk while nothing new begins.
 
     Where the drone's own place does not wander, fixes have corrections, and are dated without an error.
     A vehicle whose turning is measured may be one that turns on the spot. Any other is taken for a car: it turns no
     tighter than a car steers, and not at all while it stands.
     """
     noises = numbers.noises.copy()
-    noises[:, RECEIVER_NOISE], noises[:, OWN_NOISE] = receiver_m2_s, own_m2_s
+    noises[:, [RECEIVER_NOISE, OWN_NOISE, OWN_RATE_NOISE]] = wandering
     noises[numbers.is_steady[0], ALONG_NOISE], noises[numbers.is_steady[1], ACROSS_NOISE] = psd_m2_s5
-    if not own_m2_s:
+    if not wandering[1]:
         noises[:, CLOCK_NOISE] = 0.0
     if turn_is_measured:
         noises[:, CURVATURE_STD] = ON_THE_SPOT_RAD_M
@@ -173,7 +175,7 @@ def _prior_variances(config: ImmConfig, *, is_afloat: bool) -> Array:
     vertical = [0.0, grade, heave_rate, heave_change]
     tilt = swing.tilt.std**2
     tilting = [tilt, tilt * (2.0 * math.pi * swing.tilt.frequency_hz) ** 2]
-    driven = [bend, config.road.gravity_leak_std_m_s2**2, *tilting, *tilting, 0.0, 0.0]
+    driven = [bend, config.road.gravity_leak_std_m_s2**2, *tilting, *tilting, 0.0, 0.0, 0.0]
     return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0, *driven])
 
 
@@ -210,4 +212,5 @@ def _noise(config: ImmConfig, mode: SteadyConfig, *, is_afloat: bool) -> tuple[f
         0.0 if is_afloat else config.road.height_psd_m2_m,
         2.0 * config.road.gravity_leak_std_m_s2**2 / config.road.gravity_leak_time_s,
         float(is_afloat),
+        0.0,
     )

@@ -21,13 +21,13 @@ from companion.vehicle.imm_kernels import CLOCK
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Numbers
 from companion.vehicle.imm_sensors import observe
-from companion.vehicle.imm_swing import MOUNT, ROLL, ROLL_RATE, SIZE, antenna_swing
+from companion.vehicle.imm_swing import MOUNT, OWN_RATE, ROLL, ROLL_RATE, SIZE, antenna_swing
 from companion.vehicle.steady_driving import SteadyDriving
 from link.records import replace
 
 PLACE = np.array([0, 1, 8])  # indices of the position
 OFFSET = np.array([12, 13, 14])
-TILT, DECK = np.arange(ROLL, MOUNT), np.arange(ROLL, SIZE)
+TILT, DECK = np.arange(ROLL, MOUNT), np.arange(ROLL, OWN_RATE)
 _RATE = np.array([2, 3, 10])  # what the velocity of the antenna has beside its swing
 
 IndexArray = NDArray[np.intp]
@@ -42,7 +42,7 @@ def open_states(modes: Modes, indices: IndexArray, variances: Array) -> Modes:
 
 
 def open_place_and_offset(covariances: Array, step: Array) -> Array:
-    """Return `covariances` (n, 24, 24) with `step` (3, 3), m^2, more of place and offset as one unknown."""
+    """Return `covariances` (n, 25, 25) with `step` (3, 3), m^2, more of place and offset as one unknown."""
     moved = covariances.copy()
     for rows in (PLACE, OFFSET):
         for columns in (PLACE, OFFSET):
@@ -92,6 +92,7 @@ class ImmState(Struct, frozen=True, kw_only=True, eq=False):
         fix_bias_variance_m2: the slow part of the fixes' variance.
         fix_white_variance_m2: the rest, on the worst axis.
         seen_age_s: how long ago the pad was seen, or known to be under the drone; infinite before.
+        height_age_s: how long ago that or a range told how high it is for the drone; infinite before.
         turn_age_s: how long ago a sensor told the heading or the yaw rate.
         unmeasured_s: how long ago place or velocity was told.
         deck: how the deck swings; None until the vehicle has told its tilt.
@@ -102,6 +103,7 @@ class ImmState(Struct, frozen=True, kw_only=True, eq=False):
     fix_bias_variance_m2: float
     fix_white_variance_m2: float = 0.0
     seen_age_s: float = math.inf
+    height_age_s: float = math.inf
     turn_age_s: float = math.inf
     unmeasured_s: float = 0.0
     deck: DeckMotion | None = None
@@ -136,6 +138,7 @@ def start_state(place: Measurement, config: ImmConfig, numbers: Numbers) -> ImmS
         fix_bias_variance_m2=bias_variance,
         fix_white_variance_m2=largest(white) if is_fix else 0.0,
         seen_age_s=math.inf if is_fix else 0.0,
+        height_age_s=math.inf if is_fix else 0.0,
     )
 
 
@@ -144,16 +147,6 @@ def split_fix(covariance: Array, receivers: ReceiversConfig) -> tuple[Array, flo
     stated = largest(covariance)
     white = min(stated, receivers.fix_white_std_max_m**2)
     return covariance * (white / stated), stated - white
-
-
-def fine_walk_m2_s(state: ImmState, receivers: ReceiversConfig) -> float:
-    """Return how fast the frames wander apart, m^2/s, by what two receivers state that is no slow error.
-
-    Most of it is slow, too: multipath and the atmosphere. Over a time T each of two Gauss-Markov errors of variance v
-    changes by 2 v (1 - exp(-T / tau)), so that what was known when the pad was last seen is never worse than both.
-    """
-    left = math.exp(-state.seen_age_s / receivers.fix_bias_time_s)
-    return 4.0 * state.fix_white_variance_m2 * left / receivers.fix_bias_time_s
 
 
 def largest(covariance: Array) -> float:
@@ -247,5 +240,5 @@ def _restart(state: ImmState, place: Measurement, config: ImmConfig, numbers: Nu
     means[:, OFFSET] = x[OFFSET]
     for kept in (_HEADING, kernels.CLOCK, *DECK):
         means[:, kept], covariances[:, kept, kept] = x[kept], P[kept, kept]
-    seen_age_s = 0.0 if place.quantity is Quantity.PAD else math.inf
-    return replace(state, modes=(means, covariances, weights), seen_age_s=seen_age_s)
+    age_s = 0.0 if place.quantity is Quantity.PAD else math.inf
+    return replace(state, modes=(means, covariances, weights), seen_age_s=age_s, height_age_s=age_s)

@@ -1,4 +1,4 @@
-"""How a deck's tilt swings and moves what is on it, compiled: the last six states of the model of `imm_kernels`.
+"""How a deck's tilt swings and moves what is on it, compiled: six states of the model of `imm_kernels`.
 
 State: 18 phi, 19 its rate, 20 theta, 21 its rate: roll (port up positive) and pitch (bow down positive) of V against
 the road, rad and rad/s, each a damped oscillator; 22 and 23 what the vehicle's unit tells of roll and of pitch too
@@ -17,15 +17,16 @@ from companion.vehicle.lever import tilted_arm, turned
 from companion.vehicle.small_matrices import carried_through, times
 
 ROLL, ROLL_RATE, PITCH, PITCH_RATE, MOUNT = 18, 19, 20, 21, 22
-SIZE = 24
+OWN_RATE = 24  # the first state that is none of the deck's
+SIZE = 25
 
 
 @compiled_kernel
 def antenna_swing(x: Array, first: int, lever: Array) -> tuple[Array, Array]:
-    """Return how far (3,) the tilt moves the antenna in W, or how fast, and its Jacobian (3, 24).
+    """Return how far (3,) the tilt moves the antenna in W, or how fast, and its Jacobian (3, 25).
 
     Args:
-        x: state (24,).
+        x: state (25,).
         first: `ROLL` for places, `ROLL_RATE` for velocities.
         lever: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll, m.
     """
@@ -49,7 +50,7 @@ def antenna_swing(x: Array, first: int, lever: Array) -> tuple[Array, Array]:
 
 @compiled_kernel
 def put_turned(H: Array, x: Array, column: int, change: tuple[float, float, float]) -> None:
-    """Add `change`, forward, left and up, to a column of a Jacobian (3, 24) in W."""
+    """Add `change`, forward, left and up, to a column of a Jacobian (3, 25) in W."""
     east, north = turned(change[0], change[1], x[7])
     H[0, column] += east
     H[1, column] += north
@@ -58,10 +59,10 @@ def put_turned(H: Array, x: Array, column: int, change: tuple[float, float, floa
 
 @compiled_kernel
 def pad_swing(x: Array, first: int, above_m: float) -> tuple[Array, Array]:
-    """Return how far (3,) the tilt moves what is `above_m` over the axis in W, and its Jacobian (3, 24).
+    """Return how far (3,) the tilt moves what is `above_m` over the axis in W, and its Jacobian (3, 25).
 
     Args:
-        x: state (24,).
+        x: state (25,).
         first: `ROLL` for places, `ROLL_RATE` for velocities.
         above_m: height.
     """
@@ -77,11 +78,11 @@ def pad_swing(x: Array, first: int, above_m: float) -> tuple[Array, Array]:
 
 @compiled_kernel
 def pad_swing_acceleration(x: Array, motion: Array) -> tuple[Array, Array]:
-    """Return the horizontal acceleration (2,) of the pad by its swing, m/s^2, and its Jacobian (2, 24).
+    """Return the horizontal acceleration (2,) of the pad by its swing, m/s^2, and its Jacobian (2, 25).
 
     Args:
-        x: state (24,).
-        motion: (16,) as `imm_mixing` has it.
+        x: state (25,).
+        motion: (17,) as `imm_mixing` has it.
     """
     y, H = x.copy(), np.zeros((2, SIZE))
     for first, k in ((ROLL, 10), (PITCH, 13)):

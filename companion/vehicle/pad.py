@@ -24,11 +24,13 @@ class FrameOffset(Struct, frozen=True, kw_only=True):
     Attributes:
         distance_m: horizontally; None where it is not estimated.
         std_m: its standard deviation.
+        is_height_told: how far apart the heights are was told lately: only what they wander apart since is unknown.
         is_confirmed: as many sightings have agreed on it, for as long, as it takes to believe them.
     """
 
     distance_m: float | None = None
     std_m: float = math.inf
+    is_height_told: bool = False
     is_confirmed: bool = True
 
 
@@ -130,7 +132,12 @@ def pad_path(
 def _frame_offset(forecast: Forecast, *, is_confirmed: bool) -> FrameOffset:
     offset = forecast.frame_offset_enu_m
     distance_m = None if offset is None else math.hypot(*offset.tolist())
-    return FrameOffset(distance_m=distance_m, std_m=forecast.frame_offset_std_m, is_confirmed=is_confirmed)
+    return FrameOffset(
+        distance_m=distance_m,
+        std_m=forecast.frame_offset_std_m,
+        is_height_told=forecast.is_height_told,
+        is_confirmed=is_confirmed,
+    )
 
 
 def _at_end_of(lever_m: Vector3, forecast: Forecast) -> tuple[Array, Array]:

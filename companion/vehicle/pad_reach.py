@@ -37,13 +37,14 @@ def unseen_std_max_m(half_width_m: float, config: CompanionConfig) -> float:
     return min(config.descent.unseen.std_max_m, KNOWN_SHARE * half_width_m)
 
 
-def frames_apart_m2(pad: PadPath) -> float:
-    """Return the part of the pad's variance that doubts frames which count as one; 0 where they do not.
+def frames_apart_m2(pad: PadPath) -> Array:
+    """Return the part (3,) of the pad's variance that doubts frames which count as one; 0 where they do not.
 
     If they are not one, that is a wrong model and no bad luck: nothing that weighs luck counts with it.
     """
-    std_m = pad.frame_offset.std_m
-    return std_m**2 if pad.has_one_frame and math.isfinite(std_m) else 0.0
+    std_m, is_height_told = pad.frame_offset.std_m, pad.frame_offset.is_height_told
+    variance = std_m**2 if pad.has_one_frame and math.isfinite(std_m) else 0.0
+    return np.array([variance, variance, 0.0 if is_height_told else variance])
 
 
 def placed_std_m(pad: PadPath) -> Array:

@@ -17,19 +17,24 @@ from link.records import replace
 ATTITUDE_AGE_MAX_S = 0.15  # of a drone that turns at 0.5 rad/s: what is seen 5 m away is then 0.4 m off
 _AGE_MAX_NS = 500_000_000  # what is older says nothing new
 _UPRIGHT_MIN = 0.8  # 37 degrees; farther over, the beam's end is beside what the drone is above
-_ELSEWHERE_M = 1.0  # what is so far above or below the pad is not the pad: a roof is 1.5 m above the road
+_TOO_HIGH_M = 1.0  # what is so far above the pad is not the pad: a person, a load, a bridge
+_TOO_LOW_M = 2.0  # two standard deviations of how far apart heights are before anything told them
 _STDS = 2.0
 
 
-def surface_measurements(seen: RangeReading, t_ns: int, config: TouchdownConfig) -> tuple[Measurement, ...]:
+def surface_measurements(
+    seen: RangeReading, rises_m: float, t_ns: int, config: TouchdownConfig, frames_apart_std_m: float
+) -> tuple[Measurement, ...]:
     """Return the place that a range finder sees, nothing where the drone's own place or attitude was not known.
 
     A stamp from the future would make all that the vehicle tells too late for the filter.
 
     Args:
         seen: the reading.
+        rises_m: how far the surface is above the lowest that was seen lately.
         t_ns: now.
         config: where the range finder is, and how good.
+        frames_apart_std_m: standard deviation of how far W may be from the frame of the vehicle's fixes, horizontally.
     """
     own = seen.own
     is_now = 0 <= t_ns - seen.t_ns <= _AGE_MAX_NS
@@ -40,24 +45,42 @@ def surface_measurements(seen: RangeReading, t_ns: int, config: TouchdownConfig)
         return ()
     place = np.array(own.position_enu_m) + seen.distance_m * np.array(beam)
     place[2] += config.range_finder.height_m - config.gear_height_m
-    variance = config.range_finder.std_m**2
-    return (Measurement(t_ns=seen.t_ns, quantity=Quantity.SURFACE, value=place, covariance=variance * np.eye(3)),)
+    apart_m2, range_m2 = frames_apart_std_m**2, config.range_finder.std_m**2
+    return (
+        Measurement(
+            t_ns=seen.t_ns,
+            quantity=Quantity.SURFACE,
+            value=np.append(place, rises_m),
+            covariance=np.diag([apart_m2, apart_m2, range_m2, 2.0 * range_m2]),
+        ),
+    )
 
 
 def pad_height_seen(
-    surface: Measurement, pad_enu_m: Array, pad_std_m: float, slope_enu: tuple[float, float], half_width_m: float
+    surface: Measurement,
+    pad_enu_m: Array,
+    *,
+    pad_std_m: float,
+    slope_enu: tuple[float, float],
+    half_width_m: float,
+    above_road_m: float,
 ) -> Measurement | None:
     """Return the height (1,) in W, m, that a surface gives the pad's centre; None if it may be of something else.
 
     Args:
-        surface: the place that was seen.
+        surface: the place that was seen, and how far it rises above what was seen lately.
         pad_enu_m: (3,) the pad's centre, as it is known.
         pad_std_m: standard deviation of its horizontal place.
         slope_enu: by which the deck rises towards east and north, m per m.
         half_width_m: from the pad's centre to the nearest edge.
+        above_road_m: the pad's height above the road or the water: what is nearer to these is not the pad, unless it
+            rises by more than half of that.
     """
-    east_m, north_m, up_m = (surface.value - pad_enu_m).tolist()
-    if math.hypot(east_m, north_m) + _STDS * pad_std_m > half_width_m or abs(up_m) > _ELSEWHERE_M:
+    east_m, north_m, up_m = (surface.value[:3] - pad_enu_m).tolist()
+    half_m, rises_m = 0.5 * above_road_m, float(surface.value[3])
+    lowest_m = -min(half_m, _TOO_LOW_M) if rises_m < half_m else -_TOO_LOW_M
+    is_beside = math.hypot(east_m, north_m) + _STDS * pad_std_m > half_width_m
+    if is_beside or not lowest_m < up_m < _TOO_HIGH_M:
         return None
     height_m = float(surface.value[2]) - slope_enu[0] * east_m - slope_enu[1] * north_m
-    return replace(surface, value=np.array([height_m]), covariance=surface.covariance[2:, 2:])
+    return replace(surface, value=np.array([height_m]), covariance=surface.covariance[2:3, 2:3])

@@ -25,6 +25,7 @@ _LONG_ALIGNMENT = {"alignment": {"hold_s": 20.0}}
 _ANTENNA_OVER_PAD = {"antenna_flu_m": (0.0, 0.0, 1.6)}  # no heading is needed to place the pad
 _RAISED_M = 3.0
 _LOWER_M = 0.8
+_TOO_LOW_M = 1.2  # to be that of a pad whose height is told wrong
 _BESIDE_M = 0.4
 _COMMITTED_M = 0.4  # of the drone above the roof: its feet are 0.28 m above
 _AHEAD_S = 0.3
@@ -173,7 +174,7 @@ ABORTS: dict[str, Abort] = {
     ),
     "outrun": Abort(reason=Reason.VEHICLE_OUTRUNS, phase=Phase.ALIGN, fault=_limit_is_lowered),
     "below_pad": Abort(reason=Reason.BELOW_PAD, fault=_pad_is_described(forward_m=0.0, up_m=_RAISED_M)),
-    "nothing_touched": Abort(reason=Reason.NOTHING_TOUCHED, fault=_pad_is_described(forward_m=0.0, up_m=_LOWER_M)),
+    "nothing_touched": Abort(reason=Reason.NOTHING_TOUCHED, fault=_pad_is_described(forward_m=0.0, up_m=_TOO_LOW_M)),
     "offset_unknown": Abort(
         reason=Reason.OFFSET_UNKNOWN,
         companion={"integrity": {"receiver_frames": "apart"}, "chase": {"unseen_hold_s": 2.0}},

@@ -25,6 +25,7 @@ from companion.situation.phases import Phase
 from companion.sortie.memory import SortieMemory, move_sortie
 from companion.vehicle.estimator import EstimatorMemory
 from companion.vehicle.hindsight import Hindsight
+from companion.vehicle.range_watch import RangeWatch
 from link.messages import ContactForecast
 from link.records import replace
 
@@ -78,7 +79,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
         phases: whether its receiver and the drone's have fixed ones.
         course: how its heading compares with its course.
         utc_ahead_ns: of the monotonic clock, when its stamps were last compared with UTC.
-        ranged_ns: when the newest range that was fused was measured.
+        ranges: the last readings of the drone's range finder.
         is_road_elsewhere: it is said to be far above or below the ground.
     """
 
@@ -90,7 +91,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
     phases: FixedPhases = field(default_factory=FixedPhases)
     course: CourseWatch = field(default_factory=CourseWatch)
     utc_ahead_ns: int = 0
-    ranged_ns: int | None = None
+    ranges: RangeWatch = field(default_factory=RangeWatch)
     is_road_elsewhere: bool = False
 
 
@@ -194,7 +195,8 @@ def to_present_frame(memory: StepMemory, view: AutopilotView) -> StepMemory:
     if view.frame_moves == places.frame_moves:
         return memory
     shift_enu_m, before_enu_m = view.frame_moves.shift_enu_m, places.frame_moves.shift_enu_m
-    vehicle, places = replace(memory.vehicle, estimator=None), replace(places, frame_moves=view.frame_moves)
+    vehicle = replace(memory.vehicle, estimator=None, ranges=RangeWatch())
+    places = replace(places, frame_moves=view.frame_moves)
     if shift_enu_m == before_enu_m:
         return replace(memory, vehicle=vehicle, places=places)
     by_enu_m = np.array(shift_enu_m) - np.array(before_enu_m)

@@ -1,5 +1,7 @@
 """What a step learns of the vehicle: its data are fused and watched, and its pad is predicted; pure."""
 
+import math
+
 import numpy as np
 
 from companion.core.data import Forecast, Measurement, Quantity
@@ -26,6 +28,7 @@ from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
 from companion.vehicle.hindsight import forget_instants, update_hindsight
 from companion.vehicle.pad import PadPath, pad_path
 from companion.vehicle.pad_reach import is_agreement_old
+from companion.vehicle.range_watch import watch_ranges
 from companion.vehicle.surface import surface_measurements
 from link.records import replace
 
@@ -37,11 +40,13 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
     """Fuse what the vehicle sent, and compare it with what was known before."""
     vehicle = _in_present_utc(vehicle, inputs)
     estimator, now_ns = vehicle.estimator, inputs.monotonic_ns
-    measurements, ranged_ns = inputs.vehicle.measurements, vehicle.ranged_ns
-    seen = inputs.autopilot.range_down
-    if seen is not None and estimator is not None and ranged_ns != seen.t_ns <= inputs.t_ns:
-        ranged_ns = seen.t_ns
-        measurements += surface_measurements(seen, inputs.t_ns, system.config.touchdown)
+    measurements, seen = inputs.vehicle.measurements, inputs.autopilot.range_down
+    if seen is not None and estimator is not None and vehicle.ranges.newest_ns != seen.t_ns <= inputs.t_ns:
+        ranges, rises_m = watch_ranges(vehicle.ranges, seen)
+        vehicle = replace(vehicle, ranges=ranges)
+        if rises_m is not None:
+            apart_std_m = 0.0 if _are_frames_one(vehicle, inputs, system) else math.inf
+            measurements += surface_measurements(seen, rises_m, inputs.t_ns, system.config.touchdown, apart_std_m)
     if measurements:
         estimator = system.estimator.fuse(estimator, measurements)
     contradictions, sightings = vehicle.contradictions, vehicle.sightings
@@ -52,7 +57,6 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
     return replace(
         vehicle,
         estimator=estimator,
-        ranged_ns=ranged_ns,
         hindsight=update_hindsight(vehicle.hindsight, system.estimator, estimator, inputs.t_ns, monotonic_ns=now_ns),
         fix_stamps=update_fix_stamps(
             vehicle.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns, inputs.vehicle.fix_ahead_s
@@ -93,7 +97,7 @@ def predict_pad(
     if forecast is None:
         return vehicle, None
     if _is_finite(forecast):
-        has_one_frame = are_frames_one(vehicle.phases, system.config.integrity.receiver_frames, inputs.monotonic_ns)
+        has_one_frame = _are_frames_one(vehicle, inputs, system)
         sightings = vehicle.sightings if phase in _APPROACHING else forget_step(vehicle.sightings)
         vehicle = replace(vehicle, sightings=sightings) if sightings is not vehicle.sightings else vehicle
         pad = pad_path(forecast, inputs.vehicle.pad, has_one_frame=has_one_frame, is_confirmed=sightings.is_confirmed)
@@ -122,6 +126,10 @@ def place_by_deck(vehicle: VehicleMemory, pad: PadPath | None, inputs: StepInput
     counted = system.estimator.health(estimator).sightings  # it is none of a detector's
     sightings = replace(vehicle.sightings, counted=counted, is_confirmed=True)
     return replace(vehicle, estimator=estimator, sightings=sightings)
+
+
+def _are_frames_one(vehicle: VehicleMemory, inputs: StepInputs, system: System) -> bool:
+    return are_frames_one(vehicle.phases, system.config.integrity.receiver_frames, inputs.monotonic_ns)
 
 
 def _is_finite(forecast: Forecast) -> bool:

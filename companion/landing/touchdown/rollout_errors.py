@@ -76,7 +76,7 @@ def _draw_vehicle(then: VehicleEstimate, pad: PadPath, normals: Array, uniforms:
         covariance = stated.copy()
         for axis in range(3):
             stated_m2 = covariance[axis, axis] + turned_m2[axis]
-            covariance[axis, axis] = max(stated_m2 - apart_m2, _PLACE_STD_MIN_M**2)
+            covariance[axis, axis] = max(stated_m2 - apart_m2[axis], _PLACE_STD_MIN_M**2)
         drawn = of_model == model
         vehicle[drawn] = off + normals[drawn] @ _root(covariance).T
     return vehicle

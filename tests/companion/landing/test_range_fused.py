@@ -7,7 +7,7 @@ import pytest
 
 from companion.core.data import Measurement, Quantity, RangeReading
 from link.records import replace
-from tests.companion.world import PAD_HEIGHT_M, STEP_NS, Flight, KnownVehicle
+from tests.companion.world import PAD_HEIGHT_M, Flight, KnownVehicle
 
 _HOUR_NS = 3_600_000_000_000
 
@@ -28,20 +28,27 @@ def _flight() -> tuple[Flight, list[int]]:
     return Flight(vehicle=vehicle), vehicle.ranges_ns
 
 
-def _sees(flight: Flight, t_ns: int) -> None:
-    range_down = RangeReading(t_ns=t_ns, distance_m=1.0, own=replace(flight.own, t_ns=t_ns))
-    flight.view = replace(flight.view, range_down=range_down)
+def _sees(flight: Flight, t_ns: int, *, distance_m: float = 1.0, risen_m: float = 0.0) -> None:
+    x, y, z = flight.own.position_enu_m
+    own = replace(flight.own, t_ns=t_ns, position_enu_m=(x, y, z + risen_m))
+    flight.view = replace(flight.view, range_down=RangeReading(t_ns=t_ns, distance_m=distance_m, own=own))
 
 
-def test_each_range_is_fused_once() -> None:
+def _look(flight: Flight, times: int) -> list[int]:
+    """Let it see the same surface so many times, and return when that was."""
+    told_ns = []
+    for _ in range(times):
+        told_ns.append(flight.t_ns - 5_000_000)
+        _sees(flight, told_ns[-1])
+        flight.run(0.1)
+    return told_ns
+
+
+def test_each_range_is_fused_once_from_the_fifth_on_that_agrees() -> None:
     flight, ranges_ns = _flight()
     flight.run(0.2)
-    told_ns = []
-    for _ in range(3):
-        _sees(flight, flight.t_ns - 5_000_000)
-        told_ns.append(flight.t_ns - 5_000_000)
-        flight.run(0.1)
-    assert ranges_ns == told_ns
+    told_ns = _look(flight, 7)
+    assert ranges_ns == told_ns[4:]
 
 
 @pytest.mark.parametrize("ahead_ns", [_HOUR_NS, -_HOUR_NS])
@@ -51,14 +58,23 @@ def test_range_of_another_hour_is_not_fused(ahead_ns: int) -> None:
     _sees(flight, flight.t_ns + ahead_ns)
     flight.run(0.5)
     assert ranges_ns == []
-    _sees(flight, flight.t_ns)
-    flight.step()
-    assert ranges_ns == [flight.t_ns - STEP_NS]
+    told_ns = _look(flight, 5)
+    assert ranges_ns == told_ns[4:]
 
 
 def test_range_before_the_vehicle_is_known_is_not_fused() -> None:
     flight, ranges_ns = _flight()
     flight.sends_fixes = False
-    _sees(flight, flight.t_ns)
-    flight.run(0.1)
+    _look(flight, 7)
     assert ranges_ns == []
+
+
+def test_range_finder_that_says_the_same_while_the_drone_rises_is_not_believed_until_it_measures_again() -> None:
+    flight, ranges_ns = _flight()
+    flight.run(0.2)
+    told_ns = _look(flight, 5)
+    for distance_m, risen_m in ((1.0, 0.04), (1.0, 0.08), (1.0, 0.6), (1.02, 0.02)):
+        told_ns.append(flight.t_ns - 5_000_000)
+        _sees(flight, told_ns[-1], distance_m=distance_m, risen_m=risen_m)
+        flight.run(0.1)
+    assert ranges_ns == [told_ns[4], told_ns[5], told_ns[8]]

@@ -86,7 +86,10 @@ def test_offset_stays_learnt_when_the_sightings_end() -> None:
         memory = chosen.fuse(memory, [measurement])
     estimate = chosen.estimate(memory, now_ns(20.0))
     assert estimate is not None
-    assert estimate.position_enu_m == pytest.approx(truth.at(20.0)[0], abs=0.08)
+    there = truth.at(20.0)[0]
+    assert estimate.position_enu_m[:2] == pytest.approx(there[:2], abs=0.08)
+    # The drone's own height may have wandered: what seemed to be its rate goes on and fades.
+    assert estimate.position_enu_m[2] == pytest.approx(there[2], abs=0.5 * math.sqrt(estimate.covariance[2, 2]))
 
 
 def test_slow_error_of_a_plain_receiver_is_followed_by_sightings() -> None:

@@ -19,8 +19,8 @@ from companion.vehicle.small_matrices import correct
 
 TAU_S = 3.0
 ROLL, PITCH = (2.0 * math.pi * 1.1, 0.25, 0.03), (2.0 * math.pi * 0.8, 0.15, 0.02)
-MOTION = np.array([TAU_S, 2.0 * math.pi * 0.75, 0.3, 0.04, 180.0, -0.7, 0.1, 0.3, 1.4, 5.0, *ROLL, *PITCH])
-NOISE = np.array([12.0, 0.005, 20.0, 3.0, 1e-4, 0.003, 1e-5, 2e-3, 1e-7, 0.1, 0.0, 0.5, 10.0, 1e-5, 0.15, 0.0])
+MOTION = np.array([TAU_S, 2.0 * math.pi * 0.75, 0.3, 0.04, 180.0, -0.7, 0.1, 0.3, 1.4, 5.0, *ROLL, *PITCH, 10.0])
+NOISE = np.array([12.0, 0.005, 20.0, 3.0, 1e-4, 0.003, 1e-5, 2e-3, 1e-7, 0.1, 0.0, 0.5, 10.0, 1e-5, 0.15, 0.0, 4e-3])
 LEVER = MOTION[5:9]
 HEAVE = np.array([[1.0, 0.097, 0.004], [0.0, 0.91, 0.08], [0.0, -1.7, 0.69]])
 TILT = np.array([[[0.85, 0.07], [-3.1, 0.6]], [[0.93, 0.09], [-1.2, 0.8]]])
@@ -37,7 +37,7 @@ def a_state(seed: int) -> Array:
     x[kernels.CLOCK] = rng.uniform(-0.1, 0.1)
     x[9], x[kernels.BEND] = rng.uniform(-0.12, 0.12), rng.uniform(-0.006, 0.006)
     x[kernels.LEAK] = rng.uniform(-1.0, 1.0)
-    x[kernels.LEAK + 1 :] = rng.uniform(-0.05, 0.05, 6)
+    x[kernels.LEAK + 1 :] = rng.uniform(-0.05, 0.05, SIZE - kernels.LEAK - 1)
     return x
 
 

@@ -12,7 +12,7 @@ from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_noise as noises
 from companion.vehicle import imm_sensors as sensors
-from companion.vehicle.imm_swing import PITCH, ROLL, SIZE, antenna_swing
+from companion.vehicle.imm_swing import OWN_RATE, PITCH, ROLL, SIZE, antenna_swing
 from link.frames.rotations import quaternion_from_roll_pitch_yaw, quaternion_from_yaw, rotate
 from tests.companion.vehicle.drives import NOMINAL, drive
 from tests.companion.vehicle.rides import estimator, ride
@@ -70,6 +70,7 @@ def test_shift_to_the_pad_is_linear_in_what_it_does_to_the_covariance(seed: int)
 def test_antenna_s_velocity_is_how_fast_its_place_changes(seed: int) -> None:
     x, P = a_state(seed), a_covariance(seed)
     x[TILTED] = 0.0  # that a swung antenna turns with the vehicle as well is left out
+    x[OWN_RATE] = 0.0  # which is the drone's
     at = np.array([x, mixing.glide(x, P, mixing.steps_of(1e-4, MOTION), QUIET, MOTION)[0]])
     position, velocity, _ = forecasts.kinematics(at, MOTION)
     assert (position[1] - position[0]) / 1e-4 == pytest.approx(velocity[0], abs=2e-3)

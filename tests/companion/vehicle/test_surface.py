@@ -14,10 +14,13 @@ from companion.vehicle.imm_numbers import Deck
 from companion.vehicle.surface import pad_height_seen, surface_measurements
 from link.frames.rotations import quaternion_from_roll_pitch_yaw
 from link.records import replace
-from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, NOMINAL, Drive, climb, straight
+from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, DEGRADED, NOMINAL, Drive, Sensors, climb, drive, straight
 from tests.companion.vehicle.rides import arrivals, now_ns
 
 HALF_WIDTH_M = 0.75
+ROOF_M = 1.5
+Place = tuple[float, float, float]
+Slope = tuple[float, float]
 CONFIG = TouchdownConfig()
 SIGHTED = replace(NOMINAL, pad_rate_hz=30.0)
 SIGHTED_S = 3.0
@@ -41,8 +44,10 @@ def _reading(roll_rad: float = 0.0, attitude_age_s: float = 0.0) -> RangeReading
     return RangeReading(t_ns=own.t_ns, distance_m=2.0, own=own)
 
 
-def _surface(value: Array, t_s: float = 0.0) -> Measurement:
-    return Measurement(t_ns=now_ns(t_s), quantity=Quantity.SURFACE, value=value, covariance=0.03**2 * np.eye(3))
+def _surface(value: Array, t_s: float = 0.0, apart_std_m: float = math.inf, rises_m: float = 0.0) -> Measurement:
+    covariance = np.diag([apart_std_m**2, apart_std_m**2, 0.03**2, 2.0 * 0.03**2])
+    told = np.append(value, rises_m)
+    return Measurement(t_ns=now_ns(t_s), quantity=Quantity.SURFACE, value=told, covariance=covariance)
 
 
 def _known(truth: Drive, until_s: float, *, sighted_s: float = SIGHTED_S) -> list[Measurement]:
@@ -54,11 +59,11 @@ def _known(truth: Drive, until_s: float, *, sighted_s: float = SIGHTED_S) -> lis
     ]
 
 
-def _ranged(truth: Drive, until_s: float, error_m: Array) -> list[Measurement]:
+def _ranged(truth: Drive, until_s: float, error_m: Array, apart_std_m: float = math.inf) -> list[Measurement]:
     """Surfaces at the pad's centre from the sightings' end on, off by up to `error_m` (3,) at the end."""
     times = np.arange(SIGHTED_S, until_s, 1.0 / RANGED_HZ).tolist()
     share = [(t - SIGHTED_S) / (until_s - SIGHTED_S) for t in times]
-    return [_surface(truth.pad_at(t) + part * error_m, t) for t, part in zip(times, share, strict=True)]
+    return [_surface(truth.pad_at(t) + part * error_m, t, apart_std_m) for t, part in zip(times, share, strict=True)]
 
 
 def _pad(chosen: Estimator, measurements: list[Measurement], t_s: float) -> tuple[Array, Array]:
@@ -81,9 +86,9 @@ def _arm(yaw_rad: Array | None) -> Array:
 def test_place_is_at_the_end_of_the_beam_which_leans_with_the_drone(
     roll_rad: float, left_m: float, down_m: float
 ) -> None:
-    (seen,) = surface_measurements(_reading(roll_rad), NOW_NS, CONFIG)
+    (seen,) = surface_measurements(_reading(roll_rad), 0.0, NOW_NS, CONFIG, 0.0)
     assert seen.quantity is Quantity.SURFACE
-    assert seen.value == pytest.approx([3.0, 4.0 + left_m, 5.0 - down_m], abs=1e-3)
+    assert seen.value == pytest.approx([3.0, 4.0 + left_m, 5.0 - down_m, 0.0], abs=1e-3)
 
 
 def test_range_finder_higher_than_the_place_that_is_reported_sees_from_there() -> None:
@@ -91,8 +96,8 @@ def test_range_finder_higher_than_the_place_that_is_reported_sees_from_there() -
         update={"range_finder": CONFIG.range_finder.model_copy(update={"height_m": CONFIG.gear_height_m + 0.1})}
     )
     (seen,), (level,) = (
-        surface_measurements(_reading(), NOW_NS, higher),
-        surface_measurements(_reading(), NOW_NS, CONFIG),
+        surface_measurements(_reading(), 0.0, NOW_NS, higher, 0.0),
+        surface_measurements(_reading(), 0.0, NOW_NS, CONFIG, 0.0),
     )
     assert seen.value[2] == pytest.approx(level.value[2] + 0.1)
 
@@ -108,7 +113,25 @@ def test_range_finder_higher_than_the_place_that_is_reported_sees_from_there() -
     ],
 )
 def test_nothing_is_seen_from_an_unknown_place_or_attitude_or_beside_or_at_another_time(reading: RangeReading) -> None:
-    assert surface_measurements(reading, NOW_NS, CONFIG) == ()
+    assert surface_measurements(reading, 0.0, NOW_NS, CONFIG, 0.0) == ()
+
+
+def _seen(
+    away_m: Place,
+    std_m: float = 0.02,
+    above_road_m: float = ROOF_M,
+    slope_enu: Slope = (0.0, 0.0),
+    rises_m: float = 0.0,
+) -> Measurement | None:
+    pad = np.array([10.0, 20.0, 1.5])
+    return pad_height_seen(
+        _surface(pad + np.array(away_m), rises_m=rises_m),
+        pad,
+        pad_std_m=std_m,
+        slope_enu=slope_enu,
+        half_width_m=HALF_WIDTH_M,
+        above_road_m=above_road_m,
+    )
 
 
 @pytest.mark.parametrize(
@@ -118,23 +141,53 @@ def test_nothing_is_seen_from_an_unknown_place_or_attitude_or_beside_or_at_anoth
         ((0.7, 0.0, 0.0), 0.02, True),
         ((0.0, -0.8, 0.0), 0.02, False),
         ((0.5, 0.0, 0.0), 0.2, False),
-        ((0.0, 0.0, -1.5), 0.02, False),
-        ((0.0, 0.0, 0.9), 0.02, True),
     ],
 )
-def test_only_what_is_surely_within_the_pad_and_not_a_roof_away_is_the_pads(
-    away_m: tuple[float, float, float], std_m: float, *, is_pad: bool
+def test_only_what_is_surely_within_the_pad_is_the_pads(away_m: Place, std_m: float, *, is_pad: bool) -> None:
+    assert (_seen(away_m, std_m) is not None) is is_pad
+
+
+@pytest.mark.parametrize(
+    ("up_m", "above_road_m", "rises_m", "is_pad"),
+    [
+        (-0.7, ROOF_M, 0.0, True),
+        (-0.8, ROOF_M, 0.0, False),  # nearer to the road
+        (-ROOF_M, ROOF_M, 0.1, False),
+        (-1.3, ROOF_M, 1.4, True),  # the road was seen, lower still
+        (-2.1, ROOF_M, 1.4, False),
+        (-0.2, 0.3, 0.0, False),
+        (-1.4, 3.0, 0.0, True),
+        (-2.1, 5.0, 0.0, False),
+        (0.9, ROOF_M, 0.0, True),
+        (1.1, ROOF_M, 3.0, False),  # somebody stands on it
+        (-0.9, 0.0, 0.0, True),  # a pad on the ground has no road below
+        (1.1, 0.0, 0.0, False),
+    ],
+)
+def test_road_and_what_stands_on_the_pad_are_not_the_pads(
+    up_m: float, above_road_m: float, rises_m: float, *, is_pad: bool
 ) -> None:
-    pad = np.array([10.0, 20.0, 1.5])
-    seen = pad_height_seen(_surface(pad + np.array(away_m)), pad, std_m, (0.0, 0.0), HALF_WIDTH_M)
-    assert (seen is not None) is is_pad
+    assert (_seen((0.0, 0.0, up_m), above_road_m=above_road_m, rises_m=rises_m) is not None) is is_pad
 
 
 def test_height_is_that_of_the_centre_of_a_deck_that_slopes() -> None:
-    pad = np.array([10.0, 20.0, 1.5])
-    seen = pad_height_seen(_surface(pad + np.array([0.5, -0.2, 0.04])), pad, 0.02, (0.12, 0.1), HALF_WIDTH_M)
+    seen = _seen((0.5, -0.2, 0.04), slope_enu=(0.12, 0.1))
     assert seen is not None
     assert seen.value == pytest.approx([1.5])
+
+
+@pytest.mark.parametrize(("heading_std_rad", "counts"), [(0.02, True), (0.0, False)])
+def test_pad_beside_its_antenna_is_ranged_only_with_a_heading(heading_std_rad: float, *, counts: bool) -> None:
+    truth, until_s = drive(8.0, lambda _: 0.0, lambda _: 0.0), 7.0
+    sensors = replace(NOMINAL, heading_std_rad=heading_std_rad, yaw_rate_std_rad_s=0.0, velocity_std_m_s=0.0)
+    known = [one for one in arrivals(truth, sensors, 5) if one.t_ns < now_ns(until_s)]
+    chosen, error = _estimator(), np.array([0.0, 0.0, -0.6])
+    heights_m = []
+    for told in (known, known + _ranged(truth, until_s, error, 0.0)):
+        estimate = chosen.estimate(chosen.fuse(None, told), now_ns(until_s))
+        assert estimate is not None
+        heights_m.append(estimate.position_enu_m[2])
+    assert heights_m[1] - heights_m[0] == pytest.approx(-0.6 if counts else 0.0, abs=0.1)
 
 
 @pytest.mark.parametrize("drift_m", [-0.6, 0.6])
@@ -147,6 +200,37 @@ def test_pad_follows_the_drones_own_height_as_it_wanders(drift_m: float) -> None
     assert abs(without[2] - there[2]) > 0.5
     assert abs(ranged[2] - there[2]) < CONFIG.range_finder.contact_height_max_m
     assert ranged[:2] == pytest.approx(there[:2], abs=0.15)
+
+
+@pytest.mark.parametrize(
+    ("sensors", "apart_std_m", "follows"),
+    [
+        (NOMINAL, 0.0, True),
+        (NOMINAL, 1.0, False),
+        (NOMINAL, math.inf, False),
+        (replace(DEGRADED, heading_std_rad=0.02), 0.0, False),
+    ],
+)
+def test_pad_that_fixes_place_well_in_the_drones_frame_needs_no_sighting(
+    sensors: Sensors, apart_std_m: float, *, follows: bool
+) -> None:
+    truth, until_s, error = straight(5.0), 8.0, np.array([0.0, 0.0, -0.6])
+    known = [one for one in arrivals(truth, sensors, 5) if one.t_ns < now_ns(until_s)]
+    without, _ = _pad(_estimator(), known, until_s)
+    ranged, _ = _pad(_estimator(), known + _ranged(truth, until_s, error, apart_std_m), until_s)
+    assert ranged[2] - without[2] == pytest.approx(-0.6 if follows else 0.0, abs=0.1)
+
+
+@pytest.mark.parametrize("rate_m_s", [-0.1, 0.1])
+def test_height_that_wanders_is_followed_within_a_decimetre(rate_m_s: float) -> None:
+    """The filter's noise knows such a rate, but for how long it lasts (PX4's own height: docs/real_autopilots.md)."""
+    truth, until_s = straight(5.0), 8.0
+    error = np.array([0.0, 0.0, rate_m_s * (until_s - SIGHTED_S)])
+    known = _known(truth, until_s)
+    _, unranged = _pad(_estimator(), known, until_s)
+    pad, velocity = _pad(_estimator(), known + _ranged(truth, until_s, error), until_s)
+    assert pad[2] == pytest.approx(truth.pad_at(until_s)[2] + error[2], abs=0.1)
+    assert velocity[2] == pytest.approx(unranged[2], abs=0.05)
 
 
 def test_deck_that_comes_up_is_seen_to_where_the_vehicle_tells_it_late() -> None:

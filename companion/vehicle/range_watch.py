@@ -1,0 +1,71 @@
+"""Which readings of the drone's range finder can be believed, and how far what is below rises above the road; pure."""
+
+import numpy as np
+from msgspec import Struct
+
+from companion.core.data import RangeReading
+from link.frames.rotations import rotate
+from link.records import replace
+
+_UNSEEN_M = 0.05  # which a drone has risen or sunk while every reading is the same to the centimetre: nothing measures
+_AGREEING = 5  # readings in a row: one or two may be of anything
+_AGREEING_M = 0.15  # of their median: a deck that heaves at 0.5 m/s has moved by as much within them
+_AGREEING_S = 0.6  # of a range finder at 10 Hz
+_LATELY_S = 10.0  # in which a drone comes from behind a vehicle to over it, and its own height wanders by half a metre
+
+
+class RangeWatch(Struct, frozen=True, kw_only=True):
+    """The last readings.
+
+    Attributes:
+        newest_ns: when the newest was measured.
+        same: the first of the newest ones that are all the same.
+        recent: the last few, which have to agree.
+        lowest_m: height in W of the lowest surface that was seen lately.
+        lowest_ns: when.
+    """
+
+    newest_ns: int | None = None
+    same: RangeReading | None = None
+    recent: tuple[RangeReading, ...] = ()
+    lowest_m: float = np.inf
+    lowest_ns: int = 0
+
+
+def watch_ranges(watch: RangeWatch, seen: RangeReading) -> tuple[RangeWatch, float | None]:
+    """Return what is kept, and how far the surface is above the lowest one lately, m; None of what is not believed.
+
+    Args:
+        watch: before.
+        seen: a new reading.
+    """
+    is_same = watch.same is not None and seen.distance_m == watch.same.distance_m
+    same, recent = watch.same if is_same else seen, (*watch.recent, seen)[-_AGREEING:]
+    watch = replace(watch, newest_ns=seen.t_ns, same=same, recent=recent)
+    here_m = _surface_m(seen)
+    if here_m is None or _is_stuck(watch, seen) or _is_alone(watch, seen.t_ns, here_m):
+        return watch, None
+    if here_m < watch.lowest_m or seen.t_ns - watch.lowest_ns > _LATELY_S * 1e9:
+        watch = replace(watch, lowest_m=here_m, lowest_ns=seen.t_ns)
+    return watch, here_m - watch.lowest_m
+
+
+def _is_stuck(watch: RangeWatch, seen: RangeReading) -> bool:
+    """Return whether the range finder says the same while the drone rises or sinks."""
+    if watch.same is None or watch.same.own is None or seen.own is None:
+        return False
+    return abs(seen.own.position_enu_m[2] - watch.same.own.position_enu_m[2]) > _UNSEEN_M
+
+
+def _is_alone(watch: RangeWatch, t_ns: int, here_m: float) -> bool:
+    """Return whether a surface does not agree with most of the last, or too few were seen."""
+    heights_m = [_surface_m(one) for one in watch.recent if (t_ns - one.t_ns) * 1e-9 <= _AGREEING_S]
+    known_m = [height_m for height_m in heights_m if height_m is not None]
+    return len(known_m) < _AGREEING or abs(here_m - float(np.median(known_m))) > _AGREEING_M
+
+
+def _surface_m(seen: RangeReading) -> float | None:
+    """Return the height in W of what was seen, as of the point whose place is reported, None if that was not known."""
+    if seen.own is None:
+        return None
+    return seen.own.position_enu_m[2] + seen.distance_m * rotate(seen.own.orientation_wxyz, (0.0, 0.0, -1.0))[2]

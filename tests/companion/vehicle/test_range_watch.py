@@ -1,0 +1,75 @@
+"""Which readings are believed: those that agree, that change as the drone moves; and how far a roof rises."""
+
+import pytest
+
+from companion.core.data import OwnState, RangeReading
+from companion.vehicle.range_watch import RangeWatch, watch_ranges
+from link.frames.rotations import quaternion_from_roll_pitch_yaw
+
+HEIGHT_M = 5.0
+PERIOD_NS = 50_000_000
+
+
+def _reading(index: int, surface_m: float, *, height_m: float = HEIGHT_M, roll_rad: float = 0.0) -> RangeReading:
+    """A reading of a surface as high as given, `index` periods on."""
+    own = OwnState(
+        t_ns=index * PERIOD_NS,
+        position_enu_m=(3.0, 4.0, height_m),
+        velocity_enu_m_s=(0.0, 0.0, 0.0),
+        orientation_wxyz=quaternion_from_roll_pitch_yaw(roll_rad, 0.0, 0.0),
+        angular_velocity_flu_rad_s=(0.0, 0.0, 0.0),
+    )
+    return RangeReading(t_ns=own.t_ns, distance_m=height_m - surface_m, own=own)
+
+
+def _watch(readings: list[RangeReading]) -> float | None:
+    """How far the last of them rises, None where it is not believed."""
+    watch, rises_m = RangeWatch(), None
+    for seen in readings:
+        watch, rises_m = watch_ranges(watch, seen)
+    return rises_m
+
+
+@pytest.mark.parametrize(
+    ("heights_m", "is_believed"),
+    [
+        ((1.5, 1.5, 1.52, 1.49, 1.5), True),
+        ((1.5, 1.5, 1.5, 1.5), False),  # too few yet
+        ((1.5, 1.5, 1.5, 1.5, 1.9), False),
+        ((0.0, 0.0, 0.0, 1.5, 1.5), False),  # the roof's edge
+        ((0.0, 0.0, 1.5, 1.5, 1.5), True),
+        ((1.5, 0.6, 1.5, 0.6, 1.5), True),  # this one, and the others were left out
+    ],
+)
+def test_reading_is_believed_that_agrees_with_most_of_the_last(
+    heights_m: tuple[float, ...], *, is_believed: bool
+) -> None:
+    assert (_watch([_reading(i, height_m) for i, height_m in enumerate(heights_m)]) is not None) is is_believed
+
+
+def test_readings_of_long_ago_agree_with_nothing() -> None:
+    assert _watch([*(_reading(i, 1.5) for i in range(4)), _reading(24, 1.5)]) is None
+
+
+@pytest.mark.parametrize("sinks_m", [0.06, -0.06])
+def test_range_finder_that_says_the_same_while_the_drone_moves_is_not_believed(sinks_m: float) -> None:
+    stuck = [_reading(i, 1.5 - sinks_m * i, height_m=HEIGHT_M - sinks_m * i) for i in range(5)]
+    assert _watch(stuck[:1] * 5) == 0.0
+    assert _watch(stuck) is None
+
+
+def test_roof_rises_above_the_road_that_was_seen_before_it_for_ten_seconds() -> None:
+    road, roof = [_reading(i, 0.1) for i in range(6)], [_reading(6 + i, 1.6) for i in range(400)]
+    assert _watch(road + roof[:5]) == pytest.approx(1.5)
+    assert _watch(road + roof[:190]) == pytest.approx(1.5)
+    assert _watch(road + roof[:210]) == pytest.approx(0.0)
+
+
+def test_single_low_reading_is_no_road() -> None:
+    roof = [_reading(i, 1.6) for i in range(12)]
+    assert _watch([*roof[:6], _reading(6, 0.1), *roof[7:]]) == pytest.approx(0.0)
+
+
+def test_reading_without_a_known_place_is_not_believed() -> None:
+    unknown = RangeReading(t_ns=9 * PERIOD_NS, distance_m=3.0)
+    assert _watch([*(_reading(i, 1.5) for i in range(6)), unknown]) is None
