@@ -82,7 +82,8 @@ def fly(scenario: Scenario, options: FlyOptions, progress: Progress) -> RunOutco
             _write_truth(placed, options, keys, flight.recording)
     # The drag over a mass of 1 kg; there is no tier for a drone that came near and did not land.
     drag_hz = DRAG_PER_MASS_HZ.get(watch.session.autopilot or 0, 0.0)
-    rules = replace(rules_of(placed), mass_kg=1.0, drag_n_s_m=drag_hz, report_rule=False)
+    carries = options.ship_speed_m_s is not None
+    rules = replace(rules_of(placed), mass_kg=1.0, drag_n_s_m=drag_hz, report_rule=False, carries=carries)
     result = result_table(placed, options.seed, flight.recording, ended, rules)
     write_json(options.folder / "result.json", result)
     return RunOutcome(result=result, timing={"real_time_factor": 1.0})

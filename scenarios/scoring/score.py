@@ -106,6 +106,8 @@ def score_log(log: TruthLog, rules: ScoreRules, *, started_ns: int | None = None
     flight = flight_of(log, touched, rules.box)
     landing = None if flight.first is None else landing_of(log, flight.first, rules)
     found = flight_faults(log, touched, flight, fence_radius_m=rules.fence_radius_m)
+    if landing is not None and not rules.carries:
+        found = [fault for fault in found if fault[0] <= landing.touchdown.contact_t_ns]
     if landing is not None and landing.touchdown.on_pad:
         found += _excesses(landing.touchdown)
     distance_m = np.linalg.norm(log.position_v_m - np.array([0.0, 0.0, rules.box.roof_height_m]), axis=1)

@@ -35,6 +35,8 @@ class ScoreRules:
         wind_mean_enu_m_s: mean wind, for the trim.
         fence_radius_m: horizontal, about the origin of W.
         report_rule: S0 counts as a landing.
+        carries: the deck carries a drone that has touched it. One that is only said to drive, over ground that stands,
+            goes on from under it: what happens after the first contact is no fault then.
     """
 
     box: Box
@@ -44,6 +46,7 @@ class ScoreRules:
     wind_mean_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
     fence_radius_m: float = math.inf
     report_rule: bool = False
+    carries: bool = True
 
 
 def rules_of(scenario: Scenario, *, wind_mean_enu_m_s: Vector3 = (0.0, 0.0, 0.0)) -> ScoreRules:

@@ -7,8 +7,8 @@ from link.frames.rotations import quaternion_from_roll_pitch_yaw, rotate
 from link.messages import BodyTruth, Vector3
 from link.records import replace
 from scenarios.catalogue.catalogue import load_scenario
-from scenarios.scoring.score import Tier, score
-from scenarios.scoring.touchdown import rules_of
+from scenarios.scoring.score import Score, Tier, score
+from scenarios.scoring.touchdown import ScoreRules, rules_of
 from sim_autopilot.physics.contact import BLADE_REACH_M
 from tests.scenarios.scoring.synthetic import (
     CALM,
@@ -169,13 +169,23 @@ def test_motors_off_in_the_air_are_unsafe() -> None:
     assert (result.tier, result.reason) == (Tier.UNSAFE, "motors off in the air")
 
 
-def test_tipping_over_on_the_deck_is_unsafe() -> None:
+def _tips_over(rules: ScoreRules, from_index: int = -300) -> Score:
     landing = NOT_SECURED
     drone = [landing.drone(t_s) for t_s in TIMES_S]
     tipped = quaternion_from_roll_pitch_yaw(1.0, 0.0, 0.0)
-    drone[-300:] = [replace(sample, orientation_wxyz=tipped) for sample in drone[-300:]]
-    result = score(drone, [landing.vehicle(t_s) for t_s in TIMES_S], [], CALM)
+    drone[from_index:] = [replace(sample, orientation_wxyz=tipped) for sample in drone[from_index:]]
+    return score(drone, [landing.vehicle(t_s) for t_s in TIMES_S], [], rules)
+
+
+def test_tipping_over_on_the_deck_is_unsafe() -> None:
+    result = _tips_over(CALM)
     assert (result.tier, result.reason) == (Tier.UNSAFE, "tipped over on the deck")
+
+
+def test_what_a_deck_does_not_carry_is_judged_by_its_contact_alone() -> None:
+    rules = replace(CALM, carries=False)
+    assert _tips_over(rules).tier in {Tier.S1, Tier.S2}
+    assert _tips_over(rules, from_index=0).tier is Tier.UNSAFE
 
 
 def test_breaking_the_fence_is_unsafe() -> None:
