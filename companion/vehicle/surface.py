@@ -16,7 +16,7 @@ from link.records import replace
 
 ATTITUDE_AGE_MAX_S = 0.15  # of a drone that turns at 0.5 rad/s: what is seen 5 m away is then 0.4 m off
 _AGE_MAX_NS = 500_000_000  # what is older says nothing new
-_UPRIGHT_MIN = 0.8  # 37 degrees; farther over, the beam's end is beside what the drone is above
+_UPRIGHT_MIN = 0.917  # 23 degrees; one that leans more turns too fast for the attitude to be that of the reading
 _TOO_HIGH_M = 1.0  # what is so far above the pad is not the pad: a person, a load, a bridge
 _TOO_LOW_M = 2.0  # two standard deviations of how far apart heights are before anything told them
 _STDS = 2.0

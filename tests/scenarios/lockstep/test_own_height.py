@@ -2,6 +2,7 @@
 
 import pytest
 
+from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from link.records import replace
 from scenarios.catalogue.catalogue import load_changed_scenario
@@ -42,3 +43,26 @@ def test_road_beside_the_vehicle_is_not_landed_on_where_the_pad_is_described_the
     run.run()
     assert score_run(scenario, 1, run.recording).touchdown is None
     assert run.companion.phase is Phase.HOLD
+
+
+class _Nearer:
+    """Errors of a range finder that sees what stands on the pad, or hangs before it."""
+
+    def __init__(self, nearer_m: float) -> None:
+        self._nearer_m = nearer_m
+
+    def advance(self) -> float:
+        return -self._nearer_m
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("nearer_m", [1.2, 2.0])
+def test_what_stands_on_the_pad_higher_than_a_metre_is_not_landed_on(
+    nearer_m: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scenario = load_changed_scenario("straight_5", ["system.companion.abort.retries_max=0"])
+    run = Lockstep(scenario, seed=1)
+    monkeypatch.setattr(run.simulation.autopilot, "_range_errors", _Nearer(nearer_m))
+    run.run()
+    assert score_run(scenario, 1, run.recording).touchdown is None
+    assert Reason.SEEN_TOO_NEAR.name in {status.reason_code for status in run.recording.statuses}
