@@ -113,8 +113,8 @@ class RangeConfig(StrictModel):
     """The drone's range finder; by default one that is always right."""
 
     white_m: NotNegative = 0.0  # of a reading
-    min_m: NotNegative = 0.0
-    max_m: Positive = 100.0
+    min_m: NotNegative = 0.0  # of its range; what is nearer or farther is told as the range's end
+    max_m: Positive = 100.0  # likewise
 
 
 class SensorsConfig(StrictModel):

@@ -167,7 +167,7 @@ class ReceiversConfig(StrictModel):
     # Its height wanders over any vehicle, with a rate that lasts. With PX4 it moved by 0.09 m in 1 s, 0.32 m in 4 s and
     # 0.55 m in 8 s (docs/real_autopilots.md), with corrections by next to nothing: root mean square of the two.
     own_height_rate_std_m_s: NotNegative = 0.06
-    own_height_time_s: Positive = 10.0
+    own_height_time_s: Positive = 10.0  # for which such a rate lasts
     # Of the clock that dates such coarse fixes, against the drone's; benchmark: up to 0.1 s. Receivers with corrections
     # date their fixes themselves, to microseconds.
     clock_std_s: NotNegative = 0.03

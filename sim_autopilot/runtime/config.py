@@ -76,7 +76,7 @@ class RangeFinderConfig(StrictModel):
 
     white_std_m: NotNegative = 0.0  # of a reading
     min_m: NotNegative = 0.0  # of its range; what is nearer or farther is told as the range's end
-    max_m: Positive = 100.0
+    max_m: Positive = 100.0  # likewise
 
 
 class VehicleConfig(StrictModel):

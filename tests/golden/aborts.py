@@ -24,8 +24,7 @@ _PARKED = {"chase": {"parked_wait_s": 0.5}}
 _LONG_ALIGNMENT = {"alignment": {"hold_s": 20.0}}
 _ANTENNA_OVER_PAD = {"antenna_flu_m": (0.0, 0.0, 1.6)}  # no heading is needed to place the pad
 _RAISED_M = 3.0
-_LOWER_M = 0.8
-_TOO_LOW_M = 1.2  # to be that of a pad whose height is told wrong
+_WRONG_M = 1.2  # more than what a range finder sees may be off the height of a pad that is told wrong
 _BESIDE_M = 0.4
 _COMMITTED_M = 0.4  # of the drone above the roof: its feet are 0.28 m above
 _AHEAD_S = 0.3
@@ -174,7 +173,7 @@ ABORTS: dict[str, Abort] = {
     ),
     "outrun": Abort(reason=Reason.VEHICLE_OUTRUNS, phase=Phase.ALIGN, fault=_limit_is_lowered),
     "below_pad": Abort(reason=Reason.BELOW_PAD, fault=_pad_is_described(forward_m=0.0, up_m=_RAISED_M)),
-    "nothing_touched": Abort(reason=Reason.NOTHING_TOUCHED, fault=_pad_is_described(forward_m=0.0, up_m=_TOO_LOW_M)),
+    "nothing_touched": Abort(reason=Reason.NOTHING_TOUCHED, fault=_pad_is_described(forward_m=0.0, up_m=_WRONG_M)),
     "offset_unknown": Abort(
         reason=Reason.OFFSET_UNKNOWN,
         companion={"integrity": {"receiver_frames": "apart"}, "chase": {"unseen_hold_s": 2.0}},
@@ -197,7 +196,7 @@ ABORTS: dict[str, Abort] = {
     "seen_too_near": Abort(
         reason=Reason.SEEN_TOO_NEAR,
         phase=Phase.ALIGN,
-        fault=_pad_is_described(forward_m=0.0, up_m=-_LOWER_M),
+        fault=_pad_is_described(forward_m=0.0, up_m=-_WRONG_M),
     ),
     "contact_lost": Abort(
         reason=Reason.ABOVE_AFTER_CONTACT,
