@@ -24,6 +24,7 @@ from companion.vehicle import steady_driving
 from companion.vehicle.deck_motion import first_motion, learn, passed
 from companion.vehicle.filter_step import Update, wrapped
 from companion.vehicle.imm_frames import own_rate_opened_m2_s2, ranged_pad, wandering
+from companion.vehicle.imm_kernels import CURVATURE, HEADING
 from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, swing_of
 from companion.vehicle.imm_state import (
     KINDS,
@@ -42,7 +43,6 @@ from companion.vehicle.imm_state import (
 from companion.vehicle.imm_swing import OWN_RATE
 from link.records import replace
 
-CURVATURE, HEADING = 6, 7
 SWINGING = np.array([10, 11, *TILT])
 TURNS = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
 MOTIONS = frozenset({Quantity.POSITION, Quantity.VELOCITY})

@@ -6,13 +6,12 @@ import numpy as np
 
 from companion.config.estimation import ReceiversConfig
 from companion.core.data import Array, Measurement
+from companion.vehicle.imm_kernels import HEADING
 from companion.vehicle.imm_numbers import Deck
 from companion.vehicle.imm_sensors import PAD, observe
 from companion.vehicle.imm_state import OFFSET, ImmState
 from companion.vehicle.imm_swing import PITCH, ROLL
 from companion.vehicle.surface import pad_height_seen
-
-HEADING = 7
 
 
 def wandering(state: ImmState, receivers: ReceiversConfig) -> tuple[float, float, float]:

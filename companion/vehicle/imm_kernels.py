@@ -40,7 +40,7 @@ from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_swing import MOUNT, OWN_RATE, PITCH, ROLL, SIZE
 
-CLOCK, BEND, LEAK = 15, 16, 17
+CURVATURE, HEADING, CLOCK, BEND, LEAK = 6, 7, 15, 16, 17
 
 
 class Turn(NamedTuple):

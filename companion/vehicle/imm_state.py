@@ -13,11 +13,10 @@ from numpy.typing import NDArray
 
 from companion.config.estimation import ImmConfig, ReceiversConfig
 from companion.core.data import Array, Measurement, Quantity
-from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_sensors as sensors
 from companion.vehicle.deck_motion import DeckMotion
-from companion.vehicle.imm_kernels import CLOCK
+from companion.vehicle.imm_kernels import BEND, CLOCK, CURVATURE, HEADING, LEAK
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Numbers
 from companion.vehicle.imm_sensors import observe
@@ -173,12 +172,11 @@ def is_placed_by_sightings(state: ImmState, receivers: ReceiversConfig) -> bool:
     return variance < 0.25 * (receivers.frame_offset_std_m**2 + state.fix_bias_variance_m2)
 
 
-_CURVATURE, _HEADING = 6, 7
 _TOLD_BY = {  # the states that a quantity tells
-    Quantity.VELOCITY: np.array([2, 3, 4, 5, 9, 11, kernels.BEND]),
-    Quantity.HEADING: np.array([_HEADING]),
-    Quantity.YAW_RATE: np.array([_CURVATURE]),
-    Quantity.ACCELERATION: np.array([kernels.LEAK]),
+    Quantity.VELOCITY: np.array([2, 3, 4, 5, 9, 11, BEND]),
+    Quantity.HEADING: np.array([HEADING]),
+    Quantity.YAW_RATE: np.array([CURVATURE]),
+    Quantity.ACCELERATION: np.array([LEAK]),
     Quantity.TILT: DECK,  # a unit that was moved on its mount contradicts, too
 }
 
@@ -238,7 +236,7 @@ def _restart(state: ImmState, place: Measurement, config: ImmConfig, numbers: Nu
     means, covariances, weights = start_state(place, config, numbers).modes
     means[:, PLACE] += x[OFFSET]
     means[:, OFFSET] = x[OFFSET]
-    for kept in (_HEADING, kernels.CLOCK, *DECK):
+    for kept in (HEADING, CLOCK, *DECK):
         means[:, kept], covariances[:, kept, kept] = x[kept], P[kept, kept]
     age_s = 0.0 if place.quantity is Quantity.PAD else math.inf
     return replace(state, modes=(means, covariances, weights), seen_age_s=age_s, height_age_s=age_s)

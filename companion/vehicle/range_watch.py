@@ -20,14 +20,14 @@ class RangeWatch(Struct, frozen=True, kw_only=True):
     Attributes:
         newest_ns: when the newest was measured.
         same: the first of the newest ones that are all the same.
-        recent: the last few, which have to agree.
+        recent: the last few surfaces, which have to agree: when each was seen, and its height in W.
         lowest_m: height in W of the lowest surface that was seen lately.
         lowest_ns: when.
     """
 
     newest_ns: int | None = None
     same: RangeReading | None = None
-    recent: tuple[RangeReading, ...] = ()
+    recent: tuple[tuple[int, float], ...] = ()
     lowest_m: float = np.inf
     lowest_ns: int = 0
 
@@ -40,10 +40,12 @@ def watch_ranges(watch: RangeWatch, seen: RangeReading) -> tuple[RangeWatch, flo
         seen: a new reading.
     """
     is_same = watch.same is not None and seen.distance_m == watch.same.distance_m
-    same, recent = watch.same if is_same else seen, (*watch.recent, seen)[-_AGREEING:]
-    watch = replace(watch, newest_ns=seen.t_ns, same=same, recent=recent)
+    watch = replace(watch, newest_ns=seen.t_ns, same=watch.same if is_same else seen)
     here_m = _surface_m(seen)
-    if here_m is None or _is_stuck(watch, seen) or _is_alone(watch, seen.t_ns, here_m):
+    if here_m is None:
+        return watch, None
+    watch = replace(watch, recent=(*watch.recent, (seen.t_ns, here_m))[-_AGREEING:])
+    if _is_stuck(watch, seen) or _is_alone(watch.recent):
         return watch, None
     if here_m < watch.lowest_m or seen.t_ns - watch.lowest_ns > _LATELY_S * 1e9:
         watch = replace(watch, lowest_m=here_m, lowest_ns=seen.t_ns)
@@ -57,11 +59,12 @@ def _is_stuck(watch: RangeWatch, seen: RangeReading) -> bool:
     return abs(seen.own.position_enu_m[2] - watch.same.own.position_enu_m[2]) > _UNSEEN_M
 
 
-def _is_alone(watch: RangeWatch, t_ns: int, here_m: float) -> bool:
-    """Return whether a surface does not agree with most of the last, or too few were seen."""
-    heights_m = [_surface_m(one) for one in watch.recent if (t_ns - one.t_ns) * 1e-9 <= _AGREEING_S]
-    known_m = [height_m for height_m in heights_m if height_m is not None]
-    return len(known_m) < _AGREEING or abs(here_m - float(np.median(known_m))) > _AGREEING_M
+def _is_alone(recent: tuple[tuple[int, float], ...]) -> bool:
+    """Return whether the last surface does not agree with most, or too few were seen within a while."""
+    (since_ns, _), (t_ns, here_m) = recent[0], recent[-1]
+    if len(recent) < _AGREEING or (t_ns - since_ns) * 1e-9 > _AGREEING_S:
+        return True
+    return abs(here_m - float(np.median([height_m for _, height_m in recent]))) > _AGREEING_M
 
 
 def _surface_m(seen: RangeReading) -> float | None:
