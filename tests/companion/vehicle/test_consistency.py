@@ -25,6 +25,7 @@ from companion.vehicle.estimator import DelayBuffer, fuse
 from companion.vehicle.filter_step import Gaussian
 from companion.vehicle.imm import ImmModel
 from companion.vehicle.imm_mixing import combine
+from companion.vehicle.imm_numbers import noises_with
 from companion.vehicle.imm_state import ImmState
 from companion.vehicle.imm_swing import SIZE, smooth_step
 from companion.vehicle.lkf import LkfModel, WhiteJerkNoise, transition
@@ -49,6 +50,13 @@ IMM = ImmModel(
         heading=HeadingConfig(course_std_rad=1e3),
     )
 )
+NOISE = noises_with(
+    IMM.numbers,
+    (0.0, 0.0, 0.0),
+    (MODE.jerk_psd_m2_s5, MODE.lateral_acceleration_psd_m2_s5),
+    turn_is_measured=False,
+)[0]
+"""Of the steady model, by the filter's own table: a kernel that is given too short a one reads what lies behind it."""
 LKF = LkfModel(noise=WhiteJerkNoise(config=LkfConfig()))
 
 
@@ -90,34 +98,12 @@ def drawn(covariance: Array, rng: np.random.Generator) -> Array:
 
 def wander(x: Array, rng: np.random.Generator) -> Array:
     """The turning model's own motion with its own noise, one step."""
-    config = IMM.config
-    sways = config.on_road.heave
+    sways, calm = IMM.config.on_road.heave, np.zeros((2, 2, 2))
     heave, heave_noise = smooth_step(DT_S, 2.0 * np.pi * sways.frequency_hz, sways.damping, rate_std_m_s(sways))
-    level, calm = np.zeros((2, 2, 2)), np.zeros((2, 2, 2))
-    noise = np.array(
-        [
-            MODE.jerk_psd_m2_s5,
-            config.side_jerk_psd_m2_s5,
-            MODE.lateral_acceleration_psd_m2_s5,
-            config.heading.curvature_speed_min_m_s,
-            config.heading.psd_rad2_s,
-            MODE.bend_std_per_m,
-            0.0,
-            0.0,
-            0.0,
-            config.heading.curvature_std_rad_m,
-            0.0,
-            MODE.bend_acceleration_std_m_s2,
-            config.road.bend_length_m,
-            config.road.height_psd_m2_m,
-            0.0,
-            0.0,
-        ]
-    )
-    Q = noises.process_noise(x, DT_S, noise, heave_noise, calm)
-    after, _ = kernels.advance(x, DT_S, config.acceleration_decay_s, heave, level)
-    after[6] *= noises.curvature_left(float(np.hypot(x[2], x[3])), DT_S, noise)
-    after[kernels.BEND] *= noises.bend_step(x, DT_S, noise)[0]
+    Q = noises.process_noise(x, DT_S, NOISE, heave_noise, calm)
+    after, _ = kernels.advance(x, DT_S, IMM.config.acceleration_decay_s, heave, calm)
+    after[6] *= noises.curvature_left(float(np.hypot(x[2], x[3])), DT_S, NOISE)
+    after[kernels.BEND] *= noises.bend_step(x, DT_S, NOISE)[0]
     return np.asarray(after + drawn(Q, rng))
 
 
