@@ -1,8 +1,8 @@
 """What can be set about the alignment over the pad and the descent onto it."""
 
-from typing import Annotated
+from typing import Annotated, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from link.program.toml_config import NotNegative, Positive, StrictModel
 
@@ -105,3 +105,12 @@ class DescentConfig(StrictModel):
     risk: RiskConfig = RiskConfig()
     unseen: UnseenConfig = UnseenConfig()
     sway: SwayConfig = SwayConfig()
+
+    @model_validator(mode="after")
+    def _commits_below_the_wait(self) -> Self:
+        lowest_m = min(self.wait.height_m, self.wait.height_coarse_m)
+        if self.commit_height_m >= lowest_m:
+            raise ValueError(
+                f"commit_height_m, {self.commit_height_m:g}, must be less than the heights of wait, {lowest_m:g}"
+            )
+        return self

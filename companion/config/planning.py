@@ -1,9 +1,10 @@
 """Numbers of the guidance laws, each with its unit in its name and where it comes from."""
 
+import math
 from enum import Enum
-from typing import Annotated
+from typing import Annotated, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from link.program.toml_config import StrictModel
 
@@ -34,6 +35,10 @@ class ReportReading(Enum):
     STATED = "stated"  # 1 s and 0.2 s, weights as printed, input weighed
 
 
+_NODES_MAX = 200
+"""Of a plan: its matrices grow with the square of them, and its period is 20 ms."""
+
+
 class MpcConfig(StrictModel):
     """The default law; the weights were chosen by measurement of overshoot, time and noise."""
 
@@ -53,7 +58,7 @@ class MpcConfig(StrictModel):
         0.5,
         0.64,
     )  # blocks
-    node_spacing_max_s: Positive = 0.16  # longer blocks are split for costs and bounds
+    node_spacing_max_s: Annotated[float, Field(ge=0.01, le=1e4)] = 0.16  # longer blocks are split for costs and bounds
     position_weight: Positive = 1.0  # 1/m^2, the scale of all weights
     velocity_weight: NotNegative = 0.3  # s^2/m^2
     acceleration_weight: NotNegative = 0.005  # s^4/m^2
@@ -65,6 +70,15 @@ class MpcConfig(StrictModel):
     intercept_time_min_s: Positive = 1.4  # shorter ways are slowed down to this: the law is linear near the target
     lateral_speed_fraction: Fraction = 0.01  # of the speed limit kept for the minor axis beside the target's speed
     axes_time_s: Positive = 1.0  # a relative speed turns the major axis like the distance it covers in this time
+
+    @model_validator(mode="after")
+    def _can_be_solved_in_time(self) -> Self:
+        nodes = sum(math.ceil(move_s / self.node_spacing_max_s) for move_s in self.moves_s)
+        if not 1 <= nodes <= _NODES_MAX:
+            raise ValueError(
+                f"moves_s, split by node_spacing_max_s, has {nodes} nodes; it must have 1 to {_NODES_MAX} to be solved"
+            )
+        return self
 
 
 class ReportMpcConfig(StrictModel):

@@ -136,7 +136,7 @@ def _path_of(command: Any, name: str, arguments: Sequence[str]) -> str:
 
 def _whole(error: typer.TyperException) -> str:
     """Return the message of a mistake; of a command that there is not, with all that there are, if none is near."""
-    told = error.format_message()
+    told = error.format_message().replace("Value error, ", "")  # pydantic's word for a check of one's own
     commands = getattr(getattr(getattr(error, "ctx", None), "command", None), "commands", {})
     if not told.startswith("No such command") or "Did you mean" in told or not commands:
         return told

@@ -33,4 +33,4 @@ def require(extra: str, needed_by: str) -> None:
     """
     missing = [name for name in EXTRAS[extra] if importlib.util.find_spec(name) is None]
     if missing:
-        raise UserError(f"{needed_by} needs {', '.join(missing)}: pip install 'decklander[{extra}]'")
+        raise UserError(f"{needed_by} needs {', '.join(missing)}: install the extra '{extra}' (docs/install.md)")

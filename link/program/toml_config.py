@@ -78,6 +78,8 @@ def validate(
     above, between = overrides or {}, environment or {}
 
     def source_of(location: Location) -> str:
+        if not location and above:
+            return f"{source} with the command line"
         if _is_in(location, above):
             return "command line"
         return "environment" if _is_in(location, between) else source
@@ -173,8 +175,12 @@ def _sentence(details: ErrorDetails, location: Location, fields: Fields, model: 
     key = _key(location)
     if details["type"] == "extra_forbidden":
         return f"unknown key '{key}'{key_hint(key, list(fields), model)}"
+    if details["type"] == "missing" and isinstance(location[-1], int):
+        return f"{_key(location[:-1])} is too short: it must have more than {location[-1]} values"
     if details["type"] == "missing":
         return f"key '{key}' is missing"
+    if details["type"] == "model_type" and location:
+        return f"{_describe_value(key, details['input'])} does not fit: it is a table, whose keys are set one by one"
     field = fields.get(str(location[-1])) if location else None
     is_ours = details["type"] == "value_error"  # a check of the model's own, beyond the range of one number
     expected = ("" if is_ours or field is None else _range_of(field)) or _lower_first(details["msg"])

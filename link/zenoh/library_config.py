@@ -2,6 +2,7 @@
 
 import json
 import re
+from pathlib import Path
 from typing import TypedDict
 
 import zenoh
@@ -16,6 +17,13 @@ _BLOCK_MAX_KEY = "transport/link/tx/queue/congestion_control/block/wait_before_c
 _BLOCK_MAX_US = 200_000
 """A peer that takes nothing for this long while its queue is full is disconnected: a hung dashboard must not
 stall the loop that flies. Less than the half second after which autopilots call a setpoint stream lost."""
+
+_TLS = "transport/link/tls/"
+_TLS_FILES = (
+    "root_ca_certificate",
+    *(f"{way}_{file}" for way in ("listen", "connect") for file in ("private_key", "certificate")),
+)
+_JSON5_PLACE = re.compile(r"-->\s*(\d+):(\d+)")
 
 _MESSAGE_MAX_KEY = "transport/link/rx/max_message_size"
 
@@ -59,6 +67,7 @@ def _config(options: ZenohOptions) -> zenoh.Config:
         # Zenoh's own default is plain TCP on all interfaces, beside whatever a file says of TLS.
         own = [] if options.config_file or _get(config, "mode") == "client" else ["tcp/127.0.0.1:0"]
         _insert(config, "listen/endpoints", own)
+    _check_tls_files(config, options.config_file)
     if not options.insecure:
         check_exposure(**_exposure(config))
     if _get(config, "mode") != "router" and _get(config, _MESSAGE_MAX_KEY) == _get(zenoh.Config(), _MESSAGE_MAX_KEY):
@@ -120,7 +129,26 @@ def _config_from_file(options: ZenohOptions) -> zenoh.Config:
     try:
         return zenoh.Config.from_json5(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, zenoh.ZError) as error:
-        raise UserError(f"--zenoh-config {path}: {_plain(str(error))}") from error
+        place = _JSON5_PLACE.search(str(error))
+        if place is None:
+            raise UserError(f"--zenoh-config {path}: {_plain(str(error))}") from error
+        where = f"from line {place[1]}, column {place[2]} on"
+        raise UserError(f"--zenoh-config {path}: no valid JSON5 {where}; check commas, colons and brackets") from error
+
+
+def _check_tls_files(config: zenoh.Config, config_file: Path | None) -> None:
+    """Read the files of keys and certificates: of one that it cannot read, Zenoh says that nobody answers."""
+    for name in _TLS_FILES:
+        path = _get(config, _TLS + name)
+        if not isinstance(path, str):
+            continue
+        try:
+            Path(path).read_bytes()
+        except OSError as error:
+            raise UserError(
+                f"--zenoh-config {config_file}: {name}: {path} cannot be read ({error.strerror}); name the file that "
+                "there is, and let the user that runs the program read it"
+            ) from error
 
 
 def _get(config: zenoh.Config, key: str) -> object:

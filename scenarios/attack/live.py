@@ -12,6 +12,7 @@ from link.mavlink.codec import MavlinkCodec
 from link.messages import Command, LandingStatus, Order
 from link.payloads import json_messages
 from link.payloads.checks import PayloadError
+from link.transports.device import parse_device
 from link.transports.opening import open_transport
 from link.transports.transport import Transport
 from link.zenoh.keys import Keys
@@ -92,6 +93,8 @@ def attempts(options: ZenohOptions, keys: Keys, *, device: str | None, stranger:
     Raises:
         UserError: no companion is there, its motors run, or it hears no autopilot.
     """
+    if device is not None:
+        parse_device(device)  # a mistake is told before anybody is waited for
     with ExitStack() as stack:
         zenoh = stack.enter_context(open_session(options))
         watch = Watch(zenoh, keys)

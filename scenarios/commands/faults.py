@@ -66,7 +66,14 @@ def faults_command(
         and (not wire or case.fault in WIRE_FAULTS)
     ]
     if not cases:
-        raise UserError(f"no fault has {fault!r} in its name, or no landing has a phase {phase!r}: leave one out")
+        likewise = [case for case in (*EXPECTED, *EXPECTED_IN_SORTIE) if fault is None or fault in case.fault.value]
+        if not likewise:
+            faults = "; ".join(sorted({case.fault.value for case in EXPECTED}))
+            raise UserError(f"no fault has '{fault}' in its name; there are: {faults}")
+        if phase is None:
+            raise UserError(f"'{fault}' is not flown over the wire: leave --wire out")
+        phases = ", ".join(sorted({case.phase.value for case in likewise}))
+        raise UserError(f"it is not flown in the phase '{phase}'; give none, or one of {phases}")
     with closing(_fly(cases, workers, wire=wire)) as flown:
         rows = list(map(_row, flown) if as_json else _told(map(_row, flown)))
     if as_json:

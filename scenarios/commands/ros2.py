@@ -43,6 +43,11 @@ def topics_command(
         raise UserError(f"ROS_DOMAIN_ID is {text!r}: give --domain, a number from 0 to 232")
     options = endpoints.options()
     rows = topic_rows(read_graph(options, int(text) if domain is None else domain))
+    if not rows:
+        raise UserError(
+            f"nobody tells of a topic in domain {text if domain is None else domain}: start a ROS 2 node, or check "
+            "--domain, and -e with the router's address"
+        )
     if as_json:
         sys.stdout.write(json.dumps({"topics": rows}, indent=2) + "\n")
         return

@@ -56,8 +56,21 @@ def test_mistake_is_one_line_that_names_file_and_key(tmp_path: Path, text: str, 
             "[touchdown]\nfalling_acceleration_m_s2 = 6.0\n",
             r"touchdown\.try_acceleration_m_s2 = 5\.0 .* more than falling_acceleration_m_s2, 6",
         ),
+        ("[guidance.mpc]\nmoves_s = []\n", r"guidance\.mpc .* has 0 nodes; it must have 1 to 200"),
+        ("[guidance.mpc]\nmoves_s = [1000.0]\n", r"guidance\.mpc .* has 6250 nodes; it must have 1 to 200"),
+        ("[guidance.mpc]\nnode_spacing_max_s = 1e-6\n", r"node_spacing_max_s = 1e-06 .* at least 0\.01"),
+        ("[descent]\ncommit_height_m = 0.7\n", r"commit_height_m, 0\.7, must be less than the heights of wait, 0\.7"),
     ],
-    ids=["refusal never told", "time limit too short", "press is no fall", "fall harder than the press"],
+    ids=[
+        "refusal never told",
+        "time limit too short",
+        "press is no fall",
+        "fall harder than the press",
+        "no moves",
+        "moves too long",
+        "nodes too near",
+        "commit above the wait",
+    ],
 )
 def test_numbers_that_do_not_go_together_are_refused(tmp_path: Path, text: str, said: str) -> None:
     with pytest.raises(UserError, match=said) as error:

@@ -100,7 +100,7 @@ def test_command_names_the_extra_that_is_missing(
     assert run_app("scenarios", app, arguments) == EXIT_USER_ERROR
     error = capsys.readouterr().err
     assert error.count("\n") == 1
-    assert f"pip install 'decklander[{extra}]'" in error
+    assert f"install the extra '{extra}' (docs/install.md)" in error
 
 
 @pytest.mark.parametrize(
@@ -112,5 +112,5 @@ def test_configuration_names_the_extra_that_it_needs(
     choice: dict[str, object], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda _: None)
-    with pytest.raises(UserError, match=r"decklander\[sim\]"):
+    with pytest.raises(UserError, match=r"the extra 'sim'"):
         build_node(CompanionConfig.model_validate(choice), Keys())

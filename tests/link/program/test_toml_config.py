@@ -105,7 +105,8 @@ def test_merging_leaves_what_it_merges_alone() -> None:
         ("[guidance.solver]\niterations_max = 2.5", "guidance.solver.iterations_max = 2.5 does not fit"),
         ("fast = 1", "fast = 1 does not fit: input should be a valid boolean"),
         ("[guidance]\nkind = 'pm'", "guidance.kind = \"pm\" does not fit: input should be 'mpc' or 'pn'"),
-        ("[guidance]\noffset_m = [1.0, 2.0]", "key 'guidance.offset_m[2]' is missing"),
+        ("[guidance]\noffset_m = [1.0, 2.0]", "guidance.offset_m is too short: it must have more than 2 values"),
+        ("guidance = 3", "guidance = 3 does not fit: it is a table, whose keys are set one by one"),
         ("name = ", "not valid TOML"),
     ],
 )

@@ -322,7 +322,11 @@ def test_a_configuration_file_is_used_and_options_go_before_it(tmp_path: Path, e
 
 @pytest.mark.parametrize(
     ("text", "expected"),
-    [("{mode: 'peer', nonsense: 3}", "unknown field `nonsense`"), ("{mode: ", "expected"), ("{mode: 'pear'}", "pear")],
+    [
+        ("{mode: 'peer', nonsense: 3}", "unknown field `nonsense`"),
+        ("{mode: ", "line 1, column 8"),
+        ("{mode: 'pear'}", "pear"),
+    ],
 )
 def test_a_wrong_configuration_file_is_the_users_mistake(tmp_path: Path, text: str, expected: str) -> None:
     path = tmp_path / "zenoh.json5"
@@ -332,6 +336,14 @@ def test_a_wrong_configuration_file_is_the_users_mistake(tmp_path: Path, text: s
     assert str(caught.value).startswith(f"--zenoh-config {path}: ")
     assert expected in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["root_ca_certificate", "connect_private_key", "listen_certificate"])
+def test_a_key_or_certificate_that_cannot_be_read_is_told_by_its_name(tmp_path: Path, name: str) -> None:
+    path = tmp_path / "zenoh.json5"
+    path.write_text(f"{{ transport: {{ link: {{ tls: {{ {name}: '{tmp_path}/none.pem' }} }} }} }}", encoding="utf-8")
+    with pytest.raises(UserError, match=rf"{name}: {tmp_path}/none\.pem cannot be read \(No such file"):
+        open_session(ZenohOptions(config_file=path))
 
 
 def test_a_missing_configuration_file_is_the_users_mistake(tmp_path: Path) -> None:

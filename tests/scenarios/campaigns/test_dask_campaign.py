@@ -132,5 +132,5 @@ def test_scheduler_that_is_not_there_is_a_mistake_of_the_user(tmp_path: Path, mo
 
 def test_missing_dask_is_a_mistake_of_the_user(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(UserError, match=r"needs distributed: pip install 'decklander\[dask\]'"):
+    with pytest.raises(UserError, match=r"needs distributed: install the extra 'dask'"):
         list(none_on("tcp://127.0.0.1:8786"))
